@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::page::document::source;
 
-/// What `cargo metadata` prints of a package.
+/// The output of `cargo metadata` for a package.
 #[derive(Deserialize)]
 struct Package {
     name: String,
@@ -20,7 +20,7 @@ struct Package {
 #[derive(Deserialize)]
 struct Dependency {
     name: String,
-    /// `dev` or `build`; absent for what the package itself uses.
+    /// `dev` or `build`; absent for ordinary dependencies.
     kind: Option<String>,
 }
 
@@ -59,20 +59,20 @@ impl Package {
             .expect("a manifest has a folder")
     }
 
-    /// The folder as seen from the top level.
+    /// The folder relative to the top level.
     fn path(&self) -> String {
         let path = self.folder().strip_prefix(root()).expect("it lies inside");
         path.to_string_lossy().replace('\\', "/")
     }
 
-    /// The packages that it uses, without those of its tests.
+    /// Its dependencies, without those of its tests.
     fn uses(&self) -> impl Iterator<Item = &str> {
         let used = self.dependencies.iter().filter(|used| used.kind.is_none());
         used.map(|used| used.name.as_str())
     }
 }
 
-/// Rust files below a folder; none if it is absent.
+/// Rust files below a folder; empty if it is absent.
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries
@@ -89,13 +89,13 @@ fn text(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The packages of `crates/` in the order in which data flows, each with those that it may use.
+/// The packages of `crates/` in the order of the data flow, each with its allowed dependencies.
 const CORE: [(&str, &[&str]); 11] = [
     ("pr_geom", &[]),
     ("pr_sim", &["pr_geom"]),
     ("pr_grid", &["pr_geom"]),
     ("pr_optim", &["pr_geom"]),
-    // Neither the simulator nor the lab: the estimator does not know the truth.
+    // Neither the simulator nor the lab: the estimator has no access to the truth.
     ("ch16_slam2d", &["pr_geom", "pr_optim"]),
     (
         "incremental_mapping",
@@ -185,9 +185,9 @@ fn the_guide_names_every_package() {
     }
 }
 
-/// A package compiles egui for its view, so the compiler cannot keep its model from it.
+/// A package compiles egui for its view, so the compiler cannot keep it out of the model.
 #[test]
-fn models_know_neither_egui_nor_the_browser_nor_a_clock() {
+fn models_use_neither_egui_nor_the_browser_nor_a_clock() {
     let words = [
         "egui",
         "eframe",
@@ -214,8 +214,8 @@ fn models_know_neither_egui_nor_the_browser_nor_a_clock() {
     }
 }
 
-/// Some manifests keep cargo from looking for tests, which saves it programs to link: then the tests must be
-/// elsewhere, or absent.
+/// Some manifests turn off test discovery to link fewer programs; then the tests must be elsewhere, or
+/// absent.
 #[test]
 fn no_test_is_left_out() {
     for package in packages() {
@@ -256,7 +256,7 @@ fn no_test_is_left_out() {
     }
 }
 
-/// Whether a comment of the documentation opens a block of Rust that would be tested.
+/// Whether a doc comment contains a Rust block that would be tested.
 fn has_example(text: &str) -> bool {
     let comments = text.lines().filter_map(|line| {
         let line = line.trim_start();
@@ -275,7 +275,7 @@ fn has_example(text: &str) -> bool {
 }
 
 #[test]
-fn an_example_is_told_from_a_figure() {
+fn an_example_is_distinguished_from_a_text_block() {
     assert!(has_example("//! ```\n//! assert!(true);\n//! ```\n"));
     assert!(has_example(
         "/// ```text\n/// x\n/// ```\n/// ```\n/// x();\n/// ```\n"

@@ -1,7 +1,7 @@
 //! The chapter's worked example of a pose graph: three poses on a line.
 //!
-//! Odometry says 1 m and 1 m, the loop says 2.6 m. Before: χ² = 0.6² = 0.36. The optimum spreads
-//! the disagreement equally, 0.2 m an edge: poses 1.2 and 2.4, χ² = 3 · 0.2² = 0.12.
+//! Odometry measures 1 m and 1 m, the loop 2.6 m. Before: χ² = 0.6² = 0.36. The optimum spreads the
+//! disagreement equally, 0.2 m per edge: poses 1.2 and 2.4, χ² = 3 · 0.2² = 0.12.
 
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 use nalgebra::Matrix3;

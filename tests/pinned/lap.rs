@@ -5,7 +5,7 @@ use pr_geom::{SE2, wrap_angle};
 use serde::Deserialize;
 use slam2d_tests::{assert_close, reference};
 
-/// Whole laps: hundreds of registrations in a row pass on the last bits of each.
+/// Whole laps: hundreds of consecutive registrations propagate the last bits of each.
 const TOLERANCE: f64 = 1e-6;
 
 #[derive(Deserialize)]
@@ -56,7 +56,7 @@ struct Tick {
     keyframe: bool,
 }
 
-/// The lap as this workspace runs it, beside the reference.
+/// The lap of this workspace, beside the reference.
 struct Run {
     expected: Lap,
     record: LapRecord,
@@ -116,7 +116,7 @@ fn every_tick_of_every_lap_is_the_reference_tick() {
                 &report.dead_reckoning,
                 &expected.dead_reckoning,
             );
-            // The reference notes tau once it has seen the tick's correction.
+            // The reference records tau after the tick's correction.
             close("tau", registration.next_tau_m, expected.tau);
             assert_eq!(registration.matched.iterations, expected.iterations, "{at}");
             assert_eq!(registration.matched.inliers, expected.inliers, "{at}");
@@ -219,9 +219,9 @@ fn every_occupancy_grid_has_the_reference_counts() {
     }
 }
 
-/// The chapter prints its results table with two to four digits; half a unit of the last.
+/// The chapter prints its results table with two to four digits; the tolerance is half a unit of the last.
 #[test]
-fn the_canonical_run_has_the_figures_that_the_chapter_prints() {
+fn the_canonical_run_has_the_values_of_the_chapter() {
     let record = LapRunner::new().run(&LapConfig::default());
     let (lap, front_end) = (&record.lap.summary, &record.front_end.summary);
     assert_eq!((lap.ticks, lap.keyframes, lap.loops), (129, 41, 3));
@@ -287,9 +287,9 @@ fn the_canonical_run_has_the_figures_that_the_chapter_prints() {
     }
 }
 
-/// No figure of the reference: the bits of this implementation, natively. That WebAssembly has the
-/// same ones, after the solver's loops too, is the test of `tests/wasm`. A change of any order of
-/// operations changes this number; then the figures above decide whether the change was right.
+/// Not a value of the reference: the native bits of this implementation. `tests/wasm` checks that WebAssembly
+/// has the same ones, also after the solver's loops. Any change of the order of operations changes this
+/// number; then the values above decide whether the change was right.
 #[test]
 fn the_bits_of_the_front_end_are_those_that_were_recorded() {
     let record = LapRunner::new().run(&LapConfig::default());

@@ -1,4 +1,4 @@
-//! Every reference figure has a test here; one binary, one module for each JSON file.
+//! Tests against every reference file; one binary, one module for each JSON file.
 
 mod architecture;
 mod basin;

@@ -34,7 +34,7 @@ struct Align {
     iterations: usize,
 }
 
-/// The sweep in the sensor frame: the terrain's room scene, but seen 6 m far.
+/// The sweep in the sensor frame: the terrain's room scene, with a range of 6 m.
 fn sweep(expected: &Ndt) -> (SE2, PointCloud) {
     let [x, y, theta] = expected.pose;
     let pose = SE2::new(x, y, theta);
@@ -91,9 +91,9 @@ fn every_registration_ends_at_the_reference_pose_and_score() {
             assert_close(&name, actual, expected, 1e-9);
         }
         assert_close(&name, found.score, expected.score, 1e-9);
-        // Near the maximum a step raises the score of about 85 in its last digit or not at all, and
-        // how the sums round decides which: orders of summation that differ in nothing else took 20
-        // to 23 iterations where the reference took 21, with headings 1.4e-10 rad apart at most.
+        // Near the maximum a step raises the score of about 85 in its last digit or not at all, depending on
+        // the rounding of the sums. Other orders of summation took 20 to 23 iterations where the reference
+        // took 21, with headings at most 1.4e-10 rad apart.
         let slack = match found.stop {
             NdtStop::NoBetterStep { .. } => 2,
             NdtStop::IterationLimit { .. } | NdtStop::SmallGradient { .. } => 0,

@@ -1,9 +1,8 @@
-//! Recorded pose graphs, solved from the file alone to the best known optimum.
+//! Recorded pose graphs, solved from the file to the best known optimum.
 //!
-//! The recordings carry no licence and are not part of the project: where the folder with the
-//! reference data is absent, these tests say so and pass. The optima are those that came with the
-//! data, χ² = Σ eᵀΩe with the log residual; none of nine published solvers reaches those of mit and
-//! m3500b from the file's start.
+//! The recordings have no licence and are not part of the project: without the folder of the reference data
+//! these tests print a note and pass. The optima come with the data, χ² = Σ eᵀΩe with the log residual; none
+//! of nine published solvers reaches those of mit and m3500b from the file's start.
 
 use std::path::PathBuf;
 
@@ -39,7 +38,7 @@ fn settings() -> Settings {
     }
 }
 
-/// The recorded graph solved from its file, and what the solve says; none without the data.
+/// The recorded graph solved from its file, and the outcome; `None` without the data.
 fn solved(name: &str, optimizer: &mut Optimizer) -> Option<(Problem, Outcome)> {
     let text = std::fs::read_to_string(graph_file(name)).ok()?;
     let mut problem = G2oFile::parse(&text).unwrap().problem;
@@ -61,7 +60,7 @@ fn every_recorded_graph_reaches_the_best_known_optimum() {
             "{name}: {}",
             outcome.report.stop
         );
-        // 1e-6 relative, and half a unit of the seventh digit that the optimum is given with.
+        // 1e-6 relative, and half a unit of the seventh digit of the given optimum.
         let digits = best.log10().floor();
         let tolerance = 1e-6 * best + 0.5 * 10_f64.powf(digits - 6.0);
         assert!(
@@ -78,7 +77,7 @@ fn every_recorded_graph_reaches_the_best_known_optimum() {
 }
 
 #[test]
-fn a_start_whose_first_step_breaks_its_promise_is_left_after_that_step() {
+fn a_start_whose_first_step_fails_is_abandoned_after_that_step() {
     for name in ["ais2klinik", "m3500b", "mit"] {
         let Some((_, outcome)) = solved(name, &mut Optimizer::new(settings())) else {
             skip(&format!("the starts tried on {name}"), NO_RECORDED_GRAPHS);
@@ -95,7 +94,7 @@ fn a_start_whose_first_step_breaks_its_promise_is_left_after_that_step() {
         );
         assert_eq!(chordal.start, Start::Chordal, "{name}");
         assert_eq!(outcome.total_iterations, 1 + chordal.iterations, "{name}");
-        // 7 is what m3500b takes; from its file ais2klinik took 23.
+        // m3500b takes 7; from its file ais2klinik took 23.
         assert!(outcome.total_iterations <= 7, "{name}");
     }
 }

@@ -1,8 +1,8 @@
-//! The chapter in `index.html`: every number that it prints is computed here again.
+//! The chapter in `index.html`: every number in it is computed again.
 //!
-//! A number is a figure (`data-figure`, or `\fig{name}{text}` in a formula), a link that sets a
-//! widget, the year of a citation, or marked as a count that the reader makes on the spot. Any other
-//! digit or number word on the page fails.
+//! A number is a figure (`data-figure`, or `\fig{name}{text}` in a formula), a link that sets a widget, the
+//! year of a citation, or marked as a count that the reader can make on the page. Any other digit or number
+//! word on the page fails.
 
 mod claims;
 pub mod document;
@@ -47,7 +47,7 @@ fn every_figure_is_what_the_core_computes_at_the_printed_digits() {
 }
 
 #[test]
-fn no_number_stands_unmarked() {
+fn no_number_is_unmarked() {
     assert_eq!(page().loose_numbers, Vec::<String>::new());
     let doctored = "<p>It ends 0.24 m off.</p><tex>x = 1.5</tex><tex>x^2</tex>\
         <p>The error falls to a third.</p><p>It has <span class=\"count\">three</span> parts.</p>";
@@ -55,7 +55,7 @@ fn no_number_stands_unmarked() {
 }
 
 #[test]
-fn a_number_that_sets_a_widget_says_what_it_sets() {
+fn a_number_that_sets_a_widget_names_its_values() {
     let page = page();
     assert!(page.links.len() >= 10, "the page has lost its links");
     for NumberLink { href, text, .. } in &page.links {
@@ -73,7 +73,7 @@ fn a_number_that_sets_a_widget_says_what_it_sets() {
 }
 
 #[test]
-fn every_link_is_taken_whole_by_a_widget_that_stands_on_the_page() {
+fn every_link_is_valid_for_a_widget_of_the_page() {
     let page = page();
     let mut widgets = Widgets::new();
     for widget in &widgets.0 {
@@ -91,7 +91,7 @@ fn every_link_is_taken_whole_by_a_widget_that_stands_on_the_page() {
 }
 
 #[test]
-fn the_widget_of_every_link_says_what_the_sentence_of_the_link_says() {
+fn the_widget_of_every_link_agrees_with_its_sentence() {
     let page = page();
     let mut widgets = Widgets::new();
     let mut wrong = Vec::new();
@@ -117,7 +117,7 @@ fn the_widget_of_every_link_says_what_the_sentence_of_the_link_says() {
             let found = outcome.facts.iter().find(|found| found.id == fact);
             match (figure, found) {
                 (Some(figure), Some(found)) if stands_beside => {
-                    // A heading is printed without its sign where only its size matters.
+                    // A heading is printed without its sign if only its size matters.
                     let says = |value| printed::check(&figure.text, value);
                     if says(found.value).is_err() && says(-found.value).is_err() {
                         wrong.push(format!(
@@ -189,7 +189,7 @@ fn a_link_to_a_loop_sets_the_tick_of_that_loop() {
 }
 
 #[test]
-fn every_citation_leads_to_its_year() {
+fn every_citation_has_a_reference_of_its_year() {
     let page = page();
     assert!(page.citations.len() >= 12);
     for (href, text) in &page.citations {

@@ -1,4 +1,4 @@
-//! The colours of `widgets/palette.json`, beyond those that mean something in a picture.
+//! The colours of `widgets/palette.json` without a meaning in pictures.
 
 use std::collections::BTreeMap;
 
@@ -36,7 +36,7 @@ fn the_widgets_have_the_colours_of_the_file() {
 }
 
 #[test]
-fn words_can_be_read_in_both_themes() {
+fn text_is_readable_in_both_themes() {
     let colors = colors();
     let code = [
         "posterior",
@@ -56,7 +56,7 @@ fn words_can_be_read_in_both_themes() {
     }
 }
 
-/// A colour that the file lacks would be what its neighbours are, in one theme or in both.
+/// A colour that the file lacks would be inherited, in one theme or in both.
 #[test]
 fn the_styles_declare_no_colour_of_their_own_and_use_none_that_is_missing() {
     let colors = colors();

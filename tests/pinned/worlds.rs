@@ -1,16 +1,16 @@
-//! The laps of `docs/worlds.md` and of the page: what was written down is what the core drives.
+//! The laps of `docs/worlds.md` and of the page: the recorded results agree with the core.
 //!
-//! Thousands of laps take minutes, so the figures are those that the commands of `docs/worlds.md` wrote
-//! down. Some of the laps are driven again, and their bits compared.
+//! Thousands of laps take minutes, so the numbers are the recorded output of the commands in
+//! `docs/worlds.md`. Some of the laps are run again, and their bits compared.
 
-use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner, WAY_SHARES};
+use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner, PATH_SHARES};
 use ch16_slam2d::chapter::InformationFrame;
 
 use serde_json::Value;
 
 use crate::page::document::source;
 
-/// What was swept, each with both frames of information. Point to point closes nothing on the ring.
+/// The sweeps, each with both frames of information. Point to point closes no loop on the ring.
 const TRIALS: [(BuiltInWorld, LapMatcher); 5] = [
     (BuiltInWorld::Apartment, LapMatcher::PointToPoint),
     (BuiltInWorld::Apartment, LapMatcher::PointToPlane),
@@ -19,7 +19,7 @@ const TRIALS: [(BuiltInWorld, LapMatcher); 5] = [
     (BuiltInWorld::Ring, LapMatcher::Ndt),
 ];
 
-/// Height of the page's picture of errors along the way, m, and of its panels, px.
+/// Height of the page's picture of errors along the path, m, and of its panels, px.
 const PICTURE_M: f64 = 0.3;
 const PICTURE_PX: f64 = 90.0;
 
@@ -30,7 +30,7 @@ fn sweeps() -> impl Iterator<Item = (BuiltInWorld, LapMatcher, InformationFrame)
     })
 }
 
-/// What `slam2d sweep` said of the laps in `world` by `matcher` with the information in `frame`.
+/// The output of `slam2d sweep` for the laps in `world` with `matcher` and the information in `frame`.
 fn recorded(world: &str, matcher: &str, frame: &str) -> Option<Value> {
     let known = sweeps().any(|(w, m, f)| [w.name(), m.name(), f.name()] == [world, matcher, frame]);
     let file = format!("tests/pinned/sweeps/{world}-{matcher}-{frame}.json");
@@ -75,7 +75,7 @@ fn laps_of_the_recorded_sweeps_have_the_recorded_bits() {
         let samples = level["samples"].as_array().unwrap();
         assert!(samples.len() >= 20);
         let mut runner = LapRunner::new();
-        // Every fourth: the sweeps themselves take minutes.
+        // Every fourth: the complete sweeps take minutes.
         for sample in samples.iter().step_by(4) {
             let seed = sample["seed"].as_u64().unwrap() as u32;
             let config = LapConfig::in_world(world, seed, 1.0)
@@ -139,13 +139,13 @@ fn panel(world: BuiltInWorld, left: f64) -> String {
         let points: Vec<[f64; 2]> = medians
             .enumerate()
             .map(|(k, error)| {
-                let x = left + 130.0 * k as f64 / WAY_SHARES as f64;
+                let x = left + 130.0 * k as f64 / PATH_SHARES as f64;
                 let share = error.as_f64().unwrap() / PICTURE_M;
                 assert!((0.0..=1.0).contains(&share), "the picture is too low");
                 [x, 10.0 + PICTURE_PX * (1.0 - share)]
             })
             .collect();
-        assert_eq!(points.len(), WAY_SHARES + 1);
+        assert_eq!(points.len(), PATH_SHARES + 1);
         points
     });
     let line = |points: &[[f64; 2]]| {
@@ -172,7 +172,7 @@ fn panel(world: BuiltInWorld, left: f64) -> String {
 }
 
 #[test]
-fn the_picture_of_errors_along_the_way_shows_the_recorded_medians() {
+fn the_picture_of_errors_along_the_path_shows_the_recorded_medians() {
     let lines_of = |text: &str| -> Vec<String> {
         let lines = text.lines().map(str::trim);
         lines

@@ -1,7 +1,7 @@
-//! The reference figures, and how the pinned tests read and compare them.
+//! The reference values, and functions to read and compare them.
 //!
-//! The JSON files in `reference/` were computed by an independent implementation of the same
-//! system; nothing in the code is copied from them.
+//! The JSON files in `reference/` were computed by an independent implementation of the same system; the code
+//! contains no copies of them.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use serde::de::DeserializeOwned;
 /// The cases of one reference file, for example `reference::<Vec<Case>>("rng.json")`.
 ///
 /// # Panics
-/// Where the file is missing or does not have the fields of `T`: then the suite itself is broken.
+/// If the file is missing or lacks the fields of `T`: a fault of the suite itself.
 #[must_use]
 pub fn reference<T: DeserializeOwned>(file: &str) -> T {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -24,7 +24,7 @@ pub fn reference<T: DeserializeOwned>(file: &str) -> T {
 /// Asserts |actual − expected| ≤ tolerance; a NaN on either side fails.
 ///
 /// # Panics
-/// Where the two differ by more.
+/// If they differ by more.
 #[track_caller]
 pub fn assert_close(what: &str, actual: f64, expected: f64, tolerance: f64) {
     let difference = (actual - expected).abs();

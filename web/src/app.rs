@@ -1,4 +1,4 @@
-//! A widget as an eframe app, and what eframe has to leave to the page around it.
+//! A widget as an eframe app, and the events that eframe has to leave to the page.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
@@ -9,7 +9,7 @@ use kit::palette::{self, Theme};
 use kit::scene::Tone;
 use kit::shell::Shell;
 
-/// What the app and the handle of JavaScript both hold.
+/// State shared by the app and the JavaScript handle.
 pub struct Shared {
     /// The widget.
     pub shell: RefCell<Shell>,
@@ -17,30 +17,30 @@ pub struct Shared {
     pub ctx: RefCell<Option<egui::Context>>,
     /// Light or dark.
     pub theme: Cell<Theme>,
-    /// Frames laid out since the start.
+    /// Number of laid out frames since the start.
     pub frames: Cell<u32>,
-    /// Whether the pointer went down on something that drags.
+    /// Whether the pointer was pressed on something draggable.
     pub dragging: Cell<bool>,
-    /// A touch was cancelled, of which egui hears nothing.
+    /// Whether a touch was cancelled, which egui does not report.
     pub cancelled: Cell<bool>,
-    /// The reader pressed on the map of a widget that is all map, and the pointer is still there.
+    /// Whether the reader pressed on the map of a full-size map widget and the pointer is still on it.
     pub engaged: Cell<bool>,
 }
 
-/// A turn of the wheel by so many points doubles the zoom, or halves it.
+/// Wheel movement in points that doubles or halves the zoom.
 const WHEEL_DOUBLES: f32 = 240.0;
-/// Points of a line, where a wheel counts in lines.
+/// Points per line, for wheels that count in lines.
 const LINE_POINTS: f32 = 40.0;
 
 impl Shared {
-    /// Whether something that drags lies there; no while the widget is busy with itself.
+    /// Whether something draggable is at that position; false during exclusive access to the widget.
     pub fn drags_at(&self, pos: Pos2) -> bool {
         self.shell
             .try_borrow()
             .is_ok_and(|shell| shell.drags_at(pos))
     }
 
-    /// Whether the wheel is the map's there, once it was pressed: that of a widget that is all map.
+    /// Whether the wheel belongs to the map there, after a press on a full-size map widget.
     fn is_on_map(&self, pos: Pos2) -> bool {
         self.shell.try_borrow().is_ok_and(|shell| {
             let map = shell.scene_rect().filter(|_| shell.model().takes_files());
@@ -48,7 +48,7 @@ impl Shared {
         })
     }
 
-    /// Asks for a frame, where the widget runs.
+    /// Requests a frame if the widget runs.
     pub fn request_repaint(&self) {
         if let Some(ctx) = &*self.ctx.borrow() {
             ctx.request_repaint();
@@ -65,7 +65,7 @@ impl WidgetApp {
     /// Prepares egui for the widget.
     pub fn new(ctx: &egui::Context, shared: Rc<Shared>) -> Self {
         crate::fonts::install(ctx);
-        // Following the system's theme would fight with the page's own.
+        // egui must not follow the system's theme, because the page sets it.
         apply_theme(ctx, shared.theme.get());
         shared.shell.borrow_mut().set_theme(shared.theme.get());
         *shared.ctx.borrow_mut() = Some(ctx.clone());
@@ -73,7 +73,7 @@ impl WidgetApp {
     }
 }
 
-/// The theme of that name; light is what is not dark.
+/// The theme of that name; any other name is light.
 pub fn theme_of(name: &str) -> Theme {
     match name {
         "dark" => Theme::Dark,
@@ -81,7 +81,7 @@ pub fn theme_of(name: &str) -> Theme {
     }
 }
 
-/// Tells egui's own widgets the theme.
+/// Sets the theme of egui's own widgets.
 pub fn apply_theme(ctx: &egui::Context, theme: Theme) {
     ctx.set_theme(match theme {
         Theme::Light => egui::Theme::Light,
@@ -89,13 +89,13 @@ pub fn apply_theme(ctx: &egui::Context, theme: Theme) {
     });
 }
 
-/// Lays a widget out without a canvas; returns the height it needs, in points.
+/// Lays out a widget without a canvas. Returns its height in points.
 pub fn height_at(ctx: &egui::Context, shell: &mut Shell, width: f32) -> f32 {
     let input = RawInput {
         screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(width, 1e4))),
         ..Default::default()
     };
-    // egui knows the size of some things only once it has drawn them.
+    // egui knows the sizes of some widgets only after drawing them.
     for _ in 0..2 {
         let _ = ctx.run_ui(input.clone(), |ui| shell.ui(ui));
     }
@@ -128,7 +128,7 @@ impl eframe::App for WidgetApp {
             )
         });
         if touch_cancelled || self.shared.cancelled.take() {
-            // First: a slider would follow the pointer to where it is released.
+            // First, because a slider would follow the pointer to the release.
             ctx.stop_dragging();
             release_pointer(input);
             self.shared.dragging.set(false);
@@ -145,12 +145,12 @@ impl eframe::App for WidgetApp {
     }
 }
 
-/// The plain wheel belongs to the page; with ctrl it zooms the view.
+/// Whether an event scrolls the page: the plain wheel does; with ctrl it zooms the view.
 fn scrolls_page(event: &Event) -> bool {
     matches!(event, Event::MouseWheel { modifiers, .. } if !modifiers.ctrl && !modifiers.command)
 }
 
-/// Makes a turn of the plain wheel a zoom.
+/// Converts a turn of the plain wheel into a zoom.
 fn zoom_by_wheel(event: &mut Event) {
     if !scrolls_page(event) {
         return;
@@ -165,7 +165,7 @@ fn zoom_by_wheel(event: &mut Event) {
     *event = Event::Zoom((points / WHEEL_DOUBLES).exp2());
 }
 
-/// Far outside, so that the release is a click on nothing.
+/// Releases far outside, so that it is not a click.
 fn release_pointer(input: &mut RawInput) {
     let nowhere = Pos2::new(-1e4, -1e4);
     input.events.push(Event::PointerMoved(nowhere));
@@ -189,15 +189,15 @@ pub fn web_options(shared: &Rc<Shared>) -> eframe::WebOptions {
     }
 }
 
-/// Whether the browser should do nothing by itself on that event.
+/// Whether the browser's default action for an event has to be prevented.
 fn is_ours_alone(shared: &Shared, event: &Event) -> bool {
     match event {
-        // Zooms our view, not the page.
+        // Zooms the view, not the page.
         Event::Zoom(_) | Event::Rotate(_) => true,
         Event::MouseWheel { modifiers, .. } => {
             modifiers.ctrl || modifiers.command || shared.engaged.get()
         }
-        // A touch scrolls the page unless it starts on something that drags.
+        // A touch scrolls the page unless it starts on something draggable.
         Event::PointerButton { pos, pressed, .. } => {
             shared.engaged.set(shared.is_on_map(*pos));
             let was_dragging = shared.dragging.get();

@@ -1,4 +1,4 @@
-//! Ten loop candidates for the reader to judge, and the curve that the gate draws over them.
+//! Ten loop candidates for the reader to judge, and the curve of the gate's decisions on them.
 
 use std::sync::OnceLock;
 
@@ -10,14 +10,14 @@ use kit::svg::scene_svg;
 use pr_geom::Translation;
 use serde_json::{Value, json};
 
-/// So many are right, and so many are not.
+/// Number of right candidates, and of wrong ones.
 const OF_EACH: usize = 5;
-/// Wheels of the laps: noisy enough that registration errs.
+/// Odometry noise of the laps, high enough that registration errs.
 const NOISE: f64 = 2.0;
 /// Half of a picture's side, m.
 const REACH_M: f64 = 4.0;
 
-/// A loop that a lap tried, and what is known of it.
+/// A loop candidate of a lap, and its evidence.
 struct Candidate {
     submap: Vec<[f64; 2]>,
     sweep: Vec<[f64; 2]>,
@@ -29,7 +29,7 @@ struct Candidate {
     error: String,
 }
 
-/// The first of each kind over the seeds, one of a lap at most, in the order of the laps.
+/// The first candidates of each kind over the seeds, at most one per lap, in the order of the laps.
 fn candidates() -> &'static [Candidate] {
     static FOUND: OnceLock<Vec<Candidate>> = OnceLock::new();
     FOUND.get_or_init(|| {
@@ -122,7 +122,7 @@ impl Candidate {
     }
 }
 
-/// How many right and how many wrong candidates are taken.
+/// Numbers of accepted right and wrong candidates.
 fn taken(is_taken: impl Fn(usize, &Candidate) -> bool) -> [usize; 2] {
     let all = candidates().iter().enumerate();
     let taken: Vec<_> = all
@@ -135,12 +135,12 @@ fn taken(is_taken: impl Fn(usize, &Candidate) -> bool) -> [usize; 2] {
     [right, taken.len() - right]
 }
 
-/// What both tests take at a threshold of the gate.
+/// Numbers accepted by both tests at a threshold of the gate.
 fn taken_by_gate(chi2: f64) -> [usize; 2] {
     taken(|_, candidate| candidate.fits && candidate.chi2 <= chi2)
 }
 
-/// The candidates, each with its picture and what registration says of it.
+/// The candidates, each with its picture and its registration in words.
 #[must_use]
 pub fn shown(width_px: f32, theme: Theme) -> Value {
     let shown = candidates().iter().enumerate().map(|(k, candidate)| {
@@ -154,7 +154,7 @@ pub fn shown(width_px: f32, theme: Theme) -> Value {
     Value::from(shown.collect::<Vec<_>>())
 }
 
-/// What became of the reader's answers, one for each candidate: whether it was taken.
+/// Evaluates the reader's answers, one for each candidate: whether it was accepted.
 #[must_use]
 pub fn judged(answers: &[bool], width_px: f32, theme: Theme) -> Value {
     let gate_chi2 = LapConfig::default().slam.chapter.loops.gate_chi2;
@@ -232,14 +232,14 @@ mod tests {
     use kit::audit::scene_text_faults;
 
     #[test]
-    fn half_of_the_candidates_are_right_and_neither_test_tells_all_of_them_apart() {
+    fn half_of_the_candidates_are_right_and_neither_test_separates_them_all() {
         assert_eq!(candidates().len(), 2 * OF_EACH);
         let right = candidates()
             .iter()
             .filter(|candidate| candidate.is_right)
             .count();
         assert_eq!(right, OF_EACH);
-        // A reader who knows the truth beats every threshold.
+        // A reader who knows the truth is better than every threshold.
         for threshold in [0.5, 2.0, 7.815, 20.0, 1e6] {
             assert_ne!(taken_by_gate(threshold), [OF_EACH, 0], "{threshold}");
         }

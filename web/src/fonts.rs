@@ -1,7 +1,6 @@
-//! One small font in place of egui's default set, which weighs more than all widgets together.
+//! A small font instead of egui's default set, which is larger than all widgets together.
 //!
-//! What the font lacks is drawn by the browser's own fonts. `web/fonts/README.md` says how the
-//! subset was made.
+//! The browser's own fonts draw missing characters. `web/fonts/README.md` documents the subset.
 
 use std::sync::Arc;
 
@@ -9,7 +8,7 @@ use egui::{FontData, FontDefinitions, FontFamily};
 
 const NAME: &str = "DejaVu Sans Condensed (subset)";
 
-/// Makes the subset the font of every text.
+/// Sets the subset as the font of all texts.
 pub fn install(ctx: &egui::Context) {
     let data = FontData::from_static(include_bytes!("../fonts/dejavu-sans-condensed-subset.ttf"));
     let mut fonts = FontDefinitions::empty();

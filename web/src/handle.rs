@@ -1,4 +1,4 @@
-//! What JavaScript sees: one object per widget, text and JSON in and out.
+//! The JavaScript interface: one object per widget, text and JSON in and out.
 
 use std::cell::{Cell, OnceCell, RefCell};
 use std::rc::Rc;
@@ -15,21 +15,21 @@ use widgets::registry;
 
 use crate::{app, state};
 
-/// A widget, running on a canvas or not.
+/// A widget, with or without a canvas.
 #[wasm_bindgen]
 pub struct Widget {
     shared: Rc<Shared>,
     runner: eframe::WebRunner,
-    /// Lays out what is not drawn.
+    /// Context for layouts without drawing.
     measuring: OnceCell<egui::Context>,
 }
 
 #[wasm_bindgen]
 impl Widget {
-    /// A fresh widget of that name, not running yet.
+    /// Creates a widget of that name, not running yet.
     ///
     /// # Errors
-    /// Where there is no such widget.
+    /// If there is no such widget.
     #[wasm_bindgen(constructor)]
     pub fn new(name: &str) -> Result<Self, JsError> {
         let shell = registry::find(name).map_err(|problem| JsError::new(&problem))?();
@@ -49,10 +49,10 @@ impl Widget {
         })
     }
 
-    /// Runs the widget on a canvas. Once per object: a stopped widget is made anew.
+    /// Runs the widget on a canvas. Once per object: create a new one after a stop.
     ///
     /// # Errors
-    /// Where the browser gives no WebGL.
+    /// If the browser provides no WebGL.
     pub async fn start(&self, canvas: web_sys::HtmlCanvasElement) -> Result<(), JsValue> {
         let shared = Rc::clone(&self.shared);
         let create: eframe::AppCreator<'static> =
@@ -62,26 +62,26 @@ impl Widget {
             .await
     }
 
-    /// Stops for good and gives back what it took from the page.
+    /// Stops permanently and releases the resources.
     pub fn destroy(&self) {
         self.runner.destroy();
         *self.shared.ctx.borrow_mut() = None;
     }
 
-    /// Whether the code panicked; then nothing but [`Widget::panic_message`] may be called.
+    /// Whether the code panicked; then only [`Widget::panic_message`] may be called.
     #[wasm_bindgen(js_name = hasPanicked)]
     pub fn has_panicked(&self) -> bool {
         self.runner.has_panicked()
     }
 
-    /// What the panic said, with its call stack.
+    /// The message of the panic, with its call stack.
     #[wasm_bindgen(js_name = panicMessage)]
     pub fn panic_message(&self) -> Option<String> {
         let summary = self.runner.panic_summary()?;
         Some(format!("{}\n\n{}", summary.message(), summary.callstack()))
     }
 
-    /// Panics on purpose, so that a host's recovery can be tested.
+    /// Panics, to test a host's recovery.
     ///
     /// # Panics
     /// Always.
@@ -93,24 +93,24 @@ impl Widget {
     /// The value of a parameter as a number.
     ///
     /// # Errors
-    /// Where the widget has no such parameter.
+    /// If the widget has no such parameter.
     pub fn number(&self, id: &str) -> Result<f64, JsError> {
         Ok(self.find(id)?.1)
     }
 
-    /// The value of a parameter as a link writes it.
+    /// The value of a parameter in the form of a link.
     ///
     /// # Errors
-    /// Where the widget has no such parameter.
+    /// If the widget has no such parameter.
     pub fn text(&self, id: &str) -> Result<String, JsError> {
         let (spec, _) = self.find(id)?;
         Ok(self.shared.shell.borrow().model().values().to_text(spec.id))
     }
 
-    /// Sets a parameter from what a link or an attribute says.
+    /// Sets a parameter from the text of a link or an attribute.
     ///
     /// # Errors
-    /// A sentence that names what would be right; the old value stands.
+    /// A sentence with the valid values; the old value remains.
     pub fn set(&self, id: &str, text: &str) -> Result<(), JsError> {
         self.shared
             .shell
@@ -124,14 +124,14 @@ impl Widget {
     /// Presses a button or a preset.
     ///
     /// # Errors
-    /// Where the widget has no such button.
+    /// If the widget has no such button.
     pub fn press(&self, id: &str) -> Result<(), JsError> {
         self.shared.shell.borrow_mut().model_mut().press(id)?;
         self.shared.request_repaint();
         Ok(())
     }
 
-    /// Hands the widget what its host brings: a kind, words, numbers, bytes.
+    /// Passes a delivery of the host to the widget: a kind, words, numbers, bytes.
     pub fn deliver(&self, kind: &str, text: &str, numbers: &[f64], bytes: &[u8]) {
         let delivery = Delivery {
             kind,
@@ -145,13 +145,13 @@ impl Widget {
         self.shared.request_repaint();
     }
 
-    /// What the widget asks of its host since the last call.
+    /// The widget's requests to its host since the last call.
     #[wasm_bindgen(js_name = takeOrders)]
     pub fn take_orders(&self) -> Vec<String> {
         self.shared.shell.borrow_mut().take_orders()
     }
 
-    /// Every value as JSON, each as a link writes it.
+    /// Every value as JSON, in the form of a link.
     pub fn values(&self) -> String {
         state::values(self.shared.shell.borrow().model()).to_string()
     }
@@ -161,7 +161,7 @@ impl Widget {
         state::outcome(&self.shared.shell.borrow().model().outcome()).to_string()
     }
 
-    /// A text that stands for the picture.
+    /// The text alternative of the picture.
     pub fn summary(&self) -> String {
         self.shared.shell.borrow().model().summary()
     }
@@ -198,7 +198,7 @@ impl Widget {
         });
     }
 
-    /// Draws the focus ring round that control, or round none.
+    /// Draws the focus ring around that control, or none.
     #[wasm_bindgen(js_name = setFocus)]
     pub fn set_focus(&self, id: Option<String>) {
         self.shared.shell.borrow_mut().set_focus(id.as_deref());
@@ -208,7 +208,7 @@ impl Widget {
     /// Zooms every map or moves its zoomed part: `in`, `out`, `left`, `right`, `up`, `down`, `whole`.
     ///
     /// # Errors
-    /// Where there is no such way.
+    /// If the name is unknown.
     pub fn look(&self, way: &str) -> Result<(), JsError> {
         let known = || Look::NAMES.map(|(name, _)| name).join(", ");
         let look = Look::named(way)
@@ -218,41 +218,41 @@ impl Widget {
         Ok(())
     }
 
-    /// Whether something that drags lies at that point of the canvas (CSS pixels).
+    /// Whether something draggable is at that point of the canvas (CSS pixels).
     #[wasm_bindgen(js_name = dragsAt)]
     pub fn drags_at(&self, x: f32, y: f32) -> bool {
         self.shared.drags_at(egui::pos2(x, y))
     }
 
-    /// Where a control stands on the canvas: left, top, width, height in CSS pixels.
+    /// The rectangle of a control on the canvas: left, top, width, height in CSS pixels.
     #[wasm_bindgen(js_name = controlBox)]
     pub fn control_box(&self, id: &str) -> Option<Vec<f32>> {
         let rect = self.shared.shell.borrow().control_rect(id)?;
         Some(vec![rect.left(), rect.top(), rect.width(), rect.height()])
     }
 
-    /// Where a point of a panel (units of its axes) lies on the canvas (CSS pixels).
+    /// Position of a panel's point (units of its axes) on the canvas (CSS pixels).
     #[wasm_bindgen(js_name = panelToScreen)]
     pub fn panel_to_screen(&self, panel: &str, x: f64, y: f64) -> Option<Vec<f32>> {
         let shell = self.shared.shell.borrow();
         Some(shell.panel_to_screen(panel, [x, y])?.to_vec())
     }
 
-    /// Where the picture stands on the canvas: left, top, width, height in CSS pixels.
+    /// The rectangle of the picture on the canvas: left, top, width, height in CSS pixels.
     #[wasm_bindgen(js_name = sceneBox)]
     pub fn scene_box(&self) -> Option<Vec<f32>> {
         let rect = self.shared.shell.borrow().scene_rect()?;
         Some(vec![rect.left, rect.top, rect.width, rect.height])
     }
 
-    /// Ends every drag, because its touch was cancelled.
+    /// Ends every drag after a cancelled touch.
     #[wasm_bindgen(js_name = releaseDrags)]
     pub fn release_drags(&self) {
         self.shared.cancelled.set(true);
         self.shared.request_repaint();
     }
 
-    /// Whether a text field of the widget is being typed into.
+    /// Whether a text field of the widget has the keyboard focus.
     #[wasm_bindgen(js_name = wantsKeyboard)]
     pub fn wants_keyboard(&self) -> bool {
         let ctx = self.shared.ctx.borrow();
@@ -260,20 +260,20 @@ impl Widget {
             .is_some_and(egui::Context::egui_wants_keyboard_input)
     }
 
-    /// Height in CSS pixels that the widget needs at the width of its last frame.
+    /// Height of the widget at the width of its last frame, CSS pixels.
     #[wasm_bindgen(js_name = contentHeight)]
     pub fn content_height(&self) -> f32 {
         self.shared.shell.borrow().content_height()
     }
 
-    /// Says what height the page has for all of the widget, in CSS pixels.
+    /// Sets the available height for the whole widget, in CSS pixels.
     #[wasm_bindgen(js_name = setRoom)]
     pub fn set_room(&self, height_px: f32) {
         self.shared.shell.borrow_mut().set_room(height_px);
         self.shared.request_repaint();
     }
 
-    /// The height that it would need at that width, both in CSS pixels; lays it out without a canvas.
+    /// The height of the widget at that width, both in CSS pixels, laid out without a canvas.
     #[wasm_bindgen(js_name = heightAt)]
     pub fn height_at(&self, width_px: f32) -> f32 {
         let ctx = self.measuring.get_or_init(|| {
@@ -284,7 +284,7 @@ impl Widget {
         app::height_at(ctx, &mut self.shared.shell.borrow_mut(), width_px)
     }
 
-    /// Whether another frame is wanted: something plays, moves or is still being computed.
+    /// Whether another frame is needed: for playback, an animation or pending work.
     #[wasm_bindgen(js_name = wantsFrame)]
     pub fn wants_frame(&self) -> bool {
         let ctx = self.shared.ctx.borrow();
@@ -294,30 +294,30 @@ impl Widget {
                 .is_some_and(egui::Context::has_requested_repaint)
     }
 
-    /// Asks for one more frame.
+    /// Requests one more frame.
     #[wasm_bindgen(js_name = requestFrame)]
     pub fn request_frame(&self) {
         self.shared.request_repaint();
     }
 
-    /// Frames laid out since the start.
+    /// Number of laid out frames since the start.
     pub fn frames(&self) -> u32 {
         self.shared.frames.get()
     }
 
-    /// Finishes what the picture waits for, so that outcome, words and tables are those of the values;
-    /// says whether there was anything.
+    /// Finishes pending work, so that outcome, texts and tables match the values. Returns whether there was
+    /// any.
     pub fn finish_work(&self) -> bool {
         self.shared.shell.borrow_mut().finish_work()
     }
 
-    /// Does all the work that fills in piece by piece: for a picture of the finished state.
+    /// Finishes all progressive work, for a picture of the final state.
     pub fn finish(&self) {
         let mut shell = self.shared.shell.borrow_mut();
         finish_work(shell.model_mut());
     }
 
-    /// The picture as SVG, for print and for pages where the widget cannot run.
+    /// The picture as SVG, for print and for pages that cannot run the widget.
     pub fn picture(&self, width_px: f32, theme: &str) -> String {
         self.finish_work();
         self.shared

@@ -1,8 +1,9 @@
 //! The widgets compiled to WebAssembly: one module for all, one instance of it per widget.
 //!
-//! [`schema`] and [`state`] write as JSON what the host page needs to know of the widgets; [`story`] and [`outcomes`] drive laps for the pictures that the page draws by
-//! itself, [`sketches`] are its small figures, and [`candidates`] are loops for the reader to judge. All of it is plain Rust and tested natively. The browser half adapts a widget to
-//! eframe and to JavaScript; what the host page does with it is in `web/ts`.
+//! [`schema`] and [`state`] write JSON about the widgets for the host page; [`story`] and [`outcomes`] run
+//! laps for the pictures that the page draws itself, [`sketches`] are its small figures, and [`candidates`]
+//! are loops for the reader to judge. All of it is plain Rust and tested natively. The browser half adapts a
+//! widget to eframe and to JavaScript; the code of the host page is in `web/ts`.
 
 pub mod candidates;
 pub mod outcomes;

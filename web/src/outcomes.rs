@@ -1,12 +1,12 @@
-//! What came out of one lap after the other, in few numbers: for a picture of thousands of them.
+//! Results of many laps in few numbers, for a picture of thousands of them.
 
 use ch16_lab::lap::{LapConfig, LapRunner};
 use ch16_lab::results::{Column, LapOutcome, Row};
 
-/// Numbers of a lap: end errors of wheels, front end and graph in metres, loops closed, false ones.
+/// Numbers of a lap: final errors of odometry, front end and graph in metres, closed loops, false ones.
 pub const NUMBERS: usize = 5;
 
-/// Drives laps; consecutive noise levels of one seed share their simulated drive.
+/// Runs laps; consecutive noise levels of one seed share their simulated drive.
 #[derive(Debug, Default)]
 pub struct Outcomes {
     runner: LapRunner,

@@ -1,4 +1,4 @@
-//! What the page asks of the module beside its widgets: schemas, texts that are parsed, laps, small figures.
+//! Functions of the module for the page besides the widgets: schemas, parsing, laps, small figures.
 
 use ch16_lab::lap::{LapConfig, LapFrontEnd, LapRunner};
 use kit::param::ParamKind;
@@ -21,15 +21,15 @@ pub fn widget_schemas() -> String {
 /// State and results of a widget after each of its presets, a line of JSON each.
 ///
 /// # Errors
-/// Where there is no such widget.
+/// If there is no such widget.
 #[wasm_bindgen(js_name = afterEachPreset)]
 pub fn after_each_preset(name: &str) -> Result<String, JsError> {
     let maker = registry::find(name).map_err(|problem| JsError::new(&problem))?;
     Ok(state::after_each_preset(maker))
 }
 
-/// The digest of a lap's poses and metrics, 16 hexadecimal digits as `slam2d lap` prints it; with
-/// `on_local_map` it is that of the estimator for recorded logs.
+/// The digest of a lap's poses and metrics, 16 hexadecimal digits like the output of `slam2d lap`; with
+/// `on_local_map` that of the estimator for recorded logs.
 #[wasm_bindgen(js_name = lapDigest)]
 pub fn lap_digest(seed: u32, noise_factor: f64, on_local_map: Option<bool>) -> String {
     let digest = if on_local_map.unwrap_or_default() {
@@ -42,7 +42,7 @@ pub fn lap_digest(seed: u32, noise_factor: f64, on_local_map: Option<bool>) -> S
     format!("{digest:016x}")
 }
 
-/// A whole lap as JSON, for a drawing of it; see [`story::story`].
+/// A whole lap as JSON, for drawing; see [`story::story`].
 #[wasm_bindgen(js_name = lapStory)]
 pub fn lap_story(seed: u32, noise_factor: f64) -> String {
     story::story(seed, noise_factor).to_string()
@@ -58,7 +58,7 @@ pub fn sketch_schemas() -> String {
 /// A small figure of the page with its slider at `value`: `{"svg", "sentence"}`.
 ///
 /// # Errors
-/// Where there is no such figure.
+/// If there is no such figure.
 #[wasm_bindgen(js_name = drawSketch)]
 pub fn draw_sketch(name: &str, value: f64, width_px: f32, theme: &str) -> Result<String, JsError> {
     let sketch = sketches::find(name)
@@ -72,14 +72,14 @@ pub fn loop_candidates(width_px: f32, theme: &str) -> String {
     candidates::shown(width_px, theme_of(theme)).to_string()
 }
 
-/// What became of the reader's answers, a letter for each candidate, `1` where it was taken.
+/// Evaluates the reader's answers, a letter for each candidate, `1` if it was accepted.
 #[wasm_bindgen(js_name = judgeCandidates)]
 pub fn judge_candidates(answers: &str, width_px: f32, theme: &str) -> String {
     let answers: Vec<bool> = answers.chars().map(|letter| letter == '1').collect();
     candidates::judged(&answers, width_px, theme_of(theme)).to_string()
 }
 
-/// Drives one lap after the other.
+/// Runs one lap after the other.
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Laps {
@@ -88,22 +88,22 @@ pub struct Laps {
 
 #[wasm_bindgen]
 impl Laps {
-    /// Has driven nothing yet.
+    /// Creates it before its first lap.
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// What came out of a lap: end errors of wheels, front end and graph in metres, loops closed, false ones.
+    /// Results of a lap: final errors of odometry, front end and graph in metres, closed loops, false ones.
     pub fn drive(&mut self, seed: u32, noise_factor: f64) -> Vec<f64> {
         self.outcomes.of(seed, noise_factor).to_vec()
     }
 }
 
-/// Reads a text as the core does: `[true, value as text]` or `[false, what was wrong]`.
+/// Parses a text like the core: `[true, value as text]` or `[false, error]`.
 ///
 /// # Errors
-/// Where there is no such widget or parameter.
+/// If there is no such widget or parameter.
 #[wasm_bindgen(js_name = parseParam)]
 pub fn parse_param(name: &str, id: &str, text: &str) -> Result<String, JsError> {
     let widget = registry::spec(name).ok_or_else(|| JsError::new(&registry::unknown(name)))?;

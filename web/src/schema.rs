@@ -1,13 +1,13 @@
-//! What never changes about a widget, as JSON: title, words, parameters, buttons, presets.
+//! The constant description of a widget as JSON: title, texts, parameters, buttons, presets.
 //!
-//! The native controls beside the canvas, the checks of links and attributes, the types of the
-//! custom element and the tables in the docs all come from this text.
+//! It is the source of the native controls beside the canvas, the checks of links and attributes, the types
+//! of the custom element and the tables in the docs.
 
 use kit::model::Model;
 use kit::param::{ParamKind, ParamSpec};
 use serde_json::{Value, json};
 
-/// The schema of one widget; needs a fresh model for the words that describe its start.
+/// The schema of one widget; it needs a new model for the description of its initial state.
 #[must_use]
 pub fn widget(model: &dyn Model) -> Value {
     let spec = model.spec();
@@ -47,7 +47,7 @@ fn param(spec: &ParamSpec) -> Value {
         ParamKind::Switch => ("switch", None),
         ParamKind::Text { .. } => ("text", None),
     };
-    // For a text, the most characters stand in the place of the largest value.
+    // For a text, the largest number of characters replaces the largest value.
     let max = match spec.kind {
         ParamKind::Text { most } => most as f64,
         _ => max,
@@ -106,7 +106,7 @@ mod tests {
     ];
 
     #[test]
-    fn every_name_can_be_an_attribute_and_is_free() {
+    fn every_name_is_a_valid_and_free_attribute_name() {
         for spec in SPECS {
             let (name, mut seen) = (spec.id, HashSet::new());
             for param in spec.params {
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn every_control_says_what_it_does() {
+    fn every_control_has_a_help_text() {
         for make in MODELS {
             let schema = widget(make().as_ref());
             let name = schema["id"].as_str().unwrap();

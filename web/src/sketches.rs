@@ -1,7 +1,7 @@
 //! The small figures beside the text: one slider, one picture and one sentence each.
 //!
-//! They show one idea where no widget stands. Each is computed by the core for every place of its slider,
-//! and drawn by the kit as the widgets are.
+//! Each shows one idea in a section without a widget. The core computes it for every value of its slider, and
+//! the kit draws it like the widgets.
 
 mod bells;
 mod ellipse;
@@ -16,31 +16,31 @@ use kit::scene::Scene;
 use kit::svg::scene_svg;
 use serde_json::{Value, json};
 
-/// What a reader moves.
+/// The slider of a figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slider {
     /// Its name on the page.
     pub label: &'static str,
-    /// Unit of its values, with the space before it.
+    /// Unit of its values, with a leading space.
     pub unit: &'static str,
     /// Smallest value.
     pub min: f64,
     /// Largest value.
     pub max: f64,
-    /// Distance of two values.
+    /// Step between values.
     pub step: f64,
-    /// Where it stands at first.
+    /// Initial value.
     pub default: f64,
-    /// Decimals of a value in words.
+    /// Decimals of a value in the text.
     pub decimals: usize,
 }
 
-/// A figure at one place of its slider.
+/// A figure at one value of its slider.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
     /// The picture.
     pub scene: Scene,
-    /// What it comes to, in words and numbers.
+    /// The result in words and numbers.
     pub sentence: String,
 }
 
@@ -49,9 +49,9 @@ pub struct Shown {
 pub struct Sketch {
     /// Its name in the page: `slide`.
     pub name: &'static str,
-    /// What it is about.
+    /// Its topic.
     pub title: &'static str,
-    /// What a reader moves.
+    /// Its slider.
     pub slider: Slider,
     at: fn(f64) -> Shown,
 }
@@ -67,14 +67,14 @@ pub const SKETCHES: [Sketch; 7] = [
     incremental::SKETCH,
 ];
 
-/// The figure of that name.
+/// Looks up a figure by name.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static Sketch> {
     SKETCHES.iter().find(|sketch| sketch.name == name)
 }
 
 impl Sketch {
-    /// The figure with its slider at `value`; what is no value of the slider becomes the nearest one.
+    /// The figure with its slider at `value`, rounded to the nearest valid value.
     #[must_use]
     pub fn at(&self, value: f64) -> Shown {
         let Slider {
@@ -84,7 +84,7 @@ impl Sketch {
         (self.at)(value.clamp(min, max))
     }
 
-    /// Title and slider, as the page needs them.
+    /// Title and slider, for the page.
     #[must_use]
     pub fn schema(&self) -> Value {
         let Slider {
@@ -135,7 +135,7 @@ mod tests {
         }
     }
 
-    /// All of them stand in one page.
+    /// All of them are in one page.
     #[test]
     fn no_two_figures_share_a_name_within_their_pictures() {
         let mut seen = std::collections::BTreeSet::new();
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn every_place_of_a_slider_has_its_own_picture_and_sentence() {
+    fn every_value_of_a_slider_has_its_own_picture_and_sentence() {
         for sketch in &SKETCHES {
             let shown: Vec<_> = places(&sketch.slider)
                 .iter()
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_value_of_a_slider_is_drawn_as_the_nearest_one() {
+    fn an_invalid_slider_value_is_drawn_as_the_nearest_valid_one() {
         for sketch in &SKETCHES {
             let Slider {
                 min, max, default, ..

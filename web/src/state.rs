@@ -1,10 +1,10 @@
-//! What changes about a widget, as JSON: values, outcome, timeline, tables.
+//! The state of a widget as JSON: values, outcome, timeline, tables.
 
 use kit::model::{Model, Outcome, Standing, Table, Timeline};
 use kit::shell::Shell;
 use serde_json::{Map, Value, json};
 
-/// Every parameter as a link writes it: `{"heading": "60", "variant": "point-to-plane"}`.
+/// Every parameter in the form of a link: `{"heading": "60", "variant": "point-to-plane"}`.
 #[must_use]
 pub fn values(model: &dyn Model) -> Value {
     let values = model.values();
@@ -15,7 +15,8 @@ pub fn values(model: &dyn Model) -> Value {
     Value::Object(texts.collect())
 }
 
-/// All of it after each preset, a line each: what native code and wasm must agree on to the bit.
+/// The complete state after each preset, a line each: native code and WebAssembly must agree on it to the
+/// bit.
 #[must_use]
 pub fn after_each_preset(maker: fn() -> Shell) -> String {
     let mut lines = String::new();
@@ -44,7 +45,7 @@ pub fn outcome(outcome: &Outcome) -> Value {
     let facts: Map<_, _> = outcome
         .facts
         .iter()
-        // What is not finite becomes null: JSON has no word for it.
+        // Values that are not finite become null, because JSON cannot represent them.
         .map(|fact| (fact.id.to_owned(), json!(fact.value)))
         .collect();
     json!({
@@ -55,7 +56,7 @@ pub fn outcome(outcome: &Outcome) -> Value {
     })
 }
 
-/// The run that can be scrubbed, or null.
+/// The timeline, or null.
 #[must_use]
 pub fn timeline(timeline: Option<&Timeline>) -> Value {
     let Some(timeline) = timeline else {
@@ -141,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_with_a_comma_or_a_quote_stays_one_field() {
+    fn a_field_with_a_comma_or_a_quote_remains_one_field() {
         let table = Table {
             id: "t",
             title: String::new(),

@@ -1,19 +1,19 @@
 //! A whole lap as JSON, for the pictures that the page itself draws.
 //!
-//! The page replays it tick by tick and interpolates only what a loop moves. Metres and radians in the
-//! world's frame, rounded to a tenth of a millimetre: less than a pixel of any screen.
+//! The page replays it tick by tick and interpolates only what a loop moves. Values are in metres and radians
+//! in the world's frame, rounded to a tenth of a millimetre: less than a pixel of any screen.
 
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, LapTrace, LoopAttempt};
 use ch16_slam2d::cloud::PointCloud;
 use pr_geom::SE2;
 use serde_json::{Value, json};
 
-/// The lap of a seed, with everything that a drawing of it needs.
+/// The lap of a seed, with all data for a drawing of it.
 ///
-/// `walls` are the true ones, `[x0, y0, x1, y1]`; `ticks` begin with the start, and each holds the true
-/// pose, that by the wheels and the estimate, `[x, y, θ]`, and the points of its sweep in the frame of the
-/// body, `[x0, y0, x1, y1, …]`; `keyframes` are ticks; `epochs` hold the poses of all nodes from their
-/// first tick on; `loops` those that were closed; `turn` is the last node of the way out.
+/// `walls` are the true ones, `[x0, y0, x1, y1]`. `ticks` begin with the start; each contains the true pose,
+/// the dead-reckoned one and the estimate, `[x, y, θ]`, and the points of its sweep in the body frame, `[x0,
+/// y0, x1, y1, …]`. `keyframes` are ticks. `epochs` contain the poses of all nodes from their first tick on,
+/// `loops` the closed ones, and `turn` is the last node of the outward path.
 #[must_use]
 pub fn story(seed: u32, noise_factor: f64) -> Value {
     let record = LapRunner::new().run(&LapConfig::with_seed_and_noise(seed, noise_factor));
@@ -87,7 +87,7 @@ mod tests {
         let record = LapRunner::new().run(&LapConfig::default());
         let ticks = told["ticks"].as_array().unwrap();
         assert_eq!(ticks.len(), record.ticks() + 1);
-        // 5.1e-5: half of the last digit that is kept, and the rounding of the decimal itself.
+        // 5.1e-5: half of the last digit, and the rounding of the decimal number itself.
         let is_near = |told: &Value, value: f64| (told.as_f64().unwrap() - value).abs() < 5.1e-5;
         for (tick, report) in ticks[1..].iter().zip(&record.lap.reports) {
             assert!(is_near(&tick["wheels"][0], report.dead_reckoning.x()));

@@ -1,7 +1,7 @@
-//! The widgets of the chapter, a module each, and the one [`registry`] that lists them.
+//! The widgets of the chapter, a module each, and their [`registry`].
 //!
-//! Each module has the same parts: `spec` holds the words and the parameters, `model` every rule and
-//! no pixel, `view` every pixel and no rule.
+//! Each module has the same parts: `spec` contains the texts and the parameters, `model` the logic, `view`
+//! the layout.
 
 pub mod registry;
 

@@ -1,4 +1,4 @@
-//! Every widget there is, in the order of the chapter.
+//! All widgets, in the order of the chapter.
 
 use kit::model::Model;
 #[cfg(feature = "view")]
@@ -7,15 +7,16 @@ use kit::spec::WidgetSpec;
 
 macro_rules! widgets {
     ($($module:ident: $model:ident, $view:ident;)*) => {
-        /// What never changes about each widget. A program that reads this list alone holds no estimator.
+        /// The constant descriptions of all widgets. A program that uses only this list does not link the
+        /// estimator.
         pub const SPECS: [&WidgetSpec; [$(stringify!($module)),*].len()] =
             [$(&crate::$module::spec::SPEC),*];
 
-        /// How the model of each widget is made, in the order of [`SPECS`].
+        /// Constructors of the models, in the order of [`SPECS`].
         pub const MODELS: [fn() -> Box<dyn Model>; SPECS.len()] =
             [$(|| Box::new(crate::$module::model::$model::default())),*];
 
-        /// How each widget is made, ready to be drawn, in the order of [`SPECS`].
+        /// Constructors of the widgets, ready to draw, in the order of [`SPECS`].
         #[cfg(feature = "view")]
         pub const SHELLS: [fn() -> Shell; SPECS.len()] = [$(|| {
             let model = crate::$module::model::$model::default();
@@ -39,13 +40,13 @@ widgets! {
     w16_12_jacobians: WrongJacobians, JacobiansView;
 }
 
-/// What never changes about the widget of that name, such as `w16.1`.
+/// The description of the widget of that name, such as `w16.1`.
 #[must_use]
 pub fn spec(name: &str) -> Option<&'static WidgetSpec> {
     SPECS.into_iter().find(|spec| spec.id == name)
 }
 
-/// How the widget of that name is made, ready to be drawn.
+/// The constructor of the widget of that name, ready to draw.
 ///
 /// # Errors
 /// A sentence that lists the names, if no widget has this one.
@@ -63,7 +64,7 @@ pub fn names() -> String {
     SPECS.map(|spec| spec.id).join(", ")
 }
 
-/// The error message for a name that no widget has.
+/// The error message for an unknown name.
 #[must_use]
 pub fn unknown(name: &str) -> String {
     format!("there is no widget `{name}`; there are {}", names())

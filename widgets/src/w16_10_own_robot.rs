@@ -1,7 +1,7 @@
-//! Widget w16.10: a log of the reader's own robot, mapped, asked for its evidence, and corrected by hand.
+//! Widget w16.10: a log of the reader's own robot: mapped, inspected, and corrected by hand.
 //!
-//! The mapping itself is done elsewhere, in a worker beside the page: [`model`] shows what that tells
-//! ([`kit::outside`]) and puts what the reader wants into orders. [`view`] holds every pixel and no rule.
+//! A worker beside the page does the mapping. [`model`] shows its reports ([`kit::outside`]) and sends the
+//! reader's commands as orders. [`view`] contains the layout.
 
 pub mod model;
 pub mod spec;

@@ -1,6 +1,6 @@
-//! Widget w16.11: all orthogonal matrices that may bring pairs together, and what a mirror image does to a map.
+//! Widget w16.11: all orthogonal matrices that may align pairs, and the effect of a reflection on a map.
 //!
-//! [`model`] holds every rule and no pixel, [`view`] every pixel and no rule.
+//! [`model`] contains the logic, [`view`] the layout.
 
 pub mod model;
 pub mod spec;

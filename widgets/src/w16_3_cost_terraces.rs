@@ -1,6 +1,6 @@
 //! Widget w16.3: the cost terraces of ICP beside the smooth hills of NDT.
 //!
-//! [`model`] holds every rule and no pixel, [`view`] every pixel and no rule.
+//! [`model`] contains the logic, [`view`] the layout.
 
 pub mod model;
 pub mod spec;

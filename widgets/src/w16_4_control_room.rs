@@ -1,6 +1,6 @@
 //! Widget w16.4: one live run with its grid, graph, registration and event log.
 //!
-//! [`model`] holds every rule and no pixel, [`view`] every pixel and no rule.
+//! [`model`] contains the logic, [`view`] the layout.
 
 pub mod model;
 pub mod spec;

@@ -1,6 +1,6 @@
-//! Widget w16.5: a few poses to drag, tied by springs, and the solver's steps one at a time.
+//! Widget w16.5: a few poses to drag, connected by springs, and the solver's steps one at a time.
 //!
-//! [`model`] holds every rule and no pixel, [`view`] every pixel and no rule.
+//! [`model`] contains the logic, [`view`] the layout.
 
 pub mod model;
 pub mod spec;

@@ -1,6 +1,6 @@
 //! Widget w16.6: every heading and offset of a window searched, box by box.
 //!
-//! [`model`] holds every rule and no pixel, [`view`] every pixel and no rule.
+//! [`model`] contains the logic, [`view`] the layout.
 
 pub mod model;
 pub mod spec;

@@ -1,6 +1,6 @@
-//! Widget w16.7: the places of a lap, compared pair by pair.
+//! Widget w16.7: place recognition on the keyframes of a lap, pair by pair.
 //!
-//! [`model`] holds every rule and no pixel, [`view`] every pixel and no rule.
+//! [`model`] contains the logic, [`view`] the layout.
 
 pub mod model;
 pub mod spec;

@@ -1,6 +1,6 @@
-//! Widget w16.8: two sweeps with a box that moved between them, and three ways to bear it.
+//! Widget w16.8: two sweeps with a box that moved between them, and three treatments of its outliers.
 //!
-//! [`model`] holds every rule and no pixel, [`view`] every pixel and no rule.
+//! [`model`] contains the logic, [`view`] the layout.
 
 pub mod model;
 pub mod spec;

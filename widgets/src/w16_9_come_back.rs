@@ -1,6 +1,6 @@
-//! Widget w16.9: a robot is switched on anywhere on the map of yesterday.
+//! Widget w16.9: a robot is switched on anywhere on the map of an earlier day.
 //!
-//! [`model`] holds every rule and no pixel, [`view`] every pixel and no rule.
+//! [`model`] contains the logic, [`view`] the layout.
 
 pub mod model;
 pub mod spec;

@@ -1,4 +1,4 @@
-//! What every widget promises: each test goes through the registry.
+//! Requirements for every widget: each test iterates over the registry.
 
 use egui::accesskit::Role;
 use egui::{Key, vec2};
@@ -16,9 +16,9 @@ use widgets::registry::{MODELS, SHELLS, SPECS, find, names};
 
 use crate::support::{HEIGHT, drawn, press_key, value};
 
-/// States beside the defaults in which the ends of every parameter are tried.
+/// States other than the defaults in which the limits of every parameter are tried.
 ///
-/// Each shape of a picture has a state of its own, and a search that takes long a coarser one.
+/// Each layout of a picture has its own state, and a slow search a coarser one.
 fn states(name: &str) -> Vec<Vec<(&'static str, f64)>> {
     let each = |id, count: u32| (0..count).map(|k| vec![(id, f64::from(k))]).collect();
     match name {
@@ -34,7 +34,7 @@ fn states(name: &str) -> Vec<Vec<(&'static str, f64)>> {
     }
 }
 
-/// Does something; if that panics, prints what it was.
+/// Runs an action; if it panics, prints which one it was.
 fn doing<T>(what: impl Fn() -> String, act: impl FnOnce() -> T) -> T {
     struct Doing<F: Fn() -> String>(F);
     impl<F: Fn() -> String> Drop for Doing<F> {
@@ -90,9 +90,9 @@ fn the_ends_of_every_parameter_have_a_finite_picture() {
     }
 }
 
-/// Lines alone may be broken by what is not finite: those of these widgets are not.
+/// Only lines may have gaps at values that are not finite; those of these widgets have none.
 #[test]
-fn no_line_is_broken_where_nothing_is_missing() {
+fn no_line_has_a_gap_without_missing_data() {
     for name in ["w16.5", "w16.7", "w16.8"] {
         let mut shell = find(name).unwrap()();
         shell.finish_work();
@@ -108,7 +108,7 @@ fn no_line_is_broken_where_nothing_is_missing() {
     }
 }
 
-/// All that a reader is told; facts that are not known are NaN, and equal nothing.
+/// All results and texts; unknown facts are NaN, so the comparison uses text.
 fn told(model: &dyn Model) -> String {
     format!(
         "{:?} {:?} {}",
@@ -119,7 +119,7 @@ fn told(model: &dyn Model) -> String {
 }
 
 #[test]
-fn a_wrong_value_or_button_is_refused_and_changes_nothing() {
+fn a_wrong_value_or_button_is_an_error_and_changes_no_state() {
     for make in MODELS {
         let mut model = make();
         model.finish_work();
@@ -148,7 +148,7 @@ fn playing_goes_on_to_the_end_and_stops_there() {
         let mut model = make();
         model.finish_work();
         let name = model.spec().id;
-        // The run of w16.10 is a reader's log, and it has none yet.
+        // The run of w16.10 is a reader's log, which it does not have here.
         if name == "w16.10" {
             continue;
         }
@@ -168,13 +168,13 @@ fn playing_goes_on_to_the_end_and_stops_there() {
         }
         let end = model.timeline().unwrap();
         assert!(!end.playing && at(model.as_ref()) >= end.last, "{name}");
-        // Again from the start, and under reduced motion at the end at once.
+        // Again from the start, and with reduced motion at the end at once.
         model.press("reset").unwrap();
         model.press("play").unwrap();
         model.set_motion(Motion::Reduced);
         assert!(
             at(model.as_ref()) >= end.last,
-            "{name}: asked for on the way"
+            "{name}: requested in between"
         );
         for start in ["reset", "step"] {
             model.press(start).unwrap();
@@ -194,7 +194,7 @@ fn playing_goes_on_to_the_end_and_stops_there() {
     }
 }
 
-/// The states that a reader comes to by one press: the start, and each preset.
+/// The states one press away: the start, and each preset.
 fn pressed_states(shell: &Shell) -> Vec<&'static str> {
     let presets = shell.model().spec().presets.iter();
     core::iter::once("defaults")
@@ -213,7 +213,7 @@ fn a_preset_sets_what_it_names_and_can_be_pressed_again() {
                 shell.model_mut().press(preset.id).unwrap();
                 shell.finish_work();
                 let values = shell.model().values();
-                // What it starts may go on from there at once.
+                // A playback that it starts may advance at once.
                 let moved = shell.model().timeline().map(|timeline| timeline.param);
                 for (id, expected) in preset.set.iter().filter(|(id, _)| Some(*id) != moved) {
                     assert_eq!(values.number(id), *expected, "{} {}", spec.id, preset.id);
@@ -257,7 +257,7 @@ const PHONE: egui::Vec2 = vec2(356.0, 844.0);
 const BAR: f32 = 47.0;
 const TWO_SCREENS: f32 = 2.0 * PHONE.y - BAR;
 
-/// What the module measures in the browser, with egui's own fonts in place of ours.
+/// Heights measured by the module in the browser, with egui's own fonts instead of ours.
 fn height_on_a_phone(ctx: &egui::Context, shell: &mut Shell) -> f32 {
     let input = egui::RawInput {
         screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, PHONE)),
@@ -265,14 +265,14 @@ fn height_on_a_phone(ctx: &egui::Context, shell: &mut Shell) -> f32 {
     };
     for _ in 0..3 {
         let mut output = ctx.run_ui(input.clone(), |ui| shell.ui(ui));
-        // Nothing is drawn: the font's texture is not wanted.
+        // Drawing is skipped, so the font's texture is not needed.
         output.textures_delta.clear();
     }
     shell.content_height()
 }
 
 #[test]
-fn no_widget_is_higher_than_two_screens_of_a_phone_until_more_is_asked_for() {
+fn no_opening_layer_is_higher_than_two_screens_of_a_phone() {
     let ctx = egui::Context::default();
     for make in SHELLS {
         let mut shell = make();
@@ -290,7 +290,7 @@ fn no_widget_is_higher_than_two_screens_of_a_phone_until_more_is_asked_for() {
     }
 }
 
-/// The page finds a control by its name alone, whatever its kind.
+/// The page finds a control by its name alone, regardless of its kind.
 #[test]
 fn no_two_controls_of_a_widget_share_a_name() {
     for spec in SPECS {
@@ -306,7 +306,7 @@ fn no_two_controls_of_a_widget_share_a_name() {
 }
 
 #[test]
-fn what_a_widget_opens_with_is_there() {
+fn every_part_of_the_opening_layer_exists() {
     for make in MODELS {
         let model = make();
         let spec = model.spec();
@@ -333,10 +333,10 @@ fn what_a_widget_opens_with_is_there() {
     }
 }
 
-/// Everything of a widget, at rest.
+/// The complete widget, at rest.
 fn still(name: &str, width: f32) -> Harness<'static, Shell> {
     drawn(name, width, |shell| {
-        // Animations would take frames to end, and what is hidden has no control on screen.
+        // Animations would take frames to end, and hidden parts have no control on screen.
         shell.set_motion(Motion::Reduced);
         let more = shell.model_mut().set(MORE.id, 1.0);
         more.expect("every widget has layers");
@@ -344,7 +344,7 @@ fn still(name: &str, width: f32) -> Harness<'static, Shell> {
     })
 }
 
-/// The control of a parameter as a screen reader finds it; a text has none.
+/// The control of a parameter in the accessibility tree; a text has none.
 fn control(spec: &ParamSpec) -> Option<(Role, String)> {
     let label = spec.label.to_owned();
     match spec.kind {
@@ -425,12 +425,12 @@ fn every_slider_takes_an_arrow_key_by_its_own_step() {
                 || {
                     press_key(&mut harness, param.label, key);
                     let now = value(&harness, param.id);
-                    // Steps are counted from the least value.
+                    // Steps are counted from the smallest value.
                     let expected = min + ((before + by - min) / step).round() * step;
                     assert!((now - expected).abs() < 1e-9, "{before} became {now}");
                     let slider = harness.get_by_role_and_label(Role::Slider, param.label);
                     let shown = slider.accesskit_node().numeric_value();
-                    assert_eq!(shown, Some(now), "what a screen reader is told");
+                    assert_eq!(shown, Some(now), "text for screen readers");
                     harness
                         .state_mut()
                         .model_mut()

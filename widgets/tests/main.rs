@@ -1,4 +1,4 @@
-//! The widgets from outside: what all of them promise, and each one's own rules. One binary.
+//! Integration tests of the widgets: requirements for all of them, and the rules of each one. One binary.
 
 mod conformance;
 mod support;

@@ -1,4 +1,4 @@
-//! What the tests of several widgets ask of a model, and a shell on a screen without a GPU.
+//! Helpers for tests of several widgets, and a shell on a screen without a GPU.
 
 use egui::accesskit::Role;
 use egui::{Key, vec2};
@@ -8,7 +8,7 @@ use kit::model::Model;
 use kit::scene::Panel;
 use kit::shell::Shell;
 
-/// Height of the screen: no widget is higher.
+/// Height of the screen: all widgets fit.
 pub const HEIGHT: f32 = 3000.0;
 
 /// A number of the outcome.
@@ -35,7 +35,7 @@ pub fn drawn(name: &str, width: f32, prepare: impl FnOnce(&mut Shell)) -> Harnes
     harness
 }
 
-/// Everything of the widget of that name, not only what it opens with.
+/// The complete widget of that name, not only its opening layer.
 pub fn drawn_whole(name: &str, width: f32) -> Harness<'static, Shell> {
     drawn(name, width, |shell| {
         let more = shell.model_mut().set("more", 1.0);

@@ -1,4 +1,4 @@
-//! What the widget promises, without a display.
+//! Tests of the widget, without a display.
 
 mod model;
 mod view;

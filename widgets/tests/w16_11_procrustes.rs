@@ -1,4 +1,4 @@
-//! The trace's rules and its view.
+//! Tests of the trace's model and view.
 
 mod model;
 mod view;

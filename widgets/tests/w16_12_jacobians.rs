@@ -1,4 +1,4 @@
-//! The rules of the four solvers and their view.
+//! Tests of the four solvers' model and view.
 
 mod model;
 mod view;

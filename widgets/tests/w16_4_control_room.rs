@@ -1,4 +1,4 @@
-//! The widget from outside: its model, its words, its view. One binary, one module for each.
+//! The widget from outside: its model, its texts, its view. One binary, one module for each.
 
 mod control_room;
 mod view;

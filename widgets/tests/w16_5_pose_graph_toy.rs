@@ -1,4 +1,4 @@
-//! The toy's rules and its view.
+//! Tests of the toy's model and view.
 
 mod model;
 mod view;

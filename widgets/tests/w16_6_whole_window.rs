@@ -1,4 +1,4 @@
-//! The search's rules and its view.
+//! Tests of the search's model and view.
 
 mod model;
 mod view;

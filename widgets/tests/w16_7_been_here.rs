@@ -1,4 +1,4 @@
-//! The comparison's rules and its view.
+//! Tests of the comparison's model and view.
 
 mod model;
 mod view;

@@ -1,4 +1,4 @@
-//! The box's rules and its view.
+//! Tests of the box's model and view.
 
 mod model;
 mod view;

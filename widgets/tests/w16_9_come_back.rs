@@ -1,4 +1,4 @@
-//! The morning's rules and its view.
+//! Tests of the localization's model and view.
 
 mod model;
 mod view;

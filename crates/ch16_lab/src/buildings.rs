@@ -1,12 +1,12 @@
-//! Simulated recordings of office buildings, and how the defaults for robots do on them.
+//! Simulated recordings of office buildings, and the accuracy of the defaults for robots on them.
 //!
-//! A building is drawn from a seed: corridors, rooms with open and closed doors, furniture, glass. A
-//! robot drives through it with a scan every few decimetres; its wheels slip, drift and jump, beams
-//! pass through glass, people walk by. What it records is all that the estimator sees. A [`Trial`]
-//! runs [`SlamConfig::for_robot`](ch16_slam2d::slam::SlamConfig::for_robot) on it and compares the
-//! keyframes with the truth.
+//! A building is generated from a seed: corridors, rooms with open and closed doors, furniture, glass. A
+//! robot drives through it and takes a scan every few decimetres; its odometry slips, drifts and jumps, beams
+//! pass through glass, people walk by. The estimator sees only the recording. A [`Trial`] runs
+//! [`SlamConfig::for_robot`](ch16_slam2d::slam::SlamConfig::for_robot) on it and compares the keyframes with
+//! the truth.
 //!
-//! What it cannot show: floors that tilt, walls that are not straight, and what nobody thought of.
+//! Not modelled: tilted floors and curved walls.
 
 pub mod kinds;
 mod plan;

@@ -1,9 +1,8 @@
-//! A robot is switched on somewhere on a map that was driven before: where it drives, and what it makes
-//! of it, box by box.
+//! A robot is switched on somewhere on a map of an earlier drive: its path, and its localization, box by box.
 //!
-//! Nobody tells it where it stands. It goes to the nearest spot of the course's way that it can see, and
-//! on along that way; each frame goes to the [`Localizer`], whose searches are kept at some of their
-//! steps, so that a picture can stand at any of them.
+//! The start pose is unknown. The robot drives to the nearest visible spot of the course's path and follows
+//! it. Each frame goes to the [`Localizer`], whose searches are recorded at some of their steps, so that a
+//! figure can show any of them.
 
 use std::sync::Arc;
 
@@ -16,17 +15,17 @@ use pr_sim::World;
 
 use crate::lap::{Drive, DriveConfig};
 
-/// Spots of the way are so far from one another, m.
+/// Spacing of the spots along the path, m.
 const SPOT_M: f64 = 0.25;
-/// Boxes in one piece of work.
+/// Boxes that one step processes.
 const BOXES_PER_PIECE: usize = 24;
-/// Of the boxes that wait so many are kept for a picture, the best of them.
+/// The number of open boxes that are kept for a figure, the best ones.
 const BOXES_KEPT: usize = 400;
-/// A search is kept whenever the boxes that it has taken up are so many times more.
+/// A search is recorded whenever the number of expanded boxes has grown by this factor.
 const KEPT_EVERY: f64 = 1.6;
 
-/// The drive of a robot that is switched on at `pose`, `ticks` long: to the nearest spot of the way that
-/// it can see, and on to the way's end and back. Where it sees none it stands still.
+/// The drive of a robot that is switched on at `pose`, `ticks` long: to the nearest visible spot of the path,
+/// to the path's end and back. If no spot is visible it stands still.
 #[must_use]
 pub fn switched_on(yesterday: &DriveConfig, pose: SE2, ticks: usize) -> DriveConfig {
     let start = core::iter::once(yesterday.start.position());
@@ -74,37 +73,37 @@ fn sees(world: &World, from: Point2<f64>, to: Point2<f64>) -> bool {
     away_m < 1e-6 || world.cast(from, angle_rad, away_m) >= away_m
 }
 
-/// What a picture shows of one moment.
+/// One moment of the localization, for a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
     /// Scans taken before this one.
     pub tick: usize,
-    /// Boxes that wait, of the whole map, the most promising ones.
+    /// The most promising open boxes of the whole-map search.
     pub boxes: Vec<PoseBox>,
-    /// The best place so far, where a search is under way or was made.
+    /// The best pose so far, if a search is under way or finished.
     pub best: Option<ScoredPose>,
-    /// The best other place so far.
+    /// The best pose so far at another location.
     pub runner_up: Option<ScoredPose>,
     /// The work of the search so far.
     pub counts: Option<SearchCounts>,
-    /// What the frame says; none while it is searched.
+    /// The result for the frame; `None` while its search is under way.
     pub report: Option<LocalizeReport>,
 }
 
-/// A morning under way: one drive on one map.
-pub struct Morning {
+/// A localization under way: one drive on one map.
+pub struct LocalizationRun {
     localizer: Localizer,
     drive: Arc<Drive>,
     pending: Option<PendingFix>,
-    /// Boxes of the search under way that were taken up, and at how many it is kept next.
+    /// Expanded boxes of the search under way, and the number at which it is recorded next.
     taken: usize,
     kept_at: usize,
     moments: Vec<Moment>,
     reports: Vec<LocalizeReport>,
 }
 
-impl Morning {
-    /// A morning that has not begun.
+impl LocalizationRun {
+    /// A localization before its first frame.
     #[must_use]
     pub fn new(localizer: Localizer, drive: Arc<Drive>) -> Self {
         Self {
@@ -118,7 +117,7 @@ impl Morning {
         }
     }
 
-    /// Takes a frame, or takes up some boxes of its search; false once the drive is over.
+    /// Takes a frame or expands some boxes of its search. Returns false once the drive is over.
     pub fn step(&mut self) -> bool {
         let Some(mut pending) = self.pending.take() else {
             let tick = self.reports.len();
@@ -148,7 +147,7 @@ impl Morning {
         &self.moments
     }
 
-    /// What the frames said so far.
+    /// The results of the frames so far.
     #[must_use]
     pub fn reports(&self) -> &[LocalizeReport] {
         &self.reports
@@ -160,7 +159,7 @@ impl Morning {
         &self.drive
     }
 
-    /// How far a frame's pose is from the truth, m; none where it told none.
+    /// Error of a frame's pose, m; `None` if it has no pose.
     #[must_use]
     pub fn error_m(&self, tick: usize) -> Option<f64> {
         let pose = self.reports.get(tick)?.pose?;
@@ -175,7 +174,7 @@ impl Morning {
     }
 
     fn keep(&mut self, pending: &PendingFix) {
-        // Small windows only say what a place has to beat.
+        // Searches of small windows only yield the score to beat.
         let search = pending.search().filter(|search| search.is_at_last());
         let Some(search) = search.and_then(|search| search.under_way()) else {
             return;

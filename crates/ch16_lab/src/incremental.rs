@@ -1,6 +1,6 @@
-//! The ancestor on the drives of laps: the same frames, judged by the same truth.
+//! Incremental mapping on the drives of laps: the same frames, judged by the same truth.
 //!
-//! Its map, keyframes and noise follow from the lap's estimator, so that what differs is the method.
+//! Map, keyframes and noise follow from the lap's estimator, so only the method differs.
 
 use ch16_slam2d::metrics::{DisagreementConfig, MapDisagreement, position_error_m, rms};
 use ch16_slam2d::slam::SlamConfig;
@@ -8,9 +8,9 @@ use incremental_mapping::{CycleTest, CycleVerdict, IncrementalConfig, Incrementa
 use pr_geom::{SE2, math};
 use serde::{Deserialize, Serialize};
 
-use crate::lap::{Drive, Keyframe, LAST_KEYFRAMES, LapConfig, WayErrors};
+use crate::lap::{Drive, Keyframe, LAST_KEYFRAMES, LapConfig, PathErrors};
 
-/// The two ancestors.
+/// The two incremental methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum IncrementalKind {
     /// Incremental maximum likelihood mapping.
@@ -23,7 +23,7 @@ impl IncrementalKind {
     /// Both.
     pub const ALL: [Self; 2] = [Self::MaximumLikelihood, Self::WithCycles];
 
-    /// The mapper with the lengths and the noise of a lap's estimator; the particles' seed is the
+    /// Creates the mapper with the lengths and the noise of a lap's estimator; the particles' seed is the
     /// drive's.
     #[must_use]
     pub fn config(self, lap: &LapConfig) -> IncrementalConfig {
@@ -40,7 +40,7 @@ impl IncrementalKind {
     }
 }
 
-/// The rows of the results table for an ancestor.
+/// The rows of the results table for an incremental method.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct IncrementalSummary {
     /// Ticks of the lap.
@@ -65,16 +65,16 @@ pub struct IncrementalSummary {
     pub map_disagreement_m: Option<f64>,
 }
 
-/// What statistics need of an ancestor's lap.
+/// Results of one incremental run that statistics need.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct IncrementalOutcome {
     /// The rows of the results table.
     pub summary: IncrementalSummary,
-    /// Errors along the way; it has no deviations.
-    pub way: WayErrors,
+    /// Errors along the path; without standard deviations.
+    pub way: PathErrors,
 }
 
-/// The history of an ancestor on a drive.
+/// The history of an incremental method on a drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IncrementalTrace {
     /// Keyframes in order, with their truth.
@@ -83,20 +83,20 @@ pub struct IncrementalTrace {
     pub poses: Vec<SE2>,
     /// The estimate after every tick, `world_from_body`.
     pub estimates: Vec<SE2>,
-    /// What the particles said, at every keyframe but the first.
+    /// The particles' tests, at every keyframe but the first.
     pub tests: Vec<CycleTest>,
     /// Rows of the results table.
     pub outcome: IncrementalOutcome,
 }
 
 impl IncrementalTrace {
-    /// Runs an ancestor over a drive; `lap.drive` must describe it.
+    /// Runs an incremental method over a drive; `lap.drive` must describe it.
     #[must_use]
-    pub fn run(ancestor: IncrementalKind, lap: &LapConfig, drive: &Drive) -> Self {
-        Self::from_mapper(IncrementalMapper::new(ancestor.config(lap)), drive)
+    pub fn run(kind: IncrementalKind, lap: &LapConfig, drive: &Drive) -> Self {
+        Self::from_mapper(IncrementalMapper::new(kind.config(lap)), drive)
     }
 
-    /// Runs a mapper that has seen nothing over a drive.
+    /// Runs a new mapper over a drive.
     #[must_use]
     pub fn from_mapper(mut mapper: IncrementalMapper, drive: &Drive) -> Self {
         let ticks = drive.ticks().len();
@@ -170,11 +170,11 @@ fn outcome(
             ),
             map_disagreement_m: disagreement_m(mapper, keyframes, drive),
         },
-        way: WayErrors::along_path(drive, &ticks, &errors, None),
+        way: PathErrors::along_path(drive, &ticks, &errors, None),
     }
 }
 
-/// How far what the way out mapped lies from what the way back saw, at the final poses.
+/// Distance between the map of the outward path and what the return path saw, at the final poses.
 fn disagreement_m(
     mapper: &IncrementalMapper,
     keyframes: &[Keyframe],
@@ -182,7 +182,7 @@ fn disagreement_m(
 ) -> Option<f64> {
     let turn = drive.config().turn?;
     let reached = drive.ticks().iter().position(|t| t.reached == Some(turn))?;
-    // Ticks are counted from 1; the keyframe of the turn's own tick belongs to the way back.
+    // Ticks are counted from 1; the keyframe of the turn's own tick belongs to the return path.
     let out = keyframes.partition_point(|keyframe| keyframe.tick < reached + 1);
     let scans = mapper.keyframes().iter().map(|keyframe| &*keyframe.scan);
     let mut maps = mapper.poses().iter().zip(scans);

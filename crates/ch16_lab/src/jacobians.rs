@@ -1,13 +1,12 @@
-//! One pose graph, solved in four ways: what a wrong Jacobian costs, and what a wrong residual costs.
+//! One pose graph, solved in four ways: the effect of a wrong Jacobian and of a wrong residual.
 //!
-//! Gauss–Newton rests where `Σ JᵀΩe = 0`. A Jacobian that is wrong by a factor changes no such
-//! place, only the steps to it. One that is right up to `O(e)` moves it by `O(e²)`, the square of
-//! what the measurements contradict each other by. A residual that is wrong to first order moves it by `O(e)`,
-//! however exact its own Jacobian is. Where nothing contradicts, `e = 0` at the end and none of
-//! this shows.
+//! Gauss–Newton converges where `Σ JᵀΩe = 0`. A Jacobian that is wrong by a factor does not move this point,
+//! only the steps to it. One that is right up to `O(e)` moves it by `O(e²)`, the square of the contradiction
+//! among the measurements. A residual that is wrong to first order moves it by `O(e)`, however exact its own
+//! Jacobian is. Without contradiction `e = 0` at the end, and none of this shows.
 //!
-//! The graph is a ring of eight poses. Odometry turns too little at every edge, and a loop that is
-//! right ties the last pose to the first.
+//! The graph is a ring of eight poses. Odometry turns too little at every edge, and a correct loop ties the
+//! last pose to the first.
 
 use nalgebra::Matrix3;
 use pr_geom::{SE2, math};
@@ -21,19 +20,19 @@ use pr_sim::Rng;
 pub const RING_POSES: usize = 8;
 /// Length of an edge, m.
 pub const RING_SIDE_M: f64 = 1.0;
-/// Standard deviation of an edge: along each axis in m, and of its turn in degrees.
+/// Standard deviation of an edge: along each axis in m, and of its heading in degrees.
 pub const EDGE_STD: (f64, f64) = (0.05, 2.0);
-/// A step below this ends a descent, m and rad added.
+/// The optimization ends at a step below this, m and rad added.
 pub const REST: f64 = 1e-9;
 
-/// How a ring contradicts itself, and from where it is solved.
+/// The contradiction in a ring, and the start of its optimization.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RingConfig {
     /// By how much each edge of odometry turns too little, rad.
     pub turn_bias_rad: f64,
-    /// Standard deviation by which the poses are thrown off odometry before the first step, m and rad.
+    /// Standard deviation of the noise added to the poses before the first step, m and rad.
     pub scatter: f64,
-    /// Seed of the throw.
+    /// Seed of that noise.
     pub seed: u32,
 }
 
@@ -50,13 +49,13 @@ impl Default for RingConfig {
 /// A Jacobian that is wrong on purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WrongJacobian {
-    /// `2 J`: each step goes half the way.
+    /// `2 J`: each step goes half as far.
     TwiceTooLong,
     /// `Jl⁻¹(e)` in place of `Jr⁻¹(e)`: the perturbation on the wrong side, right at `e = 0`.
     LeftForRight,
 }
 
-/// With which residual and Jacobians the graph is solved.
+/// The residual and Jacobians with which the graph is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recipe {
     /// `log(Z⁻¹ Tᵢ⁻¹ Tⱼ)` with its exact Jacobians.
@@ -65,8 +64,8 @@ pub enum Recipe {
     Approximate,
     /// The same residual with wrong Jacobians.
     WrongJacobian(WrongJacobian),
-    /// `log(Tᵢ⁻¹ Tⱼ Z⁻¹) = Ad(Z) e` with its own exact Jacobians: the measurement is taken back on
-    /// the wrong side, and Ω weighs it in the wrong frame.
+    /// `log(Tᵢ⁻¹ Tⱼ Z⁻¹) = Ad(Z) e` with its own exact Jacobians: the measurement is inverted on the wrong
+    /// side, and Ω weights the residual in the wrong frame.
     WrongResidual,
 }
 
@@ -77,16 +76,16 @@ pub struct Moment {
     pub poses: Vec<SE2>,
     /// χ² = Σ eᵀΩe of the right residual.
     pub chi2: f64,
-    /// Distance of the farthest pose from where the optimum has it, m.
+    /// Largest distance of a pose from its optimum, m.
     pub off_m: f64,
 }
 
-/// A whole way from the start to rest.
+/// The optimization from its start to convergence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Descent {
     /// The start, and the graph after each step.
     pub moments: Vec<Moment>,
-    /// Whether it came to rest within the steps that it was given.
+    /// Whether it converged within the given number of steps.
     pub rests: bool,
 }
 
@@ -104,7 +103,7 @@ impl Descent {
     }
 }
 
-/// The ring with its poses where the descent begins.
+/// The ring with the poses at which the optimization starts.
 #[must_use]
 pub fn ring(config: &RingConfig) -> Problem {
     let turn = core::f64::consts::TAU / RING_POSES as f64;
@@ -147,9 +146,9 @@ pub fn ring(config: &RingConfig) -> Problem {
     problem
 }
 
-/// The minimum of χ² below the present poses, to the last digits: the poses there, and χ².
+/// Finds the minimum of χ² below the present poses, to the last digits: the poses there, and χ².
 ///
-/// It never raises χ², and stays where no step can be computed.
+/// It never raises χ², and stops if no step can be computed.
 #[must_use]
 pub fn optimum(problem: &Problem) -> (Vec<SE2>, f64) {
     let mut problem = problem.clone();
@@ -166,7 +165,7 @@ pub fn optimum(problem: &Problem) -> (Vec<SE2>, f64) {
     (problem.poses().to_vec(), report.chi2)
 }
 
-/// Solves the graph by a recipe, in at most so many steps.
+/// Solves the graph by a recipe, in at most the given number of steps.
 #[must_use]
 pub fn descend(start: &Problem, recipe: Recipe, optimum: &[SE2], max_steps: usize) -> Descent {
     let mut problem = start.clone();
@@ -197,7 +196,7 @@ fn moment(problem: &Problem, optimum: &[SE2]) -> Moment {
     }
 }
 
-/// The library's own solver where it knows the recipe, and its steps with other derivatives else.
+/// The library's own solver if it supports the recipe, else its steps with other derivatives.
 enum Solver {
     Own(Box<Optimizer>),
     Changed(Box<CustomGaussNewton>, fn(&Between, Jacobians) -> Jacobians),

@@ -1,9 +1,9 @@
-//! The lap: a simulated drive, the estimator on its frames, and a judge who knows the truth.
+//! The lap: a simulated drive, the estimator on its frames, and their comparison with the truth.
 //!
-//! [`Lap::step`] hands one tick of a [`Drive`] to the estimator and reports what it did, with its
-//! errors; [`Lap::run`] does all of them. [`LapRunner`] runs a lap together with its front end alone
-//! and keeps what a timeline needs; [`LapRun`] does so in pieces, and [`NewestLap`] for a control that
-//! moves faster than laps are run.
+//! [`Lap::step`] passes one tick of a [`Drive`] to the estimator and returns what it did, with its errors;
+//! [`Lap::run`] loops over it. [`LapRunner`] runs a lap together with its front end alone and keeps what a
+//! timeline needs. [`LapRun`] does so in pieces, and [`NewestLap`] serves a control that moves faster than
+//! laps are computed.
 
 mod choices;
 mod config;
@@ -15,6 +15,7 @@ mod loop_words;
 mod map;
 mod newest;
 mod own_loop;
+mod path_errors;
 mod ranges;
 mod record;
 mod replay;
@@ -22,7 +23,6 @@ mod report;
 mod run;
 mod runner;
 mod soundness;
-mod way;
 
 use std::sync::Arc;
 
@@ -40,13 +40,13 @@ pub use newest::{NewestLap, NewestStep};
 pub use own_loop::{
     Claim, EdgeStrain, GateUse, OwnKernel, OwnLoop, OwnLoopError, OwnLoopRequest, edge_strain,
 };
+pub use path_errors::{PATH_SHARES, PathErrors};
 pub use ranges::{ConfigRange, RANGES, random_config};
 pub use record::{Epoch, LAST_KEYFRAMES, LapRecord, LapSummary, LapTrace, RecordedEdge};
 pub use replay::RegistrationView;
 pub use report::{Keyframe, LoopAttempt, LoopEffect, TickMetrics, TickReport, WindowSweep};
 pub use run::LapRun;
 pub use runner::LapRunner;
-pub use way::{WAY_SHARES, WayErrors};
 
 use ch16_slam2d::graph::PoseGraph;
 use ch16_slam2d::slam::{PendingFrame, Slam, SlamReport};
@@ -62,16 +62,16 @@ pub struct Lap {
 }
 
 impl Lap {
-    /// Simulates the drive of `config` and stands at its start.
+    /// Simulates the drive of `config` and starts a lap on it.
     #[must_use]
     pub fn new(config: LapConfig) -> Self {
         let drive = Arc::new(Drive::simulate(&config.drive));
         Self::on_drive(config, drive)
     }
 
-    /// Stands at the start of a drive that is already simulated; `config.drive` must describe it.
+    /// Starts a lap on a simulated drive; `config.drive` must describe it.
     ///
-    /// The first sweep is taken, and the map's frame is laid where the drive truly starts.
+    /// The estimator gets the first sweep and the drive's true start as the origin of its map.
     #[must_use]
     pub fn on_drive(config: LapConfig, drive: Arc<Drive>) -> Self {
         debug_assert_eq!(&config.drive, drive.config());
@@ -90,7 +90,7 @@ impl Lap {
         }
     }
 
-    /// Does one tick; nothing once the lap is finished.
+    /// Processes one tick; `None` once the lap is finished.
     pub fn step(&mut self) -> Option<TickReport> {
         let mut pending = self.begin()?;
         self.slam.verify_loops(&mut pending);
@@ -98,7 +98,7 @@ impl Lap {
         Some(self.finish(pending))
     }
 
-    /// Steps to the end of the lap and returns the reports of all ticks.
+    /// Steps to the end of the lap. Returns the reports of all ticks.
     pub fn run(&mut self) -> Vec<TickReport> {
         let mut reports = Vec::with_capacity(self.drive.ticks().len() - self.tick);
         while let Some(report) = self.step() {
@@ -113,13 +113,13 @@ impl Lap {
         &self.config
     }
 
-    /// The drive under it.
+    /// The simulated drive.
     #[must_use]
     pub fn drive(&self) -> &Arc<Drive> {
         &self.drive
     }
 
-    /// Ticks done.
+    /// The number of processed ticks.
     #[must_use]
     pub fn tick(&self) -> usize {
         self.tick
@@ -168,7 +168,7 @@ impl Lap {
         )
     }
 
-    /// First part of a tick: the frame is registered, its loops are not yet looked for.
+    /// First part of a tick: registers the frame. The search for loops follows.
     fn begin(&mut self) -> Option<PendingFrame> {
         self.drive.ticks().get(self.tick)?;
         self.tick += 1;
@@ -176,12 +176,12 @@ impl Lap {
         Some(self.slam.begin(&frame).expect(USABLE))
     }
 
-    /// Last part of a tick: the estimator's report is judged.
+    /// Last part of a tick: compares the estimator's report with the truth.
     fn finish(&mut self, pending: PendingFrame) -> TickReport {
         let report: SlamReport = self.slam.finish(pending);
         self.judge.judge(&report, &self.slam, &self.drive)
     }
 }
 
-/// A drive stamps its frames in order and with finite numbers.
+/// A drive stamps its frames in order, with finite numbers.
 const USABLE: &str = "frames of a drive are usable";

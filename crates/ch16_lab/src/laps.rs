@@ -1,7 +1,7 @@
-//! Lap after lap with one estimator that keeps its map up: what a robot does that stays for years.
+//! Lifelong mapping: lap after lap with one estimator that prunes its map.
 //!
-//! Each lap is a drive of its own that starts where the last one ended; its noise has the seed of the
-//! first lap and the number of the lap added. On the chapter's flat a wardrobe can be moved before a lap.
+//! Each lap is a separate drive that starts where the last one ended; its noise has the seed of the first lap
+//! plus the number of the lap. In the chapter's flat a wardrobe can be moved before a lap.
 
 use ch16_slam2d::metrics::{position_error_m, rms};
 use ch16_slam2d::scan::PreparedFrame;
@@ -14,19 +14,19 @@ use crate::lap::{Drive, DriveConfig};
 
 /// The wardrobe's sides, m.
 const WARDROBE_M: [f64; 2] = [0.7, 0.5];
-/// Its lower left corner before it is moved and after: behind the doors to D and to E.
+/// Its lower left corner before and after the move: behind the doors to D and to E.
 const WARDROBE_AT: [[f64; 2]; 2] = [[2.9, 5.7], [7.5, 5.7]];
 
-/// What is driven.
+/// The laps to drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LapsConfig {
-    /// The first lap; the next ones follow its way points from where it ended.
+    /// The first lap; the next ones start where it ended and follow its way points.
     pub drive: DriveConfig,
     /// The estimator.
     pub slam: SlamConfig,
-    /// How the map is kept up; none lets it grow.
+    /// How the map is pruned; `None` lets it grow.
     pub map_pruning: Option<MapPruningConfig>,
-    /// A wardrobe stands in the flat, and is moved before this lap, counted from 1.
+    /// The lap, counted from 1, before which the wardrobe is moved; `None` without a wardrobe.
     pub wardrobe: Option<usize>,
 }
 
@@ -39,7 +39,7 @@ impl LapsConfig {
             noise_factor,
             ..DriveConfig::default().on_course(course)
         };
-        // One tick of it is enough to ask the sensor how far its beams are apart.
+        // One tick is enough to get the angle between the sensor's beams.
         let first = Drive::simulate(&DriveConfig {
             max_ticks: 1,
             ..drive.clone()
@@ -61,7 +61,7 @@ impl LapsConfig {
     }
 }
 
-/// What one lap did.
+/// The result of one lap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LapNumbers {
     /// Number of the lap, counted from 1.
@@ -76,15 +76,15 @@ pub struct LapNumbers {
     pub loops: usize,
     /// Root mean square error of the estimate over its ticks, m.
     pub rms_m: f64,
-    /// Root mean square error of the keyframes that are in the map at its end, m.
+    /// Root mean square error of the keyframes in the map at its end, m.
     pub map_rms_m: f64,
-    /// Keyframes that were taken out.
+    /// Keyframes that were removed.
     pub removed: usize,
-    /// Kullback–Leibler divergence of what was taken out, nats.
+    /// Kullback–Leibler divergence of the removal, nats.
     pub divergence: f64,
-    /// Points that were dropped because newer scans looked through them.
+    /// Points that were dropped because newer beams passed through them.
     pub points_gone: usize,
-    /// Points in the map where the wardrobe stood first.
+    /// Points in the map at the wardrobe's first location.
     pub wardrobe_points: usize,
 }
 
@@ -103,12 +103,12 @@ pub struct Laps {
     lap: usize,
     truth: SE2,
     stamp_s: f64,
-    /// True pose of each frame that the estimator was given.
+    /// True pose of each frame that the estimator got.
     truths: Vec<SE2>,
 }
 
 impl Laps {
-    /// Stands at the start.
+    /// Starts before the first lap.
     #[must_use]
     pub fn new(config: LapsConfig) -> Self {
         Self {
@@ -127,7 +127,7 @@ impl Laps {
         &self.slam
     }
 
-    /// What the next lap drives.
+    /// The drive of the next lap.
     #[must_use]
     pub fn drive_config(&self) -> DriveConfig {
         let drive = &self.config.drive;
@@ -144,16 +144,16 @@ impl Laps {
         }
     }
 
-    /// The drive of the next lap.
+    /// Simulates the drive of the next lap.
     #[must_use]
     pub fn simulate(&self) -> Drive {
         Drive::simulate(&self.drive_config())
     }
 
-    /// Estimates a lap that was simulated.
+    /// Runs the estimator on a simulated lap.
     ///
     /// # Panics
-    /// Where the drive is not the one of [`simulate`](Self::simulate).
+    /// If the drive is not the one of [`simulate`](Self::simulate).
     pub fn estimate(&mut self, drive: &Drive) -> LapNumbers {
         let mut under_way = self.begin();
         loop {
@@ -163,7 +163,7 @@ impl Laps {
         }
     }
 
-    /// The next lap, before its first tick; a robot that stands at its start has that frame already.
+    /// Starts the next lap; the estimator has its first frame already, unless it is the first lap.
     #[must_use]
     pub fn begin(&self) -> LapUnderWay {
         LapUnderWay {
@@ -174,10 +174,10 @@ impl Laps {
         }
     }
 
-    /// Estimates one tick of a lap that was simulated; its numbers after the last one.
+    /// Processes one tick of a simulated lap. Returns its numbers after the last tick.
     ///
     /// # Panics
-    /// Where the drive is not the one of [`simulate`](Self::simulate).
+    /// If the drive is not the one of [`simulate`](Self::simulate).
     pub fn step(&mut self, lap: &mut LapUnderWay, drive: &Drive) -> Option<LapNumbers> {
         let tick = lap.tick;
         let frame = drive.prepared(tick);
@@ -232,7 +232,7 @@ impl Laps {
     }
 }
 
-/// Whether a point is where the wardrobe stood first; two walls of the flat are farther away.
+/// Whether a point is at the wardrobe's first location; the nearest walls are farther away.
 fn is_at_first_wardrobe(point: &Point2<f64>) -> bool {
     let [x, y] = WARDROBE_AT[0];
     let [wide, deep] = WARDROBE_M;

@@ -1,7 +1,7 @@
 #![doc = include_str!("../README.md")]
 //!
-//! The chapter's experiments, on the simulator and the estimator: whole laps of the Apartment with
-//! their judge, basins of attraction, cost landscapes, and samples to time and to try things on.
+//! The chapter's experiments on simulator and estimator: laps of the Apartment with their errors, basins of
+//! convergence, cost landscapes, and sample data for benchmarks and examples.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 

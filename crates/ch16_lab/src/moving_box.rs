@@ -1,9 +1,8 @@
-//! Two sweeps of room A with a box that was moved between them, and what it does to a registration.
+//! Two sweeps of room A with a box that moved in between, and its effect on a registration.
 //!
-//! The box takes a chosen share of the points of both sweeps: beams are as dense on it as that asks
-//! for. Its points have partners, where it stood before or on a wall behind, and all of them are
-//! wrong. How far they pull depends on what becomes of long pairs: they count in full, they are cut
-//! off, or they count less.
+//! The box takes a chosen share of the points of both sweeps; its beams are as dense as that requires. Its
+//! points are paired with its old outline or with the wall behind, so all of these pairs are outliers. Their
+//! influence depends on how long pairs are treated: full weight, rejection, or reduced weight.
 
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace};
@@ -21,22 +20,22 @@ pub const SWEEP_POINTS: usize = 180;
 
 const RANGE_SIGMA_M: f64 = 0.012;
 const MAX_RANGE_M: f64 = 6.0;
-/// Rays that look for what is box and what is wall, for each point of a sweep.
+/// Rays per point of a sweep that classify box and walls.
 const RAYS_PER_POINT: usize = 4;
 const MAP_CELL_M: f64 = 0.25;
-/// All points: the box has many in few cells.
+/// All points: those of the box are in few cells.
 const MAP_POINTS_PER_CELL: usize = SWEEP_POINTS;
 /// The truth, `target_from_source`.
 const TRUTH: (f64, f64, f64) = (0.12, -0.08, 0.06);
 
-/// What the sweeps are made of.
+/// Parameters of the two sweeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxConfig {
     /// Seed of the range noise.
     pub seed: u32,
     /// Share of the points that lie on the box, 0 to 1.
     pub share: f64,
-    /// By how much the box was moved, along x, m.
+    /// Displacement of the box along x, m.
     pub moved_m: f64,
 }
 
@@ -50,12 +49,12 @@ impl Default for BoxConfig {
     }
 }
 
-/// What becomes of long pairs.
+/// How outliers are treated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxMethods {
     /// Which error the increments reduce.
     pub variant: IcpVariant,
-    /// Pairs are closer than this, m.
+    /// Largest distance of a pair, m.
     pub tau_m: f64,
     /// Share of the pairs that trimming drops.
     pub dropped: f64,
@@ -78,7 +77,7 @@ impl BoxMethods {
     /// Plain, trimmed, and with Huber's kernel.
     pub const NAMES: [&str; 3] = ["plain", "trimmed", "Huber"];
 
-    /// The settings of the three registrations, in the order of [`BoxMethods::NAMES`].
+    /// Settings of the three registrations, in the order of [`BoxMethods::NAMES`].
     #[must_use]
     pub fn configs(&self) -> [IcpConfig; 3] {
         let plain = IcpConfig {
@@ -111,7 +110,7 @@ pub struct BoxScene {
 }
 
 impl BoxScene {
-    /// The sweeps, the box before in the target and after in the source.
+    /// Takes the sweeps: the target with the box before its move, the source after it.
     #[must_use]
     pub fn new(config: &BoxConfig) -> Self {
         let world_from_target = scenes::room_a();
@@ -143,13 +142,13 @@ impl BoxScene {
         SE2::new(x, y, theta)
     }
 
-    /// The sweep with the box where it was, in its sensor's frame.
+    /// The sweep before the move, in its sensor's frame.
     #[must_use]
     pub fn target(&self) -> &PointCloud {
         &self.target
     }
 
-    /// The sweep with the box where it is, in its sensor's frame.
+    /// The sweep after the move, in its sensor's frame.
     #[must_use]
     pub fn source(&self) -> &PointCloud {
         &self.source
@@ -161,7 +160,7 @@ impl BoxScene {
         &self.boxes
     }
 
-    /// Registers the source from where the target's sensor stood; the trace stays in the workspace.
+    /// Registers the source from the target's pose; the trace stays in the workspace.
     pub fn register(&self, config: &IcpConfig, workspace: &mut IcpWorkspace) -> IcpSummary {
         let start = SE2::identity();
         Icp::new(&self.source, &self.map, start, config, workspace).run()
@@ -193,21 +192,21 @@ fn corners(middle: Point2<f64>) -> [Point2<f64>; 4] {
         .map(|(x, y)| Point2::new(middle.x + x, middle.y + y))
 }
 
-/// A sweep with a share of its points on the box, evenly spread over it, and the rest over the walls.
+/// A sweep with a share of its points on the box, evenly spread, and the rest on the walls.
 fn sweep(world: &World, from: &SE2, share: f64, rng: &mut Rng) -> PointCloud {
     let empty = World::apartment();
     let rays = RAYS_PER_POINT * SWEEP_POINTS;
     let bearing = |k: f64| k / rays as f64 * core::f64::consts::TAU - core::f64::consts::PI;
     let origin = from.position();
     let cast = |world: &World, k: f64| world.cast(origin, from.theta() + bearing(k), MAX_RANGE_M);
-    // On the box is what would be seen farther away without it.
+    // A ray hits the box if its range would be larger without it.
     let (on_box, on_walls): (Vec<usize>, Vec<usize>) =
         (0..rays).partition(|&k| cast(world, k as f64) < cast(&empty, k as f64));
     let boxed = (share * SWEEP_POINTS as f64).round() as usize;
     let share_of = |i: usize, count: usize| (i as f64 + 0.5) / count as f64;
     let mut bearings = Vec::with_capacity(SWEEP_POINTS);
     if let [first, .., last] = on_box[..] {
-        // The box is seen in one piece, and between two of its rays there is box.
+        // The box is seen in one piece, without gaps between its rays.
         let (first, width) = (first as f64, (last - first) as f64);
         bearings.extend((0..boxed).map(|i| first + share_of(i, boxed) * width));
     }
@@ -223,10 +222,10 @@ fn sweep(world: &World, from: &SE2, share: f64, rng: &mut Rng) -> PointCloud {
     points.collect()
 }
 
-/// Translation errors over many seeds, at one share of the box.
+/// Translation errors over many seeds at one share of the box.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BoxErrors {
-    /// Of each method, seed by seed, m.
+    /// Errors of each method in the order of the seeds, m.
     pub errors_m: [Vec<[f64; 2]>; 3],
 }
 
@@ -238,7 +237,7 @@ impl BoxErrors {
         }
     }
 
-    /// Adds one registration of a scene, for whoever has no time for three.
+    /// Adds one registration of a scene, for callers that register one method at a time.
     pub fn add_one(
         &mut self,
         scene: &BoxScene,
@@ -250,7 +249,7 @@ impl BoxErrors {
         self.errors_m[method].push(BoxScene::error_m(&found.pose));
     }
 
-    /// Length of the mean error of a method, m; none without a seed.
+    /// Length of the mean error of a method, m; `None` without seeds.
     #[must_use]
     pub fn bias_m(&self, method: usize) -> Option<f64> {
         let errors = &self.errors_m[method];
@@ -293,7 +292,7 @@ mod tests {
             let moved = scene.source().transformed(&to_target);
             for (cloud, outline) in [scene.target(), &moved].into_iter().zip(scene.boxes()) {
                 assert_eq!(cloud.len(), SWEEP_POINTS);
-                // Five deviations of the range noise around the box.
+                // Within five standard deviations of the range noise.
                 let on_box = |p: &Point2<f64>| {
                     (outline[0].x - 0.06..outline[2].x + 0.06).contains(&p.x)
                         && (outline[0].y - 0.06..outline[2].y + 0.06).contains(&p.y)
@@ -309,7 +308,7 @@ mod tests {
         let errors = errors(0.0, 5);
         for method in 0..3 {
             let bias_m = errors.bias_m(method).unwrap();
-            // 2 cm: points lie some centimetres apart on the walls, and the box hides a part of them.
+            // 2 cm: points on the walls are some centimetres apart, and the box hides some of them.
             assert!(bias_m < 0.02, "{}: {bias_m}", BoxMethods::NAMES[method]);
         }
         assert_eq!(BoxErrors::default().bias_m(0), None);

@@ -1,25 +1,25 @@
-//! A lap and its twin that starts a hair's breadth away.
+//! A lap and its twin with a start that differs by rounding.
 //!
-//! A lap is reproducible to the bit: the same configuration gives the same poses on every machine.
-//! It is one throw of the dice all the same. Registration pairs points and decides what to keep, so
-//! a start that differs in its last digits may pair one point differently, and what follows drifts
-//! apart until it is another lap. No digit of a single lap's error is a property of the method.
+//! A lap is reproducible to the bit: the same configuration gives the same poses on every machine. It is a
+//! single random sample all the same. Registration pairs points and selects, so a start that differs in its
+//! last digits may pair one point differently, and the laps diverge. The digits of a single lap's error are
+//! not a property of the method.
 
 use ch16_slam2d::metrics::position_error_m;
 use pr_geom::SE2;
 
 use crate::lap::{LapConfig, LapRecord};
 
-/// Share of itself by which the start of the twin is moved: two units of its last digit.
+/// Relative change of the twin's start: two units of its last digit.
 pub const NUDGE: f64 = 4e-16;
 
-/// A keyframe that ends up farther away than this is a difference that no rounding explains, m.
+/// A keyframe that moved by more than this differs by more than rounding, m.
 pub const CHANGED_M: f64 = 1e-6;
 
-/// The same lap with the x of its start moved by `share` of itself, along the corridor.
+/// The same lap with the x of its start changed by `share` of its value, along the corridor.
 ///
-/// Not across: at its way point the robot turns round by exactly π. Off the line, however little, it
-/// turns the other way round, and every lap is another drive.
+/// Not across: at its way point the robot turns round by exactly π. Off the line it turns in the other
+/// direction, and every lap is another drive.
 #[must_use]
 pub fn nudged(config: &LapConfig, share: f64) -> LapConfig {
     let mut twin = config.clone();
@@ -28,7 +28,7 @@ pub fn nudged(config: &LapConfig, share: f64) -> LapConfig {
     twin
 }
 
-/// The farthest that a keyframe of one lap ends from the same one of its twin, m.
+/// Largest distance between the same keyframe of a lap and its twin, m.
 ///
 /// Keyframes that only one of them has do not count.
 #[must_use]
@@ -40,7 +40,7 @@ pub fn farthest_keyframe_m(lap: &LapRecord, twin: &LapRecord) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// How far many laps moved with their starts.
+/// Distances between many laps and their twins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NudgeStatistics {
     /// [`farthest_keyframe_m`] of every lap and its twin, in the order of their seeds.
@@ -48,7 +48,7 @@ pub struct NudgeStatistics {
 }
 
 impl NudgeStatistics {
-    /// Laps whose twin is another lap: moved by more than [`CHANGED_M`].
+    /// Number of laps whose twin differs by more than [`CHANGED_M`].
     #[must_use]
     pub fn changed(&self) -> usize {
         self.moved_m
@@ -57,7 +57,7 @@ impl NudgeStatistics {
             .count()
     }
 
-    /// The farthest that any lap moved, m; 0 of none.
+    /// The largest distance of all laps, m; 0 without laps.
     #[must_use]
     pub fn farthest_m(&self) -> f64 {
         self.moved_m.iter().copied().fold(0.0, f64::max)

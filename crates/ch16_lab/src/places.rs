@@ -1,8 +1,8 @@
-//! How well places are recognized: every pair of keyframes of many laps, by every detector.
+//! Place recognition: every pair of keyframes of many laps, graded for every detector.
 //!
-//! A pair is the same place where the truths are within [`SAME_PLACE_M`]. A detector gives a pair a
-//! distance; at a threshold it calls the pairs below it the same. Precision is the share of those
-//! that are, recall the share of the same that it finds.
+//! A pair shows the same place if its true positions are within [`SAME_PLACE_M`]. A detector assigns each
+//! pair a distance; pairs below a threshold count as detected. Precision is the share of right pairs among
+//! the detected ones, recall the share of detected pairs among the right ones.
 
 mod study;
 
@@ -10,17 +10,17 @@ pub use study::{Place, PlaceStudy};
 
 use crate::lap::{Lap, LapConfig, LapDetector};
 
-/// Truths this near are the same place, m.
+/// True positions closer than this are the same place, m.
 pub const SAME_PLACE_M: f64 = 1.0;
 
-/// The detectors that give every pair a distance.
+/// The detectors that assign every pair a distance.
 pub const GRADED: [LapDetector; 3] = [
     LapDetector::Nearby,
     LapDetector::Histogram,
     LapDetector::Context,
 ];
 
-/// Points of a curve.
+/// Number of points of a curve.
 const CURVE_POINTS: usize = 50;
 
 /// A pair of keyframes that are far apart in time.
@@ -30,27 +30,27 @@ pub struct PlacePair {
     pub seed: u32,
     /// The older and the newer keyframe.
     pub nodes: [usize; 2],
-    /// Whether the truths are within [`SAME_PLACE_M`].
+    /// Whether the true positions are within [`SAME_PLACE_M`].
     pub is_same: bool,
     /// The distance by each detector, in the order of [`GRADED`].
     pub distances: [f64; GRADED.len()],
 }
 
-/// How a detector does at one threshold.
+/// Precision and recall of a detector at one threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OperatingPoint {
-    /// Pairs at this distance or below are called the same.
+    /// Pairs at this distance or below are detected.
     pub threshold: f64,
-    /// Share of those that are.
+    /// Share of right pairs among the detected ones.
     pub precision: f64,
-    /// Share of the same that are among those.
+    /// Share of detected pairs among the right ones.
     pub recall: f64,
 }
 
-/// How a detector does at all thresholds.
+/// Precision and recall of a detector at all thresholds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaceCurve {
-    /// Who it is.
+    /// The detector.
     pub detector: LapDetector,
     /// From the strictest threshold to the loosest, evenly spaced in recall.
     pub points: Vec<OperatingPoint>,
@@ -60,10 +60,10 @@ pub struct PlaceCurve {
     pub recall_without_errors: f64,
 }
 
-/// The pairs of one lap, driven by the front end alone.
+/// The pairs of one lap that ran with the front end alone.
 ///
-/// What is near is measured by the front end's poses, in standard deviations of the drift that the
-/// gate assumes: all that is known before a loop is closed.
+/// Distances between poses are those of the front end, in standard deviations of the drift that the gate
+/// assumes: all that is known before the first loop.
 #[must_use]
 pub fn place_pairs(config: &LapConfig) -> Vec<PlacePair> {
     let mut lap = Lap::new(config.clone().without_loops());
@@ -96,7 +96,7 @@ fn curve(pairs: &[PlacePair], index: usize, detector: LapDetector) -> PlaceCurve
     let (mut found, mut last_recall) = (0, 0.0);
     for (k, &(threshold, is_same)) in ranked.iter().enumerate() {
         found += usize::from(is_same);
-        // Equal distances stand or fall together.
+        // Equal distances share one threshold.
         if ranked.get(k + 1).is_some_and(|next| next.0 == threshold) || same == 0 {
             continue;
         }
@@ -171,7 +171,7 @@ mod tests {
         assert!(same > 50 && chance < 0.5, "{same} of {}", pairs.len());
         assert!(histogram.average_precision > 1.2 * chance);
         assert!(context.average_precision > histogram.average_precision);
-        // On a short lap with good scan matching the pose itself says most.
+        // On a short lap with good scan matching the pose itself is the best detector.
         assert!(nearby.average_precision > histogram.average_precision);
     }
 }

@@ -1,18 +1,17 @@
-//! Which orthogonal matrix brings paired points together best: the trace over all of them.
+//! The orthogonal matrix that aligns paired points best: the trace over all candidates.
 //!
-//! About the centroids the cost of a matrix is `Σ‖p‖² + Σ‖q‖² − 2 tr(M H)` with `H = Σ p qᵀ`, so the
-//! best matrix has the largest trace. In the plane the orthogonal matrices are two circles, the
-//! turns `R(θ)` and the mirror images `R(θ) diag(1, −1)`, and on each of them the trace is one
-//! sinusoid:
+//! About the centroids the cost of a matrix is `Σ‖p‖² + Σ‖q‖² − 2 tr(M H)` with `H = Σ p qᵀ`, so the best
+//! matrix has the largest trace. In the plane the orthogonal matrices are two circles, the rotations `R(θ)`
+//! and the reflections `R(θ) diag(1, −1)`, and on each of them the trace is one sinusoid:
 //!
 //! ```text
 //! tr(R(θ) H)             = a cos(θ − θ_a),   a = hypot(h_xx + h_yy, h_xy − h_yx)
 //! tr(R(θ) diag(1,−1) H)  = b cos(θ − θ_b),   b = hypot(h_xx − h_yy, h_xy + h_yx)
 //! ```
 //!
-//! The singular values of `H` are `(a + b)/2` and `|a − b|/2`. Their sum bounds every trace, and the
-//! larger of `a` and `b` reaches it. Where `det H < 0` that is the mirror image, and the best turn
-//! stays at `s₁ − s₂`: the last singular value counts against it. Where `H` has rank 1 both reach it.
+//! The singular values of `H` are `(a + b)/2` and `|a − b|/2`. Their sum bounds every trace, and the larger
+//! of `a` and `b` reaches it. If `det H < 0` that is the reflection, and the best rotation reaches only `s₁ −
+//! s₂`: the last singular value counts against it. If `H` has rank 1 both reach the bound.
 //!
 //! Sources: Schönemann 1966; Arun, Huang & Blostein 1987; Umeyama 1991.
 
@@ -24,7 +23,7 @@ use pr_geom::{Rotation, SE2, math};
 
 pub use pairs::{Pairs, Shape};
 
-/// A share of the larger trace by which the two must differ to be told apart.
+/// Relative difference below which two traces count as equal.
 const TIE: f64 = 1e-9;
 
 /// The two kinds of orthogonal matrices in the plane.
@@ -51,14 +50,14 @@ impl Handedness {
     }
 }
 
-/// Which kind reaches the larger trace.
+/// The kind with the larger trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Winner {
-    /// A turn: `det H > 0`.
+    /// A rotation: `det H > 0`.
     Turn,
-    /// A mirror image: `det H < 0`.
+    /// A reflection: `det H < 0`.
     Mirror,
-    /// Both, as `H` has rank 1 at most: two points, or a straight line.
+    /// Both, because `H` has rank 1 at most: two points, or a straight line.
     Tie,
 }
 
@@ -80,14 +79,14 @@ pub struct Procrustes {
     pub source_mean: Point2<f64>,
     /// Mean of the target, m.
     pub target_mean: Point2<f64>,
-    /// What [`svd_align`] answers, `target_from_source`.
+    /// The result of [`svd_align`], `target_from_source`.
     pub aligned: SE2,
     /// `Σ‖p‖² + Σ‖q‖²` about the means, m².
     spread_m2: f64,
 }
 
 impl Procrustes {
-    /// The problem for these pairs; without any, everything is zero.
+    /// Sets up the problem for these pairs; everything is zero without any.
     ///
     /// # Panics
     /// If the slices differ in length.
@@ -143,7 +142,7 @@ impl Procrustes {
         [0.5 * (turn + mirror), 0.5 * (turn - mirror).abs()]
     }
 
-    /// The bound `s₁ + s₂` that no orthogonal matrix passes, m².
+    /// The bound `s₁ + s₂` of the trace of any orthogonal matrix, m².
     #[must_use]
     pub fn bound_m2(&self) -> f64 {
         let [first, second] = self.singular_values_m2();
@@ -163,8 +162,8 @@ impl Procrustes {
         }
     }
 
-    /// What the decomposition yields when nobody looks at the determinant: the best of all orthogonal
-    /// matrices. Of two that tie it is as likely to be the mirror image, which is shown here.
+    /// The result of the decomposition without the check of the determinant: the best orthogonal matrix. If
+    /// both kinds tie, either may result; this returns the reflection.
     #[must_use]
     pub fn unchecked(&self) -> (Handedness, Best) {
         let kind = match self.winner() {
@@ -174,7 +173,7 @@ impl Procrustes {
         (kind, self.best(kind))
     }
 
-    /// A point of the source where the matrix of that kind and angle puts it, means on each other.
+    /// Transforms a point of the source by the matrix of that kind and angle, with the centroids aligned.
     #[must_use]
     pub fn moved(&self, kind: Handedness, theta_rad: f64, point: Point2<f64>) -> Point2<f64> {
         self.target_mean + kind.matrix(theta_rad) * (point - self.source_mean)
@@ -247,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sign_of_the_determinant_says_who_wins() {
+    fn the_sign_of_the_determinant_decides_between_rotation_and_reflection() {
         for (source, target) in cases().filter(|(source, _)| source.len() > 2) {
             let problem = Procrustes::new(&source, &target);
             let expected = if problem.moments.determinant() > 0.0 {
@@ -265,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn two_points_never_tell_a_turn_from_a_mirror_image() {
+    fn two_points_fit_a_rotation_and_a_reflection_equally() {
         for (source, target) in cases().filter(|(source, _)| source.len() == 2) {
             let problem = Procrustes::new(&source, &target);
             assert_eq!(problem.winner(), Winner::Tie);

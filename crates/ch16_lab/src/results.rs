@@ -1,30 +1,29 @@
-//! The results table of many laps: how each of its entries is distributed.
+//! The results table of many laps: the distribution of each of its entries.
 //!
-//! One seed is an anecdote. Everything here is about laps that have been run; who runs them, and on
-//! how many threads, is up to the caller.
+//! This module evaluates finished laps; the caller runs them, on any number of threads.
 
 use pr_geom::sort_numbers;
 use serde::{Deserialize, Serialize};
 
 use crate::incremental::{IncrementalKind, IncrementalOutcome, IncrementalTrace};
-use crate::lap::{LapRecord, LapSummary, WAY_SHARES, WayErrors};
+use crate::lap::{LapRecord, LapSummary, PATH_SHARES, PathErrors};
 
-/// A column of the results table: whose errors.
+/// A column of the results table: the estimator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Column {
-    /// Dead reckoning by the wheels.
+    /// Dead reckoning.
     Odometry,
     /// Scan matching without loops.
     FrontEnd,
     /// The lap as configured.
     WithLoops,
-    /// Incremental maximum likelihood mapping, where it was run.
+    /// Incremental maximum likelihood mapping, if it was run.
     MaximumLikelihood,
-    /// The same with the variant for cycles, where it was run.
+    /// Its variant for cycles, if it was run.
     MaximumLikelihoodCycles,
 }
 
-/// A row of the results table: which error, m.
+/// A row of the results table: the kind of error, m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Row {
     /// Position error at the end.
@@ -37,11 +36,11 @@ pub enum Row {
     LastKeyframesMax,
     /// Largest error of all keyframes.
     KeyframeMax,
-    /// Position error at half of the way.
+    /// Position error halfway along the path.
     HalfWay,
-    /// Standard deviation that the graph gives the position at half of the way.
+    /// The graph's standard deviation of the position halfway.
     HalfWaySigma,
-    /// Distance between what the way out mapped and what the way back saw.
+    /// Distance between the map of the outward path and what the return path saw.
     MapDisagreement,
 }
 
@@ -55,10 +54,10 @@ impl Column {
         Self::MaximumLikelihoodCycles,
     ];
 
-    /// The column of an ancestor.
+    /// The column of an incremental method.
     #[must_use]
-    pub fn of_incremental(ancestor: IncrementalKind) -> Self {
-        match ancestor {
+    pub fn of_incremental(kind: IncrementalKind) -> Self {
+        match kind {
             IncrementalKind::MaximumLikelihood => Self::MaximumLikelihood,
             IncrementalKind::WithCycles => Self::MaximumLikelihoodCycles,
         }
@@ -79,51 +78,51 @@ impl Row {
     ];
 }
 
-/// What statistics need of one lap.
+/// Results of one lap that statistics need.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LapOutcome {
     /// The lap as configured.
     pub lap: LapSummary,
     /// Its front end alone.
     pub front_end: LapSummary,
-    /// Errors of the lap along its way.
-    pub lap_way: WayErrors,
-    /// Those of its front end alone.
-    pub front_end_way: WayErrors,
-    /// Loops that were closed although they are false.
+    /// Errors of the lap along its path.
+    pub lap_way: PathErrors,
+    /// Errors of its front end alone.
+    pub front_end_way: PathErrors,
+    /// False loops that were closed.
     pub false_acceptances: usize,
-    /// Digest of all poses; see [`LapRecord::digest`]. It is written in hexadecimal, for readers whose
-    /// numbers end at 2⁵³.
+    /// Digest of all poses; see [`LapRecord::digest`]. It is serialized in hexadecimal, because some readers'
+    /// integers end at 2⁵³.
     #[serde(with = "hexadecimal")]
     pub digest: u64,
-    /// The incremental_runs on the same drive, those that were run.
+    /// Incremental mapping on the same drive, for the methods that were run.
     pub incremental_runs: [Option<IncrementalOutcome>; IncrementalKind::ALL.len()],
 }
 
 impl LapOutcome {
-    /// The outcome of a finished lap.
+    /// Evaluates a finished lap.
     #[must_use]
     pub fn from_record(record: &LapRecord) -> Self {
         Self {
             lap: record.lap.summary,
             front_end: record.front_end.summary,
-            lap_way: record.way_errors(),
-            front_end_way: record.front_end_way_errors(),
+            lap_way: record.path_errors(),
+            front_end_way: record.front_end_path_errors(),
             false_acceptances: record.lap.false_acceptances().count(),
             digest: record.digest(),
             incremental_runs: [None; IncrementalKind::ALL.len()],
         }
     }
 
-    /// The same with an ancestor run on the drive of `record`.
+    /// Adds an incremental method, run on the drive of `record`.
     #[must_use]
-    pub fn with_incremental(mut self, ancestor: IncrementalKind, record: &LapRecord) -> Self {
-        let trace = IncrementalTrace::run(ancestor, &record.config, &record.drive);
-        self.incremental_runs[ancestor as usize] = Some(trace.outcome);
+    pub fn with_incremental(mut self, kind: IncrementalKind, record: &LapRecord) -> Self {
+        let trace = IncrementalTrace::run(kind, &record.config, &record.drive);
+        self.incremental_runs[kind as usize] = Some(trace.outcome);
         self
     }
 
-    /// An entry of the results table, m; none where the table has a gap.
+    /// An entry of the results table, m; `None` if the table has a gap.
     #[must_use]
     pub fn entry(&self, column: Column, row: Row) -> Option<f64> {
         let (summary, way) = match column {
@@ -149,10 +148,9 @@ impl LapOutcome {
         }
     }
 
-    /// An ancestor has no graph that knows its deviation.
-    fn incremental_entry(&self, ancestor: IncrementalKind, row: Row) -> Option<f64> {
-        let IncrementalOutcome { summary, way } =
-            self.incremental_runs[ancestor as usize].as_ref()?;
+    /// Incremental mapping has no graph, so it has no standard deviation.
+    fn incremental_entry(&self, kind: IncrementalKind, row: Row) -> Option<f64> {
+        let IncrementalOutcome { summary, way } = self.incremental_runs[kind as usize].as_ref()?;
         match row {
             Row::EndError => Some(summary.keyframe_end_error_m),
             Row::Rms => Some(summary.keyframe_rms_m),
@@ -165,7 +163,7 @@ impl LapOutcome {
         }
     }
 
-    /// Wheels have no keyframes, and no map.
+    /// Dead reckoning has neither keyframes nor a map.
     fn odometry_entry(&self, row: Row) -> Option<f64> {
         match row {
             Row::EndError => Some(self.lap.odometry_end_error_m),
@@ -189,7 +187,7 @@ mod hexadecimal {
     }
 }
 
-/// What laps that differ only in their seed have in common.
+/// Statistics of laps that differ only in their seed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LapStatistics {
     /// The laps, in the order of their seeds.
@@ -197,17 +195,17 @@ pub struct LapStatistics {
 }
 
 impl LapStatistics {
-    /// How an entry of the results table is distributed; none where no lap has it.
+    /// The distribution of an entry of the results table; `None` if no lap has it.
     #[must_use]
     pub fn spread(&self, column: Column, row: Row) -> Option<Spread> {
         let entries = self.outcomes.iter();
         Spread::from_values(entries.filter_map(|outcome| outcome.entry(column, row)))
     }
 
-    /// Medians of the position errors along the way, m, at the ends of its shares; wheels have none,
-    /// and no laps have none.
+    /// Medians of the position errors along the path, m, at the ends of its shares; `None` for dead reckoning
+    /// and without laps.
     #[must_use]
-    pub fn along_path_m(&self, column: Column) -> Option<[f64; WAY_SHARES + 1]> {
+    pub fn along_path_m(&self, column: Column) -> Option<[f64; PATH_SHARES + 1]> {
         let way = |outcome: &LapOutcome| match column {
             Column::Odometry => None,
             Column::FrontEnd => Some(outcome.front_end_way),
@@ -217,15 +215,15 @@ impl LapStatistics {
                 outcome.incremental_runs[1].map(|outcome| outcome.way)
             }
         };
-        let ways: Vec<WayErrors> = self.outcomes.iter().filter_map(way).collect();
-        let mut medians = [0.0; WAY_SHARES + 1];
+        let ways: Vec<PathErrors> = self.outcomes.iter().filter_map(way).collect();
+        let mut medians = [0.0; PATH_SHARES + 1];
         for (k, median) in medians.iter_mut().enumerate() {
             *median = Spread::from_values(ways.iter().map(|way| way.errors_m[k]))?.median;
         }
         Some(medians)
     }
 
-    /// Share of the laps of which something is true; not a number of no laps.
+    /// Share of the laps that satisfy a condition; NaN without laps.
     #[must_use]
     pub fn share(&self, is_true: impl Fn(&LapOutcome) -> bool) -> f64 {
         let matches = self.outcomes.iter().filter(|outcome| is_true(outcome));
@@ -238,7 +236,7 @@ impl LapStatistics {
         [0, 1, 2, 3].map(|loops| self.share(|outcome| outcome.lap.loops.min(3) == loops))
     }
 
-    /// Share of the laps that took a false loop.
+    /// Share of the laps that closed a false loop.
     #[must_use]
     pub fn false_run_share(&self) -> f64 {
         self.share(|outcome| outcome.false_acceptances > 0)
@@ -250,7 +248,7 @@ impl LapStatistics {
         self.outcomes.iter().map(|outcome| outcome.lap.loops).sum()
     }
 
-    /// False ones among [`Self::accepted_loops`].
+    /// The false ones among [`Self::accepted_loops`].
     #[must_use]
     pub fn false_acceptances(&self) -> usize {
         let counts = self.outcomes.iter();
@@ -258,7 +256,7 @@ impl LapStatistics {
     }
 }
 
-/// The middle of a distribution, and where its tails begin.
+/// Median and tails of a distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
     /// One value in twenty is lower.
@@ -270,7 +268,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// The spread of some values; none of none.
+    /// The spread of some values; `None` without values.
     #[must_use]
     pub fn from_values(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut sorted: Vec<f64> = values.into_iter().collect();
@@ -328,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn odometry_has_the_two_entries_that_need_no_keyframes_and_an_ancestor_all_but_the_graphs() {
+    fn odometry_has_the_two_entries_without_keyframes_and_incremental_mapping_all_but_the_graphs() {
         let record = LapRunner::new().run(&LapConfig::default());
         let outcome = LapOutcome::from_record(&record);
         let entries_of = |column| {
@@ -338,7 +336,7 @@ mod tests {
         assert_eq!(Column::ALL.map(entries_of), [2, 8, 8, 0, 0]);
         let outcome = outcome.with_incremental(IncrementalKind::WithCycles, &record);
         let entries = Row::ALL.map(|row| outcome.entry(Column::MaximumLikelihoodCycles, row));
-        // All but the deviation, which only a graph knows.
+        // All but the standard deviation, which needs a graph.
         assert_eq!(entries.iter().flatten().count(), 7);
         assert_eq!(outcome.entry(Column::MaximumLikelihood, Row::Rms), None);
     }

@@ -1,8 +1,7 @@
-//! Clouds and a graph to time and to try things on, always the same.
+//! Reproducible clouds and a graph for benchmarks and examples.
 //!
-//! The benchmarks, the table of workloads and the files for `slam2d register` draw on these, so that
-//! all of them speak of the same points. Everything is seen by the simulator's LiDAR in the
-//! Apartment, with range noise of 0.02 m.
+//! The benchmarks, the table of workloads and the files for `slam2d register` share these data. Everything is
+//! seen by the simulator's LiDAR in the Apartment, with range noise of 0.02 m.
 
 use pr_geom::SE2;
 use pr_sim::{Lidar, LidarConfig, Rng, World};
@@ -14,7 +13,7 @@ use ch16_slam2d::graph::PoseGraph;
 const RANGE_SIGMA_M: f64 = 0.02;
 /// Points of [`apartment_map`].
 const MAP_POINTS: usize = 5000;
-/// Radius of the normals on the map, where points lie close, m.
+/// Radius of the normals on the map, whose points are dense, m.
 const MAP_NORMAL_RADIUS_M: f64 = 0.2;
 /// Radius of the normals on one sweep, m.
 const SWEEP_NORMAL_RADIUS_M: f64 = 0.3;
@@ -31,7 +30,7 @@ pub fn sweep(world_from_sensor: &SE2, beams: usize, rng: &mut Rng) -> PointCloud
     lidar.project(&ranges_m).collect()
 }
 
-/// 5,000 points of the Apartment in the world's frame, seen from 14 places, without normals.
+/// 5,000 points of the Apartment in the world's frame, seen from 14 poses, without normals.
 #[must_use]
 pub fn apartment_map() -> PointCloud {
     let mut rng = Rng::new(5);
@@ -44,14 +43,14 @@ pub fn apartment_map() -> PointCloud {
     points.iter().take(MAP_POINTS).collect()
 }
 
-/// A scan to be registered on a map.
+/// A scan to register on a map.
 #[derive(Clone, Debug)]
 pub struct RegistrationSample {
     /// The map with normals, in the world's frame.
     pub map: PointCloud,
     /// The scan in its sensor's frame.
     pub scan: PointCloud,
-    /// Where the sensor stood, `world_from_scan`.
+    /// True pose of the sensor, `world_from_scan`.
     pub truth: SE2,
     /// The initial guess of `world_from_scan`, 0.18 m and 0.05 rad off.
     pub guess: SE2,
@@ -66,7 +65,7 @@ impl RegistrationSample {
         Self::new(map, 720, 77)
     }
 
-    /// A sweep of 180 points on another one of 180, seen from 0.11 m and 0.05 rad beside it.
+    /// A sweep of 180 points on another one of 180, taken 0.11 m and 0.05 rad apart.
     #[must_use]
     pub fn small() -> Self {
         let near = SE2::new(2.1, 1.95, 0.15);
@@ -76,7 +75,7 @@ impl RegistrationSample {
     }
 
     fn new(map: PointCloud, beams: usize, seed: u32) -> Self {
-        // From here every beam ends within range: none passes the doors of rooms A and D both.
+        // From here every beam has a return: none passes the doors of rooms A and D both.
         let truth = SE2::new(2.2, 1.9, 0.2);
         Self {
             map,
@@ -87,8 +86,7 @@ impl RegistrationSample {
     }
 }
 
-/// The pose graph that the canonical lap ends with, its 41 nodes put back where the wheels alone
-/// place them.
+/// The final pose graph of the canonical lap, with its 41 nodes moved back to dead reckoning.
 #[must_use]
 pub fn lap_graph() -> PoseGraph {
     let mut lap = Lap::new(LapConfig::default());
@@ -136,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn the_graph_of_the_lap_starts_where_the_wheels_end() {
+    fn the_graph_of_the_lap_starts_at_dead_reckoning() {
         let mut graph = lap_graph();
         assert_eq!(graph.node_count(), 41);
         let before = graph.chi2();

@@ -1,5 +1,4 @@
-//! What the scenes of basin and terrain have in common: where in the Apartment they stand, and with
-//! which sensor.
+//! Poses in the Apartment and the sensor that the scenes of basin and terrain share.
 
 use ch16_slam2d::cloud::PointCloud;
 use pr_geom::{Point2, SE2};
@@ -10,13 +9,12 @@ pub fn room_a() -> SE2 {
     SE2::new(2.0, 1.9, 0.0)
 }
 
-/// In the middle of the corridor: two long walls and nothing across, `world_from_sensor`.
+/// In the middle of the corridor: two long walls and no wall across, `world_from_sensor`.
 pub fn corridor() -> SE2 {
     SE2::new(6.0, 4.42, 0.0)
 }
 
-/// The walls of the corridor without its doors, and so long that no sweep from [`corridor`] sees an
-/// end.
+/// The walls of the corridor without its doors, and so long that no sweep from [`corridor`] reaches an end.
 pub fn long_corridor() -> World {
     const HALF_LENGTH_M: f64 = 12.0;
     let (south_m, north_m) = (3.8, 5.0);
@@ -33,13 +31,13 @@ pub fn long_corridor() -> World {
     World::new(bounds, vec![wall(south_m), wall(north_m)])
 }
 
-/// Radius within which the points of a scene give each other normals, m.
+/// Radius of the normals of a scene's points, m.
 pub const NORMAL_RADIUS_M: f64 = 0.3;
 
-/// Points that a cell of a scene's map keeps.
+/// Largest number of points per cell of a scene's map.
 pub const MAP_POINTS_PER_CELL: usize = 8;
 
-/// A sensor of the scenes: more beams than the robot of the lap has.
+/// The sensor of the scenes: more beams than the robot of the lap has.
 pub fn lidar(range_sigma_m: f64, max_range_m: f64) -> Lidar {
     Lidar::new(LidarConfig {
         beams: 180,

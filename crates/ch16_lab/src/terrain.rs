@@ -4,13 +4,12 @@
 //! points of `min(d², τ²)`, d the distance to the nearest map point (m²); NDT's is the mean score
 //! of the points (no unit). Every shift is evaluated; nothing is interpolated.
 //!
-//! The ICP landscape has one dent for every way of pairing points along a wall, and terraces where
-//! most points are truncated. The NDT landscape is smooth but falls to zero a cell away from the
-//! walls. [`Ball`] rolls down either; [`TerrainScene::information`] tells how steep the valley is.
+//! The ICP landscape has one local minimum for every pairing of points along a wall, and plateaus where most
+//! points are truncated. The NDT landscape is smooth but falls to zero a cell away from the walls. [`Ball`]
+//! descends on either; [`TerrainScene::information`] returns how steep the valley is.
 //!
-//! A sweep on its own points knows too much: it recognizes its own noise. In
-//! [`SceneKind::LongCorridor`] map and sweep are measured apart, and [`Drops`] shows how far the
-//! answers of many sweeps scatter.
+//! A sweep on its own points is too optimistic: the noise is the same in both. In [`SceneKind::LongCorridor`]
+//! map and sweep have independent noise, and [`Drops`] shows the scatter of many sweeps' results.
 
 mod ball;
 mod drops;
@@ -29,5 +28,5 @@ pub use grid::{Peak, Terrain};
 pub use information::{PoseInformation, ShiftInformation, pose_information};
 pub use probe::{Objective, Slope, TerrainProbe};
 pub use ridge::{Partner, PartnerChange};
-pub use rows::{PlaneRow, PlaneRows, RowsKnow};
+pub use rows::{PlaneRow, PlaneRows, RowConstraints};
 pub use scene::{SceneKind, TerrainScene, TerrainSettings};

@@ -1,8 +1,8 @@
-//! The scene of the basins searched whole: every heading and offset of a window, box by box.
+//! Global search on the scene of the basins: every heading and offset of a window, box by box.
 //!
-//! [`WindowSearch`] takes one step of [`ScanSearch`] at a time and remembers which boxes waited when,
-//! so that a picture can stand at any of them. What it finds is refined by the ICP that fails from the
-//! start. How far the other turns of the room are behind, searches of their own tell.
+//! [`WindowSearch`] runs one step of [`ScanSearch`] at a time and records when each box was open, so that a
+//! figure can show any step. ICP refines the result; it fails from the start itself. Separate searches return
+//! the scores of the room's other headings.
 
 mod surface;
 
@@ -22,19 +22,19 @@ use crate::basin::{BasinOutcome, BasinScene, BasinStart};
 /// The blur of the map in cells: that of [`LikelihoodConfig::default`].
 const BLUR_CELLS: f64 = 1.6;
 
-/// A turn of the room is looked for within so much of a quarter or half turn, degrees.
+/// Half the range of headings around a quarter or half turn in which that false minimum is searched, degrees.
 const TURN_REACH_DEG: f64 = 15.0;
 
-/// What is searched, and from where ICP would start.
+/// The window, and the start of ICP.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowConfig {
-    /// The middle of the window, and ICP's start.
+    /// The center of the window, and ICP's start.
     pub start: BasinStart,
-    /// Half the window's width along x and y, m.
+    /// Half the width of the window along x and y, m.
     pub half_width_m: f64,
-    /// Half its range of headings, degrees; 180 is the whole turn.
+    /// Half its range of headings, degrees; 180 is the full circle.
     pub half_turn_deg: f64,
-    /// Side of a cell, m: the search is as fine.
+    /// Side of a cell and resolution of the search, m.
     pub cell_m: f64,
 }
 
@@ -54,9 +54,9 @@ impl Default for WindowConfig {
 }
 
 impl WindowConfig {
-    /// τ of ICP from the start and from what the search finds, the one of the basins, m.
+    /// τ of ICP, from the start and from the result of the search; that of the basins, m.
     pub const TAU_M: f64 = 0.7;
-    /// A best pose that scores less is no match, as in the matcher for loops.
+    /// The least score of a match, as in the matcher for loops.
     pub const MIN_SCORE: f64 = 0.5;
 
     /// The map's cells and their blur.
@@ -77,21 +77,21 @@ impl WindowConfig {
     }
 }
 
-/// A box of poses, and between which steps it waited.
+/// A box of poses, and the steps during which it was open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenBox {
-    /// Its poses and their bound.
+    /// Its poses and their upper bound.
     pub poses: PoseBox,
-    /// It waits from this step on.
+    /// The step that created it.
     pub since: usize,
-    /// It was taken up by this step; none while it waits.
+    /// The step that expanded it; `None` while it is open.
     pub until: Option<usize>,
-    /// What became of it then.
+    /// What that step did with it.
     pub fate: Option<BoxFate>,
 }
 
 impl SeenBox {
-    /// Whether it waits after that many steps.
+    /// Whether it is open after that many steps.
     #[must_use]
     pub fn waits_after(&self, steps: usize) -> bool {
         self.since <= steps && self.until.is_none_or(|until| until > steps)
@@ -101,15 +101,15 @@ impl SeenBox {
 /// The search after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowMoment {
-    /// The box that the step took up, by its number; none before the first step.
+    /// The index of the box that the step expanded; `None` before the first step.
     pub taken: Option<usize>,
-    /// What is looked for.
+    /// The goal of the search.
     pub goal: SearchGoal,
-    /// The largest bound among what waits; nothing left scores more.
+    /// The largest bound of the open boxes; no other pose scores more.
     pub bound: Option<f64>,
     /// The best pose so far.
     pub best: Option<ScoredPose>,
-    /// The best one so far that is another place.
+    /// The best pose so far at another location.
     pub runner_up: Option<ScoredPose>,
     /// The work so far.
     pub counts: SearchCounts,
@@ -122,16 +122,16 @@ pub struct WindowSearch {
     map: Arc<SearchMap>,
     search: ScanSearch,
     boxes: Vec<SeenBox>,
-    /// Numbers of the boxes that wait, in the order of the search.
+    /// Indices of the open boxes, in the order of the search.
     waiting: Vec<usize>,
     moments: Vec<WindowMoment>,
 }
 
 impl WindowSearch {
-    /// A search that has not begun.
+    /// Creates a search before its first step.
     ///
     /// # Errors
-    /// Where the window or the cells cannot be searched.
+    /// If the window or the cells cannot be searched.
     pub fn new(scene: &BasinScene, config: WindowConfig) -> Result<Self, SearchError> {
         let map = Arc::new(SearchMap::build(scene.target(), config.likelihood())?);
         let search = ScanSearch::new(
@@ -155,7 +155,7 @@ impl WindowSearch {
         Ok(window)
     }
 
-    /// Takes up one box; false once the search is finished.
+    /// Expands one box; false once the search is finished.
     pub fn step(&mut self) -> bool {
         let Some(report) = self.search.step() else {
             return false;
@@ -165,7 +165,7 @@ impl WindowSearch {
         let taken = if report.goal == goal_before {
             self.waiting.pop().expect("what was taken up has waited")
         } else {
-            // What was set aside waits once more.
+            // Boxes that were set aside are open again.
             self.waiting.clear();
             self.boxes.push(SeenBox {
                 poses: report.taken,
@@ -191,7 +191,7 @@ impl WindowSearch {
         self
     }
 
-    /// What is searched.
+    /// The window.
     #[must_use]
     pub fn config(&self) -> &WindowConfig {
         &self.config
@@ -203,7 +203,7 @@ impl WindowSearch {
         &self.search
     }
 
-    /// Every box that has waited, in the order in which they came.
+    /// Every box that has been open, in order of creation.
     #[must_use]
     pub fn boxes(&self) -> &[SeenBox] {
         &self.boxes
@@ -215,14 +215,14 @@ impl WindowSearch {
         &self.moments
     }
 
-    /// The answer so far; none before a pose was found.
+    /// The result so far; `None` before a pose was found.
     #[must_use]
     pub fn result(&self) -> Option<SearchResult> {
         self.search.result()
     }
 
-    /// A search for the best pose of the window that is turned by about so much against `best`,
-    /// degrees; none where the window holds no such heading.
+    /// Searches for the best pose of the window whose heading differs from `best` by about that angle,
+    /// degrees; `None` if the window holds no such heading.
     #[must_use]
     pub fn rival(&self, scene: &BasinScene, best: &SE2, turn_deg: f64) -> Option<ScanSearch> {
         let window = self.config.window(scene);
@@ -246,7 +246,7 @@ impl WindowSearch {
         .ok()
     }
 
-    /// Boxes that are new to the search wait since `step`.
+    /// Records the search's new boxes as open since `step`.
     fn wait_for_all(&mut self, step: usize) {
         let new = self.search.open_boxes().skip(self.waiting.len());
         for poses in new {
@@ -274,7 +274,7 @@ impl WindowSearch {
     }
 }
 
-/// ICP from a pose, point to point; its way is left in the workspace.
+/// Point-to-point ICP from a pose; its trace stays in the workspace.
 #[must_use]
 pub fn refine(scene: &BasinScene, from: SE2, workspace: &mut IcpWorkspace) -> BasinOutcome {
     let config = BasinScene::config(IcpVariant::PointToPoint, WindowConfig::TAU_M);
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_that_was_dropped_could_have_beaten_the_best_pose() {
+    fn no_dropped_box_holds_a_better_pose() {
         let window = searched(WindowConfig::default());
         let best = window.result().unwrap().best.score;
         for seen in window.boxes() {

@@ -1,4 +1,4 @@
-//! One estimator for all sensors: few beams and many, near and far, mounted anywhere.
+//! One estimator for all sensors: few beams or many, short range or long, any mounting.
 
 use ch16_lab::lap::{Drive, DriveConfig};
 use ch16_slam2d::metrics::position_error_m;
@@ -14,7 +14,7 @@ fn drive(lidar: LidarConfig) -> Drive {
     })
 }
 
-/// Farthest that the estimate was from the truth over the lap, m.
+/// Largest error of the estimate over the lap, m.
 fn farthest_m(drive: &Drive, config: SlamConfig, frame: impl Fn(usize) -> Frame) -> f64 {
     let mut slam = Slam::new(config);
     let mut farthest: f64 = 0.0;
@@ -25,14 +25,14 @@ fn farthest_m(drive: &Drive, config: SlamConfig, frame: impl Fn(usize) -> Frame)
     farthest
 }
 
-/// Farthest that the wheels alone are from the truth, m: what an estimate has to beat.
-fn wheels_m(drive: &Drive) -> f64 {
+/// Largest error of dead reckoning, m: the estimate has to be better.
+fn dead_reckoning_m(drive: &Drive) -> f64 {
     let ticks = drive.ticks().iter();
     let errors = ticks.map(|tick| position_error_m(&tick.dead_reckoning, &tick.truth));
     errors.fold(0.0, f64::max)
 }
 
-/// The configuration that a scan gives, on the map frame of the drive.
+/// The configuration that follows from a scan, with the map frame of the drive.
 fn of_scan(drive: &Drive) -> SlamConfig {
     let lidar = drive.config().lidar;
     SlamConfig {
@@ -52,13 +52,13 @@ fn the_lap_is_tracked_from_40_to_4000_beams() {
         });
         let farthest = farthest_m(&drive, of_scan(&drive), |tick| drive.frame(tick));
         assert!(
-            farthest < 0.7 * wheels_m(&drive),
+            farthest < 0.7 * dead_reckoning_m(&drive),
             "{beams} beams: {farthest} m"
         );
     }
 }
 
-/// A frame as a robot ten or a hundred times as large would measure it.
+/// A frame as a robot ten or a hundred times as large measures it.
 fn scaled(frame: Frame, factor: f64) -> Frame {
     let scale = |pose: SE2| SE2::new(factor * pose.x(), factor * pose.y(), pose.theta());
     let ranges_m = frame.scan.ranges_m.iter().map(|range| factor * range);
@@ -91,7 +91,7 @@ fn a_world_of_one_metre_and_one_of_a_hundred_are_tracked_alike() {
             let truth = SE2::new(factor * truth.x(), factor * truth.y(), truth.theta());
             let off = position_error_m(&estimate, &truth) / factor;
             assert!(
-                off < 0.7 * wheels_m(&drive),
+                off < 0.7 * dead_reckoning_m(&drive),
                 "factor {factor}, tick {tick}: {off} m"
             );
         }
@@ -103,7 +103,7 @@ fn a_body_is_tracked_wherever_its_sensor_is_mounted() {
     let drive = drive(LidarConfig::default());
     for (x, y, theta) in [(0.2, -0.1, 3.0), (-0.4, 0.3, 1.57), (0.0, 0.0, -0.7)] {
         let body_from_sensor = SE2::new(x, y, theta);
-        // The body that carries the sensor: where it is follows from where the sensor is.
+        // Pose of the body that carries the sensor, from the pose of the sensor.
         let body = |sensor: SE2| sensor * body_from_sensor.inverse();
         let mut slam = Slam::new(SlamConfig {
             start: body(drive.truth(0)),
@@ -119,7 +119,10 @@ fn a_body_is_tracked_wherever_its_sensor_is_mounted() {
             let estimate = slam.step(&frame).unwrap().estimate;
             farthest = farthest.max(position_error_m(&estimate, &body(drive.truth(tick))));
         }
-        assert!(farthest < 0.7 * wheels_m(&drive), "{theta}: {farthest} m");
+        assert!(
+            farthest < 0.7 * dead_reckoning_m(&drive),
+            "{theta}: {farthest} m"
+        );
     }
 }
 
@@ -136,5 +139,5 @@ fn a_sensor_mounted_upside_down_is_tracked_as_well() {
         frame
     };
     let farthest = farthest_m(&drive, of_scan(&drive), turned);
-    assert!(farthest < 0.7 * wheels_m(&drive), "{farthest} m");
+    assert!(farthest < 0.7 * dead_reckoning_m(&drive), "{farthest} m");
 }

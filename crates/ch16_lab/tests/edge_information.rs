@@ -12,8 +12,8 @@ use pr_geom::{Matrix3, SE2, Vector3};
 fn cost(pairs: &[Pair], target_from_body: &SE2, delta: &Vector3<f64>, trust: &TrustConfig) -> f64 {
     let moved = target_from_body.boxplus(delta) * target_from_body.inverse();
     let squares = pairs.iter().map(|pair| {
-        // The pairs' own gaps do not depend on δ to second order but for the bend of a turn, which
-        // Gauss–Newton leaves out; so each pair is taken as if it fitted.
+        // The pairs' own gaps depend on δ to second order only through the curvature of a rotation, which
+        // Gauss–Newton neglects; so each pair is treated as if it fitted.
         let gap = moved.transform(pair.source) - pair.source;
         match pair.normal {
             Some(normal) => normal.dot(&gap) * normal.dot(&gap),
@@ -40,7 +40,7 @@ fn off(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
     (a - b).abs().max() / a.abs().max()
 }
 
-/// How far the information of every edge of a lap is from the Hessian of its registration.
+/// Difference between the information of every odometry edge of a lap and the Hessian of its registration.
 fn of_odometry(frame: InformationFrame) -> Vec<f64> {
     let config = LapConfig::default().with_information(frame);
     let record = LapRunner::new().run(&config);
@@ -59,7 +59,7 @@ fn of_odometry(frame: InformationFrame) -> Vec<f64> {
         .collect()
 }
 
-/// The same for every loop that is tried.
+/// The same difference for every loop that is tried.
 fn of_loops(frame: InformationFrame) -> Vec<f64> {
     let config = LapConfig::default().with_information(frame);
     let mut lap = Lap::new(config.clone());
@@ -84,11 +84,11 @@ fn every_edge_of_a_lap_has_the_hessian_of_its_registration_and_the_chapters_do_n
     for edges in [of_odometry, of_loops] {
         let exact = edges(InformationFrame::Exact);
         assert!(exact.len() > 1);
-        // 1e-5: the quotient of steps 1e-4 is off by 1e-8 of the fourth derivative, where arms of 6 m
-        // count with their fourth power, and by rounding.
+        // 1e-5: central differences with steps of 1e-4 are off by 1e-8 times the fourth derivative, which
+        // grows with the fourth power of the arms of 6 m, and by rounding.
         assert!(exact.iter().all(|off| *off < 1e-5), "{exact:?}");
         let chapter = edges(InformationFrame::Chapter);
-        // The least is 0.004, where all headings happen to be alike: 400 times the bound above.
+        // The smallest difference is 0.004, where all headings happen to be alike: 400 times the bound above.
         assert!(chapter.iter().all(|off| *off > 1e-3), "{chapter:?}");
     }
 }

@@ -57,6 +57,6 @@ fn both_gates_weigh_the_same_innovation_by_their_own_covariance() {
         let chi2 = innovation.dot(&(verification.gate_information * innovation));
         assert_eq!(verification.gate.chi2, chi2);
     }
-    // The true place is within both gates.
+    // The true relative pose is within both gates.
     assert!(path.accepted() && exact.accepted());
 }

@@ -1,4 +1,4 @@
-//! What holds for every registration.
+//! Properties of every registration.
 
 use ch16_lab::basin::{BasinScene, BasinStart, Minimum};
 use ch16_lab::terrain::{SceneKind, TerrainScene};
@@ -15,8 +15,8 @@ use proptest::prelude::*;
 
 /// Points along the walls of a box with a nook, with up to 3 cm of noise.
 ///
-/// The noise comes from a seed, not from a shrinking strategy: without noise, points tie for the
-/// nearest, and the last bit decides.
+/// The noise comes from a seed instead of a shrinking strategy: without noise, points tie for the nearest,
+/// and the last bit decides.
 fn walls(seed: u32) -> PointCloud {
     let mut rng = Rng::new(seed);
     let corners = [
@@ -75,13 +75,14 @@ proptest! {
         let mut target = walls(target);
         target.estimate_normals(0.4);
         let source = walls(source);
-        // No bucket may be full: which points a full one keeps depends on where the cells lie.
+        // No bucket may be full, because the points that a full one keeps depend on the position of the
+        // cells.
         let map = |cloud: &PointCloud| DenseMap::from_cloud(cloud, 0.25, usize::MAX);
         let config = IcpConfig { variant, ..IcpConfig::default() };
         let here = icp(&source, &map(&target), init, &config);
         let there = icp(&source, &map(&target.transformed(&gauge)), gauge * init, &config);
-        // Poses agree for as long as both run. When they stop need not: the rule measures an
-        // increment in the map's frame, where a turn about a far point counts as a shift.
+        // Poses agree as long as both run. The numbers of iterations may differ: the stopping rule measures
+        // an increment in the map's frame, where a rotation about a far point counts as a shift.
         for (here, there) in here.trace.iter().zip(&there.trace) {
             let difference = (gauge * here.pose).between(&there.pose);
             // 1e-9: 25 iterations of rounding; a pair that flipped would show as 1e-3.
@@ -110,7 +111,7 @@ proptest! {
 
 #[test]
 fn point_to_plane_does_not_promise_the_same() {
-    // It reduces distances along normals, so the truncated cost may rise: the law above can fail.
+    // It reduces distances along normals, so the truncated cost may rise, and the law above can fail.
     let scene = BasinScene::new();
     let config = BasinScene::config(IcpVariant::PointToPlane, 0.7);
     let rises = (-180..=180).step_by(5).any(|heading_deg| {
@@ -142,7 +143,7 @@ fn trimming_keeps_the_nearest_share_of_the_pairs() {
 
 #[test]
 fn a_huber_width_keeps_outliers_from_pulling_the_pose() {
-    // A wall whose last points belong to something else, 0.5 m in front of it.
+    // A wall whose last points are outliers, 0.5 m in front of it.
     let wall: PointCloud = (0..60)
         .map(|k| Point2::new(0.05 * f64::from(k % 30), if k < 30 { 0.0 } else { 3.0 }))
         .collect();
@@ -206,7 +207,7 @@ fn a_registration_says_why_it_ended() {
 
 #[test]
 fn the_corridors_point_to_plane_matrix_has_rank_two_and_the_rooms_three() {
-    // Two perfect walls along x: their normals say nothing of x, to the last bit.
+    // Two perfect walls along x: their normals do not constrain x, to the last bit.
     let mut corridor: PointCloud = (0..40)
         .flat_map(|k| {
             let x = 0.1 * f64::from(k);
@@ -224,7 +225,8 @@ fn the_corridors_point_to_plane_matrix_has_rank_two_and_the_rooms_three() {
     assert_eq!(information.rank(1e-9 * information.norm()), 2);
     assert_eq!(information.row(0).norm(), 0.0);
 
-    // The simulated ones have noise in their normals: 1 % of the largest counts as nothing.
+    // The simulated ones have noise in their normals: less than 1 % of the largest eigenvalue counts as
+    // degenerate.
     let scene = |kind| TerrainScene::new(kind, TerrainScene::DEFAULT_NDT_CELL_M).information(0.6);
     assert_eq!(scene(SceneKind::Room).rank(), 3);
     let corridor = scene(SceneKind::Corridor);
@@ -294,7 +296,7 @@ fn information_moved_to_the_body_is_the_hessian_of_the_cost_under_perturbations_
     let at_body = move_information(&at_center, &body_from_center.inverse());
     // 1e-6: central differences over 1e-4 leave 1e-8 of an arm of a few metres.
     assert!((at_body - hessian).norm() < 1e-6 * hessian.norm());
-    // The other way round is another matrix, and so is the one about the centroid.
+    // Moving the other way yields another matrix, and so does the matrix about the centroid.
     let wrong_way = move_information(&at_center, &body_from_center);
     assert!((wrong_way - hessian).norm() > 0.1 * hessian.norm());
     let along = icp_information_along(&pairs, sigma, covariance_scale, map_from_body.theta());

@@ -1,4 +1,4 @@
-//! What the ancestor can do on the ring and what it cannot, over the frames of the laps.
+//! Incremental mapping on the ring, over the frames of the laps: what it can do and what it cannot.
 
 use std::sync::Arc;
 
@@ -8,8 +8,8 @@ use ch16_slam2d::scan::FrameError;
 use incremental_mapping::{CycleVerdict, IncrementalMapper};
 use pr_geom::SE2;
 
-/// Noise of the wheels at which climbing alone loses the end of the ring; `docs/worlds.md` has a
-/// hundred seeds of it.
+/// Odometry noise at which climbing alone does not close the ring; `docs/worlds.md` has a hundred seeds of
+/// it.
 const NOISE: f64 = 4.0;
 const SEEDS: u32 = 8;
 
@@ -17,20 +17,20 @@ fn ring(seed: u32, noise: f64) -> LapConfig {
     LapConfig::in_world(BuiltInWorld::Ring, seed, noise).with_matcher(LapMatcher::PointToPlane)
 }
 
-fn run(ancestor: IncrementalKind, lap: &LapConfig) -> IncrementalTrace {
-    IncrementalTrace::run(ancestor, lap, &Drive::simulate(&lap.drive))
+fn run(kind: IncrementalKind, lap: &LapConfig) -> IncrementalTrace {
+    IncrementalTrace::run(kind, lap, &Drive::simulate(&lap.drive))
 }
 
 #[test]
 fn the_cycle_of_the_ring_is_closed_with_particles_and_not_by_climbing_alone() {
-    let runs = |ancestor| (1..=SEEDS).map(move |seed| run(ancestor, &ring(seed, NOISE)));
+    let runs = |kind| (1..=SEEDS).map(move |seed| run(kind, &ring(seed, NOISE)));
     let alone: Vec<IncrementalTrace> = runs(IncrementalKind::MaximumLikelihood).collect();
     let cycles: Vec<IncrementalTrace> = runs(IncrementalKind::WithCycles).collect();
     let met = |laps: &[IncrementalTrace]| {
         let disagreements = laps
             .iter()
             .map(|lap| lap.outcome.summary.map_disagreement_m);
-        // The sensor's noise is 0.05 m: walls that are farther apart are mapped twice.
+        // The sensor's noise is 0.05 m: a larger distance means that walls are mapped twice.
         disagreements.filter(|value| value.unwrap() < 0.05).count()
     };
     assert!(met(&cycles) >= 7, "{}", met(&cycles));
@@ -39,7 +39,7 @@ fn the_cycle_of_the_ring_is_closed_with_particles_and_not_by_climbing_alone() {
         let errors = laps.iter().map(|lap| lap.outcome.summary.keyframe_rms_m);
         errors.fold(0.0, f64::max)
     };
-    // Not the end alone: what is pushed back mends the whole way.
+    // The correction reduces the error of the whole path, not of its end alone.
     assert!(worst_m(&alone) > 1.0 && worst_m(&cycles) < 0.5);
     assert!(alone.iter().all(|lap| lap.tests.is_empty()));
     assert!(cycles.iter().all(|lap| lap.outcome.summary.cycles > 0));
@@ -47,7 +47,7 @@ fn the_cycle_of_the_ring_is_closed_with_particles_and_not_by_climbing_alone() {
 
 #[test]
 fn a_drift_beyond_the_particles_is_not_closed() {
-    // Particles that hardly spread, beside a pose that drifts: they never get where the old map is.
+    // Particles with little spread, next to a pose that drifts: they never reach the old map.
     let lap = ring(5, NOISE);
     let drive = Drive::simulate(&lap.drive);
     let mut config = IncrementalKind::WithCycles.config(&lap);
@@ -78,7 +78,7 @@ fn the_same_seed_gives_the_same_bits_on_raw_frames_and_on_prepared_ones() {
     other.cycles.as_mut().unwrap().seed = 4;
     let other = IncrementalTrace::from_mapper(IncrementalMapper::new(other), &drive);
     assert_ne!(other.tests, trace.tests);
-    // In the Apartment the way back is a known place from the turn on.
+    // In the Apartment the return path is known from the turn on.
     let known = trace.tests.iter().filter(|test| {
         matches!(
             test.verdict,
@@ -89,7 +89,7 @@ fn the_same_seed_gives_the_same_bits_on_raw_frames_and_on_prepared_ones() {
 }
 
 #[test]
-fn a_frame_that_cannot_be_used_is_refused_and_changes_nothing() {
+fn an_unusable_frame_is_an_error_and_changes_no_state() {
     let lap = LapConfig::with_seed_and_noise(3, 1.0);
     let drive = Drive::simulate(&lap.drive);
     let mut mapper = IncrementalMapper::new(IncrementalKind::MaximumLikelihood.config(&lap));
@@ -105,7 +105,7 @@ fn a_frame_that_cannot_be_used_is_refused_and_changes_nothing() {
         (mapper.estimate(), mapper.map().cell_count()),
         (estimate, map)
     );
-    // A scan that saw nothing leaves the prediction.
+    // A scan without returns leaves the prediction unchanged.
     let mut blind = drive.frame(2);
     blind.scan.ranges_m.fill(f64::NAN);
     let report = mapper.step(&blind).unwrap();

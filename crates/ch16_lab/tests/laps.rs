@@ -1,4 +1,5 @@
-//! Lap after lap: the map stays as large as the place, as right as at first, and forgets what is gone.
+//! Lap after lap: the size of the map is bounded by the mapped area, its error does not grow, and it forgets
+//! what is gone.
 
 use ch16_lab::laps::{LapNumbers, Laps, LapsConfig};
 use pr_sim::Course;
@@ -18,10 +19,10 @@ fn a_dozen_laps_of_the_flat_leave_a_map_no_larger_and_no_worse_than_three() {
     let laps = driven(LapsConfig::new(&Course::apartment(), 7, 1.0), 12);
     let (third, last) = (&laps[2], &laps[11]);
     assert!(last.nodes as f64 <= 1.5 * third.nodes as f64, "{laps:#?}");
-    // What a keyframe leaves behind is merged where two others are tied already: edges become more, and few.
+    // The edges of a removed keyframe are merged into existing ones, so the number of edges grows little.
     assert!(last.edges < 3 * last.nodes, "{laps:#?}");
     assert!(last.removed > 10 && last.divergence.is_finite(), "{last:?}");
-    // A cell of the thinned scans.
+    // 0.065 m: a cell of the thinned scans.
     assert!(last.map_rms_m < third.map_rms_m + 0.065, "{laps:#?}");
     let mut growing = LapsConfig::new(&Course::apartment(), 7, 1.0);
     growing.map_pruning = None;

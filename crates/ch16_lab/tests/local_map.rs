@@ -3,7 +3,7 @@
 use ch16_lab::lap::{BuiltInWorld, Lap, LapConfig, LapFrontEnd, LapRunner, LapSummary};
 
 #[test]
-fn the_estimator_for_logs_drives_both_worlds_better_than_the_wheels_and_closes_no_false_loop() {
+fn the_estimator_for_logs_beats_odometry_in_both_worlds_and_closes_no_false_loop() {
     for world in [BuiltInWorld::Apartment, BuiltInWorld::Ring] {
         let laps = (1..=4).map(|seed| {
             let config = LapConfig::in_world(world, seed, 1.0);
@@ -14,11 +14,14 @@ fn the_estimator_for_logs_drives_both_worlds_better_than_the_wheels_and_closes_n
         let sum_m = |error_m: fn(&LapSummary) -> f64| -> f64 {
             laps.iter().map(|lap| error_m(&lap.summary)).sum()
         };
-        let (error_m, wheels_m) = (
+        let (error_m, dead_reckoning_m) = (
             sum_m(|lap| lap.keyframe_rms_m),
             sum_m(|lap| lap.odometry_rms_m),
         );
-        assert!(error_m < 0.3 * wheels_m, "{world:?}: {error_m} {wheels_m}");
+        assert!(
+            error_m < 0.3 * dead_reckoning_m,
+            "{world:?}: {error_m} {dead_reckoning_m}"
+        );
         let wrong: usize = laps.iter().map(|lap| lap.false_acceptances().count()).sum();
         assert_eq!(wrong, 0, "{world:?}");
     }

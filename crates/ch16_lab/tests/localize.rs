@@ -1,5 +1,5 @@
-//! A robot is switched on anywhere on a map that it drove before: how often it is found, how well, and
-//! what it says where it cannot know.
+//! A robot is switched on anywhere on a map of an earlier drive: how often it is localized, how accurately,
+//! and what it reports if its location is ambiguous.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ struct Place {
     drive: DriveConfig,
     slam: SlamConfig,
     map: Arc<KnownMap>,
-    /// How far the map's own keyframes are off, m.
+    /// Error of the map's own keyframes, m.
     map_rms_m: f64,
 }
 
@@ -46,7 +46,7 @@ impl Place {
         }
     }
 
-    /// Another day's lap.
+    /// A lap with other noise.
     fn drive(&self, seed: u32) -> Drive {
         Drive::simulate(&DriveConfig {
             seed: 1000 + seed,
@@ -60,7 +60,8 @@ impl Place {
     }
 }
 
-/// A frame of a drive as the one after another: the wheels do not know of a robot that is carried.
+/// A frame of a drive as if it followed another one directly: odometry does not notice that the robot was
+/// carried.
 fn at(drive: &Drive, tick: usize, stamp_s: f64) -> PreparedFrame {
     PreparedFrame {
         stamp_s,
@@ -74,8 +75,8 @@ fn error_m(report: &LocalizeReport, truth: &SE2) -> f64 {
         .map_or(f64::INFINITY, |pose| position_error_m(&pose, truth))
 }
 
-/// Of twenty starts along the way: how many were found within ten seconds, how many frames were localized
-/// and wrong by half a metre, and the median error of those that were right.
+/// Of twenty starts along the path: how many were localized within ten seconds, how many frames were
+/// localized half a metre or more off, and the median error of the right ones.
 fn switched_on(place: &Place) -> (usize, usize, f64) {
     let (mut found, mut wrong) = (0, 0);
     let mut errors_m = Vec::new();
@@ -115,7 +116,7 @@ fn a_robot_that_is_switched_on_anywhere_is_found_and_never_in_the_wrong_place() 
         );
         assert!(found >= 18, "{found} of 20");
         assert_eq!(wrong, 0);
-        // 0.1: two cells of the thinned scans, beside what the map itself is off.
+        // 0.1: two cells of the thinned scans, in addition to the error of the map itself.
         assert!(median_m < place.map_rms_m + 0.1, "{median_m} m");
     }
 }
@@ -138,10 +139,10 @@ fn a_robot_that_is_carried_away_notices_and_is_found_again() {
         assert!(error_m < place.map_rms_m + 0.1, "{tick}: {error_m}");
         followed += usize::from(is_localized);
     }
-    // Along the corridor a scan may slide by a step. The next one then contradicts the wheels and is doubted,
-    // with a pose that is right all the same.
+    // Along the corridor a scan may slide by a step. The next one then contradicts odometry and is not
+    // localized, although its pose is right.
     assert!(followed >= 18, "{followed} of 20");
-    // Somebody carries it three metres on.
+    // The robot is carried three metres on.
     let mut localized = Vec::new();
     for tick in 60..100 {
         let (is_localized, error_m) = step(&mut localizer, tick);
@@ -157,7 +158,7 @@ fn a_robot_that_is_carried_away_notices_and_is_found_again() {
     assert!(localized.len() > 15, "{localized:?}");
 }
 
-/// Two rooms that are the same to a hair, on one corridor.
+/// Two exactly equal rooms on one corridor.
 fn twin_rooms() -> Course {
     let walls = |y: f64| {
         let corners = [[1.4, 0.3], [2.2, 0.3], [2.2, 0.8], [1.4, 0.8]];
@@ -203,7 +204,7 @@ fn twin_rooms() -> Course {
 }
 
 #[test]
-fn in_one_of_two_rooms_that_are_the_same_nobody_is_found_before_the_door() {
+fn in_one_of_two_equal_rooms_no_frame_is_localized_before_the_door() {
     let place = Place::new(&twin_rooms());
     for seed in 1..=5 {
         let drive = place.drive(seed);

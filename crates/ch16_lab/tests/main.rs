@@ -1,4 +1,4 @@
-//! The experiments together with what they judge: one binary, one module for each.
+//! Integration tests of the experiments: one binary, one module for each.
 
 mod any_sensor;
 mod edge_information;
@@ -9,11 +9,11 @@ mod laps;
 mod local_map;
 mod localize;
 mod map;
+mod path_errors;
 mod pending_loops;
 mod plane_step;
 mod random_laps;
 mod ring;
 mod terrain_rows;
 mod turned_frame;
-mod way;
 mod window_search;

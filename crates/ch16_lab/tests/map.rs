@@ -4,7 +4,7 @@ use ch16_lab::lap::{BuiltInWorld, GridExtent, LapConfig, LapMatcher, LapRecord, 
 use ch16_slam2d::slam::SlamConfig;
 use pr_sim::Course;
 
-/// A hall of 40 m × 8 m that lies around the origin, with posts for the matcher to hold on to.
+/// A hall of 40 m × 8 m around the origin, with posts that constrain the matcher.
 fn hall() -> Course {
     let mut walls = vec![
         [-20.0, -4.0, 20.0, -4.0],
@@ -43,7 +43,7 @@ fn the_grid_holds_every_wall_that_a_lap_through_forty_metres_has_seen() {
 
 #[test]
 fn an_estimate_that_leaves_the_plan_takes_the_map_with_it() {
-    // Point to point ends metres off the ring, beyond its outer wall.
+    // Point to point ends metres off the ring, outside of its outer wall.
     let mut config = LapConfig::in_world(BuiltInWorld::Ring, 1, 1.0);
     let runner = &mut LapRunner::new();
     let grown = runner.run(&config);

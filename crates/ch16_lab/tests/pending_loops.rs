@@ -1,4 +1,4 @@
-//! What goes on for long or goes wrong: standing still, no odometry, bad frames, bad loops.
+//! Long runs and faulty input: standing still, no odometry, bad frames, bad loops.
 
 use ch16_lab::lap::{Drive, DriveConfig};
 use ch16_slam2d::chapter::SlamParts;
@@ -23,7 +23,7 @@ fn a_robot_that_stands_still_for_ten_thousand_scans_keeps_its_map_and_little_mem
     }
     let window = slam.front_end().window().to_vec();
     let (estimate, keyframes) = (slam.front_end().estimate(), slam.keyframes().len());
-    // The same scan with fresh noise would need ten thousand simulations; wheels that creep do as well.
+    // New noise would need ten thousand simulations; odometry that creeps has the same effect.
     for count in 0_u32..10_000 {
         let mut frame = drive.prepared(39);
         let creep = if count % 2 == 0 { 1e-3 } else { -1e-3 };
@@ -82,7 +82,7 @@ fn a_frame_that_cannot_be_used_leaves_the_estimator_as_it_was() {
 }
 
 #[test]
-fn a_refused_registration_gives_the_edge_the_trust_of_the_wheels() {
+fn a_rejected_registration_gives_the_edge_the_covariance_of_odometry() {
     let drive = drive();
     let config = SlamConfig::default();
     let noise = config.chapter.odometry_noise;
@@ -102,7 +102,7 @@ fn a_refused_registration_gives_the_edge_the_trust_of_the_wheels() {
     assert_ne!(noise, MotionNoise::without_odometry());
 }
 
-/// Claims that the new keyframe is where an old one is, somewhere else each time.
+/// A detector that proposes an old keyframe at another relative pose each time.
 #[derive(Clone)]
 struct Liar {
     proposals: Vec<SE2>,
@@ -123,7 +123,7 @@ impl LoopDetector for Liar {
     }
 }
 
-/// Believes every guess, with no end of pairs.
+/// A matcher that accepts every guess, with plenty of pairs.
 #[derive(Clone)]
 struct Believer;
 
@@ -189,7 +189,7 @@ fn candidates_are_tried_in_order_up_to_the_limit_from_their_proposals() {
 fn a_loop_that_the_graph_does_not_bear_is_taken_out_again() {
     let drive = drive();
     let mut config = SlamConfig::default();
-    // A gate that lets all pass, and a measurement that overflows the cost.
+    // A gate that accepts every loop, and a measurement that overflows the cost.
     config.chapter.loops.gate_chi2 = f64::INFINITY;
     config.chapter.loops.max_rmse_m = f64::INFINITY;
     let mut slam = with_a_liar(config, &[SE2::translation(1e200, 0.0)]);

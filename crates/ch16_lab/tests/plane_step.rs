@@ -6,15 +6,15 @@ use pr_geom::{Matrix3, Point2, SE2, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
-/// Half the width of a difference, m and rad.
+/// Half the step of a central difference, m and rad.
 const H: f64 = 1e-5;
 
-/// The steps of a difference: `H` along x, along y, and in the turn.
+/// The steps of a difference: `H` along x, along y, and in heading.
 fn axes() -> [Vector3<f64>; 3] {
     [Vector3::x() * H, Vector3::y() * H, Vector3::z() * H]
 }
 
-/// The pairs that have normals, frozen: the points move, what they are paired with does not.
+/// The pairs that have normals, frozen: the points move, their partners do not change.
 struct FrozenPairs {
     pairs: Vec<Pair>,
     centroid: Point2<f64>,
@@ -67,8 +67,7 @@ impl FrozenPairs {
     }
 }
 
-/// What a step leaves of `(H + ridge) step = −½ gradient`, as a share of the gradient; the system
-/// is made of differences alone.
+/// Residual of `(H + ridge) step = −½ gradient` as a share of the gradient, from differences alone.
 fn left_over(frozen: &FrozenPairs, step: Vector3<f64>) -> f64 {
     let gradient = frozen.gradient();
     let hessian = frozen.hessian();
@@ -102,8 +101,8 @@ proptest! {
         let init = SE2::new(truth.x() + dx, truth.y() + dy, truth.theta() + turn_rad);
         let (frozen, step) = frozen_pairs_and_step(&scene, init, tau);
         prop_assume!(frozen.pairs.len() >= IcpConfig::default().min_pairs);
-        // From a guess that is turned the wrong way a linear step may turn by more than π, and the
-        // pose holds it but for a whole turn.
+        // From a guess with the wrong heading a linear step may turn by more than π, which the pose stores
+        // modulo a full turn.
         let left_over = [-TAU, 0.0, TAU]
             .map(|whole_turn| left_over(&frozen, step + Vector3::z() * whole_turn))
             .into_iter()

@@ -1,4 +1,4 @@
-//! A world with a true cycle, and other matchers, run through the same code as the chapter's lap.
+//! A world with a true cycle, and other matchers, in the same code as the chapter's lap.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, Lap, LapConfig, LapMatcher, LapRecord, LapRunner};
 use ch16_slam2d::scan::ScanConfig;
@@ -6,27 +6,27 @@ use ch16_slam2d::slam::SlamConfig;
 use pr_geom::{Point2, SE2};
 use pr_sim::{Course, World};
 
-/// The lap around the ring with the estimator that is not the chapter's.
+/// The lap around the ring with the default estimator.
 fn ring(seed: u32, matcher: LapMatcher) -> LapRecord {
     let config = LapConfig::in_world(BuiltInWorld::Ring, seed, 1.0).with_matcher(matcher);
     LapRunner::new().run(&config)
 }
 
 #[test]
-fn ndt_closes_the_cycle_of_the_ring_and_the_whole_way_around_gets_better() {
+fn ndt_closes_the_cycle_of_the_ring_and_reduces_the_error_all_around() {
     for seed in 1..=4 {
         let record = ring(seed, LapMatcher::Ndt);
         let (lap, alone) = (record.lap.summary, record.front_end.summary);
         assert!(lap.loops > 0, "seed {seed}");
         assert_eq!(record.lap.false_acceptances().count(), 0, "seed {seed}");
-        // Not the end alone, as on the way back through a corridor: the middle of the way, too.
+        // Unlike on the way back through a corridor, the error in the middle of the path falls, too.
         assert!(lap.keyframe_rms_m < alone.keyframe_rms_m, "seed {seed}");
-        // The map of the first corridor is compared with itself, seen from the other side.
+        // The map of the first corridor is compared with a second one, seen from the other side.
         assert!(lap.map_disagreement_m < alone.map_disagreement_m);
     }
 }
 
-/// The ring driven clockwise, from the end of the usual way to its start.
+/// The ring driven clockwise, from the end of the usual path to its start.
 fn clockwise() -> Course {
     let (west, east, south, north) = (0.7, 11.3, 0.7, 8.3);
     let stops = [
@@ -42,7 +42,7 @@ fn clockwise() -> Course {
     Course::new(World::ring(), start, way_points, Some(4)).expect("the ring is clear either way")
 }
 
-/// By how much the front end turned too far to the left, in degrees: while it turned, and while it drove.
+/// Heading error of the front end to the left, in degrees: while turning, and while driving straight.
 fn turned_too_far_deg(config: &LapConfig) -> [f64; 2] {
     let record = LapRunner::new().run(config);
     let (mut truth, mut estimate) = (config.drive.start, config.drive.start);
@@ -60,7 +60,7 @@ fn turned_too_far_deg(config: &LapConfig) -> [f64; 2] {
 }
 
 #[test]
-fn point_to_point_turns_toward_the_outer_wall_of_the_ring_either_way_around() {
+fn point_to_point_turns_toward_the_outer_wall_of_the_ring_in_both_directions() {
     let mean_deg = |course: &Course| {
         let seeds = 8;
         let sums = (1..=seeds).map(|seed| {
@@ -82,7 +82,7 @@ fn point_to_point_turns_toward_the_outer_wall_of_the_ring_either_way_around() {
         in_turns.abs() < 4.0 && (30.0..50.0).contains(&driving),
         "{in_turns} {driving}"
     );
-    // So the end is not found: old keyframes are near again and tried, and the fit turns them away.
+    // So the loop is not closed: old keyframes are close again and tried, but rejected for their fit.
     let record = ring(1, LapMatcher::PointToPoint);
     assert!(record.lap.loop_attempts().count() > 0);
     assert_eq!(record.lap.summary.loops, 0);
@@ -112,7 +112,7 @@ fn point_to_plane_closes_on_the_ring_more_often_by_normals_of_the_defaults_radiu
 }
 
 #[test]
-fn every_matcher_drives_the_lap_better_than_the_wheels() {
+fn every_matcher_beats_odometry_on_the_lap() {
     for &matcher in LapMatcher::ALL {
         let mut lap = Lap::new(LapConfig::default().with_matcher(matcher));
         let end = lap.run().last().unwrap().metrics;

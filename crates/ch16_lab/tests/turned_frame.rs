@@ -1,4 +1,4 @@
-//! The map's frame is a choice: a turn of it must change no edge of the graph.
+//! The map's frame is arbitrary: rotating it must not change any edge of the graph.
 
 use ch16_lab::lap::{Drive, DriveConfig};
 use ch16_slam2d::chapter::InformationFrame;
@@ -8,7 +8,8 @@ use pr_geom::{Matrix3, SE2};
 
 /// The edges of the canonical lap in a map that starts at `start`, with maps that keep all points.
 ///
-/// Cells of a map lie along its axes, so a limit on the points of a cell would depend on the turn.
+/// The cells of a map are parallel to its axes, so a limit on the points of a cell would depend on the
+/// rotation.
 fn edges(drive: &Drive, start: SE2, information_frame: InformationFrame) -> Vec<PoseEdge> {
     let mut config = SlamConfig {
         start,
@@ -47,7 +48,7 @@ fn turning_everything_changes_no_edge_and_the_chapters_loops_do_change() {
         for (k, (here, there)) in exact.iter().zip(&again).enumerate() {
             assert_eq!(here.kind, there.kind);
             let moved = here.measurement.between(&there.measurement).step_size();
-            // 1e-9: roundings of 1e-16 that 129 registrations hand on.
+            // 1e-9: roundings of 1e-16, propagated through 129 registrations.
             assert!(moved < 1e-9, "edge {k} moved by {moved}");
             let changed = off(&here.information, &there.information);
             assert!(

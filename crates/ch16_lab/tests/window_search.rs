@@ -1,4 +1,4 @@
-//! The search of a whole window in the Apartment: what it finds, and how little it looks at.
+//! Global search of a whole window in the Apartment: its result and the number of scored poses.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use ch16_slam2d::search::{
 use pr_geom::SE2;
 use pr_sim::{Lidar, LidarConfig, Rng, World};
 
-/// At least so many times fewer poses are scored than the windows hold.
+/// Smallest ratio of the poses in the window to the scored ones.
 const SPARED: u64 = 200;
 
 fn search(map: &Arc<SearchMap>, scan: &PointCloud, window: &SearchWindow) -> SearchResult {
@@ -31,7 +31,7 @@ fn map_of(cloud: &PointCloud) -> Arc<SearchMap> {
     Arc::new(SearchMap::build(cloud, LikelihoodConfig::default()).expect("the map has points"))
 }
 
-/// What the robot of the lap sees from a place, thinned as on the lap.
+/// The scan of the lap's robot from a pose, thinned as on the lap.
 fn scan_from(world_from_body: &SE2, seed: u32) -> PointCloud {
     let mut lidar = Lidar::new(LidarConfig::default());
     let ranges_m = lidar.sense(&World::apartment(), world_from_body, &mut Rng::new(seed));
@@ -47,7 +47,8 @@ fn apart(a: &SE2, b: &SE2) -> (f64, f64) {
 
 #[test]
 fn three_metres_and_every_heading_around_a_submap_cost_a_two_hundredth_of_all_poses() {
-    // The way back along the corridor, each scan on the submap of the nearest keyframe of the way out.
+    // The return path along the corridor, each scan on the submap of the nearest keyframe of the outward
+    // path.
     let mut lap = Lap::new(LapConfig::default());
     lap.run();
     let truths: Vec<SE2> = lap.keyframes().map(|keyframe| keyframe.truth).collect();
@@ -81,7 +82,7 @@ fn three_metres_and_every_heading_around_a_submap_cost_a_two_hundredth_of_all_po
 }
 
 #[test]
-fn a_robot_that_is_lost_finds_itself_in_the_whole_apartment_or_says_that_it_cannot_tell() {
+fn a_lost_robot_is_found_in_the_apartment_or_reported_as_ambiguous() {
     let map = map_of(&samples::apartment_map());
     let everywhere = SearchWindow::whole(map.grid());
     let mut found_home = 0;
@@ -102,7 +103,7 @@ fn a_robot_that_is_lost_finds_itself_in_the_whole_apartment_or_says_that_it_cann
         let margin = found
             .margin()
             .expect("the Apartment is more than one place");
-        // Rooms A, B and C have the same walls and no furniture: of three equals it names one.
+        // Rooms A, B and C have equal walls and no furniture: the search returns one of three equal poses.
         assert!(
             margin < 0.01 || (is_home && margin > 0.1),
             "{truth:?}: {found:?}"
@@ -112,7 +113,7 @@ fn a_robot_that_is_lost_finds_itself_in_the_whole_apartment_or_says_that_it_cann
 }
 
 #[test]
-fn room_a_turned_by_a_half_comes_closest_and_turned_by_a_quarter_it_loses_more() {
+fn room_a_turned_by_a_half_scores_more_than_turned_by_a_quarter() {
     let home = SE2::new(2.0, 1.9, 0.0);
     let map = map_of(&scan_from(&home, 1).transformed(&home));
     let scan = scan_from(&home, 2);

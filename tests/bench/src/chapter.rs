@@ -1,4 +1,4 @@
-//! The chapter's computations: the list of them, and the runs of the lap.
+//! The chapter's computations: their list, and the runs of the lap.
 
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner};
 use ch16_lab::samples;
@@ -16,7 +16,7 @@ const fn limit(native_ms: f64, wasm_ms: f64) -> Option<Limit> {
     Some(Limit { native_ms, wasm_ms })
 }
 
-/// The workloads, one a computation.
+/// The workloads, one per computation.
 #[must_use]
 pub fn workloads() -> Vec<Workload> {
     let workload = |id, what, limit, prepare| Workload {
@@ -151,7 +151,7 @@ pub fn workloads() -> Vec<Workload> {
 fn lap() -> Box<dyn Run> {
     prepared(
         None,
-        // A runner that has driven before would leave the simulation out.
+        // A runner with an earlier drive would skip the simulation.
         |record: &mut Option<LapRecord>| {
             *record = Some(LapRunner::new().run(&LapConfig::default()));
         },

@@ -1,7 +1,7 @@
 //! The clouds of the registration table as files for `slam2d register`.
 //!
-//! `slam2d register` starts from the identity, so a scan's file holds its points where the initial
-//! guess puts them. The numbers are written so that reading gives the same bits.
+//! `slam2d register` starts from the identity, so a scan's file contains its points at the initial guess. The
+//! numbers are written so that reading restores the same bits.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -16,7 +16,7 @@ pub struct Clouds {
     pub map_file: &'static str,
     /// File of the scan, lines of `x,y`.
     pub scan_file: &'static str,
-    /// What is in them.
+    /// Their contents.
     pub sample: RegistrationSample,
 }
 
@@ -36,10 +36,10 @@ pub fn all() -> [Clouds; 2] {
     ]
 }
 
-/// Writes the four files into a folder, which is made where it is missing.
+/// Writes the four files into a folder, which is created if it is missing.
 ///
 /// # Errors
-/// One sentence that names the file or folder that cannot be written.
+/// One sentence with the file or folder that cannot be written.
 pub fn write(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let say = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
     fs::create_dir_all(folder).map_err(|error| say(folder, error))?;
@@ -60,7 +60,7 @@ pub fn write(folder: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(written)
 }
 
-/// A line for each point; with normals, where the cloud has them.
+/// A line for each point, with its normal if the cloud has normals.
 fn lines(cloud: &PointCloud) -> String {
     let mut text = String::new();
     for (index, point) in cloud.iter().enumerate() {

@@ -1,9 +1,9 @@
-//! Instruction counts: they repeat where clocks do not, so that a slower core fails the build.
+//! Instruction counts: they are reproducible where timings are not, so a slower core fails the build.
 //!
-//! All workloads run in one process under callgrind (Nethercote & Seward 2007), each of them twice.
-//! Callgrind collects during the second run only: without preparation, start and end of the process,
-//! and with the workspaces that the first run has grown. It writes down what it has collected each
-//! time. In between it translates the process without counters, which takes a third of the time.
+//! All workloads run in one process under callgrind (Nethercote & Seward 2007), each of them twice. Callgrind
+//! collects during the second run only: without preparation, start and end of the process, and with the
+//! workspaces that the first run has grown. It writes its counts after each run. In between it translates the
+//! process without counters, which takes a third of the time.
 
 use std::collections::BTreeMap;
 use std::env::{self, consts::ARCH};
@@ -16,18 +16,18 @@ use std::process::{self, Command, Stdio};
 use measuring::skip::tell;
 use slam2d_bench::{Run, workloads};
 
-/// A count may rise by this share over the recorded one.
+/// Allowed relative increase over the recorded count.
 const ALLOWED_RISE: f64 = 0.10;
 
 /// Instructions of one run of each workload, by its name.
 pub type Counts = BTreeMap<String, u64>;
 
-/// Where the accepted counts stand: every architecture needs instructions of its own.
+/// File of the accepted counts: each architecture has its own.
 fn record(architecture: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("instructions-{architecture}.json"))
 }
 
-/// Whether callgrind can be run here.
+/// Whether callgrind is available.
 pub fn is_available() -> bool {
     let version = Command::new("valgrind").arg("--version").output();
     version.is_ok_and(|output| output.status.success())
@@ -36,12 +36,12 @@ pub fn is_available() -> bool {
 /// Counts every workload.
 ///
 /// # Errors
-/// One sentence where valgrind fails.
+/// One sentence if valgrind fails.
 pub fn count_all() -> Result<Counts, String> {
     let file = env::temp_dir().join(format!("slam2d-counts-{}", process::id()));
     let counted = count_into(&file);
     let written = fs::read_to_string(&file);
-    // It is there only where callgrind came so far; what matters of a failure is told.
+    // It exists only if callgrind got this far; a failure is reported below.
     drop(fs::remove_file(&file));
     counted?;
     let counts = collected(&written.map_err(|error| format!("{}: {error}", file.display()))?);
@@ -52,10 +52,10 @@ pub fn count_all() -> Result<Counts, String> {
     }
 }
 
-/// Runs every workload twice; callgrind knows the second time by the name of [`counted_run`].
+/// Runs every workload twice; callgrind recognizes the second run by the name of [`counted_run`].
 ///
 /// # Errors
-/// Where there is no callgrind around this process.
+/// If this process does not run under callgrind.
 pub fn run_all_twice() -> Result<(), String> {
     for workload in workloads() {
         let mut run = (workload.prepare)();
@@ -68,12 +68,12 @@ pub fn run_all_twice() -> Result<(), String> {
     Ok(())
 }
 
-/// Asks the callgrind around this process for something, by valgrind's own remote control.
+/// Sends a command to the callgrind around this process, by valgrind's remote control.
 fn ask_callgrind(what: &[&str]) -> Result<(), String> {
     let failed = |error: std::io::Error| format!("vgdb, a part of valgrind: {error}");
     let mut request = Command::new("vgdb")
         .arg(format!("--pid={}", process::id()))
-        // It may not stop this process from outside: some containers forbid that.
+        // It must not stop this process from outside, because some containers forbid that.
         .arg("--max-invoke-ms=0")
         .args(what)
         .stdout(Stdio::null())
@@ -93,11 +93,11 @@ fn ask_callgrind(what: &[&str]) -> Result<(), String> {
 #[inline(never)]
 fn counted_run(run: &mut dyn Run) {
     run.once();
-    // So that this function lasts as long as the run: no jump into it as the last act.
+    // Makes this function last as long as the run, by preventing a tail call.
     black_box(());
 }
 
-/// The counts divided as the medians are: by the repetitions of a run.
+/// Divides the counts by the repetitions of a run, like the medians.
 pub fn of_one_repetition(mut counts: Counts) -> Counts {
     for workload in workloads() {
         if let Some(count) = counts.get_mut(workload.id) {
@@ -107,14 +107,14 @@ pub fn of_one_repetition(mut counts: Counts) -> Counts {
     counts
 }
 
-/// Writes the counts down as the accepted ones.
+/// Records the counts as the accepted ones.
 pub fn accept(counts: &Counts) -> Result<(), String> {
     let json = serde_json::to_string_pretty(counts).map_err(|error| error.to_string())?;
     let record = record(ARCH);
     fs::write(&record, json + "\n").map_err(|error| format!("{}: {error}", record.display()))
 }
 
-/// Compares counts with the accepted ones and names every workload that got slower.
+/// Compares counts with the accepted ones and lists every workload that got slower.
 pub fn compare(counts: &Counts) -> Result<(), String> {
     let Some(accepted) = accepted(ARCH)? else {
         return tell(
@@ -130,7 +130,7 @@ pub fn compare(counts: &Counts) -> Result<(), String> {
     }
 }
 
-/// The accepted counts of an architecture, where it has any.
+/// The accepted counts of an architecture, if it has any.
 fn accepted(architecture: &str) -> Result<Option<Counts>, String> {
     let record = record(architecture);
     let failed = |error: &dyn std::fmt::Display| format!("{}: {error}", record.display());
@@ -159,7 +159,7 @@ fn complaints(counts: &Counts, accepted: &Counts) -> Vec<String> {
     counts.iter().filter_map(judge).collect()
 }
 
-/// Has callgrind write what it collects in each counted run into one file, one part after the other.
+/// Makes callgrind write the counts of all runs into one file, one part after the other.
 fn count_into(file: &Path) -> Result<(), String> {
     let program = env::current_exe().map_err(|error| error.to_string())?;
     let output = Command::new("valgrind")
@@ -177,7 +177,7 @@ fn count_into(file: &Path) -> Result<(), String> {
     Err(format!("valgrind counted nothing:\n{said}"))
 }
 
-/// What callgrind collected, by what it was asked to dump: each part of the file begins with a trigger and ends
+/// Parses callgrind's counts, by the requested dump: each part of the file begins with a trigger and ends
 /// with a total.
 fn collected(file: &str) -> Counts {
     let mut counts = Counts::new();
@@ -199,14 +199,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counts_are_recorded_for_the_architecture_of_the_build_machines_and_not_for_every_one() {
+    fn counts_are_recorded_only_for_the_architecture_of_the_build_machines() {
         let recorded = accepted("x86_64").unwrap().expect("in the repository");
         assert!(recorded.contains_key("lap"));
         assert_eq!(accepted("pdp11"), Ok(None));
     }
 
     #[test]
-    fn a_rise_of_more_than_a_tenth_is_named_and_a_fall_is_not() {
+    fn a_rise_of_more_than_a_tenth_is_reported_and_a_fall_is_not() {
         let counts = |pairs: &[(&str, u64)]| -> Counts {
             let pairs = pairs.iter().map(|(id, count)| ((*id).to_owned(), *count));
             pairs.collect()
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn each_dump_is_a_count_and_what_ran_outside_of_them_is_none() {
+    fn each_dump_is_a_count_and_the_rest_is_ignored() {
         let part = |trigger: &str, count: &str| {
             format!(
                 "part: 1\ndesc: Trigger: {trigger}\nevents: Ir\nfn=(7)\n+3 12\ntotals: {count}\n"

@@ -1,4 +1,4 @@
-//! One frame of each widget: scene, layout and tessellation, everything but the graphics card.
+//! One frame of each widget: scene, layout and tessellation, everything except the graphics card.
 
 use std::hint::black_box;
 
@@ -10,7 +10,7 @@ use kit::shell::Shell;
 
 use crate::{Limit, Run, Workload, prepared};
 
-/// A widget in the middle of a chapter, in points.
+/// The size of a widget in a chapter, in points.
 const SIZE: [f32; 2] = [1000.0, 1400.0];
 
 const LIMIT: Option<Limit> = Some(Limit {
@@ -18,7 +18,7 @@ const LIMIT: Option<Limit> = Some(Limit {
     wasm_ms: 4.0,
 });
 
-/// A frame of a widget that computes anew what its slider asks for: a sixtieth of a second in the browser.
+/// A frame of a widget that recomputes after a slider moved: a sixtieth of a second in the browser.
 const DRAG_LIMIT: Option<Limit> = Some(Limit {
     native_ms: 8.0,
     wasm_ms: 16.0,
@@ -27,10 +27,10 @@ const DRAG_LIMIT: Option<Limit> = Some(Limit {
 /// The tick before the canonical lap's 38th keyframe, and its own.
 const KEYFRAME_TICKS: [f64; 2] = [118.0, 119.0];
 
-/// The frames of the widgets, with the picture changed before each.
+/// The frames of the widgets, with a change of the picture before each.
 ///
-/// Two have none: w16.8 fills in the curves of a hundred seeds between frames, which takes minutes
-/// under the counter, and w16.10 shows what its worker has computed.
+/// Two widgets are missing: w16.8 computes the curves of a hundred seeds between frames, which takes minutes
+/// under the counter, and w16.10 shows results of its worker.
 #[must_use]
 pub fn workloads() -> Vec<Workload> {
     let frame = |id, what, prepare| Workload {
@@ -108,7 +108,8 @@ fn widget(name: &str) -> Shell {
     widgets::registry::find(name).expect("a widget of the chapter")()
 }
 
-/// The whole window in cells of 10 cm: its searches end soon under the counter, and its picture is drawn alike.
+/// The whole window in cells of 10 cm: its searches end soon under the counter, and its picture has the same
+/// structure.
 fn coarse_search() -> Shell {
     let mut shell = widget("w16.6");
     let model = shell.model_mut();
@@ -117,11 +118,11 @@ fn coarse_search() -> Shell {
 }
 
 thread_local! {
-    /// What all widgets are drawn with: it lays the fonts out once.
+    /// The context shared by all widgets: it lays the fonts out once.
     static CONTEXT: Context = Context::default();
 }
 
-/// A widget that is drawn without a screen.
+/// A widget drawn without a screen.
 struct Frames {
     shell: Shell,
     param: &'static str,
@@ -161,7 +162,7 @@ impl Frames {
         let mut output = self
             .context
             .run_ui(self.input.clone(), |ui| self.shell.ui(ui));
-        // There is no graphics card to upload them to.
+        // There is no graphics card for the upload.
         output.textures_delta.clear();
         let triangles = self
             .context
@@ -169,7 +170,7 @@ impl Frames {
         black_box(triangles);
     }
 
-    /// Adds the picture of the last frame as SVG: egui's own triangles differ between two builds.
+    /// Adds the picture of the last frame as SVG, because egui's triangles differ between builds.
     fn add_to(&self, digest: &mut Digest) {
         let picture = self.shell.picture_svg(SIZE[0], Theme::Light);
         picture
@@ -185,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_frame_of_the_control_room_draws_its_grid_again_and_one_does_not() {
+    fn one_frame_of_the_control_room_redraws_its_grid_and_one_does_not() {
         let record = LapRunner::new().run(&LapConfig::default());
         let keyframes = |tick: f64| record.lap.node_count(tick as usize);
         assert_eq!(keyframes(101.0), keyframes(100.0));

@@ -1,8 +1,8 @@
 //! The workloads that `docs/performance.md` reports, each defined once.
 //!
-//! The same list runs natively (the binary of this crate), as WebAssembly in a browser (the
-//! exports below), under an instruction counter and under criterion (`tests/criterion`). Every workload keeps what it
-//! computed: so nothing is optimized away, and a digest of all of it, taken while no clock runs,
+//! The same list runs natively (the binary of this crate), as WebAssembly in a browser (the exports below),
+//! under an instruction counter and under criterion (`tests/criterion`). Every workload keeps its result.
+//! This prevents the optimizer from removing it, and a digest of the result, taken outside of the timing,
 //! shows whether two builds compute the same.
 
 pub mod chapter;
@@ -17,13 +17,13 @@ use ch16_slam2d::digest::Digest;
 pub struct Workload {
     /// Name on the command line: `lap`.
     pub id: &'static str,
-    /// What one run does.
+    /// Description of one run.
     pub what: &'static str,
-    /// How many times a run does it: a figure is divided by this.
+    /// Number of repetitions in a run, by which results are divided.
     pub repetitions: u32,
-    /// The most that it may take, where the project has set itself a limit.
+    /// The time limit, if the project has one for it.
     pub limit: Option<Limit>,
-    /// The most that WebAssembly in Chromium may take of the native time, where a limit is set.
+    /// The limit of the ratio of WebAssembly in Chromium to native time, if there is one.
     pub most_of_native: Option<f64>,
     /// Prepares it.
     pub prepare: fn() -> Box<dyn Run>,
@@ -31,14 +31,14 @@ pub struct Workload {
 
 /// A workload that is ready to run.
 pub trait Run {
-    /// Does the work once and keeps what it computed.
+    /// Runs the work once and keeps its result.
     fn once(&mut self);
 
-    /// The digest of all that the last run computed, bit by bit.
+    /// The digest of the last run's complete result, bit by bit.
     fn digest(&self) -> u64;
 }
 
-/// A run made of what it works on, the work, and what counts as its result.
+/// A run that consists of a state, the work on it, and the result read from it.
 struct Prepared<S> {
     state: S,
     work: fn(&mut S),
@@ -57,7 +57,7 @@ impl<S> Run for Prepared<S> {
     }
 }
 
-/// Prepares a run: `work` leaves in the state what `result` then reads.
+/// Prepares a run: `work` changes the state, `result` reads it.
 pub(crate) fn prepared<S: 'static>(
     state: S,
     work: fn(&mut S),
@@ -70,7 +70,7 @@ pub(crate) fn prepared<S: 'static>(
     })
 }
 
-/// The most that one repetition of a workload may take, in milliseconds.
+/// The time limit of one repetition of a workload, in milliseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
     /// Natively.
@@ -103,7 +103,7 @@ mod browser {
 
     thread_local!(static TURNS: RefCell<Turns> = RefCell::default());
 
-    /// Runs a workload for about `budget_ms`; the answer is the JSON that the native binary prints.
+    /// Runs a workload for about `budget_ms`. Returns the JSON that the native binary prints.
     #[wasm_bindgen]
     pub fn turn(id: &str, budget_ms: f64) -> Result<String, String> {
         let turn = TURNS.with_borrow_mut(|turns| turns.take(id, budget_ms, &now))?;

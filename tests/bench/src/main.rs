@@ -1,6 +1,6 @@
-//! Measures the workloads natively, counts their instructions, writes the blocks of the page.
+//! Measures the workloads natively, counts their instructions, and writes the tables of the page.
 //!
-//! `cargo xtask bench` calls it; `slam2d_bench --help` lists what it can do.
+//! `cargo xtask bench` calls it; `slam2d_bench --help` lists its commands.
 
 mod clouds;
 mod counts;
@@ -74,8 +74,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints to standard output. A reader that has seen enough, as `head` has, is no reason to fail
-/// or to leave a page unwritten.
+/// Prints to standard output. A closed pipe, such as that of `head`, is not an error and does not stop the
+/// page from being written.
 fn say(text: &str) -> Result<(), String> {
     match writeln!(stdout().lock(), "{text}") {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -89,13 +89,13 @@ fn say_json(value: &impl Serialize) -> Result<(), String> {
     say(&serde_json::to_string(value).map_err(|error| error.to_string())?)
 }
 
-/// Prints a block and writes it into its place.
+/// Prints a block and writes it into the page.
 fn publish(page: &Path, block: Block, text: &str) -> Result<(), String> {
     say(text)?;
     write_into(page, block, text)
 }
 
-/// Answers each line of standard input, one turn of one workload, until there are no more.
+/// Answers each line of standard input with one turn of one workload.
 fn turns() -> Result<(), String> {
     let start = Instant::now();
     let now_ms = || 1e3 * start.elapsed().as_secs_f64();

@@ -1,8 +1,8 @@
-//! Workloads measured by turns, with the clock as an argument.
+//! Measures workloads in turns, with the clock as an argument.
 //!
-//! Another build, or another engine, has the turn between two turns of this one: what else a machine
-//! does meets all of them alike, and a ratio of two turns of one round says what a ratio of two
-//! medians from different minutes does not.
+//! Turns of another build or engine come in between. Background load of the machine then affects all of them
+//! alike, so the ratio of two turns in one round is more reliable than that of two medians from different
+//! minutes.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -11,13 +11,13 @@ use serde::Serialize;
 
 use crate::{Run, Workload, workloads};
 
-/// A sample lasts at least this long: a page that stands alone has a clock of 5 µs.
+/// Shortest duration of a sample: the clock of an isolated page has a resolution of 5 µs.
 const SAMPLE_MS: f64 = 2.0;
 
-/// Fewest samples of a turn.
+/// Smallest number of samples per turn.
 const MIN_SAMPLES: u32 = 3;
 
-/// What one turn measured.
+/// The result of one turn.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Turn {
     /// Milliseconds of one repetition, in the fastest sample of the turn.
@@ -26,7 +26,7 @@ pub struct Turn {
     pub digest: String,
 }
 
-/// The workloads that have had a turn, each prepared once.
+/// The workloads measured so far, each prepared once.
 #[derive(Default)]
 pub struct Turns {
     ready: BTreeMap<String, Ready>,
@@ -36,7 +36,7 @@ struct Ready {
     run: Box<dyn Run>,
     repetitions: u32,
     digest: String,
-    /// Runs of one sample.
+    /// Number of runs per sample.
     runs: u32,
 }
 
@@ -44,7 +44,7 @@ impl Turns {
     /// Runs a workload for about `budget_ms`; `now_ms` is the clock.
     ///
     /// # Errors
-    /// One sentence where there is no workload of that name.
+    /// One sentence if there is no workload of that name.
     pub fn take(
         &mut self,
         id: &str,
@@ -59,16 +59,16 @@ impl Turns {
     }
 }
 
-/// The names of all that is measured.
+/// The names of all workloads.
 #[must_use]
 pub fn names() -> Vec<&'static str> {
     workloads().iter().map(|workload| workload.id).collect()
 }
 
-/// The workload of a name.
+/// Looks up a workload by name.
 ///
 /// # Errors
-/// One sentence where there is none.
+/// One sentence if there is none.
 pub fn find(id: &str) -> Result<Workload, String> {
     workloads()
         .into_iter()
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn a_turn_gives_the_time_of_one_repetition_in_its_fastest_sample() {
-        // Every look at the clock moves it by 20 ms, but the one that ends the first sample by 12.
+        // Every reading of the clock advances it by 20 ms, except the one that ends the first sample, by 12.
         let looks = Cell::new(0);
         let clock = Cell::new(0.0);
         let now = || {
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_is_no_workload_is_told() {
+    fn an_unknown_workload_is_reported() {
         let told = Turns::default().take("nothing", 1.0, &|| 0.0);
         assert_eq!(told, Err("there is no workload `nothing`".to_owned()));
     }

@@ -1,4 +1,4 @@
-//! What `tests/bench/measure.mjs` measured.
+//! The measurements of `tests/bench/measure.mjs`.
 
 use std::fs;
 use std::path::Path;
@@ -26,7 +26,7 @@ pub struct Entry {
     pub chromium: Turns,
 }
 
-/// The turns of one workload in one engine, one a round.
+/// The turns of one workload in one engine, one per round.
 #[derive(Deserialize)]
 pub struct Turns {
     ms: Vec<f64>,
@@ -39,14 +39,14 @@ impl Turns {
         median(self.ms.iter().copied())
     }
 
-    /// The median over the rounds of how many times the other's time this took.
+    /// The median over the rounds of the ratio of this time to the other.
     pub fn ratio_to(&self, other: &Self) -> f64 {
         median(self.ms.iter().zip(&other.ms).map(|(a, b)| a / b))
     }
 }
 
 impl Entry {
-    /// Whether all engines computed the same.
+    /// Whether all engines computed the same result.
     pub fn has_same_bits(&self) -> bool {
         let engines = [&self.node, &self.chromium];
         engines
@@ -69,17 +69,17 @@ impl Measured {
     }
 }
 
-/// The middle one of some values; no number where there are none.
+/// The median of some values; NaN without values.
 pub fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Reads a file of JSON.
+/// Reads a JSON file.
 ///
 /// # Errors
-/// One sentence that names the file.
+/// One sentence with the file.
 pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, String> {
     let say = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let text = fs::read_to_string(path).map_err(|error| say(&error))?;
@@ -90,7 +90,7 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, String> {
 pub mod tests {
     use super::*;
 
-    /// A workload's turns, the same in every one of three rounds.
+    /// A workload's turns, equal in all of three rounds.
     pub fn entry(id: &str, [native, node, chromium]: [f64; 3], digests: [&str; 3]) -> Entry {
         let turns = |ms: f64, digest: &str| Turns {
             ms: vec![ms; 3],
@@ -115,7 +115,7 @@ pub mod tests {
             ms: ms.to_vec(),
             digest: String::new(),
         };
-        // The second round met another program; the third only in one of the two turns.
+        // The second round had background load; in the third round only one of the two turns had it.
         let (ours, native) = (turns([3.0, 9.0, 4.0]), turns([2.0, 6.0, 2.0]));
         assert_eq!(ours.ratio_to(&native), 1.5);
         assert_eq!(ours.median_ms(), 4.0);

@@ -1,4 +1,4 @@
-//! Writing a generated block into a page, between its two marks.
+//! Writes a generated block into a page, between its two marks.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ pub enum Block {
     Workloads,
     /// Registration of files.
     Registration,
-    /// Distribution of the lap's figures over many seeds.
+    /// Distribution of the lap's errors over many seeds.
     Sweep,
 }
 
@@ -36,7 +36,7 @@ impl Block {
 /// Writes a block into a page, with the machine named above it.
 ///
 /// # Errors
-/// One sentence where the page cannot be read or written, or lacks the block's marks.
+/// One sentence if the page cannot be read or written, or lacks the block's marks.
 pub fn write_into(page: &Path, block: Block, text: &str) -> Result<(), String> {
     let text = format!("Measured on {}.\n\n{text}", generated::machine());
     generated::write_into(page, [&block.start(), &block.end()], &text)

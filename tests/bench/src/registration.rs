@@ -1,4 +1,4 @@
-//! The registration table: `slam2d register` on made clouds, beside nanoflann's k-d tree.
+//! The registration table: `slam2d register` on generated clouds, beside nanoflann's k-d tree.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -9,17 +9,17 @@ use serde::Deserialize;
 
 use crate::clouds::{self, Clouds};
 
-/// Registrations of one program in a round; the fastest counts.
+/// Registrations per program and round; the fastest counts.
 const REPEATS: u32 = 60;
-/// Rounds, in which the programs take turns; the fastest counts.
+/// Number of rounds, in which the programs take turns; the fastest counts.
 const ROUNDS: u32 = 5;
 /// Correspondence distance τ, m.
 const TAU_M: f64 = 0.5;
 
-/// What of a row's time is compared.
+/// The measured time of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Span {
-    /// The registration alone; the map was built before.
+    /// The registration alone, without building the map.
     Registration,
     /// Building the map and the registration.
     BuildAndRegistration,
@@ -28,18 +28,18 @@ enum Span {
 /// A row of the table.
 struct Row {
     case: &'static str,
-    /// As the command line names it, and as a reader does.
+    /// The name on the command line, and the label.
     method: (&'static str, &'static str),
     span: Span,
 }
 
-/// The same registration in C++, which only looks its neighbours up in nanoflann's tree.
+/// The same registration in C++, with nearest-neighbour queries in nanoflann's tree.
 const DRIVER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peer/nanoflann.cpp");
 
-/// What stands in a row where the driver could not be built.
+/// Text of a row if the driver could not be built.
 const NOT_BUILT: &str = "not timed: a C++ compiler or nanoflann is missing";
 
-/// Two registrations ended at the same optimum where their poses agree to this, m and rad.
+/// Largest difference of two poses that count as the same optimum, m and rad.
 const SAME_POSE: f64 = 1e-6;
 
 const METHODS: [(&str, &str); 2] = [("p2l", "point to plane"), ("p2p", "point to point")];
@@ -65,7 +65,7 @@ fn rows() -> [[Row; 2]; 2] {
     ]
 }
 
-/// What `slam2d register --json` and the driver report, as far as the table needs it.
+/// The output of `slam2d register --json` and of the driver, as far as the table needs it.
 #[derive(Deserialize)]
 struct Found {
     /// The version of the driver's library.
@@ -77,7 +77,7 @@ struct Found {
 }
 
 impl Found {
-    /// What is compared, µs.
+    /// The measured time, µs.
     fn us(&self, span: Span) -> f64 {
         match span {
             Span::Registration => self.us,
@@ -85,7 +85,7 @@ impl Found {
         }
     }
 
-    /// The fastest of this round and the rounds before; both found the same.
+    /// The faster of this round and the earlier ones; the results must be equal.
     fn fastest(self, before: Option<Self>) -> Self {
         let Some(before) = before else { return self };
         Self {
@@ -101,11 +101,11 @@ impl Found {
     }
 }
 
-/// Writes the clouds into `folder`, registers them with the command `slam2d` and, where a C++
-/// compiler finds it, with nanoflann, and returns the table.
+/// Writes the clouds into `folder`, registers them with `slam2d` and, if a C++ compiler finds it, with
+/// nanoflann, and returns the table.
 ///
 /// # Errors
-/// One sentence where a file cannot be written or a command fails.
+/// One sentence if a file cannot be written or a command fails.
 pub fn table(slam2d: &Path, folder: &Path) -> Result<String, String> {
     clouds::write(folder)?;
     let driver = build_driver(folder);
@@ -137,7 +137,7 @@ pub fn table(slam2d: &Path, folder: &Path) -> Result<String, String> {
     Ok([&header[..], &lines[..]].concat().join("\n"))
 }
 
-/// Compiles the driver; nothing where there is no compiler or no nanoflann, which is said.
+/// Compiles the driver; prints a note and returns `None` without compiler or nanoflann.
 fn build_driver(folder: &Path) -> Option<PathBuf> {
     let driver = folder.join("nanoflann");
     let compiler = std::env::var_os("CXX").unwrap_or_else(|| "c++".into());
@@ -194,7 +194,7 @@ fn answer(mut command: Command, name: &str) -> Result<Found, String> {
 fn line(row: &Row, found: &Found, peer: Option<&Found>, sample: &RegistrationSample) -> String {
     let us = found.us(row.span);
     let [x, y, theta] = found.pose;
-    // The file's points were put where the guess says: the pose found comes on top of it.
+    // The file's points are at the initial guess, so the result is relative to it.
     let world_from_scan = SE2::new(x, y, theta) * sample.guess;
     let error = sample.truth.between(&world_from_scan).log();
     let peer_us = peer.map(|peer| peer.us(row.span));
@@ -218,7 +218,7 @@ fn line(row: &Row, found: &Found, peer: Option<&Found>, sample: &RegistrationSam
 mod tests {
     use super::*;
 
-    /// What a registration that finds the truth, or 2 mm beside it, would report.
+    /// The report of a registration at the truth, or 2 mm off.
     fn found(sample: &RegistrationSample, beside_m: f64) -> Found {
         let pose = sample.truth * SE2::new(beside_m, 0.0, 0.0) * sample.guess.inverse();
         Found {
@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_that_is_missing_is_named() {
+    fn a_missing_command_is_reported() {
         let [large, _] = clouds::all();
         let missing = Path::new("no-such-command");
         let Err(message) = register(missing, Path::new("."), &large, "p2l") else {

@@ -1,15 +1,15 @@
-//! The table of the workloads, from what was measured and counted.
+//! The table of the workloads, from their measurements and counts.
 
 use slam2d_bench::{Workload, workloads};
 
 use crate::counts::Counts;
 use crate::measured::{Entry, Measured};
 
-/// What stands where there is no figure.
+/// The entry for a missing value.
 const NOTHING: &str = "–";
 
-/// The table in Markdown, a row for each workload; `counts` are of one repetition, and empty where
-/// nothing could be counted.
+/// The table in Markdown, a row for each workload; `counts` are those of one repetition, and empty if
+/// counting is not available.
 pub fn table(measured: &Measured, counts: &Counts) -> String {
     let mut lines = vec![
         "| workload | native | limit | Chromium | limit | Chromium / native | limit | Node / native | instructions, \
@@ -66,7 +66,7 @@ fn row(workload: &Workload, entry: Option<&Entry>, count: Option<u64>) -> String
     )
 }
 
-/// Three digits, in a unit that suits.
+/// Three digits, in a suitable unit.
 fn time(milliseconds: f64) -> String {
     match milliseconds {
         ms if ms >= 1.0 => format!("{} ms", three_digits(ms)),
@@ -75,7 +75,7 @@ fn time(milliseconds: f64) -> String {
     }
 }
 
-/// Three digits, in thousands or millions where that is shorter.
+/// Three digits, in thousands or millions if that is shorter.
 fn instructions(count: Option<u64>) -> String {
     match count.map(|count| count as f64) {
         None => NOTHING.to_owned(),
@@ -100,20 +100,20 @@ mod tests {
     use crate::measured::tests::{entry, measured};
 
     #[test]
-    fn times_have_three_digits_and_a_unit_that_suits() {
+    fn times_have_three_digits_and_a_suitable_unit() {
         let shown = [12.345, 0.15, 90e-6, 0.999_96].map(time);
         assert_eq!(shown, ["12.3 ms", "150 µs", "90.0 ns", "1000 µs"]);
     }
 
     #[test]
-    fn counts_have_three_digits_and_a_unit_that_suits() {
+    fn counts_have_three_digits_and_a_suitable_unit() {
         let shown = [783, 156_225, 1_083_078, 114_488_777].map(|n| instructions(Some(n)));
         assert_eq!(shown, ["783", "156 k", "1.08 M", "114 M"]);
         assert_eq!(instructions(None), "–");
     }
 
     #[test]
-    fn a_row_shows_what_is_known_and_whether_the_digests_agree() {
+    fn a_row_shows_the_known_values_and_whether_the_digests_agree() {
         let measured = measured(vec![
             entry("lap", [10.2, 15.0, 26.0], ["0a"; 3]),
             entry("nearest", [44e-6, 60e-6, 60e-6], ["0b", "0b", "ff"]),

@@ -18,11 +18,11 @@ use crate::{Run, prepared};
 pub(crate) const QUERIES: usize = 1000;
 /// Correspondence distance of the basin explorer, m.
 const TAU_M: f64 = 0.7;
-/// Width of an NDT cell, m, and the fewest points that make one.
+/// Width of an NDT cell, m, and the smallest number of points in it.
 const NDT_CELL_M: f64 = 0.5;
 const NDT_MIN_POINTS: usize = 4;
 
-/// A scene of the basin explorer with what a registration in it needs and leaves.
+/// A scene of the basin explorer with the inputs and results of a registration.
 struct Basin {
     scene: BasinScene,
     config: IcpConfig,
@@ -50,7 +50,7 @@ impl Basin {
     }
 }
 
-/// Settings with which every run uses all of its 30 iterations.
+/// Settings with which every run needs all of its 30 iterations.
 fn all_iterations(variant: IcpVariant) -> IcpConfig {
     IcpConfig {
         tolerance: 0.0,
@@ -58,7 +58,7 @@ fn all_iterations(variant: IcpVariant) -> IcpConfig {
     }
 }
 
-/// A registration that looks neighbours up in the scene's table, built before.
+/// A registration that looks neighbours up in the scene's table, which was built before.
 pub(crate) fn register_with_table(variant: IcpVariant) -> Box<dyn Run> {
     prepared(
         Basin::new(all_iterations(variant)),
@@ -72,7 +72,7 @@ pub(crate) fn register_with_table(variant: IcpVariant) -> Box<dyn Run> {
     )
 }
 
-/// The same registration on the dense map, where nothing is built for it.
+/// The same registration on the dense map, without a table.
 pub(crate) fn register_without_table(variant: IcpVariant) -> Box<dyn Run> {
     prepared(
         Basin::new(all_iterations(variant)),
@@ -89,7 +89,7 @@ pub(crate) fn register_without_table(variant: IcpVariant) -> Box<dyn Run> {
     )
 }
 
-/// The scene's table of nearest neighbours, built.
+/// Builds the scene's table of nearest neighbours.
 pub(crate) fn table() -> Box<dyn Run> {
     let scene = BasinScene::new();
     prepared(
@@ -107,7 +107,7 @@ pub(crate) fn table() -> Box<dyn Run> {
     )
 }
 
-/// A whole sweep: the scene with its table, and a registration for each degree.
+/// A whole sweep over headings: the scene with its table, and a registration for each degree.
 pub(crate) fn sweep(variant: IcpVariant) -> Box<dyn Run> {
     prepared(
         Basin::new(BasinScene::config(variant, TAU_M)),
@@ -175,7 +175,7 @@ pub(crate) fn ndt_registration() -> Box<dyn Run> {
     )
 }
 
-/// Queries of neighbouring beams in a table of nearest neighbours, built before.
+/// Queries of neighbouring beams in a table of nearest neighbours, which was built before.
 pub(crate) fn nearest_in_table() -> Box<dyn Run> {
     let map = DenseMap::from_cloud(&samples::apartment_map(), 0.25, usize::MAX);
     nearest_in(NearestTable::new(map, 0.08, 1.0))
@@ -190,7 +190,7 @@ pub(crate) fn nearest_in_dense_map() -> Box<dyn Run> {
     ))
 }
 
-/// The same queries in the chapter's hash of cells.
+/// The same queries in the chapter's voxel map.
 pub(crate) fn nearest_in_voxel_map() -> Box<dyn Run> {
     nearest_in(VoxelMap::from_cloud(
         &samples::apartment_map(),
@@ -239,7 +239,7 @@ pub(crate) fn normals() -> Box<dyn Run> {
     )
 }
 
-/// One sweep of room A as thinned points: in the sensor's frame and in the world's.
+/// One sweep of room A as thinned points, in the sensor's frame and in the world's.
 fn room_sweep() -> (PointCloud, PointCloud) {
     let cloud = samples::sweep(&room_pose(), 180, &mut Rng::new(0x5C0)).downsample(0.08);
     let target = cloud.transformed(&room_pose());

@@ -1,4 +1,4 @@
-//! The run of a search: a scan of the way back in a whole window around an earlier place.
+//! The workload of a search: a scan of the return path in a whole window around an earlier pose.
 
 use core::f64::consts::PI;
 use std::sync::Arc;
@@ -14,10 +14,10 @@ use pr_geom::SE2;
 
 use crate::{Run, prepared};
 
-/// Keyframes on either side that make a submap.
+/// Keyframes on either side of the center of a submap.
 const HALF_WIDTH: usize = 3;
 
-/// A scan of the Apartment's way back on the submap of the nearest keyframe of the way out.
+/// A scan of the Apartment's return path on the submap of the nearest keyframe of the outward path.
 struct Search {
     map: Arc<SearchMap>,
     scan: PointCloud,
@@ -25,7 +25,7 @@ struct Search {
     found: Option<SearchResult>,
 }
 
-/// ±3 m and every heading, cells of 5 cm: the search, on a submap that is ready.
+/// ±3 m and every heading, cells of 5 cm: the search, on a prepared submap.
 pub(crate) fn search() -> Box<dyn Run> {
     prepared(
         back_on_the_way_out(),
@@ -50,7 +50,7 @@ pub(crate) fn search() -> Box<dyn Run> {
     )
 }
 
-/// The middle one of the keyframes of the way back that come within a metre of the way out.
+/// The middle one of the return path's keyframes within a metre of the outward path.
 fn back_on_the_way_out() -> Search {
     let mut lap = Lap::new(LapConfig::default());
     lap.run();

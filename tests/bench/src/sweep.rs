@@ -1,4 +1,4 @@
-//! What `slam2d sweep` prints, as a block of the page.
+//! The output of `slam2d sweep` as a block of the page.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -7,11 +7,10 @@ use std::time::Instant;
 /// The sweep of the page.
 const ARGS: [&str; 5] = ["sweep", "--seeds", "1..=1000", "--noise", "0.25,1,2,4"];
 
-/// Runs the sweep with the command `slam2d` and returns the block; its progress goes to the
-/// terminal.
+/// Runs the sweep with the command `slam2d` and returns the block; progress is printed on the terminal.
 ///
 /// # Errors
-/// One sentence where the command cannot be started or fails.
+/// One sentence if the command cannot be started or fails.
 pub fn block(slam2d: &Path) -> Result<String, String> {
     let say = |what: &dyn std::fmt::Display| format!("{} sweep: {what}", slam2d.display());
     let started = Instant::now();

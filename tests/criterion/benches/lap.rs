@@ -1,4 +1,4 @@
-//! The parts of the lap and what a drag repeats of it.
+//! The parts of the lap and the computations that a drag repeats.
 //!
 //! The whole lap, its warm solve and its grid are workloads.
 
@@ -9,7 +9,7 @@ use ch16_lab::lap::{Drive, Lap, LapConfig, LapRunner};
 use ch16_lab::samples;
 use criterion::Criterion;
 
-/// Noise factors that a dragged slider passes through.
+/// Noise factors during a drag of the slider.
 const DRAGGED: [f64; 4] = [0.9, 1.0, 1.1, 1.2];
 
 pub fn parts(criterion: &mut Criterion) {
@@ -39,12 +39,12 @@ pub fn parts(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The lap's own graph, solved with an ordering and a symbolic analysis of its own.
+/// The lap's own graph, solved with a new ordering and symbolic analysis.
 pub fn cold_solve(criterion: &mut Criterion) {
     let graph = samples::lap_graph();
     criterion.bench_function("lap_41 cold", |b| {
         b.iter(|| {
-            // A clone has forgotten the analysis.
+            // A clone does not copy the analysis.
             let mut graph = graph.clone();
             graph.optimize_robust(15, 1e-7, 12.0)
         });

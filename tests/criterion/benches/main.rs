@@ -1,6 +1,6 @@
-//! What criterion times: `cargo bench -- FILTER`, where the filter is a part of a name.
+//! The criterion benchmarks: `cargo bench -- FILTER`, where the filter is a part of a name.
 //!
-//! One program for all: each would be linked with all widgets, and the suite compiles them to see that they do.
+//! They are one program, because each program would link all widgets, and the test suite compiles them.
 
 mod lap;
 mod registration;

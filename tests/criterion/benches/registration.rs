@@ -1,5 +1,5 @@
-//! Scan matching where the table of workloads does not look: the sizes that published
-//! libraries are timed at, the other map, the other place, and the parts.
+//! Scan matching that the table of workloads does not cover: the sizes at which published libraries are
+//! timed, the other map, the other location, and the parts.
 
 use std::hint::black_box;
 

@@ -1,4 +1,4 @@
-//! Times of the solver on graphs made here: a short and a long walk on a street grid.
+//! Times of the solver on generated graphs: a short and a long walk on a street grid.
 //!
 //! The graph of the lap is `lap_41` beside them, and the workload `solve`.
 
@@ -34,8 +34,8 @@ impl Noise {
     }
 }
 
-/// A walk of unit steps on a street grid of `side` blocks; the first visit of a crossing is
-/// measured again from every later one.
+/// A walk of unit steps on a street grid of `side` blocks; every later visit of a crossing is measured
+/// against the first one.
 fn street_walk(nodes: usize, side: i64) -> Problem {
     let mut noise = Noise(7);
     let mut truth = vec![SE2::identity()];

@@ -6,9 +6,9 @@ use slam2d_bench::workloads;
 pub fn all(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("workloads");
     for workload in workloads() {
-        // One run repeats the small ones: the rate is of single repetitions.
+        // One run repeats the small ones: the rate is that of single repetitions.
         group.throughput(Throughput::Elements(u64::from(workload.repetitions)));
-        // A workload that the filter leaves out is not prepared.
+        // A workload that the filter excludes is not prepared.
         let mut ready = None;
         group.bench_function(workload.id, |bencher| {
             let run = ready.get_or_insert_with(workload.prepare);

@@ -1,4 +1,4 @@
-//! Sentences of the page that say more than their numbers: each holds by the core.
+//! Sentences of the page that claim more than their numbers: the core confirms each of them.
 
 use ch16_lab::basin::{BasinScene, BasinStart, Minimum};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
@@ -13,7 +13,7 @@ fn of(names: &[&str]) -> Vec<f64> {
 }
 
 #[test]
-fn one_residual_buys_more_than_all_loops_and_the_covariance_does_not_see_it() {
+fn one_residual_reduces_the_error_more_than_all_loops_without_effect_on_the_covariance() {
     let rms = of(&[
         "lap.canonical.front_end.rms",
         "lap.canonical.rms",
@@ -26,7 +26,7 @@ fn one_residual_buys_more_than_all_loops_and_the_covariance_does_not_see_it() {
     for other in [plane, ndt] {
         assert!(without - other > 3.0 * (without - with_loops), "{rms:?}");
     }
-    // With quiet wheels the corridor still lacks most of it, and grows with the matcher alone.
+    // With little odometry noise most of the corridor is still missing; only the matcher changes that.
     let short = of(&[
         "lap.quiet.front_end.turn.short_m",
         "lap.quiet-p2l.front_end.turn.short_m",
@@ -52,13 +52,13 @@ fn one_residual_buys_more_than_all_loops_and_the_covariance_does_not_see_it() {
 }
 
 #[test]
-fn a_start_out_of_reach_of_the_bells_ends_farther_off_than_it_began() {
+fn a_start_beyond_the_gaussians_ends_farther_off_than_it_began() {
     let far = of(&["ndt.far_start.offset_m", "ndt.far_start.error_m"]);
     assert!(far[1] > far[0], "{far:?}");
 }
 
 #[test]
-fn the_gate_refuses_the_true_loop_that_drift_does_not_explain() {
+fn the_gate_rejects_the_true_loop_that_drift_does_not_explain() {
     let [chi2, gate] = of(&[
         "lap.canonical.own.truth.25.0.quadratic.gate_chi2",
         "gate.chi2",
@@ -77,14 +77,14 @@ fn an_approximate_jacobian_moves_the_fixed_point_to_second_order_and_a_factor_do
         "jacobians.6.residual.off_mm",
         "jacobians.6.twice.off_mm",
     ]);
-    // Half of the contradiction leaves a quarter, or half; 10 % for the orders after it.
+    // Half of the contradiction leaves a quarter, or half; 10 % for the higher orders.
     assert!((off[1] / off[0] / 4.0 - 1.0).abs() < 0.1, "{off:?}");
     assert!((off[3] / off[2] / 2.0 - 1.0).abs() < 0.1, "{off:?}");
     assert!(off[4] < 1e-3, "{off:?}");
 }
 
 #[test]
-fn ends_fall_into_the_classes_that_the_text_names() {
+fn results_are_in_the_classes_of_the_text() {
     let scene = BasinScene::new();
     let ending = |variant, heading_deg| {
         let start = BasinStart {

@@ -1,52 +1,52 @@
-//! Reads the chapter's source as a reader sees it: numbers, links, and what surrounds them.
+//! Parses the chapter's source: numbers, links, and their context.
 //!
-//! A tokenizer for the HTML that we write ourselves: quoted attributes, no comments, no script text.
+//! A tokenizer for our own HTML: quoted attributes, no comments, no script text.
 
 use std::fs;
 use std::path::Path;
 
 use super::printed::measures;
 
-/// A number that the page says was computed.
+/// A number of the page that is computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Which result, for example `lap.canonical.rms`.
+    /// Name of the result, for example `lap.canonical.rms`.
     pub name: String,
     /// As printed: `0.5857`, `−39`, `three`.
     pub text: String,
 }
 
-/// A number in the text that sets a widget.
+/// A link in the text that sets a widget.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NumberLink {
     /// The query: `?w=16.1&heading=60`.
     pub href: String,
-    /// The words of the link.
+    /// The text of the link.
     pub text: String,
-    /// What the widget says there, and the figure that prints it: `rmse_m=basin.p2p.75.rmse …`.
+    /// The widget's value there, and the figure that prints it: `rmse_m=basin.p2p.75.rmse …`.
     pub shows: Option<String>,
-    /// The verdict of the widget, where the sentence has no number.
+    /// The verdict of the widget, if the sentence has no number.
     pub verdict: Option<String>,
-    /// The paragraph or item in which the link stands, as source.
+    /// The source of the paragraph or item around the link.
     pub around: String,
 }
 
-/// A question that the reader answers before the widget may.
+/// A question to the reader before the widget shows the answer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Prediction {
-    /// The widget that answers.
+    /// The widget with the answer.
     pub widget: String,
-    /// What it is set to: `heading=40&tau=1.4`.
+    /// Its state: `heading=40&tau=1.4`.
     pub state: String,
-    /// The fact of its outcome that is asked for; empty where the verdict is.
+    /// The fact of its outcome; empty if the question is about the verdict.
     pub fact: String,
-    /// The verdicts to choose from, or names of choices of a value.
+    /// The possible verdicts, or the names of the value's choices.
     pub choices: Vec<String>,
-    /// Of which values of the fact each choice is right: from the first to below the second.
+    /// The range of the fact for each choice: from the first to below the second.
     pub ranges: Vec<[f64; 2]>,
 }
 
-/// The source of the page, taken apart.
+/// The parsed source of the page.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
     /// Every marked number, in the text and in formulas.
@@ -59,35 +59,35 @@ pub struct Document {
     pub widgets: Vec<String>,
     /// Targets of links within the page, with their words.
     pub citations: Vec<(String, String)>,
-    /// Every `id`, with the text of the element where it is an entry of the references.
+    /// Every `id`, with the text of its element if that is an entry of the references.
     pub references: Vec<(String, String)>,
-    /// Text that no mark covers and that holds a number: there should be none.
+    /// Unmarked text that contains a number: there should be none.
     pub loose_numbers: Vec<String>,
     /// The path of the walls in the plan.
     pub wall_path: String,
 }
 
-/// What the text under way belongs to.
+/// The element of the current text.
 enum Open {
     Figure(Figure),
     Link(NumberLink),
     Citation(String, String),
     Reference(String, String),
     Formula(String),
-    /// What the reader counts on the spot: items, unknowns, exercises.
+    /// Something that the reader can count: items, unknowns, exercises.
     Count,
     /// A command, whose digits are part of its name.
     Code,
 }
 
-/// A file of the project, by its path from the top level.
+/// A file of the project, by its path relative to the top level.
 pub fn source(path: &str) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     fs::read_to_string(root.join(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
 }
 
 impl Document {
-    /// Takes the source of a page apart.
+    /// Parses the source of a page.
     pub fn parse(html: &str) -> Self {
         let mut document = Self::default();
         let mut open: Option<Open> = None;
@@ -201,7 +201,8 @@ impl Document {
         }
     }
 
-    /// `\fig{name}{text}` is a figure. What is left may count (½, squares), but not measure.
+    /// `\fig{name}{text}` is a figure. The rest may contain exact constants (½, squares), but no
+    /// measurements.
     fn take_formula(&mut self, tex: &str) {
         let mut rest = tex;
         let mut unmarked = String::new();
@@ -227,7 +228,7 @@ impl Document {
     }
 }
 
-/// The paragraph or item of a list that holds a place of the source.
+/// The paragraph or list item around a position of the source.
 fn block_around(html: &str, place: usize) -> String {
     let (before, after) = html.split_at(place);
     let starts = ["<p>", "<li>", "<li "].map(|tag| before.rfind(tag));

@@ -1,4 +1,4 @@
-//! The page's own drawings: true to the Apartment, and in the marks of the legend.
+//! The page's own drawings: consistent with the Apartment, and with the marks of the legend.
 
 use pr_sim::World;
 
@@ -39,7 +39,7 @@ fn the_plan_shows_the_walls_of_the_apartment() {
 fn every_drawing_uses_the_mark_that_belongs_to_its_colour() {
     let style = source("web/page/page.css");
     let mut marks = 0;
-    // `.nodes rect { fill: var(--posterior); }`: a group of a drawing and the shape in it.
+    // `.nodes rect { fill: var(--posterior); }`: a group of a drawing and its shape.
     for rule in style.lines().filter(|line| line.starts_with('.')) {
         let Some((selector, declarations)) = rule.split_once(" { ") else {
             continue;

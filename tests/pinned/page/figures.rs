@@ -1,8 +1,7 @@
-//! Names of printed numbers, and how the core computes each.
+//! Names of printed numbers, and their computation by the core.
 //!
-//! A name is a path: `basin.p2l.180.rmse` registers from 180° with point to plane and reads the
-//! rmse. Two names with a slash between them are a quotient. So a new sentence needs a new name,
-//! seldom new code here.
+//! A name is a path: `basin.p2l.180.rmse` registers from 180° with point to plane and reads the RMSE. Two
+//! names with a slash between them are a quotient. So a new sentence needs a new name, seldom new code here.
 
 mod alignment;
 mod ball;
@@ -31,7 +30,7 @@ use ch16_lab::lap::{LapRecord, LapRunner};
 
 use sweep::Sweep;
 
-/// The core, asked by name; what is slow is computed once.
+/// Values of the core by name; slow results are cached.
 #[derive(Default)]
 pub struct Figures {
     laps: HashMap<String, LapRecord>,
@@ -40,7 +39,7 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// The value of that name; none where there is no such name.
+    /// The value of that name; `None` if it is unknown.
     pub fn value(&mut self, name: &str) -> Option<f64> {
         if let Some((above, below)) = name.split_once('/') {
             return Some(self.value(above)? / self.value(below)?);

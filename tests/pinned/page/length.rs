@@ -1,13 +1,13 @@
-//! How long the page is before its exercises, as a reader counts it.
+//! The length of the page before its exercises.
 
 use super::document::source;
 
-/// The page keeps below this, folded text included; a formula is one word, and code is none.
+/// Largest number of words, folded text included; a formula counts as one word, code as none.
 const MOST_WORDS: usize = 7_000;
-/// Of these a reader sees so many without opening anything.
+/// Largest number of words outside of folded text.
 const MOST_SEEN_WORDS: usize = 5_300;
 
-/// The source between two places without what `dropped` opens and closes, innermost last.
+/// The source between two positions without the elements in `dropped`, including nested ones.
 fn without(html: &str, dropped: &str) -> String {
     let (open, close) = (format!("<{dropped}"), format!("</{dropped}>"));
     let mut kept = String::new();

@@ -1,4 +1,4 @@
-//! How a value is printed: in digits, as a number word, or as a rough ratio in words.
+//! Prints a value like the text: in digits, as a number word, or as a rough ratio in words.
 
 const CARDINALS: [(&str, f64); 17] = [
     ("none", 0.0),
@@ -32,11 +32,11 @@ const RATIOS: [(&str, f64); 10] = [
     ("threefold", 3.0),
     ("fourfold", 4.0),
 ];
-/// A ratio in words may be off by this share of itself: “a third” is said of 0.32 to 0.35.
+/// Relative tolerance of a ratio in words: “a third” stands for 0.32 to 0.35.
 const ROUGHLY: f64 = 0.05;
 
-/// Words that count or measure. One and two, first and second are left out: they point (“the
-/// first one”, “the two ends”) far more often than they count.
+/// Words that count or measure. One and two, first and second are missing, because they are references (“the
+/// first one”, “the two ends”) far more often than counts.
 const MEASURING: [&str; 31] = [
     "three",
     "four",
@@ -70,13 +70,13 @@ const MEASURING: [&str; 31] = [
     "doubles",
     "twice",
 ];
-/// Names of false minima and not numbers.
+/// Names of false minima, which are not numbers.
 const NAMES: [&str; 2] = ["quarter turn", "half turn"];
 
-/// Whether `text` prints `value`; where it does not, what it should say.
+/// Checks whether `text` prints `value`.
 ///
 /// # Errors
-/// The value in the manner of the text.
+/// The value in the form of the text.
 pub fn check(text: &str, value: f64) -> Result<(), String> {
     let text = words_of(text);
     let (relation, amount) = match text.split_once(" than ") {
@@ -99,7 +99,7 @@ pub fn check(text: &str, value: f64) -> Result<(), String> {
     }
 }
 
-/// Whether digits or words in a text say how many or how much.
+/// Whether a text contains a number in digits or words.
 pub fn measures(text: &str) -> bool {
     let mut text = words_of(text);
     for name in NAMES {
@@ -110,7 +110,7 @@ pub fn measures(text: &str) -> bool {
         || text.split(|c: char| !c.is_alphabetic()).any(is_number)
 }
 
-/// In lower case, without a plus sign, with one blank between words and a minus that parses.
+/// In lower case, without a plus sign, with single blanks and a minus that parses.
 fn words_of(text: &str) -> String {
     let text = text.replace('\u{2212}', "-").to_lowercase();
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -128,7 +128,7 @@ fn ratio(text: &str) -> Option<f64> {
     known.map(|(_, ratio)| *ratio).or_else(in_many)
 }
 
-/// A value in the series of number words to which `text` belongs; none where it is no such word.
+/// A value in the series of number words to which `text` belongs; `None` if it is not such a word.
 fn in_words(text: &str, value: f64) -> Option<String> {
     let (article, bare) = match text.strip_prefix("a ") {
         Some(bare) => ("a ", bare),
@@ -154,7 +154,7 @@ fn in_digits(text: &str, value: f64) -> String {
         .split_once('.')
         .map_or(0, |(_, decimals)| decimals.len());
     let printed = format!("{value:.decimals$}");
-    // Rounded to nothing, a value has no sign.
+    // A value that rounds to zero has no sign.
     match printed.strip_prefix('-') {
         Some(digits) if digits.contains(|c: char| ('1'..='9').contains(&c)) => printed,
         Some(digits) => digits.to_owned(),

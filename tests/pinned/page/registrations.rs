@@ -1,4 +1,4 @@
-//! What the page calls home is what w16.1 calls right.
+//! The page's claims about convergence agree with w16.1.
 
 use ch16_lab::basin::Minimum;
 use kit::model::Standing;
@@ -6,7 +6,7 @@ use kit::model::Standing;
 use super::figures::Figures;
 use super::widgets::Widgets;
 
-/// Names of basins in the text, and how the widget is set to them.
+/// Names of basins in the text, and the settings of the widget.
 const BASINS: [(&str, &str); 3] = [
     ("basin.p2p", "variant=point-to-point"),
     ("basin.p2p.wide", "variant=point-to-point&tau=1.4"),
@@ -14,7 +14,7 @@ const BASINS: [(&str, &str); 3] = [
 ];
 
 #[test]
-fn the_widget_comes_home_at_both_printed_edges_and_not_one_degree_beyond() {
+fn the_widget_converges_at_both_printed_edges_and_not_one_degree_beyond() {
     let mut figures = Figures::default();
     let mut widgets = Widgets::new();
     let mut verdict = |state: &str, heading: f64| {

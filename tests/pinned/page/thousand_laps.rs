@@ -1,9 +1,10 @@
-//! The table of the thousand laps that the page links to: what it says is what the core drives.
+//! The table of the thousand laps that the page links to agrees with the core.
 
 use super::document::source;
 use super::figures::sweep::Sweep;
 
-/// Levels of the wheels' noise, and the columns and rows of the table, by the names of figures and of the file.
+/// Levels of the odometry noise, and the columns and rows of the table, by the names of figures and of the
+/// file.
 const LEVELS: [&str; 4] = ["quarter", "once", "double", "fourfold"];
 const COLUMNS: [(&str, &str); 3] = [
     ("odometry", "odometry"),
@@ -35,7 +36,7 @@ const COUNTS: [(&str, &str, usize, &str); 7] = [
 ];
 
 #[test]
-fn the_table_behind_the_link_is_what_the_core_drives() {
+fn the_table_behind_the_link_agrees_with_the_core() {
     let sweep = Sweep::shared();
     let value = |name: &str| sweep.value(&name.split('.').collect::<Vec<_>>());
     let mut lines = vec!["wheel noise,estimate,result,statistic,value,unit".to_owned()];
@@ -44,7 +45,7 @@ fn the_table_behind_the_link_is_what_the_core_drives() {
         for (column, estimate) in COLUMNS {
             for (row, result) in ROWS {
                 for (quantile, statistic) in QUANTILES {
-                    // The wheels have no keyframes and no map.
+                    // Dead reckoning has no keyframes and no map.
                     if let Some(value) = value(&format!("{level}.{column}.{row}.{quantile}")) {
                         lines.push(format!(
                             "{noise},{estimate},{result},{statistic},{value:.2},m"

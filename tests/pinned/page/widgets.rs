@@ -1,4 +1,4 @@
-//! The widgets of the page, set as its links and questions set them.
+//! The widgets of the page in the states of its links and questions.
 
 use kit::model::Model;
 use kit::shell::Shell;
@@ -13,7 +13,7 @@ impl Widgets {
         Self(SHELLS.iter().map(|make| make()).collect())
     }
 
-    /// Puts a widget into a state such as `heading=40&dx=0`, from its defaults.
+    /// Sets a widget to a state such as `heading=40&dx=0`, from its defaults.
     pub fn set(&mut self, id: &str, state: &str) -> &dyn Model {
         let widget = self
             .0
@@ -29,7 +29,7 @@ impl Widgets {
                 .set_text(name, text)
                 .unwrap_or_else(|error| panic!("{id}: {error}"));
         }
-        // A lap is driven in pieces between frames; here nobody draws any.
+        // A lap is computed in pieces between frames; here are none.
         model.finish_work();
         model
     }

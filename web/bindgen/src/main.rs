@@ -10,7 +10,7 @@ use wasm_bindgen_cli_support::Bindgen;
 #[derive(Parser)]
 #[command(name = "wasm-bindgen", version)]
 struct Args {
-    /// The module that the compiler wrote.
+    /// The module from the compiler.
     input: PathBuf,
     #[arg(long)]
     out_dir: PathBuf,
@@ -18,10 +18,10 @@ struct Args {
     out_name: String,
     #[arg(long)]
     target: Target,
-    /// Without the path of a module beside the glue: the caller names it.
+    /// Accepted and ignored: the caller names the module.
     #[arg(long)]
     omit_default_module_path: bool,
-    /// Declarations are always written.
+    /// Accepted and ignored: declarations are always written.
     #[arg(long)]
     typescript: bool,
 }

@@ -1,6 +1,7 @@
 //! Opens a widget in a window of the desktop: `cargo run -p slam_desktop w16.1`.
 //!
-//! Its host is this program in place of a page, so what needs a browser is missing: w16.10 reads no log here.
+//! This program replaces the page as host, so features that need a browser are missing: w16.10 reads no log
+//! here.
 
 mod window;
 
@@ -26,7 +27,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The widget that the words of the command line name.
+/// The widget named on the command line.
 fn named(words: impl IntoIterator<Item = String>) -> Result<Shell, String> {
     let words: Vec<String> = words.into_iter().collect();
     let [name] = words.as_slice() else {
@@ -46,7 +47,7 @@ mod tests {
     }
 
     #[test]
-    fn a_widget_is_opened_by_its_name_and_a_wrong_one_is_told_the_names() {
+    fn a_widget_is_opened_by_its_name_and_an_unknown_one_lists_the_names() {
         assert_eq!(asked_for(&["w16.11"]), Ok("w16.11"));
         let refused = asked_for(&["w16.99"]).unwrap_err();
         assert!(

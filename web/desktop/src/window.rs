@@ -1,4 +1,4 @@
-//! The window, and egui around a widget in it.
+//! A window with a widget in it.
 
 use kit::palette::Theme;
 use kit::shell::Shell;
@@ -6,7 +6,7 @@ use kit::shell::Shell;
 /// Opens a window with that widget and returns when it is closed.
 ///
 /// # Errors
-/// [`eframe::Error`] where no window can be had, such as without a display.
+/// [`eframe::Error`] if no window can be opened, for example without a display.
 pub fn run(shell: Shell) -> eframe::Result {
     let title = shell.model().spec().title;
     let options = eframe::NativeOptions {

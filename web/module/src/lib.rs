@@ -1,3 +1,3 @@
-//! The widgets, linked to one module for the page. All of it is in [`slam_web`].
+//! Links the widgets to one module for the page. The code is in [`slam_web`].
 
 extern crate slam_web as _;

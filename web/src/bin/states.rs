@@ -1,6 +1,6 @@
 //! `states NAME`: state and results of a widget after each of its presets, computed natively.
 //!
-//! The test in Node compares this text with what the same code says as WebAssembly.
+//! The test in Node compares this text with that of the same code in WebAssembly.
 
 use slam_web::state;
 use widgets::registry;

@@ -1,4 +1,4 @@
-//! A room as bells: what the size of the cells does to NDT's map and to its score.
+//! A room as Gaussians: the effect of the cell size on NDT's map and on its score.
 
 use ch16_lab::samples;
 use ch16_slam2d::cloud::PointCloud;
@@ -10,11 +10,11 @@ use super::{Shown, Sketch, Slider};
 
 /// Beams of each of the two sweeps.
 const BEAMS: usize = 180;
-/// Fewest points of a cell.
+/// Smallest number of points in a cell.
 const MIN_POINTS: usize = 3;
-/// The farthest shift that is scored, m.
+/// Largest shift, m.
 const FARTHEST_M: f64 = 1.5;
-/// How many standard deviations a bell is drawn wide.
+/// Size of the drawn ellipses in standard deviations.
 const DRAWN_SIGMAS: f64 = 2.0;
 
 pub(super) const SKETCH: Sketch = Sketch {
@@ -32,14 +32,14 @@ pub(super) const SKETCH: Sketch = Sketch {
     at,
 };
 
-/// Two sweeps from one place in room A, with a noise of their own each.
+/// Two sweeps from one pose in room A, with independent noise.
 fn sweeps() -> [PointCloud; 2] {
     let mut rng = Rng::new(16);
     let room = SE2::new(1.9, 1.8, 0.0);
     core::array::from_fn(|_| samples::sweep(&room, BEAMS, &mut rng))
 }
 
-/// The score of the second sweep where it is shifted along x.
+/// The score of the second sweep shifted along x.
 fn score(map: &NdtMap, sweep: &PointCloud, shift_m: f64) -> f64 {
     map.score(sweep, &SE2::translation(shift_m, 0.0))
 }
@@ -49,7 +49,7 @@ fn shifts() -> impl Iterator<Item = f64> {
     (-25..=25).map(|k| FARTHEST_M * f64::from(k) / 25.0)
 }
 
-/// Where the score has fallen to half of that without a shift, m: the first such shift to the right.
+/// The shift to the right at which the score has fallen to half of its value without a shift, m.
 fn half_width_m(map: &NdtMap, sweep: &PointCloud) -> f64 {
     let half = 0.5 * score(map, sweep, 0.0);
     let mut right = shifts().filter(|&shift| shift > 0.0);
@@ -137,7 +137,7 @@ mod tests {
 
     /// The claim of the section: the cell size is a smoothing length.
     #[test]
-    fn large_cells_make_a_wide_hill_and_small_ones_a_narrow_one() {
+    fn large_cells_yield_a_wide_peak_and_small_ones_a_narrow_one() {
         let [target, sweep] = sweeps();
         let width = |cell_m: f64| half_width_m(&NdtMap::build(&target, cell_m, MIN_POINTS), &sweep);
         assert!(
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn every_bell_keeps_a_width_across_its_wall() {
+    fn every_gaussian_has_a_least_width_across_its_wall() {
         let [target, _] = sweeps();
         for cell in NdtMap::build(&target, 0.6, MIN_POINTS).cells() {
             assert!(cell.covariance.cholesky().is_some(), "{cell:?}");

@@ -1,4 +1,4 @@
-//! A robot that leaves a room for the corridor: what each of its sweeps knows of where it is.
+//! A robot that leaves a room for the corridor: the information of each of its sweeps about its position.
 
 use ch16_lab::lap::DriveConfig;
 use ch16_lab::samples;
@@ -14,13 +14,13 @@ use pr_geom::{Rng, SE2, math};
 
 use super::{Shown, Sketch, Slider};
 
-/// From the middle of room A through its door, and down the corridor, m.
-const WAY_M: [[f64; 2]; 3] = [[2.05, 1.9], [2.05, 4.4], [10.8, 4.4]];
+/// The path from the middle of room A through its door, and down the corridor, m.
+const PATH_M: [[f64; 2]; 3] = [[2.05, 1.9], [2.05, 4.4], [10.8, 4.4]];
 /// Beams of a sweep.
 const BEAMS: usize = 180;
 /// Radius of the normals, m.
 const NORMAL_RADIUS_M: f64 = 0.3;
-/// How much larger than it is the ellipse is drawn.
+/// Magnification of the ellipse.
 const ENLARGED: f64 = 20.0;
 
 pub(super) const SKETCH: Sketch = Sketch {
@@ -38,9 +38,9 @@ pub(super) const SKETCH: Sketch = Sketch {
     at,
 };
 
-/// The place on the way after so many metres.
+/// The position after that many metres of the path.
 fn place(mut driven_m: f64) -> [f64; 2] {
-    for leg in WAY_M.windows(2) {
+    for leg in PATH_M.windows(2) {
         let ([x0, y0], [x1, y1]) = (leg[0], leg[1]);
         let length_m = math::norm2(x1 - x0, y1 - y0);
         if driven_m <= length_m {
@@ -49,16 +49,16 @@ fn place(mut driven_m: f64) -> [f64; 2] {
         }
         driven_m -= length_m;
     }
-    WAY_M[WAY_M.len() - 1]
+    PATH_M[PATH_M.len() - 1]
 }
 
-/// What is known of a place: points that were seen, and a root of the position's covariance, m.
+/// The information at a position: observed points, and a root of the position's covariance, m.
 struct Known {
     points: Vec<Point2<f64>>,
     root: [[f64; 2]; 2],
 }
 
-/// Registers a sweep with one of the same place, by point to plane, at the truth.
+/// Registers a sweep with one from the same pose, point to plane, at the truth.
 fn known(world_from_body: &SE2) -> Known {
     let mut rng = Rng::new(16);
     let mut before = samples::sweep(world_from_body, BEAMS, &mut rng);
@@ -67,7 +67,7 @@ fn known(world_from_body: &SE2) -> Known {
     let config = IcpConfig::default();
     let map = DenseMap::from_cloud(&before, config.tau_m, usize::MAX);
     let mut pairs = correspondences(&now, &map, SE2::identity(), &config);
-    // Point to plane leaves out what has no normal.
+    // Point to plane ignores points without a normal.
     pairs.retain(|pair| pair.normal.is_some());
     let trust = SlamConfig::chapter().chapter.odometry_trust;
     let information = match_information(&pairs, &SE2::identity(), &trust);
@@ -86,7 +86,7 @@ fn known(world_from_body: &SE2) -> Known {
     }
 }
 
-/// Standard deviations along x and y, m: of a root's rows.
+/// Standard deviations along x and y, m: the norms of a root's rows.
 fn sigmas_m(root: &[[f64; 2]; 2]) -> [f64; 2] {
     core::array::from_fn(|axis| math::norm2(root[0][axis], root[1][axis]))
 }
@@ -114,7 +114,7 @@ fn at(driven_m: f64) -> Shown {
         y: Axis::new("y (m)", -0.2, 6.2),
         layers: vec![
             Layer::segments(walls.collect(), Stroke::Solid, Tone::Truth, 1.0),
-            Layer::line(WAY_M.to_vec(), Stroke::Dashed, Tone::Truth, 1.0),
+            Layer::line(PATH_M.to_vec(), Stroke::Dashed, Tone::Truth, 1.0),
             Layer::points(seen.collect(), Mark::Cross, Tone::Measurement, 2.5),
             Layer::Ellipse {
                 center: [x, y],
@@ -161,12 +161,12 @@ mod tests {
     }
 
     #[test]
-    fn the_way_ends_where_the_slider_does() {
-        let length_m: f64 = WAY_M
+    fn the_path_ends_where_the_slider_does() {
+        let length_m: f64 = PATH_M
             .windows(2)
             .map(|leg| math::norm2(leg[1][0] - leg[0][0], leg[1][1] - leg[0][1]))
             .sum();
         assert!((SKETCH.slider.max..SKETCH.slider.max + 0.1).contains(&length_m));
-        assert_eq!(place(0.0), WAY_M[0]);
+        assert_eq!(place(0.0), PATH_M[0]);
     }
 }

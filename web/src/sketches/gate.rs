@@ -1,4 +1,4 @@
-//! A loop at the gate: the longer the way, the farther a robot could have drifted.
+//! A loop at the gate: drift grows with the path length.
 
 use std::sync::OnceLock;
 
@@ -11,7 +11,7 @@ use pr_geom::{Rng, math};
 
 use super::{Shown, Sketch, Slider};
 
-/// Drifts that are drawn.
+/// Number of drawn drifts.
 const DRIFTS: usize = 200;
 /// Half the picture's side, m.
 const REACH_M: f64 = 1.2;
@@ -31,7 +31,7 @@ pub(super) const SKETCH: Sketch = Sketch {
     at,
 };
 
-/// How far the first loop of the canonical lap lies off what the graph believed, m, m, rad.
+/// The innovation of the canonical lap's first loop, m, m, rad.
 fn innovation() -> &'static Vector3<f64> {
     static FOUND: OnceLock<Vector3<f64>> = OnceLock::new();
     FOUND.get_or_init(|| {
@@ -112,7 +112,8 @@ fn picture(gap: usize, config: &LoopConfig, reach_m: f64) -> Panel {
     }
 }
 
-/// Sums of so many random steps, as the gate assumes them, m, m, rad; the same throws for every way.
+/// Sums of random steps according to the gate's model, m, m, rad; the random numbers are the same for every
+/// path.
 fn drifts(gap: usize, config: &LoopConfig) -> Vec<Vector3<f64>> {
     let mut rng = Rng::new(16);
     let steps = math::sqrt(gap as f64);
@@ -134,9 +135,9 @@ mod tests {
         at(nodes).sentence.ends_with("accepted.")
     }
 
-    /// The canonical lap tests this loop over 22 nodes, and takes it (chapter, canonical run).
+    /// The canonical lap tests this loop over 22 nodes, and accepts it (chapter, canonical run).
     #[test]
-    fn the_loop_is_refused_after_a_short_way_and_accepted_after_its_own() {
+    fn the_loop_is_rejected_after_a_short_path_and_accepted_after_its_own() {
         assert!(!accepted(1.0));
         assert!(accepted(22.0));
         assert!(
@@ -147,12 +148,12 @@ mod tests {
     }
 
     #[test]
-    fn a_wider_gate_never_refuses_what_a_narrower_one_took() {
+    fn a_wider_gate_accepts_all_that_a_narrower_one_accepts() {
         let verdicts: Vec<bool> = (1..=60).map(|nodes| accepted(f64::from(nodes))).collect();
         assert!(verdicts.windows(2).all(|pair| pair[0] <= pair[1]));
     }
 
-    /// One in twenty, on purpose: of 200 throws 10, and 3 standard deviations of a count of 200 are 9.2.
+    /// One in twenty by design: of 200 samples 10, and 3 standard deviations of a count of 200 are 9.2.
     #[test]
     fn about_one_true_drift_in_twenty_stays_outside() {
         let config = LapConfig::default().slam.chapter.loops;

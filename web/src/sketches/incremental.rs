@@ -1,4 +1,4 @@
-//! The ancestor: a climb to the nearest hill, and what becomes of an error that it finds.
+//! Incremental mapping: a local search for the nearest maximum, and the treatment of a detected error.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -13,15 +13,15 @@ use pr_geom::SE2;
 
 use super::{Shown, Sketch, Slider};
 
-/// Distance of two posts, m: a place looks like the next one.
+/// Distance of two posts, m: every position looks like the next one.
 const SPACING_M: f64 = 1.0;
-/// What the wheels are believed to be off by at the end of the way, a standard deviation, m.
-const WHEELS_SIGMA_M: f64 = 0.6;
-/// The largest error of the slider, m.
+/// Assumed standard deviation of the odometry at the end of the path, m.
+const ODOMETRY_SIGMA_M: f64 = 0.6;
+/// Largest error of the slider, m.
 const LARGEST_M: f64 = 1.2;
-/// Steps of a metre, four on a side.
+/// Steps of one metre, four on a side.
 const STEPS: usize = 16;
-/// A climb that ends so near has found the place, m.
+/// A search that ends this close to the truth has succeeded, m.
 const RIGHT_M: f64 = 0.1;
 
 const CLIMB: ClimbConfig = ClimbConfig {
@@ -45,7 +45,7 @@ pub(super) const SKETCH: Sketch = Sketch {
     at,
 };
 
-/// Where the robot ends: before a row of posts that the map knows from its start.
+/// The robot's final view: a row of posts that the map contains from the start.
 struct Place {
     map: LikelihoodMap,
     sweep: PointCloud,
@@ -71,7 +71,7 @@ impl Place {
         }
     }
 
-    /// `ln p(z | s)` of the sweep, with the wheels' `ln p(s | u)` where they are asked, s so far along the row.
+    /// `ln p(z | s)` of the sweep, plus the odometry's `ln p(s | u)` if it is given, at s along the row.
     fn score(&self, along_m: f64, wheels: Option<PosePrior>) -> f64 {
         let pose = SE2::translation(along_m, 0.0);
         let field = self.map.field(self.map.config().sigma_m);
@@ -80,33 +80,33 @@ impl Place {
             .0
     }
 
-    /// Where a climb from the wheels' pose ends along the row, m.
-    fn climbed_m(&self, wheels: PosePrior) -> f64 {
+    /// The result of a search from the odometry's pose along the row, m.
+    fn search_result_m(&self, wheels: PosePrior) -> f64 {
         let field = self.map.field(self.map.config().sigma_m);
         let climb = ScanClimb::new(&field, &self.sweep, wheels.pose, Some(wheels), CLIMB);
         climb.run().pose.x()
     }
 }
 
-/// What the wheels say at the end of the way.
-fn wheels(error_m: f64) -> PosePrior {
-    let known = 1.0 / (WHEELS_SIGMA_M * WHEELS_SIGMA_M);
+/// The odometry prior at the end of the path.
+fn odometry_prior(error_m: f64) -> PosePrior {
+    let known = 1.0 / (ODOMETRY_SIGMA_M * ODOMETRY_SIGMA_M);
     PosePrior {
         pose: SE2::translation(error_m, 0.0),
         information: Matrix3::from_diagonal(&Vector3::new(known, 1e4, 1e4)),
     }
 }
 
-/// The same way by four tellers; each starts and should end at the origin.
-struct Ways {
+/// The same path by four methods; each one starts and should end at the origin.
+struct Paths {
     truth: Vec<SE2>,
     climbed: Vec<SE2>,
     pushed: Vec<SE2>,
     solved: Vec<SE2>,
 }
 
-impl Ways {
-    /// Wheels that lose `error_m` evenly, and a climb that ends `found_m` off.
+impl Paths {
+    /// Odometry that loses `error_m` evenly, and a search that ends `found_m` off.
     fn new(error_m: f64, found_m: f64) -> Self {
         let mut truth = vec![SE2::identity()];
         for k in 0..STEPS {
@@ -130,16 +130,16 @@ impl Ways {
         }
     }
 
-    /// The longest error of a pose, m.
-    fn worst_m(&self, way: &[SE2]) -> f64 {
-        let errors = way.iter().zip(&self.truth);
+    /// The largest error of a pose, m.
+    fn worst_m(&self, path: &[SE2]) -> f64 {
+        let errors = path.iter().zip(&self.truth);
         errors
             .map(|(pose, truth)| position_error_m(pose, truth))
             .fold(0.0, f64::max)
     }
 }
 
-/// The pose graph of the wheels' steps, all known alike, and of one loop that knows better.
+/// The pose graph of the odometry steps, with equal covariances, and of one more accurate loop.
 fn solve(wheels: &[SE2], end: &SE2) -> Vec<SE2> {
     let step = Matrix3::from_diagonal(&Vector3::new(100.0, 100.0, 1e4));
     let mut graph = PoseGraph::new();
@@ -158,10 +158,10 @@ fn solve(wheels: &[SE2], end: &SE2) -> Vec<SE2> {
 
 fn at(error_m: f64) -> Shown {
     let place = Place::new();
-    let found_m = place.climbed_m(wheels(error_m));
-    let ways = Ways::new(error_m, found_m);
+    let found_m = place.search_result_m(odometry_prior(error_m));
+    let paths = Paths::new(error_m, found_m);
     let [climbed, pushed, solved] =
-        [&ways.climbed, &ways.pushed, &ways.solved].map(|way| ways.worst_m(way));
+        [&paths.climbed, &paths.pushed, &paths.solved].map(|path| paths.worst_m(path));
     let ending = if found_m.abs() <= RIGHT_M {
         format!("{:.2} m off, at the right hill", found_m.abs())
     } else {
@@ -173,7 +173,7 @@ fn at(error_m: f64) -> Shown {
              nothing before is moved, by {pushed:.2} m where the error is sent backwards, by {solved:.2} m in the graph."
         ),
         scene: Scene {
-            panels: vec![hills(&place, error_m, found_m), map(&ways)],
+            panels: vec![hills(&place, error_m, found_m), map(&paths)],
         },
     }
 }
@@ -183,7 +183,7 @@ fn line(points: Vec<[f64; 2]>, stroke: Stroke, tone: Tone) -> Layer {
 }
 
 fn hills(place: &Place, error_m: f64, found_m: f64) -> Panel {
-    let prior = wheels(error_m);
+    let prior = odometry_prior(error_m);
     let sweep = |along_m: f64| place.score(along_m, None);
     let both = |along_m: f64| place.score(along_m, Some(prior));
     let motion = |along_m: f64| both(along_m) - sweep(along_m);
@@ -224,36 +224,36 @@ fn hills(place: &Place, error_m: f64, found_m: f64) -> Panel {
     }
 }
 
-fn map(ways: &Ways) -> Panel {
+fn map(paths: &Paths) -> Panel {
     let places =
-        |way: &[SE2]| -> Vec<[f64; 2]> { way.iter().map(|pose| [pose.x(), pose.y()]).collect() };
-    let with_marks = |way: &[SE2], stroke, tone, mark| {
+        |path: &[SE2]| -> Vec<[f64; 2]> { path.iter().map(|pose| [pose.x(), pose.y()]).collect() };
+    let with_marks = |path: &[SE2], stroke, tone, mark| {
         [
-            line(places(way), stroke, tone),
-            Layer::points(places(way), mark, tone, 3.0),
+            line(places(path), stroke, tone),
+            Layer::points(places(path), mark, tone, 3.0),
         ]
     };
-    let mut layers = vec![line(places(&ways.truth), Stroke::Dashed, Tone::Truth)];
+    let mut layers = vec![line(places(&paths.truth), Stroke::Dashed, Tone::Truth)];
     layers.extend(with_marks(
-        &ways.climbed,
+        &paths.climbed,
         Stroke::Dotted,
         Tone::Prediction,
         Mark::Triangle,
     ));
     layers.extend(with_marks(
-        &ways.pushed,
+        &paths.pushed,
         Stroke::Solid,
         Tone::Prior,
         Mark::Circle,
     ));
     layers.push(Layer::points(
-        places(&ways.solved),
+        places(&paths.solved),
         Mark::Square,
         Tone::Posterior,
         3.0,
     ));
     Panel {
-        id: "ways",
+        id: "paths",
         title: "Once around".to_owned(),
         weight: Weight::Half,
         aspect: Aspect::Equal,
@@ -275,12 +275,13 @@ mod tests {
     use super::*;
 
     fn found_m(error_m: f64) -> f64 {
-        Place::new().climbed_m(wheels(error_m))
+        Place::new().search_result_m(odometry_prior(error_m))
     }
 
-    /// The claim of the section: it copes with small errors of the wheels, and with no large ones.
+    /// The claim of the section: it handles small odometry errors, and no large ones.
     #[test]
-    fn a_climb_from_less_than_half_a_spacing_ends_at_the_right_hill_and_else_at_the_next() {
+    fn a_search_from_less_than_half_a_spacing_ends_at_the_right_maximum_and_otherwise_at_the_next()
+    {
         for error_m in [0.0, 0.1, 0.2, 0.3, 0.4] {
             assert!(
                 found_m(error_m).abs() < RIGHT_M,
@@ -294,15 +295,15 @@ mod tests {
         }
     }
 
-    /// The claim of the section: the first cannot correct the past; its variant sends errors backwards, to
-    /// about where the sparse solve ends.
+    /// The claim of the section: the first method cannot correct the past; its variant propagates errors
+    /// backwards, to about the result of the sparse solver.
     #[test]
-    fn only_what_looks_back_shares_the_error_out() {
+    fn only_methods_with_a_history_distribute_the_error() {
         let error_m = 0.4;
-        let ways = Ways::new(error_m, found_m(error_m));
+        let paths = Paths::new(error_m, found_m(error_m));
         let last_but_one_m = error_m * 15.0 / 16.0;
-        assert!((ways.worst_m(&ways.climbed) - last_but_one_m).abs() < 1e-9);
-        assert!(ways.worst_m(&ways.pushed) < 0.2 * error_m);
-        assert!(ways.worst_m(&ways.solved) < 0.2 * error_m);
+        assert!((paths.worst_m(&paths.climbed) - last_but_one_m).abs() < 1e-9);
+        assert!(paths.worst_m(&paths.pushed) < 0.2 * error_m);
+        assert!(paths.worst_m(&paths.solved) < 0.2 * error_m);
     }
 }

@@ -1,4 +1,5 @@
-//! A nearest neighbour: what a hash of cells looks at, and what a tree does that grows with its map.
+//! A nearest-neighbour query: the points that a hash grid compares, and those of a tree that grows with its
+//! map.
 
 use std::sync::OnceLock;
 
@@ -12,11 +13,11 @@ use kit::scene::{
 
 use super::{Shown, Sketch, Slider};
 
-/// Width of a cell, and the farthest that a partner may be, m.
+/// Width of a cell, and largest distance of a partner, m.
 const TAU_M: f64 = 0.5;
-/// A cell takes no more points.
+/// Largest number of points in a cell.
 const MOST_IN_A_CELL: usize = 20;
-/// Whose partner is looked for, m, in the world's frame: near a wall that the first sweep sees.
+/// The query point, m, in the world's frame: near a wall that the first sweep sees.
 const QUERY: [f64; 2] = [1.3, 3.65];
 /// Half the side of the picture of the cells, m.
 const NEAR_M: f64 = 1.25;
@@ -36,7 +37,7 @@ pub(super) const SKETCH: Sketch = Sketch {
     at,
 };
 
-/// The sweeps of the canonical lap's keyframes, each where the graph has it in the end.
+/// The sweeps of the canonical lap's keyframes, at their final poses in the graph.
 fn sweeps() -> &'static [PointCloud] {
     static FOUND: OnceLock<Vec<PointCloud>> = OnceLock::new();
     FOUND.get_or_init(|| {
@@ -49,15 +50,15 @@ fn sweeps() -> &'static [PointCloud] {
     })
 }
 
-/// A tree over points: each inner node parts the plane at its own point, by x and y in turn.
+/// A k-d tree: each inner node splits the plane at its own point, by x and y in turn.
 ///
-/// A new point becomes a leaf (Bentley 1975); nothing is ever built anew.
+/// A new point becomes a leaf (Bentley 1975); the tree is never rebalanced.
 #[derive(Default)]
 struct Tree {
     points: Vec<[f64; 2]>,
-    /// The nodes below each, before it and beyond it.
+    /// The children of each node, before and beyond its split.
     below: Vec<[Option<usize>; 2]>,
-    /// The leaf that is farthest from the root, and how many levels that is.
+    /// The deepest leaf, and its level.
     deepest: usize,
     levels: usize,
 }
@@ -78,13 +79,13 @@ impl Tree {
         }
     }
 
-    /// On which side of a node's cut a point lies; the root's level, the first, cuts x.
+    /// The side of a node's split on which a point lies; the root's level, the first, splits x.
     fn side(&self, node: usize, parity: usize, point: [f64; 2]) -> usize {
         let axis = 1 - parity;
         usize::from(point[axis] >= self.points[node][axis])
     }
 
-    /// The cuts on the way from the root to the deepest leaf, each as long as what it parts.
+    /// The splits from the root to the deepest leaf, each as long as the region that it splits.
     fn cuts_to_the_deepest(&self, mut within: Bounds) -> Vec<[[f64; 2]; 2]> {
         let goal = self.points[self.deepest];
         let (mut node, mut axis, mut cuts) = (0, 0, Vec::new());
@@ -106,10 +107,10 @@ impl Tree {
         cuts
     }
 
-    /// The point nearest to `query` if one is closer than τ, and with how many it was compared.
+    /// The point nearest to `query` if one is closer than τ, and the number of compared points.
     fn nearest(&self, query: [f64; 2]) -> (Option<usize>, usize) {
         let (mut best, mut compared) = ((TAU_M * TAU_M, None), 0);
-        // What is still to be looked at: a node, the axis that it cuts, and how far its side is off at least.
+        // Nodes to visit: a node, the axis that it splits, and a lower bound of the distance to its side.
         let mut open = vec![(0, 0, 0.0)];
         while let Some((node, axis, least_m2)) = open.pop() {
             if least_m2 >= best.0 {
@@ -133,7 +134,7 @@ impl Tree {
     }
 }
 
-/// The map after so many sweeps, in both forms.
+/// The map after a number of sweeps, in both forms.
 struct Grown {
     map: VoxelMap,
     tree: Tree,
@@ -164,13 +165,13 @@ impl Grown {
         points.map(|point| [point.x, point.y]).collect()
     }
 
-    /// Levels of a tree over these points that is built at once.
+    /// Levels of a balanced tree over these points.
     fn fewest_levels(&self) -> u32 {
         usize::BITS - self.tree.points.len().leading_zeros()
     }
 }
 
-/// What all sweeps of the lap cover, with half a metre around it.
+/// The area of all sweeps of the lap, with a margin of half a metre.
 fn bounds() -> Bounds {
     let mut bounds = Bounds {
         min: QUERY,
@@ -291,7 +292,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_tree_finds_what_the_map_finds() {
+    fn the_tree_and_the_map_find_the_same_neighbour() {
         let grown = Grown::with_count(20);
         let mut answers = 0;
         for k in 0..400 {
@@ -305,8 +306,8 @@ mod tests {
         assert!(answers > 50, "{answers}");
     }
 
-    /// The claims of the section: a look at nine cells costs the same in a large map, and a tree that only
-    /// gets leaves is lopsided.
+    /// The claims of the section: a query of nine cells costs the same in a large map, and a tree that only
+    /// gets leaves is unbalanced.
     #[test]
     fn the_map_grows_and_the_nine_cells_do_not_while_the_tree_gets_lopsided() {
         let (few, all) = (Grown::with_count(8), Grown::with_count(41));

@@ -1,4 +1,4 @@
-//! A correction that the front end does not get: what the next sweeps and the next loop make of it.
+//! A correction that the front end does not get: its effect on the next sweeps and the next loop.
 
 use std::sync::OnceLock;
 
@@ -10,7 +10,7 @@ use pr_geom::{Point2, SE2};
 
 use super::{Shown, Sketch, Slider};
 
-/// What is drawn of the corridor, round the next keyframe, m.
+/// The drawn part of the corridor, around the next keyframe, m.
 const REACH_M: [f64; 2] = [2.4, 1.3];
 
 pub(super) const SKETCH: Sketch = Sketch {
@@ -33,7 +33,7 @@ struct Between {
     record: LapRecord,
     first: LoopAttempt,
     second: LoopAttempt,
-    /// What the first loop did to its newest node: pose after it ∘ pose before it, inverted.
+    /// The correction by the first loop: newest node's pose after it ∘ pose before it, inverted.
     correction: SE2,
 }
 
@@ -58,12 +58,12 @@ impl Between {
         })
     }
 
-    /// What is left of the old error in the front end's frame, where it gets this share of the correction.
+    /// The remaining error in the front end's frame, if it gets this share of the correction.
     fn left(&self, share: f64) -> SE2 {
         SE2::exp(&(-(1.0 - share) * self.correction.log()))
     }
 
-    /// Poses just before the second loop, as the graph has them where the front end got all.
+    /// Poses in the graph just before the second loop, if the front end got the complete correction.
     fn poses(&self) -> &[SE2] {
         self.record.lap.poses(self.second.tick - 1)
     }
@@ -79,7 +79,7 @@ impl Between {
         cloud.iter().map(|point| pose.transform(point)).collect()
     }
 
-    /// The second loop, as the gate sees it: the registration is the same, the graph's belief is not.
+    /// The second loop at the gate: the registration is the same, the graph's prediction is not.
     fn gate(&self, left: &SE2) -> GateTest {
         let loop_ = &self.second.verification;
         let old = self.poses()[loop_.candidate.node];
@@ -88,7 +88,7 @@ impl Between {
         chi_squared_gate(&innovation, &loop_.gate_information, loop_.gate.gate_chi2)
     }
 
-    /// Of the sweeps after the loop, against those of the way out.
+    /// Disagreement of the sweeps after the loop with those of the outward path.
     fn disagreement_m(&self, left: &SE2) -> f64 {
         let turn = self.record.lap.turn_node.expect("the lap turns round");
         let clouds: Vec<_> = (0..=*self.next_keyframes().end())
@@ -180,12 +180,13 @@ fn picture(lap: &Between, left: &SE2) -> Panel {
 mod tests {
     use super::*;
 
-    /// The chapter's system pushes all of it: its second loop then has χ² 0.42 (canonical run).
+    /// The chapter's system applies the complete correction: its second loop then has χ² 0.42 (canonical
+    /// run).
     #[test]
-    fn all_of_the_correction_is_what_the_lap_has() {
+    fn the_complete_correction_equals_that_of_the_lap() {
         let lap = Between::get();
         let chi2 = lap.gate(&lap.left(1.0)).chi2;
-        // 1e-9: poses are multiplied out in another order.
+        // 1e-9: poses are composed in another order.
         assert!(
             (chi2 - lap.second.verification.gate.chi2).abs() < 1e-9,
             "{chi2}"
@@ -193,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn the_less_of_it_the_farther_the_walls_stand_apart() {
+    fn a_smaller_share_of_it_leaves_the_walls_farther_apart() {
         let lap = Between::get();
         let off: Vec<f64> = [1.0, 0.5, 0.0]
             .map(|share| lap.disagreement_m(&lap.left(share)))

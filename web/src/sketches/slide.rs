@@ -1,4 +1,4 @@
-//! A sweep that slides along its wall: what the two distances of ICP make of it.
+//! A sweep that slides along its wall: the effect on the two distances of ICP.
 
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{IcpConfig, Pair, correspondences};
@@ -8,11 +8,11 @@ use pr_geom::SE2;
 
 use super::{Shown, Sketch, Slider};
 
-/// Distance of two points of a wall, m.
+/// Spacing of the points of a wall, m.
 const SPACING_M: f64 = 0.3;
-/// How far the sweep lies beside the wall, m: a little, so that its pairs are seen.
+/// Distance of the sweep from the wall, m: a little, so that its pairs are visible.
 const BESIDE_M: f64 = 0.1;
-/// The farthest shift along the wall, m.
+/// Largest shift along the wall, m.
 const FARTHEST_M: f64 = 0.6;
 /// Correspondence distance, m: no point loses its partner here.
 const TAU_M: f64 = 1.0;
@@ -185,9 +185,10 @@ fn costs(wall: &Wall, shift_m: f64) -> Panel {
 mod tests {
     use super::*;
 
-    /// The claim of the section: along a wall there is nothing to know, and point to point thinks there is.
+    /// The claim of the section: the position along a wall is unconstrained, but point to point constrains
+    /// it.
     #[test]
-    fn sliding_costs_nothing_point_to_plane_and_comes_and_goes_point_to_point() {
+    fn sliding_has_no_cost_point_to_plane_and_a_periodic_one_point_to_point() {
         let wall = Wall::new();
         let beside = 1e4 * BESIDE_M * BESIDE_M;
         for step in -20..=20 {

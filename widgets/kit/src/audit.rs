@@ -1,4 +1,4 @@
-//! Finds texts of a picture that overlap or are cut off: for the tests of every widget.
+//! Finds overlapping and clipped texts in a picture, for the tests of every widget.
 
 use crate::model::Model;
 use crate::palette::{Rgb, Theme};
@@ -10,13 +10,13 @@ use crate::view::View;
 
 /// Height of letters and figures as a share of the font's size.
 const LETTER_HEIGHT: f32 = 0.75;
-/// Overlap below which nobody sees it, in pixels.
+/// Overlap that is too small to see, in pixels.
 const SLACK: f32 = 1.0;
 
-/// A sentence for every text outside of the panels' layers that leaves the picture or lies on
-/// another one, at that width.
+/// Reports every text outside of the panels' layers that leaves the picture or overlaps another one, at that
+/// width.
 ///
-/// Widths are those of the widest usual face, so what passes here passes in narrower ones.
+/// Text widths are those of the widest common font, so a picture without faults has none in narrower fonts.
 #[must_use]
 pub fn text_faults(model: &dyn Model, view: &dyn View, width_px: f32) -> Vec<String> {
     let mut recorder = Recorder::new();
@@ -32,7 +32,7 @@ pub fn scene_text_faults(scene: &Scene, width_px: f32) -> Vec<String> {
     recorder.faults(width_px, height)
 }
 
-/// A sentence for every two texts over the data of one panel that lie on each other, at that width.
+/// Reports every pair of overlapping texts over the data of one panel, at that width.
 #[must_use]
 pub fn label_faults(model: &dyn Model, view: &dyn View, width_px: f32) -> Vec<String> {
     let mut recorder = Recorder::new();
@@ -56,11 +56,11 @@ fn overlap(a: &PxRect, b: &PxRect) -> bool {
         && b.top + SLACK < a.bottom()
 }
 
-/// A surface that keeps the places of texts and draws nothing.
+/// A surface that records the positions of texts and draws nothing.
 struct Recorder {
     measure: SvgSurface,
     texts: Vec<(String, PxRect)>,
-    /// Words over data.
+    /// Text over data.
     labels: Vec<(String, PxRect)>,
     in_layers: bool,
 }
@@ -107,7 +107,7 @@ impl Measure for Recorder {
 
 impl Surface for Recorder {
     fn clip(&mut self, rect: Option<PxRect>) {
-        // Layers are cut to their plot; their words lie where the data put them.
+        // Layers are clipped to their plot; the data determine the position of their text.
         self.in_layers = rect.is_some();
     }
 

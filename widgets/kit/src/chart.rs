@@ -1,22 +1,22 @@
-//! Plots of values over a timeline: one sample a step, a mark at the step shown.
+//! Plots of values over a timeline: one sample per step, a mark at the current step.
 
 use crate::model::Handle;
 use crate::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
-/// A line of samples, one a step from 0, with its name in the legend.
+/// A line of samples, one per step from 0, with its name in the legend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Series<'a> {
     /// Name in the legend.
     pub label: &'a str,
-    /// The samples; one that is not finite leaves a gap.
+    /// The samples; a value that is not finite leaves a gap.
     pub values: &'a [f64],
     /// Meaning.
     pub tone: Tone,
-    /// Shape of the mark at the step shown.
+    /// Shape of the mark at the current step.
     pub mark: Mark,
 }
 
-/// What a plot over a timeline says around its lines.
+/// Labels and axes of a plot over a timeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeChart<'a> {
     /// Name of the panel.
@@ -29,12 +29,12 @@ pub struct TimeChart<'a> {
     pub last: usize,
     /// Name of the vertical axis, with its unit.
     pub y_label: &'a str,
-    /// The step shown.
+    /// The current step.
     pub now: usize,
 }
 
 impl TimeChart<'_> {
-    /// The plot: a line through each series, and its mark at the step shown.
+    /// Builds the plot: a line through each series, with its mark at the current step.
     #[must_use]
     pub fn panel(&self, series: &[Series]) -> Panel {
         let samples = series.iter().flat_map(|series| series.values);
@@ -81,7 +81,7 @@ impl TimeChart<'_> {
         Axis::new(self.x_label, 0.0, self.last.max(1) as f64)
     }
 
-    /// The line at the step shown, up to `top`.
+    /// The vertical line at the current step, up to `top`.
     #[must_use]
     pub fn now_line(&self, top: f64) -> Layer {
         let x = self.now as f64;
@@ -94,7 +94,7 @@ impl TimeChart<'_> {
     }
 }
 
-/// Takes hold of the line at the step shown where a press at `at` lies within `reach` of it.
+/// Grabs the line at the current step if a press at `at` is within `reach` of it.
 #[must_use]
 pub fn grab_now(panel: &'static str, now: f64, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
     let from_line = at[0] - now;
@@ -105,7 +105,7 @@ pub fn grab_now(panel: &'static str, now: f64, at: [f64; 2], reach: [f64; 2]) ->
     })
 }
 
-/// The step that the line is dragged to, from 0; the timeline may end before it.
+/// The step to which the line is dragged, at least 0; the caller limits it to the end of the timeline.
 #[must_use]
 pub fn dragged_to(handle: Handle, at: [f64; 2]) -> f64 {
     (at[0] - handle.offset[0]).round().max(0.0)
@@ -128,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn gaps_neither_raise_the_axis_nor_get_a_mark() {
+    fn gaps_do_not_extend_the_axis_and_have_no_mark() {
         let chart = TimeChart {
             id: "errors",
             title: "Errors",

@@ -1,4 +1,4 @@
-//! The controls of a widget, from its one list of parameters.
+//! The controls of a widget, generated from its list of parameters.
 
 use egui::accesskit::Role;
 use egui::{Align, Button, DragValue, Layout, Slider, Ui, WidgetInfo, WidgetText};
@@ -13,14 +13,14 @@ use crate::ticks::signed;
 /// Width below which a column of controls is not split in two.
 const TWO_COLUMNS: f32 = 480.0;
 
-/// Shows every parameter of the layer that has no place of its own elsewhere; says whether any was set.
+/// Shows every parameter of the layer that has no other control. Returns whether any was set.
 pub fn params(ui: &mut Ui, model: &mut dyn Model, hot: &mut Hot) -> Touched {
     let layer = model.layer();
     let specs: Vec<_> = model
         .values()
         .iter()
         .filter(|(spec, _)| !on_transport_bar(spec) && spec.id != MORE.id)
-        // A text is what the picture shows: the reader draws it, and does not type it.
+        // The reader sets a text in the picture instead of typing it.
         .filter(|(spec, _)| !matches!(spec.kind, ParamKind::Text { .. }))
         .filter(|(spec, _)| layer.has_param(spec.id))
         .collect();
@@ -45,13 +45,13 @@ pub fn params(ui: &mut Ui, model: &mut dyn Model, hot: &mut Hot) -> Touched {
     touched
 }
 
-/// Whether a parameter is shown by the transport bar instead.
+/// Whether the transport bar shows the parameter instead.
 #[must_use]
 pub fn on_transport_bar(spec: &ParamSpec) -> bool {
     matches!(spec.kind, ParamKind::Timeline { .. }) || spec.id == crate::playback::SPEED.id
 }
 
-/// Shows one parameter; says whether it was set.
+/// Shows one parameter. Returns whether it was set.
 fn param(
     ui: &mut Ui,
     model: &mut dyn Model,
@@ -70,7 +70,7 @@ fn param(
         ParamKind::Timeline { .. } | ParamKind::Text { .. } => None,
     };
     ui.add_space(2.0);
-    // egui keeps to the range; where rounding leaves it, the old value stands.
+    // egui enforces the range; if rounding violates it, the old value remains.
     new.is_some_and(|new| model.set(spec.id, new).is_ok())
 }
 
@@ -105,7 +105,7 @@ fn slider(
     let response = ui.add(
         Slider::new(&mut new, min..=max)
             .step_by(step)
-            // A value from a link may lie between two steps: nobody moved it, so it stays.
+            // A value from a link may lie between two steps; it stays until the reader moves it.
             .clamping(egui::SliderClamping::Edits)
             .show_value(false),
     );
@@ -116,7 +116,7 @@ fn slider(
     changed(value, new).map(tidy)
 }
 
-/// Steps from the minimum leave 0.9500000000000001, which links would carry along.
+/// Rounds away 0.9500000000000001, which steps from the minimum produce and links would contain.
 fn tidy(value: f64) -> f64 {
     (value * 1e9).round() / 1e9
 }
@@ -140,7 +140,7 @@ fn seed(ui: &mut Ui, spec: &'static ParamSpec, value: f64, max: f64, hot: &mut H
     changed(value, new.round())
 }
 
-/// Options beside each other, the chosen one filled.
+/// Options side by side, with the selected one filled.
 pub fn choice(
     ui: &mut Ui,
     spec: &'static ParamSpec,

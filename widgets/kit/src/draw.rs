@@ -1,4 +1,4 @@
-//! Draws a panel on a surface: the one drawing code for the live picture, SVG and print.
+//! Draws a panel on a surface: shared by the live picture, SVG and print.
 
 mod edge;
 mod frame;
@@ -12,7 +12,7 @@ use crate::scene::{Bounds, Panel};
 use crate::surface::{Px, Surface};
 use crate::transform::Transform;
 
-/// The transform of a panel whose top left corner lies at `origin`; `window` is what is shown.
+/// The transform of a panel whose top left corner is at `origin`; `window` is the visible part.
 #[must_use]
 pub fn transform(panel: &Panel, layout: &PanelLayout, origin: Px, window: &Bounds) -> Transform {
     Transform::new(layout.plot.moved(origin), *window, panel.aspect)

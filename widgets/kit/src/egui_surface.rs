@@ -13,7 +13,7 @@ use crate::palette::{self, Rgb, Theme};
 use crate::scene::Raster;
 use crate::surface::{Align, Measure, Pen, Px, PxRect, Surface, TextSize};
 
-/// The textures of a widget's rasters, uploaded only when a raster or the theme changes.
+/// The textures of a widget's rasters, uploaded again only if a raster or the theme changes.
 #[derive(Default)]
 pub struct Textures {
     by_key: HashMap<String, Texture>,
@@ -35,7 +35,7 @@ pub struct EguiSurface<'a> {
 }
 
 impl<'a> EguiSurface<'a> {
-    /// Draws with that painter, keeping textures from frame to frame.
+    /// Creates a surface that keeps its textures from frame to frame.
     #[must_use]
     pub fn new(painter: &Painter, textures: &'a mut Textures, theme: Theme) -> Self {
         Self {
@@ -109,14 +109,14 @@ fn egui_rect(rect: PxRect) -> Rect {
     Rect::from_min_size(pos2(rect.left, rect.top), vec2(rect.width, rect.height))
 }
 
-/// A text without a colour: what is measured and drawn, in whatever colour, egui lays out once.
+/// Lays out a text without a colour, so that egui caches one layout for measuring and for every colour.
 fn laid_out(painter: &Painter, text: &str, size: TextSize) -> Arc<Galley> {
     painter.layout_no_wrap(text.to_owned(), font(size), Color32::PLACEHOLDER)
 }
 
 /// Measures text with egui's fonts.
 pub struct EguiMeasure(
-    /// The painter whose fonts count.
+    /// The painter whose fonts are measured.
     pub Painter,
 );
 

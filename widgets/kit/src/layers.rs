@@ -1,24 +1,24 @@
-//! What a widget opens with, and the rest, which stands under "More".
+//! What a widget shows at the start, and the rest, which "More" opens.
 //!
-//! Whether the rest is shown is a parameter like any other: links, attributes and programs have it.
-//! A widget that does not list it shows everything.
+//! Whether the rest is shown is a parameter like any other: links, attributes and programs can set it. A
+//! widget without this parameter shows everything.
 
 use crate::param::MORE;
 use crate::values::Values;
 
-/// What a widget opens with, beside its title, its timeline and its verdict.
+/// The parts that a widget shows at the start, besides its title, timeline and verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Opening {
-    /// The panels that are the scene.
+    /// The panels of the scene.
     pub panels: &'static [&'static str],
     /// The controls that the widget's section is about.
     pub params: &'static [&'static str],
-    /// The buttons: Play, and what goes with it.
+    /// The buttons: Play and related ones.
     pub buttons: &'static [&'static str],
 }
 
 impl Opening {
-    /// Of a widget without layers.
+    /// For a widget without layers.
     pub const ALL: Self = Self {
         panels: &[],
         params: &[],
@@ -26,19 +26,19 @@ impl Opening {
     };
 }
 
-/// What is shown of a widget.
+/// The visible parts of a widget.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
-    /// What it opens with.
+    /// The parts shown at the start.
     First(Opening),
     /// Everything.
     All,
-    /// Everything but the controls of something that the reader is not at.
+    /// Everything except controls that are irrelevant in the current state.
     AllBut(&'static [&'static str]),
 }
 
 impl Layer {
-    /// The layer that the values ask for.
+    /// The layer that the values select.
     #[must_use]
     pub fn visible(opening: Opening, values: &Values) -> Self {
         match values.find(MORE.id) {

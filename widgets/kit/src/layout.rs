@@ -1,4 +1,4 @@
-//! Where the parts of a panel lie: title, axis names, plot, tick labels, colour bar, legend.
+//! Positions of a panel's parts: title, axis names, plot, tick labels, colour bar, legend.
 //!
 //! ```text
 //! title
@@ -11,7 +11,7 @@
 //! legend, in as many rows as it needs
 //! ```
 //!
-//! Names stand above and below the plot, never rotated: they are read, not deciphered.
+//! Names are above and below the plot and never rotated, for readability.
 
 use crate::scene::{Axis, LegendEntry, Panel, Stroke};
 use crate::surface::{Measure, PxRect, TextSize};
@@ -19,37 +19,37 @@ use crate::ticks::{Scale, Ticks};
 
 /// Height of a row of small text.
 pub const ROW: f32 = 17.0;
-/// Height of the title's row.
+/// Height of a row of the title.
 const TITLE_ROW: f32 = 22.0;
-/// Length of a tick with its distance to the label.
+/// Length of a tick plus its distance to the label.
 pub const TICK: f32 = 8.0;
-/// Room between legend entries.
+/// Space between legend entries.
 const LEGEND_GAP: f32 = 14.0;
-/// Width of a legend's swatch with the room beside it.
+/// Width of a legend's swatch with its margin.
 const SWATCH: f32 = 28.0;
-/// The same for a broken line with a mark: two dashes fit on either side of the mark.
+/// Width for a dashed line with a mark: two dashes fit on either side of the mark.
 const BROKEN_SWATCH: f32 = 54.0;
 /// Space between blocks.
 const GAP: f32 = 4.0;
 
-/// How high the plot itself shall be.
+/// The height of a plot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlotHeight {
-    /// As high as its axes' scale asks for, but at most that.
+    /// The height that follows from the scale of the axes, within a limit.
     Natural {
         /// Upper limit in pixels.
         most: f32,
     },
-    /// Exactly that.
+    /// A fixed height.
     Fixed(f32),
 }
 
-/// The places of a panel's parts, relative to its top left corner.
+/// The positions of a panel's parts, relative to its top left corner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PanelLayout {
     /// Whole width and height.
     pub size: [f32; 2],
-    /// The plot height that was asked for.
+    /// The requested height of the plot.
     pub asked: PlotHeight,
     /// The title's lines, each with the middle of its row.
     pub title: Vec<(String, f32)>,
@@ -68,11 +68,11 @@ pub struct PanelLayout {
 }
 
 impl PanelLayout {
-    /// Lays a panel out in that width.
+    /// Lays out a panel at that width.
     #[must_use]
     pub fn new(panel: &Panel, width: f32, height: PlotHeight, measure: &mut dyn Measure) -> Self {
         let left = tick_label_width(&panel.y, measure) + TICK + 2.0;
-        // Half of the last label of the horizontal axis hangs over the plot's edge.
+        // Half of the last label of the horizontal axis extends beyond the plot's edge.
         let right = 0.5 * measure.text_width(&format!("{:.0}", panel.x.max), TextSize::Small) + 4.0;
         let plot_width = (width - left - right).max(40.0);
         let plot_height = match height {
@@ -138,7 +138,7 @@ impl PanelLayout {
     }
 }
 
-/// Breaks a text at its spaces into lines of that width; a longer word stands alone.
+/// Breaks a text at its spaces into lines of that width; a longer word gets its own line.
 #[must_use]
 pub fn wrap(text: &str, width: f32, size: TextSize, measure: &mut dyn Measure) -> Vec<String> {
     let mut lines = Vec::new();
@@ -168,7 +168,7 @@ pub fn y_ticks(min: f64, max: f64, height: f32, label: &str) -> Ticks {
     Ticks::new(min, max, most, Scale::of_label(label))
 }
 
-/// Ticks of a horizontal axis of that width, as many as fit beside each other.
+/// Ticks of a horizontal axis of that width, as many as fit side by side.
 #[must_use]
 pub fn x_ticks(min: f64, max: f64, width: f32, label: &str, measure: &mut dyn Measure) -> Ticks {
     let scale = Scale::of_label(label);
@@ -189,7 +189,7 @@ pub fn x_ticks(min: f64, max: f64, width: f32, label: &str, measure: &mut dyn Me
 }
 
 fn tick_label_width(axis: &Axis, measure: &mut dyn Measure) -> f32 {
-    // The step depends on the height, which depends on this width: the widest of several steps.
+    // The step depends on the height, which depends on this width; so take the widest of several steps.
     [3, 5, 8]
         .into_iter()
         .flat_map(|most| {
@@ -205,7 +205,7 @@ fn legend_width(entry: &LegendEntry, measure: &mut dyn Measure) -> f32 {
     swatch(entry) + measure.text_width(&entry.label, TextSize::Small)
 }
 
-/// Width of an entry's swatch with the room beside it.
+/// Width of an entry's swatch with its margin.
 #[must_use]
 pub fn swatch(entry: &LegendEntry) -> f32 {
     match (entry.mark, entry.stroke) {

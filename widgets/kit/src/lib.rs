@@ -1,13 +1,12 @@
-//! What the widgets share.
+//! The infrastructure that the widgets share.
 //!
-//! The half without egui is what a widget's `model.rs` speaks: [`param`], [`values`], [`spec`], [`model`],
-//! [`scene`], [`chart`], [`counted`], [`layers`], [`outside`], [`playback`], [`played`], [`promises`], [`run`], [`ticks`],
-//! [`palette`]. Nothing in it may use the other half: the models are tested headless.
+//! The half without egui is for a widget's `model.rs`: [`param`], [`values`], [`spec`], [`model`], [`scene`],
+//! [`chart`], [`counted`], [`layers`], [`outside`], [`playback`], [`played`], [`promises`], [`run`],
+//! [`ticks`], [`palette`]. It must not use the other half, because the models are tested headless.
 //!
-//! The other half draws, and is compiled with the feature `view`. [`draw`] puts a scene on any
-//! [`surface::Surface`], of which there are two, [`egui_surface`] for the live picture and [`svg`]
-//! for the static one. [`shell`] adds the words, the [`controls`], the [`transport`] bar and the
-//! [`readout`], and handles the [`pointer`].
+//! The other half draws, with the feature `view`. [`draw`] renders a scene on any [`surface::Surface`]:
+//! [`egui_surface`] for the live picture, [`svg`] for the static one. [`shell`] adds the texts, the
+//! [`controls`], the [`transport`] bar and the [`readout`], and handles the [`pointer`].
 
 pub mod chart;
 pub mod counted;

@@ -1,4 +1,4 @@
-//! What every widget's `model.rs` implements: state in, scene out, no egui, no clock.
+//! The interface of every widget's `model.rs`: actions in, scene out, no egui, no clock.
 
 use crate::layers::Layer;
 use crate::outside::Delivery;
@@ -7,18 +7,18 @@ use crate::scene::Scene;
 use crate::spec::{Preset, WidgetSpec};
 use crate::values::Values;
 
-/// A widget without its picture: tested headless, drawn by [`crate`]'s view half.
+/// A widget without its drawing: tested headless, drawn by [`crate`]'s view half.
 ///
-/// All that a reader can change is a parameter of the list, the place on the timeline included:
-/// so a link, a slider, a key and JavaScript all go through [`Model::set`] and [`Model::press`].
+/// Everything that a reader can change is a parameter of the list, including the position on the timeline. So
+/// links, sliders, keys and JavaScript all use [`Model::set`] and [`Model::press`].
 pub trait Model {
-    /// What never changes.
+    /// The constant description of the widget.
     fn spec(&self) -> &'static WidgetSpec;
 
     /// The current value of every parameter.
     fn values(&self) -> &Values;
 
-    /// What is shown of the widget.
+    /// The visible parts of the widget.
     fn layer(&self) -> Layer {
         Layer::visible(self.spec().opening, self.values())
     }
@@ -26,13 +26,13 @@ pub trait Model {
     /// Sets one parameter and recomputes what depends on it.
     ///
     /// # Errors
-    /// [`ParamError`] for an unknown name or a value out of range; nothing changes then.
+    /// [`ParamError`] if the name is unknown or the value is out of range; the state does not change.
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError>;
 
-    /// Sets one parameter to what a link, an attribute or a message says.
+    /// Sets one parameter from the text of a link, an attribute or a message.
     ///
     /// # Errors
-    /// [`ParamError`] for an unknown name or a text that is no value; nothing changes then.
+    /// [`ParamError`] if the name is unknown or the text is invalid; the state does not change.
     fn set_text(&mut self, id: &str, text: &str) -> Result<(), ParamError> {
         let (param, _) = self.values().find_for(self.spec().id, id)?;
         let value = param.parse(text)?;
@@ -42,20 +42,20 @@ pub trait Model {
     /// Presses a button or a preset.
     ///
     /// # Errors
-    /// [`ParamError::UnknownButton`]; nothing changes then.
+    /// [`ParamError::UnknownButton`]; the state does not change.
     fn press(&mut self, id: &str) -> Result<(), ParamError>;
 
-    /// Plays on by that many seconds.
+    /// Advances the playback by that many seconds.
     fn advance(&mut self, elapsed_s: f64) -> Activity;
 
-    /// Does one small piece (well under a millisecond) of work that fills in progressively: busy
-    /// where it did one, unseen where nothing that is shown changed by it, idle where nothing was left to do.
+    /// Does one small piece (well under a millisecond) of progressive work: busy if it did one, unseen if the
+    /// picture did not change, idle if no work was left.
     fn work(&mut self) -> Activity {
         Activity::Idle
     }
 
-    /// Finishes what [`Model::work`] has begun and the picture waits for, so that figures and picture
-    /// are those of the values; what only fills in goes on later. Idle where nothing was to be done.
+    /// Finishes the [`Model::work`] on which the outcome depends, so that numbers and picture match the
+    /// values; purely visual refinement continues later. Idle if there was nothing to do.
     fn finish_work(&mut self) -> Activity {
         Activity::Idle
     }
@@ -66,36 +66,36 @@ pub trait Model {
     /// The result in words and numbers.
     fn outcome(&self) -> Outcome;
 
-    /// A text that stands for the picture, for those who cannot see it.
+    /// A text alternative of the picture, for screen readers.
     fn summary(&self) -> String;
 
-    /// The timeline, where the widget has one.
+    /// The timeline, if the widget has one.
     fn timeline(&self) -> Option<Timeline> {
         None
     }
 
-    /// The data of every plot, and tables shown beside the picture.
+    /// The data of every plot, and the tables beside the picture.
     fn tables(&self) -> Vec<Table>;
 
-    /// The tables that stand beside the picture.
+    /// The tables beside the picture.
     ///
-    /// Asked for at every change of the picture: a widget whose plots hold long series overrides
-    /// it, so that those are written out for the export alone.
+    /// Called at every change of the picture. A widget whose plots hold long series overrides it, so that
+    /// they are formatted for the export only.
     fn shown_tables(&self) -> Vec<Table> {
         let mut tables = self.tables();
         tables.retain(|table| table.place == TablePlace::Shown);
         tables
     }
 
-    /// What a press at that point of a panel takes hold of, within `reach` (units of the axes).
+    /// What a press at that point of a panel grabs, within `reach` (units of the axes).
     fn grab(&self, _panel: &str, _at: [f64; 2], _reach: [f64; 2]) -> Option<Handle> {
         None
     }
 
-    /// Moves what was grabbed so that the grabbed spot lies at that point.
+    /// Moves the grabbed thing so that the grabbed spot is at that point.
     fn drag(&mut self, _handle: Handle, _at: [f64; 2]) {}
 
-    /// What was grabbed was let go.
+    /// Ends the drag.
     fn release(&mut self) {}
 
     /// A click or a tap at that point of a panel; `reach` is that of [`Model::grab`].
@@ -104,37 +104,37 @@ pub trait Model {
     /// The pointer moved over a panel without pressing, or left it.
     fn hover(&mut self, _panel: &str, _at: Option<[f64; 2]>) {}
 
-    /// Whether a reader may hand it a file, by dropping it on the picture for example.
+    /// Whether the widget accepts a file from the reader, for example by drag and drop.
     fn takes_files(&self) -> bool {
         false
     }
 
-    /// Takes what the host brings from outside; what a widget does not know leaves it as it is.
+    /// Receives a delivery of the host; unknown kinds are ignored.
     fn receive(&mut self, _delivery: &Delivery<'_>) {}
 
-    /// Keys that press a button while one of these buttons has the focus, as browsers name them:
+    /// Keys that press a button while one of these buttons has the focus, by the names of browsers:
     /// `("ArrowLeft", "west")`.
     fn keys(&self) -> &'static [(&'static str, &'static str)] {
         &[]
     }
 
-    /// What the widget asks of its host, in words, each once and in order: `open`, `look 12`.
+    /// The widget's requests to its host, each once and in order: `open`, `look 12`.
     fn take_orders(&mut self) -> Vec<String> {
         Vec::new()
     }
 
-    /// The reader wants no animation: jump to the end of each instead.
+    /// Sets whether animations run or jump to their end.
     fn set_motion(&mut self, _motion: Motion) {}
 }
 
-/// Whether there is more to do.
+/// Whether there is more work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
-    /// Nothing moves: no further frame is needed.
+    /// No further frame is needed.
     Idle,
     /// Call again.
     Busy,
-    /// Call again; what is shown is as it was.
+    /// Call again; the picture did not change.
     Unseen,
 }
 
@@ -146,33 +146,33 @@ impl Activity {
     }
 }
 
-/// How much may move by itself.
+/// Whether animations run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Motion {
     /// Animations run.
     #[default]
     Full,
-    /// The system asks for reduced motion: states jump.
+    /// The system asks for reduced motion: animations jump to their end.
     Reduced,
 }
 
-/// Something taken hold of by [`Model::grab`].
+/// Something grabbed by [`Model::grab`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Handle {
-    /// The panel it lies in.
+    /// The panel in which it is.
     pub panel: &'static str,
-    /// Which thing: `source`, `turn`, `cell`.
+    /// The thing: `source`, `turn`, `cell`.
     pub id: &'static str,
-    /// Grabbed spot minus the thing's own position, so that it does not jump.
+    /// Grabbed spot minus the thing's own position, which avoids a jump.
     pub offset: [f64; 2],
 }
 
-/// How an outcome is judged.
+/// The assessment of an outcome.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// What the reader would want.
+    /// A desirable result.
     Good,
-    /// What the reader has to beware of.
+    /// A result to beware of.
     Bad,
     /// Neither.
     Neutral,
@@ -198,7 +198,7 @@ pub struct Fact {
     pub id: &'static str,
     /// Name on screen: `rmse`.
     pub label: &'static str,
-    /// The number; not finite where there is none.
+    /// The number; not finite if there is none.
     pub value: f64,
     /// Unit on screen.
     pub unit: &'static str,
@@ -207,10 +207,10 @@ pub struct Fact {
 }
 
 impl Fact {
-    /// The unit of an answer: 1 is shown as yes, 0 as no.
+    /// The unit of a yes-no answer: 1 is shown as yes, 0 as no.
     pub const YES_OR_NO: &str = "yes or no";
 
-    /// A number with its unit and the digits that are worth reading.
+    /// A number with its unit and its significant digits.
     #[must_use]
     pub fn new(
         id: &'static str,
@@ -234,13 +234,13 @@ impl Fact {
         Self::new(id, label, value, "m", 3)
     }
 
-    /// An answer.
+    /// A yes-no answer.
     #[must_use]
     pub fn yes_or_no(id: &'static str, label: &'static str, yes: bool) -> Self {
         Self::new(id, label, f64::from(u8::from(yes)), Self::YES_OR_NO, 0)
     }
 
-    /// A whole number; not finite where there is none.
+    /// A whole number; not finite if there is none.
     #[must_use]
     pub fn count(id: &'static str, label: &'static str, value: f64) -> Self {
         Self::new(id, label, value, "", 0)
@@ -250,13 +250,13 @@ impl Fact {
 /// A run that can be scrubbed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timeline {
-    /// The parameter that holds the position; past the last one it means the end.
+    /// The parameter that holds the position; beyond the last one it means the end.
     pub param: &'static str,
     /// Last position; the first is 0.
     pub last: f64,
     /// Whether it plays.
     pub playing: bool,
-    /// What happened on the way.
+    /// Events on the timeline.
     pub marks: Vec<TimelineMark>,
 }
 
@@ -265,7 +265,7 @@ pub struct Timeline {
 pub struct TimelineMark {
     /// Position.
     pub at: f64,
-    /// In words: `loop 29 to 7 accepted`.
+    /// Label: `loop 29 to 7 accepted`.
     pub label: String,
     /// Good or bad.
     pub standing: Standing,
@@ -282,7 +282,7 @@ pub struct Table {
     pub columns: Vec<String>,
     /// The rows; a cell is text or a number already formatted.
     pub rows: Vec<Vec<String>>,
-    /// Shown beside the picture, or only given out as CSV.
+    /// Shown beside the picture, or only exported as CSV.
     pub place: TablePlace,
 }
 
@@ -320,7 +320,7 @@ impl Table {
     }
 }
 
-/// Where a table stands.
+/// Where a table is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TablePlace {
     /// Beside the picture.
@@ -329,10 +329,10 @@ pub enum TablePlace {
     ExportOnly,
 }
 
-/// Puts a model into the state that a preset names.
+/// Sets a model to the state of a preset.
 ///
 /// # Errors
-/// [`ParamError`] where the preset names what the widget does not have: a bug that tests catch.
+/// [`ParamError`] if the preset names an unknown parameter: a bug that tests catch.
 pub fn apply_preset(model: &mut dyn Model, preset: &Preset) -> Result<(), ParamError> {
     model.press("defaults")?;
     for (id, value) in preset.set {
@@ -344,17 +344,17 @@ pub fn apply_preset(model: &mut dyn Model, preset: &Preset) -> Result<(), ParamE
     Ok(())
 }
 
-/// Does all the [`Model::work`] that is left: a [`Model::finish_work`] where the picture waits for all of it.
+/// Does all the remaining [`Model::work`], as a [`Model::finish_work`] if the outcome depends on all of it.
 pub fn finish_work(model: &mut dyn Model) -> Activity {
     let first = model.work();
     while model.work().goes_on() {}
     first
 }
 
-/// Presses the preset of that name, the last resort of a [`Model::press`].
+/// Presses the preset of that name, the fallback of a [`Model::press`].
 ///
 /// # Errors
-/// [`ParamError::UnknownButton`] where there is none; nothing changes then.
+/// [`ParamError::UnknownButton`] if there is none; the state does not change.
 pub fn press_preset(model: &mut dyn Model, id: &str) -> Result<(), ParamError> {
     let spec = model.spec();
     match spec.presets.iter().find(|preset| preset.id == id) {

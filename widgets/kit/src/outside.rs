@@ -1,18 +1,18 @@
-//! What a host brings to a widget, and what the widget asks of it.
+//! Messages between a host and a widget.
 //!
-//! Most widgets compute all that they show. One that shows a reader's own file cannot: its host opens
-//! the file, has it worked on elsewhere, and brings what came of it. So that the model stays a model,
-//! both ways are plain data: deliveries in, orders out.
+//! Most widgets compute everything that they show. One that shows a reader's own file cannot: its host opens
+//! the file, processes it elsewhere, and delivers the results. The messages are plain data, which keeps the
+//! model free of I/O: deliveries in, orders out.
 
-/// Something that the host brings: a kind, words, numbers, bytes.
+/// A message of the host: a kind, words, numbers, bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Delivery<'a> {
-    /// What it is: `keyframes`.
+    /// Its kind: `keyframes`.
     pub kind: &'a str,
     /// Words.
     pub text: &'a str,
     /// Numbers.
     pub numbers: &'a [f64],
-    /// Bytes, such as the cells of a picture.
+    /// Bytes, such as the cells of a raster.
     pub bytes: &'a [u8],
 }

@@ -6,7 +6,7 @@ use crate::scene::{Cell, Tone};
 /// An opaque colour, sRGB.
 pub type Rgb = [u8; 3];
 
-/// Which palette.
+/// The palette to use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Theme {
     /// Dark on white.
@@ -16,14 +16,14 @@ pub enum Theme {
     Dark,
 }
 
-/// Every colour by its name, `[light, dark]`; the style of the page and that of the element come from the same file.
+/// Every colour by its name, `[light, dark]`; the styles of the page and of the element use the same file.
 const COLORS: &[u8] = include_bytes!("../../palette.json");
 
-/// The two shades of a colour of the file, found by the compiler: `"name": ["#rrggbb", "#rrggbb"]`.
+/// The two shades of a colour of the file, looked up at compile time: `"name": ["#rrggbb", "#rrggbb"]`.
 const fn shades(name: &str) -> [Rgb; 2] {
     let name = name.as_bytes();
     let mut start = 0;
-    // A name that is missing ends in an index out of range, which does not compile.
+    // A missing name ends in an index out of range, which does not compile.
     while !is_at(name, start) {
         start += 1;
     }
@@ -31,7 +31,7 @@ const fn shades(name: &str) -> [Rgb; 2] {
     [rgb_at(light), rgb_at(light + b"rrggbb\", \"#".len())]
 }
 
-/// Whether a name stands there, between quotation marks.
+/// Whether the quoted name is at that position.
 const fn is_at(name: &[u8], start: usize) -> bool {
     let mut at = 0;
     while at < name.len() && COLORS[start + 1 + at] == name[at] {
@@ -81,15 +81,15 @@ pub fn tone(theme: Theme, tone: Tone) -> Rgb {
     shades[theme as usize]
 }
 
-/// The colour of controls.
+/// The colour of interactive controls.
 #[must_use]
 pub fn accent(theme: Theme) -> Rgb {
     const SHADES: [Rgb; 2] = shades("accent");
     SHADES[theme as usize]
 }
 
-/// Classes differ in lightness first, so that they stay apart for every kind of colour vision. The
-/// first four are areas below marks: they are none of the meanings' colours, nor paper.
+/// Classes differ mainly in lightness, which keeps them distinct for every kind of colour vision. The first
+/// four are areas below marks: they differ from the colours of the meanings and from paper.
 fn class_color(theme: Theme, class: u8) -> Rgb {
     const LIGHT: [u32; 6] = [0xd6e8fb, 0xf2d84b, 0x772a67, 0x889abf, 0x48a181, 0x1e293b];
     const DARK: [u32; 6] = [0x113460, 0xe8d84a, 0x9c4b55, 0x6c7aa8, 0x2a9d8f, 0xf8fafc];
@@ -111,9 +111,9 @@ pub fn cell(theme: Theme, cell: Cell) -> Rgb {
     }
 }
 
-/// A perceptual map: lightness rises evenly from dark blue over teal to pale yellow.
+/// A perceptual colour map from dark blue over teal to pale yellow, with even steps of lightness.
 ///
-/// Six anchors whose CIE lightness is 15, 30, 45, 60, 75, 92, mixed linearly in between.
+/// Six anchors with CIE lightness 15, 30, 45, 60, 75, 92, interpolated linearly.
 #[must_use]
 pub fn level_color(level: f32) -> Rgb {
     const ANCHORS: [u32; 6] = [0x1b1f5c, 0x254a86, 0x1c7691, 0x35a08c, 0x86c56f, 0xf4ec8a];
@@ -129,7 +129,7 @@ pub fn level_color(level: f32) -> Rgb {
     )
 }
 
-/// The colour of a verdict; a shape and a word always go with it.
+/// The colour of a verdict; a shape and a word always accompany it.
 #[must_use]
 pub fn standing(theme: Theme, standing: Standing) -> Rgb {
     let shades = match standing {
@@ -140,7 +140,7 @@ pub fn standing(theme: Theme, standing: Standing) -> Rgb {
     shades[theme as usize]
 }
 
-/// Black or white, whichever reads better on that colour.
+/// Black or white, whichever has more contrast on that colour.
 #[must_use]
 pub fn readable_on(back: Rgb) -> Rgb {
     const BLACK: Rgb = [0; 3];
@@ -165,7 +165,7 @@ fn luminance(color: Rgb) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// One channel of sRGB as light, 0…1.
+/// One channel of sRGB in linear light, 0…1.
 fn linear(channel: u8) -> f32 {
     let share = f32::from(channel) / 255.0;
     if share <= 0.040_45 {
@@ -175,7 +175,7 @@ fn linear(channel: u8) -> f32 {
     }
 }
 
-/// `a` at 0, `b` at 1.
+/// Linear interpolation: `a` at 0, `b` at 1.
 #[must_use]
 pub fn mix(a: Rgb, b: Rgb, share: f32) -> Rgb {
     let share = share.clamp(0.0, 1.0);

@@ -1,10 +1,10 @@
-//! Parameters: declared once, and from that one list come the sliders, the link form, the
-//! JavaScript interface and the tables of the docs.
+//! Parameters: one declaration yields the control, the link, the JavaScript interface and the tables of the
+//! docs.
 //!
-//! A widget declares each as a [`Param`] or a [`OneOf`], which know the type of its value: a model
-//! reads `values.get(&VARIANT)` and gets an `IcpVariant`. What goes over a list without knowing
-//! types, such as the controls, sees [`ParamSpec`] and numbers: the index of an option, 0 or 1 of a
-//! switch. A link writes choices and switches by name.
+//! A widget declares each one as a [`Param`] or a [`OneOf`], which carry the type of its value: a model reads
+//! `values.get(&VARIANT)` and gets an `IcpVariant`. Code that handles all parameters alike, such as the
+//! controls, uses [`ParamSpec`] and numbers: the index of an option, 0 or 1 for a switch. Links contain the
+//! names of options and switches.
 
 use core::marker::PhantomData;
 use core::ops::Deref;
@@ -21,27 +21,27 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// An option by its name in links and its name on screen.
+    /// An option from its name in links and its name on screen.
     #[must_use]
     pub const fn new(id: &'static str, label: &'static str) -> Self {
         Self { id, label }
     }
 }
 
-/// How a parameter is shown, and which values it takes.
+/// The kind of a parameter: its control and its valid values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParamKind {
-    /// A number in `[min, max]`, moved in steps of `step` by keys and pointer alike.
+    /// A number in `[min, max]`, moved in steps of `step` by keys and pointer.
     Slider {
         /// Smallest value.
         min: f64,
         /// Largest value.
         max: f64,
-        /// Distance of neighbouring values; fine steps are a tenth of it.
+        /// Difference of neighbouring values; fine steps are a tenth of it.
         step: f64,
     },
-    /// A position on the widget's timeline, from 0 to the length that the model reports at the
-    /// moment; `max` bounds what a link may ask for.
+    /// A position on the widget's timeline, from 0 to the length that the model currently reports; `max`
+    /// bounds the values in links.
     Timeline {
         /// Largest value that a link may carry.
         max: f64,
@@ -58,9 +58,9 @@ pub enum ParamKind {
     },
     /// On (1) or off (0).
     Switch,
-    /// Letters, digits, `-` and `_`, such as a world: set by [`crate::model::Model::set_text`].
+    /// Letters, digits, `-` and `_`, such as an encoded world; set by [`crate::model::Model::set_text`].
     Text {
-        /// Most characters.
+        /// Largest number of characters.
         most: usize,
     },
 }
@@ -74,35 +74,35 @@ pub struct ParamSpec {
     pub label: &'static str,
     /// Unit on screen: `°`, `m`, or empty.
     pub unit: &'static str,
-    /// How it is shown and which values it takes.
+    /// Its control and its valid values.
     pub kind: ParamKind,
     /// Value at the start and after "defaults".
     pub default: f64,
-    /// One sentence on what it does.
+    /// One sentence on its effect.
     pub help: &'static str,
 }
 
-/// A declaration that knows the type of its value: [`Param`] or [`OneOf`].
+/// A declaration with the type of its value: [`Param`] or [`OneOf`].
 pub trait Typed {
-    /// What a model reads.
+    /// The type that a model reads.
     type Value;
 
-    /// The declaration as the list has it.
+    /// The untyped declaration.
     fn spec(&self) -> &ParamSpec;
 
-    /// The value that a number of the list stands for.
+    /// Converts a number of the list to the value.
     fn read(&self, number: f64) -> Self::Value;
 
-    /// The number that stands for a value.
+    /// Converts a value to its number in the list.
     fn number(&self, value: Self::Value) -> f64;
 }
 
-/// What the value of a [`Param`] may be.
+/// A type that the value of a [`Param`] may have.
 pub trait Number: Copy {
-    /// The value that a number of the list stands for.
+    /// Converts a number of the list to the value.
     fn read(number: f64) -> Self;
 
-    /// The number that stands for it.
+    /// Converts the value to its number in the list.
     fn number(self) -> f64;
 }
 
@@ -146,10 +146,10 @@ impl Number for bool {
     }
 }
 
-/// A parameter whose value is a number, whole or not, or a switch.
+/// A parameter whose value is a number or a switch.
 #[derive(Clone, Copy, Debug)]
 pub struct Param<T> {
-    /// The declaration as the list has it.
+    /// The untyped declaration.
     pub spec: ParamSpec,
     value: PhantomData<T>,
 }
@@ -170,7 +170,7 @@ impl<T> Param<T> {
         }
     }
 
-    /// A number between both ends, moved in steps.
+    /// A number between two limits, moved in steps.
     #[must_use]
     pub const fn slider(
         id: &'static str,
@@ -181,7 +181,7 @@ impl<T> Param<T> {
         Self::new(id, label, ParamKind::Slider { min, max, step })
     }
 
-    /// A place on the widget's timeline.
+    /// A position on the widget's timeline.
     #[must_use]
     pub const fn timeline(id: &'static str, label: &'static str, max: f64) -> Self {
         Self::new(id, label, ParamKind::Timeline { max })
@@ -193,21 +193,21 @@ impl<T> Param<T> {
         Self::new(id, label, ParamKind::Seed { max })
     }
 
-    /// With a unit.
+    /// Sets the unit.
     #[must_use]
     pub const fn unit(mut self, unit: &'static str) -> Self {
         self.spec.unit = unit;
         self
     }
 
-    /// With another default than 0.
+    /// Sets a default other than 0.
     #[must_use]
     pub const fn default(mut self, default: f64) -> Self {
         self.spec.default = default;
         self
     }
 
-    /// With one sentence on what it does.
+    /// Sets the sentence on its effect.
     #[must_use]
     pub const fn help(mut self, help: &'static str) -> Self {
         self.spec.help = help;
@@ -289,19 +289,19 @@ impl<T> Deref for Param<T> {
     }
 }
 
-/// A parameter whose value is one of a few.
+/// A parameter with a few named values.
 #[derive(Clone, Copy, Debug)]
 pub struct OneOf<T: 'static> {
-    /// The declaration as the list has it.
+    /// The untyped declaration.
     pub spec: ParamSpec,
     values: &'static [T],
 }
 
 impl<T> OneOf<T> {
-    /// A choice between options that stand for these values, in the same order; the first is the default.
+    /// A choice between options for these values, in the same order; the first one is the default.
     ///
     /// # Panics
-    /// If their numbers differ: in a `static` the compiler says so.
+    /// If the numbers of options and values differ: in a `static` at compile time.
     #[must_use]
     pub const fn new(
         id: &'static str,
@@ -314,14 +314,14 @@ impl<T> OneOf<T> {
         Self { spec, values }
     }
 
-    /// With another default than the first option.
+    /// Sets a default other than the first option.
     #[must_use]
     pub const fn default(mut self, option: &str) -> Self {
         self.spec.default = self.to(option).1;
         self
     }
 
-    /// With one sentence on what it does.
+    /// Sets the sentence on its effect.
     #[must_use]
     pub const fn help(mut self, help: &'static str) -> Self {
         self.spec.help = help;
@@ -331,7 +331,7 @@ impl<T> OneOf<T> {
     /// The value for a preset, by its option.
     ///
     /// # Panics
-    /// If there is no such option: in a `const` the compiler says so.
+    /// If there is no such option: in a `const` at compile time.
     #[must_use]
     pub const fn to(&self, option: &str) -> (&'static str, f64) {
         let ParamKind::Choice { options } = self.spec.kind else {
@@ -370,7 +370,7 @@ impl<T: Copy + PartialEq> Typed for OneOf<T> {
 
     fn number(&self, value: T) -> f64 {
         let index = self.values.iter().position(|known| *known == value);
-        index.expect("a value of the options") as f64
+        index.expect("the value is one of the options") as f64
     }
 }
 
@@ -382,31 +382,31 @@ impl<T> Deref for OneOf<T> {
     }
 }
 
-/// Whether everything is shown. A widget with layers lists it last.
+/// Whether everything is shown. A widget with layers lists it as its last parameter.
 pub static MORE: Param<bool> =
     Param::switch("more", "more").help("Shows all settings, presets, numbers, tables and plots.");
 
-/// Why a value was refused. The old value stands.
+/// Why a value was rejected. The old value remains.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ParamError {
     /// No parameter of that name.
     #[error("{widget} has no parameter `{id}`; it has {known}")]
     UnknownParam {
-        /// Widget that was asked.
+        /// Name of the widget.
         widget: &'static str,
-        /// The name that was given.
+        /// The unknown name.
         id: String,
-        /// The names there are.
+        /// The valid names.
         known: String,
     },
     /// No button of that name.
     #[error("{widget} has no button `{id}`; it has {known}")]
     UnknownButton {
-        /// Widget that was asked.
+        /// Name of the widget.
         widget: &'static str,
-        /// The name that was given.
+        /// The unknown name.
         id: String,
-        /// The names there are.
+        /// The valid names.
         known: String,
     },
     /// A number outside the range.
@@ -414,29 +414,29 @@ pub enum ParamError {
     OutOfRange {
         /// Parameter.
         id: &'static str,
-        /// Value that was given.
+        /// The given value.
         value: f64,
         /// Smallest value.
         min: f64,
         /// Largest value.
         max: f64,
     },
-    /// Text that is no value of this parameter.
+    /// A text that is invalid for this parameter.
     #[error("`{id}` takes {expected}, not `{text}`")]
     Unreadable {
         /// Parameter.
         id: &'static str,
-        /// Text that was given, fit to be shown.
+        /// The given text, shortened for display.
         text: String,
-        /// What would have been right.
+        /// The valid texts.
         expected: String,
     },
-    /// Text whose letters are right, and what it says is not.
-    #[error("`{id}` cannot be taken: {problem}")]
+    /// A text with valid characters and invalid content.
+    #[error("`{id}` is invalid: {problem}")]
     Refused {
         /// Parameter.
         id: &'static str,
-        /// What is wrong, and what to do.
+        /// What is wrong, and how to fix it.
         problem: String,
     },
 }
@@ -457,12 +457,12 @@ impl ParamSpec {
             ParamKind::Timeline { max } | ParamKind::Seed { max } => (0.0, max),
             ParamKind::Choice { options } => (0.0, options.len() as f64 - 1.0),
             ParamKind::Switch => (0.0, 1.0),
-            // No number is a text; 0 is none.
+            // A text has no number; 0 stands for it.
             ParamKind::Text { .. } => (0.0, 0.0),
         }
     }
 
-    /// Distance of neighbouring values.
+    /// Difference of neighbouring values.
     #[must_use]
     pub fn step(&self) -> f64 {
         match self.kind {
@@ -471,13 +471,13 @@ impl ParamSpec {
         }
     }
 
-    /// The value as it is kept: checked against the range, whole where it must be.
+    /// Checks a value against the range, and rounds it if it must be whole.
     ///
     /// # Errors
-    /// [`ParamError::OutOfRange`] where the value is not a number of the range.
+    /// [`ParamError::OutOfRange`] if the value is not a number of the range.
     pub fn check(&self, value: f64) -> Result<f64, ParamError> {
         let (min, max) = self.range();
-        // A sum of steps may end a few last bits beyond the range.
+        // Rounding of a sum of steps may exceed the range.
         let slack = 1e-6 * self.step();
         if !value.is_finite() || value < min - slack || value > max + slack {
             return Err(ParamError::OutOfRange {
@@ -494,7 +494,7 @@ impl ParamSpec {
         })
     }
 
-    /// Digits after the point that the step needs, one more for fine steps.
+    /// Digits after the point that the step needs, plus one for fine steps.
     #[must_use]
     pub fn decimals(&self) -> usize {
         match self.kind {
@@ -511,7 +511,7 @@ impl ParamSpec {
         }
     }
 
-    /// The value as a link writes it: `60`, `point-to-plane`, `on`.
+    /// The value in the form of a link: `60`, `point-to-plane`, `on`.
     #[must_use]
     pub fn to_text(&self, value: f64) -> String {
         match self.kind {
@@ -519,17 +519,17 @@ impl ParamSpec {
                 .get(value as usize)
                 .map_or_else(|| value.to_string(), |choice| choice.id.to_owned()),
             ParamKind::Switch => if value == 0.0 { "off" } else { "on" }.to_owned(),
-            // No number is a text: see `Values::to_text`.
+            // A text has no number: see `Values::to_text`.
             ParamKind::Text { .. } => String::new(),
-            // Display of an f64 is the shortest text that reads back to the same bits.
+            // Display of an f64 is the shortest text that parses to the same bits.
             _ => format!("{value}"),
         }
     }
 
-    /// Reads what [`ParamSpec::to_text`] writes, checked against the range; of a text that can be kept, 0.
+    /// Parses the output of [`ParamSpec::to_text`] and checks it against the range; 0 for a valid text.
     ///
     /// # Errors
-    /// [`ParamError::Unreadable`] or [`ParamError::OutOfRange`], each naming what would be right.
+    /// [`ParamError::Unreadable`] or [`ParamError::OutOfRange`], each with the valid values.
     pub fn parse(&self, text: &str) -> Result<f64, ParamError> {
         let text = text.trim();
         let unreadable = |expected: String| ParamError::Unreadable {
@@ -569,10 +569,10 @@ impl ParamSpec {
     }
 }
 
-/// Most characters of a text from outside that a message repeats.
+/// Largest number of characters of an external text that a message quotes.
 const MAX_REPEATED: usize = 60;
 
-/// A text from outside as a message repeats it: without control characters, and not for ever.
+/// Shortens an external text for a message and removes its control characters.
 #[must_use]
 pub fn printable(text: &str) -> String {
     let mut shown = String::new();
@@ -637,7 +637,7 @@ pub(crate) mod tests {
     ];
 
     #[test]
-    fn what_a_link_writes_reads_back_to_the_same_bits() {
+    fn the_text_in_a_link_parses_to_the_same_bits() {
         for value in [0.1 + 0.2, -179.999_999_9, 25.0] {
             let text = SPECS[0].to_text(value);
             assert_eq!(SPECS[0].parse(&text).unwrap().to_bits(), value.to_bits());
@@ -647,7 +647,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_choice_that_is_not_there_is_refused_with_those_that_are() {
+    fn an_unknown_option_is_an_error_that_lists_the_valid_ones() {
         let error = SPECS[1].parse("plane").unwrap_err();
         assert_eq!(
             error.to_string(),
@@ -656,7 +656,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn what_a_message_repeats_has_no_control_characters_and_ends() {
+    fn a_quoted_text_is_short_and_without_control_characters() {
         assert_eq!(printable("point-to-plane"), "point-to-plane");
         assert_eq!(printable("a\u{1b}[2Jb"), "a\\u{1b}[2Jb");
         assert_eq!(printable(&"é".repeat(61)), format!("{}…", "é".repeat(60)));

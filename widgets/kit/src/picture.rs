@@ -1,4 +1,4 @@
-//! A whole widget without its controls on any surface: title, panels, verdict and numbers.
+//! A complete widget without its controls on any surface: title, panels, verdict and numbers.
 
 use crate::draw;
 use crate::layout::wrap;
@@ -11,14 +11,14 @@ use crate::view::{Arrangement, Row, View, place};
 
 /// Space around the picture.
 const MARGIN: f32 = 12.0;
-/// Distance of two lines of text.
+/// Line spacing of the text.
 const LINE: f32 = 19.0;
-/// Distance of two lines of the title.
+/// Line spacing of the title.
 const TITLE_LINE: f32 = 26.0;
 /// Space between blocks.
 const GAP: f32 = 12.0;
 
-/// Draws a widget as it is now; returns the height that it takes.
+/// Draws the current state of a widget. Returns the height of the picture.
 pub fn picture(
     surface: &mut dyn Surface,
     model: &dyn Model,
@@ -70,7 +70,7 @@ pub fn picture(
     paragraph(surface, y, &facts.join(" · "), TextSize::Body, ink) + MARGIN
 }
 
-/// Draws the panels of a scene alone, as the kit arranges them; returns the height that they take.
+/// Draws only the panels of a scene in the kit's arrangement. Returns their height.
 pub fn scene_picture(surface: &mut dyn Surface, scene: &Scene, width_px: f32, theme: Theme) -> f32 {
     let width = width_px - 2.0 * MARGIN;
     let Arrangement { mut stage, below } = Arrangement::by_weight(scene, width);

@@ -1,12 +1,12 @@
 //! Play, step, reset, speed: seconds in, positions on a timeline out.
 //!
-//! Reduced motion is handled here, once: under it a run never plays, its end shows at once.
+//! Reduced motion is handled only here: with it a run never plays and its end is shown at once.
 
 use crate::model::Motion;
 use crate::param::{Choice, OneOf};
 use crate::spec::{PLAY, RESET, STEP};
 
-/// The speed of the playback, as a factor: a parameter that every widget with a timeline lists.
+/// The speed factor of the playback: a parameter that every widget with a timeline lists.
 pub static SPEED: OneOf<f64> = OneOf::new(
     "speed",
     "speed",
@@ -22,7 +22,7 @@ pub static SPEED: OneOf<f64> = OneOf::new(
 .default("normal")
 .help("How fast the run plays.");
 
-/// A playback: whether it runs, and the part of a step that has gone by.
+/// A playback: whether it runs, and the elapsed fraction of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Playback {
     playing: bool,
@@ -37,14 +37,14 @@ impl Playback {
         self.playing
     }
 
-    /// How much may move by itself.
+    /// Whether animations run.
     #[must_use]
     pub fn motion(&self) -> Motion {
         self.motion
     }
 
-    /// Presses a button of the transport, [`PLAY`], [`STEP`] or [`RESET`]: returns the position
-    /// that it leads to, or nothing for any other button.
+    /// Presses a button of the transport, [`PLAY`], [`STEP`] or [`RESET`]. Returns the new position, or
+    /// `None` for any other button.
     pub fn press(&mut self, button: &str, position: f64, last: f64) -> Option<f64> {
         if button == PLAY.id {
             return Some(self.toggle(position, last));
@@ -60,8 +60,8 @@ impl Playback {
         Some(target)
     }
 
-    /// Runs from here, or from the start where the end is reached, or stops where it ran; returns
-    /// the position. Under [`Motion::Reduced`] that is the end, and nothing runs.
+    /// Starts from here, or from the start if the end is reached; stops a run that plays. Returns the
+    /// position. Under [`Motion::Reduced`] that is the end, and nothing plays.
     pub fn toggle(&mut self, position: f64, last: f64) -> f64 {
         if self.motion == Motion::Reduced {
             return last;
@@ -75,14 +75,13 @@ impl Playback {
         }
     }
 
-    /// Stops where it is.
+    /// Stops at the current position.
     pub fn pause(&mut self) {
         self.playing = false;
         self.part = 0.0;
     }
 
-    /// Sets how much may move by itself; returns the position to go to, `last`, where that ends a
-    /// run.
+    /// Sets whether animations run. Returns the new position `last` if that ends a run.
     pub fn set_motion(&mut self, motion: Motion, last: f64) -> Option<f64> {
         self.motion = motion;
         let ends = motion == Motion::Reduced && self.playing;
@@ -155,20 +154,20 @@ mod tests {
     }
 
     #[test]
-    fn with_reduced_motion_play_is_at_the_end_at_once_and_asks_for_no_frame() {
+    fn with_reduced_motion_play_jumps_to_the_end_and_needs_no_frame() {
         let mut playback = Playback::default();
         assert_eq!(playback.set_motion(Motion::Reduced, 10.0), None);
         for position in [0.0, 4.0, 10.0] {
             assert_eq!(playback.toggle(position, 10.0), 10.0);
             assert!(!playback.is_playing());
         }
-        // Pausing, as every preset does, must not bring the motion back.
+        // Presets pause; this must not reset reduced motion.
         playback.pause();
         assert_eq!(playback.motion(), Motion::Reduced);
     }
 
     #[test]
-    fn asking_for_reduced_motion_ends_a_run_and_moves_nothing_else() {
+    fn reduced_motion_ends_a_run_and_changes_no_other_state() {
         let mut playback = Playback::default();
         playback.toggle(3.0, 10.0);
         assert_eq!(playback.set_motion(Motion::Reduced, 10.0), Some(10.0));

@@ -1,5 +1,5 @@
-//! A run along one parameter: the transport, reduced motion and the defaults, the same in every
-//! widget that shows one.
+//! Playback along one parameter: transport, reduced motion and defaults, the same in every widget with a
+//! timeline.
 
 use crate::model::{Activity, Motion, Timeline, TimelineMark};
 use crate::param::Param;
@@ -7,29 +7,29 @@ use crate::playback::{Playback, SPEED};
 use crate::spec::DEFAULTS;
 use crate::values::Values;
 
-/// The run of a widget, and the parameter that holds the place on it.
+/// The playback of a widget, and the parameter that holds the position.
 ///
-/// A place past the end means the end: so a link to it stays right where a run gets longer. The last
-/// place is asked for in each call, since most settings change it.
+/// A position beyond the end means the end, so a link to the end stays right if a run gets longer. Each call
+/// gets the last position, because most settings change it.
 #[derive(Clone, Copy, Debug)]
 pub struct Played {
     param: &'static Param<f64>,
     playback: Playback,
 }
 
-/// What a button was to [`Played::press`].
+/// The kind of a button in [`Played::press`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pressed {
-    /// One of the transport: the place is set.
+    /// A transport button: the position is set.
     Transport,
-    /// The defaults: every value is put back, and what depends on them has to follow.
+    /// The defaults button: every value is reset, and the caller has to update what depends on them.
     Defaults,
-    /// None of these: nothing changed.
+    /// Another button: no change.
     Other,
 }
 
 impl Played {
-    /// A run at rest along that parameter.
+    /// A paused playback along that parameter.
     #[must_use]
     pub fn along(param: &'static Param<f64>) -> Self {
         Self {
@@ -44,24 +44,24 @@ impl Played {
         self.playback.is_playing()
     }
 
-    /// How much may move by itself.
+    /// Whether animations run.
     #[must_use]
     pub fn motion(&self) -> Motion {
         self.playback.motion()
     }
 
-    /// The place that is shown.
+    /// The current position.
     #[must_use]
     pub fn place(&self, values: &Values, last: f64) -> f64 {
         values.get(self.param).min(last)
     }
 
-    /// Stops where it is.
+    /// Stops at the current position.
     pub fn pause(&mut self) {
         self.playback.pause();
     }
 
-    /// Presses a button of the transport, or the defaults.
+    /// Presses a transport button or the defaults button.
     pub fn press(&mut self, values: &mut Values, button: &str, last: f64) -> Pressed {
         let here = self.place(values, last);
         if let Some(position) = self.playback.press(button, here, last) {
@@ -76,7 +76,7 @@ impl Played {
         Pressed::Defaults
     }
 
-    /// Plays on by that many seconds, at so many steps a second of normal speed.
+    /// Advances by that many seconds, at a rate of steps a second at normal speed.
     pub fn advance(
         &mut self,
         values: &mut Values,
@@ -94,7 +94,7 @@ impl Played {
         Activity::Busy
     }
 
-    /// Sets how much may move by itself: a run that plays is at its end at once where nothing may.
+    /// Sets whether animations run: with reduced motion a run that plays jumps to its end.
     pub fn set_motion(&mut self, values: &mut Values, motion: Motion, last: f64) {
         if let Some(end) = self.playback.set_motion(motion, last) {
             values.put(self.param, end);
@@ -122,7 +122,7 @@ mod tests {
     const PARAMS: &[&ParamSpec] = &[&STEPS.spec, &SPEED.spec, &MORE.spec];
 
     #[test]
-    fn a_place_past_the_end_is_the_end_and_play_starts_over_there() {
+    fn a_position_beyond_the_end_is_the_end_and_play_starts_over_there() {
         let (mut values, mut run) = (Values::defaults(PARAMS), Played::along(&STEPS));
         assert_eq!(run.place(&values, 10.0), 10.0);
         assert_eq!(run.press(&mut values, "play", 10.0), Pressed::Transport);
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn defaults_stop_the_run_and_leave_open_what_was_opened() {
+    fn defaults_stop_the_run_and_keep_the_layer_open() {
         let (mut values, mut run) = (Values::defaults(PARAMS), Played::along(&STEPS));
         values.store(MORE.id, 1.0);
         run.press(&mut values, "play", 10.0);
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_plays_ends_at_once_when_nothing_may_move() {
+    fn reduced_motion_ends_a_playing_run_at_once() {
         let (mut values, mut run) = (Values::defaults(PARAMS), Played::along(&STEPS));
         run.press(&mut values, "play", 10.0);
         run.set_motion(&mut values, Motion::Reduced, 10.0);

@@ -1,4 +1,4 @@
-//! The pointer over the panels: take hold, drag, hover, zoom, pan.
+//! The pointer over the panels: grab, drag, hover, zoom, pan.
 
 use egui::{CursorIcon, Event, MultiTouchInfo, PointerButton, Pos2, Response, Sense, Ui};
 
@@ -8,18 +8,18 @@ use crate::scene::{Layer, Panel};
 use crate::transform::Transform;
 use crate::zoom::Zoom;
 
-/// A mouse takes hold of what lies within that many pixels.
+/// Distance within which a mouse grabs something, pixels.
 pub const MOUSE_REACH_PX: f64 = 14.0;
-/// A finger takes hold of what lies within that many pixels.
+/// Distance within which a finger grabs something, pixels.
 pub const TOUCH_REACH_PX: f64 = 24.0;
 
-/// What the pointer is doing, and how far each map is zoomed in.
+/// The state of the pointer, and the zoom of each map.
 #[derive(Clone, Debug, Default)]
 pub struct Pointer {
-    /// How far each map is zoomed in.
+    /// The zoom of each map.
     pub zoom: Zoom,
     held: Option<Held>,
-    /// Whether the last press was that of a finger.
+    /// Whether the last press was by touch.
     by_touch: bool,
     hovered: Option<(&'static str, [f64; 2])>,
 }
@@ -27,21 +27,21 @@ pub struct Pointer {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Held {
     Thing(Handle),
-    /// The spot of a zoomed map that stays under the pointer.
+    /// A zoomed map, dragged so that this spot stays under the pointer.
     Map {
         panel: &'static str,
         spot: [f64; 2],
     },
 }
 
-/// What the primary button did within a frame.
+/// The events of the primary button within a frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PrimaryButton {
-    /// Where it went down.
+    /// Where it was pressed.
     pub pressed_at: Option<Pos2>,
-    /// Where it was let go after that.
+    /// Where it was released after that.
     pub released_at: Option<Pos2>,
-    /// Whether it is a finger.
+    /// Whether it is a touch.
     pub is_touch: bool,
 }
 
@@ -76,7 +76,8 @@ impl PrimaryButton {
         })
     }
 
-    /// Whether a whole drag from `response` came within the frame: to egui it is no press, and no click.
+    /// Whether a complete drag from `response` happened within the frame, which egui reports neither as a
+    /// press nor as a click.
     pub fn is_flick_on(&self, ui: &Ui, response: &Response) -> bool {
         let (Some(from), Some(_)) = (self.pressed_at, self.released_at) else {
             return false;
@@ -91,14 +92,14 @@ impl PrimaryButton {
 /// Whether the pointer changed the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touched {
-    /// The scene must be asked for again.
+    /// The scene must be computed again.
     Yes,
-    /// Nothing changed.
+    /// No change.
     No,
 }
 
 impl Pointer {
-    /// Lets go of everything.
+    /// Ends every drag.
     pub fn release(&mut self, model: &mut dyn Model) {
         if let Some(Held::Thing(_)) = self.held.take() {
             model.release();
@@ -155,7 +156,7 @@ impl Pointer {
             return Touched::No;
         }
         let world = |pos: Pos2| to.from_px([pos.x, pos.y]);
-        // What lets go has moved on within the same frame, where frames are slow.
+        // If frames are slow, the release may come after further movement within the same frame.
         let pos = if is_down {
             response.interact_pointer_pos()
         } else {
@@ -217,7 +218,7 @@ impl Pointer {
         }
     }
 
-    /// What was pressed and let go without a move.
+    /// A press and release without movement.
     fn tap(
         &mut self,
         response: &Response,
@@ -265,10 +266,10 @@ impl Pointer {
         Touched::Yes
     }
 
-    /// Two fingers zoom where they are, and take the map along.
+    /// Zooms and pans by two fingers.
     ///
-    /// A press that has lasted belongs to what was pressed, and egui takes nothing else for hovered: so they are
-    /// not asked for what lies under them.
+    /// A long press captures the pointer, and egui reports no other hovered widget. So the position of the
+    /// fingers is not tested against the panel.
     fn pinch(&mut self, pinch: &MultiTouchInfo, panel: &Panel, to: &Transform) {
         let middle = [pinch.center_pos.x, pinch.center_pos.y];
         if !to.plot().contains(middle) {
@@ -282,7 +283,7 @@ impl Pointer {
         self.zoom.shift(panel, shift);
     }
 
-    /// Two fingers drag nothing, whatever the first one took hold of.
+    /// Ends the drag that the first finger may have started.
     fn let_go_of(&mut self, panel: &Panel, model: &mut dyn Model) -> Touched {
         if self.panel_held() != Some(panel.id) {
             return Touched::No;
@@ -291,7 +292,7 @@ impl Pointer {
         Touched::Yes
     }
 
-    /// Ctrl and the wheel zoom at the pointer, a double click shows all again.
+    /// Ctrl and the wheel zoom at the pointer; a double click resets the zoom.
     fn wheel(&mut self, ui: &Ui, response: &Response, panel: &Panel, to: &Transform) {
         if response.double_clicked() {
             self.zoom.reset(panel.id);

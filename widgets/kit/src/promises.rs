@@ -1,12 +1,12 @@
-//! What every model keeps at any time: for the tests that go through all widgets, and for the fuzzer.
+//! Invariants of every model: for the tests over all widgets, and for the fuzzer.
 
 use crate::model::Model;
 use crate::scene::{Cell, Layer, Scene};
 
-/// Every value lies in the range of its parameter.
+/// Asserts that every value is in the range of its parameter.
 ///
 /// # Panics
-/// If one does not.
+/// If one is not.
 pub fn assert_values(model: &dyn Model) {
     for (param, value) in model.values().iter() {
         let checked = param.check(value).map(f64::to_bits);
@@ -14,10 +14,10 @@ pub fn assert_values(model: &dyn Model) {
     }
 }
 
-/// Words, tables, timeline and picture hold together, and their numbers can be drawn.
+/// Asserts that texts, tables, timeline and picture are consistent, and that their numbers can be drawn.
 ///
 /// # Panics
-/// If they do not.
+/// If they are not.
 pub fn assert_reports(model: &dyn Model) {
     let outcome = model.outcome();
     assert!(!outcome.sentence.is_empty() && !outcome.verdict.is_empty());
@@ -52,7 +52,7 @@ fn assert_drawable(scene: &Scene) {
     }
 }
 
-/// Whether every number of a layer can be drawn. A line may be broken by what is not finite.
+/// Whether every number of a layer can be drawn. Values that are not finite may interrupt a line.
 fn numbers_are_finite(layer: &Layer) -> bool {
     let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
     match layer {

@@ -10,9 +10,9 @@ use crate::ticks::signed;
 
 /// Space between the columns of a table.
 const COLUMN_GAP: f32 = 12.0;
-/// Height of a fact.
+/// Height of the row of a fact.
 const FACT_ROW: f32 = 18.0;
-/// From this width on, facts stand in two columns.
+/// Width from which facts are in two columns.
 const TWO_COLUMNS: f32 = 460.0;
 
 /// The verdict and its sentence.
@@ -33,7 +33,7 @@ pub fn verdict(ui: &mut Ui, outcome: &Outcome, theme: Theme) {
 /// The numbers of an outcome.
 pub fn facts(ui: &mut Ui, outcome: &Outcome) {
     ui.add_space(4.0);
-    // Nothing here is pressed: the rows may stand closer than controls.
+    // Rows without controls may be closer together.
     ui.spacing_mut().interact_size.y = FACT_ROW;
     ui.spacing_mut().item_spacing.y = 3.0;
     if ui.available_width() < TWO_COLUMNS {
@@ -51,7 +51,7 @@ pub fn facts(ui: &mut Ui, outcome: &Outcome) {
     });
 }
 
-/// A shape for the standing, so that colour does not stand alone.
+/// A shape for the standing, in addition to its colour.
 fn sign(ui: &mut Ui, standing: Standing, ink: Rgb) {
     let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
     let painter = ui.painter();
@@ -80,7 +80,7 @@ fn fact_row(ui: &mut Ui, fact: &Fact) {
     });
 }
 
-/// A fact's value with its unit, a dash where there is none.
+/// A fact's value with its unit; a dash if there is none.
 #[must_use]
 pub fn fact_text(fact: &Fact) -> String {
     if !fact.value.is_finite() {
@@ -95,7 +95,7 @@ pub fn fact_text(fact: &Fact) -> String {
     }
 }
 
-/// A table as wide as its words need, wrapping the first column where there is no room.
+/// A table as wide as its text needs; the first column wraps if there is not enough space.
 pub fn table(ui: &mut Ui, table: &Table, theme: Theme) {
     ui.label(RichText::new(&table.title).strong());
     let font = font(TextSize::Small);
@@ -103,7 +103,7 @@ pub fn table(ui: &mut Ui, table: &Table, theme: Theme) {
     let widths = column_widths(ui, table, &font, room);
     let ink = color(palette::tone(theme, crate::scene::Tone::Ink));
     let rule = ui.visuals().widgets.noninteractive.bg_stroke;
-    // Numbers stand on the right, below their heads; words on the left.
+    // Numbers are right-aligned with their heads, text is left-aligned.
     let numeric: Vec<bool> = (0..widths.len())
         .map(|column| {
             let cells = table.rows.iter().filter_map(|row| row.get(column));
@@ -143,13 +143,13 @@ pub fn table(ui: &mut Ui, table: &Table, theme: Theme) {
     }
 }
 
-/// Whether a cell holds a number, a range of numbers, or nothing.
+/// Whether a cell is a number, a range of numbers, or empty.
 fn is_number(cell: &str) -> bool {
     cell.chars()
         .all(|c| c.is_ascii_digit() || "+-−–.×% \u{202f}".contains(c))
 }
 
-/// Every column gets what its longest word needs, and of the rest as much as it could use.
+/// Every column gets the width of its longest word, and a share of the rest up to its full width.
 fn column_widths(ui: &Ui, table: &Table, font: &FontId, room: f32) -> Vec<f32> {
     let columns = table.columns.len();
     let mut wanted = vec![0.0_f32; columns];
@@ -158,7 +158,7 @@ fn column_widths(ui: &Ui, table: &Table, font: &FontId, room: f32) -> Vec<f32> {
         let galley = ui
             .painter()
             .layout_no_wrap(text.to_owned(), font.clone(), Color32::WHITE);
-        // Half a pixel more, or rounding wraps what just fits.
+        // Half a pixel more, because rounding would wrap text of exactly that width.
         galley.size().x + 0.5
     };
     for row in core::iter::once(&table.columns).chain(&table.rows) {

@@ -1,8 +1,8 @@
-//! The parameters of one lap of the robot, alike in every widget that runs it.
+//! The parameters of one lap of the robot, shared by all widgets that run it.
 
 use crate::param::Param;
 
-/// How noisy the wheels are.
+/// Noise factor of the odometry.
 pub static NOISE: Param<f64> = Param::slider("noise", "odometry noise ×", [0.25, 4.0], 0.05)
     .default(1.0)
     .help("Multiplies the variances of the wheel odometry: 1 is the chapter's robot.");
@@ -12,8 +12,7 @@ pub static LOOPS: Param<bool> = Param::switch("loops", "loop closure")
     .on()
     .help("Whether a keyframe near an old one is matched against it.");
 
-/// Where the lap's random numbers start; the core knows the chapter's seed, and this half of the
-/// project does not know the core.
+/// The seed of the lap; the caller passes the chapter's seed, because this crate does not depend on the core.
 #[must_use]
 pub const fn seed(chapters: u32) -> Param<u32> {
     Param::seed("seed", chapters)

@@ -1,37 +1,37 @@
 //! A picture as plain data, in metres: what [`crate::model::Model::scene`] returns.
 //!
-//! A scene is a list of panels; a panel has two axes and layers, painted in order. Maps and plots
-//! are panels alike: a map has equal axes. Colours are named by meaning ([`Tone`]), marks by kind
-//! ([`Mark`]), and only the drawing code knows pixels.
+//! A scene is a list of panels. A panel has two axes and layers, painted in order. Maps and plots are both
+//! panels: a map has equal axes. Colours are named by meaning ([`Tone`]), marks by kind ([`Mark`]), and only
+//! the drawing code handles pixels.
 
 use std::sync::Arc;
 
 /// Meaning of a colour; the palette gives each theme its shade.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Tone {
-    /// What was believed before: blue, ○.
+    /// Prior estimate: blue, ○.
     Prior,
-    /// What motion predicts: orange, △.
+    /// Motion prediction: orange, △.
     Prediction,
-    /// What was sensed: green, ×.
+    /// Sensor measurement: green, ×.
     Measurement,
-    /// What was sensed at a second visit: the other green, ×.
+    /// Measurement of a second visit: the other green, ×.
     Revisit,
-    /// What is believed after: purple, ■.
+    /// Posterior estimate: purple, ■.
     Posterior,
-    /// What really is: grey, dashed.
+    /// Ground truth: grey, dashed.
     Truth,
     /// Walls, axes and words.
     Ink,
-    /// Grid lines and what should stand back.
+    /// Grid lines and secondary elements.
     Faint,
-    /// Paper.
+    /// The background.
     Paper,
-    /// Cells of which nothing was seen.
+    /// Cells that were not observed.
     Unseen,
-    /// A thing of class n in a picture of classes: minima, cells. Each class also has a letter.
+    /// Class n in a picture of classes: minima, cells. Each class also has a letter.
     Class(u8),
-    /// A value along a line, 0 … 255 over the perceptual colour map; it needs a line of ink below.
+    /// A value along a line, 0 … 255 in the perceptual colour map; it needs a line of ink below.
     Level(u8),
 }
 
@@ -100,7 +100,7 @@ pub enum Layer {
         /// Radius in pixels.
         radius_px: f32,
     },
-    /// An open line through points; a point that is not finite breaks it.
+    /// An open line through points; a point that is not finite interrupts it.
     Line {
         /// Vertices.
         points: Vec<[f64; 2]>,
@@ -122,7 +122,7 @@ pub enum Layer {
         /// Width in pixels.
         width_px: f32,
     },
-    /// A pose: its mark with a short line towards the heading.
+    /// A pose: its mark with a short line along the heading.
     Pose {
         /// `[x, y, θ]`, metres and radians.
         pose: [f64; 3],
@@ -133,13 +133,13 @@ pub enum Layer {
         /// Radius in pixels.
         radius_px: f32,
     },
-    /// Something that can be dragged: drawn larger, with a ring.
+    /// A draggable handle: drawn larger, with a ring.
     Handle {
         /// Position.
         at: [f64; 2],
         /// Meaning.
         tone: Tone,
-        /// What it does, for the tooltip: `turn the source`.
+        /// Its effect, for the tooltip: `turn the source`.
         label: &'static str,
     },
     /// The ellipse `center + A u`, |u| = 1, with the columns of A as half axes.
@@ -153,27 +153,27 @@ pub enum Layer {
         /// Meaning.
         tone: Tone,
     },
-    /// A picture over a rectangle; row 0 is at the smallest y.
+    /// Cells over a rectangle; row 0 is at the smallest y.
     Raster(Raster),
     /// Words at a point.
     Text {
-        /// Anchor, the middle of the text.
+        /// Anchor, the center of the text.
         at: [f64; 2],
         /// The words.
         text: String,
         /// Meaning.
         tone: Tone,
     },
-    /// Words near a point: they stand where no other words of the panel stand, those of earlier layers
-    /// first, and are left out where there is no such place.
+    /// Text near a point, placed where it overlaps no other text of the panel, in the order of the layers,
+    /// and left out if there is no such position.
     Label {
-        /// The point that they name.
+        /// The labelled point.
         at: [f64; 2],
         /// The words.
         text: String,
         /// Meaning.
         tone: Tone,
-        /// They keep so far from the point, in pixels; 0 may stand on it.
+        /// Smallest distance from the point, in pixels; 0 allows an overlap.
         clear_px: f32,
     },
 }
@@ -240,7 +240,7 @@ impl Layer {
     }
 }
 
-/// A picture of cells, ready to upload as a texture.
+/// A raster of cells, ready to upload as a texture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Raster {
     /// Rectangle that it covers.
@@ -249,16 +249,16 @@ pub struct Raster {
     pub columns: usize,
     /// Cells along y.
     pub rows: usize,
-    /// What the cells mean, row by row from the smallest y, `columns × rows`.
+    /// The cells row by row from the smallest y, `columns × rows`.
     pub cells: Arc<[Cell]>,
-    /// Another number whenever `cells` changed, so that a texture is uploaded only then.
+    /// A number that changes with `cells`, so that textures are uploaded only then.
     pub revision: u64,
 }
 
 /// One cell of a raster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cell {
-    /// Nothing known yet: paper.
+    /// Not yet computed: paper.
     Unknown,
     /// Position in the perceptual colour map, 0…1.
     Level(f32),
@@ -296,16 +296,16 @@ impl Axis {
 pub enum Aspect {
     /// A metre is a metre in both directions: maps.
     Equal,
-    /// Each axis fills its side: plots.
+    /// Each axis fills the available space: plots.
     Free,
 }
 
-/// How much room a panel wants.
+/// The importance of a panel in the layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weight {
     /// The picture that the widget is about.
     Main,
-    /// One of several pictures side by side of equal right.
+    /// One of several equally important pictures side by side.
     Half,
     /// A small plot beside or below.
     Side,
@@ -318,9 +318,9 @@ pub struct LegendEntry {
     pub label: String,
     /// Meaning.
     pub tone: Tone,
-    /// Shape, where it stands for points.
+    /// Shape, if it stands for points.
     pub mark: Option<Mark>,
-    /// Pattern, where it stands for a line.
+    /// Pattern, if it stands for a line.
     pub stroke: Option<Stroke>,
 }
 
@@ -375,7 +375,7 @@ pub struct Panel {
     pub id: &'static str,
     /// Title on screen.
     pub title: String,
-    /// How much room it wants.
+    /// Its importance in the layout.
     pub weight: Weight,
     /// Same scale on both axes, or not.
     pub aspect: Aspect,
@@ -383,16 +383,16 @@ pub struct Panel {
     pub x: Axis,
     /// Vertical axis, upwards.
     pub y: Axis,
-    /// What to paint, in order.
+    /// The layers, in painting order.
     pub layers: Vec<Layer>,
-    /// What the colours and marks mean.
+    /// The meanings of colours and marks.
     pub legend: Vec<LegendEntry>,
-    /// Scale of the raster's colours, where there is one.
+    /// Scale of the raster's colours, if there is a raster.
     pub color_bar: Option<ColorBar>,
 }
 
 impl Panel {
-    /// What the axes span.
+    /// The range of both axes.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         Bounds {

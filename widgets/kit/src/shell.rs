@@ -1,4 +1,4 @@
-//! A whole widget on egui: words, presets, panels, transport, controls, readouts, tables.
+//! A complete widget on egui: texts, presets, panels, transport, controls, readouts, tables.
 
 mod parts;
 mod room;
@@ -22,7 +22,7 @@ use crate::view::View;
 use crate::zoom::Look;
 use room::Room;
 
-/// From this width on, controls and readouts stand beside the panels.
+/// Width from which controls and readouts are beside the panels.
 const WIDE: f32 = 820.0;
 /// Width of the controls beside the panels.
 const SIDE_WIDTH: f32 = 300.0;
@@ -30,33 +30,34 @@ const SIDE_WIDTH: f32 = 300.0;
 const MARGIN: f32 = 12.0;
 /// Space between blocks.
 const GAP: f32 = 14.0;
-/// Part of a frame that [`Model::work`] may take while the pointer drags something, or values come in from
-/// outside: the picture follows them.
+/// Time budget of [`Model::work`] per frame during a drag or a series of external changes, which keeps the
+/// picture responsive.
 const WORK_WHILE_CHANGING: Duration = Duration::from_millis(4);
-/// After a change another one is expected for so long, s: where drawing is slow, not every frame brings one.
+/// Duration for which more changes are expected after one, s: if drawing is slow, not every frame brings a
+/// change.
 const CHANGES_FOR_S: f64 = 0.2;
-/// Part of a frame that it may take otherwise: a frame at 60 Hz has 16 ms.
+/// Time budget otherwise: a frame at 60 Hz has 16 ms.
 const WORK_AT_REST: Duration = Duration::from_millis(9);
-/// Where drawing is slow, it may take this share of the time from one frame to the next.
+/// If drawing is slow, the budget is this share of the time between frames.
 const SHARE_AT_REST: f32 = 1.0 / 3.0;
-/// However slow drawing is, the reader is not kept waiting longer than this.
+/// Largest time budget, however slow drawing is.
 const MOST_WORK: Duration = Duration::from_millis(100);
 
-/// A widget on egui: model and view, and what a frame leaves for the next.
+/// A widget on egui: model, view, and the state between frames.
 pub struct Shell {
     model: Box<dyn Model>,
     view: Box<dyn View>,
     theme: Theme,
     focus: Option<String>,
     shown: Shown,
-    /// Counts the changes of `shown`.
+    /// Number of changes of `shown`.
     revision: u64,
     stale: bool,
     moving: Moving,
     working: bool,
-    /// Whether something was changed since the last frame.
+    /// Whether the model was changed since the last frame.
     changed: bool,
-    /// So long more changes are expected, s of egui's clock.
+    /// Time until which more changes are expected, s of egui's clock.
     changes_until_s: f64,
     pointer: Pointer,
     panels: Vec<(&'static str, Transform)>,
@@ -66,18 +67,18 @@ pub struct Shell {
     room: Room,
 }
 
-/// Whether the model moves by itself.
+/// Whether the model is animated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Moving {
-    /// It said that it does not.
+    /// It reported that it is not.
     No,
-    /// It was touched since: ask.
+    /// It was changed since; query it.
     Perhaps,
-    /// It did at the last frame.
+    /// It was at the last frame.
     Yes,
 }
 
-/// What the model said at its last change.
+/// The model's output at its last change.
 struct Shown {
     scene: Scene,
     outcome: Outcome,
@@ -95,7 +96,7 @@ impl Shown {
 }
 
 impl Shell {
-    /// A widget from its two halves.
+    /// Creates a widget from its two halves.
     #[must_use]
     pub fn new(model: Box<dyn Model>, view: Box<dyn View>) -> Self {
         Self {
@@ -119,24 +120,24 @@ impl Shell {
         }
     }
 
-    /// The model, to read.
+    /// Shared access to the model.
     #[must_use]
     pub fn model(&self) -> &dyn Model {
         self.model.as_ref()
     }
 
-    /// The model, to change: the next frame shows it anew.
+    /// Mutable access to the model; the next frame updates the picture.
     pub fn model_mut(&mut self) -> &mut dyn Model {
         self.touch();
         self.model.as_mut()
     }
 
-    /// What the widget asks of its host, see [`Model::take_orders`]; the picture stays as it is.
+    /// The widget's requests to its host, see [`Model::take_orders`]; the picture does not change.
     pub fn take_orders(&mut self) -> Vec<String> {
         self.model.take_orders()
     }
 
-    /// Finishes what the picture waits for, see [`Model::finish_work`]; says whether there was anything.
+    /// Finishes pending work, see [`Model::finish_work`]. Returns whether there was any.
     pub fn finish_work(&mut self) -> bool {
         let settled = self.model.finish_work().goes_on();
         if settled {
@@ -145,42 +146,42 @@ impl Shell {
         settled
     }
 
-    /// Points needed at the width of the last [`Shell::ui`].
+    /// Height at the width of the last [`Shell::ui`], in points.
     #[must_use]
     pub fn content_height(&self) -> f32 {
         self.content_height
     }
 
-    /// What the host has for all of it, in points: until more is asked for, the plots of the scene give way.
+    /// Sets the available height in points; until the reader opens more, the plots of the scene shrink to
+    /// fit.
     pub fn set_room(&mut self, height: f32) {
         self.room = Room::from_height(height);
     }
 
-    /// Light or dark.
+    /// Sets light or dark.
     pub fn set_theme(&mut self, theme: Theme) {
         self.theme = theme;
     }
 
-    /// Whether things may move by themselves.
+    /// Sets whether animations run.
     pub fn set_motion(&mut self, motion: Motion) {
         self.model.set_motion(motion);
         self.touch();
     }
 
-    /// Rings the control that has the focus outside of egui.
+    /// Draws a focus ring around the control that has the focus outside of egui.
     pub fn set_focus(&mut self, id: Option<&str>) {
         self.focus = id.map(str::to_owned);
     }
 
-    /// Looks at every map in another way: what ctrl and the wheel do, without a pointer.
+    /// Zooms or moves every map, like ctrl and the wheel, without a pointer.
     pub fn look(&mut self, look: Look) {
         for panel in &self.shown.scene.panels {
             self.pointer.zoom.look(panel, look);
         }
     }
 
-    /// Whether something that follows a pressed pointer lies there: a touch that starts elsewhere
-    /// scrolls the page.
+    /// Whether something draggable is at that position: a touch that starts elsewhere scrolls the page.
     #[must_use]
     pub fn drags_at(&self, pos: Pos2) -> bool {
         self.hot.drags_at(pos)
@@ -191,50 +192,50 @@ impl Shell {
             })
     }
 
-    /// Where a point of a panel's axes lies on the screen, in points.
+    /// Screen position of a point in a panel's axes, in points.
     #[must_use]
     pub fn panel_to_screen(&self, panel: &str, at: [f64; 2]) -> Option<[f32; 2]> {
         let (_, to) = self.panels.iter().find(|(id, _)| *id == panel)?;
         Some(to.to_px(at))
     }
 
-    /// Where a control stood in the last frame, so that a host can scroll to it.
+    /// The rectangle of a control in the last frame, so that a host can scroll to it.
     #[must_use]
     pub fn control_rect(&self, id: &str) -> Option<Rect> {
         self.hot.rect(id)
     }
 
-    /// Where the first panel stood in the last frame: what a host keeps in sight while a control moves.
+    /// The rectangle of the first panel in the last frame, which a host keeps in view while a control moves.
     #[must_use]
     pub fn scene_rect(&self) -> Option<PxRect> {
         Some(self.panels.first()?.1.plot())
     }
 
-    /// Lets go of what is dragged: the touch was cancelled.
+    /// Ends all drags after a cancelled touch.
     pub fn release_drags(&mut self) {
         self.pointer.release(self.model.as_mut());
         self.touch();
     }
 
-    /// The static picture of the widget as it is now.
+    /// The static picture of the current state.
     #[must_use]
     pub fn picture_svg(&self, width_px: f32, theme: Theme) -> String {
         picture_svg(self.model.as_ref(), self.view.as_ref(), width_px, theme)
     }
 
-    /// What is wrong with the texts of that picture, see [`crate::audit`].
+    /// Faults of the texts in that picture, see [`crate::audit`].
     #[must_use]
     pub fn text_faults(&self, width_px: f32) -> Vec<String> {
         text_faults(self.model.as_ref(), self.view.as_ref(), width_px)
     }
 
-    /// Words over the data of that picture that lie on each other.
+    /// Overlapping texts over the data of that picture.
     #[must_use]
     pub fn label_faults(&self, width_px: f32) -> Vec<String> {
         label_faults(self.model.as_ref(), self.view.as_ref(), width_px)
     }
 
-    /// Whether another frame is needed although nobody touches anything.
+    /// Whether another frame is needed without further input.
     #[must_use]
     pub fn is_busy(&self) -> bool {
         self.moving != Moving::No || self.working || self.stale
@@ -257,7 +258,7 @@ impl Shell {
         let column = if width >= WIDE {
             let stage_width = width - SIDE_WIDTH - 2.0 * GAP;
             let side_left = left + width - SIDE_WIDTH;
-            // Controls come first in time: what they change shows in this very frame.
+            // Controls come first, so that their changes show in this frame.
             let side = self.block(ui, [side_left, y], SIDE_WIDTH, Self::side);
             let stage = self.stage(ui, [left, y], stage_width, &mut reserved);
             let notice = self.block(ui, [left, stage], stage_width, Self::notice);
@@ -292,7 +293,7 @@ impl Shell {
         }
     }
 
-    /// Draws one block of egui widgets below `at`; returns where the next one starts.
+    /// Draws one block of egui widgets below `at`. Returns the vertical start of the next block.
     fn block(
         &mut self,
         ui: &mut Ui,
@@ -316,7 +317,7 @@ impl Shell {
         if self.moving != Moving::No {
             let elapsed_s = f64::from(ui.input(|input| input.stable_dt));
             let activity = self.model.advance(elapsed_s);
-            // The last step of a run changes the picture and says idle already.
+            // The last step of a run changes the picture although it already returns idle.
             self.stale |= activity == Activity::Busy || self.moving == Moving::Yes;
             self.moving = if activity.goes_on() {
                 Moving::Yes
@@ -336,7 +337,7 @@ impl Shell {
         }
     }
 
-    /// Asks the model anew, where something changed.
+    /// Queries the model again if something changed.
     fn refresh(&mut self) {
         if self.stale {
             self.shown = Shown::new(self.model.as_ref());
@@ -345,7 +346,7 @@ impl Shell {
         }
     }
 
-    /// The model may have changed.
+    /// Marks the model as possibly changed.
     fn touch(&mut self) {
         self.stale = true;
         self.working = true;
@@ -368,7 +369,7 @@ impl Shell {
     }
 }
 
-/// Time for [`Model::work`] in a frame that came so many seconds after the last one.
+/// Time budget of [`Model::work`] in a frame that came so many seconds after the last one.
 fn work_at_rest(frame_s: f32) -> Duration {
     let share = Duration::try_from_secs_f32(SHARE_AT_REST * frame_s).unwrap_or_default();
     share.clamp(WORK_AT_REST, MOST_WORK)
@@ -379,7 +380,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn work_fits_into_a_fast_frame_and_takes_a_third_of_a_slow_one() {
+    fn work_fits_a_fast_frame_and_takes_a_third_of_a_slow_one() {
         assert_eq!(work_at_rest(1.0 / 60.0), WORK_AT_REST);
         assert!((work_at_rest(0.15).as_secs_f32() - 0.05).abs() < 1e-6);
         assert_eq!(work_at_rest(5.0), MOST_WORK);

@@ -1,9 +1,9 @@
-//! What a widget says of itself: title, words, parameters, buttons, presets.
+//! The description of a widget: title, texts, parameters, buttons, presets.
 
 use crate::layers::Opening;
 use crate::param::ParamSpec;
 
-/// Everything about a widget that never changes.
+/// The constant description of a widget.
 #[derive(Clone, Copy, Debug)]
 pub struct WidgetSpec {
     /// Number in the chapter and name in links: `w16.1`.
@@ -14,7 +14,7 @@ pub struct WidgetSpec {
     pub misconception: &'static str,
     /// "What to notice", a sentence each.
     pub notice: &'static [&'static str],
-    /// What it shows until the reader asks for more.
+    /// The parts that are shown until the reader opens the rest.
     pub opening: Opening,
     /// The parameters, in the order of their controls.
     pub params: &'static [&'static ParamSpec],
@@ -24,56 +24,56 @@ pub struct WidgetSpec {
     pub presets: &'static [Preset],
 }
 
-/// A button that does something once.
+/// A button with a single action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ButtonSpec {
     /// Name in JavaScript and for [`crate::model::Model::press`]: `step`.
     pub id: &'static str,
     /// Name on screen.
     pub label: &'static str,
-    /// One sentence on what it does.
+    /// One sentence on its effect.
     pub help: &'static str,
 }
 
-/// "What to try": a named state.
+/// "What to try": a preset state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preset {
     /// Name for [`crate::model::Model::press`]: `quarter-turn`.
     pub id: &'static str,
-    /// The invitation on the button: `Start 60° off`.
+    /// The text on the button: `Start 60° off`.
     pub label: &'static str,
-    /// What the reader will see.
+    /// The expected result.
     pub help: &'static str,
     /// Parameters to set; all others go back to their defaults.
     pub set: &'static [(&'static str, f64)],
-    /// Buttons pressed afterwards, such as `play`.
+    /// Buttons to press afterwards, such as `play`.
     pub then: &'static [&'static str],
 }
 
-/// Starts and pauses the playback; shown as pressed while it plays.
+/// Starts and pauses the playback; drawn as pressed while it plays.
 pub const PLAY: ButtonSpec = ButtonSpec {
     id: "play",
     label: "Play",
     help: "Play the run from here, or pause it.",
 };
 
-/// One step of the timeline.
+/// Advances by one step of the timeline.
 pub const STEP: ButtonSpec = ButtonSpec {
     id: "step",
     label: "Step",
     help: "Go one step forward.",
 };
 
-/// Back to the start of the timeline; the parameters stay.
+/// Returns to the start of the timeline; the other parameters do not change.
 pub const RESET: ButtonSpec = ButtonSpec {
     id: "reset",
     label: "Reset",
     help: "Go back to the start of the run; the settings stay.",
 };
 
-/// Every parameter back to its default.
+/// Resets every parameter to its default.
 pub const DEFAULTS: ButtonSpec = ButtonSpec {
     id: "defaults",
     label: "Defaults",
-    help: "Put every setting back to where it started.",
+    help: "Reset every setting to its default.",
 };

@@ -7,7 +7,7 @@ use crate::palette::{Theme, accent, mix, readable_on, tone};
 use crate::scene::Tone;
 use crate::surface::TextSize;
 
-/// Smallest height of anything that is pressed (WCAG 2.2, 2.5.8 asks for 24).
+/// Smallest height of a control (WCAG 2.2, 2.5.8 requires 24).
 pub const TARGET: f32 = 26.0;
 
 /// The style of all widgets in a theme.
@@ -59,7 +59,7 @@ fn visuals(theme: Theme) -> Visuals {
 
     let corner = CornerRadius::same(5);
     let widgets = &mut visuals.widgets;
-    // Controls keep a border of 3:1 against paper (WCAG 2.2, 1.4.11).
+    // Controls have a border with a contrast of 3:1 against paper (WCAG 2.2, 1.4.11).
     for (state, fill, border, width) in [
         (&mut widgets.noninteractive, 0.0, 0.18, 1.0),
         (&mut widgets.inactive, 0.07, 0.62, 1.0),
@@ -67,7 +67,7 @@ fn visuals(theme: Theme) -> Visuals {
         (&mut widgets.active, 0.2, 1.0, 1.5),
         (&mut widgets.open, 0.12, 0.8, 1.0),
     ] {
-        // Rails and boxes use this fill, buttons the weak one.
+        // Rails and boxes use this fill, buttons the weak fill.
         state.bg_fill = shade(fill + 0.12);
         state.weak_bg_fill = shade(fill);
         state.bg_stroke = Stroke::new(width, shade(border));
@@ -78,7 +78,7 @@ fn visuals(theme: Theme) -> Visuals {
     visuals
 }
 
-/// Colour of the ring round the control that has the focus in the page.
+/// Colour of the focus ring.
 #[must_use]
 pub fn focus_color(theme: Theme) -> egui::Color32 {
     color(match theme {

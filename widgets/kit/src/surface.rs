@@ -1,7 +1,7 @@
-//! What a picture is drawn on: egui, SVG, print.
+//! The interface for drawing: egui, SVG, print.
 //!
-//! Coordinates are logical pixels with y downwards. [`crate::draw`] speaks only to this trait, so
-//! the live picture and the static one come from the same code.
+//! Coordinates are logical pixels with y downwards. [`crate::draw`] uses only this trait, so the live and the
+//! static picture share their code.
 
 use crate::palette::Rgb;
 use crate::scene::{Raster, Stroke};
@@ -52,27 +52,27 @@ impl PxRect {
         [self.left + self.width / 2.0, self.top + self.height / 2.0]
     }
 
-    /// The rectangle that reaches `by` farther on every side, or less far where that is negative.
+    /// The rectangle, larger by `by` on every side, or smaller if `by` is negative.
     #[must_use]
     pub fn grown(&self, by: f32) -> Self {
         let (width, height) = (self.width + 2.0 * by, self.height + 2.0 * by);
         Self::new(self.left - by, self.top - by, width, height)
     }
 
-    /// Whether a point lies in it, edges included.
+    /// Whether a point is inside or on the edge.
     #[must_use]
     pub fn contains(&self, at: Px) -> bool {
         (self.left..=self.right()).contains(&at[0]) && (self.top..=self.bottom()).contains(&at[1])
     }
 
-    /// The same rectangle elsewhere.
+    /// The rectangle at another position.
     #[must_use]
     pub fn moved(&self, by: Px) -> Self {
         Self::new(self.left + by[0], self.top + by[1], self.width, self.height)
     }
 }
 
-/// Which side of a text lies at its anchor; vertically the anchor is always the middle.
+/// Horizontal alignment of a text to its anchor; vertically the anchor is always the middle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
     /// The text runs to the right of the anchor.
@@ -128,7 +128,7 @@ impl Pen {
         }
     }
 
-    /// Dash and gap in pixels, where the line is broken.
+    /// Dash and gap in pixels; `None` for a solid line.
     #[must_use]
     pub fn dashes(&self) -> Option<(f32, f32)> {
         match self.stroke {
@@ -139,9 +139,9 @@ impl Pen {
     }
 }
 
-/// Reach of a text's halo beyond its letters, in pixels.
+/// Width of a text's halo beyond its letters, in pixels.
 pub const HALO_WIDTH: f32 = 1.5;
-/// Where copies of a text stand that together make its halo.
+/// Offsets of the copies of a text that form its halo.
 const HALO: [[f32; 2]; 8] = [
     [1.0, 0.0],
     [0.7, 0.7],
@@ -156,21 +156,21 @@ const HALO: [[f32; 2]; 8] = [
 /// The colours of a text over data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Haloed {
-    /// Of the letters.
+    /// Colour of the letters.
     pub ink: Rgb,
-    /// Around them.
+    /// Colour of the halo.
     pub halo: Rgb,
 }
 
-/// Measures text; apart from drawing, because layout comes first.
+/// Measures text; separate from drawing, because layout comes first.
 pub trait Measure {
     /// Width of a text on one line.
     fn text_width(&mut self, text: &str, size: TextSize) -> f32;
 }
 
-/// Something to draw on.
+/// A drawing surface.
 pub trait Surface: Measure {
-    /// What follows is cut to that rectangle; `None` lifts the cut.
+    /// Clips what follows to that rectangle; `None` ends the clipping.
     fn clip(&mut self, rect: Option<PxRect>);
 
     /// An open line.
@@ -185,13 +185,13 @@ pub trait Surface: Measure {
     /// A filled rectangle.
     fn rect(&mut self, rect: PxRect, fill: Rgb);
 
-    /// A picture of cells, unsmoothed; `key` names it among all pictures of the surface.
+    /// A raster without smoothing; `key` identifies it among the rasters of the surface.
     fn raster(&mut self, rect: PxRect, raster: &Raster, key: &str);
 
     /// A text on one line.
     fn text(&mut self, at: Px, align: Align, text: &str, size: TextSize, color: Rgb);
 
-    /// A text over data: a halo keeps it readable on whatever lies below.
+    /// A text over data, with a halo for contrast.
     fn haloed_text(&mut self, at: Px, align: Align, text: &str, size: TextSize, colors: Haloed) {
         for [x, y] in HALO {
             let beside = [at[0] + HALO_WIDTH * x, at[1] + HALO_WIDTH * y];

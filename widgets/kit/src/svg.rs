@@ -11,7 +11,7 @@ use crate::scene::{Raster, Scene, Tone};
 use crate::surface::{Align, HALO_WIDTH, Haloed, Measure, Pen, Px, PxRect, Surface, TextSize};
 use crate::view::View;
 
-/// The picture of a widget as it is now: title, panels, verdict and numbers.
+/// Renders the current state of a widget: title, panels, verdict and numbers.
 #[must_use]
 pub fn picture_svg(model: &dyn Model, view: &dyn View, width_px: f32, theme: Theme) -> String {
     let mut svg = SvgSurface::new(theme);
@@ -20,8 +20,8 @@ pub fn picture_svg(model: &dyn Model, view: &dyn View, width_px: f32, theme: The
     svg.finish(width_px, height, &format!("{} {}", spec.id, spec.title))
 }
 
-/// The panels of a scene, and nothing around them, to stand among others in one page: what has a name
-/// in it has one that begins with `prefix`.
+/// Renders only the panels of a scene, for embedding in a page with other pictures; `prefix` makes its
+/// element names unique.
 #[must_use]
 pub fn scene_svg(scene: &Scene, title: &str, prefix: &str, width_px: f32, theme: Theme) -> String {
     let mut svg = SvgSurface::new(theme);
@@ -32,14 +32,14 @@ pub fn scene_svg(scene: &Scene, title: &str, prefix: &str, width_px: f32, theme:
 
 /// Writes SVG elements.
 ///
-/// Neighbouring shapes of the same look share one `path` element: thousands of points would
-/// otherwise repeat their colour thousands of times.
+/// Consecutive shapes with the same style share one `path` element, because thousands of points would repeat
+/// their colour otherwise.
 pub struct SvgSurface {
     theme: Theme,
     body: String,
-    /// Look and outline of the path that is still open.
+    /// Style and outline of the current path.
     path: (String, String),
-    /// What the names in this picture begin with: several pictures may stand in one page.
+    /// Prefix of the names in this picture: several pictures may be in one page.
     prefix: String,
     clips: usize,
     clipped: bool,
@@ -81,7 +81,7 @@ impl SvgSurface {
         let _ = self.body.write_fmt(element);
     }
 
-    /// Adds an outline in that look.
+    /// Adds an outline in that style.
     fn path(&mut self, look: &str, outline: &str) {
         if self.path.0 != look {
             self.close_path();
@@ -104,7 +104,7 @@ impl SvgSurface {
             Align::Right => "end",
         };
         let px = size.px();
-        // The middle of the small letters lies a third of the size above the base line.
+        // The middle of lower-case letters is a third of the font size above the base line.
         let base = y + 0.35 * px;
         self.element(format_args!(
             "<text x=\"{x:.1}\" y=\"{base:.1}\" font-size=\"{px}\" text-anchor=\"{anchor}\" \
@@ -115,14 +115,14 @@ impl SvgSurface {
 }
 
 impl Measure for SvgSurface {
-    /// A careful estimate: the reader's font is not known here.
+    /// A conservative estimate, because the reader's font is unknown.
     fn text_width(&mut self, text: &str, size: TextSize) -> f32 {
         let ems: f32 = text.chars().map(char_width_em).sum();
         ems * size.px()
     }
 }
 
-/// Width of a character in the widest usual face, DejaVu Sans, in em.
+/// Width of a character in DejaVu Sans, the widest common font, in em.
 fn char_width_em(c: char) -> f32 {
     match c {
         'i' | 'j' | 'l' | '\'' | '|' => 0.29,
@@ -225,7 +225,7 @@ impl Surface for SvgSurface {
     }
 
     fn haloed_text(&mut self, at: Px, align: Align, text: &str, size: TextSize, colors: Haloed) {
-        // A stroke of its own below the letters: not every reader of SVG knows paint-order.
+        // A separate stroke below the letters, because not every SVG renderer supports paint-order.
         let halo = css(colors.halo);
         let width = 2.0 * HALO_WIDTH;
         let look = format!(
@@ -266,7 +266,7 @@ fn css([r, g, b]: Rgb) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// Text as XML takes it.
+/// Escapes a text for XML.
 fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {

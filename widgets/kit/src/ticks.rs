@@ -1,4 +1,4 @@
-//! Where an axis has its ticks, and what they say.
+//! Positions and labels of axis ticks.
 
 /// Ticks of one axis: evenly spaced round numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,7 +9,7 @@ pub struct Ticks {
     pub step: f64,
 }
 
-/// How an axis likes its round numbers.
+/// The round numbers of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// 1, 2, 5 times a power of ten.
@@ -19,7 +19,7 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// Degrees where the label names them.
+    /// Degrees if the label contains the unit.
     #[must_use]
     pub fn of_label(label: &str) -> Self {
         if label.contains('°') {
@@ -35,7 +35,7 @@ impl Ticks {
     #[must_use]
     pub fn new(min: f64, max: f64, most: usize, scale: Scale) -> Self {
         let step = round_step((max - min) / most.max(1) as f64, scale);
-        // A value that differs from the border by rounding only still belongs to the axis.
+        // A value that exceeds the limit by rounding only still belongs to the axis.
         let slack = 1e-9 * step;
         let first = ((min - slack) / step).ceil() as i64;
         let last = ((max + slack) / step).floor() as i64;
@@ -43,7 +43,7 @@ impl Ticks {
         Self { values, step }
     }
 
-    /// A tick's words, all with the digits that the step needs and a true minus sign.
+    /// A tick's label, with the digits that the step needs and a true minus sign.
     #[must_use]
     pub fn label(&self, value: f64) -> String {
         let mut decimals = 0;
@@ -56,7 +56,7 @@ impl Ticks {
     }
 }
 
-/// A number with so many digits after the point and a true minus sign, never `−0`.
+/// Formats a number with that many digits after the point and a true minus sign, never `−0`.
 #[must_use]
 pub fn signed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn there_are_never_more_ticks_than_asked_for_plus_one() {
+    fn there_is_at_most_one_tick_too_many() {
         for k in 1..200 {
             let max = 0.037 * f64::from(k * k);
             for most in 2..9 {

@@ -1,4 +1,4 @@
-//! Between the units of a panel's axes and pixels.
+//! Transforms between the units of a panel's axes and pixels.
 
 use crate::scene::{Aspect, Bounds};
 use crate::surface::{Px, PxRect};
@@ -11,12 +11,12 @@ pub struct Transform {
 }
 
 impl Transform {
-    /// Shows `wanted` in the rectangle; where the aspect is equal, the longer side shows more.
+    /// Shows `wanted` in the rectangle; with equal aspect, the longer side shows more.
     #[must_use]
     pub fn new(plot: PxRect, wanted: Bounds, aspect: Aspect) -> Self {
         let mut shown = wanted;
         for (max, min) in shown.max.iter_mut().zip(shown.min) {
-            // An axis without extent would divide by zero.
+            // Avoids a division by zero for an axis without extent.
             *max = max.max(min + 1e-9);
         }
         if aspect == Aspect::Equal {
@@ -36,7 +36,7 @@ impl Transform {
         self.plot
     }
 
-    /// What the rectangle shows, in units of the axes.
+    /// The visible range, in units of the axes.
     #[must_use]
     pub fn shown(&self) -> Bounds {
         self.shown
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_lead_back_to_where_they_came_from() {
+    fn pixels_map_back_to_the_same_point() {
         for aspect in [Aspect::Equal, Aspect::Free] {
             let transform = transform(aspect);
             for at in [[-2.0, 1.0], [3.3, 2.2], [10.0, 4.0]] {
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_axes_show_all_that_was_asked_for_at_one_scale() {
+    fn equal_axes_show_the_wanted_range_at_one_scale() {
         let transform = transform(Aspect::Equal);
         let [x, y] = transform.units_per_px();
         assert!((x - y).abs() < 1e-12);

@@ -16,23 +16,22 @@ use crate::scene::Tone;
 use crate::spec::{ButtonSpec, DEFAULTS, PLAY};
 use crate::style::TARGET;
 
-/// Half the width of the thumb: a target of 24 pixels.
+/// Half the width of the thumb, for a target of 24 pixels.
 const THUMB: f32 = 12.0;
-/// Width of the speed with its name.
+/// Width of the speed control with its name.
 const SPEED_ROOM: f32 = 260.0;
-/// From this width on, the place on the timeline stands beside the buttons of what a widget opens with.
+/// Width from which the position on the timeline is beside the buttons of the opening view.
 const PLACE_BESIDE: f32 = 480.0;
-/// A mark answers to the pointer within that distance.
+/// Distance within which a mark reacts to the pointer.
 const MARK_REACH: f32 = 7.0;
 
-/// Shows the buttons, the speed and the timeline, as far as the widget has them; says whether any
-/// of them was used.
+/// Shows the buttons, the speed and the timeline of the widget. Returns whether any of them was used.
 pub fn bar(ui: &mut Ui, model: &mut dyn Model, theme: Theme, hot: &mut Hot) -> Touched {
     let mut touched = Touched::No;
     let layer = model.layer();
     let timeline = model.timeline();
     let playing = timeline.as_ref().is_some_and(|timeline| timeline.playing);
-    // Beside few buttons the place on the timeline needs no row of its own.
+    // Beside few buttons the position on the timeline needs no separate row.
     let is_beside = !layer.is_all() && ui.available_width() >= PLACE_BESIDE;
     ui.horizontal_wrapped(|ui| {
         for spec in model.spec().buttons {
@@ -40,7 +39,7 @@ pub fn bar(ui: &mut Ui, model: &mut dyn Model, theme: Theme, hot: &mut Hot) -> T
                 && layer.has_button(spec.id)
                 && button(ui, spec, playing, hot).clicked()
             {
-                // The list names only buttons that the model has.
+                // The buttons come from the widget's own list.
                 let _ = model.press(spec.id);
                 touched = Touched::Yes;
             }
@@ -49,7 +48,7 @@ pub fn bar(ui: &mut Ui, model: &mut dyn Model, theme: Theme, hot: &mut Hot) -> T
             && let Some((spec, value)) = model.values().find(SPEED.id)
             && let ParamKind::Choice { options } = spec.kind
         {
-            // What is left of a row may be too narrow for the choices, which do not break apart.
+            // The rest of a row may be too narrow for the choices, which do not wrap.
             if ui.available_size_before_wrap().x < SPEED_ROOM {
                 ui.end_row();
             }
@@ -76,7 +75,7 @@ pub fn bar(ui: &mut Ui, model: &mut dyn Model, theme: Theme, hot: &mut Hot) -> T
     touched
 }
 
-/// One button; "Play" says "Pause" while the run plays.
+/// One button; "Play" becomes "Pause" while the run plays.
 pub fn button(ui: &mut Ui, spec: &'static ButtonSpec, playing: bool, hot: &mut Hot) -> Response {
     let pressed = spec.id == PLAY.id && playing;
     let label = if pressed { "Pause" } else { spec.label };
@@ -85,15 +84,15 @@ pub fn button(ui: &mut Ui, spec: &'static ButtonSpec, playing: bool, hot: &mut H
     response.on_hover_text(spec.help)
 }
 
-/// Where on the timeline the widget is, in words.
+/// The position on the timeline in words.
 fn place_on(ui: &mut Ui, model: &dyn Model, timeline: Option<&Timeline>) {
     if let Some(timeline) = timeline
         && let Some((spec, value)) = model.values().find(timeline.param)
     {
         let last = timeline.last.max(0.0);
-        // A position past the end means the end, wherever that is at the moment.
+        // A position beyond the end means the current end.
         let value = value.min(last);
-        // In one piece: what does not fit beside the buttons stands below them.
+        // Not split: if it does not fit beside the buttons, it moves below them.
         let words = format!("{} {value:.0} of {last:.0}", spec.label);
         ui.add(Label::new(words).extend()).on_hover_text(spec.help);
     }
@@ -146,7 +145,7 @@ fn scrubber(
     new
 }
 
-/// The position that pointer or keys ask for.
+/// The position chosen by pointer or keys.
 fn new_position(ui: &Ui, response: &Response, rail: Rect, value: f64, last: f64) -> Option<f64> {
     let mut new = value;
     let button = PrimaryButton::in_this_frame(ui);
@@ -189,7 +188,7 @@ fn paint(
     for mark in &timeline.marks {
         let x = painter.round_to_pixel_center(x_of(mark.at));
         let stroke = Stroke::new(2.0, color(palette::standing(theme, mark.standing)));
-        // Good stands above the rail, bad hangs below it: colour does not stand alone.
+        // Good events are above the rail, bad ones below it, in addition to their colour.
         let (top, bottom) = match mark.standing {
             Standing::Good => (rail.top() - 9.0, rail.bottom()),
             Standing::Bad => (rail.top(), rail.bottom() + 9.0),

@@ -1,4 +1,4 @@
-//! The values that the parameters of a widget have.
+//! The current values of a widget's parameters.
 
 use crate::param::{MORE, ParamError, ParamKind, ParamSpec, Typed, printable};
 
@@ -9,10 +9,10 @@ pub struct Values {
     values: Vec<Value>,
 }
 
-/// What one parameter has.
+/// The value of one parameter.
 #[derive(Clone, Debug, PartialEq)]
 enum Value {
-    /// A number, the index of an option, or 0 or 1 of a switch.
+    /// A number, the index of an option, or 0 or 1 for a switch.
     Number(f64),
     /// A text.
     Text(String),
@@ -26,7 +26,7 @@ impl Value {
         }
     }
 
-    /// A text has no number but 0.
+    /// 0 for a text.
     fn number(&self) -> f64 {
         match self {
             Self::Number(number) => *number,
@@ -45,8 +45,7 @@ impl Values {
         }
     }
 
-    /// Puts every parameter back to its default, but for [`MORE`]: what the reader has opened stays
-    /// open.
+    /// Resets every parameter to its default, except [`MORE`], so that opened parts stay open.
     pub fn reset(&mut self) {
         for (spec, value) in self.specs.iter().zip(&mut self.values) {
             if spec.id != MORE.id {
@@ -55,7 +54,7 @@ impl Values {
         }
     }
 
-    /// The list these values belong to.
+    /// The list of the parameters.
     #[must_use]
     pub fn specs(&self) -> &'static [&'static ParamSpec] {
         self.specs
@@ -68,7 +67,7 @@ impl Values {
         Some((self.specs[index], self.values[index].number()))
     }
 
-    /// The parameter of that name with its value, or words that name what there is.
+    /// The parameter of that name with its value; the error lists the valid names.
     ///
     /// # Errors
     /// [`ParamError::UnknownParam`].
@@ -93,19 +92,19 @@ impl Values {
         self.specs.iter().position(|spec| spec.id == id)
     }
 
-    /// The value of a parameter that the widget itself declares.
+    /// The value of a declared parameter.
     ///
     /// # Panics
-    /// Where the list lacks it: a bug of the widget.
+    /// If the list lacks it: a bug of the widget.
     #[must_use]
     pub fn get<P: Typed>(&self, param: &P) -> P::Value {
         param.read(self.number(param.spec().id))
     }
 
-    /// The number that stands for the value of the parameter of that name.
+    /// The number for the value of the parameter of that name.
     ///
     /// # Panics
-    /// Where the list has no such name: a bug of the widget.
+    /// If the list lacks the name: a bug of the widget.
     #[must_use]
     pub fn number(&self, id: &str) -> f64 {
         match self.find(id) {
@@ -114,10 +113,10 @@ impl Values {
         }
     }
 
-    /// Sets a parameter after checking name and range; says whether the value changed.
+    /// Sets a parameter after checking name and range. Returns whether the value changed.
     ///
     /// # Errors
-    /// [`ParamError::UnknownParam`] or [`ParamError::OutOfRange`]; nothing changes then.
+    /// [`ParamError::UnknownParam`] or [`ParamError::OutOfRange`]; no value changes then.
     pub fn set(
         &mut self,
         widget: &'static str,
@@ -129,7 +128,7 @@ impl Values {
         };
         let spec = self.specs[index];
         let value = match (spec.kind, spec.check(value)?) {
-            // The range of a text is 0, which takes it away.
+            // A text has only the number 0, which clears it.
             (ParamKind::Text { .. }, _) => Value::Text(String::new()),
             (_, number) => Value::Number(number),
         };
@@ -138,7 +137,7 @@ impl Values {
 
     fn keep(&mut self, index: usize, value: Value) -> Changed {
         let is_same = match (&self.values[index], &value) {
-            // −0 is another number: a link writes it.
+            // Distinguishes −0 from 0, because links write it.
             (Value::Number(old), Value::Number(new)) => old.to_bits() == new.to_bits(),
             (old, new) => old == new,
         };
@@ -149,29 +148,29 @@ impl Values {
         Changed::Yes
     }
 
-    /// Keeps a value of the widget's own, that lies in its range by construction.
+    /// Stores a value that the widget computed, which is in its range by construction.
     ///
     /// # Panics
-    /// Where the list refuses it: a bug of the widget.
+    /// If the value is invalid: a bug of the widget.
     pub fn put<P: Typed>(&mut self, param: &P, value: P::Value) -> Changed {
         self.store(param.spec().id, param.number(value))
     }
 
-    /// [`Values::put`] by the parameter's name and the number that stands for the value.
+    /// [`Values::put`] by the parameter's name and the value's number.
     ///
     /// # Panics
-    /// Where the list refuses it: a bug of the widget.
+    /// If the value is invalid: a bug of the widget.
     pub fn store(&mut self, id: &str, value: f64) -> Changed {
         match self.set("the widget", id, value) {
             Ok(changed) => changed,
-            Err(error) => panic!("a value of our own was refused: {error}"),
+            Err(error) => panic!("the widget computed an invalid value: {error}"),
         }
     }
 
-    /// Sets a parameter to what [`Values::to_text`] writes; says whether it changed.
+    /// Sets a parameter from the output of [`Values::to_text`]. Returns whether it changed.
     ///
     /// # Errors
-    /// [`ParamError`]; nothing changes then.
+    /// [`ParamError`]; no value changes then.
     pub fn set_text(
         &mut self,
         widget: &'static str,
@@ -188,10 +187,10 @@ impl Values {
         Ok(self.keep(index, value))
     }
 
-    /// The value of a parameter as a link writes it.
+    /// The value of a parameter in the form of a link.
     ///
     /// # Panics
-    /// Where the list has no such parameter: a bug of the widget.
+    /// If the list lacks the parameter: a bug of the widget.
     #[must_use]
     pub fn to_text(&self, id: &str) -> String {
         let Some(index) = self.index(id) else {
@@ -213,9 +212,9 @@ impl Values {
 /// Whether a call changed anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Changed {
-    /// Something is new: compute again.
+    /// A value changed: compute again.
     Yes,
-    /// All is as it was.
+    /// No change.
     No,
 }
 
@@ -225,7 +224,7 @@ mod tests {
     use crate::param::tests::SPECS;
 
     #[test]
-    fn a_refused_value_changes_nothing_and_names_the_remedy() {
+    fn a_rejected_value_changes_no_state_and_names_the_remedy() {
         let mut values = Values::defaults(SPECS);
         for bad in [f64::NAN, f64::INFINITY, 181.0, -1e300] {
             assert!(values.set("w", "heading", bad).is_err(), "{bad} was taken");
@@ -241,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_is_kept_as_it_is_and_taken_away_by_a_number() {
+    fn a_text_is_stored_unchanged_and_cleared_by_a_number() {
         const TEXTS: &[&ParamSpec] = &[&ParamSpec {
             id: "flat",
             label: "flat",

@@ -1,4 +1,4 @@
-//! Where a widget's panels stand: rows of columns of panels.
+//! Layout of a widget's panels: rows of columns of panels.
 
 use crate::layers::Layer;
 use crate::layout::{PanelLayout, PlotHeight};
@@ -8,18 +8,18 @@ use crate::surface::{Measure, Px};
 /// Space between panels.
 pub const PANEL_GAP: f32 = 16.0;
 
-/// From this width on, panels stand side by side.
+/// Width from which panels are side by side.
 pub const SIDE_BY_SIDE: f32 = 520.0;
 
-/// A widget's pixels: how its panels are arranged. The default suits most.
+/// The layout of a widget's panels. The default suits most widgets.
 pub trait View {
-    /// Arranges the panels of a scene in a stage of that width.
+    /// Arranges the panels of a scene at that width.
     fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
         Arrangement::by_weight(scene, width)
     }
 }
 
-/// The view that leaves everything to the kit.
+/// The default view.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DefaultView;
 
@@ -28,7 +28,7 @@ impl View for DefaultView {}
 /// One panel in a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slot {
-    /// The panel's name; a name that the scene lacks leaves no gap.
+    /// The panel's name; a panel that the scene lacks leaves no gap.
     pub panel: &'static str,
     /// Height of its plot.
     pub height: PlotHeight,
@@ -43,7 +43,7 @@ pub struct Column {
     pub slots: Vec<Slot>,
 }
 
-/// Columns beside each other.
+/// Columns side by side.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Row {
     /// The columns from the left.
@@ -51,7 +51,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Panels of equal width beside each other.
+    /// Panels of equal width side by side.
     #[must_use]
     pub fn new(slots: &[Slot]) -> Self {
         let columns = slots.iter().map(|slot| Column {
@@ -74,7 +74,7 @@ pub struct Arrangement {
 }
 
 impl Arrangement {
-    /// What a layer shows of it: the panels of the scene, and no plots below.
+    /// The visible part for a layer: the panels of the scene, and no plots below.
     #[must_use]
     pub fn of_layer(mut self, layer: &Layer) -> Self {
         if layer.is_all() {
@@ -91,7 +91,7 @@ impl Arrangement {
         self
     }
 
-    /// Main panels over the whole width, halves in pairs, side plots in pairs below.
+    /// Default arrangement: main panels over the whole width, halves in pairs, side plots in pairs below.
     #[must_use]
     pub fn by_weight(scene: &Scene, width: f32) -> Self {
         let slots = |weight: Weight, columns: usize| {
@@ -127,7 +127,7 @@ fn default_slot(panel: &Panel, width: f32) -> Slot {
     }
 }
 
-/// A panel in its place, relative to the top left corner of its rows.
+/// A panel with its position, relative to the top left corner of its rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {
     /// The panel's name.
@@ -138,7 +138,7 @@ pub struct Placed {
     pub layout: PanelLayout,
 }
 
-/// Places the panels of rows in that width; returns them with the height they take.
+/// Lays out the panels of rows at that width. Returns them with their total height.
 #[must_use]
 pub fn place(
     scene: &Scene,

@@ -1,37 +1,37 @@
-//! How far each map is zoomed in, and to which part of it.
+//! The zoom of each map, and its visible part.
 
 use std::collections::BTreeMap;
 
 use crate::scene::{Aspect, Bounds, Panel};
 
-/// How far a map zooms in.
+/// Largest zoom factor.
 const MOST_ZOOM: f64 = 40.0;
-/// What a key press zooms by.
+/// Zoom factor of a key press.
 const ZOOM_STEP: f64 = 1.5;
-/// What a key press moves by, as a share of what is seen.
+/// Shift of a key press as a share of the visible part.
 const SHIFT_STEP: f64 = 0.25;
 
-/// A way to look at the maps without a pointer.
+/// A zoom or move of the maps without a pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
-    /// Closer, at the middle of what is seen.
+    /// Zooms in, about the center of the visible part.
     In,
-    /// From further away.
+    /// Zooms out.
     Out,
-    /// To the left by a quarter of what is seen.
+    /// Moves left by a quarter of the visible part.
     Left,
-    /// To the right.
+    /// Moves right.
     Right,
-    /// Up.
+    /// Moves up.
     Up,
-    /// Down.
+    /// Moves down.
     Down,
-    /// At everything again.
+    /// Shows everything again.
     Whole,
 }
 
 impl Look {
-    /// Every way with its name.
+    /// Every variant with its name.
     pub const NAMES: [(&'static str, Self); 7] = [
         ("in", Self::In),
         ("out", Self::Out),
@@ -42,7 +42,7 @@ impl Look {
         ("whole", Self::Whole),
     ];
 
-    /// The way of that name.
+    /// The variant of that name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let found = Self::NAMES.iter().find(|(known, _)| *known == name);
@@ -50,14 +50,14 @@ impl Look {
     }
 }
 
-/// The part of each map that is seen, in units of its axes; only maps (equal axes) zoom.
+/// The visible part of each map, in units of its axes; only maps (equal axes) zoom.
 #[derive(Clone, Debug, Default)]
 pub struct Zoom {
     windows: BTreeMap<&'static str, Bounds>,
 }
 
 impl Zoom {
-    /// What a panel shows: everything, or the part that it is zoomed to.
+    /// The visible part of a panel: everything, or the part to which it is zoomed.
     #[must_use]
     pub fn window(&self, panel: &Panel) -> Bounds {
         self.windows
@@ -72,12 +72,12 @@ impl Zoom {
         self.windows.contains_key(panel)
     }
 
-    /// Shows all of a panel again.
+    /// Shows a panel completely again.
     pub fn reset(&mut self, panel: &str) {
         self.windows.remove(panel);
     }
 
-    /// Zooms a map by a factor; `spot` stays where it is on the screen.
+    /// Zooms a map by a factor about `spot`, which keeps its position on the screen.
     pub fn by(&mut self, panel: &Panel, factor: f64, spot: [f64; 2]) {
         if panel.aspect != Aspect::Equal {
             return;
@@ -98,14 +98,14 @@ impl Zoom {
         self.windows.insert(panel.id, within);
     }
 
-    /// Moves the seen part of a zoomed map; what is seen whole stays.
+    /// Moves the visible part of a zoomed map; an unzoomed map does not move.
     pub fn shift(&mut self, panel: &Panel, shift: [f64; 2]) {
         if let Some(window) = self.windows.get_mut(panel.id) {
             *window = moved_within(*window, shift, &panel.bounds());
         }
     }
 
-    /// Looks at a map in another way.
+    /// Zooms or moves a map.
     pub fn look(&mut self, panel: &Panel, look: Look) {
         let window = self.window(panel);
         let [width, height] = window.size().map(|size| size * SHIFT_STEP);
@@ -121,7 +121,7 @@ impl Zoom {
     }
 }
 
-/// A window moved by `shift`, and back as far as needed to stay within `full`.
+/// A window moved by `shift`, limited to `full`.
 fn moved_within(window: Bounds, shift: [f64; 2], full: &Bounds) -> Bounds {
     let size = window.size();
     let min: [f64; 2] = core::array::from_fn(|i| {
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_zoomed_map_cannot_be_pushed_off_the_paper() {
+    fn a_zoomed_map_stays_within_its_full_range() {
         let window = Bounds {
             min: [1.0, 1.0],
             max: [5.0, 4.0],
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_zoom_about_the_middle_and_move_by_a_quarter_of_what_is_seen() {
+    fn keys_zoom_about_the_center_and_move_by_a_quarter_of_the_view() {
         let map = map();
         let mut zoom = Zoom::default();
         zoom.look(&map, Look::Left);

@@ -1,4 +1,4 @@
-//! What is drawn over data and in legends can be read.
+//! Text over data and in legends is readable.
 
 use kit::draw;
 use kit::layout::{PanelLayout, PlotHeight};
@@ -33,7 +33,7 @@ fn label(text: &str, tone: Tone) -> Layer {
     }
 }
 
-/// The elements that write this text, from the lowest up.
+/// The elements that draw this text, from bottom to top.
 fn writings<'a>(svg: &'a str, text: &str) -> Vec<&'a str> {
     svg.split("<text ")
         .filter(|element| element.contains(&format!(">{text}</text>")))
@@ -41,7 +41,7 @@ fn writings<'a>(svg: &'a str, text: &str) -> Vec<&'a str> {
 }
 
 #[test]
-fn a_label_over_data_stands_on_a_halo_of_paper() {
+fn a_label_over_data_has_a_halo_of_paper() {
     for theme in [Theme::Light, Theme::Dark] {
         let css = |[r, g, b]: [u8; 3]| format!("#{r:02x}{g:02x}{b:02x}");
         let paper = css(tone(theme, Tone::Paper));
@@ -89,12 +89,11 @@ fn two_dashes_show_on_either_side_of_a_legends_mark() {
         to_mark - left >= 16.0 && right - from_mark >= 16.0,
         "{outline}"
     );
-    // The mark reaches 5 to either side of the middle.
+    // The mark extends 5 to either side of the middle.
     assert!(from_mark - to_mark >= 10.0, "{outline}");
 }
 
-/// How wide the clip is under which the circles of a panel with these points are drawn, and how many
-/// circles there are.
+/// Width of the clip rectangle around the circles of a panel with these points, and the number of circles.
 fn clip_of_circles(points: Vec<[f64; 2]>) -> (f64, usize) {
     let layer = Layer::points(points, Mark::Circle, Tone::Posterior, 6.0);
     let svg = svg_of(vec![layer], Vec::new(), Theme::Light);
@@ -111,10 +110,10 @@ fn clip_of_circles(points: Vec<[f64; 2]>) -> (f64, usize) {
 }
 
 #[test]
-fn a_mark_at_the_edge_of_a_plot_is_whole_and_one_beyond_it_is_cut() {
+fn a_mark_at_the_edge_of_a_plot_is_complete_and_one_beyond_it_is_clipped() {
     let (plot, one) = clip_of_circles(vec![[2.0, 1.0]]);
     assert_eq!(one, 1);
-    // A radius and two pixels of the stroke on either side.
+    // A radius, and two pixels for the stroke on either side.
     let at_the_edge = clip_of_circles(vec![[2.0, 1.0], [4.0, 1.0]]);
     assert_eq!(at_the_edge, (plot + 16.0, 2));
     let beyond = clip_of_circles(vec![[4.0, 1.0], [4.05, 1.0]]);
@@ -122,7 +121,7 @@ fn a_mark_at_the_edge_of_a_plot_is_whole_and_one_beyond_it_is_cut() {
 }
 
 #[test]
-fn a_cloud_that_reaches_the_edge_is_cut_there() {
+fn a_cloud_at_the_edge_is_clipped() {
     let (plot, _) = clip_of_circles(vec![[2.0, 1.0]]);
     let cloud = (0..=40).map(|k| [0.1 * f64::from(k), 1.0]).collect();
     assert_eq!(clip_of_circles(cloud), (plot, 41));

@@ -1,4 +1,4 @@
-//! What the widgets share, on a widget made for the tests: one binary, one module for each part.
+//! Integration tests of the kit on a widget made for the tests: one binary, one module for each part.
 
 mod draw;
 mod fake;

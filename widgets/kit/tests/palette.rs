@@ -1,4 +1,4 @@
-//! The colours stay apart for every usual kind of colour vision, and words can be read.
+//! Colours differ for every common kind of colour vision, and text is readable.
 
 use kit::model::Standing;
 use kit::palette::{Rgb, Theme, cell, contrast, level_color, readable_on, standing, tone};
@@ -15,8 +15,7 @@ const MEANINGS: [Tone; 5] = [
 
 type Matrix = [[f32; 3]; 3];
 
-/// How linear RGB looks with full protanopia and deuteranopia (Machado, Oliveira & Fernandes 2009,
-/// severity 1).
+/// Linear RGB as seen with full protanopia and deuteranopia (Machado, Oliveira & Fernandes 2009, severity 1).
 const VISIONS: [(&str, Matrix); 3] = [
     ("usual", [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
     (
@@ -37,8 +36,8 @@ const VISIONS: [(&str, Matrix); 3] = [
     ),
 ];
 
-/// Least CIE76 distance of two colours that must not be taken for each other: about six times the
-/// just noticeable 2.3 (Mahy, Van Eycken & Oosterlinck 1994).
+/// Smallest CIE76 distance of two colours that must not be confused: about six times the just noticeable 2.3
+/// (Mahy, Van Eycken & Oosterlinck 1994).
 const APART: f32 = 15.0;
 
 fn linear(color: Rgb) -> [f32; 3] {
@@ -98,7 +97,7 @@ fn assert_apart(colors: &[Rgb], what: &str) {
 }
 
 #[test]
-fn the_measure_tells_red_from_green_only_where_the_eye_does() {
+fn the_colour_distance_confuses_red_and_green_like_the_eye() {
     let [(_, usual), _, (_, deuteranopia)] = &VISIONS;
     let (olive, rust) = ([0x8a, 0x8a, 0x00], [0xb8, 0x70, 0x10]);
     assert!(distance(olive, rust, usual) > 2.0 * distance(olive, rust, deuteranopia));
@@ -153,10 +152,10 @@ fn the_six_classes_stay_apart() {
     }
 }
 
-/// Marks lie on the areas of a picture of classes, and a picture fills in on paper.
+/// Marks are drawn on the areas of a picture of classes, and a picture fills in on paper.
 #[test]
-fn the_first_four_classes_are_taken_for_no_meaning_and_not_for_paper() {
-    /// Half as far: an area beside paper needs no name.
+fn the_first_four_classes_differ_from_meanings_and_paper() {
+    /// Half of that: an area next to paper needs no name.
     const FROM_PAPER: f32 = 0.5 * APART;
     for theme in THEMES {
         for class in 0..4 {
@@ -178,7 +177,7 @@ fn the_first_four_classes_are_taken_for_no_meaning_and_not_for_paper() {
 }
 
 #[test]
-fn lines_and_marks_stand_out_from_paper_by_three_to_one() {
+fn lines_and_marks_have_a_contrast_of_three_to_one() {
     for theme in THEMES {
         let paper = tone(theme, Tone::Paper);
         // Ink draws walls and pairs.
@@ -190,7 +189,7 @@ fn lines_and_marks_stand_out_from_paper_by_three_to_one() {
 }
 
 #[test]
-fn words_stand_out_by_four_and_a_half_to_one() {
+fn text_has_a_contrast_of_four_and_a_half_to_one() {
     for theme in THEMES {
         let paper = tone(theme, Tone::Paper);
         for words in [Tone::Ink, Tone::Truth] {
@@ -214,7 +213,7 @@ fn words_stand_out_by_four_and_a_half_to_one() {
 }
 
 #[test]
-fn egui_draws_its_own_words_readably_too() {
+fn texts_of_egui_have_enough_contrast() {
     for theme in THEMES {
         let visuals = kit::style::style(theme).visuals;
         let rgb = |color: egui::Color32| [color.r(), color.g(), color.b()];
@@ -249,7 +248,7 @@ fn egui_draws_its_own_words_readably_too() {
 #[test]
 fn lightness_rises_evenly_along_the_colour_map() {
     let lightness = |k: usize| lab(linear(level_color(k as f32 / 20.0)))[0];
-    // Even would be (92 − 15)/20 = 3.85 a step; the anchors are rounded to whole channels.
+    // Even steps would be (92 − 15)/20 = 3.85; the anchors are rounded to whole channels.
     for k in 1..=20 {
         let step = lightness(k) - lightness(k - 1);
         assert!((2.5..=5.2).contains(&step), "step {k} rises by {step}");

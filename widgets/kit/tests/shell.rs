@@ -1,4 +1,4 @@
-//! The shell driven as a reader drives it, through egui's accessibility tree and its pointer.
+//! Drives the shell like a reader, through egui's accessibility tree and its pointer.
 
 use crate::fake::Fake;
 use egui::accesskit::Role;
@@ -30,7 +30,7 @@ fn is_shown(harness: &Harness<'_, Shell>, role: Role, label: &str) -> bool {
     harness.query_by_role_and_label(role, label).is_some()
 }
 
-/// The primary button goes down somewhere, or up.
+/// A press or release of the primary button.
 fn button(pos: Pos2, pressed: bool) -> Event {
     Event::PointerButton {
         pos,
@@ -40,7 +40,7 @@ fn button(pos: Pos2, pressed: bool) -> Event {
     }
 }
 
-/// Presses at one place, moves to another, lets go.
+/// Presses at one position, moves to another, releases.
 fn drag(harness: &mut Harness<'_, Shell>, from: Pos2, to: Pos2) {
     for (pos, pressed) in [(from, Some(true)), (to, None), (to, Some(false))] {
         harness.event(Event::PointerMoved(pos));
@@ -106,7 +106,7 @@ fn a_widget_opens_with_its_scene_one_control_the_verdict_and_play() {
 }
 
 #[test]
-fn what_was_opened_stays_open_after_presets_and_defaults() {
+fn an_opened_layer_stays_open_after_presets_and_defaults() {
     let mut harness = harness(1100.0);
     for label in ["Far away", "Defaults"] {
         harness.get_by_role_and_label(Role::Button, label).click();
@@ -149,7 +149,7 @@ fn a_choice_is_a_radio_group_and_a_switch_a_checkbox() {
 }
 
 #[test]
-fn a_handle_follows_the_pointer_by_the_spot_that_was_grabbed() {
+fn a_handle_follows_the_pointer_at_the_grabbed_spot() {
     let mut harness = harness(1100.0);
     let at = |harness: &Harness<'_, Shell>, world: [f64; 2]| {
         let [x, y] = harness
@@ -158,7 +158,7 @@ fn a_handle_follows_the_pointer_by_the_spot_that_was_grabbed() {
             .expect("the map is shown");
         pos2(x, y)
     };
-    // Five pixels beside the handle: it must not jump by them.
+    // Five pixels off the handle: it must not jump by them.
     let from = at(&harness, [1.0, 1.0]) + vec2(5.0, 0.0);
     let to = at(&harness, [2.0, 1.0]) + vec2(5.0, 0.0);
     drag(&mut harness, from, to);
@@ -170,7 +170,7 @@ fn a_handle_follows_the_pointer_by_the_spot_that_was_grabbed() {
 }
 
 #[test]
-fn only_what_drags_keeps_a_touch_from_scrolling_the_page() {
+fn only_draggable_parts_keep_a_touch_from_scrolling_the_page() {
     let harness = harness(390.0);
     let screen = |world| {
         let [x, y] = harness
@@ -189,7 +189,7 @@ fn only_what_drags_keeps_a_touch_from_scrolling_the_page() {
 }
 
 #[test]
-fn what_does_not_say_that_it_drags_does_not_follow_a_pointer() {
+fn parts_not_listed_as_draggable_do_not_follow_a_pointer() {
     let mut harness = harness(390.0);
     let slider = harness
         .get_by_role_and_label(Role::Slider, "place along x")
@@ -197,7 +197,7 @@ fn what_does_not_say_that_it_drags_does_not_follow_a_pointer() {
     let before = value(&harness, "x");
     let mut beside = 0;
     for off in 0..12 {
-        // Above it: below lies the next control.
+        // Above it, because the next control is below.
         let from = slider.center_top() - vec2(0.0, off as f32);
         if harness.state().drags_at(from) {
             continue;
@@ -236,7 +236,7 @@ fn a_press_on_the_timeline_goes_there_and_play_runs_to_the_end() {
 }
 
 #[test]
-fn what_a_widget_opens_with_fits_into_the_room_that_there_is_and_its_words_keep_theirs() {
+fn the_opening_layer_fits_the_available_height_and_texts_keep_theirs() {
     for width in [560.0, 1100.0] {
         let mut harness = harness(width);
         harness.state_mut().model_mut().set("more", 0.0).unwrap();
@@ -251,11 +251,11 @@ fn what_a_widget_opens_with_fits_into_the_room_that_there_is_and_its_words_keep_
         let height = harness.state().content_height();
         assert!(height <= room && height > room - 20.0, "{height} of {room}");
         assert_eq!(slider(&harness).size(), at.size());
-        // A plot of no height says nothing: then the host has to scroll.
+        // Plots cannot shrink to zero; then the host has to scroll.
         harness.state_mut().set_room(10.0);
         harness.run_steps(3);
         assert!(harness.state().content_height() > 200.0);
-        // More is more: all of it, as high as it likes.
+        // With everything open, the plots have their natural height.
         harness.state_mut().model_mut().set("more", 1.0).unwrap();
         harness.run_steps(3);
         assert!(harness.state().content_height() > natural);
@@ -293,7 +293,7 @@ fn nothing_is_cut_off_at_any_width() {
 }
 
 #[test]
-fn the_wheel_belongs_to_the_page_and_with_ctrl_to_the_map() {
+fn the_wheel_scrolls_the_page_and_with_ctrl_zooms_the_map() {
     let mut harness = harness(1100.0);
     let spot = harness
         .state()
@@ -323,7 +323,7 @@ fn the_wheel_belongs_to_the_page_and_with_ctrl_to_the_map() {
 }
 
 #[test]
-fn two_fingers_that_rest_zoom_take_the_map_along_and_drag_nothing() {
+fn two_resting_fingers_zoom_and_pan_the_map_without_dragging() {
     let mut harness = harness(1100.0);
     let screen = |harness: &Harness<'_, Shell>, at: [f64; 2]| {
         Pos2::from(
@@ -343,7 +343,7 @@ fn two_fingers_that_rest_zoom_take_the_map_along_and_drag_nothing() {
         pos,
         force: None,
     };
-    // The first one presses what can be dragged; then it presses nothing.
+    // The first press grabs the handle, the second one nothing.
     for pressed in [screen(&harness, [1.0, 1.0]), pos2(-1e4, -1e4)] {
         let (before, x) = (apart(&harness), value(&harness, "x"));
         let first = screen(&harness, [1.0, 1.0]);
@@ -351,7 +351,7 @@ fn two_fingers_that_rest_zoom_take_the_map_along_and_drag_nothing() {
         harness.event(button(pressed, true));
         harness.event(finger(0, egui::TouchPhase::Start, first));
         harness.event(finger(1, egui::TouchPhase::Start, second(60.0)));
-        // By then egui takes it for a press that lasts.
+        // By then egui treats it as a long press.
         harness.run_steps(8);
         for px in [75.0, 90.0] {
             harness.event(Event::PointerMoved(first));
@@ -442,7 +442,7 @@ fn no_text_overlaps_or_is_cut_off_at_any_width() {
 }
 
 #[test]
-fn the_audit_finds_what_is_cut_off_and_what_overlaps() {
+fn the_audit_finds_clipped_and_overlapping_texts() {
     use kit::layout::PlotHeight;
     use kit::view::{Arrangement, Row, Slot, View};
     struct Flat;
@@ -473,7 +473,7 @@ fn the_audit_finds_what_is_cut_off_and_what_overlaps() {
 }
 
 #[test]
-fn a_typed_number_is_taken_and_one_out_of_range_stops_at_the_border() {
+fn a_typed_number_is_set_and_clamped_to_the_range() {
     let mut harness = harness(1100.0);
     for (typed, expected) in [("2.75", 2.75), ("99", 4.0), ("nonsense", 4.0)] {
         let field = harness.get_by_role_and_label(Role::SpinButton, "place along x as a number");
@@ -488,9 +488,9 @@ fn a_typed_number_is_taken_and_one_out_of_range_stops_at_the_border() {
     }
 }
 
-/// All of it comes in one frame where a page is slow and a finger fast.
+/// A slow page and a fast finger: the complete gesture arrives within one frame.
 #[test]
-fn a_press_takes_hold_of_what_lay_under_it_though_the_pointer_moved_on_in_the_same_frame() {
+fn a_press_grabs_at_its_own_position_even_if_the_pointer_moved_in_the_same_frame() {
     let mut harness = harness(1100.0);
     let screen = |world: [f64; 2]| harness.state().panel_to_screen("map", world);
     let [from, to] =
@@ -506,9 +506,9 @@ fn a_press_takes_hold_of_what_lay_under_it_though_the_pointer_moved_on_in_the_sa
     );
 }
 
-/// So does a whole drag, or its end.
+/// A complete drag or its end within one frame.
 #[test]
-fn a_drag_that_ends_within_a_frame_ends_where_the_pointer_was_let_go() {
+fn a_drag_within_one_frame_ends_at_the_release() {
     for frames_before_the_end in [0, 1] {
         let mut harness = harness(1100.0);
         let drag = |harness: &mut Harness<'_, Shell>, [from, to]: [Pos2; 2]| {
@@ -526,7 +526,7 @@ fn a_drag_that_ends_within_a_frame_ends_where_the_pointer_was_let_go() {
         drag(&mut harness, ends);
         let x = value(&harness, "x");
         assert!((x - 2.0).abs() < 0.02, "{frames_before_the_end}: {x}");
-        // It was let go.
+        // It was released.
         harness.event(Event::PointerMoved(ends[0]));
         harness.run_steps(2);
         assert_eq!(value(&harness, "x"), x);
@@ -541,7 +541,7 @@ fn a_drag_that_ends_within_a_frame_ends_where_the_pointer_was_let_go() {
 }
 
 #[test]
-fn a_cancelled_touch_lets_go_of_what_it_dragged() {
+fn a_cancelled_touch_ends_its_drag() {
     let mut harness = harness(1100.0);
     let [x, y] = harness
         .state()
@@ -557,7 +557,7 @@ fn a_cancelled_touch_lets_go_of_what_it_dragged() {
 }
 
 #[test]
-fn the_control_with_the_pages_focus_wears_a_ring() {
+fn the_control_with_the_pages_focus_has_a_ring() {
     let shapes = |focus: Option<&str>| {
         let mut harness = harness(1100.0);
         harness.state_mut().set_focus(focus);
@@ -574,7 +574,7 @@ fn the_control_with_the_pages_focus_wears_a_ring() {
 }
 
 #[test]
-fn points_of_one_look_share_one_element() {
+fn points_of_one_style_share_one_element() {
     use kit::surface::{Pen, Surface as _};
     use kit::svg::SvgSurface;
     let mut svg = SvgSurface::new(Theme::Light);

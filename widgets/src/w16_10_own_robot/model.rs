@@ -1,12 +1,12 @@
-//! The state of the widget: what the worker has told of a log, and how the reader looks at it.
+//! The state of the widget: the worker's reports on a log, and the reader's view of it.
 
 mod buttons;
 mod hands;
+pub mod other_log;
 mod picture;
 pub mod robot;
 mod settings;
 mod tables;
-pub mod whereabouts;
 mod words;
 
 use kit::model::{
@@ -21,12 +21,12 @@ use kit::spec::{DEFAULTS, WidgetSpec};
 use kit::values::{Changed, Values};
 
 use crate::w16_10_own_robot::spec::{KEYS, MOST_KEYFRAMES, MOST_SCANS, PARAMS, SPEC};
+use other_log::Place;
 use robot::{Robot, Stage};
-use whereabouts::Place;
 
 /// Names of the panels.
 pub mod panel {
-    /// The map with the way and the loops.
+    /// The map with path and loops.
     pub const MAP: &str = "map";
     /// Share of each scan that fits.
     pub const FIT: &str = "fit";
@@ -34,9 +34,9 @@ pub mod panel {
     pub const SURE: &str = "sure";
 }
 
-/// A whole way plays in about so many seconds at normal speed.
+/// Duration of playing a whole path at normal speed, s.
 const PLAY_S: f64 = 12.0;
-/// More marks on a timeline are a blur.
+/// Largest number of marks on a timeline; more would be unreadable.
 const MOST_MARKS: usize = 150;
 
 /// The reader's own robot.
@@ -54,7 +54,7 @@ impl Default for OwnRobot {
 }
 
 impl OwnRobot {
-    /// No log is open.
+    /// The widget without a log.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -65,7 +65,7 @@ impl OwnRobot {
         }
     }
 
-    /// What the worker has told.
+    /// The reports of the worker.
     #[must_use]
     pub fn robot(&self) -> &Robot {
         &self.robot
@@ -75,18 +75,18 @@ impl OwnRobot {
         self.robot.keyframes.len().saturating_sub(1)
     }
 
-    /// The keyframe that is shown.
+    /// The current keyframe.
     fn keyframe(&self) -> usize {
         (self.values.number("keyframe") as usize).min(self.last())
     }
 
-    /// The loop that is shown, where there is one.
+    /// The selected loop, if any.
     fn link(&self) -> Option<usize> {
         let last = self.robot.links.len().checked_sub(1)?;
         Some((self.values.number("loop") as usize).min(last))
     }
 
-    /// Asks for something; of two orders of a kind that replace each other only the later stands.
+    /// Sends an order; it replaces an earlier one of the same replaceable kind.
     fn ask(&mut self, order: String) {
         let kind = |order: &str| order.split(' ').next().unwrap_or_default().to_owned();
         let replaces = ["look", "pin"].contains(&kind(&order).as_str());
@@ -95,7 +95,7 @@ impl OwnRobot {
         self.orders.push(order);
     }
 
-    /// Shows a keyframe, and asks for its scan.
+    /// Selects a keyframe and requests its scan.
     fn show(&mut self, keyframe: usize) {
         self.values.store("keyframe", keyframe as f64);
         self.look();
@@ -109,7 +109,7 @@ impl OwnRobot {
         }
     }
 
-    /// Where the robot of another log may be at first, in the words of an order.
+    /// The initial pose of the other log's robot, in the form of an order.
     fn start(&self) -> String {
         let shown = self.robot.keyframes.get(self.keyframe());
         match shown.filter(|_| self.values.number("start") == 1.0) {
@@ -121,9 +121,9 @@ impl OwnRobot {
         }
     }
 
-    /// The place of the other log that is shown.
+    /// The selected scan of the other log and its place.
     fn place(&self) -> Option<(usize, &Place)> {
-        let places = &self.robot.whereabouts.as_ref()?.places;
+        let places = &self.robot.other_log.as_ref()?.places;
         let last = places.len().checked_sub(1)?;
         let scan = self.values.number("scan");
         let after = places.partition_point(|place| place.scan <= scan);
@@ -131,25 +131,24 @@ impl OwnRobot {
         Some((shown, &places[shown]))
     }
 
-    /// Goes to the next scan of the other log that is localized otherwise than the one before it.
+    /// Moves on to the next scan of the other log whose localization state differs from the one before it.
     fn go_to_change(&mut self) {
-        let Some(((here, _), whereabouts)) = self.place().zip(self.robot.whereabouts.as_ref())
-        else {
+        let Some(((here, _), other_log)) = self.place().zip(self.robot.other_log.as_ref()) else {
             return;
         };
-        let places = &whereabouts.places;
+        let places = &other_log.places;
         let is_change = |k: &usize| {
             let before = k
                 .checked_sub(1)
-                .map(|before| places[before].belief.is_localized());
-            before != Some(places[*k].belief.is_localized())
+                .map(|before| places[before].state.is_localized());
+            before != Some(places[*k].state.is_localized())
         };
         let next = (here + 1..places.len()).find(is_change).unwrap_or(0);
         let scan = places[next].scan;
         self.values.store("scan", scan);
     }
 
-    /// Goes to the newer keyframe of the loop that is shown.
+    /// Selects the newer keyframe of the current loop.
     fn show_link(&mut self) {
         let link = self.link().map(|link| &self.robot.links[link]);
         if let Some(link) = link.filter(|link| link.new < self.robot.keyframes.len()) {
@@ -160,7 +159,7 @@ impl OwnRobot {
         }
     }
 
-    /// The keyframes to look into: of loops and ways that contradict the graph, and of scans that fit badly.
+    /// Keyframes to check: those of contradicted loops and edges, and of scans that fit badly.
     fn doubts(&self) -> Vec<usize> {
         let poor = self.values.number("poor");
         let keyframes = self.robot.keyframes.iter().enumerate();
@@ -174,7 +173,7 @@ impl OwnRobot {
         doubts
     }
 
-    /// Says what a log is for that is dropped.
+    /// Tells the worker the purpose of the next dropped log.
     fn ask_drop(&mut self) {
         let order = if self.values.number("drop") == 1.0 {
             "drop where"
@@ -293,7 +292,7 @@ impl Model for OwnRobot {
             label: format!("look into keyframe {keyframe}"),
             standing: Standing::Bad,
         });
-        // Before there is a way, there is a step to stand for it.
+        // Before there is a path, the timeline has one step.
         let last = self.last().max(1) as f64;
         let is_read = self.robot.is_under_way() && !self.robot.paused;
         Some(Timeline {

@@ -1,17 +1,17 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use kit::layers::Opening;
 use kit::param::{Choice, MORE, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, WidgetSpec};
 
-/// More keyframes than any log has, and past the end of every timeline.
+/// An upper bound of the number of keyframes, beyond the end of every timeline.
 pub const MOST_KEYFRAMES: f64 = 999_999.0;
 
-/// More scans than any log has.
+/// An upper bound of the number of scans.
 pub const MOST_SCANS: f64 = 99_999_999.0;
 
-/// The options of recordings, named as on the command line.
+/// The options for recordings, with the names of the command line.
 pub const OPTIONS: &[Choice] = &[
     choice("scan-topic", "scan topic"),
     choice("odom-topic", "odometry topic"),
@@ -35,7 +35,7 @@ const fn choice(id: &'static str, label: &'static str) -> Choice {
     Choice { id, label }
 }
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &ParamSpec {
         id: "colour",
@@ -64,7 +64,7 @@ pub const PARAMS: &[&ParamSpec] = &[
             ],
         },
         default: 1.0,
-        help: "Which loops stand on the map: none, those of the graph, or the refused ones as well.",
+        help: "Which loops the map shows: none, those of the graph, or the rejected ones as well.",
     },
     &ParamSpec {
         id: "loop",
@@ -74,7 +74,7 @@ pub const PARAMS: &[&ParamSpec] = &[
             max: MOST_KEYFRAMES,
         },
         default: 0.0,
-        help: "The loop whose evidence is shown; 0 is the one that the graph believes least.",
+        help: "The loop whose evidence is shown; 0 is the one that fits the graph least.",
     },
     &ParamSpec {
         id: "marked",
@@ -84,7 +84,7 @@ pub const PARAMS: &[&ParamSpec] = &[
             max: MOST_KEYFRAMES,
         },
         default: 0.0,
-        help: "One end of a loop that you add; the other is the keyframe that is shown.",
+        help: "One end of a loop that you add; the other is the keyframe shown.",
     },
     &ParamSpec {
         id: "poor",
@@ -96,7 +96,7 @@ pub const PARAMS: &[&ParamSpec] = &[
             step: 0.05,
         },
         default: 0.5,
-        help: "Keyframes of whose scan a smaller share fits are ringed on the map, and “Next doubt” stops there.",
+        help: "Keyframes with a smaller share of fitting points have a ring on the map, and “Next doubt” stops there.",
     },
     &ParamSpec {
         id: "file",
@@ -104,7 +104,7 @@ pub const PARAMS: &[&ParamSpec] = &[
         unit: "",
         kind: ParamKind::Choice { options: FILES },
         default: 0.0,
-        help: "Map for Nav2, trajectory as TUM, graph as g2o, a report with pictures, the session with all of it to go on with, or where the robot of another log was.",
+        help: "Map for Nav2, trajectory as TUM, graph as g2o, a report with pictures, the session for continuing later, or the poses of another log’s robot.",
     },
     &ParamSpec {
         id: "start",
@@ -117,7 +117,7 @@ pub const PARAMS: &[&ParamSpec] = &[
             ],
         },
         default: 0.0,
-        help: "Where the other log begins on this map: anywhere, or within 1.5 m of the keyframe that is shown and turned by at most 34° against it.",
+        help: "Where the other log begins on this map: anywhere, or within 1.5 m and 34° of the keyframe shown.",
     },
     &ParamSpec {
         id: "scan",
@@ -125,7 +125,7 @@ pub const PARAMS: &[&ParamSpec] = &[
         unit: "",
         kind: ParamKind::Seed { max: MOST_SCANS },
         default: MOST_SCANS,
-        help: "The scan of the other log whose place is shown; past the end, the last one.",
+        help: "The scan of the other log whose pose is shown; beyond the end, the last one.",
     },
     &ParamSpec {
         id: "drop",
@@ -138,7 +138,7 @@ pub const PARAMS: &[&ParamSpec] = &[
             ],
         },
         default: 0.0,
-        help: "Whether a dropped log is mapped, or its robot is looked for on the map that is there.",
+        help: "Whether a dropped log is mapped, or its robot is localized on the current map.",
     },
     &ParamSpec {
         id: "option",
@@ -146,7 +146,7 @@ pub const PARAMS: &[&ParamSpec] = &[
         unit: "",
         kind: ParamKind::Choice { options: OPTIONS },
         default: 0.0,
-        help: "What “Take another” changes where a recording has several: the topic of the scans or of the odometry, its frame, or the frame of the body.",
+        help: "What “Take another” changes if a recording has several: the topic of the scans or of the odometry, its frame, or the frame of the body.",
     },
     &ParamSpec {
         id: "keyframe",
@@ -156,7 +156,7 @@ pub const PARAMS: &[&ParamSpec] = &[
             max: MOST_KEYFRAMES,
         },
         default: MOST_KEYFRAMES,
-        help: "The keyframe whose scan lies over the map.",
+        help: "The keyframe whose scan is drawn over the map.",
     },
     &SPEED.spec,
     &MORE.spec,
@@ -174,16 +174,16 @@ pub const KEYS: &[(&str, &str)] = &[
     ("ArrowDown", "south"),
 ];
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.10",
     title: "Your own robot",
     misconception: "A map that looks right is not yet right: ask every loop for its evidence.",
     notice: &[
         "The log stays in your browser. It is read there, and nothing of it is sent anywhere.",
-        "Loops stand in the order of doubt: first those that the rest of the graph contradicts most. Refuse one, and the graph answers at once.",
+        "Loops are sorted by doubt: first those that the rest of the graph contradicts most. Reject one, and the graph is solved again at once.",
         "A scan that fits badly is a place to look at: glass, people, or a pose that is wrong.",
-        "A graph that is sure of itself may be wrong. Only a reference from outside tells the error.",
+        "A graph with small standard deviations may be wrong. Only an external reference shows the error.",
     ],
     opening: Opening {
         panels: &["map"],
@@ -198,7 +198,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             "Opens a log of CARMEN, ROS 1 or ROS 2, a saved session, or a pose graph; you can drop it on the picture as well. It stays in this browser.",
         ),
         ButtonSpec {
-            help: "Maps the sample where no log is open, holds a log that is read and goes on, and plays the way of one that is mapped.",
+            help: "Maps the sample if no log is open, pauses or resumes a log that is being read, and plays the path of one that is mapped.",
             ..PLAY
         },
         button(
@@ -210,83 +210,79 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         button(
             "doubt",
             "Next doubt",
-            "Goes to the next keyframe whose registration or loop should be looked into.",
+            "Goes to the next keyframe whose registration or loop should be checked.",
         ),
         button(
             "previous",
-            "Loop before",
-            "Shows the loop before in the list.",
+            "Previous loop",
+            "Shows the previous loop in the list.",
         ),
         button("next", "Next loop", "Shows the next loop of the list."),
         button(
             "turn",
-            "Refuse or close",
-            "Takes the loop that is shown out of the graph, or puts it in; the graph is solved at once.",
+            "Reject or close",
+            "Removes the loop shown from the graph, or adds it; the graph is solved at once.",
         ),
         button(
             "mark",
             "Mark",
-            "Marks the keyframe that is shown, as one end of a loop.",
+            "Marks the keyframe shown as one end of a loop.",
         ),
         button(
             "add",
             "Close with mark",
-            "Registers the keyframe that is shown on the place of the marked one, and closes the loop if it passes its tests.",
+            "Registers the keyframe shown on the surroundings of the marked one, and closes the loop if it passes its tests.",
         ),
         button(
             "west",
             "Left",
-            "Moves the keyframe that is shown 5 cm to the left; also the arrow key.",
+            "Moves the keyframe shown 5 cm to the left; also the arrow key.",
         ),
         button(
             "east",
             "Right",
-            "Moves the keyframe that is shown 5 cm to the right; also the arrow key.",
+            "Moves the keyframe shown 5 cm to the right; also the arrow key.",
         ),
         button(
             "north",
             "Up",
-            "Moves the keyframe that is shown 5 cm up; also the arrow key.",
+            "Moves the keyframe shown 5 cm up; also the arrow key.",
         ),
         button(
             "south",
             "Down",
-            "Moves the keyframe that is shown 5 cm down; also the arrow key.",
+            "Moves the keyframe shown 5 cm down; also the arrow key.",
         ),
-        button(
-            "unpin",
-            "Let go",
-            "Lets go of the keyframes that you moved.",
-        ),
+        button("unpin", "Let go", "Releases the keyframes that you moved."),
         button(
             "reference",
             "Grade…",
-            "Opens a file of relations or of true poses, and compares the way with it.",
+            "Opens a file of relations or of true poses, and compares the path with it.",
         ),
         button(
             "locate",
             "Where am I?…",
-            "Opens another log of the same place, and looks for its robot on this map.",
+            "Opens another log of the same location, and localizes its robot on this map.",
         ),
         button(
             "locate-sample",
             "Another day",
-            "Looks for the robot of the sample’s other day on this map: it is switched on half way round.",
+            "Localizes the robot of the sample’s other day on this map: it is switched on halfway round.",
         ),
         button(
             "change",
             "Next verdict",
-            "Goes to the next scan of the other log where the robot is found or lost.",
+            "Goes to the next scan of the other log at which the robot is found or lost.",
         ),
         button(
             "other",
             "Take another",
-            "Maps the recording anew with the next topic or frame of those that it has.",
+            "Maps the recording again with its next topic or frame.",
         ),
-        button("save", "Save", "Saves the file that is chosen."),
+        button("save", "Save", "Saves the selected file."),
         ButtonSpec {
             label: "Start over",
-            help: "Closes the log, and puts every setting back to where it started.",
+            help: "Closes the log, and resets every setting to its default.",
             ..DEFAULTS
         },
     ],
@@ -294,7 +290,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "sure",
             label: "How sure is the graph?",
-            help: "The sample, coloured by the standard deviation of each keyframe: it grows away from the start, and loops hold it down.",
+            help: "The sample, coloured by the standard deviation of each keyframe: it grows away from the start, and loops limit it.",
             set: &[("colour", 2.0)],
             then: &["sample"],
         },
@@ -308,14 +304,14 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "where",
             label: "Where am I, another day?",
-            help: "The sample, and on its map the robot of another day, which is switched on half way round and looks for itself.",
+            help: "The sample, and on its map the robot of another day, which is switched on halfway round and localizes itself.",
             set: &[],
             then: &["sample", "locate-sample"],
         },
         Preset {
             id: "evidence",
             label: "All loops that were looked at",
-            help: "The sample with the loops that its tests turned away as well.",
+            help: "The sample with the loops that failed its tests as well.",
             set: &[("links", 2.0)],
             then: &["sample"],
         },

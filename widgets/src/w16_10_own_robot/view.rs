@@ -1,4 +1,4 @@
-//! Where the panels stand: the map as large as it may be, the keyframes' plots below.
+//! Layout of the panels: the map as large as possible, the plots of the keyframes below.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -6,7 +6,7 @@ use kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_10_own_robot::model::panel;
 
-/// The widget's arrangement.
+/// The layout of the widget.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RobotView;
 

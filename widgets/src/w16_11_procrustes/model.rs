@@ -1,4 +1,4 @@
-//! The state: which pairs there are, and which orthogonal matrix is tried on them.
+//! The state: the pairs, and the orthogonal matrix that is tried on them.
 
 mod hands;
 mod picture;
@@ -22,20 +22,20 @@ use crate::w16_11_procrustes::spec::{PARAMS, SPEC, TRIED, TURN, WHOLE_TURN_DEG};
 
 /// Names of the panels.
 pub mod panel {
-    /// Both sets of points, the source as the matrix moves it.
+    /// Both sets of points, the source transformed by the matrix.
     pub const POINTS: &str = "points";
     /// The trace over the angle.
     pub const TRACE: &str = "trace";
-    /// A map moved by the best turn.
+    /// A map transformed by the best rotation.
     pub const MAP_TURN: &str = "map-turn";
-    /// The same map moved by the best orthogonal matrix.
+    /// The same map transformed by the best orthogonal matrix.
     pub const MAP_UNCHECKED: &str = "map-unchecked";
 }
 
 /// Degrees a second at normal speed.
 const STEPS_PER_S: f64 = 60.0;
 
-/// The trace over all orthogonal matrices, without its picture.
+/// The model of the widget.
 pub struct ProcrustesTrace {
     values: Values,
     pairs: Pairs,
@@ -63,12 +63,12 @@ impl ProcrustesTrace {
         self.problem = Procrustes::new(&self.pairs.source, &self.pairs.target);
     }
 
-    /// The kind of matrices that are tried.
+    /// The selected kind of matrices.
     fn tried(&self) -> Handedness {
         settings::tried(&self.values)
     }
 
-    /// The angle that is tried, rad.
+    /// The selected angle, rad.
     fn theta_rad(&self) -> f64 {
         self.values.get(&TURN).to_radians()
     }

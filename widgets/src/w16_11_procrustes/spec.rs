@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_lab::procrustes::{Handedness, Shape};
 use kit::layers::Opening;
@@ -9,7 +9,7 @@ use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 /// Pairs of the largest scene.
 pub const MOST_PAIRS: usize = 5;
 
-/// A point of the target is dragged at most so far, m.
+/// Largest displacement of a target point, m.
 pub const REACH_M: f64 = 3.0;
 
 /// A whole turn, °.
@@ -26,7 +26,9 @@ pub(super) static SHAPE: OneOf<Shape> = OneOf::new(
     ],
     &[Shape::Corners, Shape::Two, Shape::Wall, Shape::UpsideDown],
 )
-.help("Points of two sweeps in pairs; the last is what a sensor sees that hangs upside down the second time.");
+.help(
+    "Points of two sweeps in pairs; for the last one the sensor hangs upside down the second time.",
+);
 
 pub(super) static TRIED: OneOf<Handedness> = OneOf::new(
     "tried",
@@ -37,16 +39,16 @@ pub(super) static TRIED: OneOf<Handedness> = OneOf::new(
     ],
     &[Handedness::Turn, Handedness::Mirror],
 )
-.help("The source is moved by turns, or mirrored first and turned then: together these are all orthogonal matrices.");
+.help("The source is rotated, or first mirrored and then rotated: together these are all orthogonal matrices.");
 
 pub(super) static SEED: Param<u32> = Param::seed("seed of the noise", 1)
-    .help("Where the range noise of both sweeps starts, 12 mm along each axis.");
+    .help("Seed of the range noise of both sweeps, 12 mm along each axis.");
 
 pub(super) static TURN: Param<f64> = Param::timeline("turn", "angle tried", WHOLE_TURN_DEG)
     .unit("°")
-    .help("By how much the source is turned, after the mirror where there is one.");
+    .help("By how much the source is turned, after the mirror if there is one.");
 
-/// The parameters that move the points of the target: along x and along y.
+/// The parameters that move the points of the target along x and y.
 pub(super) static MOVED: [[Param<f64>; 2]; MOST_PAIRS] = [
     [
         moved("x1", "target 1: moved in x"),
@@ -70,7 +72,7 @@ pub(super) static MOVED: [[Param<f64>; 2]; MOST_PAIRS] = [
     ],
 ];
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &SHAPE.spec,
     &TRIED.spec,
@@ -94,11 +96,11 @@ const fn moved(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
         .unit("m")
         .help(
-            "How far the point is dragged from where it was seen; only points of the scene count.",
+            "How far the point is dragged from its observed position; only points of the scene count.",
         )
 }
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.11",
     title: "Turn or mirror image",

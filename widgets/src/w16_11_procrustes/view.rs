@@ -1,4 +1,4 @@
-//! Where the panels stand: points beside the trace, the two maps beside each other.
+//! Layout of the panels: points beside the trace, the two maps beside each other.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -6,7 +6,7 @@ use kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_11_procrustes::model::panel;
 
-/// The widget's arrangement.
+/// The layout of the widget.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TraceView;
 

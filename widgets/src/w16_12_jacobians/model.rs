@@ -1,6 +1,6 @@
-//! The state: one graph, and the ways of four solvers from its start.
+//! The state: one graph, and the iterations of four solvers from its start.
 //!
-//! All of it is computed at once: a graph of eight poses takes microseconds a step.
+//! Everything is computed at once: a graph of eight poses takes microseconds a step.
 
 mod picture;
 mod settings;
@@ -25,32 +25,32 @@ use crate::w16_12_jacobians::spec::{CURVE, MOST_STEPS, PARAMS, SPEC, STEPS};
 
 /// Names of the panels.
 pub mod panel {
-    /// The graph as each solver has it, in the order of [`NAMES`](super::NAMES).
+    /// The graph of each solver, in the order of [`NAMES`](super::NAMES).
     pub const MAPS: [&str; 4] = ["exact", "approximate", "jacobian", "residual"];
     /// Distance to the optimum over the steps.
     pub const CURVE: &str = "curve";
 }
 
-/// What the four solvers are called.
+/// Names of the four solvers.
 pub const NAMES: [&str; 4] = ["exact", "approximate", "wrong Jacobian", "wrong residual"];
 
 /// Steps a second at normal speed.
 const STEPS_PER_S: f64 = 3.0;
 
-/// One graph and its four solvers, without a picture.
+/// The model of the widget.
 pub struct WrongJacobians {
     values: Values,
     solved: Solved,
     played: Played,
 }
 
-/// What is computed from the settings.
+/// Results for the current settings.
 struct Solved {
     /// The poses at the minimum of χ².
     optimum: Vec<SE2>,
     /// χ² there.
     least_chi2: f64,
-    /// The way of each solver.
+    /// The iterations of each solver.
     runs: [Descent; 4],
 }
 
@@ -68,7 +68,7 @@ impl Solved {
 }
 
 impl Default for WrongJacobians {
-    /// A ring that contradicts itself by 6° an edge, at the end of all four.
+    /// A ring with a contradiction of 6° per edge, after the last step.
     fn default() -> Self {
         let values = Values::defaults(PARAMS);
         Self {
@@ -80,7 +80,7 @@ impl Default for WrongJacobians {
 }
 
 impl WrongJacobians {
-    /// Steps of the longest way.
+    /// The largest number of steps of the four.
     fn last(&self) -> usize {
         let lasts = self.solved.runs.iter().map(Descent::steps);
         lasts.max().unwrap_or_default()
@@ -90,7 +90,7 @@ impl WrongJacobians {
         self.played.place(&self.values, self.last() as f64) as usize
     }
 
-    /// A solver's graph at the step that is shown; past its end it rests.
+    /// A solver's graph at the current step, or at its last one.
     fn shown(&self, solver: usize) -> &Moment {
         let run = &self.solved.runs[solver];
         &run.moments[self.step().min(run.steps())]

@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_lab::jacobians::WrongJacobian;
 use kit::layers::Opening;
@@ -6,15 +6,15 @@ use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
-/// Steps at which a descent ends in any case.
+/// Largest number of steps.
 pub const MOST_STEPS: usize = 40;
 
-/// What the curves show over the steps.
+/// The quantity of the curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Curve {
-    /// How far the farthest pose is from the optimum.
+    /// Largest distance of a pose from its optimum.
     Distance,
-    /// How far χ² is above its minimum.
+    /// Difference of χ² from its minimum.
     Chi2,
 }
 
@@ -22,7 +22,7 @@ pub(super) static BIAS: Param<f64> =
     Param::slider("bias", "each edge turns too little by", [0.0, 10.0], 0.5)
         .unit("°")
         .default(6.0)
-        .help("How far odometry contradicts the loop: at 0 all measurements agree.");
+        .help("How much odometry contradicts the loop: at 0 all measurements agree.");
 
 pub(super) static WRONG: OneOf<WrongJacobian> = OneOf::new(
     "wrong",
@@ -39,12 +39,10 @@ pub(super) static SCATTER: Param<f64> =
     Param::slider("scatter", "start thrown off by", [0.0, 0.3], 0.05)
         .unit("m, rad")
         .default(0.2)
-        .help(
-            "Standard deviation by which each pose is thrown off odometry before the first step.",
-        );
+        .help("Standard deviation of the noise that is added to each pose before the first step.");
 
 pub(super) static SEED: Param<u32> =
-    Param::seed("seed of the throw", 1).help("Where the random numbers of the throw start.");
+    Param::seed("seed of the throw", 1).help("Seed of that noise.");
 
 pub(super) static CURVE: OneOf<Curve> = OneOf::new(
     "curve",
@@ -55,13 +53,13 @@ pub(super) static CURVE: OneOf<Curve> = OneOf::new(
     ],
     &[Curve::Distance, Curve::Chi2],
 )
-.help("How far the farthest pose is from its place at the optimum, or by how much χ² is above its minimum.");
+.help("Largest distance of a pose from its optimum, or the difference of χ² from its minimum.");
 
 pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MOST_STEPS as f64)
     .default(MOST_STEPS as f64)
-    .help("How many steps each solver has done; past its last one it rests.");
+    .help("How many steps each solver has done; beyond its last one it has converged.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &BIAS.spec,
     &WRONG.spec,
@@ -73,7 +71,7 @@ pub const PARAMS: &[&ParamSpec] = &[
     &MORE.spec,
 ];
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.12",
     title: "Wrong Jacobians, wrong residual",

@@ -1,4 +1,4 @@
-//! Where the panels stand: the four graphs beside each other, the curves below them.
+//! Layout of the panels: the four graphs side by side, the curves below them.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -6,10 +6,10 @@ use kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_12_jacobians::model::panel;
 
-/// The four graphs stand in one row from this width on.
+/// Width from which the four graphs are in one row.
 const ONE_ROW: f32 = 800.0;
 
-/// The widget's arrangement.
+/// The layout of the widget.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct JacobiansView;
 

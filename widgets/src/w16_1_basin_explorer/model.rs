@@ -1,4 +1,4 @@
-//! The state of the basin explorer and every rule that changes it.
+//! The state of the basin explorer and its logic.
 
 mod basins;
 mod edge;
@@ -38,43 +38,43 @@ pub mod panel {
     pub const POINT: &str = "basin-point-to-point";
     /// The basin map of point-to-plane.
     pub const PLANE: &str = "basin-point-to-plane";
-    /// rmse and error over the iterations.
+    /// RMSE and error over the iterations.
     pub const CURVE: &str = "rmse";
 }
 
-/// The parameters that say where a run starts.
+/// The parameters of the start.
 const START: [&str; 3] = ["heading", "dx", "dy"];
 
 /// Iterations a second at normal speed.
 const STEPS_PER_S: f64 = 6.0;
 
-/// The basin explorer without its picture.
+/// The model of the widget.
 pub struct BasinExplorer {
     values: Values,
     playback: Playback,
     scene: BasinScene,
     workspace: IcpWorkspace,
     run: Run,
-    /// The other variant from the same start, to compare.
+    /// The result of the other variant from the same start, for comparison.
     other: BasinOutcome,
     basins: Basins,
-    /// Ways of other starts over the map of the variant that is chosen.
+    /// Paths from other starts, over the map of the selected variant.
     paths: Paths,
-    /// Where the right basin ends along pure rotations, for whom it is asked.
+    /// The edge of the basin along pure rotations, for the question about it.
     edges: Edges,
     preview: Preview,
 }
 
-/// Whether the end of the run is shown before it is played.
+/// Whether the result of the run is shown before it is played.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Preview {
-    /// It is for the reader to find out.
+    /// Hidden: the reader is to find out.
     Hidden,
-    /// The reader moves the start, and sees where it leads.
+    /// Shown: the reader moves the start and sees the result.
     Shown,
 }
 
-/// One registration: how it went, and how it ended.
+/// One registration: its trace and its result.
 struct Run {
     trace: Vec<IcpTrace>,
     outcome: BasinOutcome,
@@ -130,22 +130,22 @@ impl BasinExplorer {
         self.run.trace.len() - 1
     }
 
-    /// The iteration that is shown.
+    /// The current iteration.
     fn iteration(&self) -> usize {
         (self.values.get(&ITERATION) as usize).min(self.last())
     }
 
-    /// The state at the iteration that is shown.
+    /// The state at the current iteration.
     fn shown(&self) -> &IcpTrace {
         &self.run.trace[self.iteration()]
     }
 
-    /// Whether the end of the run is shown ahead of it: while the reader looks for a start.
+    /// Whether the result of the run is shown ahead of it: while the reader chooses a start.
     fn previews_end(&self) -> bool {
         self.preview == Preview::Shown && self.iteration() < self.last()
     }
 
-    /// The pairs at the iteration that is shown.
+    /// The pairs at the current iteration.
     fn pairs(&self) -> Vec<Pair> {
         let config = config(&self.values, variant(&self.values));
         correspondences(
@@ -156,7 +156,7 @@ impl BasinExplorer {
         )
     }
 
-    /// Makes a pose the new start and shows it, rounded so that links stay short.
+    /// Sets and shows a new start, rounded, which keeps links short.
     fn start_at(&mut self, start: BasinStart) {
         let rounded = |value: f64, per_unit: f64| (value * per_unit).round() / per_unit;
         let heading_deg = rounded(start.heading_deg, 10.0);
@@ -172,7 +172,7 @@ impl BasinExplorer {
         self.preview = Preview::Shown;
     }
 
-    /// Maps and ways of other starts belong to the settings.
+    /// Updates maps and paths to the settings.
     fn follow(&mut self) {
         self.basins.follow(&self.values);
         self.paths.follow(&self.values);

@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_lab::basin::BasinScene;
 use ch16_lab::basin::{BasinPlace, OffsetAxis};
@@ -11,27 +11,27 @@ use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 /// Largest offset of a start, m.
 pub const OFFSET_SPAN_M: f64 = 1.5;
 
-/// The Huber width at which no pair is weighed down: no pair is longer than the largest τ.
+/// The Huber width at which every pair has full weight: no pair is longer than the largest τ.
 pub const HUBER_OFF_M: f64 = 1.6;
 
-/// Iterations at which a registration ends in any case.
+/// Largest number of iterations of a registration.
 pub const MAX_ITERS: f64 = BasinScene::MAX_ITERS as f64;
 
-/// Sweeps the edge and compares it with the marks.
+/// Computes the edge and compares it with the marks.
 pub const SWEEP: ButtonSpec = ButtonSpec {
     id: "sweep",
     label: "Sweep the edge",
     help: "Register from every heading outwards from the truth, and compare the edge with your marks.",
 };
 
-/// How far the question is.
+/// The state of the question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Nobody asks.
+    /// Off.
     Off,
     /// The reader marks both edges; the maps are covered.
     Marking,
-    /// The edges are swept, and all is shown.
+    /// The edges are computed, and everything is shown.
     Swept,
 }
 
@@ -81,7 +81,7 @@ pub(super) static HUBER: Param<f64> =
     Param::slider("huber", "Huber width", [0.02, HUBER_OFF_M], 0.02)
         .unit("m")
         .default(HUBER_OFF_M)
-        .help("Longer pairs pull less; at 1.6 m all pairs pull alike.");
+        .help("Longer pairs have less weight; at 1.6 m all pairs have equal weight.");
 
 pub(super) static AXIS: OneOf<OffsetAxis> = OneOf::new(
     "axis",
@@ -92,7 +92,7 @@ pub(super) static AXIS: OneOf<OffsetAxis> = OneOf::new(
 .help("The vertical axis of the basin maps; the other offset comes from its slider.");
 
 pub(super) static PATHS: Param<bool> = Param::switch("paths", "ways of other starts")
-    .help("Draws over the basin map which way starts all over it go, iteration by iteration.");
+    .help("Draws over the basin map the paths from starts all over it, iteration by iteration.");
 
 pub(super) static EDGE: OneOf<Phase> = OneOf::new(
     "edge",
@@ -104,21 +104,21 @@ pub(super) static EDGE: OneOf<Phase> = OneOf::new(
     ],
     &[Phase::Off, Phase::Marking, Phase::Swept],
 )
-.help("Asks from how far a guess at the right place may be turned and still comes home; while you mark it, the maps are covered.");
+.help("Asks how far a guess at the right position may be turned and still converge to the truth; while you mark it, the maps are covered.");
 
-/// Where the reader marks the edge of the basin, for both errors.
+/// The reader's marks of the edge of the basin, for both errors.
 pub(super) static EDGES: [Param<f64>; 2] = [
     edge("edge-p2p", "your edge, point to point"),
     edge("edge-p2l", "your edge, point to plane"),
 ];
 
 pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
-    .help("Where the range noise of both sweeps starts; 457 is the chapter's.");
+    .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
 
 pub(super) static ITERATION: Param<f64> = Param::timeline("iteration", "iteration", MAX_ITERS)
-    .help("Which iteration is shown; 0 is the first guess, and past the last one is the end.");
+    .help("Which iteration is shown; 0 is the first guess, and beyond the last one is the end.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &HEADING.spec,
     &DX.spec,
@@ -142,7 +142,7 @@ pub const PARAMS: &[&ParamSpec] = &[
 const fn edge(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [0.0, 180.0], 1.0)
         .unit("°")
-        .help("Your mark of the edge, to either side of the truth; 0 is none.")
+        .help("Your mark of the edge, on either side of the truth; 0 is none.")
 }
 
 const fn offset(id: &'static str, label: &'static str, default: f64) -> Param<f64> {
@@ -152,7 +152,7 @@ const fn offset(id: &'static str, label: &'static str, default: f64) -> Param<f6
         .help("How far the first guess is moved away from the truth.")
 }
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.1",
     title: "Basin explorer",
@@ -230,7 +230,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "mark-edge",
             label: "Where is the edge?",
-            help: "The maps are covered: mark on each how far a guess may be turned and still comes home, then sweep the edge.",
+            help: "The maps are covered: mark on each how far a guess may be turned and still converge to the truth, then sweep the edge.",
             set: &[
                 HEADING.to(0.0),
                 DX.to(0.0),

@@ -1,4 +1,4 @@
-//! Where the panels stand: the sweeps beside the two basin maps, the curve below.
+//! Layout of the panels: the sweeps beside the two basin maps, the curve below.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -6,7 +6,7 @@ use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_1_basin_explorer::model::panel;
 
-/// The widget's arrangement.
+/// The layout of the widget.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BasinView;
 

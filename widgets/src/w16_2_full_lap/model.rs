@@ -1,7 +1,7 @@
-//! The state of the widget: parameters, the laps they lead to, playback and animation.
+//! The state of the widget: parameters, the laps that follow from them, playback and animation.
 //!
-//! A parameter that changes the lap asks for a new one. It is computed in pieces, the newest that was
-//! asked for first; the old one stays until the new one is whole, and the moment shown stays.
+//! A parameter that changes the lap requests a new one. The newest request is computed in pieces. Meanwhile
+//! the old lap stays on screen, and so does the current tick.
 
 mod drawing;
 pub(super) mod flat;
@@ -50,12 +50,12 @@ use transition::Transition;
 /// Ticks a second at speed 1: twice as fast as the robot.
 const TICKS_PER_S: f64 = 8.0;
 
-/// The full lap.
+/// The model of the widget.
 pub struct FullLap {
     values: Values,
-    /// What is shown.
+    /// The laps on screen.
     runs: Runs,
-    /// What is being computed.
+    /// The laps under way.
     laps: NewestLap,
     /// Buttons that wait for the lap they were pressed for.
     pressed: Vec<&'static str>,
@@ -72,7 +72,7 @@ impl Default for FullLap {
     /// The chapter's run, at its first loop.
     ///
     /// # Panics
-    /// Never: a lap that was asked for ends.
+    /// Never: a requested lap ends.
     fn default() -> Self {
         let values = Values::defaults(SPEC.params);
         let mut laps = NewestLap::new();
@@ -95,7 +95,7 @@ impl Default for FullLap {
 }
 
 impl FullLap {
-    /// The moment shown: that of the lap which is shown, however late the one is that was asked for.
+    /// The current tick of the lap on screen, which may be older than the requested one.
     fn tick(&self) -> usize {
         (self.values.get(&TICK) as usize).min(self.runs.ticks())
     }
@@ -104,13 +104,13 @@ impl FullLap {
         self.runs.ticks() as f64
     }
 
-    /// Goes to a tick; where a loop was closed in it, the nodes move from old to new.
+    /// Goes to a tick; if a loop was closed in it, the nodes move from old to new.
     fn go_to(&mut self, tick: usize) {
         let tick = (tick as f64).min(self.last());
         self.values.put(&TICK, tick);
         self.hovered = None;
         self.own.refresh(&self.values, &self.runs, tick as usize);
-        // A loop of the reader's own stands already while the time goes on.
+        // A custom loop is already closed while time advances.
         if self.own.tried().is_none() {
             self.animate();
         } else {
@@ -118,7 +118,7 @@ impl FullLap {
         }
     }
 
-    /// Where a loop was closed, the nodes move from old to new.
+    /// Starts the animation of the nodes if a loop was closed.
     fn animate(&mut self) {
         let attempt = self.runs.graph.attempt_at(self.tick());
         let own = self.own.tried().map(|own| &own.attempt);
@@ -143,15 +143,15 @@ impl FullLap {
         self.recompute();
     }
 
-    /// Asks for the lap of the settings, where it is not the one that is shown; an own flat that cannot be
-    /// driven asks for none.
+    /// Requests the lap of the settings, unless it is on screen; a custom flat that cannot be driven requests
+    /// none.
     fn recompute(&mut self) {
         if let Some(config) = LapSettings::read(&self.values).config(self.own_course()) {
             self.laps.ask(config);
         }
     }
 
-    /// Shows a lap that is whole, and does what waited for it.
+    /// Shows a finished lap and executes what waited for it.
     fn show(&mut self, record: LapRecord) {
         self.runs = Runs::new(record);
         self.hovered = None;
@@ -171,7 +171,7 @@ impl FullLap {
         }
     }
 
-    /// Plays on; stops for the animation of every loop on the way.
+    /// Advances the playback; stops for the animation of every loop on the way.
     fn play(&mut self, elapsed_s: f64) {
         let now = self.tick() as f64;
         let rate = TICKS_PER_S * self.values.get(&SPEED);
@@ -180,7 +180,7 @@ impl FullLap {
         let stop = self.runs.graph.attempts().iter().find(ahead);
         let target = stop.map_or(reached, |attempt| attempt.tick);
         if target < reached && !self.playback.is_playing() {
-            // The end was in reach, but the loop comes first: play on from there.
+            // The end was within this frame, but the loop comes first: continue playing from there.
             self.playback.toggle(target as f64, self.last());
         }
         if target as f64 != now {
@@ -188,7 +188,7 @@ impl FullLap {
         }
     }
 
-    /// The last tick of which anything tells.
+    /// The last tick that plots and tables show.
     fn seen_until(&self) -> usize {
         if self.values.get(&FUTURE) {
             self.runs.ticks()
@@ -244,7 +244,7 @@ impl Model for FullLap {
             return Ok(());
         }
         match id {
-            // A lap under way may be longer than the one that is shown.
+            // A lap under way may be longer than the one on screen.
             "t" if self.laps.is_running() && value > self.last() => self.refresh_own(),
             "t" => self.go_to(self.tick()),
             "speed" | "more" | "future" | "pick" | "number" => {}
@@ -308,7 +308,7 @@ impl Model for FullLap {
         }
     }
 
-    /// One tick of the lap that is being computed.
+    /// Processes one tick of the lap under way.
     fn work(&mut self) -> Activity {
         match self.laps.step() {
             NewestStep::Idle => Activity::Idle,
@@ -370,8 +370,7 @@ impl Model for FullLap {
         tables::shown(&self.runs, self.seen_until(), &self.canonical)
     }
 
-    /// The line at the moment shown, in every plot over time; on the map, the keyframe that is looked
-    /// at.
+    /// The line at the current tick, in every plot over time; on the map, the selected keyframe.
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
         if let Some(tool) = self.tool_on(panel) {
             return self.grab_flat(tool, at, reach);
@@ -394,7 +393,7 @@ impl Model for FullLap {
                     self.own.keep(&self.values);
                 }
                 self.tie(ends);
-                // Under the pointer the graph follows at once.
+                // During a drag the graph follows at once.
                 self.transition = None;
             }
             return;
@@ -409,7 +408,7 @@ impl Model for FullLap {
         self.end_stroke();
     }
 
-    /// What is tapped is looked at; beside everything, nothing is. A second keyframe ends a loop.
+    /// Selects the tapped part, or nothing if there is none. A second keyframe ends a custom loop.
     fn tap(&mut self, panel: &str, at: [f64; 2], reach: [f64; 2]) {
         if let Some(tool) = self.tool_on(panel) {
             self.tap_flat(tool, at, reach);

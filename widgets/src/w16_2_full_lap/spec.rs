@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use super::model::flat::Tool;
 use ch16_lab::lap;
@@ -16,28 +16,29 @@ use pr_sim::sketch::limits;
 /// Ticks of a lap of the Apartment.
 pub const LAP_TICKS: f64 = lap::LAP_TICKS as f64;
 
-/// Ticks of a lap elsewhere: like those of the Apartment they do not depend on the noise.
+/// Ticks of a lap elsewhere, which do not depend on the noise, either.
 const RING_TICKS: f64 = 290.0;
 const TWINS_TICKS: f64 = 469.0;
 const CORRIDOR_TICKS: f64 = 287.0;
 const HALL_TICKS: f64 = 154.0;
 
-/// The latest tick that a link may ask for: a drive that has not ended then is cut off.
+/// The latest tick that a link may contain: a drive is cut off there.
 pub const MOST_TICKS: f64 = 2000.0;
 
-/// Largest number of a keyframe that a link may ask for.
+/// Largest number of a keyframe that a link may contain.
 const MOST_NODES: f64 = 999.0;
 
-/// Where the widget starts: the tick of the canonical run's first loop.
+/// The initial tick: that of the canonical run's first loop.
 const FIRST_LOOP_TICK: f64 = 92.0;
 
-/// Most characters of a flat in a link: four digits of base 64 for each number of the largest.
+/// Largest number of characters of a flat in a link: four digits of base 64 for each number of the largest
+/// flat.
 const MOST_FLAT: usize = 33_000;
 
 /// Largest number of a wall, counted from 1.
 const MOST_PIECES: f64 = limits::WALLS as f64;
 
-/// What kind of part of the graph is looked at.
+/// The kind of the selected part of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Picked {
     /// No part.
@@ -70,7 +71,7 @@ pub(super) static WORLD: OneOf<Option<BuiltInWorld>> = OneOf::new(
         None,
     ],
 )
-.help("What is driven through. The Apartment by the chapter's estimator, every other world by the default one.");
+.help("The world. The Apartment uses the chapter's estimator, every other world the default one.");
 
 pub(super) static EDIT: OneOf<Option<Tool>> = OneOf::new(
     "edit",
@@ -84,7 +85,7 @@ pub(super) static EDIT: OneOf<Option<Tool>> = OneOf::new(
     ],
     &[None, Some(Tool::Move), Some(Tool::Wall), Some(Tool::Way), Some(Tool::Remove)],
 )
-.help("What a press on the map does: moves a wall, an end, a way point or the start; draws a wall; places a way point behind the chosen one; removes what it meets. All on a grid of 5 cm.");
+.help("What a press on the map does: move a wall, an end, a way point or the start; draw a wall; place a way point after the selected one; remove something. All on a grid of 5 cm.");
 
 pub(super) static PIECE: OneOf<Option<usize>> = OneOf::new(
     "piece",
@@ -100,7 +101,7 @@ pub(super) static PIECE: OneOf<Option<usize>> = OneOf::new(
     ],
     &[None, Some(0), Some(1), Some(2), Some(3), Some(4), Some(5)],
 )
-.help("What of the flat the arrows move and Remove takes away. On the map, a press chooses it.");
+.help("The piece of the flat that the arrows move and Remove deletes. On the map, a press selects it.");
 
 pub(super) static PIECE_NUMBER: Param<usize> =
     Param::typed("piece-number", "number of the piece", MOST_PIECES)
@@ -113,7 +114,7 @@ pub(super) static FLAT: ParamSpec = ParamSpec {
     unit: "",
     kind: ParamKind::Text { most: MOST_FLAT },
     default: 0.0,
-    help: "Walls, start and way points of your own flat to the centimetre, as links carry them. It makes the world your own flat.",
+    help: "Walls, start and way points of your own flat to the centimetre, as in links. It makes the world your own flat.",
 };
 
 pub(super) static SEED: Param<u32> = seed(lap::CANONICAL_SEED);
@@ -131,7 +132,7 @@ pub(super) static GATE_MODEL: OneOf<GateModel> = OneOf::new(
     ],
     &[GateModel::PathApproximation, GateModel::ExactMarginal],
 )
-.help("Path: the chapter's, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. An outline holds the positions that pass at the registered heading.");
+.help("Path: the chapter's, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. An outline contains the positions that pass at the registered heading.");
 
 pub(super) static MATCHER: OneOf<LapMatcher> = OneOf::new(
     "matcher",
@@ -154,7 +155,7 @@ pub(super) static INFORMATION: OneOf<InformationFrame> = OneOf::new(
     ],
     InformationFrame::ALL,
 )
-.help("The frame in which an edge says what it is sure of. As the chapter's figures were computed, it is turned by a heading of the world; exactly, it stands at the edge's target, the newer of its ends.");
+.help("The frame of an edge's information. As the chapter's figures were computed, it is turned by a heading of the world; exactly, it is that of the edge's target, the newer of its ends.");
 
 pub(super) static PICK: OneOf<Picked> = OneOf::new(
     "pick",
@@ -167,7 +168,7 @@ pub(super) static PICK: OneOf<Picked> = OneOf::new(
     ],
     &[Picked::Nothing, Picked::Keyframe, Picked::Edge, Picked::Loop],
 )
-.help("What of the graph is looked at and told in numbers. On the map, a click or a tap chooses it, and one beside everything chooses nothing.");
+.help("The part of the graph whose numbers are shown. On the map, a click or a tap selects it, and one beside everything selects nothing.");
 
 pub(super) static NUMBER: Param<usize> = Param::typed("number", "number", MOST_NODES)
     .help("The number of the keyframe; of the keyframe where the edge begins; of the newer keyframe of the loop.");
@@ -183,17 +184,14 @@ pub(super) static OWN: OneOf<Option<Claim>> = OneOf::new(
     ],
     &[None, Some(Claim::Registered), Some(Claim::Truth), Some(Claim::SamePlace)],
 )
-.help("A loop between any two keyframes. Registered: what the sweeps say, from where the graph believes them to be. The truth: what no robot knows. “The same place”: that both stand at one spot, right or wrong.");
+.help("A loop between any two keyframes. Registered: the registration of their sweeps, from their poses in the graph. The truth: what no robot knows. “The same place”: both at one position, right or wrong.");
 
-pub(super) static OWN_FROM: Param<usize> = Param::typed(
-    "own-from",
-    "your loop: from keyframe",
-    MOST_NODES,
-)
-.default(40.0)
-.help(
-    "One end of your own loop. On the map, drag from the keyframe that is looked at to any other.",
-);
+pub(super) static OWN_FROM: Param<usize> =
+    Param::typed("own-from", "your loop: from keyframe", MOST_NODES)
+        .default(40.0)
+        .help(
+            "One end of your own loop. On the map, drag from the selected keyframe to any other.",
+        );
 
 pub(super) static OWN_TO: Param<usize> =
     Param::typed("own-to", "your loop: to keyframe", MOST_NODES)
@@ -203,7 +201,7 @@ pub(super) static OWN_TO: Param<usize> =
 pub(super) static OWN_GATE: Param<bool> =
     Param::switch("own-gate", "your loop has to pass the gate")
         .on()
-        .help("Whether the tests may turn your own loop away: fit, pairs and gate where it is registered, the gate where it is asserted.");
+        .help("Whether the tests may reject your own loop: fit, pairs and gate if it is registered, the gate if it is asserted.");
 
 pub(super) static KERNEL: OneOf<OwnKernel> = OneOf::new(
     "kernel",
@@ -215,16 +213,16 @@ pub(super) static KERNEL: OneOf<OwnKernel> = OneOf::new(
     ],
     OwnKernel::ALL,
 )
-.help("What the graph is solved under once your own loop is in it: plain least squares, Huber's kernel from 1.345 standard deviations on, or dynamic covariance scaling from χ² 10 on.");
+.help("The robust kernel of your own loop: plain least squares, Huber's kernel from 1.345 standard deviations on, or dynamic covariance scaling from χ² 10 on.");
 
 pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", MOST_TICKS)
     .default(FIRST_LOOP_TICK)
-    .help("The moment shown; a tick is a quarter of a second, the marks are loops, and past the end means the end.");
+    .help("The moment shown; a tick is a quarter of a second, the marks are loops, and beyond the end means the end.");
 
 pub(super) static FUTURE: Param<bool> = Param::switch("future", "show what is to come")
-    .help("Draws the whole lap into the plots, also what comes after the moment shown.");
+    .help("Draws the whole lap into the plots, including what comes after the moment shown.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &WORLD.spec,
     &EDIT.spec,
@@ -251,137 +249,137 @@ pub const PARAMS: &[&ParamSpec] = &[
     &MORE.spec,
 ];
 
-/// One tick before the loop.
+/// Goes to the tick before the loop.
 const BEFORE: ButtonSpec = ButtonSpec {
     id: "before",
     label: "Before the loop",
     help: "One tick before the loop is tried.",
 };
 
-/// The tick of the loop, with its animation.
+/// Goes to the tick of the loop, with its animation.
 const AT: ButtonSpec = ButtonSpec {
     id: "at",
     label: "At the loop",
     help: "The tick of the loop: watch the history move.",
 };
 
-/// One tick after the loop.
+/// Goes to the tick after the loop.
 const AFTER: ButtonSpec = ButtonSpec {
     id: "after",
     label: "After the loop",
     help: "One tick after the loop was tried.",
 };
 
-/// On to the next loop.
+/// Goes to the next loop.
 const NEXT: ButtonSpec = ButtonSpec {
     id: "next",
     label: "Next loop",
-    help: "On to the next loop; after the last one, to the first.",
+    help: "Go to the next loop; after the last one, to the first.",
 };
 
-/// The buttons that go by the loops of the lap.
+/// The buttons that go from loop to loop.
 pub const LOOP_BUTTONS: [ButtonSpec; 4] = [BEFORE, AT, AFTER, NEXT];
 
-/// Back among the keyframes, edges or loops.
+/// Selects the previous keyframe, edge or loop.
 const ONE_BACK: ButtonSpec = ButtonSpec {
     id: "one-back",
-    label: "One back",
-    help: "Looks at the keyframe, edge or loop before; from nothing, at the newest keyframe.",
+    label: "Previous",
+    help: "Selects the previous keyframe, edge or loop; without a selection, the newest keyframe.",
 };
 
-/// On among them.
+/// Selects the next one.
 const ONE_ON: ButtonSpec = ButtonSpec {
     id: "one-on",
-    label: "One on",
-    help: "Looks at the next keyframe, edge or loop; from nothing, at the first keyframe.",
+    label: "Next",
+    help: "Selects the next keyframe, edge or loop; without a selection, the first keyframe.",
 };
 
-/// One end of a loop, then the other.
+/// Sets one end of a custom loop, then the other.
 const TIE: ButtonSpec = ButtonSpec {
     id: "tie",
     label: "Tie",
-    help: "Begins a loop of your own at the keyframe that is looked at; look at another one and press it again.",
+    help: "Starts your own loop at the selected keyframe; select another one and press it again.",
 };
 
-/// The loop before the last change of it.
+/// Undoes the last change of the custom loop.
 const UNDO: ButtonSpec = ButtonSpec {
     id: "undo",
     label: "Undo",
-    help: "Takes the last change of your own loop back.",
+    help: "Undoes the last change of your own loop.",
 };
 
 const fn flat_button(id: &'static str, label: &'static str, help: &'static str) -> ButtonSpec {
     ButtonSpec { id, label, help }
 }
 
-/// Begins and ends the editing of the flat.
+/// Starts and ends the editing of the flat.
 const EDIT_FLAT: ButtonSpec = flat_button(
     "edit-flat",
     "Edit the flat",
-    "Puts a pencil into your hand, with which a drag on the map draws a wall, or puts it away.",
+    "Starts or ends editing: a drag on the map draws a wall.",
 );
 
-/// What edits the flat.
+/// The buttons that edit the flat.
 const FLAT_BUTTONS: [ButtonSpec; 14] = [
     flat_button(
         "piece-back",
-        "Piece back",
-        "Chooses the wall, the end or the way point before; also Page Up.",
+        "Previous piece",
+        "Selects the previous wall, end or way point; also Page Up.",
     ),
     flat_button(
         "piece-on",
-        "Piece on",
-        "Chooses the next wall, end or way point; also Page Down.",
+        "Next piece",
+        "Selects the next wall, end or way point; also Page Down.",
     ),
     flat_button(
         "west",
         "Left",
-        "Moves what is chosen 5 cm to the left, or turns the start back; also the arrow key.",
+        "Moves the selection 5 cm to the left, or turns the start back; also the arrow key.",
     ),
     flat_button(
         "east",
         "Right",
-        "Moves what is chosen 5 cm to the right, or turns the start on; also the arrow key.",
+        "Moves the selection 5 cm to the right, or turns the start on; also the arrow key.",
     ),
     flat_button(
         "north",
         "Up",
-        "Moves what is chosen 5 cm up, or turns the start on; also the arrow key.",
+        "Moves the selection 5 cm up, or turns the start on; also the arrow key.",
     ),
     flat_button(
         "south",
         "Down",
-        "Moves what is chosen 5 cm down, or turns the start back; also the arrow key.",
+        "Moves the selection 5 cm down, or turns the start back; also the arrow key.",
     ),
     flat_button(
         "remove",
         "Remove",
-        "Takes away the wall or the way point that is chosen; also Delete.",
+        "Removes the selected wall or way point; also Delete.",
     ),
     flat_button(
         "add-wall",
         "Add a wall",
-        "Puts a wall of a metre into the middle and chooses it.",
+        "Adds a wall of one metre in the middle and selects it.",
     ),
     flat_button(
         "add-way-point",
         "Add a way point",
-        "Puts a way point behind the chosen one, or at the end, and chooses it.",
+        "Adds a way point after the selected one, or at the end, and selects it.",
     ),
     flat_button(
         "turn-here",
         "Seen again from here",
-        "From the chosen way point on, places are seen again: the map from there is compared with the one before.",
+        "From the selected way point on, known locations are seen again: the map from there is compared with the one before.",
     ),
     flat_button(
         "take-back",
-        "Take back",
-        "Takes the last change of the flat back; also Ctrl+Z.",
+        "Undo edit",
+        "Undoes the last change of the flat; also Ctrl+Z.",
     ),
     flat_button(
         "do-again",
-        "Do again",
-        "Makes the change again that was taken back; also Ctrl+Y.",
+        "Redo edit",
+        "Repeats the change that was undone last; also Ctrl+Y.",
     ),
     flat_button(
         "open-flat",
@@ -408,7 +406,7 @@ pub const FLAT_KEYS: &[(&str, &str)] = &[
     ("Control+y", "do-again"),
 ];
 
-/// What waits until the flat is edited.
+/// Controls that are shown only during editing.
 pub const FLAT_CONTROLS: &[&str] = &[
     "piece",
     "piece-number",
@@ -428,7 +426,7 @@ pub const FLAT_CONTROLS: &[&str] = &[
     "save-flat",
 ];
 
-/// What the widget shows while the flat is edited.
+/// The parts shown during editing.
 pub const EDITING: Opening = Opening {
     panels: &["map", "loop"],
     params: &["edit", "piece", "piece-number"],
@@ -452,7 +450,7 @@ pub const EDITING: Opening = Opening {
     ],
 };
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.2",
     title: "The full lap",
@@ -461,9 +459,9 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "The walls seen on the way out and on the way back stand apart, and one loop brings them together: the map's disagreement falls to about a third over the lap.",
         "The typical error over the keyframes hardly changes, and the largest even grows a little: the corridor comes out almost a metre too short, and no loop sees that.",
         "A loop moves poses that the robot left long ago. A filter that keeps only the newest pose could not.",
-        "Click a keyframe, and drag from it to another: a loop of your own. A wrong one is paid for by every edge between its ends, each a little; a kernel gives it little weight.",
-        "A small χ² alone does not pass: the sweep must also fit the old walls to 0.16 m, with at least 25 pairs.",
-        "The exact gate adds up what the edges say of themselves, and knows the truth no better. Over seeds 1 to 50 at four times the noise the chapter's closes 78 loops, 3 of them wrong; the exact one closes 123, 7 of them wrong. Wrong is more than 0.3 m or 5° off the truth.",
+        "Click a keyframe, and drag from it to another: your own loop. A wrong one is paid for by every edge between its ends, each a little; a kernel gives it little weight.",
+        "A small χ² is not enough: the sweep must also fit the old walls to 0.16 m, with at least 25 pairs.",
+        "The exact gate adds up the covariances of the edges, and is no closer to the truth. Over seeds 1 to 50 at four times the noise the chapter's closes 78 loops, 3 of them wrong; the exact one closes 123, 7 of them wrong. Wrong is more than 0.3 m or 5° off the truth.",
     ],
     opening: Opening {
         panels: &["map", "loop"],

@@ -1,10 +1,10 @@
-//! Where the panels stand: the map large, the loop from near and the errors beside or below it.
+//! Layout of the panels: the large map, the close-up of the loop and the errors beside or below it.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
 use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
-/// From this width on the loop stands beside the map.
+/// Width from which the close-up is beside the map.
 const BESIDE_THE_MAP: f32 = 860.0;
 
 /// Height of a plot over time.

@@ -1,9 +1,9 @@
-//! State and rules of the widget; no egui.
+//! State and logic of the widget; no egui.
 //!
-//! A sweep is shifted over the map that it was taken for, heading fixed. Every shift gets ICP's
-//! truncated cost and NDT's score. Two balls descend from the cross hair, one on each landscape.
-//! What a parameter does not touch is not computed again: see [`terrains`]. A hundred sweeps with
-//! noise of their own show how far answers scatter: see [`rests`].
+//! A sweep is shifted over the map for which it was taken, with fixed heading. Every shift has ICP's
+//! truncated cost and NDT's score. Two balls descend from the cross hair, one on each landscape. Only what
+//! depends on a changed parameter is computed again: see [`terrains`]. A hundred sweeps with independent
+//! noise show the scatter of the results: see [`rests`].
 
 mod landscape;
 mod picture;
@@ -35,7 +35,7 @@ use terrains::Terrains;
 /// Steps of the balls in a second at speed ×1.
 const STEPS_PER_S: f64 = 24.0;
 
-/// The widget without its picture.
+/// The model of the widget.
 pub struct CostTerraces {
     values: Values,
     terrains: Terrains,
@@ -64,12 +64,12 @@ impl CostTerraces {
         Settings::read(&self.values)
     }
 
-    /// Position on the timeline: past the last step means the end.
+    /// Position on the timeline; beyond the last step it means the end.
     fn step(&self) -> usize {
         (self.values.get(&BALL_STEP) as usize).min(self.last_step())
     }
 
-    /// Steps until both balls rest.
+    /// Steps until both balls stop.
     fn last_step(&self) -> usize {
         self.terrains
             .icp
@@ -78,13 +78,13 @@ impl CostTerraces {
             .max(self.terrains.ndt.ball.steps())
     }
 
-    /// Goes to a step; at the end it stays at the end, wherever the next balls will rest.
+    /// Goes to a step; the end remains the end even if the next balls stop elsewhere.
     fn go_to(&mut self, step: f64) {
         let at_end = step >= self.last_step() as f64;
         self.put("t", if at_end { MAX_BALL_STEPS as f64 } else { step });
     }
 
-    /// Sets a parameter of the own list to a value of its range.
+    /// Sets a parameter of the widget to a valid value.
     fn put(&mut self, id: &'static str, value: f64) {
         if let Err(error) = self.values.set(SPEC.id, id, value) {
             unreachable!("the widget's own value was refused: {error}");
@@ -97,13 +97,13 @@ impl CostTerraces {
         self.go_to(start);
     }
 
-    /// Drops as many sweeps as there may be, and lets them fly.
+    /// Drops the largest number of sweeps and animates them.
     fn drop_sweeps(&mut self) {
         self.put("drops", MOST_DROPS);
         self.rests.fly(MOST_DROPS as usize, self.playback.motion());
     }
 
-    /// Computes again what the values touch.
+    /// Recomputes what depends on the values.
     fn follow(&mut self) {
         self.terrains.update(self.settings());
         let drops = self.values.get(&DROPS);
@@ -176,7 +176,7 @@ impl Model for CostTerraces {
         Activity::Busy
     }
 
-    /// One more sweep, of those that are dropped.
+    /// Registers one more of the dropped sweeps.
     fn work(&mut self) -> Activity {
         self.rests.work(&self.terrains)
     }
@@ -224,7 +224,7 @@ impl Model for CostTerraces {
 
     fn grab(&self, panel: &str, at: [f64; 2], _reach: [f64; 2]) -> Option<Handle> {
         let panel = map_id(panel)?;
-        // The whole map is the target: a press anywhere puts the cross hair there.
+        // The whole map is the target: a press anywhere moves the cross hair there.
         is_on_map(at).then_some(Handle {
             panel,
             id: "cell",

@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_lab::terrain::TerrainScene;
 use kit::layers::Opening;
@@ -6,33 +6,33 @@ use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
-/// The maps reach this far from the truth in every direction, m.
+/// Largest shift of the maps from the truth in every direction, m.
 pub const HALF_SPAN_M: f64 = 1.3;
 
-/// Fewest and most cells a side; both odd, so that one cell lies on the truth.
+/// Smallest and largest number of cells on a side; both odd, so that one cell is at the truth.
 const CELLS_OF_A_SIDE: [f64; 2] = [49.0, 161.0];
 
-/// Most steps that a ball may take; the timeline never gets longer.
+/// Largest number of steps of a ball, and largest length of the timeline.
 pub const MAX_BALL_STEPS: usize = 400;
 
-/// Most sweeps that are dropped at once.
+/// Largest number of sweeps that are dropped at once.
 pub const MOST_DROPS: f64 = 100.0;
 
-/// The end of the slider of rows, where all are taken, however many points a sweep has.
+/// Upper end of the slider of rows, which selects all rows of any sweep.
 pub const MOST_ROWS: f64 = 120.0;
 
-/// Where the sweep was taken, and what it is matched with.
+/// Location of the sweep, and its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Room A: walls in both directions. The sweep is its own map.
     Room,
-    /// A corridor without doors: walls along x alone. Map and sweep were measured apart.
+    /// A corridor without doors: walls along x alone. Map and sweep have independent noise.
     Corridor,
-    /// The Apartment's corridor, doors and all. The sweep is its own map.
+    /// The Apartment's corridor, with its doors. The sweep is its own map.
     OwnCorridor,
 }
 
-/// What decides a cell's colour.
+/// What determines a cell's colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colors {
     /// Its height, evenly from dark to bright.
@@ -51,7 +51,7 @@ pub(super) static SCENE: OneOf<Place> = OneOf::new(
     ],
     &[Place::Room, Place::Corridor, Place::OwnCorridor],
 )
-.help("Room A on its own points; a corridor without doors on a map that was measured apart; the Apartment's corridor, doors and all, on its own points.");
+.help("Room A on its own points; a corridor without doors on a map with independent noise; the Apartment's corridor, with its doors, on its own points.");
 
 pub(super) static TAU: Param<f64> = Param::slider("tau", "pair limit τ", [0.1, 1.6], 0.05)
     .unit("m")
@@ -84,43 +84,43 @@ pub(super) static COLOURS: OneOf<Colors> = OneOf::new(
     &[Colors::ByHeight, Colors::ByRank],
 )
 .default("rank")
-.help("By rank, every colour covers as many cells: low steps show on high ground.");
+.help("By rank, every colour covers equally many cells, which shows low steps on high ground.");
 
 pub(super) static SEED: Param<u32> = Param::seed("seed of the sweep", TerrainScene::SEED)
-    .help("Where the range noise of the sweep starts; 1472 is the chapter's.");
+    .help("Seed of the range noise of the sweep; 1472 is the chapter's.");
 
 pub(super) static PROBE_X: Param<f64> =
     Param::slider("probe-x", "drop at Δx", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
         .unit("m")
         .default(0.4)
-        .help("Where the cross hair stands and the balls start, east of the truth.");
+        .help("Position of the cross hair and start of the balls, east of the truth.");
 
 pub(super) static PROBE_Y: Param<f64> =
     Param::slider("probe-y", "drop at Δy", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
         .unit("m")
         .default(0.1)
-        .help("Where the cross hair stands and the balls start, north of the truth.");
+        .help("Position of the cross hair and start of the balls, north of the truth.");
 
 pub(super) static DROPS: Param<usize> =
     Param::slider("drops", "sweeps dropped", [0.0, MOST_DROPS], 1.0)
-        .help("So many sweeps, each with noise of its own, are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m.");
+        .help("Number of sweeps with independent noise that are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m.");
 
 pub(super) static ROWS: Param<f64> = Param::slider("rows", "rows of H", [0.0, MOST_ROWS], 1.0)
     .default(MOST_ROWS)
-    .help("So many points, in the order of the beams, give a row (n_x, n_y, p × n) of the point-to-plane step; to the right, all.");
+    .help("Number of points, in the order of the beams, that give a row (n_x, n_y, p × n) of the point-to-plane step; at the right end, all.");
 
 pub(super) static ODOMETRY: Param<f64> =
     Param::slider("odometry", "σ of a row of odometry", [0.0, 0.5], 0.01)
         .unit("m")
         .help("Adds the row (1, 0, 0) with the weight 1/σ²; 0 adds none.");
 
-// Past the last step means the end: the balls lie where they rest.
+// A position beyond the last step means the end of both balls.
 pub(super) static BALL_STEP: Param<f64> =
     Param::timeline("t", "step of the balls", MAX_BALL_STEPS as f64)
         .default(MAX_BALL_STEPS as f64)
         .help("How many gradient steps both balls have taken.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &SCENE.spec,
     &TAU.spec,
@@ -146,11 +146,11 @@ const DROP: ButtonSpec = ButtonSpec {
     help: "Start both balls at the cross hair and let them descend.",
 };
 
-/// Drops many sweeps, each with noise of its own.
+/// Drops many sweeps, each with independent noise.
 const DROP_100: ButtonSpec = ButtonSpec {
     id: "drop-100",
     label: "Drop 100",
-    help: "Drop 100 sweeps, each with noise of its own, and watch them fly to rest.",
+    help: "Drop 100 sweeps, each with independent noise, and watch them settle.",
 };
 
 /// "What to try".
@@ -275,7 +275,7 @@ const PRESETS: &[Preset] = &[
     },
 ];
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.3",
     title: "Cost terraces",

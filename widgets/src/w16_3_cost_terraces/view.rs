@@ -1,27 +1,27 @@
-//! Where the panels stand.
+//! Layout of the panels.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
 use kit::view::{Arrangement, Column, Row, Slot, View};
 
-/// From this width on, a map has room beside it; with the controls beside the stage, too.
+/// Width from which a map leaves space beside it, also if the controls are beside the stage.
 const BESIDE: f32 = 440.0;
 
-/// The map takes this share of its row, and what is matched there the rest.
+/// Share of its row that the map takes; the target of the match gets the rest.
 const MAP_SHARE: f32 = 5.0;
 const MATCHED_SHARE: f32 = 4.0;
 
-/// Each map beside what the sweep is matched with, the slices below.
+/// Each map beside the target of the match, the slices below.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TerracesView;
 
 impl View for TerracesView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let narrow = width < BESIDE;
-        // Four panels above each other stay within two screens of a phone.
+        // Four panels below each other have to fit two screens of a phone.
         let most = if narrow { 205.0 } else { 235.0 };
         let map = |id| slot(id, PlotHeight::Natural { most });
-        // Room and corridor have other shapes; what stands below does not move for it.
+        // Room and corridor have different shapes; fixed heights keep what is below in place.
         let matched = |id| slot(id, PlotHeight::Fixed(if narrow { 120.0 } else { 190.0 }));
         let cut = |id| slot(id, PlotHeight::Fixed(130.0));
         let stage = [

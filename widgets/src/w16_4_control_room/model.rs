@@ -1,7 +1,7 @@
-//! The state of the control room: one recorded run, the tick shown, its grid and registration.
+//! The state of the control room: one recorded run, the current tick, its grid and registration.
 //!
-//! A parameter of the run asks for a new one. It is computed in pieces, the newest that was asked for
-//! first; the old one stays until the new one is whole, and the moment shown stays.
+//! A parameter of the run requests a new one. The newest request is computed in pieces. Meanwhile the old run
+//! stays on screen, and so does the current tick.
 
 mod grid;
 mod history;
@@ -32,29 +32,29 @@ use settings::config;
 /// Ticks a second at speed 1: twice as fast as the robot.
 const TICKS_PER_S: f64 = 8.0;
 
-/// The control room.
+/// The model of the widget.
 pub struct ControlRoom {
     values: Values,
     world: World,
-    /// What is shown.
+    /// The run on screen.
     record: LapRecord,
-    /// What is being computed.
+    /// The run under way.
     laps: NewestLap,
-    /// How often the reader went on to the next event of the run that is being computed.
+    /// How often the reader asked for the next event of the run under way.
     next_events: usize,
     history: History,
     events: Vec<Event>,
-    /// The registration of the tick shown.
+    /// The registration of the current tick.
     registration: Option<RegistrationView>,
     grid: GridView,
     playback: Playback,
 }
 
 impl Default for ControlRoom {
-    /// The chapter's run on its way out.
+    /// The chapter's run on its outward path.
     ///
     /// # Panics
-    /// Never: a lap that was asked for ends.
+    /// Never: a requested lap ends.
     fn default() -> Self {
         let values = Values::defaults(SPEC.params);
         let mut laps = NewestLap::new();
@@ -82,7 +82,7 @@ impl ControlRoom {
         self.values.get(&TICK) as usize
     }
 
-    /// The lane whose data are said.
+    /// The selected lane.
     fn lane(&self) -> usize {
         self.values.get(&LANE)
     }
@@ -109,7 +109,7 @@ impl ControlRoom {
         self.show();
     }
 
-    /// Works out what the record does not keep of the tick shown.
+    /// Recomputes the details of the current tick that the record does not store.
     fn show(&mut self) {
         let tick = self.tick();
         self.registration = self.record.registration(tick);
@@ -120,7 +120,7 @@ impl ControlRoom {
         self.laps.ask(config(&self.values));
     }
 
-    /// Shows a run that is whole, and does what waited for it.
+    /// Shows a finished run and executes what waited for it.
     fn take(&mut self, record: LapRecord) {
         self.record = record;
         self.history = History::new(&self.record);
@@ -157,7 +157,7 @@ impl ControlRoom {
         }
     }
 
-    /// The loop test of the tick shown, as the log has it.
+    /// The loop test of the current tick, from the log.
     fn loop_event(&self) -> Option<&Event> {
         let now = self.tick();
         let mut marked = self.events.iter().filter(|event| event.marked);
@@ -213,7 +213,7 @@ impl Model for ControlRoom {
         Activity::Busy
     }
 
-    /// One tick of the run that is being computed.
+    /// Processes one tick of the run under way.
     fn work(&mut self) -> Activity {
         match self.laps.step() {
             NewestStep::Idle => Activity::Idle,
@@ -262,12 +262,12 @@ impl Model for ControlRoom {
         tables::shown(self)
     }
 
-    /// The line at the moment shown, in every plot over time, and each mark of the lanes.
+    /// The line at the current tick, in every plot over time, and each mark of the lanes.
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
         if panel == lanes::ID
             && let Some((tick, lane)) = lanes::event_at(&self.record, self.tick(), at, reach)
         {
-            // The press goes to the tick of the mark, however far beside it the pointer is.
+            // The press goes to the tick of the mark, regardless of the exact position.
             return Some(Handle {
                 panel: lanes::ID,
                 id: lanes::name(lane),

@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_lab::lap;
 use kit::layers::Opening;
@@ -28,13 +28,13 @@ pub(super) static LANE: OneOf<usize> = OneOf::new(
     &[0, 1, 2, 3, 4, 5, 6, 7],
 )
 .default("register")
-.help("The thing whose data of this tick are said; a press on a mark of the lanes chooses it.");
+.help("The operation whose data of this tick are described; a press on a mark of the lanes selects it.");
 
 pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", LAP_TICKS)
     .default(60.0)
     .help("The moment shown; a tick is a quarter of a second, and the marks are loops.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &NOISE.spec,
     &LOOPS.spec,
@@ -52,14 +52,14 @@ const fn lane(name: &'static str) -> Choice {
     }
 }
 
-/// On to the next event of the log.
+/// Goes to the next event of the log.
 const NEXT_EVENT: ButtonSpec = ButtonSpec {
     id: "next-event",
     label: "Next event",
-    help: "On to the next keyframe, loop test or way point; after the last one, to the first.",
+    help: "Go to the next keyframe, loop test or way point; after the last one, to the first.",
 };
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.4",
     title: "Control room",

@@ -1,10 +1,10 @@
-//! Where the control room's panels stand: the map beside the registration, the lanes over the whole width below.
+//! Layout of the panels: the map beside the registration, the lanes over the whole width below.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
 use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
-/// The view of [`crate::w16_4_control_room::model::ControlRoom`].
+/// The layout of [`crate::w16_4_control_room::model::ControlRoom`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ControlRoomView;
 
@@ -12,7 +12,7 @@ impl View for ControlRoomView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let lanes = Slot {
             panel: "lanes",
-            // Three panels above each other stay within two screens of a phone.
+            // Three panels below each other have to fit two screens of a phone.
             height: PlotHeight::Fixed(if width < SIDE_BY_SIDE { 200.0 } else { 220.0 }),
         };
         let natural = |panel| Slot {

@@ -1,6 +1,6 @@
-//! The state of the toy: where the poses were put, and the steps that the solver takes from there.
+//! The state of the toy: the poses set by the reader, and the solver's steps from there.
 //!
-//! All of it is computed at once: a graph of six poses takes microseconds.
+//! Everything is computed at once: a graph of six poses takes microseconds.
 
 mod course;
 mod hands;
@@ -36,7 +36,7 @@ pub mod panel {
 /// Steps a second at normal speed.
 const STEPS_PER_S: f64 = 1.5;
 
-/// The pose-graph toy.
+/// The model of the widget.
 pub struct PoseGraphToy {
     values: Values,
     course: Course,
@@ -60,7 +60,7 @@ impl PoseGraphToy {
         self.course = Course::new(settings::graph(&self.values));
     }
 
-    /// Steps done.
+    /// The current step.
     fn step(&self) -> usize {
         self.played.place(&self.values, self.course.last() as f64) as usize
     }

@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use kit::layers::Opening;
 use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
@@ -8,16 +8,16 @@ use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 /// Poses of the largest graph.
 pub const MOST_POSES: usize = 6;
 
-/// A pose is moved at most so far from where odometry puts it, m.
+/// Largest displacement of a pose from odometry, m.
 pub const REACH_M: f64 = 3.0;
 
-/// Steps at which the solver ends in any case.
+/// Largest number of solver steps.
 pub const MOST_STEPS: usize = 20;
 
-/// What the loop of the chapter's three poses measures beyond odometry, m.
+/// By how much the loop of the chapter's three poses exceeds odometry, m.
 const CHAPTER_GAP_M: f64 = 0.6;
 
-/// Which graph.
+/// The shape of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// The chapter's three poses on a line.
@@ -28,13 +28,17 @@ pub enum Shape {
     Ring,
 }
 
-pub(super) static STIFFNESS: Param<f64> =
-    Param::slider("stiffness", "stiffness of the loop", [0.1, 10.0], 0.1)
-        .unit("×")
-        .default(1.0)
-        .help(
-            "How sure the loop is, against each edge of odometry: a stiffer spring gives way less.",
-        );
+pub(super) static STIFFNESS: Param<f64> = Param::slider(
+    "stiffness",
+    "stiffness of the loop",
+    [0.1, 10.0],
+    0.1,
+)
+.unit("×")
+.default(1.0)
+.help(
+    "Information of the loop, relative to each edge of odometry: a stiffer spring gives way less.",
+);
 
 pub(super) static GRAPH: OneOf<Shape> = OneOf::new(
     "graph",
@@ -62,16 +66,16 @@ pub(super) static ODOMETRY: Param<f64> =
     Param::slider("odometry", "stiffness of odometry", [0.1, 10.0], 0.1)
         .unit("×")
         .default(1.0)
-        .help("How sure each edge of odometry is.");
+        .help("Information of each edge of odometry.");
 
 pub(super) static PINNED: Param<bool> = Param::switch("pinned", "pin the first pose")
     .on()
-    .help("Measurements are relative: without a pin the whole graph may stand anywhere.");
+    .help("Measurements are relative: without a fixed pose the whole graph may be anywhere.");
 
 pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MOST_STEPS as f64)
-    .help("How many steps of the solver are done; 0 is the graph as it was put.");
+    .help("How many steps the solver has done; 0 is the graph before the first one.");
 
-/// The parameters that move a pose: along x, along y, and turned.
+/// The parameters that move a pose: along x, along y, and its heading.
 pub(super) static MOVED: [[Param<f64>; 3]; MOST_POSES] = [
     [
         along("x1", "pose 1: moved in x"),
@@ -105,7 +109,7 @@ pub(super) static MOVED: [[Param<f64>; 3]; MOST_POSES] = [
     ],
 ];
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &STIFFNESS.spec,
     &GRAPH.spec,
@@ -138,23 +142,23 @@ pub const PARAMS: &[&ParamSpec] = &[
 const fn along(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
         .unit("m")
-        .help("How far the pose is put from where odometry has it, before the first step.")
+        .help("How far the pose is moved from odometry, before the first step.")
 }
 
 const fn turn(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-180.0, 180.0], 1.0)
         .unit("°")
-        .help("How far the pose is turned from where odometry has it, before the first step.")
+        .help("How far the pose is turned from odometry, before the first step.")
 }
 
-/// One step of the solver, under the name that it has here.
+/// The step button: one iteration of the solver.
 const ONE_STEP: ButtonSpec = ButtonSpec {
     label: "One step",
     help: "One Gauss–Newton step: every pose moves at once.",
     ..STEP
 };
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.5",
     title: "Pose-graph toy",

@@ -1,4 +1,4 @@
-//! Where the panels stand: the graph beside the bars of its springs, χ² over the steps below.
+//! Layout of the panels: the graph beside the bars of its springs, χ² over the steps below.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -6,7 +6,7 @@ use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_5_pose_graph_toy::model::panel;
 
-/// The widget's arrangement.
+/// The layout of the widget.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ToyView;
 

@@ -1,8 +1,8 @@
-//! The state of the search and every rule that changes it.
+//! The state of the search and its logic.
 
 mod hands;
-mod hunt;
 mod picture;
+mod search_task;
 mod settings;
 mod tables;
 mod words;
@@ -25,13 +25,13 @@ use pr_geom::{SE2, math};
 use crate::w16_6_whole_window::spec::{
     DX, DY, HEADING, OFFSET_SPAN_M, PARAMS, PROGRESS, SEED, SPEC,
 };
-use hunt::{Hunt, Refined};
+use search_task::{Refined, SearchTask};
 
 /// Names of the panels.
 pub mod panel {
     /// The two sweeps.
     pub const SWEEPS: &str = "sweeps";
-    /// The places of the window, with the best score of each.
+    /// The positions of the window, with the best score of each.
     pub const PLACES: &str = "places";
     /// Bounds of the boxes over the heading.
     pub const BOUNDS: &str = "bounds";
@@ -39,20 +39,20 @@ pub mod panel {
     pub const GAP: &str = "gap";
 }
 
-/// A search plays in that many seconds at normal speed, however long it is.
+/// Duration of playing a search at normal speed, s, regardless of its length.
 const PLAYS_FOR_S: f64 = 12.0;
 
-/// Steps of ICP a second at normal speed.
+/// Iterations of ICP per second at normal speed.
 const REFINES_PER_S: f64 = 4.0;
 
-/// The whole window without its picture.
+/// The model of the widget.
 pub struct WholeWindow {
     values: Values,
     played: Played,
     scene: BasinScene,
     workspace: IcpWorkspace,
-    hunt: Hunt,
-    /// Searches begun so far.
+    search_task: SearchTask,
+    /// Number of searches so far.
     searches: u64,
 }
 
@@ -63,7 +63,7 @@ impl Default for WholeWindow {
         let scene = BasinScene::with_seed(values.get(&SEED));
         let mut workspace = IcpWorkspace::new();
         Self {
-            hunt: Hunt::new(&scene, settings::config(&values), &mut workspace),
+            search_task: SearchTask::new(&scene, settings::config(&values), &mut workspace),
             played: Played::along(&PROGRESS),
             values,
             scene,
@@ -76,29 +76,29 @@ impl Default for WholeWindow {
 impl WholeWindow {
     fn start_over(&mut self) {
         let config = settings::config(&self.values);
-        self.hunt = Hunt::new(&self.scene, config, &mut self.workspace);
+        self.search_task = SearchTask::new(&self.scene, config, &mut self.workspace);
         self.searches += 1;
     }
 
-    /// Where ICP starts, the window's middle.
+    /// The start of ICP, which is the center of the window.
     fn guess(&self) -> SE2 {
-        self.scene.guess(&self.hunt.window.config().start)
+        self.scene.guess(&self.search_task.window.config().start)
     }
 
-    /// Boxes that the search has taken up, all of them.
+    /// Number of boxes that the search expanded in total.
     fn boxes_taken(&self) -> usize {
-        self.hunt.window.moments().len() - 1
+        self.search_task.window.moments().len() - 1
     }
 
-    /// ICP from what was found.
+    /// ICP from the result of the search.
     fn refined(&self) -> Option<&Refined> {
-        let found = self.hunt.found.as_ref()?;
+        let found = self.search_task.found.as_ref()?;
         found.home.as_ref().map(|(_, refined)| refined)
     }
 
-    /// Last place on the timeline: the boxes, and the steps of ICP behind them.
+    /// Last position on the timeline: the boxes, followed by the iterations of ICP.
     fn last(&self) -> usize {
-        let refining = self.refined().map_or(0, |refined| refined.way.len() - 1);
+        let refining = self.refined().map_or(0, |refined| refined.path.len() - 1);
         self.boxes_taken() + refining
     }
 
@@ -106,27 +106,27 @@ impl WholeWindow {
         self.played.place(&self.values, self.last() as f64) as usize
     }
 
-    /// Boxes taken up at the place that is shown.
+    /// Number of expanded boxes at the current position.
     fn step(&self) -> usize {
         self.place().min(self.boxes_taken())
     }
 
-    /// Steps of ICP at the place that is shown; none while it is searched.
+    /// Number of ICP iterations at the current position; `None` during the search.
     fn refining(&self) -> Option<usize> {
         let refining = self.place().checked_sub(self.boxes_taken())?;
         self.refined().map(|_| refining)
     }
 
-    /// The pose that is shown: ICP's, the best one so far, or the start.
+    /// The pose on screen: ICP's, the best one so far, or the start.
     fn shown_pose(&self) -> SE2 {
         if let (Some(k), Some(refined)) = (self.refining(), self.refined()) {
-            return refined.way[k];
+            return refined.path[k];
         }
-        let moment = &self.hunt.window.moments()[self.step()];
+        let moment = &self.search_task.window.moments()[self.step()];
         moment.best.map_or_else(|| self.guess(), |best| best.pose)
     }
 
-    /// Makes a pose the start, rounded so that links stay short.
+    /// Sets the start to a pose, rounded, which keeps links short.
     fn start_at(&mut self, start: BasinStart) {
         let rounded = |value: f64, per_unit: f64| (value * per_unit).round() / per_unit;
         let offset = |value: f64| rounded(value, 100.0).clamp(-OFFSET_SPAN_M, OFFSET_SPAN_M);
@@ -168,7 +168,7 @@ impl Model for WholeWindow {
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
         let plays = id == PLAY.id && self.played.motion() == Motion::Full;
         if [PLAY.id, STEP.id].contains(&id) && !plays {
-            // The end has to be known.
+            // The position of the end has to be known.
             self.finish_work();
         }
         let last = self.last() as f64;
@@ -184,8 +184,8 @@ impl Model for WholeWindow {
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
-        if self.played.is_playing() && self.hunt.found.is_none() {
-            // The search is ahead of its playback: it ends in a few frames.
+        if self.played.is_playing() && self.search_task.found.is_none() {
+            // The search is ahead of its playback and ends within a few frames.
             return Activity::Busy;
         }
         let (here, last) = (self.place() as f64, self.last() as f64);
@@ -196,7 +196,7 @@ impl Model for WholeWindow {
             REFINES_PER_S
         };
         let activity = self.played.advance(&mut self.values, last, elapsed_s, rate);
-        // ICP goes at its own pace, from its first step on.
+        // ICP has its own speed, from its first iteration on.
         if here < searched && self.played.is_playing() && self.place() as f64 > searched {
             self.values.put(&PROGRESS, searched);
         }
@@ -204,17 +204,17 @@ impl Model for WholeWindow {
     }
 
     fn work(&mut self) -> Activity {
-        if self.hunt.search(&self.scene, &mut self.workspace) == Activity::Busy {
+        if self.search_task.search(&self.scene, &mut self.workspace) == Activity::Busy {
             return Activity::Busy;
         }
-        self.hunt.fill()
+        self.search_task.fill()
     }
 
     fn finish_work(&mut self) -> Activity {
-        if self.hunt.is_settled() {
+        if self.search_task.is_settled() {
             return Activity::Idle;
         }
-        while self.hunt.search(&self.scene, &mut self.workspace) == Activity::Busy {}
+        while self.search_task.search(&self.scene, &mut self.workspace) == Activity::Busy {}
         Activity::Busy
     }
 
@@ -231,7 +231,7 @@ impl Model for WholeWindow {
     }
 
     fn timeline(&self) -> Option<Timeline> {
-        let moments = self.hunt.window.moments();
+        let moments = self.search_task.window.moments();
         let mut marks = Vec::new();
         let mut mark = |at: usize, label: &str, standing| {
             marks.push(TimelineMark {
@@ -240,7 +240,7 @@ impl Model for WholeWindow {
                 standing,
             });
         };
-        if self.hunt.found.is_some() {
+        if self.search_task.found.is_some() {
             let after = moments.iter().position(|m| m.goal == SearchGoal::RunnerUp);
             if let Some(at) = after {
                 mark(at - 1, "the best pose is certain", Standing::Neutral);

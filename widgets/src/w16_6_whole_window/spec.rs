@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_lab::basin::BasinScene;
 use kit::layers::Opening;
@@ -9,7 +9,7 @@ use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 /// Largest offset of a start, m.
 pub const OFFSET_SPAN_M: f64 = 1.5;
 
-/// More boxes than any search takes up, and what ICP adds.
+/// An upper bound of the boxes of a search plus the iterations of ICP.
 const MOST_STEPS: f64 = 200_000.0;
 
 pub(super) static HEADING: Param<f64> = Param::slider(
@@ -39,15 +39,15 @@ pub(super) static TURN: Param<f64> = Param::slider("turn", "headings ±", [30.0,
 pub(super) static CELL: Param<f64> = Param::slider("cell", "cell", [0.05, 0.2], 0.01)
     .unit("m")
     .default(0.05)
-    .help("How fine the search is; the map is blurred with it.");
+    .help("The resolution of the search; the map is blurred accordingly.");
 
 pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
-    .help("Where the range noise of both sweeps starts; 457 is the chapter's.");
+    .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
 
 pub(super) static PROGRESS: Param<f64> = Param::timeline("progress", "boxes taken up", MOST_STEPS)
-    .help("How many boxes the search has taken up; behind the last one come the steps of ICP.");
+    .help("How many boxes the search has expanded; the iterations of ICP follow the last one.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &HEADING.spec,
     &DX.spec,
@@ -64,17 +64,17 @@ pub const PARAMS: &[&ParamSpec] = &[
 const fn offset(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-OFFSET_SPAN_M, OFFSET_SPAN_M], 0.05)
         .unit("m")
-        .help("How far the start, which is the window's middle, is moved away from the truth.")
+        .help("How far the start, which is the window's center, is moved away from the truth.")
 }
 
-/// One box, under the name that it has here.
+/// The step button: one box.
 const ONE_BOX: ButtonSpec = ButtonSpec {
     label: "One box",
-    help: "Take up the most promising box: split it, or drop it.",
+    help: "Expand the most promising box: split it, or drop it.",
     ..STEP
 };
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.6",
     title: "The whole window",

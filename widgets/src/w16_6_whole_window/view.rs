@@ -1,4 +1,4 @@
-//! Where the panels stand: the sweeps beside the places and the bounds, what is left below.
+//! Layout of the panels: the sweeps beside the positions and the bounds, the rest below.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -6,14 +6,14 @@ use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_6_whole_window::model::panel;
 
-/// The widget's arrangement.
+/// The layout of the widget.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WindowView;
 
 impl View for WindowView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
-        // Three panels above each other stay within two screens of a phone.
+        // Three panels below each other have to fit two screens of a phone.
         let most = if width >= SIDE_BY_SIDE { 330.0 } else { 240.0 };
         let sweeps = slot(panel::SWEEPS, PlotHeight::Natural { most });
         let places = slot(panel::PLACES, PlotHeight::Natural { most });

@@ -1,4 +1,4 @@
-//! The state of the comparison and every rule that changes it.
+//! The state of the comparison and its logic.
 
 mod lap;
 mod picture;
@@ -32,28 +32,28 @@ pub mod panel {
     pub const LOOKS: &str = "looks";
     /// Precision over recall.
     pub const CURVES: &str = "curves";
-    /// Where the two keyframes are.
+    /// The positions of the two keyframes.
     pub const MAP: &str = "map";
 }
 
 /// Keyframes a second at normal speed.
 const KEYFRAMES_PER_S: f64 = 5.0;
 
-/// Have I been here, without its picture.
+/// The model of the widget.
 pub struct BeenHere {
     values: Values,
     played: Played,
     config: LapConfig,
-    /// The lap under way; none once it is graded.
+    /// The lap under way; `None` once it is graded.
     work: Option<Work>,
-    /// The last lap that was graded.
+    /// The last graded lap.
     places: Option<Places>,
-    /// Laps graded so far.
+    /// Number of graded laps so far.
     laps: u64,
 }
 
 impl Default for BeenHere {
-    /// The chapter's lap, not yet driven.
+    /// The chapter's lap, before its drive.
     fn default() -> Self {
         let values = Values::defaults(PARAMS);
         let config = settings::config(&values);
@@ -69,7 +69,7 @@ impl Default for BeenHere {
 }
 
 impl BeenHere {
-    /// Drives anew where the settings ask for another lap.
+    /// Drives another lap if the settings require it.
     fn follow(&mut self) {
         let config = settings::config(&self.values);
         if config != self.config {
@@ -86,7 +86,7 @@ impl BeenHere {
         self.places.as_ref().map_or(0, Places::last)
     }
 
-    /// Where a run ends: past every place, while the lap is still computed.
+    /// The end of a run: beyond every position while the lap is being computed.
     fn end(&self) -> f64 {
         match self.work {
             Some(_) => MOST_KEYFRAMES,
@@ -94,12 +94,12 @@ impl BeenHere {
         }
     }
 
-    /// The newest keyframe that is shown.
+    /// The newest keyframe on screen.
     fn newest(&self) -> usize {
         self.played.place(&self.values, self.last() as f64) as usize
     }
 
-    /// The pair that is looked at: an older keyframe, and the newest one.
+    /// The selected pair: an older keyframe, and the newest one.
     fn pair(&self) -> Option<[usize; 2]> {
         let places = self.places.as_ref()?;
         let new = self.newest();
@@ -151,7 +151,7 @@ impl Model for BeenHere {
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
         if self.played.is_playing() && self.work.is_some() {
-            // The lap is ahead of its playback: it ends in a few frames.
+            // The lap is ahead of its playback and ends within a few frames.
             return Activity::Busy;
         }
         let last = self.last() as f64;

@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_lab::lap::BuiltInWorld;
 use ch16_lab::lap::CANONICAL_SEED;
@@ -8,13 +8,13 @@ use kit::playback::SPEED;
 use kit::run;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
-/// More keyframes than any lap has.
+/// An upper bound of the keyframes of a lap.
 pub const MOST_KEYFRAMES: f64 = 400.0;
 
-/// The last keyframe that can be chosen to compare with: a lap of the ring has about a hundred.
+/// The last keyframe that can be selected for comparison: a lap of the ring has about a hundred.
 pub const LAST_OLD: f64 = 120.0;
 
-/// The value of `old` that asks for the keyframe that looks most alike.
+/// The value of `old` that selects the most similar keyframe.
 pub const MOST_ALIKE: f64 = -1.0;
 
 pub(super) static CALLED: Param<f64> = Param::slider(
@@ -26,7 +26,7 @@ pub(super) static CALLED: Param<f64> = Param::slider(
 .unit("%")
 .default(15.0)
 .help(
-    "So many pairs, those most alike, are called the same: a threshold for every detector at once.",
+    "Share of the most similar pairs that are called the same: a threshold for every detector at once.",
 );
 
 pub(super) static DETECTOR: OneOf<usize> = OneOf::new(
@@ -51,7 +51,7 @@ pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
     ],
     &[BuiltInWorld::Apartment, BuiltInWorld::Ring],
 )
-.help("Where the lap is driven.");
+.help("The world of the lap.");
 
 pub(super) static OLDER: Param<f64> = Param::slider(
     "old",
@@ -60,15 +60,15 @@ pub(super) static OLDER: Param<f64> = Param::slider(
     1.0,
 )
 .default(MOST_ALIKE)
-.help("Which older keyframe the newest one is compared with; −1 is the one that looks most alike.");
+.help("The older keyframe that is compared with the newest one; −1 is the most similar one.");
 
 pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
 
 pub(super) static NEWEST: Param<f64> = Param::timeline("new", "keyframe", MOST_KEYFRAMES)
     .default(MOST_KEYFRAMES)
-    .help("The newest keyframe that is known; past the last one it is the whole lap.");
+    .help("The newest keyframe so far; beyond the last one it is the whole lap.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &CALLED.spec,
     &DETECTOR.spec,
@@ -81,14 +81,14 @@ pub const PARAMS: &[&ParamSpec] = &[
     &MORE.spec,
 ];
 
-/// One keyframe, under the name that it has here.
+/// The step button: one keyframe.
 const ONE_KEYFRAME: ButtonSpec = ButtonSpec {
     label: "Next keyframe",
     help: "Drive to the next keyframe and compare it with all older ones.",
     ..STEP
 };
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.7",
     title: "Have I been here?",

@@ -1,4 +1,4 @@
-//! Where the panels stand: all pairs beside the one that is looked at, the curves below.
+//! Layout of the panels: all pairs beside the selected one, the curves below.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -6,14 +6,14 @@ use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_7_been_here::model::panel;
 
-/// The widget's arrangement.
+/// The layout of the widget.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlacesView;
 
 impl View for PlacesView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
-        // Four panels above each other stay within two screens of a phone.
+        // Four panels below each other have to fit two screens of a phone.
         let [most, most_scans, plot] = if width >= SIDE_BY_SIDE {
             [300.0, 300.0, 130.0]
         } else {

@@ -1,4 +1,4 @@
-//! The state of the three registrations and every rule that changes it.
+//! The state of the three registrations and its logic.
 
 mod curves;
 mod picture;
@@ -33,14 +33,14 @@ pub mod panel {
 /// Iterations a second at normal speed.
 const STEPS_PER_S: f64 = 5.0;
 
-/// One registration: how it went, and how it ended.
+/// One registration: its trace and its result.
 struct Run {
     trace: Vec<IcpTrace>,
     end: IcpSummary,
     error_m: [f64; 2],
 }
 
-/// The moving box without its picture.
+/// The model of the widget.
 pub struct MovingBox {
     values: Values,
     played: Played,
@@ -89,7 +89,7 @@ impl MovingBox {
         self.played.place(&self.values, self.last() as f64) as usize
     }
 
-    /// A run at the iteration that is shown; past its end it rests.
+    /// A run at the current iteration, or at its last one.
     fn shown(&self, method: usize) -> &IcpTrace {
         let trace = &self.runs[method].trace;
         &trace[self.iteration().min(trace.len() - 1)]
@@ -174,7 +174,7 @@ impl Model for MovingBox {
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        // The line at the share that is shown.
+        // The line at the current share.
         let away = at[0] - self.values.get(&SHARE);
         (panel == panel::BIAS && away.abs() <= reach[0]).then_some(Handle {
             panel: panel::BIAS,

@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_slam2d::icp::IcpVariant;
 use kit::layers::Opening;
@@ -9,7 +9,7 @@ use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 /// Largest share of the box, %.
 pub const MOST_SHARE: f64 = 60.0;
 
-/// Iterations at which a registration ends in any case.
+/// Largest number of iterations of a registration.
 pub const MOST_ITERATIONS: f64 = 30.0;
 
 pub(super) static SHARE: Param<f64> =
@@ -50,16 +50,18 @@ pub(super) static VARIANT: OneOf<IcpVariant> = OneOf::new(
 )
 .help("Distance between paired points, or distance along the wall's normal.");
 
-pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", 1).help(
-    "Where the range noise of the sweeps above starts; the curves go over their own hundred seeds.",
-);
+pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", 1)
+    .help("Seed of the range noise of the sweeps above; the curves have their own hundred seeds.");
 
-pub(super) static ITERATION: Param<f64> =
-    Param::timeline("iteration", "iteration", MOST_ITERATIONS)
-        .default(MOST_ITERATIONS)
-        .help("Which iteration is shown of all three; past its last one a registration rests.");
+pub(super) static ITERATION: Param<f64> = Param::timeline(
+    "iteration",
+    "iteration",
+    MOST_ITERATIONS,
+)
+.default(MOST_ITERATIONS)
+.help("Which iteration is shown of all three; beyond its last one a registration has converged.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &SHARE.spec,
     &MOVED.spec,
@@ -73,7 +75,7 @@ pub const PARAMS: &[&ParamSpec] = &[
     &MORE.spec,
 ];
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.8",
     title: "The moving box",

@@ -1,4 +1,4 @@
-//! Where the panels stand: the three registrations beside each other, the curves below them.
+//! Layout of the panels: the three registrations side by side, the curves below them.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -6,14 +6,14 @@ use kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_8_moving_box::model::panel;
 
-/// The widget's arrangement.
+/// The layout of the widget.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BoxView;
 
 impl View for BoxView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
-        // Four panels above each other stay within two screens of a phone.
+        // Four panels below each other have to fit two screens of a phone.
         let [most, plot] = if width >= SIDE_BY_SIDE {
             [230.0, 170.0]
         } else {

@@ -1,4 +1,4 @@
-//! The state of a morning and every rule that changes it.
+//! The state of a localization run and its logic.
 
 mod hands;
 mod known;
@@ -7,7 +7,7 @@ mod settings;
 mod tables;
 mod words;
 
-use ch16_lab::come_back::{Moment, Morning};
+use ch16_lab::come_back::{LocalizationRun, Moment};
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, finish_work,
     press_preset,
@@ -28,25 +28,25 @@ use known::{Known, Work};
 
 /// Names of the panels.
 pub mod panel {
-    /// The saved map, and what is localized on it.
+    /// The saved map, and the localization on it.
     pub const MAP: &str = "map";
-    /// How well the best place and the next one fit, scan by scan.
+    /// Scores of the best pose and of the next one, scan by scan.
     pub const SCORES: &str = "scores";
 }
 
 /// Moments a second at normal speed.
 const MOMENTS_PER_S: f64 = 6.0;
 
-/// Come back tomorrow, without its picture.
+/// The model of the widget.
 pub struct ComeBack {
     values: Values,
     played: Played,
-    /// What is being computed; none once the morning is over.
+    /// The work under way; `None` once the run is over.
     work: Option<Work>,
-    /// The last map that was saved.
+    /// The last saved map.
     known: Option<Known>,
-    /// The last morning that is over.
-    morning: Option<Morning>,
+    /// The last finished run.
+    run: Option<LocalizationRun>,
 }
 
 impl Default for ComeBack {
@@ -57,21 +57,21 @@ impl Default for ComeBack {
             work: Some(Work::map(&values)),
             played: Played::along(&MOMENT),
             known: None,
-            morning: None,
+            run: None,
             values,
         }
     }
 }
 
 impl ComeBack {
-    /// Drives another map, or switches the robot on elsewhere on the one that is known.
+    /// Drives another map, or switches the robot on elsewhere on the known one.
     fn follow(&mut self) {
         let known = self
             .known
             .as_ref()
             .filter(|known| known.is_of(&self.values));
         self.work = Some(match known {
-            Some(known) => Work::morning(known, &self.values),
+            Some(known) => Work::run(known, &self.values),
             None => Work::map(&self.values),
         });
     }
@@ -80,20 +80,20 @@ impl ComeBack {
         settings::start(&self.values)
     }
 
-    /// What is shown: the morning that is over, whose map and start are those of the values.
-    fn told(&self) -> Option<(&Known, &Morning)> {
+    /// The finished run on screen, whose map and start are those of the values.
+    fn finished(&self) -> Option<(&Known, &LocalizationRun)> {
         if self.work.is_some() {
             return None;
         }
-        self.known.as_ref().zip(self.morning.as_ref())
+        self.known.as_ref().zip(self.run.as_ref())
     }
 
     fn last(&self) -> usize {
-        let told = self.morning.as_ref();
-        told.map_or(0, |morning| morning.moments().len() - 1)
+        let finished = self.run.as_ref();
+        finished.map_or(0, |run| run.moments().len() - 1)
     }
 
-    /// Where a run ends: past every place, while the morning is still computed.
+    /// The end of a run: beyond every position while it is being computed.
     fn end(&self) -> f64 {
         match self.work {
             Some(_) => MOST_MOMENTS,
@@ -106,11 +106,11 @@ impl ComeBack {
     }
 
     fn moment(&self) -> Option<&Moment> {
-        let (_, morning) = self.told()?;
-        morning.moments().get(self.place())
+        let (_, run) = self.finished()?;
+        run.moments().get(self.place())
     }
 
-    /// Puts the robot elsewhere, rounded so that links stay short.
+    /// Moves the robot, rounded, which keeps links short.
     fn put(&mut self, pose: SE2) {
         let tenth = |value: f64, most: f64| ((value * 10.0).round() / 10.0).clamp(0.0, most);
         let heading_deg = (pose.theta().to_degrees() / 5.0).round() * 5.0;
@@ -151,7 +151,7 @@ impl Model for ComeBack {
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
         if self.played.is_playing() && self.work.is_some() {
-            // The morning is ahead of its playback: it ends in a few frames.
+            // The run is ahead of its playback and ends within a few frames.
             return Activity::Busy;
         }
         let last = self.last() as f64;
@@ -164,16 +164,16 @@ impl Model for ComeBack {
             return Activity::Idle;
         };
         match work.step(&self.values) {
-            known::Step::GoesOn(work) => {
+            known::Step::Continue(work) => {
                 self.work = Some(work);
                 return Activity::Unseen;
             }
             known::Step::Saved(known) => {
-                self.work = Some(Work::morning(&known, &self.values));
+                self.work = Some(Work::run(&known, &self.values));
                 self.known = Some(*known);
-                self.morning = None;
+                self.run = None;
             }
-            known::Step::Over(morning) => self.morning = Some(*morning),
+            known::Step::Over(run) => self.run = Some(*run),
         }
         Activity::Busy
     }
@@ -196,10 +196,10 @@ impl Model for ComeBack {
 
     fn timeline(&self) -> Option<Timeline> {
         let mut marks = Vec::new();
-        if let Some((_, morning)) = self.told()
-            && let Some(found) = morning.found()
+        if let Some((_, run)) = self.finished()
+            && let Some(found) = run.found()
         {
-            let moments = morning.moments();
+            let moments = run.moments();
             let at = moments.partition_point(|moment| moment.tick <= found) - 1;
             marks.push(TimelineMark {
                 at: at as f64,

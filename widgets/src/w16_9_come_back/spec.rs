@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_lab::lap::BuiltInWorld;
 use ch16_lab::lap::CANONICAL_SEED;
@@ -11,12 +11,12 @@ use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 /// Sides of the plan, m: no world is larger.
 pub const PLAN_M: [f64; 2] = [12.0, 9.0];
 
-/// More moments than any morning has.
+/// An upper bound of the moments of a run.
 pub const MOST_MOMENTS: f64 = 4000.0;
 
 pub(super) static LAPS: Param<usize> =
     Param::slider("laps", "laps since the wardrobe moved", [0.0, 2.0], 1.0)
-        .help("The map is of one lap before that night, and of so many after it.");
+        .help("The map has one lap before that night, and this many after it.");
 
 pub(super) static START_X: Param<f64> = place("x", "switched on at x", PLAN_M[0], 4.4);
 
@@ -25,7 +25,7 @@ pub(super) static START_Y: Param<f64> = place("y", "switched on at y", PLAN_M[1]
 pub(super) static HEADING: Param<f64> =
     Param::slider("heading", "heading there", [-180.0, 180.0], 5.0)
         .unit("°")
-        .help("Where the robot looks when it is switched on. Nobody tells it.");
+        .help("Heading of the robot when it is switched on. The robot does not know it.");
 
 pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
     "world",
@@ -41,15 +41,15 @@ pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
         BuiltInWorld::TwinRooms,
     ],
 )
-.help("Where it all happens. The wardrobe stands in the Apartment alone.");
+.help("The world. Only the Apartment has the wardrobe.");
 
 pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
 
 pub(super) static MOMENT: Param<f64> = Param::timeline("moment", "moment", MOST_MOMENTS)
     .default(MOST_MOMENTS)
-    .help("Which moment of the morning is shown: boxes of a search, and scans.");
+    .help("Which moment is shown: boxes of a search, and scans.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &LAPS.spec,
     &START_X.spec,
@@ -66,17 +66,17 @@ const fn place(id: &'static str, label: &'static str, max: f64, default: f64) ->
     Param::slider(id, label, [0.0, max], 0.1)
         .unit("m")
         .default(default)
-        .help("Where the robot is put overnight, on the plan. Nobody tells it.")
+        .help("Where the robot is put overnight, on the plan. The robot does not know it.")
 }
 
-/// One moment, under the name that it has here.
+/// The step button: one moment.
 const ONE_MOMENT: ButtonSpec = ButtonSpec {
     label: "Next moment",
-    help: "On to more boxes of the search, or to the next scan.",
+    help: "Go on to more boxes of the search, or to the next scan.",
     ..STEP
 };
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.9",
     title: "Come back tomorrow",
@@ -84,7 +84,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
                     an honest robot says when two places look alike.",
     notice: &[
         "Orange boxes are places that are not ruled out yet. What is left of them is where the robot may be.",
-        "Where the map was driven, one scan is enough. In a room that it never saw, or in one of two rooms alike, no pose is told before the robot is out of the door.",
+        "Where the map was driven, one scan is enough. In a room that it never saw, or in one of two rooms alike, no pose is reported before the robot is out of the door.",
         "Once it is found, each scan is registered on the map around it, and nothing is searched any more.",
         "The wardrobe was moved overnight. The map still shows it where it stood; after another lap it is gone from there.",
     ],
@@ -99,7 +99,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "room",
             label: "Switched on in a room",
-            help: "The lap never entered it, so the robot says that it does not know, and drives out of the door.",
+            help: "The lap never entered it, so the robot reports that it does not know, and drives out of the door.",
             set: &[
                 WORLD.to("apartment"),
                 START_X.to(2.6),
@@ -132,7 +132,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "twins",
             label: "In one of two rooms alike",
-            help: "Both rooms fit to the millimetre: no pose is told before the robot is out of the door.",
+            help: "Both rooms fit to the millimetre: no pose is reported before the robot is out of the door.",
             set: &[
                 WORLD.to("twins"),
                 START_X.to(6.2),

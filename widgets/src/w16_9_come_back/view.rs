@@ -1,4 +1,4 @@
-//! Where the panels stand: the map, and the scores below it or beside it.
+//! Layout of the panels: the map, and the scores below it or beside it.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -6,7 +6,7 @@ use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_9_come_back::model::panel;
 
-/// The widget's arrangement.
+/// The layout of the widget.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ComeBackView;
 

@@ -1,4 +1,4 @@
-//! What the widget does with what a worker tells, and what it asks of it.
+//! The widget's reaction to the worker's reports, and its orders to the worker.
 
 use kit::model::{Activity, Model, Standing};
 use kit::outside::Delivery;
@@ -15,7 +15,7 @@ pub fn tell(robot: &mut OwnRobot, kind: &str, text: &str, numbers: &[f64]) {
     });
 }
 
-/// Five keyframes on a line, two loops, the second refused.
+/// Five keyframes on a line, two loops, the second one rejected.
 pub fn mapped() -> OwnRobot {
     let mut robot = OwnRobot::new();
     tell(&mut robot, "opening", "my.log", &[]);
@@ -45,7 +45,7 @@ pub fn mapped() -> OwnRobot {
 }
 
 #[test]
-fn play_maps_the_sample_then_holds_it_then_plays_the_way() {
+fn play_maps_the_sample_then_pauses_it_then_plays_the_path() {
     let mut robot = OwnRobot::new();
     robot.press("play").unwrap();
     assert_eq!(robot.take_orders(), ["sample"]);
@@ -80,7 +80,7 @@ fn play_maps_the_sample_then_holds_it_then_plays_the_way() {
 }
 
 #[test]
-fn what_else_is_doubted_is_not_passed_over_where_no_loop_contradicts() {
+fn other_doubts_are_reported_even_if_no_loop_contradicts() {
     let mut robot = mapped();
     tell(&mut robot, "loops", "", &[]);
     let said = |robot: &OwnRobot| robot.outcome().sentence.clone();
@@ -92,7 +92,7 @@ fn what_else_is_doubted_is_not_passed_over_where_no_loop_contradicts() {
 }
 
 #[test]
-fn one_of_a_kind_is_said_as_one() {
+fn counts_of_one_are_singular() {
     let mut robot = mapped();
     assert!(
         robot
@@ -105,13 +105,13 @@ fn one_of_a_kind_is_said_as_one() {
     tell(&mut robot, "loops", "", &[]);
     let said = robot.outcome().sentence.clone();
     assert!(
-        said.contains("1 scan became 1 keyframe on a way of 0 m with 0 loops"),
+        said.contains("1 scan became 1 keyframe on a path of 0 m with 0 loops"),
         "{said}"
     );
 }
 
 #[test]
-fn a_loop_that_contradicts_is_said_and_shown_first() {
+fn a_contradicting_loop_is_reported_and_shown_first() {
     let robot = mapped();
     let outcome = robot.outcome();
     assert_eq!(
@@ -142,7 +142,7 @@ fn a_loop_that_contradicts_is_said_and_shown_first() {
 }
 
 #[test]
-fn the_list_is_walked_and_every_choice_becomes_an_order() {
+fn the_list_can_be_stepped_through_and_every_choice_becomes_an_order() {
     let mut robot = mapped();
     robot.press("next").unwrap();
     assert_eq!(
@@ -188,7 +188,7 @@ fn the_list_is_walked_and_every_choice_becomes_an_order() {
 }
 
 #[test]
-fn a_press_shows_a_keyframe_and_a_drag_moves_the_one_that_is_shown() {
+fn a_press_selects_a_keyframe_and_a_drag_moves_the_selected_one() {
     let mut robot = mapped();
     let reach = [0.3, 0.3];
     assert_eq!(robot.grab("map", [2.0, 1.0], reach), None);
@@ -221,7 +221,7 @@ fn a_press_shows_a_keyframe_and_a_drag_moves_the_one_that_is_shown() {
 }
 
 #[test]
-fn arrow_keys_move_the_keyframe_that_is_shown_as_a_drag_does() {
+fn arrow_keys_move_the_selected_keyframe_like_a_drag() {
     let mut robot = mapped();
     robot.set("keyframe", 2.0).unwrap();
     robot.take_orders();
@@ -247,7 +247,7 @@ fn arrow_keys_move_the_keyframe_that_is_shown_as_a_drag_does() {
 }
 
 #[test]
-fn a_loop_that_is_gone_to_is_told_with_its_evidence() {
+fn a_selected_loop_is_described_with_its_evidence() {
     let mut robot = mapped();
     let first = "The loop of the list goes from keyframe 3 to 0: closed; 0.80 of the scan fits, 0.020 m off; χ² 20.0 of 16.3.";
     assert!(robot.summary().ends_with(first), "{}", robot.summary());
@@ -268,7 +268,7 @@ fn a_loop_that_is_gone_to_is_told_with_its_evidence() {
 }
 
 #[test]
-fn what_is_asked_where_there_is_no_map_is_answered() {
+fn requests_without_a_map_are_answered() {
     let mut robot = mapped();
     tell(
         &mut robot,
@@ -299,15 +299,15 @@ fn what_is_asked_where_there_is_no_map_is_answered() {
 }
 
 #[test]
-fn a_way_of_one_keyframe_is_no_metre_long() {
+fn a_path_of_one_keyframe_has_length_zero() {
     let mut robot = mapped();
     tell(&mut robot, "keyframes", "", &[0.0; 6]);
     let said = robot.outcome().sentence;
-    assert!(said.contains("on a way of 0 m"), "{said}");
+    assert!(said.contains("on a path of 0 m"), "{said}");
 }
 
 #[test]
-fn what_a_worker_tells_wrongly_changes_nothing() {
+fn a_malformed_delivery_changes_no_state() {
     let mut robot = mapped();
     let before = robot.robot().clone();
     tell(&mut robot, "stage", "", &[9.0, 1.0, 1.0, 1.0, 1.0]);
@@ -316,7 +316,7 @@ fn what_a_worker_tells_wrongly_changes_nothing() {
     tell(&mut robot, "map", "", &[0.0, 0.0, 0.0, 0.0, 0.05]);
     tell(&mut robot, "scan", "", &[]);
     tell(&mut robot, "weather", "fine", &[1.0]);
-    // NaN is what a number that is not there reads as, and equals nothing.
+    // NaN stands for a missing number, and does not equal itself.
     assert_eq!(format!("{before:?}"), format!("{:?}", robot.robot()));
     tell(&mut robot, "loops", "", &[f64::NAN; 10]);
     tell(&mut robot, "keyframes", "", &[f64::NAN; 12]);
@@ -330,7 +330,7 @@ fn what_a_worker_tells_wrongly_changes_nothing() {
 }
 
 #[test]
-fn the_way_is_coloured_by_what_is_known_of_it() {
+fn the_path_is_coloured_by_the_selected_quantity() {
     let mut robot = mapped();
     let bar = |robot: &OwnRobot| robot.scene().panels[0].color_bar.clone();
     let shades = |robot: &OwnRobot| {
@@ -364,7 +364,7 @@ fn the_way_is_coloured_by_what_is_known_of_it() {
 }
 
 #[test]
-fn another_file_takes_the_place_of_the_first_and_a_bad_one_is_answered() {
+fn another_file_replaces_the_first_and_an_invalid_one_is_reported() {
     let mut robot = mapped();
     robot.press("sure").unwrap();
     assert_eq!(robot.take_orders(), ["close", "sample"]);

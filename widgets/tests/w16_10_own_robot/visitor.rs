@@ -1,10 +1,10 @@
-//! The robot of another log on the map, and what a recording has several of.
+//! The robot of another log on the map, and recordings with several topics.
 
 use kit::model::{Model, Standing};
 use kit::outside::Delivery;
 use kit::scene::{Layer, Stroke};
 use widgets::w16_10_own_robot::model::OwnRobot;
-use widgets::w16_10_own_robot::model::whereabouts::Belief;
+use widgets::w16_10_own_robot::model::other_log::LocalizationState;
 
 use crate::w16_10_own_robot::model::{mapped, tell};
 
@@ -47,7 +47,7 @@ fn with_visitor(is_over: bool) -> OwnRobot {
 }
 
 #[test]
-fn another_log_is_asked_for_anywhere_or_at_the_keyframe_that_is_shown() {
+fn another_log_starts_anywhere_or_at_the_selected_keyframe() {
     let mut robot = mapped();
     robot.press("locate").unwrap();
     robot.press("locate-sample").unwrap();
@@ -66,7 +66,7 @@ fn another_log_is_asked_for_anywhere_or_at_the_keyframe_that_is_shown() {
 }
 
 #[test]
-fn its_verdicts_are_said_in_words_and_numbers_and_walked_through() {
+fn its_verdicts_are_reported_and_can_be_stepped_through() {
     let mut robot = with_visitor(true);
     let said = |robot: &OwnRobot| robot.outcome().sentence;
     let whole = "The robot of tuesday.log is found at its scan 2: of 5 scans 2 are localized, 1 doubtful, 2 lost.";
@@ -104,7 +104,7 @@ fn its_verdicts_are_said_in_words_and_numbers_and_walked_through() {
 }
 
 #[test]
-fn its_way_lies_over_the_map_and_what_is_doubtful_is_dotted() {
+fn its_path_is_drawn_over_the_map_with_doubtful_parts_dotted() {
     let mut robot = with_visitor(true);
     robot.set("scan", 3.0).unwrap();
     let scene = robot.scene();
@@ -149,7 +149,7 @@ fn its_way_lies_over_the_map_and_what_is_doubtful_is_dotted() {
 }
 
 #[test]
-fn looking_is_held_and_goes_on_by_play() {
+fn localization_is_paused_and_resumed_by_play() {
     let mut robot = with_visitor(false);
     assert_eq!(robot.outcome().verdict, "looking for the robot");
     assert_eq!(robot.outcome().standing, Standing::Neutral);
@@ -169,7 +169,7 @@ fn looking_is_held_and_goes_on_by_play() {
 }
 
 #[test]
-fn a_log_with_nothing_to_look_for_is_answered_and_wrong_numbers_change_nothing() {
+fn a_log_without_scans_is_reported_and_wrong_numbers_change_no_state() {
     let mut robot = mapped();
     let text = "x.log\nx.log is not a CARMEN log";
     tell(
@@ -202,12 +202,12 @@ fn a_log_with_nothing_to_look_for_is_answered_and_wrong_numbers_change_nothing()
     robot.press("change").unwrap();
     let mut robot = with_visitor(true);
     tell(&mut robot, "opening", "other.log", &[]);
-    assert!(robot.robot().whereabouts.is_none());
-    assert!(Belief::Found.is_localized() && !Belief::Doubtful.is_localized());
+    assert!(robot.robot().other_log.is_none());
+    assert!(LocalizationState::Found.is_localized() && !LocalizationState::Doubtful.is_localized());
 }
 
 #[test]
-fn another_topic_is_taken_where_the_recording_has_one() {
+fn another_topic_is_taken_if_the_recording_has_one() {
     let mut robot = mapped();
     let said = |robot: &OwnRobot| robot.outcome().sentence;
     robot.press("other").unwrap();

@@ -24,13 +24,13 @@ fn title(trace: &ProcrustesTrace, id: &str) -> String {
 }
 
 #[test]
-fn four_corners_are_turned_and_the_trace_has_its_top_at_the_alignment() {
+fn four_corners_are_rotated_and_the_trace_peaks_at_the_alignment() {
     let mut trace = ProcrustesTrace::default();
     assert_eq!(trace.outcome().verdict, "a turn fits best");
     let bound = fact(&trace, "bound_m2");
     assert!((fact(&trace, "turn_trace_m2") - bound).abs() < 1e-12);
     assert!(fact(&trace, "mirror_trace_m2") < bound);
-    // The truth is turned by 40°; 2° are five deviations of the noise over a metre.
+    // The true rotation is 40°; 2° are five deviations of the noise over a metre.
     let top = fact(&trace, "aligned_deg").round();
     assert!((top - 40.0).abs() <= 2.0);
     trace.set("turn", top).unwrap();
@@ -40,14 +40,14 @@ fn four_corners_are_turned_and_the_trace_has_its_top_at_the_alignment() {
 }
 
 #[test]
-fn two_points_cannot_tell_a_turn_from_a_mirror_image() {
+fn two_points_fit_a_rotation_and_a_reflection_equally() {
     let trace = with(&[("shape", 1.0)]);
     assert_eq!(trace.outcome().verdict, "turn and mirror image tie");
     assert!((fact(&trace, "turn_cost_m2") - fact(&trace, "mirror_cost_m2")).abs() < 1e-12);
 }
 
 #[test]
-fn a_sensor_upside_down_is_matched_by_a_mirror_image_and_refused_by_the_alignment() {
+fn a_sensor_upside_down_is_matched_by_a_reflection_and_not_by_the_alignment() {
     let trace = with(&[("shape", 3.0)]);
     assert_eq!(trace.outcome().verdict, "a mirror image fits best");
     assert!(fact(&trace, "mirror_cost_m2") < 0.01 * fact(&trace, "turn_cost_m2"));
@@ -59,7 +59,7 @@ fn a_sensor_upside_down_is_matched_by_a_mirror_image_and_refused_by_the_alignmen
 }
 
 #[test]
-fn the_two_maps_are_one_where_a_turn_fits_best_and_mirror_images_else() {
+fn the_two_maps_are_equal_if_a_rotation_fits_best_and_mirrored_otherwise() {
     let walls = |trace: &ProcrustesTrace, id: &str| {
         let panels = trace.scene().panels;
         let panel = panels.into_iter().find(|panel| panel.id == id).unwrap();
@@ -96,7 +96,7 @@ fn a_point_of_the_target_is_dragged_and_the_answer_follows() {
     assert_eq!(trace.values().number("x2"), 0.5);
     assert_eq!(trace.values().number("y2"), -0.3);
     assert!((fact(&trace, "aligned_deg") - before).abs() > 1.0);
-    // Where the whole target is dragged into its own mirror image, the mirror image wins.
+    // If the whole target is dragged into its mirror image, the reflection fits best.
     for (k, id) in ["target1", "target2", "target3", "target4"]
         .iter()
         .enumerate()
@@ -147,7 +147,7 @@ fn playing_goes_once_around_and_ends() {
 }
 
 #[test]
-fn every_preset_does_what_its_button_says() {
+fn every_preset_does_what_its_button_claims() {
     let verdict = |id: &str| {
         let mut trace = ProcrustesTrace::default();
         trace.press(id).unwrap();

@@ -50,7 +50,7 @@ fn where_measurements_agree_all_four_end_alike() {
 }
 
 #[test]
-fn each_curve_ends_where_the_table_says() {
+fn each_curve_ends_at_the_value_of_the_table() {
     let widget = WrongJacobians::default();
     let panels = widget.scene().panels;
     let curve = panels
@@ -67,7 +67,7 @@ fn each_curve_ends_where_the_table_says() {
     for (end, id) in ends.iter().zip(ids) {
         assert_eq!(end[0], fact(&widget, &format!("{id}_steps")));
         let off_m = fact(&widget, &format!("{id}_off_m"));
-        // Powers of ten, not below the floor of the picture.
+        // Powers of ten, not below the lower end of the picture.
         assert!((end[1] - off_m.max(1e-9).log10()).abs() < 1e-9, "{id}");
     }
     let by_chi2 = with(&[("curve", 1.0)]).scene().panels;
@@ -94,7 +94,7 @@ fn the_step_is_dragged_along_the_curves() {
 }
 
 #[test]
-fn every_preset_does_what_its_button_says() {
+fn every_preset_does_what_its_button_claims() {
     let after = |id: &str| {
         let mut widget = WrongJacobians::default();
         widget.press(id).unwrap();
@@ -118,7 +118,7 @@ fn every_preset_does_what_its_button_says() {
 }
 
 #[test]
-fn all_settings_come_to_rest() {
+fn all_settings_converge() {
     for bias in [0.0, 0.5, 6.0, 10.0] {
         for scatter in [0.0, 0.3] {
             for (wrong, seed) in [(0.0, 1.0), (1.0, 2.0), (0.0, 4_294_967_295.0)] {
@@ -129,11 +129,7 @@ fn all_settings_come_to_rest() {
                     ("seed", seed),
                 ];
                 let widget = with(&values);
-                assert_ne!(
-                    widget.outcome().verdict,
-                    "not all come to rest",
-                    "{values:?}"
-                );
+                assert_ne!(widget.outcome().verdict, "not all converge", "{values:?}");
                 assert_reports(&widget);
             }
         }

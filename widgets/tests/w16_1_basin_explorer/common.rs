@@ -1,4 +1,4 @@
-//! What the tests of the widget's rules ask of it.
+//! Helpers for the tests of the widget's model.
 
 use kit::model::Model;
 use kit::scene::{Cell, Layer};

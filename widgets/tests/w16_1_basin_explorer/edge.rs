@@ -1,4 +1,4 @@
-//! The basin's edge: marked by the reader, swept, and compared in words.
+//! The basin's edge: marked by the reader, computed, and compared in words.
 
 use kit::model::{Activity, Model, Standing};
 use kit::scene::Layer;
@@ -22,7 +22,7 @@ fn swept(marks: [f64; 2]) -> BasinExplorer {
     model
 }
 
-/// The edges of both errors, from the sweep.
+/// The edges of both errors, computed.
 fn edges() -> [f64; 2] {
     let model = swept([0.0, 0.0]);
     ["edge_p2p_deg", "edge_p2l_deg"].map(|id| fact(&model, id))
@@ -59,7 +59,7 @@ fn a_press_on_a_covered_map_marks_its_edge_and_a_drag_moves_it() {
         assert_eq!(model.values().number(id), 180.0);
     }
     assert_eq!(model.outcome().verdict, "both edges are marked");
-    // The start is where it was: the press was a mark.
+    // The start did not move: the press was a mark.
     assert_eq!(model.values().number("heading"), 0.0);
     assert_eq!(model.values().number("variant"), 0.0);
 }
@@ -95,7 +95,7 @@ fn both_marks_are_compared_with_the_sweep_in_words() {
 }
 
 #[test]
-fn the_sweep_goes_piece_by_piece_and_begins_anew_with_another_tau() {
+fn the_sweep_runs_in_pieces_and_restarts_with_another_tau() {
     let mut model = asked();
     model.press("sweep").unwrap();
     assert_eq!(model.outcome().verdict, "the edge is swept");
@@ -116,7 +116,7 @@ fn the_sweep_goes_piece_by_piece_and_begins_anew_with_another_tau() {
 }
 
 #[test]
-fn without_the_question_nothing_is_marked_and_the_defaults_end_it() {
+fn without_the_question_there_are_no_marks_and_the_defaults_end_it() {
     let mut model = swept([30.0, 40.0]);
     model.press("defaults").unwrap();
     assert_eq!(model.values().number("edge"), 0.0);

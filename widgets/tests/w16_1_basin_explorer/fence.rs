@@ -1,4 +1,4 @@
-//! The picket fence: a minimum at each spacing, on the map as in the verdict.
+//! The picket fence: a minimum at each spacing, on the map and in the verdict.
 
 use crate::support::{fact, panel_of};
 use crate::w16_1_basin_explorer::common::{class_at, fill, with};
@@ -31,7 +31,7 @@ fn the_basin_map_has_a_band_at_each_spacing() {
 }
 
 #[test]
-fn one_post_off_fits_as_well_as_home() {
+fn one_post_off_fits_as_well_as_the_truth() {
     let at = |dx: f64| with(&[("scene", 1.0), ("heading", 0.0), ("dx", dx), ("dy", 0.0)]);
     let (home, off) = (at(0.1), at(0.4));
     assert_eq!(home.outcome().verdict, "right minimum");
@@ -42,13 +42,13 @@ fn one_post_off_fits_as_well_as_home() {
 }
 
 #[test]
-fn the_preset_sets_the_fence_and_defaults_lead_back_to_the_room() {
+fn the_preset_sets_the_fence_and_defaults_restore_the_room() {
     let mut model = BasinExplorer::default();
     let room = model.summary();
     model.press("fence").unwrap();
     assert_eq!(model.outcome().verdict, "one post off");
     assert!(model.summary().contains("one row of equal posts"));
-    // A map of the room is not kept for the fence.
+    // A map of the room is not reused for the fence.
     assert!(
         model
             .scene()

@@ -1,7 +1,7 @@
-//! The rules of the basin explorer, without a picture.
+//! The model of the basin explorer, without a picture.
 //!
-//! Figures: the reference system's basin runs (`tests/reference/basin.json`), which the core is
-//! tested against in full; here a few of them show that the widget asks the core the right thing.
+//! Reference values: the reference system's basin runs (`tests/reference/basin.json`). The core is tested
+//! against all of them; a few here show that the widget calls the core correctly.
 
 use crate::support::{fact, panel_of};
 use crate::w16_1_basin_explorer::common::{class_at, fill, with};
@@ -74,9 +74,9 @@ fn the_chapters_seed_is_the_default_one() {
 }
 
 #[test]
-fn what_is_grabbed_becomes_the_start_and_follows_the_pointer() {
+fn a_grabbed_source_follows_the_pointer_and_becomes_the_start() {
     let mut model = with(&[("iteration", 30.0)]);
-    // At the end of the default run the source lies on the target: its sensor near the truth.
+    // At the end of the default run the source is on the target: its sensor is near the truth.
     let at = [0.5, -0.35];
     let handle = model
         .grab(panel::SWEEPS, at, [0.05, 0.05])
@@ -88,7 +88,7 @@ fn what_is_grabbed_becomes_the_start_and_follows_the_pointer() {
         0.0,
         "the guess shows while it is dragged"
     );
-    // Offsets are kept to the centimetre, and the run had ended 7 mm from the truth.
+    // Offsets are rounded to the centimetre, and the run had ended 7 mm from the truth.
     assert!(
         (values.number("dx") - 0.4).abs() < 0.016,
         "{}",
@@ -169,7 +169,7 @@ fn a_press_on_a_basin_map_starts_there_with_that_variant() {
 }
 
 #[test]
-fn a_basin_map_says_what_a_run_from_that_spot_says() {
+fn a_basin_map_agrees_with_a_run_from_that_spot() {
     let mut model = with(&[("dy", 0.0)]);
     fill(&mut model);
     for (heading, dx) in [
@@ -251,11 +251,11 @@ fn a_picture_is_uploaded_again_only_when_it_changed() {
 }
 
 #[test]
-fn dragging_a_slider_keeps_the_place_on_the_timeline() {
+fn dragging_a_slider_keeps_the_position_on_the_timeline() {
     let mut model = with(&[("iteration", 4.0)]);
     model.set("heading", 50.0).unwrap();
     assert_eq!(model.values().number("iteration"), 4.0);
-    // Past the last iteration means the end, however long the run is.
+    // A position beyond the last iteration means the end, regardless of the length of the run.
     let model = with(&[("variant", 1.0), ("iteration", 30.0)]);
     let timeline = model.timeline().unwrap();
     assert!(timeline.last < model.values().number("iteration"));

@@ -1,4 +1,4 @@
-//! The widget as a reader meets it: through egui's accessibility tree and the pointer.
+//! The widget through egui's accessibility tree and the pointer.
 
 use egui::accesskit::Role;
 use egui::{Event, Modifiers, PointerButton, Pos2, pos2};

@@ -1,4 +1,4 @@
-//! What the widget says holds: its verdicts, its presets' promises, its words to notice.
+//! The widget's claims are right: its verdicts, its presets, its notes.
 
 use crate::support::{fact, panel_of};
 use crate::w16_1_basin_explorer::common::{class_at, fill, with};
@@ -8,7 +8,7 @@ use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
 use widgets::w16_1_basin_explorer::spec::SPEC;
 
 #[test]
-fn home_is_the_place_and_the_heading_and_the_sentence_says_which_one_is_missing() {
+fn success_requires_position_and_heading_and_the_sentence_names_the_wrong_one() {
     // basin.json: heading 35°, no offset: 0.116 m, but 25.3° off, stopped at 30 iterations.
     let model = with(&[("heading", 35.0), ("dx", 0.0), ("dy", 0.0)]);
     assert!(fact(&model, "error_m") < 0.12);
@@ -18,12 +18,12 @@ fn home_is_the_place_and_the_heading_and_the_sentence_says_which_one_is_missing(
     assert_eq!(fact(&model, "converged"), 0.0);
     let sentence = outcome.sentence;
     assert!(sentence.contains("stopped at the limit of 30 iterations"));
-    // Half of its start is left, and nothing says so but the fit.
+    // Half of its error remains, and only the fit shows it.
     assert!(
         sentence.contains("25.3° from the truth: rmse 0.344 m"),
         "{sentence}"
     );
-    // Within 3° it is home: from 32° it ends 2.0° off, from 33° 6.8°.
+    // Within 3° it counts as right: from 32° it ends 2.0° off, from 33° 6.8°.
     for (from, standing) in [(32.0, Standing::Good), (33.0, Standing::Bad)] {
         let model = with(&[("heading", from), ("dx", 0.0), ("dy", 0.0)]);
         assert_eq!(model.outcome().standing, standing, "{from}°");
@@ -37,7 +37,7 @@ fn it_opens_before_anything_is_solved() {
     assert!(!shows_the_end(&model));
 }
 
-/// The page prints these edges: the last whole degrees from which a start comes home.
+/// The page prints these edges: the last whole degrees from which a start converges to the truth.
 #[test]
 fn verdict_and_basin_map_agree_at_the_edges_of_the_right_basin() {
     let mut map = with(&[("dy", 0.0)]);
@@ -71,7 +71,7 @@ fn verdict_and_basin_map_agree_at_the_edges_of_the_right_basin() {
 }
 
 #[test]
-fn every_preset_does_what_its_button_says() {
+fn every_preset_does_what_its_button_claims() {
     for (id, verdict, standing) in [
         ("near", "right minimum", Standing::Good),
         ("quarter-turn", "quarter turn", Standing::Bad),
@@ -102,12 +102,12 @@ fn every_preset_does_what_its_button_says() {
             "{id} plays to the end"
         );
     }
-    // `mark-edge` plays nothing and has tests of its own.
+    // `mark-edge` does not play and has its own tests.
     assert_eq!(SPEC.presets.len(), 8, "a preset without a test");
 }
 
 #[test]
-fn the_words_to_notice_hold() {
+fn the_claims_to_notice_are_right() {
     let rmse = |heading: f64, variant: f64| {
         let model = with(&[
             ("heading", heading),
@@ -130,7 +130,7 @@ fn the_words_to_notice_hold() {
     );
 }
 
-/// Whether the map shows the cloud where the run will end.
+/// Whether the map shows the final cloud of the run.
 fn shows_the_end(model: &BasinExplorer) -> bool {
     let sweeps = panel_of(model, panel::SWEEPS);
     sweeps.layers.iter().any(|layer| {
@@ -147,7 +147,7 @@ fn shows_the_end(model: &BasinExplorer) -> bool {
 }
 
 #[test]
-fn moving_the_start_shows_where_it_leads_and_playing_hides_it_again() {
+fn moving_the_start_shows_its_result_and_playing_hides_it_again() {
     for (id, value) in [("heading", 60.0), ("dx", -0.3), ("dy", 0.2)] {
         let mut model = BasinExplorer::default();
         model.set(id, value).unwrap();
@@ -161,7 +161,7 @@ fn moving_the_start_shows_where_it_leads_and_playing_hides_it_again() {
     model.drag(held, [0.2, 0.1]);
     assert!(shows_the_end(&model));
     model.press("near").unwrap();
-    assert!(!shows_the_end(&model), "a preset asks anew");
+    assert!(!shows_the_end(&model), "a preset hides the end again");
 }
 
 #[test]
@@ -193,7 +193,7 @@ fn the_points_without_a_pair_are_marked() {
 }
 
 #[test]
-fn ways_of_other_starts_are_drawn_once_they_are_switched_on() {
+fn paths_from_other_starts_are_drawn_once_switched_on() {
     let lines = |model: &BasinExplorer| {
         let map = panel_of(model, panel::POINT);
         let is_way = |layer: &&Layer| {
@@ -245,7 +245,7 @@ fn iterations(model: &BasinExplorer) -> Vec<Vec<f64>> {
 }
 
 #[test]
-fn a_short_sighted_tau_leaves_most_points_without_a_pair() {
+fn a_short_tau_leaves_most_points_without_a_pair() {
     let mut model = BasinExplorer::default();
     model.press("short-sighted").unwrap();
     let rows = iterations(&model);

@@ -1,4 +1,4 @@
-//! The widget driven as a reader drives it: through egui's accessibility tree, without a GPU.
+//! The widget through egui's accessibility tree, without a GPU.
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -44,7 +44,7 @@ fn a_key_on_the_noise_slider_drives_another_lap_and_keeps_the_time() {
 }
 
 #[test]
-fn a_value_between_two_steps_stays_until_somebody_moves_it() {
+fn a_value_between_two_steps_stays_until_it_is_moved() {
     let mut harness = harness(700.0);
     harness
         .state_mut()
@@ -84,7 +84,7 @@ fn the_buttons_of_the_loop_go_before_at_and_after_it() {
 }
 
 #[test]
-fn the_switch_takes_the_loops_away() {
+fn the_switch_removes_the_loops() {
     let mut harness = harness(700.0);
     let switch = harness.get_by_role_and_label(Role::CheckBox, "loop closure");
     switch.click();

@@ -1,4 +1,4 @@
-//! What the widget claims, asked of its model without a picture.
+//! The widget's claims, tested on its model without a picture.
 
 use kit::model::{Activity, Model, Motion, Standing, apply_preset};
 use kit::scene::{Layer, Raster, Tone};
@@ -116,7 +116,7 @@ fn across_the_corridor_both_balls_settle_on_the_wrong_wall() {
 }
 
 #[test]
-fn a_wider_ndt_cell_brings_home_a_ball_that_the_usual_cell_loses() {
+fn a_wider_ndt_cell_brings_a_ball_to_the_truth_that_the_default_cell_loses() {
     let mut model = preset("wide-hill");
     assert_eq!(model.outcome().verdict, "ICP sticks");
     let drop_m = 0.7_f64.hypot(0.7);
@@ -135,7 +135,7 @@ fn with_the_widest_tau_no_point_is_without_a_pair() {
             Layer::Points { points, tone, .. } if *tone == Tone::Prior => Some(points.len()),
             _ => None,
         });
-    // Those that stay, and those that are about to change.
+    // Unchanging pairs, and those that are about to change.
     let pairs =
         segments(&model, "sweep", Tone::Ink, 0.75) + segments(&model, "sweep", Tone::Ink, 2.5);
     assert_eq!(pairs, points.unwrap());
@@ -167,10 +167,10 @@ fn a_slices_title_names_the_row_that_it_shows() {
 }
 
 #[test]
-fn a_wide_tau_brings_home_what_ndt_loses() {
+fn a_wide_tau_brings_a_ball_to_the_truth_that_ndt_loses() {
     let mut model = preset("wide-tau");
     assert_eq!(model.outcome().verdict, "NDT sticks");
-    // With the chapter's τ the same drop sticks on ICP as well.
+    // With the chapter's τ the same drop gets stuck on ICP, too.
     model.set("tau", 0.6).unwrap();
     assert_eq!(model.outcome().verdict, "both stick");
 }
@@ -184,7 +184,7 @@ fn a_turned_sweep_has_no_shift_without_cost() {
     assert!(fact(&turned, "ndt_lowest_m") > 0.3);
 }
 
-/// Lowest ICP cost of the map, from the table that is given out as CSV.
+/// Lowest ICP cost of the map, from the exported table.
 fn raster_low(model: &dyn Model) -> f64 {
     let tables = model.tables();
     let maps = tables.iter().find(|table| table.id == "maps").unwrap();
@@ -193,7 +193,7 @@ fn raster_low(model: &dyn Model) -> f64 {
 }
 
 #[test]
-fn a_parameter_recomputes_what_depends_on_it_and_nothing_else() {
+fn a_parameter_recomputes_only_what_depends_on_it() {
     let revisions = |model: &dyn Model| ["icp", "ndt"].map(|id| raster(model, id).revision);
     for (id, value, changes) in [
         ("probe-x", -0.3, [false, false]),
@@ -264,7 +264,7 @@ fn a_dropped_ball_plays_to_its_rest_and_stops() {
     }
     let timeline = model.timeline().unwrap();
     assert!(!timeline.playing);
-    // Past the last step means the end, here as after the next drag of the cross hair.
+    // A position beyond the last step means the end, here and after the next drag of the cross hair.
     assert!(model.values().number("t") >= timeline.last);
     model.press("reset").unwrap();
     model.press("step").unwrap();
@@ -364,7 +364,7 @@ fn the_pointer_over_one_map_reads_both() {
             .all(|title| title.ends_with("at the cross hair"))
     );
     model.hover("icp", Some([0.0, 0.0]));
-    // The sweep lies on its own points: no cost; the score is the peak of the reference grid.
+    // The sweep is on its own points: zero cost; the score is the peak of the reference grid.
     assert_eq!(
         titles(&model),
         [

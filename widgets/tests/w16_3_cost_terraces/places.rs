@@ -1,4 +1,4 @@
-//! What stands beside the maps: partners at a ridge, bells, slices, and the rests of many sweeps.
+//! The panels beside the maps: partners at a ridge, Gaussians, slices, and the results of many sweeps.
 
 use kit::model::{Activity, Model, Motion, apply_preset};
 use kit::scene::{Layer, Tone};
@@ -21,7 +21,7 @@ fn preset(id: &str) -> CostTerraces {
     model
 }
 
-/// Cells of the ICP map that lie below all of their neighbours along the row and the column.
+/// Cells of the ICP map that are lower than all of their neighbours along the row and the column.
 fn hollows(model: &dyn Model) -> usize {
     let tables = model.tables();
     let maps = tables.iter().find(|table| table.id == "maps").unwrap();
@@ -53,7 +53,7 @@ fn the_picture_of_the_bells_shows_bells_in_every_preset() {
             Layer::Ellipse { center, .. } => is_inside(*center),
             _ => false,
         });
-        // Two ellipses a bell.
+        // Two ellipses per Gaussian.
         assert!(shown.count() >= 4, "{}", spec.id);
     }
 }
@@ -72,7 +72,7 @@ fn it_opens_on_terraces_where_icps_ball_sticks() {
     assert!(panels.contains(&"sweep") && panels.contains(&"bells"));
 }
 
-/// Lines from a point to its next partner, and the points that light up.
+/// Lines from a point to its next partner, and the highlighted points.
 fn lit(model: &dyn Model) -> (usize, usize) {
     let layers = panel(model, "sweep").layers;
     let lines = layers.iter().filter_map(|layer| match layer {
@@ -132,7 +132,7 @@ fn bells_m(model: &dyn Model) -> Vec<f64> {
         Layer::Ellipse { half_axes, .. } => Some(half_axes[0]),
         _ => None,
     });
-    // Each bell has the ellipse of two deviations below that of one.
+    // Each Gaussian has the ellipse of two deviations below that of one.
     ellipses
         .skip(1)
         .step_by(2)
@@ -156,7 +156,7 @@ fn the_bells_follow_the_cell_slider() {
         assert_eq!(bells.len() as f64, fact(&model, "bells"));
         let title = panel(&model, "bells").title;
         assert!(title.contains(&format!("{cell_m:.2} m")), "{title}");
-        // Points spread evenly over a cell deviate by its width over the root of 12; few of them by
+        // Points spread evenly over a cell deviate by its width over the root of 12; few points may deviate
         // more.
         let length_m = median(bells);
         let longest_m = cell_m / 2.0;
@@ -170,7 +170,7 @@ fn the_bells_follow_the_cell_slider() {
 }
 
 #[test]
-fn along_the_corridor_the_answer_is_unknown() {
+fn along_the_corridor_the_pose_is_unconstrained() {
     let cost = |x: f64, y: f64| {
         let at = [("scene", 1.0), ("tau", 0.6), ("probe-x", x), ("probe-y", y)];
         fact(&with(&at), "icp_cost_m2")
@@ -187,11 +187,11 @@ fn along_the_corridor_the_answer_is_unknown() {
         fact(&corridor, "icp_lowest_m") > 0.3,
         "the lowest cell is anywhere"
     );
-    // Dropped 0.6 m along, both balls stay about there.
+    // Dropped 0.6 m along the corridor, both balls stay near there.
     for rest in ["icp_rest_m", "ndt_rest_m"] {
         assert!(fact(&corridor, rest) > 0.4, "{rest}");
     }
-    // On its own points the sweep knows its place.
+    // On its own points the sweep has a definite minimum.
     assert_eq!(fact(&preset("own-corridor"), "icp_lowest_m"), 0.0);
 }
 
@@ -204,7 +204,7 @@ fn a_hundred_sweeps_rest_round_in_the_room_and_in_a_streak_in_the_corridor() {
         ["rests_std_x_cm", "rests_std_y_cm"].map(|axis| fact(&model, axis))
     };
     let [x, y] = spread("drop-room");
-    // As wide as the information says, 0.11 cm, within a factor of two.
+    // As wide as the information predicts, 0.11 cm, within a factor of two.
     for deviation in [x, y] {
         assert!((0.05..0.22).contains(&deviation), "room {x} {y}");
     }
@@ -212,7 +212,7 @@ fn a_hundred_sweeps_rest_round_in_the_room_and_in_a_streak_in_the_corridor() {
     assert!(x > 10.0 && y < 0.6, "corridor {x} {y}");
 }
 
-/// Where the dropped sweeps are on the map.
+/// Positions of the dropped sweeps on the map.
 fn flying(model: &dyn Model) -> Vec<[f64; 2]> {
     let layers = panel(model, "icp").layers;
     let dots = layers.iter().rev().find_map(|layer| match layer {
@@ -252,7 +252,7 @@ fn drop_100_works_in_pieces_and_its_points_fly_to_rest() {
         rests.iter().all(|at| at[1].abs() < 0.03),
         "they rest between the walls"
     );
-    // With reduced motion they are there at once.
+    // With reduced motion they are at their results at once.
     let mut still = with(&[("scene", 1.0)]);
     still.set_motion(Motion::Reduced);
     still.press("drop-100").unwrap();
@@ -262,7 +262,7 @@ fn drop_100_works_in_pieces_and_its_points_fly_to_rest() {
 }
 
 #[test]
-fn the_newest_scene_is_the_one_whose_sweeps_are_dropped() {
+fn sweeps_of_the_newest_scene_are_dropped() {
     let mut model = CostTerraces::default();
     model.set("drops", 100.0).unwrap();
     for _ in 0..40 {
@@ -275,7 +275,7 @@ fn the_newest_scene_is_the_one_whose_sweeps_are_dropped() {
     let mut at_once = at_once;
     at_once.finish_work();
     assert_eq!(model.outcome(), at_once.outcome());
-    // Fewer are the first ones, and a slider of another matter drops none anew.
+    // A smaller number shows the first ones, and an unrelated slider restarts none.
     model.set("drops", 7.0).unwrap();
     model.set("tau", 0.4).unwrap();
     assert_eq!(fact(&model, "rests"), 7.0);
@@ -309,23 +309,23 @@ fn the_corridors_rows_have_rank_two_and_leave_an_arrow_along_it() {
         .collect();
     assert_eq!(ranks[..3], [0.0, 1.0, 2.0]);
     assert!(ranks[2..].iter().all(|&rank| rank == 2.0));
-    // 1e-12: an eigenvector whose other entries are nothing.
+    // 1e-12: an eigenvector whose other entries are zero.
     assert!((fact(&model, "null_x") - 1.0).abs() < 1e-12);
     let arrow = |model: &dyn Model| drawn(model, Tone::Prior);
     let [[from, to], ..] = arrow(&model)[..] else {
         panic!("no arrow");
     };
     assert!(to[0] > from[0] + 1.0 && (to[1] - from[1]).abs() < 1e-9);
-    // A room holds every direction.
+    // A room constrains every direction.
     model.set("scene", 0.0).unwrap();
     assert_eq!(fact(&model, "rows_rank"), 3.0);
-    // The end of the slider means all.
+    // The end of the slider selects all.
     assert!(fact(&model, "rows") > 120.0);
     assert!(arrow(&model).is_empty());
 }
 
 #[test]
-fn a_row_of_odometry_restores_the_rank_and_says_by_how_much() {
+fn a_row_of_odometry_restores_the_rank_with_its_deviation() {
     for sigma_m in [0.01, 0.05, 0.5] {
         let model = with(&[("scene", 1.0), ("odometry", sigma_m)]);
         assert_eq!(fact(&model, "rows_rank"), 3.0);

@@ -1,4 +1,4 @@
-//! The widget driven as a reader drives it, through egui's accessibility tree and its pointer.
+//! The widget through egui's accessibility tree and its pointer.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2};

@@ -1,4 +1,4 @@
-//! The control room driven headless; figures from `tests/reference/lap.json`.
+//! The control room without a display; reference values from `tests/reference/lap.json`.
 
 use kit::model::{Activity, Model as _, Standing};
 use kit::scene::{Layer, Panel, Tone};
@@ -130,7 +130,7 @@ fn the_line_at_the_moment_shown_can_be_dragged_in_every_plot_over_time() {
         let grabbed = room.grab(panel.id, [61.0, 0.1], [3.0, 0.1]);
         assert_eq!(grabbed.is_some(), panel.x.label == "tick", "{}", panel.id);
     }
-    // Grabbed one tick beside the line: it does not jump by that tick.
+    // Grabbed one tick off the line: it does not jump by that tick.
     let line = room.grab("tau", [61.0, 0.1], [3.0, 0.1]).unwrap();
     for (to, tick) in [(71.0, 70.0), (-40.0, 0.0), (500.0, 129.0)] {
         room.drag(line, [to, 0.0]);
@@ -166,7 +166,7 @@ fn changing_the_run_keeps_the_moment() {
 }
 
 #[test]
-fn a_setting_runs_in_pieces_of_a_tick_and_the_old_run_stays_until_the_new_one_is_whole() {
+fn a_setting_runs_in_pieces_of_a_tick_and_the_old_run_stays_until_the_new_one_is_finished() {
     let mut room = ControlRoom::default();
     set(&mut room, "t", 92.0);
     let before = room.outcome();
@@ -180,7 +180,7 @@ fn a_setting_runs_in_pieces_of_a_tick_and_the_old_run_stays_until_the_new_one_is
             assert_eq!(room.outcome(), before, "piece {pieces}");
         }
     }
-    // One lap and its front end alone, of 129 ticks each, and two ends: of three values one is run.
+    // One lap and its front end alone, of 129 ticks each, and two ends: of three values only one is run.
     assert!((129..=260).contains(&pieces), "{pieces} pieces");
     let mut at_once = ControlRoom::default();
     set(&mut at_once, "t", 92.0);
@@ -190,7 +190,7 @@ fn a_setting_runs_in_pieces_of_a_tick_and_the_old_run_stays_until_the_new_one_is
 }
 
 #[test]
-fn the_next_event_is_one_of_the_run_that_is_asked_for() {
+fn the_next_event_belongs_to_the_requested_run() {
     let mut room = ControlRoom::default();
     set(&mut room, "t", 60.0);
     room.set("seed", 6.0).unwrap();
@@ -212,7 +212,7 @@ fn the_transport_steps_resets_and_restores() {
         press(&mut room, button);
         assert_eq!(room.values().number("t"), tick, "{button}");
     }
-    // At the default tick the map cannot disagree with itself yet: NaN, which equals nothing.
+    // At the default tick the map has no disagreement yet: NaN, which does not equal itself.
     let mut fresh = ControlRoom::default();
     for widget in [&mut room, &mut fresh] {
         widget.set("t", 87.0).unwrap();
@@ -236,7 +236,7 @@ fn every_lap_ends_where_the_timeline_does() {
     }
 }
 
-/// The marks of the lanes: those that passed, and those that were refused.
+/// The marks of the lanes: passed and rejected ones.
 fn lane_marks(room: &ControlRoom) -> [Vec<[f64; 2]>; 2] {
     let scene = room.scene();
     let panel = scene.panels.iter().find(|panel| panel.id == "lanes");
@@ -251,13 +251,13 @@ fn lane_marks(room: &ControlRoom) -> [Vec<[f64; 2]>; 2] {
 }
 
 #[test]
-fn every_lane_has_a_mark_for_what_was_done_up_to_the_tick_shown() {
+fn every_lane_has_a_mark_for_each_execution_up_to_the_current_tick() {
     let mut room = ControlRoom::default();
     set(&mut room, "t", 92.0);
     let [passed, refused] = lane_marks(&room);
     let lane = |height: f64| passed.iter().filter(|mark| mark[1] == height).count();
-    // Predict and register at every tick; candidate, fit, gate, optimize and repaint at the first
-    // loop, in tick 92.
+    // Predict and register at every tick; candidate, fit, gate, optimize and repaint at the first loop, in
+    // tick 92.
     assert_eq!((lane(8.0), lane(7.0)), (92, 92));
     assert_eq!(
         lane(6.0) as f64,
@@ -268,7 +268,7 @@ fn every_lane_has_a_mark_for_what_was_done_up_to_the_tick_shown() {
         assert_eq!(lane(height), 1, "lane {height}");
     }
     assert!(refused.is_empty());
-    // Seed 6: at tick 90 a candidate passes the gate and not the fit.
+    // Seed 6: at tick 90 a candidate passes the gate and fails the fit.
     set(&mut room, "seed", 6.0);
     set(&mut room, "t", 90.0);
     let [passed, refused] = lane_marks(&room);
@@ -319,7 +319,7 @@ fn the_name_of_a_lane_stands_on_it_before_its_first_mark() {
     }
 }
 
-/// The marks of every lane, and a piece of what each says in the tick of the first loop.
+/// The marks of every lane, and a part of its data in the tick of the first loop.
 const SAID: [(&str, &str); 8] = [
     ("predict", "Predict: robot at ("),
     ("register", " pairs within τ = "),
@@ -335,7 +335,7 @@ const SAID: [(&str, &str); 8] = [
 ];
 
 #[test]
-fn every_mark_of_every_lane_says_its_data_when_it_is_pressed_or_chosen() {
+fn every_mark_of_every_lane_shows_its_data_when_selected() {
     let mut pressed = ControlRoom::default();
     set(&mut pressed, "t", 129.0);
     for (lane, (name, said)) in SAID.into_iter().enumerate() {
@@ -347,7 +347,7 @@ fn every_mark_of_every_lane_says_its_data_when_it_is_pressed_or_chosen() {
         assert_eq!(pressed.values().number("lane"), lane as f64, "{name}");
         let sentence = pressed.outcome().sentence;
         assert!(sentence.contains(said), "{name}: {sentence}");
-        // By key: the lane and the tick are controls.
+        // By keyboard: the lane and the tick are controls.
         let mut chosen = ControlRoom::default();
         set(&mut chosen, "lane", lane as f64);
         set(&mut chosen, "t", 92.0);
@@ -362,7 +362,7 @@ fn every_mark_of_every_lane_says_its_data_when_it_is_pressed_or_chosen() {
         assert_eq!(row[0], name);
         assert!(sentence.contains(&row[1]), "{row:?}");
     }
-    // Where a lane had nothing to do it says so, and no ring stands there.
+    // A lane without its operation in the tick reports that, and has no ring.
     let rings = |room: &ControlRoom| {
         let scene = room.scene();
         let lanes = scene.panels.iter().find(|panel| panel.id == "lanes");
@@ -396,7 +396,7 @@ fn the_next_event_chooses_its_lane() {
 }
 
 #[test]
-fn plots_show_nothing_of_what_is_still_to_come() {
+fn plots_do_not_show_the_future() {
     let mut room = ControlRoom::default();
     let lines = |room: &ControlRoom| {
         let panels = room.scene().panels.into_iter();
@@ -448,7 +448,7 @@ fn the_grid_has_a_legend_whose_areas_are_the_colours_of_its_cells() {
             assert_eq!(tone(theme, entry.tone), cell(theme, of), "{label}");
         }
     }
-    // Occupied is ink and free is paper, on light and on dark.
+    // Occupied is ink and free is paper, in both themes.
     for theme in [Theme::Light, Theme::Dark] {
         let [full, free] = [1.0, 0.0].map(|share| cell(theme, Cell::Occupancy(share)));
         assert!(contrast(full, free) > 10.0);

@@ -1,4 +1,4 @@
-//! What the control room's notes and presets promise, against the runs that they set.
+//! The claims of the control room's notes and presets, against the runs of the presets.
 
 use kit::model::{Activity, Model as _, Standing};
 use widgets::w16_4_control_room::model::ControlRoom;
@@ -13,7 +13,7 @@ fn after(preset: &str) -> ControlRoom {
     room
 }
 
-/// The help of a preset says so.
+/// The help of a preset makes this claim.
 fn assert_promised(preset: &str, words: &str) {
     let help = SPEC.presets.iter().find(|p| p.id == preset).unwrap().help;
     assert!(help.contains(words), "`{help}` does not say `{words}`");
@@ -69,7 +69,7 @@ fn four_times_the_noise_opens_the_threshold() {
 }
 
 #[test]
-fn a_loop_that_passes_every_test_may_be_wrong_and_is_called_so() {
+fn a_wrong_loop_that_passes_every_test_is_reported_as_wrong() {
     let room = after("wrong-loop");
     let outcome = room.outcome();
     assert_eq!(outcome.standing, Standing::Bad);
@@ -122,7 +122,7 @@ fn the_back_end_works_only_at_keyframes() {
         let keyframe = |other: &Vec<String>| other[0] == row[0] && other[2].starts_with("keyframe");
         assert!(rows.iter().any(keyframe), "{row:?}");
     }
-    // "Next event" goes through the log, and round at its end.
+    // "Next event" steps through the log, and starts over at its end.
     let ticks: Vec<f64> = rows.iter().map(|row| row[0].parse().unwrap()).collect();
     room.set("t", 0.0).unwrap();
     let mut expected = ticks.clone();

@@ -1,4 +1,4 @@
-//! The toy without its picture; figures from the chapter's worked example.
+//! The toy without its picture; reference values from the chapter's worked example.
 
 use kit::model::{Activity, Model, Standing};
 use widgets::w16_5_pose_graph_toy::model::{PoseGraphToy, panel};
@@ -48,7 +48,7 @@ fn a_stiff_loop_gives_way_less() {
 }
 
 #[test]
-fn without_a_pin_the_graph_comes_to_the_same_cost_elsewhere() {
+fn without_a_fixed_pose_the_graph_has_the_same_cost_elsewhere() {
     let pinned = with(&[("x3", 1.0), ("steps", 20.0)]);
     let free = with(&[("x3", 1.0), ("pinned", 0.0), ("steps", 20.0)]);
     for toy in [&pinned, &free] {
@@ -59,13 +59,13 @@ fn without_a_pin_the_graph_comes_to_the_same_cost_elsewhere() {
 }
 
 #[test]
-fn a_dragged_pose_is_the_new_start_and_the_others_stay_where_they_are_shown() {
+fn a_dragged_pose_is_the_new_start_and_the_others_keep_theirs() {
     let mut toy = PoseGraphToy::default();
     toy.press("step").unwrap();
     let handle = toy.grab(panel::GRAPH, [2.4, 0.0], [0.1, 0.1]).unwrap();
     toy.drag(handle, [2.4, 1.0]);
     assert_eq!(toy.values().number("steps"), 0.0);
-    // Shown at 1.2 and 2.4, odometry has them at 1 and 2.
+    // Shown at 1.2 and 2.4; by odometry they are at 1 and 2.
     for (id, value) in [("x2", 0.2), ("x3", 0.4), ("y3", 1.0), ("y2", 0.0)] {
         assert!((toy.values().number(id) - value).abs() < 1e-9, "{id}");
     }
@@ -76,7 +76,7 @@ fn a_dragged_pose_is_the_new_start_and_the_others_stay_where_they_are_shown() {
 }
 
 #[test]
-fn a_drag_to_nowhere_moves_nothing_and_one_far_off_stays_in_reach() {
+fn a_drag_to_nan_moves_no_pose_and_a_far_one_is_limited() {
     let mut toy = PoseGraphToy::default();
     let handle = toy.grab(panel::GRAPH, [1.0, 0.0], [0.1, 0.1]).unwrap();
     let before = toy.values().clone();
@@ -89,7 +89,7 @@ fn a_drag_to_nowhere_moves_nothing_and_one_far_off_stays_in_reach() {
 }
 
 #[test]
-fn every_preset_does_what_its_button_says() {
+fn every_preset_does_what_its_button_claims() {
     for (id, rest) in [
         ("three-poses", "0.12"),
         ("unpinned", "0.12"),

@@ -1,4 +1,4 @@
-//! The whole window without its picture; figures from the room of the chapter's basins.
+//! The whole window without its picture; reference values from the room of the chapter's basins.
 
 use kit::model::{Activity, Model, Standing};
 use widgets::w16_6_whole_window::model::{WholeWindow, panel};
@@ -16,7 +16,7 @@ fn with(values: &[(&str, f64)]) -> WholeWindow {
 }
 
 #[test]
-fn it_finds_home_from_where_icp_ends_in_the_quarter_turn() {
+fn it_finds_the_truth_where_icp_ends_in_the_quarter_turn() {
     let window = with(&[]);
     assert_eq!(window.outcome().standing, Standing::Good);
     assert!(fact(&window, "error_m") < 0.12);
@@ -34,7 +34,7 @@ fn it_finds_home_from_where_icp_ends_in_the_quarter_turn() {
 }
 
 #[test]
-fn it_finds_home_from_every_heading() {
+fn it_finds_the_truth_from_every_heading() {
     for heading in [-180.0, -135.0, -60.0, 0.0, 45.0, 120.0, 180.0] {
         let window = with(&[("heading", heading)]);
         assert_eq!(window.outcome().standing, Standing::Good, "{heading}");
@@ -91,9 +91,9 @@ fn playing_goes_through_the_search_and_the_steps_of_icp() {
 }
 
 #[test]
-fn a_dragged_start_is_searched_anew_and_lies_where_it_was_put() {
+fn a_dragged_start_is_searched_again_at_its_new_pose() {
     let mut window = with(&[("progress", 500.0)]);
-    // The truth is at (0.5, −0.35) m, the start on it.
+    // The truth is at (0.5, −0.35) m, and so is the start.
     let handle = window
         .grab(panel::PLACES, [0.5, -0.35], [0.05, 0.05])
         .unwrap();
@@ -110,7 +110,7 @@ fn a_dragged_start_is_searched_anew_and_lies_where_it_was_put() {
 }
 
 #[test]
-fn every_preset_does_what_its_button_says() {
+fn every_preset_does_what_its_button_claims() {
     for (id, verdict, standing) in [
         ("quarter-turn", "the search finds home", Standing::Good),
         ("upside-down", "the search finds home", Standing::Good),

@@ -5,7 +5,7 @@ use egui_kittest::kittest::Queryable as _;
 use crate::support::{drawn, value};
 
 #[test]
-fn a_press_takes_up_one_box() {
+fn a_press_expands_one_box() {
     for width in [390.0, 1100.0] {
         let mut harness = drawn("w16.6", width, |shell| assert!(shell.finish_work()));
         harness.get_by_label("One box").click();

@@ -1,4 +1,4 @@
-//! The comparison without its picture; figures from `slam2d places`.
+//! The comparison without its picture; reference values from `slam2d places`.
 
 use ch16_lab::lap::{Choice, LapConfig, LapDetector, LapMatcher};
 use ch16_lab::places::{place_curves, place_pairs};
@@ -45,7 +45,7 @@ fn the_options_are_the_detectors_of_the_core_in_their_order() {
 }
 
 #[test]
-fn a_looser_threshold_finds_more_and_is_wrong_more_often() {
+fn a_looser_threshold_has_more_recall_and_less_precision() {
     let mut been = with(&[("called", 0.0)]);
     assert_eq!(been.outcome().verdict, "no pair is called the same");
     let (mut found, mut first) = (0.0, f64::NAN);
@@ -122,8 +122,8 @@ fn playing_drives_the_lap_from_its_start_to_its_end() {
 }
 
 #[test]
-fn in_the_corridor_histograms_look_more_alike_than_contexts() {
-    // Of all graded pairs, those that are other places: the histogram takes more of them for one.
+fn in_the_corridor_histograms_are_more_similar_than_contexts() {
+    // Among graded pairs of different places, the histogram reports more as the same.
     let been = with(&[("called", 30.0)]);
     assert!(fact(&been, "context_area") > fact(&been, "histogram_area"));
     assert!(fact(&been, "nearby_area") > fact(&been, "histogram_area"));
@@ -131,7 +131,7 @@ fn in_the_corridor_histograms_look_more_alike_than_contexts() {
 
 #[test]
 fn a_turned_scan_shifts_its_sectors_by_the_turn() {
-    // The robot passes the corridor both ways: the way back is turned by half a turn.
+    // The robot passes the corridor in both directions, so the return path is turned by half a turn.
     let been = with(&[]);
     let turn = fact(&been, "pair_turn_deg");
     assert!(turn.is_finite());

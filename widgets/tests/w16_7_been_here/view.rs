@@ -1,4 +1,4 @@
-//! The places driven through the accessibility tree, without a GPU.
+//! Place recognition driven through the accessibility tree, without a GPU.
 
 use egui_kittest::kittest::Queryable as _;
 

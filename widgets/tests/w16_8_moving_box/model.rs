@@ -19,13 +19,13 @@ fn errors(moving: &MovingBox) -> [f64; 3] {
 }
 
 #[test]
-fn without_a_box_all_three_are_home() {
+fn without_a_box_all_three_succeed() {
     let moving = with(&[("share", 0.0)]);
     assert_eq!(moving.outcome().verdict, "all three are home");
 }
 
 #[test]
-fn a_fifth_of_the_points_pulls_plain_and_hardly_the_others() {
+fn a_fifth_of_the_points_biases_plain_and_hardly_the_others() {
     let [plain, trimmed, huber] = errors(&with(&[("share", 20.0)]));
     assert!(trimmed < 0.5 * plain && huber < 0.5 * plain);
     assert!(plain > 0.02, "{plain}");
@@ -39,7 +39,7 @@ fn a_short_tau_does_the_work_of_trimming() {
 }
 
 #[test]
-fn a_box_that_did_not_move_pulls_nobody() {
+fn a_box_that_did_not_move_causes_no_bias() {
     for error in errors(&with(&[("share", 40.0), ("moved", 0.0)])) {
         assert!(error < 0.02, "{error}");
     }
@@ -59,7 +59,7 @@ fn the_curves_fill_in_seed_by_seed_and_end() {
     let scene = moving.scene();
     let bias = scene.panels.iter().find(|p| p.id == panel::BIAS).unwrap();
     assert!(bias.title.ends_with("over 100 seeds"), "{}", bias.title);
-    // Neither the share nor the seed above starts them over; τ does.
+    // Neither the share nor the seed above restarts them; τ does.
     moving.set("share", 45.0).unwrap();
     moving.set("seed", 7.0).unwrap();
     assert_eq!(moving.work(), Activity::Idle);
@@ -82,7 +82,7 @@ fn the_share_is_dragged_along_the_curves() {
 }
 
 #[test]
-fn every_preset_does_what_its_button_says() {
+fn every_preset_does_what_its_button_claims() {
     let after = |id: &str| {
         let mut moving = MovingBox::default();
         moving.press(id).unwrap();

@@ -16,7 +16,7 @@ fn a_slider_takes_the_share_of_the_box() {
     press_key(&mut harness, "points on the box", Key::ArrowRight);
     assert_eq!(value(&harness, "share"), 21.0);
     assert!(off_m(&harness) != before, "{before}");
-    // Without a box, and the verdict on screen follows.
+    // Without a box; the verdict on screen follows.
     for _ in 0..21 {
         press_key(&mut harness, "points on the box", Key::ArrowLeft);
     }

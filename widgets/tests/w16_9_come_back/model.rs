@@ -1,4 +1,4 @@
-//! The morning without its picture.
+//! The localization without its picture.
 
 use ch16_lab::lap::{BuiltInWorld, Choice};
 use kit::model::{Activity, Model, Motion, Standing};
@@ -8,7 +8,7 @@ use widgets::w16_9_come_back::spec::SPEC;
 
 use crate::support::fact;
 
-/// The outcome as text: a number that is none is none again.
+/// The outcome as text, in which equal NaN are equal.
 fn told(back: &ComeBack) -> String {
     format!("{:?}", back.outcome())
 }
@@ -21,26 +21,26 @@ fn pressed(id: &str) -> ComeBack {
 }
 
 #[test]
-fn where_the_map_was_driven_one_scan_is_enough_and_the_others_follow() {
+fn on_the_driven_path_one_scan_is_enough_and_the_others_are_tracked() {
     let back = pressed("corridor");
     assert_eq!(back.outcome().verdict, "found");
     assert_eq!(fact(&back, "scans"), 1.0);
-    // 0.3: the map of one lap is 0.1 m off itself.
+    // 0.3: the map of one lap has an error of 0.1 m.
     assert!(fact(&back, "found_error_m") < 0.3);
     assert!(fact(&back, "end_error_m") < 0.3);
-    // The search rules out by bounds.
+    // The search rejects poses by bounds.
     assert!(fact(&back, "window") > 100.0 * fact(&back, "scored"));
 }
 
 #[test]
-fn in_a_room_that_the_map_never_saw_no_pose_is_told_before_the_door() {
+fn in_an_unmapped_room_no_pose_is_reported_before_the_door() {
     let back = pressed("room");
     assert!(fact(&back, "scans") > 10.0, "{:?}", back.outcome());
     assert_eq!(back.outcome().standing, Standing::Good);
 }
 
 #[test]
-fn in_one_of_two_rooms_alike_no_pose_is_told_from_within() {
+fn in_one_of_two_equal_rooms_no_pose_is_reported() {
     let back = pressed("twins");
     let scans = fact(&back, "scans");
     assert!(scans.is_nan() || scans > 5.0, "{:?}", back.outcome());
@@ -48,7 +48,7 @@ fn in_one_of_two_rooms_alike_no_pose_is_told_from_within() {
 }
 
 #[test]
-fn another_lap_forgets_the_wardrobe_where_it_stood() {
+fn another_lap_removes_the_wardrobe_from_its_old_position() {
     let mut back = ComeBack::default();
     back.finish_work();
     assert!(fact(&back, "wardrobe_points") > 20.0);
@@ -77,7 +77,7 @@ fn everything_is_computed_in_pieces() {
     while pieces.work().goes_on() {
         count += 1;
     }
-    // The ticks of the lap, driven and mapped, and the morning's.
+    // The ticks of the lap, driven and mapped, and those of the run.
     assert!(count > 300, "{count} pieces");
     assert_eq!(pieces.finish_work(), Activity::Idle);
     let mut whole = ComeBack::default();
@@ -106,7 +106,7 @@ fn the_robot_is_put_and_turned_on_the_map_and_the_map_stays() {
     while back.work().goes_on() {
         pieces += 1;
     }
-    // No lap is driven again.
+    // The lap is not driven again.
     assert!(pieces > 40);
     assert_eq!(fact(&back, "keyframes"), keyframes);
     for nowhere in [[f64::NAN, 3.0], [f64::INFINITY, 0.0]] {

@@ -1,4 +1,4 @@
-//! The morning driven through the accessibility tree, without a GPU.
+//! The localization driven through the accessibility tree, without a GPU.
 
 use egui_kittest::kittest::Queryable as _;
 

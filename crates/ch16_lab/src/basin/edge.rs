@@ -1,16 +1,16 @@
-//! The edge of the right basin along pure rotations: how far a first guess may be turned.
+//! The edge of the basin of convergence along pure rotations: the largest heading error of a guess.
 
 use super::{BasinScene, BasinStart, Minimum};
 use ch16_slam2d::icp::{IcpConfig, IcpWorkspace};
 
-/// Beyond half a turn there is nothing farther off.
+/// Largest heading error: half a turn.
 const HALF_TURN_DEG: u32 = 180;
 
-/// A search for the edge, outwards from the truth by whole degrees, a degree a step.
+/// Searches for the edge from the truth outwards, in steps of one degree.
 ///
-/// The edge is the largest heading error from which, and from all smaller ones, registration comes
-/// home, to either side; the guess is at the right place. What lies beyond a first failure is another
-/// island and does not count.
+/// The edge is the largest heading error for which registration converges to the truth from it and from all
+/// smaller errors, on both sides. The position of the guess is the true one. Starts beyond the first failure
+/// belong to another basin and do not count.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EdgeSearch {
     config: IcpConfig,
@@ -19,7 +19,7 @@ pub struct EdgeSearch {
 }
 
 impl EdgeSearch {
-    /// A search with these settings of the registrations.
+    /// Creates a search with these registration settings.
     #[must_use]
     pub fn new(config: IcpConfig) -> Self {
         Self {
@@ -29,13 +29,13 @@ impl EdgeSearch {
         }
     }
 
-    /// The settings of its registrations.
+    /// The registration settings.
     #[must_use]
     pub fn config(&self) -> &IcpConfig {
         &self.config
     }
 
-    /// Registers from the next heading, to both sides. Returns whether the edge is found.
+    /// Registers from the next heading, on both sides. Returns whether the edge is found.
     pub fn step(&mut self, scene: &BasinScene, workspace: &mut IcpWorkspace) -> bool {
         if self.is_done {
             return true;
@@ -63,8 +63,8 @@ impl EdgeSearch {
         self.is_done
     }
 
-    /// The largest heading error so far from which it came home, °; none before the first, and none
-    /// where it does not even stay at the truth.
+    /// The largest heading error so far that converged to the truth, °; `None` before the first registration,
+    /// or if not even the truth converges.
     #[must_use]
     pub fn reached_deg(&self) -> Option<f64> {
         self.next_deg.checked_sub(1).map(f64::from)
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tau_that_pairs_nothing_has_no_edge_but_where_it_starts() {
+    fn a_tau_without_pairs_has_its_edge_at_the_truth() {
         assert!(edge(IcpVariant::PointToPoint, 1e-9).unwrap_or(0.0) <= 3.0);
     }
 }

@@ -1,19 +1,19 @@
-//! A row of equal posts, a picket fence: what fits once fits again after every spacing.
+//! A row of equal posts, a picket fence: a shift by one spacing fits as well as the truth.
 
 use pr_geom::{Point2, SE2};
 use pr_sim::{Bounds, Lidar, LidarConfig, Wall, World};
 
-/// From the middle of a post to that of the next, m.
+/// Distance between the centers of neighbouring posts, m.
 pub const FENCE_SPACING_M: f64 = 0.5;
 
 /// Side of a post, which is square, m.
 const POST_M: f64 = 0.12;
-/// How far in front of the target's sensor the fence stands, m.
+/// Distance from the target's sensor to the fence, m.
 const AHEAD_M: f64 = 1.2;
-/// Posts to either side of the middle one: more than a sweep sees, so that no end tells them apart.
+/// Posts on each side of the middle one: more than a sweep sees, so no end of the row is in view.
 const POSTS_ASIDE: i32 = 16;
-/// Farthest points that are kept of the target and of the source, m: a source that starts 1.5 m beside
-/// its place still stands over posts of the target, and no end of the row pulls it back.
+/// Largest range that is kept of the target and of the source, m. A source 1.5 m off its true pose still
+/// overlaps only posts of the target, so no end of the row attracts it.
 pub const KEPT_M: [f64; 2] = [4.4, 2.6];
 /// More beams than in the room: a post is narrow.
 const BEAMS: usize = 540;
@@ -40,9 +40,9 @@ pub fn world() -> World {
     World::new(bounds, walls)
 }
 
-/// Where the target's sensor stands, and the source's, `world_from_sensor`.
+/// Poses of the target's and of the source's sensor, `world_from_sensor`.
 pub fn sensors() -> [SE2; 2] {
-    // A third of a spacing apart: what the source sees is no shift of what the target saw.
+    // A third of a spacing apart: the source's points are not a shifted copy of the target's.
     [
         SE2::identity(),
         SE2::new(FENCE_SPACING_M / 3.0, -0.15, 0.12),

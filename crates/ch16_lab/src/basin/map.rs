@@ -1,4 +1,4 @@
-//! The basin map: a picture of starts, coloured by the minimum that each one reaches.
+//! The basin map: a grid of starts, coloured by the minimum that each one reaches.
 
 use super::{BasinScene, BasinStart, Minimum};
 use ch16_slam2d::icp::{IcpConfig, IcpWorkspace};
@@ -44,7 +44,7 @@ impl Default for BasinMapAxes {
 }
 
 impl BasinMapAxes {
-    /// The start in the middle of a cell. Row 0 is the most negative offset.
+    /// The start at the center of a cell. Row 0 is the most negative offset.
     #[must_use]
     pub fn start(&self, column: usize, row: usize) -> BasinStart {
         let along = |index: usize, count: usize, span: f64| {
@@ -66,7 +66,7 @@ impl BasinMapAxes {
         }
     }
 
-    /// Column and row, in fractions of a cell, where a start lies; it may lie outside.
+    /// Column and row of a start, in fractions of a cell; it may lie outside.
     #[must_use]
     pub fn position(&self, start: &BasinStart) -> (f64, f64) {
         let back = |value: f64, count: usize, span: f64| {
@@ -85,8 +85,8 @@ impl BasinMapAxes {
 
 /// A basin map that is filled a few cells at a time, coarse ones first.
 ///
-/// Every cell is a registration of its own; nothing is interpolated. Until a cell's turn comes,
-/// [`BasinMap::shown`] shows the coarser cell that covers it.
+/// Every cell is registered separately, without interpolation. Until a cell is computed, [`BasinMap::shown`]
+/// returns the coarser cell that covers it.
 #[derive(Clone, Debug)]
 pub struct BasinMap {
     axes: BasinMapAxes,
@@ -116,7 +116,7 @@ impl BasinMap {
         &self.axes
     }
 
-    /// The settings of every registration.
+    /// The settings of all registrations.
     #[must_use]
     pub fn config(&self) -> &IcpConfig {
         &self.config
@@ -154,13 +154,14 @@ impl BasinMap {
         self.is_complete()
     }
 
-    /// The minimum that a cell's start reaches, once it was computed; home means the heading, too.
+    /// The minimum that a cell's start reaches, `None` before it is computed; [`Minimum::Right`] requires the
+    /// right heading, too.
     #[must_use]
     pub fn minimum(&self, column: usize, row: usize) -> Option<Minimum> {
         self.cells[row * self.axes.columns + column]
     }
 
-    /// The cell's own minimum, or that of the finest filled cell that covers it.
+    /// The cell's own minimum, or that of the finest computed cell that covers it.
     #[must_use]
     pub fn shown(&self, column: usize, row: usize) -> Option<Minimum> {
         STRIDES
@@ -177,7 +178,7 @@ impl BasinMap {
         cell
     }
 
-    /// Moves to the next cell of the passes that no earlier pass has filled.
+    /// Moves to the next cell that no earlier pass has filled.
     fn skip_filled(&mut self) {
         while let Some(&stride) = STRIDES.get(self.pass) {
             match self.cell_of_pass(stride) {

@@ -1,11 +1,11 @@
-//! Where a registration ended, named.
+//! Classifies the result of a registration by the minimum that it reached.
 
 use pr_geom::{SE2, math};
 
 use super::{BasinPlace, FENCE_SPACING_M, SUCCESS_RADIUS_M};
 use ch16_slam2d::icp::{IcpSummary, StopReason};
 
-/// At the right place, a registration is home where its heading is this close to the truth, degrees.
+/// Largest heading error of a registration that counts as right, degrees.
 pub const HOME_HEADING_DEG: f64 = 3.0;
 
 /// A heading error this close to a quarter or half turn belongs to that minimum, degrees.
@@ -14,24 +14,24 @@ const TURN_TOLERANCE_DEG: f64 = 10.0;
 /// The minimum in which a registration ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Minimum {
-    /// The right one: closer than 0.12 m to the truth, and where the heading counts within 3°.
+    /// The right one: within 0.12 m of the truth and, if the heading counts, within 3°.
     Right,
     /// The room turned by a quarter, to either side.
     QuarterTurn,
     /// The room turned by a half.
     HalfTurn,
-    /// At the fence, one post beside the right place, to either side.
+    /// At the fence, one post off the right pose, on either side.
     OnePost,
-    /// At the fence, two posts or more beside the right place.
+    /// At the fence, two posts or more off the right pose.
     MorePosts,
-    /// The right place, but turned by more than 3°: the heading is a part of home.
+    /// The right position, but the heading is off by more than 3°.
     WrongHeading,
-    /// Another false minimum, or on the way to one when the iterations ran out.
+    /// Another false minimum, or a pose from which the iterations ran out.
     Other,
 }
 
 impl Minimum {
-    /// One letter for pictures that have to do without colour.
+    /// One letter, for figures without colour.
     #[must_use]
     pub fn letter(self) -> char {
         match self {
@@ -45,7 +45,7 @@ impl Minimum {
         }
     }
 
-    /// What a reader calls it.
+    /// The label for readers.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -59,7 +59,7 @@ impl Minimum {
         }
     }
 
-    /// Those that a place has, for legends.
+    /// The minima that exist at a location, for legends.
     #[must_use]
     pub fn at_place(place: BasinPlace) -> [Self; 5] {
         let [next, farther] = match place {
@@ -70,20 +70,20 @@ impl Minimum {
     }
 }
 
-/// How one start ended.
+/// The result of one start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BasinOutcome {
     /// `target_from_source` as registered.
     pub pose: SE2,
-    /// Which minimum that is, as the chapter counts: by the position alone.
+    /// The minimum by the position alone, as the chapter counts.
     pub minimum: Minimum,
-    /// Which minimum that is where home means the heading, too.
+    /// The minimum if the heading has to be right, too.
     pub ending: Minimum,
     /// Length of the translation part of `log(truth⁻¹ ∘ pose)`, m.
     pub error_m: f64,
     /// Its rotation, degrees, with sign.
     pub error_deg: f64,
-    /// Root mean square residual of the pairs, m. Small at false minima, too.
+    /// Root mean square residual of the pairs, m. It is small at false minima, too.
     pub rmse_m: f64,
     /// Number of pairs.
     pub inliers: usize,
@@ -94,7 +94,7 @@ pub struct BasinOutcome {
 }
 
 impl BasinOutcome {
-    /// Judges a registration against the true `target_from_source`.
+    /// Compares a registration with the true `target_from_source`.
     #[must_use]
     pub fn judge(truth: &SE2, found: &IcpSummary) -> Self {
         let error = truth.between(&found.pose).log();
@@ -113,8 +113,8 @@ impl BasinOutcome {
         }
     }
 
-    /// The same before the fence, which runs along x of the target: there the minima are told apart
-    /// by the posts between the end and the truth.
+    /// Like [`judge`](Self::judge), at the fence, which runs along x of the target: minima are told apart by the
+    /// number of posts between the result and the truth.
     #[must_use]
     pub fn judge_at_fence(truth: &SE2, found: &IcpSummary) -> Self {
         let outcome = Self::judge(truth, found);

@@ -1,4 +1,4 @@
-//! The two sweeps of a place and the registration from one start.
+//! Two sweeps of one location and the registration from a start.
 
 use pr_geom::SE2;
 use pr_sim::{Lidar, LidarConfig, Rng, World};
@@ -8,14 +8,14 @@ use crate::scenes::{self, MAP_POINTS_PER_CELL, NORMAL_RADIUS_M};
 use ch16_slam2d::cloud::{DenseMap, NearestTable, PointCloud};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace};
 
-/// A registration counts as right closer than this to the truth, m.
+/// A registration counts as right if it is closer to the truth than this, m.
 pub const SUCCESS_RADIUS_M: f64 = 0.12;
 
 const RANGE_SIGMA_M: f64 = 0.012;
 const TARGET_VOXEL_M: f64 = 0.06;
 const SOURCE_VOXEL_M: f64 = 0.09;
 const MAP_CELL_M: f64 = 0.25;
-/// A basin map asks the target about a million times, so the answers are tabulated.
+/// A basin map queries the target about a million times, so nearest neighbours are tabulated.
 const TABLE_SQUARE_M: f64 = 0.08;
 const TABLE_REACH_M: f64 = 2.0;
 
@@ -40,13 +40,13 @@ impl Default for BasinStart {
     }
 }
 
-/// Where the two sweeps are taken.
+/// The location of the two sweeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum BasinPlace {
-    /// Room A, almost a square: false minima after a turn.
+    /// Room A, almost a square: false minima at other headings.
     #[default]
     Room,
-    /// In front of a row of equal posts: false minima after a shift.
+    /// In front of a row of equal posts: false minima at other offsets.
     Fence,
 }
 
@@ -65,7 +65,7 @@ impl BasinPlace {
         }
     }
 
-    /// Farthest points that are kept of the target and of the source, m.
+    /// Largest range that is kept of the target and of the source, m.
     fn kept_m(self) -> [f64; 2] {
         match self {
             Self::Room => [f64::INFINITY; 2],
@@ -73,7 +73,7 @@ impl BasinPlace {
         }
     }
 
-    /// Where the target's sensor stands, and the source's, `world_from_sensor`.
+    /// Poses of the target's and of the source's sensor, `world_from_sensor`.
     fn sensors(self) -> [SE2; 2] {
         match self {
             Self::Room => [scenes::room_a(), SE2::new(2.5, 1.55, 0.35)],
@@ -82,7 +82,7 @@ impl BasinPlace {
     }
 }
 
-/// Two sweeps of one place: the target with its map, and the source to be registered on it.
+/// Two sweeps of one location: the target with its map, and the source to be registered on it.
 #[derive(Clone, Debug)]
 pub struct BasinScene {
     place: BasinPlace,
@@ -102,7 +102,7 @@ impl Default for BasinScene {
 impl BasinScene {
     /// Seed of the chapter's range noise.
     pub const SEED: u32 = 0x1C9;
-    /// Iterations at which a registration of the scene ends in any case.
+    /// Largest number of iterations of a registration.
     pub const MAX_ITERS: usize = 30;
 
     /// The chapter's scene.
@@ -111,13 +111,13 @@ impl BasinScene {
         Self::with_seed(Self::SEED)
     }
 
-    /// The chapter's scene with other range noise.
+    /// The chapter's scene with another seed of the range noise.
     #[must_use]
     pub fn with_seed(seed: u32) -> Self {
         Self::at(BasinPlace::Room, seed)
     }
 
-    /// The same in another place.
+    /// The scene at another location.
     #[must_use]
     pub fn at(place: BasinPlace, seed: u32) -> Self {
         let [world_from_target, world_from_source] = place.sensors();
@@ -144,13 +144,13 @@ impl BasinScene {
         }
     }
 
-    /// The table in which the scene looks neighbours up, built from the target's map.
+    /// The table for nearest-neighbour queries, built from the target's map.
     #[must_use]
     pub fn table(map: DenseMap) -> NearestTable {
         NearestTable::new(map, TABLE_SQUARE_M, TABLE_REACH_M)
     }
 
-    /// The scene's settings for a registration: 30 iterations, everything else the chapter's.
+    /// The scene's registration settings: 30 iterations, everything else as in the chapter.
     #[must_use]
     pub fn config(variant: IcpVariant, tau_m: f64) -> IcpConfig {
         IcpConfig {
@@ -161,7 +161,7 @@ impl BasinScene {
         }
     }
 
-    /// Where the sweeps were taken.
+    /// The location of the sweeps.
     #[must_use]
     pub fn place(&self) -> BasinPlace {
         self.place
@@ -191,7 +191,7 @@ impl BasinScene {
         self.truth
     }
 
-    /// Where the target's sensor stood in its world, `world_from_target`.
+    /// Pose of the target's sensor, `world_from_target`.
     #[must_use]
     pub fn world_from_target(&self) -> SE2 {
         self.world_from_target
@@ -233,7 +233,7 @@ impl BasinScene {
         }
     }
 
-    /// The outcomes of a sweep over headings with the offsets of `start`, one after the other.
+    /// Outcomes of a sweep over headings at the offsets of `start`, in order.
     pub fn sweep<'a>(
         &'a self,
         start: BasinStart,

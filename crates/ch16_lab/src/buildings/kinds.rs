@@ -1,4 +1,4 @@
-//! Kinds of buildings with the robots that drive through them.
+//! Kinds of buildings and the robots that drive through them.
 
 use core::f64::consts::TAU;
 
@@ -9,25 +9,25 @@ use super::recording::{Recorder, Recording};
 use super::robots::Robot;
 use crate::lap::{BuiltInWorld, Choice, Drive, DriveConfig};
 
-/// What is driven through, and with which scanner.
+/// The building and the scanner of a simulated recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Corridors around a block; half a circle, 361 beams, 80 m.
     Ring,
-    /// One corridor whose rooms are driven into; half a circle, 360 beams, 80 m.
+    /// One corridor with a visit to its rooms; half a circle, 360 beams, 80 m.
     Hallway,
     /// Corridors around a block; the full circle, 360 beams, 30 m.
     Circle,
     /// Corridors around a block of rooms that are all alike; half a circle, 181 beams, 8 m.
     Alike,
-    /// The chapter's lap of the Apartment, with its sensor and its wheels.
+    /// The chapter's lap of the Apartment, with its sensor and odometry.
     Lap,
     /// The lap of the ring world, with the same robot.
     RingLap,
 }
 
 impl Kind {
-    /// Whether it is a lap of the chapter's robot, and no building that is drawn from the seed.
+    /// Whether it is a lap of the chapter's robot instead of a generated building.
     #[must_use]
     pub fn is_lap(self) -> bool {
         matches!(self, Self::Lap | Self::RingLap)
@@ -67,13 +67,14 @@ impl Choice for Kind {
     }
 }
 
-/// What the robot of a kind records in the building of a seed, and the defaults for its scanner.
+/// Records a drive of the kind's robot through the building of a seed. Returns the defaults for its
+/// scanner, too.
 #[must_use]
 pub fn recorded(kind: Kind, seed: u32) -> (Recording, RobotConfig) {
     recorded_by(Robot::Own, kind, seed)
 }
 
-/// What another robot records there; on the laps the chapter's own drives, whichever is asked for.
+/// Like [`recorded`] with another robot; the laps always use the chapter's.
 #[must_use]
 pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, RobotConfig) {
     let plan = BuildingConfig {
@@ -131,12 +132,12 @@ pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, RobotCon
 }
 
 fn with_defaults(recording: Recording) -> (Recording, RobotConfig) {
-    // As runs of recorded logs do.
+    // As for recorded logs.
     let config = RobotConfig::for_scan(&recording.frames[0].scan);
     (recording, config)
 }
 
-/// The drive of `slam2d lap` at this seed.
+/// The drive of `slam2d lap` with this seed.
 fn lap(world: BuiltInWorld, seed: u32) -> Recording {
     let drive = DriveConfig {
         seed,

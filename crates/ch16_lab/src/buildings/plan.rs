@@ -1,49 +1,49 @@
-//! Walls and a way through them, drawn from a seed.
+//! Walls and a path through them, generated from a seed.
 
 use pr_geom::{Point2, math};
 use pr_sim::{Bounds, Rng, Wall, World};
 
 /// Width of a door, m.
 const DOOR_M: f64 = 0.95;
-/// A closed door stands back from its wall by so much, m.
+/// Recess of a closed door behind its wall, m.
 const RECESS_M: f64 = 0.1;
-/// Depth of the rooms outside of a corridor, m.
+/// Depth of the rooms on the outer side of a corridor, m.
 const DEPTH_M: f64 = 5.0;
 
-/// How corridors lie.
+/// Layout of the corridors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Layout {
-    /// Around a block of rooms: twice around, and half of it back.
+    /// A loop around a block of rooms, driven twice and then halfway back.
     #[default]
     Ring,
-    /// One corridor, there and back.
+    /// One corridor, driven there and back.
     Hallway,
 }
 
-/// What rooms are like.
+/// Variation among rooms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rooms {
-    /// Their widths, doors and furniture differ.
+    /// Widths, doors and furniture differ.
     #[default]
     Different,
-    /// One is as the other, and there is no furniture.
+    /// All rooms are equal, without furniture.
     Alike,
 }
 
-/// What a building is drawn from.
+/// Parameters of a generated building.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildingConfig {
-    /// Seed of walls, way and furniture.
+    /// Seed of walls, path and furniture.
     pub seed: u32,
-    /// How corridors lie.
+    /// Layout of the corridors.
     pub layout: Layout,
-    /// What rooms are like.
+    /// Variation among rooms.
     pub rooms: Rooms,
-    /// Length and width of the corridors' middle lines, m; a hallway has no width.
+    /// Length and width of the loop of corridor center lines, m; a hallway has no width.
     pub extent_m: [f64; 2],
     /// Width of a corridor, m.
     pub corridor_m: f64,
-    /// Share of the rooms whose door is open and that are driven into.
+    /// Share of the rooms whose door is open and that the robot visits.
     pub visited: f64,
     /// Share of the facade that is glass.
     pub glass: f64,
@@ -63,19 +63,19 @@ impl Default for BuildingConfig {
     }
 }
 
-/// A building and a way through it.
+/// A building and a path through it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BuildingPlan {
-    /// What every beam sees.
+    /// Walls that every beam sees.
     pub opaque: World,
-    /// What beams that meet it at a slant pass.
+    /// Glass, which beams pass unless they meet it almost head-on.
     pub glass: World,
-    /// The robot drives straight from one to the next, m.
-    pub way: Vec<Point2<f64>>,
+    /// Way points, joined by straight lines, m.
+    pub path: Vec<Point2<f64>>,
 }
 
 impl BuildingPlan {
-    /// The building of a seed.
+    /// Generates the building of a seed.
     #[must_use]
     pub fn new(config: &BuildingConfig) -> Self {
         let mut draft = Draft {
@@ -85,7 +85,7 @@ impl BuildingPlan {
             glass: Vec::new(),
             visits: Vec::new(),
         };
-        let way = match config.layout {
+        let path = match config.layout {
             Layout::Ring => draft.ring(),
             Layout::Hallway => draft.hallway(),
         };
@@ -98,7 +98,7 @@ impl BuildingPlan {
         Self {
             opaque: World::new(bounds, draft.opaque),
             glass: World::new(bounds, draft.glass),
-            way,
+            path,
         }
     }
 }
@@ -110,9 +110,9 @@ struct Side {
     along: [f64; 2],
     into: [f64; 2],
     length: f64,
-    /// How far the rooms reach, m.
+    /// Depth of the rooms, m.
     depth: f64,
-    /// Whether the rooms end at a facade that may be of glass.
+    /// Whether the rooms end at a facade, which may be glass.
     is_outer: bool,
 }
 
@@ -126,7 +126,7 @@ impl Side {
     }
 }
 
-/// A room that is driven into: where the corridor is left, and how far in.
+/// A room to visit: where to leave the corridor, and how far to go in.
 #[derive(Clone, Copy)]
 struct Visit {
     corridor: Point2<f64>,
@@ -142,7 +142,7 @@ struct Draft {
 }
 
 impl Draft {
-    /// Corridors around a block, driven twice, then half of it back.
+    /// Corridors around a block, driven twice, then halfway back.
     fn ring(&mut self) -> Vec<Point2<f64>> {
         let [length, width] = self.config.extent_m;
         let half = 0.5 * self.config.corridor_m;
@@ -179,19 +179,19 @@ impl Draft {
         }
         let corner = |k: usize| Point2::new(corners[k % 4][0], corners[k % 4][1]);
         let start = Point2::new(0.3 * length, 0.0);
-        let mut way = vec![start];
+        let mut path = vec![start];
         for k in 1..=4 {
-            self.drive(&mut way, corner(k), true);
+            self.drive(&mut path, corner(k), true);
         }
-        self.drive(&mut way, start, false);
+        self.drive(&mut path, start, false);
         for k in 1..=4 {
-            self.drive(&mut way, corner(k), false);
+            self.drive(&mut path, corner(k), false);
         }
-        self.drive(&mut way, start, false);
-        self.drive(&mut way, corner(4), false);
-        self.drive(&mut way, corner(3), false);
-        self.drive(&mut way, corner(2), false);
-        way
+        self.drive(&mut path, start, false);
+        self.drive(&mut path, corner(4), false);
+        self.drive(&mut path, corner(3), false);
+        self.drive(&mut path, corner(2), false);
+        path
     }
 
     /// One corridor with rooms on both sides, there and back.
@@ -215,16 +215,16 @@ impl Draft {
             });
         }
         let (start, end) = (Point2::new(1.5, 0.0), Point2::new(length - 1.5, 0.0));
-        let mut way = vec![start];
-        self.drive(&mut way, end, true);
-        self.drive(&mut way, start, false);
-        self.drive(&mut way, end, false);
-        way
+        let mut path = vec![start];
+        self.drive(&mut path, end, true);
+        self.drive(&mut path, start, false);
+        self.drive(&mut path, end, false);
+        path
     }
 
-    /// Straight on to `to`, with a detour into the rooms on the way where they are visited.
-    fn drive(&mut self, way: &mut Vec<Point2<f64>>, to: Point2<f64>, visit: bool) {
-        let from = way[way.len() - 1];
+    /// Drives straight to `to`, with detours into the rooms to visit on the way.
+    fn drive(&mut self, path: &mut Vec<Point2<f64>>, to: Point2<f64>, visit: bool) {
+        let from = path[path.len() - 1];
         let (dx, dy) = (to.x - from.x, to.y - from.y);
         let span = math::norm2(dx, dy);
         if visit && span > 0.0 {
@@ -241,10 +241,10 @@ impl Draft {
                 .collect();
             stops.sort_by(|a, b| a.0.total_cmp(&b.0));
             for (_, stop) in stops {
-                way.extend([stop.corridor, stop.inside, stop.corridor]);
+                path.extend([stop.corridor, stop.inside, stop.corridor]);
             }
         }
-        way.push(to);
+        path.push(to);
     }
 
     /// A wall with rooms behind it.
@@ -323,7 +323,7 @@ impl Draft {
         }
     }
 
-    /// The far wall of a room, of glass in its middle or not.
+    /// The far wall of a room, with or without glass in its middle.
     fn facade(&mut self, side: &Side, from: f64, to: f64) {
         let y = side.depth;
         let is_glass = self.rng.unit() < self.config.glass && side.is_outer;

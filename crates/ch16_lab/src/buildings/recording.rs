@@ -1,4 +1,4 @@
-//! What a robot records on its way through a building.
+//! What a robot records on its drive through a building.
 
 use core::f64::consts::PI;
 
@@ -10,24 +10,24 @@ use pr_sim::{Bounds, LidarConfig, Rng, Wall, World};
 use super::plan::BuildingPlan;
 use crate::lap::Drive;
 
-/// Beams meet glass and see it where they are this steep on it: the sine of the angle off its normal.
+/// Sine of the angle to a pane's normal up to which beams are reflected by the glass.
 const GLASS_SINE: f64 = 0.15;
 /// Half the side of a person, m.
 const PERSON_M: f64 = 0.18;
 /// Turn from one scan to the next on the spot, rad.
 const TURN_RAD: f64 = 0.3;
 
-/// Whether a log says where the sensor sits.
+/// Whether a log contains the pose of the sensor on the body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mounting {
-    /// Every scan carries it.
+    /// Every scan contains it.
     #[default]
-    Told,
-    /// Scans look as if the sensor sat above the axle.
-    Untold,
+    Logged,
+    /// The log lacks it: the sensor seems to sit above the axle.
+    Missing,
 }
 
-/// A robot with its sensor and its faults.
+/// A robot: its sensor and its errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recorder {
     /// Seed of all noise.
@@ -40,34 +40,34 @@ pub struct Recorder {
     pub max_range_m: f64,
     /// Standard deviation of a range, m.
     pub range_sigma_m: f64,
-    /// Ranges are told in steps of this, m.
+    /// Resolution of the reported ranges, m.
     pub range_step_m: f64,
-    /// Share of the beams that tell some range in front of the wall.
+    /// Share of the beams that report a random range in front of the wall.
     pub stray: f64,
-    /// Share of the beams that tell no range: 0, no number, or infinity.
+    /// Share of the beams without a range: 0, NaN or infinity.
     pub dropped: f64,
-    /// Where the sensor sits on the body.
+    /// Pose of the sensor on the body.
     pub body_from_sensor: SE2,
-    /// Whether the log says so.
+    /// Whether the log contains the mounting.
     pub mounting: Mounting,
-    /// Way from scan to scan, the shortest and the longest, m.
+    /// Shortest and longest distance between scans, m.
     pub spacing_m: [f64; 2],
-    /// So many more scans are taken on each spot where the way bends.
+    /// Additional scans on each spot where the path bends.
     pub rests: usize,
-    /// Wheels measure so many times the way, and more or less by what they slip.
+    /// Scale error of the odometry: measured path length over true path length.
     pub wheel_scale: f64,
-    /// Wheels measure so much of the way too little or too much, a standard deviation.
+    /// Standard deviation of the slip as a share of the path length.
     pub slip: f64,
-    /// Heading that the wheels lose on each metre, rad: the same on the whole way.
+    /// Heading drift of the odometry, rad/m, constant over the drive.
     pub drift_rad: f64,
-    /// Share of the scans at which the wheels jump.
+    /// Share of the scans at which the odometry jumps.
     pub jumps: f64,
-    /// People that walk by.
+    /// Number of people who walk by.
     pub people: usize,
 }
 
 impl Default for Recorder {
-    /// A scanner of half a degree on wheels that drift and jump.
+    /// A scanner with half a degree between beams, and odometry that drifts and jumps.
     fn default() -> Self {
         Self {
             seed: 1,
@@ -79,7 +79,7 @@ impl Default for Recorder {
             stray: 0.01,
             dropped: 0.0,
             body_from_sensor: SE2::identity(),
-            mounting: Mounting::Told,
+            mounting: Mounting::Logged,
             spacing_m: [0.2, 0.5],
             rests: 0,
             wheel_scale: 1.0,
@@ -92,29 +92,29 @@ impl Default for Recorder {
 }
 
 impl Recorder {
-    /// From the body to what a reader of the log takes for it.
-    fn untold(&self) -> SE2 {
+    /// From the body to the frame that a reader of the log takes for the body's.
+    fn assumed_body(&self) -> SE2 {
         match self.mounting {
-            Mounting::Told => SE2::identity(),
-            Mounting::Untold => self.body_from_sensor,
+            Mounting::Logged => SE2::identity(),
+            Mounting::Missing => self.body_from_sensor,
         }
     }
 }
 
-/// A frame with its truth, which the estimator never sees.
+/// A frame with its true pose, which the estimator does not see.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedFrame {
     /// Time, s.
     pub stamp_s: f64,
-    /// Pose of the body in the wheels' frame.
+    /// Pose of the body in the odometry frame.
     pub odometry: SE2,
     /// The scan with its geometry.
     pub scan: LaserScan,
-    /// Where the body was, `world_from_body`; where the log does not tell the mounting, the sensor.
+    /// True pose `world_from_body`, or of the sensor if the log lacks the mounting.
     pub truth: SE2,
 }
 
-/// All that was recorded.
+/// A complete recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
     /// The frames in order.
@@ -122,7 +122,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Drives through `plan` and records.
+    /// Drives through `plan` and records every scan.
     #[must_use]
     pub fn new(plan: &BuildingPlan, recorder: &Recorder) -> Self {
         let mut rng = Rng::new(recorder.seed);
@@ -145,13 +145,13 @@ impl Recording {
                 stamp_s: 0.5 * number as f64,
                 odometry,
                 scan,
-                truth: *truth * recorder.untold(),
+                truth: *truth * recorder.assumed_body(),
             });
         }
         Self { frames }
     }
 
-    /// A simulated lap as a recording: the start and every tick.
+    /// Converts a simulated lap into a recording: the start and every tick.
     #[must_use]
     pub fn of_drive(drive: &Drive) -> Self {
         let frame = |tick: usize| {
@@ -168,7 +168,7 @@ impl Recording {
         }
     }
 
-    /// A frame as the estimator sees it, with the wheels or without.
+    /// A frame as the estimator sees it, with or without odometry.
     #[must_use]
     pub fn frame(&self, number: usize, with_wheels: bool) -> Frame {
         let frame = &self.frames[number];
@@ -181,12 +181,12 @@ impl Recording {
     }
 }
 
-/// Where scans are taken: along the way, and turning on the spot where it bends.
+/// Poses of the scans: along the path, and turning on the spot where it bends.
 fn poses(plan: &BuildingPlan, recorder: &Recorder, rng: &mut Rng) -> Vec<SE2> {
     let [shortest, longest] = recorder.spacing_m;
     let mut poses: Vec<SE2> = Vec::new();
     let mut sway = 0.0;
-    for pair in plan.way.windows(2) {
+    for pair in plan.path.windows(2) {
         let (dx, dy) = (pair[1].x - pair[0].x, pair[1].y - pair[0].y);
         let span = math::norm2(dx, dy);
         if span < 1e-6 {
@@ -208,7 +208,7 @@ fn poses(plan: &BuildingPlan, recorder: &Recorder, rng: &mut Rng) -> Vec<SE2> {
             along = rng.uniform(shortest, longest);
         }
         while along < span {
-            // The robot sways a little: no two passes are the same.
+            // The robot sways a little, so no two passes are the same.
             sway = 0.9 * sway + rng.normal(0.0, 0.05);
             let (x, y) = (
                 pair[0].x + along * dx / span - sway * dy / span,
@@ -223,7 +223,7 @@ fn poses(plan: &BuildingPlan, recorder: &Recorder, rng: &mut Rng) -> Vec<SE2> {
     poses
 }
 
-/// Wheels that slip, drift and jump.
+/// Odometry that slips, drifts and jumps.
 struct Wheels {
     pose: SE2,
     recorder: Recorder,
@@ -267,7 +267,7 @@ impl Wheels {
     }
 }
 
-/// Someone who walks some scans ahead of the robot or behind it.
+/// A person who walks a few scans ahead of the robot or behind it.
 struct Person {
     scans_ahead: f64,
     aside_m: f64,
@@ -355,7 +355,7 @@ impl Scanner {
             let angle = sensor.theta() + self.first_angle_rad + beam as f64 * self.angle_step_rad;
             let mut range = self.opaque.cast(angle);
             let pane = self.glass.cast(angle);
-            // Facades stand along the axes: where the beam does, too, the pane sends it back.
+            // Facades are parallel to the axes: a pane reflects beams that are almost perpendicular to it.
             let (sin, cos) = math::sin_cos(angle);
             if pane < range && sin.abs().min(cos.abs()) < GLASS_SINE {
                 range = pane;
@@ -370,7 +370,7 @@ impl Scanner {
                 continue;
             }
             ranges_m.push(if range >= far {
-                // What a scanner of this kind tells of a beam that met nothing.
+                // Such a scanner reports this if a beam has no return.
                 far + 1.0
             } else {
                 (((range + noise) / range_step_m).round() * range_step_m).max(0.0)
@@ -381,8 +381,8 @@ impl Scanner {
             angle_step_rad: self.angle_step_rad,
             range_max_m: far,
             body_from_sensor: match mounting {
-                Mounting::Told => body_from_sensor,
-                Mounting::Untold => SE2::identity(),
+                Mounting::Logged => body_from_sensor,
+                Mounting::Missing => SE2::identity(),
             },
             ranges_m,
             ..LaserScan::default()

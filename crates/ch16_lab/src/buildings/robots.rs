@@ -1,4 +1,4 @@
-//! Robots other than those of the kinds: another sensor, other wheels, other faults.
+//! Robots that differ from those of the kinds: another sensor, other odometry, other errors.
 
 use core::f64::consts::{PI, TAU};
 
@@ -7,21 +7,22 @@ use pr_geom::SE2;
 use super::recording::{Mounting, Recorder};
 use crate::lap::Choice;
 
-/// Who drives through a building of some [`Kind`](super::Kind); each but the first differs in one thing.
+/// The robot that drives through a building of some [`Kind`](super::Kind); each but the first differs in one
+/// aspect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Robot {
-    /// The robot of the kind.
+    /// The kind's own robot.
     #[default]
     Own,
     /// 181 beams over half a circle, 80 m.
     Degree,
-    /// The same, to 8 m.
+    /// The same with a range of 8 m.
     Short,
     /// 91 beams over half a circle, 30 m.
     Coarse,
-    /// 360 beams over the full circle to 3.5 m, ranges off by 3 cm.
+    /// 360 beams over the full circle to 3.5 m, with a range noise of 3 cm.
     Small,
-    /// The same to 12 m.
+    /// The same with a range of 12 m.
     Spinning,
     /// 682 beams over 240°, 5.6 m.
     Hand,
@@ -31,23 +32,23 @@ pub enum Robot {
     Often,
     /// A scan every 0.6 to 1 m.
     Seldom,
-    /// Wheels that slip and drift three times as much.
+    /// Odometry with three times the slip and drift.
     Slippery,
-    /// Wheels that jump three times as often.
+    /// Odometry that jumps three times as often.
     Jumpy,
-    /// Wheels that turn by 2° a metre, and do nothing else wrong.
+    /// Odometry that drifts by 2° a metre and has no other error.
     Veering,
-    /// Wheels that measure a tenth too much.
+    /// Odometry that measures 10 % too much.
     Oversized,
-    /// A sensor 0.3 m ahead of the wheels' axle that looks back, and the log says so.
+    /// A sensor 0.3 m ahead of the axle that looks backwards; the log contains its pose.
     Ahead,
-    /// A sensor 0.2 m ahead, of which the log says nothing.
-    Untold,
-    /// One beam of twenty tells some range in front of the wall.
+    /// A sensor 0.2 m ahead of the axle; the log lacks its pose.
+    UnknownMounting,
+    /// One beam in twenty reports a random range in front of the wall.
     Stray,
-    /// One beam of five tells 0, no number, or infinity.
+    /// One beam in five reports 0, NaN or infinity.
     Dropping,
-    /// Fifty scans on each spot where the way bends.
+    /// Fifty scans on each spot where the path bends.
     Resting,
     /// Ten people who walk along.
     Crowded,
@@ -70,7 +71,7 @@ impl Choice for Robot {
         Self::Veering,
         Self::Oversized,
         Self::Ahead,
-        Self::Untold,
+        Self::UnknownMounting,
         Self::Stray,
         Self::Dropping,
         Self::Resting,
@@ -94,7 +95,7 @@ impl Choice for Robot {
             Self::Veering => "veering",
             Self::Oversized => "oversized",
             Self::Ahead => "ahead",
-            Self::Untold => "untold",
+            Self::UnknownMounting => "untold",
             Self::Stray => "stray",
             Self::Dropping => "dropping",
             Self::Resting => "resting",
@@ -114,22 +115,22 @@ impl Choice for Robot {
             Self::Fine => "1081 beams over 270°, 30 m",
             Self::Often => "a scan every 3 to 8 cm",
             Self::Seldom => "a scan every 0.6 to 1 m",
-            Self::Slippery => "wheels that slip and drift three times as much",
-            Self::Jumpy => "wheels that jump three times as often",
-            Self::Veering => "wheels that turn by 2° a metre and are right in all else",
-            Self::Oversized => "wheels that measure a tenth too much",
+            Self::Slippery => "three times the slip and drift of the odometry",
+            Self::Jumpy => "odometry that jumps three times as often",
+            Self::Veering => "odometry that drifts by 2° a metre, without other errors",
+            Self::Oversized => "odometry that measures 10 % too much",
             Self::Ahead => "a sensor 0.3 m ahead of the axle that looks back",
-            Self::Untold => "a sensor 0.2 m ahead, of which the log says nothing",
-            Self::Stray => "one beam of twenty tells some range in front of the wall",
-            Self::Dropping => "one beam of five tells 0, no number, or infinity",
-            Self::Resting => "fifty scans on each spot where the way bends",
+            Self::UnknownMounting => "a sensor 0.2 m ahead whose pose the log lacks",
+            Self::Stray => "one beam in twenty with a random range in front of the wall",
+            Self::Dropping => "one beam in five with 0, NaN or infinity for its range",
+            Self::Resting => "fifty scans on each spot where the path bends",
             Self::Crowded => "ten people who walk along",
         }
     }
 }
 
 impl Robot {
-    /// The recorder of a kind, changed into this robot's.
+    /// Changes the recorder of a kind into this robot's.
     #[must_use]
     pub fn instead_of(self, own: Recorder) -> Recorder {
         let sensor = |beams: usize, field_of_view_rad: f64, max_range_m: f64| Recorder {
@@ -182,9 +183,9 @@ impl Robot {
                 body_from_sensor: SE2::new(0.3, 0.0, PI),
                 ..own
             },
-            Self::Untold => Recorder {
+            Self::UnknownMounting => Recorder {
                 body_from_sensor: SE2::new(0.2, 0.0, 0.0),
-                mounting: Mounting::Untold,
+                mounting: Mounting::Missing,
                 ..own
             },
             Self::Stray => Recorder { stray: 0.05, ..own },
@@ -222,14 +223,21 @@ mod tests {
     }
 
     #[test]
-    fn what_a_log_does_not_tell_is_where_its_sensor_sits() {
-        let (told, _) = recorded(Kind::Hallway, 1);
-        let (untold, _) = recorded_by(Robot::Untold, Kind::Hallway, 1);
+    fn a_log_without_mounting_lacks_only_the_pose_of_the_sensor() {
+        let (with_mounting, _) = recorded(Kind::Hallway, 1);
+        let (without_mounting, _) = recorded_by(Robot::UnknownMounting, Kind::Hallway, 1);
         let sensor = SE2::new(0.2, 0.0, 0.0);
-        for (told, untold) in told.frames.iter().zip(&untold.frames).take(20) {
-            assert_eq!(untold.scan.body_from_sensor, SE2::identity());
-            assert_eq!(untold.odometry, told.odometry);
-            assert!(position_error_m(&untold.truth, &(told.truth * sensor)) < 1e-9);
+        for (with_mounting, without_mounting) in with_mounting
+            .frames
+            .iter()
+            .zip(&without_mounting.frames)
+            .take(20)
+        {
+            assert_eq!(without_mounting.scan.body_from_sensor, SE2::identity());
+            assert_eq!(without_mounting.odometry, with_mounting.odometry);
+            assert!(
+                position_error_m(&without_mounting.truth, &(with_mounting.truth * sensor)) < 1e-9
+            );
         }
     }
 

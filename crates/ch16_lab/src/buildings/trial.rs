@@ -1,4 +1,4 @@
-//! The estimator on a recording, and how far it is from the truth.
+//! Runs the estimator on a recording and compares the result with the truth.
 
 use ch16_slam2d::chi_squared::CHAPTER_GATE;
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
@@ -10,38 +10,38 @@ use pr_geom::SE2;
 use super::recording::Recording;
 use crate::lap::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG};
 
-/// Keyframes this near to each other are compared, m.
+/// Largest distance between keyframes whose relative pose is compared, m.
 const NEAR_M: f64 = 2.0;
-/// And those that many keyframes apart.
+/// Step between compared keyframes.
 const STEP: usize = 3;
-/// Visits to one place are so many keyframes apart at least.
+/// Smallest number of keyframes between two visits to one location.
 const REVISIT: usize = 20;
 
-/// Loops by the truth.
+/// Loops, judged by the truth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TrialLoops {
-    /// Right ones.
+    /// Right loops.
     pub right: usize,
-    /// False ones: farther than 0.3 m or 5° from the truth.
+    /// False loops: more than 0.3 m or 5° off the truth.
     pub wrong: usize,
 }
 
-/// What came of a run.
+/// The result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
-    /// Loops tried while scans came in.
+    /// Loops that were tried during the drive.
     pub tried: usize,
     /// Loops that were closed.
     pub closed: TrialLoops,
-    /// Loops of the final graph.
+    /// Loop edges of the final graph.
     pub links: TrialLoops,
-    /// Mean error of relations between keyframes near each other, ‖t‖, m.
+    /// Mean error of the relative poses of nearby keyframes, ‖t‖, m.
     pub relation_m: f64,
-    /// The largest of them, m.
+    /// The largest of these errors, m.
     pub worst_relation_m: f64,
-    /// Largest distance of a keyframe from the truth, the first one's pose being known, m.
+    /// Largest position error of a keyframe, relative to the first one, m.
     pub worst_m: f64,
-    /// Normalized error squared of every keyframe but the first, of three degrees of freedom.
+    /// Normalized estimation error squared of every keyframe but the first; three degrees of freedom.
     pub nees: Vec<f64>,
 }
 
@@ -49,7 +49,7 @@ impl Trial {
     /// Runs the estimator to the end of the recording.
     ///
     /// # Panics
-    /// Where the recording has no frame.
+    /// If the recording has no frame.
     #[must_use]
     pub fn run(recording: &Recording, robot: RobotConfig, with_wheels: bool) -> Self {
         let frames = &recording.frames;
@@ -98,7 +98,7 @@ impl Trial {
         }
     }
 
-    /// Share of the keyframes whose error lies within what 95 of 100 should; not a number of none.
+    /// Share of the keyframes within their 95 % confidence region; NaN without keyframes.
     #[must_use]
     pub fn within_95(&self) -> f64 {
         let within = self.nees.iter().filter(|nees| **nees <= CHAPTER_GATE);
@@ -107,7 +107,7 @@ impl Trial {
 }
 
 impl TrialLoops {
-    /// Adds the loops that were closed.
+    /// Counts the loops that were closed.
     fn add_all(&mut self, slam: &Slam, recording: &Recording, attempts: &[LoopAttempt]) {
         for attempt in attempts.iter().filter(|attempt| attempt.accepted()) {
             let found = &attempt.verification;
@@ -133,7 +133,7 @@ fn truth_between(slam: &Slam, recording: &Recording, old: usize, new: usize) -> 
     truth(old).between(&truth(new))
 }
 
-/// Errors of the relations between keyframes near each other, by time or by place, m.
+/// Errors of the relative poses of keyframes near each other, in time or in space, m.
 fn relations_m(poses: &[SE2], truths: &[SE2]) -> Vec<f64> {
     let mut errors = Vec::new();
     let pairs = (0..poses.len()).flat_map(|new| (0..new).map(move |old| (old, new)));
@@ -150,8 +150,7 @@ fn relations_m(poses: &[SE2], truths: &[SE2]) -> Vec<f64> {
     errors
 }
 
-/// `eᵀ P⁻¹ e` of every keyframe but the first, with the error e and the covariance P, both about the
-/// body.
+/// `eᵀ P⁻¹ e` of every keyframe but the first, with the error e and the covariance P, both in the body frame.
 fn nees(slam: &mut Slam, truths: &[SE2]) -> Vec<f64> {
     let covariances: Vec<Matrix3<f64>> = slam.keyframe_covariances().unwrap_or_default();
     let poses = slam.graph().poses().iter().zip(truths);
@@ -207,7 +206,7 @@ mod tests {
             let right: usize = trials.iter().map(|trial| trial.closed.right).sum();
             assert!(right >= 2 * trials.len(), "{kind:?}: {right}");
         }
-        // Of a thousand laps of each kind `docs/robots.md` has the shares.
+        // `docs/robots.md` has the shares of a thousand laps of each kind.
         let share = within / all;
         assert!((0.90..=0.98).contains(&share), "{share}");
     }

@@ -1,6 +1,6 @@
-//! What a lap can be made of, by name: worlds, matchers, gates, frames of information.
+//! The parts of a lap by name: worlds, matchers, gates, frames of information.
 //!
-//! The command line and the widgets choose from these lists, so that a name means the same everywhere.
+//! The command line and the widgets share these lists, so a name means the same everywhere.
 
 use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::loops::{DetectorKind, GateModel};
@@ -13,18 +13,18 @@ use pr_sim::Course;
 use super::config::LapConfig;
 use crate::incremental::IncrementalKind;
 
-/// One of a short list of things with names.
+/// A named choice from a short list.
 pub trait Choice: Copy + PartialEq + Sized + 'static {
-    /// All of them, the chapter's first.
+    /// All choices, the chapter's first.
     const ALL: &'static [Self];
 
     /// The short name, for commands and links.
     fn name(self) -> &'static str;
 
-    /// The name in words.
+    /// The label for readers.
     fn label(self) -> &'static str;
 
-    /// The one of that short name.
+    /// Looks up a choice by its short name.
     #[must_use]
     fn named(name: &str) -> Option<Self> {
         Self::ALL
@@ -42,19 +42,19 @@ pub enum BuiltInWorld {
     Apartment,
     /// Corridors around a block: its free space has a hole.
     Ring,
-    /// Two rooms that look alike: a loop may be of the wrong one.
+    /// Two rooms that look alike: a loop may join the wrong pair.
     TwinRooms,
-    /// A corridor without a door: along it, nothing is seen.
+    /// A corridor without a door: degenerate along its axis.
     Corridor,
-    /// A round hall: its wall tells no heading.
+    /// A round hall: its wall does not fix the heading.
     Hall,
 }
 
 impl BuiltInWorld {
-    /// Those in which detectors of places are graded; in the others a place is not told by its looks.
+    /// Worlds in which place recognition is graded; in the others many locations look alike.
     pub const GRADED: [Self; 2] = [Self::Apartment, Self::Ring];
 
-    /// The world and the way through it.
+    /// The world and the path through it.
     #[must_use]
     pub fn course(self) -> Course {
         match self {
@@ -97,7 +97,7 @@ impl Choice for BuiltInWorld {
     }
 }
 
-/// The matchers that drive a lap, for its front end and for its loops.
+/// Matchers for a lap's front end and loops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LapMatcher {
     /// Point-to-point ICP, the chapter's.
@@ -141,12 +141,12 @@ impl Choice for LapMatcher {
     }
 }
 
-/// The matchers that verify loops.
+/// Matchers that verify loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LoopMatcher {
-    /// One that a front end may have as well.
+    /// A matcher that a front end may use, too.
     Local(LapMatcher),
-    /// Every pose of ±3 m × 360° around the proposal, then ICP.
+    /// Searches every pose of ±3 m × 360° around the proposal, then refines by ICP.
     Search,
 }
 
@@ -184,15 +184,15 @@ impl Choice for LoopMatcher {
     }
 }
 
-/// Who proposes loops.
+/// Detectors of loop candidates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LapDetector {
-    /// What is near in the graph, the chapter's.
+    /// Keyframes nearby in the graph, the chapter's.
     #[default]
     Nearby,
-    /// What has a like histogram of ranges.
+    /// Keyframes with a similar histogram of ranges.
     Histogram,
-    /// What is occupied alike, around.
+    /// Keyframes with a similar scan context.
     Context,
 }
 
@@ -216,7 +216,7 @@ impl Choice for LapDetector {
     }
 }
 
-/// What estimates the lap.
+/// Estimators of the lap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LapEstimator {
     /// Scan matching with a pose graph and its loops, the chapter's.
@@ -259,13 +259,13 @@ impl Choice for LapEstimator {
     }
 }
 
-/// What registers the scans of a lap and finds its loops.
+/// Front ends of a lap: how it registers scans and finds loops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LapFrontEnd {
-    /// A matcher on the last sweeps, and loops near in the graph, the chapter's.
+    /// A matcher on the last sweeps, and loops that are close in the graph, the chapter's.
     #[default]
     Window,
-    /// The estimator for recorded logs: one cost of scan and odometry, and loops on submaps.
+    /// The estimator for recorded logs: scan and odometry in one cost, and loops on submaps.
     LocalMap,
 }
 
@@ -324,7 +324,7 @@ impl Choice for GateModel {
 }
 
 impl LapConfig {
-    /// The lap at this seed and noise factor in a built-in world: the chapter's estimator in its own
+    /// The lap with this seed and noise factor in a built-in world: the chapter's estimator in its own
     /// Apartment, the default one elsewhere.
     #[must_use]
     pub fn in_world(world: BuiltInWorld, seed: u32, noise_factor: f64) -> Self {
@@ -335,10 +335,10 @@ impl LapConfig {
         }
     }
 
-    /// The same lap with another matcher, for the front end and for loops.
+    /// Replaces the matcher of the front end and of the loops.
     ///
-    /// Point to plane gets the default's normals: with the chapter's, which only weigh edges there, it
-    /// slides along the corridor and half of the laps close no loop.
+    /// Point to plane gets the default's normals. With the chapter's, which only weight edges there, it
+    /// slides along the corridor, and half of the laps close no loop.
     #[must_use]
     pub fn with_matcher(mut self, matcher: LapMatcher) -> Self {
         self.slam = self.slam.with_matcher(matcher.kind());
@@ -348,14 +348,14 @@ impl LapConfig {
         }
     }
 
-    /// The same lap with another matcher for its loops.
+    /// Replaces the matcher of the loops.
     #[must_use]
     pub fn with_loop_matcher(mut self, matcher: LoopMatcher) -> Self {
         self.slam.chapter.loops.matcher = matcher.kind();
         self
     }
 
-    /// The same lap with another detector of loops.
+    /// Replaces the detector of loops.
     #[must_use]
     pub fn with_detector(mut self, detector: LapDetector) -> Self {
         let max_range_m = self.drive.lidar.max_range_m;
@@ -375,7 +375,7 @@ impl LapConfig {
         self
     }
 
-    /// The same lap with another front end; that on a local map has its own matcher, detector and gate.
+    /// Replaces the front end; the one on a local map has its own matcher, detector and gate.
     #[must_use]
     pub fn with_front_end(mut self, front_end: LapFrontEnd) -> Self {
         if front_end == LapFrontEnd::LocalMap {
@@ -392,14 +392,14 @@ impl LapConfig {
         self
     }
 
-    /// The same lap with another drift in the gate of its loops.
+    /// Replaces the drift in the gate of the loops.
     #[must_use]
     pub fn with_gate(mut self, gate: GateModel) -> Self {
         self.slam.chapter.loops.gate_model = gate;
         self
     }
 
-    /// The same lap with the information of its edges in another frame.
+    /// Replaces the frame in which edges hold their information.
     #[must_use]
     pub fn with_information(mut self, frame: InformationFrame) -> Self {
         self.slam.chapter.information_frame = frame;

@@ -11,11 +11,11 @@ use pr_sim::{Course, DriverConfig, LidarConfig, OdometryNoise, World};
 /// The seed of the canonical run.
 pub const CANONICAL_SEED: u32 = 0x00C0_FFEE;
 
-/// Ticks of the chapter's lap: the driver steers by the true pose, so that neither noise nor seed
-/// changes them. Another start, driver or duration of a tick does.
+/// Ticks of the chapter's lap. The driver steers by the true pose, so neither noise nor seed changes them;
+/// another start, driver or tick duration does.
 pub const LAP_TICKS: usize = 129;
 
-/// What is driven and sensed: all that the estimator cannot change; the range of each number is in
+/// What is driven and sensed: everything outside the estimator. The range of each number is in
 /// [`RANGES`](super::RANGES).
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveConfig {
@@ -27,7 +27,7 @@ pub struct DriveConfig {
     pub world: Arc<World>,
     /// True pose at the start, world frame.
     pub start: SE2,
-    /// The way point, counted from 0, from which on places are seen again.
+    /// Index of the way point after which the robot revisits known locations.
     pub turn: Option<usize>,
     /// Duration of a tick in seconds.
     pub dt_s: f64,
@@ -37,9 +37,9 @@ pub struct DriveConfig {
     pub odometry_noise: OdometryNoise,
     /// The sensor.
     pub lidar: LidarConfig,
-    /// How the estimator makes a cloud of each sweep: the drive keeps the clouds.
+    /// How each sweep becomes a cloud: the drive stores the clouds.
     pub scan: ScanConfig,
-    /// A lap that has not ended after this many ticks is cut off.
+    /// A lap is cut off after this many ticks.
     pub max_ticks: usize,
 }
 
@@ -72,7 +72,7 @@ impl DriveConfig {
         self
     }
 
-    /// Whether both describe the same drive, up to the noise factor of the wheels.
+    /// Whether both describe the same drive, except for the noise factor of the odometry.
     #[must_use]
     pub fn differs_only_in_noise_from(&self, other: &Self) -> bool {
         let same_noise = Self {
@@ -83,14 +83,14 @@ impl DriveConfig {
     }
 }
 
-/// A lap: what is driven, and the estimator that is tried on it; ranges in [`RANGES`](super::RANGES).
+/// A lap: the drive and the estimator that runs on it; ranges in [`RANGES`](super::RANGES).
 #[derive(Clone, Debug, PartialEq)]
 pub struct LapConfig {
     /// The simulated drive.
     pub drive: DriveConfig,
-    /// The estimator; the drive decides on its start and on how its scans become clouds.
+    /// The estimator; the drive determines its start and how its scans become clouds.
     pub slam: SlamConfig,
-    /// What the grid covers that its keyframes paint.
+    /// The area of the occupancy grid.
     pub grid: GridExtent,
 }
 
@@ -117,8 +117,8 @@ impl LapConfig {
         config
     }
 
-    /// The same robot on another course, with the default estimator: what the chapter's gets wrong
-    /// would be nobody's figures there.
+    /// The same robot on another course, with the default estimator: the chapter's results do not apply
+    /// there, so neither do its deviations from the default.
     #[must_use]
     pub fn elsewhere(self, course: &Course) -> Self {
         let mut slam = SlamConfig::default();
@@ -131,7 +131,7 @@ impl LapConfig {
         .with_scan(slam.scan)
     }
 
-    /// The same lap with clouds made otherwise of its sweeps.
+    /// Replaces how sweeps become clouds.
     #[must_use]
     pub fn with_scan(mut self, scan: ScanConfig) -> Self {
         self.drive.scan = scan;
@@ -139,7 +139,7 @@ impl LapConfig {
         self
     }
 
-    /// The same lap with loop closure off.
+    /// Turns off loop closure.
     #[must_use]
     pub fn without_loops(mut self) -> Self {
         self.slam = self.slam.without_loops();

@@ -1,4 +1,4 @@
-//! One number for all bits of a lap, to compare machines.
+//! A checksum over all bits of a lap, to compare machines.
 
 use super::record::{LapRecord, LapTrace};
 use super::{LapConfig, LapRunner};
@@ -20,7 +20,7 @@ fn add_trace(digest: &mut Digest, trace: &LapTrace) {
 }
 
 impl LapTrace {
-    /// A digest of all poses and metrics of one estimator, bit by bit.
+    /// Digest of all poses and metrics of one estimator, bit by bit.
     #[must_use]
     pub fn digest(&self) -> u64 {
         let mut digest = Digest::new();
@@ -30,7 +30,7 @@ impl LapTrace {
 }
 
 impl LapRecord {
-    /// A digest of all poses and metrics, with loops and without, bit by bit.
+    /// Digest of all poses and metrics, with loops and without, bit by bit.
     #[must_use]
     pub fn digest(&self) -> u64 {
         let mut digest = Digest::new();
@@ -40,9 +40,9 @@ impl LapRecord {
     }
 }
 
-/// The digest of the chapter's lap at this seed and noise factor.
+/// Digest of the chapter's lap with this seed and noise factor.
 ///
-/// Equal on every machine whose floating point is IEEE 754, natively and in WebAssembly.
+/// It is equal on every machine with IEEE 754 floating point, natively and in WebAssembly.
 #[must_use]
 pub fn lap_digest(seed: u32, noise_factor: f64) -> u64 {
     LapRunner::new()

@@ -1,7 +1,7 @@
-//! The simulated drive: truth, wheel odometry and sweeps, tick by tick.
+//! The simulated drive: truth, odometry and sweeps, tick by tick.
 //!
-//! Nothing of it depends on the estimate, so it is simulated once and any number of estimators can
-//! run over it: with loops and without, with one gate and another.
+//! It does not depend on the estimate. So it is simulated once, and any number of estimators can run on it:
+//! with loops and without, with one gate and another.
 
 mod simulation;
 
@@ -22,19 +22,19 @@ pub use simulation::DriveSimulation;
 pub struct Sweep {
     /// Ranges in metres, one for each beam.
     pub ranges_m: Vec<f64>,
-    /// The returns as points in the sensor frame, thinned, with the normals that this sweep alone
-    /// gives them: a map of several sweeps turns the normals with the points.
+    /// The returns as points in the sensor frame, thinned, with the normals of this sweep alone; a map of
+    /// several sweeps turns the normals with the points.
     pub cloud: Arc<PointCloud>,
 }
 
 /// One tick of the drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveTick {
-    /// The command that was held during the tick.
+    /// The command during the tick.
     pub command: VelocityCommand,
     /// True pose after the tick, world frame.
     pub truth: SE2,
-    /// What the wheels report: the pose after the tick in the frame before it.
+    /// Odometry increment: the pose after the tick in the frame before it.
     pub odometry: SE2,
     /// Odometry composed from the start, world frame.
     pub dead_reckoning: SE2,
@@ -42,11 +42,11 @@ pub struct DriveTick {
     pub reached: Option<usize>,
     /// The sweep taken at `truth`.
     pub sweep: Sweep,
-    /// The generator as the wheels found it, to draw other odometry with the same numbers.
+    /// State of the generator before the odometry noise, to draw other odometry from the same numbers.
     rng_before_odometry: Rng,
 }
 
-/// A whole drive, simulated.
+/// A complete simulated drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
     config: DriveConfig,
@@ -66,10 +66,10 @@ impl Drive {
         }
     }
 
-    /// Changes the noise of the wheels and keeps everything else.
+    /// Changes the noise of the odometry and keeps everything else.
     ///
-    /// The truth and the sweeps do not depend on it: the generator draws the same number of times
-    /// at every noise level. The result is that of [`Drive::simulate`], bit for bit.
+    /// Truth and sweeps do not depend on it: the generator draws equally often at every noise level. The
+    /// result equals that of [`Drive::simulate`], bit for bit.
     pub fn set_noise_factor(&mut self, noise_factor: f64) {
         self.config.noise_factor = noise_factor;
         let noise = self.config.odometry_noise.scaled(noise_factor);
@@ -86,7 +86,7 @@ impl Drive {
         }
     }
 
-    /// What was simulated.
+    /// The configuration of the simulation.
     #[must_use]
     pub fn config(&self) -> &DriveConfig {
         &self.config
@@ -113,7 +113,7 @@ impl Drive {
         }
     }
 
-    /// The wheels' odometry composed up to `tick`, world frame; 0 is the start.
+    /// Dead reckoning after `tick` ticks, world frame; 0 is the start.
     #[must_use]
     pub fn dead_reckoning(&self, tick: usize) -> SE2 {
         match tick {
@@ -122,7 +122,7 @@ impl Drive {
         }
     }
 
-    /// What the estimator is handed after `tick` ticks, as a robot would hand it; 0 is the start.
+    /// The estimator's input after `tick` ticks; 0 is the start.
     #[must_use]
     pub fn frame(&self, tick: usize) -> Frame {
         Frame {
@@ -135,7 +135,8 @@ impl Drive {
         }
     }
 
-    /// The same with the scan already a cloud, so that a drive can be run many times.
+    /// Like [`Drive::frame`], with the scan already as a cloud, which saves time if a drive is run many
+    /// times.
     #[must_use]
     pub fn prepared(&self, tick: usize) -> PreparedFrame {
         PreparedFrame {
@@ -145,7 +146,7 @@ impl Drive {
         }
     }
 
-    /// What the wheels report of the motion in `tick`; nothing at the start.
+    /// The odometry increment of `tick`; `None` at the start.
     #[must_use]
     pub fn odometry(&self, tick: usize) -> Option<SE2> {
         let before = tick.checked_sub(1)?;

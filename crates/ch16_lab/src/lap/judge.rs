@@ -1,4 +1,4 @@
-//! The judge: reads the estimator's reports and the truth, and says how good they are.
+//! Compares the estimator's reports with the truth.
 
 use ch16_slam2d::metrics::{DisagreementConfig, MapDisagreement, position_error_m, rms};
 use ch16_slam2d::slam::{self, Slam, SlamReport};
@@ -7,10 +7,10 @@ use pr_geom::{SE2, math};
 use super::report::{LoopAttempt, LoopEffect, TickMetrics, TickReport};
 use super::{Change, Drive};
 
-/// What errors are made of, gathered tick by tick.
+/// Accumulates the errors tick by tick.
 ///
-/// The estimator never sees it. The map's disagreement compares the way up to the drive's turn with
-/// the way after it.
+/// The estimator has no access to it. The map's disagreement compares the path up to the drive's turn with
+/// the path after it.
 #[derive(Clone, Debug)]
 pub struct Judge {
     turn_node: Option<usize>,
@@ -26,7 +26,7 @@ impl Default for Judge {
 }
 
 impl Judge {
-    /// A judge who has seen the start and no tick.
+    /// Starts with the first frame.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -37,16 +37,16 @@ impl Judge {
         }
     }
 
-    /// The newest keyframe's node when the drive's turn was reached.
+    /// The newest keyframe's node when the drive reached its turn.
     #[must_use]
     pub fn turn_node(&self) -> Option<usize> {
         self.turn_node
     }
 
-    /// Judges the report of a tick: `slam` as it is after it, on the frames of `drive`.
+    /// Judges the report of a tick, with the state of `slam` after it, on the frames of `drive`.
     ///
     /// # Panics
-    /// Where the report is that of the first frame, which is no tick, or of another drive.
+    /// If the report is that of the first frame, which is no tick, or of another drive.
     pub fn judge(&mut self, report: &SlamReport, slam: &Slam, drive: &Drive) -> TickReport {
         let tick = report.frame;
         let driven = &drive.ticks()[tick - 1];
@@ -84,7 +84,7 @@ impl Judge {
         }
     }
 
-    /// The attempt that decided: the closed one, or else the best candidate.
+    /// The decisive attempt: the closed one, or else the best candidate.
     fn loop_attempt(&self, report: &SlamReport, slam: &Slam, drive: &Drive) -> Option<LoopAttempt> {
         let attempts = &report.loop_attempts;
         let closed = attempts.iter().find(|attempt| attempt.accepted());
@@ -108,7 +108,7 @@ impl Judge {
 
     fn compare_maps(&mut self, report: &SlamReport, slam: &Slam, turned: bool) {
         if turned {
-            // The newest before this tick's keyframe.
+            // The newest keyframe before this tick's.
             self.turn_node = Some(self.keyframes - 1);
         }
         let Some(turn_node) = self.turn_node else {

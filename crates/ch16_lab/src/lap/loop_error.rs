@@ -1,7 +1,6 @@
-//! How far a loop is from the simulated truth, and what became of it by that measure.
+//! The error of a loop against the simulated truth, and its classification.
 //!
-//! The estimator never sees this: it is the judgement of the results, of the command line and of
-//! the widgets, and this is its only definition.
+//! The estimator has no access to it. Results, command line and widgets share this definition.
 
 use pr_geom::SE2;
 
@@ -9,16 +8,16 @@ use super::record::LapTrace;
 use super::report::LoopAttempt;
 use ch16_slam2d::metrics::position_error_m;
 
-/// A loop farther than this from the true relative pose of its nodes is false, m.
+/// A loop farther than this from the true relative pose is false, m.
 pub const FALSE_LOOP_DISTANCE_M: f64 = 0.3;
 
-/// A loop turned farther than this from the true relative pose of its nodes is false, degrees.
+/// A loop turned by more than this against the true relative pose is false, degrees.
 pub const FALSE_LOOP_TURN_DEG: f64 = 5.0;
 
-/// How far the registration of a loop is from the true relative pose of its nodes.
+/// The error of a loop's relative pose against the true one.
 ///
-/// With T the true pose of the new node in the frame of the old one and T̂ the registered one, both
-/// parts are those of `T⁻¹ T̂`: the length of its translation and the size of its turn.
+/// With T the true pose of the new node in the frame of the old one and T̂ the registered one, both parts are
+/// those of `T⁻¹ T̂`: the length of its translation and the size of its rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopError {
     /// Distance, m.
@@ -27,14 +26,14 @@ pub struct LoopError {
     pub heading_deg: f64,
 }
 
-/// What became of an attempt to close a loop, by the truth.
+/// An attempt to close a loop, judged by the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LoopJudgement {
     /// Closed, and right.
     Right,
     /// Closed although it is false.
     FalseAcceptance,
-    /// Turned away, right or false.
+    /// Rejected, right or false.
     Rejected,
 }
 
@@ -50,7 +49,7 @@ impl LapTrace {
     /// The true pose of an attempt's new node in the frame of its old node.
     ///
     /// # Panics
-    /// Where the attempt names a node that the lap does not have.
+    /// If the lap lacks a node of the attempt.
     #[must_use]
     pub fn loop_truth(&self, attempt: &LoopAttempt) -> SE2 {
         let truth_of = |node: usize| self.keyframes[node].truth;
@@ -58,10 +57,10 @@ impl LapTrace {
         truth_of(loop_.candidate.node).between(&truth_of(loop_.from_node))
     }
 
-    /// How far the registration of an attempt is from the truth.
+    /// The error of an attempt's registration.
     ///
     /// # Panics
-    /// Where the attempt names a node that the lap does not have.
+    /// If the lap lacks a node of the attempt.
     #[must_use]
     pub fn loop_error(&self, attempt: &LoopAttempt) -> LoopError {
         let error = self
@@ -73,10 +72,10 @@ impl LapTrace {
         }
     }
 
-    /// What became of an attempt, by the truth.
+    /// Judges an attempt by the truth.
     ///
     /// # Panics
-    /// Where the attempt names a node that the lap does not have.
+    /// If the lap lacks a node of the attempt.
     #[must_use]
     pub fn judge(&self, attempt: &LoopAttempt) -> LoopJudgement {
         if !attempt.accepted() {
@@ -88,7 +87,7 @@ impl LapTrace {
         }
     }
 
-    /// The loops that were closed although they are false.
+    /// The false loops that were closed.
     pub fn false_acceptances(&self) -> impl Iterator<Item = &LoopAttempt> {
         self.loop_attempts()
             .filter(|attempt| self.judge(attempt) == LoopJudgement::FalseAcceptance)

@@ -1,4 +1,4 @@
-//! What became of a loop, in words: the widgets say it in their outcome, their log and their marks.
+//! Describes the result of a loop attempt in words, for outcome, log and marks of the widgets.
 
 use core::fmt;
 
@@ -19,10 +19,10 @@ impl fmt::Display for LoopJudgement {
 }
 
 impl LapTrace {
-    /// `loop 29 to 7 accepted`: what became of an attempt, from its new node to its old one.
+    /// `loop 29 to 7 accepted`: the result of an attempt, from its new node to its old one.
     ///
     /// # Panics
-    /// Where the attempt names a node that the lap does not have.
+    /// If the lap lacks a node of the attempt.
     #[must_use]
     pub fn loop_headline(&self, attempt: &LoopAttempt) -> String {
         let loop_ = &attempt.verification;
@@ -35,11 +35,11 @@ impl LapTrace {
         format!("{name} {new} to {old} {verdict}")
     }
 
-    /// The headline with its reason: χ² against the gate, and what the loop moved or why it was
-    /// turned away; how far a false acceptance is off the truth.
+    /// The headline with its reason: χ² against the gate, and what the loop moved or why it was rejected; for
+    /// a false acceptance also its error.
     ///
     /// # Panics
-    /// Where the attempt names a node that the lap does not have.
+    /// If the lap lacks a node of the attempt.
     #[must_use]
     pub fn loop_sentence(&self, attempt: &LoopAttempt) -> String {
         let head = self.loop_headline(attempt);

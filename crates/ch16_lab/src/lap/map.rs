@@ -1,17 +1,17 @@
-//! The occupancy grid that the keyframes of a lap paint.
+//! The occupancy grid of a lap's keyframes.
 
 use pr_grid::{Beams, GridConfig, OccupancyGrid};
 use pr_sim::Lidar;
 
 use super::record::LapRecord;
 
-/// What the grid of a lap covers.
+/// The area of a lap's grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GridExtent {
-    /// The plan of the world, as in the chapter's figures: beams beyond it are cut at its border.
+    /// The plan of the world, as in the chapter's figures; beams are cut at its border.
     Plan,
-    /// Whatever the sensor reaches from the poses: nobody has the plan of a world to be mapped, and an
-    /// estimate that drifts leaves it.
+    /// Everything in sensor range of the poses, because a robot has no plan of an unknown world, and an
+    /// estimate that drifts leaves the plan.
     #[default]
     Poses,
 }
@@ -19,7 +19,7 @@ pub enum GridExtent {
 impl LapRecord {
     /// The occupancy grid of the keyframes up to `tick`, at their poses of that tick.
     ///
-    /// A grid that grows stays as it is where it would be too large, and beams are cut at its border.
+    /// A growing grid stops growing at its size limit, and beams are cut at its border.
     #[must_use]
     pub fn occupancy_grid(&self, tick: usize) -> OccupancyGrid {
         let drive = &self.config.drive;

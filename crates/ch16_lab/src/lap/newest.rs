@@ -1,14 +1,13 @@
-//! Laps for a control that is moved faster than they are computed.
+//! Laps for a control that moves faster than they are computed.
 
 use super::record::LapRecord;
 use super::run::LapRun;
 use super::{LapConfig, LapRunner};
 
-/// At most one lap under way, and at most one that waits for it: the newest that was asked for.
+/// Runs at most one lap, and keeps at most one request that waits for it: the newest.
 ///
-/// What is asked for in between is never run. The lap under way goes on to its end, or a control
-/// that moves at every frame would show nothing until it rests; one that has not begun yet gives
-/// way at once.
+/// Requests in between are dropped. A lap under way runs to its end; otherwise a control that moves at every
+/// frame would show no result until it rests. A lap without a tick yet is replaced at once.
 #[derive(Default)]
 pub struct NewestLap {
     runner: LapRunner,
@@ -20,7 +19,7 @@ pub struct NewestLap {
 /// What [`NewestLap::step`] did.
 #[derive(Debug)]
 pub enum NewestStep {
-    /// Nothing: no lap is under way.
+    /// No lap is under way.
     Idle,
     /// One tick of a lap.
     Tick,
@@ -29,13 +28,13 @@ pub enum NewestStep {
 }
 
 impl NewestLap {
-    /// Nothing is asked for yet.
+    /// Creates it without a request.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Asks for a lap; one that was asked for before, and has not begun, is dropped.
+    /// Requests a lap; an earlier request that has not started is dropped.
     pub fn ask(&mut self, config: LapConfig) {
         let begun = self.under_way.take().filter(|run| run.steps() > 0);
         self.waiting = match &begun {
@@ -55,13 +54,13 @@ impl NewestLap {
         self.under_way.is_some()
     }
 
-    /// Steps done since the start, of all laps.
+    /// The number of steps so far, of all laps.
     #[must_use]
     pub fn steps(&self) -> usize {
         self.steps
     }
 
-    /// Does one tick of the lap under way.
+    /// Processes one tick of the lap under way.
     pub fn step(&mut self) -> NewestStep {
         let Some(run) = &mut self.under_way else {
             return NewestStep::Idle;
@@ -75,7 +74,7 @@ impl NewestLap {
         NewestStep::Finished(Box::new(record))
     }
 
-    /// Runs the newest lap that was asked for to its end; none where that is done.
+    /// Runs the newest requested lap to its end; `None` if no lap is under way.
     pub fn finish(&mut self) -> Option<Box<LapRecord>> {
         if let Some(config) = self.waiting.take() {
             self.under_way = Some(self.runner.start(config));
@@ -94,7 +93,7 @@ impl NewestLap {
 mod tests {
     use super::*;
 
-    /// Steps to the end of one lap; returns it with the steps taken.
+    /// Steps to the end of one lap. Returns it with the number of steps.
     fn next(newest: &mut NewestLap) -> (Box<LapRecord>, usize) {
         for steps in 1.. {
             match newest.step() {
@@ -128,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lap_that_has_begun_is_shown_and_then_the_newest_of_those_that_waited() {
+    fn a_lap_under_way_is_finished_before_the_newest_waiting_one() {
         let mut newest = NewestLap::new();
         newest.ask(LapConfig::with_seed_and_noise(1, 1.0));
         newest.step();
@@ -144,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn going_back_to_the_lap_under_way_asks_for_no_other() {
+    fn requesting_the_lap_under_way_again_starts_no_other() {
         let mut newest = NewestLap::new();
         newest.ask(LapConfig::with_seed_and_noise(1, 1.0));
         newest.step();

@@ -1,8 +1,7 @@
-//! A loop of the reader's own: between any two keyframes of a lap, right or wrong, and where its error
-//! goes.
+//! A custom loop between any two keyframes of a lap, right or wrong, and where its error goes.
 //!
-//! The lap itself stays as it is. Its graph at a tick gets one more edge and is solved at once, under a
-//! kernel of the reader's choice; what every edge costs before and after shows who gives way.
+//! The lap itself does not change. A copy of its graph at a tick gets one more edge and is solved under the
+//! chosen kernel. The cost of every edge before and after shows which ones give way.
 
 mod request;
 
@@ -23,24 +22,23 @@ use ch16_slam2d::slam;
 
 pub use request::{Claim, GateUse, OwnKernel, OwnLoopError, OwnLoopRequest};
 
-/// How sure an asserted loop is of its place, a standard deviation in metres: as sure as a good
-/// registration.
+/// Standard deviation of an asserted loop's position, m: that of a good registration.
 const ASSERTED_SIGMA_M: f64 = 0.05;
 
-/// How sure it is of its heading, a standard deviation in radians: 1°.
+/// Standard deviation of its heading, rad: 1°.
 const ASSERTED_SIGMA_RAD: f64 = core::f64::consts::PI / 180.0;
 
-/// Most rounds of the weight, and the relative change at which it stays.
+/// Largest number of reweighting rounds, and the relative change of the weight at which they stop.
 const MOST_ROUNDS: usize = 60;
 const WEIGHT_TOLERANCE: f64 = 1e-6;
 
-/// Share of the cost that rounding may add.
+/// Relative increase of the cost that rounding may cause.
 const COST_SLACK: f64 = 1e-9;
 
-/// Most iterations of the solver: a wrong loop bends the whole graph.
+/// Largest number of solver iterations: a wrong loop bends the whole graph.
 const MOST_ITERATIONS: usize = 100;
 
-/// What an edge of the graph costs.
+/// The cost of an edge of the graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeStrain {
     /// The node in whose frame it was measured.
@@ -49,29 +47,29 @@ pub struct EdgeStrain {
     pub to: usize,
     /// Odometry or loop.
     pub kind: EdgeKind,
-    /// `log(Z⁻¹ Tᵢ⁻¹ Tⱼ)`, in m, m, rad: what the poses leave of the measurement.
+    /// `log(Z⁻¹ Tᵢ⁻¹ Tⱼ)`, in m, m, rad: the error of the poses against the measurement.
     pub residual: Vector3<f64>,
     /// `eᵀΩe`.
     pub chi2: f64,
 }
 
-/// A loop of the reader's own and what it did.
+/// A custom loop and its effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OwnLoop {
-    /// What was asked for.
+    /// The request.
     pub request: OwnLoopRequest,
     /// The loop with its tests and its effect, as those of the lap.
     pub attempt: LoopAttempt,
-    /// The edge that it is, closed or not.
+    /// Its edge, closed or not.
     pub edge: RecordedEdge,
-    /// Poses of all nodes with it, `world_from_body`; without it they are those of the lap.
+    /// Poses of all nodes after closing it, `world_from_body`; the lap's own if it was not closed.
     pub poses: Vec<SE2>,
 }
 
-/// What an edge costs at these poses.
+/// The cost of an edge at these poses.
 ///
 /// # Panics
-/// Where an end has no pose.
+/// If an end has no pose.
 #[must_use]
 pub fn edge_strain(edge: &RecordedEdge, poses: &[SE2]) -> EdgeStrain {
     let relative = poses[edge.from].between(&poses[edge.to]);
@@ -94,20 +92,20 @@ impl OwnLoop {
 }
 
 impl LapRecord {
-    /// Adds a loop of the reader's own to the graph at a tick, and solves it.
+    /// Adds a custom loop to the graph at a tick and solves it.
     ///
     /// # Errors
-    /// Where its ends are one keyframe, or one of them is not yet there.
+    /// If its ends are one keyframe, or one of them does not exist at that tick.
     pub fn own_loop(&self, request: &OwnLoopRequest) -> Result<OwnLoop, OwnLoopError> {
         self.lap.own_loop(request, &self.drive, &self.config)
     }
 }
 
 impl LapTrace {
-    /// The same where the parts of the record are at hand: `drive` and `config` are those of the lap.
+    /// Like [`LapRecord::own_loop`], from the parts of a record: `drive` and `config` are those of the lap.
     ///
     /// # Errors
-    /// Where its ends are one keyframe, or one of them is not yet there.
+    /// If its ends are one keyframe, or one of them does not exist at that tick.
     pub fn own_loop(
         &self,
         request: &OwnLoopRequest,
@@ -123,7 +121,7 @@ impl LapTrace {
     }
 }
 
-/// The lap that gets the loop.
+/// The lap to which the loop is added.
 struct Site<'a> {
     lap: &'a LapTrace,
     drive: &'a Drive,
@@ -240,7 +238,7 @@ impl Site<'_> {
         }
     }
 
-    /// The first keyframes as the estimator had them.
+    /// The first keyframes as the estimator stored them.
     fn slam_keyframes(&self, count: usize) -> Vec<slam::Keyframe> {
         let keyframes = self.lap.keyframes[..count].iter();
         let dt_s = self.config.drive.dt_s;
@@ -254,10 +252,10 @@ impl Site<'_> {
             .collect()
     }
 
-    /// Adds the edge and solves; where that fails, or makes the cost rise, the poses are as before.
+    /// Adds the edge and solves. If that fails or raises the cost, the poses are restored.
     ///
-    /// The kernel is the loop's alone: odometry cannot be of another place. Its weight `w(s)` scales the
-    /// loop's information, the graph is solved, and so on until the weight stays.
+    /// The kernel applies to the loop alone, because odometry has no wrong associations. Its weight `w(s)`
+    /// scales the loop's information, the graph is solved, and both repeat until the weight converges.
     fn close_own(
         &self,
         graph: &mut PoseGraph,
@@ -290,7 +288,7 @@ impl Site<'_> {
         }
         let chi2_after = graph.chi2();
         let cost = chi2_after - loop_chi2 + kernel.cost(loop_chi2);
-        // A kernel that all but switches the loop off changes the cost by rounding alone.
+        // If the kernel gives the loop almost no weight, the cost changes by rounding only.
         let slack = COST_SLACK * cost_before;
         if rejection.is_none() && (cost > cost_before + slack || cost.is_nan()) {
             rejection = Some(LoopRejection::CostRose {

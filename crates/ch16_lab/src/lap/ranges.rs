@@ -1,7 +1,7 @@
-//! The range of every number of a [`LapConfig`], and laps drawn from all of them at once.
+//! The range of every number of a [`LapConfig`], and laps drawn from all ranges at once.
 //!
-//! Within these ranges a lap runs to its end with finite figures, well or badly: `slam2d sweep
-//! --random` drives laps at configurations drawn here. Beyond them nothing is promised.
+//! Within these ranges a lap runs to its end with finite results, accurate or not: `slam2d sweep --random`
+//! drives laps at configurations drawn here. Beyond them there is no guarantee.
 
 use core::f64::consts::{PI, TAU};
 
@@ -24,7 +24,7 @@ pub struct ConfigRange {
     pub high: f64,
     /// Reads the field.
     pub get: fn(&LapConfig) -> f64,
-    /// Writes the field; a count takes the whole part.
+    /// Writes the field; a count is truncated to an integer.
     pub set: fn(&mut LapConfig, f64),
 }
 
@@ -52,10 +52,10 @@ macro_rules! count {
     };
 }
 
-/// Every number of the configuration but the seed, which is any, and these: the way points and the
-/// start lie in free space, the six α are at least 0, matchers keep their own settings, the noise of a
-/// guess without odometry and its extrapolation matter to no drive, which has odometry, and what serves
-/// recorded logs alone stays off: the numbers for robots, the least score of a loop.
+/// Every number of the configuration except these: the seed, which is unrestricted; way points and start,
+/// which lie in free space; the six α, which are at least 0; the settings of matchers; guess noise and
+/// extrapolation for frames without odometry, which a drive does not have; and what only serves recorded logs
+/// and is off: the numbers for robots and the least score of a loop.
 pub const RANGES: [ConfigRange; 56] = [
     number!(0.0, 100.0, drive.noise_factor),
     number!(0.2, 0.5, drive.dt_s),
@@ -115,7 +115,7 @@ pub const RANGES: [ConfigRange; 56] = [
     START_Y,
 ];
 
-/// The start of the chapter lies in the corridor, and so does all that is near it.
+/// The start of the chapter lies in the corridor, and so does every start nearby.
 const START_X: ConfigRange = ConfigRange {
     field: "drive.start.x",
     low: 1.1,
@@ -138,14 +138,14 @@ const START_Y: ConfigRange = ConfigRange {
     },
 };
 
-/// From this quotient of its ends on, a range is drawn by orders of magnitude.
+/// A range is sampled by orders of magnitude if the quotient of its ends is at least this.
 const WIDE: f64 = 50.0;
 
-/// A lap of the chapter has 129 ticks: a driver that never arrives need not be followed for long.
+/// A lap of the chapter has 129 ticks; a driver that never arrives is stopped at this limit.
 const MOST_RANDOM_TICKS: usize = 300;
 
 impl ConfigRange {
-    /// A number of the range: one of its ends now and then.
+    /// Draws a number from the range, sometimes exactly one of its ends.
     fn draw(&self, rng: &mut Rng) -> f64 {
         let share = rng.unit();
         let place = rng.unit();

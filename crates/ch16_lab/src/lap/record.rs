@@ -1,7 +1,7 @@
-//! A finished lap as a timeline needs it: any tick can be looked at without running again.
+//! The record of a finished lap for a timeline: any tick can be shown without running the lap again.
 //!
-//! Between two accepted loops no node moves, so the poses of all nodes are stored once for each
-//! such epoch; the poses at a tick are the first few of its epoch.
+//! No node moves between two accepted loops, so the poses of all nodes are stored once per such epoch; the
+//! poses at a tick are the first few of its epoch.
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
@@ -12,10 +12,10 @@ use super::{Drive, Lap, LapConfig, LoopClosure};
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::metrics::position_error_m;
 
-/// Keyframes at the end of the lap whose error range the results table shows.
+/// Number of last keyframes whose range of errors the results table shows.
 pub const LAST_KEYFRAMES: usize = 9;
 
-/// An edge of the graph with the tick in which it was added.
+/// An edge of the graph and the tick that added it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordedEdge {
     /// The tick, counted from 1.
@@ -35,7 +35,7 @@ pub struct RecordedEdge {
 /// The poses of all nodes between two accepted loops.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Epoch {
-    /// The first tick at whose end these poses hold; 0 is the start.
+    /// The first tick at whose end these poses are valid; 0 is the start.
     pub first_tick: usize,
     /// The pose of every node that exists at the end of the epoch, `world_from_body`.
     pub poses: Vec<SE2>,
@@ -50,9 +50,9 @@ pub struct LapTrace {
     pub keyframes: Vec<Keyframe>,
     /// Edges in the order in which they were added.
     pub edges: Vec<RecordedEdge>,
-    /// Epochs in order; there is one more than accepted loops.
+    /// Epochs in order; one more than accepted loops.
     pub epochs: Vec<Epoch>,
-    /// Node that was newest when the way back began.
+    /// Newest node at the start of the return path.
     pub turn_node: Option<usize>,
     /// The rows of the results table.
     pub summary: LapSummary,
@@ -112,7 +112,7 @@ impl LapTrace {
         &self.edges[..count]
     }
 
-    /// The report of `tick`, counted from 1; none at the start.
+    /// The report of `tick`, counted from 1; `None` at the start.
     #[must_use]
     pub fn report(&self, tick: usize) -> Option<&TickReport> {
         self.reports.get(tick.checked_sub(1)?)
@@ -125,8 +125,9 @@ impl LapTrace {
             .filter_map(|report| report.loop_attempt.as_ref())
     }
 
-    /// Poses before and after the loop that was closed in `tick`; none where none was.
+    /// Poses before and after the loop that was closed in `tick`; `None` if there was none.
     ///
+    /// Both have the same nodes, for an animation between them.
     /// Both have the same nodes: an animation goes from one to the other.
     #[must_use]
     pub fn loop_motion(&self, tick: usize) -> Option<(&[SE2], &[SE2])> {
@@ -147,7 +148,7 @@ impl LapTrace {
             .map(|(pose, keyframe)| position_error_m(pose, &keyframe.truth))
     }
 
-    /// The summary as it was at the end of `tick`; that of the last tick is the lap's.
+    /// The summary at the end of `tick`; that of the last tick is the lap's.
     #[must_use]
     pub fn summary_at(&self, tick: usize) -> LapSummary {
         let errors: Vec<f64> = self.keyframe_errors_m(tick).collect();
@@ -176,7 +177,7 @@ impl LapTrace {
             .collect()
     }
 
-    /// Where the sweep of `taken` stood in the window of `tick`: loops in between have moved it.
+    /// Pose of sweep `taken` in the window of `tick`, corrected by the loops in between.
     fn window_pose(&self, taken: usize, tick: usize, config: &LapConfig) -> SE2 {
         let start = self
             .report(taken)
@@ -188,7 +189,7 @@ impl LapTrace {
     }
 }
 
-/// A lap under way, writing down what [`LapTrace`] holds.
+/// A lap under way that records what [`LapTrace`] needs.
 #[derive(Clone)]
 pub(super) struct Recorder {
     lap: Lap,
@@ -197,9 +198,9 @@ pub(super) struct Recorder {
     has_branched: bool,
 }
 
-/// A tick that was written down.
+/// A recorded tick.
 pub(super) struct Recorded {
-    /// Branched off in this tick: the lap without its loops.
+    /// The copy without loops, if it branched off in this tick.
     pub front_end_alone: Option<Box<Recorder>>,
 }
 
@@ -216,10 +217,10 @@ impl Recorder {
         }
     }
 
-    /// Does one tick; none once the lap is finished.
+    /// Processes one tick; `None` once the lap is finished.
     ///
-    /// In the tick of the first loop that would be closed, a copy branches off from just before it:
-    /// continued without loops it is the front end alone, with no need to start over.
+    /// Just before the first loop closure a copy branches off. It continues without loops, so the front end
+    /// alone does not have to start over.
     pub(super) fn step(&mut self) -> Option<Recorded> {
         let mut pending = self.lap.begin()?;
         self.lap.slam.verify_loops(&mut pending);
@@ -241,7 +242,7 @@ impl Recorder {
         Some(Recorded { front_end_alone })
     }
 
-    /// Stores the poses that an optimization has changed.
+    /// Stores the poses before an optimization changed them.
     fn end_epoch(&mut self, poses: Vec<SE2>) {
         self.store_poses(poses);
         self.epochs.push(Epoch {
@@ -256,7 +257,7 @@ impl Recorder {
         }
     }
 
-    /// The history up to here.
+    /// The trace so far.
     pub(super) fn into_trace(mut self) -> LapTrace {
         self.store_poses(self.lap.graph().poses().to_vec());
         let lap = &self.lap;
@@ -290,7 +291,7 @@ impl LapSummary {
         Self::so_far(&lap.keyframe_errors_m().collect::<Vec<_>>(), reports)
     }
 
-    /// From the position errors of the keyframes so far, m, and the reports so far.
+    /// Computes it from the position errors of the keyframes so far, m, and the reports so far.
     fn so_far(errors: &[f64], reports: &[TickReport]) -> Self {
         let last = &errors[errors.len().saturating_sub(LAST_KEYFRAMES)..];
         let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
@@ -316,16 +317,16 @@ impl LapSummary {
     }
 }
 
-/// A finished lap with everything that was driven and estimated.
+/// A finished lap: everything that was driven and estimated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LapRecord {
     /// The parameters.
     pub config: LapConfig,
-    /// Truth, wheels and sweeps.
+    /// Truth, odometry and sweeps.
     pub drive: std::sync::Arc<Drive>,
     /// The lap as configured.
     pub lap: LapTrace,
-    /// The front end alone on the same drive; equal to `lap` where no loop was closed.
+    /// The front end alone on the same drive; equals `lap` if no loop was closed.
     pub front_end: LapTrace,
 }
 

@@ -1,7 +1,7 @@
-//! What a tick saw: its local map, its registration iteration by iteration, and the graph that a
-//! loop met.
+//! Recomputes the details of one tick: its local map, its registration iteration by iteration, and the graph
+//! before a loop.
 //!
-//! A record does not keep these; they are worked out again for the one tick that is looked at.
+//! A record does not store these.
 
 use pr_geom::SE2;
 
@@ -11,21 +11,21 @@ use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 use ch16_slam2d::icp::{IcpConfig, IcpResult, icp};
 
-/// One sweep's registration, in full.
+/// The complete registration of one sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegistrationView {
     /// The sweeps of the local map, oldest first.
     pub window: Vec<WindowSweep>,
-    /// The points of the local map, world frame; its cells keep only some of them.
+    /// Points of the local map, world frame; its cells keep only some of them.
     pub local_cloud: PointCloud,
-    /// Where registration started: `world_from_body`.
+    /// Initial guess of the registration: `world_from_body`.
     pub prediction: SE2,
     /// The registration with its history and last pairs, world frame.
     pub icp: IcpResult,
 }
 
 impl LapRecord {
-    /// The registration of `tick` in the lap; none at the start.
+    /// The registration of `tick` in the lap; `None` at the start.
     #[must_use]
     pub fn registration(&self, tick: usize) -> Option<RegistrationView> {
         self.lap.registration(tick, &self.drive, &self.config)
@@ -33,9 +33,9 @@ impl LapRecord {
 }
 
 impl LapTrace {
-    /// The registration of `tick`; none at the start. `drive` and `config` are those of the lap.
+    /// The registration of `tick`; `None` at the start. `drive` and `config` are those of the lap.
     ///
-    /// A matcher other than ICP shows the pairs at its result, and no iterations.
+    /// Matchers other than ICP return the pairs at their result, without iterations.
     #[must_use]
     pub fn registration(
         &self,
@@ -72,7 +72,7 @@ impl LapTrace {
         })
     }
 
-    /// The graph as `attempt` met it: with the new keyframe, without the loop that is tried.
+    /// The graph before `attempt`: with the new keyframe, without the candidate loop.
     #[must_use]
     pub fn graph_before(&self, attempt: &LoopAttempt) -> PoseGraph {
         let tick = attempt.tick;
@@ -94,7 +94,7 @@ impl LapTrace {
     }
 }
 
-/// The graph with these poses, the first of them fixed; a lap's estimator corrects it with every loop.
+/// The graph at these poses, the first of them fixed.
 pub(super) fn graph_of<'a>(
     poses: &[SE2],
     edges: impl Iterator<Item = &'a RecordedEdge>,

@@ -1,4 +1,4 @@
-//! What a tick of the lap reports, judged by the truth.
+//! The report of a tick of the lap, compared with the truth.
 
 use ch16_slam2d::loops::LoopVerification;
 use pr_geom::SE2;
@@ -6,33 +6,33 @@ use pr_sim::VelocityCommand;
 
 use super::{Change, Registration};
 
-/// A keyframe: a node of the graph with the sweep that was taken there.
+/// A keyframe: a node of the graph and its sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keyframe {
     /// Number of its node.
     pub node: usize,
     /// The tick after which it was taken; 0 is the start.
     pub tick: usize,
-    /// True pose, world frame: for the metrics, the estimator never sees it.
+    /// True pose, world frame: for the metrics only.
     pub truth: SE2,
 }
 
 /// A sweep of the local map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowSweep {
-    /// The tick after which it was taken; 0 is the start.
+    /// The tick of the sweep; 0 is the start.
     pub tick: usize,
-    /// Where it was taken, by the estimate: `world_from_body`.
+    /// Estimated pose of the sweep: `world_from_body`.
     pub pose: SE2,
 }
 
-/// What closing a loop did.
+/// The effect of closing a loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopEffect {
-    /// Newest node's pose after the optimization ∘ its pose before it, inverted: what moved the
-    /// estimate and the window.
+    /// Newest node's pose after the optimization ∘ inverse of its pose before it: the correction of the
+    /// estimate and of the window.
     pub correction: SE2,
-    /// Farthest that a node moved, m.
+    /// Largest displacement of a node, m.
     pub max_shift_m: f64,
     /// Iterations of the optimizer.
     pub iterations: usize,
@@ -45,11 +45,11 @@ pub struct LoopEffect {
 /// An attempt to close a loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopAttempt {
-    /// The tick in which it was made, counted from 1.
+    /// The tick of the attempt, counted from 1.
     pub tick: usize,
     /// Candidate, registration and tests.
     pub verification: LoopVerification,
-    /// What it did to the graph; none where it was turned away.
+    /// Its effect on the graph; `None` if it was rejected.
     pub effect: Option<LoopEffect>,
 }
 
@@ -74,20 +74,20 @@ pub struct TickMetrics {
     pub keyframe_rms_m: f64,
     /// Position error of the newest keyframe at its present pose, m.
     pub keyframe_error_m: f64,
-    /// Map self-disagreement so far, m; none before the way back has a keyframe.
+    /// Map self-disagreement so far, m; `None` before the return path has a keyframe.
     pub map_disagreement_m: Option<f64>,
     /// χ² of the graph.
     pub chi2: f64,
 }
 
-/// Everything that one tick did.
+/// Everything about one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TickReport {
     /// Number of the tick, counted from 1.
     pub tick: usize,
     /// Time at its end, s.
     pub time_s: f64,
-    /// The command that was held.
+    /// The command during the tick.
     pub command: VelocityCommand,
     /// True pose after the tick, world frame.
     pub truth: SE2,
@@ -95,11 +95,11 @@ pub struct TickReport {
     pub dead_reckoning: SE2,
     /// Prediction and registration of the sweep.
     pub registration: Registration,
-    /// Estimate at the end of the tick, a loop's correction included: `world_from_body`.
+    /// Estimate at the end of the tick, with the correction of a loop: `world_from_body`.
     pub estimate: SE2,
-    /// Node of the keyframe that was taken.
+    /// Node of the new keyframe.
     pub new_keyframe: Option<usize>,
-    /// The attempt to close a loop that decided: the one that was closed, or else the best.
+    /// The decisive attempt to close a loop: the one that was closed, or else the best.
     pub loop_attempt: Option<LoopAttempt>,
     /// Errors and map quality.
     pub metrics: TickMetrics,

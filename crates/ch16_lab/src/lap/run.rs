@@ -1,4 +1,4 @@
-//! A lap and its front end alone in pieces of one tick each, so that a page can draw in between.
+//! A lap and its front end alone in pieces of one tick each, so that a page can redraw in between.
 
 use std::sync::Arc;
 
@@ -12,17 +12,17 @@ pub struct LapRun {
     steps: usize,
 }
 
-/// What a run does next.
+/// The next piece of a run.
 pub(super) enum Stage {
-    /// The world is driven through.
+    /// Simulates the drive.
     Driving(Box<DriveSimulation>),
-    /// The lap runs, and the front end alone has branched off or not.
+    /// Runs the lap; the front end alone may have branched off.
     Lap {
         drive: Arc<Drive>,
         recorder: Box<Recorder>,
         front_end: Option<Box<Recorder>>,
     },
-    /// The lap is finished, the front end alone runs on.
+    /// The lap is finished; the front end alone continues.
     FrontEnd {
         drive: Arc<Drive>,
         lap: Box<LapTrace>,
@@ -31,7 +31,7 @@ pub(super) enum Stage {
 }
 
 impl Stage {
-    /// The lap of `config` on a drive that is simulated.
+    /// The lap of `config` on a simulated drive.
     pub(super) fn on(config: &LapConfig, drive: Arc<Drive>) -> Self {
         let lap = Lap::on_drive(config.clone(), Arc::clone(&drive));
         Self::Lap {
@@ -51,23 +51,23 @@ impl LapRun {
         }
     }
 
-    /// What is run.
+    /// The configuration.
     #[must_use]
     pub fn config(&self) -> &LapConfig {
         &self.config
     }
 
-    /// Steps done so far.
+    /// The number of steps so far.
     #[must_use]
     pub fn steps(&self) -> usize {
         self.steps
     }
 
-    /// Does one tick of the drive, of the lap or of the front end alone; returns the record once
-    /// all of them are done. The bits are those of [`LapRunner::run`](super::LapRunner::run).
+    /// Processes one tick of the drive, of the lap or of the front end alone. Returns the record once all of
+    /// them are finished. The bits equal those of [`LapRunner::run`](super::LapRunner::run).
     ///
     /// # Panics
-    /// Where it is called again after that.
+    /// If called again after that.
     pub fn step(&mut self) -> Option<LapRecord> {
         self.steps += 1;
         let stage = self.stage.take().expect("a finished lap has no step left");

@@ -1,4 +1,4 @@
-//! Whole laps on demand, as fast as a dragged slider needs them.
+//! Runs laps on demand, fast enough for a dragged slider.
 
 use std::sync::Arc;
 
@@ -8,22 +8,21 @@ use super::{Drive, DriveSimulation, LapConfig};
 
 /// Runs laps and keeps the simulated drive between them.
 ///
-/// A new gate or window runs on the drive that is there; new wheel noise changes only what the
-/// wheels report; a new seed or sensor simulates anew. The results do not depend on what ran
-/// before.
+/// A new gate or window reuses the drive. New odometry noise changes only the odometry. A new seed or sensor
+/// simulates the drive again. Results do not depend on earlier runs.
 #[derive(Clone, Debug, Default)]
 pub struct LapRunner {
     drive: Option<Arc<Drive>>,
 }
 
 impl LapRunner {
-    /// A runner that has simulated nothing yet.
+    /// A runner without a drive.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Runs the lap of `config`, and its front end alone.
+    /// Runs the lap of `config` and its front end alone.
     pub fn run(&mut self, config: &LapConfig) -> LapRecord {
         let mut run = self.start(config.clone());
         loop {
@@ -34,7 +33,7 @@ impl LapRunner {
         }
     }
 
-    /// The same run in pieces; what of the last drive still holds is not simulated anew.
+    /// Starts the same run in pieces; it reuses what is still valid of the last drive.
     #[must_use]
     pub fn start(&self, config: LapConfig) -> LapRun {
         let same = |drive: &&Arc<Drive>| drive.config().differs_only_in_noise_from(&config.drive);
@@ -106,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn the_summary_of_the_last_tick_is_that_of_the_lap_and_one_before_knows_nothing_after_it() {
+    fn the_last_tick_has_the_summary_of_the_lap_and_earlier_ones_only_their_past() {
         let record = LapRunner::new().run(&LapConfig::default());
         let last = record.ticks();
         assert_eq!(record.lap.summary_at(last), record.lap.summary);

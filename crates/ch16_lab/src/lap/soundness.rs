@@ -1,13 +1,13 @@
-//! Whether every figure of a lap is a finite number.
+//! Checks that all numbers of a lap are finite.
 
 use pr_geom::SE2;
 
 use super::record::{LapRecord, LapTrace};
 
 impl LapRecord {
-    /// The first figure that is not finite, in words; none of a sound lap.
+    /// Describes the first number that is not finite; `None` if all are finite.
     ///
-    /// The rmse of a registration without pairs is infinite by its definition, and no fault.
+    /// The RMSE of a registration without pairs is infinite by definition and does not count.
     #[must_use]
     pub fn first_fault(&self) -> Option<String> {
         let of = |name: &str, trace: &LapTrace| {

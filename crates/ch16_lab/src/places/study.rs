@@ -1,4 +1,4 @@
-//! The places of one lap, compared pair by pair.
+//! Compares the keyframes of one lap pair by pair.
 
 use std::sync::Arc;
 
@@ -13,35 +13,34 @@ use pr_geom::{SE2, math};
 use super::{PlacePair, SAME_PLACE_M};
 use crate::lap::{Keyframe, Lap};
 
-/// A keyframe with what it looks like.
+/// A keyframe with its appearance.
 #[derive(Clone, Debug)]
 pub struct Place {
-    /// Where it truly is, world frame.
+    /// True pose, world frame.
     pub truth: SE2,
-    /// Where the front end has it, world frame.
+    /// Pose by the front end, world frame.
     pub pose: SE2,
     /// Its thinned scan, body frame.
     pub scan: Arc<PointCloud>,
-    /// How many returns came from how far.
+    /// Histogram of ranges.
     pub histogram: RangeHistogram,
-    /// Which directions are occupied at which distance.
+    /// Occupancy by bearing and distance.
     pub context: ScanContext,
 }
 
-/// The keyframes of a lap that was driven by its front end alone, and how much each pair of them is
-/// alike.
+/// The keyframes of a lap that ran with the front end alone, and the similarity of each pair.
 #[derive(Clone, Debug)]
 pub struct PlaceStudy {
     seed: u32,
     loops: LoopConfig,
     max_range_m: f64,
     places: Vec<Place>,
-    /// Newer keyframe by newer keyframe, each with all older ones.
+    /// Ordered by the newer keyframe, each with all older ones.
     pairs: Vec<PlacePair>,
 }
 
 impl PlaceStudy {
-    /// The places of a lap that is finished, none of them compared.
+    /// The keyframes of a finished lap, before any comparison.
     #[must_use]
     pub fn new(lap: &Lap) -> Self {
         let config = lap.config();
@@ -99,19 +98,19 @@ impl PlaceStudy {
         &self.places
     }
 
-    /// How far the sensor sees, m.
+    /// Range of the sensor, m.
     #[must_use]
     pub fn max_range_m(&self) -> f64 {
         self.max_range_m
     }
 
-    /// The pair of two keyframes; none before it is compared.
+    /// The pair of two keyframes; `None` before it is compared.
     #[must_use]
     pub fn pair(&self, old: usize, new: usize) -> Option<&PlacePair> {
         (old < new).then(|| self.pairs.get(new * (new - 1) / 2 + old))?
     }
 
-    /// All pairs that are compared, those of neighbours in time as well.
+    /// All compared pairs, including neighbours in time.
     #[must_use]
     pub fn pairs(&self) -> &[PlacePair] {
         &self.pairs
@@ -125,18 +124,18 @@ impl PlaceStudy {
         self.pairs.len() as f64 / all.max(1) as f64
     }
 
-    /// Whether two keyframes are far enough apart in time to be a loop.
+    /// Whether two keyframes are far enough apart in time to count as a loop.
     #[must_use]
     pub fn is_loop(&self, [old, new]: [usize; 2]) -> bool {
         new >= old + self.loops.min_gap_nodes
     }
 
-    /// The pairs that a detector is graded by: those far enough apart in time.
+    /// The pairs for grading: those far enough apart in time.
     pub fn graded(&self) -> impl Iterator<Item = &PlacePair> {
         self.pairs.iter().filter(|pair| self.is_loop(pair.nodes))
     }
 
-    /// At which turn two keyframes look most alike, `old_from_new`, and how much.
+    /// The relative heading at which two keyframes look most alike, `old_from_new`, and their distance.
     #[must_use]
     pub fn turned(&self, old: usize, new: usize) -> ContextMatch {
         self.places[old].context.compare(&self.places[new].context)

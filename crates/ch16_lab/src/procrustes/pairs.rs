@@ -1,4 +1,4 @@
-//! Pairs of points to align: what a robot sees twice, and when that says too little.
+//! Pairs of points to align: what a robot sees twice, including degenerate cases.
 
 use nalgebra::Point2;
 use pr_geom::SE2;
@@ -8,36 +8,36 @@ use pr_sim::Rng;
 const TRUTH: (f64, f64, f64) = (0.3, 0.2, 40.0);
 /// Range noise of both sweeps, m.
 const SIGMA_M: f64 = 0.012;
-/// Corners that are no mirror image of themselves, m.
+/// Corners without mirror symmetry, m.
 const CORNERS: [[f64; 2]; 4] = [[-1.2, -0.6], [1.0, -0.9], [1.3, 0.5], [-0.5, 1.1]];
-/// Points of the wall, and their distance from each other, m.
+/// Number of points of the wall, and their spacing, m.
 const WALL_POINTS: usize = 5;
 const WALL_STEP_M: f64 = 0.7;
 
-/// What is seen.
+/// The observed shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// Four corners of a room.
     Corners,
     /// Two points.
     Two,
-    /// A straight wall: what lies beside the line is noise.
+    /// A straight wall: the offsets from the line are noise.
     Wall,
-    /// The corners, the second time by a sensor that hangs upside down: left is right.
+    /// The corners, seen the second time by a sensor that hangs upside down, which swaps left and right.
     UpsideDown,
 }
 
 /// Points of the source and their partners in the target, m, each in its sensor's frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pairs {
-    /// Points as they are to be moved.
+    /// Points to transform.
     pub source: Vec<Point2<f64>>,
     /// Their partners, in the same order.
     pub target: Vec<Point2<f64>>,
 }
 
 impl Pairs {
-    /// What is seen of the shape, with the noise of that seed in both sweeps.
+    /// Observes the shape twice, with the noise of that seed in both sweeps.
     #[must_use]
     pub fn seen(shape: Shape, seed: u32) -> Self {
         let mut rng = Rng::new(seed);
@@ -77,7 +77,7 @@ impl Pairs {
 }
 
 impl Shape {
-    /// Where its points are in the frame of the source, without noise.
+    /// Points in the frame of the source, without noise.
     fn places(self) -> Vec<Point2<f64>> {
         let corners = || CORNERS.map(Point2::from).to_vec();
         match self {
@@ -126,13 +126,13 @@ mod tests {
             mirrored += usize::from(wall.winner() == Winner::Mirror);
             assert!((wall.aligned.theta().to_degrees() - TRUTH.2).abs() < 2.0);
             let cost = Handedness::ALL.map(|kind| wall.cost_m2(kind, wall.best(kind).theta_rad));
-            // Both fit to the noise: ten coordinates of both sweeps.
+            // Both fit up to the noise: ten coordinates of both sweeps.
             assert!(
                 cost.iter()
                     .all(|cost| *cost < 10.0 * 8.0 * SIGMA_M * SIGMA_M)
             );
         }
-        // Half of them, to five deviations of a coin's thousand throws.
+        // Half of them, within five standard deviations of a thousand coin tosses.
         assert!((420..=580).contains(&mirrored), "{mirrored}");
     }
 }

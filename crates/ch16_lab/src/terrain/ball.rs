@@ -1,4 +1,4 @@
-//! A ball that is let go on a landscape: gradient descent, made visible.
+//! A ball that rolls down a landscape: a picture of gradient descent.
 
 use pr_geom::{Vector2, math};
 
@@ -9,11 +9,11 @@ use super::{Objective, Slope, TerrainProbe};
 pub struct BallConfig {
     /// Longest step, m: short enough not to jump over a ridge.
     pub max_step_m: f64,
-    /// When no step longer than this leads downhill, the ball lies still, m.
+    /// The ball stops if no longer step than this leads downhill, m.
     pub min_step_m: f64,
-    /// Below this slope the ground is level: m for ICP's cost, 1/m for NDT's score.
+    /// The ground counts as level below this slope: m for ICP's cost, 1/m for NDT's score.
     pub min_slope: f64,
-    /// At most so many steps.
+    /// Largest number of steps.
     pub max_steps: usize,
 }
 
@@ -28,52 +28,51 @@ impl Default for BallConfig {
     }
 }
 
-/// Why a ball lies still.
+/// Why a ball stopped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BallStop {
-    /// Downhill steps lead nowhere lower: the bottom of a dent, which may be any dent.
+    /// No step leads lower: a local minimum, not necessarily the global one.
     Settled {
         /// The shortest step that was tried, m.
         step_m: f64,
     },
-    /// The ground is level: no slope to follow.
+    /// The ground is level, without a slope to follow.
     Level {
         /// Size of the gradient.
         slope: f64,
     },
-    /// The steps were used up.
+    /// The limit of steps is reached.
     StepLimit {
         /// [`BallConfig::max_steps`].
         max_steps: usize,
     },
 }
 
-/// Where the ball is after a step.
+/// The ball after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallStep {
     /// The shift `(Δx, Δy)`, m.
     pub offset_m: Vector2<f64>,
     /// Cost in m², or score.
     pub value: f64,
-    /// Set once the ball lies still.
+    /// Why it stopped; `None` while it rolls.
     pub stop: Option<BallStop>,
 }
 
 /// Gradient descent on ICP's cost, or ascent on NDT's score, from a chosen shift.
 ///
-/// A step `−α g` goes straight downhill along the gradient g. Its rate `α = sᵀs / sᵀy` comes from
-/// the last step s and the change y of the gradient over it (Barzilai & Borwein 1988), so that the
-/// ball does not zigzag down a narrow valley. A step that would lead higher is halved, none is
-/// longer than the limit. The ball has no momentum: what it cannot leave, gradient descent cannot
-/// leave.
+/// A step `−α g` follows the gradient g. Its rate `α = sᵀs / sᵀy` comes from the last step s and the change y
+/// of the gradient over it (Barzilai & Borwein 1988), which avoids zigzags in a narrow valley. A step that
+/// would lead higher is halved, and steps are limited in length. The ball has no momentum: a minimum that it
+/// cannot leave stops gradient descent, too.
 #[derive(Clone, Debug)]
 pub struct Ball {
     objective: Objective,
     config: BallConfig,
     offset_m: Vector2<f64>,
-    /// Value and slope where the ball is, once asked for.
+    /// Cached value and slope at the ball.
     here: Option<Slope>,
-    /// α; infinite where the ground is not curved upwards, so that the limit decides.
+    /// α; infinite if the curvature is not positive, so the step limit applies.
     rate: f64,
     path: Vec<Vector2<f64>>,
     stop: Option<BallStop>,
@@ -94,19 +93,19 @@ impl Ball {
         }
     }
 
-    /// The shifts so far, the start first.
+    /// All shifts so far, from the start.
     #[must_use]
     pub fn path(&self) -> &[Vector2<f64>] {
         &self.path
     }
 
-    /// Which landscape the ball is on.
+    /// The landscape of the ball.
     #[must_use]
     pub fn objective(&self) -> Objective {
         self.objective
     }
 
-    /// Rolls one step, unless the ball lies still.
+    /// Rolls one step, unless the ball has stopped.
     pub fn step(&mut self, probe: &TerrainProbe<'_>) -> BallStep {
         let mut here = match self.here {
             Some(slope) => slope,
@@ -126,7 +125,7 @@ impl Ball {
         }
     }
 
-    /// Rolls until the ball lies still.
+    /// Rolls until the ball stops.
     pub fn run(&mut self, probe: &TerrainProbe<'_>) -> BallStep {
         loop {
             let step = self.step(probe);
@@ -178,7 +177,7 @@ impl Ball {
         }
     }
 
-    /// The gradient of what the ball descends.
+    /// The gradient of the function that the ball descends.
     fn uphill(&self, slope: &Slope) -> Vector2<f64> {
         match self.objective {
             Objective::IcpCost => slope.gradient,
@@ -229,8 +228,8 @@ mod tests {
 
     #[test]
     fn a_ball_in_a_narrow_valley_does_not_zigzag() {
-        // Along the corridor the valley is as narrow as the wall is thick, 1.3 m long and the
-        // longest step 0.04 m: 33 steps are the fewest, four times as many are still a straight way.
+        // The valley along the corridor is as narrow as the wall is thick, 1.3 m long, and the longest step
+        // is 0.04 m: at least 33 steps, and four times as many are still a straight path.
         let ball = rest(Objective::IcpCost, SceneKind::Corridor, 1.6, (1.2, 0.05));
         assert!(!matches!(ball.stop, Some(BallStop::StepLimit { .. })));
         let scene = TerrainScene::new(SceneKind::Corridor, 0.8);

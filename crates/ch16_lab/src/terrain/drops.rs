@@ -1,4 +1,4 @@
-//! Many sweeps registered on one map: where their answers come to rest.
+//! Many sweeps registered on one map: the scatter of their results.
 
 use pr_geom::{SE2, Vector2};
 use pr_sim::Rng;
@@ -7,18 +7,18 @@ use super::scene::Sweeper;
 use super::{SceneKind, TerrainScene};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace};
 
-/// A sweep is dropped up to this far from the truth along each axis, m.
+/// Largest initial error of a drop along each axis, m.
 pub const DROP_SPREAD_M: f64 = 0.3;
 
-/// Sets the seeds of the drops apart (the golden ratio of 2³²).
+/// Increment between the seeds of drops (the golden ratio of 2³²).
 const SEED_STEP: u32 = 0x9E37_79B9;
 
-/// Drops sweeps on the map of a scene, each with range noise of its own.
+/// Registers many sweeps on the map of a scene, each with independent range noise.
 ///
-/// Drop k stands where the scene's sweep was taken, but its beams point elsewhere between those of
-/// the scene, and its noise is its own. It starts at a shift drawn evenly from ±[`DROP_SPREAD_M`],
-/// heading right, and is registered point to plane with the chapter's settings. The same scene and
-/// the same k give the same bits.
+/// Drop k is taken at the pose of the scene's sweep, but its beams point between those of the scene, and its
+/// noise is its own. It starts at a shift drawn uniformly from ±[`DROP_SPREAD_M`], with the right heading,
+/// and is registered point to plane with the chapter's settings. The same scene and the same k give the same
+/// bits.
 pub struct Drops {
     kind: SceneKind,
     sweeper: Sweeper,
@@ -26,7 +26,7 @@ pub struct Drops {
 }
 
 impl Drops {
-    /// Ready to drop sweeps of that place.
+    /// Prepares drops for a location.
     #[must_use]
     pub fn new(kind: SceneKind) -> Self {
         Self {
@@ -36,16 +36,17 @@ impl Drops {
         }
     }
 
-    /// The place.
+    /// The location.
     #[must_use]
     pub fn kind(&self) -> SceneKind {
         self.kind
     }
 
-    /// How far the sensor lies from the truth before the first and after every increment of drop
-    /// `number`, `(Δx, Δy)` in m; never empty. The last one is where it rests.
+    /// Position error of the sensor before the first and after every increment of drop `number`, `(Δx, Δy)`
+    /// in m; never empty. The last one is the result.
     ///
     /// # Panics
+    /// If the scene is another location.
     /// If the scene is another place.
     pub fn path_m(&mut self, scene: &TerrainScene, number: usize) -> Vec<Vector2<f64>> {
         assert_eq!(scene.kind(), self.kind, "the sweeps are of another place");
@@ -72,7 +73,7 @@ mod tests {
     use super::*;
     use pr_geom::math;
 
-    /// Standard deviations of 100 rests along x and y, m.
+    /// Standard deviations of 100 results along x and y, m.
     fn spread_m(kind: SceneKind) -> [f64; 2] {
         let scene = TerrainScene::new(kind, TerrainScene::DEFAULT_NDT_CELL_M);
         let mut drops = Drops::new(kind);

@@ -15,7 +15,7 @@ pub struct Peak {
     pub value: f64,
 }
 
-/// Cost and score on an n × n grid of shifts, with the memory kept from one computation to the next.
+/// Cost and score on an n × n grid of shifts; recomputation reuses the buffers.
 ///
 /// Values are row-major with Δy outer: cell `(column, row)` is at `row * n + column`.
 #[derive(Clone, Debug, Default)]
@@ -30,7 +30,7 @@ pub struct Terrain {
 }
 
 impl Terrain {
-    /// Both landscapes of a scene.
+    /// Computes both landscapes of a scene.
     #[must_use]
     pub fn compute(scene: &TerrainScene, settings: &TerrainSettings) -> Self {
         let mut terrain = Self::default();
@@ -38,13 +38,13 @@ impl Terrain {
         terrain
     }
 
-    /// Replaces the landscapes by those of a scene and keeps the memory.
+    /// Recomputes the landscapes for a scene in the same buffers.
     pub fn recompute(&mut self, scene: &TerrainScene, settings: &TerrainSettings) {
         self.begin(scene, settings);
         while self.compute_row() {}
     }
 
-    /// Computes ICP's landscape anew and keeps NDT's: what a new τ asks for.
+    /// Recomputes ICP's landscape for a new τ and keeps NDT's.
     ///
     /// Settings other than τ have to be those of the last [`Terrain::recompute`].
     pub fn recompute_icp(&mut self, scene: &TerrainScene, tau_m: f64) {
@@ -56,7 +56,7 @@ impl Terrain {
         }
     }
 
-    /// Computes NDT's landscape anew and keeps ICP's: what a new NDT of the scene asks for.
+    /// Recomputes NDT's landscape for a new NDT of the scene and keeps ICP's.
     pub fn recompute_ndt(&mut self, scene: &TerrainScene) {
         self.ndt_row.prepare(scene.ndt(), &self.xs, &self.settings);
         self.ndt_score.clear();
@@ -65,7 +65,7 @@ impl Terrain {
         }
     }
 
-    /// Starts over without any row; [`Terrain::compute_row`] adds them.
+    /// Starts over without rows; [`Terrain::compute_row`] adds them.
     pub fn begin(&mut self, scene: &TerrainScene, settings: &TerrainSettings) {
         self.settings = *settings;
         self.icp_cost_m2.clear();
@@ -75,7 +75,7 @@ impl Terrain {
         self.ndt_row.prepare(scene.ndt(), &self.xs, settings);
     }
 
-    /// Computes the next row of both landscapes. Returns whether there was one.
+    /// Computes the next row of both landscapes. Returns false if all rows are finished.
     pub fn compute_row(&mut self) -> bool {
         let row = self.rows();
         if row >= self.settings.n {
@@ -131,13 +131,13 @@ impl Terrain {
         &self.ndt_score
     }
 
-    /// The cell with the lowest ICP cost, the first of equals.
+    /// The cell with the lowest ICP cost; the first one of a tie.
     #[must_use]
     pub fn icp_minimum(&self) -> Option<Peak> {
         self.best(&self.icp_cost_m2, |value, best| value < best)
     }
 
-    /// The cell with the highest NDT score, the first of equals.
+    /// The cell with the highest NDT score; the first one of a tie.
     #[must_use]
     pub fn ndt_maximum(&self) -> Option<Peak> {
         self.best(&self.ndt_score, |value, best| value > best)

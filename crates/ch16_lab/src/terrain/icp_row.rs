@@ -1,4 +1,4 @@
-//! One row of ICP's landscape: nearest distances along a line, without a search for each sample.
+//! One row of ICP's landscape: nearest distances along a line, without a search per sample.
 //!
 //! A cloud point shifted along x meets map point k at the squared distance
 //! `(x − x_k)² + c_k` with `c_k = (y − y_k)²`. All these parabolas have the same shape, so each is
@@ -14,7 +14,7 @@ use ch16_slam2d::cloud::DenseMap;
 /// Height of the slabs by which the map points are looked up, m.
 const SLAB_M: f64 = 0.05;
 
-/// A parabola and the sample from which on it is the lowest.
+/// A parabola and the sample from which it is the lowest.
 #[derive(Clone, Copy, Debug)]
 struct Arc {
     /// Where its vertex is, as a shift.
@@ -34,7 +34,7 @@ pub(super) struct IcpRow {
     slabs: Slabs,
     sums: Vec<f64>,
     arcs: Vec<Arc>,
-    /// Points without any map point in reach of the row.
+    /// Points without any map point within reach of the row.
     lonely: usize,
 }
 
@@ -79,8 +79,8 @@ impl IcpRow {
         }
         let mut first = 0;
         for (index, arc) in self.arcs.iter().enumerate() {
-            // Where two parabolas cross they are equal: a border that rounds to the neighbouring
-            // sample does not show.
+            // Two parabolas are equal where they cross, so rounding a border to a neighbouring sample does
+            // not matter.
             let last = self.arcs.get(index + 1).map_or(self.sums.len(), |next| {
                 let border = (next.from - first_shift) * self.per_step;
                 let border = if border < 0.0 {
@@ -115,7 +115,7 @@ impl IcpRow {
     }
 }
 
-/// Adds the parabola whose vertex is the farthest right so far.
+/// Adds a parabola whose vertex is right of all earlier ones.
 #[inline]
 fn push_arc(arcs: &mut Vec<Arc>, vertex: f64, height: f64) {
     while let Some(top) = arcs.last() {
@@ -144,7 +144,7 @@ fn push_arc(arcs: &mut Vec<Arc>, vertex: f64, height: f64) {
     });
 }
 
-/// The map points in reach of each slab of y, sorted by x.
+/// The map points within reach of each slab of y, sorted by x.
 #[derive(Clone, Debug, Default)]
 struct Slabs {
     sorted: Vec<(f64, f64)>,
@@ -176,7 +176,7 @@ impl Slabs {
         }
     }
 
-    /// The points that may be within τ of a height `y`, with some that are not.
+    /// The points that may be within τ of `y`; a superset.
     #[inline]
     fn near(&self, y: f64) -> &[(f64, f64)] {
         let slab = (y - self.south) / SLAB_M;

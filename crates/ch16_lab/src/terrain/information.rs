@@ -1,14 +1,14 @@
-//! How well a place fixes a pose.
+//! How well a location constrains a pose.
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector2, Vector3};
 use pr_geom::math;
 
 use ch16_slam2d::icp::{Pair, icp_information};
 
-/// A direction with less than this share of the largest information counts as unseen.
+/// A direction with less than this share of the largest information counts as degenerate.
 const NULL_SHARE: f64 = 0.01;
 
-/// An information matrix, 3×3 over `(v_x, v_y, ω)`, taken apart.
+/// Eigendecomposition of an information matrix, 3×3 over `(v_x, v_y, ω)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseInformation {
     /// The matrix: 1/m² for translations, 1/rad² for the heading.
@@ -20,7 +20,7 @@ pub struct PoseInformation {
 }
 
 impl PoseInformation {
-    /// Takes a symmetric matrix apart.
+    /// Decomposes a symmetric matrix.
     #[must_use]
     pub fn new(matrix: Matrix3<f64>) -> Self {
         let eigen = SymmetricEigen::new(matrix);
@@ -43,7 +43,7 @@ impl PoseInformation {
             .count()
     }
 
-    /// The information of a shift with the heading held: the 2×2 block of the translations.
+    /// The information of a shift with fixed heading: the 2×2 block of the translations.
     #[must_use]
     pub fn of_shift(&self) -> ShiftInformation {
         let (xx, xy, yy) = (self.matrix.m11, self.matrix.m12, self.matrix.m22);
@@ -57,14 +57,14 @@ impl PoseInformation {
         }
     }
 
-    /// The direction of which least is known, where that is less than 1 % of the largest.
+    /// The direction with the least information, if that is less than 1 % of the largest.
     #[must_use]
     pub fn null_direction(&self) -> Option<Vector3<f64>> {
         (self.rank() < 3).then(|| self.eigenvectors.column(0).into_owned())
     }
 }
 
-/// The information of a shift with the heading held, taken apart.
+/// Eigendecomposition of the information of a shift with fixed heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShiftInformation {
     /// The eigenvalues, 1/m², the larger first.

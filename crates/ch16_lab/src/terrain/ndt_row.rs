@@ -23,14 +23,14 @@ pub(super) struct NdtRow {
     cell_m: f64,
     sums: Vec<f64>,
     profiles: Vec<Profile>,
-    /// For every point, the first cell column that it meets.
+    /// The first cell column of every point.
     first_columns: Vec<i32>,
-    /// For every point, the first sample in each cell column from there on, `columns + 1` each.
+    /// The first sample in each cell column of every point, `columns + 1` each.
     borders: Vec<u32>,
     columns: usize,
 }
 
-/// A Gaussian as a row sees it: `½ a (x + b y)² + ½ c y²` with x, y relative to the mean.
+/// A Gaussian along a row: `½ a (x + b y)² + ½ c y²` with x, y relative to the mean.
 #[derive(Clone, Copy, Debug)]
 struct Profile {
     cell: (i32, i32),
@@ -38,7 +38,7 @@ struct Profile {
     along: f64,
     skew: f64,
     across: f64,
-    /// By which factor the ratio of neighbours falls from sample to sample.
+    /// Factor by which the ratio of neighbours changes from sample to sample.
     fall: f64,
 }
 
@@ -74,14 +74,14 @@ impl NdtRow {
         self.find_borders(xs);
     }
 
-    /// Which samples lie in which cell column, for every point: it does not depend on the row.
+    /// Finds which samples lie in which cell column, for every point; it does not depend on the row.
     fn find_borders(&mut self, xs: &[f64]) {
         self.first_columns.clear();
         self.borders.clear();
         let (Some(first), Some(last)) = (self.shifts.first(), self.shifts.last()) else {
             return;
         };
-        // One more than the span can touch, whatever its phase.
+        // One more than the span can touch at any phase.
         self.columns = ((last - first) / self.cell_m).floor() as usize + 2;
         for &x in xs {
             let column = cell_index(x + first, self.cell_m);
@@ -148,7 +148,7 @@ fn add_profile(
     (step_m, per_step): (f64, f64),
 ) {
     let reach = math::sqrt(2.0 * (NEGLIGIBLE_EXPONENT - least) / profile.along);
-    // Casts cut off below zero; where exactly a run ends makes no difference to 1e-17.
+    // Casts truncate at zero; the exact end of a run matters less than 1e-17.
     let from = ((-reach - first) * per_step) as u32 as usize;
     let to = ((reach - first) * per_step + 1.0) as u32 as usize;
     let to = to.min(sums.len());

@@ -1,26 +1,26 @@
-//! Partners that are about to change: where ICP's cost has a ridge.
+//! Changes of data association: where ICP's cost has a ridge.
 //!
-//! The cost of a point is the squared distance to its nearest map point, so it has a kink where two
-//! map points are equally near, and another where the nearest one leaves the reach τ. A shift that
-//! crosses such a line changes the point's partner.
+//! The cost of a point is the squared distance to its nearest map point. It has a kink where two map points
+//! are equally near, and another where the nearest one leaves the reach τ. A shift across such a line changes
+//! the point's partner.
 
 use pr_geom::{Point2, Vector2, math};
 
 use super::{TerrainScene, TerrainSettings};
 use ch16_slam2d::cloud::NearestMap;
 
-/// A point of the sweep with its partner, and with what it changes to close by.
+/// A point of the sweep, its partner, and the nearest change of partner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Partner {
-    /// The point at the shift asked for.
+    /// The point at the given shift.
     pub point: Point2<f64>,
     /// Its nearest map point within τ.
     pub partner: Option<Point2<f64>>,
-    /// What happens within the reach that was asked for.
+    /// The change within the given reach.
     pub change: Option<PartnerChange>,
 }
 
-/// What a small shift does to a pair.
+/// The effect of a small shift on a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PartnerChange {
     /// Another map point becomes the nearest.
@@ -32,11 +32,11 @@ pub enum PartnerChange {
 }
 
 impl TerrainScene {
-    /// The partners of all points at the shift `offset_m` with the τ and the heading of `settings`,
-    /// and those changes that some shift of at most `within_m` more brings.
+    /// The partners of all points at the shift `offset_m` with the τ and the heading of `settings`, and their
+    /// changes under a further shift of at most `within_m`.
     ///
-    /// Two map points q and r are equally near on the line between them, which lies
-    /// `(|p − r|² − |p − q|²) / (2 |r − q|)` from a point p that is nearer to q.
+    /// Two map points q and r are equally near on the line between them, whose distance from a point p that
+    /// is nearer to q is `(|p − r|² − |p − q|²) / (2 |r − q|)`.
     #[must_use]
     pub fn partners(
         &self,
@@ -81,7 +81,7 @@ impl TerrainScene {
         }
     }
 
-    /// The map point that becomes the nearest first, if one does within `within_m`.
+    /// The map point that becomes the nearest first, if any does within `within_m`.
     fn rival(
         &self,
         point: Point2<f64>,
@@ -93,8 +93,8 @@ impl TerrainScene {
         let partner = map.point(nearest);
         let mut first = None;
         let mut soonest_m = within_m;
-        // A rival is at most 2 · within farther away: a shift brings the one nearer by its length,
-        // and takes the other as much.
+        // A rival is at most 2 · within farther away: a shift brings the one closer by its length, and moves
+        // the other away by as much.
         map.for_each_within(point, distance_m + 2.0 * within_m, |index| {
             let other = map.point(index);
             let apart_m = (other - partner).norm();
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_to_change_changes_within_the_reach_and_nothing_else_does() {
+    fn predicted_changes_happen_within_the_reach_and_no_others() {
         let scene = scene();
         let settings = TerrainSettings {
             tau_m: 0.2,
@@ -138,7 +138,7 @@ mod tests {
             for partner in scene.partners(&settings, here, WITHIN_M) {
                 let before = nearest(partner.point);
                 assert_eq!(before.map(|index| map.point(index)), partner.partner);
-                // All around, a little farther than the reach and a little less.
+                // In all directions, slightly beyond the reach and slightly within it.
                 let changes_at = |reach_m: f64| {
                     (0..64).any(|k| {
                         let angle = f64::from(k) * core::f64::consts::TAU / 64.0;

@@ -1,4 +1,4 @@
-//! The two places, their maps, and what can be changed.
+//! The locations, their maps, and the settings of the landscapes.
 
 use pr_geom::{Rotation, SE2};
 use pr_sim::{Lidar, Rng, World};
@@ -14,27 +14,25 @@ pub(super) const RANGE_SIGMA_M: f64 = 0.01;
 const VOXEL_M: f64 = 0.08;
 const MAP_CELL_M: f64 = 0.3;
 const NDT_MIN_POINTS: usize = 4;
-/// The map of the long corridor reaches this much farther than a sweep to either side, m: the largest
-/// shift of the landscapes, so that no end of the map tells where the sweep belongs.
+/// The map of the long corridor extends this much beyond a sweep on either side, m: the largest shift of the
+/// landscapes, so no end of the map fixes the sweep's position.
 const MAP_STEP_M: f64 = 1.3;
 
-/// Where the sweep was taken.
+/// The location of the sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum SceneKind {
     /// Room A: walls on all four sides.
     #[default]
     Room,
-    /// The corridor: two long walls, with doors, and nothing across. As in the room, the sweep is
-    /// its own map.
+    /// The corridor: two long walls with doors, and no wall across. As in the room, the sweep is its own map.
     Corridor,
-    /// A corridor without doors or ends in sight. Map and sweep were measured apart, each with noise
-    /// of its own, and the map reaches beyond what the sweep sees: nothing tells where along it the
-    /// sweep belongs.
+    /// A corridor without doors or ends in view. Map and sweep have independent noise, and the map extends
+    /// beyond the sweep, so the position along the corridor is unconstrained.
     LongCorridor,
 }
 
 impl SceneKind {
-    /// Where the sensor stands, `world_from_sensor`.
+    /// Pose of the sensor, `world_from_sensor`.
     fn world_from_sensor(self) -> SE2 {
         match self {
             Self::Room => scenes::room_a(),
@@ -50,7 +48,7 @@ impl SceneKind {
     }
 }
 
-/// What the landscapes depend on, apart from the place.
+/// Settings of the landscapes, apart from the location.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TerrainSettings {
     /// Shifts along each axis.
@@ -59,7 +57,7 @@ pub struct TerrainSettings {
     pub span_m: f64,
     /// Truncation of ICP's distances, m.
     pub tau_m: f64,
-    /// The cloud is turned by this about the sensor, degrees.
+    /// Rotation of the cloud about the sensor, degrees.
     pub heading_deg: f64,
 }
 
@@ -85,22 +83,21 @@ impl TerrainSettings {
         -self.span_m + 2.0 * self.span_m * index as f64 / (self.n - 1) as f64
     }
 
-    /// Column or row, in fractions of a cell, of a shift; it may lie outside.
+    /// Column or row of a shift, in fractions of a cell; it may lie outside.
     #[must_use]
     pub fn index_of(&self, offset_m: f64) -> f64 {
         0.5 * (offset_m / self.span_m + 1.0) * self.n.saturating_sub(1) as f64
     }
 }
 
-/// One sweep in the world's frame, and the map that it is shifted over, as points for ICP and as
-/// Gaussians for NDT.
+/// One sweep in the world's frame, and its map, as points for ICP and as Gaussians for NDT.
 #[derive(Clone, Debug)]
 pub struct TerrainScene {
     kind: SceneKind,
     seed: u32,
     world_from_sensor: SE2,
     cloud: PointCloud,
-    /// What the maps are built from.
+    /// The points from which the maps are built.
     target: PointCloud,
     map: DenseMap,
     ndt: NdtMap,
@@ -112,7 +109,7 @@ impl TerrainScene {
     /// The chapter's size of an NDT cell, m.
     pub const DEFAULT_NDT_CELL_M: f64 = 0.55;
 
-    /// The chapter's sweep of a place, with NDT cells of `ndt_cell_m`.
+    /// The chapter's sweep of a location, with NDT cells of `ndt_cell_m`.
     ///
     /// # Panics
     /// If the cell size is not positive and finite.
@@ -121,7 +118,7 @@ impl TerrainScene {
         Self::with_seed(kind, ndt_cell_m, Self::SEED)
     }
 
-    /// The same place with other range noise.
+    /// The same location with another seed of the range noise.
     ///
     /// # Panics
     /// If the cell size is not positive and finite.
@@ -161,7 +158,7 @@ impl TerrainScene {
         }
     }
 
-    /// Builds the NDT anew with cells of `ndt_cell_m`.
+    /// Rebuilds the NDT with cells of `ndt_cell_m`.
     ///
     /// # Panics
     /// If the cell size is not positive and finite.
@@ -169,19 +166,19 @@ impl TerrainScene {
         self.ndt = NdtMap::build(&self.target, ndt_cell_m, NDT_MIN_POINTS);
     }
 
-    /// The place.
+    /// The location.
     #[must_use]
     pub fn kind(&self) -> SceneKind {
         self.kind
     }
 
-    /// Where the noise of its sweeps started.
+    /// The seed of the range noise.
     #[must_use]
     pub fn seed(&self) -> u32 {
         self.seed
     }
 
-    /// Where the sensor stood.
+    /// The pose of the sensor.
     #[must_use]
     pub fn world_from_sensor(&self) -> SE2 {
         self.world_from_sensor
@@ -205,10 +202,10 @@ impl TerrainScene {
         &self.ndt
     }
 
-    /// What point-to-plane knows of the pose at the truth, for the scene's range noise.
+    /// The point-to-plane information about the pose at the truth, for the scene's range noise.
     ///
-    /// Only points with normals count. In the corridor all normals point across it, so nothing
-    /// is known of the direction along it.
+    /// Only points with normals count. In the corridor all normals point across it, so the direction along it
+    /// is unconstrained.
     #[must_use]
     pub fn information(&self, tau_m: f64) -> PoseInformation {
         let config = IcpConfig {
@@ -220,7 +217,7 @@ impl TerrainScene {
         pose_information(&pairs, RANGE_SIGMA_M)
     }
 
-    /// The points turned about the sensor by `heading_deg`, into `xs` and `ys`.
+    /// Writes the points, turned about the sensor by `heading_deg`, to `xs` and `ys`.
     pub(super) fn turned_into(&self, heading_deg: f64, xs: &mut Vec<f64>, ys: &mut Vec<f64>) {
         xs.clear();
         ys.clear();
@@ -239,7 +236,7 @@ impl TerrainScene {
     }
 }
 
-/// Takes sweeps of a place, in the world's frame and thinned.
+/// Takes sweeps of a location, in the world's frame and thinned.
 pub(super) struct Sweeper {
     world: World,
     lidar: Lidar,

@@ -1,11 +1,11 @@
-//! The scores of all poses of a window, as a search spares them: for the picture below it.
+//! The scores of all poses of a window, which a search avoids to compute: the picture below it.
 
 use ch16_slam2d::search::ScanSearch;
 
-/// The first headings lie so many steps apart, a power of two: the surface is rough soon.
+/// Stride of the first pass over the headings, a power of two: a coarse surface appears early.
 const FIRST_STRIDE: usize = 16;
 
-/// The best score at each place and at each heading, filled a row of places at a time.
+/// The best score at each position and at each heading, filled one row of positions at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScoreSurface {
     by_place: Vec<f64>,
@@ -17,7 +17,7 @@ pub struct ScoreSurface {
 }
 
 impl ScoreSurface {
-    /// A surface without a score.
+    /// A surface without scores.
     #[must_use]
     pub fn new(search: &ScanSearch) -> Self {
         let headings = search.headings();
@@ -25,7 +25,7 @@ impl ScoreSurface {
         let strides = core::iter::successors(Some(FIRST_STRIDE), |stride| Some(stride / 2));
         let order = strides.take_while(|stride| *stride > 0).flat_map(|stride| {
             let on_grid = (0..headings).step_by(stride);
-            // Those of the stride before are done.
+            // Those of the earlier stride are done.
             on_grid.filter(move |heading| stride == FIRST_STRIDE || heading % (2 * stride) != 0)
         });
         Self {
@@ -37,7 +37,7 @@ impl ScoreSurface {
         }
     }
 
-    /// Scores one row of places at one heading; false once all are scored.
+    /// Scores one row of positions at one heading; false once all are scored.
     pub fn advance(&mut self, search: &ScanSearch) -> bool {
         let rows = self.by_place.len() / self.columns;
         let Some(&heading) = self.order.get(self.rows_done / rows) else {
@@ -61,13 +61,13 @@ impl ScoreSurface {
         &self.by_place
     }
 
-    /// The best score over all places at each heading; none where it is not scored yet.
+    /// The best score over all positions at each heading; `None` before it is scored.
     #[must_use]
     pub fn by_heading(&self) -> &[Option<f64>] {
         &self.by_heading
     }
 
-    /// Rows done so far: another number whenever a score may have changed.
+    /// Number of rows so far; it changes whenever a score may have changed.
     #[must_use]
     pub fn rows_done(&self) -> usize {
         self.rows_done

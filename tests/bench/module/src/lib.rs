@@ -1,3 +1,3 @@
-//! The workloads, linked to one module for browsers. All of it is in [`slam2d_bench`].
+//! Links the workloads to one module for browsers. The code is in [`slam2d_bench`].
 
 extern crate slam2d_bench as _;

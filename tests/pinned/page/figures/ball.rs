@@ -1,11 +1,11 @@
-//! Balls of w16.3: where gradient descent comes to rest.
+//! Balls of w16.3: where gradient descent stops.
 
 use ch16_lab::terrain::{Ball, BallConfig, Objective, TerrainProbe, TerrainScene, TerrainSettings};
 use pr_geom::Vector2;
 
 use super::terrain::scene_kind;
 
-/// How far from the truth a ball comes to rest. `reach` is τ for ICP and the cell for NDT; all in cm.
+/// Distance from the truth at which a ball stops. `reach` is τ for ICP and the cell for NDT; all in cm.
 pub fn rest_m(place: &str, objective: &str, reach_and_start_cm: [&str; 3]) -> Option<f64> {
     let [reach, dx, dy] = reach_and_start_cm.map(|cm| cm.parse::<f64>().map(|cm| 0.01 * cm));
     let (reach_m, start_m) = (reach.ok()?, Vector2::new(dx.ok()?, dy.ok()?));

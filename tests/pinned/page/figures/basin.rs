@@ -1,4 +1,4 @@
-//! Registrations of w16.1 from a wrong heading: where they end, and how wide the basin is.
+//! Registrations of w16.1 from a wrong heading: their results, and the width of the basin.
 
 use ch16_lab::basin::{
     BasinOutcome, BasinScene, BasinStart, EdgeSearch, HOME_HEADING_DEG, Minimum, SUCCESS_RADIUS_M,
@@ -7,7 +7,7 @@ use ch16_slam2d::icp::{IcpVariant, IcpWorkspace, correspondences, icp_informatio
 
 /// The widget's own τ, m.
 pub const TAU_M: f64 = 0.7;
-/// Other τ that the exercises ask about, m.
+/// Other τ of the exercises, m.
 pub const WIDE_TAU_M: f64 = 1.4;
 const SHORT_TAU_M: f64 = 0.1;
 
@@ -75,7 +75,7 @@ fn register(scene: &BasinScene, name: &str, tau: f64, heading_deg: f64) -> Optio
     Some(scene.register_from(&start, &config, &mut IcpWorkspace::new()))
 }
 
-/// The standard deviation of the position, in its loosest direction, that a registration claims.
+/// The standard deviation of the position in its loosest direction, according to a registration.
 fn claimed_std_mm(scene: &BasinScene, name: &str, heading_deg: f64) -> Option<f64> {
     /// Range noise of the scene's sensor, m.
     const SIGMA_M: f64 = 0.012;
@@ -101,7 +101,8 @@ fn whole_degrees() -> impl Iterator<Item = i32> {
     -180..=180
 }
 
-/// The least whole degree from which, and from each up to 90°, a registration ends a quarter turn off.
+/// The smallest whole degree from which, as from each larger one up to 90°, a registration ends a quarter
+/// turn off.
 fn quarter_from_deg(scene: &BasinScene, name: &str) -> Option<f64> {
     let is_quarter = |degrees: &i32| {
         register(scene, name, TAU_M, f64::from(*degrees))
@@ -111,7 +112,7 @@ fn quarter_from_deg(scene: &BasinScene, name: &str) -> Option<f64> {
     Some(f64::from(last_other + 1))
 }
 
-/// Iterations from each whole degree of the right basin, but for the truth itself.
+/// Iterations from each whole degree of the right basin, except for the truth itself.
 fn iterations_in_basin(scene: &BasinScene, name: &str) -> Option<Iterations> {
     let [from, to] = [-1, 1].map(|side| basin_edge(scene, name, TAU_M, side));
     let degrees = (from? as i32..=to? as i32).filter(|degrees| *degrees != 0);
@@ -132,7 +133,7 @@ impl Iterations {
     }
 }
 
-/// The last whole degree, going from 0 to one side, from which the right minimum is reached.
+/// The last whole degree, from 0 to one side, that converges to the right minimum.
 fn basin_edge(scene: &BasinScene, name: &str, tau: f64, side: i32) -> Option<f64> {
     let comes_home = |degrees: i32| {
         let found = register(scene, name, tau, f64::from(side * degrees));
@@ -143,7 +144,7 @@ fn basin_edge(scene: &BasinScene, name: &str, tau: f64, side: i32) -> Option<f64
     Some(f64::from(side * (first_failure - 1)))
 }
 
-/// How far a guess at the right place may be turned, to either side, and still comes home.
+/// The largest heading error, on both sides, of a guess at the right position that converges to the truth.
 fn edge_deg(scene: &BasinScene, name: &str, tau: f64) -> Option<f64> {
     let mut search = EdgeSearch::new(BasinScene::config(variant(name)?, tau));
     let mut workspace = IcpWorkspace::new();

@@ -1,10 +1,10 @@
-//! Sweeps dropped in w16.3: how far their rests scatter.
+//! Sweeps dropped in w16.3: the scatter of their results.
 
 use ch16_lab::terrain::{Drops, TerrainScene};
 
 use super::terrain::scene_kind;
 
-/// How many the text drops.
+/// Number of drops in the text.
 const COUNT: usize = 100;
 
 /// `count`, `long.std_x_cm`.

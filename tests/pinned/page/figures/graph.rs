@@ -4,9 +4,9 @@ use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 use nalgebra::Matrix3;
 use pr_geom::{SE2, Translation};
 
-/// What each odometry edge measured, m.
+/// Measurement of each odometry edge, m.
 const ODOMETRY_M: f64 = 1.0;
-/// What the loop edge measured, m.
+/// Measurement of the loop edge, m.
 const LOOP_M: f64 = 2.6;
 
 /// `start2`, `end1`, `chi2_after`: poses along the line and disagreement, before and after.

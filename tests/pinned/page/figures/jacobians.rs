@@ -1,10 +1,10 @@
-//! One pose graph solved in four ways, as w16.12 has it.
+//! One pose graph solved in four ways, like w16.12.
 
 use ch16_lab::jacobians::{
     EDGE_STD, RING_POSES, Recipe, RingConfig, WrongJacobian, descend, optimum, ring,
 };
 
-/// Steps that each solver may take, as in the widget.
+/// Largest number of steps of each solver, as in the widget.
 const MOST_STEPS: usize = 40;
 
 /// `6.exact.steps`, `3.residual.off_m`: by contradiction in degrees, and by solver.

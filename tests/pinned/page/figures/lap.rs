@@ -1,4 +1,4 @@
-//! Laps by name, and what the results table says of each.
+//! Laps by name, and their entries in the results table.
 
 use ch16_lab::lap::{
     BuiltInWorld, CANONICAL_SEED, Choice as _, Claim, GateUse, LapConfig, LapMatcher, LapRecord,
@@ -9,7 +9,7 @@ use pr_geom::Translation;
 
 use super::loops;
 
-/// The least noise of the wheels that the page drives with.
+/// The smallest odometry noise on the page.
 const QUIET_NOISE: f64 = 0.25;
 
 /// The parameters of the lap of that name.
@@ -38,14 +38,14 @@ pub fn config(name: &str) -> Option<LapConfig> {
     })
 }
 
-/// The canonical run with four times the wheel noise.
+/// The canonical run with four times the odometry noise.
 fn noisy() -> LapConfig {
     let mut config = LapConfig::default();
     config.drive.noise_factor = 4.0;
     config
 }
 
-/// Point to plane with the normals of the chapter's lap, which only weigh edges there.
+/// Point to plane with the normals of the chapter's lap, which only weight edges there.
 fn narrow_normals() -> LapConfig {
     let config = LapConfig::default();
     let scan = config.slam.scan;
@@ -54,7 +54,7 @@ fn narrow_normals() -> LapConfig {
         .with_scan(scan)
 }
 
-/// The canonical run with wheels that hardly slip.
+/// The canonical run with almost exact odometry.
 fn quiet(matcher: LapMatcher) -> LapConfig {
     LapConfig::with_seed_and_noise(CANONICAL_SEED, QUIET_NOISE).with_matcher(matcher)
 }
@@ -91,7 +91,7 @@ pub fn value(record: &LapRecord, path: &[&str]) -> Option<f64> {
     }
 }
 
-/// What a loop of the reader's own does at the end of the lap, past the gate.
+/// The effect of a custom loop at the end of the lap, without the gate.
 fn own(record: &LapRecord, ends: [&str; 2], claim: &str, kernel: &str, what: &str) -> Option<f64> {
     let request = OwnLoopRequest {
         tick: record.ticks(),
@@ -112,7 +112,7 @@ fn own(record: &LapRecord, ends: [&str; 2], claim: &str, kernel: &str, what: &st
     })
 }
 
-/// Cells of the grid that is painted from a whole lap.
+/// Cells of the grid of a whole lap.
 pub fn grid(record: &LapRecord, what: &str) -> Option<f64> {
     let grid = record.occupancy_grid(record.ticks());
     match what {

@@ -1,4 +1,4 @@
-//! Attempts to close a loop: what was found, what the gate said, and how true it was.
+//! Attempts to close a loop: the registration, the gate, and the error against the truth.
 
 use ch16_lab::lap::{LapTrace, LoopAttempt};
 

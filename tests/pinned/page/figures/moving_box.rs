@@ -1,4 +1,4 @@
-//! The moving box of w16.8: how far it pulls the mean over many seeds.
+//! The moving box of w16.8: the bias of the mean over many seeds.
 
 use ch16_lab::moving_box::{BoxConfig, BoxErrors, BoxMethods, BoxScene};
 use ch16_slam2d::icp::IcpWorkspace;

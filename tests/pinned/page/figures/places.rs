@@ -1,4 +1,4 @@
-//! Places by their looks, over the laps that `slam2d places` drives: precision and recall.
+//! Place recognition over the laps of `slam2d places`: precision and recall.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapDetector, LapMatcher};
 use ch16_lab::places::{PlaceCurve, place_curves, place_pairs};
@@ -12,7 +12,7 @@ pub struct World {
 }
 
 impl World {
-    /// Drives the laps of the world of that name.
+    /// Runs the laps of the world of that name.
     pub fn graded(name: &str) -> Option<Self> {
         let world = BuiltInWorld::named(name)?;
         let lap = |seed| LapConfig::in_world(world, seed, 1.0).with_matcher(LapMatcher::Ndt);
@@ -38,7 +38,7 @@ impl World {
     }
 }
 
-/// What the comparison is made of.
+/// Parameters of the comparison.
 pub fn setup(what: &str) -> Option<f64> {
     match what {
         "seeds" => Some(f64::from(SEEDS)),

@@ -1,11 +1,11 @@
-//! Turns and mirror images over pairs of points, as w16.11 has them.
+//! Rotations and reflections over pairs of points, like w16.11.
 
 use ch16_lab::procrustes::{Handedness, Pairs, Procrustes, Shape, Winner};
 
 /// Seeds of the noise along the wall, from 1 on.
 const SEEDS: u32 = 1000;
 
-/// `wall.mirrored`, `upside.turn.cost`: by what is seen, then by kind of matrix.
+/// `wall.mirrored`, `upside.turn.cost`: by shape, then by kind of matrix.
 pub fn value(path: &[&str]) -> Option<f64> {
     let problem = |shape, seed| {
         let pairs = Pairs::seen(shape, seed);

@@ -1,5 +1,5 @@
-//! Figures of recorded logs, as `docs/robots.md` prints them: the logs are no part of the project, so
-//! that page is written by a command and read here.
+//! Results of recorded logs, from `docs/robots.md`: the logs are not part of the project, so a command writes
+//! that page and this module reads it.
 
 use crate::page::document::source;
 

@@ -1,4 +1,4 @@
-//! Rows of the point-to-plane step in w16.3, and what they know.
+//! Rows of the point-to-plane step in w16.3, and their constraints.
 
 use ch16_lab::terrain::{PlaneRows, TerrainScene, TerrainSettings};
 
@@ -19,7 +19,7 @@ pub fn value(path: &[&str]) -> Option<f64> {
         "wheels" => (rows.rows.len(), Some(WHEELS_SIGMA_M)),
         count => (count.parse().ok()?, None),
     };
-    let know = rows.know(taken, sigma_m);
+    let know = rows.constraints(taken, sigma_m);
     match what {
         "taken" => Some(taken as f64),
         "rank" => Some(know.rank as f64),

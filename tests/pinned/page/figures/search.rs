@@ -1,4 +1,4 @@
-//! The whole window of w16.6: how many poses it holds, how sure the best is, and how much work it was.
+//! The whole window of w16.6: the number of its poses, the margin of the best one, and the work.
 
 use ch16_lab::basin::BasinScene;
 use ch16_lab::whole_window::{WindowConfig, WindowSearch};

@@ -1,4 +1,4 @@
-//! What the text says about the set-up: the Apartment, constants of the lap, the gate.
+//! The set-up in the text: the Apartment, constants of the lap, the gate.
 
 use ch16_lab::basin::BasinScene;
 use ch16_lab::lap::{LAST_KEYFRAMES, LapConfig};
@@ -28,7 +28,7 @@ pub fn world(what: &str) -> Option<f64> {
     }
 }
 
-/// `lap.beams`, `loop.radius_m`, `basin.tau`: constants by the part that they belong to.
+/// `lap.beams`, `loop.radius_m`, `basin.tau`: constants by part.
 pub fn value(path: &[&str]) -> Option<f64> {
     let config = LapConfig::default();
     let loops = &config.slam.chapter.loops;
@@ -64,7 +64,7 @@ pub fn value(path: &[&str]) -> Option<f64> {
     })
 }
 
-/// The fewest points in a line that give each other normals.
+/// The smallest number of points in a line that yields normals.
 fn min_neighbors() -> usize {
     let has_normals = |count: &usize| {
         let line = (0..*count).map(|k| Point2::new(0.05 * k as f64, 0.0));
@@ -77,8 +77,8 @@ fn min_neighbors() -> usize {
         .expect("ten points in a line give normals")
 }
 
-/// The ridge of the point-to-plane step as a share of the mean of the diagonal, from how much of a
-/// step it keeps back.
+/// The ridge of the point-to-plane step as a share of the mean of the diagonal, computed from the part of a
+/// step that it suppresses.
 fn plane_ridge() -> f64 {
     const OFF_M: f64 = 0.1;
     let wall = [-1.0, 0.0, 1.0].map(|x| Point2::new(x, 0.0));
@@ -90,7 +90,7 @@ fn plane_ridge() -> f64 {
     ridge / (diagonal.iter().sum::<f64>() / 3.0)
 }
 
-/// The smaller eigenvalue of a bell whose points lie on a line, as a share of the larger one.
+/// The smaller eigenvalue of a Gaussian with points on a line, as a share of the larger one.
 fn ndt_clamp() -> f64 {
     let line = (0..8).map(|k| Point2::new(0.05 + 0.1 * f64::from(k), 0.5));
     let map = NdtMap::build(&line.collect::<PointCloud>(), 1.0, 4);
@@ -98,9 +98,9 @@ fn ndt_clamp() -> f64 {
     values.min() / values.max()
 }
 
-/// How many times the usual difference of prediction and registration the adaptive τ is.
+/// Ratio of the adaptive τ to the usual difference of prediction and registration.
 fn tau_deviations() -> f64 {
-    // A power of two, so that nothing is rounded.
+    // A power of two avoids rounding.
     const DIFFERENCE_M: f64 = 0.125;
     let mut threshold = AdaptiveThreshold::new(0.5, 0.0, 6.0);
     for _ in 0..8 {
@@ -109,7 +109,7 @@ fn tau_deviations() -> f64 {
     threshold.tau_m() / DIFFERENCE_M
 }
 
-/// The test of an innovation: its threshold, and what that lets through.
+/// The test of an innovation: its threshold, and what it accepts.
 pub fn gate(what: &str) -> Option<f64> {
     match what {
         "chi2" => Some(LapConfig::default().slam.chapter.loops.gate_chi2),

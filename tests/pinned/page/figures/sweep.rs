@@ -1,6 +1,6 @@
-//! Laps that differ only in their seed, at four noise factors: what of the canonical run is luck.
+//! Laps that differ only in their seed, at four noise factors: the variation of the canonical run.
 //!
-//! The same laps as `slam2d sweep` drives by default, and the same statistics of the core.
+//! The same laps as the defaults of `slam2d sweep`, and the same statistics of the core.
 
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;
@@ -13,13 +13,13 @@ use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::metrics::position_error_m;
 
 const SEEDS: RangeInclusive<u32> = 1..=1000;
-/// Those of them that are driven once more from a start a hair's breadth away, at noise ×1.
+/// The number of laps that are also run from a start that differs by rounding, at noise ×1.
 const NUDGED_SEEDS: RangeInclusive<u32> = 1..=300;
-/// The level of [`NOISE`] of the canonical run.
+/// Index in [`NOISE`] of the canonical run.
 const ONCE: usize = 1;
-/// The level with the greatest noise.
+/// Index of the largest noise.
 const NOISIEST: usize = 3;
-/// Factors of the wheels' noise, by the names that the page gives them.
+/// Factors of the odometry noise, by their names on the page.
 const NOISE: [(&str, f64); 4] = [
     ("quarter", 0.25),
     ("once", 1.0),
@@ -30,20 +30,20 @@ const NOISE: [(&str, f64); 4] = [
 /// The laps of all seeds at all noise factors.
 pub struct Sweep {
     levels: [LapStatistics; 4],
-    /// The noisiest level with the graph's own covariance in the gate.
+    /// The laps at the largest noise with the exact gate.
     exact_gate: LapStatistics,
     nudged: NudgeStatistics,
     canonical: LapOutcome,
 }
 
 impl Sweep {
-    /// The sweep, driven when it is first asked for.
+    /// The sweep, computed on first use.
     pub fn shared() -> &'static Self {
         static SWEEP: OnceLock<Sweep> = OnceLock::new();
         SWEEP.get_or_init(Self::run)
     }
 
-    /// Drives all of them over all cores; the laps are independent, so threads change nothing.
+    /// Runs all of them on all cores; the laps are independent, so threads do not affect results.
     fn run() -> Self {
         let seeds: Vec<u32> = SEEDS.collect();
         let workers = thread::available_parallelism().map_or(1, usize::from);
@@ -94,7 +94,7 @@ impl Sweep {
     }
 }
 
-/// What laps have in common, by name.
+/// Statistics of laps, by name.
 fn of_laps(laps: &LapStatistics, path: &[&str], canonical: &LapOutcome) -> Option<f64> {
     let percent = |is_true: fn(&LapOutcome) -> bool| 100.0 * laps.share(is_true);
     Some(match *path {
@@ -130,13 +130,13 @@ fn of_laps(laps: &LapStatistics, path: &[&str], canonical: &LapOutcome) -> Optio
 struct OfSeed {
     /// One for each noise factor.
     outcomes: [LapOutcome; 4],
-    /// How far the lap at noise ×1 moved with its start, where that was tried, m.
+    /// Movement of the lap at noise ×1 with its start, if it was tried, m.
     moved_m: Option<f64>,
-    /// The noisiest lap with the graph's own covariance in the gate.
+    /// The lap at the largest noise with the exact gate.
     exact_gate: LapOutcome,
 }
 
-/// One runner for all: it keeps what a seed simulates over the noise factors.
+/// One runner for all: it reuses the simulation of a seed for all noise factors.
 fn laps(seeds: &[u32]) -> Vec<OfSeed> {
     let mut runner = LapRunner::new();
     let of_seed = |&seed: &u32| {
@@ -158,14 +158,14 @@ fn laps(seeds: &[u32]) -> Vec<OfSeed> {
     seeds.iter().map(of_seed).collect()
 }
 
-/// How far the start of a twin lies from the start, m.
+/// Distance of a twin's start from the start, m.
 fn nudge_m() -> f64 {
     let config = LapConfig::default();
     let twin = nudged(&config, NUDGE);
     position_error_m(&config.drive.start, &twin.drive.start)
 }
 
-/// Whether closing loops made an error larger.
+/// Whether closing loops increased an error.
 fn grew(lap: &LapOutcome, error_m: impl Fn(&LapSummary) -> f64) -> bool {
     error_m(&lap.lap) > error_m(&lap.front_end)
 }

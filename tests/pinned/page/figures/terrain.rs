@@ -1,4 +1,4 @@
-//! Landscapes of w16.3: costs at a shift, and what a sweep knows.
+//! Landscapes of w16.3: costs at a shift, and the information of a sweep.
 
 use ch16_lab::terrain::{SceneKind, Terrain, TerrainProbe, TerrainScene, TerrainSettings};
 use pr_geom::Vector2;
@@ -6,7 +6,7 @@ use pr_geom::Vector2;
 /// The shift at which the text compares landscapes, m.
 const PROBE_M: f64 = 0.6;
 
-/// `room.icp.x06`, `corridor.information.along_std_mm`: by scene, objective and place.
+/// `room.icp.x06`, `corridor.information.along_std_mm`: by scene, objective and shift.
 pub fn value(path: &[&str]) -> Option<f64> {
     let settings = TerrainSettings::default();
     let (place, objective, what) = match *path {
@@ -43,7 +43,7 @@ pub fn scene_kind(place: &str) -> Option<SceneKind> {
     }
 }
 
-/// What a registration at the truth knows along the corridor, and in the direction known best.
+/// The information of a registration at the truth along the corridor, and in the best constrained direction.
 fn known(scene: &TerrainScene, what: &str) -> Option<f64> {
     let information = scene.information(TerrainSettings::default().tau_m);
     match what {

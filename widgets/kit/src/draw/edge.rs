@@ -1,16 +1,16 @@
-//! Marks at the edge of a plot: a ring at the last place of an axis is drawn whole.
+//! Draws marks at the edge of a plot completely, such as a ring at the end of an axis.
 
 use super::layers::{HANDLE_RADIUS, is_finite};
 use crate::scene::Layer;
 use crate::transform::Transform;
 
-/// Points of a layer that is a handful of marks; more are a cloud, which the plot cuts.
+/// Largest number of points that count as separate marks; a larger layer is a cloud, which the plot clips.
 const FEW: usize = 16;
 
-/// How far beyond its plot a layer has to be drawn, in pixels; nothing where the plot cuts it.
+/// Margin by which a layer has to be drawn beyond its plot, in pixels; `None` if the plot clips it.
 ///
-/// That is the radius of its marks, where all their places lie in the plot and one lies so near its
-/// edge that the plot would cut it.
+/// That is the radius of its marks, if all their positions are in the plot and one of them is so close to the
+/// edge that the plot would clip it.
 pub fn reach_over(layer: &Layer, to: &Transform) -> Option<f32> {
     let pose;
     let (places, radius) = match layer {

@@ -1,4 +1,4 @@
-//! What surrounds a panel's layers: paper, grid, ticks, names, colour bar, legend.
+//! Everything around a panel's layers: background, grid, ticks, names, colour bar, legend.
 
 use super::marks::mark;
 use crate::layout::{PanelLayout, TICK, swatch, x_ticks, y_ticks};
@@ -13,7 +13,7 @@ const BAR_WIDTH: f32 = 120.0;
 /// Radius of a mark in a legend.
 const MARK_RADIUS: f32 = 5.0;
 
-/// Paper and grid.
+/// Background and grid.
 pub fn back(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: Theme) {
     let plot = to.plot();
     let shown = to.shown();
@@ -152,7 +152,7 @@ fn color_bar(surface: &mut dyn Surface, bar: &ColorBar, at: Px, theme: Theme) {
     let strip = BAR_WIDTH / f32::from(STRIPS);
     for k in 0..STRIPS {
         let x = left + strip * f32::from(k);
-        // Strips overlap by a pixel, so that no seam shows between them.
+        // Strips overlap by a pixel to avoid a visible seam.
         let rest = (left + BAR_WIDTH - x).min(strip + 1.0);
         let color = level_color(f32::from(k) / f32::from(STRIPS - 1));
         surface.rect(PxRect::new(x, at[1] - 6.0, rest, 12.0), color);
@@ -174,7 +174,7 @@ fn legend_entry(surface: &mut dyn Surface, entry: &LegendEntry, at: Px, theme: T
             stroke,
         };
         match (entry.mark, stroke) {
-            // The mark would hide the dashes that meet it, so they come from both ends towards it.
+            // The dashes start at both ends, because the mark would hide those that meet in the middle.
             (Some(_), Stroke::Dashed | Stroke::Dotted) => {
                 let beside = MARK_RADIUS + 1.0;
                 surface.line(&[[left, y], [middle[0] - beside, y]], pen);
@@ -186,11 +186,11 @@ fn legend_entry(surface: &mut dyn Surface, entry: &LegendEntry, at: Px, theme: T
     match entry.mark {
         Some(Mark::Dot) => mark(surface, middle, Mark::Dot, 3.0, color),
         Some(shape) => mark(surface, middle, shape, MARK_RADIUS, color),
-        // Neither mark nor line: an area, such as the class of a raster's cells.
+        // An area without mark and line, such as the class of a raster's cells.
         None if entry.stroke.is_none() => {
             let area = PxRect::new(x + 3.0, y - 6.0, 15.0, 12.0);
             surface.rect(area, color);
-            // An area of the paper's colour would not be seen.
+            // An area in the colour of the paper is invisible without an outline.
             if matches!(entry.tone, Tone::Paper | Tone::Unseen) {
                 border(surface, area, Pen::solid(tone(theme, Tone::Truth), 1.0));
             }

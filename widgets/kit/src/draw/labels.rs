@@ -1,4 +1,4 @@
-//! Words near points, placed so that none lies on another.
+//! Places text near points without overlaps.
 
 use super::layers::{is_finite, words};
 use crate::palette::{self, Theme};
@@ -6,11 +6,11 @@ use crate::scene::{Layer, Panel, Tone};
 use crate::surface::{Px, PxRect, Surface, TextSize};
 use crate::transform::Transform;
 
-/// Height of a line of small text with the room that it keeps.
+/// Height of a line of small text with its margin.
 const LINE: f32 = 15.0;
-/// Room between the words and what stands beside them.
+/// Margin between the text and its neighbours.
 const ROOM: f32 = 3.0;
-/// Where words are tried, as parts of half their size beyond the point: above and below, then aside.
+/// Candidate positions, as multiples of half the text's size: above and below the point, then beside it.
 const SIDES: [[f32; 2]; 8] = [
     [0.0, -1.0],
     [0.0, 1.0],
@@ -21,10 +21,10 @@ const SIDES: [[f32; 2]; 8] = [
     [1.0, 1.0],
     [-1.0, 1.0],
 ];
-/// So many lines they are moved away at most.
+/// Largest displacement of a text, in lines.
 const MOST_LINES: u16 = 6;
 
-/// Draws the labels of a panel, those of earlier layers first.
+/// Draws the labels of a panel, in the order of the layers.
 pub fn labels(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: Theme) {
     let mut taken = Vec::new();
     for layer in &panel.layers {
@@ -59,7 +59,7 @@ pub fn labels(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: T
     }
 }
 
-/// The nearest free place for words of that width; none where all are taken.
+/// The nearest free rectangle for text of that width; `None` if there is none.
 fn place(at: Px, width: f32, clear_px: f32, plot: &PxRect, taken: &[PxRect]) -> Option<PxRect> {
     let reach = |away: f32| {
         let beyond = [clear_px + 0.5 * width + ROOM, clear_px + 0.5 * LINE];
@@ -80,12 +80,12 @@ fn place(at: Px, width: f32, clear_px: f32, plot: &PxRect, taken: &[PxRect]) -> 
     })
 }
 
-/// The rectangle of words in the middle of which `at` lies.
+/// The rectangle of a text centered at `at`.
 fn around(at: Px, width: f32) -> PxRect {
     PxRect::new(at[0] - 0.5 * width, at[1] - 0.5 * LINE, width, LINE)
 }
 
-/// The rectangle moved sideways into the plot; none where it is too wide, or above or below it.
+/// Shifts the rectangle sideways into the plot; `None` if it is too wide, or above or below the plot.
 fn within(rect: PxRect, plot: &PxRect) -> Option<PxRect> {
     let fits = rect.width <= plot.width - 2.0 * ROOM
         && rect.top >= plot.top

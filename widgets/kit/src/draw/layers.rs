@@ -6,10 +6,10 @@ use crate::scene::{Layer, Mark, Stroke, Tone};
 use crate::surface::{Align, Haloed, Pen, Px, Surface, TextSize};
 use crate::transform::Transform;
 
-/// Radius of a handle's ring in pixels: a target of 24 pixels across.
+/// Radius of a handle's ring in pixels: a target 24 pixels across, with its stroke.
 pub const HANDLE_RADIUS: f32 = 9.0;
 
-/// Draws one layer; `key` names it among the textures.
+/// Draws one layer; `key` identifies its texture.
 pub fn layer(surface: &mut dyn Surface, layer: &Layer, to: &Transform, theme: Theme, key: &str) {
     match layer {
         Layer::Points {
@@ -104,19 +104,19 @@ pub fn layer(surface: &mut dyn Surface, layer: &Layer, to: &Transform, theme: Th
                 words(surface, to.to_px(*at), text, *meaning, theme);
             }
         }
-        // Above all layers, once the places of all words are known.
+        // Drawn above all layers, once the positions of all labels are known.
         Layer::Label { .. } => {}
     }
 }
 
-/// A disc of paper with a ring and a dot: it looks like something to take hold of.
+/// A disc of paper with a ring and a dot, which looks draggable.
 fn handle(surface: &mut dyn Surface, at: Px, color: Rgb, theme: Theme) {
     let paper = tone(theme, Tone::Paper);
     surface.circle(at, HANDLE_RADIUS, Some(paper), Some(Pen::solid(color, 2.5)));
     mark(surface, at, Mark::Dot, 3.5, color);
 }
 
-/// Words over data: black or white on the area of their class, otherwise with a halo of paper.
+/// Text over data: black or white on the area of its class, otherwise with a halo of paper.
 pub fn words(surface: &mut dyn Surface, at: Px, text: &str, meaning: Tone, theme: Theme) {
     let ink = tone(theme, meaning);
     if let Tone::Class(_) = meaning {

@@ -1,4 +1,4 @@
-//! The shapes of points: one shape for each meaning, so that colour never stands alone.
+//! The shapes of points: one for each meaning, so that no meaning depends on colour alone.
 
 use crate::palette::Rgb;
 use crate::scene::Mark;

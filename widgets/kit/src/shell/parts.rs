@@ -11,7 +11,7 @@ use crate::style::TARGET;
 use crate::{controls, readout, transport};
 
 impl Shell {
-    /// Title, misconception, and what to try.
+    /// Title, misconception, and presets.
     pub(super) fn header(&mut self, ui: &mut Ui) {
         let spec = self.model.spec();
         ui.horizontal_wrapped(|ui| {
@@ -29,7 +29,7 @@ impl Shell {
                 let response = ui.add(Button::new(preset.label).min_size(vec2(0.0, TARGET)));
                 self.hot.control(preset.id, &response);
                 if response.on_hover_text(preset.help).clicked() {
-                    // A preset that fails names what the widget lacks: its tests press them all.
+                    // A failing preset names an unknown parameter; the tests press all presets.
                     let _ = apply_preset(self.model.as_mut(), preset);
                     self.touch();
                 }
@@ -75,13 +75,13 @@ impl Shell {
         if let Some(spec) = defaults
             && transport::button(ui, spec, false, &mut self.hot).clicked()
         {
-            // The list of buttons has it.
+            // The button comes from the widget's own list.
             let _ = self.model.press(spec.id);
             self.touch();
         }
     }
 
-    /// Verdict and numbers, as they are after what the controls changed.
+    /// Verdict and numbers after the changes by the controls.
     pub(super) fn outcome(&mut self, ui: &mut Ui) {
         self.refresh();
         Frame::group(ui.style()).inner_margin(10.0).show(ui, |ui| {
@@ -93,7 +93,7 @@ impl Shell {
         });
     }
 
-    /// The button that shows everything, or takes it away again.
+    /// The button that shows everything or hides it again.
     pub(super) fn more(&mut self, ui: &mut Ui) {
         let Some((spec, shown)) = self.model.values().find(MORE.id) else {
             return;
@@ -102,7 +102,7 @@ impl Shell {
         let response = ui.add(Button::new(label).min_size(vec2(64.0, TARGET)));
         self.hot.control(spec.id, &response);
         if response.on_hover_text(spec.help).clicked() {
-            // The list has it, and a switch is 0 or 1.
+            // The parameter is in the list, and a switch is 0 or 1.
             let _ = self.model.set(spec.id, 1.0 - shown);
             self.touch();
         }

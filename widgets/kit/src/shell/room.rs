@@ -1,27 +1,28 @@
-//! A widget beside its text stays in sight, so all that it opens with has to fit into the height of the
-//! screen: its plots give way, its words do not.
+//! Keeps a widget beside its text in view: everything shown at the start has to fit the height of the screen,
+//! so plots shrink; texts do not.
 
 use crate::layout::PlotHeight;
 use crate::view::{Column, Placed, Row};
 
-/// Plots that are lower than this share of what suits them show nothing any more.
+/// Smallest share of a plot's natural height at which it is still readable.
 const LEAST_SHARE: f32 = 0.3;
 
-/// The room of a long sentence: where more becomes free, buttons have gone, and the panels take it back.
+/// Height of a long sentence: if more becomes free, buttons have gone, and the panels grow again.
 const A_SENTENCE: f32 = 60.0;
 
-/// What the host has for a widget, and what of it the panels may take.
+/// The available height, and the part for the panels.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Room {
-    /// For the whole widget, in points.
+    /// Available height for the whole widget, in points.
     height: f32,
-    /// Whether the panels of this frame give way.
+    /// Whether the panels of this frame shrink.
     gives_way: bool,
     /// Height of the panels of this frame.
     panels: f32,
     /// Width of the last frame.
     width: f32,
-    /// The most that stood around the panels at that width: they do not jump as a sentence comes and goes.
+    /// Largest height around the panels at that width, so that the panels do not jump as a sentence comes and
+    /// goes.
     around: f32,
 }
 
@@ -38,7 +39,7 @@ impl Default for Room {
 }
 
 impl Room {
-    /// Of so many points.
+    /// A limit of that many points.
     pub(super) fn from_height(height: f32) -> Self {
         Self {
             height,
@@ -46,14 +47,15 @@ impl Room {
         }
     }
 
-    /// Begins a frame: the panels of what the widget opens with give way where there is an end to the room.
+    /// Starts a frame: the panels shrink if the widget shows only its opening parts and the height is
+    /// limited.
     pub(super) fn begin(&mut self, is_opening: bool) {
         self.gives_way = is_opening && self.height.is_finite();
     }
 
-    /// Lowers the plots of rows, each by the same share, until `place` needs no more than there is.
+    /// Reduces the plots of rows by a common share until `place` fits the height.
     ///
-    /// The height of a row is that of its highest column, so it is convex in the share: what lies on the chord
+    /// The height of a row is that of its highest column, so it is convex in the share: a point on the chord
     /// between two shares is never too high.
     pub(super) fn fit(
         &mut self,
@@ -85,7 +87,7 @@ impl Room {
             + (1.0 - LEAST_SHARE) * (room - lowest).max(0.0) / (height - lowest).max(1.0);
         let (placed, height) = lowered(share);
         self.panels = height;
-        // What stands beside a higher column takes back what it can.
+        // A column beside a higher one grows back as far as possible.
         let bottom = |column: &Column| {
             let panels = column.slots.iter().map(|slot| slot.panel);
             panels
@@ -105,7 +107,7 @@ impl Room {
         }
     }
 
-    /// Remembers what stood around the panels of a frame of that width, whose column was so high.
+    /// Records the height around the panels of a frame of that width, from the height of the whole column.
     pub(super) fn learn(&mut self, width: f32, column: f32) {
         if !self.gives_way {
             return;

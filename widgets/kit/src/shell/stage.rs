@@ -1,7 +1,7 @@
-//! The panels of a widget: their places, the pointer on them, and their painting.
+//! The panels of a widget: their layout, the pointer on them, and their painting.
 //!
-//! Places are settled first and panels painted last. In between come the controls, so what they
-//! change shows in the same frame.
+//! The layout comes first and the painting last. The controls come in between, so their changes show in the
+//! same frame.
 
 use egui::{Rect, Ui, pos2, vec2};
 
@@ -13,16 +13,16 @@ use crate::scene::{Panel, Scene};
 use crate::view::{self, Arrangement, Placed, Row};
 use crate::{draw, style};
 
-/// From this width on, the control of what a widget opens with stands beside its verdict.
+/// Width from which the opening control is beside the verdict.
 const BESIDE_THE_VERDICT: f32 = 480.0;
-/// Of the width they share: a verdict has more words.
+/// Its share of the width: a verdict has more text.
 const CONTROL_SHARE: f32 = 0.38;
 
-/// A panel whose place this frame is settled; it is painted last, when the model is.
+/// A panel with its layout for this frame; it is painted last, after all changes of the model.
 pub(super) struct Reserved {
     placed: Placed,
     origin: [f32; 2],
-    /// Of which scene the layout is.
+    /// Revision of the scene that was laid out.
     revision: u64,
 }
 
@@ -79,7 +79,7 @@ impl Shell {
         arrangement
     }
 
-    /// Settles the places of panels, and lets the pointer act on them.
+    /// Lays out the panels and handles the pointer on them.
     fn reserve(
         &mut self,
         ui: &mut Ui,
@@ -126,7 +126,7 @@ impl Shell {
         }
     }
 
-    /// Paints the reserved panels as the model is now.
+    /// Paints the panels with the current state of the model.
     pub(super) fn paint(&mut self, ui: &Ui, reserved: &[Reserved]) {
         self.refresh();
         let mut surface = EguiSurface::new(ui.painter(), &mut self.textures, self.theme);
@@ -143,7 +143,7 @@ impl Shell {
             }
             let again = (reserved.revision != self.revision)
                 .then(|| PanelLayout::new(panel, width, placed.layout.asked, &mut surface))
-                // Where the words need another row, the next frame makes room for it.
+                // If the text needs another row, the next frame lays it out.
                 .filter(|layout| layout.size == placed.layout.size);
             let layout = again.as_ref().unwrap_or(&placed.layout);
             draw::panel(&mut surface, panel, layout, *origin, &window, self.theme);

@@ -1,11 +1,11 @@
-//! A small PNG writer for the rasters inside an SVG: indexed where 256 colours do, and stored
-//! without compression, because the page that carries it is compressed as a whole.
+//! A small PNG writer for the rasters inside an SVG: indexed if 256 colours suffice, and without compression,
+//! because the page around it is compressed as a whole.
 //!
 //! Format: RFC 2083 (PNG), RFC 1950 and 1951 (zlib with stored blocks).
 
 use crate::palette::Rgb;
 
-/// The picture as a `data:` address; pixels row by row from the top.
+/// Encodes the picture as a `data:` URL; pixels row by row from the top.
 pub fn data_url(pixels: &[Rgb], width: usize, height: usize) -> String {
     format!(
         "data:image/png;base64,{}",
@@ -21,7 +21,7 @@ fn png(pixels: &[Rgb], width: usize, height: usize) -> Vec<u8> {
 
     let mut rows = Vec::with_capacity(pixels.len() * 3 + height);
     for row in pixels.chunks(width) {
-        // Filter type 0: the bytes as they are.
+        // Filter type 0: unfiltered.
         rows.push(0);
         for pixel in row {
             match colors.binary_search(pixel) {
@@ -121,8 +121,8 @@ mod tests {
 
     #[test]
     fn checksums_match_their_published_check_values() {
-        // The check value of CRC-32 (ISO-HDLC) is that of "123456789"; Adler-32 of "Wikipedia"
-        // is the worked example of its article.
+        // The check value of CRC-32 (ISO-HDLC) is that of "123456789"; Adler-32 of "Wikipedia" is the example
+        // of its article.
         assert_eq!(crc32(b"123456789"), 0xcbf4_3926);
         assert_eq!(adler32(b"Wikipedia"), 0x11e6_0398);
     }

@@ -1,4 +1,4 @@
-//! A small model with one of everything, for tests of what draws and drives models.
+//! A small model with every kind of parameter, for tests of code that draws and drives models.
 
 use kit::layers::Opening;
 use kit::model::{
@@ -73,7 +73,7 @@ const PARAMS: &[&ParamSpec] = &[
         help: "Which tick is shown.",
     },
     &SPEED.spec,
-    // Everything is shown, as without layers, until a test asks for less.
+    // Everything is shown, as without layers, until a test sets it.
     &ParamSpec {
         default: 1.0,
         ..MORE.spec
@@ -104,7 +104,7 @@ const SPEC: WidgetSpec = WidgetSpec {
     }],
 };
 
-/// A thing on a map, a run of twenty ticks, and a picture that fills in ten pieces.
+/// Something draggable on a map, a run of twenty ticks, and a picture that fills in ten pieces.
 pub struct Fake {
     values: Values,
     playback: Playback,

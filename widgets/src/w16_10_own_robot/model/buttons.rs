@@ -1,4 +1,4 @@
-//! What each button does.
+//! The effect of each button.
 
 use kit::spec::PLAY;
 
@@ -8,7 +8,7 @@ use super::robot::{Robot, Stage};
 use crate::w16_10_own_robot::spec::{FILES, MOST_SCANS, OPTIONS};
 
 impl OwnRobot {
-    /// What a button does here; none where the button is none of this widget's own.
+    /// The effect of a button; `None` if it is not one of this widget's own.
     pub(super) fn press_own(&mut self, id: &str) -> Option<()> {
         let keyframe = self.keyframe();
         match id {
@@ -35,7 +35,7 @@ impl OwnRobot {
             "add" => {
                 let marked = self.values.number("marked");
                 self.ask(format!("add {marked} {keyframe}"));
-                // What is added comes first.
+                // Added loops come first.
                 self.values.store("loop", 0.0);
             }
             "west" => nudge(self, [-1.0, 0.0]),
@@ -75,7 +75,7 @@ impl OwnRobot {
         self.playback.pause();
     }
 
-    /// Asks for the next topic or frame that the recording offers for the option that is chosen.
+    /// Requests the next topic or frame of the recording for the selected option.
     fn take_other(&mut self) {
         let option = OPTIONS[self.values.number("option") as usize].id;
         let offer = self
@@ -96,7 +96,7 @@ impl OwnRobot {
         }
     }
 
-    /// The loop after or before the one that is shown.
+    /// Selects the loop after or before the current one.
     fn go_to_link(&mut self, forward: bool) {
         let Some(here) = self.link() else {
             return;

@@ -1,15 +1,15 @@
-//! What the reader takes hold of: any keyframe to be shown, and the one that is shown to be dragged.
+//! Draggable things: any keyframe, to select it, and the selected one, to move it.
 
 use kit::model::Handle;
 
 use super::robot::Stage;
 use super::{OwnRobot, panel};
 
-/// Keyframes are dragged no farther from the middle of the world, m.
+/// Largest distance to which a keyframe can be dragged from the origin, m.
 const FARTHEST_M: f64 = 1e6;
-/// A key moves a keyframe by as much, m.
+/// Step of an arrow key, m.
 const NUDGE_M: f64 = 0.05;
-/// A press that moves a keyframe by less does not drag it, m.
+/// A press that moves a keyframe by less does not count as a drag, m.
 const STILL_M: f64 = 1e-6;
 
 /// The nearest keyframe within reach.
@@ -30,7 +30,7 @@ fn may_move(robot: &OwnRobot) -> bool {
     matches!(robot.robot.stage, Stage::Done | Stage::Checking)
 }
 
-/// The keyframe that is shown is held itself; another one is shown.
+/// Grabs the selected keyframe itself; a press on another one selects it.
 pub fn grab(robot: &OwnRobot, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
     match panel {
         panel::MAP => {}
@@ -59,7 +59,7 @@ pub fn grab(robot: &OwnRobot, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Opt
     })
 }
 
-/// Moves the keyframe that is shown by so many steps, as a drag would.
+/// Moves the selected keyframe by steps, like a drag.
 pub fn nudge(robot: &mut OwnRobot, steps: [f64; 2]) {
     let shown = robot.robot.keyframes.get(robot.keyframe());
     if let Some(at) = shown.map(|shown| [shown.pose[0], shown.pose[1]])
@@ -74,7 +74,7 @@ pub fn nudge(robot: &mut OwnRobot, steps: [f64; 2]) {
     }
 }
 
-/// Shows the keyframe at the pointer, or moves the one that is held.
+/// Selects the keyframe at the pointer, or moves the grabbed one.
 pub fn drag(robot: &mut OwnRobot, handle: Handle, at: [f64; 2]) {
     let spot = [at[0] - handle.offset[0], at[1] - handle.offset[1]];
     if !spot.iter().all(|value| value.abs() < FARTHEST_M) {
@@ -95,7 +95,7 @@ pub fn drag(robot: &mut OwnRobot, handle: Handle, at: [f64; 2]) {
             if moved.iter().all(|&moved_m| moved_m < STILL_M) {
                 return;
             }
-            // It follows the pointer at once; the others follow when the graph answers.
+            // It follows the pointer at once; the others follow after the optimization.
             (keyframe.pose[0], keyframe.pose[1]) = (spot[0], spot[1]);
             let [x, y, theta] = keyframe.pose;
             robot.robot.answer = format!("Keyframe {shown} is held at x {x:.2} m, y {y:.2} m.");

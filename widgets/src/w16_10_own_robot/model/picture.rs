@@ -1,4 +1,4 @@
-//! The panels: the map with the way and the loops, and what is known of each keyframe.
+//! The panels: the map with path and loops, and the plots over the keyframes.
 
 mod charts;
 mod visitor;
@@ -12,22 +12,22 @@ use super::robot::{Robot, Stage};
 use super::settings::{Colour, shows};
 use super::{OwnRobot, panel};
 use charts::{fit, sure};
-use visitor::whereabouts;
+use visitor::other_log;
 
-/// What is seen before there is a map, m.
+/// The view before there is a map, m.
 const EMPTY: Bounds = Bounds {
     min: [0.0, 0.0],
     max: [15.0, 10.0],
 };
-/// Width of the map over its height, whatever was seen: what stands below it stays where it is.
+/// Aspect ratio of the map, which is fixed to avoid moving what is below.
 const RATIO: f64 = 1.5;
-/// Space around what was seen, m.
+/// Margin around the observed area, m.
 const MARGIN_M: f64 = 0.5;
-/// Colours along the way.
+/// Number of colours along the path.
 const SHADES: usize = 24;
-/// What belongs to the robot of another log.
+/// Colour of the other log's robot.
 const OTHER: Tone = Tone::Class(2);
-/// Values above this share of all are drawn like it: one that is far off would hide the others.
+/// Quantile at which values are clamped: a single outlier would hide the others.
 const MOST_OF_ALL: f64 = 0.98;
 
 /// The whole picture.
@@ -50,7 +50,7 @@ fn map(own: &OwnRobot) -> Panel {
         layers.extend(shades);
         color_bar = bar;
         layers.extend(here(own));
-        layers.extend(whereabouts(own));
+        layers.extend(other_log(own));
     }
     Panel {
         id: panel::MAP,
@@ -68,7 +68,7 @@ fn map(own: &OwnRobot) -> Panel {
     }
 }
 
-/// A name that fits over a narrow picture.
+/// Shortens a name for a narrow picture.
 fn short(name: &str) -> String {
     if name.chars().count() <= 28 {
         return name.to_owned();
@@ -112,7 +112,7 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
     legend
 }
 
-/// All that was seen, in whole metres, so that a map that grows moves the axes seldom.
+/// The observed area, rounded to whole metres so that a growing map seldom moves the axes.
 fn bounds(robot: &Robot) -> Bounds {
     let mut bounds = Bounds {
         min: [f64::INFINITY; 2],
@@ -143,7 +143,7 @@ fn bounds(robot: &Robot) -> Bounds {
     }
 }
 
-/// Words where there is no map yet.
+/// Text while there is no map.
 fn invitation(robot: &Robot) -> Vec<Layer> {
     let lines: &[&str] = match robot.stage {
         Stage::Empty => &[
@@ -214,7 +214,7 @@ fn links(own: &OwnRobot) -> Vec<Layer> {
     layers
 }
 
-/// The way in its colours over a line of ink, and what the colours mean.
+/// The path in its colours over a line of ink, and the colour bar.
 fn way(own: &OwnRobot) -> (Vec<Layer>, Option<ColorBar>) {
     let robot = &own.robot;
     let colour = Colour::from_values(&own.values);
@@ -272,7 +272,7 @@ fn way(own: &OwnRobot) -> (Vec<Layer>, Option<ColorBar>) {
     (layers, Some(bar))
 }
 
-/// The keyframe that is shown with its scan, the marked one, and those to look into.
+/// The selected keyframe with its scan, the marked one, and those to check.
 fn here(own: &OwnRobot) -> Vec<Layer> {
     let robot = &own.robot;
     let shown = own.keyframe();

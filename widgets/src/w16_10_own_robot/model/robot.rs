@@ -1,32 +1,32 @@
-//! What the worker has told of a log. The kinds of deliveries stand in `web/robot/src/update.rs`; a
-//! delivery that does not hold what its kind has to hold changes nothing.
+//! The worker's reports on a log. `web/robot/src/update.rs` defines the kinds of deliveries; a malformed
+//! delivery is ignored.
 
 use std::sync::Arc;
 
 use kit::outside::Delivery;
 use kit::scene::{Bounds, Cell, Raster};
 
-use super::whereabouts::Whereabouts;
+use super::other_log::OtherLog;
 
-/// How far the worker is.
+/// Progress of the worker.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stage {
     /// No log is open.
     #[default]
     Empty,
-    /// A log was given, and the worker has not yet begun.
+    /// A log was opened, and the worker has not started yet.
     Opening,
     /// Scans are read.
     Reading,
-    /// Keyframes are registered once more on all that was seen around them.
+    /// Keyframes are registered again on everything around them.
     Finishing,
     /// A graph from a file is solved.
     Solving,
     /// The covariances are computed.
     Checking,
-    /// The map stands.
+    /// The map is finished.
     Done,
-    /// Nothing could be done with the file.
+    /// The file could not be processed.
     Failed,
 }
 
@@ -43,7 +43,7 @@ impl Stage {
         stages.get((number as usize).checked_sub(1)?).copied()
     }
 
-    /// Whether the worker can be held.
+    /// Whether the worker can be paused.
     #[must_use]
     pub fn is_under_way(self) -> bool {
         matches!(
@@ -60,26 +60,26 @@ pub struct Keyframe {
     pub stamp_s: f64,
     /// `[x, y, θ]`, m and rad.
     pub pose: [f64; 3],
-    /// Share of its scan that fits; NaN where none was registered.
+    /// Share of its scan that fits; NaN if it was not registered.
     pub fit: f64,
     /// Standard deviation of its position, m; NaN until it is known.
     pub sigma_m: f64,
 }
 
-/// What was decided on a loop.
+/// The decision on a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Its tests passed.
+    /// It passed the tests.
     Closed,
-    /// Its tests turned it away.
-    TurnedAway,
-    /// The reader took it out.
-    Refused,
-    /// The reader put it in.
+    /// It failed the tests.
+    Rejected,
+    /// The reader rejected it.
+    Removed,
+    /// The reader added it.
     Added,
 }
 
-/// A loop with its evidence; NaN where there is no number.
+/// A loop with its evidence; NaN for missing numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     /// The newer keyframe.
@@ -88,24 +88,24 @@ pub struct Link {
     pub old: usize,
     /// Share of the newer scan that fits.
     pub share: f64,
-    /// Root mean square distance of what fits, m.
+    /// Root mean square distance of the points that fit, m.
     pub rmse_m: f64,
     /// Points that fit.
     pub points: f64,
-    /// By how much the best other place was behind.
+    /// Score margin to the best other pose.
     pub margin: f64,
     /// Squared innovation against the graph.
     pub chi2: f64,
-    /// The largest that passes.
+    /// The gate's threshold.
     pub gate_chi2: f64,
-    /// What was decided.
+    /// The decision.
     pub verdict: Verdict,
-    /// Why its tests turned it away.
+    /// Why it failed the tests.
     pub reason: String,
 }
 
 impl Link {
-    /// Whether the graph holds it.
+    /// Whether it is in the graph.
     #[must_use]
     pub fn is_in_graph(&self) -> bool {
         matches!(self.verdict, Verdict::Closed | Verdict::Added)
@@ -117,68 +117,68 @@ impl Link {
 pub struct Grade {
     /// In words.
     pub words: String,
-    /// Mean, or root of the mean square against the truth, m.
+    /// Mean error against relations, or RMSE against the truth, m.
     pub error_m: f64,
 }
 
-/// What a recording offers for one of its options.
+/// The choices that a recording offers for an option.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Offer {
     /// Name of the option: `scan-topic`.
     pub option: String,
-    /// What is taken; empty where nothing is.
+    /// The current choice; empty if there is none.
     pub taken: String,
-    /// What may be taken.
+    /// The possible choices.
     pub names: Vec<String>,
 }
 
-/// Everything that is known of a log.
+/// The state of a log.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Robot {
     /// Name of the file.
     pub name: String,
-    /// How far the worker is.
+    /// Progress of the worker.
     pub stage: Stage,
-    /// Whether it is held.
+    /// Whether it is paused.
     pub paused: bool,
-    /// Share of the work that is done.
+    /// Finished share of the work.
     pub share: f64,
-    /// Scans taken.
+    /// Number of processed scans.
     pub scans: f64,
-    /// Loops looked at while reading, and closed of them.
+    /// Loops that were tried and closed while reading.
     pub tried: [f64; 2],
     /// Whether there are scans; a graph from a file has none.
     pub has_scans: bool,
-    /// What failed.
+    /// The error.
     pub problem: String,
     /// The keyframes in order.
     pub keyframes: Vec<Keyframe>,
     /// The map.
     pub map: Option<Raster>,
-    /// The loops, the least sure first.
+    /// The loops, the least certain first.
     pub links: Vec<Link>,
-    /// Keyframes to look into.
+    /// Keyframes to check.
     pub look_into: Vec<usize>,
-    /// What should be doubted, a sentence each.
+    /// Doubts about the result, a sentence each.
     pub doubts: Vec<String>,
-    /// What the owner of the log should know, a sentence each.
+    /// Remarks for the owner of the log, a sentence each.
     pub remarks: Vec<String>,
     /// A keyframe's points in its own frame, m.
     pub scan: Option<(usize, Vec<[f64; 2]>)>,
-    /// The grade, where a reference was given.
+    /// The grade, if a reference was given.
     pub grade: Option<Grade>,
     /// Error of each keyframe against the reference, m.
     pub errors_m: Vec<f64>,
-    /// What the options of a recording could choose.
+    /// The choices for the options of a recording.
     pub offers: Vec<Offer>,
     /// The robot of another log on this map.
-    pub whereabouts: Option<Whereabouts>,
-    /// What became of the last order.
+    pub other_log: Option<OtherLog>,
+    /// The reply to the last order.
     pub answer: String,
 }
 
 impl Robot {
-    /// A log that was given.
+    /// A log that was opened.
     #[must_use]
     pub fn opening(name: &str) -> Self {
         Self {
@@ -188,18 +188,18 @@ impl Robot {
         }
     }
 
-    /// Whether the worker has something to do that can be held.
+    /// Whether the worker is busy and can be paused.
     #[must_use]
     pub fn is_under_way(&self) -> bool {
-        self.stage.is_under_way() || self.whereabouts.as_ref().is_some_and(|it| !it.is_over)
+        self.stage.is_under_way() || self.other_log.as_ref().is_some_and(|it| !it.is_over)
     }
 
-    /// Takes a delivery.
+    /// Processes a delivery.
     pub fn receive(&mut self, delivery: &Delivery<'_>) {
         let Delivery { text, numbers, .. } = *delivery;
         match delivery.kind {
             "opening" => {
-                // What was held before its file had come stays held.
+                // A pause requested before the file arrived remains in effect.
                 let is_held = self.paused && self.stage == Stage::Opening;
                 *self = Self::opening(text);
                 self.paused = is_held;
@@ -207,7 +207,7 @@ impl Robot {
             "failed" => {
                 self.stage = Stage::Failed;
                 self.problem = text.to_owned();
-                // What was said before is about a log that is no more.
+                // Clears messages about the previous log.
                 self.answer.clear();
             }
             "paused" => self.paused = numbers.first() == Some(&1.0),
@@ -245,8 +245,8 @@ impl Robot {
             "errors" => self.errors_m = numbers.to_vec(),
             "offers" => self.offers = text.lines().filter_map(offer).collect(),
             "where" => {
-                if let Some(told) = Whereabouts::from_delivery(delivery) {
-                    self.whereabouts = Some(told);
+                if let Some(told) = OtherLog::from_delivery(delivery) {
+                    self.other_log = Some(told);
                 }
                 self.paused &= self.is_under_way();
             }
@@ -319,8 +319,8 @@ fn keyframe(numbers: &[f64]) -> Keyframe {
 fn link(numbers: &[f64], reason: &str) -> Option<Link> {
     let verdicts = [
         Verdict::Closed,
-        Verdict::TurnedAway,
-        Verdict::Refused,
+        Verdict::Rejected,
+        Verdict::Removed,
         Verdict::Added,
     ];
     Some(Link {

@@ -1,13 +1,13 @@
-//! What the values of the parameters mean: what the way is coloured by, and which loops are shown.
+//! Interprets the values of the parameters: the colours of the path, and which loops are shown.
 
 use kit::values::Values;
 
 use super::robot::{Link, Robot};
 
-/// What the way is coloured by.
+/// The quantity that colours the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colour {
-    /// Place on the timeline.
+    /// Position on the timeline.
     Time,
     /// Share of each scan that fits.
     Fit,
@@ -18,7 +18,7 @@ pub enum Colour {
 }
 
 impl Colour {
-    /// The one that is chosen.
+    /// The selected one.
     pub fn from_values(values: &Values) -> Self {
         match values.number("colour") as usize {
             0 => Self::Time,
@@ -38,7 +38,7 @@ impl Colour {
         }
     }
 
-    /// The value at each keyframe; NaN where there is none.
+    /// The value at each keyframe; NaN if it is unknown.
     pub fn values(self, robot: &Robot) -> Vec<f64> {
         let start_s = robot.keyframes.first().map_or(0.0, |first| first.stamp_s);
         let keyframes = robot.keyframes.iter().enumerate();

@@ -1,5 +1,5 @@
-//! The tables: loops with their evidence and what should be doubted beside the picture; all keyframes and
-//! all loops for the export.
+//! The tables: loops with their evidence and doubts beside the picture; all keyframes and all loops for the
+//! export.
 
 use kit::model::{Table, TablePlace};
 
@@ -26,9 +26,9 @@ pub fn all(own: &OwnRobot) -> Vec<Table> {
 pub fn shown(own: &OwnRobot) -> Vec<Table> {
     let robot = &own.robot;
     let mut tables = vec![loops(own)];
-    tables.extend(sentences("doubts", "What should be doubted", &robot.doubts));
+    tables.extend(sentences("doubts", "Doubts about the map", &robot.doubts));
     tables.extend(sentences("remarks", "About the log", &robot.remarks));
-    if let Some(told) = &robot.whereabouts {
+    if let Some(told) = &robot.other_log {
         let title = format!("About {}", told.name);
         tables.extend(sentences("remarks-where", &title, &told.remarks));
     }
@@ -131,13 +131,13 @@ fn offers(own: &OwnRobot) -> Option<Table> {
 
 /// Every scan of the other log.
 fn places(own: &OwnRobot) -> Option<Table> {
-    let told = own.robot.whereabouts.as_ref()?;
+    let told = own.robot.other_log.as_ref()?;
     let rows = told.places.iter().map(|place| {
         let [x, y, theta] = place.pose;
         vec![
             place.scan.to_string(),
             place.stamp_s.to_string(),
-            place.belief.name().to_owned(),
+            place.state.name().to_owned(),
             number(x, 4),
             number(y, 4),
             number(theta, 5),

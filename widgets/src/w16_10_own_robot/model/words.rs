@@ -7,10 +7,10 @@ use pr_geom::math;
 use super::OwnRobot;
 use super::robot::{Link, Robot, Stage, Verdict};
 
-/// What is promised of the reader's file.
+/// The privacy statement about the reader's file.
 const STAYS: &str = "The file stays in this browser; nothing of it is sent anywhere.";
 
-/// The result, as far as it is.
+/// The current result.
 pub fn outcome(own: &OwnRobot) -> Outcome {
     let robot = &own.robot;
     let (standing, verdict) = match robot.stage {
@@ -76,9 +76,9 @@ fn sentence(own: &OwnRobot) -> String {
     format!("{said}{held}{grade}{visitor}{answer} {STAYS}")
 }
 
-/// What is known of the other log's robot: on the whole, and at the scan that is shown.
+/// The state of the other log's robot: overall, and at the current scan.
 fn visitor(own: &OwnRobot) -> String {
-    let Some(told) = &own.robot.whereabouts else {
+    let Some(told) = &own.robot.other_log else {
         return String::new();
     };
     let name = &told.name;
@@ -87,7 +87,7 @@ fn visitor(own: &OwnRobot) -> String {
         return if told.is_over {
             format!(" {why}.")
         } else {
-            format!(" {name} is looked for on the map.")
+            format!(" {name} is being localized on the map.")
         };
     };
     let [.., doubtful, lost] = told.counts;
@@ -123,7 +123,7 @@ fn visitor(own: &OwnRobot) -> String {
         " The robot of {name} {first}{done}: of {scans:.0} scans {:.0} are localized, {doubtful:.0} doubtful, {lost:.0} lost. At scan {:.0} it is {}{at}.",
         told.localized(),
         shown.scan,
-        shown.belief.name()
+        shown.state.name()
     )
 }
 
@@ -145,21 +145,21 @@ fn finished(robot: &Robot) -> String {
         counted(robot.keyframes.len(), "pose")
     };
     format!(
-        "{}: {source} on a way of {:.0} m with {}; {doubted}.",
+        "{}: {source} on a path of {:.0} m with {}; {doubted}.",
         robot.name,
         path_length_m(robot),
         counted(closed, "loop")
     )
 }
 
-/// Length of the way over the keyframes, m.
+/// Path length over the keyframes, m.
 fn path_length_m(robot: &Robot) -> f64 {
     let steps = robot.keyframes.windows(2);
     let steps = steps.map(|two| {
         let [a, b] = [two[0].pose, two[1].pose];
         math::norm2(b[0] - a[0], b[1] - a[1])
     });
-    // The sum of nothing is -0.
+    // The empty sum is -0.
     steps.fold(0.0, |sum, step| sum + step)
 }
 
@@ -190,12 +190,12 @@ pub fn evidence(link: &Link) -> String {
     )
 }
 
-/// What was decided on a loop.
+/// The decision on a loop.
 pub fn verdict(link: &Link) -> &'static str {
     match link.verdict {
         Verdict::Closed => "closed",
-        Verdict::TurnedAway => "turned away",
-        Verdict::Refused => "refused by you",
+        Verdict::Rejected => "turned away",
+        Verdict::Removed => "refused by you",
         Verdict::Added => "closed by you",
     }
 }
@@ -233,7 +233,7 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
         Fact::new("fit", "scan shown: fits", of_shown(|k| k.fit), "", 2),
         Fact::metres("sigma_m", "keyframe shown: σ", of_shown(|k| k.sigma_m)),
     ];
-    if let Some(told) = &robot.whereabouts {
+    if let Some(told) = &robot.other_log {
         let [.., doubtful, lost] = told.counts;
         facts.extend([
             Fact::count("where_localized", "other log: localized", told.localized()),
@@ -244,7 +244,7 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
     facts
 }
 
-/// A text that stands for the picture.
+/// The text alternative of the picture.
 pub fn summary(own: &OwnRobot) -> String {
     let robot = &own.robot;
     if robot.keyframes.is_empty() {
@@ -256,10 +256,10 @@ pub fn summary(own: &OwnRobot) -> String {
     let shown = own.keyframe();
     let [x, y, theta] = robot.keyframes[shown].pose;
     let link = own.link().map(|link| evidence(&robot.links[link]));
-    // Who has just gone to it has its words in the sentence.
+    // After a step to this loop the sentence already describes it.
     let link = link.filter(|link| *link != robot.answer);
     format!(
-        "A map with the way of the robot. {} Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°. {}",
+        "A map with the path of the robot. {} Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°. {}",
         sentence(own),
         theta.to_degrees(),
         link.unwrap_or_default()

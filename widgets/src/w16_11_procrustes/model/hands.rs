@@ -1,4 +1,4 @@
-//! What the reader takes hold of: a point of the target, or the angle on the trace.
+//! Draggable things: a point of the target, or the angle on the trace.
 
 use kit::chart::{dragged_to, grab_now};
 use kit::model::Handle;
@@ -7,7 +7,7 @@ use super::settings::seen;
 use super::{ProcrustesTrace, panel};
 use crate::w16_11_procrustes::spec::{MOST_PAIRS, MOVED, REACH_M, TURN, WHOLE_TURN_DEG};
 
-/// Names of what is held: each point of the target.
+/// Names of the draggable things: each point of the target.
 const TARGETS: [&str; MOST_PAIRS] = ["target1", "target2", "target3", "target4", "target5"];
 
 /// The nearest point of the target within reach, or the line at the angle.
@@ -33,7 +33,7 @@ pub fn grab(trace: &ProcrustesTrace, panel: &str, at: [f64; 2], reach: [f64; 2])
     })
 }
 
-/// Moves what is held, rounded so that links stay short.
+/// Moves the grabbed thing, rounded, which keeps links short.
 pub fn drag(trace: &mut ProcrustesTrace, handle: Handle, at: [f64; 2]) {
     if !at.iter().all(|value| value.is_finite()) {
         return;

@@ -1,4 +1,4 @@
-//! The panels: the points, the trace over the angle, and a map under the two answers.
+//! The panels: the points, the trace over the angle, and a map under both results.
 
 use ch16_lab::procrustes::Handedness;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
@@ -9,7 +9,7 @@ use super::words::whole_degrees;
 use super::{ProcrustesTrace, panel};
 use crate::w16_11_procrustes::spec::{TURN, WHOLE_TURN_DEG};
 
-/// The points are shown to at least so far from the middle of the target, m.
+/// Smallest half width of the view of the points, m.
 const LEAST_REACH_M: f64 = 2.4;
 /// Degrees between two points of a curve.
 const CURVE_STEP_DEG: u32 = 4;
@@ -73,7 +73,7 @@ fn points(trace: &ProcrustesTrace) -> Panel {
     layers.extend(
         (target.iter().enumerate()).map(|(k, at)| Layer::label(*at, (k + 1).to_string(), 9.0)),
     );
-    // In halves of a metre, so that a drag moves the axes seldom.
+    // In steps of half a metre, so that a drag seldom moves the axes.
     let mean = problem.target_mean;
     let middle = [mean.x, mean.y].map(|value| (2.0 * value).round() / 2.0);
     let far = |at: &[f64; 2]| math::norm2(at[0] - middle[0], at[1] - middle[1]) + 0.4;

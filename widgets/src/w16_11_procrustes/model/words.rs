@@ -6,7 +6,7 @@ use kit::model::{Fact, Outcome, Standing};
 use super::ProcrustesTrace;
 use crate::w16_11_procrustes::spec::{TURN, WHOLE_TURN_DEG};
 
-/// What matrices of a kind are called.
+/// Plural name of a kind of matrices.
 pub fn plural(kind: Handedness) -> &'static str {
     match kind {
         Handedness::Turn => "turns",
@@ -14,7 +14,7 @@ pub fn plural(kind: Handedness) -> &'static str {
     }
 }
 
-/// An angle as the timeline has it, whole degrees from 0 to below 360.
+/// An angle on the timeline, whole degrees from 0 to below 360.
 pub fn whole_degrees(theta_rad: f64) -> f64 {
     let degrees = theta_rad.to_degrees().round();
     if degrees < 0.0 {
@@ -24,7 +24,7 @@ pub fn whole_degrees(theta_rad: f64) -> f64 {
     }
 }
 
-/// Good is a turn that nothing passes; a mirror image never is.
+/// Good is a rotation with the largest trace; a reflection never is.
 pub fn standing_of(problem: &Procrustes, kind: Handedness) -> Standing {
     match (kind, problem.winner()) {
         (Handedness::Turn, Winner::Turn) => Standing::Good,
@@ -50,9 +50,9 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
     let here = problem.trace_m2(trace.tried(), trace.theta_rad());
     let winner = problem.winner();
     let consequence = match winner {
-        Winner::Turn => "so a decomposition that nobody checks finds the turn, too",
-        Winner::Mirror => "so a decomposition that nobody checks mirrors the map",
-        Winner::Tie => "so a decomposition that nobody checks may return either",
+        Winner::Turn => "so an unchecked decomposition finds the turn, too",
+        Winner::Mirror => "so an unchecked decomposition mirrors the map",
+        Winner::Tie => "so an unchecked decomposition may return either",
     };
     let standing = match winner {
         Winner::Turn => Standing::Good,

@@ -1,4 +1,4 @@
-//! The panels: the graph as each solver has it, and the distance to the optimum over the steps.
+//! The panels: the graph of each solver, and the distance to the optimum over the steps.
 
 use ch16_lab::jacobians::Moment;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
@@ -16,9 +16,9 @@ const TONES: [Tone; 4] = [
     Tone::Measurement,
 ];
 const MARKS: [Mark; 4] = [Mark::Square, Mark::Circle, Mark::Triangle, Mark::Cross];
-/// Room around the poses, m.
+/// Margin around the poses, m.
 const MARGIN_M: f64 = 0.4;
-/// The curves end at this power of ten: what is less is rounding.
+/// The curves end at this power of ten: smaller values are rounding.
 const LOWEST_POWER: f64 = -9.0;
 
 pub fn scene(widget: &WrongJacobians) -> Scene {
@@ -31,7 +31,7 @@ fn places(poses: &[SE2]) -> Vec<[f64; 2]> {
     poses.iter().map(|pose| [pose.x(), pose.y()]).collect()
 }
 
-/// Around the start and the optimum, the same for all four, so that nothing jumps while it plays.
+/// Around the start and the optimum, the same for all four and constant during playback.
 fn axes(widget: &WrongJacobians) -> [Axis; 2] {
     let start = &widget.solved.runs[0].moments[0].poses;
     let poses = || start.iter().chain(&widget.solved.optimum);
@@ -46,7 +46,7 @@ fn axes(widget: &WrongJacobians) -> [Axis; 2] {
             .iter()
             .map(|[low, high]| high - low)
             .fold(0.0, math::max);
-    // In halves of a metre, so that a drag of a slider moves the axes seldom.
+    // In steps of half a metre, so that a slider seldom moves the axes.
     let axis = |[low, high]: [f64; 2], label| {
         let middle = 0.5 * (low + high);
         Axis::new(
@@ -98,7 +98,7 @@ fn capital(name: &str) -> String {
     first.chain(letters).collect()
 }
 
-/// Powers of ten over the steps: a factor a step is a straight line.
+/// Powers of ten over the steps: linear convergence is a straight line.
 fn curve(widget: &WrongJacobians) -> Panel {
     let is_distance = widget.values.get(&CURVE) == Curve::Distance;
     let best_chi2 = widget.solved.least_chi2;
@@ -108,7 +108,7 @@ fn curve(widget: &WrongJacobians) -> Panel {
         } else {
             moment.chi2 - best_chi2
         };
-        // Nothing and rounding lie on the floor.
+        // Zero and rounding are drawn at the lower end.
         let floor = math::exp(LOWEST_POWER * core::f64::consts::LN_10);
         math::ln(math::max(value, floor)) / core::f64::consts::LN_10
     };

@@ -1,4 +1,4 @@
-//! What the values of the parameter list mean to the core.
+//! Converts the values of the parameters to the types of the core.
 
 use ch16_lab::jacobians::{Recipe, RingConfig};
 use kit::values::Values;

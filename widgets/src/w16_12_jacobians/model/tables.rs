@@ -1,4 +1,4 @@
-//! The tables: the four ends beside the picture, every step for the export.
+//! The tables: the four results beside the picture, every step for the export.
 
 use kit::model::Table;
 

@@ -6,7 +6,7 @@ use kit::model::{Fact, Outcome, Standing};
 
 use super::{NAMES, WrongJacobians};
 
-/// Nearer ends count as the same, m: the standard deviation of one edge.
+/// Results closer than this count as the same, m: the standard deviation of one edge.
 const SAME_END_M: f64 = EDGE_STD.0;
 
 /// The solver whose residual is wrong.
@@ -17,7 +17,7 @@ fn ends_at_the_optimum(widget: &WrongJacobians, solver: usize) -> bool {
     run.rests && run.end().off_m < SAME_END_M
 }
 
-/// Good is an end at the optimum.
+/// Good is convergence to the optimum.
 pub fn standing_of(widget: &WrongJacobians, solver: usize) -> Standing {
     if ends_at_the_optimum(widget, solver) {
         Standing::Good
@@ -30,7 +30,7 @@ fn verdict(widget: &WrongJacobians) -> &'static str {
     let runs = &widget.solved.runs;
     let at_home = |solver| ends_at_the_optimum(widget, solver);
     if runs.iter().any(|run| !run.rests) {
-        "not all come to rest"
+        "not all converge"
     } else if (0..RESIDUAL).all(at_home) {
         if at_home(RESIDUAL) {
             "all four end alike"

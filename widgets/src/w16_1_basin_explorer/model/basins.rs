@@ -1,4 +1,4 @@
-//! The two basin maps: filled piece by piece, given out as rasters with letters.
+//! The two basin maps: filled in pieces, drawn as rasters with letters.
 
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ pub struct Basins {
     drawn: [Drawn; 2],
 }
 
-/// What a picture needs of one map, made when it is first asked for.
+/// Cached drawing data of one map.
 #[derive(Default)]
 struct Drawn {
     cells: OnceCell<Arc<[Cell]>>,
@@ -50,20 +50,20 @@ impl Basins {
         self.changed();
     }
 
-    /// Empties the maps where their settings changed; otherwise keeps what is filled.
+    /// Empties the maps if their settings changed; otherwise keeps what is filled.
     pub fn follow(&mut self, values: &Values) {
         let fresh = empty_maps(values);
         let differs = |(old, new): (&BasinMap, &BasinMap)| {
             old.axes() != new.axes() || old.config() != new.config()
         };
-        // Both maps have the same axes and settings but for the variant.
+        // Both maps have the same axes and settings except for the variant.
         if self.maps.iter().zip(&fresh).any(differs) {
             self.maps = fresh;
             self.changed();
         }
     }
 
-    /// Fills some cells of the map that is less far.
+    /// Fills some cells of the less complete map.
     pub fn work(&mut self, scene: &BasinScene, workspace: &mut IcpWorkspace) -> Activity {
         let [point, plane] = &mut self.maps;
         let behind = if plane.progress() < point.progress() {
@@ -79,7 +79,7 @@ impl Basins {
         Activity::Busy
     }
 
-    /// What was drawn of the maps no longer holds.
+    /// Invalidates the cached drawing data.
     fn changed(&mut self) {
         self.revision += 1;
         self.drawn = Default::default();
@@ -100,7 +100,7 @@ impl Basins {
             cells.collect()
         };
         let cells: &Arc<[Cell]> = self.drawn[place(variant)].cells.get_or_init(draw);
-        // The cells' middles lie on the grid, so the picture is half a cell larger all round.
+        // The centers of the cells are on the grid, so the picture is larger by half a cell on each side.
         let half = [
             180.0 / (COLUMNS - 1) as f64,
             OFFSET_SPAN_M / (ROWS - 1) as f64,
@@ -118,7 +118,7 @@ impl Basins {
         }
     }
 
-    /// Where letters stand on a variant's map: heading in degrees, offset in metres.
+    /// Positions of the letters on a variant's map: heading in degrees, offset in metres.
     pub fn letters(&self, variant: IcpVariant, values: &Values) -> Vec<([f64; 2], Minimum)> {
         let map = self.map(variant);
         let find = || rooms(&minima(map).collect::<Vec<_>>(), COLUMNS);
@@ -135,7 +135,7 @@ impl Basins {
     }
 }
 
-/// Place of a variant in the pairs.
+/// Index of a variant.
 fn place(variant: IcpVariant) -> usize {
     match variant {
         IcpVariant::PointToPoint => 0,
@@ -143,7 +143,7 @@ fn place(variant: IcpVariant) -> usize {
     }
 }
 
-/// The start at a spot of a basin map; the other offset stays as it is.
+/// The start at a spot of a basin map; the other offset does not change.
 pub fn start_at(values: &Values, [heading_deg, offset_m]: [f64; 2]) -> BasinStart {
     let mut at = start(values);
     at.heading_deg = heading_deg.clamp(-180.0, 180.0);
@@ -154,19 +154,19 @@ pub fn start_at(values: &Values, [heading_deg, offset_m]: [f64; 2]) -> BasinStar
     at
 }
 
-/// Where a start lies on the basin maps.
+/// The spot of the start on the basin maps.
 pub fn spot_of(values: &Values) -> [f64; 2] {
     let at = start(values);
     [at.heading_deg, offset(axis(values), &at)]
 }
 
-/// Number of a minimum's colour.
+/// Index of a minimum's colour.
 pub fn class(minimum: Minimum) -> u8 {
     match minimum {
         Minimum::Right => 0,
         Minimum::QuarterTurn | Minimum::OnePost => 1,
         Minimum::HalfTurn | Minimum::MorePosts => 2,
-        // Both are no minimum of the room's shape; their letters tell them apart.
+        // Neither follows from the room's shape; their letters differ.
         Minimum::WrongHeading | Minimum::Other => 3,
     }
 }
@@ -175,7 +175,7 @@ fn minima(map: &BasinMap) -> impl Iterator<Item = Option<Minimum>> + '_ {
     (0..ROWS).flat_map(move |row| (0..COLUMNS).map(move |column| map.shown(column, row)))
 }
 
-/// Where a start lies on a map of Δx, or of Δy.
+/// The spot of a start on a map of Δx, or of Δy.
 pub fn start_spot(start: &BasinStart, along_y: bool) -> [f64; 2] {
     let axis = if along_y {
         OffsetAxis::Dy

@@ -1,4 +1,4 @@
-//! The basin's edge: the reader marks it for both errors, then it is swept and compared.
+//! The basin's edge: the reader marks it for both errors, then it is computed and compared.
 
 use ch16_lab::basin::{BasinScene, EdgeSearch};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
@@ -11,12 +11,12 @@ use super::BasinExplorer;
 use super::settings::{config, variant_name};
 use crate::w16_1_basin_explorer::spec::{EDGE, EDGES, OFFSET_SPAN_M, Phase};
 
-/// A mark this near to the edge is right, °.
+/// Largest error of a right mark, °.
 const RIGHT_DEG: f64 = 5.0;
 
 const VARIANTS: [IcpVariant; 2] = [IcpVariant::PointToPoint, IcpVariant::PointToPlane];
 
-/// What is shown first while the edge is asked for.
+/// The opening layer while the question is open.
 pub const OPENING: Opening = Opening {
     panels: &["basin-point-to-point", "basin-point-to-plane"],
     params: &["edge-p2p", "edge-p2l"],
@@ -29,14 +29,14 @@ pub struct Edges {
 }
 
 impl Edges {
-    /// Searches that have not begun.
+    /// Searches before their first step.
     pub fn new(values: &Values) -> Self {
         Self {
             searches: VARIANTS.map(|variant| EdgeSearch::new(config(values, variant))),
         }
     }
 
-    /// Starts over where the settings changed.
+    /// Starts over if the settings changed.
     pub fn follow(&mut self, values: &Values) {
         let fresh = Self::new(values);
         let differs = |(old, new): (&EdgeSearch, &EdgeSearch)| old.config() != new.config();
@@ -45,7 +45,7 @@ impl Edges {
         }
     }
 
-    /// A degree of the search that is less far.
+    /// Advances the search that is behind by one degree.
     pub fn work(&mut self, scene: &BasinScene, workspace: &mut IcpWorkspace) -> Activity {
         let open = self.searches.iter_mut().filter(|search| !search.is_done());
         let Some(behind) = open.min_by(|a, b| reached(a).total_cmp(&reached(b))) else {
@@ -64,12 +64,12 @@ fn reached(search: &EdgeSearch) -> f64 {
     search.reached_deg().unwrap_or(0.0)
 }
 
-/// The edges that the reader has marked, °; 0 where there is no mark.
+/// The edges that the reader has marked, °; 0 without a mark.
 fn marks(values: &Values) -> [f64; 2] {
     EDGES.each_ref().map(|edge| values.get(edge))
 }
 
-/// A line at a heading error, to both sides.
+/// A line at a heading error, on both sides.
 fn lines(heading_deg: f64, stroke: Stroke, tone: Tone) -> Layer {
     let side = |x: f64| [[x, -OFFSET_SPAN_M], [x, OFFSET_SPAN_M]];
     Layer::segments(
@@ -80,7 +80,7 @@ fn lines(heading_deg: f64, stroke: Stroke, tone: Tone) -> Layer {
     )
 }
 
-/// What the question draws over the map of a variant.
+/// The question's layers over the map of a variant.
 pub fn layers(explorer: &BasinExplorer, of: IcpVariant) -> Vec<Layer> {
     let phase = explorer.values.get(&EDGE);
     if phase == Phase::Off {
@@ -92,7 +92,7 @@ pub fn layers(explorer: &BasinExplorer, of: IcpVariant) -> Vec<Layer> {
     if phase == Phase::Swept {
         let edge = reached(&explorer.edges.searches[k]);
         layers.push(lines(edge, Stroke::Dashed, Tone::Truth));
-        // Along the pure rotations, where it was swept.
+        // Along the pure rotations that were computed.
         layers.push(Layer::line(
             vec![[-edge, 0.0], [edge, 0.0]],
             Stroke::Dashed,
@@ -119,7 +119,7 @@ pub fn layers(explorer: &BasinExplorer, of: IcpVariant) -> Vec<Layer> {
     layers
 }
 
-/// What the lines are.
+/// The legend of the lines.
 pub fn legend(values: &Values) -> Vec<LegendEntry> {
     match values.get(&EDGE) {
         Phase::Off => Vec::new(),
@@ -134,7 +134,7 @@ pub fn legend(values: &Values) -> Vec<LegendEntry> {
     }
 }
 
-/// The question and its answer in words; none while nobody asks.
+/// The question and its answer in words; `None` if the question is off.
 pub fn outcome(explorer: &BasinExplorer) -> Option<Outcome> {
     let values = &explorer.values;
     match values.get(&EDGE) {

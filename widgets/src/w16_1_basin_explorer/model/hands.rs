@@ -1,4 +1,4 @@
-//! What the reader takes hold of: the source by its points, its turning handle, a basin map.
+//! Draggable things: the source by its points, its turning handle, a basin map.
 
 use ch16_slam2d::icp::IcpVariant;
 use kit::model::Handle;
@@ -11,7 +11,7 @@ use crate::w16_1_basin_explorer::spec::{EDGE, EDGES, Phase, VARIANT};
 /// Distance of the turning handle from the sensor, m.
 const TURN_ARM_M: f64 = 1.0;
 
-/// Names of what is held.
+/// Names of the draggable things.
 mod thing {
     pub const SOURCE: &str = "source";
     pub const TURN: &str = "turn";
@@ -19,13 +19,13 @@ mod thing {
     pub const EDGE: &str = "edge";
 }
 
-/// Where the handle that turns the source stands, at the iteration that is shown.
+/// Position of the handle that turns the source, at the current iteration.
 pub fn turn_handle(explorer: &BasinExplorer) -> Point2<f64> {
     let arm = Point2::new(TURN_ARM_M, 0.0);
     explorer.shown().pose.transform(arm)
 }
 
-/// What lies within reach of a spot.
+/// What is within reach of a spot.
 pub fn grab(
     explorer: &BasinExplorer,
     panel: &str,
@@ -35,7 +35,7 @@ pub fn grab(
     if panel == panel::SWEEPS {
         return grab_source(explorer, at, reach);
     }
-    // Every spot of a basin map is a start, or while the edge is asked for, a mark.
+    // Every spot of a basin map is a start or, during the question, a mark.
     let maps = [panel::POINT, panel::PLANE];
     let panel = maps.into_iter().find(|id| *id == panel)?;
     Some(Handle {
@@ -70,7 +70,7 @@ fn grab_source(explorer: &BasinExplorer, at: [f64; 2], reach: [f64; 2]) -> Optio
     touched.then(|| take(thing::SOURCE, sensor))
 }
 
-/// Moves what is held; what the reader moves becomes the start.
+/// Moves the grabbed thing; the result is the new start.
 pub fn drag(explorer: &mut BasinExplorer, handle: Handle, at: [f64; 2]) {
     if handle.id == thing::EDGE {
         if at[0].is_finite() {

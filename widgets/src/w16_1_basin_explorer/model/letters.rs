@@ -1,14 +1,14 @@
-//! Where the letters of a picture of classes stand: in the middle of the widest areas.
+//! Places the letters of a picture of classes in the middle of the widest areas.
 
 use core::cmp::Reverse;
 
-/// A letter needs that many cells of its own kind around it.
+/// Distance in cells between a letter and the border of its area.
 const LEAST_ROOM: u16 = 3;
-/// Equal letters keep that many columns or rows apart.
+/// Smallest distance of equal letters in columns or rows.
 const APART: usize = 24;
-/// Different letters keep that many columns or rows apart.
+/// Smallest distance of different letters in columns or rows.
 const DIFFERENT_APART: usize = 8;
-/// Columns and rows around a mark that carry no letter.
+/// Columns and rows around a mark without letters.
 const CLEAR: (f64, f64) = (7.0, 6.0);
 
 /// A cell with room for a letter.
@@ -24,7 +24,7 @@ pub struct Room<C> {
     pub room: u16,
 }
 
-/// All cells with room for a letter, the roomiest first.
+/// All cells with enough room for a letter, by decreasing room.
 pub fn rooms<C: Copy + PartialEq>(cells: &[Option<C>], columns: usize) -> Vec<Room<C>> {
     let distances = distances(cells, columns);
     let wide = cells.iter().zip(distances).enumerate();
@@ -39,12 +39,12 @@ pub fn rooms<C: Copy + PartialEq>(cells: &[Option<C>], columns: usize) -> Vec<Ro
             })
         })
         .collect();
-    // Stable: of equal rooms the first in the picture wins.
+    // Stable: among equal rooms the first one in the picture comes first.
     rooms.sort_by_key(|room| Reverse(room.room));
     rooms
 }
 
-/// A few of the rooms, far apart; none near the spot (column, row) that is kept clear.
+/// A selection of the rooms that are far apart, and not near the spot (column, row).
 pub fn spread<C: Copy + PartialEq>(rooms: &[Room<C>], keep_clear: (f64, f64)) -> Vec<Room<C>> {
     let mut chosen: Vec<Room<C>> = Vec::new();
     for room in rooms {
@@ -103,7 +103,7 @@ mod tests {
     const NOWHERE: (f64, f64) = (-100.0, -100.0);
 
     #[test]
-    fn room_is_the_distance_to_the_next_other_cell() {
+    fn room_is_the_distance_to_the_next_cell_of_another_class() {
         let mut cells = vec![Some('a'); 9 * 9];
         cells[4 * 9 + 8] = Some('b');
         let distances = distances(&cells, 9);
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn every_wide_area_gets_its_letter_inside_and_narrow_ones_none() {
+    fn every_wide_area_gets_a_letter_and_narrow_ones_do_not() {
         let cells: Vec<_> = (0..20)
             .flat_map(|_| 0..60)
             .map(|column| match column {
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_known_yet_carries_no_letter() {
+    fn cells_not_computed_yet_have_no_letter() {
         assert!(rooms(&vec![None::<char>; 400], 20).is_empty());
     }
 }

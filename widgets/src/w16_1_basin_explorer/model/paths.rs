@@ -1,4 +1,4 @@
-//! The ways of other starts over a basin map: heading and offset, iteration by iteration.
+//! The paths from other starts over a basin map: heading and offset, iteration by iteration.
 
 use ch16_lab::basin::{BasinScene, BasinStart, OffsetAxis};
 use ch16_slam2d::icp::{IcpConfig, IcpWorkspace};
@@ -9,28 +9,28 @@ use super::basins::{start_at, start_spot};
 use super::settings::{config, variant};
 use crate::w16_1_basin_explorer::spec::{AXIS, DX, DY, OFFSET_SPAN_M, PATHS};
 
-/// Headings of the starts, degrees apart.
+/// Step between the headings of the starts, degrees.
 const HEADING_STEP_DEG: f64 = 20.0;
 /// Offsets of the starts, as shares of the map's height.
 const OFFSETS: [f64; 3] = [-2.0 / 3.0, 0.0, 2.0 / 3.0];
-/// A way that jumps over the border at half a turn is drawn in two pieces, degrees.
+/// A path that jumps by more crosses ±180° and is drawn in two pieces, degrees.
 const OVER_THE_BORDER_DEG: f64 = 180.0;
 
-/// One way.
+/// One path.
 pub struct Path {
-    /// Spots on the map, the start first; not a number where the way crosses the border.
+    /// Spots on the map from the start on; NaN where the path crosses ±180°.
     pub spots: Vec<[f64; 2]>,
 }
 
-/// Ways of starts all over the map, computed one at a time; none while they are switched off.
+/// Paths from starts all over the map, computed one at a time; none if they are off.
 pub struct Paths {
-    /// What they were computed for.
+    /// The settings of the computed paths.
     key: Option<Key>,
     waiting: Vec<BasinStart>,
     done: Vec<Path>,
 }
 
-/// What a way depends on, but for the sweeps.
+/// The settings on which a path depends, apart from the sweeps.
 #[derive(Clone, Copy, PartialEq)]
 struct Key {
     config: IcpConfig,
@@ -39,7 +39,7 @@ struct Key {
 }
 
 impl Paths {
-    /// The ways for these settings, none of them computed.
+    /// The paths for these settings, before any is computed.
     pub fn new(values: &Values) -> Self {
         let mut paths = Self {
             key: None,
@@ -55,7 +55,7 @@ impl Paths {
         *self = Self::new(values);
     }
 
-    /// Starts over where the settings changed.
+    /// Starts over if the settings changed.
     pub fn follow(&mut self, values: &Values) {
         let key = Key::from_values(values);
         if key == self.key {
@@ -69,7 +69,7 @@ impl Paths {
         self.key = key;
     }
 
-    /// Runs one start.
+    /// Computes the path from one start.
     pub fn work(&mut self, scene: &BasinScene, workspace: &mut IcpWorkspace) -> Activity {
         let (Some(key), Some(start)) = (self.key, self.waiting.pop()) else {
             return Activity::Idle;
@@ -79,12 +79,12 @@ impl Paths {
         let poses = workspace.trace().iter().map(|state| state.pose);
         let spots = poses.map(|pose| start_spot(&scene.start_of(&pose), along_y));
         self.done.push(Path {
-            spots: broken(spots),
+            spots: split_at_half_turn(spots),
         });
         Activity::Busy
     }
 
-    /// Those that are computed.
+    /// The computed paths.
     pub fn done(&self) -> &[Path] {
         &self.done
     }
@@ -104,7 +104,7 @@ impl Key {
     }
 }
 
-/// Starts on a grid over the map, the middle of its rows last: what is popped first.
+/// Starts on a grid over the map; the last ones, which are popped first, are in the middle row.
 fn starts(values: &Values) -> Vec<BasinStart> {
     let columns = (360.0 / HEADING_STEP_DEG) as usize;
     let at = |column: usize, offset: f64| {
@@ -116,8 +116,8 @@ fn starts(values: &Values) -> Vec<BasinStart> {
         .collect()
 }
 
-/// The spots of a way as a line that is broken where it crosses the border at half a turn.
-pub fn broken(spots: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+/// The spots of a path as a line with a gap where it crosses ±180°.
+pub fn split_at_half_turn(spots: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
     let mut line: Vec<[f64; 2]> = Vec::new();
     for spot in spots {
         if let Some(last) = line.last()

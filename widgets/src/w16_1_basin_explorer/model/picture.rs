@@ -10,19 +10,19 @@ use pr_geom::{Point2, SE2};
 use super::basins::{class, spot_of, start_spot};
 use super::edge;
 use super::hands::turn_handle;
-use super::paths::broken;
+use super::paths::split_at_half_turn;
 use super::settings::{axis, start, variant, variant_name};
 use super::words::error_m;
 use super::{BasinExplorer, panel};
 use crate::w16_1_basin_explorer::spec::{EDGE, OFFSET_SPAN_M, Phase};
 
-/// Of so many points one leaves a trail.
+/// One point in this many leaves a trail.
 const POINTS_PER_TRAIL: usize = 11;
 
-/// Room around a basin map: a mark at its edge is shown whole, ° and m.
+/// Margin around a basin map, so that a mark at its edge is complete, ° and m.
 const BASIN_ROOM: [f64; 2] = [12.0, 0.15];
 
-/// Neighbouring points of a sweep farther apart than this lie on different walls, or posts, m.
+/// Neighbouring points of a sweep farther apart than this are on different walls or posts, m.
 const fn wall_gap_m(place: BasinPlace) -> f64 {
     match place {
         BasinPlace::Room => 0.6,
@@ -76,7 +76,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     }
     layers.extend([
         points(&source, Mark::Square, Tone::Posterior, 2.6),
-        // Above the points: a pair may be shorter than a mark is wide.
+        // Above the points, because a pair may be shorter than a mark is wide.
         Layer::segments(
             links
                 .iter()
@@ -154,7 +154,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
                 None,
             ),
             entry(
-                "where it will end, and the way there",
+                "final pose, and the path to it",
                 Tone::Posterior,
                 Some(Mark::Dot),
                 Some(Stroke::Dotted),
@@ -170,7 +170,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     }
 }
 
-/// The end of the run as a ghost, and the way of the sensor and of some points there.
+/// The result of the run as a ghost, and the path of the sensor and of some points to it.
 fn preview(explorer: &BasinExplorer) -> Vec<Layer> {
     let trace = &explorer.run.trace;
     let source = explorer.scene.source();
@@ -193,7 +193,7 @@ fn preview(explorer: &BasinExplorer) -> Vec<Layer> {
         .collect()
 }
 
-/// The points that found no partner.
+/// The points without a partner.
 fn lonely(source: &PointCloud, pairs: &[Pair]) -> Vec<[f64; 2]> {
     let mut has_pair = vec![false; source.len()];
     for pair in pairs {
@@ -213,7 +213,7 @@ fn points(cloud: &PointCloud, mark: Mark, tone: Tone, radius_px: f32) -> Layer {
     }
 }
 
-/// Where a sensor stands and looks.
+/// Pose of a sensor.
 fn sensor(pose: SE2, mark: Mark, tone: Tone) -> Layer {
     Layer::Pose {
         pose: pose.to_array(),
@@ -223,7 +223,7 @@ fn sensor(pose: SE2, mark: Mark, tone: Tone) -> Layer {
     }
 }
 
-/// A sweep as lines along its walls, broken where neighbouring beams hit different ones.
+/// A sweep as lines along its walls, with gaps between different ones.
 fn outline(cloud: &PointCloud, gap_m: f64) -> Vec<[f64; 2]> {
     let mut line: Vec<[f64; 2]> = Vec::with_capacity(cloud.len() + 8);
     for p in cloud.iter() {
@@ -263,9 +263,9 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
     }
     layers.extend(edge::layers(explorer, of));
     let spot = spot_of(&explorer.values);
-    // While the maps are covered the reader looks for the edge, not for a start.
+    // While the maps are covered the reader marks the edge instead of choosing a start.
     if chosen && !covered {
-        layers.extend(ways(explorer));
+        layers.extend(paths(explorer));
         layers.push(Layer::Handle {
             at: spot,
             tone: Tone::Prior,
@@ -330,9 +330,9 @@ fn letters(explorer: &BasinExplorer, of: IcpVariant) -> impl Iterator<Item = Lay
     })
 }
 
-/// The ways of other starts over the map, each with a dot where it ends, and that of the own start
-/// where its end may be seen.
-fn ways(explorer: &BasinExplorer) -> Vec<Layer> {
+/// The paths from other starts over the map, each with a dot at its end, and that of the current start if its
+/// result may be shown.
+fn paths(explorer: &BasinExplorer) -> Vec<Layer> {
     let line =
         |points: Vec<[f64; 2]>, tone, width_px| Layer::line(points, Stroke::Solid, tone, width_px);
     let mut layers = Vec::new();
@@ -349,7 +349,7 @@ fn ways(explorer: &BasinExplorer) -> Vec<Layer> {
     let along_y = axis(&explorer.values) == OffsetAxis::Dy;
     let own = explorer.run.trace[..seen].iter();
     let own = own.map(|state| start_spot(&explorer.scene.start_of(&state.pose), along_y));
-    let own = broken(own);
+    let own = split_at_half_turn(own);
     let end = own.last().copied().into_iter().collect();
     layers.push(line(own, Tone::Posterior, 2.0));
     layers.push(Layer::points(end, Mark::Square, Tone::Posterior, 4.0));
@@ -386,7 +386,7 @@ fn curve(explorer: &BasinExplorer) -> Panel {
     panel
 }
 
-/// Truth is dashed everywhere.
+/// Draws the truth with dashes.
 fn dash_truth(panel: &mut Panel) {
     for layer in &mut panel.layers {
         if let Layer::Line {

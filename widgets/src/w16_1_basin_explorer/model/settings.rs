@@ -1,4 +1,4 @@
-//! What the values of the parameter list mean to the core.
+//! Converts the values of the parameters to the types of the core.
 
 use ch16_lab::basin::{BasinScene, BasinStart, OffsetAxis};
 use ch16_slam2d::icp::{IcpConfig, IcpVariant};
@@ -8,12 +8,12 @@ use crate::w16_1_basin_explorer::spec::{
     AXIS, DX, DY, HEADING, HUBER, HUBER_OFF_M, SCENE, SEED, TAU, TRIM, VARIANT,
 };
 
-/// The two sweeps that the reader chose.
+/// The selected sweeps.
 pub fn scene(values: &Values) -> BasinScene {
     BasinScene::at(values.get(&SCENE), values.get(&SEED))
 }
 
-/// The first guess that the reader chose.
+/// The selected initial guess.
 pub fn start(values: &Values) -> BasinStart {
     BasinStart {
         heading_deg: values.get(&HEADING),
@@ -27,7 +27,7 @@ pub fn variant(values: &Values) -> IcpVariant {
     values.get(&VARIANT)
 }
 
-/// The one that is not chosen.
+/// The other variant.
 pub fn other_variant(variant: IcpVariant) -> IcpVariant {
     match variant {
         IcpVariant::PointToPoint => IcpVariant::PointToPlane,
@@ -35,7 +35,7 @@ pub fn other_variant(variant: IcpVariant) -> IcpVariant {
     }
 }
 
-/// What a reader calls it.
+/// Label of a variant.
 pub fn variant_name(variant: IcpVariant) -> &'static str {
     match variant {
         IcpVariant::PointToPoint => "point to point",
@@ -43,12 +43,12 @@ pub fn variant_name(variant: IcpVariant) -> &'static str {
     }
 }
 
-/// The offset on the basin maps.
+/// The offset on the axis of the basin maps.
 pub fn axis(values: &Values) -> OffsetAxis {
     values.get(&AXIS)
 }
 
-/// The settings of every registration in that variant.
+/// The settings of every registration with that variant.
 pub fn config(values: &Values, variant: IcpVariant) -> IcpConfig {
     let huber_m = values.get(&HUBER);
     IcpConfig {

@@ -22,7 +22,7 @@ pub fn all(explorer: &BasinExplorer) -> Vec<Table> {
     tables
 }
 
-/// The end of both variants from the same start.
+/// The results of both variants from the same start.
 fn variants(explorer: &BasinExplorer) -> Table {
     let chosen = variant(&explorer.values);
     let row = |variant: IcpVariant, end: &BasinOutcome| {
@@ -52,7 +52,7 @@ fn variants(explorer: &BasinExplorer) -> Table {
     )
 }
 
-/// The way of the registration.
+/// The iterations of the registration.
 fn iterations(explorer: &BasinExplorer) -> Table {
     let truth = explorer.scene.truth();
     let rows = explorer.run.trace.iter().enumerate().map(|(k, state)| {
@@ -96,7 +96,7 @@ fn basins(explorer: &BasinExplorer) -> Table {
     )
 }
 
-/// One row a cell; a cell that is not computed yet is empty.
+/// One row per cell; a cell that is not computed yet is empty.
 fn basin_rows(explorer: &BasinExplorer) -> Vec<Vec<String>> {
     let point = explorer.basins.map(IcpVariant::PointToPoint);
     let plane = explorer.basins.map(IcpVariant::PointToPlane);

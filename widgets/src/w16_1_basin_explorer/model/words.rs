@@ -13,7 +13,7 @@ use crate::w16_1_basin_explorer::spec::{EDGE, Phase};
 
 use crate::w16_1_basin_explorer::spec::HEADING;
 
-/// How the minimum is judged that a run reached: the same that colours its cell of a basin map.
+/// The standing of the minimum that a run reached: the same that colours its cell of a basin map.
 pub fn standing(minimum: Minimum) -> Standing {
     match minimum {
         Minimum::Right => Standing::Good,
@@ -90,7 +90,7 @@ fn stop_words(stop: &StopReason) -> &'static str {
     match stop {
         StopReason::SmallStep { .. } => "converged after",
         StopReason::IterationLimit { .. } => "stopped at the limit of",
-        StopReason::TooFewPairs { .. } => "gave up for want of pairs after",
-        StopReason::NotFinite => "left the range of numbers after",
+        StopReason::TooFewPairs { .. } => "stopped for too few pairs after",
+        StopReason::NotFinite => "stopped at a non-finite value after",
     }
 }

@@ -1,4 +1,4 @@
-//! How the flat changes: by the pointer, by buttons, by a link and by a file.
+//! Edits of the flat: by the pointer, by buttons, by a link and by a file.
 
 use ch16_lab::lap::BuiltInWorld;
 use kit::model::Handle;
@@ -14,21 +14,21 @@ use super::picture;
 use super::piece::Piece;
 use crate::w16_2_full_lap::spec::{EDIT, FLAT, SPEC, WORLD};
 
-/// The name of the file that a flat is saved as.
+/// The file name of a saved flat.
 const FILE_NAME: &str = "flat.json";
 
-/// Handles of what is not there yet.
+/// Handles of parts that do not exist yet.
 const DRAW: &str = "draw";
 const PLACE: &str = "place";
 
 impl FullLap {
-    /// What the lap is driven through, where it is the reader's own and can be driven.
+    /// The course of the reader's own flat, if it is selected and can be driven.
     pub(super) fn own_course(&self) -> Option<&Course> {
         let course = self.flat.course.as_ref().ok();
         course.filter(|_| is_own(&self.values))
     }
 
-    /// The value of `world` changed.
+    /// Handles a change of the value of `world`.
     pub(super) fn world_chosen(&mut self, before: Option<BuiltInWorld>) {
         let sketch = self.flat.sketch.clone();
         self.flat.remember(Kept {
@@ -41,14 +41,14 @@ impl FullLap {
         }
     }
 
-    /// A built-in world is chosen.
+    /// Selects a built-in world.
     fn leave_own(&mut self, world: BuiltInWorld) {
         self.values.store(FLAT.id, 0.0);
         self.flat.become_of(Sketch::from_course(&world.course()));
         self.recompute();
     }
 
-    /// A flat as a link writes it; without one, the Apartment is what is drawn in.
+    /// Sets a flat from a link; without one, drawing starts from the Apartment.
     pub(super) fn set_flat(&mut self, text: &str) -> Result<(), ParamError> {
         let (param, _) = self.values.find_for(SPEC.id, "flat")?;
         param.parse(text)?;
@@ -68,18 +68,18 @@ impl FullLap {
         Ok(())
     }
 
-    /// Another flat is the world.
+    /// Replaces the world by another flat.
     fn take(&mut self, sketch: Sketch) {
         let text = sketch.to_text();
         if let Err(error) = self.values.set_text(SPEC.id, "flat", &text) {
-            panic!("a flat of our own was refused: {error}");
+            panic!("the edited flat is invalid: {error}");
         }
         self.values.put(&WORLD, None);
         self.flat.become_of(sketch);
         self.recompute();
     }
 
-    /// The same by the reader's hand: it can be taken back, and the lap is shown to its end.
+    /// Replaces it by an edit of the reader, which can be undone; the lap is shown to its end.
     fn draw(&mut self, sketch: Sketch) {
         if sketch == self.flat.sketch {
             return;
@@ -101,24 +101,24 @@ impl FullLap {
         Piece::put(piece, &mut self.values);
     }
 
-    /// The chosen piece, where the flat has it.
+    /// The selected piece, if it exists in the flat.
     pub(super) fn piece(&self) -> Option<Piece> {
         Piece::chosen(&self.values, &self.flat.sketch)
     }
 
-    /// Says why nothing changed.
+    /// Reports why an edit was rejected.
     fn refuse(&mut self, why: impl Into<String>) {
         self.flat.note = Some(why.into());
     }
 
-    /// Buttons of the flat; says whether it is one of them.
+    /// Handles the buttons of the flat. Returns whether the button is one of them.
     pub(super) fn press_flat(&mut self, id: &str) -> bool {
         self.flat.note = None;
         match id {
             "edit-flat" => {
                 let is_off = Tool::chosen(&self.values).is_none();
                 self.playback.pause();
-                // With a wall in the hand: a drag draws at once.
+                // The wall tool is selected, so a drag draws at once.
                 self.values.put(&EDIT, is_off.then_some(Tool::Wall));
             }
             "piece-back" => self.step_piece(Step::Back),
@@ -144,11 +144,11 @@ impl FullLap {
             "turn-here" => self.turn_here(),
             "take-back" => {
                 let before = self.flat.back(self.kept());
-                self.restore(before, "nothing to take back");
+                self.restore(before, "nothing to undo");
             }
             "do-again" => {
                 let after = self.flat.again(self.kept());
-                self.restore(after, "nothing was taken back");
+                self.restore(after, "nothing to redo");
             }
             "open-flat" => self.flat.orders.push("open-text .json".to_owned()),
             "save-flat" => {
@@ -175,7 +175,7 @@ impl FullLap {
 
     fn nudge(&mut self, by: [i32; 2]) {
         let Some(piece) = self.piece() else {
-            self.refuse("nothing is chosen: choose a wall, an end or a way point first");
+            self.refuse("nothing is selected: select a wall, an end or a way point first");
             return;
         };
         match piece.nudged(&self.flat.sketch, by) {
@@ -186,13 +186,13 @@ impl FullLap {
 
     fn remove_piece(&mut self) {
         let Some(piece) = self.piece() else {
-            self.refuse("nothing is chosen: choose a wall or a way point first");
+            self.refuse("nothing is selected: select a wall or a way point first");
             return;
         };
         match piece.removed(&self.flat.sketch) {
             Ok(sketch) => {
                 self.draw(sketch);
-                // The next one of its kind stands in its place.
+                // The next one of its kind takes its index.
                 let left = piece.count(&self.flat.sketch);
                 if piece.index() >= left {
                     self.choose(Piece::stepped(None, Step::Back, &self.flat.sketch));
@@ -212,11 +212,11 @@ impl FullLap {
         }
     }
 
-    /// From the chosen way point on, places are seen again; where that was so, it no longer is.
+    /// Revisits start from the selected way point; if they do already, the mark is removed.
     fn turn_here(&mut self) {
         let Some(index) = self.chosen_way_point() else {
             self.refuse(
-                "no way point is chosen: choose the one from which on places are seen again",
+                "no way point is selected: select the one from which on known locations are seen again",
             );
             return;
         };
@@ -240,7 +240,7 @@ impl FullLap {
         }
     }
 
-    /// A file of the reader's.
+    /// Opens a file of the reader.
     pub(super) fn open_flat(&mut self, name: &str, text: &[u8]) {
         match Sketch::from_json(text) {
             Ok(sketch) => self.draw(sketch),
@@ -248,7 +248,7 @@ impl FullLap {
         }
     }
 
-    /// What a press on the map takes hold of, with a tool in the hand.
+    /// What a press on the map grabs with a tool.
     pub(super) fn grab_flat(&self, tool: Tool, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
         let under = self.piece_under(at, reach);
         let new = |id| Handle {
@@ -269,12 +269,12 @@ impl FullLap {
         }
     }
 
-    /// The tool in the hand over a panel.
+    /// The tool that applies to a panel.
     pub(super) fn tool_on(&self, name: &str) -> Option<Tool> {
         Tool::chosen(&self.values).filter(|_| name == panel::MAP)
     }
 
-    /// What lies under the pointer; the chosen place first, where several lie on each other.
+    /// The piece under the pointer; the selected one first if several overlap.
     fn piece_under(&self, at: [f64; 2], reach: [f64; 2]) -> Option<Piece> {
         let sketch = &self.flat.sketch;
         let chosen = self.piece().filter(|piece| {
@@ -285,7 +285,7 @@ impl FullLap {
         chosen.or_else(|| Piece::at(sketch, at, reach))
     }
 
-    /// A stroke goes on, or begins; says whether the handle is one of the flat's.
+    /// Continues or starts a stroke. Returns whether the handle is one of the flat's.
     pub(super) fn stroke(&mut self, handle: Handle, at: [f64; 2]) -> bool {
         let held = Piece::held(handle);
         if handle.panel != panel::MAP || (held.is_none() && ![DRAW, PLACE].contains(&handle.id)) {
@@ -329,7 +329,7 @@ impl FullLap {
     fn begin_stroke(&mut self, handle: Handle, at: [f64; 2], held: Option<Piece>) {
         self.flat.frame = Some(picture::map_bounds(&self.moment()));
         self.flat.note = None;
-        // A way point goes behind the one that is chosen.
+        // A way point is inserted after the selected one.
         let piece = match handle.id {
             PLACE => self.piece(),
             _ => held,
@@ -357,7 +357,7 @@ impl FullLap {
         true
     }
 
-    /// What the stroke has made of the flat so far; one stroke is one change.
+    /// Shows the result of the stroke so far; one stroke is one change.
     fn show_stroke(&mut self, after: Option<(Sketch, Piece)>) {
         let Some((sketch, piece)) = after.filter(|(sketch, _)| *sketch != self.flat.sketch) else {
             return;
@@ -372,7 +372,7 @@ impl FullLap {
         self.choose(Some(piece));
     }
 
-    /// A click or a tap with a tool in the hand.
+    /// A click or a tap with a tool.
     pub(super) fn tap_flat(&mut self, tool: Tool, at: [f64; 2], reach: [f64; 2]) {
         self.end_stroke();
         let under = self.piece_under(at, reach);
@@ -390,14 +390,14 @@ impl FullLap {
         }
     }
 
-    /// The pointer let go.
+    /// The pointer was released.
     pub(super) fn end_stroke(&mut self) {
         self.flat.stroke = None;
         self.flat.frame = None;
     }
 }
 
-/// What a flat says of itself, for the picture and the words.
+/// The state of the flat, for the picture and the texts.
 pub(super) fn drawn(lap: &FullLap) -> Option<super::moment::Drawn<'_>> {
     let tool = Tool::chosen(&lap.values);
     (tool.is_some() || is_own(&lap.values)).then(|| super::moment::Drawn {

@@ -1,7 +1,7 @@
-//! The reader's own flat: what is drawn, what of it is chosen, and the way back.
+//! The reader's own flat: the drawing, the selection, and the undo history.
 //!
-//! A flat is a [`Sketch`]: it need not be drivable while it is drawn. Whatever changes it goes through
-//! [`Flat::remember`], so that all of it can be taken back.
+//! A flat is a [`Sketch`], which need not be drivable during editing. Every change is recorded by
+//! [`Flat::remember`], so all of them can be undone.
 
 use ch16_lab::lap::BuiltInWorld;
 use kit::scene::Bounds;
@@ -13,16 +13,16 @@ use super::grid::{moved, snapped};
 use super::piece::Piece;
 use crate::w16_2_full_lap::spec::{EDIT, WORLD};
 
-/// So many changes can be taken back.
+/// Largest number of changes that can be undone.
 const MOST_UNDO: usize = 200;
 
-/// Length of a wall that a button adds, cm.
+/// Length of a wall added by a button, cm.
 const NEW_WALL_CM: i32 = 100;
 
-/// A way point that a button adds stands so far from the one before, cm.
+/// Distance of a way point added by a button from the one before, cm.
 const NEW_WAY_POINT_CM: i32 = 50;
 
-/// What a press on the map does.
+/// The effect of a press on the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tool {
     /// Moves a wall, an end, a way point or the start.
@@ -31,60 +31,60 @@ pub enum Tool {
     Wall,
     /// Places a way point.
     Way,
-    /// Removes what it meets.
+    /// Removes the piece under it.
     Remove,
 }
 
 impl Tool {
-    /// The tool in the reader's hand; none where nothing is edited.
+    /// The selected tool; `None` while the flat is not edited.
     pub fn chosen(values: &Values) -> Option<Self> {
         values.get(&EDIT)
     }
 }
 
-/// The world of a moment, to come back to.
+/// A world in the undo history.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept {
     /// The value of `world`.
     pub world: Option<BuiltInWorld>,
-    /// What was drawn.
+    /// The drawing.
     pub sketch: Sketch,
 }
 
 /// A stroke under way.
 pub struct Stroke {
-    /// What the pointer took hold of.
+    /// The grabbed handle.
     pub handle: kit::model::Handle,
-    /// Where it did, m.
+    /// The position of the press, m.
     pub from: [f64; 2],
     /// The flat before it.
     pub before: Kept,
-    /// What is moved; none before a wall is as long as the grid is wide.
+    /// The moved piece; `None` before a new wall has the length of a grid cell.
     pub piece: Option<Piece>,
 }
 
-/// What is drawn, and how it became so.
+/// The drawing and its history.
 pub struct Flat {
-    /// The world that is chosen, to the centimetre.
+    /// The selected world, to the centimetre.
     pub sketch: Sketch,
-    /// The same as a course, or why it is none.
+    /// The drawing as a course, or why it cannot be driven.
     pub course: Result<Course, CourseError>,
     /// The stroke under way.
     pub stroke: Option<Stroke>,
-    /// What the map shows during the stroke: the picture keeps still under the pointer.
+    /// The visible part of the map during the stroke, which keeps the picture still under the pointer.
     pub frame: Option<Bounds>,
-    /// Why the last change was none.
+    /// Why the last edit was rejected.
     pub note: Option<String>,
-    /// The lap that comes is shown at its end.
+    /// Whether the next lap is shown at its end.
     pub follows: bool,
-    /// What is asked of the host.
+    /// Requests to the host.
     pub orders: Vec<String>,
     past: Vec<Kept>,
     future: Vec<Kept>,
 }
 
 impl Flat {
-    /// A world with nothing to take back.
+    /// A world with an empty history.
     pub fn new(sketch: Sketch) -> Self {
         Self {
             course: sketch.course(),
@@ -99,14 +99,14 @@ impl Flat {
         }
     }
 
-    /// Another world is chosen or drawn.
+    /// Replaces the drawing by another world.
     pub fn become_of(&mut self, sketch: Sketch) {
         self.course = sketch.course();
         self.sketch = sketch;
         self.note = None;
     }
 
-    /// Remembers a world before it changes.
+    /// Records a world before it changes.
     pub fn remember(&mut self, kept: Kept) {
         self.future.clear();
         if self.past.last() == Some(&kept) {
@@ -118,14 +118,14 @@ impl Flat {
         self.past.push(kept);
     }
 
-    /// The world before the last change; `now` can be had again.
+    /// Undo: the world before the last change; `now` goes to the redo history.
     pub fn back(&mut self, now: Kept) -> Option<Kept> {
         let before = Self::pop(&mut self.past, &now)?;
         self.future.push(now);
         Some(before)
     }
 
-    /// The world after the change that was taken back last.
+    /// Redo: the world after the change that was undone last.
     pub fn again(&mut self, now: Kept) -> Option<Kept> {
         let after = Self::pop(&mut self.future, &now)?;
         self.past.push(now);
@@ -147,7 +147,7 @@ pub fn is_own(values: &Values) -> bool {
     values.get(&WORLD).is_none()
 }
 
-/// Puts a wall behind the others; its number, or why it cannot be.
+/// Appends a wall. Returns its index, or why it is impossible.
 pub fn add_wall(sketch: &mut Sketch, wall: [PlaceCm; 2]) -> Result<usize, String> {
     if sketch.walls_cm.len() >= limits::WALLS {
         let most = limits::WALLS;
@@ -159,7 +159,7 @@ pub fn add_wall(sketch: &mut Sketch, wall: [PlaceCm; 2]) -> Result<usize, String
     Ok(sketch.walls_cm.len() - 1)
 }
 
-/// Puts a way point behind another, or at the end; its number, or why it cannot be.
+/// Inserts a way point after another, or at the end. Returns its index, or why it is impossible.
 pub fn add_way_point(
     sketch: &mut Sketch,
     behind: Option<usize>,
@@ -169,7 +169,7 @@ pub fn add_way_point(
     if count >= limits::WAY_POINTS {
         let most = limits::WAY_POINTS;
         return Err(format!(
-            "a way has at most {most} way points: remove one before you place another"
+            "a path has at most {most} way points: remove one before you place another"
         ));
     }
     let index = behind.map_or(count, |behind| (behind + 1).min(count));
@@ -178,14 +178,14 @@ pub fn add_way_point(
     Ok(index)
 }
 
-/// A wall of a metre in the middle of what is drawn.
+/// A wall of one metre in the middle of the drawing.
 pub fn new_wall(sketch: &Sketch) -> [PlaceCm; 2] {
     let middle = snapped(extent(sketch).middle());
     let half = NEW_WALL_CM / 2;
     [moved(middle, [-half, 0]), moved(middle, [half, 0])]
 }
 
-/// Where a way point stands that a button adds: half-way to the next, or a little beyond the last.
+/// Position of a way point added by a button: halfway to the next, or a little beyond the last.
 pub fn new_way_point(sketch: &Sketch, behind: Option<usize>) -> PlaceCm {
     let points = &sketch.way_points_cm;
     let before = behind.or(points.len().checked_sub(1));
@@ -196,7 +196,7 @@ pub fn new_way_point(sketch: &Sketch, behind: Option<usize>) -> PlaceCm {
     }
 }
 
-/// What walls, way and start span, m.
+/// The extent of walls, path and start, m.
 pub fn extent(sketch: &Sketch) -> Bounds {
     let ends = sketch.walls_cm.iter().flatten();
     let places = ends.chain(&sketch.way_points_cm);

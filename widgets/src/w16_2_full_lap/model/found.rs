@@ -1,4 +1,4 @@
-//! Which parts of the graph are there at the moment shown.
+//! Looks up the parts of the graph that exist at the current tick.
 
 use ch16_lab::lap::{LoopAttempt, RecordedEdge};
 use ch16_slam2d::graph::EdgeKind;
@@ -6,7 +6,7 @@ use ch16_slam2d::graph::EdgeKind;
 use super::moment::Moment;
 use super::pick::{Part, Step};
 
-/// A part that is there at the moment shown.
+/// A part that exists at the current tick.
 pub enum Found<'a> {
     /// A keyframe.
     Keyframe(usize),
@@ -14,11 +14,11 @@ pub enum Found<'a> {
     Edge(&'a RecordedEdge),
     /// A loop that was tried.
     Loop(&'a LoopAttempt),
-    /// The loop of the reader's own.
+    /// The custom loop.
     Own,
 }
 
-/// Finds a part among those that are there; none where it is not, or not yet.
+/// Finds a part; `None` if it does not exist, or not yet.
 pub fn find<'a>(moment: &Moment<'a>, part: Part) -> Option<Found<'a>> {
     match part {
         Part::Keyframe(node) => (node < moment.nodes.len()).then_some(Found::Keyframe(node)),
@@ -39,7 +39,7 @@ pub fn find<'a>(moment: &Moment<'a>, part: Part) -> Option<Found<'a>> {
     }
 }
 
-/// The part before or after among those that are there, in the kind that is looked at.
+/// The previous or next existing part of the same kind.
 pub fn stepped(part: Option<Part>, step: Step, moment: &Moment) -> Option<Part> {
     let nodes = moment.nodes.len();
     let (all, make): (Vec<usize>, fn(usize) -> Part) = match part {

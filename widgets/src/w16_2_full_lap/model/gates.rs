@@ -1,5 +1,4 @@
-//! Both gates of a loop: what each takes for the drift, and the region that it leaves to the
-//! measured position.
+//! Both gates of a loop: the drift model of each, and the region in which it accepts the measured position.
 
 use ch16_lab::lap::{LapTrace, LoopAttempt};
 use ch16_slam2d::chapter::{marginal_information, path_information};
@@ -8,10 +7,10 @@ use ch16_slam2d::loops::{GateModel, GateTest, LoopConfig, LoopVerification, chi_
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use pr_geom::{SE2, math};
 
-/// One gate over a loop: the one that decided, or the one that was not asked.
+/// The result of one gate for a loop, whether it decided or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gate {
-    /// What it takes for the drift.
+    /// Its drift model.
     pub model: GateModel,
     /// Information of the innovation under that drift, S⁻¹; x, y, θ in m and rad.
     pub information: Matrix3<f64>,
@@ -19,7 +18,7 @@ pub struct Gate {
     pub test: GateTest,
 }
 
-/// Both gates over the same loop, on the graph as the loop met it.
+/// Both gates for the same loop, on the graph before the loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gates {
     /// The chapter's path approximation.
@@ -33,17 +32,17 @@ pub struct Gates {
 pub struct Region {
     /// Centre.
     pub center: [f64; 2],
-    /// Columns of A: conjugate half axes, not the longest and the shortest.
+    /// Columns of A: conjugate half axes, not the principal ones.
     pub half_axes: [[f64; 2]; 2],
 }
 
 impl Gates {
-    /// Both gates over an attempt of `lap`.
+    /// Both gates for an attempt of `lap`.
     pub fn new(lap: &LapTrace, attempt: &LoopAttempt, config: &LoopConfig) -> Self {
         Self::on(&mut lap.graph_before(attempt), attempt, config)
     }
 
-    /// Both gates over an attempt that met this graph.
+    /// Both gates for an attempt, on the graph before it.
     pub fn on(graph: &mut PoseGraph, attempt: &LoopAttempt, config: &LoopConfig) -> Self {
         let loop_ = &attempt.verification;
         let marginal = marginal_information(graph, loop_.candidate.node, loop_.from_node);
@@ -57,20 +56,20 @@ impl Gates {
                 GateModel::PathApproximation,
                 path_information(loop_.gap(), config),
             ),
-            // Zero where the graph has no covariance: nothing is known there.
+            // Zero if the graph has no covariance, that is, no information.
             exact: gate(GateModel::ExactMarginal, marginal.unwrap_or_default()),
         }
     }
 }
 
 impl Gate {
-    /// The positions that pass at the registered heading: the measured one lies inside exactly
-    /// where the gate passes. None where that heading passes at no position.
+    /// The positions that the gate accepts at the registered heading: the measured one is inside exactly if
+    /// the gate accepts it. `None` if that heading is rejected at every position.
     ///
-    /// With the innovation split into position ρ and heading θ and S⁻¹ into blocks P, c and h, the
-    /// gate `νᵀ S⁻¹ ν ≤ g` reads `(ρ − ρ₀)ᵀ P (ρ − ρ₀) ≤ g − (h − cᵀ P⁻¹ c) θ²` with
-    /// `ρ₀ = −P⁻¹ c θ`. It is a cut through the ellipsoid at θ, smaller than its shadow. `exp` takes
-    /// ρ to a displacement, linearly at a given θ.
+    /// With the innovation split into position ρ and heading θ and S⁻¹ into blocks P, c and h, the gate `νᵀ
+    /// S⁻¹ ν ≤ g` reads `(ρ − ρ₀)ᵀ P (ρ − ρ₀) ≤ g − (h − cᵀ P⁻¹ c) θ²` with `ρ₀ = −P⁻¹ c θ`. It is a section
+    /// of the ellipsoid at θ, smaller than its projection. `exp` maps ρ to a displacement, linearly at a
+    /// given θ.
     pub fn region(&self, loop_: &LoopVerification) -> Option<Region> {
         let theta = loop_.innovation.z;
         let position: Matrix2<f64> = self.information.fixed_view::<2, 2>(0, 0).into();

@@ -1,4 +1,4 @@
-//! What a reader does with the graph: looks at its parts, ties a loop, goes from loop to loop.
+//! Operations on the graph: select parts, add a custom loop, go from loop to loop.
 
 use super::FullLap;
 use super::found::stepped;
@@ -6,20 +6,20 @@ use super::pick::{Part, Step};
 use crate::w16_2_full_lap::spec::{LOOP_BUTTONS, OWN, OWN_FROM, OWN_TO};
 
 impl FullLap {
-    /// Looks at a part of the graph, or at nothing.
+    /// Selects a part of the graph, or nothing.
     pub(super) fn look_at(&mut self, part: Option<Part>) {
         Part::put(part, &mut self.values);
     }
 
-    /// Looks at the next part, or at the one before.
+    /// Selects the next part, or the previous one.
     pub(super) fn look_on(&mut self, step: Step) {
         let part = stepped(Part::chosen(&self.values), step, &self.moment());
         self.look_at(part);
     }
 
-    /// A loop of the reader's own between two keyframes.
+    /// Adds a custom loop between two keyframes.
     pub(super) fn tie(&mut self, [from, to]: [usize; 2]) {
-        // What was chosen of it stays; without a choice, the sweeps are asked.
+        // A claim that was selected stays; the default is a registration of the sweeps.
         let claim = self.values.get(&OWN).unwrap_or_default();
         self.values.put(&OWN, Some(claim));
         self.values.put(&OWN_FROM, from);
@@ -34,7 +34,7 @@ impl FullLap {
         self.animate();
     }
 
-    /// Begins a loop at the keyframe that is looked at, or ends it there.
+    /// Starts a loop at the selected keyframe, or ends it there.
     pub(super) fn press_tie(&mut self) {
         let Some(Part::Keyframe(node)) = Part::chosen(&self.values) else {
             self.own.tied = None;
@@ -48,7 +48,7 @@ impl FullLap {
             }
             Some(_) => self.own.tied = None,
             None => {
-                // A value changes, so that whoever hears the page hears of it.
+                // Changes a value, so that listeners of the page are notified.
                 self.own.keep(&self.values);
                 self.values.put(&OWN_FROM, node);
                 self.refresh_own();
@@ -79,7 +79,7 @@ impl FullLap {
         }
     }
 
-    /// Buttons that go by the loops of the lap; says whether it is one of them.
+    /// Handles the buttons that go from loop to loop. Returns whether the button is one of them.
     pub(super) fn press_loop(&mut self, id: &str) -> bool {
         let Some(button) = LOOP_BUTTONS.iter().find(|button| button.id == id) else {
             return false;

@@ -1,14 +1,14 @@
-//! The grid that a flat is drawn on.
+//! The grid of the drawing.
 
 use pr_sim::sketch::{PlaceCm, limits};
 
-/// What is drawn lies on a grid of so many centimetres.
+/// Spacing of the grid, cm.
 pub const GRID_CM: i32 = 5;
 
-/// The heading of the start goes in steps of so many degrees.
+/// Step of the start's heading, degrees.
 pub const HEADING_STEP_DEG: i32 = 5;
 
-/// The nearest place of the grid, within what a flat may reach.
+/// The nearest point of the grid, within the limits of a flat.
 pub fn snapped(at: [f64; 2]) -> PlaceCm {
     let most = limits::COORDINATE_CM as i32;
     at.map(|m| {
@@ -17,7 +17,7 @@ pub fn snapped(at: [f64; 2]) -> PlaceCm {
     })
 }
 
-/// A place that moved by so much, within what a flat may reach.
+/// A shifted point, within the limits of a flat.
 pub fn moved(at: PlaceCm, by: PlaceCm) -> PlaceCm {
     let most = limits::COORDINATE_CM as i32;
     [0, 1].map(|axis| at[axis].saturating_add(by[axis]).clamp(-most, most))

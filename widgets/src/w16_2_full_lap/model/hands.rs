@@ -1,4 +1,4 @@
-//! The pointer on the graph: what lies under it, what a tap chooses, and loops that are dragged out.
+//! The pointer on the graph: hit tests, taps, and loops created by dragging.
 
 use ch16_lab::lap::edge_strain;
 use kit::model::Handle;
@@ -9,13 +9,13 @@ use super::panel;
 use super::pick::Part;
 use super::picture;
 
-/// A pointer that only moves about answers to what is so near on the map, m.
+/// Radius within which the map reacts to a hovering pointer, m.
 const HOVER_M: f64 = 0.3;
 
-/// The same in a plot, as a share of its axes.
+/// The same radius in a plot, as a share of its axes.
 const HOVER_SHARE: f64 = 0.03;
 
-/// The handle of a keyframe: a loop is dragged out of it.
+/// The handle of a keyframe: dragging it creates a loop.
 const KEYFRAME: &str = "keyframe";
 
 /// The part of the graph nearest to a point of a panel, within `reach` along each axis.
@@ -32,7 +32,7 @@ pub fn part_at(moment: &Moment, name: &str, at: [f64; 2], reach: [f64; 2]) -> Op
     near.map(|(part, _)| part)
 }
 
-/// What lies under a pointer that presses nothing.
+/// The part under a hovering pointer.
 pub fn hovered(moment: &Moment, name: &str, at: [f64; 2]) -> Option<Part> {
     let reach = match name {
         panel::MAP => [HOVER_M; 2],
@@ -45,7 +45,7 @@ pub fn hovered(moment: &Moment, name: &str, at: [f64; 2]) -> Option<Part> {
     part_at(moment, name, at, reach)
 }
 
-/// Where each part stands in a panel: an edge at its middle, a loop at its mark.
+/// The position of each part in a panel: of an edge at its middle, of a loop at its mark.
 fn places(moment: &Moment, name: &str) -> Vec<(Part, [f64; 2])> {
     let nodes = &moment.nodes;
     match name {
@@ -90,7 +90,7 @@ fn places(moment: &Moment, name: &str) -> Vec<(Part, [f64; 2])> {
     }
 }
 
-/// The keyframe that is looked at can be taken hold of.
+/// Grabs the selected keyframe.
 pub fn grab(moment: &Moment, name: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
     let Some(Part::Keyframe(node)) = moment.picked else {
         return None;
@@ -101,13 +101,13 @@ pub fn grab(moment: &Moment, name: &str, at: [f64; 2], reach: [f64; 2]) -> Optio
     is_near.then_some(Handle {
         panel: panel::MAP,
         id: KEYFRAME,
-        // What is dragged is a line: it has no spot of its own, but a keyframe where it begins, and
-        // a reach.
+        // The dragged thing is a line without a position of its own: the handle stores the keyframe at its
+        // start and the reach.
         offset: [node as f64, reach[0]],
     })
 }
 
-/// The two ends of a loop that is dragged to a point; none before it reaches another keyframe.
+/// The two ends of a dragged loop; `None` before it reaches another keyframe.
 pub fn dragged_ends(moment: &Moment, handle: Handle, at: [f64; 2]) -> Option<[usize; 2]> {
     if handle.id != KEYFRAME {
         return None;
@@ -123,7 +123,7 @@ pub fn dragged_ends(moment: &Moment, handle: Handle, at: [f64; 2]) -> Option<[us
         .filter(|(_, away)| *away <= reach)
         .min_by(|a, b| a.1.total_cmp(&b.1));
     let (to, _) = near?;
-    // A press that trembles is no drag.
+    // A press with little movement is not a drag.
     let has_left = from < moment.nodes.len() && away(from) > 0.5 * reach;
     (to != from && has_left).then_some([from, to])
 }

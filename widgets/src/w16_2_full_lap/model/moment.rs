@@ -1,5 +1,4 @@
-//! What the widget shows at a tick: poses of the graph, on the way from old to new where a loop's
-//! animation runs.
+//! The state of the widget at a tick: poses of the graph, interpolated during a loop's animation.
 
 use ch16_lab::lap::{LoopAttempt, OwnLoop, RecordedEdge};
 use kit::scene::Bounds;
@@ -11,20 +10,20 @@ use super::pick::Part;
 use super::piece::Piece;
 use super::runs::Runs;
 
-/// What is drawn of the reader's own flat, or of a world that is about to become one.
+/// The drawing of the reader's own flat, or of a world that is being edited.
 #[derive(Clone, Copy)]
 pub struct Drawn<'a> {
     /// Walls, start and way points.
     pub sketch: &'a Sketch,
-    /// The tool in the reader's hand.
+    /// The selected tool.
     pub tool: Option<Tool>,
-    /// What is chosen.
+    /// The selected piece.
     pub piece: Option<Piece>,
-    /// Why it cannot be driven: the laps are of another world then.
+    /// Why it cannot be driven; then the laps are of another world.
     pub problem: Option<&'a CourseError>,
-    /// Why the last change was none.
+    /// Why the last edit was rejected.
     pub note: Option<&'a str>,
-    /// What the map shows while a stroke is under way.
+    /// The visible part of the map during a stroke.
     pub frame: Option<Bounds>,
 }
 
@@ -32,32 +31,32 @@ pub struct Drawn<'a> {
 pub struct Moment<'a> {
     /// The laps.
     pub runs: &'a Runs,
-    /// Ticks done.
+    /// The current tick.
     pub tick: usize,
-    /// The last tick of which anything tells: the one shown, or the end of the lap.
+    /// The last tick that plots show: the current one, or the end of the lap.
     pub seen_until: usize,
     /// The attempt made in this tick.
     pub attempt: Option<&'a LoopAttempt>,
-    /// The loop of the reader's own.
+    /// The custom loop.
     pub own: Option<&'a OwnLoop>,
-    /// Poses of the graph's nodes before the attempt, or before the own loop; empty without one.
+    /// Poses of the graph's nodes before the attempt or the custom loop; empty without one.
     pub old_nodes: Vec<SE2>,
     /// Poses of the graph's nodes as shown: `world_from_body`.
     pub nodes: Vec<SE2>,
     /// The graph's pose of the robot as shown: `world_from_body`.
     pub estimate: SE2,
-    /// What is looked at.
+    /// The selected part.
     pub picked: Option<Part>,
-    /// What the pointer is over.
+    /// The part under the pointer.
     pub hovered: Option<Part>,
-    /// The keyframe at which a loop of the reader's own begins that has no end yet.
+    /// The keyframe at which an unfinished custom loop begins.
     pub tied: Option<usize>,
-    /// What is drawn of the reader's own flat.
+    /// The drawing of the reader's own flat.
     pub drawn: Option<Drawn<'a>>,
 }
 
 impl<'a> Moment<'a> {
-    /// The state at `tick` with the own loop; `share` is the part of a loop's correction that is shown.
+    /// The state at `tick` with the custom loop; `share` is the applied fraction of a loop's correction.
     pub fn new(
         runs: &'a Runs,
         tick: usize,
@@ -108,14 +107,14 @@ impl<'a> Moment<'a> {
         }
     }
 
-    /// The loops tried up to here.
+    /// The loops tried so far.
     pub fn loops_tried(&self) -> impl DoubleEndedIterator<Item = &'a LoopAttempt> + use<'a> {
         let tick = self.tick;
         let attempts = self.runs.graph.attempts().iter();
         attempts.filter(move |attempt| attempt.tick <= tick)
     }
 
-    /// The loop that the moment belongs to, as far as it may be told of.
+    /// The loop to which the tick belongs, if it was tried by then.
     pub fn loop_near(&self) -> Option<&'a LoopAttempt> {
         let graph = &self.runs.graph;
         let newest = graph.newest_attempt(self.seen_until.min(self.tick + 1));
@@ -123,25 +122,25 @@ impl<'a> Moment<'a> {
         newest.or(first.filter(|attempt| attempt.tick <= self.seen_until))
     }
 
-    /// The edges of the graph up to here, without the own loop.
+    /// The edges of the graph so far, without the custom loop.
     pub fn edges(&self) -> impl Iterator<Item = &'a RecordedEdge> + use<'a> {
         self.runs.graph.lap().edges(self.tick).iter()
     }
 
-    /// The same with the own loop, where it is closed.
+    /// Those edges and the custom loop, if it is closed.
     pub fn edges_with_own(&self) -> impl Iterator<Item = &'a RecordedEdge> + use<'a> {
         let own = self.own.filter(|own| own.is_closed());
         self.edges().chain(own.map(|own| &own.edge))
     }
 
-    /// Whether something moved: a loop was closed in this tick, or the reader's own is.
+    /// Whether nodes moved: a loop was closed in this tick, or the custom one is.
     pub fn has_moved(&self) -> bool {
         let own = self.own.is_some_and(OwnLoop::is_closed);
         own || self.attempt.is_some_and(LoopAttempt::accepted)
     }
 }
 
-/// The pose at a share of the way: `old ⊞ share · (new ⊟ old)`.
+/// The pose interpolated at `share`: `old ⊞ share · (new ⊟ old)`.
 fn between(old: &SE2, new: &SE2, share: f64) -> SE2 {
     if share >= 1.0 {
         return *new;

@@ -1,4 +1,4 @@
-//! A loop of the reader's own: what the settings ask for, what came of it, and the way back.
+//! A custom loop: its settings, its result, and its undo history.
 
 use ch16_lab::lap::{Claim, GateUse, OwnLoop, OwnLoopError, OwnLoopRequest};
 use kit::values::Values;
@@ -7,21 +7,21 @@ use super::runs::Runs;
 
 use crate::w16_2_full_lap::spec::{KERNEL, OWN, OWN_FROM, OWN_GATE, OWN_TO};
 
-/// Which loop it is: what it claims, and its ends.
+/// Identifies the loop: its claim, and its ends.
 type Which = (Option<Claim>, [usize; 2]);
 
-/// All parameters of it.
+/// All its parameters.
 pub const PARAMS: [&str; 5] = ["own", "own-from", "own-to", "own-gate", "kernel"];
 
-/// So many changes can be taken back.
+/// Largest number of changes that can be undone.
 const MOST_UNDO: usize = 100;
 
-/// The loop of the reader's own at the moment shown, and what it was before.
+/// The custom loop at the current tick, and its history.
 #[derive(Default)]
 pub struct Own {
-    /// What came of it; none where there is none.
+    /// Its result; `None` without a loop.
     pub made: Option<Result<OwnLoop, OwnLoopError>>,
-    /// A keyframe at which a loop begins.
+    /// The keyframe at which an unfinished loop begins.
     pub tied: Option<usize>,
     before: Vec<Which>,
     /// The keyframe from which a loop is being dragged: one drag is one change.
@@ -29,17 +29,17 @@ pub struct Own {
 }
 
 impl Own {
-    /// Works out the loop of the settings in the graph at a tick.
+    /// Computes the loop of the settings in the graph at a tick.
     pub fn refresh(&mut self, values: &Values, runs: &Runs, tick: usize) {
         self.made = request(values, tick).map(|request| runs.own_loop(&request));
     }
 
-    /// The loop, where it could be tried.
+    /// The loop, if it could be tried.
     pub fn tried(&self) -> Option<&OwnLoop> {
         self.made.as_ref()?.as_ref().ok()
     }
 
-    /// Remembers the loop as it is, before it changes.
+    /// Records the loop before it changes.
     pub fn keep(&mut self, values: &Values) {
         let now = which(values);
         if self.before.last() == Some(&now) {
@@ -51,7 +51,7 @@ impl Own {
         self.before.push(now);
     }
 
-    /// Puts back the loop before the last change; without one, no loop at all.
+    /// Undo: restores the loop before the last change, or none if there was none.
     pub fn undone(&mut self, values: &mut Values) {
         self.tied = None;
         let now = which(values);
@@ -65,23 +65,23 @@ impl Own {
         values.put(&OWN_TO, to);
     }
 
-    /// Whether it runs between these two already.
+    /// Whether it already joins these two.
     pub fn is_between(&self, values: &Values, ends: [usize; 2]) -> bool {
         let (claim, between) = which(values);
         claim.is_some() && between == ends
     }
 
-    /// A loop is dragged out of a keyframe; says whether it is the first of this drag.
+    /// Starts a drag from a keyframe. Returns whether this is the first call of the drag.
     pub fn drag_from(&mut self, node: usize) -> bool {
         self.dragged.replace(node) != Some(node)
     }
 
-    /// The drag is over.
+    /// Ends the drag.
     pub fn let_go(&mut self) {
         self.dragged = None;
     }
 
-    /// Nothing is remembered any more.
+    /// Clears the history.
     pub fn forget(&mut self) {
         *self = Self::default();
     }
@@ -92,7 +92,7 @@ fn which(values: &Values) -> Which {
     (values.get(&OWN), ends)
 }
 
-/// What the settings ask for at a tick; none where they ask for no loop.
+/// The loop in the settings at a tick; `None` if they contain none.
 pub fn request(values: &Values, tick: usize) -> Option<OwnLoopRequest> {
     let (claim, nodes) = which(values);
     Some(OwnLoopRequest {

@@ -2,7 +2,7 @@
 
 /// The world with the graph.
 pub const MAP: &str = "map";
-/// One loop from near.
+/// Close-up of one loop.
 pub const LOOP: &str = "loop";
 /// χ² of each loop tried.
 pub const GATE: &str = "gate";

@@ -1,4 +1,4 @@
-//! What of the graph is looked at: a keyframe, an edge between two of them, or a loop.
+//! The selected part of the graph: a keyframe, an edge between two of them, or a loop.
 
 use kit::values::Values;
 
@@ -13,21 +13,21 @@ pub enum Part {
     Edge(usize),
     /// The loop that was tried at this keyframe.
     Loop(usize),
-    /// The loop of the reader's own.
+    /// The custom loop.
     Own,
 }
 
-/// A way through the parts of one kind.
+/// A direction through the parts of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// To the part before; from the first, to the last.
+    /// To the previous part; from the first to the last.
     Back,
-    /// To the next part; from the last, to the first.
+    /// To the next part; from the last to the first.
     On,
 }
 
 impl Part {
-    /// What the settings choose; none where they choose nothing.
+    /// The selection in the settings; `None` if they select nothing.
     pub fn chosen(values: &Values) -> Option<Self> {
         let number = values.get(&NUMBER);
         match values.get(&PICK) {
@@ -38,7 +38,7 @@ impl Part {
         }
     }
 
-    /// Makes the values choose it; the own loop is told where nothing else is looked at.
+    /// Stores the selection; the custom loop is described if nothing else is selected.
     pub fn put(part: Option<Self>, values: &mut Values) {
         let (picked, number) = match part {
             Some(Self::Keyframe(number)) => (Picked::Keyframe, number),
@@ -50,7 +50,7 @@ impl Part {
         values.put(&NUMBER, number);
     }
 
-    /// Its keyframe; none of the own loop, of which there is one.
+    /// Its keyframe; `None` for the custom loop, which is unique.
     pub fn number(self) -> Option<usize> {
         match self {
             Self::Keyframe(number) | Self::Edge(number) | Self::Loop(number) => Some(number),

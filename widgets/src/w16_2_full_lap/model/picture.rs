@@ -1,4 +1,4 @@
-//! The panels: the map, the loop from near, the plots over time, the strain of each edge.
+//! The panels: the map, the close-up of the loop, the plots over time, the strain of each edge.
 
 mod closeup;
 mod flat;

@@ -12,10 +12,10 @@ use super::pick::Step;
 
 use crate::w16_2_full_lap::spec::{PIECE, PIECE_NUMBER};
 
-/// The tip of the heading stands so far from the start, m.
+/// Distance of the heading's tip from the start, m.
 const HEADING_ARM_M: f64 = 0.6;
 
-/// A piece, by its number from 0.
+/// A piece, with its index from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Piece {
     /// A whole wall.
@@ -26,9 +26,9 @@ pub enum Piece {
     SecondEnd(usize),
     /// A way point.
     WayPoint(usize),
-    /// Where the robot starts.
+    /// The position of the start.
     Start,
-    /// Where it looks there.
+    /// The heading of the start.
     Heading,
 }
 
@@ -43,14 +43,14 @@ const KINDS: [&str; 6] = [
 ];
 
 impl Piece {
-    /// What the settings choose, where the flat has it.
+    /// The selection in the settings, if it exists in the flat.
     pub fn chosen(values: &Values, sketch: &Sketch) -> Option<Self> {
         let kind = values.get(&PIECE)?;
         let index = values.get(&PIECE_NUMBER).checked_sub(1);
         Self::from_index(kind, index.unwrap_or(0)).filter(|piece| piece.is_in(sketch))
     }
 
-    /// Makes the settings choose it.
+    /// Stores the selection in the settings.
     pub fn put(piece: Option<Self>, values: &mut Values) {
         values.put(&PIECE, piece.map(Self::kind));
         values.put(&PIECE_NUMBER, piece.map_or(0, Self::index) + 1);
@@ -80,7 +80,7 @@ impl Piece {
         }
     }
 
-    /// The number of the wall or the way point, from 0.
+    /// Index of the wall or the way point, from 0.
     pub fn index(self) -> usize {
         match self {
             Self::Wall(index)
@@ -95,7 +95,7 @@ impl Piece {
         self.index() < self.count(sketch)
     }
 
-    /// How many of its kind there are.
+    /// The number of pieces of its kind.
     pub fn count(self, sketch: &Sketch) -> usize {
         match self {
             Self::Wall(_) | Self::FirstEnd(_) | Self::SecondEnd(_) => sketch.walls_cm.len(),
@@ -104,7 +104,7 @@ impl Piece {
         }
     }
 
-    /// The piece before or after it of its kind; from nothing, the last or the first wall.
+    /// The previous or next piece of its kind; without a selection, the last or the first wall.
     pub fn stepped(piece: Option<Self>, step: Step, sketch: &Sketch) -> Option<Self> {
         let kind = piece.map_or(0, Self::kind);
         let count = Self::from_index(kind, 0)?.count(sketch);
@@ -118,23 +118,23 @@ impl Piece {
         Self::from_index(kind, index)
     }
 
-    /// The piece that a handle holds.
+    /// The piece of a handle.
     pub fn held(handle: Handle) -> Option<Self> {
         let kind = KINDS.iter().position(|name| *name == handle.id)?;
         Self::from_index(kind, handle.offset[0] as usize)
     }
 
-    /// The handle that holds it.
+    /// The handle of the piece.
     pub fn handle(self) -> Handle {
         Handle {
             panel: panel::MAP,
             id: KINDS[self.kind()],
-            // What is held is known by its number; the stroke keeps where it began.
+            // The index identifies the piece; the stroke stores where it began.
             offset: [self.index() as f64, 0.0],
         }
     }
 
-    /// The same with its places moved from `from` to `at`, m; nothing where a wall would lose its length.
+    /// Moves the piece from `from` to `at`, m; `None` if a wall would lose its length.
     pub fn dragged(self, sketch: &Sketch, from: [f64; 2], at: [f64; 2]) -> Option<Sketch> {
         match self {
             Self::Heading => {
@@ -151,7 +151,7 @@ impl Piece {
         }
     }
 
-    /// The same a step of the grid further; the heading turns.
+    /// Moves the piece by a step of the grid; the heading turns.
     pub fn nudged(self, sketch: &Sketch, [x, y]: [i32; 2]) -> Option<Sketch> {
         if self == Self::Heading {
             let by = (x + y) * HEADING_STEP_DEG;
@@ -188,7 +188,7 @@ impl Piece {
         Some(sketch)
     }
 
-    /// The flat without it, or why it stays.
+    /// Removes the piece, or returns why that is impossible.
     pub fn removed(self, sketch: &Sketch) -> Result<Sketch, String> {
         let mut sketch = sketch.clone();
         match self {
@@ -210,7 +210,7 @@ impl Piece {
         Ok(sketch)
     }
 
-    /// Where it stands; a wall stands nowhere, but lies.
+    /// Its position; `None` for a wall.
     fn place_cm(self, sketch: &Sketch) -> Option<PlaceCm> {
         match self {
             Self::FirstEnd(index) => sketch.walls_cm.get(index).map(|wall| wall[0]),
@@ -221,7 +221,7 @@ impl Piece {
         }
     }
 
-    /// Where it can be taken hold of, m; a wall by its middle.
+    /// The position at which it can be grabbed, m; of a wall its middle.
     pub fn place(self, sketch: &Sketch) -> [f64; 2] {
         match self {
             Self::Wall(index) => {
@@ -240,12 +240,12 @@ impl Piece {
         }
     }
 
-    /// What lies under a point, within `reach` along each axis: places before walls.
+    /// The piece under a point, within `reach` along each axis: points before walls.
     pub fn at(sketch: &Sketch, at: [f64; 2], reach: [f64; 2]) -> Option<Self> {
         let away = |[x, y]: [f64; 2]| math::norm2((x - at[0]) / reach[0], (y - at[1]) / reach[1]);
         let walls = 0..sketch.walls_cm.len();
         let way = (0..sketch.way_points_cm.len()).map(Self::WayPoint);
-        // A way that comes back ends where it starts: the start lies on top.
+        // A closed path ends at its start: the start is on top.
         let way = [Self::Start, Self::Heading].into_iter().chain(way);
         let ends = walls
             .clone()

@@ -1,4 +1,4 @@
-//! The laps that the settings lead to: the front end alone, and with its loops.
+//! The laps of the settings: the front end alone, and with its loops.
 
 use std::sync::Arc;
 
@@ -13,16 +13,16 @@ use pr_sim::World;
 use super::gates::Gates;
 use super::track::Track;
 
-/// A drive with both estimators that ran over it, and the errors over time.
+/// A drive with both estimators' laps, and the errors over time.
 pub struct Runs {
     config: LapConfig,
     place: Option<BuiltInWorld>,
     drive: Arc<Drive>,
-    /// Of each attempt of `graph`, in order.
+    /// Of each attempt in `graph`, in order.
     gates: Vec<Gates>,
-    /// The front end alone: no loop is ever closed.
+    /// The front end alone, without loop closure.
     pub front_end: Track,
-    /// The pose graph, with loops where they are on.
+    /// The pose graph, with loops if they are on.
     pub graph: Track,
     /// Position error of dead reckoning after each tick, m; the start first.
     pub odometry_errors_m: Vec<f64>,
@@ -38,7 +38,7 @@ pub struct Results {
 }
 
 impl Runs {
-    /// What a lap's record holds, with the series of the plots.
+    /// Derives the series of the plots from a lap's record.
     pub fn new(record: LapRecord) -> Self {
         let LapRecord {
             config,
@@ -71,7 +71,7 @@ impl Runs {
         &self.config.drive.world
     }
 
-    /// Which of the built-in worlds it is; none where it is the reader's own.
+    /// The built-in world; `None` for the reader's own.
     pub fn place(&self) -> Option<BuiltInWorld> {
         self.place
     }
@@ -91,15 +91,15 @@ impl Runs {
         &self.config.slam.chapter.loops
     }
 
-    /// Largest squared innovation that is believed.
+    /// Threshold of the squared innovation.
     pub fn gate_chi2(&self) -> f64 {
         self.config.slam.chapter.loops.gate_chi2
     }
 
-    /// Both gates over an attempt of the pose graph.
+    /// Both gates for an attempt of the pose graph.
     ///
     /// # Panics
-    /// Where the attempt is none of this lap's.
+    /// If the attempt belongs to another lap.
     pub fn gates(&self, attempt: &LoopAttempt) -> &Gates {
         let attempts = self.graph.attempts();
         let index = attempts.partition_point(|other| other.tick < attempt.tick);
@@ -112,25 +112,25 @@ impl Runs {
         &all[..all.partition_point(|attempt| attempt.tick <= tick)]
     }
 
-    /// A loop of the reader's own in the graph.
+    /// Adds a custom loop to the graph.
     pub fn own_loop(&self, request: &OwnLoopRequest) -> Result<OwnLoop, OwnLoopError> {
         self.graph
             .lap()
             .own_loop(request, &self.drive, &self.config)
     }
 
-    /// Both gates over a loop of the reader's own.
+    /// Both gates for a custom loop.
     pub fn gates_of_own(&self, own: &OwnLoop) -> Gates {
         let mut graph = self.graph.lap().graph(own.request.tick);
         Gates::on(&mut graph, &own.attempt, self.loop_config())
     }
 
-    /// True pose after so many ticks, world frame.
+    /// True pose after that many ticks, world frame.
     pub fn truth(&self, tick: usize) -> SE2 {
         self.drive.truth(tick)
     }
 
-    /// Odometry composed from the start, after so many ticks, world frame.
+    /// Odometry composed from the start, after that many ticks, world frame.
     pub fn dead_reckoning(&self, tick: usize) -> SE2 {
         match tick.checked_sub(1) {
             Some(index) => self.drive.ticks()[index].dead_reckoning,
@@ -148,7 +148,7 @@ impl Runs {
         })
     }
 
-    /// Whether the robot sees again what it has seen, after so many ticks.
+    /// Whether the robot revisits known locations after that many ticks.
     pub fn is_way_back(&self, tick: usize) -> bool {
         let reached = self.config.drive.turn;
         let mut ticks = self.drive.ticks().iter();
@@ -156,7 +156,7 @@ impl Runs {
         turn.is_some_and(|turn| tick > turn)
     }
 
-    /// The results table as far as a tick knows.
+    /// The results table as of a tick.
     pub fn results_at(&self, tick: usize) -> Results {
         Results {
             front_end: self.front_end.lap().summary_at(tick),

@@ -1,4 +1,4 @@
-//! What the values of the parameter list mean to the core.
+//! Converts the values of the parameters to the types of the core.
 
 use ch16_lab::lap::{BuiltInWorld, LapConfig, LapMatcher, LoopClosure};
 use ch16_slam2d::chapter::InformationFrame;
@@ -11,29 +11,29 @@ use pr_sim::Course;
 
 use crate::w16_2_full_lap::spec::{GATE, GATE_MODEL, INFORMATION, MATCHER, SEED, WORLD};
 
-/// What a lap depends on.
+/// The settings on which a lap depends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LapSettings {
-    /// What is driven through; none is the reader's own.
+    /// The world; `None` is the reader's own.
     pub world: Option<BuiltInWorld>,
     /// Seed of all noise.
     pub seed: u32,
-    /// Multiplies the variances of the wheels.
+    /// Multiplies the variances of the odometry.
     pub noise_factor: f64,
     /// Whether loops are closed.
     pub loop_closure: LoopClosure,
-    /// Largest squared innovation that is believed.
+    /// Threshold of the squared innovation.
     pub gate_chi2: f64,
-    /// What the gate takes for the drift.
+    /// Drift model of the gate.
     pub gate_model: GateModel,
-    /// What registers sweeps, for the front end and for loops.
+    /// Matcher of the front end and of the loops.
     pub matcher: LapMatcher,
-    /// In which frame an edge says what it is sure of.
+    /// The frame in which an edge holds its information.
     pub information_frame: InformationFrame,
 }
 
 impl LapSettings {
-    /// Reads the list.
+    /// Reads the values.
     pub fn read(values: &Values) -> Self {
         Self {
             world: values.get(&WORLD),
@@ -51,7 +51,7 @@ impl LapSettings {
         }
     }
 
-    /// What the core runs with; `own` is the reader's own course. None where that cannot be driven.
+    /// The configuration for the core; `own` is the reader's own course. `None` if that cannot be driven.
     pub fn config(&self, own: Option<&Course>) -> Option<LapConfig> {
         let mut config = match self.world {
             Some(world) => LapConfig::in_world(world, self.seed, self.noise_factor),

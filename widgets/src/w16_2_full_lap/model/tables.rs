@@ -1,6 +1,6 @@
 //! The tables: this run beside the canonical one, the loops, and the data of every plot.
 //!
-//! Each tells of the first ticks alone, up to the last one that is seen.
+//! They end at the last tick that is shown.
 
 use ch16_lab::lap::{LapSummary, LoopAttempt, LoopEffect, RecordedEdge, edge_strain};
 use ch16_slam2d::loops::LoopRejection;
@@ -125,7 +125,7 @@ fn loops(runs: &Runs, seen: usize) -> Table {
     )
 }
 
-/// All that is known of each attempt.
+/// All data of each attempt.
 fn loop_attempts(runs: &Runs, seen: usize) -> Table {
     let head = [
         "tick",
@@ -252,7 +252,7 @@ fn keyframes(runs: &Runs, seen: usize) -> Table {
     )
 }
 
-/// Every edge of the graph at the moment shown.
+/// Every edge of the graph at the current tick.
 pub fn edges(moment: &Moment) -> Table {
     let head = [
         "from node",
@@ -289,7 +289,7 @@ pub fn edges(moment: &Moment) -> Table {
     )
 }
 
-/// Four digits, as the chapter's table; a dash where there is none.
+/// Four digits, like the chapter's table; a dash if there is no value.
 fn metres(value: f64) -> String {
     if value.is_finite() {
         format!("{value:.4}")
@@ -298,7 +298,7 @@ fn metres(value: f64) -> String {
     }
 }
 
-/// All digits, empty where there is none.
+/// All digits; empty if there is no value.
 fn exact(value: f64) -> String {
     if value.is_finite() {
         value.to_string()

@@ -1,4 +1,4 @@
-//! The widget without its picture, against the reference laps and the words it says of itself.
+//! The widget without its picture, against the reference laps and the claims of its texts.
 
 mod both_gates;
 mod flat;
@@ -57,12 +57,12 @@ fn table(model: &FullLap, id: &str) -> Vec<Vec<String>> {
         .rows
 }
 
-/// The picture as text: equal where it is the same, also where a sample is not a number.
+/// The picture as text, which is equal even if samples are NaN.
 fn picture(model: &FullLap) -> String {
     format!("{:?}", model.scene())
 }
 
-/// The nodes as the map shows them: the purple squares.
+/// The nodes on the map: the purple squares.
 fn shown_nodes(model: &FullLap) -> Vec<[f64; 2]> {
     let scene = model.scene();
     let nodes = scene.panels[0].layers.iter().find_map(|layer| match layer {

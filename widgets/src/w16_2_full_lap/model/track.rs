@@ -1,4 +1,4 @@
-//! One estimator's way over the lap, with its series for the plots.
+//! One estimator's lap, with its series for the plots.
 
 use ch16_lab::lap::{LapSummary, LapTrace, LoopAttempt, TickMetrics};
 use pr_geom::SE2;
@@ -12,12 +12,12 @@ pub struct Track {
     pub errors_m: Vec<f64>,
     /// Root mean square position error of the keyframes after each tick, m.
     pub keyframe_rms_m: Vec<f64>,
-    /// Map self-disagreement after each tick, m; not a number before the way back.
+    /// Map self-disagreement after each tick, m; NaN before the return path.
     pub disagreement_m: Vec<f64>,
 }
 
 impl Track {
-    /// The lap that `trace` recorded, driven from `start`.
+    /// Derives the series of the lap that `trace` recorded, driven from `start`.
     pub fn new(trace: LapTrace, start: SE2) -> Self {
         let series = |at_start, of: fn(&TickMetrics) -> f64| {
             let values = trace.reports.iter().map(|report| of(&report.metrics));
@@ -35,7 +35,7 @@ impl Track {
         }
     }
 
-    /// The lap as the core recorded it.
+    /// The lap as recorded.
     pub fn lap(&self) -> &LapTrace {
         &self.trace
     }
@@ -45,12 +45,12 @@ impl Track {
         &self.trace.summary
     }
 
-    /// The newest keyframe's node when the way back began.
+    /// The newest keyframe's node at the start of the return path.
     pub fn turn_node(&self) -> Option<usize> {
         self.trace.turn_node
     }
 
-    /// Estimate after so many ticks, `world_from_body`.
+    /// Estimate after that many ticks, `world_from_body`.
     pub fn estimate(&self, tick: usize) -> SE2 {
         self.trace
             .report(tick)
@@ -62,17 +62,17 @@ impl Track {
         self.trace.keyframes[node].tick
     }
 
-    /// Number of keyframes after so many ticks.
+    /// Number of keyframes after that many ticks.
     pub fn keyframes_until(&self, tick: usize) -> usize {
         self.trace.node_count(tick)
     }
 
-    /// Poses of the graph's nodes after so many ticks, `world_from_body`.
+    /// Poses of the graph's nodes after that many ticks, `world_from_body`.
     pub fn poses_at(&self, tick: usize) -> &[SE2] {
         self.trace.poses(tick)
     }
 
-    /// Poses of the graph's nodes in that tick, before a loop was closed in it.
+    /// Poses of the graph's nodes in that tick, before its loop closure.
     pub fn poses_before_loop(&self, tick: usize) -> &[SE2] {
         match self.trace.loop_motion(tick) {
             Some((before, _)) => before,
@@ -95,13 +95,12 @@ impl Track {
         self.attempts.iter().rfind(|attempt| attempt.tick <= tick)
     }
 
-    /// The attempt that a moment belongs to: the newest one that is due in the next tick at the
-    /// latest, or else the first one.
+    /// The attempt to which a tick belongs: the newest one up to the next tick, else the first one.
     pub fn attempt_near(&self, tick: usize) -> Option<&LoopAttempt> {
         self.newest_attempt(tick + 1).or(self.attempts.first())
     }
 
-    /// Loops closed after so many ticks.
+    /// Number of closed loops after that many ticks.
     pub fn accepted_until(&self, tick: usize) -> usize {
         let accepted = |attempt: &&LoopAttempt| attempt.accepted() && attempt.tick <= tick;
         self.attempts.iter().filter(accepted).count()

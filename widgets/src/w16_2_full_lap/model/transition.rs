@@ -2,10 +2,10 @@
 
 use kit::model::Activity;
 
-/// The old poses stand still for so long, so that the eye finds them.
+/// Time for which the old poses stand still first, so that they are seen.
 const HOLD_S: f64 = 0.4;
 
-/// Then they move for so long.
+/// Duration of the movement.
 const MOVE_S: f64 = 1.1;
 
 /// A running animation.
@@ -15,7 +15,7 @@ pub struct Transition {
 }
 
 impl Transition {
-    /// Runs on; idle once the new poses are reached.
+    /// Advances the animation; idle once the new poses are reached.
     pub fn advance(&mut self, elapsed_s: f64) -> Activity {
         // A long gap (a page in the background) counts as a quarter of a second.
         self.elapsed_s += elapsed_s.clamp(0.0, 0.25);
@@ -26,7 +26,7 @@ impl Transition {
         }
     }
 
-    /// Share of the way from the old poses (0) to the new ones (1), slow at both ends.
+    /// Fraction of the movement from the old poses (0) to the new ones (1), slow at both ends.
     #[must_use]
     pub fn share(&self) -> f64 {
         let s = ((self.elapsed_s - HOLD_S) / MOVE_S).clamp(0.0, 1.0);

@@ -13,8 +13,8 @@ pub mod parts;
 
 pub use parts::part_label;
 
-/// What is said first: how good, in a word or two, and in a sentence.
-pub struct Said {
+/// The main statement: an assessment, a verdict in a word or two, and a sentence.
+pub struct Statement {
     /// Good or bad.
     pub standing: Standing,
     /// One or two words.
@@ -46,16 +46,16 @@ pub fn standing(judgement: LoopJudgement) -> Standing {
     }
 }
 
-/// The result at a moment: of what is looked at, else of the reader's own loop, else of the loop that is
-/// tried in the tick, else of the estimates. `refused` says why the own loop cannot be.
+/// The result at a tick: of the selected part, else of the custom loop, else of the loop tried in the tick,
+/// else of the estimates. `refused` is the reason why the custom loop is impossible.
 pub fn outcome(moment: &Moment, refused: Option<&OwnLoopError>) -> Outcome {
-    let Said {
+    let Statement {
         standing,
         verdict,
         sentence,
     } = match &moment.drawn {
-        Some(drawn) => flat::said(drawn, said(moment, refused)),
-        None => said(moment, refused),
+        Some(drawn) => flat::statement(drawn, statement(moment, refused)),
+        None => statement(moment, refused),
     };
     let (runs, tick) = (moment.runs, moment.tick);
     let mut facts = moment_facts(runs, tick);
@@ -69,18 +69,18 @@ pub fn outcome(moment: &Moment, refused: Option<&OwnLoopError>) -> Outcome {
     }
 }
 
-fn said(moment: &Moment, refused: Option<&OwnLoopError>) -> Said {
+fn statement(moment: &Moment, refused: Option<&OwnLoopError>) -> Statement {
     let (runs, tick) = (moment.runs, moment.tick);
-    let neutral = |verdict: &str, sentence| Said {
+    let neutral = |verdict: &str, sentence| Statement {
         standing: Standing::Neutral,
         verdict: verdict.to_owned(),
         sentence,
     };
     if let Some(part) = moment.picked {
-        return parts::part_said(moment, part);
+        return parts::part_statement(moment, part);
     }
     if let Some(own) = moment.own {
-        return parts::own_said(moment, own);
+        return parts::own_statement(moment, own);
     }
     if let Some(refused) = refused {
         return neutral("no loop of your own", refused.to_string());
@@ -89,7 +89,7 @@ fn said(moment: &Moment, refused: Option<&OwnLoopError>) -> Said {
     match moment.attempt {
         Some(attempt) => {
             let judgement = lap.judge(attempt);
-            Said {
+            Statement {
                 standing: standing(judgement),
                 verdict: judgement.to_string(),
                 sentence: lap.loop_sentence(attempt),
@@ -170,7 +170,7 @@ fn moment_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
     ]
 }
 
-/// Of the newest attempt; not finite before the first one, so that the list never changes.
+/// Facts of the newest attempt; not finite before the first one, because the list of facts is fixed.
 fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
     let attempt = runs.graph.newest_attempt(tick);
     let of = |read: &dyn Fn(&LoopAttempt) -> f64| attempt.map_or(f64::NAN, read);
@@ -223,7 +223,7 @@ fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
     ]
 }
 
-/// A text that stands for the picture.
+/// The text alternative of the picture.
 pub fn summary(moment: &Moment, refused: Option<&OwnLoopError>) -> String {
     let (runs, tick) = (moment.runs, moment.tick);
     let truth = runs.truth(tick);
@@ -242,7 +242,7 @@ pub fn summary(moment: &Moment, refused: Option<&OwnLoopError>) -> String {
     };
     let mut rest = String::new();
     if let Some(own) = moment.own {
-        rest += &format!(" Then {}.", parts::own_said(moment, own).sentence);
+        rest += &format!(" Then {}.", parts::own_statement(moment, own).sentence);
     } else if let Some(refused) = refused {
         rest += &format!(" Your own loop: {refused}.");
     }
@@ -250,7 +250,10 @@ pub fn summary(moment: &Moment, refused: Option<&OwnLoopError>) -> String {
         rest += &flat::summary(drawn);
     }
     if let Some(part) = moment.picked {
-        rest += &format!(" Looked at: {}.", parts::part_said(moment, part).sentence);
+        rest += &format!(
+            " Selected: {}.",
+            parts::part_statement(moment, part).sentence
+        );
     }
     format!(
         "{}. The robot is at x {:.1} m, y {:.1} m, {way}; {}. \

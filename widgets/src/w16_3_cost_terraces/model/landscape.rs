@@ -8,8 +8,7 @@ use pr_geom::sort_numbers;
 use crate::w16_3_cost_terraces::spec::Colors;
 use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;
 
-/// A ball that rests this near to the truth has come home, m: the limit that counts as success in
-/// the chapter's basin runs.
+/// A ball that stops this close to the truth counts as a success, m: the limit of the chapter's basin runs.
 const HOME_M: f64 = 0.12;
 
 /// Heights on a square grid over ±1.3 m, row by row from the smallest Δy; low is good.
@@ -26,28 +25,28 @@ pub struct Landscape {
     heights: Vec<f64>,
 }
 
-/// The way of a ball.
+/// The path of a ball.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ball {
     /// Shift after every step, the drop first, m; never empty.
     pub path_m: Vec<[f64; 2]>,
     /// Height after every step.
     pub heights: Vec<f64>,
-    /// How it ended.
+    /// Why it ended.
     pub end: End,
 }
 
-/// How the way of a ball ended.
+/// Why the path of a ball ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// It lies on level ground or in a hollow.
+    /// The ball is on level ground or in a hollow.
     Rests,
-    /// It still rolled when the steps were used up.
+    /// It was still rolling at the limit of steps.
     OutOfSteps,
 }
 
 impl Ball {
-    /// A ball that lies where it was dropped.
+    /// A ball that stops where it was dropped.
     pub fn at(shift_m: [f64; 2], height: f64) -> Self {
         Self {
             path_m: vec![shift_m],
@@ -56,28 +55,28 @@ impl Ball {
         }
     }
 
-    /// Steps until it rests.
+    /// Number of steps.
     pub fn steps(&self) -> usize {
         self.path_m.len() - 1
     }
 
-    /// Shift where it ends, m.
+    /// Final shift, m.
     pub fn end_m(&self) -> [f64; 2] {
         self.path_m[self.steps()]
     }
 
-    /// Shift after so many steps, at most where it ends, m.
+    /// Shift after that many steps, or the final one, m.
     pub fn at_step(&self, step: usize) -> [f64; 2] {
         self.path_m[step.min(self.steps())]
     }
 
-    /// Distance of its end from the truth, m.
+    /// Distance of its final shift from the truth, m.
     pub fn rest_distance_m(&self) -> f64 {
         let [x, y] = self.end_m();
         pr_geom::math::norm2(x, y)
     }
 
-    /// Whether it rests at the truth.
+    /// Whether it stopped at the truth.
     pub fn is_home(&self) -> bool {
         self.rest_distance_m() < HOME_M
     }
@@ -105,10 +104,10 @@ impl Landscape {
         }
     }
 
-    /// Takes new heights, `cells` a side; [`Landscape::color`] makes the picture of them.
+    /// Sets new heights, `cells` on a side; [`Landscape::color`] updates the picture.
     ///
     /// # Panics
-    /// Where there are not `cells × cells` heights.
+    /// If there are not `cells × cells` heights.
     pub fn renew(&mut self, cells: usize, heights: impl Iterator<Item = f64>) {
         self.heights.clear();
         self.heights.extend(heights);
@@ -129,7 +128,7 @@ impl Landscape {
             }
         }
         self.lowest_m = [best % cells, best / cells].map(|k| shift_m(cells, k));
-        // Half a cell beyond the outermost samples: a sample is the middle of its cell.
+        // Half a cell beyond the outermost samples: a sample is the center of its cell.
         let edge = HALF_SPAN_M + 0.5 * spacing_m(cells);
         self.raster.bounds = Bounds {
             min: [-edge, -edge],
@@ -151,7 +150,7 @@ impl Landscape {
             Colors::ByRank => {
                 let mut sorted = self.heights.clone();
                 sort_numbers(&mut sorted);
-                // Equal heights share a rank, so that level ground has one colour.
+                // Equal heights share a rank, so level ground has one colour.
                 let below = |height: &f64| sorted.partition_point(|other| other < height);
                 let scale = 1.0 / sorted.len() as f32;
                 heights
@@ -162,12 +161,12 @@ impl Landscape {
         self.raster.revision += 1;
     }
 
-    /// Cells a side.
+    /// Number of cells on a side.
     pub fn cells(&self) -> usize {
         self.raster.columns
     }
 
-    /// Height under the cross hair itself, not of the cell that it lies in.
+    /// Height exactly under the cross hair, not of its cell.
     pub fn at_probe(&self) -> f64 {
         self.ball.heights[0]
     }

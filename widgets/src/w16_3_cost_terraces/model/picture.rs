@@ -1,4 +1,5 @@
-//! The panels: both landscapes, the sweep on the map and on the bells, the slices, the rests.
+//! The panels: both landscapes, the sweep on the map and on the Gaussians, the slices, the results of many
+//! sweeps.
 
 mod maps;
 mod places;
@@ -14,34 +15,34 @@ use crate::w16_3_cost_terraces::spec::Colors;
 use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;
 use plots::{Along, Measure};
 
-/// What the picture shows besides the landscapes.
+/// The state that the picture shows besides the landscapes.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
     /// Shift under the cross hair, m.
     pub probe_m: [f64; 2],
-    /// Whose shift the sweep is shown at.
+    /// The shift at which the sweep is shown.
     pub looked: Looked,
     /// Where ICP's ball is, m.
     pub ball_m: [f64; 2],
-    /// Steps that the balls have taken.
+    /// Steps of the balls so far.
     pub step: usize,
-    /// What decides a cell's colour.
+    /// What determines a cell's colour.
     pub colors: Colors,
 }
 
-/// Whose shift the sweep is shown at.
+/// The shift at which the sweep is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Looked {
     /// The cross hair's.
     CrossHair,
     /// That of ICP's ball while it rolls.
     Ball,
-    /// That under the pointer, which hovers over a map, m.
+    /// That of the pointer over a map, m.
     Pointer([f64; 2]),
 }
 
 impl Moment {
-    /// The shift that is looked at, m.
+    /// The shift, m.
     pub fn looked_m(&self) -> [f64; 2] {
         match self.looked {
             Looked::CrossHair => self.probe_m,
@@ -50,7 +51,7 @@ impl Moment {
         }
     }
 
-    /// Where the ball of a landscape is, m.
+    /// Position of a landscape's ball, m.
     pub fn ball_of(&self, landscape: &Landscape) -> [f64; 2] {
         landscape.ball.at_step(self.step)
     }

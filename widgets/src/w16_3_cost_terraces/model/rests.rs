@@ -1,4 +1,4 @@
-//! Sweeps dropped on the map, each with noise of its own, and the points that fly to where they rest.
+//! Sweeps dropped on the map, each with independent noise, and the animation of points to their results.
 
 use ch16_lab::terrain::Drops;
 use kit::model::{Activity, Motion};
@@ -6,12 +6,12 @@ use pr_geom::math;
 
 use super::terrains::Terrains;
 
-/// Increments of a registration that a flying point makes in a second.
+/// Registration increments that an animated point makes per second.
 const INCREMENTS_PER_S: f64 = 10.0;
-/// One point starts so much after the one before it, s.
+/// Delay between the starts of two points, s.
 const STAGGER_S: f64 = 0.01;
 
-/// The drops that are computed, of those that are wanted.
+/// The computed drops, out of the requested number.
 pub struct Rests {
     drops: Drops,
     seed: u32,
@@ -20,17 +20,17 @@ pub struct Rests {
     flights: Vec<Flight>,
 }
 
-/// One drop: its way, and how long it has been flying.
+/// One drop: its path, and the time of its animation.
 struct Flight {
     path_m: Vec<[f64; 2]>,
-    /// Below zero it waits for its start; infinite once it rests.
+    /// Negative before its start; infinite after its end.
     age_s: f64,
 }
 
-/// Where many drops rest.
+/// Statistics of the results of many drops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scatter {
-    /// How many they are.
+    /// Number of drops.
     pub count: usize,
     /// Standard deviations along x and y, m; not finite for fewer than two.
     pub deviation_m: [f64; 2],
@@ -49,7 +49,7 @@ impl Flight {
         self.age_s * INCREMENTS_PER_S >= (self.path_m.len() - 1) as f64
     }
 
-    /// Where the point is now.
+    /// The current position.
     fn now_m(&self) -> [f64; 2] {
         if self.rests() {
             return self.rest_m();
@@ -63,7 +63,7 @@ impl Flight {
 }
 
 impl Rests {
-    /// None yet.
+    /// Creates it without drops.
     pub fn new(terrains: &Terrains) -> Self {
         Self {
             drops: Drops::new(terrains.scene().kind()),
@@ -74,7 +74,7 @@ impl Rests {
         }
     }
 
-    /// Wants so many drops of the scene as it is now; those of another scene are gone.
+    /// Requests drops for the current scene; those of another scene are removed.
     pub fn follow(&mut self, terrains: &Terrains, wanted: usize) {
         let scene = terrains.scene();
         if scene.kind() != self.drops.kind() || scene.seed() != self.seed {
@@ -84,14 +84,14 @@ impl Rests {
         self.flights.truncate(wanted);
     }
 
-    /// Drops all anew: with full motion the points fly, else they lie where they rest.
+    /// Restarts all drops: with full motion the points are animated, otherwise they are at their results.
     pub fn fly(&mut self, wanted: usize, motion: Motion) {
         self.flights.clear();
         self.wanted = wanted;
         self.landing = motion;
     }
 
-    /// No point flies any more.
+    /// Ends all animations.
     pub fn land(&mut self) {
         self.landing = Motion::Reduced;
         for flight in &mut self.flights {
@@ -116,7 +116,7 @@ impl Rests {
         Activity::Busy
     }
 
-    /// Lets the points fly on.
+    /// Advances the animations.
     pub fn advance(&mut self, elapsed_s: f64) -> Activity {
         let mut activity = Activity::Idle;
         for flight in self.flights.iter_mut().filter(|flight| !flight.rests()) {
@@ -126,18 +126,18 @@ impl Rests {
         activity
     }
 
-    /// Where the points are now, m.
+    /// Current positions of the points, m.
     pub fn now_m(&self) -> Vec<[f64; 2]> {
         self.flights.iter().map(Flight::now_m).collect()
     }
 
-    /// Where each was dropped, and where it rests, m.
+    /// Start and result of each, m.
     pub fn ends_m(&self) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
         let flights = self.flights.iter();
         flights.map(|flight| [flight.start_m(), flight.rest_m()])
     }
 
-    /// How far the rests scatter.
+    /// The scatter of the results.
     pub fn scatter(&self) -> Scatter {
         let count = self.flights.len();
         let deviation = |axis: usize| {

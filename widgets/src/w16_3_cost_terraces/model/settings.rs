@@ -1,4 +1,4 @@
-//! What the values of the parameter list mean to the core.
+//! Converts the values of the parameters to the types of the core.
 
 use kit::values::Values;
 
@@ -7,33 +7,33 @@ use crate::w16_3_cost_terraces::spec::{
     SCENE, SEED, TAU,
 };
 
-/// The parameters as the model uses them.
+/// The parameters in the form of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Where the sweep was taken.
+    /// Location of the sweep.
     pub place: Place,
     /// Largest distance of a pair, m.
     pub tau_m: f64,
-    /// Where the range noise of the sweep starts.
+    /// Seed of the range noise of the sweep.
     pub seed: u32,
     /// Width of an NDT cell, m.
     pub ndt_cell_m: f64,
-    /// Turn of the sweep, degrees.
+    /// Rotation of the sweep, degrees.
     pub heading_deg: f64,
     /// Samples along each axis, odd.
     pub cells: usize,
-    /// What decides a cell's colour.
+    /// What determines a cell's colour.
     pub colors: Colors,
     /// Shift under the cross hair, m.
     pub probe_m: [f64; 2],
-    /// So many rows of the point-to-plane step are taken.
+    /// Number of rows of the point-to-plane step.
     pub rows: usize,
-    /// Standard deviation of a row of odometry, m, where there is one.
+    /// Standard deviation of a row of odometry, m; `None` without this row.
     pub odometry_m: Option<f64>,
 }
 
 impl Settings {
-    /// Reads the list.
+    /// Reads the values.
     pub fn read(values: &Values) -> Self {
         Self {
             place: values.get(&SCENE),
@@ -53,7 +53,7 @@ impl Settings {
     }
 }
 
-/// The nearest odd number, so that the grid has a cell on the truth.
+/// The nearest odd number, so that a cell is at the truth.
 fn odd(value: f64) -> usize {
     let half = ((value - 1.0) / 2.0).round();
     2 * half as usize + 1

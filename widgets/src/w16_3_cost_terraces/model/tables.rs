@@ -1,4 +1,4 @@
-//! The data of every panel: shown beside the picture, or given out as CSV.
+//! The data of every panel: shown beside the picture, or exported as CSV.
 
 use kit::model::Table;
 use kit::ticks::signed;
@@ -53,7 +53,7 @@ pub fn all(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Vec<Table
     tables
 }
 
-/// Where each measure is lowest, and where its ball ends.
+/// The minimum of each measure, and the final shift of its ball.
 fn results(terrains: &Terrains) -> Table {
     let row = |name: &str, landscape: &Landscape| {
         vec![
@@ -101,7 +101,7 @@ fn rows(terrains: &Terrains) -> Table {
             signed(row.normal.x, 0),
             signed(row.normal.y, 0),
             format!("{:.4}", row.lever_m),
-            terrains.rows.know(index + 1, None).rank.to_string(),
+            terrains.rows.constraints(index + 1, None).rank.to_string(),
         ]
     });
     Table::exported(
@@ -112,7 +112,7 @@ fn rows(terrains: &Terrains) -> Table {
     )
 }
 
-/// Where each sweep was dropped, and where it rests.
+/// Start and result of each dropped sweep.
 fn dropped(rests: &Rests) -> Table {
     let rows = rests.ends_m().enumerate().map(|(number, [start, rest])| {
         let numbers = [start, rest].concat();
@@ -133,7 +133,7 @@ fn dropped(rests: &Rests) -> Table {
     )
 }
 
-/// What is paired at the cross hair, and what is about to change there.
+/// The pairs at the cross hair, and those that are about to change.
 fn partners(terrains: &Terrains, settings: &Settings) -> Table {
     let pairing = terrains.pairing_at(settings.probe_m);
     let groups = [
@@ -162,7 +162,7 @@ fn partners(terrains: &Terrains, settings: &Settings) -> Table {
     )
 }
 
-/// Middle and axes of every bell.
+/// Center and axes of every Gaussian.
 fn bells(terrains: &Terrains) -> Table {
     let rows = terrains.bells().into_iter().map(|bell| {
         let [long, short] = bell.half_axes_m;

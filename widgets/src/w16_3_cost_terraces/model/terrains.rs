@@ -1,8 +1,8 @@
-//! Both landscapes of a place, and what has to be computed again when a setting changes.
+//! Both landscapes of a location, and what has to be recomputed if a setting changes.
 
 use ch16_lab::terrain::{
-    Ball as Roller, BallConfig, BallStop, Objective, PartnerChange, PlaneRows, RowsKnow, SceneKind,
-    Terrain, TerrainProbe, TerrainScene, TerrainSettings,
+    Ball as Roller, BallConfig, BallStop, Objective, PartnerChange, PlaneRows, RowConstraints,
+    SceneKind, Terrain, TerrainProbe, TerrainScene, TerrainSettings,
 };
 use ch16_slam2d::cloud::{NearestMap, PointCloud};
 use ch16_slam2d::ndt::NdtCell;
@@ -14,21 +14,20 @@ use super::settings::Settings;
 use crate::w16_3_cost_terraces::spec::Place;
 use crate::w16_3_cost_terraces::spec::{HALF_SPAN_M, MAX_BALL_STEPS};
 
-/// The ellipse is drawn as if at least this were known of every direction, 1/m²: no axis is longer
-/// than a metre.
+/// Lower limit of the information for the drawing of the ellipse, 1/m²: no axis is longer than a metre.
 const LEAST_INFORMATION_PER_M2: f64 = 1.0;
 
-/// A pair is about to change where a shift this small changes it, m.
+/// Size of a shift within which a pair counts as about to change, m.
 const ABOUT_M: f64 = 0.004;
 
-/// All that follows from the settings.
+/// Everything that follows from the settings.
 #[derive(Debug)]
 pub struct Terrains {
     /// ICP's truncated cost, m².
     pub icp: Landscape,
     /// NDT's score, negated, so that low is good.
     pub ndt: Landscape,
-    /// What point-to-plane knows of a shift at the truth.
+    /// The point-to-plane information about a shift at the truth.
     pub information: Hold,
     /// The rows of the point-to-plane step at the truth.
     pub rows: PlaneRows,
@@ -39,27 +38,27 @@ pub struct Terrains {
     map_points_m: Vec<[f64; 2]>,
 }
 
-/// The information of a shift, heading held, along its principal directions: the firmest first.
+/// The information about a shift with fixed heading, along its principal directions: the largest first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
     /// Eigenvalues, 1/cm².
     pub eigenvalues_per_cm2: [f64; 2],
     /// Angles from x, degrees in (−90, 90].
     pub directions_deg: [f64; 2],
-    /// Half axes of the ellipse `δᵀ Ω δ = 1` along the directions, cm: the less is known, the longer.
+    /// Half axes of the ellipse `δᵀ Ω δ = 1` along the directions, cm: long for little information.
     pub half_axes_cm: [[f64; 2]; 2],
-    /// Directions of the whole pose, heading included, of which anything is known: up to 3.
+    /// Rank of the information about the whole pose, including the heading: up to 3.
     pub rank: usize,
 }
 
-/// What a shift pairs, m.
+/// The pairs at a shift, m.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pairing {
-    /// From each point to its partner, but for those that are about to change.
+    /// From each point to its partner, except those that are about to change.
     pub pairs: Vec<[[f64; 2]; 2]>,
-    /// From each point that is about to change its partner to the one that it has.
+    /// From each point that is about to change its partner to the current one.
     pub changing: Vec<[[f64; 2]; 2]>,
-    /// From each of those, and from each that is about to find one, to the partner that comes next.
+    /// From each of those, and from each that is about to get one, to the next partner.
     pub next: Vec<[[f64; 2]; 2]>,
     /// The points of both.
     pub points: Vec<[f64; 2]>,
@@ -68,15 +67,15 @@ pub struct Pairing {
 /// One Gaussian of NDT's map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bell {
-    /// Its middle, m.
+    /// Its center, m.
     pub mean_m: [f64; 2],
     /// One standard deviation along its principal axes, the longer first, m.
     pub half_axes_m: [[f64; 2]; 2],
-    /// The cell whose points it stands for, m.
+    /// The cell of its points, m.
     pub cell_m: Bounds,
 }
 
-/// Which parts a change of settings concerns.
+/// What depends on a change of settings.
 #[derive(Clone, Copy, Debug)]
 struct Stale {
     place: bool,
@@ -122,7 +121,7 @@ impl Stale {
 }
 
 impl Terrains {
-    /// Everything for these settings.
+    /// Computes everything for these settings.
     pub fn new(settings: Settings) -> Self {
         let scene = scene_of(&settings);
         let mut terrains = Self {
@@ -140,7 +139,7 @@ impl Terrains {
         terrains
     }
 
-    /// Computes again what depends on the settings that changed, and nothing else.
+    /// Recomputes only what depends on the changed settings.
     pub fn update(&mut self, settings: Settings) {
         let stale = Stale::between(&self.settings, &settings);
         self.settings = settings;
@@ -206,7 +205,7 @@ impl Terrains {
         points.map(|point| [point.x + dx, point.y + dy]).collect()
     }
 
-    /// The partners that ICP finds at a shift, and those that change close by.
+    /// ICP's partners at a shift, and those that change nearby.
     pub fn pairing_at(&self, [dx, dy]: [f64; 2]) -> Pairing {
         let settings = self.grid();
         let partners = self
@@ -232,7 +231,7 @@ impl Terrains {
         pairing
     }
 
-    /// The bells of NDT's map.
+    /// The Gaussians of NDT's map.
     pub fn bells(&self) -> Vec<Bell> {
         let ndt = self.scene.ndt();
         let width_m = ndt.cell_m();
@@ -242,14 +241,15 @@ impl Terrains {
             .collect()
     }
 
-    /// How many of the rows are taken.
+    /// Number of rows so far.
     pub fn rows_taken(&self) -> usize {
         self.settings.rows.min(self.rows.rows.len())
     }
 
-    /// What they know, with the row of odometry where there is one.
-    pub fn rows_know(&self) -> RowsKnow {
-        self.rows.know(self.rows_taken(), self.settings.odometry_m)
+    /// Their constraints, with the row of odometry if there is one.
+    pub fn row_constraints(&self) -> RowConstraints {
+        self.rows
+            .constraints(self.rows_taken(), self.settings.odometry_m)
     }
 
     /// Width of NDT's cells, m.
@@ -271,7 +271,7 @@ impl Terrains {
         }
     }
 
-    /// Turns the sweep about the sensor.
+    /// Rotates the sweep about the sensor.
     fn world_from_turned(&self) -> SE2 {
         let world_from_sensor = self.scene.world_from_sensor();
         let turn = SE2::new(0.0, 0.0, self.settings.heading_deg.to_radians());
@@ -291,7 +291,7 @@ fn kind(settings: &Settings) -> SceneKind {
     }
 }
 
-/// Lets a ball go at a shift and follows it until it rests.
+/// Drops a ball at a shift and follows it until it stops.
 fn roll(probe: &TerrainProbe<'_>, objective: Objective, [x, y]: [f64; 2]) -> Ball {
     let config = BallConfig {
         max_steps: MAX_BALL_STEPS,
@@ -319,7 +319,7 @@ fn roll(probe: &TerrainProbe<'_>, objective: Objective, [x, y]: [f64; 2]) -> Bal
     }
 }
 
-/// Of pairs up to the chapter's τ, as the information is.
+/// With pairs up to the chapter's τ, like the information.
 fn rows_of(scene: &TerrainScene) -> PlaneRows {
     PlaneRows::from_scene(scene, TerrainSettings::default().tau_m)
 }
@@ -346,11 +346,11 @@ impl Bell {
 }
 
 impl Hold {
-    /// Of a shift at the truth, with pairs up to the chapter's τ, whatever that of the map is.
+    /// About a shift at the truth, with pairs up to the chapter's τ, independent of the map's.
     fn from_scene(scene: &TerrainScene) -> Self {
         let pose = scene.information(TerrainSettings::default().tau_m);
         let shift = pose.of_shift();
-        // An axis has no sign: towards positive x.
+        // The sign of an axis is arbitrary: towards positive x.
         let axes = shift
             .axes
             .map(|axis| axis * if axis.x < 0.0 { -1.0 } else { 1.0 });

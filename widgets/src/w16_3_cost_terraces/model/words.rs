@@ -9,7 +9,7 @@ use super::settings::Settings;
 use super::terrains::Terrains;
 use crate::w16_3_cost_terraces::spec::Place;
 
-/// What became of the balls, with the numbers.
+/// The results of the balls, with the numbers.
 pub fn outcome(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Outcome {
     let (icp, ndt) = (&terrains.icp.ball, &terrains.ndt.ball);
     let (standing, verdict) = match (icp.is_home(), ndt.is_home()) {
@@ -43,9 +43,9 @@ pub fn outcome(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Outco
     }
 }
 
-/// The last row that is taken, and what all of them know.
+/// The last row, and the constraints of all rows so far.
 pub fn row_in_words(terrains: &Terrains) -> String {
-    let (taken, know) = (terrains.rows_taken(), terrains.rows_know());
+    let (taken, constraints) = (terrains.rows_taken(), terrains.row_constraints());
     let row = match taken.checked_sub(1).map(|last| terrains.rows.rows[last]) {
         Some(row) => format!(
             "Row {taken} of {}: ({}, {}, {} m)",
@@ -56,14 +56,14 @@ pub fn row_in_words(terrains: &Terrains) -> String {
         ),
         None => "No row".to_owned(),
     };
-    let held = match know.along_m {
+    let held = match constraints.along_m {
         Some(along_m) => format!(", x known to {:.1} cm", 100.0 * along_m),
         None => String::new(),
     };
-    format!("{row}; rank {}{held}", know.rank)
+    format!("{row}; rank {}{held}", constraints.rank)
 }
 
-/// A shift as readers see it, with true minus signs.
+/// A shift as text, with true minus signs.
 fn shift([x, y]: [f64; 2]) -> String {
     format!("({}, {}) m", signed(x, 2), signed(y, 2))
 }
@@ -85,7 +85,7 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &Settings) -> Vec<Fac
     };
     let (icp, ndt, hold) = (&terrains.icp, &terrains.ndt, &terrains.information);
     let [firm, loose] = hold.eigenvalues_per_cm2;
-    let know = terrains.rows_know();
+    let constraints = terrains.row_constraints();
     let known = |label, id, value| Fact::new(id, label, value, "1/cm²", 2);
     let mut facts = vec![
         Fact::new(
@@ -131,7 +131,7 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &Settings) -> Vec<Fac
             0,
         ),
         Fact::count("rows", "rows of H taken", terrains.rows_taken() as f64),
-        Fact::count("rows_rank", "their rank", know.rank as f64),
+        Fact::count("rows_rank", "their rank", constraints.rank as f64),
         Fact::count(
             "partners_changing",
             "partners about to change",
@@ -140,14 +140,14 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &Settings) -> Vec<Fac
         Fact::count("bells", "NDT's bells", terrains.bells().len() as f64),
         Fact::count("rests", "sweeps dropped", scatter.count as f64),
     ];
-    if let Some(null) = know.null {
+    if let Some(null) = constraints.null {
         facts.extend([
             Fact::new("null_x", "no row holds: shift along x", null.x, "m", 3),
             Fact::new("null_y", "no row holds: shift along y", null.y, "m", 3),
             Fact::new("null_turn", "no row holds: turn", null.z, "rad", 3),
         ]);
     }
-    if let Some(along_m) = know.along_m {
+    if let Some(along_m) = constraints.along_m {
         facts.push(Fact::metres("rows_along_m", "rows: x known to", along_m));
     }
     if scatter.count > 1 {
@@ -160,7 +160,7 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &Settings) -> Vec<Fac
     facts
 }
 
-/// A text that stands for the picture.
+/// The text alternative of the picture.
 pub fn summary(terrains: &Terrains, rests: &Rests, settings: &Settings) -> String {
     let place = match settings.place {
         Place::Room => "a room, over its own points",

@@ -1,4 +1,4 @@
-//! The occupancy grid of the tick shown, drawn again only where its keyframes changed.
+//! The occupancy grid of the current tick, redrawn only if its keyframes changed.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use kit::scene::{Bounds, Cell, Raster};
 use pr_geom::math;
 use pr_grid::OccupancyGrid;
 
-/// A cell is surely occupied above these odds: nine to one are a probability of 0.9.
+/// Odds above which a cell counts as occupied: nine to one, a probability of 0.9.
 const SURE_ODDS: f64 = 9.0;
 
 /// The grid of one tick, with its picture.
@@ -19,7 +19,7 @@ pub struct GridView {
     source: Source,
 }
 
-/// What a grid is drawn from: within one run it tells all grids apart.
+/// Identifies a grid within one run.
 #[derive(Clone, Copy, PartialEq)]
 struct Source {
     keyframes: usize,
@@ -27,7 +27,7 @@ struct Source {
 }
 
 impl Source {
-    /// There is a keyframe at any tick, so no grid is drawn from none.
+    /// Every tick has a keyframe, so no grid has this key.
     const NOTHING: Self = Self {
         keyframes: 0,
         loops: 0,
@@ -53,7 +53,7 @@ impl GridView {
         }
     }
 
-    /// Goes to another tick of the run.
+    /// Updates it for another tick of the run.
     pub fn show(&mut self, record: &LapRecord, tick: usize) {
         let source = Source::from_record(record, tick);
         if source != self.source {
@@ -63,7 +63,7 @@ impl GridView {
         }
     }
 
-    /// The run is another one: what is drawn holds for no tick of it.
+    /// Invalidates the grid because the run changed.
     pub fn forget(&mut self) {
         self.source = Source::NOTHING;
     }
@@ -126,7 +126,7 @@ fn raster(grid: &OccupancyGrid, revision: u64) -> Raster {
     }
 }
 
-/// Probability of occupancy, `1 − 1/(1 + e^l)`; a log odds of 0 means that nothing was seen.
+/// Probability of occupancy, `1 − 1/(1 + e^l)`; log odds of 0 mean that the cell was not observed.
 fn occupancy(log_odds: f64) -> Cell {
     if log_odds == 0.0 {
         return Cell::Unknown;

@@ -1,4 +1,4 @@
-//! The course of a run: one sample a tick.
+//! The time series of a run: one sample per tick.
 
 use ch16_lab::lap::{LapRecord, TickReport};
 
@@ -10,7 +10,7 @@ pub struct History {
     pub odometry_error_m: Vec<f64>,
     /// Position error of the estimate, m.
     pub estimate_error_m: Vec<f64>,
-    /// Map self-disagreement, m; not a number before the way back.
+    /// Map self-disagreement, m; NaN before the return path.
     pub disagreement_m: Vec<f64>,
 }
 

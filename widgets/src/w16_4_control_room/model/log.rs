@@ -1,4 +1,4 @@
-//! What happened, tick by tick, in words.
+//! The event log, tick by tick, in words.
 
 use ch16_lab::lap::{LapRecord, LapTrace, LoopAttempt, LoopJudgement};
 use kit::model::{Standing, TimelineMark};
@@ -6,17 +6,17 @@ use kit::model::{Standing, TimelineMark};
 /// One line of the log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// When.
+    /// The tick.
     pub tick: usize,
-    /// In which part of the system: `driver`, `front end`, `back end`, `map`.
+    /// The part of the system: `driver`, `front end`, `back end`, `map`.
     pub part: &'static str,
-    /// What.
+    /// The event.
     pub text: String,
     /// Good or bad, for a loop.
     pub standing: Standing,
-    /// Loops get a mark on the timeline, the rest does not.
+    /// Whether it has a mark on the timeline, as loops do.
     pub marked: bool,
-    /// The lane that it lies in.
+    /// Its lane.
     pub lane: usize,
 }
 
@@ -83,7 +83,7 @@ pub fn marks(events: &[Event]) -> Vec<TimelineMark> {
         .collect()
 }
 
-/// The test of a loop, and the grid that an accepted one leads to.
+/// The test of a loop, and the grid after an accepted one.
 fn loop_events(lap: &LapTrace, attempt: &LoopAttempt) -> Vec<Event> {
     let event = |part, text, standing, marked| Event {
         tick: attempt.tick,

@@ -85,10 +85,10 @@ fn area(label: &str, tone: Tone) -> LegendEntry {
     }
 }
 
-/// A tick's registration: local map, the sweep where the wheels put it and where ICP put it.
+/// A tick's registration: local map, the sweep at the odometry prediction and at ICP's result.
 ///
-/// At the start there is nothing to register on: the first sweep stands at the known pose. A loop
-/// that is closed in the same tick moves the estimate afterwards.
+/// At the start there is no registration: the first sweep is at the known pose. A loop that is closed in the
+/// same tick moves the estimate afterwards.
 fn registration(record: &LapRecord, tick: usize, view: Option<&RegistrationView>) -> Panel {
     let start = record.drive.truth(0);
     let (center, layers) = match view {

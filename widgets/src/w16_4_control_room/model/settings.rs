@@ -1,4 +1,4 @@
-//! What the values of the parameter list mean to the core.
+//! Converts the values of the parameters to the types of the core.
 
 use ch16_lab::lap::LapConfig;
 use kit::run::LOOPS;
@@ -7,7 +7,7 @@ use kit::values::Values;
 
 use crate::w16_4_control_room::spec::SEED;
 
-/// What the run depends on.
+/// The configuration of the run.
 pub fn config(values: &Values) -> LapConfig {
     let config = LapConfig::with_seed_and_noise(values.get(&SEED), values.get(&NOISE));
     if values.get(&LOOPS) {

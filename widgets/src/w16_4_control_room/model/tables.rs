@@ -6,7 +6,7 @@ use super::ControlRoom;
 use super::log::Event;
 use super::picture::lanes;
 
-/// Events that the table beside the picture shows.
+/// Number of events in the table beside the picture.
 const SHOWN_EVENTS: usize = 8;
 
 /// The tables beside the picture.
@@ -21,7 +21,7 @@ pub fn all(room: &ControlRoom) -> Vec<Table> {
     tables
 }
 
-/// What every lane did in the tick shown.
+/// The data of every lane in the current tick.
 fn this_tick(room: &ControlRoom) -> Table {
     let done = room.now().into_iter().flat_map(lanes::data);
     Table::shown(
@@ -97,7 +97,7 @@ fn over_time(room: &ControlRoom) -> Table {
     )
 }
 
-/// The number, or nothing where there is none.
+/// The number; empty if it is not finite.
 fn finite(value: f64) -> String {
     if value.is_finite() {
         value.to_string()

@@ -7,7 +7,7 @@ use kit::model::{Fact, Outcome, Standing};
 use super::ControlRoom;
 use super::picture::lanes;
 
-/// The result at a tick: of the loop where one is tried in it, of the estimates where none is.
+/// The result at a tick: of its loop if one is tried, else of the estimates.
 pub fn outcome(room: &ControlRoom) -> Outcome {
     let event = room.loop_event();
     let attempt = room.now().and_then(|report| report.loop_attempt.as_ref());
@@ -29,7 +29,7 @@ pub fn outcome(room: &ControlRoom) -> Outcome {
     }
 }
 
-/// A text that stands for the picture.
+/// The text alternative of the picture.
 pub fn summary(room: &ControlRoom) -> String {
     format!(
         "{} {} The newest sweep is paired with the local map by {} pairs.",
@@ -39,7 +39,7 @@ pub fn summary(room: &ControlRoom) -> String {
     )
 }
 
-/// What the chosen lane did in the tick shown.
+/// The data of the selected lane in the current tick.
 fn lane_sentence(room: &ControlRoom) -> Option<String> {
     let (name, data) = lanes::data(room.now()?).nth(room.lane())?;
     let (first, rest) = name.split_at(1);
@@ -63,7 +63,7 @@ fn tick_sentence(room: &ControlRoom) -> String {
 fn facts(room: &ControlRoom) -> Vec<Fact> {
     let report = room.now();
     let of = |value: &dyn Fn(&TickReport) -> f64| report.map_or(f64::NAN, value);
-    // The start is known: nothing is off there.
+    // The start is known, so its error is zero.
     let error = |value: &dyn Fn(&TickReport) -> f64| report.map_or(0.0, value);
     let matched = |value: fn(&MatchSummary) -> f64| of(&|r| value(&r.registration.matched));
     let disagreement = |r: &TickReport| r.metrics.map_disagreement_m.unwrap_or(f64::NAN);

@@ -1,14 +1,14 @@
-//! The solver's steps from where the reader has put the poses.
+//! The solver's steps from the poses set by the reader.
 
 use ch16_slam2d::graph::{EdgeId, EdgeView, PoseGraph};
 use pr_geom::SE2;
 
 use crate::w16_5_pose_graph_toy::spec::MOST_STEPS;
 
-/// A step that moves no pose by as much ends the course, m and rad added.
+/// The steps end if no pose moves by more, m and rad added.
 const REST: f64 = 1e-6;
 
-/// The graph after one number of steps.
+/// The graph after a number of steps.
 pub struct Moment {
     /// The poses.
     pub poses: Vec<SE2>,
@@ -16,22 +16,22 @@ pub struct Moment {
     pub edge_chi2: Vec<f64>,
     /// Their sum.
     pub chi2: f64,
-    /// How far the step to here moved a pose at most, m and rad added; 0 at the start.
+    /// The largest movement of a pose in the step to here, m and rad added; 0 at the start.
     pub moved: f64,
 }
 
-/// All steps to rest.
+/// All steps to convergence.
 pub struct Course {
-    /// The edges, which no step changes.
+    /// The edges, which are constant.
     pub edges: Vec<EdgeView>,
     /// The start, and the graph after each step.
     pub moments: Vec<Moment>,
-    /// Whether a step could not be computed.
+    /// Whether a step failed.
     pub failed: bool,
 }
 
 impl Course {
-    /// Steps until nothing moves any more.
+    /// Runs the steps until no pose moves any more.
     pub fn new(mut graph: PoseGraph) -> Self {
         let edges: Vec<_> = graph.edges().collect();
         let mut moments = vec![moment(&graph, &edges, 0.0)];

@@ -1,4 +1,4 @@
-//! What the reader takes hold of: a pose, or the tip of its heading.
+//! Draggable things: a pose, or the tip of its heading.
 
 use kit::model::Handle;
 use pr_geom::{Point2, SE2, math};
@@ -10,11 +10,11 @@ use crate::w16_5_pose_graph_toy::spec::{MOST_POSES, MOVED, REACH_M, STEPS};
 /// Distance of the turning handle from its pose, m.
 const TURN_ARM_M: f64 = 0.3;
 
-/// Names of what is held: each pose, and each heading.
+/// Names of the draggable things: each pose, and each heading.
 const POSES: [&str; MOST_POSES] = ["pose1", "pose2", "pose3", "pose4", "pose5", "pose6"];
 const HEADINGS: [&str; MOST_POSES] = ["turn1", "turn2", "turn3", "turn4", "turn5", "turn6"];
 
-/// Where the handle stands that turns a pose.
+/// Position of the handle that turns a pose.
 pub fn turn_handle(pose: &SE2) -> Point2<f64> {
     pose.transform(Point2::new(TURN_ARM_M, 0.0))
 }
@@ -48,7 +48,7 @@ pub fn grab(toy: &PoseGraphToy, panel: &str, at: [f64; 2], reach: [f64; 2]) -> O
     })
 }
 
-/// Moves what is held; all poses as they are shown become the start.
+/// Moves the grabbed thing; all current poses become the start.
 pub fn drag(toy: &mut PoseGraphToy, handle: Handle, at: [f64; 2]) {
     let spot = [at[0] - handle.offset[0], at[1] - handle.offset[1]];
     if !spot.iter().all(|value| value.is_finite()) {
@@ -65,7 +65,7 @@ pub fn drag(toy: &mut PoseGraphToy, handle: Handle, at: [f64; 2]) {
     put(toy, &poses);
 }
 
-/// Makes poses the start, rounded so that links stay short.
+/// Sets the start, rounded, which keeps links short.
 fn put(toy: &mut PoseGraphToy, poses: &[SE2]) {
     let rounded = |value: f64, per_unit: f64| (value * per_unit).round() / per_unit;
     let driven = toy.values.get(&GRAPH).driven();

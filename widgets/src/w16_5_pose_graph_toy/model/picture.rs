@@ -1,4 +1,4 @@
-//! The panels: poses tied by springs, a bar for each spring, χ² over the steps.
+//! The panels: poses connected by springs, a bar for each spring, χ² over the steps.
 
 use ch16_slam2d::graph::{EdgeKind, EdgeView};
 use kit::chart::{Series, TimeChart, axis_from_zero};
@@ -12,15 +12,15 @@ use super::{PoseGraphToy, panel};
 
 use crate::w16_5_pose_graph_toy::spec::PINNED;
 
-/// Room around the poses, m.
+/// Margin around the poses, m.
 const MARGIN_M: f64 = 0.7;
-/// The map is at least so large, m.
+/// Smallest size of the map, m.
 const LEAST_SIZE_M: [f64; 2] = [3.6, 2.2];
 /// Windings of a spring.
 const WINDINGS: usize = 7;
 /// Half the width of a spring, m.
 const SPRING_M: f64 = 0.05;
-/// The loop runs beside the edges that it spans, m.
+/// Distance of the loop's spring from the edges that it spans, m.
 const LOOP_BOW_M: f64 = 0.35;
 
 pub fn scene(toy: &PoseGraphToy) -> Scene {
@@ -136,7 +136,7 @@ fn words(at: [f64; 2], text: &str) -> Layer {
     }
 }
 
-/// The way of each pose over the steps so far.
+/// The path of each pose over the steps so far.
 fn trails(toy: &PoseGraphToy) -> impl Iterator<Item = Layer> + '_ {
     let moments = &toy.course.moments[..=toy.step()];
     (0..toy.shown().poses.len()).map(|k| {
@@ -152,7 +152,7 @@ fn trails(toy: &PoseGraphToy) -> impl Iterator<Item = Layer> + '_ {
     })
 }
 
-/// A zigzag between two points, bowed to the right of the way by so much.
+/// A zigzag between two points, bowed to the right by that much.
 fn spring(from: [f64; 2], to: [f64; 2], bow_m: f64) -> Vec<[f64; 2]> {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = math::norm2(along[0], along[1]).max(1e-9);
@@ -172,7 +172,7 @@ fn spring(from: [f64; 2], to: [f64; 2], bow_m: f64) -> Vec<[f64; 2]> {
     (0..=count).map(at).collect()
 }
 
-/// Axes over all poses of all steps, so that nothing jumps while it plays.
+/// Axes over all poses of all steps, constant during playback.
 fn axes(toy: &PoseGraphToy) -> [Axis; 2] {
     let mut bounds = Bounds {
         min: [f64::INFINITY; 2],
@@ -188,7 +188,7 @@ fn axes(toy: &PoseGraphToy) -> [Axis; 2] {
     }
     let (middle, size) = (bounds.middle(), bounds.size());
     let axis = |i: usize, label: &str| {
-        // In halves of a metre, so that a drag moves the axes seldom.
+        // In steps of half a metre, so that a drag seldom moves the axes.
         let half = 0.5 * (size[i] + 2.0 * MARGIN_M).max(LEAST_SIZE_M[i]);
         let low = (2.0 * (middle[i] - half)).floor() / 2.0;
         let high = (2.0 * (middle[i] + half)).ceil() / 2.0;
@@ -207,7 +207,7 @@ fn bars(toy: &PoseGraphToy) -> Panel {
         .chain(&shown.edge_chi2)
         .copied()
         .fold(0.0, f64::max);
-    // Room for a number above the highest bar, and for the names above all of them.
+    // Space for a number above the highest bar, and for the names above all of them.
     let y = axis_from_zero("χ²", 1.35 * highest);
     let mut layers = Vec::new();
     for (k, edge) in toy.course.edges.iter().enumerate() {
@@ -246,7 +246,7 @@ fn bars(toy: &PoseGraphToy) -> Panel {
     }
 }
 
-/// A number of four characters at most.
+/// A number with at most four characters.
 fn short(value: f64) -> String {
     if value < 10.0 {
         format!("{value:.2}")

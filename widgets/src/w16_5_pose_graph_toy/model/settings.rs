@@ -1,4 +1,4 @@
-//! What the values of the parameter list mean to the core.
+//! Converts the values of the parameters to the types of the core.
 
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 use kit::values::Values;
@@ -20,7 +20,7 @@ impl Shape {
         }
     }
 
-    /// What each edge of odometry measures.
+    /// The measurement of each edge of odometry.
     fn odometry(self) -> SE2 {
         match self {
             Self::Line => SE2::translation(SIDE_M, 0.0),
@@ -31,7 +31,7 @@ impl Shape {
         }
     }
 
-    /// The poses where odometry puts them, the first one at the origin.
+    /// The poses by odometry, the first one at the origin.
     pub fn driven(self) -> Vec<SE2> {
         let step = self.odometry();
         let next = |pose: &SE2| Some(*pose * step);
@@ -41,7 +41,7 @@ impl Shape {
     }
 }
 
-/// The poses as the reader has put them.
+/// The poses set by the reader.
 pub fn start(values: &Values) -> Vec<SE2> {
     let driven = values.get(&GRAPH).driven();
     let put = driven.iter().zip(&MOVED).map(|(pose, [x, y, turn])| {
@@ -54,8 +54,8 @@ pub fn start(values: &Values) -> Vec<SE2> {
     put.collect()
 }
 
-/// The graph with its poses as the reader has put them: odometry from each pose to the next, and a
-/// loop from the first to the last.
+/// The graph with the poses set by the reader: odometry from each pose to the next, and a loop from the first
+/// to the last.
 pub fn graph(values: &Values) -> PoseGraph {
     let shape = values.get(&GRAPH);
     let mut graph = PoseGraph::new();

@@ -12,7 +12,7 @@ pub fn ends(edge: &EdgeView) -> String {
     format!("{} to {}", edge.from.index() + 1, edge.to.index() + 1)
 }
 
-/// What an edge is.
+/// The kind of an edge.
 pub fn kind(edge: &EdgeView) -> &'static str {
     match edge.edge.kind {
         EdgeKind::Odometry => "odometry",
@@ -20,7 +20,7 @@ pub fn kind(edge: &EdgeView) -> &'static str {
     }
 }
 
-/// Good is a graph at rest; without a pin it rests anywhere.
+/// Good is a converged graph; without a fixed pose its location is arbitrary.
 pub fn standing(toy: &PoseGraphToy) -> Standing {
     if toy.course.failed {
         Standing::Bad

@@ -1,4 +1,4 @@
-//! What the reader takes hold of: the start, by its sensor, its turning handle or its mark.
+//! Draggable things: the start, by its sensor, its turning handle or its mark.
 
 use ch16_lab::basin::BasinStart;
 use kit::model::Handle;
@@ -9,13 +9,13 @@ use super::{WholeWindow, panel};
 /// Distance of the turning handle from the sensor, m.
 const TURN_ARM_M: f64 = 1.0;
 
-/// Names of what is held.
+/// Names of the draggable things.
 mod thing {
     pub const PLACE: &str = "place";
     pub const TURN: &str = "turn";
 }
 
-/// Where the handle stands that turns the start.
+/// Position of the handle that turns the start.
 pub fn turn_handle(guess: &SE2) -> Point2<f64> {
     guess.transform(Point2::new(TURN_ARM_M, 0.0))
 }

@@ -1,4 +1,4 @@
-//! The panels: the sweeps, the places of the window, the bounds over the heading, the gap over time.
+//! The panels: the sweeps, the positions of the window, the bounds over the heading, the gap over time.
 
 mod bounds;
 mod places;
@@ -29,15 +29,17 @@ fn sweeps(window: &WholeWindow) -> Panel {
     let turn = turn_handle(&guess);
     let mut layers = vec![
         points(scene.target(), Mark::Cross, Tone::Measurement, 3.0),
-        // ICP alone: its end, and its way there.
+        // ICP alone: its result, and its path.
         points(
-            &scene.source().transformed(&window.hunt.alone.outcome.pose),
+            &scene
+                .source()
+                .transformed(&window.search_task.alone.outcome.pose),
             Mark::Dot,
             Tone::Prediction,
             1.6,
         ),
         Layer::line(
-            window.hunt.alone.way.iter().map(position).collect(),
+            window.search_task.alone.path.iter().map(position).collect(),
             Stroke::Dotted,
             Tone::Prediction,
             1.5,
@@ -64,7 +66,7 @@ fn sweeps(window: &WholeWindow) -> Panel {
         sensor(pose, Mark::Square, Tone::Posterior),
     ];
     if window.step() == 0 && window.place() == 0 {
-        // Before the search the source lies at the start.
+        // Before the search the source is at the start.
         layers.pop();
     }
     Panel {
@@ -86,12 +88,12 @@ fn sweeps(window: &WholeWindow) -> Panel {
     }
 }
 
-/// Where a sensor stands.
+/// Position of a sensor.
 pub fn position(pose: &SE2) -> [f64; 2] {
     [pose.x(), pose.y()]
 }
 
-/// Where a sensor stands and looks.
+/// Pose of a sensor.
 pub fn sensor(pose: SE2, mark: Mark, tone: Tone) -> Layer {
     Layer::pose(pose.to_array(), mark, tone, 6.0)
 }

@@ -1,4 +1,4 @@
-//! What the values of the parameter list mean to the core.
+//! Converts the values of the parameters to the types of the core.
 
 use ch16_lab::basin::BasinStart;
 use ch16_lab::whole_window::WindowConfig;

@@ -1,10 +1,10 @@
-//! The tables: the turns of the room and both answers beside the picture, the search for the export.
+//! The tables: the headings of the room and both results beside the picture, the search for the export.
 
 use kit::model::Table;
 use kit::ticks::signed;
 
 use super::WholeWindow;
-use super::hunt::TURNS;
+use super::search_task::TURNS;
 use super::words::heading_error_deg;
 
 /// The tables beside the picture.
@@ -19,9 +19,9 @@ pub fn all(window: &WholeWindow) -> Vec<Table> {
     tables
 }
 
-/// The best pose, and the best ones at the other turns of the room.
+/// The best pose, and the best ones at the other headings of the room.
 fn turns(window: &WholeWindow) -> Table {
-    let found = window.hunt.found.as_ref();
+    let found = window.search_task.found.as_ref();
     let best = found.and_then(|found| found.home.as_ref().map(|(best, _)| *best));
     let rivals = TURNS.iter().enumerate().filter_map(|(k, (name, _))| {
         let rival = found?.rivals[k]?;
@@ -49,9 +49,9 @@ fn turns(window: &WholeWindow) -> Table {
     )
 }
 
-/// ICP alone, and ICP from what the search finds.
+/// ICP alone, and ICP from the result of the search.
 fn answers(window: &WholeWindow) -> Table {
-    let alone = Some(("ICP alone", &window.hunt.alone));
+    let alone = Some(("ICP alone", &window.search_task.alone));
     let searched = window
         .refined()
         .map(|refined| ("search, then ICP", refined));
@@ -73,7 +73,7 @@ fn answers(window: &WholeWindow) -> Table {
     )
 }
 
-/// Every box that was taken up.
+/// Every expanded box.
 fn boxes(window: &WholeWindow) -> Table {
     let head = [
         "step",
@@ -86,8 +86,8 @@ fn boxes(window: &WholeWindow) -> Table {
         "bound",
         "became",
     ];
-    let seen = window.hunt.window.boxes();
-    let taken = window.hunt.window.moments().iter().enumerate();
+    let seen = window.search_task.window.boxes();
+    let taken = window.search_task.window.moments().iter().enumerate();
     let rows = taken.filter_map(|(step, moment)| {
         let seen = &seen[moment.taken?];
         let poses = &seen.poses;

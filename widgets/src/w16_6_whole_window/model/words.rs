@@ -6,22 +6,22 @@ use kit::model::{Fact, Outcome, Standing};
 use pr_geom::SE2;
 
 use super::WholeWindow;
-use super::hunt::TURNS;
+use super::search_task::TURNS;
 
 use crate::w16_6_whole_window::spec::HEADING;
 
-/// How the answer is judged.
+/// The assessment of the result.
 pub fn standing(window: &WholeWindow) -> Standing {
-    match (&window.hunt.found, window.refined()) {
+    match (&window.search_task.found, window.refined()) {
         (None, _) => Standing::Neutral,
         (_, Some(refined)) if refined.outcome.ending == Minimum::Right => Standing::Good,
         _ => Standing::Bad,
     }
 }
 
-/// The answer in a few words.
+/// The result in a few words.
 pub fn verdict(window: &WholeWindow) -> &'static str {
-    match (&window.hunt.found, window.refined()) {
+    match (&window.search_task.found, window.refined()) {
         (None, _) => "searching",
         (_, None) => "no place fits",
         (_, Some(refined)) => match refined.outcome.ending {
@@ -32,8 +32,8 @@ pub fn verdict(window: &WholeWindow) -> &'static str {
 }
 
 pub fn outcome(window: &WholeWindow) -> Outcome {
-    let counts = window.hunt.window.search().counts();
-    let alone = &window.hunt.alone.outcome;
+    let counts = window.search_task.window.search().counts();
+    let alone = &window.search_task.alone.outcome;
     let start = format!(
         "From {:.0}° off, ICP alone ends {}.",
         window.values.get(&HEADING),
@@ -44,8 +44,8 @@ pub fn outcome(window: &WholeWindow) -> Outcome {
         counts.scored(),
         counts.window
     );
-    let result = window.hunt.window.result();
-    let answer = match (&window.hunt.found, window.refined(), &result) {
+    let result = window.search_task.window.result();
+    let answer = match (&window.search_task.found, window.refined(), &result) {
         (Some(_), Some(refined), Some(result)) => {
             let ahead = result.margin().map_or(String::new(), |margin| {
                 format!(", {margin:.3} ahead of the next place")
@@ -68,12 +68,16 @@ pub fn outcome(window: &WholeWindow) -> Outcome {
 }
 
 fn facts(window: &WholeWindow) -> Vec<Fact> {
-    let counts = window.hunt.window.search().counts();
-    let found = window.hunt.found.as_ref();
-    let result = window.hunt.window.result().filter(|_| found.is_some());
+    let counts = window.search_task.window.search().counts();
+    let found = window.search_task.found.as_ref();
+    let result = window
+        .search_task
+        .window
+        .result()
+        .filter(|_| found.is_some());
     let or_none = |value: Option<f64>| value.unwrap_or(f64::NAN);
     let end = window.refined().map(|refined| &refined.outcome);
-    let alone = &window.hunt.alone.outcome;
+    let alone = &window.search_task.alone.outcome;
     let best = result.map(|result| result.best);
     let behind = |turns: &[usize]| {
         let rivals = turns.iter().filter_map(|&k| found?.rivals[k]);
@@ -142,47 +146,51 @@ fn facts(window: &WholeWindow) -> Vec<Fact> {
 }
 
 pub fn summary(window: &WholeWindow) -> String {
-    let moments = window.hunt.window.moments();
+    let moments = window.search_task.window.moments();
     let moment = &moments[window.step()];
     let best = moment.best.map_or("no pose yet".to_owned(), |best| {
         format!("the best pose so far scores {:.3}", best.score)
     });
     let waiting = waiting(window);
-    let turns = window.hunt.found.as_ref().map_or(String::new(), |found| {
-        let told = TURNS
-            .iter()
-            .zip(&found.rivals)
-            .filter_map(|((name, _), rival)| {
-                rival.map(|rival| format!("{name} {:.3}", rival.score))
-            });
-        let told: Vec<_> = told.collect();
-        if told.is_empty() {
-            String::new()
-        } else {
-            format!(" Scores of the other turns: {}.", told.join(", "))
-        }
-    });
+    let turns = window
+        .search_task
+        .found
+        .as_ref()
+        .map_or(String::new(), |found| {
+            let scores = TURNS
+                .iter()
+                .zip(&found.rivals)
+                .filter_map(|((name, _), rival)| {
+                    rival.map(|rival| format!("{name} {:.3}", rival.score))
+                });
+            let scores: Vec<_> = scores.collect();
+            if scores.is_empty() {
+                String::new()
+            } else {
+                format!(" Scores of the other turns: {}.", scores.join(", "))
+            }
+        });
     format!(
         "Two laser sweeps of one room, and a window of {} poses at {} headings. After {} boxes {waiting} wait and {best}. {}{turns}",
         moment.counts.window,
-        window.hunt.window.search().headings(),
+        window.search_task.window.search().headings(),
         window.step(),
         outcome(window).sentence
     )
 }
 
-/// How many boxes wait at the place that is shown.
+/// Number of open boxes at the current position.
 pub fn waiting(window: &WholeWindow) -> usize {
-    let boxes = window.hunt.window.boxes().iter();
+    let boxes = window.search_task.window.boxes().iter();
     boxes.filter(|seen| seen.waits_after(window.step())).count()
 }
 
-/// What the place that is shown is about.
+/// The current position in words.
 pub fn now(window: &WholeWindow) -> String {
     if let Some(k) = window.refining().filter(|k| *k > 0) {
         return format!("ICP from there, step {k}");
     }
-    let search = &window.hunt.window;
+    let search = &window.search_task.window;
     let moment = &search.moments()[window.step()];
     let Some(taken) = moment.taken else {
         return "Before the search: the start".to_owned();
@@ -205,7 +213,7 @@ pub fn now(window: &WholeWindow) -> String {
     )
 }
 
-/// How far a heading is from the truth, degrees.
+/// Error of a heading, degrees.
 pub fn heading_error_deg(window: &WholeWindow, heading_rad: f64) -> f64 {
     let turn = SE2::new(0.0, 0.0, heading_rad - window.scene.truth().theta());
     turn.theta().to_degrees()

@@ -9,9 +9,9 @@ use pr_geom::sort_numbers;
 /// Pairs in one piece of work: some tenths of a millisecond.
 const PAIRS_PER_PIECE: usize = 5;
 
-/// A lap on its way to its grades.
+/// The stages up to the grades of a lap.
 pub enum Work {
-    /// The world is driven through.
+    /// The drive is simulated.
     Driving(Box<DriveSimulation>),
     /// The front end runs.
     Running(Box<Lap>),
@@ -19,7 +19,7 @@ pub enum Work {
     Comparing(Box<PlaceStudy>),
 }
 
-/// A lap with all that is known of its pairs.
+/// A graded lap with its pairs.
 pub struct Places {
     /// The keyframes and their pairs.
     pub study: PlaceStudy,
@@ -32,12 +32,12 @@ pub struct Places {
 }
 
 impl Work {
-    /// A lap that has not begun.
+    /// A lap before its first step.
     pub fn new(config: &LapConfig) -> Self {
         Self::Driving(Box::new(DriveSimulation::new(config.drive.clone())))
     }
 
-    /// One piece; the places once all is done.
+    /// Does one piece. Returns the graded lap at the end.
     pub fn step(self, config: &LapConfig) -> Result<Places, Self> {
         Err(match self {
             Self::Driving(mut simulation) => match simulation.step() {
@@ -84,7 +84,7 @@ impl Places {
         self.study.places().len() - 1
     }
 
-    /// The threshold at which a detector calls so many pairs the same, %.
+    /// The threshold at which a detector reports that percentage of the pairs.
     pub fn threshold(&self, detector: usize, called_percent: f64) -> f64 {
         let ranked = &self.ranked[detector];
         let called = (ranked.len() as f64 * called_percent / 100.0).round() as usize;
@@ -94,7 +94,7 @@ impl Places {
         }
     }
 
-    /// How a detector does there; equal distances stand or fall together.
+    /// The grade of a detector at a threshold; equal distances share it.
     pub fn graded_at(&self, detector: usize, threshold: f64) -> Grade {
         let mut grade = Grade::default();
         for pair in self.study.graded() {
@@ -107,7 +107,7 @@ impl Places {
         grade
     }
 
-    /// The older keyframe that looks most alike to `new`, among those that may be a loop with it.
+    /// The older keyframe most similar to `new`, among possible loops.
     pub fn most_alike(&self, detector: usize, new: usize) -> Option<usize> {
         let pairs = (0..new).filter_map(|old| self.study.pair(old, new));
         let loops = pairs.filter(|pair| self.study.is_loop(pair.nodes));
@@ -117,19 +117,19 @@ impl Places {
     }
 }
 
-/// What a detector calls the same, counted.
+/// Counts of a detector at a threshold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Grade {
-    /// Pairs called the same.
+    /// Reported pairs.
     pub called: usize,
-    /// Those that are.
+    /// Right ones among them.
     pub right: usize,
-    /// All that are.
+    /// All right pairs.
     pub same: usize,
 }
 
 impl Grade {
-    /// Precision and recall, where a pair is called.
+    /// Precision and recall, if any pair is reported.
     pub fn point(&self, threshold: f64) -> Option<OperatingPoint> {
         (self.called > 0 && self.same > 0).then(|| OperatingPoint {
             threshold,

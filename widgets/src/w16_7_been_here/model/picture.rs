@@ -105,7 +105,7 @@ fn matrix(been: &BeenHere) -> Panel {
     panel
 }
 
-/// Ink where two keyframes are alike; keyframes that are still to come are unknown.
+/// Ink for similar keyframes; future keyframes are unknown.
 fn raster(been: &BeenHere, places: &Places) -> Raster {
     let count = places.study.places().len();
     let (detector, newest) = (been.detector(), been.newest());
@@ -135,12 +135,12 @@ fn raster(been: &BeenHere, places: &Places) -> Raster {
         columns: count,
         rows: count,
         cells: (0..count * count).map(cell).collect::<Arc<[Cell]>>(),
-        // Whatever the picture depends on, in one number.
+        // Everything on which the picture depends, in one number.
         revision: (been.laps << 16) + ((newest as u64) << 2) + detector as u64,
     }
 }
 
-/// The pair at a spot of the matrix; a spot below the diagonal is the pair the other way round.
+/// The pair at a spot of the matrix; a spot below the diagonal is the mirrored pair.
 pub fn pair_at(been: &BeenHere, at: [f64; 2]) -> Option<[usize; 2]> {
     let places = been.places.as_ref()?;
     let last = places.last() as f64;
@@ -151,7 +151,7 @@ pub fn pair_at(been: &BeenHere, at: [f64; 2]) -> Option<[usize; 2]> {
     Some([old.min(new), new.max(old)])
 }
 
-/// How the newer scan of the pair is turned in the picture: by Scan Context, or not at all.
+/// The rotation of the pair's newer scan in the picture: that of Scan Context, or none.
 fn shown_turn(been: &BeenHere, study: &PlaceStudy, [old, new]: [usize; 2]) -> SE2 {
     match LapDetector::ALL[been.detector()] {
         LapDetector::Context => SE2::new(0.0, 0.0, study.turned(old, new).turn_rad),

@@ -7,7 +7,7 @@ use super::BeenHere;
 use super::lap::{Grade, Places};
 use super::settings::distance_label;
 
-/// How the detector that is chosen does.
+/// The grade of the selected detector.
 fn grade(been: &BeenHere) -> Option<(&Places, Grade)> {
     let places = been.places.as_ref().filter(|_| been.work.is_none())?;
     let detector = been.detector();
@@ -37,7 +37,7 @@ pub fn verdict(been: &BeenHere) -> &'static str {
 
 pub fn outcome(been: &BeenHere) -> Outcome {
     let sentence = match grade(been) {
-        // As long as what comes: the page below stays where it is.
+        // As long as the text that follows, so that the page below does not move.
         None => "The lap is driven, and its keyframes are compared pair by pair: which of them show the same place, by what is near, by histograms of ranges, and by Scan Context. Then every threshold is graded by the truth."
             .to_owned(),
         Some((_, grade)) => {
@@ -59,7 +59,7 @@ pub fn outcome(been: &BeenHere) -> Outcome {
     }
 }
 
-/// The pair that is looked at, in a sentence.
+/// The selected pair, in a sentence.
 fn pair_words(been: &BeenHere) -> String {
     let told = been.places.as_ref().zip(been.pair());
     let Some((places, [old, new])) = told else {

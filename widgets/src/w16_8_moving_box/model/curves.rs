@@ -1,4 +1,4 @@
-//! The bias of each method over the share of the box, a scene at a time.
+//! The bias of each method over the share of the box, one scene at a time.
 
 use ch16_lab::moving_box::{BoxConfig, BoxErrors, BoxMethods, BoxScene};
 use ch16_slam2d::icp::IcpWorkspace;
@@ -6,14 +6,14 @@ use kit::model::Activity;
 
 use crate::w16_8_moving_box::spec::MOST_SHARE;
 
-/// Shares of the curves, % apart.
+/// Step between the shares of the curves, %.
 const SHARE_STEP: f64 = 10.0;
-/// Seeds of each point of the curves.
+/// Number of seeds at each point of the curves.
 pub const SEEDS: usize = 100;
 
-/// The curves, all shares with as many seeds, but for the one under way.
+/// The curves; all shares have equally many seeds, except during a pass.
 pub struct Curves {
-    /// What they are computed for.
+    /// Their settings.
     key: (BoxMethods, f64),
     errors: Vec<BoxErrors>,
     /// The scene under way, and how many methods have registered it.
@@ -29,7 +29,7 @@ pub fn shares() -> impl ExactSizeIterator<Item = f64> {
 }
 
 impl Curves {
-    /// Curves without a seed.
+    /// Curves without seeds.
     pub fn new(methods: BoxMethods, moved_m: f64) -> Self {
         Self {
             key: (methods, moved_m),
@@ -39,15 +39,15 @@ impl Curves {
         }
     }
 
-    /// Starts over where the settings changed.
+    /// Starts over if the settings changed.
     pub fn follow(&mut self, methods: BoxMethods, moved_m: f64) {
         if self.key != (methods, moved_m) {
             *self = Self::new(methods, moved_m);
         }
     }
 
-    /// Two sweeps or one registration of the next share: every share has a first seed before any has
-    /// a second.
+    /// Creates two sweeps or does one registration of the next share: every share gets its first seed before
+    /// any gets a second.
     pub fn work(&mut self, workspace: &mut IcpWorkspace) -> Activity {
         let count = self.errors.len();
         let (seed, k) = (self.done / count, self.done % count);
@@ -73,17 +73,17 @@ impl Curves {
         Activity::Busy
     }
 
-    /// Seeds that all shares have.
+    /// Number of seeds that all shares have.
     pub fn seeds(&self) -> usize {
         self.done / self.errors.len()
     }
 
-    /// Share of the scenes that are done.
+    /// Finished share of the scenes.
     pub fn progress(&self) -> f64 {
         self.done as f64 / (SEEDS * self.errors.len()) as f64
     }
 
-    /// Bias of a method over the shares in percent, m; none before the first seed.
+    /// Bias of a method over the shares in percent, m; `None` before the first seed.
     pub fn bias_m(&self, method: usize) -> impl Iterator<Item = (f64, Option<f64>)> + '_ {
         shares().zip(self.errors.iter().map(move |errors| errors.bias_m(method)))
     }

@@ -1,4 +1,4 @@
-//! What the values of the parameter list mean to the core.
+//! Converts the values of the parameters to the types of the core.
 
 use ch16_lab::moving_box::{BoxConfig, BoxMethods};
 use kit::values::Values;
@@ -14,7 +14,7 @@ pub fn config(values: &Values) -> BoxConfig {
     }
 }
 
-/// What becomes of long pairs.
+/// The treatment of outliers.
 pub fn methods(values: &Values) -> BoxMethods {
     BoxMethods {
         variant: values.get(&VARIANT),

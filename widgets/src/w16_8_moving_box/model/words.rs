@@ -9,10 +9,10 @@ use super::curves::SEEDS;
 
 use crate::w16_8_moving_box::spec::SHARE;
 
-/// A registration this near is home, m: half the step between neighbouring points of a wall.
+/// Largest error of a successful registration, m: half the step between neighbouring points of a wall.
 const HOME_M: f64 = 0.02;
 
-/// How far the translation of a method is off at its end, m.
+/// Final translation error of a method, m.
 pub fn error_m(moving: &MovingBox, method: usize) -> f64 {
     let [x, y] = moving.runs[method].error_m;
     math::norm2(x, y)
@@ -22,7 +22,7 @@ fn home(moving: &MovingBox) -> [bool; 3] {
     [0, 1, 2].map(|method| error_m(moving, method) < HOME_M)
 }
 
-/// Good where all three are home.
+/// Good if all three succeed.
 pub fn standing(moving: &MovingBox) -> Standing {
     if home(moving).iter().all(|home| *home) {
         Standing::Good
@@ -31,7 +31,7 @@ pub fn standing(moving: &MovingBox) -> Standing {
     }
 }
 
-/// Who is home.
+/// Which methods succeed.
 pub fn verdict(moving: &MovingBox) -> &'static str {
     match home(moving) {
         [true, true, true] => "all three are home",
@@ -90,7 +90,7 @@ fn facts(moving: &MovingBox) -> Vec<Fact> {
     facts
 }
 
-/// The bias at the share that is chosen; no number unless the curves hold it with all their seeds.
+/// The bias at the current share; NaN unless the curves have all seeds there.
 fn bias_m(moving: &MovingBox, method: usize) -> f64 {
     let share = moving.values.get(&SHARE);
     let mut points = moving.curves.bias_m(method);

@@ -1,4 +1,4 @@
-//! What the reader takes hold of: the robot where it is switched on, or its turning handle.
+//! Draggable things: the robot's start, or its turning handle.
 
 use kit::model::Handle;
 use pr_geom::{Point2, SE2, math};
@@ -8,13 +8,13 @@ use super::{ComeBack, panel};
 /// Distance of the turning handle from the robot, m.
 const TURN_ARM_M: f64 = 1.0;
 
-/// Names of what is held.
+/// Names of the draggable things.
 mod thing {
     pub const PLACE: &str = "place";
     pub const TURN: &str = "turn";
 }
 
-/// Where the handle stands that turns the robot.
+/// Position of the handle that turns the robot.
 pub fn turn_handle(start: &SE2) -> Point2<f64> {
     start.transform(Point2::new(TURN_ARM_M, 0.0))
 }

@@ -1,8 +1,8 @@
-//! The saved map and the morning on it, computed in pieces between frames.
+//! The saved map and the localization run on it, computed in pieces between frames.
 
 use std::sync::Arc;
 
-use ch16_lab::come_back::{Morning, switched_on};
+use ch16_lab::come_back::{LocalizationRun, switched_on};
 use ch16_lab::lap::{Drive, DriveConfig, DriveSimulation};
 use ch16_lab::laps::{LapNumbers, LapUnderWay, Laps, LapsConfig};
 use ch16_slam2d::localize::{KnownMap, LocalizeConfig, Localizer, StartPose};
@@ -11,19 +11,19 @@ use kit::values::Values;
 
 use super::settings;
 
-/// Ticks of a morning: ten seconds.
-const MORNING_TICKS: usize = 40;
+/// Ticks of a run: ten seconds.
+const RUN_TICKS: usize = 40;
 
-/// The noise of the morning is not that of the laps.
+/// Offset of the seed: the noise of the run differs from that of the laps.
 const ANOTHER_DAY: u32 = 1000;
 
-/// A map as it was saved, and what is known of it.
+/// A saved map and its properties.
 pub struct Known {
     config: LapsConfig,
     laps: usize,
     /// The keyframes at their poses.
     pub map: Arc<KnownMap>,
-    /// The drive of the day after, but for where it begins.
+    /// The drive of the next day, without its start.
     pub tomorrow: DriveConfig,
     /// The estimator's parameters.
     slam: SlamConfig,
@@ -32,45 +32,45 @@ pub struct Known {
 }
 
 impl Known {
-    /// Whether it is the map that the values ask for.
+    /// Whether it is the map of the values.
     pub fn is_of(&self, values: &Values) -> bool {
         self.laps == settings::laps(values) && self.config == settings::laps_config(values)
     }
 }
 
-/// What is being computed.
+/// The work under way.
 pub enum Work {
-    /// A lap is driven.
+    /// A lap is simulated.
     Driving(Box<Laps>, Box<DriveSimulation>),
     /// A lap is mapped.
     Mapping(Box<Laps>, LapUnderWay, Box<Drive>),
-    /// The robot of the morning is driven.
-    Waking(Box<(Arc<KnownMap>, SlamConfig)>, Box<DriveSimulation>),
-    /// It looks for its place, and follows it.
-    Looking(Box<Morning>),
+    /// The robot's drive is simulated.
+    Simulating(Box<(Arc<KnownMap>, SlamConfig)>, Box<DriveSimulation>),
+    /// The robot is localized, and tracked.
+    Localizing(Box<LocalizationRun>),
 }
 
-/// What one piece of work came to.
+/// The result of one piece of work.
 pub enum Step {
     /// There is more to do.
-    GoesOn(Work),
-    /// The map is there.
+    Continue(Work),
+    /// The map is finished.
     Saved(Box<Known>),
-    /// The morning is over.
-    Over(Box<Morning>),
+    /// The run is over.
+    Over(Box<LocalizationRun>),
 }
 
 impl Work {
-    /// A map that has not begun.
+    /// A map before its first step.
     pub fn map(values: &Values) -> Self {
         Self::next_lap(Box::new(Laps::new(settings::laps_config(values))))
     }
 
-    /// A morning on a map, from where the values put the robot.
-    pub fn morning(known: &Known, values: &Values) -> Self {
+    /// A run on a map, from the start in the values.
+    pub fn run(known: &Known, values: &Values) -> Self {
         let start = settings::start(values);
-        let drive = switched_on(&known.tomorrow, start, MORNING_TICKS);
-        Self::Waking(
+        let drive = switched_on(&known.tomorrow, start, RUN_TICKS);
+        Self::Simulating(
             Box::new((Arc::clone(&known.map), known.slam.clone())),
             Box::new(DriveSimulation::new(drive)),
         )
@@ -81,9 +81,9 @@ impl Work {
         Self::Driving(laps, Box::new(drive))
     }
 
-    /// One piece.
+    /// Does one piece.
     pub fn step(self, values: &Values) -> Step {
-        Step::GoesOn(match self {
+        Step::Continue(match self {
             Self::Driving(laps, mut simulation) => match simulation.step() {
                 None => Self::Driving(laps, simulation),
                 Some(drive) => {
@@ -98,20 +98,20 @@ impl Work {
                     Some(numbers) => return Step::Saved(Box::new(saved(&laps, numbers, values))),
                 }
             }
-            Self::Waking(known, mut simulation) => match simulation.step() {
-                None => Self::Waking(known, simulation),
+            Self::Simulating(known, mut simulation) => match simulation.step() {
+                None => Self::Simulating(known, simulation),
                 Some(drive) => {
                     let (map, slam) = *known;
                     let config = LocalizeConfig::default();
                     let localizer = Localizer::new(map, slam, config, StartPose::Anywhere);
-                    Self::Looking(Box::new(Morning::new(localizer, Arc::new(drive))))
+                    Self::Localizing(Box::new(LocalizationRun::new(localizer, Arc::new(drive))))
                 }
             },
-            Self::Looking(mut morning) => {
-                if !morning.step() {
-                    return Step::Over(morning);
+            Self::Localizing(mut run) => {
+                if !run.step() {
+                    return Step::Over(run);
                 }
-                Self::Looking(morning)
+                Self::Localizing(run)
             }
         })
     }

@@ -1,4 +1,4 @@
-//! The panels: the map with what is localized, and the scores over the scans.
+//! The panels: the map with the localization, and the scores over the scans.
 
 use ch16_slam2d::search::PoseBox;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
@@ -30,7 +30,7 @@ fn map(back: &ComeBack) -> Panel {
         let points = known.map.points().iter().map(|p| [p.x, p.y]).collect();
         layers.push(Layer::points(points, Mark::Dot, Tone::Ink, 1.4));
     }
-    layers.extend(belief(back));
+    layers.extend(localization(back));
     let start = back.start();
     let turn = turn_handle(&start);
     layers.extend([
@@ -68,12 +68,12 @@ fn map(back: &ComeBack) -> Panel {
     }
 }
 
-/// What is localized at the moment that is shown.
-fn belief(back: &ComeBack) -> Vec<Layer> {
-    let Some(((_, morning), moment)) = back.told().zip(back.moment()) else {
+/// The localization at the current moment.
+fn localization(back: &ComeBack) -> Vec<Layer> {
+    let Some(((_, run), moment)) = back.finished().zip(back.moment()) else {
         return Vec::new();
     };
-    let drive = morning.drive();
+    let drive = run.drive();
     let truth = |tick: usize| drive.truth(tick);
     let way = (0..=moment.tick).map(|tick| [truth(tick).x(), truth(tick).y()]);
     let mut layers = vec![
@@ -84,8 +84,8 @@ fn belief(back: &ComeBack) -> Vec<Layer> {
     if let Some(next) = moment.runner_up {
         layers.push(pose(next.pose, Mark::Triangle, Tone::Prediction));
     }
-    let told = moment.report.as_ref().and_then(|report| report.pose);
-    if let Some(best) = told.or(moment.best.map(|best| best.pose)) {
+    let finished = moment.report.as_ref().and_then(|report| report.pose);
+    if let Some(best) = finished.or(moment.best.map(|best| best.pose)) {
         let scan = drive.prepared(moment.tick).cloud.transformed(&best);
         let points = scan.iter().map(|p| [p.x, p.y]).collect();
         layers.push(Layer::points(points, Mark::Square, Tone::Posterior, 2.0));
@@ -122,8 +122,8 @@ fn boxes(boxes: &[PoseBox]) -> Layer {
 fn scores(back: &ComeBack) -> Panel {
     let mut layers = Vec::new();
     let mut last = 40.0;
-    if let Some((_, morning)) = back.told() {
-        let reports = morning.reports();
+    if let Some((_, run)) = back.finished() {
+        let reports = run.reports();
         last = (reports.len() as f64).max(2.0);
         let at = |tick: usize, score: f64| [tick as f64 + 1.0, score];
         let fits = reports.iter().enumerate().filter_map(|(tick, report)| {

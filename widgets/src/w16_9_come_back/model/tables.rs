@@ -1,4 +1,4 @@
-//! The tables: each scan of the morning, for the export.
+//! The tables: each scan of the run, for the export.
 
 use kit::model::Table;
 
@@ -6,8 +6,8 @@ use super::ComeBack;
 
 /// All tables.
 pub fn all(back: &ComeBack) -> Vec<Table> {
-    let rows = back.told().into_iter().flat_map(|(_, morning)| {
-        let reports = morning.reports().iter().enumerate();
+    let rows = back.finished().into_iter().flat_map(|(_, run)| {
+        let reports = run.reports().iter().enumerate();
         reports.map(|(tick, report)| {
             let number = |value: Option<f64>| value.map_or(String::new(), |v| v.to_string());
             let best = report.search.map(|found| found.best.score);
@@ -18,7 +18,7 @@ pub fn all(back: &ComeBack) -> Vec<Table> {
                 number(report.score),
                 number(best),
                 number(next),
-                number(morning.error_m(tick)),
+                number(run.error_m(tick)),
             ]
         })
     });
@@ -32,7 +32,7 @@ pub fn all(back: &ComeBack) -> Vec<Table> {
     ];
     vec![Table::exported(
         "scans",
-        "Every scan of the morning",
+        "Every scan of the run",
         &head,
         rows.collect(),
     )]

@@ -1,81 +1,75 @@
 //! The result in words and numbers.
 
-use ch16_lab::come_back::{Moment, Morning};
+use ch16_lab::come_back::{LocalizationRun, Moment};
 use ch16_slam2d::localize::Verdict;
 use kit::model::{Fact, Outcome, Standing};
 
 use super::ComeBack;
 
-/// A pose farther off than this is another place, m.
-const ELSEWHERE_M: f64 = 0.5;
+/// A pose with a larger error counts as wrong, m.
+const WRONG_POSE_M: f64 = 0.5;
 
-/// How a morning ended.
+/// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ending {
     Computing,
     Found,
-    Elsewhere,
+    WrongPose,
     Ambiguous,
     Lost,
 }
 
 fn ending(back: &ComeBack) -> Ending {
-    let Some((_, morning)) = back.told() else {
+    let Some((_, run)) = back.finished() else {
         return Ending::Computing;
     };
-    let ticks = 0..morning.reports().len();
-    let is_localized = |tick: &usize| morning.reports()[*tick].verdict.is_localized();
-    let is_off = |tick: usize| morning.error_m(tick).is_some_and(|m| m > ELSEWHERE_M);
+    let ticks = 0..run.reports().len();
+    let is_localized = |tick: &usize| run.reports()[*tick].verdict.is_localized();
+    let is_off = |tick: usize| run.error_m(tick).is_some_and(|m| m > WRONG_POSE_M);
     if ticks.clone().filter(is_localized).any(is_off) {
-        return Ending::Elsewhere;
+        return Ending::WrongPose;
     }
-    match morning.found() {
+    match run.found() {
         Some(_) => Ending::Found,
-        None if morning
-            .reports()
-            .iter()
-            .any(|report| report.search.is_some()) =>
-        {
-            Ending::Ambiguous
-        }
+        None if run.reports().iter().any(|report| report.search.is_some()) => Ending::Ambiguous,
         None => Ending::Lost,
     }
 }
 
-/// Good is a robot that knows where it is.
+/// Good is a localized robot.
 pub fn standing(back: &ComeBack) -> Standing {
     match ending(back) {
         Ending::Computing | Ending::Ambiguous | Ending::Lost => Standing::Neutral,
         Ending::Found => Standing::Good,
-        Ending::Elsewhere => Standing::Bad,
+        Ending::WrongPose => Standing::Bad,
     }
 }
 
-/// The morning in a few words.
+/// The run in a few words.
 pub fn verdict(back: &ComeBack) -> &'static str {
     match ending(back) {
         Ending::Computing => "a lap is driven",
         Ending::Found => "found",
-        Ending::Elsewhere => "in the wrong place",
+        Ending::WrongPose => "in the wrong place",
         Ending::Ambiguous => "places look alike",
         Ending::Lost => "lost",
     }
 }
 
 pub fn outcome(back: &ComeBack) -> Outcome {
-    let sentence = match (ending(back), back.told()) {
-        (Ending::Found, Some((_, morning))) => found_words(morning),
-        (Ending::Elsewhere, _) => "The robot believes that it is somewhere else, and drives on so. A place that looks the same, and no other scan that says otherwise, is enough for that.".to_owned(),
-        (Ending::Ambiguous, Some((_, morning))) => format!(
-            "After {} scans the best place of the map and the next one still fit about equally well. The robot says that it does not know: another way, or another heading, would tell.",
-            morning.reports().len()
+    let sentence = match (ending(back), back.finished()) {
+        (Ending::Found, Some((_, run))) => found_words(run),
+        (Ending::WrongPose, _) => "The robot is localized at a wrong pose, and drives on. A place that looks the same is enough for that, if no other scan contradicts it.".to_owned(),
+        (Ending::Ambiguous, Some((_, run))) => format!(
+            "After {} scans the best place of the map and the next one still fit about equally well. The robot reports that it does not know: another path, or another heading, would resolve it.",
+            run.reports().len()
         ),
-        (Ending::Lost, Some((_, morning))) => format!(
-            "After {} scans no place of the map fits well enough. The robot says that it is lost: what it sees is not on the map that was saved.",
-            morning.reports().len()
+        (Ending::Lost, Some((_, run))) => format!(
+            "After {} scans no place of the map fits well enough. The robot reports that it is lost: what it sees is not on the saved map.",
+            run.reports().len()
         ),
-        // As long as what comes: the page below stays where it is.
-        _ => "A lap is driven and its map is saved. Then the robot is switched on where you put it, on another day: it looks for its place on the whole map, box by box.".to_owned(),
+        // As long as the text that follows, so that the page below does not move.
+        _ => "A lap is driven and its map is saved. Then the robot is switched on where you put it, on another day: it searches the whole map for its pose, box by box.".to_owned(),
     };
     Outcome {
         standing: standing(back),
@@ -85,9 +79,9 @@ pub fn outcome(back: &ComeBack) -> Outcome {
     }
 }
 
-fn found_words(morning: &Morning) -> String {
-    let found = morning.found().unwrap_or_default();
-    let report = &morning.reports()[found];
+fn found_words(run: &LocalizationRun) -> String {
+    let found = run.found().unwrap_or_default();
+    let report = &run.reports()[found];
     let margin = match report.margin() {
         Some(margin) => format!("the next place was {margin:.2} behind"),
         None => "no other place came near".to_owned(),
@@ -98,27 +92,27 @@ fn found_words(morning: &Morning) -> String {
     };
     format!(
         "Found {scans}, {:.2} m off the truth: {margin}. From there on {} of {} scans follow it, each registered on the map around it.",
-        morning.error_m(found).unwrap_or(f64::NAN),
-        localized_after(morning, found),
-        morning.reports().len() - found - 1
+        run.error_m(found).unwrap_or(f64::NAN),
+        localized_after(run, found),
+        run.reports().len() - found - 1
     )
 }
 
-fn localized_after(morning: &Morning, found: usize) -> usize {
-    let after = morning.reports()[found + 1..].iter();
+fn localized_after(run: &LocalizationRun, found: usize) -> usize {
+    let after = run.reports()[found + 1..].iter();
     after.filter(|report| report.verdict.is_localized()).count()
 }
 
 fn facts(back: &ComeBack) -> Vec<Fact> {
-    let told = back.told();
-    let morning = told.map(|(_, morning)| morning);
-    let known = told.map(|(known, _)| known);
+    let finished = back.finished();
+    let run = finished.map(|(_, run)| run);
+    let known = finished.map(|(known, _)| known);
     let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
-    let found = morning.and_then(Morning::found);
-    let searches = morning.into_iter().flat_map(Morning::reports);
+    let found = run.and_then(LocalizationRun::found);
+    let searches = run.into_iter().flat_map(LocalizationRun::reports);
     let first = searches.filter_map(|report| report.search).next();
-    let error_at = |tick: Option<usize>| number(morning.zip(tick).and_then(|(m, k)| m.error_m(k)));
-    let last = morning.and_then(|morning| morning.reports().len().checked_sub(1));
+    let error_at = |tick: Option<usize>| number(run.zip(tick).and_then(|(m, k)| m.error_m(k)));
+    let last = run.and_then(|run| run.reports().len().checked_sub(1));
     vec![
         Fact::count(
             "scans",
@@ -174,7 +168,7 @@ fn facts(back: &ComeBack) -> Vec<Fact> {
 }
 
 pub fn summary(back: &ComeBack) -> String {
-    let Some((known, _)) = back.told() else {
+    let Some((known, _)) = back.finished() else {
         return outcome(back).sentence;
     };
     let start = back.start();
@@ -189,7 +183,7 @@ pub fn summary(back: &ComeBack) -> String {
     )
 }
 
-/// What the moment that is shown is about.
+/// The current moment in words.
 pub fn now(back: &ComeBack) -> String {
     let Some(moment) = back.moment() else {
         let is_saved = back.known.is_some();

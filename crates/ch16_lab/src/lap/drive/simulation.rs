@@ -1,4 +1,4 @@
-//! The simulation of a drive, a tick at a time.
+//! Simulates a drive one tick at a time.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use pr_sim::{Lidar, Rng, WaypointDriver};
 use super::{Drive, DriveTick, Sweep, empty_scan};
 use crate::lap::DriveConfig;
 
-/// A drive under way: [`Drive::simulate`] in pieces.
+/// A simulation under way: [`Drive::simulate`] in pieces.
 pub struct DriveSimulation {
     config: DriveConfig,
     rng: Rng,
@@ -25,7 +25,7 @@ pub struct DriveSimulation {
 }
 
 impl DriveSimulation {
-    /// Stands at the start, where the first sweep is taken.
+    /// Starts a simulation with the first sweep.
     #[must_use]
     pub fn new(config: DriveConfig) -> Self {
         let mut rng = Rng::new(config.seed);
@@ -44,10 +44,10 @@ impl DriveSimulation {
         }
     }
 
-    /// Drives one tick; returns the whole drive once its last way point is reached.
+    /// Simulates one tick. Returns the complete drive once its last way point is reached.
     ///
     /// # Panics
-    /// Where it is called again after that.
+    /// If called again after that.
     pub fn step(&mut self) -> Option<Drive> {
         let mut finished = self.ticks.len() >= self.config.max_ticks;
         if !finished {
@@ -60,7 +60,7 @@ impl DriveSimulation {
         })
     }
 
-    /// Whether the last way point was reached.
+    /// Simulates one tick. Returns whether the last way point was reached.
     fn drive_tick(&mut self) -> bool {
         let config = &self.config;
         let step = self.driver.step(&self.truth);
@@ -89,7 +89,7 @@ impl DriveSimulation {
     }
 }
 
-/// Sensing with its buffers kept.
+/// The sensor with its buffers.
 struct Sensor {
     lidar: Lidar,
     scan: LaserScan,
@@ -112,7 +112,7 @@ impl Sensor {
             rng,
             &mut self.scan.ranges_m,
         );
-        // A sweep is one moment here, so no motion skews it.
+        // A simulated sweep is instantaneous, so motion does not distort it.
         let cloud = self
             .preparer
             .prepare(&self.scan, &Vector3::zeros(), &config.scan);

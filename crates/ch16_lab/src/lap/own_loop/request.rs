@@ -1,26 +1,26 @@
-//! What a reader asks of a loop of their own, and why it cannot be.
+//! The request for a custom loop, and its errors.
 
 use ch16_slam2d::graph::RobustKernel;
 use thiserror::Error;
 
 use super::super::choices::Choice;
 
-/// Where Huber's kernel turns linear, a Mahalanobis norm: 95 % of the efficiency of plain least squares
-/// on Gaussian noise (Huber 1964). The lap's own, 12, is too wide to see a wrong loop.
+/// Width of Huber's kernel, a Mahalanobis norm: 95 % of the efficiency of plain least squares on Gaussian
+/// noise (Huber 1964). The lap's own width, 12, is too large to reduce a wrong loop.
 const HUBER_WIDTH: f64 = 1.345;
 
-/// Where dynamic covariance scaling begins, a squared Mahalanobis norm.
+/// φ of dynamic covariance scaling, a squared Mahalanobis norm.
 const DCS_PHI: f64 = 10.0;
 
-/// What the loop says of its two keyframes.
+/// The relative pose that the loop asserts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Claim {
-    /// What registration finds from where the graph believes the two to be.
+    /// The registration from the graph's relative pose.
     #[default]
     Registered,
     /// Their true relative pose.
     Truth,
-    /// That both stand at one place, turned as the graph believes them to be.
+    /// Both keyframes at one position, with the graph's relative heading.
     SamePlace,
 }
 
@@ -44,30 +44,30 @@ impl Choice for Claim {
     }
 }
 
-/// Whether the loop has to pass the tests.
+/// Whether the loop has to pass the acceptance tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum GateUse {
-    /// A registered loop passes the tests of fit, pairs and χ², an asserted one that of χ².
+    /// A registered loop has to pass the tests of fit, pairs and χ², an asserted one that of χ².
     #[default]
     Asked,
-    /// It is added whatever the tests say.
+    /// It is added regardless of the tests.
     Bypassed,
 }
 
-/// What the graph with the loop is solved under.
+/// The robust kernel of the loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum OwnKernel {
     /// None: plain least squares.
     #[default]
     Quadratic,
-    /// Huber's: far out the cost grows linearly.
+    /// Huber's: the cost grows linearly far out.
     Huber,
     /// Dynamic covariance scaling.
     Dcs,
 }
 
 impl OwnKernel {
-    /// It, for the solver.
+    /// Converts it for the solver.
     pub(super) fn kernel(self) -> RobustKernel {
         match self {
             Self::Quadratic => RobustKernel::None,
@@ -97,31 +97,31 @@ impl Choice for OwnKernel {
     }
 }
 
-/// A loop that a reader asks for.
+/// The request for a custom loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnLoopRequest {
-    /// The graph at the end of this tick gets it.
+    /// The loop is added to the graph at the end of this tick.
     pub tick: usize,
     /// Its two keyframes, in any order.
     pub nodes: [usize; 2],
-    /// What it says of them.
+    /// The relative pose that it asserts.
     pub claim: Claim,
-    /// Whether it has to pass the tests.
+    /// Whether it has to pass the acceptance tests.
     pub gate: GateUse,
-    /// What the graph is solved under.
+    /// Its robust kernel.
     pub kernel: OwnKernel,
 }
 
-/// Why there is no such loop.
+/// Why a custom loop is impossible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum OwnLoopError {
     /// Both ends are one keyframe.
     #[error("both ends of your loop are keyframe {node}: choose two different ones")]
     OneNode {
-        /// Which.
+        /// The keyframe.
         node: usize,
     },
-    /// An end was not yet reached.
+    /// An end does not exist at that tick.
     #[error("keyframe {node} is not yet there: keyframe {newest} is the newest so far")]
     NotYet {
         /// The end.

@@ -26,7 +26,7 @@ fn the_strains_of_all_edges_add_up_to_the_chi_squared_of_the_graph() {
     }
 }
 
-/// A wrong loop that is forced in: keyframe 40 stands 5.9 m from keyframe 12, at the end of the lap.
+/// A wrong loop without gate: keyframe 40 is 5.9 m from keyframe 12, at the end of the lap.
 const WRONG: OwnLoopRequest = OwnLoopRequest {
     nodes: [12, 40],
     claim: Claim::SamePlace,
@@ -39,7 +39,7 @@ fn effect(record: &LapRecord, request: OwnLoopRequest) -> LoopEffect {
 }
 
 #[test]
-fn the_gate_turns_a_wrong_loop_away_and_a_reader_may_pass_it_by() {
+fn the_gate_rejects_a_wrong_loop_and_can_be_bypassed() {
     let record = record();
     let asked = OwnLoopRequest {
         gate: GateUse::Asked,
@@ -69,7 +69,7 @@ fn huber_softens_a_wrong_loop_and_dcs_switches_it_off() {
 }
 
 #[test]
-fn a_kernel_lets_a_right_loop_have_its_way() {
+fn a_kernel_hardly_changes_a_right_loop() {
     let record = record();
     let request = OwnLoopRequest {
         nodes: [0, 25],
@@ -80,7 +80,7 @@ fn a_kernel_lets_a_right_loop_have_its_way() {
         let with = effect(&record, OwnLoopRequest { kernel, ..request });
         let without = effect(&record, request);
         let off = (with.max_shift_m - without.max_shift_m).abs();
-        // Below its width a kernel is quadratic: only where the weight stopped is left.
+        // Below its width a kernel is quadratic, so only the tolerance of the reweighting remains.
         assert!(off < 1e-3, "{kernel:?}: {off}");
     }
 }
@@ -100,7 +100,7 @@ fn what_a_wrong_loop_bends_is_seen_in_the_strains() {
     // 1e-9: the two subtract the headings in another order.
     assert!((before - chi2.before).abs() < 1e-9 * before);
     assert!((sum(&own.poses) - chi2.after).abs() < 1e-9 * chi2.after);
-    // The loop gets most of its way: the other edges pay for it.
+    // The loop's error is mostly resolved, at the cost of the other edges.
     assert!(edge_strain(&own.edge, &own.poses).chi2 < 0.1 * chi2.after);
 }
 
@@ -131,7 +131,7 @@ fn a_true_loop_to_the_far_end_mends_the_corridor_that_no_gate_lets_be_mended() {
 
 #[test]
 fn a_registered_loop_of_the_lap_is_found_again_as_the_lap_found_it() {
-    // At a refused loop the graph is still as the loop met it.
+    // A rejected loop leaves the graph as it was.
     let noisy = LapRunner::new().run(&LapConfig::with_seed_and_noise(2, 3.0));
     let refused = noisy
         .lap

@@ -1,4 +1,4 @@
-//! What is known of each keyframe, over the keyframes.
+//! Plots over the keyframes.
 
 use kit::chart::{Series, TimeChart};
 use kit::scene::{Mark, Panel, Tone};
@@ -16,10 +16,10 @@ pub fn fit(own: &OwnRobot) -> Panel {
     }])
 }
 
-/// The standard deviation of each keyframe, and its error where it is known.
+/// The standard deviation of each keyframe, and its error if it is known.
 pub fn sure(own: &OwnRobot) -> Panel {
     let sigmas: Vec<f64> = own.robot.keyframes.iter().map(|k| k.sigma_m).collect();
-    let chart = over_keyframes(own, panel::SURE, "How sure the graph is", "m");
+    let chart = over_keyframes(own, panel::SURE, "Uncertainty of each keyframe", "m");
     let sigma = Series {
         label: "σ of the position",
         values: &sigmas,

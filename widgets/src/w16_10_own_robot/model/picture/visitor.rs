@@ -6,17 +6,17 @@ use pr_geom::math;
 use super::OTHER;
 use crate::w16_10_own_robot::model::OwnRobot;
 
-/// Standard deviations that its ellipse shows.
+/// Size of its ellipse in standard deviations.
 const SIGMAS: f64 = 3.0;
 
-/// The way of the other log's robot, and how well the place that is shown is known.
-pub fn whereabouts(own: &OwnRobot) -> Vec<Layer> {
-    let Some(((_, shown), told)) = own.place().zip(own.robot.whereabouts.as_ref()) else {
+/// The path of the other log's robot, and the uncertainty of its current pose.
+pub fn other_log(own: &OwnRobot) -> Vec<Layer> {
+    let Some(((_, shown), told)) = own.place().zip(own.robot.other_log.as_ref()) else {
         return Vec::new();
     };
     let line = |is_localized: bool, stroke, width_px| {
         let places = told.places.iter().map(|place| {
-            if place.belief.is_localized() == is_localized {
+            if place.state.is_localized() == is_localized {
                 [place.pose[0], place.pose[1]]
             } else {
                 [f64::NAN; 2]

@@ -1,5 +1,5 @@
-//! One loop from near, in the frame of the old node: where the graph expected the new sweep, where
-//! registration put it, and how far each gate lets the two lie apart.
+//! Close-up of one loop in the frame of the old node: the predicted pose of the new sweep, the registered
+//! one, and the region in which each gate accepts it.
 
 use ch16_lab::lap::LoopAttempt;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
@@ -14,10 +14,10 @@ use crate::w16_2_full_lap::model::words::{ends, model_name};
 /// Half width and half height of the view, m: the corridor is 1.2 m wide.
 const HALF_VIEW_M: [f64; 2] = [2.0, 1.3];
 
-/// Room around both nodes, m; candidates of the lap always have it.
+/// Margin around both nodes, m; candidates of the lap always have it.
 const ROOM_M: f64 = 0.25;
 
-/// The reader's own loop, else the newest one of the lap, or words where none was tried so far.
+/// The custom loop, else the newest one of the lap, or a text if none was tried so far.
 pub fn closeup(moment: &Moment) -> Panel {
     let runs = moment.runs;
     if let Some(own) = moment.own {
@@ -27,7 +27,7 @@ pub fn closeup(moment: &Moment) -> Panel {
             gates: &runs.gates_of_own(own),
             before,
             after: &own.poses,
-            title: format!("Your loop {} from near", ends(&own.attempt)),
+            title: format!("Close-up of your loop {}", ends(&own.attempt)),
         };
         return of_loop(runs, &shown);
     }
@@ -39,7 +39,7 @@ pub fn closeup(moment: &Moment) -> Panel {
                 gates: runs.gates(attempt),
                 before: runs.graph.poses_before_loop(attempt.tick),
                 after: runs.graph.poses_at(attempt.tick),
-                title: format!("Loop {} from near, tick {}", ends(attempt), attempt.tick),
+                title: format!("Close-up of loop {}, tick {}", ends(attempt), attempt.tick),
             },
         ),
         None => view(
@@ -111,9 +111,9 @@ fn of_loop(runs: &Runs, shown: &LoopShown) -> Panel {
         let graph = nodes[loop_.candidate.node].between(&nodes[loop_.from_node]);
         layers.push(pose(graph, Mark::Square, Tone::Posterior, 5.0));
     }
-    // On top and larger: the graph ends close to what was registered.
+    // On top and larger, because the final pose is close to the registered one.
     layers.push(pose(registered, Mark::Cross, Tone::Measurement, 9.0));
-    // Both nodes in view: candidates lie within 2 m, the ends of an own loop may lie anywhere.
+    // Both nodes in view: candidates are within 2 m, the ends of a custom loop may be anywhere.
     let middle = [0.5 * predicted.x(), 0.5 * predicted.y()];
     let wider = (0..2).map(|i| (middle[i].abs() + ROOM_M) / HALF_VIEW_M[i]);
     let scale = wider.fold(1.0, f64::max);
@@ -145,7 +145,7 @@ fn view(
     }
 }
 
-/// The old sweeps as verification saw them: around the candidate, at the poses before the loop.
+/// The old sweeps of the verification: around the candidate, at the poses before the loop.
 fn submap(runs: &Runs, shown: &LoopShown) -> Vec<[f64; 2]> {
     let candidate = shown.attempt.verification.candidate.node;
     let reach = runs.loop_config().submap_half_width;
@@ -156,7 +156,7 @@ fn submap(runs: &Runs, shown: &LoopShown) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// A gate as the panel draws it: solid where it decides, dotted where it only looks on.
+/// A gate as the panel draws it: solid if it decides, dotted otherwise.
 struct GateShown<'a> {
     gate: &'a Gate,
     region: Option<Region>,

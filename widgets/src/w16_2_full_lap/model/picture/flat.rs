@@ -1,4 +1,4 @@
-//! What is drawn of a flat while it is edited: its walls with their ends, the start and the way.
+//! The drawing of a flat during editing: its walls with their ends, the start and the path.
 
 use kit::scene::{Layer, LegendEntry, Mark, Stroke, Tone};
 use pr_sim::sketch::to_m;
@@ -7,16 +7,16 @@ use crate::w16_2_full_lap::model::flat::Tool;
 use crate::w16_2_full_lap::model::moment::Drawn;
 use crate::w16_2_full_lap::model::piece::Piece;
 
-/// Words keep so far from the way point that they name, in pixels.
+/// Distance of text from its way point, in pixels.
 const CLEAR_PX: f32 = 12.0;
 
-/// The walls as they are drawn.
+/// The walls of the drawing.
 pub fn walls(drawn: &Drawn) -> Vec<[[f64; 2]; 2]> {
     let walls = drawn.sketch.walls_cm.iter();
     walls.map(|wall| wall.map(|end| end.map(to_m))).collect()
 }
 
-/// The way as it is planned, the ends of the walls, and what is chosen.
+/// The planned path, the ends of the walls, and the selection.
 pub fn layers(drawn: &Drawn) -> Vec<Layer> {
     let Drawn { sketch, tool, .. } = drawn;
     let places: Vec<_> = core::iter::once(sketch.start_cm)
@@ -56,7 +56,7 @@ pub fn layers(drawn: &Drawn) -> Vec<Layer> {
     layers
 }
 
-/// What is chosen: its wall drawn wide with a handle at each end, or a ring around its place.
+/// The selection: a wide wall with a handle at each end, or a ring around a point.
 fn chosen(drawn: &Drawn) -> Vec<Layer> {
     let Some(piece) = drawn.piece else {
         return Vec::new();
@@ -84,14 +84,9 @@ fn chosen(drawn: &Drawn) -> Vec<Layer> {
     }
 }
 
-/// What the marks of the plan mean.
+/// The legend entry of the plan.
 pub fn legend() -> LegendEntry {
-    LegendEntry::marked_line(
-        "the way as planned",
-        Tone::Ink,
-        Mark::Circle,
-        Stroke::Dotted,
-    )
+    LegendEntry::marked_line("the planned path", Tone::Ink, Mark::Circle, Stroke::Dotted)
 }
 
 /// `Your own flat: 18 walls, 3 way points`.

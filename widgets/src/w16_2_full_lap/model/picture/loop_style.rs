@@ -1,4 +1,4 @@
-//! How a loop looks, in every panel.
+//! The style of a loop, shared by all panels.
 
 use ch16_lab::lap::LoopAttempt;
 use kit::scene::{LegendEntry, Mark, Stroke, Tone};
@@ -9,7 +9,7 @@ pub struct LoopStyle {
     pub stroke: Stroke,
     /// Its colour.
     pub tone: Tone,
-    /// Where it is closed, or was to be.
+    /// The mark of the loop.
     pub mark: Mark,
 }
 
@@ -27,7 +27,7 @@ impl LoopStyle {
         mark: Mark::Circle,
     };
 
-    /// The look of an attempt.
+    /// The style of an attempt.
     pub fn from_attempt(attempt: &LoopAttempt) -> Self {
         if attempt.accepted() {
             Self::ACCEPTED
@@ -36,7 +36,7 @@ impl LoopStyle {
         }
     }
 
-    /// Its entry in a legend.
+    /// The legend entry.
     pub fn entry(&self, label: &str) -> LegendEntry {
         LegendEntry::marked_line(label, self.tone, self.mark, self.stroke)
     }

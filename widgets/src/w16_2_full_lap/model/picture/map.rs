@@ -12,20 +12,20 @@ use crate::w16_2_full_lap::model::flat::extent;
 use crate::w16_2_full_lap::model::moment::{Drawn, Moment};
 use crate::w16_2_full_lap::model::panel;
 
-/// Room around the world, m.
+/// Margin around the world, m.
 const MARGIN_M: f64 = 0.4;
 
-/// The same while it is edited: so far out a stroke may lead.
+/// Margin during editing: how far outside a stroke may go, m.
 const EDIT_MARGIN_M: f64 = 1.0;
 
 /// Length of the head of an arrow, m.
 const ARROW_HEAD_M: f64 = 0.09;
 
-/// The world at a moment.
+/// The world at a tick.
 pub fn map(moment: &Moment) -> Panel {
     let bounds = shown_bounds(moment);
     let mut layers = vec![walls(moment)];
-    // A lap of another world has nothing to say in this one.
+    // A lap of another world does not belong into this one.
     if moment.drawn.is_none_or(|drawn| drawn.problem.is_none()) {
         layers.extend(lap(moment));
     }
@@ -48,7 +48,7 @@ pub fn map(moment: &Moment) -> Panel {
     }
 }
 
-/// All that is estimated, and the truth.
+/// The estimates and the truth.
 fn lap(moment: &Moment) -> Vec<Layer> {
     let mut layers = Vec::from(map_points(moment));
     layers.extend(paths(moment));
@@ -60,7 +60,7 @@ fn lap(moment: &Moment) -> Vec<Layer> {
     layers
 }
 
-/// Whether the plan is shown: while it is edited, and where nothing else can be.
+/// Whether the plan is shown: during editing, and if there is no lap.
 fn is_planned(drawn: &Drawn) -> bool {
     drawn.tool.is_some() || drawn.problem.is_some()
 }
@@ -75,8 +75,7 @@ fn title(moment: &Moment) -> String {
     format!("{words} after tick {}", moment.tick)
 }
 
-/// The world with some room around it, and all that the estimates make of it outside of the Apartment,
-/// whose axes never move.
+/// The world with a margin, and the extent of the estimates except in the Apartment, whose axes are fixed.
 pub fn shown_bounds(moment: &Moment) -> Bounds {
     if let Some(frame) = moment.drawn.and_then(|drawn| drawn.frame) {
         return frame;
@@ -111,7 +110,7 @@ pub fn shown_bounds(moment: &Moment) -> Bounds {
     }
 }
 
-/// The walls as they are drawn, also before the lap has followed.
+/// The walls of the drawing, even before the lap has followed.
 fn walls(moment: &Moment) -> Layer {
     let ends = |wall: &Wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]];
     Layer::segments(
@@ -125,7 +124,7 @@ fn walls(moment: &Moment) -> Layer {
     )
 }
 
-/// In the middle of each room, where no sweep has points.
+/// Names in the middle of each room, where no sweep has points.
 fn rooms() -> impl Iterator<Item = Layer> {
     World::apartment_rooms().into_iter().map(|room| {
         let middle = [
@@ -136,8 +135,8 @@ fn rooms() -> impl Iterator<Item = Layer> {
     })
 }
 
-/// The sweeps of the keyframes at the graph's poses: dots from the way out, × in the other green from
-/// the way back, so that a wall that is drawn twice is seen as two.
+/// The sweeps of the keyframes at the graph's poses: dots from the outward path, × in the other green from
+/// the return path, which makes a doubled wall visible.
 fn map_points(moment: &Moment) -> [Layer; 2] {
     let turn = moment.runs.graph.turn_node();
     let mut out = Vec::new();
@@ -195,13 +194,13 @@ fn graph(moment: &Moment) -> Vec<Layer> {
     layers
 }
 
-/// Where the mark of a loop stands: at the top of its arc.
+/// Position of a loop's mark: at the top of its arc.
 pub fn loop_mark(moment: &Moment, attempt: &LoopAttempt) -> [f64; 2] {
     let arc = arc(moment, attempt);
     arc[arc.len() / 2]
 }
 
-/// A loop that was accepted is solid and green, a refused one dotted, grey and hollow.
+/// An accepted loop is solid and green, a rejected one dotted, grey and hollow.
 fn loop_layers(attempt: &LoopAttempt, arc: Vec<[f64; 2]>, top: [f64; 2]) -> [Layer; 2] {
     let look = LoopStyle::from_attempt(attempt);
     [
@@ -210,8 +209,7 @@ fn loop_layers(attempt: &LoopAttempt, arc: Vec<[f64; 2]>, top: [f64; 2]) -> [Lay
     ]
 }
 
-/// At a closed loop, one of the lap or of the reader's own: where the nodes stood before it, and how
-/// each moved.
+/// At a closed loop, of the lap or custom: the old positions of the nodes, and the displacement of each.
 fn history(moment: &Moment) -> Vec<Layer> {
     if !moment.has_moved() {
         return Vec::new();
@@ -229,7 +227,7 @@ fn history(moment: &Moment) -> Vec<Layer> {
     ]
 }
 
-/// A line with a head, as segments; no head where it would be longer than the line.
+/// A line with a head, as segments; without the head if it would be longer than the line.
 fn arrow(from: [f64; 2], to: [f64; 2]) -> Vec<[[f64; 2]; 2]> {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = math::norm2(along[0], along[1]);
@@ -243,7 +241,7 @@ fn arrow(from: [f64; 2], to: [f64; 2]) -> Vec<[[f64; 2]; 2]> {
     segments
 }
 
-/// The loop tried in this tick, by name.
+/// The label of the loop tried in this tick.
 fn attempt_now(moment: &Moment) -> Vec<Layer> {
     let Some(attempt) = moment.attempt else {
         return Vec::new();
@@ -252,7 +250,7 @@ fn attempt_now(moment: &Moment) -> Vec<Layer> {
     vec![Layer::label(loop_mark(moment, attempt), headline, 8.0)]
 }
 
-/// Where each estimate has the robot now.
+/// The robot's current pose by each estimate.
 fn robots(moment: &Moment) -> [Layer; 4] {
     let tick = moment.tick;
     let robot =

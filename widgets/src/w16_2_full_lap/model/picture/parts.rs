@@ -1,4 +1,4 @@
-//! The part of the graph that is looked at, and the loop of the reader's own, on the map.
+//! The selected part of the graph and the custom loop, on the map.
 
 use ch16_lab::lap::{OwnLoop, RecordedEdge, edge_strain};
 use kit::scene::{Layer, Mark, Stroke, Tone};
@@ -11,14 +11,13 @@ use crate::w16_2_full_lap::model::moment::Moment;
 use crate::w16_2_full_lap::model::pick::Part;
 use crate::w16_2_full_lap::model::words::{ends, part_label};
 
-/// Words keep so far from the mark that they name, in pixels.
+/// Distance of text from its mark, in pixels.
 const CLEAR_PX: f32 = 12.0;
 
-/// Edges by their strain √χ², drawn wider the more they are strained: up to so many standard deviations,
-/// and so wide in pixels.
+/// Line widths of edges by their strain √χ²: the upper limit in standard deviations, and the width in pixels.
 const WIDTHS: [(f64, f32); 4] = [(1.0, 1.0), (2.0, 3.0), (4.0, 5.0), (f64::INFINITY, 7.5)];
 
-/// The edges between neighbours; wide where a loop of the reader's own strains them.
+/// The edges between neighbours; wide if a custom loop strains them.
 pub fn edges(moment: &Moment) -> Vec<Layer> {
     let strained = moment.own.is_some_and(OwnLoop::is_closed);
     let nodes: Vec<_> = moment.nodes.iter().map(xy).collect();
@@ -40,7 +39,7 @@ pub fn edges(moment: &Moment) -> Vec<Layer> {
         .collect()
 }
 
-/// What is looked at and what the pointer is over: ringed or drawn wide, with its words beside it.
+/// The selected part and the one under the pointer: with a ring or wide, and a label.
 pub fn looked_at(moment: &Moment) -> Vec<Layer> {
     let mut layers = Vec::new();
     if let Some(node) = moment.tied.filter(|node| *node < moment.nodes.len()) {
@@ -72,7 +71,7 @@ fn part_layers(moment: &Moment, part: Part, is_picked: bool) -> Vec<Layer> {
                 Layer::Handle {
                     at,
                     tone: Tone::Posterior,
-                    label: "drag to another keyframe: a loop of your own",
+                    label: "drag to another keyframe: your own loop",
                 }
             } else {
                 Layer::points(vec![at], Mark::Circle, Tone::Ink, 7.0)
@@ -90,14 +89,14 @@ fn part_layers(moment: &Moment, part: Part, is_picked: bool) -> Vec<Layer> {
             layers.push(line(arc));
             top
         }
-        // It has its name beside it in any case.
+        // It has a label in any case.
         Some(Found::Own) | None => return layers,
     };
     layers.push(Layer::label(at, part_label(moment, part), CLEAR_PX));
     layers
 }
 
-/// The loop of the reader's own: as those of the lap, and wider.
+/// The custom loop: like those of the lap, and wider.
 pub fn own(moment: &Moment) -> Vec<Layer> {
     let Some(own) = moment.own else {
         return Vec::new();

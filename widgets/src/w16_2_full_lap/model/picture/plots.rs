@@ -13,13 +13,13 @@ use crate::w16_2_full_lap::model::words::ends;
 /// The panels whose horizontal axis is the time.
 pub const OVER_TIME: [&str; 3] = ["errors", "disagreement", panel::GATE];
 
-/// Ticks beyond the last one on the time axis: a mark at the end is shown whole.
+/// Ticks beyond the last one on the time axis, so that a mark at the end is complete.
 const ROOM_TICKS: f64 = 5.0;
 
-/// The χ² axis ends at this many gates: what is far outside is drawn at its edge.
+/// Upper end of the χ² axis in multiples of the gate; larger values are drawn at the edge.
 const GATES_SHOWN: f64 = 3.0;
 
-/// Words keep so far from the mark that they name, in pixels.
+/// Distance of text from its mark, in pixels.
 const LABEL_CLEAR_PX: f32 = 8.0;
 
 /// Position error over time of the three estimates.
@@ -41,7 +41,7 @@ pub fn errors(moment: &Moment) -> Panel {
     with_room_at_the_end(until(moment, panel))
 }
 
-/// Distance between the map of the way out and that of the way back, over time.
+/// Distance between the map of the outward path and that of the return path, over time.
 pub fn disagreement(moment: &Moment) -> Panel {
     let (runs, tick) = (moment.runs, moment.tick);
     let series = [
@@ -53,7 +53,7 @@ pub fn disagreement(moment: &Moment) -> Panel {
     with_room_at_the_end(until(moment, chart.panel(&series)))
 }
 
-/// A plot without what is still to come; its axes stay, so that nothing jumps while it plays.
+/// A plot without the future; its axes do not change during playback.
 fn until(moment: &Moment, mut panel: Panel) -> Panel {
     for layer in &mut panel.layers {
         if let Layer::Line { points, .. } = layer {
@@ -98,7 +98,7 @@ fn chart<'a>(
     }
 }
 
-/// χ² of each attempt so far with the gate: accepted ones are solid, refused ones hollow.
+/// χ² of each attempt so far with the gate: accepted ones are solid, rejected ones hollow.
 pub fn gate(moment: &Moment) -> Panel {
     let (runs, tick) = (moment.runs, moment.tick);
     let attempts = runs.attempts_until(moment.seen_until);
@@ -148,8 +148,8 @@ fn look(look: &LoopStyle, at: Vec<[f64; 2]>) -> Layer {
     Layer::points(at, look.mark, look.tone, 5.5)
 }
 
-/// `29 to 7` near each mark, with the number where the mark is at the edge; left out where there is no
-/// room, for the table has it.
+/// `29 to 7` near each mark, with the number if the mark is at the edge; left out if there is no space,
+/// because the table has it.
 fn labels(attempts: &[LoopAttempt], top: f64) -> impl Iterator<Item = Layer> + '_ {
     attempts.iter().map(move |attempt| {
         let chi2 = attempt.verification.gate.chi2;
@@ -162,13 +162,13 @@ fn labels(attempts: &[LoopAttempt], top: f64) -> impl Iterator<Item = Layer> + '
     })
 }
 
-/// Where an attempt stands in the plot of the gate.
+/// Position of an attempt in the plot of the gate.
 pub fn gate_mark(moment: &Moment, attempt: &LoopAttempt) -> [f64; 2] {
     let top = gate_axis(moment).max;
     [attempt.tick as f64, attempt.verification.gate.chi2.min(top)]
 }
 
-/// The χ² axis; of the whole lap, so that it does not jump while it plays.
+/// The χ² axis of the whole lap, which does not change during playback.
 fn gate_axis(moment: &Moment) -> Axis {
     let gate = moment.runs.gate_chi2();
     let attempts = moment.runs.graph.attempts().iter();

@@ -5,12 +5,12 @@ use pr_geom::{SE2, math};
 
 use crate::w16_2_full_lap::model::moment::Moment;
 
-/// Lowest and highest arc of a loop, m; in between it is as high as its ends are apart.
+/// Lowest and highest arc of a loop, m; in between its height is the distance of its ends.
 const ARC_HEIGHT_M: [f64; 2] = [0.7, 1.2];
 /// Segments of a loop's arc.
 const ARC_STEPS: u32 = 24;
 
-/// A loop's factor, bent to the north: straight it would hide behind the factors of the corridor.
+/// A loop's factor as an arc to the north; straight, the factors of the corridor would hide it.
 pub fn arc(moment: &Moment, attempt: &LoopAttempt) -> Vec<[f64; 2]> {
     let loop_ = &attempt.verification;
     let [from, to] = [loop_.from_node, loop_.candidate.node].map(|node| xy(&moment.nodes[node]));
@@ -28,7 +28,7 @@ pub fn arc(moment: &Moment, attempt: &LoopAttempt) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Where a pose stands.
+/// Position of a pose.
 pub fn xy(pose: &SE2) -> [f64; 2] {
     [pose.x(), pose.y()]
 }

@@ -1,4 +1,4 @@
-//! What every edge of the graph is strained by: who gives way, and by how much.
+//! The strain of every edge of the graph: which edges give way, and by how much.
 
 use ch16_lab::lap::{EdgeStrain, RecordedEdge, edge_strain};
 use ch16_slam2d::graph::EdgeKind;
@@ -11,13 +11,13 @@ use crate::w16_2_full_lap::model::moment::Moment;
 use crate::w16_2_full_lap::model::panel;
 use crate::w16_2_full_lap::model::pick::Part;
 
-/// The axis reaches at least so far: what a Gaussian residual seldom exceeds.
+/// Smallest upper end of the axis: a Gaussian residual seldom exceeds it.
 const LEAST_HIGHEST: f64 = 3.0;
 
-/// Room beyond the first and the last keyframe.
+/// Margin beyond the first and the last keyframe.
 const ROOM_NODES: f64 = 0.8;
 
-/// Which part of the graph an edge is.
+/// The part of the graph that an edge is.
 pub fn part_of(moment: &Moment, edge: &RecordedEdge) -> Part {
     let is_own = moment.own.is_some_and(|own| own.edge == *edge);
     match edge.kind {
@@ -27,7 +27,7 @@ pub fn part_of(moment: &Moment, edge: &RecordedEdge) -> Part {
     }
 }
 
-/// Where an edge stands in the plot: above its newer keyframe, √χ² high.
+/// Position of an edge in the plot: above its newer keyframe, at √χ².
 pub fn strain_mark(strain: &EdgeStrain) -> [f64; 2] {
     [strain.to as f64, math::sqrt(strain.chi2)]
 }

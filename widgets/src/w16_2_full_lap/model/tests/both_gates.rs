@@ -1,4 +1,4 @@
-//! Both gates of every loop: their verdicts, their regions, and what each lets through.
+//! Both gates of every loop: their verdicts, their regions, and what each accepts.
 
 use ch16_lab::lap::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopJudgement};
 use ch16_slam2d::loops::{GateModel, LoopVerification};
@@ -16,7 +16,7 @@ fn gate_of<'a>(model: &'a FullLap, attempt: &LoopAttempt, chosen: GateModel) -> 
 }
 
 #[test]
-fn the_chosen_gate_is_the_one_that_the_lap_asked() {
+fn the_chosen_gate_is_that_of_the_lap() {
     for (value, chosen) in [
         (0.0, GateModel::PathApproximation),
         (1.0, GateModel::ExactMarginal),
@@ -43,7 +43,7 @@ fn the_facts_give_the_chi_squared_of_both_gates() {
     assert_eq!(fact(&model, "chi2"), exact);
 }
 
-/// Whether the registered position lies in the region: |A⁻¹ (p − center)| ≤ 1.
+/// Whether the registered position is in the region: |A⁻¹ (p − center)| ≤ 1.
 fn holds(region: &Region, loop_: &LoopVerification) -> bool {
     let [a, b] = region.half_axes;
     let [x, y] = [
@@ -57,7 +57,7 @@ fn holds(region: &Region, loop_: &LoopVerification) -> bool {
 }
 
 #[test]
-fn the_measured_position_lies_in_a_gates_region_exactly_where_that_gate_passes() {
+fn the_measured_position_is_in_a_gates_region_exactly_if_that_gate_accepts() {
     let mut seen = [[0, 0], [0, 0]];
     let mut model = at(&[("noise", 4.0), ("gate", 0.9)]);
     for seed in 1..=12 {
@@ -101,7 +101,7 @@ fn the_gate_that_decides_is_solid_and_the_other_one_dotted() {
 }
 
 #[test]
-fn the_exact_gate_lets_the_locked_out_loops_in() {
+fn the_exact_gate_accepts_the_locked_out_loops() {
     let mut model = FullLap::default();
     press(&mut model, "locked-out");
     let locked_out = results(&model).graph;
@@ -125,7 +125,7 @@ fn the_exact_gate_lets_the_locked_out_loops_in() {
 
 #[test]
 fn the_exact_gate_closes_more_loops_wrong_ones_among_them() {
-    // The figures of the note: laps of seeds 1 to 50 at four times the noise.
+    // The numbers of the note: laps of seeds 1 to 50 at four times the noise.
     let mut model = at(&[("noise", 4.0)]);
     let mut closed = [[0, 0]; 2];
     for seed in 1..=50 {

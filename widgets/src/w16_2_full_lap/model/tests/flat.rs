@@ -1,4 +1,4 @@
-//! The reader's own flat: drawn by the pointer and by buttons, carried by links and files, driven.
+//! The reader's own flat: drawn by pointer and buttons, stored in links and files, driven.
 
 use ch16_lab::lap::{LapConfig, LapRunner};
 use kit::model::Handle;
@@ -11,7 +11,7 @@ use crate::w16_2_full_lap::spec::WORLD;
 
 const REACH: [f64; 2] = [0.15, 0.15];
 
-/// A press at the first place, a drag over the others, and the release.
+/// A press at the first position, a drag over the others, and the release.
 fn stroke(model: &mut FullLap, places: &[[f64; 2]]) {
     let handle = model
         .grab("map", places[0], REACH)
@@ -27,7 +27,7 @@ fn editing(tool: f64) -> FullLap {
 }
 
 fn flat(model: &FullLap) -> Sketch {
-    Sketch::from_text(&model.values().to_text("flat")).expect("our own text")
+    Sketch::from_text(&model.values().to_text("flat")).expect("the widget's own text")
 }
 
 fn apartment() -> Sketch {
@@ -35,11 +35,11 @@ fn apartment() -> Sketch {
 }
 
 #[test]
-fn a_wall_that_is_drawn_is_there_at_once_and_the_lap_follows() {
+fn a_drawn_wall_is_shown_at_once_and_the_lap_follows() {
     let mut model = editing(2.0);
     let before = results(&model);
     stroke(&mut model, &[[4.98, 3.81], [5.0, 4.2], [5.01, 4.12]]);
-    // On the grid of 5 cm, before any lap was driven.
+    // On the grid of 5 cm, before any lap.
     let drawn = flat(&model).walls_cm;
     assert_eq!(drawn.len(), 19);
     assert_eq!(drawn[18], [[500, 380], [500, 410]]);
@@ -53,7 +53,7 @@ fn a_wall_that_is_drawn_is_there_at_once_and_the_lap_follows() {
     assert_eq!(results(&model), before, "the lap is still the old one");
     model.finish_work();
     assert_ne!(results(&model), before);
-    // The lap is that of the command line in the file of this flat.
+    // The lap equals that of the command line with the file of this flat.
     let course = Course::from_json(flat(&model).to_json().as_bytes()).unwrap();
     let config = LapConfig::default().elsewhere(&course);
     let config = config.with_information(LapConfig::default().slam.chapter.information_frame);
@@ -63,7 +63,7 @@ fn a_wall_that_is_drawn_is_there_at_once_and_the_lap_follows() {
 }
 
 #[test]
-fn strokes_from_one_corner_are_two_walls_and_each_is_taken_back_by_itself() {
+fn strokes_from_one_corner_are_two_walls_with_separate_undo() {
     let mut model = editing(2.0);
     stroke(&mut model, &[[1.0, 1.0], [2.0, 1.0], [2.5, 1.0]]);
     stroke(&mut model, &[[1.0, 1.0], [1.0, 2.0]]);
@@ -74,14 +74,14 @@ fn strokes_from_one_corner_are_two_walls_and_each_is_taken_back_by_itself() {
     assert_eq!(model.values().number("world"), 0.0, "the Apartment itself");
     assert_eq!(model.values().to_text("flat"), "");
     press(&mut model, "take-back");
-    assert_eq!(model.outcome().sentence, "nothing to take back");
+    assert_eq!(model.outcome().sentence, "nothing to undo");
     press(&mut model, "do-again");
     press(&mut model, "do-again");
     assert_eq!(flat(&model).walls_cm[19], [[100, 100], [100, 200]]);
 }
 
 #[test]
-fn a_press_without_a_drag_draws_nothing_and_says_how() {
+fn a_press_without_a_drag_draws_no_wall_and_explains_how_to() {
     let mut model = editing(2.0);
     stroke(&mut model, &[[1.0, 1.0], [1.01, 1.0]]);
     model.tap("map", [1.0, 1.0], REACH);
@@ -117,7 +117,7 @@ fn ends_walls_way_points_and_the_start_are_moved_by_the_pointer() {
 }
 
 #[test]
-fn way_points_are_placed_behind_the_chosen_one_and_removed() {
+fn way_points_are_inserted_after_the_selected_one_and_removed() {
     let mut model = editing(3.0);
     let count = apartment().way_points_cm.len();
     stroke(&mut model, &[[3.0, 4.4], [3.52, 4.4]]);
@@ -133,7 +133,7 @@ fn way_points_are_placed_behind_the_chosen_one_and_removed() {
     set(&mut model, "edit", 4.0);
     model.tap("map", [6.0, 4.4], REACH);
     assert_eq!(flat(&model).way_points_cm.len(), count + 1);
-    // A place before a wall, where both lie under the pointer.
+    // A point is hit before a wall under the same pointer.
     model.tap("map", [0.0, 8.0], REACH);
     assert_eq!(flat(&model).walls_cm.len(), 17);
     model.tap("map", Piece::Start.place(&flat(&model)), REACH);
@@ -163,7 +163,7 @@ fn the_turn_stays_at_its_way_point_while_others_come_and_go() {
 }
 
 #[test]
-fn buttons_choose_move_and_remove_what_the_pointer_does() {
+fn buttons_select_move_and_remove_like_the_pointer() {
     let mut model = editing(1.0);
     press(&mut model, "west");
     assert!(model.outcome().sentence.starts_with("nothing is chosen"));
@@ -199,7 +199,7 @@ fn buttons_choose_move_and_remove_what_the_pointer_does() {
 }
 
 #[test]
-fn a_flat_that_cannot_be_driven_says_why_and_draws_no_lap_of_another() {
+fn a_flat_that_cannot_be_driven_shows_the_reason_and_no_other_lap() {
     let mut model = editing(2.0);
     stroke(&mut model, &[[5.0, 3.8], [5.0, 5.0]]);
     model.finish_work();
@@ -226,7 +226,7 @@ fn a_flat_that_cannot_be_driven_says_why_and_draws_no_lap_of_another() {
         })
     };
     assert!(!nodes(&model));
-    // A link opens it, too, and says the same.
+    // A link opens it with the same result.
     let mut linked = FullLap::default();
     linked
         .set_text("flat", &model.values().to_text("flat"))
@@ -238,7 +238,7 @@ fn a_flat_that_cannot_be_driven_says_why_and_draws_no_lap_of_another() {
 }
 
 #[test]
-fn while_a_stroke_goes_on_the_picture_keeps_still_under_the_pointer() {
+fn during_a_stroke_the_axes_do_not_move() {
     let mut model = editing(2.0);
     let axes = |model: &FullLap| model.scene().panels[0].bounds();
     let before = axes(&model);
@@ -252,13 +252,13 @@ fn while_a_stroke_goes_on_the_picture_keeps_still_under_the_pointer() {
 }
 
 #[test]
-fn a_link_carries_the_flat_and_a_damaged_one_leaves_it() {
+fn a_link_contains_the_flat_and_a_damaged_one_changes_no_state() {
     let mut model = editing(2.0);
     stroke(&mut model, &[[1.0, 1.0], [2.0, 1.0]]);
     model.finish_work();
     let text = model.values().to_text("flat");
     let mut other = FullLap::default();
-    // In the order of the list, as a new picture is set up: the world first.
+    // In the order of the list, as for a new widget: the world first.
     for (id, text) in [("world", "own"), ("flat", &text)] {
         other.set_text(id, text).unwrap();
     }
@@ -269,7 +269,7 @@ fn a_link_carries_the_flat_and_a_damaged_one_leaves_it() {
     let error = other.set_text("flat", cut).unwrap_err().to_string();
     assert_eq!(
         error,
-        "`flat` cannot be taken: the flat is damaged or cut off: copy its whole link, or open the file that it was saved as"
+        "`flat` is invalid: the flat is damaged or cut off: copy its whole link, or open the file that it was saved as"
     );
     assert!(other.set_text("flat", "100%").is_err());
     assert!(other.set_text("flat", &"A".repeat(40_000)).is_err());
@@ -306,7 +306,7 @@ fn world_and_flat_never_disagree() {
 }
 
 #[test]
-fn a_file_is_saved_opened_and_refused_in_one_sentence() {
+fn a_file_is_saved_and_opened_and_an_invalid_one_is_explained() {
     let mut model = editing(2.0);
     stroke(&mut model, &[[1.0, 1.0], [2.0, 1.0]]);
     model.press("save-flat").unwrap();
@@ -340,7 +340,7 @@ fn a_file_is_saved_opened_and_refused_in_one_sentence() {
 }
 
 #[test]
-fn the_controls_of_the_flat_wait_until_it_is_edited() {
+fn the_controls_of_the_flat_are_shown_only_during_editing() {
     let mut model = at(&[("more", 1.0)]);
     assert!(!model.layer().has_button("add-wall") && model.layer().has_button("edit-flat"));
     press(&mut model, "edit-flat");

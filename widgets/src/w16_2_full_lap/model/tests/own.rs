@@ -1,4 +1,4 @@
-//! A loop of the reader's own: set by values, by a drag, by keys; its words, and the way back.
+//! A custom loop: set by values, by a drag, by keys; its texts, and undo.
 
 use super::*;
 
@@ -11,7 +11,7 @@ fn ends(model: &FullLap) -> [f64; 3] {
 }
 
 #[test]
-fn the_settings_name_the_loop_and_the_picture_shows_where_its_error_goes() {
+fn the_settings_define_the_loop_and_the_picture_shows_where_its_error_goes() {
     let mut model = at(&WRONG);
     let words = model.outcome();
     assert_eq!(words.standing, Standing::Bad);
@@ -40,7 +40,7 @@ fn the_settings_name_the_loop_and_the_picture_shows_where_its_error_goes() {
 }
 
 #[test]
-fn the_presets_show_what_they_say() {
+fn the_presets_show_what_they_claim() {
     let help = |id: &str| SPEC.presets.iter().find(|p| p.id == id).unwrap().help;
     let mut model = FullLap::default();
     press(&mut model, "wrong-loop");
@@ -61,7 +61,7 @@ fn the_presets_show_what_they_say() {
 }
 
 #[test]
-fn a_loop_is_dragged_from_the_keyframe_that_is_looked_at_to_another_and_taken_back() {
+fn a_loop_is_dragged_from_the_selected_keyframe_to_another_and_undone() {
     let mut model = at(&[("t", 129.0)]);
     let [from, to, further] = [36, 3, 10].map(|node| shown_nodes(&model)[node]);
     assert!(
@@ -71,7 +71,7 @@ fn a_loop_is_dragged_from_the_keyframe_that_is_looked_at_to_another_and_taken_ba
     model.tap("map", from, REACH);
     let node = model.values().number("number");
     let handle = model.grab("map", from, REACH).unwrap();
-    // A press that trembles ties nothing.
+    // A press with little movement creates no loop.
     model.drag(handle, from);
     assert_eq!(ends(&model)[0], 0.0);
     model.drag(handle, further);
@@ -87,7 +87,7 @@ fn a_loop_is_dragged_from_the_keyframe_that_is_looked_at_to_another_and_taken_ba
 }
 
 #[test]
-fn keys_tie_two_keyframes_and_undo_goes_back_change_by_change() {
+fn keys_join_two_keyframes_and_undo_reverts_each_change() {
     let mut model = at(&[("t", 129.0), ("pick", 1.0), ("number", 36.0)]);
     press(&mut model, "tie");
     assert!(
@@ -120,7 +120,7 @@ fn keys_tie_two_keyframes_and_undo_goes_back_change_by_change() {
 }
 
 #[test]
-fn a_tap_on_the_second_keyframe_ends_a_loop_that_was_begun() {
+fn a_tap_on_the_second_keyframe_completes_a_loop() {
     let mut model = at(&[("t", 129.0), ("pick", 1.0), ("number", 36.0)]);
     press(&mut model, "tie");
     let place = shown_nodes(&model)[12];
@@ -129,7 +129,7 @@ fn a_tap_on_the_second_keyframe_ends_a_loop_that_was_begun() {
 }
 
 #[test]
-fn a_loop_that_cannot_be_is_one_sentence_and_the_lap_stays() {
+fn an_impossible_loop_is_explained_and_the_lap_stays() {
     let mut model = at(&[("t", 129.0)]);
     let before = shown_nodes(&model);
     for (from, to, words) in [
@@ -145,12 +145,12 @@ fn a_loop_that_cannot_be_is_one_sentence_and_the_lap_stays() {
 }
 
 #[test]
-fn an_own_loop_is_there_from_the_tick_of_its_newer_keyframe_on() {
+fn an_own_loop_exists_from_the_tick_of_its_newer_keyframe_on() {
     let mut model = at(&[("own", 3.0), ("own-gate", 0.0), ("t", 60.0)]);
     assert!(model.own.tried().is_none());
     set(&mut model, "t", 129.0);
     assert!(model.own.tried().is_some());
-    // The nodes move from where they were, and rest where the solver put them.
+    // The nodes move from their old positions to the solver's result.
     let rest = shown_nodes(&model);
     set(&mut model, "kernel", 1.0);
     assert_eq!(model.advance(0.1), Activity::Busy);

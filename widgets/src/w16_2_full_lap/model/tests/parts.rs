@@ -1,4 +1,4 @@
-//! Keyframes, edges and loops that are looked at: by pointer, by keys, by values.
+//! Selection of keyframes, edges and loops: by pointer, by keys, by values.
 
 use super::*;
 use crate::w16_2_full_lap::model::moment::Moment;
@@ -23,7 +23,7 @@ fn labels(model: &FullLap, panel: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_tap_on_a_keyframe_tells_its_number_error_and_chi_squared_and_one_beside_tells_nothing() {
+fn a_tap_on_a_keyframe_shows_its_number_error_and_chi_squared_and_one_beside_it_deselects() {
     let mut model = at(&[("t", 129.0)]);
     let at_it = node_at(&model, 12);
     model.tap("map", at_it, REACH);
@@ -60,14 +60,14 @@ fn a_tap_on_a_keyframe_tells_its_number_error_and_chi_squared_and_one_beside_tel
 }
 
 #[test]
-fn loops_and_edges_answer_on_the_map_and_in_the_plots() {
+fn loops_and_edges_can_be_selected_on_the_map_and_in_the_plots() {
     let mut model = at(&[("t", 129.0)]);
     for (pick, number, verdict) in [(2.0, 5.0, "edge 5 to 6"), (3.0, 29.0, "loop 29 to 7")] {
         set(&mut model, "pick", pick);
         set(&mut model, "number", number);
         assert_eq!(model.outcome().verdict, verdict);
         assert!(fact(&model, "looked_at_chi2").is_finite());
-        // Where the plot of strains marks it, a tap finds it again.
+        // A tap on its mark in the plot of strains finds it again.
         let part = Part::chosen(model.values());
         let moment = model.moment();
         let edge = moment
@@ -88,7 +88,7 @@ fn loops_and_edges_answer_on_the_map_and_in_the_plots() {
 }
 
 #[test]
-fn a_pointer_over_the_graph_names_what_it_is_over_and_changes_no_value() {
+fn a_hovering_pointer_labels_the_part_below_and_changes_no_value() {
     let mut model = at(&[("t", 129.0)]);
     let before = model.values().clone();
     let at_it = node_at(&model, 20);
@@ -108,7 +108,7 @@ fn a_pointer_over_the_graph_names_what_it_is_over_and_changes_no_value() {
 }
 
 #[test]
-fn keys_walk_through_keyframes_and_loops_and_come_round() {
+fn keys_step_through_keyframes_and_loops_cyclically() {
     let mut model = at(&[("t", 129.0)]);
     press(&mut model, "one-on");
     assert_eq!(model.outcome().verdict, "keyframe 0");
@@ -129,7 +129,7 @@ fn keys_walk_through_keyframes_and_loops_and_come_round() {
 }
 
 #[test]
-fn what_is_not_there_yet_is_said_so_and_tells_nothing() {
+fn a_part_that_does_not_exist_yet_is_reported_without_numbers() {
     let mut model = at(&[("t", 20.0), ("pick", 1.0), ("number", 40.0)]);
     assert_eq!(model.outcome().verdict, "not yet there");
     assert!(
@@ -150,7 +150,7 @@ fn what_is_not_there_yet_is_said_so_and_tells_nothing() {
 }
 
 #[test]
-fn no_label_on_the_data_lies_on_another_in_any_preset() {
+fn no_labels_on_the_data_overlap_in_any_preset() {
     let mut shell = crate::registry::find("w16.2").unwrap()();
     shell.model_mut().set("more", 1.0).unwrap();
     for preset in SPEC.presets {

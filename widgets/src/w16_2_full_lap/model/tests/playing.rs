@@ -63,7 +63,7 @@ fn with_reduced_motion_a_loop_jumps() {
     press(&mut model, "at");
     assert_eq!(shown_nodes(&model), settled);
     assert_eq!(model.advance(0.1), Activity::Idle);
-    // Asked for in the middle of an animation, it ends it.
+    // Requested during an animation, it ends the animation.
     model.set_motion(Motion::Full);
     press(&mut model, "at");
     assert_ne!(shown_nodes(&model), settled);
@@ -96,7 +96,7 @@ fn playing_shows_every_loop_and_ends_at_the_end() {
 
 #[test]
 fn a_loop_just_before_the_end_does_not_stop_the_playback() {
-    // At four times the speed a slow frame covers 8 ticks: the end and the loop fall in one.
+    // At four times the speed a slow frame covers 8 ticks: the end and the loop are in one frame.
     let mut model = at(&[("speed", 4.0)]);
     let late = (0..60).find_map(|seed| {
         set(&mut model, "seed", f64::from(seed));
@@ -139,20 +139,20 @@ fn the_line_at_the_moment_shown_can_be_dragged_in_every_plot_over_time() {
         assert!(model.grab(panel.id, [54.0, 0.1], [3.0, 0.1]).is_none());
     }
     let line = model.grab("errors", [51.0, 0.1], [3.0, 0.1]).unwrap();
-    // Grabbed one tick beside the line: it does not jump by that tick.
+    // Grabbed one tick off the line: it does not jump by that tick.
     for (to, tick) in [(61.0, 60), (-40.0, 0), (500.0, 129)] {
         model.drag(line, [to, 0.0]);
         assert_eq!(model.tick(), tick);
     }
 }
 
-/// The last tick that any line over time reaches, in the plots over time.
-fn told_until(model: &FullLap) -> f64 {
+/// The last tick of any line, in the plots over time.
+fn drawn_until(model: &FullLap) -> f64 {
     let scene = model.scene();
     let plots = scene.panels.iter().filter(|panel| panel.x.label == "tick");
     let layers = plots.flat_map(|panel| &panel.layers);
     let times = layers.flat_map(|layer| match layer {
-        // The gate is a level and no event.
+        // The gate is a level, not an event.
         Layer::Line { points, stroke, .. } if *stroke == Stroke::Solid => points.clone(),
         Layer::Points { points, .. } => points.clone(),
         _ => Vec::new(),
@@ -161,14 +161,14 @@ fn told_until(model: &FullLap) -> f64 {
 }
 
 #[test]
-fn nothing_of_the_future_is_drawn_unless_the_reader_asks_for_it() {
+fn the_future_is_drawn_only_on_request() {
     for tick in [0.0, 50.0, 91.0, 100.0] {
         let mut model = at(&[("t", tick)]);
-        assert_eq!(told_until(&model), tick);
+        assert_eq!(drawn_until(&model), tick);
         set(&mut model, "future", 1.0);
-        assert_eq!(told_until(&model), 129.0);
+        assert_eq!(drawn_until(&model), 129.0);
     }
-    // One tick before the first loop, nothing knows of it.
+    // One tick before the first loop, it is shown nowhere.
     let mut model = at(&[("t", 91.0)]);
     for (future, loops) in [(0.0, 0), (1.0, 3)] {
         set(&mut model, "future", future);
@@ -186,7 +186,7 @@ fn nothing_of_the_future_is_drawn_unless_the_reader_asks_for_it() {
     assert_ne!(table(&model, "run"), seen, "results so far");
     set(&mut model, "t", 129.0);
     assert_eq!(table(&model, "run"), seen, "results at the end");
-    // Between two loops the close-up shows the one that was.
+    // Between two loops the close-up shows the previous one.
     let closeup = |tick| {
         let scene = at(&[("t", tick)]).scene();
         scene.panels[1].title.clone()
@@ -217,8 +217,8 @@ fn loops_on(model: &FullLap, panel: usize) -> [usize; 2] {
 }
 
 #[test]
-fn accepted_loops_are_solid_and_refused_ones_hollow_on_the_map_and_in_the_plot() {
-    // Seed 6: one loop turned away at tick 90, others accepted.
+fn accepted_loops_are_solid_and_rejected_ones_hollow_on_the_map_and_in_the_plot() {
+    // Seed 6: one loop rejected at tick 90, others accepted.
     let model = at(&[("seed", 6.0), ("t", 129.0)]);
     let attempts = model.runs.graph.attempts();
     let accepted = attempts.iter().filter(|a| a.accepted()).count();
@@ -232,7 +232,7 @@ fn accepted_loops_are_solid_and_refused_ones_hollow_on_the_map_and_in_the_plot()
 }
 
 #[test]
-fn the_way_out_and_the_way_back_are_two_shades() {
+fn the_outward_and_the_return_path_have_two_shades() {
     let points = |tick: f64, tone: Tone| {
         let scene = at(&[("t", tick)]).scene();
         let layers = scene.panels[0].layers.iter();
@@ -253,7 +253,7 @@ fn the_way_out_and_the_way_back_are_two_shades() {
 }
 
 #[test]
-fn a_closed_loop_shows_by_arrows_how_its_history_moved() {
+fn arrows_show_how_a_closed_loop_moved_the_history() {
     let model = at(&[("t", 92.0)]);
     let scene = model.scene();
     let heads = scene.panels[0].layers.iter().any(|layer| {

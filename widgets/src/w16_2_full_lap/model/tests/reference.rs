@@ -1,4 +1,4 @@
-//! Against the reference laps of an independent implementation, and the words said of them.
+//! Against the reference laps of an independent implementation, and the claims about them.
 
 use serde_json::Value;
 
@@ -17,7 +17,7 @@ fn number(value: &Value, key: &str) -> f64 {
 }
 
 #[test]
-fn every_reference_lap_comes_out_of_its_settings() {
+fn every_reference_lap_follows_from_its_settings() {
     let mut model = FullLap::default();
     for lap in reference_laps() {
         set(&mut model, "seed", number(&lap, "seed"));
@@ -116,7 +116,7 @@ fn the_canonical_table_is_the_chapters() {
 }
 
 #[test]
-fn what_the_notes_say_of_the_canonical_run_holds() {
+fn the_notes_about_the_canonical_run_are_right() {
     let model = FullLap::default();
     let Results { front_end, graph } = results(&model);
     let third = graph.map_disagreement_m.unwrap() / front_end.map_disagreement_m.unwrap();
@@ -131,7 +131,7 @@ fn what_the_notes_say_of_the_canonical_run_holds() {
         graph.keyframe_max_m < 1.1 * front_end.keyframe_max_m,
         "a little"
     );
-    // "Almost a metre too short": the worst node is at the far end and short of the truth.
+    // "Almost a metre too short": the worst node is at the far end and before the truth.
     let nodes = model.runs.graph.poses_at(model.runs.ticks());
     let truth = |node: usize| model.runs.truth(model.runs.graph.keyframe_tick(node));
     let error = |node: &usize| {

@@ -1,4 +1,4 @@
-//! What settings and presets do to the lap.
+//! Effects of settings and presets on the lap.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner};
 use ch16_slam2d::chapter::InformationFrame;
@@ -8,7 +8,7 @@ use kit::param::ParamKind;
 use super::*;
 use crate::w16_2_full_lap::spec::WORLD;
 
-/// The help of a preset says so.
+/// The help of a preset makes this claim.
 fn assert_promised(preset: &str, words: &str) {
     let help = SPEC.presets.iter().find(|p| p.id == preset).unwrap().help;
     assert!(help.contains(words), "`{help}` does not say `{words}`");
@@ -24,7 +24,7 @@ fn the_start_is_the_first_loop_of_the_canonical_run() {
     );
 }
 
-/// Settings that lead to another lap, noisy enough for the two models of the gate to disagree.
+/// Settings of another lap, noisy enough that the two models of the gate disagree.
 const NOISY: [(&str, f64); 3] = [("seed", 2.0), ("noise", 3.0), ("t", 110.0)];
 
 const OTHER_LAPS: [(&str, f64); 8] = [
@@ -61,7 +61,7 @@ fn every_setting_recomputes_the_lap_and_keeps_the_time() {
 }
 
 #[test]
-fn setting_a_value_runs_nothing_and_the_old_picture_stays_until_the_new_lap_is_whole() {
+fn setting_a_value_starts_no_lap_and_the_old_picture_stays_until_the_new_lap_is_finished() {
     for (id, value) in OTHER_LAPS {
         let mut model = at(&NOISY);
         let (steps, before) = (model.laps.steps(), picture(&model));
@@ -82,7 +82,7 @@ fn setting_a_value_runs_nothing_and_the_old_picture_stays_until_the_new_lap_is_w
             );
             pieces += 1;
         }
-        // At least a tick each: no piece is the whole lap.
+        // At least one piece per tick: no piece is the whole lap.
         assert!(pieces >= model.runs.ticks(), "{id}: {pieces} pieces");
         let mut at_once = at(&NOISY);
         set(&mut at_once, id, value);
@@ -95,7 +95,7 @@ fn of_two_hundred_values_at_once_only_the_newest_lap_is_run() {
     let mut model = at(&[]);
     let before = model.laps.steps();
     for value in 1..=200 {
-        // Twice over the slider, ending at 4.
+        // The slider is moved across its range twice and ends at 4.
         let noise = 0.25 + 3.75 * f64::from((value - 1) % 100) / 99.0;
         model.set("noise", noise).unwrap();
     }
@@ -106,7 +106,7 @@ fn of_two_hundred_values_at_once_only_the_newest_lap_is_run() {
 }
 
 #[test]
-fn a_preset_goes_to_the_loop_of_the_lap_that_it_asks_for() {
+fn a_preset_goes_to_the_loop_of_its_own_lap() {
     let mut model = at(&[("seed", 6.0), ("noise", 2.0), ("t", 10.0)]);
     model.press("next").unwrap();
     let first = model.tick();
@@ -126,7 +126,7 @@ fn a_preset_goes_to_the_loop_of_the_lap_that_it_asks_for() {
 }
 
 #[test]
-fn a_lap_depends_on_its_settings_alone_and_not_on_the_way_to_them() {
+fn a_lap_depends_on_its_settings_alone_and_not_on_earlier_ones() {
     let mut wandering = at(&[
         ("noise", 3.0),
         ("seed", 7.0),
@@ -156,7 +156,7 @@ fn without_loops_the_graph_is_the_front_end() {
 }
 
 #[test]
-fn without_loops_the_two_passes_end_as_far_apart_as_the_preset_says() {
+fn without_loops_the_two_passes_end_as_far_apart_as_the_preset_claims() {
     let mut model = at(&[("t", 129.0)]);
     let together = fact(&model, "map_disagreement_m");
     press(&mut model, "no-loops");
@@ -168,7 +168,7 @@ fn without_loops_the_two_passes_end_as_far_apart_as_the_preset_says() {
 }
 
 #[test]
-fn every_matcher_ends_the_lap_as_far_off_as_its_preset_says() {
+fn every_matcher_has_the_end_error_that_its_preset_claims() {
     let end_error = |model: &FullLap| results(model).graph.keyframe_end_error_m;
     let chapter = end_error(&FullLap::default());
     for preset in ["bells", "sliding"] {
@@ -196,7 +196,7 @@ fn named<T: Choice>() -> Vec<(&'static str, &'static str)> {
 }
 
 #[test]
-fn matchers_and_frames_are_called_as_on_the_command_line_and_drive_the_same_lap() {
+fn matchers_and_frames_have_the_names_and_laps_of_the_command_line() {
     let mut worlds = named::<BuiltInWorld>();
     assert_eq!(WORLD.to("own").1, worlds.len() as f64);
     worlds.push(("own", "your own flat"));
@@ -226,8 +226,8 @@ fn the_first_loop_helps_the_robot_and_not_its_history() {
 }
 
 #[test]
-fn a_wrong_loop_is_called_wrong_wherever_it_is_named() {
-    // In the reference laps, too: within every gate, and more than 0.3 m off the truth.
+fn a_wrong_loop_is_reported_as_wrong_everywhere() {
+    // In the reference laps, too: accepted by every gate, and more than 0.3 m off the truth.
     let model = at(&[("seed", 6.0), ("noise", 2.0), ("t", 92.0)]);
     let outcome = model.outcome();
     assert_eq!(outcome.standing, Standing::Bad);
@@ -250,7 +250,7 @@ fn a_wrong_loop_is_called_wrong_wherever_it_is_named() {
 }
 
 #[test]
-fn seed_6_has_a_loop_that_passes_the_gate_and_is_turned_away_all_the_same() {
+fn seed_6_has_a_rejected_loop_that_passes_the_gate() {
     let mut model = FullLap::default();
     press(&mut model, "rejected");
     let attempt = model.runs.graph.attempt_at(model.tick()).unwrap();
@@ -267,7 +267,7 @@ fn seed_6_has_a_loop_that_passes_the_gate_and_is_turned_away_all_the_same() {
 }
 
 #[test]
-fn the_noisy_preset_shows_what_it_says() {
+fn the_noisy_preset_shows_what_it_claims() {
     let mut model = FullLap::default();
     press(&mut model, "noisy");
     let results = results(&model);
@@ -279,7 +279,7 @@ fn the_noisy_preset_shows_what_it_says() {
 }
 
 #[test]
-fn the_tight_gate_turns_away_a_loop_that_the_chapters_gate_accepts() {
+fn the_tight_gate_rejects_a_loop_that_the_chapters_gate_accepts() {
     let mut model = FullLap::default();
     press(&mut model, "tight-gate");
     // NIST/SEMATECH e-Handbook: χ² of 0.90 with 3 degrees of freedom.
@@ -296,7 +296,7 @@ fn the_tight_gate_turns_away_a_loop_that_the_chapters_gate_accepts() {
 }
 
 #[test]
-fn the_locked_out_preset_turns_away_three_right_loops_by_the_gate_alone() {
+fn the_locked_out_preset_rejects_three_right_loops_by_the_gate_alone() {
     let mut model = FullLap::default();
     press(&mut model, "locked-out");
     let attempts = model.runs.graph.attempts();

@@ -1,4 +1,4 @@
-//! Other worlds than the Apartment, and what goes wrong in those that break a map.
+//! Worlds other than the Apartment, and the failures in those that break a map.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner, LoopJudgement};
 use ch16_slam2d::chapter::InformationFrame;
@@ -7,7 +7,7 @@ use super::*;
 use crate::w16_2_full_lap::spec::MOST_TICKS;
 
 #[test]
-fn every_world_is_driven_as_on_the_command_line_and_says_where_it_is() {
+fn every_world_has_the_lap_of_the_command_line_and_its_name_in_the_texts() {
     for (index, world) in BuiltInWorld::ALL.iter().enumerate() {
         let model = at(&[
             ("world", index as f64),
@@ -47,7 +47,7 @@ fn presets_of_other_worlds_show_the_end_of_their_lap() {
 }
 
 #[test]
-fn a_moment_asked_for_before_its_lap_is_known_is_kept() {
+fn a_tick_requested_before_its_lap_is_finished_is_kept() {
     let mut model = FullLap::default();
     model.set("world", 1.0).unwrap();
     model.set("t", 200.0).unwrap();
@@ -55,7 +55,7 @@ fn a_moment_asked_for_before_its_lap_is_known_is_kept() {
     assert!(model.tick() <= 129, "the old lap is shown until then");
     model.finish_work();
     assert_eq!(model.tick(), 200);
-    // A lap that ends before it is shown at its end.
+    // A lap that ends before the current tick is shown at its end.
     set(&mut model, "world", 0.0);
     assert_eq!(model.values().number("t"), 129.0);
 }
@@ -80,7 +80,7 @@ fn in_the_twin_rooms_a_wrong_loop_passes_every_test_by_each_matcher() {
 }
 
 #[test]
-fn the_bare_corridor_comes_out_a_fraction_of_its_length_and_its_map_agrees_with_itself() {
+fn the_bare_corridor_is_mapped_too_short_and_its_map_is_consistent() {
     let mut model = FullLap::default();
     press(&mut model, "corridor");
     let runs = &model.runs;
@@ -97,7 +97,7 @@ fn the_bare_corridor_comes_out_a_fraction_of_its_length_and_its_map_agrees_with_
 }
 
 #[test]
-fn in_the_round_hall_the_robot_ends_on_the_far_side_and_the_map_agrees_with_itself() {
+fn in_the_round_hall_the_robot_ends_on_the_far_side_and_the_map_is_consistent() {
     let mut model = FullLap::default();
     press(&mut model, "hall");
     // The way around has a radius of 2.2 m, "three centimetres".

@@ -1,11 +1,11 @@
-//! What is said of a flat while it is edited, and where it cannot be driven.
+//! Texts about a flat during editing, and if it cannot be driven.
 
 use kit::counted::counted;
 use kit::model::Standing;
 use pr_sim::Sketch;
 use pr_sim::sketch::{PlaceCm, to_m};
 
-use super::Said;
+use super::Statement;
 use crate::w16_2_full_lap::model::moment::Drawn;
 use crate::w16_2_full_lap::model::piece::Piece;
 
@@ -16,10 +16,10 @@ pub fn counts(sketch: &Sketch) -> String {
     format!("{walls}, {way_points}")
 }
 
-/// What is said first of a flat: why the last change was none, why it cannot be driven, what is chosen.
-/// `lap` is what the shown lap says.
-pub fn said(drawn: &Drawn, lap: Said) -> Said {
-    let neutral = |sentence: String| Said {
+/// The main statement about a flat: why the last edit was rejected, why it cannot be driven, or the
+/// selection. `lap` is the statement about the lap on screen.
+pub fn statement(drawn: &Drawn, lap: Statement) -> Statement {
+    let neutral = |sentence: String| Statement {
         standing: Standing::Neutral,
         verdict: "your own flat".to_owned(),
         sentence,
@@ -30,7 +30,7 @@ pub fn said(drawn: &Drawn, lap: Said) -> Said {
     let piece = drawn.piece.map(|piece| piece_words(drawn.sketch, piece));
     if let Some(problem) = drawn.problem {
         let piece = piece.map_or_else(String::new, |words| format!("{words}; "));
-        return Said {
+        return Statement {
             standing: Standing::Bad,
             verdict: "cannot be driven".to_owned(),
             sentence: format!("{piece}this flat cannot be driven: {problem}"),
@@ -67,7 +67,7 @@ pub fn piece_words(sketch: &Sketch, piece: Piece) -> String {
         Piece::WayPoint(index) => {
             let place = at(sketch.way_points_cm[index]);
             let turn = if sketch.turn == Some(index) {
-                ", from which on places are seen again"
+                ", from which on known locations are seen again"
             } else {
                 ""
             };
@@ -78,7 +78,7 @@ pub fn piece_words(sketch: &Sketch, piece: Piece) -> String {
     }
 }
 
-/// What a reader hears of the flat beside the rest.
+/// The flat's part of the text alternative.
 pub fn summary(drawn: &Drawn) -> String {
     let counts = counts(drawn.sketch);
     let mut words = match drawn.tool {

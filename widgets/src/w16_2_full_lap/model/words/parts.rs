@@ -1,11 +1,11 @@
-//! What is said of a keyframe, an edge or a loop that is looked at, and of the reader's own loop.
+//! Texts about a selected keyframe, edge or loop, and about the custom loop.
 
 use ch16_lab::lap::{Claim, EdgeStrain, GateUse, LoopJudgement, OwnLoop, edge_strain};
 use ch16_slam2d::metrics::position_error_m;
 use kit::model::{Fact, Standing};
 use pr_geom::{SE2, math};
 
-use super::{Said, ends, standing};
+use super::{Statement, ends, standing};
 use crate::w16_2_full_lap::model::found::{Found, find};
 use crate::w16_2_full_lap::model::moment::Moment;
 use crate::w16_2_full_lap::model::pick::Part;
@@ -17,7 +17,7 @@ struct Numbers {
     chi2: f64,
 }
 
-/// A few words beside the part on the map.
+/// A short label beside the part on the map.
 pub fn part_label(moment: &Moment, part: Part) -> String {
     let Numbers { error_m, chi2, .. } = numbers(moment, part);
     match part {
@@ -45,13 +45,13 @@ fn named(moment: &Moment, part: Part) -> String {
 }
 
 /// The verdict and the sentence on a part.
-pub fn part_said(moment: &Moment, part: Part) -> Said {
+pub fn part_statement(moment: &Moment, part: Part) -> Statement {
     let Numbers {
         error_m,
         error_deg,
         chi2,
     } = numbers(moment, part);
-    let neutral = |verdict: String, sentence| Said {
+    let neutral = |verdict: String, sentence| Statement {
         standing: Standing::Neutral,
         verdict,
         sentence,
@@ -67,7 +67,7 @@ pub fn part_said(moment: &Moment, part: Part) -> Said {
             let edges = if count == 1 { "edge" } else { "edges" };
             let tied = match moment.tied {
                 Some(from) if from == node => {
-                    "; a loop of your own begins here: look at another keyframe and press Tie again"
+                    "; your own loop begins here: look at another keyframe and press Tie again"
                         .to_owned()
                 }
                 Some(from) => format!("; press Tie for a loop from keyframe {from} to here"),
@@ -106,7 +106,7 @@ pub fn part_said(moment: &Moment, part: Part) -> Said {
             } else {
                 format!("; measured {error_m:.2} m and {error_deg:.1}° off the truth")
             };
-            Said {
+            Statement {
                 standing: standing(judgement),
                 verdict: format!("loop {}", ends(attempt)),
                 sentence: format!("{sentence}{off}{now}"),
@@ -119,7 +119,7 @@ pub fn part_said(moment: &Moment, part: Part) -> Said {
                     "no loop of your own".to_owned(),
                 )
             },
-            |own| own_said(moment, own),
+            |own| own_statement(moment, own),
         ),
         (Part::Loop(node), None) => neutral(
             "no such loop".to_owned(),
@@ -144,7 +144,7 @@ pub fn part_said(moment: &Moment, part: Part) -> Said {
     }
 }
 
-/// What the poses leave of a measurement.
+/// The residual of an edge in words.
 fn left(strain: &EdgeStrain) -> String {
     let [x, y, turn] = [0, 1, 2].map(|i| strain.residual[i]);
     let off_m = math::norm2(x, y);
@@ -184,7 +184,7 @@ fn numbers(moment: &Moment, part: Part) -> Numbers {
             Numbers {
                 error_m: error.position_m,
                 error_deg: error.heading_deg,
-                // A refused one has the χ² of its gate.
+                // A rejected one has the χ² of its gate.
                 chi2: closed.map_or(loop_.gate.chi2, |edge| {
                     edge_strain(edge, &moment.nodes).chi2
                 }),
@@ -206,15 +206,15 @@ fn numbers(moment: &Moment, part: Part) -> Numbers {
     }
 }
 
-/// Of nothing.
+/// No values.
 const NONE: Numbers = Numbers {
     error_m: f64::NAN,
     error_deg: f64::NAN,
     chi2: f64::NAN,
 };
 
-/// The verdict and the sentence on the reader's own loop.
-pub fn own_said(moment: &Moment, own: &OwnLoop) -> Said {
+/// The verdict and the sentence on the custom loop.
+pub fn own_statement(moment: &Moment, own: &OwnLoop) -> Statement {
     let lap = moment.runs.graph.lap();
     let judgement = lap.judge(&own.attempt);
     let verdict = match judgement {
@@ -257,14 +257,14 @@ pub fn own_said(moment: &Moment, own: &OwnLoop) -> Said {
             )
         }
     };
-    Said {
+    Statement {
         standing: standing(judgement),
         verdict: verdict.to_owned(),
         sentence,
     }
 }
 
-/// Of what is looked at, and of the own loop; not finite where there is none.
+/// Facts of the selected part and of the custom loop; not finite if there is none.
 pub fn facts(moment: &Moment) -> Vec<Fact> {
     let looked_at = moment.picked.map_or(NONE, |part| numbers(moment, part));
     let own = moment.own;

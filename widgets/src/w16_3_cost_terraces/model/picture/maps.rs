@@ -7,7 +7,7 @@ use crate::w16_3_cost_terraces::model::landscape::Landscape;
 use crate::w16_3_cost_terraces::spec::Colors;
 use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;
 
-/// ICP's cost; dark is low. The dropped sweeps fly over it.
+/// ICP's cost; dark is low. The dropped sweeps are animated over it.
 pub fn icp(landscape: &Landscape, moment: Moment, rests_m: &[[f64; 2]]) -> Panel {
     let title = |height: f64| format!("ICP cost {height:.4} m²");
     let mut panel = map("icp", &title, "m²", landscape, moment);
@@ -24,7 +24,7 @@ pub fn icp(landscape: &Landscape, moment: Moment, rests_m: &[[f64; 2]]) -> Panel
     panel
 }
 
-/// NDT's score upside down, so that both balls descend; dark is low.
+/// NDT's negated score, so that both balls descend; dark is low.
 pub fn ndt(landscape: &Landscape, moment: Moment) -> Panel {
     let title = |height: f64| format!("NDT score {:.4}", -height);
     let mut panel = map("ndt", &title, "−score", landscape, moment);
@@ -33,7 +33,7 @@ pub fn ndt(landscape: &Landscape, moment: Moment) -> Panel {
     panel
 }
 
-/// `title` puts the height that is pointed at into words.
+/// `title` describes the height at the cross hair.
 fn map(
     id: &'static str,
     title: &dyn Fn(f64) -> String,
@@ -98,7 +98,7 @@ fn map(
     }
 }
 
-/// Ink on a band of paper: it reads on dark and on bright cells alike.
+/// Ink on a band of paper, visible on dark and bright cells.
 fn cross_hair([x, y]: [f64; 2], stroke: Stroke) -> [Layer; 2] {
     let segments = vec![
         [[-HALF_SPAN_M, y], [HALF_SPAN_M, y]],

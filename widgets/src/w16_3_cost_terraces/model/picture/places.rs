@@ -1,4 +1,4 @@
-//! The sweep over what it is matched with: ICP's partners, and NDT's bells.
+//! The sweep over its target: ICP's partners, and NDT's Gaussians.
 
 use kit::scene::{Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::{math, sort_numbers};
@@ -6,21 +6,20 @@ use pr_geom::{math, sort_numbers};
 use super::{Looked, Moment};
 use crate::w16_3_cost_terraces::model::terrains::{Bell, Pairing, Terrains};
 
-/// Room around the map's walls, m.
+/// Margin around the map's walls, m.
 const MARGIN_M: f64 = 0.5;
 
-/// The picture of the pairs shows at most this much along an axis, m: the long corridor is cut off.
+/// Largest extent of the picture of the pairs along an axis, m; the long corridor is cut off.
 pub(super) const MOST_M: f64 = 6.0;
 
-/// The picture of the bells is a closer look, so wide, m: they are as thin as the walls.
+/// Width of the picture of the Gaussians, m; it is a close-up, because they are as thin as the walls.
 const CLOSE_M: f64 = 2.5;
 
-/// This share of the points, at either end of an axis, is left out of the frame: a beam may leave
-/// through a door.
+/// Share of the points, at either end of an axis, outside of the frame: a beam may leave through a door.
 const STRAY_SHARE: f64 = 0.02;
 
-/// The sweep at the shift that is looked at, with its partners; those that are about to change are
-/// lit up. Where ICP's ball lies elsewhere, the sweep stands there, too.
+/// The sweep at the current shift with its partners; those that are about to change are highlighted. If ICP's
+/// ball is elsewhere, the sweep is drawn there, too.
 pub fn pairs(terrains: &Terrains, moment: Moment) -> Panel {
     let Pairing {
         pairs,
@@ -69,7 +68,7 @@ pub fn pairs(terrains: &Terrains, moment: Moment) -> Panel {
     )
 }
 
-/// One bell for each cell: the ellipses of one and two standard deviations.
+/// One Gaussian for each cell: the ellipses of one and two standard deviations.
 pub fn bells(terrains: &Terrains, moment: Moment) -> Panel {
     let bells = terrains.bells();
     let mut layers = vec![
@@ -104,7 +103,7 @@ pub fn bells(terrains: &Terrains, moment: Moment) -> Panel {
     )
 }
 
-/// The lower left end of the walls; where no bell lies there, as much of them upwards from the lowest bell.
+/// The lower left end of the walls; if it has no Gaussian, the same height upwards from the lowest one.
 fn close_frame(terrains: &Terrains, bells: &[Bell]) -> Bounds {
     let Bounds { mut min, mut max } = frame(terrains, CLOSE_M);
     let is_across = |bell: &&Bell| (min[0]..max[0]).contains(&bell.mean_m[0]);
@@ -158,8 +157,8 @@ pub(super) fn panel(
     }
 }
 
-/// The walls of the map, at most `most_m` of them along each axis: along x from the left or, where
-/// there is no left end, about the sensor; along y from below.
+/// The walls of the map, at most `most_m` of them along each axis: along x from the left or, if there is no
+/// left end, about the sensor; along y from below.
 pub(super) fn frame(terrains: &Terrains, most_m: f64) -> Bounds {
     let [(left, right), (low, high)] = [0, 1].map(|axis| walls(terrains.map_points_m(), axis));
     let sensor_x = terrains.scene().world_from_sensor().x();
@@ -174,7 +173,7 @@ pub(super) fn frame(terrains: &Terrains, most_m: f64) -> Bounds {
     }
 }
 
-/// From where to where the points lie along an axis, but for the strays, with the margin, m.
+/// Extent of the points along an axis without the strays, with the margin, m.
 fn walls(points: &[[f64; 2]], axis: usize) -> (f64, f64) {
     let mut sorted: Vec<f64> = points.iter().map(|at| at[axis]).collect();
     sort_numbers(&mut sorted);

@@ -1,4 +1,4 @@
-//! The slices through the cross hair, and the information at the truth over the rests of many sweeps.
+//! The slices through the cross hair, and the information at the truth over the results of many sweeps.
 
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
@@ -7,22 +7,22 @@ use crate::w16_3_cost_terraces::model::rests::Rests;
 use crate::w16_3_cost_terraces::model::terrains::Terrains;
 use kit::ticks::signed;
 
-/// A vertical axis never spans less than this, in m² or in score: flat ground looks flat.
+/// Smallest range of a vertical axis, in m² or in score, so that flat ground looks flat.
 const LEAST_SPAN: f64 = 1e-3;
 
-/// The picture of the rests reaches this far from the truth in every place, cm: what is a dot in the
-/// room is not drawn larger than the needle of the corridor.
+/// Half width of the picture of the results, cm, the same for every location, so that the dot of the room is
+/// not drawn as large as the needle of the corridor.
 const RESTS_SPAN_CM: f64 = 4.0;
 
-/// Beside the ellipse of one standard deviation stands that of so many.
+/// Size of the second ellipse, in standard deviations.
 const MANY_DEVIATIONS: f64 = 3.0;
 
-/// Which landscape is cut.
+/// The landscape of a slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// ICP's cost.
     Icp,
-    /// NDT's score, the right way up.
+    /// NDT's score, not negated.
     Ndt,
 }
 
@@ -91,9 +91,9 @@ pub fn slice(terrains: &Terrains, moment: Moment, measure: Measure, along: Along
     }
 }
 
-/// What is known of a shift at the truth, and where many sweeps rest: the ellipse of the shifts that
-/// lie one standard deviation off, long where the walls say little, over the rests. The scale is the
-/// same in every place.
+/// The information about a shift at the truth, and the results of many sweeps: the ellipse of the shifts one
+/// standard deviation away, which is long in a weakly constrained direction. The scale is the same for every
+/// location.
 pub fn information(terrains: &Terrains, rests: &Rests) -> Panel {
     let half_axes = terrains.information.half_axes_cm;
     let axis = |label| Axis::new(label, -RESTS_SPAN_CM, RESTS_SPAN_CM);

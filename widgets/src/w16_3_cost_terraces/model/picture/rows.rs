@@ -1,4 +1,4 @@
-//! The rows of the point-to-plane step, and the motion that none of them holds.
+//! The rows of the point-to-plane step, and the motion that none of them constrains.
 
 use kit::scene::{Layer, LegendEntry, Mark, Panel, Stroke, Tone};
 
@@ -13,10 +13,10 @@ const ARROW_M: f64 = 1.5;
 /// The head of the arrow, m, along and across.
 const HEAD_M: [f64; 2] = [0.25, 0.12];
 
-/// A normal for every row that is taken, the last one lit up, and the null direction as an arrow; where
-/// every direction is held, a bar of one standard deviation to either side along x.
+/// A normal for every row so far, the last one highlighted, and the null direction as an arrow; if every
+/// direction is constrained, a bar of one standard deviation on either side along x.
 pub fn panel(terrains: &Terrains) -> Panel {
-    let know = terrains.rows_know();
+    let constraints = terrains.row_constraints();
     let taken = &terrains.rows.rows[..terrains.rows_taken()];
     let center: [f64; 2] = terrains.rows.centroid.into();
     let normals: Vec<_> = taken
@@ -26,8 +26,8 @@ pub fn panel(terrains: &Terrains) -> Panel {
     let lines = |segments, tone, width_px| Layer::segments(segments, Stroke::Solid, tone, width_px);
     let last: Vec<_> = normals.last().copied().into_iter().collect();
     let ends = last.iter().map(|[from, _]| *from).collect();
-    let null = know.null.map(|null| arrow(center, [null.x, null.y]));
-    let known = know.along_m.map(|along_m| {
+    let null = constraints.null.map(|null| arrow(center, [null.x, null.y]));
+    let known = constraints.along_m.map(|along_m| {
         let [x, y] = center;
         vec![[[x - along_m, y], [x + along_m, y]]]
     });
@@ -54,7 +54,7 @@ pub fn panel(terrains: &Terrains) -> Panel {
     )
 }
 
-/// A line with a head, along a direction; nothing for a motion that shifts nothing.
+/// A line with a head, along a direction; empty for a motion without shift.
 fn arrow([x, y]: [f64; 2], [vx, vy]: [f64; 2]) -> Vec<[[f64; 2]; 2]> {
     let length = pr_geom::math::norm2(vx, vy);
     if length < 1e-9 {

@@ -1,4 +1,4 @@
-//! The two machines over time: a lane for each thing that they do, and a mark where it was done.
+//! Front end and back end over time: a lane for each of their operations, and a mark for each execution.
 
 use ch16_lab::lap::{LapRecord, LoopAttempt, TickReport};
 use ch16_slam2d::loops::LoopRejection;
@@ -8,31 +8,31 @@ use kit::ticks::signed;
 /// Name of the panel.
 pub const ID: &str = "lanes";
 
-/// How something that was done came out.
+/// The result of an operation in a tick.
 #[derive(Clone, Copy, PartialEq)]
 enum Done {
-    /// It was not asked for in this tick.
-    Not,
-    /// It passed.
-    Well,
-    /// It was refused.
-    Refused,
+    /// Not executed in this tick.
+    Idle,
+    /// Passed.
+    Passed,
+    /// Rejected.
+    Rejected,
 }
 
-/// A lane, and what it says of a tick.
+/// A lane, and its data in a tick.
 struct Lane {
     name: &'static str,
     done: fn(&TickReport) -> Done,
-    /// The numbers of what was done.
+    /// The numbers of the operation.
     data: fn(&TickReport) -> String,
 }
 
-/// What happens in a tick, in its order: the front end's two at every tick, the back end's at
-/// keyframes, and the map at last.
+/// The operations of a tick in order: the front end's two at every tick, the back end's at keyframes, and the
+/// map last.
 static LANES: [Lane; 8] = [
     Lane {
         name: "predict",
-        done: |_| Done::Well,
+        done: |_| Done::Passed,
         data: |report| {
             let at = report.registration.prediction;
             let off_m = (at.position() - report.registration.estimate.position()).norm();
@@ -45,7 +45,7 @@ static LANES: [Lane; 8] = [
     },
     Lane {
         name: "register",
-        done: |report| judged(report.registration.accepted),
+        done: |report| tested(report.registration.accepted),
         data: |report| {
             let found = &report.registration.matched;
             format!(
@@ -56,7 +56,7 @@ static LANES: [Lane; 8] = [
     },
     Lane {
         name: "keyframe",
-        done: |report| only(report.new_keyframe.is_some()),
+        done: |report| executed(report.new_keyframe.is_some()),
         data: |report| match report.new_keyframe {
             Some(node) => format!("node {node} and an edge to node {}", node.saturating_sub(1)),
             None => NOTHING.to_owned(),
@@ -64,7 +64,7 @@ static LANES: [Lane; 8] = [
     },
     Lane {
         name: "candidate",
-        done: |report| only(report.loop_attempt.is_some()),
+        done: |report| executed(report.loop_attempt.is_some()),
         data: |report| {
             of_loop(report, |attempt| {
                 let candidate = &attempt.verification.candidate;
@@ -79,8 +79,8 @@ static LANES: [Lane; 8] = [
     Lane {
         name: "fit",
         done: |report| match &report.loop_attempt {
-            None => Done::Not,
-            Some(attempt) => judged(!matches!(
+            None => Done::Idle,
+            Some(attempt) => tested(!matches!(
                 attempt.verification.rejection,
                 Some(
                     LoopRejection::PoorFit { .. }
@@ -99,8 +99,8 @@ static LANES: [Lane; 8] = [
     Lane {
         name: "gate",
         done: |report| match &report.loop_attempt {
-            None => Done::Not,
-            Some(attempt) => judged(attempt.verification.gate.passes()),
+            None => Done::Idle,
+            Some(attempt) => tested(attempt.verification.gate.passes()),
         },
         data: |report| {
             of_loop(report, |attempt| {
@@ -112,7 +112,7 @@ static LANES: [Lane; 8] = [
     },
     Lane {
         name: "optimize",
-        done: |report| only(closed_loop(report)),
+        done: |report| executed(closed_loop(report)),
         data: |report| {
             of_loop(report, |attempt| match &attempt.effect {
                 Some(effect) => format!(
@@ -125,7 +125,7 @@ static LANES: [Lane; 8] = [
     },
     Lane {
         name: "repaint",
-        done: |report| only(closed_loop(report)),
+        done: |report| executed(closed_loop(report)),
         data: |report| {
             of_loop(report, |attempt| match attempt.effect {
                 Some(_) => format!(
@@ -138,7 +138,7 @@ static LANES: [Lane; 8] = [
     },
 ];
 
-/// What a lane says of a tick in which it had nothing to do.
+/// The data of a lane in a tick without its operation.
 const NOTHING: &str = "nothing to do";
 
 fn of_loop(report: &TickReport, say: impl Fn(&LoopAttempt) -> String) -> String {
@@ -146,12 +146,12 @@ fn of_loop(report: &TickReport, say: impl Fn(&LoopAttempt) -> String) -> String 
     attempt.map_or_else(|| NOTHING.to_owned(), say)
 }
 
-fn judged(well: bool) -> Done {
-    if well { Done::Well } else { Done::Refused }
+fn tested(passed: bool) -> Done {
+    if passed { Done::Passed } else { Done::Rejected }
 }
 
-fn only(done: bool) -> Done {
-    if done { Done::Well } else { Done::Not }
+fn executed(is_done: bool) -> Done {
+    if is_done { Done::Passed } else { Done::Idle }
 }
 
 fn closed_loop(report: &TickReport) -> bool {
@@ -171,12 +171,12 @@ pub fn of_name(name: &str) -> Option<usize> {
     LANES.iter().position(|lane| lane.name == name)
 }
 
-/// Height of a lane on the axis: the first one on top.
+/// Position of a lane on the axis: the first one on top.
 fn height(lane: usize) -> f64 {
     (LANES.len() - lane) as f64
 }
 
-/// Everything that was done up to a tick.
+/// All executions with that result up to a tick.
 fn done(record: &LapRecord, now: usize, wanted: Done) -> Vec<[f64; 2]> {
     let reports = record.lap.reports.iter().take(now);
     reports
@@ -188,14 +188,14 @@ fn done(record: &LapRecord, now: usize, wanted: Done) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// What every lane did in a tick, by its name.
+/// The data of every lane in a tick, by its name.
 pub fn data(report: &TickReport) -> impl Iterator<Item = (&'static str, String)> + '_ {
     LANES
         .iter()
         .map(move |lane| (lane.name, (lane.data)(report)))
 }
 
-/// The lanes up to a tick; a ring stands round the mark of the chosen lane at the tick shown.
+/// The lanes up to a tick; a ring around the mark of the selected lane at the current tick.
 pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
     let last = record.ticks() as f64;
     let names = LANES.iter().enumerate();
@@ -207,20 +207,20 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
     )];
     layers.extend([
         Layer::points(
-            done(record, now, Done::Well),
+            done(record, now, Done::Passed),
             Mark::Dot,
             Tone::Measurement,
             2.4,
         ),
         Layer::points(
-            done(record, now, Done::Refused),
+            done(record, now, Done::Rejected),
             Mark::Circle,
             Tone::Truth,
             3.5,
         ),
     ]);
     let here = record.lap.report(now);
-    if here.is_some_and(|report| (LANES[chosen].done)(report) != Done::Not) {
+    if here.is_some_and(|report| (LANES[chosen].done)(report) != Done::Idle) {
         let at = vec![[now as f64, height(chosen)]];
         layers.push(Layer::points(at, Mark::Circle, Tone::Ink, 7.0));
     }
@@ -234,7 +234,7 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
         title: "Who does what when".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Free,
-        // The names have room before the first tick, and the ring at the last one is whole.
+        // Space for the names before the first tick, and for the ring at the last one.
         x: Axis::new("tick", -0.28 * last.max(1.0), 1.03 * last.max(1.0)),
         y: Axis::new("lane", 0.4, height(0) + 0.9),
         layers,
@@ -257,7 +257,7 @@ pub fn event_at(
         let [x, y] = [0, 1].map(|i: usize| ((mark[i] - at[i]) / reach[i]).abs());
         x.max(y)
     };
-    let marks = [Done::Well, Done::Refused].map(|wanted| done(record, now, wanted));
+    let marks = [Done::Passed, Done::Rejected].map(|wanted| done(record, now, wanted));
     let marks = marks.iter().flatten().filter(|mark| away(mark) <= 1.0);
     let [tick, high] = *marks.min_by(|a, b| away(a).total_cmp(&away(b)))?;
     Some((tick, LANES.len() - high as usize))

@@ -41,7 +41,7 @@ pub fn errors(history: &History, now: usize) -> Panel {
     played(chart.panel(&series), now)
 }
 
-/// Without what is still to come; the axes stay those of the whole run, so that nothing jumps.
+/// Without the future; the axes are those of the whole run and do not change during playback.
 fn played(mut panel: Panel, now: usize) -> Panel {
     for layer in &mut panel.layers {
         if let Layer::Line { points, .. } = layer {

@@ -1,4 +1,4 @@
-//! Boxes as bars over the heading, as high as their bounds; and how bound and best score meet.
+//! Boxes as bars over the heading, as high as their bounds; and the convergence of bound and best score.
 
 use ch16_lab::whole_window::SeenBox;
 use ch16_slam2d::search::BoxFate;
@@ -7,14 +7,14 @@ use kit::scene::{Aspect, Axis, Layer, LegendEntry, Panel, Stroke, Tone, Weight};
 use super::super::words::heading_error_deg;
 use super::super::{WholeWindow, panel};
 
-/// A box that was dropped stays in the picture for so many steps.
+/// Number of steps for which a dropped box stays visible.
 const SEEN_FALLING: usize = 120;
 
-/// Steps between two points of the gap's lines, where there are more than that many.
+/// Largest number of points of the gap's lines.
 const GAP_POINTS: usize = 300;
 
 pub fn panel(window: &WholeWindow) -> Panel {
-    let search = &window.hunt.window;
+    let search = &window.search_task.window;
     let step = window.step();
     let moment = &search.moments()[step];
     let bar = |seen: &SeenBox| bar(window, seen);
@@ -70,9 +70,9 @@ pub fn panel(window: &WholeWindow) -> Panel {
     }
 }
 
-/// A box as a bar over its headings, a step of them at least.
+/// A box as a bar over its headings, at least one step wide.
 fn bar(window: &WholeWindow, seen: &SeenBox) -> [[f64; 2]; 2] {
-    let search = window.hunt.window.search();
+    let search = window.search_task.window.search();
     let step_deg = 360.0 / search.headings().max(1) as f64;
     let [low, high] = seen.poses.heading_rad;
     let middle = heading_error_deg(window, 0.5 * (low + high));
@@ -81,10 +81,10 @@ fn bar(window: &WholeWindow, seen: &SeenBox) -> [[f64; 2]; 2] {
     [[middle - half, bound], [middle + half, bound]]
 }
 
-/// The best score at each heading that is known, from the lowest error to the highest.
+/// The best score at each known heading, from the lowest error to the highest.
 fn surface(window: &WholeWindow) -> Vec<[f64; 2]> {
-    let search = window.hunt.window.search();
-    let by_heading = window.hunt.surface.by_heading().iter().enumerate();
+    let search = window.search_task.window.search();
+    let by_heading = window.search_task.surface.by_heading().iter().enumerate();
     let mut points: Vec<[f64; 2]> = by_heading
         .filter_map(|(k, score)| {
             let error = heading_error_deg(window, search.heading_rad(k));
@@ -95,9 +95,9 @@ fn surface(window: &WholeWindow) -> Vec<[f64; 2]> {
     points
 }
 
-/// The largest bound falls, the best score rises; where they meet, nothing is left to look for.
+/// The largest bound falls, the best score rises; the search ends where they meet.
 pub fn gap(window: &WholeWindow) -> Panel {
-    let moments = window.hunt.window.moments();
+    let moments = window.search_task.window.moments();
     let every = moments.len().div_ceil(GAP_POINTS);
     let last = moments.len() - 1;
     let steps = (0..last).step_by(every).chain([last]);

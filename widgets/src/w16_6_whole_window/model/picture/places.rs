@@ -1,4 +1,4 @@
-//! The window from above: the best score of each place, and the boxes that wait over it.
+//! The window from above: the best score of each position, and the open boxes over it.
 
 use ch16_slam2d::search::PoseBox;
 use kit::scene::{
@@ -8,11 +8,11 @@ use kit::scene::{
 use super::super::{WholeWindow, panel};
 use super::sensor;
 
-/// Room around the window: a share of its width.
+/// Margin around the window as a share of its width.
 const MARGIN: f64 = 0.06;
 
 pub fn panel(window: &WholeWindow) -> Panel {
-    let search = &window.hunt.window;
+    let search = &window.search_task.window;
     let moment = &search.moments()[window.step()];
     let [low, high] = search.search().extent_m();
     let margin = MARGIN * (high[0] - low[0]);
@@ -40,7 +40,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
     if moment.best.is_some() {
         layers.push(sensor(window.shown_pose(), Mark::Square, Tone::Posterior));
     }
-    let progress = window.hunt.surface.progress();
+    let progress = window.search_task.surface.progress();
     let filled = if progress < 1.0 {
         format!(", {:.0} % drawn", (100.0 * progress).floor())
     } else {
@@ -81,9 +81,12 @@ fn boxes<'a>(boxes: impl Iterator<Item = &'a PoseBox>, tone: Tone, width_px: f32
     Layer::line(points, Stroke::Solid, tone, width_px)
 }
 
-/// Paper where nothing fits, ink where all does.
+/// Paper for no fit, ink for a perfect one.
 fn raster(window: &WholeWindow) -> Raster {
-    let (surface, search) = (&window.hunt.surface, window.hunt.window.search());
+    let (surface, search) = (
+        &window.search_task.surface,
+        window.search_task.window.search(),
+    );
     let [rows, columns] = search.places();
     let [min, max] = search.extent_m();
     let cells = surface.by_place().iter();
@@ -92,7 +95,7 @@ fn raster(window: &WholeWindow) -> Raster {
         columns,
         rows,
         cells: cells.map(|score| Cell::Occupancy(*score as f32)).collect(),
-        // Surfaces of two searches may be filled as far.
+        // Surfaces of two searches may have equally many rows.
         revision: (window.searches << 32) + surface.rows_done() as u64,
     }
 }

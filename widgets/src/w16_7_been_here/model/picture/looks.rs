@@ -1,5 +1,5 @@
-//! The descriptors of the pair: two histograms over the range, or rings and sectors, before the turn
-//! and after.
+//! The descriptors of the pair: two histograms over the range, or rings and sectors, before and after the
+//! rotation.
 
 use ch16_lab::lap::{Choice, LapDetector};
 use ch16_lab::places::{Place, PlaceStudy};
@@ -62,7 +62,7 @@ fn histograms(old: &RangeHistogram, new: &RangeHistogram, max_range_m: f64) -> P
     }
 }
 
-/// Older on top, newer as seen in the middle, newer shifted by its best turn below.
+/// The older one on top, the newer one in the middle, and the newer one shifted by its best rotation below.
 fn contexts(been: &BeenHere, study: &PlaceStudy, [old, new]: [usize; 2]) -> Panel {
     let places = study.places();
     let rings = places[old].context.ring_key().len();

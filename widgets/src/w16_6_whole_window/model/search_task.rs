@@ -1,4 +1,4 @@
-//! The search of one window and all that follows from it, in pieces between frames.
+//! The search of one window and everything that follows from it, in pieces between frames.
 
 use ch16_lab::basin::{BasinOutcome, BasinScene};
 use ch16_lab::whole_window::{ScoreSurface, WindowConfig, WindowSearch, refine};
@@ -12,7 +12,7 @@ const BOXES_PER_PIECE: usize = 30;
 /// Rows of the surface in one piece.
 const ROWS_PER_PIECE: usize = 4;
 
-/// The other turns of the room that fit, degrees from the best pose.
+/// The other headings at which the room fits, degrees from the best pose.
 pub const TURNS: [(&str, f64); 3] = [
     ("quarter turn to the left", 90.0),
     ("quarter turn to the right", -90.0),
@@ -21,40 +21,40 @@ pub const TURNS: [(&str, f64); 3] = [
 
 /// A registration by ICP.
 pub struct Refined {
-    /// Where it ended.
+    /// Its result.
     pub outcome: BasinOutcome,
-    /// Its poses, the start first.
-    pub way: Vec<SE2>,
+    /// Its poses, from the start on.
+    pub path: Vec<SE2>,
 }
 
-/// What became of a search.
+/// The results of a search.
 pub struct Found {
     /// The best pose, and ICP from there.
     pub home: Option<(ScoredPose, Refined)>,
-    /// The best pose at each of [`TURNS`]; none where the window has no such heading.
+    /// The best pose at each of [`TURNS`]; `None` if the window lacks that heading.
     pub rivals: [Option<ScoredPose>; 3],
-    /// Searches for those under way.
+    /// Searches for those poses under way.
     pending: Vec<(usize, ScanSearch)>,
 }
 
 /// One window.
-pub struct Hunt {
-    /// The search with all that it has seen.
+pub struct SearchTask {
+    /// The search with its history.
     pub window: WindowSearch,
-    /// The scores that it spares.
+    /// The scores that it avoids to compute.
     pub surface: ScoreSurface,
     /// ICP from the start alone.
     pub alone: Refined,
-    /// What was found; none while it is searched.
+    /// The results; `None` during the search.
     pub found: Option<Found>,
 }
 
-impl Hunt {
-    /// A search that has not begun.
+impl SearchTask {
+    /// A search before its first step.
     pub fn new(scene: &BasinScene, config: WindowConfig, workspace: &mut IcpWorkspace) -> Self {
         let window = match WindowSearch::new(scene, config) {
             Ok(window) => window,
-            Err(error) => panic!("a window of the parameter list was refused: {error}"),
+            Err(error) => panic!("the parameters yield an invalid window: {error}"),
         };
         Self {
             surface: ScoreSurface::new(window.search()),
@@ -64,14 +64,14 @@ impl Hunt {
         }
     }
 
-    /// Whether all but the surface is known.
+    /// Whether everything except the surface is known.
     pub fn is_settled(&self) -> bool {
         self.found
             .as_ref()
             .is_some_and(|found| found.pending.is_empty())
     }
 
-    /// One piece of the search, or of those for the other turns; idle once all of them are done.
+    /// One piece of the search, or of those at the other headings; idle once all of them are finished.
     pub fn search(&mut self, scene: &BasinScene, workspace: &mut IcpWorkspace) -> Activity {
         let Some(found) = &mut self.found else {
             let goes_on = (0..BOXES_PER_PIECE).all(|_| self.window.step());
@@ -122,9 +122,9 @@ impl Hunt {
 
 fn icp(scene: &BasinScene, from: SE2, workspace: &mut IcpWorkspace) -> Refined {
     let outcome = refine(scene, from, workspace);
-    let way = workspace.trace().iter().map(|state| state.pose);
+    let path = workspace.trace().iter().map(|state| state.pose);
     Refined {
         outcome,
-        way: way.collect(),
+        path: path.collect(),
     }
 }

@@ -1,7 +1,7 @@
-//! Errors by place: how far along the way the estimate is off, and how far the graph thinks it is.
+//! Errors along the path: the error of the estimate, and the graph's own standard deviation.
 //!
-//! An error at the end, or the largest one, does not tell which places a loop has mended. Here the
-//! lap is cut into equal shares of the way that was truly driven.
+//! The final or the largest error does not show where along the path a loop reduced it. Here the true path is
+//! cut into shares of equal length.
 
 use pr_geom::math;
 use serde::{Deserialize, Serialize};
@@ -9,41 +9,41 @@ use serde::{Deserialize, Serialize};
 use super::Drive;
 use super::record::{LapRecord, LapTrace};
 
-/// Equal shares into which the way is cut.
-pub const WAY_SHARES: usize = 20;
+/// Number of equal shares of the path.
+pub const PATH_SHARES: usize = 20;
 
-/// The errors of one estimator at the ends of the shares, from the start to the end of the way.
+/// The errors of one estimator at the ends of the shares, from start to end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WayErrors {
+pub struct PathErrors {
     /// Position errors at the final poses, m; linear between keyframes.
-    pub errors_m: [f64; WAY_SHARES + 1],
-    /// What the graph takes for the standard deviation of the position at half of the way,
-    /// `√(σ_x² + σ_y²)` in m; none where it has no covariance.
+    pub errors_m: [f64; PATH_SHARES + 1],
+    /// The graph's standard deviation of the position halfway, `√(σ_x² + σ_y²)` in m; `None` without a
+    /// covariance.
     pub half_way_sigma_m: Option<f64>,
 }
 
-impl WayErrors {
-    /// Position error at half of the way, m.
+impl PathErrors {
+    /// Position error halfway, m.
     #[must_use]
     pub fn half_path_length_m(&self) -> f64 {
-        self.errors_m[WAY_SHARES / 2]
+        self.errors_m[PATH_SHARES / 2]
     }
 }
 
 impl LapRecord {
-    /// The errors of the lap along its way.
+    /// The errors of the lap along its path.
     #[must_use]
-    pub fn way_errors(&self) -> WayErrors {
-        self.way_errors_of(&self.lap)
+    pub fn path_errors(&self) -> PathErrors {
+        self.path_errors_of(&self.lap)
     }
 
-    /// Those of its front end alone.
+    /// The errors of its front end alone.
     #[must_use]
-    pub fn front_end_way_errors(&self) -> WayErrors {
-        self.way_errors_of(&self.front_end)
+    pub fn front_end_path_errors(&self) -> PathErrors {
+        self.path_errors_of(&self.front_end)
     }
 
-    fn way_errors_of(&self, trace: &LapTrace) -> WayErrors {
+    fn path_errors_of(&self, trace: &LapTrace) -> PathErrors {
         let end = self.ticks();
         let ticks: Vec<usize> = trace.keyframes.iter().map(|k| k.tick).collect();
         let errors_m: Vec<f64> = trace.keyframe_errors_m(end).collect();
@@ -51,31 +51,31 @@ impl LapRecord {
             let positions = covariances.iter().map(|c| math::sqrt(c.m11 + c.m22));
             positions.collect::<Vec<f64>>()
         });
-        WayErrors::along_path(&self.drive, &ticks, &errors_m, sigmas_m.ok().as_deref())
+        PathErrors::along_path(&self.drive, &ticks, &errors_m, sigmas_m.ok().as_deref())
     }
 }
 
-impl WayErrors {
-    /// Errors of keyframes along a drive: the tick and the error (m) of each, in order, and what the
-    /// estimator takes for its deviation (m) where it says.
+impl PathErrors {
+    /// Errors of keyframes along a drive, from the tick and the error (m) of each in order, and from the
+    /// estimator's standard deviation (m) if it has one.
     pub(crate) fn along_path(
         drive: &Drive,
         ticks: &[usize],
         errors_m: &[f64],
         sigmas_m: Option<&[f64]>,
     ) -> Self {
-        let shares = shares_of_the_way(drive, ticks);
+        let shares = path_shares(drive, ticks);
         Self {
             errors_m: core::array::from_fn(|k| {
-                interpolated(&shares, errors_m, k as f64 / WAY_SHARES as f64)
+                interpolated(&shares, errors_m, k as f64 / PATH_SHARES as f64)
             }),
             half_way_sigma_m: sigmas_m.map(|sigmas| interpolated(&shares, sigmas, 0.5)),
         }
     }
 }
 
-/// Share of the way at which each keyframe was taken, ascending from 0.
-fn shares_of_the_way(drive: &Drive, ticks: &[usize]) -> Vec<f64> {
+/// Share of the path at which each keyframe was taken, ascending from 0.
+fn path_shares(drive: &Drive, ticks: &[usize]) -> Vec<f64> {
     let place = |tick: usize| drive.truth(tick).position();
     let mut path_length_m = vec![0.0];
     for tick in 1..=drive.ticks().len() {
@@ -96,7 +96,7 @@ fn shares_of_the_way(drive: &Drive, ticks: &[usize]) -> Vec<f64> {
         .collect()
 }
 
-/// The value at `share`, linear between keyframes; beyond the last one it is that one's.
+/// The value at `share`, linear between keyframes, constant beyond the last one.
 fn interpolated(shares: &[f64], values: &[f64], share: f64) -> f64 {
     let after = shares.partition_point(|&known| known <= share);
     let before = after.saturating_sub(1);
@@ -119,7 +119,7 @@ mod tests {
         let (shares, values) = ([0.0, 0.4, 0.4, 0.8], [0.0, 2.0, 6.0, 8.0]);
         let at = |share| interpolated(&shares, &values, share);
         assert_eq!((at(0.0), at(0.2), at(0.4)), (0.0, 1.0, 6.0));
-        // 1e-12: 0.6 lies in the middle of 0.4 and 0.8 but for rounding.
+        // 1e-12: 0.6 is halfway between 0.4 and 0.8 up to rounding.
         assert!((at(0.6) - 7.0).abs() < 1e-12);
         assert_eq!((at(0.8), at(1.0)), (8.0, 8.0));
     }

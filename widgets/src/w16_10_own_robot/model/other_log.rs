@@ -1,41 +1,41 @@
-//! What the worker has told of another log on this map: where its robot was, scan by scan. The numbers
-//! stand in `web/robot/src/whereabouts.rs`.
+//! The worker's report on another log on this map: the pose of its robot, scan by scan.
+//! `web/robot/src/other_log.rs` defines the numbers.
 
 use kit::outside::Delivery;
 
 use crate::w16_10_own_robot::spec::MOST_SCANS;
 
-/// Numbers on the whole.
+/// Number of values for the whole log.
 const HEAD: usize = 7;
-/// Numbers of a scan.
+/// Number of values per scan.
 const PLACE: usize = 10;
 
-/// How far a pose is localized.
+/// The localization state of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Belief {
-    /// The place was looked for and found in this scan.
+pub enum LocalizationState {
+    /// Found by a search in this scan.
     Found,
-    /// The pose follows from the one before.
+    /// Tracked from the previous scan.
     Tracking,
-    /// A pose is told, and should not be driven by.
+    /// A pose exists, but is not reliable.
     Doubtful,
-    /// Nobody knows.
+    /// Lost.
     Lost,
 }
 
-impl Belief {
+impl LocalizationState {
     fn from_number(number: f64) -> Option<Self> {
         let all = [Self::Found, Self::Tracking, Self::Doubtful, Self::Lost];
         all.get(number as usize).copied()
     }
 
-    /// Whether the pose is one to drive by.
+    /// Whether the pose is reliable.
     #[must_use]
     pub fn is_localized(self) -> bool {
         matches!(self, Self::Found | Self::Tracking)
     }
 
-    /// In a word.
+    /// The state in one word.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -47,7 +47,7 @@ impl Belief {
     }
 }
 
-/// Where a scan was taken; NaN where there is no number.
+/// The pose of a scan; NaN for missing numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     /// Number of the scan, from 0.
@@ -56,9 +56,9 @@ pub struct Place {
     pub stamp_s: f64,
     /// `[x, y, θ]` on the map, m and rad.
     pub pose: [f64; 3],
-    /// How far that is localized.
-    pub belief: Belief,
-    /// Share of the scan that fits there.
+    /// Its localization state.
+    pub state: LocalizationState,
+    /// Share of the scan that fits at the pose.
     pub fit: f64,
     /// Half axes of the 1σ ellipse, m, and the heading of the long one, rad.
     pub ellipse: [f64; 3],
@@ -70,7 +70,7 @@ impl Place {
             scan: numbers[0],
             stamp_s: numbers[1],
             pose: [numbers[2], numbers[3], numbers[4]],
-            belief: Belief::from_number(numbers[5])?,
+            state: LocalizationState::from_number(numbers[5])?,
             fit: numbers[6],
             ellipse: [numbers[7], numbers[8], numbers[9]],
         })
@@ -79,25 +79,25 @@ impl Place {
 
 /// Another log on this map.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Whereabouts {
+pub struct OtherLog {
     /// Name of its file.
     pub name: String,
-    /// Share of it that is done.
+    /// Processed share of the log.
     pub share: f64,
-    /// Whether no scan follows.
+    /// Whether all scans are processed.
     pub is_over: bool,
     /// Scans found, followed, doubtful, lost.
     pub counts: [f64; 4],
-    /// The first scan that is localized, from 0; NaN where none is.
+    /// Index of the first localized scan, from 0; NaN if there is none.
     pub first: f64,
-    /// What its owner should know, a sentence each.
+    /// Remarks for its owner, a sentence each.
     pub remarks: Vec<String>,
-    /// Where the scans were taken, in order.
+    /// The poses of the scans, in order.
     pub places: Vec<Place>,
 }
 
-impl Whereabouts {
-    /// What a delivery tells; none where it does not hold what it has to.
+impl OtherLog {
+    /// Parses a delivery; `None` if it is malformed.
     #[must_use]
     pub fn from_delivery(delivery: &Delivery<'_>) -> Option<Self> {
         let (head, places) = delivery.numbers.split_first_chunk::<HEAD>()?;
@@ -117,7 +117,7 @@ impl Whereabouts {
         })
     }
 
-    /// Scans whose pose is localized.
+    /// Number of localized scans.
     #[must_use]
     pub fn localized(&self) -> f64 {
         self.counts[0] + self.counts[1]
