@@ -4,6 +4,7 @@ mod commands;
 mod dask;
 mod doctor;
 mod estimators;
+mod exercises;
 mod files;
 mod logs;
 mod optimize;
