@@ -1,18 +1,12 @@
-//! `slam2d lap --exercises`: without the student's functions, with none written, and with the solutions.
+//! `slam2d lap --exercises`, with the exercises as they are and with the solutions.
 
-use crate::support::assert_refused;
+#[allow(dead_code, reason = "the tests of the other commands use the rest")]
+mod support;
 
-#[cfg(not(feature = "exercises"))]
-#[test]
-fn a_command_without_the_exercises_says_how_to_build_one_with_them() {
-    let command = "cargo run -p slam2d_cli --features exercises -- lap --exercises";
-    assert_refused(&["lap", "--exercises"], command);
-}
+use support::assert_refused;
 
 #[test]
-fn what_no_exercise_does_cannot_be_asked_for() {
-    assert_refused(&["lap", "--exercises", "--gate", "exact"], "--gate");
-    #[cfg(feature = "exercises")]
+fn what_no_exercise_does_is_refused() {
     for (argument, value, instead) in [
         ("--matcher", "ndt", "p2p or p2l"),
         ("--detector", "context", "nearby or histogram"),
@@ -22,7 +16,7 @@ fn what_no_exercise_does_cannot_be_asked_for() {
 }
 
 /// Of no use once a student has written it.
-#[cfg(all(feature = "exercises", not(feature = "exercise_solutions")))]
+#[cfg(not(feature = "exercise_solutions"))]
 #[test]
 fn what_is_not_written_is_named() {
     let text = include_str!("../../../exercises/src/trimmed_icp.rs");

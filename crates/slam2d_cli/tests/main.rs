@@ -4,7 +4,6 @@ mod commands;
 mod dask;
 mod doctor;
 mod estimators;
-mod exercises;
 mod files;
 mod logs;
 mod optimize;
