@@ -231,7 +231,8 @@ fn in_one_sentence<T>(work: impl FnOnce() -> T) -> Result<T, LapError> {
     let said = Arc::new(Mutex::new(String::new()));
     let heard = Arc::clone(&said);
     panic::set_hook(Box::new(move |panic| {
-        let what = panic.payload_as_str().unwrap_or("a panic").to_owned();
+        let what = panic.payload_as_str().unwrap_or("a panic");
+        let what = what.replace('\n', " ");
         let place = panic
             .location()
             .map(|place| format!(" ({}:{})", place.file(), place.line()));
