@@ -280,7 +280,9 @@ impl Driven {
         if self.by_histogram {
             say!("  range_histogram  proposes loops");
         }
-        say!("  verify_loop      what it rejects is not tried; ours tests the others again");
+        if !self.verdicts.is_empty() {
+            say!("  verify_loop      what it rejects is not tried; ours tests the others again");
+        }
         for (new, old, found) in &self.verdicts {
             let verdict = if found.accepted {
                 "accepted"
