@@ -11,5 +11,6 @@ mod page;
 mod palette;
 mod rng;
 mod scan;
+mod teaching;
 mod terrain;
 mod worlds;

@@ -12,7 +12,7 @@ mod length;
 mod printed;
 mod registrations;
 mod thousand_laps;
-mod widgets;
+pub mod widgets;
 
 use document::{Document, Figure, NumberLink, numbers_in, source};
 use figures::Figures;

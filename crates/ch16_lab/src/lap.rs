@@ -48,6 +48,7 @@ pub use report::{Keyframe, LoopAttempt, LoopEffect, TickMetrics, TickReport, Win
 pub use run::LapRun;
 pub use runner::LapRunner;
 
+use ch16_slam2d::chapter::SlamParts;
 use ch16_slam2d::graph::PoseGraph;
 use ch16_slam2d::slam::{PendingFrame, Slam, SlamReport};
 
@@ -74,12 +75,20 @@ impl Lap {
     /// The estimator gets the first sweep and the drive's true start as the origin of its map.
     #[must_use]
     pub fn on_drive(config: LapConfig, drive: Arc<Drive>) -> Self {
+        let parts = SlamParts::of(&config.slam);
+        Self::with_parts(config, drive, parts)
+    }
+
+    /// The same with custom matchers and a custom loop detector.
+    #[must_use]
+    pub fn with_parts(config: LapConfig, drive: Arc<Drive>, parts: SlamParts) -> Self {
         debug_assert_eq!(&config.drive, drive.config());
-        let mut slam = Slam::new(SlamConfig {
+        let slam = SlamConfig {
             start: config.drive.start,
             scan: config.drive.scan,
             ..config.slam.clone()
-        });
+        };
+        let mut slam = Slam::with_parts(slam, parts);
         slam.step_prepared(&drive.prepared(0)).expect(USABLE);
         Self {
             judge: Judge::new(),

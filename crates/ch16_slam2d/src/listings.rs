@@ -15,7 +15,7 @@
 //! | `registration` | [`icp()`] |
 //! | `information` | [`icp_information`], [`regularize`] |
 //! | `pose_graph` | [`PoseEdge`], [`PoseGraph`] |
-//! | `loop_closure` | [`detect_loop_candidates`], [`verify_loop`] |
+//! | `loop_closure` | [`detect_loop_candidates`], [`submap`], [`verify_loop`] |
 
 mod align;
 mod cloud;
@@ -31,7 +31,7 @@ pub use align::{point_to_plane_step, svd_align};
 pub use cloud::PointCloud;
 pub use correspondence::{Correspondence, associate};
 pub use information::{icp_information, regularize};
-pub use loop_closure::{LoopConfig, VerifiedLoop, detect_loop_candidates, verify_loop};
+pub use loop_closure::{LoopConfig, VerifiedLoop, detect_loop_candidates, submap, verify_loop};
 pub use pose_graph::{EdgeKind, PoseEdge, PoseGraph};
 pub use registration::{IcpConfig, IcpResult, IcpVariant, icp};
 pub use se2::SE2;

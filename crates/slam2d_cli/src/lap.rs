@@ -1,5 +1,7 @@
 //! `slam2d lap`: a lap at one seed and noise factor in the Apartment or another world.
 
+#[cfg(feature = "exercises")]
+mod exercises;
 mod incremental;
 mod laps;
 
@@ -7,7 +9,9 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use ch16_lab::lap::{Choice, Drive, LapEstimator, LapRecord, LapRunner, LoopAttempt, TickReport};
+use ch16_lab::lap::{
+    Choice, Drive, LapConfig, LapEstimator, LapRecord, LapRunner, LoopAttempt, TickReport,
+};
 use clap::Args;
 use pr_geom::SE2;
 use robot_io::json_log::FrameLine;
@@ -40,6 +44,9 @@ pub struct LapArgs {
     /// Write the recorded scans to this file, one line of JSON each: a log.
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
+    /// Let the functions that you wrote in exercises/ drive the lap: docs/teaching/exercises.md.
+    #[arg(long, conflicts_with_all = ["front_end", "loop_matcher", "gate", "information", "estimator", "laps", "json"])]
+    exercises: bool,
     #[command(flatten)]
     laps: laps::LapsArgs,
     /// Print one JSON object with every tick, keyframe and loop event.
@@ -119,6 +126,25 @@ pub enum LapError {
         /// The estimator.
         estimator: &'static str,
     },
+    /// The command was built without the student's functions.
+    #[error(
+        "this slam2d was built without your exercises: cargo run -p slam2d_cli --features exercises -- lap --exercises"
+    )]
+    #[cfg_attr(feature = "exercises", expect(dead_code, reason = "they are built in"))]
+    WithoutExercises,
+    /// An exercise is not written, or panics.
+    #[error("--exercises: {0}")]
+    #[cfg(feature = "exercises")]
+    Exercise(String),
+    /// No exercise does what is asked for.
+    #[error("--exercises has none for that {argument}: take {instead}")]
+    #[cfg(feature = "exercises")]
+    NoExercise {
+        /// The argument.
+        argument: &'static str,
+        /// What there is.
+        instead: &'static str,
+    },
     /// The wardrobe exists only in the Apartment.
     #[error("--wardrobe applies to the Apartment only; omit --world")]
     NotTheApartment,
@@ -178,6 +204,9 @@ pub fn run(args: &LapArgs) -> Result<(), LapError> {
         incremental::print(ancestor, &config, args);
         return Ok(());
     }
+    if args.exercises {
+        return run_exercises(&config, args);
+    }
     let record = LapRunner::new().run(&config);
     if args.json {
         print_json(&LapJson::new(&record, args));
@@ -185,6 +214,19 @@ pub fn run(args: &LapArgs) -> Result<(), LapError> {
         print_text(&record, args);
     }
     Ok(())
+}
+
+#[cfg(feature = "exercises")]
+fn run_exercises(config: &LapConfig, args: &LapArgs) -> Result<(), LapError> {
+    let driven = exercises::drive(config)?;
+    print_text(&driven.record, args);
+    driven.print();
+    Ok(())
+}
+
+#[cfg(not(feature = "exercises"))]
+fn run_exercises(_: &LapConfig, _: &LapArgs) -> Result<(), LapError> {
+    Err(LapError::WithoutExercises)
 }
 
 /// Writes every frame of a drive with the true pose.

@@ -388,3 +388,10 @@ fn a_closed_pipe_is_not_an_error() {
     assert!(output.stderr.is_empty());
     assert!(output.status.success());
 }
+
+#[cfg(not(feature = "exercises"))]
+#[test]
+fn a_command_without_the_exercises_says_how_to_build_one_with_them() {
+    let command = "cargo run -p slam2d_cli --features exercises -- lap --exercises";
+    assert_refused(&["lap", "--exercises"], command);
+}

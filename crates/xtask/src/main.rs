@@ -4,6 +4,7 @@
 //! how to get it. Tools go to `target/tools`; only the wasm target and Chromium go elsewhere, through rustup and apt.
 
 mod bench;
+mod exercises;
 mod fuzz;
 mod run;
 mod serve;
@@ -72,6 +73,8 @@ enum Command {
         #[arg(long)]
         json: Option<PathBuf>,
     },
+    /// Show how far you are with the exercises in code, and what comes next.
+    Exercises(exercises::Exercises),
     /// Measure the effect of each size optimization of the module.
     Sizes,
 }
@@ -99,6 +102,7 @@ fn main() -> ExitCode {
         Command::RecordCounts => suite::record_counts(),
         Command::Fuzz(fuzz) => fuzz::fuzz(&fuzz),
         Command::Bench { json } => bench::bench(json.as_deref()),
+        Command::Exercises(args) => exercises::exercises(args),
         Command::Sizes => site::sizes(),
     };
     match done {
@@ -140,6 +144,10 @@ mod tests {
             "fuzz --keep",
             "bench --json figures.json",
             "record-counts",
+            "exercises --watch",
+            "exercises --json",
+            "exercises --solutions",
+            "test exercises",
         ] {
             assert!(parse(line).is_ok(), "{line}");
         }

@@ -7,6 +7,7 @@ use std::{env, fs, hint, thread};
 use anyhow::{Context as _, bail};
 use clap::ValueEnum;
 
+use crate::exercises;
 use crate::run::{cargo, program, root, run};
 use crate::site::{self, Speed};
 use crate::tools::{self, TARGET, linting};
@@ -20,6 +21,8 @@ pub enum Piece {
     Licences,
     /// Everything native: compiled and linted in one pass, then tested
     Native,
+    /// The exercises in code: the solutions pass and drive a lap, what nobody wrote fails
+    Exercises,
     /// Lints of code for WebAssembly only
     Lints,
     /// Counted instructions against the recorded ones
@@ -51,7 +54,10 @@ pub fn chosen(named: Vec<Piece>, quick: bool) -> Vec<Piece> {
 /// The check that failed.
 pub fn test(pieces: &[Piece]) -> anyhow::Result<()> {
     // Report missing tools before many minutes of compiling and testing.
-    let is_native = |piece| matches!(piece, &Piece::Format | &Piece::Native | &Piece::Counts);
+    let is_native = |piece| {
+        use Piece::{Counts, Exercises, Format, Native};
+        matches!(piece, &Format | &Native | &Exercises | &Counts)
+    };
     if !pieces.iter().all(is_native) {
         tools::ensure_web_tools()?;
     }
@@ -90,6 +96,7 @@ fn test_piece(piece: Piece, chromium: Option<&Path>, skipped: &Path) -> anyhow::
             tell(linting(&mut test)?.args(["test", "--quiet"]));
             run("Native tests", &mut test)
         }
+        Piece::Exercises => exercises::check(exercises::Lints::Denied),
         Piece::Lints => {
             let mut lint = cargo();
             lint.args(["clippy", "--quiet", "--target", TARGET])

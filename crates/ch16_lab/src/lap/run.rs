@@ -33,7 +33,12 @@ pub(super) enum Stage {
 impl Stage {
     /// The lap of `config` on a simulated drive.
     pub(super) fn on(config: &LapConfig, drive: Arc<Drive>) -> Self {
-        let lap = Lap::on_drive(config.clone(), Arc::clone(&drive));
+        Self::of(Lap::on_drive(config.clone(), drive))
+    }
+
+    /// A lap that stands at its start.
+    pub(super) fn of(lap: Lap) -> Self {
+        let drive = Arc::clone(lap.drive());
         Self::Lap {
             drive,
             recorder: Box::new(Recorder::new(lap)),

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::record::LapRecord;
 use super::run::{LapRun, Stage};
-use super::{Drive, DriveSimulation, LapConfig};
+use super::{Drive, DriveSimulation, Lap, LapConfig};
+use ch16_slam2d::chapter::SlamParts;
 
 /// Runs laps and keeps the simulated drive between them.
 ///
@@ -28,6 +29,19 @@ impl LapRunner {
         loop {
             if let Some(record) = run.step() {
                 self.keep(&record);
+                return record;
+            }
+        }
+    }
+
+    /// The lap of `config` with custom matchers and a custom loop detector, and its front end alone.
+    #[must_use]
+    pub fn run_with_parts(config: &LapConfig, parts: SlamParts) -> LapRecord {
+        let drive = Arc::new(Drive::simulate(&config.drive));
+        let lap = Lap::with_parts(config.clone(), drive, parts);
+        let mut run = LapRun::new(config.clone(), Stage::of(lap));
+        loop {
+            if let Some(record) = run.step() {
                 return record;
             }
         }
@@ -58,7 +72,6 @@ impl LapRunner {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lap::Lap;
 
     #[test]
     fn a_lap_does_not_depend_on_what_ran_before() {
@@ -70,7 +83,10 @@ mod tests {
             LapConfig::default().without_loops(),
         ];
         for config in &configs {
-            assert_eq!(runner.run(config), LapRunner::new().run(config));
+            let fresh = LapRunner::new().run(config);
+            assert_eq!(runner.run(config), fresh);
+            let parts = SlamParts::of(&config.slam);
+            assert_eq!(LapRunner::run_with_parts(config, parts), fresh);
         }
     }
 

@@ -134,7 +134,8 @@ pub fn verify_loop(
 }
 
 /// The sweeps around a node at their poses in the graph, in the frame of that node.
-fn submap(
+#[must_use]
+pub fn submap(
     graph: &PoseGraph,
     sweeps: &[PointCloud],
     center: NodeIndex,

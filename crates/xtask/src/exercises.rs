@@ -1,0 +1,399 @@
+//! `cargo xtask exercises`: how far a student is, and whether our own solutions hold.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, SystemTime};
+use std::{fmt, fs};
+
+use anyhow::{Context as _, bail, ensure};
+
+use crate::run::{cargo, root, run};
+use crate::tools::linting;
+
+/// The arguments.
+#[derive(Clone, Copy, Debug, Default, clap::Args)]
+pub struct Exercises {
+    /// Run again after every save.
+    #[arg(long)]
+    watch: bool,
+    /// One JSON object for a grader: docs/teaching/exercises.md has its fields.
+    #[arg(long, conflicts_with = "watch")]
+    json: bool,
+    /// Check that the solutions pass, and that exercises which nobody wrote fail.
+    #[arg(long, conflicts_with_all = ["watch", "json"])]
+    solutions: bool,
+}
+
+/// The exercises in their order, each with a hint.
+const EXERCISES: [(&str, &str); 7] = [
+    (
+        "svd_align",
+        "Subtract both means first; then only a rotation is left to find, and t follows from the means.",
+    ),
+    (
+        "point_to_plane_step",
+        "Sum the outer products of the rows, add the ridge, solve. Then turn about the centroid, not the origin.",
+    ),
+    (
+        "residual",
+        "Z⁻¹ comes first in the product. SE2 has inverse, log and adjoint; the product is `*`.",
+    ),
+    (
+        "gauss_newton",
+        "Each edge adds four 3×3 blocks and two 3-vectors; leave out those of the held node, and give it a diagonal.",
+    ),
+    (
+        "verify_loop",
+        "The belief is in the candidate's frame: T₀ = T_candidate⁻¹ T_node. The gate compares T̂ with T₀, not with the world.",
+    ),
+    (
+        "trimmed_icp",
+        "Trim after each association, the first one too. Count what is kept with ceil, and keep at least one.",
+    ),
+    (
+        "range_histogram",
+        "A bin is the range times 64/max_range, rounded down, 63 at most. Skip bins that are empty in both.",
+    ),
+];
+
+/// How an exercise stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Passes,
+    Fails,
+    NotWritten,
+}
+
+impl fmt::Display for State {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Passes => "passes",
+            Self::Fails => "fails",
+            Self::NotWritten => "not written",
+        })
+    }
+}
+
+/// What a run of the tests printed.
+struct Report {
+    /// Names as `exercise::test`, in the order of the run, and whether each passed.
+    tests: Vec<(String, bool)>,
+    /// The first message of each test that failed.
+    messages: HashMap<String, String>,
+}
+
+impl Report {
+    /// Reads what libtest prints; none if it did not come to its end.
+    fn read(printed: &str) -> Option<Self> {
+        let result = |line: &str| {
+            let (name, verdict) = line.strip_prefix("test ")?.rsplit_once(" ... ")?;
+            Some((name.to_owned(), verdict == "ok"))
+        };
+        let sections = printed.split("\n---- ").skip(1);
+        let message = |section: &str| {
+            let (name, said) = section.split_once(" stdout ----")?;
+            let said = said
+                .split_once(" panicked at ")?
+                .1
+                .split("\nnote: ")
+                .next()?;
+            Some((name.to_owned(), said.trim().to_owned()))
+        };
+        printed.contains("\ntest result: ").then(|| Self {
+            tests: printed.lines().filter_map(result).collect(),
+            messages: sections.filter_map(message).collect(),
+        })
+    }
+
+    fn of<'a>(&'a self, exercise: &'a str) -> impl Iterator<Item = (&'a str, bool)> + Clone {
+        self.tests.iter().filter_map(move |(name, passed)| {
+            let test = name.strip_prefix(exercise)?.strip_prefix("::")?;
+            Some((test, *passed))
+        })
+    }
+
+    fn state(&self, exercise: &str) -> State {
+        let mut tests = self.of(exercise).peekable();
+        if tests.peek().is_some() && tests.all(|(_, passed)| passed) {
+            State::Passes
+        } else if is_untouched(exercise) {
+            State::NotWritten
+        } else {
+            State::Fails
+        }
+    }
+
+    /// A list, a bar, and the first exercise that does not pass, with its hint.
+    fn print(&self) {
+        for (exercise, _) in EXERCISES {
+            let (passed, all) = self.passed(exercise);
+            println!(
+                "  {exercise:<20}  {passed} of {all} tests  {}",
+                self.state(exercise)
+            );
+        }
+        let passes = |(exercise, _): &(&str, &str)| self.state(exercise) == State::Passes;
+        let done = EXERCISES.iter().filter(|exercise| passes(exercise)).count();
+        let bar = "█".repeat(4 * done) + &"░".repeat(4 * (EXERCISES.len() - done));
+        println!("\n{bar}  {done} of {} exercises", EXERCISES.len());
+        let Some((exercise, hint)) = EXERCISES.iter().find(|exercise| !passes(exercise)) else {
+            println!(
+                "\nSee them drive: cargo run -p slam2d_cli --features exercises -- lap --exercises"
+            );
+            return;
+        };
+        println!("\nNext: exercises/src/{exercise}.rs\nHint: {hint}");
+        println!("Run:  cargo test -p exercises {exercise}::");
+        let failed = self.of(exercise).find(|(_, passed)| !passed);
+        let message = failed.and_then(|(test, _)| {
+            let message = self.messages.get(&format!("{exercise}::{test}"))?;
+            Some((test, message))
+        });
+        if let Some((test, message)) = message {
+            println!("\n{test}\n  {}", message.replace('\n', "\n  "));
+        }
+    }
+
+    /// Tests that passed, and all tests.
+    fn passed(&self, exercise: &str) -> (usize, usize) {
+        let tests = self.of(exercise);
+        (
+            tests.clone().filter(|(_, passed)| *passed).count(),
+            tests.count(),
+        )
+    }
+
+    /// The JSON of a grader. Names of exercises and tests are those of Rust: nothing has to be escaped.
+    fn json(report: Option<&Self>) -> String {
+        let exercise = |report: &Self, name: &str| {
+            let tests = report.of(name);
+            let tests =
+                tests.map(|(test, passed)| format!(r#"{{"name":"{test}","passed":{passed}}}"#));
+            let tests = tests.collect::<Vec<_>>().join(",");
+            let state = report.state(name);
+            format!(r#"{{"name":"{name}","state":"{state}","tests":[{tests}]}}"#)
+        };
+        let of_all = |report: &Self| EXERCISES.map(|(name, _)| exercise(report, name)).join(",");
+        let passes = |report: &Self| {
+            let states = EXERCISES.iter().map(|(name, _)| report.state(name));
+            states.filter(|state| *state == State::Passes).count()
+        };
+        format!(
+            r#"{{"schema":1,"ran":{},"passed":{},"total":{},"exercises":[{}]}}"#,
+            report.is_some(),
+            report.map_or(0, passes),
+            EXERCISES.len(),
+            report.map_or_else(String::new, of_all)
+        )
+    }
+}
+
+fn source(exercise: &str) -> PathBuf {
+    root().join(format!("exercises/src/{exercise}.rs"))
+}
+
+/// Whether the file still holds what it was handed out with.
+fn is_untouched(exercise: &str) -> bool {
+    fs::read_to_string(source(exercise)).is_ok_and(|text| text.contains("not_written("))
+}
+
+/// Runs the tests over the student's functions; none if they do not compile or end the test program.
+fn run_tests() -> anyhow::Result<Option<Report>> {
+    let mut tests = cargo();
+    tests
+        .args([
+            "test",
+            "--package",
+            "exercises",
+            "--test",
+            "exercises",
+            "--",
+            "--color",
+            "never",
+        ])
+        .env("RUST_BACKTRACE", "0")
+        .stderr(Stdio::inherit());
+    let output = tests.output().context("cargo cannot be started")?;
+    Ok(Report::read(&String::from_utf8_lossy(&output.stdout)))
+}
+
+/// The command.
+///
+/// # Errors
+/// If cargo is missing, the tests do not run, or, with `--solutions`, ours do not hold.
+pub fn exercises(args: Exercises) -> anyhow::Result<()> {
+    if args.solutions {
+        return check(Lints::Allowed);
+    }
+    loop {
+        let saved = last_save();
+        let report = run_tests()?;
+        match (&report, args.json) {
+            (_, true) => println!("{}", Report::json(report.as_ref())),
+            (Some(report), false) => report.print(),
+            (None, false) if args.watch => println!("\nThe tests did not run: see above"),
+            (None, false) => bail!("the tests did not run: see above"),
+        }
+        if !args.watch {
+            return Ok(());
+        }
+        println!("\nWaiting for a save in exercises/src; Ctrl-C ends it");
+        while last_save() == saved {
+            sleep(Duration::from_millis(300));
+        }
+    }
+}
+
+/// When a file of the student was last written.
+fn last_save() -> Option<SystemTime> {
+    let saved = |(exercise, _)| fs::metadata(source(exercise)).ok()?.modified().ok();
+    EXERCISES.into_iter().filter_map(saved).max()
+}
+
+/// What `default-members` leaves out besides the exercises. With the same packages as the native tests every crate has
+/// the features that it has there, and is not compiled again.
+const LEFT_OUT: [&str; 6] = [
+    "solver_peers",
+    "web_bindgen",
+    "slam_desktop",
+    "slam_web_module",
+    "slam_robot_module",
+    "slam2d_bench_module",
+];
+
+/// Whether a lint ends the check: in the suite it does, and crates are compiled as the native tests have them.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Lints {
+    /// A student's code may have some.
+    Allowed,
+    /// Ours may not.
+    Denied,
+}
+
+/// The tests named `exercises`: those of the exercises, and those of `slam2d lap --exercises`.
+fn all_tests(features: &str, lints: Lints) -> anyhow::Result<Command> {
+    let mut tests = cargo();
+    if lints == Lints::Denied {
+        linting(&mut tests)?;
+    }
+    tests
+        .args([
+            "test",
+            "--workspace",
+            "--test",
+            "exercises",
+            "--no-fail-fast",
+        ])
+        .args(LEFT_OUT.iter().flat_map(|package| ["--exclude", package]))
+        .args(["--features", features])
+        .env("RUST_BACKTRACE", "0");
+    Ok(tests)
+}
+
+/// Checks that the solutions pass and drive a lap, and that every test of an exercise which nobody wrote fails.
+///
+/// # Errors
+/// What does not hold.
+pub fn check(lints: Lints) -> anyhow::Result<()> {
+    let solved = "exercises/solutions,slam2d_cli/exercise_solutions";
+    run(
+        "Solutions of the exercises",
+        all_tests(solved, lints)?.arg("--quiet"),
+    )?;
+    println!("\n── Exercises as they are");
+    let output = all_tests("slam2d_cli/exercises", lints)?
+        .stderr(Stdio::piped())
+        .output();
+    let output = output.context("cargo cannot be started")?;
+    let report = Report::read(&String::from_utf8_lossy(&output.stdout));
+    let report = report.with_context(|| String::from_utf8_lossy(&output.stderr).into_owned())?;
+    for (exercise, _) in EXERCISES.iter().filter(|(name, _)| is_untouched(name)) {
+        let (passed, all) = report.passed(exercise);
+        ensure!(all > 0, "{exercise} has no test");
+        ensure!(
+            passed == 0,
+            "{passed} tests of {exercise} pass, and nobody wrote it"
+        );
+    }
+    // Those of the command are in no module.
+    let of_command = report.tests.iter().filter(|(name, _)| !name.contains("::"));
+    for (name, passed) in of_command {
+        ensure!(*passed, "slam2d lap --exercises: {name} fails");
+    }
+    let written = EXERCISES.iter().filter(|(name, _)| !is_untouched(name));
+    println!(
+        "── {} written, and no test of the others passes",
+        written.count()
+    );
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PRINTED: &str = "running 3 tests
+test residual::a ... ok
+test svd_align::b ... FAILED
+test svd_align::c ... ok
+
+failures:
+
+---- svd_align::b stdout ----
+
+thread 'svd_align::b' (7) panicked at exercises/tests/svd_align.rs:3:5:
+off by 2
+note: run with `RUST_BACKTRACE=1`
+
+
+failures:
+    svd_align::b
+
+test result: FAILED. 2 passed; 1 failed
+";
+
+    #[test]
+    fn what_libtest_prints_is_read() {
+        let report = Report::read(PRINTED).unwrap();
+        assert_eq!(report.passed("svd_align"), (1, 2));
+        assert_eq!(report.state("residual"), State::Passes);
+        assert_ne!(report.state("svd_align"), State::Passes);
+        assert_ne!(
+            report.state("gauss_newton"),
+            State::Passes,
+            "it has no test"
+        );
+        let message = &report.messages["svd_align::b"];
+        assert_eq!(message, "exercises/tests/svd_align.rs:3:5:\noff by 2");
+        let aborted = PRINTED.split("failures:").next().unwrap();
+        assert!(Report::read(aborted).is_none());
+    }
+
+    #[test]
+    fn the_json_names_every_exercise_and_says_if_nothing_ran() {
+        let json = Report::json(Report::read(PRINTED).as_ref());
+        assert!(
+            json.starts_with(r#"{"schema":1,"ran":true,"passed":1,"total":7,"#),
+            "{json}"
+        );
+        let residual =
+            r#"{"name":"residual","state":"passes","tests":[{"name":"a","passed":true}]}"#;
+        assert!(json.contains(residual), "{json}");
+        assert!(EXERCISES.iter().all(|(name, _)| json.contains(name)));
+        let none = r#"{"schema":1,"ran":false,"passed":0,"total":7,"exercises":[]}"#;
+        assert_eq!(Report::json(None), none);
+    }
+
+    #[test]
+    fn every_exercise_has_its_file_its_tests_and_no_other_is_left_out() {
+        let main = fs::read_to_string(root().join("exercises/tests/main.rs")).unwrap();
+        for (name, _) in EXERCISES {
+            assert!(source(name).is_file(), "{name}");
+            assert!(main.contains(&format!("mod {name};")), "{name}");
+        }
+        let files = fs::read_dir(root().join("exercises/src")).unwrap().count();
+        assert_eq!(files, EXERCISES.len() + 1, "lib.rs and the exercises");
+    }
+}

@@ -1,0 +1,45 @@
+//! 7. Places by how far one sees (exercise 7 of the page).
+//!
+//! **Task.** A search around the estimated pose needs the very pose that is wrong. Propose loops by what the sweeps
+//! look like instead: a histogram of ranges does not change if the robot turns.
+//!
+//! **Formula.** 64 bins of equal width from 0 to `max_range`; what lies beyond counts in the last one. The histogram
+//! holds shares: they sum to 1, or to 0 if there are no points. The χ² distance of two of them is
+//!
+//! ```text
+//! ½ Σ (aᵢ − bᵢ)² / (aᵢ + bᵢ)        over the bins in which one of them has a share
+//! ```
+//!
+//! It is 0 for equals, and 1 if no bin is shared.
+
+use ch16_slam2d::listings::PointCloud;
+
+/// Number of bins.
+pub const BINS: usize = 64;
+
+/// Shares of the points by their distance from the sensor.
+#[must_use]
+pub fn range_histogram(cloud: &PointCloud, max_range: f64) -> [f64; BINS] {
+    crate::not_written("range_histogram")
+}
+
+/// The χ² distance, 0 to 1.
+#[must_use]
+pub fn chi2_distance(a: &[f64; BINS], b: &[f64; BINS]) -> f64 {
+    crate::not_written("range_histogram")
+}
+
+/// The nodes that look like `node`: at least `min_gap` older, no farther than `max_distance`, the most alike first, and
+/// of equals the older first.
+///
+/// `sweeps[k]` is the sweep of node k in its own frame, `max_range` (m) what the sensor sees.
+#[must_use]
+pub fn detect_by_histogram(
+    sweeps: &[PointCloud],
+    node: usize,
+    min_gap: usize,
+    max_range: f64,
+    max_distance: f64,
+) -> Vec<usize> {
+    crate::not_written("range_histogram")
+}

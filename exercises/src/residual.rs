@@ -1,0 +1,29 @@
+//! 3. By how much two poses contradict a measurement, and the derivatives of that.
+//!
+//! **Task.** An edge of the graph measured Z, the pose of node j in the frame of node i. Write the residual, and its
+//! Jacobians for perturbations on the right, `T ⊞ δ = T exp(δ)`, translation first.
+//!
+//! **Formula.**
+//!
+//! ```text
+//! e = log(Z⁻¹ Tᵢ⁻¹ Tⱼ)
+//! ∂e/∂δⱼ ≈ I        ∂e/∂δᵢ ≈ −Ad(Z⁻¹)
+//! ```
+//!
+//! Both leave out the inverse of the right Jacobian of e. They are exact if e is zero, and near enough otherwise: a
+//! wrong Jacobian costs iterations, a wrong residual costs correctness (exercise 3 of the page).
+
+use ch16_slam2d::listings::SE2;
+use nalgebra::{Matrix3, Vector3};
+
+/// `e`, in m, m, rad, of the poses `from` (Tᵢ) and `to` (Tⱼ) and the measurement `z` (Z).
+#[must_use]
+pub fn residual(from: &SE2, to: &SE2, z: &SE2) -> Vector3<f64> {
+    crate::not_written("residual")
+}
+
+/// `(∂e/∂δᵢ, ∂e/∂δⱼ)`.
+#[must_use]
+pub fn jacobians(z: &SE2) -> (Matrix3<f64>, Matrix3<f64>) {
+    crate::not_written("residual")
+}

@@ -1,0 +1,29 @@
+//! 6. ICP that drops the longest pairs (exercise 6 of the page).
+//!
+//! **Task.** A box that was moved between two sweeps has pairs, and all of them are wrong. Write ICP with
+//! `cfg.trim`, the share of the pairs to drop, the longest first (Chetverikov et al. 2002). Use `crate::svd_align` and
+//! `crate::point_to_plane_step` of exercises 1 and 2.
+//!
+//! **Formula.**
+//!
+//! ```text
+//! trimmed(pairs): of n pairs keep the k = max(1, ⌈(1 − trim) n⌉) shortest, in their order
+//!
+//! pose = init, pairs = trimmed(associate(cloud, map, pose, τ))
+//! repeat at most max_iters times, while there are min_pairs pairs:
+//!     pose = increment(pairs) · pose        by cfg.variant
+//!     pairs = trimmed(associate(cloud, map, pose, τ))
+//!     stop if increment.step_size() < tolerance
+//! ```
+//!
+//! **Rules.** Pairs as long as the last that is kept may stay with it. `trace` holds the guess and the pose after each
+//! increment; `inliers` and `rmse` are of the last pairs. The rmse is of what the variant reduces: distances, or
+//! `n · (p − q)` for point to plane if the pair has a normal. Without pairs it is infinite.
+
+use ch16_slam2d::listings::{IcpConfig, IcpResult, PointCloud, SE2, VoxelMap};
+
+/// Registers a cloud on a map from the guess `init`.
+#[must_use]
+pub fn icp(cloud: &PointCloud, map: &VoxelMap, init: SE2, cfg: &IcpConfig) -> IcpResult {
+    crate::not_written("trimmed_icp")
+}

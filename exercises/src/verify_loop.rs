@@ -1,0 +1,37 @@
+//! 5. Whether a loop is to be believed.
+//!
+//! **Task.** The detector says that `node` might see what `candidate` saw. Register the sweep of the one on the submap
+//! around the other, and accept the loop if both tests pass: it fits, and the odometry could have drifted so far.
+//!
+//! **Formula.** The registration starts at the belief of the graph, and the gate tests against it:
+//!
+//! ```text
+//! T₀ = T_candidate⁻¹ T_node        T̂ = icp(sweep, submap, T₀)
+//! ν = log(T₀⁻¹ T̂)
+//! S = gap · diag(σ², σ², σ_θ²)        gap = node − candidate, (σ, σ_θ) = cfg.drift
+//! χ² = νᵀ S⁻¹ ν
+//! accepted if rmse ≤ cfg.max_rmse, inliers ≥ cfg.min_inliers, and χ² ≤ cfg.gate
+//! ```
+//!
+//! The edge measures T̂. Its information is `regularize(icp_information(pairs, σ, inflate), 1.0, 2500.0)` with the
+//! pairs of `associate` at T̂ and `(σ, inflate) = cfg.trust`.
+//!
+//! **Rules.** ICP is point to point, τ = max(cfg.radius/2, 0.6), at most 30 iterations, and else the default. The
+//! listings have what is not the task: `submap`, `icp`, `associate`, `icp_information`, `regularize`.
+
+use ch16_slam2d::listings::{LoopConfig, PointCloud, PoseGraph, VerifiedLoop};
+use petgraph::graph::NodeIndex;
+
+/// Registers the sweep of `node` on the submap around `candidate`, and tests the result.
+///
+/// `sweeps[k]` is the sweep of node k in its own frame.
+#[must_use]
+pub fn verify_loop(
+    graph: &PoseGraph,
+    sweeps: &[PointCloud],
+    node: NodeIndex,
+    candidate: NodeIndex,
+    cfg: &LoopConfig,
+) -> VerifiedLoop {
+    crate::not_written("verify_loop")
+}

@@ -1,0 +1,139 @@
+//! 6. ICP, and the box that moved.
+
+use ch16_lab::basin::BasinScene;
+use ch16_lab::moving_box::{BoxConfig, BoxMethods, BoxScene};
+use ch16_slam2d::icp::{self, IcpWorkspace};
+use ch16_slam2d::listings::{IcpConfig, IcpVariant, PointCloud, SE2, VoxelMap, associate};
+use exercises::icp;
+use nalgebra::{Point2, Vector2};
+use serde::Deserialize;
+use slam2d_tests::{assert_close, reference};
+
+use crate::canonical::{assert_same_pose, listing};
+
+fn map_of(cloud: &PointCloud, max_per_cell: usize) -> VoxelMap {
+    let mut map = VoxelMap::new(0.25, max_per_cell);
+    map.insert(&cloud.points, &cloud.normals(0.3));
+    map
+}
+
+#[derive(Deserialize)]
+struct Basin {
+    target: Vec<[f64; 2]>,
+    source: Vec<[f64; 2]>,
+    truth: [f64; 3],
+    runs: Vec<Run>,
+}
+
+#[derive(Deserialize)]
+struct Run {
+    heading_deg: f64,
+    dx: f64,
+    dy: f64,
+    variant: String,
+    tau: f64,
+    pose: [f64; 3],
+    iterations: usize,
+    rmse: f64,
+    inliers: usize,
+}
+
+/// Every fourth registration of `tests/reference/basin.json`: right answers, quarter turns, and other false minima.
+#[test]
+fn without_trimming_every_registration_ends_where_the_reference_ends() {
+    let basin: Basin = reference("basin.json");
+    let cloud = |points: &[[f64; 2]]| PointCloud {
+        points: points.iter().map(|p| Point2::from(*p)).collect(),
+        stamp: 0.0,
+    };
+    let (map, source) = (map_of(&cloud(&basin.target), 8), cloud(&basin.source));
+    let pose = |[x, y, theta]: [f64; 3]| SE2::new(Vector2::new(x, y), theta);
+    let [x, y, theta] = basin.truth;
+    for run in basin.runs.iter().step_by(4) {
+        let guess = [x + run.dx, y + run.dy, theta + run.heading_deg.to_radians()];
+        let cfg = IcpConfig {
+            variant: match run.variant.as_str() {
+                "point-to-plane" => IcpVariant::PointToPlane,
+                _ => IcpVariant::PointToPoint,
+            },
+            tau: run.tau,
+            max_iters: BasinScene::MAX_ITERS,
+            ..IcpConfig::default()
+        };
+        let found = icp(&source, &map, pose(guess), &cfg);
+        assert_same_pose(found.pose, pose(run.pose), 1e-9);
+        assert_eq!(found.trace.len(), run.iterations + 1);
+        assert_eq!(found.trace.first(), Some(&pose(guess)));
+        assert_eq!(found.trace.last(), Some(&found.pose));
+        assert_eq!(found.inliers, run.inliers);
+        assert_close("rmse", found.rmse, run.rmse, 1e-9);
+    }
+}
+
+/// The sweeps of w16.8 with a fifth of the points on the box: source, map, and the core's answers.
+fn moving_box(seed: u32) -> (PointCloud, VoxelMap, [icp::IcpSummary; 2]) {
+    let scene = BoxScene::new(&BoxConfig {
+        seed,
+        ..BoxConfig::default()
+    });
+    let [plain, trimmed, _] = BoxMethods::default().configs();
+    let core = [plain, trimmed].map(|cfg| scene.register(&cfg, &mut IcpWorkspace::new()));
+    let map = map_of(&listing(scene.target()), scene.target().len());
+    (listing(scene.source()), map, core)
+}
+
+fn settings(trim: f64) -> IcpConfig {
+    IcpConfig {
+        tau: 0.7,
+        max_iters: 30,
+        trim,
+        ..IcpConfig::default()
+    }
+}
+
+/// The page's exercise 6: a share of 25 % is dropped.
+#[test]
+fn trimming_takes_most_of_the_pull_of_a_box_that_moved() {
+    let truth = SE2::from(BoxScene::truth());
+    let mut bias = [Vector2::zeros(); 2];
+    for seed in 1..=10 {
+        let (source, map, core) = moving_box(seed);
+        for (k, trim) in [0.0, 0.25].into_iter().enumerate() {
+            let found = icp(&source, &map, SE2::identity(), &settings(trim));
+            assert_same_pose(found.pose, core[k].pose.into(), 1e-9);
+            assert_eq!(found.inliers, core[k].inliers, "trim {trim}");
+            bias[k] += (found.pose.translation() - truth.translation()) / 10.0;
+        }
+    }
+    assert!(bias[1].norm() < bias[0].norm() / 3.0, "{bias:?}");
+}
+
+#[test]
+fn the_longest_pairs_go_and_at_least_one_stays() {
+    let (source, map, _) = moving_box(1);
+    for (trim, share) in [(0.25, 0.75), (0.37, 0.63)] {
+        let cfg = settings(trim);
+        let found = icp(&source, &map, SE2::identity(), &cfg);
+        let pairs = associate(&source, &map, &found.pose, cfg.tau);
+        let mut squared: Vec<f64> = pairs.iter().map(|pair| pair.distance_squared()).collect();
+        squared.sort_by(f64::total_cmp);
+        let kept = (share * pairs.len() as f64).ceil() as usize;
+        assert_eq!(found.inliers, kept);
+        let mean = squared[..kept].iter().sum::<f64>() / kept as f64;
+        assert_close("rmse", found.rmse, mean.sqrt(), 1e-12);
+    }
+    let all = IcpConfig {
+        min_pairs: 1,
+        ..settings(1.0)
+    };
+    assert_eq!(icp(&source, &map, SE2::identity(), &all).inliers, 1);
+}
+
+#[test]
+fn too_few_pairs_end_it_at_the_guess() {
+    let (source, map, _) = moving_box(1);
+    let away = SE2::new(Vector2::new(50.0, 0.0), 0.0);
+    let found = icp(&source, &map, away, &settings(0.25));
+    assert_eq!((found.pose, found.inliers, found.trace.len()), (away, 0, 1));
+    assert_eq!(found.rmse, f64::INFINITY);
+}

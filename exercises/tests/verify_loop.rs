@@ -1,0 +1,153 @@
+//! 5. The gate, on the canonical lap.
+
+use ch16_slam2d::listings::{
+    IcpConfig, LoopConfig, PointCloud, PoseGraph, SE2, VerifiedLoop, associate, icp_information,
+    regularize, submap,
+};
+use exercises::verify_loop;
+use nalgebra::{Vector2, Vector3};
+use petgraph::graph::NodeIndex;
+use serde::Deserialize;
+use slam2d_tests::{assert_close, reference};
+
+use crate::canonical::{lap, nodes_before_loop, sweeps};
+
+#[derive(Deserialize)]
+struct Lap {
+    events: Vec<Event>,
+}
+
+#[derive(Deserialize)]
+struct Event {
+    from: usize,
+    to: usize,
+    chi2: f64,
+    rmse: f64,
+    inliers: usize,
+}
+
+/// `tests/reference/lap.json`: χ² 4.236, 0.421 and 1.125.
+#[test]
+fn the_three_loops_of_the_lap_have_the_numbers_of_the_reference() {
+    let record = lap();
+    let sweeps = sweeps(&record);
+    let events = &reference::<Vec<Lap>>("lap.json")[0].events;
+    let attempts: Vec<_> = record.lap.loop_attempts().collect();
+    assert_eq!((events.len(), attempts.len()), (3, 3));
+    for (event, attempt) in events.iter().zip(attempts) {
+        let graph = nodes_before_loop(&record, attempt.tick);
+        let (node, old) = (NodeIndex::new(event.from), NodeIndex::new(event.to));
+        let found = verify_loop(&graph, &sweeps, node, old, &LoopConfig::default());
+        // 1e-6: a whole lap lies before it.
+        assert_close("χ²", found.chi2, event.chi2, 1e-6);
+        assert_close("rmse", found.rmse, event.rmse, 1e-6);
+        assert_eq!(found.inliers, event.inliers);
+        assert!(found.accepted);
+    }
+}
+
+/// The first loop of the lap, 29 to 7.
+struct First {
+    graph: PoseGraph,
+    sweeps: Vec<PointCloud>,
+    node: NodeIndex,
+    old: NodeIndex,
+}
+
+impl First {
+    fn new() -> Self {
+        let record = lap();
+        let attempt = record.lap.loop_attempts().next().expect("three loops");
+        Self {
+            graph: nodes_before_loop(&record, attempt.tick),
+            sweeps: sweeps(&record),
+            node: NodeIndex::new(29),
+            old: NodeIndex::new(7),
+        }
+    }
+
+    fn verify(&self, cfg: &LoopConfig) -> VerifiedLoop {
+        verify_loop(&self.graph, &self.sweeps, self.node, self.old, cfg)
+    }
+}
+
+#[test]
+fn a_belief_that_is_far_off_fails_the_gate_and_nothing_else() {
+    let mut first = First::new();
+    let right = first.verify(&LoopConfig::default());
+    first.graph.graph[first.node] = first.graph.pose(first.node) * SE2::new(Vector2::zeros(), 0.2);
+    let off = first.verify(&LoopConfig::default());
+    // It fits: registration turns the sweep back.
+    assert!(off.rmse <= 0.16 && off.inliers >= 25, "{off:?}");
+    assert!(off.chi2 > 7.815 && !off.accepted, "{off:?}");
+    let apart = right.edge.z.inverse() * off.edge.z;
+    assert!(
+        apart.theta().abs() < 0.02,
+        "the edge is what was registered"
+    );
+}
+
+#[test]
+fn the_drift_grows_with_the_gap() {
+    let first = First::new();
+    let usual = first.verify(&LoopConfig::default());
+    let innovation = {
+        let belief = first.graph.pose(first.old).inverse() * first.graph.pose(first.node);
+        (belief.inverse() * usual.edge.z).log()
+    };
+    // By hand: 22 nodes of 0.045 m and 0.012 rad each.
+    let s = 22.0 * Vector3::new(0.045_f64.powi(2), 0.045_f64.powi(2), 0.012_f64.powi(2));
+    let expected = innovation
+        .component_mul(&innovation)
+        .component_div(&s)
+        .sum();
+    assert_close("χ²", usual.chi2, expected, 1e-9);
+    let narrow = LoopConfig {
+        drift: (0.0225, 0.006),
+        ..LoopConfig::default()
+    };
+    let narrow = first.verify(&narrow);
+    assert_close("half the drift", narrow.chi2, 4.0 * usual.chi2, 1e-9);
+    assert!(!narrow.accepted);
+}
+
+#[test]
+fn a_poor_fit_and_few_pairs_fail_whatever_the_gate_says() {
+    let first = First::new();
+    let usual = first.verify(&LoopConfig::default());
+    for cfg in [
+        LoopConfig {
+            max_rmse: 0.99 * usual.rmse,
+            ..LoopConfig::default()
+        },
+        LoopConfig {
+            min_inliers: usual.inliers + 1,
+            ..LoopConfig::default()
+        },
+    ] {
+        let found = first.verify(&cfg);
+        assert!(found.chi2 <= cfg.gate && !found.accepted, "{found:?}");
+    }
+    let at_the_limits = LoopConfig {
+        max_rmse: usual.rmse,
+        min_inliers: usual.inliers,
+        gate: usual.chi2,
+        ..LoopConfig::default()
+    };
+    assert!(
+        first.verify(&at_the_limits).accepted,
+        "≤ and ≥, not < and >"
+    );
+}
+
+#[test]
+fn the_edge_knows_what_its_pairs_know() {
+    let first = First::new();
+    let cfg = LoopConfig::default();
+    let edge = first.verify(&cfg).edge;
+    let map = submap(&first.graph, &first.sweeps, first.old, &cfg);
+    let tau = IcpConfig::default().tau.max(cfg.radius / 2.0);
+    let pairs = associate(&first.sweeps[first.node.index()], &map, &edge.z, tau);
+    let expected = regularize(icp_information(&pairs, 0.05, 25.0), 1.0, 2500.0);
+    assert!((edge.omega - expected).amax() < 1e-6, "{}", edge.omega);
+}

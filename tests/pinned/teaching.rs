@@ -1,0 +1,62 @@
+//! What `docs/teaching` says: its figures are those of the page, and its links show what they promise.
+
+use crate::page::document::{Document, source};
+use crate::page::widgets::Widgets;
+
+const PAGES: [&str; 3] = ["widgets", "lectures", "questions"];
+
+fn text(page: &str) -> String {
+    source(&format!("docs/teaching/{page}.md"))
+}
+
+/// The page's are compared with the core.
+#[test]
+fn every_figure_of_the_teaching_pages_is_one_of_the_page() {
+    let known = Document::parse(&source("index.html")).figures;
+    for page in PAGES {
+        let figures = Document::parse(&text(page)).figures;
+        assert!(figures.len() >= 10, "{page} has lost its figures");
+        for figure in figures {
+            assert!(known.contains(&figure), "{page}: {figure:?}");
+        }
+    }
+}
+
+/// `[words](index.html?w=16.1&heading=60), says “quarter turn”`.
+#[test]
+fn every_link_of_a_script_sets_its_widget_and_has_the_verdict_that_it_says() {
+    let script = text("widgets");
+    let mut widgets = Widgets::new();
+    let mut wrong = Vec::new();
+    let (mut links, mut verdicts) = (0, 0);
+    for link in script.split("](index.html?w=").skip(1) {
+        let (query, after) = link.split_once(')').expect("a link ends");
+        let (number, state) = query.split_once('&').expect("a link sets something");
+        let outcome = widgets.set(&format!("w{number}"), state).outcome();
+        links += 1;
+        let after: Vec<&str> = after.split_whitespace().take(12).collect();
+        let after = after.join(" ");
+        let said = after
+            .strip_prefix(", says “")
+            .and_then(|said| said.split_once('”'));
+        if let Some((said, _)) = said {
+            verdicts += 1;
+            if said != outcome.verdict {
+                wrong.push(format!("{query}: {}, not {said}", outcome.verdict));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(
+        links > 30 && verdicts > 10,
+        "{links} links, {verdicts} verdicts"
+    );
+    for widget in &widgets.0 {
+        let title = format!(
+            "## {} {}\n",
+            widget.model().spec().id,
+            widget.model().spec().title
+        );
+        assert!(script.contains(&title), "{title}");
+    }
+}
