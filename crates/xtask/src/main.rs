@@ -5,6 +5,7 @@
 
 mod bench;
 mod fuzz;
+mod python;
 mod run;
 mod serve;
 mod site;
@@ -135,6 +136,7 @@ mod tests {
             "serve --release --port 9000",
             "test node counts",
             "test --quick",
+            "test python",
             "soak 20 --only drag,embed --go-on",
             "fuzz --target graphs --minutes 30",
             "fuzz --keep",
