@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import sys
 from pathlib import Path
 
 import pytest
@@ -58,7 +59,8 @@ def test_the_stub_has_the_signatures(stub):
             if decorators == ["property"]:
                 assert inspect.isdatadescriptor(getattr(thing, method.name)), f"{name}.{method.name}"
             elif method.name == "__init__":
-                assert parameters(thing) == stated(method), name
+                # Python 3.9 does not read the signature of a class.
+                assert sys.version_info < (3, 10) or parameters(thing) == stated(method), name
             elif decorators in ([], ["staticmethod"]) and method.name != "__len__":
                 assert parameters(getattr(thing, method.name)) == stated(method), f"{name}.{method.name}"
             compared += 1
