@@ -392,11 +392,11 @@ impl PoseGraph {
         arrays::of_matrix(py, &covariance?)
     }
 
-    /// Which edges are believed if each loop may be false, shape (edges,), bool: loops along the path, then graduated
+    /// Which edges are inliers if each loop may be false, shape (edges,), bool: loops along the path, then graduated
     /// non-convexity. Edges between neighbours in time always are.
     ///
     /// Raises OptimizeError if no start leads to equations that can be solved.
-    fn believed<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    fn inlier_edges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let belief = py.detach(|| {
             let problem = self.tied()?;
             let trusted: Vec<bool> = problem.factors().iter().map(is_sequential).collect();

@@ -89,13 +89,13 @@ const VARIANTS: [(&str, IcpVariant); 2] = [
 /// trim: share of the pairs to drop, the longest first.
 /// huber_width: residual beyond which a pair weighs less, m.
 /// normal_radius: radius within which target points give each other normals, m.
-/// sigma, inflate: the covariance takes a point for off by sigma, m, and the variance times inflate, because
-///     neighbouring points are not independent.
+/// sigma: standard deviation of a point, m, for the covariance.
+/// covariance_scale: factor of the covariance, because neighbouring points are not independent.
 ///
 /// Raises ArrayError for a wrong shape or a number that is not finite, ChoiceError for an argument out of its range.
 #[pyfunction]
 #[pyo3(signature = (source, target, *, init=None, variant="point-to-plane", max_distance=0.5, max_iterations=25,
-    tolerance=1e-4, min_pairs=8, trim=0.0, huber_width=f64::INFINITY, normal_radius=0.3, sigma=0.05, inflate=12.0))]
+    tolerance=1e-4, min_pairs=8, trim=0.0, huber_width=f64::INFINITY, normal_radius=0.3, sigma=0.05, covariance_scale=12.0))]
 // The keywords of Python.
 #[expect(clippy::too_many_arguments)]
 pub fn icp(
@@ -112,7 +112,7 @@ pub fn icp(
     huber_width: f64,
     normal_radius: f64,
     sigma: f64,
-    inflate: f64,
+    covariance_scale: f64,
 ) -> PyResult<IcpResult> {
     let source = arrays::cloud("source", source)?;
     let mut target = arrays::cloud("target", target)?;
@@ -131,7 +131,7 @@ pub fn icp(
     let normal_radius = within("normal_radius", normal_radius, 1e-6, 1e6, " m")?;
     let trust = TrustConfig {
         sigma_m: within("sigma", sigma, 1e-6, 1e6, " m")?,
-        inflate: within("inflate", inflate, 1e-6, 1e6, "")?,
+        inflate: within("covariance_scale", covariance_scale, 1e-6, 1e6, "")?,
     };
     let (found, map) = py.detach(|| {
         if config.variant == IcpVariant::PointToPlane {

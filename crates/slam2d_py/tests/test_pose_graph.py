@@ -41,22 +41,22 @@ def test_covariances_are_those_of_the_normal_equations(chain):
     assert np.allclose(relative, relative.T)
 
 
-def test_a_kernel_lets_go_of_a_false_loop_and_belief_leaves_it_out(driven):
+def test_a_kernel_lets_go_of_a_false_loop_and_the_inliers_leave_it_out(driven):
     slam, _ = driven
     graph = slam.graph
     graph.optimize()
     right = graph.poses
     # The last keyframe stands at the first, so this puts it 3 m off.
     graph.add_edge(0, len(graph) - 1, (3.0, 0.0, 0.0), 100 * EYE)
-    believed = graph.believed()
-    assert believed.dtype == bool and not believed[-1] and believed[:-1].sum() >= len(graph) - 1
+    inliers = graph.inlier_edges()
+    assert inliers.dtype == bool and not inliers[-1] and inliers[:-1].sum() >= len(graph) - 1
     plain = rs.PoseGraph.from_g2o(graph.to_g2o())
     plain.optimize()
     graph.optimize(dcs=1.0)
     shift = [np.abs(poses - right)[:, :2].max() for poses in (plain.poses, graph.poses)]
     assert shift[0] > 0.5 and shift[1] < 0.2 * shift[0]
-    kept = plain.with_edges(believed)
-    assert len(kept.edges) == believed.sum() and len(kept) == len(plain)
+    kept = plain.with_edges(inliers)
+    assert len(kept.edges) == inliers.sum() and len(kept) == len(plain)
 
 
 def test_a_file_of_g2o_reads_back_to_the_same_bits(chain, tmp_path):
@@ -101,7 +101,7 @@ def test_a_wrong_edge_is_refused_in_a_sentence(chain, edge, error, said):
 def test_what_cannot_be_solved_is_said_and_moves_nothing(chain):
     chain.add_node((5, 5, 0))
     before = chain.poses
-    for refuse in (chain.optimize, chain.marginals, chain.believed, lambda: chain.relative_covariance(0, 1)):
+    for refuse in (chain.optimize, chain.marginals, chain.inlier_edges, lambda: chain.relative_covariance(0, 1)):
         with pytest.raises(rs.OptimizeError) as refused:
             refuse()
         assert str(refused.value) == "no chain of edges ties node 3 to a fixed node; give one node fixed=True"

@@ -49,7 +49,7 @@ def test_a_moved_cloud_is_moved_back(request, variant, points):
 
 def test_the_covariance_is_that_of_the_pairs(room):
     source = rs.transform(rs.inverse(POSE), room)
-    found = rs.icp(source, room, variant="point-to-point", sigma=0.03, inflate=5.0)
+    found = rs.icp(source, room, variant="point-to-point", sigma=0.03, covariance_scale=5.0)
     rotation = np.array([[np.cos(found.pose[2]), -np.sin(found.pose[2])], [np.sin(found.pose[2]), np.cos(found.pose[2])]])
     hessian = np.zeros((3, 3))
     for x, y in source[found.pairs[:, 0]]:

@@ -29,7 +29,7 @@ def computations(drive, driven, tmp_path):
         "Ndt": lambda: rs.Ndt(points),
         "Ndt.align": lambda: ndt.align(points),
         "PoseGraph.optimize": lambda: rs.PoseGraph.from_g2o(text).optimize(start="chordal"),
-        "PoseGraph.believed": lambda: rs.PoseGraph.from_g2o(text).believed(),
+        "PoseGraph.inlier_edges": lambda: rs.PoseGraph.from_g2o(text).inlier_edges(),
         "simulate": rs.simulate,
         "Slam.step": slam,
         "Pipeline.run": lambda: rs.Pipeline(log).run(),
@@ -38,7 +38,7 @@ def computations(drive, driven, tmp_path):
 
 @pytest.mark.parametrize(
     "name",
-    ["icp", "Ndt", "Ndt.align", "PoseGraph.optimize", "PoseGraph.believed", "simulate", "Slam.step", "Pipeline.run"],
+    ["icp", "Ndt", "Ndt.align", "PoseGraph.optimize", "PoseGraph.inlier_edges", "simulate", "Slam.step", "Pipeline.run"],
 )
 def test_another_thread_runs_during_a_computation(computations, name):
     compute = computations[name]
