@@ -90,7 +90,7 @@ fn text(path: &Path) -> String {
 }
 
 /// The packages of `crates/` in the order of the data flow, each with its allowed dependencies.
-const CORE: [(&str, &[&str]); 11] = [
+const CORE: [(&str, &[&str]); 12] = [
     ("pr_geom", &[]),
     ("pr_sim", &["pr_geom"]),
     ("pr_grid", &["pr_geom"]),
@@ -126,6 +126,10 @@ const CORE: [(&str, &[&str]); 11] = [
             "ch16_slam2d",
             "robot_io",
         ],
+    ),
+    (
+        "slam2d_py",
+        &["pr_geom", "pr_optim", "ch16_slam2d", "ch16_lab", "robot_io"],
     ),
     ("xtask", &[]),
 ];

@@ -6,6 +6,7 @@
 mod bench;
 mod exercises;
 mod fuzz;
+mod python;
 mod run;
 mod serve;
 mod site;
@@ -139,6 +140,7 @@ mod tests {
             "serve --release --port 9000",
             "test node counts",
             "test --quick",
+            "test python",
             "soak 20 --only drag,embed --go-on",
             "fuzz --target graphs --minutes 30",
             "fuzz --keep",

@@ -8,6 +8,7 @@ use anyhow::{Context as _, bail};
 use clap::ValueEnum;
 
 use crate::exercises;
+use crate::python::{self, Environment};
 use crate::run::{cargo, program, root, run};
 use crate::site::{self, Speed};
 use crate::tools::{self, TARGET, linting};
@@ -31,6 +32,8 @@ pub enum Piece {
     Site,
     /// The module in Node
     Node,
+    /// The package for Python as a wheel, and the notebooks that use it
+    Python,
     /// The site in Chromium
     Browser,
 }
@@ -55,8 +58,8 @@ pub fn chosen(named: Vec<Piece>, quick: bool) -> Vec<Piece> {
 pub fn test(pieces: &[Piece]) -> anyhow::Result<()> {
     // Report missing tools before many minutes of compiling and testing.
     let is_native = |piece| {
-        use Piece::{Counts, Exercises, Format, Native};
-        matches!(piece, &Format | &Native | &Exercises | &Counts)
+        use Piece::{Counts, Exercises, Format, Native, Python};
+        matches!(piece, &Format | &Native | &Exercises | &Counts | &Python)
     };
     if !pieces.iter().all(is_native) {
         tools::ensure_web_tools()?;
@@ -67,19 +70,46 @@ pub fn test(pieces: &[Piece]) -> anyhow::Result<()> {
     } else {
         None
     };
+    let uses_python = |piece| {
+        matches!(
+            piece,
+            &Piece::Native | &Piece::Node | &Piece::Python | &Piece::Browser
+        )
+    };
+    let python = if pieces.iter().any(uses_python) {
+        python::ensure_environment()?
+    } else {
+        None
+    };
     let skipped = root().join("target/xtask/skipped.txt");
     fs::create_dir_all(root().join("target/xtask"))?;
     fs::write(&skipped, "")?;
     let mut pieces = pieces.iter();
-    let done = pieces.try_for_each(|piece| test_piece(*piece, chromium.as_deref(), &skipped));
-    println!("\n── {}", summary(&fs::read_to_string(&skipped)?));
+    let tools = Tools {
+        chromium,
+        python,
+        skipped,
+    };
+    let done = pieces.try_for_each(|piece| test_piece(*piece, &tools));
+    println!("\n── {}", summary(&fs::read_to_string(&tools.skipped)?));
     done
 }
 
-fn test_piece(piece: Piece, chromium: Option<&Path>, skipped: &Path) -> anyhow::Result<()> {
+/// What the pieces run with.
+struct Tools {
+    chromium: Option<PathBuf>,
+    python: Option<Environment>,
+    /// The list of what was skipped.
+    skipped: PathBuf,
+}
+
+fn test_piece(piece: Piece, tools: &Tools) -> anyhow::Result<()> {
     let tell = |command: &mut Command| {
         // Tests append a line for each skip.
-        command.env("SLAM_SKIPPED", skipped);
+        command.env("SLAM_SKIPPED", &tools.skipped);
+        if let Some(python) = &tools.python {
+            python.tell(command);
+        }
     };
     match piece {
         Piece::Format => run("Format", cargo().args(["fmt", "--check"])),
@@ -125,7 +155,12 @@ fn test_piece(piece: Piece, chromium: Option<&Path>, skipped: &Path) -> anyhow::
             tell(node.env("SLAM_NATIVE", programs()));
             run("Node tests", &mut node)
         }
+        Piece::Python => {
+            compile_programs()?;
+            python::test(tools.python.as_ref(), &programs(), &tools.skipped)
+        }
         Piece::Browser => {
+            let chromium = tools.chromium.as_deref();
             let mut node = browser_tests(chromium.context("no Chromium was looked for")?, &[]);
             tell(&mut node);
             run("Browser tests", &mut node)

@@ -1,0 +1,190 @@
+//! Arrays of numpy in and out.
+//!
+//! What comes in may be anything that `numpy.asarray` takes: of any type of number, in any order, contiguous or not.
+//! An array of float64 is read where it is. What goes out keeps the memory that the core has filled.
+
+use ch16_slam2d::cloud::PointCloud;
+use nalgebra::{Matrix3, Point2};
+use numpy::ndarray::{ArrayView1, ArrayView2, Ix1, Ix2};
+use numpy::{
+    PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyReadonlyArrayDyn,
+    PyUntypedArrayMethods as _,
+};
+use pr_geom::SE2;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors::ArrayError;
+
+/// A Python value as an array of float64, of any shape.
+fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    let py = value.py();
+    let options = PyDict::new(py);
+    options.set_item("dtype", "float64")?;
+    let numpy = py.import("numpy")?;
+    let array = numpy.call_method("asarray", (value,), Some(&options));
+    let refused = || ArrayError::new_err(format!("{name} cannot be read as an array of numbers"));
+    array
+        .map_err(|_| refused())?
+        .extract()
+        .map_err(|_| refused())
+}
+
+fn wrong_shape(name: &str, wanted: &str, shape: &[usize]) -> PyErr {
+    let sides: Vec<String> = shape.iter().map(ToString::to_string).collect();
+    let shape = match &sides[..] {
+        [one] => format!("({one},)"),
+        _ => format!("({})", sides.join(", ")),
+    };
+    ArrayError::new_err(format!(
+        "{name} has to have the shape {wanted}, not {shape}"
+    ))
+}
+
+fn all_finite<'a>(name: &str, numbers: impl IntoIterator<Item = &'a f64>) -> PyResult<()> {
+    if numbers.into_iter().all(|number| number.is_finite()) {
+        return Ok(());
+    }
+    Err(ArrayError::new_err(format!(
+        "{name} holds what is no finite number"
+    )))
+}
+
+/// Reads an array of shape (n,), in which every number counts as it is.
+pub fn vector(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let array = numbers(name, value)?;
+    let view = array.as_array();
+    let view: ArrayView1<'_, f64> = view
+        .into_dimensionality::<Ix1>()
+        .map_err(|_| wrong_shape(name, "(n,)", array.shape()))?;
+    Ok(view.to_vec())
+}
+
+/// Reads finite rows of `columns` numbers each.
+fn rows<T>(
+    name: &str,
+    value: &Bound<'_, PyAny>,
+    columns: usize,
+    read: impl Fn(ArrayView2<'_, f64>) -> T,
+) -> PyResult<T> {
+    let array = numbers(name, value)?;
+    let view = array.as_array().into_dimensionality::<Ix2>();
+    let view = view.ok().filter(|view| view.ncols() == columns);
+    let wanted = format!("(n, {columns})");
+    let view = view.ok_or_else(|| wrong_shape(name, &wanted, array.shape()))?;
+    all_finite(name, view.iter())?;
+    Ok(read(view))
+}
+
+/// Reads points, an array of shape (n, 2).
+pub fn cloud(name: &str, value: &Bound<'_, PyAny>) -> PyResult<PointCloud> {
+    rows(name, value, 2, |view| {
+        let points = view.outer_iter();
+        points
+            .map(|point| Point2::new(point[0], point[1]))
+            .collect()
+    })
+}
+
+/// Reads poses, an array of shape (n, 3).
+pub fn poses(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<SE2>> {
+    rows(name, value, 3, |view| {
+        let poses = view.outer_iter();
+        poses
+            .map(|pose| SE2::new(pose[0], pose[1], pose[2]))
+            .collect()
+    })
+}
+
+/// Reads relations, an array of shape (n, 5).
+pub fn relations(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; 5]>> {
+    rows(name, value, 5, |view| {
+        let rows = view.outer_iter();
+        rows.map(|row| core::array::from_fn(|column| row[column]))
+            .collect()
+    })
+}
+
+/// Reads a pose or a motion, an array of shape (3,).
+pub fn pose(name: &str, value: &Bound<'_, PyAny>) -> PyResult<SE2> {
+    let numbers = numbers(name, value)?;
+    let view = numbers.as_array();
+    if view.shape() != [3] {
+        return Err(wrong_shape(name, "(3,)", view.shape()));
+    }
+    all_finite(name, view.iter())?;
+    Ok(SE2::new(view[[0]], view[[1]], view[[2]]))
+}
+
+/// A pose, or another one where Python has none.
+pub fn pose_or(name: &str, value: Option<&Bound<'_, PyAny>>, other: SE2) -> PyResult<SE2> {
+    value.map_or(Ok(other), |value| pose(name, value))
+}
+
+/// Reads a symmetric matrix, an array of shape (3, 3).
+pub fn symmetric(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
+    let numbers = numbers(name, value)?;
+    let view = numbers.as_array();
+    if view.shape() != [3, 3] {
+        return Err(wrong_shape(name, "(3, 3)", view.shape()));
+    }
+    all_finite(name, view.iter())?;
+    let matrix = Matrix3::from_fn(|row, column| view[[row, column]]);
+    // As much as numpy's products round.
+    if (matrix - matrix.transpose()).abs().max() > 1e-9 * matrix.abs().max() {
+        return Err(ArrayError::new_err(format!("{name} is not symmetric")));
+    }
+    Ok(matrix)
+}
+
+/// An array of shape (3,) with a pose: x and y in m, θ in rad.
+pub fn of_pose<'py>(py: Python<'py>, pose: &SE2) -> Bound<'py, PyArray1<f64>> {
+    PyArray1::from_vec(py, pose.to_array().to_vec())
+}
+
+/// An array of shape (n, 3) with poses.
+pub fn of_poses<'py>(
+    py: Python<'py>,
+    poses: impl IntoIterator<Item = SE2>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let numbers: Vec<f64> = poses.into_iter().flat_map(|pose| pose.to_array()).collect();
+    let count = numbers.len() / 3;
+    PyArray1::from_vec(py, numbers).reshape([count, 3])
+}
+
+/// An array of shape (n, 2) with points.
+pub fn of_points<'py>(
+    py: Python<'py>,
+    points: impl IntoIterator<Item = Point2<f64>>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let numbers: Vec<f64> = points.into_iter().flat_map(|p| [p.x, p.y]).collect();
+    let count = numbers.len() / 2;
+    PyArray1::from_vec(py, numbers).reshape([count, 2])
+}
+
+/// An array of shape (3, 3) with a symmetric matrix.
+pub fn of_matrix<'py>(
+    py: Python<'py>,
+    matrix: &Matrix3<f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    // Columns are rows of a symmetric matrix.
+    PyArray1::from_vec(py, matrix.as_slice().to_vec()).reshape([3, 3])
+}
+
+/// An array of shape (n, 3, 3) with symmetric matrices.
+pub fn of_matrices<'py>(
+    py: Python<'py>,
+    matrices: &[Matrix3<f64>],
+) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    let numbers = matrices.iter().flat_map(|matrix| matrix.iter().copied());
+    PyArray1::from_vec(py, numbers.collect()).reshape([matrices.len(), 3, 3])
+}
+
+/// A value with names as Python's dicts, lists and numbers.
+pub fn of_serde<'py>(
+    py: Python<'py>,
+    value: &impl serde::Serialize,
+) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(value).expect("plain numbers, strings and lists");
+    py.import("json")?.call_method1("loads", (text,))
+}

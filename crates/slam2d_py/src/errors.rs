@@ -1,0 +1,93 @@
+//! The errors of the core as Python exceptions, each with the core's sentence.
+
+use std::io;
+use std::path::Path;
+
+use pyo3::create_exception;
+use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::prelude::*;
+
+create_exception!(
+    rustslam2d,
+    SlamError,
+    PyValueError,
+    "What every error of this package is, a ValueError; the message is one sentence."
+);
+create_exception!(
+    rustslam2d,
+    ArrayError,
+    SlamError,
+    "An array has another shape than asked, or holds what is no finite number."
+);
+create_exception!(
+    rustslam2d,
+    ChoiceError,
+    SlamError,
+    "An argument is out of its range, or none of the choices has its name."
+);
+create_exception!(
+    rustslam2d,
+    SettingError,
+    SlamError,
+    "The estimator has no setting of that name, or it cannot take that value."
+);
+create_exception!(
+    rustslam2d,
+    FrameError,
+    SlamError,
+    "A scan cannot be used; the estimator stays as it was."
+);
+create_exception!(
+    rustslam2d,
+    GraphError,
+    SlamError,
+    "A pose graph has a wrong edge or is malformed as text."
+);
+create_exception!(
+    rustslam2d,
+    OptimizeError,
+    SlamError,
+    "The normal equations cannot be solved; the poses stay as they were."
+);
+create_exception!(
+    rustslam2d,
+    LogError,
+    SlamError,
+    "A file is no log that can be read, or no scan of it could be used."
+);
+create_exception!(
+    rustslam2d,
+    EvaluationError,
+    SlamError,
+    "A trajectory and its reference have no times in common."
+);
+
+/// `ChoiceError` for a name that is none of `names`.
+pub fn no_choice(argument: &str, name: &str, names: &[&str]) -> PyErr {
+    let names = names.join(", ");
+    ChoiceError::new_err(format!("{argument} has to be one of {names}, not {name:?}"))
+}
+
+/// A number in its range, or `ChoiceError`.
+pub fn within(argument: &str, value: f64, low: f64, high: f64, unit: &str) -> PyResult<f64> {
+    if (low..=high).contains(&value) {
+        return Ok(value);
+    }
+    Err(ChoiceError::new_err(format!(
+        "{argument} has to be within {low} to {high}{unit}, not {value}"
+    )))
+}
+
+/// The exception of Python for what the system says of a file.
+pub fn os_error(path: &Path, error: &io::Error) -> PyErr {
+    let name = path.display().to_string();
+    match error.raw_os_error() {
+        // Python makes FileNotFoundError and others of the number.
+        Some(number) => {
+            let said = error.to_string();
+            let said = said.split(" (os error").next().unwrap_or_default();
+            PyOSError::new_err((number, said.to_owned(), name))
+        }
+        None => PyOSError::new_err(format!("{name}: {error}")),
+    }
+}

@@ -1,0 +1,54 @@
+//! Scan matching and pose-graph SLAM for Python: the package `rustslam2d`.
+//!
+//! It holds no algorithm: arrays of numpy go to the core's functions, and what they return comes back as arrays. The
+//! interpreter's lock is released while they compute. Errors of the core are exceptions with the core's sentence, and
+//! what the core would panic at is checked here. `rustslam2d.pyi` states the same signatures to editors.
+//!
+//! PyO3's macros write the code that the interpreter calls. They need no exception from `unsafe_code = "forbid"`: that
+//! lint leaves out what a macro of another crate expands to.
+
+mod arrays;
+mod errors;
+mod evaluation;
+mod motions;
+mod pose_graph;
+mod registration;
+mod run_log;
+mod sensor;
+mod settings;
+mod simulation;
+mod slam;
+
+use pyo3::prelude::*;
+
+/// Scan matching and pose-graph SLAM for a planar laser.
+///
+/// A pose is an array (x, y, θ) of shape (3,), in m, m, rad; poses are of shape (n, 3), points of shape (n, 2), m.
+/// Covariances and informations have the order x, y, θ and belong to perturbations on the right of a pose. Every result
+/// has the same bits on every machine, and those of the command `slam2d`.
+#[pymodule]
+mod rustslam2d {
+    #[pymodule_export]
+    use super::errors::{
+        ArrayError, ChoiceError, EvaluationError, FrameError, GraphError, LogError, OptimizeError,
+        SettingError, SlamError,
+    };
+    #[pymodule_export]
+    use super::evaluation::evaluate;
+    #[pymodule_export]
+    use super::motions::{between, compose, exp, inverse, log, transform};
+    #[pymodule_export]
+    use super::pose_graph::{OptimizeReport, PoseGraph, chi2_gate};
+    #[pymodule_export]
+    use super::registration::{IcpResult, Ndt, NdtResult, icp};
+    #[pymodule_export]
+    use super::run_log::{GridMap, LogResult, Pipeline};
+    #[pymodule_export]
+    use super::sensor::Sensor;
+    #[pymodule_export]
+    use super::settings::settings;
+    #[pymodule_export]
+    use super::simulation::{Drive, simulate};
+    #[pymodule_export]
+    use super::slam::{Slam, SlamStep};
+}

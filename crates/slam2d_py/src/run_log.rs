@@ -1,0 +1,412 @@
+//! A recorded log through the estimator.
+
+use std::fs::{self, File};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use ch16_slam2d::slam::Slam;
+use nalgebra::Matrix3;
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyUntypedArrayMethods as _};
+use pr_geom::SE2;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict};
+use robot_io::graph_file::GraphFile;
+use robot_io::log::{LogOptions, LogReader as _};
+use robot_io::log_bytes::LogBytes;
+use robot_io::log_format::LogFormat;
+use robot_io::map_image::{MapImage, map_of, map_with_free_space};
+use robot_io::motion::ComparedReader;
+use robot_io::quality::Quality;
+use robot_io::recorder::RunRecorder;
+use robot_io::rosbag2;
+use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
+
+use crate::arrays;
+use crate::errors::{LogError, os_error, within};
+use crate::pose_graph::PoseGraph;
+use crate::settings::{self, Chosen};
+
+/// Scans between two looks at Ctrl-C and at the progress.
+const SCANS_BETWEEN: usize = 16;
+
+/// Maps a recorded log: MCAP, bags of ROS 1 and ROS 2, CARMEN, lines of JSON.
+///
+/// log: the file, or the folder of a recording of ROS 2.
+/// config: settings by name, as `settings()` lists them.
+/// odometry: False leaves the wheels out: scans alone.
+/// scan_topic, odom_topic, odom_frame, body_frame: which ones are meant in a recording of ROS, if there are several.
+///
+/// Raises SettingError for a name or a value that the estimator does not have.
+#[pyclass(frozen, module = "rustslam2d")]
+pub struct Pipeline {
+    log: PathBuf,
+    chosen: Chosen,
+    odometry_use: OdometryUse,
+    options: LogOptions,
+}
+
+/// What `Pipeline.run` made of a log.
+#[pyclass(frozen, module = "rustslam2d")]
+pub struct LogResult {
+    /// Times of the scans, s, shape (n,).
+    #[pyo3(get)]
+    stamps: Py<PyArray1<f64>>,
+    /// Pose world_from_body of every scan, shape (n, 3): x and y in m, θ in rad.
+    #[pyo3(get)]
+    trajectory: Py<PyArray2<f64>>,
+    /// Poses of the keyframes, shape (k, 3).
+    #[pyo3(get)]
+    keyframes: Py<PyArray2<f64>>,
+    /// Covariance of every keyframe against the first one, shape (k, 3, 3), order x, y, θ in the body's frame.
+    #[pyo3(get)]
+    covariances: Py<PyArray3<f64>>,
+    /// The occupancy grid; None if the place is too large for cells so small.
+    #[pyo3(get)]
+    map: Option<Py<GridMap>>,
+    /// Keyframes, loops with their evidence, and doubts: the dict that `slam2d run -o` writes as quality.json.
+    #[pyo3(get)]
+    quality: Py<PyAny>,
+    /// The pose graph; node k is keyframe k.
+    #[pyo3(get)]
+    graph: Py<PoseGraph>,
+    /// What the owner of the log should know of its scans, a sentence each.
+    #[pyo3(get)]
+    remarks: Vec<String>,
+}
+
+/// An occupancy grid.
+#[pyclass(frozen, module = "rustslam2d")]
+pub struct GridMap {
+    /// Log odds of occupancy, shape (rows, columns); 0 is unknown. The first row is the one with the highest y.
+    #[pyo3(get)]
+    log_odds: Py<PyArray2<f64>>,
+    /// The lower left corner, world frame, m.
+    #[pyo3(get)]
+    origin: (f64, f64),
+    /// Side of a cell, m.
+    #[pyo3(get)]
+    cell: f64,
+}
+
+#[pymethods]
+impl GridMap {
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let shape = self.log_odds.bind(py).shape();
+        format!(
+            "GridMap({} × {} cells of {} m)",
+            shape[0], shape[1], self.cell
+        )
+    }
+}
+
+/// What a run found, before it becomes Python's.
+struct Found {
+    trajectory: Vec<(f64, SE2)>,
+    keyframes: Vec<SE2>,
+    quality: Quality,
+    covariances: Vec<Matrix3<f64>>,
+    map: Option<MapImage>,
+    graph: Option<GraphFile>,
+    remarks: Vec<String>,
+}
+
+#[pymethods]
+impl Pipeline {
+    #[new]
+    #[pyo3(signature = (log, config=None, *, odometry=true, scan_topic=None, odom_topic=None, odom_frame=None,
+        body_frame=None))]
+    fn new(
+        log: PathBuf,
+        config: Option<&Bound<'_, PyDict>>,
+        odometry: bool,
+        scan_topic: Option<String>,
+        odom_topic: Option<String>,
+        odom_frame: Option<String>,
+        body_frame: Option<String>,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            log,
+            chosen: settings::chosen(config)?,
+            odometry_use: if odometry {
+                OdometryUse::Log
+            } else {
+                OdometryUse::None
+            },
+            options: LogOptions {
+                scan_topic,
+                odometry_topic: odom_topic,
+                odometry_frame: odom_frame,
+                body_frame,
+                ..LogOptions::default()
+            },
+        })
+    }
+
+    /// Runs the log to its end.
+    ///
+    /// progress: True shows the share on standard error; a function is called with the scans so far and the share.
+    /// cell: side of the map's cells, m.
+    /// free_space: in the map, mark as free what lies before the sensor's limit on beams that saw nothing (REP 117).
+    ///
+    /// Raises OSError if the file cannot be read, LogError if it is no log, or none of its scans can be used. Ctrl-C ends
+    /// it with KeyboardInterrupt.
+    #[pyo3(signature = (*, progress=None, cell=0.05, free_space=false))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        progress: Option<Py<PyAny>>,
+        cell: f64,
+        free_space: bool,
+    ) -> PyResult<LogResult> {
+        let cell_m = within("cell", cell, 1e-3, 100.0, " m")?;
+        let progress = Progress::of(py, progress)?;
+        let found = py.detach(|| self.drive(&progress, cell_m, free_space))?;
+        progress.end(py)?;
+        let (stamps, poses): (Vec<f64>, Vec<SE2>) = found.trajectory.into_iter().unzip();
+        let map = found.map.map(|map| {
+            let log_odds = PyArray1::from_vec(py, map.log_odds);
+            let log_odds = log_odds.reshape([map.height, map.width])?.unbind();
+            let [x, y] = map.origin_m;
+            Py::new(
+                py,
+                GridMap {
+                    log_odds,
+                    origin: (x, y),
+                    cell: map.cell_m,
+                },
+            )
+        });
+        let graph = found.graph.unwrap_or_default();
+        Ok(LogResult {
+            stamps: PyArray1::from_vec(py, stamps).unbind(),
+            trajectory: arrays::of_poses(py, poses)?.unbind(),
+            keyframes: arrays::of_poses(py, found.keyframes)?.unbind(),
+            covariances: arrays::of_matrices(py, &found.covariances)?.unbind(),
+            map: map.transpose()?,
+            quality: arrays::of_serde(py, &found.quality)?.unbind(),
+            graph: Py::new(py, PoseGraph::of_file(&graph))?,
+            remarks: found.remarks,
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Pipeline({:?})", self.log.display().to_string())
+    }
+}
+
+impl Pipeline {
+    /// Runs the log without the interpreter, but for the progress.
+    fn drive(&self, progress: &Progress, cell_m: f64, free_space: bool) -> PyResult<Found> {
+        let name = self.log.display().to_string();
+        let told = |error: robot_io::log::LogError| LogError::new_err(error.to_string());
+        let (parts, read) = parts(&self.log)?;
+        let reader = LogFormat::open_parts(parts, &name, &self.options).map_err(told)?;
+        let is_alone = self.odometry_use == OdometryUse::None;
+        let mut reader = ComparedReader::new(reader, false).for_scans_alone(is_alone);
+        let mut run = LogRun::new(self.odometry_use);
+        for (setting, value) in &self.chosen {
+            run = run.with_setting(setting, *value);
+        }
+        let mut recorder = RunRecorder::default();
+        let mut broken = None;
+        let mut frames = 0_usize;
+        loop {
+            match reader.next_frame() {
+                Ok(Some(frame)) => {
+                    if let Some(report) = run.step(frame.clone()) {
+                        recorder.take(&frame, &report);
+                    }
+                }
+                Ok(None) => break,
+                Err(error) if run.scans() == 0 => return Err(told(error)),
+                Err(error) => {
+                    broken = Some(error.to_string());
+                    break;
+                }
+            }
+            frames += 1;
+            if frames.is_multiple_of(SCANS_BETWEEN) {
+                progress.tell(run.scans(), read.share())?;
+            }
+        }
+        run.finish();
+        if run.scans() == 0 || !run.has_seen() {
+            let problem = match run.refused() {
+                Some(problem) if run.scans() == 0 => problem.to_string(),
+                _ => NOTHING_SEEN.to_owned(),
+            };
+            return Err(LogError::new_err(format!(
+                "{name}: no scan could be used: {problem}"
+            )));
+        }
+        let mut remarks = reader.notes().sentences(&name);
+        remarks.extend(run.sentences(&name));
+        remarks.extend(broken);
+        let quality = run.quality();
+        let covariances = quality
+            .keyframes
+            .iter()
+            .map(|keyframe| Matrix3::from_fn(|row, column| keyframe.covariance[row][column]));
+        let lines = recorder.map_lines(&run);
+        let draw = if free_space {
+            map_with_free_space
+        } else {
+            map_of
+        };
+        let slam = run.slam();
+        let trajectory = run.trajectory();
+        let poses = trajectory.poses().iter();
+        Ok(Found {
+            trajectory: poses.map(|at| (at.stamp_s, at.pose)).collect(),
+            keyframes: slam.map_or_else(Vec::new, |slam| slam.graph().poses().to_vec()),
+            covariances: covariances.collect(),
+            // A place too large for cells so small has no map here.
+            map: draw(&lines, cell_m).ok(),
+            graph: slam.map(Slam::graph).map(GraphFile::of_graph),
+            quality,
+            remarks,
+        })
+    }
+}
+
+/// Where the progress goes.
+enum Progress {
+    Nowhere,
+    /// `sys.stderr`, which notebooks show as well.
+    Stderr,
+    Function(Py<PyAny>),
+}
+
+impl Progress {
+    fn of(py: Python<'_>, wanted: Option<Py<PyAny>>) -> PyResult<Self> {
+        let Some(wanted) = wanted else {
+            return Ok(Self::Nowhere);
+        };
+        if let Ok(is_shown) = wanted.bind(py).cast::<PyBool>() {
+            return Ok(if is_shown.is_true() {
+                Self::Stderr
+            } else {
+                Self::Nowhere
+            });
+        }
+        if wanted.bind(py).is_callable() {
+            return Ok(Self::Function(wanted));
+        }
+        Err(crate::errors::ChoiceError::new_err(
+            "progress has to be True, False or a function of the scans and the share",
+        ))
+    }
+
+    /// Looks for Ctrl-C, and says how far the run is.
+    fn tell(&self, scans: usize, share: f64) -> PyResult<()> {
+        Python::attach(|py| {
+            py.check_signals()?;
+            match self {
+                Self::Nowhere => Ok(()),
+                Self::Stderr => say(py, &format!("\r{scans} scans, {:3.0} %", 100.0 * share)),
+                Self::Function(function) => function.call1(py, (scans, share)).map(drop),
+            }
+        })
+    }
+
+    /// Ends the line.
+    fn end(&self, py: Python<'_>) -> PyResult<()> {
+        match self {
+            Self::Stderr => say(py, "\n"),
+            Self::Nowhere | Self::Function(_) => Ok(()),
+        }
+    }
+}
+
+fn say(py: Python<'_>, text: &str) -> PyResult<()> {
+    let stderr = py.import("sys")?.getattr("stderr")?;
+    // Python has none in a program without a console.
+    if stderr.is_none() {
+        return Ok(());
+    }
+    stderr.call_method1("write", (text,))?;
+    stderr.call_method0("flush").map(drop)
+}
+
+/// The bytes of a log that were read, of all that will be.
+struct BytesRead {
+    read: Arc<AtomicU64>,
+    all: u64,
+}
+
+impl BytesRead {
+    fn share(&self) -> f64 {
+        let read = self.read.load(Ordering::Relaxed);
+        (read as f64 / self.all.max(1) as f64).min(1.0)
+    }
+}
+
+/// The files of a log.
+fn parts(path: &Path) -> PyResult<(Vec<LogBytes<'static>>, BytesRead)> {
+    let told = |path: &Path| {
+        let path = path.to_owned();
+        move |error: io::Error| os_error(&path, &error)
+    };
+    let mut files = vec![path.to_owned()];
+    if path.is_dir() {
+        let metadata = path.join(rosbag2::METADATA);
+        let listed = fs::read_to_string(&metadata).ok();
+        let entries = fs::read_dir(path).map_err(told(path))?;
+        let names: Vec<String> = entries
+            .flatten()
+            .map(|entry| entry.file_name().to_string_lossy().into_owned())
+            .collect();
+        let order = rosbag2::in_order(listed.as_deref(), &names).map_err(|absent| {
+            LogError::new_err(format!(
+                "{}: {absent} is listed and not there",
+                path.display()
+            ))
+        })?;
+        files = order.into_iter().map(|at| path.join(&names[at])).collect();
+        if files.is_empty() {
+            return Err(LogError::new_err(format!(
+                "{} is a folder without a recording of ROS 2; give a log, or a folder with files that end in .mcap or .db3",
+                path.display()
+            )));
+        }
+    }
+    let read = Arc::new(AtomicU64::new(0));
+    let mut parts = Vec::new();
+    let mut all = 0;
+    for file in files {
+        let opened = File::open(&file).map_err(told(&file))?;
+        // A log is read once to see what is in it, and once for its scans.
+        all += 2 * opened.metadata().map_err(told(&file))?.len();
+        let count = Arc::clone(&read);
+        parts.push(LogBytes::new(move || {
+            let source = Counted {
+                file: File::open(&file)?,
+                read: Arc::clone(&count),
+            };
+            Ok(BufReader::with_capacity(1 << 16, source))
+        }));
+    }
+    Ok((parts, BytesRead { read, all }))
+}
+
+/// A file whose bytes are counted as they are read.
+struct Counted {
+    file: File,
+    read: Arc<AtomicU64>,
+}
+
+impl Read for Counted {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.file.read(buffer)?;
+        self.read.fetch_add(count as u64, Ordering::Relaxed);
+        Ok(count)
+    }
+}
+
+impl Seek for Counted {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+}

@@ -1,0 +1,63 @@
+//! The settings of the estimator from a dict, by the names that a session's file and `--set` have.
+
+use ch16_slam2d::slam::RobotConfig;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use robot_io::settings::{SETTINGS, Setting};
+
+use crate::errors::SettingError;
+
+/// Settings with their values, as the core names them.
+pub type Chosen = Vec<(&'static Setting, f64)>;
+
+/// Reads a dict: `{"reach_m": 0.5, "loops": {"bundle": 6}}`, or the same with `"loops.bundle": 6`.
+pub fn chosen(config: Option<&Bound<'_, PyDict>>) -> PyResult<Chosen> {
+    let mut chosen = Vec::new();
+    if let Some(config) = config {
+        collect(config, "", &mut chosen)?;
+    }
+    Ok(chosen)
+}
+
+fn collect(config: &Bound<'_, PyDict>, above: &str, chosen: &mut Chosen) -> PyResult<()> {
+    for (name, value) in config.iter() {
+        let name: String = name.extract()?;
+        let name = format!("{above}{name}");
+        if let Ok(inner) = value.cast::<PyDict>() {
+            collect(inner, &format!("{name}."), chosen)?;
+            continue;
+        }
+        let told =
+            |error: robot_io::settings::SettingError| SettingError::new_err(error.to_string());
+        let setting = Setting::named(&name).map_err(told)?;
+        let value: f64 = value
+            .extract()
+            .map_err(|_| SettingError::new_err(format!("{name} has to be a number")))?;
+        setting.check(value).map_err(told)?;
+        chosen.push((setting, value));
+    }
+    Ok(())
+}
+
+/// The configuration with these values.
+pub fn applied(mut robot: RobotConfig, chosen: &Chosen) -> PyResult<RobotConfig> {
+    for (setting, value) in chosen {
+        let set = setting.set(&robot, *value);
+        robot = set.map_err(|error| SettingError::new_err(error.to_string()))?;
+    }
+    Ok(robot)
+}
+
+/// The settings of the estimator for recorded logs: name to (default, unit, what it does).
+#[pyfunction]
+pub fn settings(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let robot = RobotConfig::default();
+    let names = PyDict::new(py);
+    for setting in SETTINGS {
+        names.set_item(
+            setting.name,
+            (setting.value(&robot), setting.unit, setting.about),
+        )?;
+    }
+    Ok(names)
+}

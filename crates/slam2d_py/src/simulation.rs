@@ -1,0 +1,137 @@
+//! Simulated drives: frames as a robot would record them, and the truth.
+
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
+use std::path::{Path, PathBuf};
+
+use ch16_lab::lap::{BuiltInWorld, CANONICAL_SEED, Choice as _, Drive as Simulated, LapConfig};
+use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
+use pr_geom::SE2;
+use pyo3::prelude::*;
+use robot_io::json_log::FrameLine;
+use robot_io::log::LogFrame;
+
+use crate::arrays;
+use crate::errors::{ChoiceError, no_choice, os_error, within};
+use crate::sensor::Sensor;
+
+/// A simulated drive: what a robot would record, and the truth.
+#[pyclass(frozen, module = "rustslam2d")]
+pub struct Drive {
+    drive: Simulated,
+    /// Where the beams of the simulated laser point.
+    #[pyo3(get)]
+    sensor: Py<Sensor>,
+    /// Times of the scans, s, shape (n,).
+    #[pyo3(get)]
+    stamps: Py<PyArray1<f64>>,
+    /// Ranges, m, shape (n, beams); those at `sensor.range_max_m` and beyond saw nothing.
+    #[pyo3(get)]
+    ranges: Py<PyArray2<f64>>,
+    /// Motion of the body since the scan before, as the wheels report it, shape (n, 3): m, m, rad; zero for the first.
+    #[pyo3(get)]
+    odometry: Py<PyArray2<f64>>,
+    /// That motion composed from the start, world frame, shape (n, 3).
+    #[pyo3(get)]
+    dead_reckoning: Py<PyArray2<f64>>,
+    /// True poses world_from_body, shape (n, 3): x and y in m, θ in rad.
+    #[pyo3(get)]
+    truth: Py<PyArray2<f64>>,
+}
+
+/// Simulates the drive of the chapter's lap.
+///
+/// seed: seed of all noise, 0 to 2³² − 1; the chapter's is 0xC0FFEE.
+/// noise: factor of the wheels' noise, 0 to 100.
+/// world: "apartment", "ring", "twins", "corridor" or "hall".
+///
+/// Raises ChoiceError for an argument out of its range.
+#[pyfunction]
+#[pyo3(signature = (seed=CANONICAL_SEED.into(), noise=1.0, *, world="apartment"),
+    text_signature = "(seed=0xC0FFEE, noise=1.0, *, world='apartment')")]
+pub fn simulate(py: Python<'_>, seed: i64, noise: f64, world: &str) -> PyResult<Drive> {
+    let seed = u32::try_from(seed).map_err(|_| {
+        ChoiceError::new_err(format!(
+            "seed has to be a whole number from 0 to {}, not {seed}",
+            u32::MAX
+        ))
+    })?;
+    let noise = within("noise", noise, 0.0, 100.0, "")?;
+    let names = || BuiltInWorld::ALL.iter().map(|world| world.name());
+    let found = BuiltInWorld::named(world)
+        .ok_or_else(|| no_choice("world", world, &names().collect::<Vec<_>>()))?;
+    let mut config = LapConfig::with_seed_and_noise(seed, noise);
+    if found != BuiltInWorld::Apartment {
+        config = config.elsewhere(&found.course());
+    }
+    let drive = py.detach(|| Simulated::simulate(&config.drive));
+    let frames = 0..=drive.ticks().len();
+    let count = frames.clone().count();
+    let first = drive.frame(0);
+    let mut ranges = Vec::with_capacity(count * first.scan.ranges_m.len());
+    for frame in frames.clone() {
+        ranges.extend_from_slice(&drive.sweep(frame).ranges_m);
+    }
+    let stamps = frames.clone().map(|frame| drive.frame(frame).stamp_s);
+    let motion = |frame| drive.odometry(frame).unwrap_or(SE2::identity());
+    let beams = ranges.len() / count;
+    Ok(Drive {
+        sensor: Py::new(py, Sensor::of(&first.scan))?,
+        stamps: PyArray1::from_vec(py, stamps.collect()).unbind(),
+        ranges: PyArray1::from_vec(py, ranges)
+            .reshape([count, beams])?
+            .unbind(),
+        odometry: arrays::of_poses(py, frames.clone().map(motion))?.unbind(),
+        dead_reckoning: arrays::of_poses(
+            py,
+            frames.clone().map(|frame| drive.dead_reckoning(frame)),
+        )?
+        .unbind(),
+        truth: arrays::of_poses(py, frames.map(|frame| drive.truth(frame)))?.unbind(),
+        drive,
+    })
+}
+
+#[pymethods]
+impl Drive {
+    /// Writes the drive as a log, lines of JSON with the truth beside each scan: what `slam2d lap --frames` writes.
+    ///
+    /// Raises OSError if the file cannot be written.
+    fn write_log(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        py.detach(|| write_log(&self.drive, &path).map_err(|error| os_error(&path, &error)))
+    }
+
+    /// Number of scans.
+    fn __len__(&self) -> usize {
+        self.drive.ticks().len() + 1
+    }
+
+    fn __repr__(&self) -> String {
+        let config = self.drive.config();
+        format!(
+            "Drive(seed={:#x}, noise={}, {} scans)",
+            config.seed,
+            config.noise_factor,
+            self.drive.ticks().len() + 1
+        )
+    }
+}
+
+fn write_log(drive: &Simulated, path: &Path) -> std::io::Result<()> {
+    let mut file = BufWriter::new(File::create(path)?);
+    let mut odometry = SE2::identity();
+    for tick in 0..=drive.ticks().len() {
+        let frame = drive.frame(tick);
+        odometry = odometry * frame.odometry.unwrap_or(SE2::identity());
+        let line = FrameLine {
+            truth: Some(drive.truth(tick).to_array()),
+            ..FrameLine::from(&LogFrame {
+                stamp_s: frame.stamp_s,
+                odometry: Some(odometry),
+                scan: frame.scan,
+            })
+        };
+        line.write(&mut file)?;
+    }
+    file.flush()
+}

@@ -1,0 +1,55 @@
+"""What the tests share: the chapter's lap, and the command that has to come to the same bits."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+import rustslam2d as rs
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def skip(name, reason):
+    """Leaves a test out and says so, by the rules of `docs/testing.md`."""
+    if os.environ.get("SLAM_NO_SKIP", "") not in ("", "0", "false"):
+        pytest.fail(f"{name}: {reason}, and SLAM_NO_SKIP lets nothing skip")
+    if "SLAM_SKIPPED" in os.environ:
+        with open(os.environ["SLAM_SKIPPED"], "a", encoding="utf-8") as skipped:
+            skipped.write(f"{name}: {reason}\n")
+    pytest.skip(reason)
+
+
+@pytest.fixture(scope="session")
+def slam2d():
+    """Runs the command, and returns what it prints."""
+    folder = Path(os.environ.get("SLAM_NATIVE", ROOT / "target/debug"))
+    program = folder / ("slam2d.exe" if os.name == "nt" else "slam2d")
+    if not program.is_file():
+        skip("the command beside the package", f"{program} is not there; cargo build --bin slam2d makes it")
+
+    def run(*arguments):
+        return subprocess.run([program, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def lap(slam2d):
+    """The canonical lap as the command prints it."""
+    return json.loads(slam2d("lap", "--json"))
+
+
+@pytest.fixture(scope="session")
+def drive():
+    """The drive of the canonical lap."""
+    return rs.simulate()
+
+
+@pytest.fixture(scope="session")
+def driven(drive):
+    """The chapter's estimator after that drive, with what it said of each scan."""
+    slam = rs.Slam.chapter(sensor=drive.sensor, start=drive.truth[0])
+    frames = zip(drive.ranges, drive.odometry, drive.stamps)
+    return slam, [slam.step(*frame) for frame in frames]

@@ -1,0 +1,119 @@
+"""ICP and NDT by numbers that are worked out beside them."""
+
+import numpy as np
+import pytest
+import rustslam2d as rs
+
+SQUARE = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+MOVED = np.array([[2.8, 1.6], [1.4, 1.8], [1.2, 0.4], [2.6, 0.2]])
+POSE = (0.08, -0.05, 0.04)
+
+
+@pytest.fixture(scope="module")
+def room():
+    """Two walls that meet in a corner, and a third at an angle."""
+    along = np.linspace(0.0, 3.0, 150)
+    walls = [(along, 0 * along), (0 * along, along), (3.0 - 0.3 * along, along)]
+    return np.concatenate([np.stack(wall, axis=1) for wall in walls])
+
+
+def test_the_worked_example_of_the_chapter_comes_out_in_one_increment():
+    found = rs.icp(SQUARE, MOVED, init=(2.0, 1.0, 0.6), variant="point-to-point", min_pairs=4)
+    assert np.allclose(found.pose, (2.0, 1.0, np.arctan2(3.0, 4.0)), atol=1e-12)
+    assert (found.converged, found.stop, found.inliers) == (True, "small-step", 4)
+    assert np.array_equal(found.pairs, [[0, 0], [1, 1], [2, 2], [3, 3]])
+    assert found.rmse < 1e-12
+
+
+@pytest.fixture(scope="module")
+def posts():
+    """Points that stand apart: the nearest one is the right one. Along a wall it need not be."""
+    columns, rows = np.meshgrid(np.arange(5.0), np.arange(5.0))
+    return np.stack([columns.ravel(), rows.ravel()], axis=1) + np.random.default_rng(2).uniform(-0.2, 0.2, (25, 2))
+
+
+@pytest.mark.parametrize(("variant", "points"), [("point-to-plane", "room"), ("point-to-point", "posts")])
+def test_a_moved_cloud_is_moved_back(request, variant, points):
+    room = request.getfixturevalue(points)
+    source = rs.transform(rs.inverse(POSE), room)
+    found = rs.icp(source, room, variant=variant, max_iterations=200, tolerance=1e-10)
+    # 1e-6: the last increment is below 1e-10, and ICP's shrink by a factor.
+    assert np.allclose(found.pose, POSE, atol=1e-6), found
+    assert np.array_equal(found.trace[0], (0, 0, 0)) and np.array_equal(found.trace[-1], found.pose)
+    assert found.trace.shape == (found.iterations + 1, 3) and found.trace_rmse.shape == (found.iterations + 1,)
+    assert found.trace_rmse[0] > found.trace_rmse[-1] == found.rmse
+    away = rs.icp(source, room + 100.0, variant=variant)
+    assert (away.converged, away.stop, away.inliers, away.rmse) == (False, "too-few-pairs", 0, np.inf)
+    assert away.covariance is None
+
+
+def test_the_covariance_is_that_of_the_pairs(room):
+    source = rs.transform(rs.inverse(POSE), room)
+    found = rs.icp(source, room, variant="point-to-point", sigma=0.03, covariance_scale=5.0)
+    rotation = np.array([[np.cos(found.pose[2]), -np.sin(found.pose[2])], [np.sin(found.pose[2]), np.cos(found.pose[2])]])
+    hessian = np.zeros((3, 3))
+    for x, y in source[found.pairs[:, 0]]:
+        # The point of a pair moves by R (v + ω J p).
+        rows = np.hstack([rotation, rotation @ [[-y], [x]]])
+        hessian += rows.T @ rows
+    expected = hessian / (0.03**2 * 5.0)
+    assert np.allclose(found.information, expected, rtol=1e-9)
+    assert np.allclose(found.covariance, np.linalg.inv(expected), rtol=1e-6)
+
+
+def test_pairs_are_indices_of_both_arrays(posts):
+    shuffled = np.random.default_rng(0).permutation(len(posts))
+    found = rs.icp(posts, posts[shuffled], variant="point-to-point")
+    source, target = found.pairs.T
+    assert np.array_equal(shuffled[target], source)
+
+
+def test_a_corridor_leaves_a_direction_free():
+    along = np.linspace(0, 10, 400)
+    corridor = np.concatenate([np.stack([along, 0 * along], 1), np.stack([along, 2 + 0 * along], 1)])
+    found = rs.icp(corridor, corridor)
+    assert found.covariance is None and found.information[0, 0] == 0.0 < found.information[1, 1]
+
+
+def test_ndt_climbs_to_where_the_cloud_lies(room):
+    ndt = rs.Ndt(room)
+    source = rs.transform(rs.inverse(POSE), room)
+    found = ndt.align(source)
+    assert np.allclose(found.pose, POSE, atol=0.01), found
+    assert found.score == ndt.score(source, found.pose) > ndt.score(source)
+    assert found.stop in ("small-gradient", "no-better-step", "iteration-limit")
+    assert ndt.align(source, max_iterations=1).iterations == 1
+    cells = np.floor(room / 0.6)
+    first = room[(cells == cells[0]).all(axis=1)]
+    assert np.allclose(ndt.means[0], first.mean(axis=0))
+    assert ndt.covariances.shape == (len(ndt.means), 2, 2)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "said"),
+    [
+        ({"variant": "plane"}, 'variant has to be one of point-to-plane, point-to-point, not "plane"'),
+        ({"max_distance": 0.0}, "max_distance has to be within 0.000001 to 1000000 m, not 0"),
+        ({"trim": 1.5}, "trim has to be within 0 to 1, not 1.5"),
+        ({"sigma": float("nan")}, "sigma has to be within 0.000001 to 1000000 m, not NaN"),
+        ({"normal_radius": -1}, "normal_radius has to be within 0.000001 to 1000000 m, not -1"),
+    ],
+)
+def test_an_argument_out_of_its_range_is_refused_in_a_sentence(room, keywords, said):
+    with pytest.raises(rs.ChoiceError) as refused:
+        rs.icp(room, room, **keywords)
+    assert str(refused.value) == said
+
+
+def test_ndt_refuses_cells_that_cannot_be(room):
+    with pytest.raises(rs.ChoiceError, match="cell has to be within"):
+        rs.Ndt(room, cell=0.0)
+    with pytest.raises(rs.ChoiceError, match="one point has no covariance"):
+        rs.Ndt(room, min_points=1)
+
+
+def test_empty_clouds_end_without_pairs():
+    nothing = np.zeros((0, 2))
+    assert rs.icp(nothing, SQUARE).stop == "too-few-pairs"
+    assert rs.icp(SQUARE, nothing).stop == "too-few-pairs"
+    assert rs.Ndt(nothing).align(SQUARE).score == 0.0
