@@ -84,6 +84,21 @@ describe('a link in the text', () => {
     });
   });
 
+  it('leaves no parameter of another widget in the address, and what belongs to the page', async () => {
+    await visit('', async (tab) => {
+      await link(tab, 'last').click();
+      await tab.waitForURL(/w=16.2&t=119/);
+      await link(tab, '45°').click();
+      const search = new URL(tab.url()).searchParams;
+      assert.deepEqual(Object.fromEntries(search), { theme: 'light', w: '16.1', dx: '0', dy: '0', heading: '45' });
+      assert.equal(await tab.evaluate((css) => document.querySelector(css).link, widget('w16.1')), tab.url());
+      // Opened, it has nothing to complain of.
+      await tab.goto(tab.url());
+      await has(tab, 'w16.1', 'heading', 45);
+      assert.equal(await tab.locator('slam-widget .note p').count(), 0);
+    }, { path: '/index.html?theme=light' });
+  });
+
   it('that leads elsewhere offers the way back to its sentence', async () => {
     await reading(async (tab) => {
       const here = link(tab, 'τ = 0.1 m');
