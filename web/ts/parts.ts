@@ -3,6 +3,7 @@
 import { create, keepKeys } from './dom';
 import { copyText } from './export';
 import { CrashError } from './instance';
+import { StaleError } from './module';
 import { STYLE } from './style';
 
 /** What stands in the shadow of the element. */
@@ -45,11 +46,14 @@ export function failureBox(error: Error, onAgain: () => void): HTMLElement {
   const box = create('div', { class: 'failure' });
   const sentence = create('p');
   const again = create('button', { type: 'button' });
+  const isStale = error instanceof StaleError;
+  const remedy = isStale ? 'Reload the page' : 'The picture shows its start';
   sentence.textContent = isCrash
     ? 'This widget stopped because of an error in its program. Your settings are kept.'
-    : `The interactive widget cannot run here: ${error.message}. The picture shows its start.`;
-  again.textContent = isCrash ? 'Restart with these settings' : 'Try again';
-  again.addEventListener('click', onAgain);
+    : `The interactive widget cannot run here: ${error.message}. ${remedy}.`;
+  again.textContent = isCrash ? 'Restart with these settings' : isStale ? remedy : 'Try again';
+  // The script of this page cannot be fetched afresh in any other way.
+  again.addEventListener('click', isStale ? () => location.reload() : onAgain);
   box.append(sentence, ...(isCrash ? [crashDetails(error.details)] : []), again);
   return box;
 }
