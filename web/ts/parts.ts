@@ -25,7 +25,7 @@ export function build(shadow: ShadowRoot): Parts {
   style.textContent = STYLE;
   const frame = create('section', { class: 'frame', part: 'frame', tabindex: '-1' });
   const stage = create('div', { class: 'stage' });
-  const picture = create('img', { class: 'picture', alt: '' });
+  const picture = create('img', { class: 'picture', alt: '', loading: 'lazy' });
   const progress = create('progress', { max: '1', hidden: '', 'aria-label': 'Loading the widget' });
   const note = create('div', { class: 'note-box', role: 'status' });
   const bar = create('div', { class: 'bar' });
