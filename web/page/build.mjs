@@ -29,7 +29,8 @@ if (outDir === undefined) {
 }
 
 await mkdir(outDir, { recursive: true });
-const specs = await widgetSpecs();
+const source = await readFile(path.join(root, 'index.html'), 'utf8');
+const pictured = addPictures(renderFormulas(source), await widgetSpecs());
 const { sketches, story } = await drawStills(outDir);
 const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story));
 names.set('page.css', await copyStyle());
@@ -37,9 +38,7 @@ await Promise.all([renderPage(), copyKatex()]);
 await writeNotices(metafiles).catch(endWithOneSentence);
 
 async function renderPage() {
-  const source = await readFile(path.join(root, 'index.html'), 'utf8');
-  const drawn = addStills(addPictures(renderFormulas(source), specs));
-  const page = await addListings(addSketches(drawn, sketches), root);
+  const page = await addListings(addSketches(addStills(pictured), sketches), root);
   await writeFile(path.join(outDir, 'index.html'), withNames(page));
 }
 
