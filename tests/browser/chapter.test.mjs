@@ -168,6 +168,9 @@ describe('the chapter', () => {
           widget('w16.1'),
         );
         assert.equal(isDark, choice === 'dark');
+        // Code was once in the colours of the system's theme.
+        await tab.evaluate(() => document.querySelectorAll('details').forEach((fold) => (fold.open = true)));
+        assert.deepEqual(await violations(tab, OF_COLORS), []);
         await tab.click('[data-theme-choice="auto"]');
         assert.notEqual(await background(tab), shade);
       }, { colorScheme });

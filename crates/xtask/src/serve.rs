@@ -56,7 +56,8 @@ fn answer(mut stream: TcpStream, folder: &Path) -> io::Result<()> {
     let head = lines
         .map_while(Result::ok)
         .take_while(|line| !line.is_empty());
-    let takes_gzip = head.fold(false, |takes, line| takes || asks_for_gzip(&line));
+    let head: Vec<String> = head.collect();
+    let takes_gzip = head.iter().any(|line| asks_for_gzip(line));
     let mut words = request.split(' ');
     let (method, target) = (words.next(), words.next().unwrap_or_default());
     let file = match method {
