@@ -241,7 +241,7 @@ fn lane_marks(room: &ControlRoom) -> [Vec<[f64; 2]>; 2] {
     let scene = room.scene();
     let panel = scene.panels.iter().find(|panel| panel.id == "lanes");
     let layers = &panel.expect("the lanes").layers;
-    [Tone::Measurement, Tone::Truth].map(|wanted| {
+    [Tone::Series(0), Tone::Series(3)].map(|wanted| {
         let points = layers.iter().find_map(|layer| match layer {
             Layer::Points { points, tone, .. } if *tone == wanted => Some(points.clone()),
             _ => None,

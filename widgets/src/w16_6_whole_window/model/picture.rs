@@ -33,13 +33,13 @@ fn sweeps(window: &WholeWindow) -> Panel {
         points(
             &scene.source().transformed(&window.hunt.alone.outcome.pose),
             Mark::Dot,
-            Tone::Prediction,
+            Tone::Series(2),
             1.6,
         ),
         Layer::line(
             window.hunt.alone.way.iter().map(position).collect(),
             Stroke::Dotted,
-            Tone::Prediction,
+            Tone::Series(2),
             1.5,
         ),
         points(
@@ -79,7 +79,7 @@ fn sweeps(window: &WholeWindow) -> Panel {
             LegendEntry::mark("target", Tone::Measurement, Mark::Cross),
             LegendEntry::mark("best pose so far", Tone::Posterior, Mark::Square),
             LegendEntry::mark("start, to be turned", Tone::Prior, Mark::Circle),
-            LegendEntry::mark("where ICP alone ends", Tone::Prediction, Mark::Dot),
+            LegendEntry::mark("where ICP alone ends", Tone::Series(2), Mark::Dot),
             LegendEntry::mark("truth", Tone::Truth, Mark::Plus),
         ],
         color_bar: None,
