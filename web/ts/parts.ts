@@ -6,6 +6,9 @@ import { CrashError } from './instance';
 import { StaleError } from './module';
 import { STYLE } from './style';
 
+/** Name of what describes the picture. */
+export const SUMMARY = 'summary';
+
 /** What stands in the shadow of the element. */
 export interface Parts {
   frame: HTMLElement;
@@ -29,7 +32,8 @@ export function build(shadow: ShadowRoot): Parts {
   const progress = create('progress', { max: '1', hidden: '', 'aria-label': 'Loading the widget' });
   const note = create('div', { class: 'note-box', role: 'status' });
   const bar = create('div', { class: 'bar' });
-  const summary = create('p', { class: 'summary hidden' });
+  // The canvas is described by it; a picture has the same words of its own.
+  const summary = create('p', { class: 'summary', id: SUMMARY, hidden: '' });
   const live = create('p', { class: 'hidden', role: 'status', 'aria-live': 'polite' });
   const status = create('span', { class: 'status', role: 'status' });
   note.classList.add('note');
