@@ -500,6 +500,7 @@ fn the_five_colours_mean_the_same_in_every_legend() {
                 "sweep",
                 "cross hair",
                 "front end alone",
+                "first guess",
                 "source",
             ]),
             _ => true,
