@@ -41,7 +41,7 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .doctor label { display: inline-flex; gap: 0.35rem; align-items: center; }
 .doctor input[type='number'] { width: 5.5rem; }
 .bar { position: relative; background: var(--paper);
-  border-top: 1px solid var(--line); border-radius: 0 0 6px 6px; min-height: 3.25rem; }
+  border-top: 1px solid var(--line); border-radius: 0 0 6px 6px; min-height: 2.75rem; }
 /* While a control has the focus its line stays on the screen, whatever part of the picture is. */
 .bar:has(.control:focus-within) { position: sticky; bottom: 0; z-index: 1; }
 .tools { display: flex; flex-wrap: wrap; gap: 0.5rem; padding: 0.4rem 0.75rem; align-items: center; }
@@ -57,7 +57,7 @@ input[type='checkbox'] { width: 1.5rem; height: 1.5rem; accent-color: var(--acce
   overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
 /* It covers the tools: the widget does not grow under the reader's finger. */
 .control:focus-within { position: absolute; inset: 0; z-index: 1; display: flex; flex-direction: column;
-  justify-content: center; padding: 0 0.75rem; background: var(--paper); border-radius: 0 0 6px 6px; }
+  justify-content: center; line-height: 1.15; padding: 0 0.75rem; background: var(--paper); border-radius: 0 0 6px 6px; }
 [hidden] { display: none !important; }
 .line { display: flex; gap: 0.5rem; align-items: center; min-width: 0; }
 .name, .help { overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }

@@ -20,7 +20,7 @@ use crate::ticks::{Scale, Ticks};
 /// Height of a row of small text.
 pub const ROW: f32 = 17.0;
 /// Height of a name of an axis of names.
-const NAME_ROW: f32 = 14.0;
+const NAME_ROW: f32 = 12.0;
 /// Height of the title's row.
 const TITLE_ROW: f32 = 22.0;
 /// Length of a tick with its distance to the label.

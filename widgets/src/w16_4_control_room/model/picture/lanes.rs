@@ -2,7 +2,7 @@
 
 use ch16_lab::lap::{LapRecord, LoopAttempt, TickReport};
 use ch16_slam2d::loops::LoopRejection;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use kit::scene::{Aspect, Axis, Layer, Mark, Panel, Stroke, Tone, Weight};
 use kit::ticks::signed;
 
 /// Name of the panel.
@@ -225,7 +225,7 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
     }
     Panel {
         id: ID,
-        title: "Who does what when".to_owned(),
+        title: "Who does what when: dots are done, rings refused".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Free,
         // The rings at the first and the last one are whole.
@@ -233,10 +233,8 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
         // The first one stands on top.
         y: Axis::of_names("lane", LANES.iter().rev().map(|lane| lane.name.to_owned())),
         layers,
-        legend: vec![
-            LegendEntry::mark("done, passed", Tone::Series(0), Mark::Dot),
-            LegendEntry::mark("refused", Tone::Series(3), Mark::Circle),
-        ],
+        // The title has its words: on low screens the names need the room.
+        legend: Vec::new(),
         color_bar: None,
     }
 }
