@@ -20,7 +20,7 @@ import { heightTable } from './heights.mjs';
 import { endWithOneSentence } from './licences/allowed.mjs';
 import { partsOfWidgets, writePackageNotices } from './licences/notices.mjs';
 import { writeMarked } from './marked.mjs';
-import { brotli, withoutNames } from './wasm-file.mjs';
+import { brotli, withMark, withoutNames } from './wasm-file.mjs';
 
 const WEB = dirname(fileURLToPath(import.meta.url));
 const PKG = join(WEB, 'pkg');
@@ -50,11 +50,9 @@ await rm(dist, { recursive: true, force: true });
 await mkdir(join(dist, 'pictures'), { recursive: true });
 for (const { id } of schema) await drawPictures(id);
 
-const wasmFile = `slam_web-${hash(wasm)}.wasm`;
-await writeFile(join(dist, wasmFile), wasm);
 const robotWasm = withoutNames(await readFile(join(ROBOT_PKG, 'slam_robot_bg.wasm')));
-const robotWasmFile = `slam_robot-${hash(robotWasm)}.wasm`;
-await writeFile(join(dist, robotWasmFile), robotWasm);
+const wasmFile = await writeModule('slam_web', wasm);
+const robotWasmFile = await writeModule('slam_robot', robotWasm);
 const sampleFiles = await writeSample();
 let robotWorker;
 const metafiles = await bundle();
@@ -108,6 +106,14 @@ async function drawPictures(id) {
     const svg = widget.picture(PICTURE_WIDTH_PX, theme);
     await writeFile(join(dist, 'pictures', `${id}-${theme}.svg`), svg);
   }
+}
+
+/** A module that carries the hash of its name inside, too: what comes under a name may be another build's. */
+async function writeModule(name, bytes) {
+  const mark = hash(bytes);
+  const file = `${name}-${mark}.wasm`;
+  await writeFile(join(dist, file), withMark(bytes, mark));
+  return file;
 }
 
 /** The log that a reader may map who has none: the simulator's ring, the truth of it, and another day in it. */
@@ -211,10 +217,10 @@ async function measure() {
     write: false,
   });
   const files = {
-    wasm,
+    wasm: await readFile(join(dist, wasmFile)),
     glue: Buffer.from(glueBundle.outputFiles[0].contents),
     // Fetched only once a reader opens a log.
-    'wasm of the worker': robotWasm,
+    'wasm of the worker': await readFile(join(dist, robotWasmFile)),
     'script of the worker': Buffer.from(robotWorker.code.contents),
   };
   const sizes = {};

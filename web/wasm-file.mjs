@@ -18,6 +18,17 @@ export function withoutNames(module) {
   return Buffer.concat(kept);
 }
 
+/** The section that holds the mark of a build; web/ts/module.ts looks for it. */
+const MARK = 'build';
+
+/** Adds the mark of a build: whoever has compiled the module can read which one it is. */
+export function withMark(module, mark) {
+  const [name, text] = [MARK, mark].map((words) => Buffer.from(words));
+  const section = Buffer.concat([Buffer.from([name.length]), name, text]);
+  if (section.length > 127) throw new Error('a mark is short: its size takes one byte');
+  return Buffer.concat([module, Buffer.from([0, section.length]), section]);
+}
+
 /** An unsigned number at an offset, and the offset behind it. */
 function leb128(bytes, at) {
   let value = 0;

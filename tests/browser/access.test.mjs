@@ -54,6 +54,7 @@ for (const widget of h.schema) {
     before(() => h.ready(page.tab));
     beforeEach(() => page.tab.evaluate(async () => {
       await document.querySelector('slam-widget').press('defaults');
+      document.querySelector('slam-widget').more = true;
       document.querySelector('h1').focus();
     }));
 
@@ -101,9 +102,44 @@ for (const widget of h.schema) {
         stops.push(stop.control);
       }
       const order = [...new Set(stops.filter((control) => control !== null))];
-      const ids = (list) => list.map((item) => item.id);
-      const expected = [...ids(widget.presets), ...ids(widget.params), ...ids(widget.buttons)];
-      assert.deepEqual(order, expected);
+      // What belongs to a mode that is off is no stop; a text has no place on the canvas.
+      const texts = widget.params.filter(({ kind }) => kind === 'text').map(({ id }) => id);
+      const isStop = (id) => texts.includes(id) || !offCanvas.includes(id);
+      const rank = (id) => (id === 'play' ? 0 : id === 'more' ? 2 : widget.opening.includes(id) ? 1 : 3);
+      const all = [...widget.presets, ...widget.params, ...widget.buttons].map(({ id }) => id).filter(isStop);
+      assert.deepEqual(order, all.sort((a, b) => rank(a) - rank(b)));
+    });
+
+    it('stops at Play, its control and More while that is closed, and keeps its height', async () => {
+      const { tab } = page;
+      await tab.evaluate(() => (document.querySelector('slam-widget').more = false));
+      await h.quiet(tab);
+      const height = () => tab.evaluate(() => document.querySelector('slam-widget').offsetHeight);
+      const resting = await height();
+      await tab.evaluate(() => document.querySelector('h1').focus());
+      const stops = [];
+      for (let presses = 0; presses < 20; presses += 1) {
+        await tab.keyboard.press('Tab');
+        const stop = await focused(tab);
+        if (stop === null) break;
+        assert.equal(await height(), resting, `${stop.control} makes the widget higher`);
+        stops.push(stop.control ?? 'tool');
+      }
+      const order = [...new Set(stops)];
+      assert.equal(order[0], widget.buttons.some(({ id }) => id === 'play') ? 'play' : order[0]);
+      assert.deepEqual(order.slice(-2), ['more', 'tool']);
+      assert.deepEqual([...order].slice(0, -1).sort(), [...widget.opening].sort());
+      await tab.evaluate(() => (document.querySelector('slam-widget').more = true));
+    });
+
+    it('describes its picture by what it shows', async () => {
+      const { tab } = page;
+      const session = await tab.context().newCDPSession(tab);
+      const { nodes } = await session.send('Accessibility.getFullAXTree');
+      const image = nodes.find(({ role, name }) => role?.value === 'image' && name?.value === widget.title);
+      const summary = await tab.evaluate(() => document.querySelector('slam-widget').shadowRoot.querySelector('.summary').textContent);
+      assert.equal(image.description?.value, summary.replace(/\s+/g, ' ').trim());
+      assert.equal(nodes.filter(({ role, name }) => role?.value === 'StaticText' && name?.value === summary).length, 0);
     });
 
     it('changes every parameter by keys alone, with fine steps under Shift', async () => {
@@ -112,6 +148,10 @@ for (const widget of h.schema) {
         // The extremes of other parameters may leave a run without a single step.
         await tab.evaluate(() => document.querySelector('slam-widget').press('defaults'));
         const control = tab.locator(`slam-widget #control-${param.id}`);
+        // What belongs to a mode needs it.
+        if (await control.evaluate((input) => input.closest('[hidden]') !== null)) {
+          await tab.evaluate(() => document.querySelector('slam-widget').press('edit-flat'));
+        }
         await control.focus();
         const before = await value(tab, param.id);
         if (param.kind === 'switch') {
@@ -164,8 +204,9 @@ for (const widget of h.schema) {
         const other = document.createElement('slam-widget');
         other.name = widget.name;
         other.more = widget.more;
-        window.expected = async (id) => {
+        window.expected = async (id, mode) => {
           await other.press('defaults');
+          if (mode !== null) await other.press(mode);
           await other.press(id);
           return told(other);
         };
@@ -177,12 +218,16 @@ for (const widget of h.schema) {
         };
       });
       for (const button of [...widget.presets, ...widget.buttons]) {
-        const expected = await tab.evaluate((id) => window.expected(id), button.id);
-        await tab.evaluate(async () => {
-          await document.querySelector('slam-widget').press('defaults');
+        const control = tab.locator(`slam-widget button[data-control="${button.id}"]`);
+        await tab.evaluate(() => document.querySelector('slam-widget').press('defaults'));
+        // What belongs to a mode needs it.
+        const mode = (await control.evaluate((element) => element.closest('[hidden]') !== null)) ? 'edit-flat' : null;
+        const expected = await tab.evaluate(([id, its]) => window.expected(id, its), [button.id, mode]);
+        await tab.evaluate(async (its) => {
+          if (its !== null) await document.querySelector('slam-widget').press(its);
           window.after = undefined;
-        });
-        await tab.locator(`slam-widget button[data-control="${button.id}"]`).focus();
+        }, mode);
+        await control.focus();
         await tab.keyboard.press('Enter');
         await tab.waitForFunction(() => window.after !== undefined);
         assert.deepEqual(await tab.evaluate(() => after), expected, button.id);
@@ -190,7 +235,7 @@ for (const widget of h.schema) {
       await tab.evaluate(() => delete document.querySelector('slam-widget').press);
       await tab.locator('slam-widget button[data-control="defaults"]').press('Enter');
       const state = await tab.evaluate(() => document.querySelector('slam-widget').query);
-      assert.equal(state, `?w=${widget.id.slice(1)}`);
+      assert.equal(state, `?w=${widget.id.slice(1)}&more=on`);
     });
 
     it('keeps its keys from the page, and leaves it all others', async () => {
@@ -221,7 +266,9 @@ for (const widget of h.schema) {
           description: node.description?.value ?? '',
         }));
       const find = (role, name) => named.find((node) => node.role === role && node.name === name);
-      for (const param of widget.params) {
+      const shown = await tab.evaluate(() => [...document.querySelector('slam-widget').shadowRoot
+        .querySelectorAll('.control:not([hidden]) [data-control]')].map(({ dataset }) => dataset.control));
+      for (const param of widget.params.filter(({ id }) => shown.includes(id))) {
         const role = { slider: 'slider', timeline: 'slider', seed: 'spinbutton', choice: 'combobox', switch: 'switch', text: 'textbox' }[param.kind];
         const node = find(role, param.label);
         assert.ok(node, `no ${role} named ${param.label}`);
@@ -230,7 +277,7 @@ for (const widget of h.schema) {
         const said = await tab.locator(`slam-widget #control-${param.id}`).getAttribute('aria-valuetext');
         assert.ok(said.endsWith(param.unit) && /\d/.test(said), `${param.label}: ${said}`);
       }
-      for (const button of widget.buttons) assert.ok(find('button', button.label), button.label);
+      for (const button of widget.buttons.filter(({ id }) => shown.includes(id))) assert.ok(find('button', button.label), button.label);
       assert.ok(find('image', widget.title), 'the canvas has no name');
     });
 

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { brotliCompressSync } from 'node:zlib';
 import { describe, it } from 'node:test';
 import * as h from './harness.mjs';
 
@@ -51,11 +52,38 @@ describe('the lap under the title', () => {
     });
   }
 
-  it('asks for the program once, for itself and for the widgets', async () => {
+  it('plays before the program of the widgets is asked for, and its page weighs 300 kB at most', async () => {
+    for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 844 }]) {
+      const asked = new Set();
+      const answer = (path) => void asked.add(path);
+      await reading(async (tab) => {
+        await live(tab);
+        await h.quiet(tab);
+        const weights = [...asked].filter((path) => !path.endsWith('.woff2')).map((path) => {
+          const bytes = readFileSync(join(h.DIST, path));
+          // The script of a quick build carries its sources.
+          const sent = path.endsWith('.js') ? Buffer.from(bytes.toString().replace(/\n\/\/# sourceMappingURL=.*/s, '')) : bytes;
+          return [path, brotliCompressSync(sent).length];
+        });
+        const total = weights.reduce((sum, [, bytes]) => sum + bytes, 0);
+        assert.ok(total > 50_000 && total <= 300_000, `${total} bytes: ${weights.join(' ')}`);
+        assert.deepEqual([...asked].filter((path) => /\.wasm$|pictures\/w16/.test(path)), []);
+      }, { viewport }, { server: { answer } });
+    }
+  });
+
+  it('asks for the program once, for itself and for the widgets, two screens before the first', async () => {
     const asked = [];
     const answer = (path) => void (path.endsWith('.wasm') && asked.push(path));
     await reading(async (tab) => {
       await live(tab);
+      const request = tab.waitForRequest((one) => one.url().endsWith('.wasm'));
+      await tab.evaluate(() => {
+        const { top } = document.querySelector('slam-widget').getBoundingClientRect();
+        scrollTo(0, top - 2.6 * innerHeight);
+      });
+      await request;
+      assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').state), 'resting');
       await tab.locator('slam-widget[name="w16.1"]').scrollIntoViewIfNeeded();
       await h.ready(tab, 'slam-widget[name="w16.1"]');
       assert.equal(asked.length, 1);

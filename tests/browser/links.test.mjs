@@ -11,7 +11,7 @@ const get = (tab, id, param) => tab.evaluate(([css, name]) => document.querySele
 const has = (tab, id, param, value) => tab.waitForFunction(
   ([css, name, wanted]) => document.querySelector(css).get(name) === wanted, [widget(id), param, value]);
 const link = (tab, words) => tab.locator('main a.slam-link', { hasText: words }).first();
-const wayBack = (tab) => tab.locator('.slam-way-back button');
+const wayBack = (tab) => tab.locator('.slam-way-back button', { hasText: 'Back to' });
 const scrolled = (tab) => tab.evaluate(() => Math.round(scrollY));
 
 describe('a link in the text', () => {
@@ -84,6 +84,21 @@ describe('a link in the text', () => {
     });
   });
 
+  it('leaves no parameter of another widget in the address, and what belongs to the page', async () => {
+    await visit('', async (tab) => {
+      await link(tab, 'last').click();
+      await tab.waitForURL(/w=16.2&t=119/);
+      await link(tab, '45°').click();
+      const search = new URL(tab.url()).searchParams;
+      assert.deepEqual(Object.fromEntries(search), { theme: 'light', w: '16.1', dx: '0', dy: '0', heading: '45' });
+      assert.equal(await tab.evaluate((css) => document.querySelector(css).link, widget('w16.1')), tab.url());
+      // Opened, it has nothing to complain of.
+      await tab.goto(tab.url());
+      await has(tab, 'w16.1', 'heading', 45);
+      assert.equal(await tab.locator('slam-widget .note p').count(), 0);
+    }, { path: '/index.html?theme=light' });
+  });
+
   it('that leads elsewhere offers the way back to its sentence', async () => {
     await reading(async (tab) => {
       const here = link(tab, 'τ = 0.1 m');
@@ -102,6 +117,37 @@ describe('a link in the text', () => {
       }));
       assert.equal(await get(tab, 'w16.1', 'tau'), 0.1, 'the widget stays as the link has set it');
     });
+  });
+
+  it('takes its way back away when the reader closes it or has scrolled two screens on', async () => {
+    await reading(async (tab) => {
+      const here = link(tab, 'τ = 0.1 m');
+      const led = async () => {
+        await here.evaluate((a) => {
+          a.closest('details').open = true;
+          a.scrollIntoView({ block: 'center' });
+        });
+        await here.click();
+        await tab.waitForFunction((css) => document.querySelector(css).getBoundingClientRect().top < innerHeight, widget('w16.1'));
+        await wayBack(tab).waitFor();
+      };
+      await led();
+      await tab.getByRole('button', { name: 'Stay here' }).click();
+      assert.equal(await wayBack(tab).count(), 0);
+      await led();
+      // The wheel of a reader: what holds the widget in view lets go.
+      const scrollOn = async (screens) => {
+        const from = await scrolled(tab);
+        await tab.mouse.move(200, 400);
+        await tab.mouse.wheel(0, screens * 844);
+        await tab.waitForFunction(([y, least]) => scrollY - y > least * innerHeight, [from, screens - 0.1]);
+        await h.quiet(tab);
+      };
+      await scrollOn(1);
+      assert.equal(await wayBack(tab).count(), 1, 'one screen on, it is still there');
+      await scrollOn(1.2);
+      assert.equal(await wayBack(tab).count(), 0, 'two screens on');
+    }, { viewport: { width: 390, height: 844 } });
   });
 
   it('is not alone: an answer that is shown in its widget offers the way back to the question', async () => {

@@ -11,9 +11,10 @@ const figure = (tab, name) => tab.locator(`[data-sketch="${name}"]`);
 /** Some stand in a fold. */
 const unfold = (tab, name) => tab.evaluate(
   (id) => document.querySelector(`[data-sketch="${id}"]`).closest('details')?.setAttribute('open', ''), name);
-/** Its slider, once the core has come. */
+/** Its slider, once the core has come: that is fetched when a reader comes near. */
 async function slider(tab, name) {
   await unfold(tab, name);
+  await figure(tab, name).scrollIntoViewIfNeeded();
   await tab.waitForFunction((id) => document.querySelector(`[data-sketch="${id}"] input`).disabled === false, name);
   return figure(tab, name).locator('input');
 }

@@ -3,6 +3,7 @@
 //
 //     node web/page/build.mjs <out-dir>
 
+import { createHash } from 'node:crypto';
 import { existsSync } from 'node:fs';
 import { cp, mkdir, readFile, writeFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
@@ -28,14 +29,32 @@ if (outDir === undefined) {
 }
 
 await mkdir(outDir, { recursive: true });
-await Promise.all([renderPage(), copyStyle(), copyKatex()]);
-await writeNotices(await bundleScript()).catch(endWithOneSentence);
+const source = await readFile(path.join(root, 'index.html'), 'utf8');
+const pictured = addPictures(renderFormulas(source), await widgetSpecs());
+const { sketches, story } = await drawStills(outDir);
+const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story));
+names.set('page.css', await copyStyle());
+await Promise.all([renderPage(), copyKatex()]);
+await writeNotices(metafiles).catch(endWithOneSentence);
 
 async function renderPage() {
-  const source = await readFile(path.join(root, 'index.html'), 'utf8');
-  const drawn = addStills(addPictures(renderFormulas(source), await widgetSpecs()));
-  const page = await addListings(addSketches(drawn, await drawStills(outDir)), root);
-  await writeFile(path.join(outDir, 'index.html'), page);
+  const page = await addListings(addSketches(addStills(pictured), sketches), root);
+  await writeFile(path.join(outDir, 'index.html'), withNames(page));
+}
+
+/** The names with a hash in place of those of the sources. */
+function withNames(html) {
+  return html.replace(/((?:href|src)=")([a-z]+\.(?:css|js))"/g, (whole, before, name) => {
+    return names.has(name) ? `${before}${names.get(name)}"` : whole;
+  });
+}
+
+/** Writes a file under a name with a hash of its content, so that a browser may keep it for ever; returns that name. */
+async function writeHashed(name, content) {
+  const { name: stem, ext } = path.parse(name);
+  const hashed = `${stem}-${createHash('sha256').update(content).digest('hex').slice(0, 12)}${ext}`;
+  await writeFile(path.join(outDir, hashed), content);
+  return hashed;
 }
 
 /** Title and summary of each widget, by its id: web/build.mjs leaves them beside the pictures. */
@@ -114,11 +133,11 @@ function unescapeHtml(text) {
   return text.replaceAll('&lt;', '<').replaceAll('&gt;', '>').replaceAll('&amp;', '&');
 }
 
-/** With the colours before it; and the table that the page links to. */
+/** With the colours before it; and the table that the page links to. Returns the name of the style. */
 async function copyStyle() {
   const style = await readFile(path.join(here, 'page.css'), 'utf8');
-  await writeFile(path.join(outDir, 'page.css'), colorStyle() + style);
   await cp(path.join(here, 'thousand-laps.csv'), path.join(outDir, 'thousand-laps.csv'));
+  return writeHashed('page.css', colorStyle() + style);
 }
 
 /** Browsers that run WebAssembly all read woff2: the older font formats stay out. */
@@ -135,24 +154,35 @@ async function copyKatex() {
   });
 }
 
-/** What esbuild took into the scripts: that of the page, and that of its workers. */
-async function bundleScript() {
-  const { metafile } = await build({
-    entryPoints: { page: path.join(here, 'page.ts'), 'laps-worker': path.join(here, 'laps', 'worker.ts') },
-    outdir: outDir,
-    bundle: true,
-    external: ['./slam-widget.js'],
-    metafile: true,
-    format: 'esm',
-    minify: true,
-    target: 'es2022',
-    logLevel: 'warning',
+/** Writes the scripts of the page and of its workers; returns their names, and what esbuild took into them. */
+async function bundleScripts(storyFile) {
+  const bundle = async (source, define) => {
+    const { outputFiles, metafile } = await build({
+      entryPoints: [path.join(here, source)],
+      bundle: true,
+      external: ['./slam-widget.js'],
+      define,
+      write: false,
+      metafile: true,
+      format: 'esm',
+      minify: true,
+      target: 'es2022',
+      logLevel: 'warning',
+    });
+    return { text: outputFiles[0].contents, metafile };
+  };
+  const worker = await bundle('laps/worker.ts', {});
+  const workerFile = await writeHashed('laps-worker.js', worker.text);
+  const page = await bundle('page.ts', {
+    LAP_STORY_FILE: JSON.stringify(`./${storyFile}`),
+    LAPS_WORKER_FILE: JSON.stringify(`./${workerFile}`),
   });
-  return metafile;
+  const names = new Map([['page.js', await writeHashed('page.js', page.text)]]);
+  return { names, metafiles: [worker.metafile, page.metafile] };
 }
 
 /** What the widgets hold, which their build has left, and what the page adds. */
-async function writeNotices(metafile) {
+async function writeNotices(metafiles) {
   const ofWidgets = JSON.parse(await readFile(path.join(root, 'web', 'pkg', 'parts.json'), 'utf8'));
-  await writeNoticesPage([...ofWidgets, ...(await partsOfPage([metafile]))], outDir);
+  await writeNoticesPage([...ofWidgets, ...(await partsOfPage(metafiles))], outDir);
 }

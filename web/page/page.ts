@@ -12,8 +12,13 @@ import type { Story } from './lap/story';
 import { LapsFigure } from './laps/laps';
 import { SketchFigure, type SketchSchema } from './sketch';
 
-/** The run that the page calls canonical. */
-const CANONICAL = { seed: 12648430, noise: 1 };
+/** Set by the build: the lap that the page calls canonical, as the core has driven it. */
+declare const LAP_STORY_FILE: string;
+
+/** What needs the program of the widgets. */
+const NEEDS_CORE = 'slam-widget, [data-sketch], #decide, #laps';
+/** The program is fetched so far before the first of these is seen. */
+const FETCH_MARGIN = '200% 0px';
 
 type ThemeChoice = 'auto' | 'light' | 'dark';
 
@@ -24,27 +29,35 @@ keepFromFiles();
 addCopyButtons(document.querySelectorAll<HTMLElement>('figure.listing'));
 void replayLap();
 driveLaps();
-void moveSketches();
-void askForLoops();
+whenNear(document.querySelectorAll(NEEDS_CORE), () => void useCore());
 
-/** The core, which every picture of the page shares; undefined where it cannot be had. */
-function coreIfAny(): Promise<Glue | undefined> {
-  return (core as () => Promise<Glue>)().catch(() => undefined);
-}
-
-/** The still picture stays where the core cannot be had; the widgets say why. */
+/** The still picture stays if the story cannot be had. */
 async function replayLap(): Promise<void> {
   const figure = document.querySelector<HTMLElement>('#lap');
-  const glue = await coreIfAny();
-  if (figure === null || glue === undefined) return;
-  const { seed, noise } = CANONICAL;
-  new LapPlayer(figure, JSON.parse(glue.lapStory(seed, noise)) as Story);
+  const response = await fetch(new URL(LAP_STORY_FILE, import.meta.url)).catch(() => undefined);
+  if (figure !== null && response?.ok === true) new LapPlayer(figure, (await response.json()) as Story);
+}
+
+/** Calls once, when the first of them comes near the screen. */
+function whenNear(elements: Iterable<Element>, come: () => void): void {
+  const observer = new IntersectionObserver((entries) => {
+    if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
+    observer.disconnect();
+    come();
+  }, { rootMargin: FETCH_MARGIN });
+  for (const element of elements) observer.observe(element);
+}
+
+/** What the page draws by itself shares one core. Where that cannot be had, the pictures stay, and the widgets say why. */
+async function useCore(): Promise<void> {
+  const glue = await (core as () => Promise<Glue>)().catch(() => undefined);
+  if (glue === undefined) return;
+  moveSketches(glue);
+  askForLoops(glue);
 }
 
 /** The sliders of the small figures wait for the core. */
-async function moveSketches(): Promise<void> {
-  const glue = await coreIfAny();
-  if (glue === undefined) return;
+function moveSketches(glue: Glue): void {
   for (const schema of JSON.parse(glue.sketchSchemas()) as SketchSchema[]) {
     const figure = document.querySelector<HTMLElement>(`[data-sketch="${schema.name}"]`);
     if (figure !== null) new SketchFigure(figure, schema, glue);
@@ -52,10 +65,9 @@ async function moveSketches(): Promise<void> {
 }
 
 /** Ten loop candidates for the reader to judge. */
-async function askForLoops(): Promise<void> {
+function askForLoops(glue: Glue): void {
   const figure = document.querySelector<HTMLElement>('#decide');
-  const glue = await coreIfAny();
-  if (figure !== null && glue !== undefined) new DecideFigure(figure, glue);
+  if (figure !== null) new DecideFigure(figure, glue);
 }
 
 /** A thousand laps, once one comes to look at them. */

@@ -13,16 +13,29 @@ const PKG = path.join(here, '..', 'pkg');
 /** The run that the page calls canonical. */
 const CANONICAL_SEED = 12648430;
 
-/** Writes `pictures/lap-light.svg` and its dark sister, and those of the small figures, which it returns. */
+/**
+ * Writes `pictures/lap-light.svg` and its dark sister, and those of the small figures. Returns the figures' HTML by name,
+ * and the lap as the page replays it, as JSON.
+ */
 export async function drawStills(outDir) {
   const core = await instantiate();
-  await drawLap(core, outDir);
-  return drawSketches(core, outDir);
+  const story = JSON.parse(core.lapStory(CANONICAL_SEED, 1));
+  await drawLap(story, outDir);
+  return { sketches: await drawSketches(core, outDir), story: JSON.stringify(withShortSweeps(story)) };
 }
 
-async function drawLap(core, outDir) {
+/** The sweeps are most of the file. Those that make the map keep millimetres, those between centimetres: a pixel. */
+function withShortSweeps(story) {
+  const makesMap = new Set(story.keyframes);
+  const ticks = story.ticks.map((tick, at) => {
+    const digits = makesMap.has(at) ? 3 : 2;
+    return { ...tick, sweep: tick.sweep.map((metres) => Number(metres.toFixed(digits))) };
+  });
+  return { ...story, ticks };
+}
+
+async function drawLap(story, outDir) {
   const { still } = await load('lap/still.ts');
-  const story = JSON.parse(core.lapStory(CANONICAL_SEED, 1));
   for (const theme of ['light', 'dark']) {
     await writeFile(path.join(outDir, 'pictures', `lap-${theme}.svg`), still(story, shades(theme)));
   }

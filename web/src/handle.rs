@@ -151,6 +151,14 @@ impl Widget {
         self.shared.shell.borrow_mut().take_orders()
     }
 
+    /// The controls that are shown at present, by name.
+    #[wasm_bindgen(js_name = shownControls)]
+    pub fn shown_controls(&self) -> Vec<String> {
+        let shell = self.shared.shell.borrow();
+        let shown = kit::controls::shown(shell.model());
+        shown.into_iter().map(str::to_owned).collect()
+    }
+
     /// Every value as JSON, in the form of a link.
     pub fn values(&self) -> String {
         state::values(self.shared.shell.borrow().model()).to_string()

@@ -32,6 +32,7 @@ pub fn widget(model: &dyn Model) -> Value {
         "buttons": buttons.collect::<Vec<_>>(),
         "presets": presets.collect::<Vec<_>>(),
         "keys": keys.collect::<Vec<_>>(),
+        "opening": kit::controls::shown(model),
         "summary": model.summary(),
         "takesFiles": model.takes_files(),
     })

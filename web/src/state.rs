@@ -51,7 +51,7 @@ pub fn outcome(outcome: &Outcome) -> Value {
     json!({
         "standing": standing(outcome.standing),
         "verdict": outcome.verdict,
-        "sentence": outcome.sentence,
+        "sentence": outcome.in_full(),
         "facts": facts,
     })
 }

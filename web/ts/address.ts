@@ -34,9 +34,9 @@ export function readAddress(element: HTMLElement, spec: WidgetSpec, to: Addresse
 export function linkTo(element: HTMLElement, spec: WidgetSpec | undefined, query: string): string {
   const isLinked = element.hasAttribute('linked');
   const page = isLinked ? location.href : addressOf('embed.html');
-  if (page === undefined) return spec === undefined ? '' : withState('', spec, query);
+  if (page === undefined) return spec === undefined ? '' : withState('', query);
   const link = new URL(page);
-  if (spec !== undefined) link.search = withState(link.search, spec, query);
+  if (spec !== undefined) link.search = withState(link.search, query);
   return link.href;
 }
 

@@ -1,11 +1,15 @@
 // The parallel DOM: every control that the canvas shows, again as a native one with name, value,
-// unit and help. It has the keyboard focus; the canvas shows the ring. A control is seen on its own
-// line under the picture while it has the focus, and by a screen reader always.
+// unit and help. It has the keyboard focus; the canvas shows the ring. A control is seen on a line
+// under the picture while it has the focus, and by a screen reader always. What the canvas does not show, as long as
+// "More" is closed for example, is no stop of the keyboard.
 
 import { create } from './dom';
 import type { Timeline } from './instance';
 import type { ButtonSpec, ParamSpec, WidgetSpec } from './schema';
 import { toLabel } from './values';
+
+/** The switch that shows everything. */
+export const MORE = 'more';
 
 export interface ControlHost {
   /** Returns what was wrong. */
@@ -25,6 +29,7 @@ interface ParamControl {
 
 export class Controls {
   readonly element: HTMLElement;
+  readonly #rows = new Map<string, HTMLElement>();
   readonly #params = new Map<string, ParamControl>();
   readonly #ranges = new Map<string, HTMLInputElement>();
   readonly #buttons = new Map<string, HTMLButtonElement>();
@@ -39,9 +44,11 @@ export class Controls {
     this.#keyed = new Set(this.#keys.values());
     this.element = create('div', { class: 'controls', role: 'group' });
     this.element.setAttribute('aria-label', `${widget.title}: controls`);
-    for (const button of widget.presets) this.element.append(this.#button(button, 'try'));
-    for (const param of widget.params) this.element.append(this.#param(param));
-    for (const button of widget.buttons) this.element.append(this.#button(button, 'do'));
+    for (const button of widget.presets) this.#rows.set(button.id, this.#button(button, 'try'));
+    for (const param of widget.params) this.#rows.set(param.id, this.#param(param));
+    for (const button of widget.buttons) this.#rows.set(button.id, this.#button(button, 'do'));
+    for (const id of inOrder(widget, [...this.#rows.keys()])) this.element.append(this.#rows.get(id) ?? '');
+    this.offer(widget.opening);
     this.element.addEventListener('keydown', (event) => this.#keyDown(event));
     this.element.addEventListener('focusin', (event) => {
       host.focus((event.target as HTMLElement).dataset['control']);
@@ -62,6 +69,16 @@ export class Controls {
     if (!isKeyed || button === undefined) return;
     event.preventDefault();
     this.#host.press(button);
+  }
+
+  /** Takes the controls that the canvas does not show from keyboard and screen reader. */
+  offer(shown: readonly string[]): void {
+    for (const [id, row] of this.#rows) {
+      const isShown = shown.includes(id);
+      // Whoever closed "More" by a control of it goes on beside it.
+      if (!isShown && row.matches(':focus-within')) this.#rows.get(MORE)?.querySelector('input')?.focus();
+      row.hidden = !isShown;
+    }
   }
 
   /** Shows values that changed elsewhere. */
@@ -99,7 +116,9 @@ export class Controls {
       input.dataset['control'] = spec.id;
       input.setAttribute('aria-describedby', help.id);
     }
-    row.append(name, ...inputs, unitOf(spec), help);
+    const line = create('span', { class: 'line' });
+    line.append(name, ...inputs, unitOf(spec));
+    row.append(line, help);
     this.#params.set(spec.id, { spec, show });
     return row;
   }
@@ -219,6 +238,16 @@ export class Controls {
     row.append(button, help);
     return row;
   }
+}
+
+/** Play, what the widget opens with, "More", and then the rest. */
+function inOrder({ opening }: WidgetSpec, ids: readonly string[]): string[] {
+  const rank = (id: string): number => {
+    if (id === 'play') return 0;
+    if (id === MORE) return 2;
+    return opening.includes(id) ? 1 : 3;
+  };
+  return [...ids].sort((a, b) => rank(a) - rank(b));
 }
 
 /** What an arrow key makes of a value; undefined for keys that are not ours. */

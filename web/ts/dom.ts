@@ -15,6 +15,18 @@ export function listen(target: EventTarget, type: string, callback: () => void):
   return () => target.removeEventListener(type, callback);
 }
 
+/** The next task: what the reader does comes between. Timers would wait for milliseconds. */
+export function nextTask(): Promise<void> {
+  return new Promise((resolve) => {
+    const { port1, port2 } = new MessageChannel();
+    port1.onmessage = () => {
+      port1.close();
+      resolve();
+    };
+    port2.postMessage(undefined);
+  });
+}
+
 /** Keeps keys from the page: slides and chapters turn on arrows, whatever has the focus. */
 export function keepKeys(element: HTMLElement): void {
   element.addEventListener('keydown', (event) => {

@@ -5,7 +5,7 @@
 
 import { linkTo, readAddress } from './address';
 import { boxOf, type Box } from './box';
-import { Controls } from './controls';
+import { Controls, MORE } from './controls';
 import { listen, upgradeProperties } from './dom';
 import { takeAwayBar } from './export';
 import type { Widget } from '../pkg/glue.js';
@@ -42,6 +42,7 @@ export class SlamWidget extends HTMLElement {
   #state: State | undefined;
   #isSetUp = false;
   #controls: Controls | undefined;
+  #look: HTMLElement | undefined;
   #lastOutcome: Outcome | undefined;
   #unwatch: (() => void)[] = [];
   readonly #textFiles: TextFileHost;
@@ -58,7 +59,8 @@ export class SlamWidget extends HTMLElement {
       act: (deed) => void this.#act(deed),
       refuse: (problem) => this.#news.wrong('value', problem),
     };
-    this.#news = new News(this, this.#parts, this.#notes, () => this.#showTimeline());
+    const shownSummary = (): string => this.#shownSummary();
+    this.#news = new News(this, this.#parts, this.#notes, () => this.#showTimeline(), shownSummary);
     this.#pictures = new Pictures(this.#parts.picture);
     this.#place = new Place(this.#parts.stage);
     this.#life = new Life(this.#parts, this.#lifeHost());
@@ -180,7 +182,7 @@ export class SlamWidget extends HTMLElement {
   /** The text that stands for the picture. */
   get summary(): string {
     this.#finishWork();
-    return this.#life.ask((widget) => widget.summary()) ?? this.#state?.spec.summary ?? '';
+    return this.#shownSummary();
   }
 
   /** The state as the query of a link. */
@@ -291,6 +293,7 @@ export class SlamWidget extends HTMLElement {
     this.#closeDesk();
     const spec = findWidget(this.name);
     parts.frame.classList.toggle('takes-files', spec?.takesFiles === true);
+    parts.frame.classList.toggle('without-file', spec?.takesFiles === true);
     this.#state = spec && new State(spec);
     this.#lastOutcome = undefined;
     this.#notes.clear();
@@ -313,6 +316,8 @@ export class SlamWidget extends HTMLElement {
       focus: (id) => this.#looks.showFocus(id),
     });
     const look = lookBar((way) => this.look(way));
+    look.hidden = true;
+    this.#look = look;
     parts.bar.append(this.#controls.element, look, takeAwayBar(this, spec.id, parts.status));
     parts.frame.setAttribute('aria-label', `Widget ${spec.id.replace(/^w/, '')}: ${spec.title}`);
     parts.summary.textContent = spec.summary;
@@ -328,6 +333,7 @@ export class SlamWidget extends HTMLElement {
       });
     }
     this.#controls.show(this.#state?.texts ?? []);
+    this.#offerControls();
     this.#news.setUp();
   }
 
@@ -352,6 +358,7 @@ export class SlamWidget extends HTMLElement {
         // The model may keep less than was asked for: no moment after the end of its run.
         for (const id of state?.texts.keys() ?? []) state?.keep(id, widget.text(id));
         this.#controls?.show(state?.texts ?? []);
+        this.#offerControls(widget);
         this.#looks.prepare(widget);
         widget.setRoom(this.#place.room);
       },
@@ -432,6 +439,7 @@ export class SlamWidget extends HTMLElement {
       chosen: () => desk.chosen,
     });
     this.#parts.frame.prepend(this.#doctor.element);
+    this.#parts.frame.classList.remove('without-file');
     this.#desk = desk;
     return desk;
   }
@@ -470,8 +478,22 @@ export class SlamWidget extends HTMLElement {
   #told(changes: readonly [string, string][]): void {
     for (const [id, text] of changes) this.#state?.keep(id, text);
     this.#controls?.show(changes);
+    if (changes.length > 0) this.#offerControls();
     this.#showTimeline();
     this.#news.changed(changes, this.#shownOutcome());
+  }
+
+  /** The controls that the widget shows are the stops of the keyboard; one that rests shows its opening, or all. */
+  #offerControls(running?: Widget): void {
+    const state = this.#state;
+    if (state === undefined) return;
+    const { spec } = state;
+    const hasMore = spec.params.some(({ id }) => id === MORE);
+    const isOpen = !hasMore || state.text(MORE) === 'on';
+    const all = (): string[] => [...spec.presets, ...spec.params, ...spec.buttons].map(({ id }) => id);
+    const shown = running?.shownControls() ?? this.#life.ask((widget) => widget.shownControls());
+    this.#controls?.offer(shown ?? (isOpen ? all() : spec.opening));
+    if (this.#look !== undefined) this.#look.hidden = !isOpen;
   }
 
   /** Figures are read of the values that are set: what the picture still waits for is finished. */
@@ -483,6 +505,10 @@ export class SlamWidget extends HTMLElement {
   #shownOutcome(): Outcome | undefined {
     this.#lastOutcome = this.#life.ask((_, instance) => instance.outcome()) ?? this.#lastOutcome;
     return this.#lastOutcome;
+  }
+
+  #shownSummary(): string {
+    return this.#life.ask((widget) => widget.summary()) ?? this.#state?.spec.summary ?? '';
   }
 
   #shownTimeline(): Timeline | null {

@@ -3,6 +3,7 @@
 
 import type { Widget } from '../pkg/glue.js';
 import { core } from './core';
+import { nextTask } from './dom';
 import { FrameGate } from './frames';
 import { forgetModule, StaleError } from './module';
 
@@ -51,6 +52,8 @@ export class Instance {
   static async create(name: string, progress: (share: number) => void): Promise<Instance> {
     const frames = new FrameGate();
     const glue = await core(frames, progress);
+    // A start is several tasks, so that none of them holds up the page.
+    await nextTask();
     try {
       return new Instance(new glue.Widget(name), frames);
     } catch {

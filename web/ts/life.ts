@@ -6,6 +6,7 @@
 import type { Widget } from '../pkg/glue.js';
 import { claim, lookAgain, release, type Drawer } from './contexts';
 import { CrashError, Instance } from './instance';
+import { nextTask } from './dom';
 import { LoadError } from './module';
 import type { Parts } from './parts';
 import { Stage } from './stage';
@@ -166,9 +167,11 @@ export class Life implements Visibility, Drawer {
     try {
       stage.classList.add('waiting');
       const instance = await this.ensureInstance();
+      await nextTask();
       if (generation !== this.#generation) return;
       this.#stage = new Stage(stage, instance, widget.title, () => this.fail(new LostError()));
       await this.#stage.start();
+      await nextTask();
       if (generation === this.#generation) this.#begin(instance, this.#stage);
     } catch (error) {
       if (generation === this.#generation) this.fail(error);
@@ -232,6 +235,7 @@ export class Life implements Visibility, Drawer {
     const { progress } = this.#parts;
     progress.hidden = false;
     const instance = await Instance.create(name, (share) => (progress.value = share));
+    await nextTask();
     if (generation !== this.#generation) {
       instance.dispose();
       // It has moved within its page, or rests: whoever asked still wants an instance.

@@ -1,6 +1,6 @@
 // The state of a widget in a link: `?w=16.2&noise=2&seed=7`.
 
-import { findParam, findWidget, type WidgetSpec } from './schema';
+import { allParamIds, findParam, findWidget, type WidgetSpec } from './schema';
 import { defaultText, parseValue } from './values';
 
 export interface LinkedState {
@@ -36,10 +36,10 @@ export function readQuery(query: string): LinkedState | { problems: string[] } |
   return { widget, values, problems };
 }
 
-/** The query of a page whose widget is in that state; what belongs to the page itself stays. */
-export function withState(search: string, widget: WidgetSpec, state: string): string {
+/** The query of a page one of whose widgets is in that state; what no widget knows belongs to the page and stays. */
+export function withState(search: string, state: string): string {
   const query = new URLSearchParams(search);
-  for (const id of ['w', ...widget.params.map((param) => param.id)]) query.delete(id);
+  for (const id of ['w', ...allParamIds()]) query.delete(id);
   for (const [id, text] of new URLSearchParams(state)) query.set(id, text);
   return `?${query.toString()}`;
 }

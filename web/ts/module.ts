@@ -10,9 +10,12 @@ export class LoadError extends Error {}
 /** A whole module, but not the one that this script was built with. */
 export class StaleError extends LoadError {
   constructor() {
-    super('the program does not fit the rest of the page; one of them is an old copy');
+    super('this page and the program of its widgets are of two versions');
   }
 }
+
+/** The section of a module that holds the mark of its build, as `web/wasm-file.mjs` writes it. */
+const MARK = 'build';
 
 /** So long may a server say nothing, before or between two parts of the program. */
 const SILENCE_MS = 10_000;
@@ -54,6 +57,24 @@ export class ModuleFile {
     if (typeof WebAssembly !== 'object') {
       throw new LoadError('this browser has no WebAssembly');
     }
+    const module = await this.#attempt();
+    if (this.#isOurs(module)) return module;
+    // A cache may hold another build under this name.
+    this.#isRetry = true;
+    const fresh = await this.#attempt();
+    if (this.#isOurs(fresh)) return fresh;
+    throw new StaleError();
+  }
+
+  /** Whether it is of the build whose mark stands in its name; in a file that works alone names have none. */
+  #isOurs(module: WebAssembly.Module): boolean {
+    const mark = /-([0-9a-f]+)\.wasm$/.exec(this.#name)?.[1];
+    if (mark === undefined) return true;
+    const marks = WebAssembly.Module.customSections(module, MARK);
+    return marks.some((bytes) => new TextDecoder().decode(bytes) === mark);
+  }
+
+  async #attempt(): Promise<WebAssembly.Module> {
     const silence = new Silence();
     try {
       return await this.#fetchAndCompile(silence);

@@ -15,7 +15,6 @@ const UNDER_WAY_MS = 10_000;
 export interface NewsSource extends Linked {
   readonly value: Record<string, Value>;
   readonly outcome: Outcome | undefined;
-  readonly summary: string;
   readonly timeline: Timeline | null;
   get(id: string): Value | undefined;
 }
@@ -25,6 +24,8 @@ export class News {
   readonly #parts: Parts;
   readonly #notes: Notes;
   readonly #onSettled: () => void;
+  /** The text for the picture as it is, whatever it still waits for. */
+  readonly #shownSummary: () => string;
   #timer: ReturnType<typeof setTimeout> | undefined;
   /** Whether a screen reader is told what the timer waits for. */
   #isNews = false;
@@ -33,8 +34,9 @@ export class News {
   /** When changes began that have not rested since, or something was said of them. */
   #saidAt = 0;
 
-  constructor(source: NewsSource, parts: Parts, notes: Notes, onSettled: () => void) {
+  constructor(source: NewsSource, parts: Parts, notes: Notes, onSettled: () => void, shownSummary: () => string) {
     this.#onSettled = onSettled;
+    this.#shownSummary = shownSummary;
     this.#source = source;
     this.#parts = parts;
     this.#notes = notes;
@@ -127,7 +129,7 @@ export class News {
   }
 
   #describe(): void {
-    this.#parts.summary.textContent = this.#source.summary;
+    this.#parts.summary.textContent = this.#shownSummary();
   }
 
   #say(sentence: string): void {

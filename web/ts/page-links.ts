@@ -33,7 +33,7 @@ function follow(link: HTMLAnchorElement): boolean {
   setWhole(widget, linked);
   if (isKept) pushEntry(widget);
   endWayBack();
-  if (bringIntoView(widget)) offerWayBack(link);
+  if (bringIntoView(widget)) offerWayBack(link, widget);
   return true;
 }
 

@@ -3,7 +3,11 @@
 import { create, keepKeys } from './dom';
 import { copyText } from './export';
 import { CrashError } from './instance';
+import { StaleError } from './module';
 import { STYLE } from './style';
+
+/** Name of what describes the picture. */
+export const SUMMARY = 'summary';
 
 /** What stands in the shadow of the element. */
 export interface Parts {
@@ -24,11 +28,12 @@ export function build(shadow: ShadowRoot): Parts {
   style.textContent = STYLE;
   const frame = create('section', { class: 'frame', part: 'frame', tabindex: '-1' });
   const stage = create('div', { class: 'stage' });
-  const picture = create('img', { class: 'picture', alt: '' });
+  const picture = create('img', { class: 'picture', alt: '', loading: 'lazy' });
   const progress = create('progress', { max: '1', hidden: '', 'aria-label': 'Loading the widget' });
   const note = create('div', { class: 'note-box', role: 'status' });
   const bar = create('div', { class: 'bar' });
-  const summary = create('p', { class: 'summary hidden' });
+  // The canvas is described by it; a picture has the same words of its own.
+  const summary = create('p', { class: 'summary', id: SUMMARY, hidden: '' });
   const live = create('p', { class: 'hidden', role: 'status', 'aria-live': 'polite' });
   const status = create('span', { class: 'status', role: 'status' });
   note.classList.add('note');
@@ -45,11 +50,14 @@ export function failureBox(error: Error, onAgain: () => void): HTMLElement {
   const box = create('div', { class: 'failure' });
   const sentence = create('p');
   const again = create('button', { type: 'button' });
+  const isStale = error instanceof StaleError;
+  const remedy = isStale ? 'Reload the page' : 'The picture shows its start';
   sentence.textContent = isCrash
     ? 'This widget stopped because of an error in its program. Your settings are kept.'
-    : `The interactive widget cannot run here: ${error.message}. The picture shows its start.`;
-  again.textContent = isCrash ? 'Restart with these settings' : 'Try again';
-  again.addEventListener('click', onAgain);
+    : `The interactive widget cannot run here: ${error.message}. ${remedy}.`;
+  again.textContent = isCrash ? 'Restart with these settings' : isStale ? remedy : 'Try again';
+  // The script of this page cannot be fetched afresh in any other way.
+  again.addEventListener('click', isStale ? () => location.reload() : onAgain);
   box.append(sentence, ...(isCrash ? [crashDetails(error.details)] : []), again);
   return box;
 }

@@ -144,7 +144,7 @@ export class SlamPredict extends HTMLElement {
     // The widget may stand pages away: the reader decides when to leave the answer.
     const show = button('Show it in the widget', () => {
       widget.scrollIntoView({ block: 'start' });
-      offerWayBack(show, 'the question');
+      offerWayBack(show, widget, 'the question');
     });
     const again = button('Predict again', () => this.#reset());
     this.#answer?.append(show, ' ', again);

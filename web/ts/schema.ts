@@ -45,6 +45,8 @@ export interface WidgetSpec {
   presets: ButtonSpec[];
   /** Keys that press a button while one of these buttons has the focus. */
   keys: KeySpec[];
+  /** The controls that it opens with. */
+  opening: string[];
   summary: string;
   /** Whether a reader may hand it a log. A widget with a text takes that text's file. */
   takesFiles: boolean;

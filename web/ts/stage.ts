@@ -2,6 +2,7 @@
 
 import type { Instance } from './instance';
 import { LoadError } from './module';
+import { SUMMARY } from './parts';
 import { TouchGate } from './touch';
 
 /** A canvas on which an instance runs. */
@@ -24,6 +25,7 @@ export class Stage {
     this.#context = context;
     this.canvas.setAttribute('role', 'img');
     this.canvas.setAttribute('aria-label', label);
+    this.canvas.setAttribute('aria-describedby', SUMMARY);
     this.canvas.style.height = `${Math.max(element.clientHeight, 1)}px`;
     element.append(this.canvas);
     instance.frames.canvas = this.canvas;

@@ -51,20 +51,29 @@ button { cursor: pointer; }
 button:hover { border-color: var(--accent); }
 :focus-visible:not(.frame) { outline: 3px solid var(--accent); outline-offset: 2px; }
 input[type='number'] { width: 8rem; }
-input[type='range'] { flex: 1 1 8rem; min-width: 6rem; min-height: 1.75rem; accent-color: var(--accent); }
+input[type='range'] { flex: 1 1 8rem; min-width: 3rem; min-height: 1.75rem; accent-color: var(--accent); }
 input[type='checkbox'] { width: 1.5rem; height: 1.5rem; accent-color: var(--accent); }
 .control:not(:focus-within), .hidden { position: absolute; width: 1px; height: 1px; margin: -1px;
   overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
-.control:focus-within { display: flex; flex-wrap: wrap; gap: 0.25rem 0.75rem; align-items: center;
-  padding: 0.4rem 0.75rem; border-bottom: 1px solid var(--line); }
-.name { font-weight: 600; }
-.help { flex-basis: 100%; color: var(--soft); font-size: 0.8125rem; }
+/* It covers the tools: the widget does not grow under the reader's finger. */
+.control:focus-within { position: absolute; inset: 0; z-index: 1; display: flex; flex-direction: column;
+  justify-content: center; line-height: 1.15; padding: 0 0.75rem; background: var(--paper); border-radius: 0 0 6px 6px; }
+[hidden] { display: none !important; }
+.line { display: flex; gap: 0.5rem; align-items: center; min-width: 0; }
+.name, .help { overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
+.name { flex: 0 1 auto; min-width: 4rem; font-weight: 600; }
+.line select, .line input[type='text'] { min-width: 4rem; flex: 0 1 16rem; }
+.line input[type='number'] { width: 7rem; min-width: 4.5rem; flex: 0 1 7rem; }
+.help { color: var(--soft); font-size: 0.8125rem; }
 .status { color: var(--soft); }
 @media print {
   .bar, progress, .note { display: none; }
   .stage, .stage .picture { height: auto !important; min-height: 0; }
   .stage .picture { max-height: 15cm; object-fit: contain; object-position: top left; }
   .stage canvas { display: none; }
+  /* Without a log the picture is an empty grid. */
+  .without-file .stage { display: none; }
+  .without-file .summary { display: block !important; margin: 0; padding: 0.5rem 0.75rem; }
   .stage .picture, .stage.live .picture { display: block; }
   .frame { --paper: ${paper[0]}; --ink: ${ink[0]}; border-color: #999; break-inside: avoid; }
 }

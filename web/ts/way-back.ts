@@ -4,24 +4,35 @@ import { accent } from '../../widgets/palette.json';
 import { create } from './dom';
 
 const STYLE = `
-button { position: fixed; inset: auto auto 1rem 50%; translate: -50% 0; z-index: 5; max-width: calc(100vw - 2rem);
-  font: 600 0.95rem/1.3 system-ui, sans-serif; color: #fff; background: ${accent[0]}; border: 2px solid #fff;
-  border-radius: 999px; padding: 0.6rem 1.2rem; min-height: 2.75rem; cursor: pointer; box-shadow: 0 2px 8px #0006; }
-button:focus-visible { outline: 3px solid ${accent[0]}; outline-offset: 2px; }
-@media print { button { display: none; } }
+div { position: fixed; inset: auto auto 1rem 50%; translate: -50% 0; z-index: 5; display: flex; max-width: calc(100vw - 2rem);
+  color: #fff; background: ${accent[0]}; border: 2px solid #fff; border-radius: 999px; box-shadow: 0 2px 8px #0006; }
+button { font: 600 0.95rem/1.3 system-ui, sans-serif; color: inherit; background: none; border: 0; border-radius: 999px;
+  padding: 0.6rem 0.4rem 0.6rem 1.2rem; min-height: 2.75rem; cursor: pointer; }
+.close { min-width: 2.75rem; padding: 0 0.4rem 0 0; }
+button:focus-visible { outline: 3px solid #fff; outline-offset: -5px; }
+@media print { div { display: none; } }
 `;
+/** Who has read on for so many screens does not come back by a button. */
+const MOST_SCREENS = 2;
 
 let end: (() => void) | undefined;
 
-/** Shows the way back to a link, or to what has a name, until it was gone, or the place is seen again. */
-export function offerWayBack(link: HTMLElement, name = `“${link.textContent?.trim() ?? ''}”`): void {
+/**
+ * Shows the way from `target` back to a link, or to what has a name, until it was gone or closed, the link is seen again,
+ * or the reader has scrolled on.
+ */
+export function offerWayBack(link: HTMLElement, target: Element, name = `“${link.textContent?.trim() ?? ''}”`): void {
   endWayBack();
   const host = create('div', { class: 'slam-way-back' });
   const style = create('style');
   style.textContent = STYLE;
-  const button = create('button', { type: 'button' });
-  button.textContent = `Back to ${name}`;
-  host.attachShadow({ mode: 'open' }).append(style, button);
+  const box = create('div');
+  const back = create('button', { type: 'button' });
+  back.textContent = `Back to ${name}`;
+  const close = create('button', { type: 'button', class: 'close', 'aria-label': 'Stay here' });
+  close.textContent = '✕';
+  box.append(back, close);
+  host.attachShadow({ mode: 'open' }).append(style, box);
   let hasLeft = false;
   const seen = new IntersectionObserver((entries) => {
     const isSeen = entries.at(-1)?.isIntersecting === true;
@@ -29,15 +40,25 @@ export function offerWayBack(link: HTMLElement, name = `“${link.textContent?.t
     if (isSeen && hasLeft) endWayBack();
     hasLeft ||= !isSeen;
   });
+  const listening = new AbortController();
+  // The widget itself says how far: pictures that arrive above it move the page, and not the reader.
+  const away = (): number => Math.abs(target.getBoundingClientRect().top);
+  let hasArrived = false;
+  window.addEventListener('scroll', () => {
+    hasArrived ||= away() < window.innerHeight;
+    if (hasArrived && away() > MOST_SCREENS * window.innerHeight) endWayBack();
+  }, { passive: true, signal: listening.signal });
   end = () => {
     seen.disconnect();
+    listening.abort();
     host.remove();
   };
-  button.addEventListener('click', () => {
+  back.addEventListener('click', () => {
     endWayBack();
     link.scrollIntoView({ behavior: 'instant', block: 'center' });
     link.focus({ preventScroll: true });
   });
+  close.addEventListener('click', endWayBack);
   document.body.append(host);
   seen.observe(link);
 }

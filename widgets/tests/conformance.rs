@@ -442,3 +442,92 @@ fn every_slider_takes_an_arrow_key_by_its_own_step() {
         }
     }
 }
+
+#[test]
+fn every_sentence_of_a_result_has_a_capital_and_a_full_stop() {
+    for maker in MODELS {
+        let presets = maker().spec().presets;
+        for preset in presets {
+            let mut model = maker();
+            model.press(preset.id).unwrap();
+            for _ in 0..2 {
+                let outcome = model.outcome();
+                let words = outcome.in_full();
+                let first = words.chars().next().unwrap();
+                assert!(
+                    !first.is_ascii_lowercase() && words.ends_with('.'),
+                    "{words}"
+                );
+                assert!(words.len() <= outcome.sentence.len() + 1, "{words}");
+                model.settle();
+            }
+        }
+    }
+}
+
+#[test]
+fn a_name_of_a_file_keeps_its_letters_at_the_start_of_a_sentence() {
+    let outcome = |sentence: &str| kit::model::Outcome {
+        standing: kit::model::Standing::Neutral,
+        verdict: String::new(),
+        sentence: sentence.to_owned(),
+        facts: Vec::new(),
+    };
+    assert_eq!(
+        outcome("hall.log is opened.").in_full(),
+        "hall.log is opened."
+    );
+    assert_eq!(outcome("χ² falls").in_full(), "χ² falls.");
+    assert_eq!(outcome("the lap ends").in_full(), "The lap ends.");
+}
+
+/// What the colours of the legend say: each of the five means one thing, whatever picture it stands in.
+#[test]
+fn the_five_colours_mean_the_same_in_every_legend() {
+    use kit::scene::Tone;
+    let meaning = |tone: Tone, words: &str| -> bool {
+        let says = |known: &[&str]| known.iter().any(|known| words.contains(known));
+        match tone {
+            Tone::Prediction => says(&["odometry", "wheels", "predict", "gate", "expected"]),
+            Tone::Truth => says(&["tru", "error"]),
+            Tone::Prior => says(&[
+                "prior",
+                "start",
+                "put",
+                "drop",
+                "before",
+                "local map",
+                "sweep",
+                "cross hair",
+                "front end alone",
+                "first guess",
+                "source",
+            ]),
+            _ => true,
+        }
+    };
+    let mut wrong = std::collections::BTreeSet::new();
+    for maker in MODELS {
+        let presets = maker().spec().presets;
+        for preset in presets {
+            let mut model = maker();
+            model.press(preset.id).unwrap();
+            let _ = model.set(MORE.id, 1.0);
+            model.settle();
+            for panel in model.scene().panels {
+                for entry in panel.legend {
+                    if !meaning(entry.tone, &entry.label) {
+                        wrong.insert(format!(
+                            "{} {}: {:?} {}",
+                            model.spec().id,
+                            panel.id,
+                            entry.tone,
+                            entry.label
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}

@@ -9,6 +9,8 @@ use std::path::{Component, Path, PathBuf};
 use std::{fs, thread};
 
 use anyhow::Context as _;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 
 use crate::run::root;
 use crate::site::{self, Speed};
@@ -19,7 +21,14 @@ const HEADERS: &str = "Content-Security-Policy: default-src 'none'; script-src '
      connect-src 'self'; img-src 'self' data:; style-src 'self' 'unsafe-inline'; font-src 'self'; \
      frame-src 'self'; base-uri 'none'; form-action 'none'\r\n\
      Access-Control-Allow-Origin: *\r\nX-Content-Type-Options: nosniff\r\n\
-     Cache-Control: no-cache\r\nConnection: close\r\n";
+     Vary: Accept-Encoding\r\nConnection: close\r\n";
+
+/// A file whose name holds a hash of its content never changes: a browser asks for it once. All others are asked
+/// for again.
+const FOR_EVER: &str = "public, max-age=31536000, immutable";
+const ASK_AGAIN: &str = "no-cache";
+/// Digits of a hash in a name, as the build writes them.
+const HASH_DIGITS: usize = 12;
 
 /// Builds the site and serves it until it is stopped.
 ///
@@ -45,28 +54,68 @@ pub fn serve(port: u16, speed: Speed) -> anyhow::Result<()> {
 fn answer(mut stream: TcpStream, folder: &Path) -> io::Result<()> {
     let mut lines = BufReader::new(stream.try_clone()?).lines();
     let request = lines.next().transpose()?.unwrap_or_default();
-    // Read the rest of the head, because closing with unread input resets the connection.
-    lines.find(|line| line.as_ref().map_or(true, String::is_empty));
+    // The whole head has to be read: closing with unread input resets the connection.
+    let head = lines
+        .map_while(Result::ok)
+        .take_while(|line| !line.is_empty());
+    let head: Vec<String> = head.collect();
+    let takes_gzip = head.iter().any(|line| asks_for_gzip(line));
     let mut words = request.split(' ');
     let (method, target) = (words.next(), words.next().unwrap_or_default());
     let file = match method {
         Some("GET" | "HEAD") => file_of(target, folder),
         _ => None,
     };
-    let read = file.and_then(|path| Some((fs::read(&path).ok()?, content_type(&path))));
-    let (status, (body, kind)) = match read {
+    let read = file.and_then(|path| {
+        let cache = if has_hash(&path) { FOR_EVER } else { ASK_AGAIN };
+        Some((fs::read(&path).ok()?, content_type(&path), cache))
+    });
+    let (status, (mut body, kind, cache)) = match read {
         Some(found) => ("200 OK", found),
-        None => ("404 Not Found", (b"Not found\n".to_vec(), "text/plain")),
+        None => (
+            "404 Not Found",
+            (b"Not found\n".to_vec(), "text/plain", ASK_AGAIN),
+        ),
+    };
+    // Fonts are compressed by themselves.
+    let encoding = if takes_gzip && kind != "font/woff2" {
+        body = gzip(&body)?;
+        "Content-Encoding: gzip\r\n"
+    } else {
+        ""
     };
     let length = body.len();
     write!(
         stream,
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n{HEADERS}\r\n"
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n\
+         {encoding}Cache-Control: {cache}\r\n{HEADERS}\r\n"
     )?;
     if method == Some("GET") {
         stream.write_all(&body)?;
     }
     stream.flush()
+}
+
+/// Whether a line of the head says that the browser can unpack gzip.
+fn asks_for_gzip(line: &str) -> bool {
+    line.split_once(':').is_some_and(|(name, value)| {
+        name.eq_ignore_ascii_case("accept-encoding") && value.contains("gzip")
+    })
+}
+
+fn gzip(bytes: &[u8]) -> io::Result<Vec<u8>> {
+    let mut packed = GzEncoder::new(Vec::new(), Compression::default());
+    packed.write_all(bytes)?;
+    packed.finish()
+}
+
+/// Whether a name ends in a hash of the content: `page-0123456789ab.js`.
+fn has_hash(path: &Path) -> bool {
+    let stem = path.file_stem().and_then(|stem| stem.to_str());
+    let end = stem.and_then(|stem| stem.rsplit_once('-'));
+    end.is_some_and(|(_, hash)| {
+        hash.len() == HASH_DIGITS && hash.bytes().all(|digit| digit.is_ascii_hexdigit())
+    })
 }
 
 /// Returns the file of a request, unless it is outside of the folder. No name in the site needs an escape.
@@ -101,16 +150,26 @@ fn content_type(path: &Path) -> &'static str {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Read as _;
+
+    use flate2::read::GzDecoder;
+
     use super::*;
 
     /// Returns the server's response to one request over a real connection.
     fn ask(request: &str) -> String {
+        String::from_utf8(ask_bytes(request)).unwrap()
+    }
+
+    fn ask_bytes(request: &str) -> Vec<u8> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let mut stream = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
         stream.write_all(request.as_bytes()).unwrap();
         answer(listener.accept().unwrap().0, folder).unwrap();
-        io::read_to_string(stream).unwrap()
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).unwrap();
+        answer
     }
 
     #[test]
@@ -121,6 +180,28 @@ mod tests {
         assert!(answer.ends_with(include_str!("../Cargo.toml")), "{answer}");
         assert_eq!(content_type(Path::new("a.wasm")), "application/wasm");
         assert!(content_type(Path::new("a.js")).starts_with("text/javascript"));
+    }
+
+    #[test]
+    fn a_browser_that_unpacks_gets_gzip_and_a_name_with_a_hash_is_kept_for_ever() {
+        let answer = ask_bytes("GET /Cargo.toml HTTP/1.1\r\nAccept-Encoding: br, gzip\r\n\r\n");
+        let end = answer
+            .windows(4)
+            .position(|four| four == b"\r\n\r\n")
+            .unwrap();
+        let head = String::from_utf8_lossy(&answer[..end]);
+        assert!(head.contains("Content-Encoding: gzip"), "{head}");
+        assert!(head.contains("Cache-Control: no-cache"), "{head}");
+        let unpacked = io::read_to_string(GzDecoder::new(&answer[end + 4..])).unwrap();
+        assert_eq!(unpacked, include_str!("../Cargo.toml"));
+        for (name, kept) in [
+            ("page-0123456789ab.js", true),
+            ("slam_web-0123456789ab.wasm", true),
+            ("slam-widget.js", false),
+            ("own-robot-another-day.log", false),
+        ] {
+            assert_eq!(has_hash(Path::new(name)), kept, "{name}");
+        }
     }
 
     #[test]

@@ -6,6 +6,9 @@ import { driven, LEVELS, type Driver, type Lap } from './protocol';
 /** More would heat the machine for little. */
 const MOST_WORKERS = 4;
 
+/** Set by the build: the worker's name holds a hash of its content. */
+declare const LAPS_WORKER_FILE: string;
+
 export interface Core {
   module(): Promise<WebAssembly.Module>;
   driver(): Promise<Driver>;
@@ -53,7 +56,7 @@ export class Pool {
   }
 
   #hire(module: WebAssembly.Module): void {
-    const worker = new Worker(new URL('laps-worker.js', import.meta.url), { type: 'module' });
+    const worker = new Worker(new URL(LAPS_WORKER_FILE, import.meta.url), { type: 'module' });
     worker.addEventListener('message', ({ data }: MessageEvent<Lap[]>) => {
       this.#asked.delete(worker);
       this.#told(data);

@@ -5,7 +5,7 @@
 import type { Widget } from '../../pkg/glue.js';
 import { saveBlob } from '../export';
 import { addressOf, openFile } from '../beside';
-import { LoadError, ModuleFile } from '../module';
+import { LoadError, ModuleFile, StaleError } from '../module';
 import { told, type Delivery, type Order, type Report } from './protocol';
 
 /** Set by the build: the program that maps logs, its worker, and the sample with its truth. */
@@ -307,8 +307,8 @@ export class Desk {
       if (this.#reference !== undefined) void this.#sendReference(this.#reference);
     } catch (error) {
       if (turn !== this.#turn) return;
-      const why = error instanceof LoadError ? `The log cannot be mapped: ${error.message}.` : NO_WORKER;
-      this.#fail(why);
+      const remedy = error instanceof StaleError ? ' Reload the page.' : '';
+      this.#fail(error instanceof LoadError ? `The log cannot be mapped: ${error.message}.${remedy}` : NO_WORKER);
     }
   }
 

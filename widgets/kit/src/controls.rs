@@ -45,6 +45,28 @@ pub fn params(ui: &mut Ui, model: &mut dyn Model, hot: &mut Hot) -> Touched {
     touched
 }
 
+/// The controls that a widget shows at present, by name. What it does not show is no stop of the keyboard either.
+#[must_use]
+pub fn shown(model: &dyn Model) -> Vec<&'static str> {
+    let (spec, layer) = (model.spec(), model.layer());
+    let timeline = model.timeline().map(|timeline| timeline.param);
+    let has_param = |param: &&'static ParamSpec| match param.kind {
+        ParamKind::Timeline { .. } => timeline == Some(param.id),
+        // The reader draws a text, or opens it; typing is for those who know it.
+        ParamKind::Text { .. } => layer.is_all(),
+        _ if on_transport_bar(param) => layer.is_all(),
+        _ => param.id == MORE.id || layer.has_param(param.id),
+    };
+    let presets = spec.presets.iter().map(|preset| preset.id);
+    let params = spec.params.iter().copied().filter(has_param);
+    let buttons = spec.buttons.iter().map(|button| button.id);
+    presets
+        .filter(|_| layer.is_all())
+        .chain(params.map(|param| param.id))
+        .chain(buttons.filter(|id| layer.has_button(id)))
+        .collect()
+}
+
 /// Whether the transport bar shows the parameter instead.
 #[must_use]
 pub fn on_transport_bar(spec: &ParamSpec) -> bool {

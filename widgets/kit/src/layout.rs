@@ -19,6 +19,8 @@ use crate::ticks::{Scale, Ticks};
 
 /// Height of a row of small text.
 pub const ROW: f32 = 17.0;
+/// Height of a name of an axis of names.
+const NAME_ROW: f32 = 12.0;
 /// Height of a row of the title.
 const TITLE_ROW: f32 = 22.0;
 /// Length of a tick plus its distance to the label.
@@ -82,6 +84,7 @@ impl PanelLayout {
                 (plot_width * (size[1] / size[0]) as f32).min(most)
             }
         };
+        let plot_height = plot_height.max(least_height(&panel.y));
 
         let mut y = 0.0;
         let mut row = |height: f32| {
@@ -138,6 +141,14 @@ impl PanelLayout {
     }
 }
 
+/// However little room there is, names do not lie on each other.
+fn least_height(axis: &Axis) -> f32 {
+    if axis.names.is_empty() {
+        return 0.0;
+    }
+    NAME_ROW * (axis.max - axis.min) as f32
+}
+
 /// Breaks a text at its spaces into lines of that width; a longer word gets its own line.
 #[must_use]
 pub fn wrap(text: &str, width: f32, size: TextSize, measure: &mut dyn Measure) -> Vec<String> {
@@ -161,17 +172,23 @@ pub fn wrap(text: &str, width: f32, size: TextSize, measure: &mut dyn Measure) -
     lines
 }
 
-/// Ticks of a vertical axis of that height in pixels.
+/// Ticks of the shown part of a vertical axis of that height in pixels.
 #[must_use]
-pub fn y_ticks(min: f64, max: f64, height: f32, label: &str) -> Ticks {
+pub fn y_ticks(axis: &Axis, min: f64, max: f64, height: f32) -> Ticks {
+    if !axis.names.is_empty() {
+        return Ticks::of_names(&axis.names, min, max);
+    }
     let most = (height / 34.0).clamp(2.0, 10.0) as usize;
-    Ticks::new(min, max, most, Scale::of_label(label))
+    Ticks::new(min, max, most, Scale::of_label(&axis.label))
 }
 
-/// Ticks of a horizontal axis of that width, as many as fit side by side.
+/// Ticks of the shown part of a horizontal axis of that width, as many as fit beside each other.
 #[must_use]
-pub fn x_ticks(min: f64, max: f64, width: f32, label: &str, measure: &mut dyn Measure) -> Ticks {
-    let scale = Scale::of_label(label);
+pub fn x_ticks(axis: &Axis, min: f64, max: f64, width: f32, measure: &mut dyn Measure) -> Ticks {
+    if !axis.names.is_empty() {
+        return Ticks::of_names(&axis.names, min, max);
+    }
+    let scale = Scale::of_label(&axis.label);
     let mut most = 12;
     loop {
         let ticks = Ticks::new(min, max, most, scale);
@@ -189,6 +206,13 @@ pub fn x_ticks(min: f64, max: f64, width: f32, label: &str, measure: &mut dyn Me
 }
 
 fn tick_label_width(axis: &Axis, measure: &mut dyn Measure) -> f32 {
+    if !axis.names.is_empty() {
+        let widths = axis
+            .names
+            .iter()
+            .map(|name| measure.text_width(name, TextSize::Small));
+        return widths.fold(0.0, f32::max);
+    }
     // The step depends on the height, which depends on this width; so take the widest of several steps.
     [3, 5, 8]
         .into_iter()

@@ -191,6 +191,23 @@ pub struct Outcome {
     pub facts: Vec<Fact>,
 }
 
+impl Outcome {
+    /// The sentence as it stands alone: with a capital, unless a name such as `hall.log` comes first, and a full stop.
+    #[must_use]
+    pub fn in_full(&self) -> String {
+        let first = self.sentence.split(' ').next().unwrap_or_default();
+        let is_word = first.bytes().all(|letter| letter.is_ascii_alphabetic());
+        let mut words = self.sentence.trim_end().to_owned();
+        if is_word && let Some(letter) = words.get_mut(..1) {
+            letter.make_ascii_uppercase();
+        }
+        if !words.ends_with(['.', '?', '!', '…']) {
+            words.push('.');
+        }
+        words
+    }
+}
+
 /// One number of an outcome.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fact {

@@ -55,6 +55,14 @@ const fn byte_at(at: usize) -> u8 {
     16 * digit(COLORS[at]) + digit(COLORS[at + 1])
 }
 
+/// What stands beside its like in one picture and is none of the meanings.
+const SERIES: [[Rgb; 2]; 4] = [
+    shades("series-1"),
+    shades("series-2"),
+    shades("series-3"),
+    shades("series-4"),
+];
+
 /// The shade of a meaning in a theme.
 #[must_use]
 pub fn tone(theme: Theme, tone: Tone) -> Rgb {
@@ -76,6 +84,7 @@ pub fn tone(theme: Theme, tone: Tone) -> Rgb {
             );
         }
         Tone::Class(class) => return class_color(theme, class),
+        Tone::Series(n) => SERIES[usize::from(n) % SERIES.len()],
         Tone::Level(level) => return level_color(f32::from(level) / 255.0),
     };
     shades[theme as usize]

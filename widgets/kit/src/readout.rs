@@ -27,7 +27,7 @@ pub fn verdict(ui: &mut Ui, outcome: &Outcome, theme: Theme) {
                 .size(16.0),
         );
     });
-    ui.label(&outcome.sentence);
+    ui.label(outcome.in_full());
 }
 
 /// The numbers of an outcome.

@@ -31,6 +31,8 @@ pub enum Tone {
     Unseen,
     /// Class n in a picture of classes: minima, cells. Each class also has a letter.
     Class(u8),
+    /// One of several of a kind beside each other, such as methods, that is none of the above: n from 0.
+    Series(u8),
     /// A value along a line, 0 … 255 in the perceptual colour map; it needs a line of ink below.
     Level(u8),
 }
@@ -277,6 +279,8 @@ pub struct Axis {
     pub min: f64,
     /// Largest value shown.
     pub max: f64,
+    /// What stands at 1, 2, … on an axis of names; an axis of numbers has none.
+    pub names: Vec<String>,
 }
 
 impl Axis {
@@ -287,6 +291,18 @@ impl Axis {
             label: label.to_owned(),
             min,
             max,
+            names: Vec::new(),
+        }
+    }
+
+    /// An axis with these names at 1, 2, … in place of numbers.
+    #[must_use]
+    pub fn of_names(label: &str, names: impl IntoIterator<Item = String>) -> Self {
+        let names: Vec<String> = names.into_iter().collect();
+        let max = names.len() as f64 + 0.6;
+        Self {
+            names,
+            ..Self::new(label, 0.4, max)
         }
     }
 }

@@ -7,6 +7,8 @@ pub struct Ticks {
     pub values: Vec<f64>,
     /// Distance between neighbours.
     pub step: f64,
+    /// What stands at 1, 2, … in place of numbers, if anything.
+    names: Vec<String>,
 }
 
 /// The round numbers of an axis.
@@ -40,12 +42,31 @@ impl Ticks {
         let first = ((min - slack) / step).ceil() as i64;
         let last = ((max + slack) / step).floor() as i64;
         let values = (first..=last).map(|k| k as f64 * step).collect();
-        Self { values, step }
+        Self {
+            values,
+            step,
+            names: Vec::new(),
+        }
+    }
+
+    /// A tick at every name that lies between `min` and `max`.
+    #[must_use]
+    pub fn of_names(names: &[String], min: f64, max: f64) -> Self {
+        let places = (1..=names.len()).map(|place| place as f64);
+        Self {
+            values: places.filter(|at| (min..=max).contains(at)).collect(),
+            step: 1.0,
+            names: names.to_vec(),
+        }
     }
 
     /// A tick's label, with the digits that the step needs and a true minus sign.
     #[must_use]
     pub fn label(&self, value: f64) -> String {
+        if !self.names.is_empty() {
+            let place = (value.round() as usize).saturating_sub(1);
+            return self.names.get(place).cloned().unwrap_or_default();
+        }
         let mut decimals = 0;
         let mut scaled = self.step;
         while decimals < 6 && (scaled - scaled.round()).abs() > 1e-6 * scaled.abs() {

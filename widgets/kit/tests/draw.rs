@@ -126,3 +126,48 @@ fn a_cloud_at_the_edge_is_clipped() {
     let cloud = (0..=40).map(|k| [0.1 * f64::from(k), 1.0]).collect();
     assert_eq!(clip_of_circles(cloud), (plot, 41));
 }
+
+#[test]
+fn names_of_an_axis_do_not_lie_on_each_other_however_low_the_plot() {
+    let names = [
+        "predict",
+        "register",
+        "keyframe",
+        "candidate",
+        "fit",
+        "gate",
+    ];
+    let panel = Panel {
+        id: "lanes",
+        title: "Lanes".to_owned(),
+        weight: Weight::Side,
+        aspect: Aspect::Free,
+        x: Axis::new("tick", 0.0, 129.0),
+        y: Axis::of_names("lane", names.map(str::to_owned)),
+        layers: Vec::new(),
+        legend: Vec::new(),
+        color_bar: None,
+    };
+    let mut svg = SvgSurface::new(Theme::Light);
+    let layout = PanelLayout::new(&panel, 340.0, PlotHeight::Fixed(20.0), &mut svg);
+    draw::panel(
+        &mut svg,
+        &panel,
+        &layout,
+        [0.0, 0.0],
+        &panel.bounds(),
+        Theme::Light,
+    );
+    let svg = svg.finish(340.0, 300.0, "");
+    let y = |name: &str| -> f64 {
+        let element = writings(&svg, name)[0];
+        let (_, rest) = element.split_once(" y=\"").expect("a place");
+        rest.split('"').next().unwrap().parse().unwrap()
+    };
+    for pair in names.windows(2) {
+        // Letters of small text are 10 px high, and the first name stands below the second.
+        assert!(y(pair[0]) - y(pair[1]) >= 11.5, "{pair:?}: {svg}");
+    }
+    // They stand left of the plot, and what is drawn in it right of them.
+    assert!(layout.plot.left > 50.0);
+}

@@ -145,6 +145,21 @@ fn a_second_visit_is_another_green_and_no_other_meaning() {
 }
 
 #[test]
+fn the_series_stay_apart_and_are_taken_for_no_meaning() {
+    for theme in THEMES {
+        let series: [Rgb; 4] = core::array::from_fn(|n| tone(theme, Tone::Series(n as u8)));
+        assert_apart(&series, "series");
+        for color in series {
+            for meaning in MEANINGS.into_iter().chain([Tone::Revisit, Tone::Ink]) {
+                assert_apart(&[color, tone(theme, meaning)], "a series and a meaning");
+            }
+            let ratio = contrast(color, tone(theme, Tone::Paper));
+            assert!(ratio >= 3.0, "{theme:?} {color:?}: {ratio}");
+        }
+    }
+}
+
+#[test]
 fn the_six_classes_stay_apart() {
     for theme in THEMES {
         let classes: [Rgb; 6] = core::array::from_fn(|k| cell(theme, Cell::Class(k as u8)));

@@ -384,3 +384,23 @@ fn another_file_replaces_the_first_and_an_invalid_one_is_reported() {
     assert_eq!(outcome.standing, Standing::Bad);
     assert_eq!(outcome.sentence, "other.bag is empty; give a recorded log");
 }
+
+#[test]
+fn what_could_not_be_fetched_is_told_once_and_no_file_is_blamed() {
+    let mut robot = OwnRobot::new();
+    let problem = "The sample could not be fetched; open a log of your own, or try again.";
+    tell(&mut robot, "failed", problem, &[]);
+    assert_eq!(robot.outcome().sentence, problem);
+    let words = robot
+        .scene()
+        .panels
+        .into_iter()
+        .flat_map(|panel| panel.layers);
+    let words: Vec<String> = words
+        .filter_map(|layer| match layer {
+            Layer::Text { text, .. } => Some(text),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(words, ["There is no map yet."]);
+}

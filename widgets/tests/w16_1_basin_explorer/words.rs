@@ -171,7 +171,7 @@ fn the_points_without_a_pair_are_marked() {
         sweeps.layers.iter().find_map(|layer| match layer {
             Layer::Points {
                 mark: Mark::Circle,
-                tone: Tone::Prediction,
+                tone: Tone::Series(0),
                 points,
                 ..
             } => Some(points.len()),

@@ -78,7 +78,7 @@ fn lit(model: &dyn Model) -> (usize, usize) {
     let lines = layers.iter().filter_map(|layer| match layer {
         Layer::Segments {
             segments,
-            tone: Tone::Prediction,
+            tone: Tone::Series(0),
             ..
         } => Some(segments.len()),
         _ => None,
@@ -86,7 +86,7 @@ fn lit(model: &dyn Model) -> (usize, usize) {
     let points = layers.iter().filter_map(|layer| match layer {
         Layer::Points {
             points,
-            tone: Tone::Prediction,
+            tone: Tone::Series(0),
             ..
         } => Some(points.len()),
         _ => None,
@@ -311,7 +311,7 @@ fn the_corridors_rows_have_rank_two_and_leave_an_arrow_along_it() {
     assert!(ranks[2..].iter().all(|&rank| rank == 2.0));
     // 1e-12: an eigenvector whose other entries are zero.
     assert!((fact(&model, "null_x") - 1.0).abs() < 1e-12);
-    let arrow = |model: &dyn Model| drawn(model, Tone::Prior);
+    let arrow = |model: &dyn Model| drawn(model, Tone::Series(1));
     let [[from, to], ..] = arrow(&model)[..] else {
         panic!("no arrow");
     };

@@ -241,7 +241,7 @@ fn lane_marks(room: &ControlRoom) -> [Vec<[f64; 2]>; 2] {
     let scene = room.scene();
     let panel = scene.panels.iter().find(|panel| panel.id == "lanes");
     let layers = &panel.expect("the lanes").layers;
-    [Tone::Measurement, Tone::Truth].map(|wanted| {
+    [Tone::Series(0), Tone::Series(3)].map(|wanted| {
         let points = layers.iter().find_map(|layer| match layer {
             Layer::Points { points, tone, .. } if *tone == wanted => Some(points.clone()),
             _ => None,
@@ -297,26 +297,14 @@ fn lanes(room: &ControlRoom) -> Panel {
         .expect("the lanes")
 }
 
+/// Names over the data lay on each other and on the numbers of the axis.
 #[test]
-fn the_name_of_a_lane_stands_on_it_before_its_first_mark() {
+fn the_name_of_a_lane_stands_on_the_axis() {
     let panel = lanes(&ControlRoom::default());
-    let names: Vec<_> = panel
-        .layers
-        .iter()
-        .filter_map(|layer| match layer {
-            Layer::Text { at, text, .. } => Some((*at, text.as_str())),
-            _ => None,
-        })
-        .collect();
-    assert_eq!(names.len(), SAID.len());
-    for (lane, ([x, y], text)) in names.into_iter().enumerate() {
-        assert!(panel.x.min < x && x < 0.0, "{text} at tick {x}");
-        let height = (SAID.len() - lane) as f64;
-        assert_eq!(
-            (y, text),
-            (height, format!("{height} {}", SAID[lane].0).as_str())
-        );
-    }
+    let names = SAID.iter().rev().map(|(name, _)| *name);
+    assert_eq!(panel.y.names, names.collect::<Vec<_>>());
+    let is_text = |layer: &Layer| matches!(layer, Layer::Text { .. });
+    assert!(!panel.layers.iter().any(is_text));
 }
 
 /// The marks of every lane, and a part of its data in the tick of the first loop.

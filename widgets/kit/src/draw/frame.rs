@@ -22,19 +22,11 @@ pub fn back(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: The
         mix(tone(theme, Tone::Paper), tone(theme, Tone::Faint), 0.6),
         1.0,
     );
-    for value in x_ticks(
-        shown.min[0],
-        shown.max[0],
-        plot.width,
-        &panel.x.label,
-        surface,
-    )
-    .values
-    {
+    for value in x_ticks(&panel.x, shown.min[0], shown.max[0], plot.width, surface).values {
         let x = surface.snap(to.to_px([value, 0.0])[0]);
         surface.line(&[[x, plot.top], [x, plot.bottom()]], grid);
     }
-    for value in y_ticks(shown.min[1], shown.max[1], plot.height, &panel.y.label).values {
+    for value in y_ticks(&panel.y, shown.min[1], shown.max[1], plot.height).values {
         let y = surface.snap(to.to_px([0.0, value])[1]);
         surface.line(&[[plot.left, y], [plot.right(), y]], grid);
     }
@@ -98,13 +90,7 @@ fn ticks(
     let ink = tone(theme, Tone::Ink);
     let pen = Pen::solid(tone(theme, Tone::Truth), 1.0);
 
-    let x_axis = x_ticks(
-        shown.min[0],
-        shown.max[0],
-        plot.width,
-        &panel.x.label,
-        surface,
-    );
+    let x_axis = x_ticks(&panel.x, shown.min[0], shown.max[0], plot.width, surface);
     for value in &x_axis.values {
         let x = surface.snap(to.to_px([*value, 0.0])[0]);
         surface.line(&[[x, plot.bottom()], [x, plot.bottom() + 4.0]], pen);
@@ -117,7 +103,7 @@ fn ticks(
             ink,
         );
     }
-    let y_axis = y_ticks(shown.min[1], shown.max[1], plot.height, &panel.y.label);
+    let y_axis = y_ticks(&panel.y, shown.min[1], shown.max[1], plot.height);
     for value in &y_axis.values {
         let y = surface.snap(to.to_px([0.0, *value])[1]);
         surface.line(&[[plot.left - 4.0, y], [plot.left, y]], pen);

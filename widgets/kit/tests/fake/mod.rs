@@ -197,16 +197,8 @@ impl Model for Fake {
             title: "Map <of> \"things\" & ghosts".to_owned(),
             weight: Weight::Main,
             aspect: Aspect::Equal,
-            x: Axis {
-                label: "x (m)".to_owned(),
-                min: 0.0,
-                max: 4.0,
-            },
-            y: Axis {
-                label: "y (m)".to_owned(),
-                min: 0.0,
-                max: 3.0,
-            },
+            x: Axis::new("x (m)", 0.0, 4.0),
+            y: Axis::new("y (m)", 0.0, 3.0),
             layers: vec![
                 Layer::Raster(Raster {
                     bounds,
@@ -255,16 +247,8 @@ impl Model for Fake {
             title: "Error over time".to_owned(),
             weight: Weight::Side,
             aspect: Aspect::Free,
-            x: Axis {
-                label: "tick".to_owned(),
-                min: 0.0,
-                max: 20.0,
-            },
-            y: Axis {
-                label: "error (m)".to_owned(),
-                min: 0.0,
-                max: 0.3,
-            },
+            x: Axis::new("tick", 0.0, 20.0),
+            y: Axis::new("error (m)", 0.0, 0.3),
             layers: vec![Layer::Line {
                 points: vec![
                     [0.0, 0.1],

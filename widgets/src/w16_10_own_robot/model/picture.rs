@@ -95,10 +95,14 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
         legend.push(LegendEntry::line("loop", Tone::Revisit, Stroke::Solid));
     }
     if own.values.number("links") == 2.0 && own.robot.links.iter().any(|link| !link.is_in_graph()) {
-        legend.push(LegendEntry::line("refused", Tone::Truth, Stroke::Dotted));
+        legend.push(LegendEntry::line(
+            "refused",
+            Tone::Series(2),
+            Stroke::Dotted,
+        ));
     }
     if own.link().is_some() {
-        let chosen = LegendEntry::line("loop of the list", Tone::Prediction, Stroke::Solid);
+        let chosen = LegendEntry::line("loop of the list", Tone::Series(1), Stroke::Solid);
         legend.push(chosen);
     }
     if own.place().is_some() {
@@ -107,7 +111,11 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
         legend.extend([way, doubted]);
     }
     if !own.doubts().is_empty() {
-        legend.push(LegendEntry::mark("look into", Tone::Prior, Mark::Circle));
+        legend.push(LegendEntry::mark(
+            "look into",
+            Tone::Series(3),
+            Mark::Circle,
+        ));
     }
     legend
 }
@@ -152,7 +160,7 @@ fn invitation(robot: &Robot) -> Vec<Layer> {
             "to map the sample.",
             "It stays in this browser.",
         ],
-        Stage::Failed => &["Nothing to map in this file."],
+        Stage::Failed => &["There is no map yet."],
         _ => &["The log is read."],
     };
     let middle = EMPTY.middle();
@@ -187,7 +195,7 @@ fn links(own: &OwnRobot) -> Vec<Layer> {
         Layer::Segments {
             segments: segments(false),
             stroke: Stroke::Dotted,
-            tone: Tone::Truth,
+            tone: Tone::Series(2),
             width_px: 1.25,
         },
         Layer::Segments {
@@ -205,10 +213,10 @@ fn links(own: &OwnRobot) -> Vec<Layer> {
         layers.push(Layer::Segments {
             segments: vec![ends],
             stroke: Stroke::Solid,
-            tone: Tone::Prediction,
+            tone: Tone::Series(1),
             width_px: 3.0,
         });
-        let ends = Layer::points(ends.to_vec(), Mark::Triangle, Tone::Prediction, 4.0);
+        let ends = Layer::points(ends.to_vec(), Mark::Triangle, Tone::Series(1), 4.0);
         layers.push(ends);
     }
     layers
@@ -280,7 +288,7 @@ fn here(own: &OwnRobot) -> Vec<Layer> {
     let doubts = own.doubts();
     let doubts: Vec<_> = doubts.iter().filter_map(|&k| at(robot, k)).collect();
     if !doubts.is_empty() {
-        layers.push(Layer::points(doubts, Mark::Circle, Tone::Prior, 6.0));
+        layers.push(Layer::points(doubts, Mark::Circle, Tone::Series(3), 6.0));
     }
     let pose = robot.keyframes[shown].pose;
     if let Some((of, points)) = &robot.scan

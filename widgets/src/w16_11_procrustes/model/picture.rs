@@ -35,7 +35,7 @@ pub fn scene(trace: &ProcrustesTrace) -> Scene {
 fn tone(kind: Handedness) -> Tone {
     match kind {
         Handedness::Turn => Tone::Posterior,
-        Handedness::Mirror => Tone::Prediction,
+        Handedness::Mirror => Tone::Series(1),
     }
 }
 

@@ -10,10 +10,10 @@ use crate::w16_12_jacobians::spec::{CURVE, Curve};
 
 /// Tones and marks of the solvers.
 const TONES: [Tone; 4] = [
-    Tone::Posterior,
-    Tone::Prior,
-    Tone::Prediction,
-    Tone::Measurement,
+    Tone::Series(0),
+    Tone::Series(1),
+    Tone::Series(2),
+    Tone::Series(3),
 ];
 const MARKS: [Mark; 4] = [Mark::Square, Mark::Circle, Mark::Triangle, Mark::Cross];
 /// Margin around the poses, m.

@@ -91,7 +91,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
             Tone::Ink,
             1.25,
         ),
-        Layer::points(lonely(&source, &links), Mark::Circle, Tone::Prediction, 5.0),
+        Layer::points(lonely(&source, &links), Mark::Circle, Tone::Series(0), 5.0),
         sensor(SE2::identity(), Mark::Cross, Tone::Measurement),
         sensor(scene.truth(), Mark::Plus, Tone::Truth),
         sensor(guess, Mark::Circle, Tone::Prior),
@@ -125,16 +125,8 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
         ),
         weight: Weight::Main,
         aspect: Aspect::Equal,
-        x: Axis {
-            label: "x from the target's sensor (m)".to_owned(),
-            min: -3.2,
-            max: 3.2,
-        },
-        y: Axis {
-            label: "y (m)".to_owned(),
-            min: -2.9,
-            max: 3.3,
-        },
+        x: Axis::new("x from the target's sensor (m)", -3.2, 3.2),
+        y: Axis::new("y (m)", -2.9, 3.3),
         layers,
         legend: vec![
             entry("target", Tone::Measurement, Some(Mark::Cross), None),
@@ -149,7 +141,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
             entry("pairs", Tone::Ink, None, Some(Stroke::Solid)),
             entry(
                 "points without a pair",
-                Tone::Prediction,
+                Tone::Series(0),
                 Some(Mark::Circle),
                 None,
             ),
@@ -299,16 +291,16 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
         title,
         weight: Weight::Half,
         aspect: Aspect::Free,
-        x: Axis {
-            label: "heading error of the first guess (°)".to_owned(),
-            min: -180.0 - BASIN_ROOM[0],
-            max: 180.0 + BASIN_ROOM[0],
-        },
-        y: Axis {
-            label: name.to_owned(),
-            min: -OFFSET_SPAN_M - BASIN_ROOM[1],
-            max: OFFSET_SPAN_M + BASIN_ROOM[1],
-        },
+        x: Axis::new(
+            "heading error of the first guess (°)",
+            -180.0 - BASIN_ROOM[0],
+            180.0 + BASIN_ROOM[0],
+        ),
+        y: Axis::new(
+            name,
+            -OFFSET_SPAN_M - BASIN_ROOM[1],
+            OFFSET_SPAN_M + BASIN_ROOM[1],
+        ),
         layers,
         // One legend for both maps, below the second.
         legend: if of == IcpVariant::PointToPlane {

@@ -104,9 +104,9 @@ fn registration(record: &LapRecord, tick: usize, view: Option<&RegistrationView>
         y: Axis::new("y (m)", center.y() - CLOSE_UP_M, center.y() + CLOSE_UP_M),
         layers,
         legend: vec![
-            LegendEntry::mark("local map, last six sweeps", Tone::Prior, Mark::Circle),
-            LegendEntry::mark("sweep as predicted", Tone::Prediction, Mark::Triangle),
-            LegendEntry::mark("sweep as registered", Tone::Measurement, Mark::Cross),
+            LegendEntry::mark("local map", Tone::Prior, Mark::Circle),
+            LegendEntry::mark("as predicted", Tone::Prediction, Mark::Triangle),
+            LegendEntry::mark("as registered", Tone::Measurement, Mark::Cross),
             LegendEntry::line("pairs", Tone::Ink, Stroke::Solid),
             LegendEntry::mark("robot", Tone::Posterior, Mark::Square),
         ],

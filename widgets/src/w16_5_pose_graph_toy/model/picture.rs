@@ -207,8 +207,8 @@ fn bars(toy: &PoseGraphToy) -> Panel {
         .chain(&shown.edge_chi2)
         .copied()
         .fold(0.0, f64::max);
-    // Space for a number above the highest bar, and for the names above all of them.
-    let y = axis_from_zero("χ²", 1.35 * highest);
+    // Room for a number above the highest bar.
+    let y = axis_from_zero("χ²", 1.2 * highest);
     let mut layers = Vec::new();
     for (k, edge) in toy.course.edges.iter().enumerate() {
         let x = k as f64 + 1.0;
@@ -226,15 +226,19 @@ fn bars(toy: &PoseGraphToy) -> Panel {
             2.0,
         ));
         layers.push(words([x, now + 0.09 * y.max], &short(now)));
-        let name = format!("{}–{}", edge.from.index() + 1, edge.to.index() + 1);
-        layers.push(words([x, 0.94 * y.max], &name));
     }
     Panel {
         id: panel::BARS,
         title: "What each spring costs".to_owned(),
         weight: Weight::Half,
         aspect: Aspect::Free,
-        x: Axis::new("spring", 0.4, toy.course.edges.len() as f64 + 0.6),
+        x: Axis::of_names(
+            "spring, from pose to pose",
+            toy.course
+                .edges
+                .iter()
+                .map(|edge| format!("{}–{}", edge.from.index() + 1, edge.to.index() + 1)),
+        ),
         y,
         layers,
         legend: vec![LegendEntry::line(

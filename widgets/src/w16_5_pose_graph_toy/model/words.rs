@@ -52,8 +52,13 @@ pub fn outcome(toy: &PoseGraphToy) -> Outcome {
         .zip(&shown.edge_chi2)
         .max_by(|(_, a), (_, b)| a.total_cmp(b));
     let worst = worst.map_or(String::new(), |(edge, chi2)| {
+        let share = if *chi2 > 0.5 * shown.chi2 {
+            "most of it"
+        } else {
+            "the largest part"
+        };
         format!(
-            "; most of it, {chi2:.3}, is in the {} from {}",
+            "; {share}, {chi2:.3}, is in the {} from {}",
             kind(edge),
             ends(edge)
         )

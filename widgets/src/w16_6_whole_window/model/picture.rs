@@ -35,13 +35,13 @@ fn sweeps(window: &WholeWindow) -> Panel {
                 .source()
                 .transformed(&window.search_task.alone.outcome.pose),
             Mark::Dot,
-            Tone::Prediction,
+            Tone::Series(2),
             1.6,
         ),
         Layer::line(
             window.search_task.alone.path.iter().map(position).collect(),
             Stroke::Dotted,
-            Tone::Prediction,
+            Tone::Series(2),
             1.5,
         ),
         points(
@@ -81,7 +81,7 @@ fn sweeps(window: &WholeWindow) -> Panel {
             LegendEntry::mark("target", Tone::Measurement, Mark::Cross),
             LegendEntry::mark("best pose so far", Tone::Posterior, Mark::Square),
             LegendEntry::mark("start, to be turned", Tone::Prior, Mark::Circle),
-            LegendEntry::mark("where ICP alone ends", Tone::Prediction, Mark::Dot),
+            LegendEntry::mark("where ICP alone ends", Tone::Series(2), Mark::Dot),
             LegendEntry::mark("truth", Tone::Truth, Mark::Plus),
         ],
         color_bar: None,

@@ -17,7 +17,7 @@ use super::lap::Places;
 use super::{BeenHere, panel};
 
 /// Tones of the detectors, in the order of [`LapDetector::ALL`].
-pub const TONES: [Tone; 3] = [Tone::Prior, Tone::Prediction, Tone::Posterior];
+pub const TONES: [Tone; 3] = [Tone::Series(0), Tone::Series(1), Tone::Series(2)];
 const MARKS: [Mark; 3] = [Mark::Circle, Mark::Triangle, Mark::Square];
 
 pub fn scene(been: &BeenHere) -> Scene {
@@ -54,13 +54,13 @@ fn matrix(been: &BeenHere) -> Panel {
         x: axis("newer keyframe"),
         y: axis("older keyframe"),
         legend: vec![
-            LegendEntry::mark("called the same, and it is", Tone::Measurement, Mark::Cross),
+            LegendEntry::mark("called the same, and it is", Tone::Series(0), Mark::Cross),
             LegendEntry::mark(
                 "called the same, and it is not",
-                Tone::Prediction,
+                Tone::Series(3),
                 Mark::Triangle,
             ),
-            LegendEntry::mark("the same, and not called", Tone::Truth, Mark::Plus),
+            LegendEntry::mark("the same, and not called", Tone::Series(2), Mark::Plus),
             LegendEntry::mark("the pair that is looked at", Tone::Posterior, Mark::Circle),
             LegendEntry::mark("the more ink, the more alike", Tone::Ink, Mark::Dot),
         ],
@@ -91,9 +91,9 @@ fn matrix(been: &BeenHere) -> Panel {
     let radius_px = if places.last() > 70 { 1.6 } else { 2.4 };
     let [right, wrong, missed] = judged;
     panel.layers.extend([
-        Layer::points(missed, Mark::Plus, Tone::Truth, radius_px),
-        Layer::points(wrong, Mark::Triangle, Tone::Prediction, radius_px),
-        Layer::points(right, Mark::Cross, Tone::Measurement, radius_px),
+        Layer::points(missed, Mark::Plus, Tone::Series(2), radius_px),
+        Layer::points(wrong, Mark::Triangle, Tone::Series(3), radius_px),
+        Layer::points(right, Mark::Cross, Tone::Series(0), radius_px),
     ]);
     if let Some([old, new]) = been.pair() {
         panel.layers.push(Layer::Handle {

@@ -11,7 +11,7 @@ use super::{MovingBox, panel};
 use crate::w16_8_moving_box::spec::{MOST_SHARE, SHARE};
 
 /// Tones and marks of the methods.
-const TONES: [Tone; 3] = [Tone::Prediction, Tone::Prior, Tone::Posterior];
+const TONES: [Tone; 3] = [Tone::Series(0), Tone::Series(1), Tone::Series(2)];
 const MARKS: [Mark; 3] = [Mark::Triangle, Mark::Circle, Mark::Square];
 
 pub fn scene(moving: &MovingBox) -> Scene {

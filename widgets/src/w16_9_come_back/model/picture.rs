@@ -59,9 +59,9 @@ fn map(back: &ComeBack) -> Panel {
         legend: vec![
             LegendEntry::mark("the saved map", Tone::Ink, Mark::Dot),
             LegendEntry::mark("switched on here, to be put", Tone::Prior, Mark::Circle),
-            LegendEntry::line("box that waits", Tone::Prediction, Stroke::Solid),
+            LegendEntry::line("box that waits", Tone::Series(0), Stroke::Solid),
             LegendEntry::mark("best place, with the scan", Tone::Posterior, Mark::Square),
-            LegendEntry::mark("next place", Tone::Prediction, Mark::Triangle),
+            LegendEntry::mark("next place", Tone::Series(1), Mark::Triangle),
             LegendEntry::mark("truth", Tone::Truth, Mark::Plus),
         ],
         color_bar: None,
@@ -82,7 +82,7 @@ fn localization(back: &ComeBack) -> Vec<Layer> {
         pose(truth(moment.tick), Mark::Plus, Tone::Truth),
     ];
     if let Some(next) = moment.runner_up {
-        layers.push(pose(next.pose, Mark::Triangle, Tone::Prediction));
+        layers.push(pose(next.pose, Mark::Triangle, Tone::Series(1)));
     }
     let finished = moment.report.as_ref().and_then(|report| report.pose);
     if let Some(best) = finished.or(moment.best.map(|best| best.pose)) {
@@ -114,7 +114,7 @@ fn boxes(boxes: &[PoseBox]) -> Layer {
     Layer::line(
         boxes.iter().flat_map(outline).collect(),
         Stroke::Solid,
-        Tone::Prediction,
+        Tone::Series(0),
         1.0,
     )
 }
@@ -147,7 +147,7 @@ fn scores(back: &ComeBack) -> Panel {
                 2.0,
             ),
             Layer::line(fits.collect(), Stroke::Solid, Tone::Measurement, 1.75),
-            Layer::points(next.collect(), Mark::Triangle, Tone::Prediction, 4.0),
+            Layer::points(next.collect(), Mark::Triangle, Tone::Series(1), 4.0),
             Layer::points(best.collect(), Mark::Square, Tone::Posterior, 4.0),
         ];
     }
@@ -161,7 +161,7 @@ fn scores(back: &ComeBack) -> Panel {
         layers,
         legend: vec![
             LegendEntry::mark("best place of a search", Tone::Posterior, Mark::Square),
-            LegendEntry::mark("next place", Tone::Prediction, Mark::Triangle),
+            LegendEntry::mark("next place", Tone::Series(1), Mark::Triangle),
             LegendEntry::line(
                 "scan that follows its place",
                 Tone::Measurement,

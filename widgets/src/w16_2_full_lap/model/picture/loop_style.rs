@@ -20,10 +20,10 @@ impl LoopStyle {
         tone: Tone::Measurement,
         mark: Mark::Dot,
     };
-    /// Hollow and grey.
+    /// Hollow and in a colour of no meaning.
     pub const REFUSED: Self = Self {
         stroke: Stroke::Dotted,
-        tone: Tone::Truth,
+        tone: Tone::Series(3),
         mark: Mark::Circle,
     };
 

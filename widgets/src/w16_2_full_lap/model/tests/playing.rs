@@ -201,7 +201,11 @@ fn the_future_is_drawn_only_on_request() {
 fn loops_on(model: &FullLap, panel: usize) -> [usize; 2] {
     let scene = model.scene();
     let layers = &scene.panels[panel].layers;
-    [(Mark::Dot, Tone::Measurement), (Mark::Circle, Tone::Truth)].map(|look| {
+    [
+        (Mark::Dot, Tone::Measurement),
+        (Mark::Circle, Tone::Series(3)),
+    ]
+    .map(|look| {
         let marks = layers.iter().map(|layer| match layer {
             // The points of the map are smaller.
             Layer::Points {

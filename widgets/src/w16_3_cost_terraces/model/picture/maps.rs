@@ -27,7 +27,11 @@ pub fn icp(landscape: &Landscape, moment: Moment, rests_m: &[[f64; 2]]) -> Panel
 /// NDT's negated score, so that both balls descend; dark is low.
 pub fn ndt(landscape: &Landscape, moment: Moment) -> Panel {
     let title = |height: f64| format!("NDT score {:.4}", -height);
-    let mut panel = map("ndt", &title, "−score", landscape, moment);
+    let mut panel = map("ndt", &title, "score", landscape, moment);
+    if let (Some(bar), Colors::ByHeight) = (&mut panel.color_bar, moment.colors) {
+        // From the highest score, which is dark, to the lowest.
+        (bar.min, bar.max) = (-bar.min, -bar.max);
+    }
     // One legend for both maps, below the first.
     panel.legend.clear();
     panel

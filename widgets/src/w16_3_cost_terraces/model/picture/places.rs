@@ -41,8 +41,8 @@ pub fn pairs(terrains: &Terrains, moment: Moment) -> Panel {
     }
     layers.extend([
         segments(changing, Stroke::Solid, Tone::Ink, 2.5),
-        segments(next, Stroke::Solid, Tone::Prediction, 2.5),
-        Layer::points(points, Mark::Triangle, Tone::Prediction, 4.5),
+        segments(next, Stroke::Solid, Tone::Series(0), 2.5),
+        Layer::points(points, Mark::Triangle, Tone::Series(0), 4.5),
     ]);
     let title = match moment.looked {
         Looked::CrossHair => "Partners at the cross hair",
@@ -60,7 +60,7 @@ pub fn pairs(terrains: &Terrains, moment: Moment) -> Panel {
             LegendEntry::mark("at the ball", Tone::Posterior, Mark::Square),
             LegendEntry::marked_line(
                 "changes next",
-                Tone::Prediction,
+                Tone::Series(0),
                 Mark::Triangle,
                 Stroke::Solid,
             ),

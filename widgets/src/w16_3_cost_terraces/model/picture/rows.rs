@@ -34,9 +34,9 @@ pub fn panel(terrains: &Terrains) -> Panel {
     let layers = vec![
         map_points(terrains),
         lines(normals, Tone::Ink, 1.0),
-        lines(last, Tone::Prediction, 2.5),
-        Layer::points(ends, Mark::Triangle, Tone::Prediction, 4.5),
-        lines(null.unwrap_or_default(), Tone::Prior, 3.0),
+        lines(last, Tone::Series(0), 2.5),
+        Layer::points(ends, Mark::Triangle, Tone::Series(0), 4.5),
+        lines(null.unwrap_or_default(), Tone::Series(1), 3.0),
         lines(known.unwrap_or_default(), Tone::Posterior, 4.0),
         Layer::points(vec![center], Mark::Plus, Tone::Ink, 5.0),
     ];
@@ -47,8 +47,8 @@ pub fn panel(terrains: &Terrains) -> Panel {
         layers,
         vec![
             LegendEntry::line("normals", Tone::Ink, Stroke::Solid),
-            LegendEntry::marked_line("last row", Tone::Prediction, Mark::Triangle, Stroke::Solid),
-            LegendEntry::line("no row holds this", Tone::Prior, Stroke::Solid),
+            LegendEntry::marked_line("last row", Tone::Series(0), Mark::Triangle, Stroke::Solid),
+            LegendEntry::line("no row holds this", Tone::Series(1), Stroke::Solid),
             LegendEntry::line("± 1 σ along x", Tone::Posterior, Stroke::Solid),
         ],
     )

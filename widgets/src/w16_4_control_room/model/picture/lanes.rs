@@ -2,7 +2,7 @@
 
 use ch16_lab::lap::{LapRecord, LoopAttempt, TickReport};
 use ch16_slam2d::loops::LoopRejection;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use kit::scene::{Aspect, Axis, Layer, Mark, Panel, Stroke, Tone, Weight};
 use kit::ticks::signed;
 
 /// Name of the panel.
@@ -198,9 +198,8 @@ pub fn data(report: &TickReport) -> impl Iterator<Item = (&'static str, String)>
 /// The lanes up to a tick; a ring around the mark of the selected lane at the current tick.
 pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
     let last = record.ticks() as f64;
-    let names = LANES.iter().enumerate();
     let mut layers = vec![Layer::line(
-        vec![[now as f64, 0.4], [now as f64, height(0) + 0.9]],
+        vec![[now as f64, 0.4], [now as f64, height(0) + 0.6]],
         Stroke::Solid,
         Tone::Faint,
         2.0,
@@ -209,13 +208,13 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
         Layer::points(
             done(record, now, Done::Passed),
             Mark::Dot,
-            Tone::Measurement,
+            Tone::Series(0),
             2.4,
         ),
         Layer::points(
             done(record, now, Done::Rejected),
             Mark::Circle,
-            Tone::Truth,
+            Tone::Series(3),
             3.5,
         ),
     ]);
@@ -224,24 +223,18 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
         let at = vec![[now as f64, height(chosen)]];
         layers.push(Layer::points(at, Mark::Circle, Tone::Ink, 7.0));
     }
-    layers.extend(names.map(|(lane, Lane { name, .. })| Layer::Text {
-        at: [-0.14 * last, height(lane)],
-        text: format!("{} {name}", height(lane)),
-        tone: Tone::Ink,
-    }));
     Panel {
         id: ID,
-        title: "Who does what when".to_owned(),
+        title: "Who does what when: dots are done, rings refused".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Free,
-        // Space for the names before the first tick, and for the ring at the last one.
-        x: Axis::new("tick", -0.28 * last.max(1.0), 1.03 * last.max(1.0)),
-        y: Axis::new("lane", 0.4, height(0) + 0.9),
+        // The rings at the first and the last one are whole.
+        x: Axis::new("tick", -0.03 * last.max(1.0), 1.03 * last.max(1.0)),
+        // The first one stands on top.
+        y: Axis::of_names("lane", LANES.iter().rev().map(|lane| lane.name.to_owned())),
         layers,
-        legend: vec![
-            LegendEntry::mark("done, passed", Tone::Measurement, Mark::Dot),
-            LegendEntry::mark("refused", Tone::Truth, Mark::Circle),
-        ],
+        // The title has its words: on low screens the names need the room.
+        legend: Vec::new(),
         color_bar: None,
     }
 }

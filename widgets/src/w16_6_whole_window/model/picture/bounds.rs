@@ -27,12 +27,12 @@ pub fn panel(window: &WholeWindow) -> Panel {
         |segments: Vec<_>, tone, width_px| Layer::segments(segments, Stroke::Solid, tone, width_px);
     let mut layers = vec![
         Layer::line(surface(window), Stroke::Solid, Tone::Ink, 1.5),
-        segments(dropped.map(bar).collect(), Tone::Truth, 1.5),
-        segments(waiting.map(bar).collect(), Tone::Prediction, 2.5),
+        segments(dropped.map(bar).collect(), Tone::Series(3), 1.5),
+        segments(waiting.map(bar).collect(), Tone::Series(0), 2.5),
     ];
     if let Some(taken) = moment.taken {
         let taken = vec![bar(&search.boxes()[taken])];
-        layers.push(segments(taken, Tone::Posterior, 5.0));
+        layers.push(segments(taken, Tone::Series(2), 5.0));
     }
     let level = |score: f64, tone| {
         Layer::line(
@@ -46,7 +46,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
     layers.extend(
         moment
             .runner_up
-            .map(|next| level(next.score, Tone::Prediction)),
+            .map(|next| level(next.score, Tone::Series(1))),
     );
     Panel {
         id: panel::BOUNDS,
@@ -60,9 +60,9 @@ pub fn panel(window: &WholeWindow) -> Panel {
         y: Axis::new("score", 0.0, 1.04),
         layers,
         legend: vec![
-            LegendEntry::line("box that waits", Tone::Prediction, Stroke::Solid),
-            LegendEntry::line("box taken up", Tone::Posterior, Stroke::Solid),
-            LegendEntry::line("just dropped", Tone::Truth, Stroke::Solid),
+            LegendEntry::line("box that waits", Tone::Series(0), Stroke::Solid),
+            LegendEntry::line("box taken up", Tone::Series(2), Stroke::Solid),
+            LegendEntry::line("just dropped", Tone::Series(3), Stroke::Solid),
             LegendEntry::line("best score so far", Tone::Posterior, Stroke::Dotted),
             LegendEntry::line("best true score at a heading", Tone::Ink, Stroke::Solid),
         ],
@@ -124,11 +124,11 @@ pub fn gap(window: &WholeWindow) -> Panel {
                 Tone::Faint,
                 2.0,
             ),
-            line(bounds, Tone::Prediction),
+            line(bounds, Tone::Series(0)),
             line(best, Tone::Posterior),
         ],
         legend: vec![
-            LegendEntry::line("largest bound that waits", Tone::Prediction, Stroke::Solid),
+            LegendEntry::line("largest bound that waits", Tone::Series(0), Stroke::Solid),
             LegendEntry::line("best score so far", Tone::Posterior, Stroke::Solid),
         ],
         color_bar: None,

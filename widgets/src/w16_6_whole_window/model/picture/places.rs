@@ -24,18 +24,18 @@ pub fn panel(window: &WholeWindow) -> Panel {
                 .iter()
                 .filter(|seen| seen.waits_after(window.step()))
                 .map(|seen| &seen.poses),
-            Tone::Prediction,
+            Tone::Series(0),
             1.0,
         ),
     ];
     if let Some(taken) = moment.taken {
         let taken = core::iter::once(&search.boxes()[taken].poses);
-        layers.push(boxes(taken, Tone::Posterior, 2.5));
+        layers.push(boxes(taken, Tone::Series(2), 2.5));
     }
     layers.push(sensor(window.scene.truth(), Mark::Plus, Tone::Truth));
     layers.push(sensor(window.guess(), Mark::Circle, Tone::Prior));
     if let Some(runner_up) = moment.runner_up {
-        layers.push(sensor(runner_up.pose, Mark::Triangle, Tone::Prediction));
+        layers.push(sensor(runner_up.pose, Mark::Triangle, Tone::Series(1)));
     }
     if moment.best.is_some() {
         layers.push(sensor(window.shown_pose(), Mark::Square, Tone::Posterior));
@@ -55,10 +55,10 @@ pub fn panel(window: &WholeWindow) -> Panel {
         y: Axis::new("y (m)", low[1] - margin, high[1] + margin),
         layers,
         legend: vec![
-            LegendEntry::line("box that waits", Tone::Prediction, Stroke::Solid),
-            LegendEntry::line("box taken up", Tone::Posterior, Stroke::Solid),
+            LegendEntry::line("box that waits", Tone::Series(0), Stroke::Solid),
+            LegendEntry::line("box taken up", Tone::Series(2), Stroke::Solid),
             LegendEntry::mark("best", Tone::Posterior, Mark::Square),
-            LegendEntry::mark("runner-up", Tone::Prediction, Mark::Triangle),
+            LegendEntry::mark("runner-up", Tone::Series(1), Mark::Triangle),
             LegendEntry::mark("the more ink, the better it fits", Tone::Ink, Mark::Dot),
         ],
         color_bar: None,
