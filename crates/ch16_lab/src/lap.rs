@@ -75,7 +75,7 @@ impl Lap {
     /// The estimator gets the first sweep and the drive's true start as the origin of its map.
     #[must_use]
     pub fn on_drive(config: LapConfig, drive: Arc<Drive>) -> Self {
-        let parts = SlamParts::of(&config.slam);
+        let parts = SlamParts::from_config(&config.slam);
         Self::with_parts(config, drive, parts)
     }
 

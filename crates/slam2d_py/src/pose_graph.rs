@@ -406,7 +406,7 @@ impl PoseGraph {
             };
             believe(&problem, &trusted, solver, &GncSettings::default()).map_err(told)
         });
-        Ok(PyArray1::from_vec(py, belief?.believed))
+        Ok(PyArray1::from_vec(py, belief?.inliers))
     }
 
     /// The same graph with only those edges that `keep` marks, shape (edges,).

@@ -121,8 +121,8 @@ pub fn icp(
     let variant = found.ok_or_else(|| no_choice("variant", variant, &VARIANTS.map(|v| v.0)))?;
     let config = IcpConfig {
         variant: variant.1,
-        max_iters: max_iterations,
-        tau: within("max_distance", max_distance, 1e-6, 1e6, " m")?,
+        max_iterations,
+        tau_m: within("max_distance", max_distance, 1e-6, 1e6, " m")?,
         tolerance: within("tolerance", tolerance, 0.0, 1e6, "")?,
         min_pairs,
         trim: within("trim", trim, 0.0, 1.0, "")?,
@@ -137,7 +137,7 @@ pub fn icp(
         if config.variant == IcpVariant::PointToPlane {
             target.estimate_normals(normal_radius);
         }
-        let map = DenseMap::from_cloud(&target, CELL_PER_DISTANCE * config.tau, usize::MAX);
+        let map = DenseMap::from_cloud(&target, CELL_PER_DISTANCE * config.tau_m, usize::MAX);
         (ch16_slam2d::icp::icp(&source, &map, init, &config), map)
     });
     let information = match_information(&found.pairs, &found.pose, &trust);
@@ -147,7 +147,7 @@ pub fn icp(
         [pair.source_index as i64, target as i64]
     });
     let pairs = PyArray1::from_vec(py, pairs.collect());
-    let rmse = found.trace.iter().map(|at| at.rmse).collect();
+    let rmse = found.trace.iter().map(|at| at.rmse_m).collect();
     Ok(IcpResult {
         pose: arrays::of_pose(py, &found.pose).unbind(),
         covariance: covariance
@@ -157,7 +157,7 @@ pub fn icp(
         trace: arrays::of_poses(py, found.trace.iter().map(|at| at.pose))?.unbind(),
         trace_rmse: PyArray1::from_vec(py, rmse).unbind(),
         pairs: pairs.reshape([found.pairs.len(), 2])?.unbind(),
-        rmse: found.rmse,
+        rmse: found.rmse_m,
         inliers: found.inliers,
         iterations: found.trace.len() - 1,
         converged: found.stop.converged(),
@@ -243,7 +243,7 @@ impl Ndt {
     ///
     /// source: points, shape (n, 2), m.
     /// init: initial guess of map_from_source, shape (3,); the identity without it.
-    #[pyo3(signature = (source, *, init=None, max_iterations=NdtConfig::default().max_iters),
+    #[pyo3(signature = (source, *, init=None, max_iterations=NdtConfig::default().max_iterations),
         text_signature = "($self, source, *, init=None, max_iterations=25)")]
     fn align(
         &self,
@@ -255,7 +255,7 @@ impl Ndt {
         let source = arrays::cloud("source", source)?;
         let init = arrays::pose_or("init", init, SE2::identity())?;
         let config = NdtConfig {
-            max_iters: max_iterations,
+            max_iterations,
             ..NdtConfig::default()
         };
         let found = py.detach(|| ndt_align(&source, &self.map, init, &config));

@@ -85,7 +85,7 @@ mod tests {
         for config in &configs {
             let fresh = LapRunner::new().run(config);
             assert_eq!(runner.run(config), fresh);
-            let parts = SlamParts::of(&config.slam);
+            let parts = SlamParts::from_config(&config.slam);
             assert_eq!(LapRunner::run_with_parts(config, parts), fresh);
         }
     }

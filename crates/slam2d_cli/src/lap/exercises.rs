@@ -198,7 +198,7 @@ pub fn drive(config: &LapConfig) -> Result<Driven, LapError> {
         },
     };
     let verdicts = Verdicts::default();
-    let ours = SlamParts::of(&config.slam);
+    let ours = SlamParts::from_config(&config.slam);
     let parts = SlamParts {
         front_end: Box::new(matcher),
         loops: Box::new(loop_matcher),
