@@ -173,10 +173,10 @@ mod tests {
         assert_eq!(of(17), (33, 48));
         // A node out of order counts as connected in the prefix; the factor that connects it is one more
         // loop.
-        let mut out_of_order_end = rounds(17);
-        out_of_order_end.swap(0, 1);
-        assert_eq!(prefix(35, &out_of_order_end), (31, 45));
-        out_of_order_end.swap(48, 49);
-        assert_eq!(prefix(35, &out_of_order_end), (35, 51));
+        let mut out_of_order = rounds(17);
+        out_of_order.swap(0, 1);
+        assert_eq!(prefix(35, &out_of_order), (31, 45));
+        out_of_order.swap(48, 49);
+        assert_eq!(prefix(35, &out_of_order), (35, 51));
     }
 }
