@@ -261,7 +261,7 @@ mod tests {
         assert!(file.problem.chi2() < 1e-12);
         assert!(
             remarks.contains("5 poses computed from a spanning tree")
-                && remarks.contains("2 parts"),
+                && remarks.contains("2 connected components"),
             "{remarks}"
         );
         let own = String::from_utf8(own).unwrap();
