@@ -82,8 +82,8 @@ export class TouchGate {
     if (!isOurs) return;
     event.stopPropagation();
     if (first === undefined) this.#widget.letGo();
-    // eframe presses where the finger is that it follows: where one of that number is down, it follows the same as
-    // before. So it first hears of one that is nowhere.
+    // eframe presses at the position of the finger that it follows. If a finger of that number is down, it
+    // follows the same one as before, so it first gets one far outside.
     const nowhere = new Touch({
       identifier: NO_FINGER,
       target: this.#canvas,
@@ -120,12 +120,12 @@ export class TouchGate {
 
   #end(event: TouchEvent): void {
     if (this.#owner === 'page') event.stopPropagation();
-    // What neither moved nor stayed was a tap.
+    // Neither movement nor a rest: it was a tap.
     this.#sendOn();
     this.#owner = undefined;
   }
 
-  /** The widget hears of the touch as if it had just begun. */
+  /** Passes the touch to the widget as if it had just begun. */
   #sendOn(): void {
     const held = this.#held;
     if (held === undefined) return;
@@ -133,7 +133,7 @@ export class TouchGate {
     this.#owner = 'widget';
     const touches = [held.touch];
     const { clientX, clientY } = held.touch;
-    // At this one eframe runs at once: a press and what follows it are never of the same frame.
+    // eframe runs at once on this event: a press and the next event are never in the same frame.
     this.#canvas.dispatchEvent(
       new PointerEvent('pointerdown', { pointerType: 'touch', clientX, clientY, buttons: 1, bubbles: true }),
     );
