@@ -1,4 +1,4 @@
-// The native programs of the workspace, for tests that compare with what they print.
+// The native programs of the workspace, for tests that compare with their output.
 
 import { execFileSync } from 'node:child_process';
 import { join } from 'node:path';
@@ -7,8 +7,8 @@ import { fileURLToPath } from 'node:url';
 const ROOT = fileURLToPath(new URL('../', import.meta.url));
 
 /**
- * The output of a native program of the workspace. The suite says in which folder it has compiled
- * them; without it cargo compiles them first.
+ * The output of a native program of the workspace. The suite passes the folder of the compiled programs;
+ * without it cargo compiles them first.
  */
 export function native(program, ...words) {
   const options = { cwd: ROOT, encoding: 'utf8', maxBuffer: 1 << 28 };

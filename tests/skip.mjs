@@ -1,5 +1,5 @@
-// Tests that cannot run here: they say so in one list, and fail where nothing may skip. The protocol
-// is that of tests/src/skip.rs: SLAM_NO_SKIP lets nothing skip, SLAM_SKIPPED names the list.
+// Tests that cannot run here: they are listed as skipped, and fail if skipping is not allowed. The protocol
+// is that of tests/src/skip.rs: SLAM_NO_SKIP forbids skipping, SLAM_SKIPPED names the list.
 
 import { appendFileSync } from 'node:fs';
 

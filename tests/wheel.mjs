@@ -1,4 +1,4 @@
-// The Python wheel as somebody gets it, for tests that need a Python with other packages beside it.
+// The Python wheel as users get it, for tests that need a Python with other packages.
 
 import { execFileSync } from 'node:child_process';
 import { readdirSync } from 'node:fs';
@@ -8,7 +8,7 @@ import { fileURLToPath } from 'node:url';
 const ROOT = fileURLToPath(new URL('../', import.meta.url));
 export const PYTHON = process.env.PYTHON ?? 'python3';
 
-/** Why a test that needs these modules cannot run; nothing where they are there. */
+/** Why a test that needs these modules cannot run; undefined if they are installed. */
 export function without(...modules) {
   const missing = modules.filter((module) => !has(module));
   if (missing.length === 0) return undefined;
@@ -24,7 +24,10 @@ function has(module) {
   }
 }
 
-/** Packs dist/ into `folder`, and installs the wheel there: the names of the packages, and the folder to import from. */
+/**
+ * Packs dist/ into `folder`, and installs the wheel there: the names of the packages, and the folder to
+ * import from.
+ */
 export function install(folder) {
   const packages = join(folder, 'packages');
   execFileSync('node', [join(ROOT, 'web', 'package.mjs'), join(ROOT, 'dist'), packages], { cwd: ROOT, stdio: 'ignore' });

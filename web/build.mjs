@@ -1,12 +1,12 @@
 // node web/build.mjs DIST PROFILE: from wasm-pack's output to the element and its files in DIST.
 //
 // 1. wraps the glue in a function, so that a page can hold an instance for each widget;
-// 2. runs the module here in Node: it writes its own schema, says how high each widget is at each width,
-//    and draws the static pictures;
-// 3. bundles the element; wasm and bundle carry a hash of their content in their names, so that an
-//    old cached one is never paired with a new one; so does the worker that maps logs, with its module;
-// 4. writes our licences and the notices of others' work;
-// 5. measures what a reader downloads.
+// 2. runs the module in Node, which writes its schema, the height of each widget at each width, and the
+// static pictures;
+// 3. bundles the element; wasm, bundle, worker and its module have a hash of their content in their names, so
+// an old cached file is never combined with a new one;
+// 4. writes our licences and the notices of third parties;
+// 5. measures the size of the downloads.
 
 import { createHash } from 'node:crypto';
 import { cp, mkdir, readFile, rm, writeFile } from 'node:fs/promises';
@@ -27,8 +27,8 @@ const PKG = join(WEB, 'pkg');
 const ROBOT_PKG = join(WEB, 'pkg-robot');
 const PICTURE_WIDTH_PX = 900;
 /**
- * All widgets together, wasm and glue, brotli −11. The first five fit into 1.0 MB; those on what robots really run (the
- * search, recognized places, sessions) came on top.
+ * All widgets together, wasm and glue, brotli −11. The first five fit into 1.0 MB; those on recorded logs
+ * (search, place recognition, sessions) came later.
  */
 const BUDGET_BYTES = 1_150_000;
 
@@ -63,15 +63,15 @@ await writeFile(join(dist, 'schema.json'), JSON.stringify(schema, null, 1));
 await writeParameterTables(schema, join(WEB, '..', 'docs', 'parameters.md'));
 await measure();
 
-/** The glue as a module that exports one function; frames are asked of its argument. */
+/** The glue as a module that exports one function; its argument provides the frames. */
 async function wrapGlue() {
   let text = await readFile(join(PKG, 'slam_web.js'), 'utf8');
-  // A hidden page schedules by timers: those wait at the same gate.
+  // A hidden page schedules by timers, which go through the same object.
   text = replaceOnce(text, /arg0\.requestAnimationFrame\(arg1\)/, 'frames.request(arg1)');
   text = replaceOnce(text, /arg0\.cancelAnimationFrame\(arg1\)/, 'frames.cancel(arg1)');
   text = replaceOnce(text, /arg0\.setTimeout\(arg1, arg2\)/, 'frames.request(arg1)');
   text = replaceOnce(text, /arg0\.clearTimeout\(arg1\)/, 'frames.cancel(arg1)');
-  // A browser whose pixel ratio is emulated reports device pixels that disagree with it.
+  // A browser with an emulated pixel ratio reports inconsistent device pixels.
   text = replaceOnce(text, /arg0\.devicePixelContentBoxSize/, 'frames.deviceSize(arg0)');
   text = replaceOnce(text, /arg0\.devicePixelRatio/, 'frames.pixelRatio()');
   const wrapped = `export function createGlue(frames) {\n${text}\nreturn wasm_bindgen;\n}\n`;
@@ -93,7 +93,7 @@ async function instantiate(bytes) {
   return made;
 }
 
-/** A widget at its defaults, all work done. */
+/** A widget at its defaults with all work done. */
 function finish(id) {
   const widget = new glue.Widget(id);
   widget.finish();
@@ -126,7 +126,7 @@ async function writeSample() {
   return names.map((name) => `./${name}`);
 }
 
-/** The worker is a file of its own, whose name the element knows. */
+/** The worker is a separate file, whose name the element contains. */
 async function bundleWorker(shared) {
   const { outputFiles, metafile } = await esbuild.build({
     ...shared,
@@ -167,7 +167,7 @@ async function bundle() {
   const [code] = built.outputFiles.filter((file) => file.path.endsWith('.js'));
   const coreFile = `slam-widget-${hash(code.contents)}.js`;
   await writeFile(join(dist, coreFile), code.contents);
-  // The one name that pages know; small, and fetched afresh.
+  // The only name that pages use; small, and fetched again each time.
   await writeFile(join(dist, 'slam-widget.js'), `export * from './${coreFile}';\n`);
   const metafiles = [robotWorker.metafile, built.metafile];
   for (const entry of ['embed', 'predict', 'anywidget']) {
@@ -187,27 +187,27 @@ async function bundle() {
   return metafiles;
 }
 
-/** For the package as text; the page, which is built later, shows the same parts. */
+/** As text for the package; the page, which is built later, shows the same parts. */
 async function writeNotices(metafiles) {
   const parts = await partsOfWidgets(metafiles);
   await writePackageNotices(parts, dist);
   await writeFile(join(PKG, 'parts.json'), JSON.stringify(parts));
 }
 
-/** `dist/` is the npm package, too: `npm pack ./dist`. What serves the build alone stays out of it. */
+/** `dist/` is the npm package, too: `npm pack ./dist`. Files that only the build needs stay out of it. */
 async function writePackage() {
   const source = JSON.parse(await readFile(join(WEB, 'package.json'), 'utf8'));
   for (const key of ['//', 'private', 'engines', 'scripts', 'devDependencies']) delete source[key];
   await writeFile(join(dist, 'package.json'), `${JSON.stringify(source, null, 2)}\n`);
 }
 
-/** The slides stay in the repository: they run beside an installed reveal.js, which the site has not. */
+/** The slides stay in the repository: they need an installed reveal.js, which the site lacks. */
 async function copyExamples() {
   const isWhole = (file) => !basename(file).startsWith('reveal');
   await cp(join(WEB, 'examples'), join(dist, 'examples'), { recursive: true, filter: isWhole });
 }
 
-/** Sizes of the program; over the budget, the build of the published profile fails. */
+/** Sizes of the program; above the budget the build of the published profile fails. */
 async function measure() {
   const glueBundle = await esbuild.build({
     stdin: { contents: "export { createGlue } from './glue.js';", resolveDir: PKG },
@@ -244,7 +244,7 @@ async function writeSizes(sizes) {
   const rows = Object.entries(sizes).map(
     ([name, { raw, gzip, brotli: small }]) => `| ${name} | ${raw} | ${gzip} | ${small} |`,
   );
-  // What the page loads at once stands above its sum, what a log needs below.
+  // Downloads of the page are above its sum, those for a log below.
   const [ofPage, ofWorker] = [rows.slice(0, 2), rows.slice(2)];
   const total = (which) => sizes.wasm[which] + sizes.glue[which];
   const table = [

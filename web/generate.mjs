@@ -1,9 +1,9 @@
-// Texts that follow from the widgets' parameter lists: types for TypeScript, tables for the docs.
+// Generates texts from the widgets' parameter lists: types for TypeScript, tables for the docs.
 
 import { mkdir, readFile, writeFile } from 'node:fs/promises';
 import { dirname } from 'node:path';
 
-/** `slam-widget.d.ts`: what each widget takes. */
+/** `slam-widget.d.ts`: the parameters of each widget. */
 export async function writeTypes(schema, path) {
   const names = schema.map((widget) => `'${widget.id}'`).join(' | ');
   const states = schema.map((widget) => {

@@ -10,5 +10,5 @@ export interface FrameSource {
   deviceSize(entry: ResizeObserverEntry): readonly ResizeObserverSize[];
 }
 
-/** A glue with state of its own; `frames` takes the place of what the window would answer. */
+/** Glue with separate state; `frames` replaces functions of the window. */
 export function createGlue(frames: FrameSource): Glue;

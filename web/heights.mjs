@@ -1,4 +1,4 @@
-// How high a widget is at each width: as many widths as it takes to say so to a fraction of a line.
+// The height of a widget at each width: enough widths for an error below a fraction of a line.
 
 const NARROWEST_PX = 280;
 const WIDEST_PX = 1400;
@@ -6,7 +6,7 @@ const STEP_PX = 40;
 /** A line of text is four times as high: a height that falls by one is seen from either side. */
 const TOLERANCE_PX = 4;
 
-/** Pairs of width and height in CSS pixels, ascending, from a function that lays the widget out. */
+/** Pairs of width and height in CSS pixels, ascending, from a function that lays out the widget. */
 export function heightTable(heightAt) {
   const at = (width) => [width, Math.ceil(heightAt(width))];
   const table = [at(NARROWEST_PX)];

@@ -1,8 +1,8 @@
-// The parts of a page that a command writes, between two comments.
+// The parts of a page that a command generates, between two comments.
 
 import { readFile, writeFile } from 'node:fs/promises';
 
-/** Replaces what stands between `<!-- NAME: … -->` and `<!-- end of NAME -->`. */
+/** Replaces the text between `<!-- NAME: … -->` and `<!-- end of NAME -->`. */
 export async function writeMarked(page, name, text) {
   const old = await readFile(page, 'utf8');
   const marked = new RegExp(`(<!-- ${name}: [^>]*-->\\n)[\\s\\S]*?(<!-- end of ${name} -->)`);

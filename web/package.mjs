@@ -1,4 +1,4 @@
-// node web/package.mjs DIST OUT: from the built site in DIST to what people install, in OUT.
+// node web/package.mjs DIST OUT: from the built site in DIST to the installable packages in OUT.
 //
 // 1. the npm archive, packed from DIST;
 // 2. the Python wheel: the anywidget module as one file with the program inside, beside `web/python`.
@@ -13,7 +13,7 @@ import * as esbuild from 'esbuild';
 
 const WEB = dirname(fileURLToPath(import.meta.url));
 
-/** The programs by what the module calls them: the widgets, the worker's, and its script. */
+/** The programs by their names in the module: the widgets, the worker's, and its script. */
 const PROGRAMS = { program: /^slam_web-.*\.wasm$/, robot: /^slam_robot-.*\.wasm$/, worker: /^slam-robot-.*\.js$/ };
 /** The samples of w16.10, in the order of `web/build.mjs`. */
 const SAMPLES = ['samples/ring.log', 'samples/ring-truth.tum', 'samples/ring-another-day.log'];
@@ -70,7 +70,7 @@ async function wholeModule() {
       build.onLoad({ filter: /.*/, namespace: 'inside' }, () => ({
         contents: `export default ${JSON.stringify(carried)};`,
       }));
-      // What stands beside this file elsewhere stands in it here.
+      // Files that are beside this one elsewhere are inside it here.
       build.onResolve({ filter: /^\.\/slam-widget\.js$/ }, () => ({ path: join(WEB, 'ts', 'main.ts') }));
     },
   };
@@ -80,7 +80,7 @@ async function wholeModule() {
     format: 'esm',
     target: 'es2022',
     minify: true,
-    // No address of its own is ever asked for.
+    // No address is ever requested.
     define: {
       WASM_FILE: '"program"',
       ROBOT_WASM_FILE: '"robot"',

@@ -9,7 +9,7 @@ export function shades(theme) {
   return Object.fromEntries(Object.entries(PALETTE).map(([name, pair]) => [name, pair[theme === 'dark' ? 1 : 0]]));
 }
 
-/** Light; dark by the system's choice, and dark by the reader's. */
+/** Light; dark by the system's setting, and dark by the reader's choice. */
 export function colorStyle() {
   const properties = (theme) => {
     const lines = Object.entries(shades(theme)).map(([name, shade]) => `  --${name}: ${shade};`);

@@ -1,5 +1,5 @@
-// node web/size-table.mjs PAGE WHAT=FILE…: what builds of the module weigh beside the first of them,
-// the published one, as a table in PAGE.
+// node web/size-table.mjs PAGE WHAT=FILE…: the sizes of builds of the module compared with the first one, the
+// published one, as a table in PAGE.
 
 import { readFileSync } from 'node:fs';
 

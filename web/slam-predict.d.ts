@@ -1,10 +1,10 @@
 // Types of <slam-predict>, the element that `slam-widgets/predict` defines.
 
-/** What a reader committed to, and what came of it. */
+/** The reader's prediction, and the result. */
 export interface Prediction {
-  /** The name of the widget that was asked: `w16.1`. */
+  /** The name of the widget in question: `w16.1`. */
   widget: string;
-  /** The choice or the number, as the reader gave it. */
+  /** The reader's choice or number. */
   prediction: string;
   /** The widget's verdict, or its number as text. */
   result: string;
@@ -14,7 +14,7 @@ export interface Prediction {
 }
 
 export interface SlamPredictEvents {
-  /** The reader committed, and the widget has answered. */
+  /** The reader has answered, and so has the widget. */
   'slam-predict': CustomEvent<Prediction>;
 }
 

@@ -1,8 +1,8 @@
-// What a wasm file weighs, and what it need not carry.
+// The size of a wasm file, and the parts that it does not need.
 
 import { brotliCompressSync, constants } from 'node:zlib';
 
-/** The names of functions serve debuggers alone, and weigh a quarter of the module. */
+/** The names of functions are for debuggers only, and a quarter of the module. */
 export function withoutNames(module) {
   const kept = [module.subarray(0, 8)];
   for (let at = 8; at < module.length; ) {
@@ -40,7 +40,7 @@ function leb128(bytes, at) {
   }
 }
 
-/** The bytes that arrive where the server compresses with brotli at its best. */
+/** The transferred bytes if the server compresses with brotli at its best level. */
 export function brotli(bytes) {
   const params = {
     [constants.BROTLI_PARAM_QUALITY]: 11,

@@ -1,5 +1,5 @@
-// Measures the script of a frame in Chromium while a slider changes in every frame:
-// `node tests/bench/changing.mjs [PAGE.md] [FRAMES]`. Prints a table, and writes it into the page.
+// Measures the script time of a frame in Chromium while a slider changes in every frame: `node
+// tests/bench/changing.mjs [PAGE.md] [FRAMES]`. Prints a table, and writes it into the page.
 
 import { writeMarked } from '../../web/marked.mjs';
 import { launchForTimes } from '../browser/chromium.mjs';
@@ -8,12 +8,12 @@ import { machine, quantile } from './in_chromium.mjs';
 
 /** The project's own limit: a frame of a display at 60 Hz. */
 const LIMIT_MS = 16;
-/** Whose laps take longer than a frame, and the slider that asks for another one. */
+/** Widgets whose laps take longer than a frame, and the slider that requests another one. */
 const SLIDERS = [['w16.2', 'noise'], ['w16.4', 'noise']];
 
 const [page, frames = '200'] = process.argv.slice(2);
 
-/** Runs before the page's own scripts: sums up what callbacks of frames take, whoever asked for them. */
+/** Runs before the page's own scripts: sums up the time of frame callbacks. */
 const WATCH = `<script>
   window.scriptMs = 0;
   window.nextFrame = window.requestAnimationFrame.bind(window);
@@ -28,7 +28,7 @@ const text = table(await measure(Number(frames)));
 console.log(text);
 if (page !== undefined) await writeMarked(page, 'changing', text);
 
-/** For each slider the script of so many frames in which its value changes, ms. */
+/** The script time of each frame in which the slider's value changes, ms, for each slider. */
 async function measure(count) {
   const pages = {};
   for (const [id] of SLIDERS) pages[`/${id}.html`] = bare(`<slam-widget name="${id}"></slam-widget>`, WATCH);
@@ -42,7 +42,7 @@ async function measure(count) {
       await tab.goto(`${server.url}/${id}.html`);
       await tab.waitForFunction(() => document.querySelector('slam-widget').state === 'running');
       const { min, max, step } = schema.find((widget) => widget.id === id).params.find((param) => param.id === parameter);
-      // Once before it counts: the browser compiles what runs for the first time.
+      // A first run without measurement, because the browser compiles code on first use.
       await tab.evaluate(drag, { parameter, min, max, step, count });
       rows.push([`${parameter} of ${id}`, await tab.evaluate(drag, { parameter, min, max, step, count })]);
     }
@@ -53,7 +53,7 @@ async function measure(count) {
   return rows;
 }
 
-/** In the page: to and fro over the whole slider, a step a frame. */
+/** In the page: back and forth over the whole slider, a step per frame. */
 function drag({ parameter, min, max, step, count }) {
   const widget = document.querySelector('slam-widget');
   const steps = Math.round((max - min) / step);

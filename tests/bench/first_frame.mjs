@@ -6,12 +6,12 @@ import { launchForTimes } from '../browser/chromium.mjs';
 import { bare, schema, serve } from '../browser/harness.mjs';
 import { machine, quantile } from './in_chromium.mjs';
 
-/** From the navigation to the first frame of a widget: the project's own limit. */
+/** The project's limit from the navigation to the first frame of a widget. */
 const LIMIT_MS = 1500;
 
 const [page, rounds = '7'] = process.argv.slice(2);
 
-/** What no widget can be faster than: a context, one program, one triangle, in the next frame. */
+/** The lower bound for any widget: a context, one program, one triangle, in the next frame. */
 const BARE_CANVAS = `<!doctype html><html lang="en"><title>Bare</title><link rel="icon" href="data:,">
 <canvas width="1098" height="700"></canvas><script type="module">
   const gl = document.querySelector('canvas').getContext('webgl2');
@@ -47,7 +47,7 @@ const text = table(times);
 console.log(text);
 if (page !== undefined) await writeMarked(page, 'first frame', text);
 
-/** Milliseconds from the navigation to the first frame, of each page by turns. */
+/** Milliseconds from the navigation to the first frame, of each page in turns. */
 async function measure(paths, count) {
   const server = await serve({ pages });
   const browser = await launchForTimes();
@@ -58,7 +58,7 @@ async function measure(paths, count) {
     const devTools = await context.newCDPSession(tab);
     await devTools.send('Network.enable');
     await devTools.send('Network.setCacheDisabled', { cacheDisabled: true });
-    // A window that has just opened still loads the browser's own parts: one round is for the window.
+    // A new window still loads parts of the browser: the first round does not count.
     for (let round = 0; round <= count; round += 1) {
       for (const path of paths) {
         await tab.goto('about:blank');
@@ -79,7 +79,7 @@ function table(found) {
   const rows = [...found].map(([path, ms]) => {
     const isBare = path === '/bare.html';
     const what = isBare ? 'a bare canvas: one program, one triangle' : path.slice(1, -'.html'.length);
-    // Round by round: what held up the one held up the other as well.
+    // Round by round, because background load affects both alike.
     const over = median(ms.map((time, round) => time - reference[round]));
     const cells = [what, ...[Math.min(...ms), median(ms)].map(told), isBare ? '–' : told(over), isBare ? '–' : told(LIMIT_MS)];
     return `| ${cells.join(' | ')} |`;

@@ -1,11 +1,11 @@
-// What the measurements in Chromium share: the machine that they name, and what they say of a list of times.
+// Shared by the measurements in Chromium: the description of the machine, and statistics of times.
 
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { cpus, platform } from 'node:os';
 import { forTimes } from '../browser/chromium.mjs';
 
-/** Processor, system and browser, as a table names them. */
+/** Processor, system and browser, as in a table. */
 export function machine() {
   const browser = execFileSync(forTimes(), ['--version'], {
     encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'],
@@ -21,7 +21,7 @@ function processor() {
   }
 }
 
-/** The value that so large a share of the others does not reach; at 0.5 the median. */
+/** The quantile of a share; at 0.5 the median. */
 export function quantile(values, share) {
   const sorted = [...values].sort((a, b) => a - b);
   return sorted[Math.min(Math.floor(share * sorted.length), sorted.length - 1)];

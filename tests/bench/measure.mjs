@@ -1,6 +1,6 @@
-// Measures the workloads by turns, natively and as WebAssembly in Node and in Chromium:
-// `node tests/bench/measure.mjs SLAM2D_BENCH FOLDER [ROUNDS] [MILLISECONDS] [ID,ID]`.
-// FOLDER holds what wasm-pack built; the answer is JSON on standard output.
+// Measures the workloads in turns, natively and as WebAssembly in Node and in Chromium: `node
+// tests/bench/measure.mjs SLAM2D_BENCH FOLDER [ROUNDS] [MILLISECONDS] [ID,ID]`. FOLDER contains wasm-pack's
+// output; the result is JSON on standard output.
 
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
@@ -10,14 +10,14 @@ import { pathToFileURL } from 'node:url';
 import { launchForTimes } from '../browser/chromium.mjs';
 import { native } from './native.mjs';
 
-/** Rounds that nobody counts: an engine compiles what runs often a second time, and better. */
+/** Rounds that do not count, because an engine recompiles frequently used code with more optimization. */
 const WARM_UP = 3;
 
 const [program, folder, rounds = '15', budgetMs = '25', only] = process.argv.slice(2);
 const glue = join(resolve(folder), 'slam2d_bench.js');
 const module = readFileSync(join(folder, 'slam2d_bench_bg.wasm'));
 
-/** Each engine runs a workload for some milliseconds and says what it took; one runs at a time. */
+/** Each engine runs a workload for some milliseconds and returns the time; one at a time. */
 const engines = { native: native(program), node: await inNode(), chromium: await inChromium() };
 try {
   console.log(JSON.stringify(await measure()));
@@ -58,7 +58,7 @@ async function inChromium() {
   const server = createServer(({ url }, response) => {
     const [type, body] = files[url] ?? ['text/plain', ''];
     response.setHeader('Content-Type', type);
-    // A page that stands alone has a clock of 5 µs, any other one of 100.
+    // An isolated page has a clock of 5 µs, any other one of 100.
     response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
     response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
     response.end(body);

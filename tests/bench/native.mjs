@@ -1,9 +1,9 @@
-// The native build as one that takes turns: `slam2d_bench turns` answers each line with a line.
+// The native build in turns: `slam2d_bench turns` answers each line with a line.
 
 import { spawn } from 'node:child_process';
 import { createInterface } from 'node:readline';
 
-/** Starts the program; `turn` runs a workload for some milliseconds and says what it took. */
+/** Starts the program; `turn` runs a workload for some milliseconds and returns its time. */
 export function native(program) {
   const child = spawn(program, ['turns'], { stdio: ['pipe', 'pipe', 'inherit'] });
   const answers = createInterface({ input: child.stdout })[Symbol.asyncIterator]();

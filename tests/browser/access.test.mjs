@@ -1,4 +1,4 @@
-// For everyone: the native controls beside the canvas, by keyboard alone and for a screen reader.
+// Accessibility: the native controls beside the canvas, by keyboard alone and for screen readers.
 
 import assert from 'node:assert/strict';
 import { before, beforeEach, describe, it } from 'node:test';
@@ -10,7 +10,7 @@ const visit = h.visitor();
 
 const body = (name) => `<main><h1 tabindex="-1">A page</h1><slam-widget name="${name}" more="on"></slam-widget></main>`;
 
-/** Types over what stands in the field that has the focus. */
+/** Replaces the text of the focused field. */
 async function type(tab, text) {
   await tab.keyboard.press('ControlOrMeta+a');
   await tab.keyboard.type(text);
@@ -31,13 +31,13 @@ const focused = (tab) =>
     };
   });
 
-/** The controls that the canvas does not show. */
+/** Controls that the canvas does not show. */
 function withoutBox(tab, widget) {
   const ids = [...widget.presets, ...widget.params, ...widget.buttons].map(({ id }) => id);
   return tab.evaluate((all) => all.filter((id) => document.querySelector('slam-widget').controlBox(id) === null), ids);
 }
 
-/** Whether the control on the canvas that stands for the focused one can be seen. */
+/** Whether the canvas's control that belongs to the focused one is visible. */
 function ringInSight(tab, control) {
   return tab.evaluate((id) => {
     const widget = document.querySelector('slam-widget');
@@ -69,7 +69,7 @@ for (const widget of h.schema) {
         const said = widget.shadowRoot.querySelector('[aria-live="polite"]').textContent;
         return said.length > 15 && said === widget.outcome.sentence;
       });
-      // A widget that goes on computing says more later, and its page follows.
+      // A widget with work in progress reports more later, and its page follows.
       await tab.waitForFunction(() => {
         const widget = document.querySelector('slam-widget');
         const written = widget.shadowRoot.querySelector('.summary').textContent;
@@ -79,7 +79,7 @@ for (const widget of h.schema) {
 
     it('gives every control to the keyboard, in reading order and in sight', async () => {
       const { tab } = page;
-      // What belongs to a mode stands on its own line until the mode is on; a text always does.
+      // Controls of a mode are on their own lines until the mode is on; a text always is.
       const offCanvas = await withoutBox(tab, widget);
       if (widget.params.some(({ id }) => id === 'edit')) {
         await tab.evaluate(() => document.querySelector('slam-widget').press('edit-flat'));
@@ -166,7 +166,7 @@ for (const widget of h.schema) {
           await type(tab, '11');
           assert.equal(await value(tab, param.id), 11);
         } else if (param.kind === 'text') {
-          // A text that the widget itself writes: that of its own flat.
+          // A text written by the widget itself: its own flat.
           const text = await tab.evaluate(async (id) => {
             const other = document.createElement('slam-widget');
             other.name = document.querySelector('slam-widget').name;
@@ -200,7 +200,7 @@ for (const widget of h.schema) {
       await tab.evaluate(() => {
         const widget = document.querySelector('slam-widget');
         const told = ({ query, timeline }) => ({ query, playing: timeline?.playing ?? false });
-        // What a press does is told by a widget that is not drawn, and so does not play on.
+        // The effect of a press is tested on a widget that is not drawn and so does not play.
         const other = document.createElement('slam-widget');
         other.name = widget.name;
         other.more = widget.more;
@@ -210,7 +210,7 @@ for (const widget of h.schema) {
           await other.press(id);
           return told(other);
         };
-        // Asked before the next frame can play on.
+        // Requested before the next frame can advance the playback.
         const { press } = widget;
         widget.press = async (id) => {
           await press.call(widget, id);

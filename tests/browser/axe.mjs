@@ -1,4 +1,4 @@
-// What axe-core finds on a page, by the rules that all pages of this project keep.
+// Violations found by axe-core, by the rules for all pages of this project.
 
 import { readFileSync } from 'node:fs';
 
@@ -6,13 +6,13 @@ const AXE = readFileSync(new URL('./node_modules/axe-core/axe.min.js', import.me
 
 const TAGS = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
 
-/** Of their rules, what depends on the colours: a page that keeps all rules in light has to keep these in dark. */
+/** Rules that depend on colours: a page that satisfies all rules in light has to satisfy these in dark. */
 export const OF_COLORS = ['color-contrast', 'link-in-text-block'];
 
-/** Every violation of tags or rules with the elements it is about; frames within the page are not looked into. */
+/** Every violation of tags or rules with its elements; frames within the page are excluded. */
 export async function violations(page, runOnly = TAGS) {
   if (!(await page.evaluate(() => 'axe' in window))) await page.evaluate(AXE);
-  // axe leaves the size of targets out unless asked.
+  // axe checks the size of targets only on request.
   const options = { runOnly, rules: { 'target-size': { enabled: true } }, iframes: false };
   const found = await page.evaluate((given) => axe.run(document, given), options);
   return found.violations.map(({ id, nodes }) => [id, nodes.map((node) => node.html)]);

@@ -1,4 +1,4 @@
-// The companion chapter itself: dist/index.html as a reader gets it.
+// The companion chapter: dist/index.html as readers get it.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -11,9 +11,9 @@ import { OF_COLORS, violations } from './axe.mjs';
 import * as h from './harness.mjs';
 import { cloudSpot, restingSpot, sliderRail } from './spots.mjs';
 
-/** What the chapter adds to the element's policy are fonts, its own. */
+/** The chapter's addition to the element's policy: its own fonts. */
 const POLICY = `${h.STRICT_POLICY}; font-src 'self'`;
-/** The widgets, as the page has them: each one once. */
+/** The widgets on the page: each one once. */
 const IN_ORDER = [...readFileSync(join(h.DIST, 'index.html'), 'utf8').matchAll(/<slam-widget name="([^"]+)"/g)].map(([, id]) => id);
 assert.deepEqual([...IN_ORDER].sort(), h.schema.map(({ id }) => id).sort());
 
@@ -37,7 +37,7 @@ describe('the chapter', () => {
       const states = () => tab.evaluate(
         (ids) => ids.map((id) => document.querySelector(`slam-widget[name="${id}"]`).state), IN_ORDER);
       for (const [place, id] of IN_ORDER.entries()) {
-        // Those further down have not begun.
+        // Those further down have not started.
         const later = IN_ORDER.length - place - 1;
         assert.deepEqual((await states()).slice(place + 1), Array(later).fill('resting'));
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
@@ -215,7 +215,7 @@ describe('the chapter', () => {
         const isSeen = (element) => element.checkVisibility() && element.getBoundingClientRect().top < end;
         const marked = [...document.querySelectorAll('main .figure, main a.slam-link')].filter(
           (element) => element.matches('.figure') || /\d/.test(element.textContent));
-        // A formula names and counts with single digits; it measures with more.
+        // A formula names and counts with single digits; measured values have more.
         const written = [...document.querySelectorAll('main .katex-html .mord')].filter(
           (element) => element.childElementCount === 0 && /^[\d.]{2,}$/.test(element.textContent));
         return [...marked, ...written].filter(isSeen)
@@ -284,7 +284,7 @@ describe('the chapter', () => {
       }, css);
       assert.ok(await isKept('h1'));
       assert.ok(await isKept(widget('w16.10')));
-      // Text that is dragged over the page goes where it would.
+      // Text dragged over the page keeps its default action.
       assert.ok(await tab.evaluate(() => document.body.dispatchEvent(
         new DragEvent('dragover', { dataTransfer: new DataTransfer(), bubbles: true, cancelable: true }))));
     });
@@ -307,7 +307,7 @@ describe('the chapter', () => {
         window.copied = [];
         navigator.clipboard.writeText = (text) => Promise.resolve(void window.copied.push(text));
       });
-      // The code stands folded.
+      // The code is folded.
       await tab.evaluate(() => { document.querySelector('figure.listing').closest('details').open = true; });
       await tab.locator('figure.listing').first().getByRole('button', { name: 'Copy' }).click();
       assert.deepEqual(await tab.evaluate(() => copied), [listings[0].code]);

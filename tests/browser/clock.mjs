@@ -1,49 +1,52 @@
 // The clock of the pages under test: it counts their animation frames.
 //
-// A second of a page is a number of frames, not of heartbeats. So a machine that is held up holds the
-// page's clock up as well, and nothing that a test sees depends on how fast it draws.
+// A second of a page is a number of frames instead of real time. A slow machine slows the page's clock down
+// as well, so no result of a test depends on the drawing speed.
 
-/** Of one display at 60 Hz: for what depends on how long a press or a fade takes. */
+/** A frame of a display at 60 Hz, for tests that depend on the duration of a press or a fade. */
 export const SMOOTH_MS = 1000 / 60;
 
-/** Of a display that is slow: a widget that settles for 0.9 s draws three frames, not sixty. */
+/** A frame of a slow display: a widget that settles for 0.9 s draws three frames instead of sixty. */
 export const COARSE_MS = 300;
 
 /**
- * A display shows the next frame no sooner, by the clock of the machine: a page that draws all the time, such
- * as one that plays, would draw as often as it can while its test looks at something, and nobody sees it.
+ * Smallest real time between frames. Otherwise a page that plays would draw as fast as it can while its test
+ * inspects something.
  */
 export const PAUSE_MS = 60;
 
-/** Of a page that waits for as long as the test does. */
+/** Frame duration of a page whose clock stands still. */
 export const FROZEN_MS = 0;
 
-/** Patience of so much is never over by itself: what a page waits for may come from another process. */
+/** Delays of at least this length never end by themselves: the page may wait for another process. */
 export const PATIENCE_MS = 5000;
 
-/** What each look at the clock takes: work that goes on until its time is up comes to an end. */
+/** Advance of the clock at each reading, so that work with a time limit comes to its end. */
 const LOOK_MS = 0.25;
 
-/** A slow display gets little work done in a frame: what no test waits for costs none of them much. */
+/**
+ * Number of clock readings in a slow frame: little work is done in it, so tests that do not wait for work
+ * stay fast.
+ */
 const LOOKS_OF_A_SLOW_FRAME = 300;
 
-/** While a test waits for all work to be done, looks take next to nothing: it is done in a frame or two. */
+/** Advance at each reading while a test waits for all work: it is finished in a frame or two. */
 export const QUICK_LOOK_MS = 0.01;
 
-/** What a look takes on a display with such frames. */
+/** Advance at each reading for frames of that length. */
 export function lookMs(stepMs) {
   return stepMs >= COARSE_MS ? stepMs / LOOKS_OF_A_SLOW_FRAME : LOOK_MS;
 }
 
 /**
- * Runs in every page before its own scripts. `frameClock` is what tests see of it.
+ * Runs in every page before its own scripts. `frameClock` is the tests' interface.
  *
- * It drives what the widgets ask for time: `performance.now`, the time of an animation frame, and
- * `setTimeout` with a delay. A delay of `patienceMs` or more passes only when a test skips it. Between two
- * frames lie `pauseMs` at least.
+ * It replaces the sources of time of the widgets: `performance.now`, the time of an animation frame, and
+ * `setTimeout` with a delay. A delay of `patienceMs` or more ends only if a test skips it. Frames are at
+ * least `pauseMs` apart.
  */
 export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
-  // A tab that waits for its next test has nothing to do.
+  // A tab that waits for its next test does nothing.
   if (location.href === 'about:blank') return;
   const displayed = window.requestAnimationFrame.bind(window);
   const [soon, forget] = [window.setTimeout.bind(window), window.clearTimeout.bind(window)];
@@ -59,7 +62,7 @@ export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
   let waiting = new Map();
   let due = new Map();
   let lastFrame = 0;
-  // Far from the numbers that the browser gives.
+  // Far from the numbers of the browser.
   let lastTimer = 1e9;
 
   const show = () => {
@@ -86,7 +89,7 @@ export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
     return nextFrame(() => callback(nowMs));
   };
   window.cancelAnimationFrame = (frame) => {
-    // Also one that is due: another one before it may have called it off.
+    // Also a due one: an earlier callback may have cancelled it.
     if (!waiting.delete(frame)) due.delete(frame);
   };
   window.setTimeout = (callback, delay, ...given) => {
@@ -107,7 +110,7 @@ export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
     nowMs += isHeld ? 0 : stepMs;
     const due = [...timers].filter(([, { atMs, isPatient }]) => atMs <= (isPatient ? skippedMs : nowMs));
     for (const [timer, { call }] of due.sort(([, a], [, b]) => a.atMs - b.atMs)) {
-      // One that was due may have called another one off.
+      // An earlier callback may have cancelled a due one.
       if (timers.delete(timer)) call();
     }
     for (const look of [...watchers]) if (look()) watchers.delete(look);
@@ -118,13 +121,16 @@ export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
     watchers.add(() => holds() && (resolve(), true));
   });
   window.frameClock = {
-    /** Once so much time has passed; says how many frames the page asked for meanwhile. */
+    /** Resolves after that much time, with the number of frames that the page requested meanwhile. */
     pass: async (ms) => {
       const [from, before] = [nowMs, asked];
       await when(() => nowMs - from >= ms);
       return asked - before;
     },
-    /** Once no frame has been asked for during so much time, and three frames at least; says how many were. */
+    /**
+     * Resolves after that much time and at least three frames without a requested one, with the number of
+     * earlier ones.
+     */
     quiet: async (ms) => {
       const before = asked;
       const from = { ms: nowMs, tick: ticks };
@@ -134,11 +140,11 @@ export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
       takesMs = lookMs;
       return asked - before;
     },
-    /** Stands still, or goes on: a finger that is quick is quick however long the test takes to move it. */
+    /** Stops or resumes the clock, so that a quick touch is quick regardless of the test's speed. */
     hold: (holds) => {
       isHeld = holds;
     },
-    /** Lets so much time pass at once, for those as well who are patient. */
+    /** Advances the clock by that much at once, including long delays. */
     skip: async (ms) => {
       const tick = ticks;
       nowMs += ms;

@@ -1,4 +1,4 @@
-// Drawing surfaces are few, and the browser may take each away at any time.
+// WebGL contexts are limited, and the browser may take each away at any time.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -7,7 +7,7 @@ import * as h from './harness.mjs';
 const on = h.visitor();
 const ONE = '<slam-widget name="w16.2"></slam-widget>';
 
-/** Runs in the page before its scripts: the first contexts are lost as soon as they are made. */
+/** Runs in the page before its scripts: the first contexts are lost as soon as they are created. */
 const losing = (count) => `<script>
   const { getContext } = HTMLCanvasElement.prototype;
   window.toLose = ${count};
@@ -86,7 +86,7 @@ it('a widget longer than a canvas can be is drawn coarser, to its end', async ()
     assert.ok(canvas.height > 7000 && canvas.height <= 8192, `${canvas.height} pixels`);
     const [across, down] = [canvas.width / canvas.clientWidth, canvas.height / canvas.clientHeight];
     assert.ok(Math.abs(across - down) < 0.01, `${across} and ${down} pixels for a CSS pixel`);
-    // The browser gives all of it, and the widget fills it.
+    // The browser provides all of it, and the widget fills it.
     const last = await tab.evaluate(async () => {
       const picture = await document.querySelector('slam-widget').snapshot();
       const copy = new OffscreenCanvas(picture.width, 400).getContext('2d');

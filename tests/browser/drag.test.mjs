@@ -1,5 +1,5 @@
-// Dragging recomputes everything on every move: what is shown belongs to the last value, and the
-// whole chain from a finger to the result is on the reader's screen in the next frame.
+// Dragging recomputes everything on every move: the picture belongs to the last value, and the whole chain
+// from the finger to the result is on the screen in the next frame.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -15,7 +15,7 @@ function on(name, test, options) {
   }, { options });
 }
 
-/** What a widget that never ran before says in the same state. */
+/** The outcome of a new widget in the same state. */
 function freshOutcome(tab) {
   return tab.evaluate(async () => {
     const shown = document.querySelector('#here');
@@ -31,7 +31,7 @@ function freshOutcome(tab) {
   });
 }
 
-/** Keeps what the widget shows, in the page, under a name. */
+/** Stores the widget's picture in the page, under a name. */
 function keepPicture(tab, name) {
   return tab.evaluate(async (key) => {
     const picture = await document.querySelector('#here').snapshot();
@@ -41,7 +41,7 @@ function keepPicture(tab, name) {
   }, name);
 }
 
-/** The share of colour values in which two kept pictures differ. */
+/** The share of colour values in which two stored pictures differ. */
 function difference(tab, one, other) {
   return tab.evaluate(([a, b]) => {
     if (kept[a].width !== kept[b].width || kept[a].height !== kept[b].height) return 1;
@@ -73,7 +73,7 @@ for (const [name, parameter] of [['w16.2', 'noise'], ['w16.3', 'tau'], ['w16.1',
           const fresh = await freshOutcome(tab);
           assert.equal(last.parameter, parameter);
           assert.equal(last.value, value);
-          // A lap takes longer than a frame: what is told of a change is the picture so far.
+          // A lap takes longer than a frame: a change reports the picture so far.
           if (name !== 'w16.2') assert.deepEqual(last.outcome, fresh);
           assert.deepEqual(shown, fresh);
         }
@@ -117,7 +117,7 @@ describe('w16.1', () => {
       const [left, top] = await cloudSpot(tab);
       await tab.mouse.move(left, top);
       await tab.mouse.down();
-      // Taking hold of the cloud shows where registration left it: that is the new start.
+      // Grabbing the cloud shows the registered pose: that is the new start.
       await h.moreFrames(tab, 3);
       const taken = await value();
       await tab.mouse.move(left + 25, top + 20, { steps: 4 });

@@ -1,4 +1,4 @@
-// The element on a page: it paints, takes values in every way, and tells what happens.
+// The element on a page: it paints, takes values from all sources, and reports changes.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -175,13 +175,13 @@ describe('values', () => {
       assert.equal(await field.inputValue(), '12');
       await tab.keyboard.press('Enter');
       assert.equal(await heading(), 12);
-      // Nothing is left of it once the reader set it.
+      // It is gone once the reader has set the value.
       await comesIn(50);
       assert.equal(await field.inputValue(), '50');
       await tab.keyboard.type('3');
       await comesIn(60);
       await field.evaluate((typed) => {
-        // What a reader types back to the old text is no change to set.
+        // Typing the old text again is not a change.
         typed.value = '50';
         typed.blur();
       });

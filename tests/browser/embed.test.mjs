@@ -1,4 +1,4 @@
-// embed.html in a frame, also in a sandbox without an origin, and its messages.
+// embed.html in a frame, also in a sandbox with an opaque origin, and its messages.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -7,7 +7,7 @@ import * as h from './harness.mjs';
 
 const visit = h.visitor();
 
-/** A page with the widget in a frame that keeps every message that comes out. */
+/** A page with the widget in a frame that records every outgoing message. */
 async function framed(query, test, { sandbox, answer, quiet = true } = {}) {
   const attribute = sandbox === undefined ? '' : ` sandbox="${sandbox}"`;
   const page = `<!doctype html><html lang="en"><title>Host</title><link rel="icon" href="data:,">
@@ -17,7 +17,7 @@ async function framed(query, test, { sandbox, answer, quiet = true } = {}) {
     tab,
     frame: tab.frames().find((frame) => frame !== tab.mainFrame()),
     post: (message) => tab.evaluate((data) => document.querySelector('iframe').contentWindow.postMessage(data, '*'), message),
-    /** The first message of that type, from now or before, whose fields are these or match these. */
+    /** The first message of that type, earlier or later, whose fields equal or match these. */
     hear: async (type, fields = {}) => {
       const wanted = Object.entries(fields).map(([name, value]) => [name, value.source ?? value, value instanceof RegExp]);
       const found = await tab.waitForFunction(([kind, all]) => heard.find((data) => data?.type === kind
@@ -33,7 +33,7 @@ async function framed(query, test, { sandbox, answer, quiet = true } = {}) {
   });
 }
 
-/** embed.html as a page of its own. */
+/** embed.html as a separate page. */
 const alone = (query, test, how) => visit('', test, { path: `/embed.html${query}`, ...how });
 
 describe('a frame', () => {
@@ -96,7 +96,7 @@ describe('a frame', () => {
       await tab.evaluate(() => addEventListener('message', ({ data }) => {
         if (data.type === 'size') document.querySelector('iframe').style.height = `${data.height}px`;
       }));
-      // A change of width makes the frame tell its size again.
+      // A change of width makes the frame report its size again.
       await tab.evaluate(() => (document.querySelector('iframe').style.width = '90%'));
       await frame.waitForFunction(() => innerWidth < 1000
         && Math.ceil(document.querySelector('main').getBoundingClientRect().height) === innerHeight
@@ -131,7 +131,7 @@ describe('a frame', () => {
         await post(message);
         assert.equal((await hear('error', { message: reason })).kind, 'message');
       }
-      // What stood beside a value that does not fit is set all the same.
+      // Values beside an invalid one are set all the same.
       await hear('changed', { parameter: 'dx', value: 0.5 });
       const before = (await tab.evaluate(() => heard)).length;
       await post('hello');
@@ -186,7 +186,7 @@ describe('a frame', () => {
 });
 
 describe('a frame that cannot start', () => {
-  /** The sentence that the page holds for this case. */
+  /** The page's sentence for this case. */
   const says = (frame) => frame.getByText('The widget has not started.').waitFor();
 
   it('says what a sandbox needs where the server sends no Access-Control-Allow-Origin', async () => {

@@ -1,9 +1,9 @@
-// A reporter of node's test runner that writes what run.mjs needs: one JSON object for each test.
+// A reporter for node's test runner that writes one JSON object for each test, for run.mjs.
 
 export default async function* events(source) {
   for await (const { type, data } of source) {
     if (type !== 'test:pass' && type !== 'test:fail') continue;
-    // A group counts as its tests; node's own name for a file is no group of ours.
+    // A group is counted by its tests; node's own name for a file is not one of our groups.
     if (data.details?.type === 'suite') continue;
     yield `${JSON.stringify({
       name: data.name,

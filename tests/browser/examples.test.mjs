@@ -24,18 +24,18 @@ const TYPES = {
   '.wasm': 'application/wasm',
 };
 
-/** Sends a file that does not lie in dist/. */
+/** Sends a file that is not in dist/. */
 function send(file, response) {
   response.setHeader('Content-Type', TYPES[extname(file)]);
   createReadStream(file).pipe(response);
   return true;
 }
 
-/** Opens an example as it lies beside the widgets; axe has nothing against it at its end. */
+/** Opens an example as beside the widgets; at its end axe must report no violation. */
 function example(file, test) {
   const answer = (path, response) => {
     if (path.startsWith('/examples/reveal/')) return send(join(REVEAL, path.slice('/examples/reveal/'.length)), response);
-    // The slides are no part of the site.
+    // The slides are not part of the site.
     return path.startsWith('/examples/reveal') && send(join(EXAMPLES, path.slice('/examples/'.length)), response);
   };
   return visit('', async (tab) => {
@@ -67,13 +67,13 @@ it('plain.html: a widget, a link that sets it, and a prediction', async () => {
 
 it('iframe.html: a sandboxed frame that is set and answers', async () => {
   await example('iframe.html', async (tab) => {
-    // The page's own script makes the frame as high as it says it needs to be.
+    // The page's own script sets the height that the frame reports.
     const frame = tab.frames().find((candidate) => candidate !== tab.mainFrame());
     await h.ready(frame);
     const fits = () => frame.waitForFunction(
       () => innerHeight === Math.ceil(document.querySelector('main').getBoundingClientRect().height));
     await fits();
-    // On a slow network the frame may stand before the script does.
+    // On a slow network the frame may exist before the script does.
     await tab.evaluate(() => {
       document.querySelector('#lap').style.height = '1000px';
       return import('/examples/iframe.js?late');
@@ -84,7 +84,7 @@ it('iframe.html: a sandboxed frame that is set and answers', async () => {
   });
 });
 
-/** Moves the focus to the first slider of the widget; returns what reads its value. */
+/** Focuses the first slider of the widget; returns a function that reads its value. */
 async function focusSlider(tab, name) {
   const { id } = h.schema.find((widget) => widget.id === name).params.find(({ kind }) => kind === 'slider');
   await tab.locator(`slam-widget #control-${id}`).focus();
@@ -162,7 +162,7 @@ it('jupyter.html: a value that does not fit is named in the cell, and the others
     await cell.getByText('w16.2 has no parameter `bogus`').waitFor();
     await cell.getByText('`seed` takes a number, not `many`. It keeps its value.').waitFor();
     assert.equal(await noise(), 3);
-    // What the widget itself writes into the model takes no sentence away.
+    // A value that the widget writes into the model removes no message.
     await h.ready(tab);
     await tab.waitForFunction(() => traits.value.noise === 3);
     assert.match(await cell.innerText(), /no parameter `bogus`; it has [a-z, -]+\. `seed`/);
@@ -191,7 +191,7 @@ it('a notebook that starts with a bad value gets the widget and the sentence', a
 it('myst.md: the widget runs from the file that MyST copies', async () => {
   const text = (file) => readFileSync(new URL(`../../web/examples/${file}`, import.meta.url), 'utf8');
   const [, path, body] = text('myst.md').match(/```\{anywidget\} \.\/(\S+)\n([\s\S]*?)```/);
-  // MyST keeps the module under a name of its own and renders into a shadow tree.
+  // MyST renames the module and renders into a shadow tree.
   const page = `<!doctype html><html lang="en"><title>MyST</title><link rel="icon" href="data:,">
     <div id="host"></div><script type="module">
       import widget from '/build/4f1c.mjs';
@@ -249,7 +249,7 @@ it('the npm package, packed and installed, works from a bundler and links to its
     const { outputFiles } = await esbuild.build({
       entryPoints: [join(project.folder, 'main.js')], bundle: true, minify: true, format: 'esm', write: false, outdir: project.folder,
     });
-    // Beside the bundle stands what docs/embedding.md says, and nothing else.
+    // Beside the bundle are only the files that docs/embedding.md lists.
     const isBeside = /^\/app\/([^/]+\.wasm|pictures\/[^/]+|embed\.html|slam-[^/]+\.js)$/;
     const answer = (path, response) => {
       if (path === '/app/main.js') {

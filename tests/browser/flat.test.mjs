@@ -1,4 +1,4 @@
-// The reader's own flat in w16.2: drawn by mouse, finger and keys, carried by links, history and files.
+// The reader's own flat in w16.2: drawn by mouse, finger and keys, stored in links, history and files.
 
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -23,7 +23,7 @@ const press = (tab, id) => tab.evaluate((name) => document.querySelector('slam-w
 const changed = (tab, flat) => tab.waitForFunction((old) => document.querySelector('slam-widget').get('flat') !== old, flat);
 const walls = async (tab) => Number(/(\d+) walls?,/.exec(await tab.evaluate(() => document.querySelector('slam-widget').summary))[1]);
 
-/** Draws on the map with the mouse, from one place in metres to another. */
+/** Draws on the map with the mouse, from one position in metres to another. */
 async function drag(tab, from, to) {
   const [start, end] = [await h.pointOf(tab, 'map', ...from), await h.pointOf(tab, 'map', ...to)];
   await tab.mouse.move(...start);
@@ -53,7 +53,7 @@ describe('a flat of one’s own', () => {
       const after = await outcome(tab);
       assert.match(after.sentence, /^wall 19 of 19, from \(5, 3\.8\) to \(5, 4\.1\) m; /);
       assert.notDeepEqual(after.facts, before.facts);
-      // Two walls from one corner are two.
+      // Two walls from one corner are separate.
       await drag(tab, [1, 1], [2, 1]);
       await drag(tab, [1, 1], [1, 2]);
       assert.equal(await walls(tab), 21);

@@ -1,4 +1,4 @@
-// When a widget draws: while something moves or settles, and at no other time.
+// A widget draws while something moves or settles, and at no other time.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -6,9 +6,9 @@ import { SMOOTH_MS } from './clock.mjs';
 import * as h from './harness.mjs';
 
 const TALL = '<p style="height: 3000px">Much text.</p>';
-/** A widget that computes everything at once: w16.1 goes on filling its map for a while. */
+/** A widget that computes everything at once; w16.1 fills its map for a while. */
 const CALM = '<slam-widget name="w16.2"></slam-widget>';
-/** What stock eframe wants on every page: a frame of the screen for each of ours. */
+/** Stock eframe would request frames forever. */
 const SETTLE_MS = 900;
 const SETTLE_FRAMES = 3;
 
@@ -41,7 +41,7 @@ for (const { id } of h.schema) {
         const { playing, last } = widget.timeline;
         return { playing, shown: Math.min(widget.get(param), last), last };
       }, from);
-      // The wish may come while the page is open.
+      // The setting may change while the page is open.
       assert.ok((await play(0)).playing);
       await tab.emulateMedia({ reducedMotion: 'reduce' });
       await tab.waitForFunction(() => !document.querySelector('slam-widget').timeline.playing);
@@ -62,7 +62,7 @@ describe('a widget', () => {
       await tab.evaluate(() => document.querySelector('slam-widget').press('play'));
       const before = await drawn(tab);
       await tab.waitForFunction((old) => document.querySelector('slam-widget').frames > old + 5, before);
-      // Out of view, but near enough to go on living.
+      // Out of view, but near enough to keep running.
       await tab.evaluate(() => {
         const { height } = document.querySelector('slam-widget').getBoundingClientRect();
         window.scrollTo(0, height + 100);
@@ -75,7 +75,7 @@ describe('a widget', () => {
     });
   });
 
-  // egui fades and waits: less time than this, and a fade would stop half way.
+  // egui's fades and delays: with less time a fade would stop halfway.
   it('settles for 0.9 s after an event: 54 frames of a smooth display', async () => {
     await on(CALM, async (tab) => {
       const frames = await settlingFrames(tab);
@@ -92,7 +92,7 @@ describe('a widget', () => {
   });
 });
 
-/** The frames that are asked for after one event. */
+/** The frames that are requested after one event. */
 async function settlingFrames(tab) {
   await h.ready(tab);
   await h.quiet(tab);

@@ -1,4 +1,4 @@
-// A server that can misbehave on purpose, a browser, and pages that remember their errors.
+// A server that can misbehave on request, a browser, and pages that record their errors.
 
 import assert from 'node:assert/strict';
 import { createReadStream, existsSync, readFileSync, statSync } from 'node:fs';
@@ -30,8 +30,8 @@ const TYPES = {
 };
 
 /**
- * Serves `dist/` and the pages given as text. `policy` is the Content-Security-Policy, `answer`
- * may answer a request itself, from its path and all of it, and say so with true.
+ * Serves `dist/` and the pages given as text. `policy` is the Content-Security-Policy; `answer` gets the
+ * path and the request, and returns true if it has answered itself.
  */
 export async function serve({ pages = {}, policy, answer } = {}) {
   const server = createServer((request, response) => {
@@ -59,19 +59,19 @@ export async function serve({ pages = {}, policy, answer } = {}) {
     url: `http://localhost:${server.address().port}`,
     close: () => {
       const closed = new Promise((resolve) => server.close(resolve));
-      // A response that was held back on purpose must not hold the test as well.
+      // A response that was held back must not block the end of the test.
       server.closeAllConnections();
       return closed;
     },
   };
 }
 
-/** A screen with few pixels: software draws each of them four times, were edges to be smoothed as well. */
+/** A screen with few pixels: with antialiasing, software drawing would compute each of them four times. */
 const SCREEN = { viewport: { width: 1100, height: 900 }, deviceScaleFactor: 0.5 };
 
 /**
- * Runs in every page before its own scripts. Edges are not smoothed; and a page whose pixels no test looks
- * at gives WebGL everything but the order to fill triangles, which takes two thirds of a frame by software.
+ * Runs in every page before its own scripts. Turns antialiasing off. In a page whose pixels no test
+ * inspects, WebGL does not fill triangles, which takes two thirds of a frame in software.
  */
 function drawCheaply({ sees }) {
   const { getContext } = HTMLCanvasElement.prototype;
@@ -82,9 +82,8 @@ function drawCheaply({ sees }) {
 }
 
 /**
- * A tab that collects what a careful host would not want: errors, and requests to others than `home`.
- * The clock of its pages counts frames, each of `stepMs`; a test that looks at pixels says that it `sees`;
- * the rest of the options are Playwright's.
+ * A tab that records errors, and requests to hosts other than `home`. The clock of its pages counts frames,
+ * each of `stepMs`; a test that inspects pixels sets `sees`; the other options are Playwright's.
  */
 async function newTab(browser, { stepMs = clock.COARSE_MS, sees = false, ...options } = {}) {
   const context = await browser.newContext({ ...SCREEN, ...options });
@@ -109,19 +108,19 @@ async function newTab(browser, { stepMs = clock.COARSE_MS, sees = false, ...opti
   return tab;
 }
 
-/** Leaves nothing in a tab that its next test could see: each visit brings an origin of its own. */
+/** Removes everything from a tab that its next test could see: each visit has a new origin. */
 async function tidy(tab) {
   await tab.mouse.move(0, 0);
   await tab.goto('about:blank');
 }
 
-/** What a tab can change for each of its tests: the rest of Playwright's options are for good. */
+/** Sets what a tab can change for each test: the rest of Playwright's options are permanent. */
 async function prepare(tab, { viewport = SCREEN.viewport, colorScheme = null, reducedMotion = null }) {
   await tab.emulateMedia({ media: null, colorScheme, reducedMotion });
   await tab.setViewportSize(viewport);
 }
 
-/** A page with nothing but what stands in `body` and the element. */
+/** A page with only `body` and the element. */
 export function bare(body, head = '') {
   return `<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Test</title>
 <link rel="icon" href="data:,">${head}
@@ -129,11 +128,11 @@ export function bare(body, head = '') {
 }
 
 /**
- * For one file of tests: what opens a page for a test, a bare page with `body` at /t.html or any other
- * `path` of the server. The browser starts with the first page and is closed after the last test.
+ * For one test file: opens a page for a test, a bare page with `body` at /t.html or any other `path` of the
+ * server. The browser starts with the first page and is closed after the last test.
  *
- * Tests whose options differ in no more than a tab can change have the same tab, one after the other: a new
- * one costs more than most tests. A test that asks for a `fresh` one, or for another browser `with` other flags, gets it.
+ * Tests whose options a tab can change share one tab, because a new one costs more than most tests. A test
+ * may request a `fresh` tab, or a browser `with` other flags.
  */
 export function visitor() {
   const tabs = new Map();
@@ -177,7 +176,7 @@ export function visitor() {
     }
   };
 
-  /** One page for all tests of a group: to start a widget costs more than most of them. */
+  /** One page for all tests of a group, because starting a widget costs more than most of them. */
   visit.once = (body, how = {}) => {
     const stay = {};
     before(async () => Object.assign(stay, await arrive(body, how)));
@@ -197,7 +196,7 @@ export function ready(page, selector = 'slam-widget') {
     && document.querySelector(css).shadowRoot.querySelector('.stage.live') !== null, selector);
 }
 
-/** Waits until a widget that has a reason to draw has drawn so many frames more. */
+/** Waits until a widget that has a reason to draw has drawn that many more frames. */
 export async function moreFrames(page, count, selector = 'slam-widget') {
   const before = await page.evaluate((css) => document.querySelector(css).frames, selector);
   await page.waitForFunction(
@@ -223,27 +222,27 @@ export function pointOf(page, panel, x, y, selector = 'slam-widget') {
   );
 }
 
-/** The widgets' own lists, as the build wrote them. */
+/** The widgets' schema from the build. */
 export const schema = JSON.parse(readFileSync(join(DIST, 'schema.json'), 'utf8'));
 
-/** Counts the animation frames that a page asks for during so much time of its clock. */
+/** Counts the animation frames that a page requests during that much time of its clock. */
 export function countFrames(page, milliseconds) {
   return page.evaluate((ms) => frameClock.pass(ms), milliseconds);
 }
 
-/** Waits until no frame has been asked for during a second of the page's clock; says how many were. */
+/** Waits until no frame has been requested for a second of the page's clock; returns the number of earlier ones. */
 export function quiet(page) {
   return page.evaluate(() => frameClock.quiet(1000));
 }
 
-/** The bytes that a page gave the reader to save. */
+/** The bytes that a page gave to the reader for saving. */
 export async function bytesOf(download) {
   const chunks = [];
   for await (const chunk of await download.createReadStream()) chunks.push(chunk);
   return Buffer.concat(chunks);
 }
 
-/** The commonest colour of a widget, the share of pixels of other colours, and how many colours there are. */
+/** The most frequent colour of a widget, the share of pixels of other colours, and the number of colours. */
 export async function painted(page, selector = 'slam-widget') {
   return page.evaluate(async (css) => {
     const picture = await document.querySelector(css).snapshot();

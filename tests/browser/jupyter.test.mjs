@@ -1,5 +1,5 @@
-// The Python wheel in a real JupyterLab: the widget lives in its cell without any network but the notebook's own, and
-// values and results go both ways, and logs in.
+// The Python wheel in a real JupyterLab: the widget runs in its cell without any network but the notebook's
+// own; values and results go both ways, and logs in.
 
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
@@ -31,7 +31,7 @@ function notebook() {
   return JSON.stringify({ cells, metadata: { kernelspec }, nbformat: 4, nbformat_minor: 5 });
 }
 
-/** Starts JupyterLab on `folder`; resolves with its process and the address that it tells. */
+/** Starts JupyterLab on `folder`; resolves with its process and its address. */
 async function startLab(folder, site) {
   const own = (name) => join(folder, name);
   const env = {
@@ -70,7 +70,7 @@ test('the wheel lives in JupyterLab without a network, and values and results go
     browser = await launch(['--window-size=1400,2400']);
     const tab = await (await browser.newContext({ viewport: { width: 1400, height: 2400 } })).newPage();
     tab.setDefaultTimeout(LAST_RESORT_MS);
-    // Nothing but the notebook's own server is there.
+    // Only the notebook's own server is reachable.
     await tab.route((url) => url.origin !== new URL(started.address).origin, (route) => route.abort());
     await tab.goto(`${started.address}lab/tree/widgets.ipynb?reset`);
     await tab.waitForSelector('.jp-Notebook .jp-Cell');
@@ -83,7 +83,7 @@ test('the wheel lives in JupyterLab without a network, and values and results go
         await commands.execute('notebook:run-cell');
       }, at);
     };
-    /** Runs a cell until it says so: what the page sends comes when it comes. */
+    /** Repeats a cell until its output matches: messages of the page arrive asynchronously. */
     const asks = async (at, pattern) => {
       const cell = tab.locator(`.jp-Cell >> nth=${at}`);
       while (!pattern.test(await cell.innerText())) await run(at);
@@ -109,7 +109,7 @@ test('the wheel lives in JupyterLab without a network, and values and results go
 
     await run(3);
     await verdict(3, /^(mapped|loops contradict): ring\.log.*off the truth.*The robot of ring-another-day\.log is found/);
-    // Files come when the page has written them.
+    // Files arrive once the page has written them.
     await run(4);
     await asks(5, /came: trajectory\.tum True kept\.png True \| refused: .*nothing\.txt.* \| tables: .*loops.*/);
     assert.ok(statSync(join(folder, 'work', 'kept.png')).size > 1000);

@@ -1,4 +1,4 @@
-// The strip under the title: the canonical lap, replayed from what the core computes.
+// The strip under the title: the canonical lap, replayed from data of the core.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -14,7 +14,7 @@ const slider = (tab) => tab.locator('.lap-controls input');
 const button = (tab) => tab.locator('.lap-controls button');
 const tick = (tab) => tab.evaluate(() => Number(document.querySelector('#lap').dataset.tick));
 const act = (tab) => tab.locator('.lap-acts li[aria-current]').textContent();
-/** Once a hundredth of the canvas has ink: it is painted in the frame after its size is known. */
+/** Waits until a hundredth of the canvas has ink: it is painted in the frame after its size is known. */
 const inked = (tab) => tab.waitForFunction(() => {
   const canvas = document.querySelector('.lap-picture canvas');
   if (canvas.width === 0 || canvas.height === 0) return false;
@@ -22,7 +22,7 @@ const inked = (tab) => tab.waitForFunction(() => {
   return data.reduce((sum, value, at) => sum + (at % 4 === 3 && value > 128 ? 1 : 0), 0) > 0.01 * (data.length / 4);
 });
 
-/** The page, which notes the acts in the order in which they are played. */
+/** The page, modified to record the acts in the order in which they are played. */
 const noting = readFileSync(join(h.DIST, 'index.html'), 'utf8').replace('<head>', `<head><script>
   window.acts = [];
   addEventListener('DOMContentLoaded', () => new MutationObserver(() => {
@@ -45,7 +45,7 @@ describe('the lap under the title', () => {
         const after = await place();
         assert.ok(after.top >= 0 && after.bottom <= viewport.height, JSON.stringify(after));
         await inked(tab);
-        // The picture of the build stood where the canvas stands.
+        // The picture of the build was at the position of the canvas.
         assert.ok(Math.abs(after.height - before.height) <= 2, `${before.height} px, then ${after.height}`);
         assert.equal(before.top, after.top);
       }, { viewport });
@@ -130,7 +130,7 @@ describe('the lap under the title', () => {
       assert.match(await slider(tab).getAttribute('aria-valuetext'), /^Walls double, tick \d+$/);
       await tab.keyboard.press('End');
       assert.equal(await tick(tab), 129);
-      // It plays from there, so the clock stands still until the test has seen where.
+      // It plays from there, so the clock stops until the test has seen the position.
       await tab.evaluate(() => frameClock.hold(true));
       await tab.getByRole('button', { name: 'Wheels leave the building.' }).tap();
       assert.equal(await button(tab).textContent(), 'Pause');

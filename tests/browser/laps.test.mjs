@@ -1,4 +1,4 @@
-// A thousand laps as a picture; here some of them.
+// A thousand laps as a picture; the test uses some of them.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -16,7 +16,7 @@ const visit = h.visitor();
 const reading = (test, { options = {}, server = {}, path = '/index.html', quiet } = {}) =>
   visit('', test, { path, options, quiet, server: { ...server, pages: { ...pages, ...server.pages } } });
 
-/** What the core says of the same laps, in Node: by level, front end and with loops. */
+/** The same laps computed in Node: by level, front end and with loops. */
 const laps = new wasm.Laps();
 const errors = LEVELS.map((noise) => {
   const numbers = Array.from({ length: SEEDS }, (_, at) => laps.drive(at + 1, noise));

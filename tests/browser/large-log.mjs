@@ -1,8 +1,9 @@
-// Maps a large log in w16.10 and prints what the renderer held at most, which is page and worker together:
+// Maps a large log in w16.10 and prints the peak memory of the renderer, which is page and worker together:
 //
 //     node tests/browser/large-log.mjs LOG [CANCEL_AT_PERCENT]
 //
-// No test: it takes minutes. `crates/robot_io/recordings/long.py` writes the log. After `cargo xtask build`, on Linux.
+// Not a test, because it takes minutes. `crates/robot_io/recordings/long.py` writes the log. Needs `cargo
+// xtask build` before, and Linux.
 
 import { readFileSync } from 'node:fs';
 import { launch } from './chromium.mjs';
@@ -17,13 +18,13 @@ const server = await h.serve({ pages: { '/t.html': h.bare('<slam-widget name="w1
 try {
   const tab = await browser.newPage({ viewport: { width: 1100, height: 900 }, deviceScaleFactor: 0.5 });
   tab.setDefaultTimeout(0);
-  // Triangles by software would take the core that the worker needs.
+  // Software drawing would occupy the core that the worker needs.
   await tab.addInitScript(() => { WebGL2RenderingContext.prototype.drawElements = () => {}; });
   await tab.goto(`${server.url}/t.html`);
   await h.ready(tab);
   const { processInfo } = await (await browser.newBrowserCDPSession()).send('SystemInfo.getProcessInfo');
   let mostMb = 0;
-  /** The most that a renderer has held, MB. The kernel counts it, and Chromium sets that back now and then. */
+  /** Peak memory of a renderer, MB. The kernel counts it, and Chromium resets it now and then. */
   const peakMb = () => {
     for (const { id } of processInfo.filter(({ type }) => type === 'renderer')) {
       const [, kilobytes] = /VmHWM:\s+(\d+)/.exec(readFileSync(`/proc/${id}/status`, 'utf8'));

@@ -1,4 +1,4 @@
-// What a widget that is taken away leaves behind: no context, no memory, no listener.
+// A removed widget leaves nothing behind: no context, no memory, no listener.
 
 import assert from 'node:assert/strict';
 import { it } from 'node:test';
@@ -6,7 +6,7 @@ import * as h from './harness.mjs';
 
 const visit = h.visitor();
 
-/** Stands before all scripts of a page: remembers every WebGL context, and every wasm memory. */
+/** Runs before all scripts of a page: records every WebGL context and every wasm memory. */
 const REMEMBER = `<script>
   window.contexts = [];
   window.memories = [];
@@ -24,7 +24,7 @@ const REMEMBER = `<script>
     memories.push(new WeakRef(instance.exports.memory));
     return instance;
   };
-  /** Contexts that the browser still holds: on the page, and elsewhere. */
+  /** Contexts that are still alive: on the page, and elsewhere. */
   window.heldContexts = () => {
     const held = contexts.map((context) => context.deref()).filter((context) => context?.isContextLost() === false);
     const onPage = held.filter((context) => context.canvas.isConnected);
@@ -32,7 +32,7 @@ const REMEMBER = `<script>
   };
 </script>`;
 
-/** A page with a place for widgets and nothing in it. */
+/** A page with a container for widgets and nothing in it. */
 const on = (test) => visit('<div id="here"></div>', test, { head: REMEMBER, fresh: true });
 
 it('is mounted and taken away thirty times without leaking memory, contexts or listeners', async () => {
@@ -43,7 +43,7 @@ it('is mounted and taken away thirty times without leaking memory, contexts or l
         document.querySelector('#here').innerHTML = '<slam-widget name="w16.4"></slam-widget>';
       });
       await h.ready(tab);
-      // The context is held until the very moment in which the element goes.
+      // The context is alive until the moment in which the element is removed.
       const [before, after] = await tab.evaluate(() => {
         const { onPage, elsewhere } = heldContexts();
         document.querySelector('#here').replaceChildren();
@@ -70,7 +70,7 @@ it('is mounted and taken away thirty times without leaking memory, contexts or l
       memories: 3,
     };
     const over = (now) => Object.keys(limits).filter((name) => now[name] >= limits[name]);
-    // The collector takes what is free when it likes; what leaks, it never takes.
+    // The collector frees memory at any time, but never leaked memory.
     let now = await measure();
     for (let tries = 0; tries < 20 && over(now).length > 0; tries += 1) now = await measure();
     assert.deepEqual(over(now), [], `${JSON.stringify(before)} → ${JSON.stringify(now)}`);
@@ -79,7 +79,7 @@ it('is mounted and taken away thirty times without leaking memory, contexts or l
 
 it('taken away while it loads, at any moment, holds no context', async () => {
   await on(async (tab) => {
-    // The collector must not do what the widget has to.
+    // The collector must not do the widget's cleanup.
     await tab.evaluate(() => (window.kept = []));
     const mountUntil = (moment) => tab.evaluate(async ([hasCanvas, frames]) => {
       const here = document.querySelector('#here');
@@ -94,17 +94,17 @@ it('taken away while it loads, at any moment, holds no context', async () => {
       here.replaceChildren();
       return state;
     }, moment);
-    // The program is there when the moments are tried.
+    // The program is loaded before the moments are tried.
     await tab.evaluate(() => (document.querySelector('#here').innerHTML = '<slam-widget name="w16.1"></slam-widget>'));
     await h.ready(tab);
-    // Before there is a canvas, as it comes, and frame by frame until it is drawn on.
+    // Before there is a canvas, when it comes, and frame by frame until its first picture.
     assert.deepEqual(await mountUntil([false, 0]), { isLive: false, hasCanvas: false });
     assert.deepEqual(await mountUntil([true, 0]), { isLive: false, hasCanvas: true });
     for (let frames = 1; frames < 6; frames += 1) {
       await mountUntil([false, frames]);
       await mountUntil([true, frames]);
     }
-    // A start that was under way ends a little later.
+    // A start under way ends a little later.
     await tab.waitForFunction(() => {
       const { onPage, elsewhere } = heldContexts();
       return onPage.length === 0 && elsewhere.length === 0;

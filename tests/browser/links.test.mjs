@@ -1,4 +1,4 @@
-// Links in the text: the scene beside them, the browser's history, and the way back.
+// Links in the text: the scene beside them, the browser's history, and Back.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -42,7 +42,7 @@ describe('a link in the text', () => {
       await has(tab, 'w16.1', 'heading', 75);
       await link(tab, '45°').click();
       await has(tab, 'w16.1', 'heading', 45);
-      // What the reader does between two links comes back, too.
+      // Changes by the reader between two links are restored, too.
       await tab.evaluate((css) => document.querySelector(css).set('tau', 1.1), widget('w16.1'));
       await link(tab, 'last').click();
       await has(tab, 'w16.2', 't', 119);
@@ -180,7 +180,7 @@ describe('a link in the text', () => {
         a.click();
         const query = new URLSearchParams(a.search);
         const element = document.querySelector(`slam-widget[name="w${query.get('w')}"]`);
-        // A switch is true or false to a script, and on or off in a link.
+        // A switch is true or false for a script, and on or off in a link.
         const said = (value) => ({ true: 'on', false: 'off' })[value] ?? String(value);
         const wrong = [...query].filter(([id, text]) => id !== 'w' && said(element.get(id)) !== text);
         const back = new URLSearchParams(location.search);
@@ -199,7 +199,7 @@ describe('on a narrow screen', () => {
       const css = widget('w16.1');
       await tab.locator(css).scrollIntoViewIfNeeded();
       await h.ready(tab, css);
-      // The slider stands where the picture has left the screen.
+      // The slider is where the picture has left the screen.
       await tab.evaluate((name) => {
         const element = document.querySelector(name);
         const canvas = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
@@ -230,7 +230,7 @@ describe('on a narrow screen', () => {
       const shown = await pinned();
       assert.ok(shown.top === 0 && shown.bottom < at[1] - 20 && shown.colors > 3, JSON.stringify(shown));
       assert.ok(shown.left >= 0 && shown.right <= 390);
-      // The last frames before it rests draw nothing, and the canvas holds nothing after them.
+      // The last frames before it rests draw nothing, and the canvas is empty after them.
       await h.quiet(tab);
       const rested = await pinned();
       assert.ok(rested.colors > 3, `a copy of ${rested.colors} colours`);

@@ -1,4 +1,4 @@
-// What stock eframe does to a page around it, and this element must not. Each test fails on
+// Effects of stock eframe on the surrounding page that this element must not have. Each test fails on
 // eframe's own defaults (measured on 0.37).
 
 import assert from 'node:assert/strict';
@@ -10,10 +10,10 @@ import { fingers } from './touch.mjs';
 
 const TALL = '<p style="height: 3000px">Much text.</p>';
 const ONE = '<slam-widget name="w16.1"></slam-widget>';
-/** A widget that computes everything at once: w16.1 goes on filling its map for a while. */
+/** A widget that computes everything at once; w16.1 fills its map for a while. */
 const CALM = '<slam-widget name="w16.2"></slam-widget>';
 
-/** A finger that rests for long means something else: its time is that of a smooth display. */
+/** A long rest of a finger has another meaning, so its time is that of a smooth display. */
 const TOUCH = { options: { hasTouch: true, stepMs: SMOOTH_MS } };
 
 const on = h.visitor();
@@ -109,7 +109,7 @@ describe('touch', () => {
   });
 
   it('up or down moves the page, also where it starts on a slider or on the map', async () => {
-    // However far the swipe carries, the widget stays in sight: it draws nowhere else.
+    // However far the swipe goes, the widget stays in view: it draws only there.
     const toItsEnd = '<p style="height: 60vh">Little text.</p>';
     await on(ONE + toItsEnd, async (tab) => {
       await h.ready(tab);
@@ -146,7 +146,7 @@ describe('touch', () => {
       for (const [x, y] of [await cloudSpot(tab), onRail]) {
         const untouched = await query();
         await touch('touchStart', [[x, y]]);
-        // The first move tells whose the touch is, the next ones move.
+        // The first move decides who gets the touch, the next ones move.
         for (const on of [12, 24, 36]) {
           await touch('touchMove', [[x + on, y]]);
           await h.moreFrames(tab, 1);
@@ -219,7 +219,7 @@ describe('a panic', () => {
       assert.match(await note.innerText(), /stopped because of an error in its program/);
       assert.match(await note.locator('pre').textContent(), /crashed on purpose/);
       assert.equal((await tab.evaluate(() => errors))[0].kind, 'crash');
-      // The other one goes on.
+      // The other one continues.
       const frames = await tab.evaluate(() => {
         const other = document.querySelector('#b');
         const { frames: before } = other;
@@ -239,7 +239,7 @@ describe('looks', () => {
   it('follow the page from light to dark and back', async () => {
     await on(ONE, async (tab) => {
       await h.ready(tab);
-      // The page hears of a changed media query with its next frame, so the picture is asked again.
+      // The page notices a changed media query with its next frame, so the picture is checked repeatedly.
       const turns = (isDark) => tab.waitForFunction(async (wanted) => {
         const picture = await document.querySelector('slam-widget').snapshot();
         const copy = new OffscreenCanvas(1, 1).getContext('2d');
@@ -301,7 +301,7 @@ async function tabUntil(tab, key, id) {
   return assert.fail(`${key} never reaches #${id}`);
 }
 
-/** A finger that moves at once, or rests first for as long as `rest` takes. */
+/** A finger that moves at once, or after resting for `rest`. */
 async function swipe(tab, from, to, rest) {
   const hold = (holds) => tab.evaluate((held) => frameClock.hold(held), holds);
   const { touch } = await fingers(tab);

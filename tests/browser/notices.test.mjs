@@ -1,4 +1,4 @@
-// The page of licences and notices, as a reader gets it from the foot of the chapter.
+// The page of licences and notices, reached from the foot of the chapter.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';

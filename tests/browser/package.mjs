@@ -1,4 +1,4 @@
-// The npm package as somebody gets it: packed from dist/, installed into a folder from the archive.
+// The npm package as users get it: packed from dist/, installed into a folder from the archive.
 
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import * as h from './harness.mjs';
 
-/** A folder with a project that has the package; `remove` takes it away. */
+/** A folder with a project that has the package; `remove` deletes it. */
 export function installPackage() {
   const folder = mkdtempSync(join(tmpdir(), 'slam-package-'));
   const npm = (...args) => execFileSync('npm', args, { cwd: folder, stdio: ['ignore', 'pipe', 'pipe'] });

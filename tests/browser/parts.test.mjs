@@ -1,5 +1,5 @@
-// The graph of w16.2 under the reader's hands: keyframes that are tapped, a loop that is dragged out of
-// one, and the same by keys, with the same words for a screen reader.
+// The graph of w16.2: keyframes that are tapped, a loop that is dragged out of one, and the same by keys,
+// with the same texts for a screen reader.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -8,7 +8,7 @@ import * as h from './harness.mjs';
 const visit = h.visitor();
 const BODY = '<slam-widget name="w16.2" t="129"></slam-widget>';
 
-/** Where the keyframes stand on the map, from the table that a reader can save. */
+/** Positions of the keyframes on the map, from the exported table. */
 function keyframes(tab) {
   return tab.evaluate(async () => {
     const tables = await document.querySelector('slam-widget').tables();

@@ -1,4 +1,4 @@
-// The place of a widget on its page: a link opens there, and the text around it stays where it is.
+// The position of a widget on its page: a link scrolls there, and the text around it does not move.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -8,7 +8,7 @@ const visit = h.visitor();
 const chapter = (path, test, how) => visit('', test, { path, ...how });
 const named = (id) => `slam-widget[name="${id}"]`;
 
-/** Runs in the page before its scripts: keeps every height that a widget has had. */
+/** Runs in the page before its scripts: records every height of a widget. */
 function keepHeights() {
   window.heights = {};
   addEventListener('DOMContentLoaded', () => {
@@ -28,7 +28,7 @@ describe('a link to a state', () => {
     it(`opens the page at ${id}, however much the page grows meanwhile`, async () => {
       await chapter(`/index.html?w=${id.slice(1)}`, async (tab) => {
         await h.ready(tab, named(id));
-        // Whatever is taller than the screen begins at its top.
+        // Anything taller than the screen begins at its top.
         await tab.waitForFunction((css) => {
           const { top } = document.querySelector(css).getBoundingClientRect();
           return top >= 0 && top < 100;
@@ -44,7 +44,8 @@ describe('a link to a state', () => {
       await tab.mouse.wheel(0, -600);
       const top = () => tab.evaluate((css) => document.querySelector(css).getBoundingClientRect().top, named('w16.3'));
       await tab.waitForFunction((css) => document.querySelector(css).getBoundingClientRect().top > 500, named('w16.3'));
-      // Grows above what is read: the browser keeps the text in place, and nothing pulls it back.
+      // The page grows above the visible part: the browser keeps the text in place, and no script scrolls
+      // back.
       await tab.evaluate(() => document.querySelector('main').style.setProperty('padding-bottom', '900px'));
       await h.quiet(tab);
       assert.ok((await top()) > 500);
@@ -52,7 +53,7 @@ describe('a link to a state', () => {
   });
 });
 
-/** Where lines break depends a little on the pixels: those of a common screen. */
+/** Line breaks depend slightly on the pixel ratio: use that of a common screen. */
 const deviceScaleFactor = 1;
 
 describe('a widget', () => {
@@ -76,13 +77,13 @@ describe('a widget', () => {
   }
 });
 
-/** What a widget opens with, as far as one looks for it at once: its parameter, Play, and More. */
+/** The opening parts of a widget that are tested: its parameter, Play, and More. */
 const opening = ({ id }) => {
   const control = { 'w16.1': 'heading', 'w16.2': 'loops', 'w16.3': 'tau', 'w16.4': 'noise' }[id];
   return control === undefined ? [] : [control, 'play', 'more'];
 };
 
-/** Screens on which the text has a widget beside it. */
+/** Screens with a widget beside the text. */
 const WIDE = [{ width: 1440, height: 900 }, { width: 1100, height: 900 }, { width: 1280, height: 800 }];
 
 describe('a widget beside its text', () => {

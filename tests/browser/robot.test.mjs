@@ -1,5 +1,5 @@
-// w16.10, the reader's own log: in by every way, mapped beside the page, corrected, saved, and kept through
-// all that may happen to the picture.
+// w16.10, the reader's own log: opened in all ways, mapped beside the page, corrected, saved, and preserved
+// while the picture comes and goes.
 
 import assert from 'node:assert/strict';
 import { cpSync, existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -38,31 +38,31 @@ const widget = (tab, act, given) => tab.evaluate(
 const outcome = (tab) => tab.evaluate(() => document.querySelector('slam-widget').outcome);
 const press = (tab, id) => tab.evaluate((name) => document.querySelector('slam-widget').press(name), id);
 
-/** Waits until the result says so; the regular expression goes over the verdict and the sentence. */
+/** Waits until the result matches; the regular expression applies to the verdict and the sentence. */
 const says = (tab, pattern) => tab.waitForFunction((source) => {
   const { verdict, sentence } = document.querySelector('slam-widget').outcome ?? {};
   return new RegExp(source).test(`${verdict}: ${sentence}`);
 }, pattern.source);
 const isMapped = (tab) => says(tab, /^(mapped|loops contradict):/);
 
-/** Hands the widget a file of that text. */
+/** Passes a file with that text to the widget. */
 const give = (tab, name, text) => tab.evaluate(([file, content]) => {
   document.querySelector('slam-widget').openFile(new File([content], file));
 }, [name, text]);
 
-/** Hands the widget a file of those bytes, and says what for. */
+/** Passes a file with those bytes to the widget, with its purpose. */
 const giveBytes = (tab, name, bytes, use) => tab.evaluate(([file, text, what]) => {
   const content = Uint8Array.from(atob(text), (digit) => digit.charCodeAt(0));
   document.querySelector('slam-widget').openFile(new File([content], file), what);
 }, [name, Buffer.from(bytes).toString('base64'), use]);
 
-/** Drops files on the picture together. */
+/** Drops several files on the picture. */
 const drop = (tab, files) => tab.evaluate((given) => {
   const all = new DataTransfer();
   for (const [name, text] of given) {
     all.items.add(new File([Uint8Array.from(atob(text), (digit) => digit.charCodeAt(0))], name));
   }
-  // The canvas takes drops as well, and must not have this one.
+  // The canvas handles drops as well, and must not get this one.
   const canvas = document.querySelector('slam-widget').shadowRoot.querySelector('canvas');
   const on = canvas ?? document.querySelector('slam-widget').shadowRoot.querySelector('.frame');
   for (const type of ['dragover', 'drop']) {
@@ -70,7 +70,7 @@ const drop = (tab, files) => tab.evaluate((given) => {
   }
 }, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString('base64')]));
 
-/** The doctor's screen once there is one of a log whose laser sits so. */
+/** The doctor's report, once it shows the laser at that pose. */
 const diagnosis = async (tab, laser) => {
   await tab.waitForFunction((at) => {
     const found = document.querySelector('slam-widget').diagnosis;
@@ -79,7 +79,7 @@ const diagnosis = async (tab, laser) => {
   return tab.evaluate(() => document.querySelector('slam-widget').diagnosis);
 };
 
-/** What the reader saves under that name of the list. */
+/** The saved file of that name in the list. */
 const saved = async (tab, id) => {
   await tab.evaluate((choice) => document.querySelector('slam-widget').set('file', choice), id);
   const download = tab.waitForEvent('download');
@@ -94,7 +94,7 @@ const table = async (tab, id) => {
   return found?.csv.trim().split('\r\n').map((row) => row.split(','));
 };
 
-/** The sample many times over, one after the other in time: something that takes a while. */
+/** The sample repeated many times, one after the other in time, for a long mapping. */
 const longLog = (times) => {
   const lines = SAMPLE.trimEnd().split('\n');
   const last = Number(lines.at(-1).split(' ').at(-1)) + 1;
@@ -140,7 +140,7 @@ describe('a log of one’s own', () => {
         }
       }, SAMPLE);
       await says(tab, /(mapped|contradict): second\.log/);
-      // What grades a map does not take its place, whichever button it came by.
+      // A reference does not replace the map, whichever button opened it.
       const picked = tab.waitForEvent('filechooser');
       await press(tab, 'open');
       await (await picked).setFiles(join(h.DIST, 'samples', 'ring-truth.tum'));
@@ -181,20 +181,21 @@ describe('a log of one’s own', () => {
         return right - left;
       };
       const before = await table(tab, 'keyframes');
-      // On another keyframe, on the one that is shown and can be dragged, and on nothing: zoomed, all of it can be moved.
+      // On another keyframe, on the selected and draggable one, and on nothing: a zoomed map can be moved
+      // from all of them.
       for (const [x, y] of [[0, 0], [4, 4], [3.5, 3.5]]) {
         if (x !== 3.5) await tab.evaluate(() => document.querySelector('slam-widget').look('whole'));
         await h.moreFrames(tab, 2);
         const small = await size();
         const [left, top] = await h.pointOf(tab, 'map', x, y);
         const spots = (apart) => [[left, top], [left + (left > 200 ? -apart : apart), top]];
-        // The first finger does not lie there for so long that it takes hold.
+        // The first finger does not rest long enough to grab.
         await tab.evaluate(() => frameClock.hold(true));
         await touch('touchStart', spots(40).slice(0, 1));
         await touch('touchStart', spots(40));
         await tab.evaluate(() => frameClock.hold(false));
         await h.moreFrames(tab, 2);
-        // Both rest for so long that a press would be a long one.
+        // Both rest longer than a long press.
         await tab.evaluate(() => frameClock.pass(2000));
         for (const apart of [50, 60]) {
           await touch('touchMove', spots(apart));
@@ -215,7 +216,7 @@ describe('a log of one’s own', () => {
       const log = longLog(40);
       await give(tab, 'long.log', log);
       await tab.waitForFunction(() => document.querySelector('slam-widget').outcome.facts.scans > 0);
-      // A screen reader is told how far it is, although changes come without a rest.
+      // A screen reader gets the progress, although the changes never settle.
       await tab.evaluate(() => {
         frameClock.hold(true);
         const now = performance.now;
@@ -241,7 +242,7 @@ describe('a log of one’s own', () => {
       await tab.evaluate((text) => {
         frameClock.hold(true);
         document.querySelector('slam-widget').openFile(new File([text], 'some.log'));
-        // In the task that opens the log: whatever the mapping changes comes after it.
+        // In the task that opens the log, so all changes by the mapping come later.
         document.querySelector('[name="w16.1"]').set('heading', 77);
       }, SAMPLE.split('\n').slice(0, 80).join('\n'));
       await isMapped(tab);
@@ -269,7 +270,7 @@ describe('a log of one’s own', () => {
       await press(tab, 'add');
       await says(tab, /does not close a loop|closes a loop/);
 
-      // A keyframe far from others: the middle of the way.
+      // A keyframe far from others: halfway along the path.
       const middle = Math.round((await outcome(tab)).facts.keyframes / 4);
       await tab.evaluate((at) => document.querySelector('slam-widget').set('keyframe', at), middle);
       const row = async () => {
@@ -326,7 +327,7 @@ describe('a log of one’s own', () => {
       assert.equal(reportName, 'report.html');
       assert.match(report.toString(), /ring\.log[\s\S]*<svg/);
 
-      // What was saved comes in again: a graph needs no scans.
+      // A saved graph can be opened again, without scans.
       await give(tab, 'saved.g2o', graph.toString());
       await says(tab, /saved\.g2o: \d+ poses/);
       assert.equal((await outcome(tab)).facts.loops, facts.loops);
@@ -364,7 +365,7 @@ describe('a log of one’s own', () => {
         await says(tab, /(mapped|contradict): changed\.slam2d/);
         assert.equal((await outcome(tab)).facts.loops, before.loops - 1);
 
-        // Also where its name says nothing; and what is broken is answered.
+        // Also if its name has no extension; a damaged one is reported.
         await giveBytes(tab, 'monday', session);
         await says(tab, /(mapped|contradict): monday:/);
         const spoilt = Buffer.from(session);
@@ -391,7 +392,7 @@ describe('a log of one’s own', () => {
     await page(async (tab) => {
       await giveBytes(tab, 'early.log', Buffer.from(OTHER_DAY), 'where');
       await says(tab, /early\.log needs a map/);
-      // The preset maps the sample and looks for the other day's robot on it.
+      // The preset maps the sample and localizes the other day's robot on it.
       await press(tab, 'where');
       await says(tab, /^(mapped|loops contradict): .*The robot of ring-another-day\.log is found at its scan \d+: of \d+ scans/);
       const { facts } = await outcome(tab);
@@ -422,7 +423,7 @@ describe('a log of one’s own', () => {
       await says(tab, /was begun again/);
       await says(tab, /^(mapped|loops contradict): .*is found at its scan \d+: of/);
 
-      // Another log that is none leaves what is known.
+      // A file that is not a log changes no result.
       await giveBytes(tab, 'empty.log', Buffer.alloc(0), 'where');
       await says(tab, /empty\.log is empty; give a recorded log/);
       await giveBytes(tab, 'x.slam2d', Buffer.from('SLAM2D\r\n'), 'where');
@@ -439,11 +440,11 @@ describe('a log of one’s own', () => {
       await drop(tab, [['day.log', OTHER_DAY], ['monday.slam2d', session]]);
       await says(tab, /^(mapped|loops contradict): monday\.slam2d.*The robot of day\.log is found/);
       await tab.evaluate(() => Object.assign(document.querySelector('slam-widget'), { drop: 'where' }));
-      // A picture that rests is made to say where the robot may be.
+      // A resting picture is started to provide the start pose.
       await widget(tab, (it) => it.suspend());
       await drop(tab, [['again.log', OTHER_DAY]]);
       await says(tab, /monday\.slam2d.*The robot of again\.log is found/);
-      // Around the keyframe that is shown, which is not where it is.
+      // Near the keyframe shown, which is the wrong start.
       await tab.evaluate(() => { document.querySelector('slam-widget').value = { start: 'here', keyframe: 0 }; });
       await drop(tab, [['near.log', OTHER_DAY]]);
       await says(tab, /The robot of near\.log is found/);
@@ -578,7 +579,7 @@ describe('the doctor', () => {
       await screen.getByText('✓ ring.log: all in order').first().waitFor();
       await isMapped(tab);
 
-      // By hand, and by keys: a laser that looks backward is told, and what mends it offered.
+      // By hand, and by keys: a laser that looks backwards is reported with the option that corrects it.
       await screen.getByLabel('turned left, °').fill('180');
       await screen.getByLabel('turned left, °').press('Enter');
       const turned = await diagnosis(tab, '0,0,180');
@@ -602,7 +603,7 @@ describe('the doctor', () => {
       assert.equal((await diagnosis(tab, null)).verdict, 'good');
       await isMapped(tab);
       assert.match((await outcome(tab)).sentence, /^ring\.log: \d+ scans/);
-      // A graph has no doctor, and no log none either.
+      // Neither a graph nor an empty widget has a doctor's report.
       await give(tab, 'square.g2o', SQUARE);
       await says(tab, /mapped: square\.g2o/);
       assert.ok(await screen.isHidden());
@@ -665,7 +666,7 @@ describe('the doctor', () => {
           assert.ok((await outcome(tab)).sentence.startsWith(refusal), refusal);
           continue;
         }
-        // The same bits in the page as natively; a folder is called by its file.
+        // The same bits in the page as natively; a recording from a folder has the name of its file.
         await tab.waitForFunction((file) => document.querySelector('slam-widget').diagnosis?.name.startsWith(file),
           told.name);
         assert.deepEqual({ ...(await diagnosis(tab)), name: told.name }, told, name);

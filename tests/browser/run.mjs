@@ -1,7 +1,7 @@
 // Runs the browser tests: `node tests/browser/run.mjs [--only manners,drag] [--jobs 2]`.
 //
-// All files share one Chromium, each with windows of its own. Two files run at a time; those that
-// measure what others beside them could change run alone. A file that fails shows what it printed.
+// All files share one Chromium, each with its own windows. Two files run at a time; those whose measurements
+// others could disturb run alone. The output of a failing file is printed.
 
 import { spawn } from 'node:child_process';
 import { mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
@@ -11,14 +11,14 @@ import { fileURLToPath } from 'node:url';
 import { launchServer } from './chromium.mjs';
 
 const HERE = fileURLToPath(new URL('.', import.meta.url));
-/** These count frames, or what the collector leaves. */
+/** These count frames, or check what the garbage collector leaves. */
 const ALONE = ['frames', 'leaks'];
-/** Ends a file that hangs; no test waits for so long. */
+/** Time limit of a file that hangs; no test takes that long. */
 const LAST_RESORT_MS = 20 * 60_000;
-/** So many tests are named as the slowest. */
+/** Number of slowest tests to list. */
 const SLOWEST = 10;
 
-/** The files that run now, to be ended with this program. */
+/** The running files, which are ended with this program. */
 const running = new Set();
 for (const signal of ['SIGINT', 'SIGTERM']) {
   process.on(signal, () => {
@@ -41,7 +41,7 @@ try {
 report(results);
 process.exitCode = results.every(({ failed, code }) => failed === 0 && code === 0) ? 0 : 1;
 
-/** What to run; a wrong argument ends the program with one line. */
+/** The tests to run; a wrong argument ends the program with one line. */
 function readArguments(given) {
   const known = readdirSync(HERE).map((file) => file.match(/^(.+)\.test\.mjs$/)?.[1]).filter(Boolean).sort();
   const found = { only: known, jobs: 2 };
@@ -80,7 +80,7 @@ async function runAll() {
   return done;
 }
 
-/** Runs one file in a process of its own. */
+/** Runs one file in a separate process. */
 function runFile(name) {
   const log = join(folder, `${name}.json`);
   const child = spawn(process.execPath, [
@@ -140,7 +140,7 @@ function report(files) {
   const passed = all.filter((test) => test.passed && test.skipped === false).length;
   const skipped = all.filter((test) => test.passed && test.skipped !== false);
   for (const { file, name, skipped: why } of skipped) console.log(`skipped: ${file}: ${name}: ${why}`);
-  // A file that broke off has a failure that is no test.
+  // A file that crashed has a failure outside of its tests.
   const failed = files.reduce((sum, file) => sum + Math.max(file.failed, file.code === 0 ? 0 : 1), 0);
   console.log(`\n${seconds(performance.now() - started).trim()} in all`);
   console.log(`${passed} passed, ${failed} failed, ${skipped.length} skipped`);

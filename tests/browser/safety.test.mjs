@@ -13,7 +13,7 @@ const WASM = readdirSync(h.DIST).find((file) => /^slam_web-[0-9a-f]+\.wasm$/.tes
 const on = h.visitor();
 const failure = (tab) => tab.locator('slam-widget .failure');
 
-/** One sentence with the reason, and the static picture in place of the canvas. */
+/** One sentence with the reason, and the static picture instead of the canvas. */
 async function fallsBack(tab, reason) {
   await failure(tab).waitFor();
   assert.match(await failure(tab).innerText(), reason);
@@ -82,7 +82,7 @@ it('stores nothing: no cookie, no local storage, no database', async () => {
   });
 });
 
-/** A server that has the core wait: `asked` is kept once a page asks for it, and `send` sends it. */
+/** A server that delays the core: `asked` is set once a page requests it, and `send` sends it. */
 function heldBack() {
   let hear;
   const asked = new Promise((resolve) => (hear = resolve));
@@ -250,7 +250,7 @@ describe('a wasm file', () => {
       answer: (path, response) => {
         if (!path.endsWith('.wasm') || (asked += 1) > 1) return false;
         response.setHeader('Content-Type', 'application/wasm');
-        // As a careful host caches a file with a hash in its name.
+        // The headers of a host that caches a file with a hash in its name.
         response.setHeader('Cache-Control', 'public, max-age=31536000, immutable');
         response.end(empty);
         return true;
@@ -313,14 +313,14 @@ describe('an old entry that names a core which is gone', () => {
       return true;
     },
   };
-  /** The picture within the element is loaded and stands on the page, and so does its sentence. */
+  /** The picture within the element is loaded and visible, and so is its sentence. */
   const showsItsContent = async (tab) => {
     const widgets = await tab.evaluate(async () => {
       const isSeen = (element) => element.getBoundingClientRect().height > 10;
       const found = [];
       for (const widget of document.querySelectorAll('slam-widget')) {
         const image = widget.querySelector('img');
-        // One after the other: a picture is fetched when it is near the screen.
+        // One after the other, because a picture is fetched when it is near the screen.
         image.scrollIntoView();
         await image.decode();
         found.push(image.naturalWidth > 300 && isSeen(image) && isSeen(widget.querySelector('p')));

@@ -1,19 +1,19 @@
-// Where to put the pointer on a widget: it is asked what drags where, nobody counts pixels.
+// Positions for the pointer on a widget: the widget reports what is draggable, so no test counts pixels.
 
 import assert from 'node:assert/strict';
 import { moreFrames } from './harness.mjs';
 
-/** The place of the canvas on the screen. */
+/** The rectangle of the canvas on the screen. */
 export function canvasBox(tab, css = 'slam-widget') {
   return tab.locator(`${css} canvas`).first().boundingBox();
 }
 
-/** A point of the canvas on which nothing drags, nor near it. */
+/** A point of the canvas without anything draggable nearby. */
 export function restingSpot(tab, css = 'slam-widget') {
   return spot(tab, css, false);
 }
 
-/** A point of the canvas on which something drags. */
+/** A draggable point of the canvas. */
 export function draggingSpot(tab, css = 'slam-widget') {
   return spot(tab, css, true);
 }
@@ -35,7 +35,7 @@ async function spot(tab, css, drags) {
   return at;
 }
 
-/** A point of the rail of a slider beside the picture, found by its parameter. */
+/** A point on the rail of a slider beside the picture, found by its parameter. */
 export async function sliderRail(tab, parameter, css = 'slam-widget') {
   const found = await tab.evaluate(([name, id]) => {
     const widget = document.querySelector(name);
@@ -51,12 +51,12 @@ export async function sliderRail(tab, parameter, css = 'slam-widget') {
   return found;
 }
 
-/** A point of the picture of w16.1 where the mouse can take the cloud: there its pointer becomes a hand. */
+/** A point of the picture of w16.1 where the mouse can grab the cloud: there its pointer becomes a hand. */
 export async function cloudSpot(tab, css = 'slam-widget') {
   const spots = await tab.evaluate((name) => {
     const widget = document.querySelector(name);
     const box = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
-    // Well within the picture: what else drags lies around it.
+    // Well within the picture: other draggable things are around it.
     const [left, bottom] = widget.panelToScreen('sweeps', -2, -2);
     const [right, top] = widget.panelToScreen('sweeps', 2, 2);
     const found = [];
@@ -67,7 +67,7 @@ export async function cloudSpot(tab, css = 'slam-widget') {
     }
     return found;
   }, css);
-  // A finger reaches further than the mouse, so not all of them will do.
+  // A finger has a larger reach than the mouse, so not all of them are suitable.
   for (const [x, y] of spots) {
     await tab.mouse.move(x, y);
     await moreFrames(tab, 2, css);

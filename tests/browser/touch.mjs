@@ -1,15 +1,15 @@
 // Fingers on the glass of a page.
 //
-// Chromium answers for a touch before a busy page has felt it, and what comes and goes between two frames does
-// nothing. So each touch here ends once the page has felt it.
+// Chromium acknowledges a touch before a busy page has processed it, and a touch that begins and ends between
+// two frames has no effect. So each touch here ends once the page has processed it.
 
-/** The pointer event that a page feels of each touch. */
+/** The pointer event of each touch. */
 const FELT = { touchStart: 'pointerdown', touchMove: 'pointermove', touchEnd: 'pointerup', touchCancel: 'pointercancel' };
 
 /**
- * Fingers for a tab: `touch(type, spots)` sends a touch with each finger that is down at a spot `[x, y]`, and
- * `felt()` names the events that the page has felt. A finger that scrolls the page is the page's no more: it is
- * cancelled, and nothing that follows is felt.
+ * Fingers for a tab: `touch(type, spots)` sends a touch with each finger that is down at a spot `[x, y]`,
+ * and `felt()` lists the events that the page got. A finger that scrolls the page is cancelled, and its
+ * later events do not arrive.
  */
 export async function fingers(tab) {
   const session = await tab.context().newCDPSession(tab);

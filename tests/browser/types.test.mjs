@@ -1,4 +1,4 @@
-// The types of the package fit what it holds: right uses compile, wrong ones do not.
+// The types of the package match its contents: right uses compile, wrong ones do not.
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -15,7 +15,7 @@ let project;
 before(() => (project = installPackage()));
 after(() => project.remove());
 
-/** The compiler's complaints about a program that uses the package. */
+/** The compiler's errors for a program that uses the package. */
 function complaints(program) {
   const file = join(project.folder, 'main.ts');
   writeFileSync(file, `import type { WidgetStates, WidgetButtons, SlamWidget } from 'slam-widgets';\n${program}\nexport {};`);

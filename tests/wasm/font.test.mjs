@@ -1,5 +1,5 @@
-// Every character that a widget can show is in the font that comes with it: what is missing would
-// look different from machine to machine.
+// Every character that a widget can show is in the supplied font: a missing one would look different on each
+// machine.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';

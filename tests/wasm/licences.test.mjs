@@ -1,4 +1,4 @@
-// Which licences are accepted, and that what is published carries the notices of all that it holds.
+// The accepted licences, and the notices of everything that is published.
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -36,7 +36,7 @@ describe('an expression of licences', () => {
 describe('the texts of a package', () => {
   const MIT = readFileSync(`${ROOT}LICENSE-MIT`, 'utf8');
 
-  /** What the texts of a package with these files are, by the names of the licences. */
+  /** The texts of a package with these files, by the names of the licences. */
   function taken(licence, files, others = []) {
     const folder = mkdtempSync(join(tmpdir(), 'licences-'));
     const made = [{ name: 'foo', licence, files }, ...others].map((one) => {
@@ -89,7 +89,7 @@ it('npm packages are known by what esbuild took into a bundle', async () => {
 
 describe('what is published', () => {
   const dist = (file) => readFileSync(`${ROOT}dist/${file}`, 'utf8');
-  // Asked for as lines of names, apart from the way in which the build asks.
+  // Requested as lines of names, independently of the build's own query.
   const tree = execFileSync('cargo', ['tree', '-p', 'slam_web', '--target', 'wasm32-unknown-unknown',
     '-e', 'normal,no-proc-macro', '--prefix', 'none', '-f', '{p}'], { cwd: ROOT, encoding: 'utf8' });
   const others = tree.split('\n').filter((line) => line !== '' && !line.includes('(/'));

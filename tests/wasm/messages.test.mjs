@@ -1,6 +1,6 @@
-// Messages from a page around an embedded widget: ten thousand of them, made up from a seed. None
-// throws, none changes what it does not name, and what is refused is refused in one short sentence.
-// The core's end of the same door is fuzzed: `fuzz/fuzz_targets/messages.rs`.
+// Messages from a page around an embedded widget: ten thousand of them, generated from a seed. None throws,
+// none changes what it does not name, and an error is one short sentence. The core's side of the same
+// interface is fuzzed: `fuzz/fuzz_targets/messages.rs`.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -36,7 +36,7 @@ function random(seed) {
   };
 }
 
-/** Makes up messages for a widget: most of them almost right. */
+/** Generates messages for a widget: most of them almost right. */
 class Inventor {
   constructor(spec, seed) {
     this.spec = spec;
@@ -78,7 +78,7 @@ class Inventor {
   }
 }
 
-/** A widget that keeps its values by the rules of the element and computes nothing. */
+/** A widget that validates values by the rules of the element and computes nothing. */
 function listener(spec) {
   const state = new State(spec);
   return {
@@ -123,7 +123,7 @@ it('no message throws, and none changes what it does not name', async () => {
         counts.taken += 1;
       }
     }
-    // Buttons that are refused are refused later.
+    // Rejections of buttons arrive later.
     await new Promise(setImmediate);
     assert.deepEqual([...widget.texts().keys()], spec.params.map((param) => param.id));
   }
@@ -140,7 +140,7 @@ it('a value that is kept is one that the core takes', () => {
       try {
         parsed = state.parse(id, inventor.value());
       } catch (error) {
-        // An object that has no text at all.
+        // An object that cannot be converted to a text.
         assert.ok(error instanceof TypeError);
         continue;
       }

@@ -1,4 +1,4 @@
-// The wasm that readers get, in Node, and what it computes: once for all tests of a process.
+// The published wasm in Node, and its results: computed once for all tests of a process.
 
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -9,7 +9,7 @@ export const ROOT = fileURLToPath(new URL('../../', import.meta.url));
 export const wasm = createGlue({ request: () => 0, cancel: () => {}, deviceSize: () => [], pixelRatio: () => 1 });
 wasm.initSync({ module: readFileSync(`${ROOT}web/pkg/slam_web_bg.wasm`) });
 
-/** The widgets' own lists. */
+/** The widgets' schema. */
 export const schema = JSON.parse(wasm.widgetSchemas());
 
 const afterPresets = new Map();

@@ -1,4 +1,4 @@
-// The Python wheel as somebody gets it: packed from dist/, installed into a folder, asked by Python.
+// The Python wheel as users get it: packed from dist/, installed into a folder, tested from Python.
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';

@@ -1,4 +1,4 @@
-// The wasm that readers get computes the same bits as the native build that the other tests check.
+// The published wasm computes the same bits as the native build that the other tests check.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';

@@ -1,4 +1,4 @@
-// A test that skips says so in the list, and fails where nothing may skip.
+// A skipped test is listed, and fails if skipping is not allowed.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -19,7 +19,7 @@ it('one', (context) => skip(context, 'no data'));
 `);
     const run = (more) => {
       const env = { ...process.env, SLAM_SKIPPED: list, SLAM_NO_SKIP: '0', ...more };
-      // A test of a test that runs in it would report to it.
+      // A nested test run would report to the outer one.
       delete env.NODE_TEST_CONTEXT;
       return spawnSync(process.execPath, [file], { env, encoding: 'utf8' });
     };

@@ -1,5 +1,5 @@
-// Links and attributes are checked in TypeScript before any wasm is loaded. Its rules must be those
-// of the core, for every parameter of every widget.
+// Links and attributes are checked in TypeScript before any wasm is loaded. Its rules must be those of the
+// core, for every parameter of every widget.
 
 import assert from 'node:assert/strict';
 import { it } from 'node:test';
@@ -23,7 +23,7 @@ const TEXTS = ['', ' ', '0', '1', '-1', '3.7', '1e2', '1e400', '-0', '.5', '5.',
   '0x10', '1_000', '1,5', '12px', 'on', 'off', 'true', 'false', 'ON', 'null', '<b>', '4294967295', '4294967296',
   '1e-9', '0.1234567890123456', '179.99999999999', '180.0000001', '-180', ' 25 '];
 
-/** Numbers as numbers, with one zero; all else as it is. */
+/** Numbers as numbers, with a single zero; everything else unchanged. */
 function comparable(text) {
   return Number.isNaN(Number(text)) ? text : Number(text) + 0;
 }

@@ -1,10 +1,10 @@
-// Which licences this project accepts, and how an expression of SPDX is judged by them.
+// The accepted licences, and how an SPDX expression is judged by them.
 
 import parse from 'spdx-expression-parse';
 
 /**
- * What may be in the module and on the page, the first choice first, and how its text is known.
- * Texts are compared in lower case with single spaces.
+ * Accepted licences for the module and the page, by preference, and the pattern of their texts. Texts are
+ * compared in lower case with single spaces.
  */
 export const SHIPPED = new Map([
   ['MIT', /permission is hereby granted, free of charge, to any person obtaining a copy of this software.*this permission notice.{0,40} shall be included/],
@@ -18,7 +18,7 @@ export const SHIPPED = new Map([
   ['Bitstream-Vera', /bitstream vera fonts copyright/],
 ]);
 
-/** What may build and test besides: none of it reaches a reader. */
+/** Licences accepted for build and test only, which do not reach readers. */
 export const TOOLS = [
   ...SHIPPED.keys(),
   'Apache-2.0 WITH LLVM-exception',
@@ -30,10 +30,10 @@ export const TOOLS = [
   'Ubuntu-font-1.0',
 ];
 
-/** Something about a licence that a person has to decide; the message is one sentence. */
+/** A licence question that a person has to decide; the message is one sentence. */
 export class LicenceProblem extends Error {}
 
-/** For the end of a script: the sentence alone, without a stack. */
+/** Ends a script with the message alone, without a stack trace. */
 export function endWithOneSentence(error) {
   if (!(error instanceof LicenceProblem)) throw error;
   console.error(error.message);
@@ -41,10 +41,10 @@ export function endWithOneSentence(error) {
 }
 
 /**
- * The ways to take a package whose licences are `expression`, each as the list of licences that
- * then hold, with only allowed ones in it; the first choice first.
+ * The alternatives of an SPDX `expression`, each as the list of licences that then apply, with only accepted
+ * ones; by preference.
  *
- * `what` names the package in the sentence of a LicenceProblem.
+ * `what` names the package in a LicenceProblem.
  */
 export function waysToTake(expression, allowed, what) {
   if (typeof expression !== 'string' || expression.trim() === '') {
@@ -64,14 +64,14 @@ export function waysToTake(expression, allowed, what) {
 
 function parsed(expression, what) {
   try {
-    // Manifests of old crates write a slash.
+    // Manifests of old crates contain a slash.
     return parse(expression.replaceAll('/', ' OR '));
   } catch {
     throw new LicenceProblem(`${what} is under \`${expression}\`, which is no expression of SPDX: ask its authors what it means.`);
   }
 }
 
-/** The tree as a list of alternatives; each is a list of licences that hold together. */
+/** The tree as a list of alternatives; each is a list of licences that apply together. */
 function alternatives(tree) {
   if (tree.conjunction === 'or') return [...alternatives(tree.left), ...alternatives(tree.right)];
   if (tree.conjunction === 'and') {

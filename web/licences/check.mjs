@@ -1,5 +1,5 @@
-// node web/licences/check.mjs: fails in one sentence where a package that this project uses has a
-// licence that it does not accept, or a text of a licence is missing.
+// node web/licences/check.mjs: fails with one sentence if a dependency has a licence that is not accepted, or
+// if the text of a licence is missing.
 
 import { TOOLS, LicenceProblem, endWithOneSentence, waysToTake } from './allowed.mjs';
 import { partsOfPage, partsOfWidgets } from './notices.mjs';

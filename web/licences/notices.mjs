@@ -1,4 +1,4 @@
-// The notices that go with what is published: a text for the npm package, a page for the site.
+// The notices for everything that is published: a text for the npm package, a page for the site.
 
 import { cp, readFile, writeFile } from 'node:fs/promises';
 import path from 'node:path';
@@ -10,7 +10,7 @@ export const OWN_LICENCES = ['LICENSE-MIT', 'LICENSE-APACHE'];
 export const PACKAGE_NOTICES = 'THIRD-PARTY-NOTICES.txt';
 export const PAGE = 'notices.html';
 
-/** What the widgets hold of others: their packages in groups, `{ title, packages }`. */
+/** Third-party packages in the widgets, in groups, `{ title, packages }`. */
 export async function partsOfWidgets(metafiles) {
   const library = {
     name: 'The Rust standard library',
@@ -34,7 +34,7 @@ export async function partsOfWidgets(metafiles) {
   });
 }
 
-/** What the chapter's page adds. */
+/** Third-party packages in the chapter's page. */
 export async function partsOfPage(metafiles) {
   const katex = await npmPackage(path.join(ROOT, 'web/node_modules/katex'));
   const fonts = { ...katex, name: 'KaTeX fonts', licence: 'OFL-1.1', folder: undefined };
@@ -119,7 +119,7 @@ function section([title, content], at) {
 
 const verbatim = (text) => `<pre class="verbatim">${escapeHtml(text.trimEnd())}</pre>`;
 
-/** Each text once, with all packages that it is for. */
+/** Each text once, with all packages under it. */
 function textsOf(parts) {
   const found = new Map();
   for (const one of parts.flatMap(({ packages }) => packages)) {

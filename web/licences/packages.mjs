@@ -1,4 +1,4 @@
-// What this project is made of, as cargo and npm tell it.
+// The dependencies of this project, from cargo and npm.
 
 import { execFileSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
@@ -13,10 +13,10 @@ function run(program, ...words) {
   return execFileSync(program, words, { cwd: ROOT, encoding: 'utf8', maxBuffer: 1 << 28 });
 }
 
-/** The cargo that started us, where one did. */
+/** The cargo that started this script, if there is one. */
 const cargo = (...words) => run(process.env.CARGO ?? 'cargo', ...words);
 
-/** The crates of others that a workspace uses anywhere: every target, tests and tools included. */
+/** All external crates of a workspace: every target, tests and tools included. */
 export function cratesOf(manifest, ...filter) {
   const metadata = cargo('metadata', '--format-version', '1', '--manifest-path', manifest, ...filter);
   return JSON.parse(metadata)
@@ -32,11 +32,11 @@ export function cratesOf(manifest, ...filter) {
 }
 
 /**
- * The crates of others whose code is in a WebAssembly module: that of the widgets, `slam_web`, or that
- * of the worker, `slam_robot`.
+ * The external crates in a WebAssembly module: that of the widgets, `slam_web`, or that of the worker,
+ * `slam_robot`.
  *
- * `cargo metadata` unites the features of all members, and so lists crates that the module does
- * not hold; `cargo tree` resolves the module's own. Macros run while compiling and stay out.
+ * `cargo metadata` unites the features of all members, and so lists crates that the module does not contain;
+ * `cargo tree` resolves the module's own. Macros run during compilation and are excluded.
  */
 export function cratesOfModule(name) {
   const tree = cargo('tree', '--package', name, '--target', TARGET, '--edges', 'normal,no-proc-macro',
@@ -51,7 +51,7 @@ export function rustVersion() {
   return run('rustc', '--version').split(' ')[1];
 }
 
-/** The npm packages of a lock file: what builds and tests, for every system. */
+/** The npm packages of a lock file, for build and test, on every system. */
 export async function npmPackagesOf(folder) {
   const lock = JSON.parse(await readFile(path.join(ROOT, folder, 'package-lock.json'), 'utf8'));
   return Object.entries(lock.packages)
@@ -59,7 +59,7 @@ export async function npmPackagesOf(folder) {
     .map(([place, { version, license }]) => ({ name: place.replace(/^.*node_modules\//, ''), version, licence: license }));
 }
 
-/** The npm packages whose code esbuild put into a bundle, by the `metafile` that it gives. */
+/** The npm packages whose code esbuild put into a bundle, from its `metafile`. */
 export async function npmPackagesIn(...metafiles) {
   const folders = new Set();
   for (const input of metafiles.flatMap((metafile) => Object.keys(metafile.inputs))) {
@@ -75,7 +75,7 @@ export async function npmPackage(folder) {
   return { name, version, licence: license, repository: '', url: `https://www.npmjs.com/package/${name}/v/${version}`, folder };
 }
 
-/** The manifests of cargo's workspaces here: the fuzz targets have one of their own. */
+/** The manifests of the cargo workspaces: the fuzz targets have a separate one. */
 export function workspaces() {
   return ['Cargo.toml', 'fuzz/Cargo.toml'].filter((manifest) => existsSync(path.join(ROOT, manifest)));
 }

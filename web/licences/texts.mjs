@@ -1,4 +1,4 @@
-// The texts that go with a package: from the package itself, or from where its authors keep them.
+// The licence texts of a package: from the package itself, or from its authors' repository.
 
 import { readFileSync, readdirSync } from 'node:fs';
 import path from 'node:path';
@@ -7,10 +7,10 @@ import { LicenceProblem, SHIPPED, waysToTake } from './allowed.mjs';
 import { ROOT } from './packages.mjs';
 
 const LICENCE_FILE = /^(licen[cs]e|copying|copyright|notice|authors|unlicense)/i;
-/** What says more than the licence does: it goes along. */
+/** Files with additional notices, which are included. */
 const NOTICE_FILE = /^(copying|copyright|notice|authors)/i;
 
-/** Texts that packages lack; `README.md` beside them says where each comes from. */
+/** Texts that packages lack; `README.md` beside them documents their sources. */
 const SUPPLIED = [
   { file: 'faer-MIT.txt', id: 'MIT', packages: ['faer', 'faer-traits'] },
   { file: 'nano-gemm-MIT.txt', id: 'MIT', packages: /^nano-gemm(-\w+)?$/ },
@@ -19,10 +19,10 @@ const SUPPLIED = [
 ];
 
 /**
- * The packages with the texts under which they are taken: `texts` is a list of `{ id, text }`, where
- * `id` is a licence or the name of a further notice.
+ * The packages with their licence texts: `texts` is a list of `{ id, text }`, where `id` is a licence or the
+ * name of a further notice.
  *
- * A package that leaves the choice is taken under the first licence of SHIPPED whose text is there.
+ * A package with a choice is used under the first licence of SHIPPED whose text exists.
  */
 export function withTexts(packages) {
   return packages.map((one) => {
@@ -46,7 +46,7 @@ export function withTexts(packages) {
   });
 }
 
-/** The files that serve no package any more. */
+/** Files that no package needs any more. */
 export function idleTexts(packages) {
   return SUPPLIED.filter((entry) => !packages.some(({ name }) => isFor(entry, name))).map(({ file }) => file);
 }
@@ -59,7 +59,7 @@ function licenceFiles(folder) {
     .sort((a, b) => (a.name < b.name ? -1 : 1));
 }
 
-/** The shortest: a file may hold several licences. */
+/** The shortest text: a file may contain several licences. */
 function ownText(files, id) {
   const fitting = files.filter(({ text }) => SHIPPED.get(id).test(squeezed(text)));
   return fitting.sort((a, b) => a.text.length - b.text.length)[0]?.text;
@@ -77,7 +77,7 @@ function fromNeighbour(neighbours, id) {
   return neighbours.map(({ folder }) => ownText(licenceFiles(folder), id)).find((text) => text !== undefined);
 }
 
-/** The terms of the Apache License name nobody: our copy serves others, without its appendix, which names us. */
+/** The terms of the Apache License contain no names: our copy serves others, without its appendix, which names us. */
 function terms(id) {
   if (id !== 'Apache-2.0') return undefined;
   const end = 'END OF TERMS AND CONDITIONS\n';
@@ -85,7 +85,7 @@ function terms(id) {
   return `${before}${end}`;
 }
 
-/** For comparing: the same words are the same text. */
+/** For comparison: texts with the same words are equal. */
 export function squeezed(text) {
   return text.toLowerCase().replace(/\s+/g, ' ').trim();
 }

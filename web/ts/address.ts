@@ -1,4 +1,4 @@
-// An element and the address of its page: `linked` ones read their state there and keep it there.
+// An element and the address of its page: `linked` elements read their state from it and store it there.
 //
 // An entry of the browser's history keeps the states of all linked widgets: Back finds each as it was.
 
@@ -6,18 +6,18 @@ import { addressOf } from './beside';
 import { readQuery, withState } from './links';
 import type { WidgetSpec } from './schema';
 
-/** Takes what the address says. */
+/** The receiver of the state in an address. */
 export interface Addressee {
   set(id: string, text: string): void;
   wrong(kind: 'name' | 'value', problem: string): void;
 }
 
-/** Reads the state of the widget from the page's address, where it is the one that is meant. */
+/** Reads the state of the widget from the page's address, if the address names this widget. */
 export function readAddress(element: HTMLElement, spec: WidgetSpec, to: Addressee): void {
   const linked = readQuery(location.search);
   if (linked === undefined) return;
   if (!('widget' in linked)) {
-    // One of them speaks for all.
+    // One of them reports for all.
     if (document.querySelector('slam-widget[linked]') !== element) return;
     for (const problem of linked.problems) to.wrong('name', problem);
     return;
@@ -28,8 +28,8 @@ export function readAddress(element: HTMLElement, spec: WidgetSpec, to: Addresse
 }
 
 /**
- * The page, where it keeps the widget's state in its address; else the widget on a page of its own; where it has
- * none, the query alone, which a notebook takes as well.
+ * The page, if it keeps the widget's state in its address; else a separate page with the widget; if there is
+ * none, the query alone, which a notebook accepts as well.
  */
 export function linkTo(element: HTMLElement, spec: WidgetSpec | undefined, query: string): string {
   const isLinked = element.hasAttribute('linked');
@@ -40,33 +40,33 @@ export function linkTo(element: HTMLElement, spec: WidgetSpec | undefined, query
   return link.href;
 }
 
-/** What an entry of the history keeps of us, beside what others keep there. */
+/** Our part of a history entry, besides the parts of others. */
 interface Kept {
   slam?: Record<string, string>;
 }
 
-/** A widget that may be linked, as far as the history is concerned. */
+/** A linked widget, as far as the history is concerned. */
 export interface Linked extends HTMLElement {
   readonly name: string;
   readonly query: string;
   readonly link: string;
 }
 
-/** The linked widget that the address tells of: the one that changed last. */
+/** The linked widget in the address: the one that changed last. */
 let told: Linked | undefined;
 
-/** A widget that is linked has changed: the address tells of it from its next entry on. */
+/** Records that a linked widget has changed: the next entry's address names it. */
 export function tellOf(widget: Linked): void {
   if (widget.hasAttribute('linked')) told = widget;
 }
 
-/** Writes the state of now into the present entry of the history; the address, where `settled` is what it tells of. */
+/** Stores the current state in the present history entry; also in its address if `settled` is the widget it names. */
 export function keepEntry(settled?: Linked): void {
   const address = settled !== undefined && settled === told ? settled.link : location.href;
   history.replaceState(withStates(), '', address);
 }
 
-/** Begins a new entry with the state of now, whose address tells of that widget. */
+/** Adds a history entry with the current state, whose address names that widget. */
 export function pushEntry(widget: Linked): void {
   told = widget;
   history.pushState(withStates(), '', widget.link);

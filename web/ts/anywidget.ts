@@ -16,9 +16,9 @@ function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
   widget.setAttribute('name', String(model.get('name') ?? ''));
   el.append(widget, refused);
 
-  // What kernel and widget agree on.
+  // Values that kernel and widget agree on.
   const agreed = new Map<string, Value>();
-  // Some hosts call back for what the widget itself wrote: that asks for nothing.
+  // Some hosts call back for values that the widget itself wrote; these need no reaction.
   let isGiving = false;
   const take = (): void => {
     if (!isGiving) refused.textContent = setNews(widget, model.get('value'), agreed).join(' ');
@@ -47,10 +47,10 @@ function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
 }
 
 /**
- * Sets what fits and was not agreed on before; returns a sentence for each value that does not fit.
+ * Sets values that are valid and not yet agreed on; returns a sentence for each invalid value.
  *
- * JupyterLab asks the kernel for all values as the first cell shows. The answer may come after the reader has
- * moved on, and holds nothing that is new.
+ * JupyterLab requests all values from the kernel when the first cell is shown. The answer may come after the
+ * reader has changed something, and then contains nothing new.
  */
 function setNews(widget: SlamWidget, wanted: unknown, agreed: Map<string, Value>): string[] {
   if (wanted === undefined || wanted === null) return [];

@@ -1,24 +1,24 @@
-// Who draws: browsers take the oldest WebGL context away beyond sixteen, so widgets share fewer.
+// Distributes WebGL contexts: browsers discard the oldest one beyond sixteen, so widgets share fewer.
 //
-// The reader's eye decides: what has the focus or the pointer first, then what is next to the middle
-// of the screen. Who has to wait shows a picture.
+// The reader's attention decides: the widget with the focus or the pointer comes first, then those next to
+// the middle of the screen. The others show a picture.
 
-/** Contexts at most, of widgets that draw or begin to. */
+/** Largest number of contexts of widgets that draw or start to. */
 const MOST = 8;
 
 export interface Drawer {
-  /** How far it is from where the reader looks, in CSS pixels. */
+  /** Distance from the reader's attention, in CSS pixels. */
   readonly distance: number;
-  /** Gives its context to another one. */
+  /** Gives its context to another widget. */
   yield(): void;
-  /** Asks again, where it still wants a context. */
+  /** Requests a context again, if it still needs one. */
   askAgain(): void;
 }
 
 const holding = new Set<Drawer>();
 const waiting = new Set<Drawer>();
 
-/** Takes a context, from who is farthest away where all are taken; false where that is the one who asks. */
+/** Takes a context, if necessary from the farthest widget; returns false if that is the requesting one. */
 export function claim(drawer: Drawer): boolean {
   waiting.delete(drawer);
   if (holding.has(drawer)) return true;
@@ -36,13 +36,13 @@ export function claim(drawer: Drawer): boolean {
   return true;
 }
 
-/** Gives a context back, or wants none any more. */
+/** Releases a context, or withdraws a request. */
 export function release(drawer: Drawer): void {
   waiting.delete(drawer);
   if (holding.delete(drawer)) lookAgain();
 }
 
-/** The reader looks elsewhere: who waits asks again, the nearest first. */
+/** Lets waiting widgets request again after the reader has moved, the nearest first. */
 export function lookAgain(): void {
   for (const drawer of [...waiting].sort((a, b) => a.distance - b.distance)) drawer.askAgain();
 }

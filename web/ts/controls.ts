@@ -14,10 +14,10 @@ export const MORE = 'more';
 export interface ControlHost {
   /** Returns what was wrong. */
   set(id: string, text: string): string | undefined;
-  /** The value that the widget has. */
+  /** The widget's value. */
   text(id: string): string;
   press(id: string): void;
-  /** Ends what decides on how long the run is, and shows it. */
+  /** Finishes the computation on which the length of the run depends, and shows it. */
   finishRun(): void;
   focus(id: string | undefined): void;
 }
@@ -34,7 +34,7 @@ export class Controls {
   readonly #ranges = new Map<string, HTMLInputElement>();
   readonly #buttons = new Map<string, HTMLButtonElement>();
   readonly #host: ControlHost;
-  /** What a key presses, while one of these buttons has the focus. */
+  /** The button that a key presses while one of these buttons has the focus. */
   readonly #keys: ReadonlyMap<string, string>;
   readonly #keyed: ReadonlySet<string>;
 
@@ -59,7 +59,7 @@ export class Controls {
     });
   }
 
-  /** A key of a button that is beside the one with the focus. */
+  /** A key of a button other than the focused one. */
   #keyDown(event: KeyboardEvent): void {
     const { target } = event;
     if (event.altKey || !(target instanceof HTMLButtonElement)) return;
@@ -86,7 +86,7 @@ export class Controls {
     for (const [id, text] of values) this.#params.get(id)?.show(text);
   }
 
-  /** Shows how long the run is and whether it plays. */
+  /** Shows the length of the run and whether it plays. */
   showTimeline(timeline: Timeline | null): void {
     const play = this.#buttons.get('play');
     if (timeline === null) return;
@@ -94,7 +94,7 @@ export class Controls {
     const range = this.#ranges.get(timeline.param);
     if (range === undefined) return;
     range.max = String(timeline.last);
-    // A run can be shorter than the moment that was asked for: it shows its end.
+    // A run can be shorter than the requested position: it shows its end.
     const asked = Number(this.#host.text(timeline.param));
     this.#params.get(timeline.param)?.show(String(Math.min(asked, timeline.last)));
   }
@@ -169,14 +169,14 @@ export class Controls {
 
   #range(spec: ParamSpec): HTMLInputElement {
     const { min, max } = spec;
-    // Any step: the field shows what is set elsewhere, such as fine steps, as it is.
+    // Any step: the field also shows values between its steps, such as fine steps.
     const range = create('input', { type: 'range', min: `${min}`, max: `${max}`, step: 'any' });
     range.addEventListener('input', () => {
       const steps = Math.round((Number(range.value) - min) / spec.step);
       this.#host.set(spec.id, tidy(min + steps * spec.step));
     });
     range.addEventListener('keydown', (event) => {
-      // A run that is still computed would end the way where it stands.
+      // While a run is being computed, its end is not known.
       if (spec.kind === 'timeline') this.#host.finishRun();
       const now = Number(range.value);
       const last = Number(range.max);
@@ -201,7 +201,7 @@ export class Controls {
     return field;
   }
 
-  /** Shows a value in a field, but where the reader has begun to type another one. */
+  /** Shows a value in a field, unless the reader is typing another one. */
   #typed(field: HTMLInputElement, { id }: ParamSpec): (text: string) => void {
     let isBegun = false;
     const show = (text: string): void => {
@@ -211,7 +211,7 @@ export class Controls {
       field.setAttribute('aria-invalid', 'false');
     };
     field.addEventListener('input', () => (isBegun = true));
-    // Before what was typed is set: what it is taken for shows at once.
+    // Before the typed value is set, because the accepted value is shown at once.
     field.addEventListener('change', () => (isBegun = false), { capture: true });
     field.addEventListener('blur', () => {
       if (!isBegun) return;

@@ -1,4 +1,4 @@
-// An instance of the module: with frames for a widget, or without, for pictures that a page draws by itself.
+// An instance of the module: with frames for a widget, or without, for pictures of the page.
 
 import { createGlue, type FrameSource, type Glue } from '../pkg/glue.js';
 import { forgetModule, loadModule, StaleError } from './module';
@@ -10,7 +10,7 @@ const NO_FRAMES: FrameSource = {
   deviceSize: () => [],
 };
 
-/** The program of the widgets, compiled: for an instance of one's own, in a worker for example. */
+/** The compiled program of the widgets, for a separate instance, for example in a worker. */
 export function coreModule(progress: (share: number) => void = () => {}): Promise<WebAssembly.Module> {
   return loadModule(progress);
 }

@@ -34,7 +34,7 @@ export function keepKeys(element: HTMLElement): void {
   });
 }
 
-/** Scrolls until a box (left, top, width, height) inside of an element is seen above a bar. */
+/** Scrolls until a box (left, top, width, height) inside an element is visible above a bar. */
 export function reveal(
   inside: HTMLElement,
   [left, top, width, height]: readonly [number, number, number, number],
@@ -52,7 +52,7 @@ export function reveal(
   marker.remove();
 }
 
-/** Properties that were set before an element was defined hide those of its class: sets them anew. */
+/** Properties that were set before an element was defined hide those of its class: sets them again. */
 export function upgradeProperties(element: HTMLElement): void {
   const early = element as unknown as Record<string, unknown>;
   for (const [key, value] of Object.entries(early)) {
@@ -62,7 +62,7 @@ export function upgradeProperties(element: HTMLElement): void {
   }
 }
 
-/** A sentence in which `names` are marked, as text and never as HTML. */
+/** A sentence with `names` marked, as text and never as HTML. */
 export function marked(sentence: string): (string | HTMLElement)[] {
   return sentence.split('`').map((part, at) => {
     if (at % 2 === 0) return part;

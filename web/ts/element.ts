@@ -1,7 +1,7 @@
 // <slam-widget name="w16.1" heading="60">: a widget on any page.
 //
-// The element keeps the values and speaks with the page; what draws them comes and goes with the
-// place of the widget on the screen (life.ts).
+// The element keeps the values and communicates with the page; what draws them comes and goes with the
+// position of the widget on the screen (life.ts).
 
 import { linkTo, readAddress } from './address';
 import { boxOf, type Box } from './box';
@@ -46,7 +46,7 @@ export class SlamWidget extends HTMLElement {
   #lastOutcome: Outcome | undefined;
   #unwatch: (() => void)[] = [];
   readonly #textFiles: TextFileHost;
-  /** Where a reader's own file is worked on, once there is one. */
+  /** Processes a reader's own file, once there is one. */
   #desk: Desk | undefined;
   #doctor: DoctorScreen | undefined;
 
@@ -68,7 +68,7 @@ export class SlamWidget extends HTMLElement {
   }
 
   connectedCallback(): void {
-    // What moves within its page, or was set up before, keeps its state.
+    // An element that moves within its page, or was set up before, keeps its state.
     if (!this.#isSetUp) this.#setUp();
     upgradeProperties(this);
     this.#unwatch = [
@@ -76,12 +76,12 @@ export class SlamWidget extends HTMLElement {
       listen(window, 'error', () => this.#life.checkCrash()),
       listen(window, 'resize', () => this.#resized()),
       listen(document, 'visibilitychange', () => this.#life.wake()),
-      // What the reader turns to comes first where not all can draw.
+      // The element in the reader's focus comes first if not all can draw.
       listen(this, 'pointerenter', () => this.#life.askAgain()),
       listen(this, 'focusin', () => this.#life.askAgain()),
     ];
     if (this.#takesFiles) {
-      // A widget that rests has to be there to say where the robot of a log may be.
+      // A resting widget has to run to provide the start pose of a log.
       const take = (files: File[]): void => void this.#act(() => this.#takeFiles(files));
       this.#unwatch.push(takeDrops(this.#parts.frame, take));
     }
@@ -95,14 +95,14 @@ export class SlamWidget extends HTMLElement {
     this.#unwatch = [];
     this.#news.stop();
     this.#life.leave();
-    // What moves within its page is back at once.
+    // An element that moves within its page is back at once.
     setTimeout(() => {
       if (!this.isConnected) this.#closeDesk();
     });
   }
 
   attributeChangedCallback(name: string, old: string | null, value: string | null): void {
-    // Before the set-up there is nothing to change: it reads all attributes.
+    // Before the set-up there is nothing to change, because it reads all attributes.
     if (!this.#isSetUp) return;
     if (name === 'name') {
       if (old === value) return;
@@ -119,7 +119,7 @@ export class SlamWidget extends HTMLElement {
 
   // ---- for programs -------------------------------------------------------------------------
 
-  /** Which widget: `w16.1`. */
+  /** The widget: `w16.1`. */
   get name(): string {
     return this.getAttribute('name') ?? '';
   }
@@ -128,7 +128,7 @@ export class SlamWidget extends HTMLElement {
     this.setAttribute('name', name);
   }
 
-  /** The whole state as JSON; setting takes an object or its text, all of it or some. */
+  /** The whole state as JSON; the setter takes an object or its text, complete or in part. */
   get value(): Record<string, Value> {
     return this.#state?.toJSON() ?? {};
   }
@@ -141,18 +141,18 @@ export class SlamWidget extends HTMLElement {
     for (const [id, value] of Object.entries(state)) this.set(id, value as Value);
   }
 
-  /** One parameter; undefined where this widget has none of that name. */
+  /** One parameter; undefined if this widget has none of that name. */
   get(id: string): Value | undefined {
     return this.#state?.value(String(id));
   }
 
-  /** Sets one parameter; throws a RangeError that names what would be right. */
+  /** Sets one parameter; throws a RangeError with the valid values. */
   set(id: string, value: Value): void {
     const problem = this.#set(String(id), value);
     if (problem !== undefined) throw new RangeError(problem);
   }
 
-  /** Presses a button or a preset by its name; rejects with a RangeError that names those there are. */
+  /** Presses a button or a preset by its name; rejects with a RangeError with the valid names. */
   async press(id: string): Promise<void> {
     if (!this.#isSetUp) this.#setUp();
     const button = String(id);
@@ -190,7 +190,7 @@ export class SlamWidget extends HTMLElement {
     return this.#state?.query ?? '';
   }
 
-  /** The page, where it takes the state from its address; else the widget on a page of its own. */
+  /** The page, if it takes the state from its address; else a separate page with the widget. */
   get link(): string {
     return linkTo(this, this.#state?.spec, this.query);
   }
@@ -202,7 +202,7 @@ export class SlamWidget extends HTMLElement {
     return this.#life.ask((_, instance) => instance.tables()) ?? [];
   }
 
-  /** What the canvas shows, pixel by pixel; waits until the widget runs and draws. */
+  /** The pixels of the canvas; waits until the widget runs and draws. */
   snapshot(): Promise<ImageBitmap> {
     if (this.#life.hasFailed) return Promise.reject(new LoadError('the widget does not run'));
     const picture = this.#pictures.nextFrame();
@@ -220,28 +220,28 @@ export class SlamWidget extends HTMLElement {
     return this.#life.ask((widget) => widget.frames()) ?? 0;
   }
 
-  /** Whether something that drags lies there, in CSS pixels from the canvas's corner. */
+  /** Whether something draggable is at that position, in CSS pixels from the canvas's corner. */
   dragsAt(x: number, y: number): boolean {
     return this.#life.ask((widget) => widget.dragsAt(x, y)) ?? false;
   }
 
-  /** Where a control lies on the canvas: left, top, width, height; null while it rests. */
+  /** The rectangle of a control on the canvas: left, top, width, height; null while it rests. */
   controlBox(id: string): Box | null {
     return boxOf(this.#life.ask((widget) => widget.controlBox(String(id))));
   }
 
-  /** Where the picture lies on the canvas: left, top, width, height; null while it rests. */
+  /** The rectangle of the picture on the canvas: left, top, width, height; null while it rests. */
   sceneBox(): Box | null {
     return boxOf(this.#life.ask((widget) => widget.sceneBox()));
   }
 
-  /** Where a point of a panel lies on the canvas, in CSS pixels; null where it is not shown. */
+  /** Position of a panel's point on the canvas, in CSS pixels; null if it is not visible. */
   panelToScreen(panel: string, x: number, y: number): [number, number] | null {
     const at = this.#life.ask((widget) => widget.panelToScreen(String(panel), x, y));
     return at === undefined ? null : [at[0] ?? 0, at[1] ?? 0];
   }
 
-  /** Zooms every map, or moves the part that is seen. */
+  /** Zooms every map, or moves the visible part. */
   look(way: Way): void {
     this.#life.ask((widget) => widget.look(shorten(String(way))));
     this.#life.wake();
@@ -254,8 +254,8 @@ export class SlamWidget extends HTMLElement {
   }
 
   /**
-   * Hands a file to a widget that takes files: a log, a session, a reference to grade with, or a world. Several are
-   * those of one recording.
+   * Passes a file to a widget that accepts files: a log, a session, a reference for grading, or a world.
+   * Several files are those of one recording.
    */
   openFile(file: File | readonly File[], use: FileUse = 'map'): void {
     if (!this.#isSetUp) this.#setUp();
@@ -265,17 +265,17 @@ export class SlamWidget extends HTMLElement {
     else this.#takeFiles(files, use);
   }
 
-  /** What the doctor found about the log of w16.10, as `slam2d doctor --json` prints it; null while there is none. */
+  /** The doctor's report on the log of w16.10, in the format of `slam2d doctor --json`; null if there is none. */
   get diagnosis(): Diagnosis | null {
     return this.#doctor?.diagnosis ?? null;
   }
 
-  /** The bytes of a file that w16.10 saves, such as `session.slam2d`; rejects with a sentence where there is none. */
+  /** The bytes of a file that w16.10 saves, such as `session.slam2d`; rejects with a sentence if there is none. */
   savedFile(name: string): Promise<File> {
     return this.#desk?.file(String(name)) ?? Promise.reject(new Error('Open a log first.'));
   }
 
-  /** Gives context and memory back; the values stay, and the picture shows them. */
+  /** Releases context and memory; the values stay, and the picture shows them. */
   suspend(): void {
     this.#life.suspend();
   }
@@ -337,7 +337,7 @@ export class SlamWidget extends HTMLElement {
     this.#news.setUp();
   }
 
-  /** A reader who pressed a button of an element that then left its page is not there to be told. */
+  /** Ignores an error if the element has left its page, because the reader cannot see it. */
   #pressFailed(error: unknown): void {
     if (!(error instanceof TakenAwayError)) this.#life.fail(error);
   }
@@ -386,7 +386,7 @@ export class SlamWidget extends HTMLElement {
     };
   }
 
-  /** Takes over what changed in the widget: pointer, playback, presets. */
+  /** Copies what changed in the widget: pointer, playback, presets. */
   #sync(): void {
     this.#carryOrders();
     const changes = this.#changes();
@@ -400,14 +400,14 @@ export class SlamWidget extends HTMLElement {
     this.#told(changes);
   }
 
-  /** What the widget holds and the element does not know yet. */
+  /** Values of the widget that the element does not have yet. */
   #changes(): [string, string][] {
     const values = this.#life.ask((_, instance) => instance.values()) ?? {};
     const known = [...(this.#state?.texts ?? [])];
     return known.map(([id, text]): [string, string] => [id, values[id] ?? text]).filter(([id, text]) => this.#state?.text(id) !== text);
   }
 
-  /** What the widget asks of its host: a file, its mapping, a file to save. */
+  /** Executes the widget's requests to its host: a file, its mapping, a file to save. */
   #carryOrders(): void {
     const orders = this.#life.ask((widget) => widget.takeOrders()) ?? [];
     for (const order of orders) {
@@ -415,7 +415,7 @@ export class SlamWidget extends HTMLElement {
     }
   }
 
-  /** Whether a file means something to the widget: a log, or a world that a text holds as well. */
+  /** Whether the widget accepts a file: a log, or a world, which a text can contain as well. */
   get #takesFiles(): boolean {
     const spec = this.#state?.spec;
     return spec?.takesFiles === true || spec?.params.some(({ kind }) => kind === 'text') === true;
@@ -460,7 +460,7 @@ export class SlamWidget extends HTMLElement {
     this.#life.wake();
   }
 
-  /** Lets the widget act where it runs, else once it does. */
+  /** Executes an action on the widget, at once if it runs, else as soon as it does. */
   async #act(deed: (widget: Widget) => void): Promise<void> {
     try {
       await this.#ensureInstance();
@@ -474,7 +474,7 @@ export class SlamWidget extends HTMLElement {
     this.#life.wake();
   }
 
-  /** Keeps changes, and tells controls and page of them. */
+  /** Stores changes, and reports them to controls and page. */
   #told(changes: readonly [string, string][]): void {
     for (const [id, text] of changes) this.#state?.keep(id, text);
     this.#controls?.show(changes);
@@ -527,7 +527,7 @@ export class SlamWidget extends HTMLElement {
 
   // ---- values -------------------------------------------------------------------------------
 
-  /** Sets a parameter; returns what was wrong. */
+  /** Sets a parameter; returns the error, if there is one. */
   #set(id: string, given: unknown): string | undefined {
     if (!this.#isSetUp) this.#setUp();
     const state = this.#state;
@@ -541,7 +541,7 @@ export class SlamWidget extends HTMLElement {
       return running.text(id);
     });
     if (problem !== undefined) return problem;
-    // What was found for the old values is no result of these.
+    // The result of the old values is invalid now.
     if (kept === undefined) this.#lastOutcome = undefined;
     this.#told([...new Map([[id, kept ?? parsed.text], ...this.#changes()])]);
     this.#carryOrders();
@@ -549,7 +549,7 @@ export class SlamWidget extends HTMLElement {
     return undefined;
   }
 
-  /** Sets what came from outside; what was wrong is said, and returned. */
+  /** Sets a value from outside; reports and returns the error, if there is one. */
   #tryToSet(id: string, given: unknown): string | undefined {
     const problem = this.#set(id, given);
     if (problem === undefined) {
@@ -563,7 +563,7 @@ export class SlamWidget extends HTMLElement {
   }
 }
 
-/** Why the core does not take a value whose letters are right; a panic goes on its way. */
+/** The core's reason to reject a well-formed value; a panic propagates. */
 function refusal(deed: () => void): string | undefined {
   try {
     deed();

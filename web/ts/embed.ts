@@ -1,7 +1,7 @@
-// embed.html: one widget that fills a frame, and its conversation with the page around.
+// embed.html: one widget that fills a frame, and its messages to and from the surrounding page.
 //
-// Every message carries `slam: 1`, the version of this protocol. Messages of other programs are
-// none of our business; one of ours that does not fit is refused with an error message.
+// Every message contains `slam: 1`, the version of this protocol. Messages of other programs are ignored; an
+// invalid one of ours is answered with an error message.
 //
 //   in   {slam: 1, type: 'set', values: {heading: 60}}   {slam: 1, type: 'press', button: 'play'}
 //        {slam: 1, type: 'get', id?: 'any'}
@@ -29,7 +29,7 @@ main.append(widget);
 listen(widget);
 for (const message of linked?.problems ?? ['The address names no widget: ?w=16.1']) tell(message);
 
-/** Makes the widget of the address, and a page with its title around it. */
+/** Creates the widget of the address, and a page with its title around it. */
 function setUp(): void {
   widget.setAttribute('name', spec?.id ?? '');
   for (const [id, text] of named?.values ?? []) widget.setAttribute(id, text);
@@ -42,7 +42,7 @@ function setUp(): void {
   main.querySelector('h1')?.replaceChildren(document.title);
 }
 
-/** Names what is wrong with the address to the reader, and to the page around. */
+/** Reports an error in the address to the reader, and to the surrounding page. */
 function tell(message: string): void {
   const line = document.createElement('p');
   line.textContent = message;
@@ -54,7 +54,7 @@ function listen(element: SlamWidget): void {
   const detail = (event: Event): Message => (event as CustomEvent<Message>).detail;
   element.addEventListener('slam-ready', (event) => {
     post({ type: 'ready', ...detail(event) });
-    // The page around may have begun to listen after the frame got its size.
+    // The surrounding page may have started to listen after the frame got its size.
     tellSize();
   });
   element.addEventListener('slam-change', (event) => post({ type: 'changed', ...detail(event) }));
@@ -81,7 +81,7 @@ function refuse({ message }: Error): void {
   post({ type: 'error', name: spec?.id ?? null, kind: 'message', message });
 }
 
-/** The size of all that the frame shows, CSS pixels. */
+/** The size of the frame's content, CSS pixels. */
 function size(): { width: number; height: number } {
   const { width, height } = main.getBoundingClientRect();
   return { width: Math.ceil(width), height: Math.ceil(height) };
@@ -90,12 +90,12 @@ function size(): { width: number; height: number } {
 function tellSize(): void {
   const { width, height } = size();
   post({ type: 'size', width, height });
-  // What learning management systems listen for.
+  // The message that learning management systems expect.
   const lti = { subject: 'lti.frameResize', height };
   if (window.parent !== window) window.parent.postMessage(JSON.stringify(lti), '*');
 }
 
-/** Nothing that goes out is secret, and a sandboxed frame does not know who is around it. */
+/** Outgoing messages are not secret, and a sandboxed frame does not know its parent. */
 function post(message: Message): void {
   if (window.parent !== window) window.parent.postMessage({ slam: VERSION, ...message }, '*');
 }

@@ -1,17 +1,17 @@
-// What a reader takes away: the picture, the data, a link to the state.
+// Exports for the reader: the picture, the data, a link to the state.
 
 import { create } from './dom';
 import type { CsvFile } from './instance';
 
-/** What can be taken from: a widget. */
+/** The source of an export: a widget. */
 interface Source extends HTMLElement {
-  /** The page, or a page of its own, with the widget in its present state. */
+  /** The page, or a separate page, with the widget in its present state. */
   readonly link: string;
   snapshot(): Promise<ImageBitmap>;
   tables(): Promise<CsvFile[]>;
 }
 
-/** The buttons for it; `status` says what became of the link, and what cannot be had. */
+/** The export buttons; `status` reports what happened to the link, and what is unavailable. */
 export function takeAwayBar(source: Source, name: string, status: HTMLElement): HTMLElement {
   const bar = create('div', { class: 'tools', role: 'group', 'aria-label': 'Take away' });
   const button = (label: string, press: () => Promise<void>): HTMLElement => {
@@ -39,25 +39,25 @@ async function savePng(picture: ImageBitmap, name: string): Promise<void> {
   saveBlob(await canvas.convertToBlob({ type: 'image/png' }), `${name}.png`);
 }
 
-/** All tables as files of their own, or as one where there is but one. */
+/** All tables as separate files, or as one if there is only one. */
 function saveCsv(files: CsvFile[], name: string): void {
   for (const file of files) {
     saveBlob(new Blob([file.csv], { type: 'text/csv;charset=utf-8' }), `${name}-${file.id}.csv`);
   }
 }
 
-/** Hands a file to the reader. */
+/** Saves a file for the reader. */
 export function saveBlob(blob: Blob, fileName: string): void {
   const url = URL.createObjectURL(blob);
   const link = document.createElement('a');
   link.href = url;
   link.download = fileName;
   link.click();
-  // The browser has taken the blob when the click returns; Safari wants a moment more.
+  // The browser has taken the blob when the click returns; Safari needs more time.
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-/** Copies a text; false where the browser refuses. */
+/** Copies a text; returns false if the browser refuses. */
 export async function copyText(text: string): Promise<boolean> {
   try {
     await navigator.clipboard.writeText(text);

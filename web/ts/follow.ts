@@ -1,15 +1,15 @@
-// Brings an element to the top of the screen and holds it there while the page around it still
-// grows: pictures arrive, widgets start. The reader's first move ends it.
+// Scrolls an element to the top of the screen and keeps it there while the page around it still grows,
+// because pictures arrive and widgets start. Any input of the reader ends it.
 
 let end: (() => void) | undefined;
 
-/** What a reader does to move, or to stay. */
+/** Input with which a reader moves, or stays. */
 const MOVES = ['wheel', 'touchstart', 'pointerdown', 'keydown'];
 
-/** A scroll of less is the rounding of ours. */
+/** A smaller scroll is rounding. */
 const SLACK_PX = 2;
 
-/** At once, and again whenever the page changes its height, until the reader does something. */
+/** Scrolls at once, and again whenever the page changes its height, until the reader's first input. */
 export function keepInView(element: Element): void {
   end?.();
   const listening = new AbortController();
@@ -21,7 +21,7 @@ export function keepInView(element: Element): void {
   let alignedPx = 0;
   let pageHeightPx = 0;
   const align = (): void => {
-    // A smooth scroll would aim at where the element was when it began.
+    // A smooth scroll would aim at the position at its beginning.
     element.scrollIntoView({ behavior: 'instant', block: 'start' });
     alignedPx = element.getBoundingClientRect().top;
     pageHeightPx = document.documentElement.scrollHeight;
@@ -33,7 +33,7 @@ export function keepInView(element: Element): void {
     'scroll',
     () => {
       const movedPx = Math.abs(element.getBoundingClientRect().top - alignedPx);
-      // A scroll bar, or a search in the page: nothing grew, and yet it moved.
+      // A movement without a change of height: a scroll bar, or a search in the page.
       if (movedPx > SLACK_PX && document.documentElement.scrollHeight === pageHeightPx) stop();
     },
     options,

@@ -1,5 +1,5 @@
-// One instance of the module: its own memory, its own widget. What happens in it, a panic too,
-// stays in it. An instance is never repaired: it is thrown away and made anew from its values.
+// One instance of the module: its own memory, its own widget. Its state, including a panic, is isolated. An
+// instance is never repaired, but replaced by a new one with its values.
 
 import type { Widget } from '../pkg/glue.js';
 import { core } from './core';
@@ -33,7 +33,7 @@ export interface CsvFile {
   csv: string;
 }
 
-/** The widget's code panicked: the instance is of no more use. */
+/** The widget's code panicked: the instance is unusable. */
 export class CrashError extends Error {
   constructor(readonly details: string) {
     super('the widget stopped because of an error in its program');
@@ -62,7 +62,7 @@ export class Instance {
     }
   }
 
-  /** Calls into the widget; a panic comes out as a CrashError. */
+  /** Calls the widget; a panic becomes a CrashError. */
   use<T>(call: (widget: Widget) => T): T {
     try {
       return call(this.#widget);
@@ -89,14 +89,14 @@ export class Instance {
     }
   }
 
-  /** Gives everything back: listeners, frames, memory. */
+  /** Releases everything: listeners, frames, memory. */
   dispose(): void {
     this.frames.close();
     try {
       this.#widget.destroy();
       this.#widget.free();
     } catch {
-      // After a panic nothing can be freed; the collector takes the whole memory.
+      // After a panic nothing can be freed; the garbage collector takes the whole memory.
     }
   }
 
@@ -112,7 +112,7 @@ export class Instance {
     return JSON.parse(this.use((widget) => widget.tables())) as CsvFile[];
   }
 
-  /** Every value as a link writes it. */
+  /** Every value in the form of a link. */
   values(): Record<string, string> {
     return JSON.parse(this.use((widget) => widget.values())) as Record<string, string>;
   }

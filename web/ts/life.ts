@@ -1,7 +1,7 @@
-// The life of what draws a widget: an instance of the module and the canvas it runs on.
+// The life cycle of a widget's drawing: an instance of the module and its canvas.
 //
-// Both exist while the widget is near the screen. They are never repaired, but made anew by one
-// path: after scrolling back, after a panic, after a lost context. The host keeps the values.
+// Both exist while the widget is near the screen. They are never repaired, but created again in one way:
+// after scrolling back, after a panic, after a lost context. The host keeps the values.
 
 import type { Widget } from '../pkg/glue.js';
 import { claim, lookAgain, release, type Drawer } from './contexts';
@@ -12,17 +12,17 @@ import type { Parts } from './parts';
 import { Stage } from './stage';
 import type { Visibility } from './visibility';
 
-/** So often a browser may take a context away before the first frame stands. */
+/** Number of times that a browser may take a context away before the first frame. */
 const MOST_LOSSES = 3;
 
-/** The element left its page, and nobody waits for its widget any more. */
+/** The element left its page, and its widget is not needed any more. */
 export class TakenAwayError extends LoadError {
   constructor() {
     super('the widget was taken away while it loaded');
   }
 }
 
-/** The browser took the context away: the fault is neither the page's nor the widget's. */
+/** The browser took the context away: a fault of neither the page nor the widget. */
 class LostError extends LoadError {
   constructor() {
     super('the browser takes its drawing surface away again and again');
@@ -30,21 +30,21 @@ class LostError extends LoadError {
 }
 
 export interface LifeHost {
-  /** The widget to draw; undefined where the page names none. */
+  /** The widget to draw; undefined if the page names none. */
   widget(): { id: string; title: string } | undefined;
-  /** Whether the element stands on a page. */
+  /** Whether the element is on a page. */
   isHere(): boolean;
-  /** Gives a fresh instance everything that the host keeps. */
+  /** Sets the host's state in a new instance. */
   prepare(widget: Widget): void;
-  /** The first frame stands on the canvas, so many milliseconds after its start. */
+  /** The first frame is on the canvas, that many milliseconds after its start. */
   live(milliseconds: number): void;
   /** A frame was drawn; the canvas holds it until the end of this task. */
   drew(canvas: HTMLCanvasElement): void;
-  /** What filled in over many frames is done. */
+  /** Progressive work is finished. */
   rested(): void;
-  /** The instance is about to go: the last moment to keep a picture. */
+  /** The instance is about to end: the last moment to take a picture. */
   leaving(): void;
-  /** Nothing runs any more until the host calls `restart`. */
+  /** Nothing runs until the host calls `restart`. */
   failed(error: Error): void;
 }
 
@@ -55,16 +55,16 @@ export class Life implements Visibility, Drawer {
   #creating: Promise<Instance> | undefined;
   /** The canvas, from before its first frame on. */
   #stage: Stage | undefined;
-  /** Contexts that were lost since the last frame that stood. */
+  /** Number of contexts lost since the last completed frame. */
   #losses = 0;
   #isNear = false;
   #isFar = false;
   #isInView = false;
   #hasFailed = false;
   #isBusy = false;
-  /** How many frames the instance had laid out when the last one was drawn. */
+  /** Frames laid out by the instance when the last one was drawn. */
   #drawnFrames = 0;
-  /** Rises with every end: what started before it knows that it comes too late. */
+  /** Increases with every end, so that asynchronous work of an earlier start can detect that it is outdated. */
   #generation = 0;
 
   constructor(parts: Parts, host: LifeHost) {
@@ -72,7 +72,7 @@ export class Life implements Visibility, Drawer {
     this.#host = host;
   }
 
-  /** Whether a canvas stands on the page. */
+  /** Whether a canvas is on the page. */
   get isRunning(): boolean {
     return this.#stage !== undefined;
   }
@@ -87,7 +87,7 @@ export class Life implements Visibility, Drawer {
     return this.#hasFailed;
   }
 
-  /** Asks the widget; undefined where there is none, and where the question made it panic. */
+  /** Queries the widget; undefined if there is none, or if the query made it panic. */
   ask<T>(question: (widget: Widget, instance: Instance) => T): T | undefined {
     const instance = this.#instance;
     if (instance === undefined) return undefined;
@@ -100,7 +100,7 @@ export class Life implements Visibility, Drawer {
     }
   }
 
-  /** An instance, made now where there is none. */
+  /** An instance, created now if there is none. */
   ensureInstance(): Promise<Instance> {
     const widget = this.#host.widget();
     if (widget === undefined) return Promise.reject(new LoadError('there is no such widget'));
@@ -118,7 +118,7 @@ export class Life implements Visibility, Drawer {
     this.#runOrSuspend();
   }
 
-  /** Draws only while it is seen; the first frames are drawn even before. */
+  /** Draws only while it is visible; the first frames are drawn even before. */
   inView(isInView: boolean): void {
     this.#isInView = isInView;
     this.#openOrClose();
@@ -131,7 +131,7 @@ export class Life implements Visibility, Drawer {
     const { top, bottom } = frame.getBoundingClientRect();
     const middle = window.innerHeight / 2;
     const isInView = bottom > 0 && top < window.innerHeight;
-    // Half a widget that is seen counts more than a whole one beyond the edge.
+    // Half a visible widget has priority over a whole one beyond the edge.
     return Math.max(top - middle, middle - bottom, 0) + (isInView ? 1 : 2 * window.innerHeight);
   }
 
@@ -143,7 +143,7 @@ export class Life implements Visibility, Drawer {
     if (this.#isNear) void this.#run();
   }
 
-  /** Starts anew where the widget is near the screen; a failure is forgotten. */
+  /** Starts again if the widget is near the screen; a failure is forgotten. */
   restart(): void {
     this.#hasFailed = false;
     this.#losses = 0;
@@ -157,7 +157,7 @@ export class Life implements Visibility, Drawer {
     this.suspend();
   }
 
-  /** Draws; does nothing where it draws already, has to wait for others, or failed. */
+  /** Draws; does nothing if it draws already, has to wait for others, or failed. */
   async #run(): Promise<void> {
     const { stage } = this.#parts;
     const widget = this.#host.widget();
@@ -178,7 +178,7 @@ export class Life implements Visibility, Drawer {
     }
   }
 
-  /** Gives context and memory back. */
+  /** Releases context and memory. */
   suspend(): void {
     this.#end();
     release(this);
@@ -196,19 +196,19 @@ export class Life implements Visibility, Drawer {
     this.#parts.progress.hidden = true;
   }
 
-  /** Asks for a frame. */
+  /** Requests a frame. */
   wake(): void {
     this.ask((widget) => widget.requestFrame());
     this.#instance?.frames.wake();
   }
 
-  /** Ends the instance where it panicked unnoticed, between two frames. */
+  /** Ends an instance that panicked between two frames. */
   checkCrash(): void {
     const crash = this.#instance?.crash();
     if (crash !== undefined) this.fail(crash);
   }
 
-  /** Ends everything and tells the host, once; what fails for want of a context begins anew. */
+  /** Ends everything and notifies the host, once; starts again if only the context was lost. */
   fail(error: unknown): void {
     if (this.#hasFailed) return;
     if (this.#stage?.isLost === true) {
@@ -238,7 +238,7 @@ export class Life implements Visibility, Drawer {
     await nextTask();
     if (generation !== this.#generation) {
       instance.dispose();
-      // It has moved within its page, or rests: whoever asked still wants an instance.
+      // It moved within its page, or rests, and an instance is still requested.
       if (this.#host.isHere()) return this.ensureInstance();
       throw new TakenAwayError();
     }
@@ -255,20 +255,20 @@ export class Life implements Visibility, Drawer {
     instance.frames.open();
   }
 
-  /** The observers tell one after the other, and while a window changes not always the truth. */
+  /** The observers report one after the other, and not always consistently while a window changes. */
   #runOrSuspend(): void {
     if (this.#isNear) void this.#run();
     else if (this.#isFar) this.suspend();
   }
 
   #openOrClose(): void {
-    // Before its first frame stands it draws wherever it is.
+    // Before its first frame it draws at any position.
     if (!this.#parts.stage.classList.contains('live')) return;
     if (this.#isInView) this.#instance?.frames.open();
     else this.#instance?.frames.close();
   }
 
-  /** Says whether another frame is wanted. */
+  /** Returns whether another frame is needed. */
   #afterFrame(instance: Instance, { canvas }: Stage, startedAt: number): boolean {
     const crash = instance.crash();
     if (crash !== undefined) throw crash;
@@ -277,13 +277,13 @@ export class Life implements Visibility, Drawer {
     if (!fits && height > 0) canvas.style.height = `${height}px`;
     else if (!this.#parts.stage.classList.contains('live')) this.#showLive(startedAt);
     const frames = instance.use((widget) => widget.frames());
-    // eframe draws only what is new; a canvas that was not drawn on holds nothing any more.
+    // eframe draws only changes; a canvas without drawing is empty.
     if (frames !== this.#drawnFrames) this.#host.drew(canvas);
     this.#drawnFrames = frames;
     const wasBusy = this.#isBusy;
     this.#isBusy = instance.use((widget) => widget.wantsFrame());
     if (wasBusy && !this.#isBusy) this.#host.rested();
-    // A new height asks for a frame at that height, however slow the machine is.
+    // A new height needs a frame at that height, however slow the machine is.
     return !fits || this.#isBusy;
   }
 

@@ -6,13 +6,13 @@ import { defaultText, parseValue } from './values';
 export interface LinkedState {
   /** The widget: `w16.2`. */
   widget: WidgetSpec;
-  /** Its parameters as texts that were checked. */
+  /** Its parameters as checked texts. */
   values: [string, string][];
-  /** What was wrong, a sentence each. */
+  /** The errors, a sentence each. */
   problems: string[];
 }
 
-/** Reads a query; undefined where it names no widget at all. */
+/** Reads a query; undefined if it names no widget. */
 export function readQuery(query: string): LinkedState | { problems: string[] } | undefined {
   const asked = new URLSearchParams(query);
   const name = asked.get('w');

@@ -1,4 +1,4 @@
-// What ctrl and the wheel do on the canvas, for the keyboard: zoom, and move what is zoomed.
+// Ctrl and the wheel on the canvas, for the keyboard: zoom, and move what is zoomed.
 
 import { create } from './dom';
 

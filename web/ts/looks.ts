@@ -1,4 +1,4 @@
-// How a widget looks on its page: light or dark, moving or still, where the focus is, on paper.
+// The appearance of a widget on its page: light or dark, animated or still, focus, print.
 
 import type { Widget } from '../pkg/glue.js';
 import type { Box } from './box';
@@ -10,10 +10,10 @@ import type { Pictures } from './pictures';
 import { themeOf, watchTheme, type Theme } from './theme';
 
 const reducedMotion = globalThis.matchMedia?.('(prefers-reduced-motion: reduce)');
-/** Narrower no picture is drawn. */
+/** Smallest width of a picture. */
 const NARROWEST_PX = 320;
 
-/** The element, as far as its looks go. */
+/** The element, as far as its appearance is concerned. */
 export interface LooksHost extends HTMLElement {
   readonly summary: string;
   controlBox(id: string): Box | null;
@@ -26,7 +26,7 @@ export class Looks {
   readonly #life: Life;
   readonly #pictures: Pictures;
   readonly #pinned: Pinned;
-  /** The widget whose picture stands for it while it rests. */
+  /** The widget whose picture replaces it while it rests. */
   #widget: string | undefined;
 
   constructor(host: LooksHost, parts: Parts, life: Life, pictures: Pictures) {
@@ -51,13 +51,13 @@ export class Looks {
     return [...ends, listen(reducedMotion, 'change', () => this.#life.ask(showMotion))];
   }
 
-  /** Another widget comes. */
+  /** Switches to another widget. */
   become(widget: string): void {
     this.#widget = widget;
     this.showTheme();
   }
 
-  /** A fresh instance takes on the looks of the page. */
+  /** Sets the appearance in a new instance. */
   prepare(widget: Widget): void {
     widget.setTheme(themeOf(this.#host));
     showMotion(widget);
@@ -76,7 +76,7 @@ export class Looks {
     this.#life.wake();
     const box = id === undefined ? null : this.#host.controlBox(id);
     const { stage, bar } = this.#parts;
-    // The ring is on the canvas, not where the focus is.
+    // The ring is on the canvas, not at the position of the focus.
     if (box !== null) reveal(stage, box, bar.offsetHeight);
   }
 
@@ -85,7 +85,7 @@ export class Looks {
     this.#pinned.drew(canvas);
   }
 
-  /** The picture of the state of now, drawn by the widget itself. */
+  /** The picture of the current state, drawn by the widget itself. */
   drawPicture(theme: Theme = themeOf(this.#host)): void {
     const width = Math.max(this.#host.clientWidth, NARROWEST_PX);
     const svg = this.#life.ask((widget) => widget.picture(width, theme));

@@ -1,4 +1,4 @@
-// Defines <slam-widget>. Loading this module is all that a page has to do.
+// Defines <slam-widget>. A page only has to load this module.
 
 import { SlamWidget } from './element';
 import './properties';

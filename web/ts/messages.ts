@@ -1,29 +1,29 @@
-// What the page around an embedded widget may say to it, and what it hears in return. Whatever
-// arrives, nothing is thrown: what does not fit is refused with an error message.
+// Messages from the page around an embedded widget, and the answers. No message throws: an invalid one is
+// answered with an error message.
 
 import { shorten, type Value } from './values';
 
-/** The version of the protocol, which every message carries. */
+/** The version of the protocol, contained in every message. */
 export const VERSION = 1;
 
-/** So many values of one message are refused by name; of the others, their number is told. */
+/** Number of rejected values per message that are named; of the others only the number is reported. */
 const MOST_REFUSALS = 8;
-/** What comes back with an answer is the sender's own, but not at any length. */
+/** Largest length of a sender's id in an answer. */
 const LONGEST_ID = 200;
 
 export type Message = Record<string, unknown>;
 
-/** The widget that is spoken to. */
+/** The addressed widget. */
 export interface Addressed {
-  /** Sets one parameter; throws where the value does not fit. */
+  /** Sets one parameter; throws if the value is invalid. */
   set(id: string, value: Value): void;
-  /** Presses a button; fails where there is none. */
+  /** Presses a button; fails if there is none. */
   press(button: string): Promise<void>;
-  /** What a `get` is answered with. */
+  /** The answer to a `get`. */
   state(): Message;
 }
 
-/** Acts on what arrived, if it is for us; `post` sends an answer, `refuse` says what was wrong. */
+/** Processes a message, if it is for us; `post` sends an answer, `refuse` reports an error. */
 export function receive(
   widget: Addressed,
   data: unknown,
@@ -77,14 +77,14 @@ function answer(
   }
 }
 
-/** The name that the sender gave its question. */
+/** The sender's id of the question. */
 function idOf({ id }: Message): string | number | null {
   if (id === undefined || id === null) return null;
   if (typeof id === 'number' || (typeof id === 'string' && id.length <= LONGEST_ID)) return id;
   throw new RangeError(`get takes as \`id\` a number, or a text of at most ${LONGEST_ID} characters`);
 }
 
-/** What does not fit keeps nothing from what does. */
+/** Sets all valid values, even if others are invalid. */
 function setAll(
   widget: Addressed,
   values: Record<string, Value>,

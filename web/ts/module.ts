@@ -1,13 +1,13 @@
-// The one compiled module of the page. Every widget is an instance of it with a memory of its own.
+// The compiled module of the page. Every widget is an instance of it with separate memory.
 
 import { openFile } from './beside';
 
-/** Set by the build: the wasm file's name holds a hash of its content. */
+/** Set by the build: the name of the wasm file contains a hash of its content. */
 declare const WASM_FILE: string;
 
 export class LoadError extends Error {}
 
-/** A whole module, but not the one that this script was built with. */
+/** A complete module, but from another build than this script. */
 export class StaleError extends LoadError {
   constructor() {
     super('this page and the program of its widgets are of two versions');
@@ -22,12 +22,12 @@ const SILENCE_MS = 10_000;
 
 type Listener = (share: number) => void;
 
-/** A wasm file beside this script: fetched once, compiled once, for every instance there will be. */
+/** A wasm file beside this script: fetched once, compiled once, for all instances. */
 export class ModuleFile {
   readonly #name: string;
   #compiled: Promise<WebAssembly.Module> | undefined;
   #share = 0;
-  /** Whether the last attempt was in vain: a broken copy may sit in a cache. */
+  /** Whether the last attempt failed: a cache may contain a damaged copy. */
   #isRetry = false;
   readonly #listeners = new Set<Listener>();
 
@@ -35,7 +35,7 @@ export class ModuleFile {
     this.#name = name;
   }
 
-  /** Compiles it, once for the page; `progress` hears the share that has arrived, 0 to 1. */
+  /** Compiles it, once for the page; `progress` gets the share that has arrived, 0 to 1. */
   load(progress: Listener): Promise<WebAssembly.Module> {
     this.#listeners.add(progress);
     progress(this.#share);
@@ -46,7 +46,7 @@ export class ModuleFile {
     return this.#compiled.finally(() => this.#listeners.delete(progress));
   }
 
-  /** The next attempt fetches afresh, past every cache. */
+  /** Makes the next attempt bypass every cache. */
   forget(): void {
     this.#compiled = undefined;
     this.#share = 0;
@@ -97,7 +97,7 @@ export class ModuleFile {
     }
     const told = (share: number): void => this.#tell(share);
     const counted = new Response(count(response.body, expectedLength(response), silence, told), {
-      // Whatever type the server gave: what is no wasm is refused by its first bytes.
+      // Regardless of the server's type: anything else than wasm is rejected by its first bytes.
       headers: { 'Content-Type': 'application/wasm' },
     });
     try {
@@ -123,7 +123,7 @@ export function loadModule(progress: Listener): Promise<WebAssembly.Module> {
   return widgets.load(progress);
 }
 
-/** The next attempt fetches afresh, past every cache. */
+/** Makes the next attempt bypass every cache. */
 export function forgetModule(): void {
   widgets.forget();
 }
@@ -134,7 +134,7 @@ function expectedLength(response: Response): number {
   return encoded ? 0 : Number(response.headers.get('Content-Length') ?? 0);
 }
 
-/** Gives up a fetch once nothing has been heard of it for too long. */
+/** Aborts a fetch after too long a silence. */
 class Silence {
   readonly #giveUp = new AbortController();
   #timer: ReturnType<typeof setTimeout> | undefined;
@@ -151,13 +151,13 @@ class Silence {
     return this.signal.aborted;
   }
 
-  /** Something has arrived. */
+  /** Data have arrived. */
   heard(): void {
     clearTimeout(this.#timer);
     this.#timer = setTimeout(() => this.#giveUp.abort(), SILENCE_MS);
   }
 
-  /** Nothing more is to arrive. */
+  /** The transfer is complete. */
   end(): void {
     clearTimeout(this.#timer);
   }
@@ -178,7 +178,7 @@ function count(
         told(expected > 0 ? Math.min(arrived / expected, 1) : arrived / (arrived + 1e6));
         controller.enqueue(chunk);
       },
-      // What is whole may take its time to compile.
+      // A complete module may take its time to compile.
       flush: () => silence.end(),
     }),
   );

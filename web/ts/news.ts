@@ -1,4 +1,4 @@
-// What is told of a widget: events for programs, sentences for a screen reader, the page's address.
+// Notifications about a widget: events for programs, sentences for screen readers, the page's address.
 
 import { keepEntry, type Linked, tellOf } from './address';
 import { CrashError, type Outcome, type Timeline } from './instance';
@@ -6,12 +6,12 @@ import type { Notes } from './notes';
 import { failureBox, type Parts } from './parts';
 import type { Value } from './values';
 
-/** After the last change, before the result is told: not every frame of a drag is news. */
+/** Delay between the last change and the result, so that not every frame of a drag is reported. */
 const SETTLED_MS = 350;
-/** While changes never rest, as where a log is mapped, a screen reader is told so often how far it is. */
+/** During permanent changes, such as the mapping of a log, a screen reader gets progress at this interval. */
 const UNDER_WAY_MS = 10_000;
 
-/** The widget that is told of. */
+/** The reported widget. */
 export interface NewsSource extends Linked {
   readonly value: Record<string, Value>;
   readonly outcome: Outcome | undefined;
@@ -29,9 +29,9 @@ export class News {
   #timer: ReturnType<typeof setTimeout> | undefined;
   /** Whether a screen reader is told what the timer waits for. */
   #isNews = false;
-  /** Values rested before the widget had run: their result is told as soon as there is one. */
+  /** Values settled before the widget had run: their result is reported as soon as there is one. */
   #isOwed = false;
-  /** When changes began that have not rested since, or something was said of them. */
+  /** Start of the changes that have not settled since, or the time of the last report about them. */
   #saidAt = 0;
 
   constructor(source: NewsSource, parts: Parts, notes: Notes, onSettled: () => void, shownSummary: () => string) {
@@ -42,25 +42,25 @@ export class News {
     this.#notes = notes;
   }
 
-  /** The widget was set up: what its attributes and the address ask for is no news. */
+  /** The widget was set up: values of attributes and address are not reported. */
   setUp(): void {
     this.#isNews = false;
     this.#isOwed = false;
   }
 
-  /** The first frame stands on the canvas, so many milliseconds after its start. */
+  /** The first frame is on the canvas, that many milliseconds after its start. */
   ready(milliseconds: number): void {
     this.#describe();
     this.#emit('slam-ready', { value: this.#source.value, ms: milliseconds });
     if (this.#isOwed) this.#tellResult();
   }
 
-  /** What the widget went on computing is done: the summary is that of the whole picture. */
+  /** Progressive work is finished: the summary is that of the complete picture. */
   rested(): void {
     this.#describe();
   }
 
-  /** Values changed; the outcome is that of the picture so far. The result follows once they rest. */
+  /** Values changed; the outcome is that of the picture so far. The result follows once they settle. */
   changed(changes: readonly [string, string][], outcome: Outcome | undefined): void {
     if (this.#timer === undefined) this.#saidAt = performance.now();
     for (const [parameter, text] of changes) {
@@ -68,7 +68,7 @@ export class News {
       const value = this.#source.get(parameter);
       this.#emit('slam-change', { parameter, value, text, outcome });
     }
-    // What goes on by itself leaves the address to the widget that the reader has set.
+    // A playback leaves the address to the widget that the reader has set.
     if (changes.length > 0) tellOf(this.#source);
     clearTimeout(this.#timer);
     this.#isNews = true;
@@ -78,23 +78,23 @@ export class News {
     this.#timer = setTimeout(() => this.#settled(), SETTLED_MS);
   }
 
-  /** A run that plays settles only at its end; what it passes is told on the way. */
+  /** A playback settles only at its end; events that it passes are reported on the way. */
   passed({ marks }: Timeline, before: number, now: number): void {
     const passed = marks.filter(({ at }) => before < at && at <= now);
     if (passed.length > 0) this.#say(passed.map(({ label }) => label).join('; '));
   }
 
-  /** Something that came from outside was wrong. */
+  /** A value from outside was invalid. */
   wrong(kind: 'name' | 'value', message: string, subject?: string): void {
     this.#notes.say(message, subject);
     this.#emit('slam-error', { kind, message });
   }
 
-  /** Nothing runs any more, until the reader asks for it. */
+  /** Nothing runs until the reader asks for it. */
   failed(error: Error, restart: () => void): void {
     const { note, frame } = this.#parts;
     const box = failureBox(error, () => {
-      // The button goes: the focus stays in the widget.
+      // The button disappears: the focus stays in the widget.
       frame.focus({ preventScroll: true });
       box.remove();
       restart();
@@ -104,7 +104,7 @@ export class News {
     this.#emit('slam-error', { kind, message: error.message });
   }
 
-  /** The element left its page: what has not settled is no news any more. */
+  /** The element left its page: pending results are dropped. */
   stop(): void {
     clearTimeout(this.#timer);
     this.#timer = undefined;

@@ -1,5 +1,5 @@
-// Files between a notebook and w16.10: a log comes in pieces from the kernel's disc, and what the kernel asks for goes
-// back. Nothing of it is a trait, so no notebook keeps a log in its file.
+// Files between a notebook and w16.10: a log comes in pieces from the kernel's disk, and requested files go
+// back. None of it is a trait, so no notebook stores a log in its file.
 
 import type { Model } from '../slam-anywidget';
 import type { SlamWidget } from './element';
@@ -11,7 +11,7 @@ type Wish =
   | { type: 'piece'; name: string; use: FileUse; first: boolean; last: boolean }
   | { type: 'file'; name: string };
 
-/** Carries files while a cell shows the widget; `tell` gives the tables, `end` ends it. */
+/** Transfers files while a cell shows the widget; `tell` sends the tables, `end` ends it. */
 export function exchangeFiles(model: Model, widget: SlamWidget): { tell: () => void; end: () => void } {
   if (widget.name !== 'w16.10' || model.send === undefined) return { tell: () => {}, end: () => {} };
   const pieces = new Map<FileUse, Uint8Array<ArrayBuffer>[]>();
@@ -37,7 +37,7 @@ export function exchangeFiles(model: Model, widget: SlamWidget): { tell: () => v
       model.send?.({ type: 'refused', name, why: (error as Error).message });
     }
   };
-  /** Once nothing more is under way. */
+  /** Once no transfer is under way. */
   const tell = (): void => {
     void widget.tables().then((tables) => {
       model.set('tables', Object.fromEntries(tables.map(({ id, csv }) => [id, csv])));
@@ -45,7 +45,7 @@ export function exchangeFiles(model: Model, widget: SlamWidget): { tell: () => v
     });
   };
   model.on('msg:custom', hear);
-  // A cell that is shown anew has to be given its files again.
+  // A cell that is shown again needs its files again.
   widget.addEventListener('slam-ready', () => model.send?.({ type: 'ready' }), { once: true });
   return { tell, end: () => model.off('msg:custom', hear) };
 }

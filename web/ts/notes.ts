@@ -1,4 +1,4 @@
-// What a widget has to say about what came from outside: lines of text under the picture.
+// Messages of a widget about input from outside: lines of text under the picture.
 
 import { create, marked } from './dom';
 
@@ -10,7 +10,7 @@ export class Notes {
     this.#box = box;
   }
 
-  /** Says something; about one subject only the latest stands. As text, never as HTML. */
+  /** Shows a message; of one subject only the latest stays. As text, never as HTML. */
   say(message: string, subject?: string): void {
     const line = create('p');
     line.append(...marked(message));
@@ -21,7 +21,7 @@ export class Notes {
     this.#box.append(line);
   }
 
-  /** What was wrong with a subject is right now. */
+  /** Removes the message about a subject, which is valid now. */
   settle(subject: string): void {
     this.#lines.get(subject)?.remove();
     this.#lines.delete(subject);

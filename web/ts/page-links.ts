@@ -1,6 +1,6 @@
 // Numbers in the text that set a widget: <a class="slam-link" href="?w=16.1&heading=60">60°</a>.
-// Without script the link opens the page with that state; with it the widget on the page takes it.
-// Where the page keeps states in its address, each link is an entry of the browser's history.
+// Without script the link opens the page with that state; with script the widget on the page is set to it. If
+// the page keeps states in its address, each link is an entry of the browser's history.
 
 import { keepEntry, pushEntry, statesIn } from './address';
 import { SlamWidget } from './element';
@@ -22,7 +22,7 @@ export function installLinks(): void {
   showAddressed();
 }
 
-/** Sets the widget that a link names; false where it is not on this page. */
+/** Sets the widget that a link names; returns false if it is not on this page. */
 function follow(link: HTMLAnchorElement): boolean {
   const linked = readQuery(link.search);
   if (linked === undefined || !('widget' in linked)) return false;
@@ -37,7 +37,7 @@ function follow(link: HTMLAnchorElement): boolean {
   return true;
 }
 
-/** Puts every linked widget into the state that an entry of the history keeps. */
+/** Restores the state of every linked widget from a history entry. */
 function returnTo(entry: unknown): void {
   endWayBack();
   for (const [name, query] of statesIn(entry)) {
@@ -47,7 +47,7 @@ function returnTo(entry: unknown): void {
   }
 }
 
-/** A query names a whole state: what it leaves out goes back to its default. What is opened stays open. */
+/** A query contains a whole state: missing parameters get their defaults. Opened parts stay open. */
 function setWhole(widget: SlamWidget, { widget: spec, values }: LinkedState): void {
   const asked = new Map(values);
   for (const param of spec.params) {
@@ -56,7 +56,7 @@ function setWhole(widget: SlamWidget, { widget: spec, values }: LinkedState): vo
   }
 }
 
-/** A page that was opened by a link with a state shows that widget. */
+/** A page that was opened by a link with a state scrolls to that widget. */
 function showAddressed(): void {
   const linked = readQuery(location.search);
   if (linked === undefined || !('widget' in linked) || location.hash !== '') return;
@@ -69,7 +69,7 @@ function widgetNamed(name: string): SlamWidget | undefined {
   return found instanceof SlamWidget ? found : undefined;
 }
 
-/** Scrolls where less than half of the widget, or of the screen, shows it; says whether it did. */
+/** Scrolls if less than half of the widget, or of the screen, shows it; returns whether it did. */
 function bringIntoView(widget: SlamWidget): boolean {
   const { top, bottom } = widget.getBoundingClientRect();
   const visible = Math.min(bottom, innerHeight) - Math.max(top, 0);

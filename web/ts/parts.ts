@@ -44,7 +44,7 @@ export function build(shadow: ShadowRoot): Parts {
   return { frame, stage, picture, progress, note, bar, summary, live, status };
 }
 
-/** What went wrong, in one sentence, and a way to go on. */
+/** The error in one sentence, and a button to continue. */
 export function failureBox(error: Error, onAgain: () => void): HTMLElement {
   const isCrash = error instanceof CrashError;
   const box = create('div', { class: 'failure' });
@@ -62,7 +62,7 @@ export function failureBox(error: Error, onAgain: () => void): HTMLElement {
   return box;
 }
 
-/** What a reader can copy into a report of a crash. */
+/** Details of a crash for a report. */
 function crashDetails(text: string): HTMLElement {
   const element = create('details');
   const heading = create('summary');

@@ -1,4 +1,4 @@
-// The picture that stands in for the canvas, and the pixels that are taken from it.
+// The picture that replaces the canvas, and the pixels of frames.
 
 import { addressOf } from './beside';
 import type { Theme } from './theme';
@@ -16,7 +16,7 @@ export class Pictures {
     this.#image = image;
   }
 
-  /** The picture of the start, which the build drew; one of the reader's state is better. */
+  /** The picture of the initial state from the build; a picture of the reader's state is better. */
   showStart(widget: string, theme: Theme): void {
     if (this.#image.src.startsWith('data:')) return;
     const drawn = addressOf(`pictures/${widget}-${theme}.svg`);
@@ -29,7 +29,7 @@ export class Pictures {
     this.#image.alt = alt;
   }
 
-  /** Another widget comes. */
+  /** Switches to another widget. */
   clear(alt: string): void {
     this.#image.removeAttribute('src');
     this.#image.alt = alt;
@@ -47,7 +47,7 @@ export class Pictures {
     }
   }
 
-  /** No frame will come. */
+  /** Rejects, because no frame will come. */
   refuse(reason: Error): void {
     for (const { reject } of this.#wishes.splice(0)) reject(reason);
   }

@@ -1,23 +1,23 @@
-// On a narrow screen the picture and the slider that changes it do not fit together: while a control
-// below it is moved, a copy of the picture stands at the top of the screen.
+// On a narrow screen the picture and the slider that changes it do not fit together: while a control below it
+// is moved, a copy of the picture is shown at the top of the screen.
 
 import type { Box } from './box';
 import { create } from './dom';
 
-/** From this width on, the page has room for both. */
+/** Width from which the page has space for both. */
 const NARROW = '(width < 1100px)';
-/** Of a picture that is seen by more than this, no copy is needed. */
+/** Visible share of a picture above which no copy is needed. */
 const SEEN_SHARE = 0.6;
-/** The copy leaves the rest of the screen to the controls. */
+/** Largest height of the copy as a share of the screen, which leaves the rest to the controls. */
 const MOST_HEIGHT = 0.45;
 /** The title stands above what is drawn, the axis below it. */
 const ABOVE_PX = 54;
 const BELOW_PX = 34;
 
 export interface PinnedHost {
-  /** The part of the canvas that holds the picture; undefined while nothing is drawn. */
+  /** The part of the canvas with the picture; undefined before it is drawn. */
   sceneBox(): Box | undefined;
-  /** Asks for a frame. */
+  /** Requests a frame. */
   wake(): void;
 }
 
@@ -39,7 +39,7 @@ export class Pinned {
     bar.addEventListener('focusout', () => this.#set(false));
   }
 
-  /** What listens beyond the element; returns what ends it. */
+  /** Adds listeners beyond the element; returns a function that removes them. */
   watch(): () => void {
     const end = (): void => this.#set(this.#holdsControl());
     const moves = ['pointerup', 'pointercancel', 'blur'];
@@ -63,7 +63,7 @@ export class Pinned {
     this.#show(canvas, box);
   }
 
-  /** The pointer went down below the picture: on a control. */
+  /** The pointer was pressed below the picture: on a control. */
   #begin({ clientY, target }: PointerEvent): void {
     const box = this.#host.sceneBox();
     if (box === undefined || !(target instanceof HTMLCanvasElement)) return;

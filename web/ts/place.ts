@@ -1,7 +1,7 @@
-// The room that a widget takes before its first frame and while it rests: the text around it stays
-// where it is when the canvas comes and goes.
+// Reserves the space of a widget before its first frame and while it rests, so that the text around it does
+// not move when the canvas comes and goes.
 
-/** Widths of a canvas with the heights that the widget needs there, in CSS pixels, ascending. */
+/** Widths of a canvas with the widget's height at each of them, in CSS pixels, ascending. */
 export type Heights = readonly (readonly [width: number, height: number])[];
 
 export class Place {
@@ -13,21 +13,21 @@ export class Place {
     this.#stage = stage;
   }
 
-  /** A widget comes: so high it will be at its defaults. */
+  /** Reserves the height of a widget at its defaults. */
   reserve(heights: Heights): void {
     this.#heights = heights;
     this.#kept = undefined;
     this.fit();
   }
 
-  /** The canvas goes: its picture takes as much room. */
+  /** The canvas goes: its picture takes the same space. */
   keep(): void {
     const { clientWidth: width, clientHeight: height } = this.#stage;
     this.#kept = { width, height };
     this.fit();
   }
 
-  /** The width may have changed, or the height that the page has for it. */
+  /** Updates after a possible change of the width or of the available height. */
   fit(): void {
     const width = this.#stage.clientWidth;
     if (width === 0) return;
@@ -36,7 +36,7 @@ export class Place {
     else this.#stage.style.setProperty('--place', `${Math.min(height, this.room)}px`);
   }
 
-  /** What the page has for the canvas: infinite where the element has no `max-height` in its style. */
+  /** The available height: infinite if the element has no `max-height` in its style. */
   get room(): number {
     const frame = this.#stage.parentElement;
     const { host } = this.#stage.getRootNode() as ShadowRoot;
@@ -45,13 +45,13 @@ export class Place {
     return parseFloat(most) - (frame.offsetHeight - this.#stage.offsetHeight);
   }
 
-  /** Nothing will be drawn: the picture takes the room that it likes. */
+  /** Nothing will be drawn: the picture takes its natural space. */
   free(): void {
     this.#stage.style.removeProperty('--place');
   }
 }
 
-/** Between two widths of the table in proportion, beyond its ends as at them. */
+/** Interpolates between two widths of the table; constant beyond its ends. */
 function heightAt(heights: Heights, width: number): number | undefined {
   const next = heights.findIndex(([known]) => known >= width);
   const [below, above] = [heights.at(next - 1), heights.at(next)];

@@ -7,9 +7,10 @@
 //     <p data-why>The walls of an almost square room fit after a quarter turn, too.</p>
 //   </slam-predict>
 //
-// A choice is compared with the verdict of the widget. With `fact="rmse_m" tolerance="0.02"` the
-// reader types a number, which is compared with that fact of the outcome. With a fact and choices, a choice says of
-// which values it is right: `<li data-choice="smaller" data-to="0.02">`, from the first value to below the second.
+// A choice is compared with the verdict of the widget. With `fact="rmse_m" tolerance="0.02"` the reader types
+// a number, which is compared with that fact of the outcome. With a fact and choices, each choice is right
+// for a range of values: `<li data-choice="smaller" data-to="0.02">`, from the first value to below the
+// second.
 
 // @ts-expect-error: stays a file of its own beside this one.
 import './slam-widget.js';
@@ -32,7 +33,7 @@ input[type='number'], button { font: inherit; min-height: 2rem; padding: 0.1rem 
 .answer:not(:empty) { border-top: 1px solid currentColor; margin-top: 0.75rem; }
 `;
 
-/** A result is told with so many decimals at least. */
+/** Smallest number of decimals of a result. */
 const DECIMALS = 3;
 
 export class SlamPredict extends HTMLElement {
@@ -104,7 +105,7 @@ export class SlamPredict extends HTMLElement {
       this.#say([`Your answer could not be checked: ${reason}.`]);
       this.#answer?.append(button('Predict again', () => this.#reset()));
     }
-    // Whoever committed to an answer gets the explanation, even where no widget runs.
+    // After committing to an answer the reader gets the explanation, even if no widget runs.
     this.#showWhy(true);
     // The button that had the focus is disabled now.
     this.#answer?.focus({ preventScroll: true });
@@ -132,7 +133,7 @@ export class SlamPredict extends HTMLElement {
     const { correct, gap, prediction, result } = verdict;
     const unit = this.getAttribute('unit') ?? '';
     const judged = correct ? 'Right.' : 'Not right.';
-    // The widget's own sentence may be about another moment than the number that was asked for.
+    // The widget's own sentence may be about another quantity than the number in question.
     const digits = Math.max(gap === null ? 0 : decimalsOf(prediction), DECIMALS);
     const said = `It is ${Number(result).toFixed(digits)}${unit}.`;
     if (gap === null) {
@@ -141,7 +142,7 @@ export class SlamPredict extends HTMLElement {
     } else {
       this.#say([`${judged} ${said} You said ${prediction}${unit} and are off by ${Math.abs(gap).toPrecision(2)}${unit}.`]);
     }
-    // The widget may stand pages away: the reader decides when to leave the answer.
+    // The widget may be far away: the reader decides when to leave the answer.
     const show = button('Show it in the widget', () => {
       widget.scrollIntoView({ block: 'start' });
       offerWayBack(show, widget, 'the question');
@@ -150,7 +151,7 @@ export class SlamPredict extends HTMLElement {
     this.#answer?.append(show, ' ', again);
   }
 
-  /** A choice as the page words it. */
+  /** The page's words for a choice. */
   #wordsOf(choice: string): string {
     return this.#item(choice)?.textContent?.trim() ?? choice;
   }
@@ -188,7 +189,7 @@ export class SlamPredict extends HTMLElement {
   }
 }
 
-/** What comes out of a state, the rest at its defaults; fails where the widget cannot run. */
+/** The outcome of a state, with defaults for the rest; fails if the widget cannot run. */
 async function outcomeAt(widget: SlamWidget, state: string): Promise<Outcome> {
   await widget.press('defaults');
   for (const [id, text] of new URLSearchParams(state)) widget.set(id, text);

@@ -1,4 +1,4 @@
-// What the widgets say of themselves, written by the core's own code at build time.
+// The descriptions of the widgets, written by the core's own code at build time.
 
 import schemas from '../pkg/schema.json';
 import type { Heights } from './place';
@@ -14,7 +14,7 @@ export interface ParamSpec {
   unit: string;
   kind: 'slider' | 'timeline' | 'seed' | 'choice' | 'switch' | 'text';
   min: number;
-  /** Of a text, the most characters. */
+  /** For a text, the largest number of characters. */
   max: number;
   step: number;
   decimals: number;
@@ -53,7 +53,7 @@ export interface WidgetSpec {
   heights: Heights;
 }
 
-/** The import knows no pairs, only arrays. */
+/** The JSON import has no tuple types, only arrays. */
 export const widgets = schemas as unknown as WidgetSpec[];
 
 export function findWidget(name: string): WidgetSpec | undefined {

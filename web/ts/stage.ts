@@ -1,4 +1,4 @@
-// The canvas with what belongs to it: input that eframe would take from the page is given back.
+// The canvas and its input: events that eframe would take from the page are given back.
 
 import type { Instance } from './instance';
 import { LoadError } from './module';
@@ -14,7 +14,7 @@ export class Stage {
 
   readonly #context: WebGL2RenderingContext;
 
-  /** Puts the canvas on the page; throws a LoadError where the browser cannot draw. */
+  /** Puts the canvas on the page; throws a LoadError if the browser cannot draw. */
   constructor(element: HTMLElement, instance: Instance, label: string, onContextLost: () => void) {
     this.#element = element;
     this.#instance = instance;
@@ -40,7 +40,7 @@ export class Stage {
   /** Runs the instance on the canvas. */
   async start(): Promise<void> {
     const element = this.#element;
-    // eframe focuses its text field as it starts. What is inert cannot be focused.
+    // eframe focuses its text field as it starts. An inert element cannot be focused.
     element.inert = true;
     try {
       await this.#instance.start(this.canvas);
@@ -55,12 +55,12 @@ export class Stage {
     }
   }
 
-  /** Takes the canvas away and gives the context back at once, without waiting for the collector. */
+  /** Removes the canvas and releases the context at once, without waiting for the garbage collector. */
   dispose(): void {
     this.#listening.abort();
     this.#context.getExtension('WEBGL_lose_context')?.loseContext();
     this.canvas.remove();
-    // A start that panicked never ends, and leaves what it had begun.
+    // A start that panicked never ends, and does not clean up.
     this.#element.inert = false;
     for (const agent of this.#element.querySelectorAll('input')) agent.remove();
   }
@@ -96,7 +96,7 @@ export class Stage {
   }
 
   #touchCancel(event: TouchEvent): void {
-    // eframe would cancel what cannot be cancelled any more, for which browsers log an error.
+    // eframe would cancel events that cannot be cancelled any more, for which browsers log an error.
     if (!event.cancelable) Object.defineProperty(event, 'preventDefault', { value: () => {} });
     this.#release();
   }
@@ -107,7 +107,7 @@ export class Stage {
     this.#instance.frames.wake();
   }
 
-  /** egui hears keys while one types into a field of its own; Tab and all else are the page's. */
+  /** egui gets keys while the reader types into one of its fields; Tab and all others belong to the page. */
   #key(event: KeyboardEvent): void {
     this.#instance.frames.wake();
     const typing =
@@ -115,7 +115,7 @@ export class Stage {
       this.#instance.use((widget) => widget.wantsKeyboard());
     if (event.key !== 'Tab' && typing) return;
     event.stopImmediatePropagation();
-    // The page's own shortcuts still hear it: the next slide, the search field.
+    // The page's own shortcuts still get it: the next slide, the search field.
     const { host } = this.#element.getRootNode() as ShadowRoot;
     if (!host.dispatchEvent(new KeyboardEvent(event.type, event))) event.preventDefault();
   }

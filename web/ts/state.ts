@@ -1,4 +1,4 @@
-// The values of one widget: checked where they come in, and always all of them.
+// The values of one widget: checked on input, and always complete.
 
 import { writeQuery } from './links';
 import { findParam, type WidgetSpec } from './schema';
@@ -13,7 +13,7 @@ export class State {
     this.#texts = new Map(spec.params.map((param) => [param.id, defaultText(param)]));
   }
 
-  /** Every value as a link writes it. */
+  /** Every value in the form of a link. */
   get texts(): ReadonlyMap<string, string> {
     return this.#texts;
   }
@@ -22,7 +22,7 @@ export class State {
     return this.#texts.get(id) ?? '';
   }
 
-  /** For JavaScript; undefined where the widget has no such parameter. */
+  /** For JavaScript; undefined if the widget has no such parameter. */
   value(id: string): Value | undefined {
     const spec = findParam(this.spec, id);
     return spec && toValue(spec, this.text(id));
@@ -44,7 +44,7 @@ export class State {
     return writeQuery(this.spec, this.#texts);
   }
 
-  /** Checks what came from outside; keeps nothing. */
+  /** Checks a value from outside; stores nothing. */
   parse(id: string, given: unknown): Parsed {
     const spec = findParam(this.spec, id);
     if (spec !== undefined) return parseValue(spec, given);
@@ -53,14 +53,14 @@ export class State {
     return { ok: false, problem };
   }
 
-  /** What is wrong with the name of a button or a preset, where there is none of that name. */
+  /** The error for an unknown button or preset; undefined for a known one. */
   buttonProblem(id: string): string | undefined {
     const known = [...this.spec.presets, ...this.spec.buttons].map((button) => button.id);
     if (known.includes(id)) return undefined;
     return `${this.spec.id} has no button \`${shorten(id)}\`; it has ${known.join(', ')}`;
   }
 
-  /** Keeps a text that was checked. */
+  /** Stores a checked text. */
   keep(id: string, text: string): void {
     this.#texts.set(id, text);
   }

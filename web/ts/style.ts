@@ -1,4 +1,4 @@
-// The element's own look. Everything inside is laid out here; the page sets width and margins.
+// The element's own style. It lays out everything inside; the page sets width and margins.
 
 import { accent, bad, fair, faint, good, ink, paper, soft } from '../../widgets/palette.json';
 

@@ -1,21 +1,21 @@
-// Texts that a widget takes from a file of the reader's, and gives as one: a world as JSON.
+// Texts that a widget reads from a file of the reader, and writes to one: a world as JSON.
 
 import type { Widget } from '../pkg/glue.js';
 import { saveBlob } from './export';
 import { chooseFiles } from './robot/files';
 
-/** Larger files are no world, bytes: two thousand walls take a tenth of it. */
+/** Largest size of a world, bytes: two thousand walls take a tenth of it. */
 const MOST_BYTES = 1 << 20;
 
 export interface TextFileHost {
   readonly frame: HTMLElement;
-  /** Lets the widget act, once it runs. */
+  /** Executes an action on the widget, once it runs. */
   act(deed: (widget: Widget) => void): void;
-  /** Says what is wrong with a file. */
+  /** Reports an error of a file. */
   refuse(problem: string): void;
 }
 
-/** Does an order of the widget that is about text files; false where it is about something else. */
+/** Executes an order of the widget about text files; returns false for other orders. */
 export function carryTextOrder(order: string, host: TextFileHost): boolean {
   const [head = '', ...lines] = order.split('\n');
   const [name, given = ''] = head.split(' ');
@@ -30,7 +30,7 @@ export function carryTextOrder(order: string, host: TextFileHost): boolean {
   return true;
 }
 
-/** Hands the widget a file of the reader's. */
+/** Passes a file of the reader to the widget. */
 export async function takeTextFile(file: File, host: TextFileHost): Promise<void> {
   if (file.size > MOST_BYTES) {
     host.refuse(`\`${file.name.slice(0, 60)}\` is larger than a world of 1 MB.`);

@@ -1,12 +1,12 @@
-// Light or dark, as the page around has it, and every change of it.
+// The surrounding page's theme, light or dark, and its changes.
 
 export type Theme = 'light' | 'dark';
 
-/** Class names by which frequent page generators say it: Tailwind, Quarto, mdBook, Sphinx. */
+/** Class names of a dark theme in common page generators: Tailwind, Quarto, mdBook, Sphinx. */
 const DARK_CLASSES = ['dark', 'dark-mode', 'quarto-dark', 'theme-dark', 'coal', 'navy', 'ayu'];
 const LIGHT_CLASSES = ['light', 'light-mode', 'quarto-light', 'theme-light', 'rust'];
 const ATTRIBUTES = ['data-theme', 'data-bs-theme', 'data-color-mode', 'data-md-color-scheme'];
-/** JupyterLab says on its body whether its theme is a light one. */
+/** JupyterLab's attribute on its body, which tells whether its theme is light. */
 const JUPYTER_IS_LIGHT = 'data-jp-theme-light';
 
 const systemDark = globalThis.matchMedia?.('(prefers-color-scheme: dark)');
@@ -21,7 +21,7 @@ export function themeOf(element: Element): Theme {
   return systemDark?.matches === true ? 'dark' : 'light';
 }
 
-/** Calls back whenever the theme at an element may have changed; returns what ends it. */
+/** Calls back whenever the theme at an element may have changed; returns a function that ends it. */
 export function watchTheme(element: Element, callback: () => void): () => void {
   const attributeFilter = ['class', ...ATTRIBUTES, JUPYTER_IS_LIGHT];
   for (let at = parentOf(element); at !== null; at = parentOf(at)) {

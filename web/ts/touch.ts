@@ -1,15 +1,15 @@
-// Whose a touch is that starts on something that drags: a swipe up or down is the page's, which
-// scrolls; a swipe across, a tap, and a finger that stays for a moment are the widget's. Two fingers zoom a map
-// that is all of a widget, wherever they start, and drag nothing.
+// Decides who gets a touch that starts on something draggable: a vertical swipe scrolls the page; a
+// horizontal swipe, a tap, and a finger that rests for a moment belong to the widget. Two fingers zoom a
+// full-size map, wherever they start, and drag nothing.
 
-/** A finger that lies still moves by less. */
+/** Largest movement of a finger that rests. */
 const SLACK_PX = 6;
-/** So long a finger stays that means to drag upwards or downwards. */
+/** Time for which a finger rests before a vertical drag. */
 const HOLD_MS = 220;
 
-/** Far outside, where a press is one on nothing. */
+/** Far outside, where a press has no effect. */
 const NOWHERE_PX = -1e4;
-/** No finger of a browser's has that number. */
+/** A pointer id that no browser uses. */
 const NO_FINGER = 1e6;
 
 interface Held {
@@ -17,21 +17,21 @@ interface Held {
   timer: ReturnType<typeof setTimeout>;
 }
 
-/** The widget that is touched. */
+/** The touched widget. */
 export interface Touched {
-  /** Whether something that drags lies there, in CSS pixels from the canvas's corner. */
+  /** Whether something draggable is at that position, in CSS pixels from the canvas's corner. */
   dragsAt(x: number, y: number): boolean;
-  /** Lets go of what is dragged. */
+  /** Ends the drag. */
   letGo(): void;
 }
 
 export class TouchGate {
   readonly #canvas: HTMLCanvasElement;
   readonly #widget: Touched;
-  /** Whether two fingers are the widget's. */
+  /** Whether two fingers belong to the widget. */
   readonly #isPinched: boolean;
   #held: Held | undefined;
-  /** Who has the touch until its end. */
+  /** The owner of the touch until its end. */
   #owner: 'page' | 'widget' | undefined;
 
   constructor(stage: HTMLElement, canvas: HTMLCanvasElement, widget: Touched, signal: AbortSignal) {
@@ -41,7 +41,7 @@ export class TouchGate {
     const early = { capture: true, passive: true, signal };
     stage.addEventListener('pointerdown', (event) => this.#press(event), early);
     stage.addEventListener('touchstart', (event) => this.#start(event), early);
-    // Not passive: a browser scrolls unless it is told not to at the first move that it tells of.
+    // Not passive: a browser scrolls unless the first reported move is cancelled.
     stage.addEventListener('touchmove', (event) => this.#move(event), { capture: true, passive: false, signal });
     stage.addEventListener('touchend', (event) => this.#end(event), early);
     stage.addEventListener('touchcancel', () => this.#forget(), early);
@@ -61,7 +61,7 @@ export class TouchGate {
 
   #start(event: TouchEvent): void {
     const [touch] = event.changedTouches;
-    // One of ours, sent on.
+    // One of our own events.
     if (!event.isTrusted || touch === undefined || event.target !== this.#canvas) return;
     if (event.touches.length > 1) {
       this.#pinch(event, touch);
@@ -73,7 +73,7 @@ export class TouchGate {
     this.#held = { touch, timer: setTimeout(() => this.#sendOn(), HOLD_MS) };
   }
 
-  /** A second finger: what the first one held is let go, and what it may have meant to hold is not taken. */
+  /** A second finger ends the drag of the first one, and cancels a pending one. */
   #pinch(event: TouchEvent, second: Touch): void {
     const first = this.#held?.touch;
     const isOurs = this.#isPinched && this.#owner !== 'page' && event.touches.length === 2;
@@ -82,8 +82,8 @@ export class TouchGate {
     if (!isOurs) return;
     event.stopPropagation();
     if (first === undefined) this.#widget.letGo();
-    // eframe presses where the finger is that it follows: where one of that number is down, it follows the same as
-    // before. So it first hears of one that is nowhere.
+    // eframe presses at the position of the finger that it follows. If a finger of that number is down, it
+    // follows the same one as before, so it first gets one far outside.
     const nowhere = new Touch({
       identifier: NO_FINGER,
       target: this.#canvas,
@@ -120,12 +120,12 @@ export class TouchGate {
 
   #end(event: TouchEvent): void {
     if (this.#owner === 'page') event.stopPropagation();
-    // What neither moved nor stayed was a tap.
+    // Neither movement nor a rest: it was a tap.
     this.#sendOn();
     this.#owner = undefined;
   }
 
-  /** The widget hears of the touch as if it had just begun. */
+  /** Passes the touch to the widget as if it had just begun. */
   #sendOn(): void {
     const held = this.#held;
     if (held === undefined) return;
@@ -133,7 +133,7 @@ export class TouchGate {
     this.#owner = 'widget';
     const touches = [held.touch];
     const { clientX, clientY } = held.touch;
-    // At this one eframe runs at once: a press and what follows it are never of the same frame.
+    // eframe runs at once on this event: a press and the next event are never in the same frame.
     this.#canvas.dispatchEvent(
       new PointerEvent('pointerdown', { pointerType: 'touch', clientX, clientY, buttons: 1, bubbles: true }),
     );

@@ -1,6 +1,5 @@
-// Values as links, attributes and messages write them. The rules are those of the core
-// (`ParamSpec::parse`), so that a link can be checked before any wasm is loaded; a test compares
-// the two on the same texts.
+// Values in the form of links, attributes and messages. The rules are those of the core (`ParamSpec::parse`),
+// which allows checking a link before any wasm is loaded; a test compares the two on the same texts.
 
 import type { ParamSpec } from './schema';
 
@@ -12,7 +11,7 @@ export type Parsed = { ok: true; text: string } | { ok: false; problem: string }
 const WORD = /^[\w-]*$/;
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
-/** Checks what a reader, a link or a program gave. */
+/** Checks a value from a reader, a link or a program. */
 export function parseValue(spec: ParamSpec, given: unknown): Parsed {
   const text = String(given).trim();
   const refuse = (expected: string): Parsed => ({
@@ -29,7 +28,7 @@ export function parseValue(spec: ParamSpec, given: unknown): Parsed {
       if (['off', '0', 'false'].includes(text)) return { ok: true, text: 'off' };
       return refuse('on or off');
     case 'text':
-      // What the text says is checked by the core, once it runs.
+      // The core checks the contents of the text once it runs.
       return text.length <= spec.max && WORD.test(text)
         ? { ok: true, text }
         : refuse(`at most ${spec.max} letters, digits, - and _`);
@@ -46,7 +45,7 @@ export function parseValue(spec: ParamSpec, given: unknown): Parsed {
   }
 }
 
-/** The default as a link writes it. */
+/** The default in the form of a link. */
 export function defaultText(spec: ParamSpec): string {
   if (spec.kind === 'choice') return spec.options[spec.default]?.id ?? '';
   if (spec.kind === 'switch') return spec.default === 0 ? 'off' : 'on';
@@ -66,7 +65,7 @@ export function toLabel(spec: ParamSpec, text: string): string {
     return spec.options.find((option) => option.id === text)?.label ?? text;
   }
   if (spec.kind === 'switch') return text;
-  // Nobody reads it.
+  // This text is never shown.
   if (spec.kind === 'text') return text === '' ? 'none' : 'what it was';
   const value = Number(text);
   const onStep = Math.abs(value - Number(value.toFixed(spec.decimals))) < 1e-9;
@@ -74,7 +73,7 @@ export function toLabel(spec: ParamSpec, text: string): string {
   return spec.unit === '' || spec.unit === '°' ? number + spec.unit : `${number} ${spec.unit}`;
 }
 
-/** Texts from outside are shown, but not at any length. */
+/** Shortens a text from outside for display. */
 export function shorten(text: string): string {
   return text.length > 60 ? `${text.slice(0, 60)}…` : text;
 }

@@ -1,4 +1,4 @@
-// Where a widget is on the screen: near enough to start, in view, or far away.
+// The position of a widget relative to the screen: near enough to start, in view, or far away.
 
 export interface Visibility {
   near(isNear: boolean): void;
@@ -6,7 +6,7 @@ export interface Visibility {
   far(isFar: boolean): void;
 }
 
-/** Starts within a third of a screen, gives its context back beyond four screens. */
+/** Starts within a third of a screen, releases its context beyond four screens. */
 const NEAR_MARGIN = '33% 0px';
 const FAR_MARGIN = '400% 0px';
 

@@ -1,4 +1,4 @@
-// What leads to a widget that stands elsewhere on the page offers the way back to its sentence.
+// After a jump to a widget elsewhere on the page, offers to return to the sentence.
 
 import { accent } from '../../widgets/palette.json';
 import { create } from './dom';
@@ -36,7 +36,7 @@ export function offerWayBack(link: HTMLElement, target: Element, name = `“${li
   let hasLeft = false;
   const seen = new IntersectionObserver((entries) => {
     const isSeen = entries.at(-1)?.isIntersecting === true;
-    // The page scrolls only after the click: the sentence is still seen at first.
+    // The page scrolls only after the click: the sentence is still visible at first.
     if (isSeen && hasLeft) endWayBack();
     hasLeft ||= !isSeen;
   });

@@ -1,4 +1,4 @@
-// The anywidget module as one file that works alone: what a notebook gets that reaches no server.
+// The anywidget module as one self-contained file, for a notebook without a server.
 
 import { carryFiles } from './beside';
 // @ts-expect-error: the build puts the compressed files here, as text by their names.

@@ -1,6 +1,6 @@
 // The host of a widget that shows a reader's own log: it keeps the file and the worker that maps it, and
-// carries orders one way and what the worker tells the other. The widget's picture may come and go
-// meanwhile; what was told last is told again to the next one.
+// passes on orders and reports. The widget's picture may come and go meanwhile; the latest reports are
+// repeated to the next one.
 
 import type { Widget } from '../../pkg/glue.js';
 import { saveBlob } from '../export';
@@ -13,22 +13,22 @@ declare const ROBOT_WASM_FILE: string;
 declare const ROBOT_WORKER_FILE: string;
 declare const SAMPLE_FILES: readonly string[];
 
-/** What is a reference and no log, by the ends of names. */
+/** Extensions of files that are a reference instead of a log. */
 const REFERENCES = ['.relations', '.tum'];
-/** What the file picker offers first; a recording of several files may have a description. */
+/** The file types that the picker offers first; a recording of several files may have a description. */
 const LOGS = '.yaml,.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd,.g2o,.graph,.toro,.slam2d';
-/** The same for the log of a robot that is looked for. */
+/** The same for the log of a robot to be localized. */
 const SCANS = '.yaml,.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd';
-/** The end of a session's name. */
+/** Extension of a session. */
 const SESSION = '.slam2d';
-/** The stage in which the map stands. */
+/** The stage in which the map is finished. */
 const DONE = 5;
-/** Larger references are none, bytes. */
+/** Largest size of a reference, bytes. */
 const MOST_REFERENCE = 1 << 28;
-/** So often a file is begun again whose mapping broke. */
+/** Number of times that a file is restarted after a crash. */
 const MOST_CRASHES = 1;
 
-/** What a file is for: to become the map, to be looked for on the map that is there, or to grade it. */
+/** The purpose of a file: to become the map, to be localized on the current map, or to grade it. */
 export type FileUse = 'map' | 'where' | 'grade';
 
 const NO_WORKER =
@@ -37,14 +37,14 @@ const NO_WORKER =
 
 const program = new ModuleFile(ROBOT_WASM_FILE);
 
-/** A program that asked for a file. */
+/** A program that requested a file. */
 interface Asked {
   take(file: File): void;
   refuse(problem: Error): void;
 }
 
 export interface DeskHost {
-  /** Hands it to the widget, where one runs. */
+  /** Passes it to the widget, if one runs. */
   deliver(deliveries: readonly Delivery[]): void;
   /** Opens the system's dialog for a file. */
   choose(accept: string, chosen: (files: File[]) => void): void;
@@ -52,53 +52,53 @@ export interface DeskHost {
 
 export class Desk {
   readonly #host: DeskHost;
-  /** The last of each kind, in the order in which they first came. */
+  /** The latest of each kind, in the order in which they first came. */
   readonly #latest = new Map<string, Delivery>();
   #worker: Worker | undefined;
-  /** One, or those of a recording. */
+  /** One file, or those of a recording. */
   #files: File[] = [];
   #reference: File | undefined;
   /** A reference that came before its log. */
   #early: File | undefined;
-  /** What was ordered before the worker was there. */
+  /** Orders before the worker was ready. */
   #waiting: Order[] = [];
-  /** Whether a log was asked for and not closed. */
+  /** Whether a log was opened and not closed. */
   #isOpen = false;
   #crashes = 0;
-  /** What the reader changed of the graph; done again after a crash. */
+  /** The reader's changes of the graph; repeated after a crash. */
   #edits: string[] = [];
   #owesEdits = false;
-  /** Topics, frames, the place of the laser and what else the reader chose, by option. */
+  /** The reader's options: topics, frames, the pose of the laser and others. */
   readonly #options = new Map<string, string>();
-  /** The log of a robot that is looked for on the map, and where it may be at first. */
+  /** The log of a robot to be localized on the map, and its start pose. */
   #visitor: { files: File[]; start: number[] } | undefined;
   #owesVisitor = false;
-  /** A log that waits for the widget to say where its robot may be. */
+  /** A log that waits for the start pose from the widget. */
   #dropped: File[] | undefined;
-  /** What a log is for that is dropped. */
+  /** The purpose of a dropped log. */
   #dropUse: FileUse = 'map';
-  /** Programs that wait for a file to be written, by its name. */
+  /** Programs that wait for a file, by its name. */
   readonly #asked = new Map<string, Asked[]>();
-  /** Whether the map stands. */
+  /** Whether the map is finished. */
   #stands = false;
-  /** Counts the files: what comes late of an older one is dropped. */
+  /** Counts the files: late reports about an older one are dropped. */
   #turn = 0;
 
   constructor(host: DeskHost) {
     this.#host = host;
   }
 
-  /** Tells a new picture all that is known. */
+  /** Sends a new picture all that is known. */
   restore(widget: Widget): void {
     for (const delivery of this.#latest.values()) hand(widget, delivery);
   }
 
-  /** Does what the widget asks. */
+  /** Executes an order of the widget. */
   order(order: string): void {
     const [name = '', ...words] = order.split(' ');
     switch (name) {
       case 'open':
-        // A reference that the reader picked here all the same grades the map that is there.
+        // A reference that the reader picks here grades the current map all the same.
         this.#host.choose(LOGS, (files) => this.take(files, 'map'));
         break;
       case 'reference':
@@ -139,14 +139,14 @@ export class Desk {
     }
   }
 
-  /** Takes files that were dropped or handed over: a log, a reference, or both; a session and a log for it. */
+  /** Accepts files that were dropped or passed: a log, a reference, or both; a session and a log for it. */
   take(files: readonly File[], asked?: FileUse): void {
     const use = asked ?? this.#dropUse;
     const ends = (file: File, end: string): boolean => file.name.toLowerCase().endsWith(end);
     const isReference = (file: File): boolean => use === 'grade' || REFERENCES.some((end) => ends(file, end));
     const given = files.filter((file) => !isReference(file));
     const session = asked === 'where' ? undefined : given.find((file) => ends(file, SESSION));
-    // Several are the parts of one recording.
+    // Several files are the parts of one recording.
     const log = given.filter((file) => file !== session);
     const reference = files.find(isReference);
     if (session !== undefined) {
@@ -154,20 +154,20 @@ export class Desk {
       if (log.length > 0) this.#visit(log, []);
     } else if (log.length > 0 && use === 'where') {
       if (reference !== undefined) void this.#grade(reference);
-      // The widget knows where its robot may be, and asks for it.
+      // The widget provides the start pose and then requests the localization.
       this.#dropped = log;
       this.#host.deliver([told('dropped', nameOf(log))]);
     } else if (log.length > 0) this.open(log, reference);
     else if (reference !== undefined) void this.#grade(reference);
   }
 
-  /** Maps a log from its start; what was mapped before is gone. */
+  /** Maps a log from its start; an earlier map is dropped. */
   open(files: File[], reference?: File): void {
     this.#renew();
     this.#setOut(files, reference);
   }
 
-  /** The bytes of a file that can be saved; rejects with a sentence where there is nothing to write. */
+  /** The bytes of a file that can be saved; rejects with a sentence if there is no data for it. */
   file(name: string): Promise<File> {
     return new Promise((take, refuse) => {
       if (this.#worker === undefined) {
@@ -184,7 +184,7 @@ export class Desk {
     return this.#asked.get(name)?.shift();
   }
 
-  /** Gives worker and memory back. */
+  /** Releases worker and memory. */
   close(): void {
     this.#turn += 1;
     for (const { refuse } of [...this.#asked.values()].flat()) refuse(new Error('The log was closed.'));
@@ -194,12 +194,12 @@ export class Desk {
     this.#waiting = [];
   }
 
-  /** Breaks the program on purpose, for tests of the recovery. */
+  /** Crashes the program on purpose, to test the recovery. */
   crashForTest(): void {
     this.#send({ order: 'crash-for-test' });
   }
 
-  /** Another file was asked for, or none: what is ordered from now on is meant for it. */
+  /** Prepares for another file, or none; later orders are for it. */
   #renew(): void {
     this.close();
     this.#isOpen = true;
@@ -207,14 +207,17 @@ export class Desk {
     this.#beginAnew();
   }
 
-  /** Nothing that was done with the map before is done again. */
+  /** Forgets the changes of the earlier map. */
   #beginAnew(): void {
     this.#crashes = 0;
     this.#edits = [];
     this.#visitor = undefined;
   }
 
-  /** Another value of an option, such as `scan-topic /front`, or none of any: the same log is mapped from its start. */
+  /**
+   * Sets another value of an option, such as `scan-topic /front`, or resets all; the same log is mapped from
+   * its start.
+   */
   choose(option: string | undefined): void {
     const files = this.#files;
     if (files.length === 0) {
@@ -232,7 +235,7 @@ export class Desk {
     void this.#begin(files);
   }
 
-  /** The options of the command that the log is mapped with. */
+  /** The command-line options with which the log is mapped. */
   get chosen(): string[] {
     return [...this.#options].map(([name, value]) => `--${name} ${value}`.trimEnd());
   }
@@ -241,7 +244,7 @@ export class Desk {
     return this.chosen.map((option) => option.slice(2)).join('\n');
   }
 
-  /** Looks for the robot of a log on the map, once that stands. */
+  /** Localizes the robot of a log on the map, once that is finished. */
   #visit(files: File[], start: readonly string[]): void {
     const name = nameOf(files);
     if (!this.#isOpen) {
@@ -364,7 +367,7 @@ export class Desk {
     this.#tell([told('failed', sentence)]);
   }
 
-  /** Once the map stands, what waits for it is done; after a crash that is all that the reader did. */
+  /** Once the map is finished, waiting work is done; after a crash that includes all changes by the reader. */
   #doAgain(deliveries: readonly Delivery[]): void {
     if (!deliveries.some(({ kind, numbers }) => kind === 'stage' && numbers[0] === DONE)) return;
     this.#stands = true;
@@ -374,7 +377,7 @@ export class Desk {
     this.#owesVisitor = false;
   }
 
-  /** A keyframe that is dragged needs its last place alone. */
+  /** Only the last pose of a dragged keyframe is kept. */
   #keepEdit(order: string): void {
     const pinned = (text: string | undefined): string => /^pin \d+ /.exec(text ?? '')?.[0] ?? '';
     if (pinned(order) !== '' && pinned(order) === pinned(this.#edits.at(-1))) this.#edits.pop();
@@ -388,7 +391,7 @@ export class Desk {
       return;
     }
     this.#reference = file;
-    // Before the worker is there it is not needed: it is sent as that starts.
+    // Before the worker is ready it waits: it is sent at the start.
     if (this.#worker !== undefined) await this.#sendReference(file);
   }
 
@@ -418,20 +421,21 @@ export class Desk {
   }
 }
 
-/** What a log of several files is called until the worker has put them in order. */
+/** The name of a log of several files until the worker has sorted them. */
 function nameOf([first, ...rest]: readonly File[]): string {
   const more = rest.length === 0 ? '' : ` and ${rest.length} more`;
   return `${first?.name ?? ''}${more}`;
 }
 
-/** Hands a delivery to a widget's model. */
+/** Passes a delivery to a widget's model. */
 export function hand(widget: Widget, { kind, text, numbers, bytes }: Delivery): void {
   widget.deliver(kind, text, numbers, bytes);
 }
 
 /**
- * A page from elsewhere may not start our script as a worker, but one of its own that takes ours in. A sandboxed frame
- * is from elsewhere whatever its address says, and what it makes itself may be no module but in an address.
+ * A page of another origin may not start our script as a worker, but may start its own one that imports
+ * ours. A sandboxed frame has another origin regardless of its address, and its own script may only be a
+ * module in a data address.
  */
 async function startWorker(): Promise<Worker> {
   const address = addressOf(ROBOT_WORKER_FILE);

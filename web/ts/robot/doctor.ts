@@ -1,5 +1,5 @@
-// The doctor's screen above the picture: what is right, repaired or wrong about a log, what answers it, and
-// where the laser sits. What it shows is the worker's; this only lays it out.
+// The doctor's report above the picture: what is right, repaired or wrong about a log, the options that
+// correct it, and the pose of the laser. The worker computes it; this only lays it out.
 
 import { create, keepKeys } from '../dom';
 import type { Delivery } from './protocol';
@@ -9,13 +9,13 @@ export type Verdict = 'good' | 'mended' | 'wrong';
 export interface Remark {
   part: 'file' | 'sensor' | 'odometry' | 'mounting' | 'clocks';
   verdict: Verdict;
-  /** A sentence, without a point at its end. */
+  /** A sentence, without a full stop. */
   text: string;
-  /** Options of the command that answer it: any of them, not all. */
+  /** Options of the command that correct it: any of them, not all. */
   options?: string[];
 }
 
-/** What `slam2d doctor --json` prints, as far as it is shown here. */
+/** The output of `slam2d doctor --json`, as far as it is shown here. */
 export interface Diagnosis {
   name: string;
   verdict: Verdict;
@@ -27,7 +27,7 @@ export interface Diagnosis {
 export interface DoctorHost {
   /** Maps the log again with an option, or without all of them. */
   choose(option: string | undefined): void;
-  /** The options that it is mapped with now. */
+  /** The options of the current map. */
   chosen(): string[];
 }
 
@@ -52,12 +52,12 @@ export class DoctorScreen {
     keepKeys(this.element);
   }
 
-  /** What was found last of the log that is open. */
+  /** The last report on the open log. */
   get diagnosis(): Diagnosis | undefined {
     return this.#diagnosis;
   }
 
-  /** Takes what the worker tells; says whether its size may have changed. */
+  /** Handles a delivery of the worker; returns whether the size may have changed. */
   hear({ kind, text }: Delivery): boolean {
     if (kind === 'opening') this.#wait(text);
     else if (kind === 'diagnosis') this.#show(JSON.parse(text) as Diagnosis);
@@ -74,7 +74,7 @@ export class DoctorScreen {
     this.#body.replaceChildren();
   }
 
-  /** The same log once more keeps its screen, so that the focus stays; another one comes to an empty one. */
+  /** The same log keeps its report, so that the focus stays; another one starts with an empty one. */
   #wait(name: string): void {
     if (name !== this.#name) this.#hide();
     this.#name = name;
@@ -92,7 +92,7 @@ export class DoctorScreen {
 
   #replace(heading: string, body: HTMLElement[]): void {
     const held = this.#body.contains((this.element.getRootNode() as ShadowRoot).activeElement);
-    // What had the focus goes; the heading stays.
+    // The element with the focus disappears; the heading stays.
     if (held) this.#heading.focus();
     this.#heading.textContent = heading;
     this.#body.replaceChildren(...body);
@@ -122,7 +122,7 @@ export class DoctorScreen {
     return button;
   }
 
-  /** What it is mapped with, and back. */
+  /** The current options, with buttons to reset them. */
   #choices(): HTMLElement {
     const line = create('p');
     const chosen = this.#host.chosen();
@@ -130,7 +130,7 @@ export class DoctorScreen {
     return line;
   }
 
-  /** Where the laser sits, to be set by hand. */
+  /** The pose of the laser, to be set by hand. */
   #laser({ laser }: Diagnosis): HTMLElement {
     const form = create('form');
     const [x = '0', y = '0', heading = '0', flipped] = (laser ?? '').split(',').filter((word) => word !== '');

@@ -1,23 +1,23 @@
-// How a file comes in: dropped on the element, or chosen in the system's dialog.
+// File input: dropped on the element, or chosen in the system's dialog.
 
 import { create } from '../dom';
 
-/** What a dialog asks for. */
+/** The request of a dialog. */
 export interface Wanted {
   accept: string;
   label: string;
   several: boolean;
 }
 
-/** Takes files that are dropped on the frame; returns what ends it. */
+/** Takes files that are dropped on the frame; returns a function that ends it. */
 export function takeDrops(frame: HTMLElement, take: (files: File[]) => void): () => void {
   const listening = new AbortController();
-  // The canvas takes drops as well, reads all of each file, and lets nobody hear of it: the frame comes first.
+  // The canvas handles drops as well, reads each file completely, and stops the event: the frame comes first.
   const first = { signal: listening.signal, capture: true };
   const holdsFiles = ({ dataTransfer }: DragEvent): boolean => dataTransfer?.types.includes('Files') ?? false;
   const show = (isOver: boolean): void => void frame.classList.toggle('dropping', isOver);
   const keep = (event: DragEvent): void => {
-    // Else the browser shows the file in place of the page.
+    // Otherwise the browser shows the file instead of the page.
     event.preventDefault();
     event.stopPropagation();
   };
@@ -38,7 +38,7 @@ export function takeDrops(frame: HTMLElement, take: (files: File[]) => void): ()
       if (!holdsFiles(event) || event.dataTransfer === null) return;
       keep(event);
       const { files, items } = event.dataTransfer;
-      // Entries are to be had in the event alone.
+      // Entries are available only during the event.
       const entries = [...items].map((item) => item.webkitGetAsEntry());
       if (entries.some((entry) => entry?.isDirectory === true)) void filesOf(entries).then(take);
       else take([...files]);
@@ -48,7 +48,7 @@ export function takeDrops(frame: HTMLElement, take: (files: File[]) => void): ()
   return () => listening.abort();
 }
 
-/** The files that were dropped, and those of the folders among them, but not of folders within. */
+/** The dropped files, and those of dropped folders, without nested folders. */
 async function filesOf(entries: readonly (FileSystemEntry | null)[]): Promise<File[]> {
   const found: Promise<File>[] = [];
   const take = (entry: FileSystemEntry | null): void => {
@@ -60,7 +60,7 @@ async function filesOf(entries: readonly (FileSystemEntry | null)[]): Promise<Fi
     if (entry?.isDirectory !== true) continue;
     const reader = (entry as FileSystemDirectoryEntry).createReader();
     const next = (): Promise<FileSystemEntry[]> => new Promise((some, failed) => reader.readEntries(some, failed));
-    // A browser gives a hundred at a time.
+    // A browser returns a hundred at a time.
     for (let some = await next(); some.length > 0; some = await next()) some.forEach(take);
   }
   return Promise.all(found);

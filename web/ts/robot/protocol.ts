@@ -1,6 +1,6 @@
-// What the widget's host and the worker that maps a log say to each other.
+// Messages between the widget's host and the worker that maps a log.
 
-/** One part of what the worker knows, as the widget's model takes it. */
+/** One part of the worker's state, in the form of the widget's model. */
 export interface Delivery {
   kind: string;
   text: string;
@@ -10,9 +10,9 @@ export interface Delivery {
 
 /** To the worker. */
 export type Order =
-  /** Comes first: the program, the files of the log, and the options for it, a line each. */
+  /** Comes first: the program, the files of the log, and the options for it, one per line. */
   | { module: WebAssembly.Module; files: File[]; options: string }
-  /** Another log, for the map: where its robot was, at first about `[x, y, θ]`, or anywhere. */
+  /** Another log, to be localized on the map, starting near `[x, y, θ]`, or anywhere. */
   | { locate: File[]; options: string; start: number[] }
   | { order: string }
   | { reference: Uint8Array; name: string }
@@ -26,12 +26,12 @@ export type Report =
   | { unsaved: string; why: string }
   /** The file cannot be used, in one sentence. */
   | { failed: string }
-  /** The program broke. */
+  /** The program crashed. */
   | { crashed: string };
 
 const NONE = new Uint8Array();
 
-/** A delivery of words alone, or of words and numbers. */
+/** A delivery of text, or of text and numbers. */
 export function told(kind: string, text: string, numbers: number[] = []): Delivery {
   return { kind, text, numbers: Float64Array.from(numbers), bytes: NONE };
 }

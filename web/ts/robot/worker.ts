@@ -1,17 +1,17 @@
-// Maps a log beside the page: the program and the file come first, then what the reader wants. It works
-// in slices, and hears orders in between.
+// Maps a log beside the page: the program and the file come first, then the reader's orders. It works in
+// slices, and handles orders in between.
 
 import init, { Robot } from '../../pkg-robot/slam_robot.js';
 import { told, type Delivery, type Order, type Report } from './protocol';
 
-/** So long it works before it listens. */
+/** Length of a slice. */
 const SLICE_MS = 40;
-/** So often it tells what has changed. */
+/** Interval of the reports about changes. */
 const TELL_MS = 150;
-/** So long after a drag it waits with what costs more than the answer to it. */
+/** Delay of expensive work after a drag. */
 const DRAG_MS = 250;
 
-/** What TypeScript's library for pages does not know: reading a file at once, which workers may. */
+/** FileReaderSync reads a file at once, which workers may; TypeScript's library for pages lacks it. */
 declare class FileReaderSync {
   readAsArrayBuffer(blob: Blob): ArrayBuffer;
 }
@@ -23,7 +23,7 @@ let busyUntil = 0;
 let toldAt = 0;
 const waiting: Order[] = [];
 
-// A message to itself waits for nothing but the messages before it, where a timer waits for milliseconds.
+// A message to itself waits only for the messages before it, while a timer waits for milliseconds.
 const turn = new MessageChannel();
 turn.port1.onmessage = (): void => {
   isScheduled = false;
@@ -36,7 +36,7 @@ self.addEventListener('message', ({ data }: MessageEvent<Order>) => {
   else guard(() => obey(data));
 });
 
-/** Names and sizes of files, and what gives a part of one as the program asks for it. */
+/** Names and sizes of files, and a function that reads a range of one for the program. */
 function readable(files: File[]): [string[], Float64Array, (which: number, from: number, to: number) => Uint8Array] {
   const reader = new FileReaderSync();
   const read = (which: number, from: number, to: number): Uint8Array => {
@@ -50,7 +50,7 @@ async function open(module: WebAssembly.Module, files: File[], options: string):
     await init({ module_or_path: module });
     robot = new Robot(...readable(files), options);
   } catch (error) {
-    // What the program says of a file is a sentence; all else is its own end.
+    // Errors about a file are sentences; any other one is a crash.
     if (error instanceof Error && error.constructor === Error) say({ failed: error.message });
     else say({ crashed: String(error) });
     return;
@@ -59,7 +59,7 @@ async function open(module: WebAssembly.Module, files: File[], options: string):
   schedule();
 }
 
-/** A panic ends the program: the host makes another worker. */
+/** A panic ends the program: the host creates another worker. */
 function guard(act: () => void): void {
   try {
     act();
@@ -103,7 +103,7 @@ function locate(on: Robot, log: File[], options: string, start: number[]): void 
   try {
     on.locate(...readable(log), options, Float64Array.from(start));
     if (isHeld) hold(false);
-    // What was said while it had to wait is over.
+    // Clears the message about the wait.
     say({ deliveries: [told('answer', '')] });
     tell(on);
   } catch (error) {
@@ -120,7 +120,7 @@ function grade(by: Robot, bytes: Uint8Array, name: string): void {
   }
 }
 
-/** Says what the program refused; a panic is not for saying. */
+/** Reports an error of the program; a panic propagates. */
 function answer(error: unknown): void {
   say({ deliveries: [told('answer', refusal(error))] });
 }

@@ -138,7 +138,7 @@ fn a_contradicting_loop_is_reported_and_shown_first() {
     );
     let tables = robot.shown_tables();
     assert_eq!(tables[0].rows[0][0], "▸ 0");
-    assert_eq!(tables[0].rows[1][6], "turned away");
+    assert_eq!(tables[0].rows[1][6], "rejected");
 }
 
 #[test]
@@ -252,7 +252,7 @@ fn a_selected_loop_is_described_with_its_evidence() {
     let first = "The loop of the list goes from keyframe 3 to 0: closed; 0.80 of the scan fits, 0.020 m off; χ² 20.0 of 16.3.";
     assert!(robot.summary().ends_with(first), "{}", robot.summary());
     robot.press("next").unwrap();
-    let second = "from keyframe 4 to 1: turned away, because 12 points fit, 30 are asked; 0.30 of the scan fits";
+    let second = "from keyframe 4 to 1: rejected, because 12 points fit, 30 are asked; 0.30 of the scan fits";
     let said = robot.outcome().sentence;
     assert!(said.contains(second), "{said}");
     assert_eq!(robot.summary().matches(second).count(), 1);

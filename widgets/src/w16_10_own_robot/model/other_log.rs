@@ -1,5 +1,5 @@
 //! The worker's report on another log on this map: the pose of its robot, scan by scan.
-//! `web/robot/src/other_log.rs` defines the numbers.
+//! `web/robot/src/whereabouts.rs` defines the numbers.
 
 use kit::outside::Delivery;
 

@@ -194,8 +194,8 @@ pub fn evidence(link: &Link) -> String {
 pub fn verdict(link: &Link) -> &'static str {
     match link.verdict {
         Verdict::Closed => "closed",
-        Verdict::Rejected => "turned away",
-        Verdict::Removed => "refused by you",
+        Verdict::Rejected => "rejected",
+        Verdict::Removed => "rejected by you",
         Verdict::Added => "closed by you",
     }
 }

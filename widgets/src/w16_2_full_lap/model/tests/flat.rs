@@ -166,7 +166,7 @@ fn the_turn_stays_at_its_way_point_while_others_come_and_go() {
 fn buttons_select_move_and_remove_like_the_pointer() {
     let mut model = editing(1.0);
     press(&mut model, "west");
-    assert!(model.outcome().sentence.starts_with("nothing is chosen"));
+    assert!(model.outcome().sentence.starts_with("nothing is selected"));
     press(&mut model, "piece-on");
     assert_eq!(model.piece(), Some(Piece::Wall(0)));
     press(&mut model, "piece-back");

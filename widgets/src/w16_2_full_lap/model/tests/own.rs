@@ -32,7 +32,11 @@ fn the_settings_define_the_loop_and_the_picture_shows_where_its_error_goes() {
         model.runs.graph.poses_at(129).len(),
         shown_nodes(&model).len()
     );
-    assert!(scene.panels[1].title.starts_with("Your loop 40 to 12"));
+    assert!(
+        scene.panels[1]
+            .title
+            .starts_with("Close-up of your loop 40 to 12")
+    );
     set(&mut model, "own-gate", 1.0);
     assert_eq!(model.outcome().verdict, "your loop rejected");
     assert!(fact(&model, "own_shift_m").is_nan());

@@ -179,7 +179,10 @@ fn the_future_is_drawn_only_on_request() {
         let rows = if future == 0.0 { 92 } else { 130 };
         assert_eq!(table(&model, "errors-over-time").len(), rows);
         let title = |model: &FullLap| model.scene().panels[1].title.clone();
-        assert_eq!(title(&model).starts_with("Loop 29 to 7"), future == 1.0);
+        assert_eq!(
+            title(&model).starts_with("Close-up of loop 29 to 7"),
+            future == 1.0
+        );
     }
     let seen = table(&model, "run");
     set(&mut model, "future", 0.0);
@@ -193,7 +196,7 @@ fn the_future_is_drawn_only_on_request() {
     };
     assert_eq!(closeup(50.0), "No loop tried so far");
     for tick in [92.0, 106.0] {
-        assert!(closeup(tick).starts_with("Loop 29 to 7"));
+        assert!(closeup(tick).starts_with("Close-up of loop 29 to 7"));
     }
 }
 
