@@ -8,7 +8,7 @@ use ch16_slam2d::chi_squared::quantile3;
 use nalgebra::Matrix3;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pr_geom::SE2;
-use pr_optim::robust::{GncSettings, believe, is_sequential};
+use pr_optim::robust::{GncSettings, is_sequential, select_inliers};
 use pr_optim::{
     Between, JacobianModel, Method, Optimizer, Problem, RobustKernel, Session, Settings, Start,
     StopReason,
@@ -397,16 +397,16 @@ impl PoseGraph {
     ///
     /// Raises OptimizeError if no start leads to equations that can be solved.
     fn inlier_edges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let belief = py.detach(|| {
+        let selection = py.detach(|| {
             let problem = self.tied()?;
             let trusted: Vec<bool> = problem.factors().iter().map(is_sequential).collect();
             let solver = Settings {
                 jacobians: JacobianModel::Exact,
                 ..Settings::default()
             };
-            believe(&problem, &trusted, solver, &GncSettings::default()).map_err(told)
+            select_inliers(&problem, &trusted, solver, &GncSettings::default()).map_err(told)
         });
-        Ok(PyArray1::from_vec(py, belief?.inliers))
+        Ok(PyArray1::from_vec(py, selection?.inliers))
     }
 
     /// The same graph with only those edges that `keep` marks, shape (edges,).
