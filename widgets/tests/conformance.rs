@@ -459,7 +459,7 @@ fn every_sentence_of_a_result_has_a_capital_and_a_full_stop() {
                     "{words}"
                 );
                 assert!(words.len() <= outcome.sentence.len() + 1, "{words}");
-                model.settle();
+                model.finish_work();
             }
         }
     }
@@ -513,7 +513,7 @@ fn the_five_colours_mean_the_same_in_every_legend() {
             let mut model = maker();
             model.press(preset.id).unwrap();
             let _ = model.set(MORE.id, 1.0);
-            model.settle();
+            model.finish_work();
             for panel in model.scene().panels {
                 for entry in panel.legend {
                     if !meaning(entry.tone, &entry.label) {

@@ -131,7 +131,7 @@ pub fn icp(
     let normal_radius = within("normal_radius", normal_radius, 1e-6, 1e6, " m")?;
     let trust = TrustConfig {
         sigma_m: within("sigma", sigma, 1e-6, 1e6, " m")?,
-        inflate: within("covariance_scale", covariance_scale, 1e-6, 1e6, "")?,
+        covariance_scale: within("covariance_scale", covariance_scale, 1e-6, 1e6, "")?,
     };
     let (found, map) = py.detach(|| {
         if config.variant == IcpVariant::PointToPlane {

@@ -16,7 +16,7 @@ use robot_io::graph_file::GraphFile;
 use robot_io::log::{LogOptions, LogReader as _};
 use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
-use robot_io::map_image::{MapImage, map_of, map_with_free_space};
+use robot_io::map_image::{MapImage, build_map, map_with_free_space};
 use robot_io::motion::ComparedReader;
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
@@ -204,7 +204,7 @@ impl Pipeline {
         let (parts, read) = parts(&self.log)?;
         let reader = LogFormat::open_parts(parts, &name, &self.options).map_err(told)?;
         let is_alone = self.odometry_use == OdometryUse::None;
-        let mut reader = ComparedReader::new(reader, false).for_scans_alone(is_alone);
+        let mut reader = ComparedReader::new(reader, false).ignoring_odometry(is_alone);
         let mut run = LogRun::new(self.odometry_use);
         for (setting, value) in &self.chosen {
             run = run.with_setting(setting, *value);
@@ -253,7 +253,7 @@ impl Pipeline {
         let draw = if free_space {
             map_with_free_space
         } else {
-            map_of
+            build_map
         };
         let slam = run.slam();
         let trajectory = run.trajectory();
@@ -264,7 +264,7 @@ impl Pipeline {
             covariances: covariances.collect(),
             // A place too large for cells so small has no map here.
             map: draw(&lines, cell_m).ok(),
-            graph: slam.map(Slam::graph).map(GraphFile::of_graph),
+            graph: slam.map(Slam::graph).map(GraphFile::from_pose_graph),
             quality,
             remarks,
         })

@@ -115,8 +115,8 @@ impl Estimator {
                 start: *start,
                 ..SlamConfig::from_robot(robot)
             };
-            let slam =
-                ch16_slam2d::slam::Slam::new(config).with_outlier_test(graph::PoseGraph::believed);
+            let slam = ch16_slam2d::slam::Slam::new(config)
+                .with_outlier_test(graph::PoseGraph::inlier_edges);
             *self = Self::Running(Box::new(slam));
         }
         match self {
@@ -282,7 +282,7 @@ impl Slam {
     fn graph(&self) -> PoseGraph {
         let estimator = self.lock();
         let graph = estimator.slam().map(|slam| slam.graph());
-        PoseGraph::of_file(&graph.map(GraphFile::of_graph).unwrap_or_default())
+        PoseGraph::of_file(&graph.map(GraphFile::from_pose_graph).unwrap_or_default())
     }
 
     fn __repr__(&self) -> String {

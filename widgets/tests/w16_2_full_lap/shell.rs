@@ -91,7 +91,7 @@ fn the_switch_removes_the_loops() {
     harness.run_steps(2);
     assert_eq!(value(&harness, "loops"), 0.0);
     // On a busy machine the lap without loops takes more frames than these.
-    harness.state_mut().settle();
+    harness.state_mut().finish_work();
     harness.run_steps(2);
     assert_eq!(fact(&harness, "loops_closed"), 0.0);
     assert!(harness.state().model().timeline().unwrap().marks.is_empty());

@@ -50,7 +50,7 @@ impl PlaneRows {
     #[must_use]
     pub fn from_scene(scene: &TerrainScene, tau_m: f64) -> Self {
         let config = IcpConfig {
-            tau_m: tau_m,
+            tau_m,
             ..IcpConfig::default()
         };
         let pairs = correspondences(scene.cloud(), scene.map(), SE2::identity(), &config);

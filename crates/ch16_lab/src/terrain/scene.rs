@@ -209,7 +209,7 @@ impl TerrainScene {
     #[must_use]
     pub fn information(&self, tau_m: f64) -> PoseInformation {
         let config = IcpConfig {
-            tau_m: tau_m,
+            tau_m,
             ..IcpConfig::default()
         };
         let mut pairs = correspondences(&self.cloud, &self.map, SE2::identity(), &config);
