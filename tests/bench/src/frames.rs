@@ -49,57 +49,57 @@ pub fn workloads() -> Vec<Workload> {
         frame(
             "frame-w16.1",
             "a frame of w16.1 while its iterations play",
-            || Frames::new(widget("w16.1"), "iteration", [3.0, 4.0]),
+            || Frames::boxed(widget("w16.1"), "iteration", [3.0, 4.0]),
         ),
         frame(
             "frame-w16.2",
             "a frame of w16.2 while its timeline is dragged",
-            || Frames::new(widget("w16.2"), "t", [100.0, 101.0]),
+            || Frames::boxed(widget("w16.2"), "t", [100.0, 101.0]),
         ),
         frame(
             "frame-w16.3",
             "a frame of w16.3 while its crosshair is dragged",
-            || Frames::new(widget("w16.3"), "probe-x", [0.3, 0.31]),
+            || Frames::boxed(widget("w16.3"), "probe-x", [0.3, 0.31]),
         ),
         frame(
             "frame-w16.4",
             "a frame of w16.4 while its timeline is dragged between two keyframes",
-            || Frames::new(widget("w16.4"), "t", [100.0, 101.0]),
+            || Frames::boxed(widget("w16.4"), "t", [100.0, 101.0]),
         ),
         frame(
             "frame-w16.4-grid",
             "a frame of w16.4 that takes a keyframe in or out, and so draws its grid again",
-            || Frames::new(widget("w16.4"), "t", KEYFRAME_TICKS),
+            || Frames::boxed(widget("w16.4"), "t", KEYFRAME_TICKS),
         ),
         drag(
             "frame-w16.5",
             "a frame of w16.5 while a spring is made stiffer, and the graph solved",
-            || Frames::new(widget("w16.5"), "stiffness", [1.0, 2.0]),
+            || Frames::boxed(widget("w16.5"), "stiffness", [1.0, 2.0]),
         ),
         drag(
             "frame-w16.6",
             "a frame of w16.6 while its search is scrubbed",
-            || Frames::new(coarse_search(), "progress", [200.0, 201.0]),
+            || Frames::boxed(coarse_search(), "progress", [200.0, 201.0]),
         ),
         drag(
             "frame-w16.7",
             "a frame of w16.7 while its threshold is dragged",
-            || Frames::new(widget("w16.7"), "called", [4.0, 5.0]),
+            || Frames::boxed(widget("w16.7"), "called", [4.0, 5.0]),
         ),
         drag(
             "frame-w16.9",
             "a frame of w16.9 while its morning is scrubbed",
-            || Frames::new(widget("w16.9"), "moment", [20.0, 21.0]),
+            || Frames::boxed(widget("w16.9"), "moment", [20.0, 21.0]),
         ),
         drag(
             "frame-w16.11",
             "a frame of w16.11 while its matrix turns",
-            || Frames::new(widget("w16.11"), "turn", [40.0, 41.0]),
+            || Frames::boxed(widget("w16.11"), "turn", [40.0, 41.0]),
         ),
         drag(
             "frame-w16.12",
             "a frame of w16.12 while its Jacobian is made worse: four solvers to their ends",
-            || Frames::new(widget("w16.12"), "bias", [5.0, 6.0]),
+            || Frames::boxed(widget("w16.12"), "bias", [5.0, 6.0]),
         ),
     ]
 }
@@ -133,7 +133,7 @@ struct Frames {
 }
 
 impl Frames {
-    fn new(mut shell: Shell, param: &'static str, values: [f64; 2]) -> Box<dyn Run> {
+    fn boxed(mut shell: Shell, param: &'static str, values: [f64; 2]) -> Box<dyn Run> {
         finish_work(shell.model_mut());
         let mut frames = Self {
             shell,
