@@ -20,7 +20,7 @@ use crate::settings::{self, Chosen};
 
 /// SLAM for a planar laser, one scan at a time.
 ///
-/// config: settings by name, as `settings()` lists them: {"reach_m": 0.5, "loops": {"bundle": 6}}. The others have the
+/// config: settings by name, as `settings()` lists them: {"max_correspondence_m": 0.5, "loops": {"bundle": 6}}. The others have the
 ///     values for recorded logs of robots.
 /// sensor: where the beams point.
 /// start: pose of the first scan in the map, shape (3,).

@@ -47,8 +47,8 @@ def test_settings_are_those_of_the_core(drive, mapped):
     [
         ({"reach": 1.0}, "the estimator has no parameter reach; docs/robots-parameters.md lists them"),
         ({"loops": {"reach": 1}}, "the estimator has no parameter loops.reach; docs/robots-parameters.md lists them"),
-        ({"reach_m": -1.0}, "reach_m has to be a finite number that is not negative, not -1"),
-        ({"reach_m": "far"}, "reach_m has to be a number"),
+        ({"max_correspondence_m": -1.0}, "max_correspondence_m must be a finite non-negative number, not -1"),
+        ({"max_correspondence_m": "far"}, "max_correspondence_m has to be a number"),
     ],
 )
 def test_a_wrong_setting_is_refused_in_the_words_of_the_core(drive, config, said):

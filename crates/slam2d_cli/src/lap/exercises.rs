@@ -162,7 +162,7 @@ fn limits(config: &loops::LoopConfig) -> LoopConfig {
         min_inliers: config.min_inliers,
         drift: (config.drift_sigma_m, config.drift_sigma_rad),
         gate: config.gate_chi2,
-        trust: (config.trust.sigma_m, config.trust.inflate),
+        trust: (config.trust.sigma_m, config.trust.covariance_scale),
         ..LoopConfig::default()
     }
 }
