@@ -364,7 +364,8 @@ describe('the chapter', () => {
       // Without a log a map is an empty grid: words stand in its place.
       assert.equal(await tab.locator(`${widget('w16.10')} .stage`).isVisible(), false);
       assert.match(await tab.locator(`${widget('w16.10')} .summary`).innerText(), /log/);
-      assert.ok(await tab.locator(`${widget('w16.1')} .stage`).isVisible());
+      await tab.evaluate(() => dispatchEvent(new Event('beforeprint')));
+      await tab.locator(`${widget('w16.1')} .stage`).waitFor();
       // The answers stand open, asked or not.
       for (const css of ['.exercise details > p', 'slam-predict [data-why]', 'table.results']) {
         for (const part of await tab.locator(css).all()) assert.ok(await part.isVisible(), css);

@@ -87,6 +87,7 @@ it('iframe.html: a sandboxed frame that is set and answers', async () => {
 /** Focuses the first slider of the widget; returns a function that reads its value. */
 async function focusSlider(tab, name) {
   const { id } = h.schema.find((widget) => widget.id === name).params.find(({ kind }) => kind === 'slider');
+  await tab.evaluate(() => document.querySelector('slam-widget').set('more', 'on'));
   await tab.locator(`slam-widget #control-${id}`).focus();
   return () => tab.evaluate((param) => document.querySelector('slam-widget').get(param), id);
 }

@@ -51,7 +51,7 @@ describe('a flat of one’s own', () => {
       assert.equal(await get(tab, 'world'), 'own');
       assert.equal(await walls(tab), 19);
       const after = await outcome(tab);
-      assert.match(after.sentence, /^wall 19 of 19, from \(5, 3\.8\) to \(5, 4\.1\) m; /);
+      assert.match(after.sentence, /^Wall 19 of 19, from \(5, 3\.8\) to \(5, 4\.1\) m; /);
       assert.notDeepEqual(after.facts, before.facts);
       // Two walls from one corner are separate.
       await drag(tab, [1, 1], [2, 1]);
@@ -90,8 +90,8 @@ describe('a flat of one’s own', () => {
       assert.equal(await get(tab, 'piece-number'), 18);
       await tab.keyboard.press('ArrowLeft');
       await changed(tab, '');
-      assert.match((await outcome(tab)).sentence, /^wall 18 of 18, from \(9\.55, 7\.4\)/);
-      const said = () => tab.waitForFunction(() => /^wall 18 of 18, from \(9\.55/
+      assert.match((await outcome(tab)).sentence, /^Wall 18 of 18, from \(9\.55, 7\.4\)/);
+      const said = () => tab.waitForFunction(() => /^Wall 18 of 18, from \(9\.55/
         .test(document.querySelector('slam-widget').shadowRoot.querySelector('[aria-live]').textContent));
       await said();
       const flat = await get(tab, 'flat');

@@ -72,7 +72,7 @@ describe('the graph of w16.2', () => {
         await tab.waitForFunction((number) => {
           const widget = document.querySelector('slam-widget');
           const live = widget.shadowRoot.querySelector('[aria-live]').textContent;
-          return live.startsWith(`keyframe ${number} of tick`) && live === widget.outcome.sentence;
+          return live.startsWith(`Keyframe ${number} of tick`) && live === widget.outcome.sentence;
         }, keyframe);
       }
       await tab.locator('slam-widget select[data-control="pick"]').selectOption('loop');

@@ -58,8 +58,8 @@ export async function writePackageNotices(parts, folder) {
   );
 }
 
-/** The notices as a page in the style of the chapter. */
-export async function writeNoticesPage(parts, folder) {
+/** The notices as a page in the style of the chapter, the file `style`. */
+export async function writeNoticesPage(parts, folder, style) {
   const own = await Promise.all(OWN_LICENCES.map((file) => readFile(path.join(ROOT, file), 'utf8')));
   const texts = textsOf(parts);
   const linkTo = new Map(texts.flatMap(({ anchor, packages }) => packages.map(([one, id]) => [`${titleOf(one)} ${id}`, anchor])));
@@ -84,7 +84,7 @@ export async function writeNoticesPage(parts, folder) {
 <title>Licences and notices: scan matching and the pose graph</title>
 <meta name="color-scheme" content="light dark">
 <link rel="icon" href="data:,">
-<link rel="stylesheet" href="page.css">
+<link rel="stylesheet" href="${style}">
 </head>
 <body>
 <a class="skip" href="#notices">Skip to the notices</a>

@@ -184,5 +184,5 @@ async function bundleScripts(storyFile) {
 /** What the widgets hold, which their build has left, and what the page adds. */
 async function writeNotices(metafiles) {
   const ofWidgets = JSON.parse(await readFile(path.join(root, 'web', 'pkg', 'parts.json'), 'utf8'));
-  await writeNoticesPage([...ofWidgets, ...(await partsOfPage(metafiles))], outDir);
+  await writeNoticesPage([...ofWidgets, ...(await partsOfPage(metafiles))], outDir, names.get('page.css'));
 }

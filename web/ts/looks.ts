@@ -44,7 +44,11 @@ export class Looks {
   watch(): (() => void)[] {
     const ends = [
       watchTheme(this.#host, () => this.showTheme()),
-      listen(window, 'beforeprint', () => this.drawPicture('light')),
+      listen(window, 'beforeprint', () => {
+        // Paper shows every picture, also one that was not near the screen.
+        this.#parts.picture.loading = 'eager';
+        this.drawPicture('light');
+      }),
       this.#pinned.watch(),
     ];
     if (reducedMotion === undefined) return ends;

@@ -387,12 +387,8 @@ impl Localizer {
 
     /// Rebuilds the local map from the keyframes around a pose.
     fn rebuild_local_map(&mut self, pose: &SE2) {
-        let LocalizeConfig {
-            near_m,
-            near_keyframes,
-            ..
-        } = self.config;
-        let near = self.map.near(pose, near_m, near_keyframes);
+        let config = &self.config;
+        let near = self.map.near(pose, config.near_m, config.near_keyframes);
         if near != self.near {
             self.map.build_local(&near, &mut self.local);
             self.near = near;
