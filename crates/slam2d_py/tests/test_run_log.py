@@ -82,7 +82,7 @@ def test_a_file_that_is_no_log_is_refused_in_a_sentence(tmp_path):
     trajectory.write_text("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n")
     for path, said in [
         (empty, f"{empty} is empty; give a recorded log"),
-        (trajectory, f"{trajectory} is a trajectory, not a log of scans; give a log; slam2d evaluate grades a trajectory"),
+        (trajectory, f"{trajectory} is a trajectory, not a log of scans; pass a log; slam2d evaluate evaluates a trajectory"),
         (tmp_path, f"{tmp_path} is a folder without a recording of ROS 2; give a log, or a folder with files that end in .mcap or .db3"),
     ]:
         with pytest.raises(rs.LogError) as refused:

@@ -64,7 +64,7 @@ def test_a_scan_that_cannot_be_used_leaves_the_estimator_as_it_was(drive):
     assert (first.frame, first.keyframe, first.inliers, first.rmse, first.loops) == (0, 0, None, None, [])
     with pytest.raises(rs.FrameError) as refused:
         slam.step(drive.ranges[1], stamp=0.0)
-    assert str(refused.value) == "the frame's stamp 0 s does not follow the last one, 0 s; sort the frames by time"
+    assert str(refused.value) == "the frame's stamp 0 s is not after the last one, 0 s; sort the frames by time"
     with pytest.raises(rs.ArrayError, match=r"ranges has to have the shape \(n,\), not \(2, 60\)"):
         slam.step(drive.ranges[1].reshape(2, 60))
     assert slam.frames == 1
