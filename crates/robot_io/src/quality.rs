@@ -180,54 +180,12 @@ impl LinkQuality {
             chi2: (found.gate.chi2.is_finite() && !is_nowhere).then_some(found.gate.chi2),
             gate_chi2: found.gate.gate_chi2,
             accepted,
-            reason: found.rejection.map(|rejection| reason(&rejection)),
+            reason: found.rejection.map(|rejection| rejection.to_string()),
         }
     }
 
     fn tried(tried: &TriedLoop) -> Self {
         Self::new(&tried.verification, tried.accepted)
-    }
-}
-
-/// The reason of a rejection, in words.
-#[must_use]
-pub fn reason(rejection: &LoopRejection) -> String {
-    match rejection {
-        LoopRejection::PoorFit { rmse_m, max_rmse_m } => {
-            format!("the inliers' RMSE is {rmse_m:.3} m, above {max_rmse_m:.3} m")
-        }
-        LoopRejection::FewInliers {
-            inliers,
-            min_inliers,
-        } => format!("{inliers} inliers, at least {min_inliers} are needed"),
-        LoopRejection::LowScore { score, min_score } => {
-            format!("a score of {score:.2}, at least {min_score:.2} is needed")
-        }
-        LoopRejection::NoPlace {
-            half_width_m,
-            min_score,
-        } => format!("no pose within {half_width_m:.1} m has a score of at least {min_score:.2}"),
-        LoopRejection::Ambiguous { margin, min_margin } => {
-            format!(
-                "ambiguous: the margin over the next best pose is {margin:.2}, at least {min_margin:.2} is needed"
-            )
-        }
-        LoopRejection::Waiting { agreeing, needed } => {
-            format!("pending: {agreeing} loops agree, {needed} are needed")
-        }
-        LoopRejection::OutsideGate(gate) => {
-            format!(
-                "chi-squared {:.1} is above {:.1}",
-                gate.chi2, gate.gate_chi2
-            )
-        }
-        LoopRejection::NoCovariance(error) => format!("the graph has no covariance: {error}"),
-        LoopRejection::OptimizationFailed(stop) => {
-            format!("the graph cannot be optimized with it: {stop}")
-        }
-        LoopRejection::CostRose { before, after } => {
-            format!("the cost rose from {before:.1} to {after:.1}")
-        }
     }
 }
 

@@ -10,7 +10,6 @@ use pr_geom::SE2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use robot_io::graph_file::GraphFile;
-use robot_io::quality::reason;
 
 use crate::arrays;
 use crate::errors::{FrameError, OptimizeError};
@@ -89,7 +88,7 @@ fn tried(py: Python<'_>, attempt: &LoopAttempt) -> PyResult<Py<PyDict>> {
     said.set_item("rmse", found.rmse_m)?;
     said.set_item("inliers", found.inliers)?;
     said.set_item("accepted", attempt.accepted())?;
-    said.set_item("reason", found.rejection.as_ref().map(reason))?;
+    said.set_item("reason", found.rejection.map(|why| why.to_string()))?;
     Ok(said.unbind())
 }
 

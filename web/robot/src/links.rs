@@ -75,7 +75,7 @@ impl Link {
             gate_chi2: found.gate.gate_chi2,
             reason: found
                 .rejection
-                .map_or_else(String::new, |why| robot_io::quality::reason(&why)),
+                .map_or_else(String::new, |why| why.to_string()),
             verdict: if is_in_graph {
                 Verdict::Accepted
             } else {
