@@ -9,6 +9,7 @@ use super::{LoopCandidate, LoopConfig};
 use crate::chapter::{InformationFrame, chapter_information};
 use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
+use crate::local_map::MapRegistration;
 use crate::matching::{MatchRequest, MatchSummary, Matcher};
 use crate::slam::Keyframe;
 
@@ -160,6 +161,36 @@ pub struct LoopVerification {
 }
 
 impl LoopVerification {
+    /// A registration on a local map, started at the belief, with the gate of `gate_information`; not rejected.
+    pub(crate) fn from_registration(
+        from_node: usize,
+        candidate: LoopCandidate,
+        belief: SE2,
+        found: &MapRegistration,
+        gate_information: Matrix3<f64>,
+        gate_chi2: f64,
+    ) -> Self {
+        let registered = found.registered.pose;
+        let innovation = belief.between(&registered).log();
+        Self {
+            from_node,
+            candidate,
+            belief,
+            initial: belief,
+            registered,
+            rmse_m: found.fit.rmse_m,
+            inliers: found.fit.inliers,
+            iterations: found.registered.iterations,
+            score: Some(found.fit.score),
+            margin: None,
+            innovation,
+            gate_information,
+            gate: chi_squared_gate(&innovation, &gate_information, gate_chi2),
+            information: found.information(),
+            rejection: None,
+        }
+    }
+
     /// Whether all tests passed.
     #[must_use]
     pub fn accepted(&self) -> bool {

@@ -23,7 +23,7 @@ use crate::local_map::{
 };
 use crate::loops::{
     Detection, LoopCandidate, LoopConfig, LoopRejection, LoopVerification, PendingLoop,
-    chi_squared_gate, detect_visits,
+    detect_visits,
 };
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
@@ -290,29 +290,25 @@ impl BundleLoops {
         margin: Option<f64>,
         rejection: Option<LoopRejection>,
     ) -> LoopVerification {
-        let registered = found.registered.pose;
         let information = found.information() + Matrix3::identity() * LOOP_FLOOR;
-        let innovation = window.belief.between(&registered).log();
         let own = information.try_inverse().unwrap_or_default();
         let gate_information = (window.covariance + own).try_inverse().unwrap_or_default();
         let is_nowhere = matches!(rejection, Some(LoopRejection::NoPlace { .. }));
         LoopVerification {
-            from_node: node,
-            candidate: window.candidate,
-            belief: window.belief,
             initial,
-            registered,
-            rmse_m: found.fit.rmse_m,
-            inliers: found.fit.inliers,
-            iterations: found.registered.iterations,
             // Without a pose there is no score.
             score: (!is_nowhere).then_some(found.fit.score),
             margin,
-            innovation,
-            gate_information,
-            gate: chi_squared_gate(&innovation, &gate_information, GATE_CHI2),
             information,
             rejection,
+            ..LoopVerification::from_registration(
+                node,
+                window.candidate,
+                window.belief,
+                found,
+                gate_information,
+                GATE_CHI2,
+            )
         }
     }
 

@@ -16,8 +16,7 @@ use super::robots::RobotConfig;
 use crate::graph::{EdgeKind, EdgeView};
 use crate::local_map::{LocalMap, RangeProfile};
 use crate::loops::{
-    Detection, LoopCandidate, LoopConfig, LoopRejection, LoopVerification, chi_squared_gate,
-    detect_visits,
+    Detection, LoopCandidate, LoopConfig, LoopRejection, LoopVerification, detect_visits,
 };
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
@@ -190,32 +189,22 @@ impl Mapper {
         {
             found = map.register(scan, better.best.pose, &stages, None, &settings);
         }
-        let registered = found.registered.pose;
-        let innovation = belief.between(&registered).log();
-        let gate = chi_squared_gate(&innovation, &allowed.information, allowed.chi2);
+        let (gate_information, gate_chi2) = (allowed.information, allowed.chi2);
+        let mut link = LoopVerification::from_registration(
+            node,
+            visit,
+            belief,
+            &found,
+            gate_information,
+            gate_chi2,
+        );
         let score = found.fit.score;
-        let rejection = if score < MIN_SCORE {
+        link.rejection = if score < MIN_SCORE {
             let min_score = MIN_SCORE;
             Some(LoopRejection::LowScore { score, min_score })
         } else {
-            (!gate.passes()).then_some(LoopRejection::OutsideGate(gate))
+            (!link.gate.passes()).then_some(LoopRejection::OutsideGate(link.gate))
         };
-        LoopVerification {
-            from_node: node,
-            candidate: visit,
-            belief,
-            initial: belief,
-            registered,
-            rmse_m: found.fit.rmse_m,
-            inliers: found.fit.inliers,
-            iterations: found.registered.iterations,
-            score: Some(score),
-            margin: None,
-            innovation,
-            gate_information: allowed.information,
-            gate,
-            information: found.information(),
-            rejection,
-        }
+        link
     }
 }
