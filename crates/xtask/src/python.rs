@@ -8,7 +8,7 @@ use std::{env, fs};
 
 use anyhow::{Context as _, bail};
 
-use crate::run::{program, root, run};
+use crate::run::{is_set, program, root, run};
 use crate::tools::linting;
 
 /// What the tests need, one requirement of pip a line.
@@ -200,10 +200,7 @@ pub fn test(
 
 /// Says that something is left out, by the rules of `docs/testing.md`.
 fn leave_out(what: &str, reason: &str, skipped: &Path) -> anyhow::Result<()> {
-    if !matches!(
-        env::var("SLAM_NO_SKIP").as_deref(),
-        Err(_) | Ok("" | "0" | "false")
-    ) {
+    if is_set("SLAM_NO_SKIP") {
         bail!("{what}: {reason}, and SLAM_NO_SKIP lets nothing skip");
     }
     let mut list = OpenOptions::new().append(true).create(true).open(skipped)?;

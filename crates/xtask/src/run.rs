@@ -17,6 +17,14 @@ pub fn cargo() -> Command {
     program(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
+/// Whether an environment variable is set to anything but an empty text, `0` or `false`.
+pub fn is_set(variable: &str) -> bool {
+    !matches!(
+        std::env::var(variable).as_deref(),
+        Err(_) | Ok("" | "0" | "false")
+    )
+}
+
 /// Returns a command that runs in the workspace's root.
 pub fn program(name: impl AsRef<std::ffi::OsStr>) -> Command {
     let mut command = Command::new(name);

@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::{env, fs, hint, thread};
+use std::{fs, hint, thread};
 
 use anyhow::{Context as _, bail};
 use clap::ValueEnum;
 
 use crate::exercises;
 use crate::python::{self, Environment};
-use crate::run::{cargo, program, root, run};
+use crate::run::{cargo, is_set, program, root, run};
 use crate::site::{self, Speed};
 use crate::tools::{self, TARGET, linting};
 
@@ -174,7 +174,7 @@ const GENERATED: [&str; 2] = ["web/slam-widget.d.ts", "docs/parameters.md"];
 
 /// Fails if the build has changed a generated file, on a build machine.
 fn check_generated() -> anyhow::Result<()> {
-    if matches!(env::var("CI").as_deref(), Err(_) | Ok("" | "0" | "false")) {
+    if !is_set("CI") {
         return Ok(());
     }
     let mut diff = program("git");
