@@ -13,9 +13,7 @@ use ch16_lab::lap::{
     Choice, Drive, LapConfig, LapEstimator, LapRecord, LapRunner, LoopAttempt, TickReport,
 };
 use clap::Args;
-use pr_geom::SE2;
 use robot_io::json_log::FrameLine;
-use robot_io::log::LogFrame;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -194,14 +192,14 @@ pub fn run(args: &LapArgs) -> Result<(), LapError> {
             source,
         })?;
     }
-    if let LapEstimator::IncrementalKind(ancestor) = args.estimator {
+    if let LapEstimator::IncrementalKind(kind) = args.estimator {
         if let Some(argument) = args.trial.of_the_graph() {
             return Err(LapError::OfTheGraph {
                 argument,
                 estimator: args.estimator.name(),
             });
         }
-        incremental::print(ancestor, &config, args);
+        incremental::print(kind, &config, args);
         return Ok(());
     }
     if args.exercises {
@@ -232,17 +230,10 @@ fn run_exercises(_: &LapConfig, _: &LapArgs) -> Result<(), LapError> {
 /// Writes every frame of a drive with the true pose.
 fn write_frames(path: &Path, drive: &Drive) -> io::Result<()> {
     let mut file = BufWriter::new(File::create(path)?);
-    let mut odometry = SE2::identity();
-    for tick in 0..=drive.ticks().len() {
-        let frame = drive.frame(tick);
-        odometry = odometry * frame.odometry.unwrap_or(SE2::identity());
+    for (tick, frame) in drive.log_frames().enumerate() {
         let line = FrameLine {
             truth: Some(drive.truth(tick).to_array()),
-            ..FrameLine::from(&LogFrame {
-                stamp_s: frame.stamp_s,
-                odometry: Some(odometry),
-                scan: frame.scan,
-            })
+            ..FrameLine::from(&frame)
         };
         line.write(&mut file)?;
     }

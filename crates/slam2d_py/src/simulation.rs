@@ -9,7 +9,6 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
 use pr_geom::SE2;
 use pyo3::prelude::*;
 use robot_io::json_log::FrameLine;
-use robot_io::log::LogFrame;
 
 use crate::arrays;
 use crate::errors::{ChoiceError, no_choice, os_error, within};
@@ -76,7 +75,7 @@ pub fn simulate(py: Python<'_>, seed: i64, noise: f64, world: &str) -> PyResult<
     let motion = |frame| drive.odometry(frame).unwrap_or(SE2::identity());
     let beams = ranges.len() / count;
     Ok(Drive {
-        sensor: Py::new(py, Sensor::of(&first.scan))?,
+        sensor: Py::new(py, Sensor::from_scan(&first.scan))?,
         stamps: PyArray1::from_vec(py, stamps.collect()).unbind(),
         ranges: PyArray1::from_vec(py, ranges)
             .reshape([count, beams])?
@@ -119,17 +118,10 @@ impl Drive {
 
 fn write_log(drive: &Simulated, path: &Path) -> std::io::Result<()> {
     let mut file = BufWriter::new(File::create(path)?);
-    let mut odometry = SE2::identity();
-    for tick in 0..=drive.ticks().len() {
-        let frame = drive.frame(tick);
-        odometry = odometry * frame.odometry.unwrap_or(SE2::identity());
+    for (tick, frame) in drive.log_frames().enumerate() {
         let line = FrameLine {
             truth: Some(drive.truth(tick).to_array()),
-            ..FrameLine::from(&LogFrame {
-                stamp_s: frame.stamp_s,
-                odometry: Some(odometry),
-                scan: frame.scan,
-            })
+            ..FrameLine::from(&frame)
         };
         line.write(&mut file)?;
     }

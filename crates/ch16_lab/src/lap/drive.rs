@@ -8,6 +8,7 @@ mod simulation;
 use std::sync::Arc;
 
 use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::pipeline::LogFrame;
 use ch16_slam2d::scan::{Frame, LaserScan, PreparedFrame};
 use pr_geom::SE2;
 use pr_sim::motion::sample_velocity_motion;
@@ -120,6 +121,20 @@ impl Drive {
             0 => self.config.start,
             _ => self.ticks[tick - 1].dead_reckoning,
         }
+    }
+
+    /// What a robot would record: odometry as poses from the start on, one frame per tick and one at the start.
+    pub fn log_frames(&self) -> impl Iterator<Item = LogFrame> + '_ {
+        let mut odometry = SE2::identity();
+        (0..=self.ticks.len()).map(move |tick| {
+            let frame = self.frame(tick);
+            odometry = odometry * frame.odometry.unwrap_or(SE2::identity());
+            LogFrame {
+                stamp_s: frame.stamp_s,
+                odometry: Some(odometry),
+                scan: frame.scan,
+            }
+        })
     }
 
     /// The estimator's input after `tick` ticks; 0 is the start.
