@@ -254,14 +254,14 @@ impl SweepArgs {
             Column::FrontEnd => self.has_a_graph(),
             Column::WithLoops => self.has(LapEstimator::Graph),
             Column::MaximumLikelihood | Column::MaximumLikelihoodCycles => self
-                .ancestors()
-                .any(|ancestor| Column::of_incremental(ancestor) == column),
+                .incremental_kinds()
+                .any(|kind| Column::of_incremental(kind) == column),
         }
     }
 
-    fn ancestors(&self) -> impl Iterator<Item = IncrementalKind> + '_ {
+    fn incremental_kinds(&self) -> impl Iterator<Item = IncrementalKind> + '_ {
         let all = IncrementalKind::ALL.into_iter();
-        all.filter(|&ancestor| self.has(LapEstimator::IncrementalKind(ancestor)))
+        all.filter(|&kind| self.has(LapEstimator::IncrementalKind(kind)))
     }
 
     fn outcome(&self, runner: &mut LapRunner, trial: &Trial, seed: u32, noise: f64) -> LapOutcome {
@@ -271,8 +271,8 @@ impl SweepArgs {
         }
         let record = runner.run(&config);
         let outcome = LapOutcome::from_record(&record);
-        self.ancestors().fold(outcome, |outcome, ancestor| {
-            outcome.with_incremental(ancestor, &record)
+        self.incremental_kinds().fold(outcome, |outcome, kind| {
+            outcome.with_incremental(kind, &record)
         })
     }
 }

@@ -161,7 +161,7 @@ impl Pipeline {
         free_space: bool,
     ) -> PyResult<LogResult> {
         let cell_m = within("cell", cell, 1e-3, 100.0, " m")?;
-        let progress = Progress::of(py, progress)?;
+        let progress = Progress::new(py, progress)?;
         let found = py.detach(|| self.drive(&progress, cell_m, free_space))?;
         progress.end(py)?;
         let (stamps, poses): (Vec<f64>, Vec<SE2>) = found.trajectory.into_iter().unzip();
@@ -280,7 +280,7 @@ enum Progress {
 }
 
 impl Progress {
-    fn of(py: Python<'_>, wanted: Option<Py<PyAny>>) -> PyResult<Self> {
+    fn new(py: Python<'_>, wanted: Option<Py<PyAny>>) -> PyResult<Self> {
         let Some(wanted) = wanted else {
             return Ok(Self::Nowhere);
         };

@@ -26,7 +26,7 @@ pub struct Sensor {
 
 impl Sensor {
     /// The sensor of a scan.
-    pub fn of(scan: &LaserScan) -> Self {
+    pub fn from_scan(scan: &LaserScan) -> Self {
         Self {
             scan: LaserScan {
                 ranges_m: Vec::new(),

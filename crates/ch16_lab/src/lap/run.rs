@@ -33,11 +33,11 @@ pub(super) enum Stage {
 impl Stage {
     /// The lap of `config` on a simulated drive.
     pub(super) fn on(config: &LapConfig, drive: Arc<Drive>) -> Self {
-        Self::of(Lap::on_drive(config.clone(), drive))
+        Self::from_lap(Lap::on_drive(config.clone(), drive))
     }
 
     /// A lap that stands at its start.
-    pub(super) fn of(lap: Lap) -> Self {
+    pub(super) fn from_lap(lap: Lap) -> Self {
         let drive = Arc::clone(lap.drive());
         Self::Lap {
             drive,

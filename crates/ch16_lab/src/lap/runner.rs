@@ -39,7 +39,7 @@ impl LapRunner {
     pub fn run_with_parts(config: &LapConfig, parts: SlamParts) -> LapRecord {
         let drive = Arc::new(Drive::simulate(&config.drive));
         let lap = Lap::with_parts(config.clone(), drive, parts);
-        let mut run = LapRun::new(config.clone(), Stage::of(lap));
+        let mut run = LapRun::new(config.clone(), Stage::from_lap(lap));
         loop {
             if let Some(record) = run.step() {
                 return record;

@@ -53,9 +53,9 @@ struct TickJson {
 }
 
 /// Runs incremental mapping on the lap of `config` and prints the result.
-pub fn print(ancestor: IncrementalKind, config: &LapConfig, args: &LapArgs) {
+pub fn print(kind: IncrementalKind, config: &LapConfig, args: &LapArgs) {
     let drive = Drive::simulate(&config.drive);
-    let trace = IncrementalTrace::run(ancestor, config, &drive);
+    let trace = IncrementalTrace::run(kind, config, &drive);
     if args.json {
         print_json(&IncrementalJson::new(&trace, &drive, args));
     } else {
