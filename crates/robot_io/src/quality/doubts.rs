@@ -11,6 +11,10 @@ use crate::evidence::{PoorFit, TriedLoop};
 const UNCERTAIN_FACTOR: f64 = 3.0;
 /// Keyframes with a smaller standard deviation are not doubted, m.
 const LEAST_UNCERTAIN_M: f64 = 0.1;
+/// Keyframes whose 95 % ellipse has a larger half axis are doubted, however uncertain the others are, m.
+const MOST_OFF_M: f64 = 0.5;
+/// Half axis of the 95 % ellipse over that of the 1σ ellipse: √χ²₂(0.95) = √(−2 ln 0.05).
+const RADIUS_95: f64 = 2.4477;
 /// The map violates a loop that it differs from by more, m and degrees: as much as from a false loop.
 const VIOLATION: (f64, f64) = (0.3, 5.0);
 /// Most doubts of one kind that are listed.
@@ -76,7 +80,9 @@ fn uncertain_keyframes(keyframes: &[KeyframeQuality]) -> Vec<String> {
     let mut sorted: Vec<f64> = keyframes.iter().map(KeyframeQuality::sigma_m).collect();
     sort_numbers(&mut sorted);
     let median_m = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
-    let limit_m = (UNCERTAIN_FACTOR * median_m).max(LEAST_UNCERTAIN_M);
+    let limit_m = (UNCERTAIN_FACTOR * median_m)
+        .max(LEAST_UNCERTAIN_M)
+        .min(MOST_OFF_M / RADIUS_95);
     let is_uncertain = |number: &usize| keyframes[*number].sigma_m() > limit_m;
     let uncertain: Vec<usize> = (0..keyframes.len()).filter(is_uncertain).collect();
     let runs = uncertain.chunk_by(|a, b| b - a == 1).map(|run| {
@@ -84,7 +90,9 @@ fn uncertain_keyframes(keyframes: &[KeyframeQuality]) -> Vec<String> {
         let worst_m = run.iter().map(|k| keyframes[*k].sigma_m());
         let worst_m = worst_m.fold(0.0, f64::max);
         format!(
-            "keyframes {first} to {last} have a standard deviation of up to {worst_m:.2} m; the median is {median_m:.2} m"
+            "keyframes {first} to {last} may be up to {:.2} m off (95 %); the median keyframe {:.2} m",
+            RADIUS_95 * worst_m,
+            RADIUS_95 * median_m
         )
     });
     runs.collect()
@@ -188,7 +196,7 @@ mod tests {
         assert_eq!(
             sentences(&quality, &violated, &[poor]),
             [
-                "keyframes 3 to 4 have a standard deviation of up to 0.50 m; the median is 0.02 m",
+                "keyframes 3 to 4 may be up to 1.22 m off (95 %); the median keyframe 0.05 m",
                 "the loop from keyframe 9 to 2 contradicts the rest of the graph: chi-squared 40.0 above 16.3",
                 "the path from keyframe 7 to 11 contradicts the rest of the graph: chi-squared 84.4 above 16.3",
                 "the path from keyframe 4 to 5 contradicts the rest of the graph: chi-squared 20.0 above 16.3",
@@ -196,6 +204,21 @@ mod tests {
                 "the loop from keyframe 31 to 4 was accepted, but the map violates it by 0.50 m and 90°",
                 "only 31 % of the scan at 12.500 s fits the map",
             ]
+        );
+    }
+
+    #[test]
+    fn half_a_metre_is_doubted_even_if_every_keyframe_is_that_uncertain() {
+        let keyframe = |sigma_m: f64| KeyframeQuality {
+            stamp_s: 0.0,
+            pose: [0.0; 3],
+            covariance: [[sigma_m * sigma_m, 0.0, 0.0], [0.0; 3], [0.0; 3]],
+        };
+        let doubts = |sigma_m| uncertain_keyframes(&[keyframe(sigma_m); 4]);
+        assert_eq!(doubts(0.2), Vec::<String>::new());
+        assert_eq!(
+            doubts(0.21),
+            ["keyframes 0 to 3 may be up to 0.51 m off (95 %); the median keyframe 0.51 m"]
         );
     }
 
