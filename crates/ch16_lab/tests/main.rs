@@ -3,6 +3,7 @@
 mod any_sensor;
 mod edge_information;
 mod exact_gate;
+mod heading_errors;
 mod icp_laws;
 mod incremental;
 mod laps;

@@ -17,6 +17,8 @@ const STARTS: ([f64; 5], [f64; 9]) = (
 
 /// A larger prior cost means a deviation of more than three standard deviations.
 const MAX_PRIOR_COST: f64 = 6.0;
+/// Share of inliers that justifies such a deviation: a few points in unseen space fit any wall.
+const MAJORITY: f64 = 0.5;
 /// Share of points in observed free space above which a pose contradicts the map.
 const MAX_CONTRADICTING: f64 = 0.05;
 
@@ -33,19 +35,30 @@ impl LocalMap {
     ) -> MapRegistration {
         let stages = [config.max_correspondence_m, config.inlier_distance_m];
         let near = &stages[1..];
+        let is_justified = |found: &MapRegistration| {
+            found.fit.inliers as f64 >= MAJORITY * scan.len() as f64
+                || prior.cost(&found.registered.pose) <= MAX_PRIOR_COST
+        };
+        let cheaper = |one: MapRegistration, other: MapRegistration| {
+            if other.cost < one.cost && is_justified(&other) {
+                other
+            } else {
+                one
+            }
+        };
         let mut best = self.register(scan, prior.pose, &stages, Some(prior), config);
+        // With few pairs the registration is pulled farther than its information justifies.
+        if prior.cost(&best.registered.pose) > MAX_PRIOR_COST {
+            let predicted = self.register(scan, prior.pose, &[], Some(prior), config);
+            if predicted.cost < best.cost || !is_justified(&best) {
+                best = predicted;
+            }
+        }
         // A registration from a distant start may slide along a wall although the scan fits better at the prediction.
         if self.fit(scan, &prior.pose, config).score > best.fit.score {
             best = cheaper(
                 best,
                 self.register(scan, prior.pose, near, Some(prior), config),
-            );
-        }
-        // With few pairs the registration is pulled farther than its information justifies.
-        if prior.cost(&best.registered.pose) > MAX_PRIOR_COST {
-            best = cheaper(
-                best,
-                self.register(scan, prior.pose, &[], Some(prior), config),
             );
         }
         let is_vague = 2.0 * prior.sigma_m > config.max_correspondence_m;
@@ -85,10 +98,6 @@ impl LocalMap {
         }
         best
     }
-}
-
-fn cheaper(one: MapRegistration, other: MapRegistration) -> MapRegistration {
-    if other.cost < one.cost { other } else { one }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::Matrix3;
-use pr_geom::SE2;
+use pr_geom::{SE2, math};
 
 use super::RobotConfig;
 use super::front_end::WindowSweep;
@@ -124,9 +124,16 @@ impl MapMatching {
         };
         let noise = self.config.motion_noise(is_measured);
         let (sigma_m, sigma_rad) = noise.deviations(motion);
+        // A heading error that accumulates evenly along the motion moves its end sideways. Without odometry the
+        // noise covers that already.
+        let sideways_m = if is_measured {
+            sigma_rad * math::norm2(motion.x(), motion.y()) / math::sqrt(3.0)
+        } else {
+            0.0
+        };
         MotionPrior {
             pose: *before * *motion,
-            sigma_m,
+            sigma_m: math::norm2(sigma_m, sideways_m),
             sigma_rad,
             tail,
         }
