@@ -14,7 +14,12 @@ it('gives each question of the page an id', () => {
   assert.equal(exercises.length, page.match(/<slam-predict/g).length);
   const { choices, ...rest } = exercises.find(({ exercise }) => exercise === '16.5a');
   assert.deepEqual(rest, { exercise: '16.5a', widget: 'w16.2', state: 'noise=4&t=129', fact: 'front_end_error_m', unit: ' m' });
-  assert.deepEqual(choices[1], { choice: 'twice', from: '1', to: '2' });
+  assert.deepEqual(choices[1], { choice: 'twice', from: 1, to: 2 });
+});
+
+it('marks by the questions of the page', () => {
+  const marked = JSON.parse(readFileSync(new URL('../../crates/slam2d_cli/src/mark/exercises.json', import.meta.url), 'utf8'));
+  assert.deepEqual(marked, readExercises(page), 'run cargo xtask build, which writes the file, and commit it');
 });
 
 it('refuses a question without an id, with one that is none, and with one that is taken', () => {

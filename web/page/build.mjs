@@ -32,7 +32,8 @@ if (outDir === undefined) {
 await mkdir(outDir, { recursive: true });
 const source = await readFile(path.join(root, 'index.html'), 'utf8');
 const exercises = readExercises(source);
-await writeFile(path.join(outDir, 'exercises.json'), JSON.stringify(exercises, null, 1));
+// `slam2d mark` marks by the same questions.
+await writeFile(path.join(root, 'crates/slam2d_cli/src/mark/exercises.json'), `${JSON.stringify(exercises, null, 1)}\n`);
 const pictured = addPictures(renderFormulas(source), await widgetSpecs());
 const { sketches, story } = await drawStills(outDir);
 const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story));

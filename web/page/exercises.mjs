@@ -11,7 +11,7 @@ export function readExercises(html) {
   const exercises = [];
   for (const [, tag, content] of html.matchAll(/<slam-predict\b([^>]*)>([\s\S]*?)<\/slam-predict>/g)) {
     const given = attributes(tag);
-    const { exercise } = given;
+    const { exercise, widget, state, fact, tolerance, unit } = given;
     if (exercise === undefined) {
       throw new Error(`the question <slam-predict${tag}> has no id: add exercise="16.5a", its chapter, number and part`);
     }
@@ -19,14 +19,24 @@ export function readExercises(html) {
     if (exercises.some((other) => other.exercise === exercise)) {
       throw new Error(`two questions have exercise="${exercise}": give each an id of its own`);
     }
-    exercises.push({ ...given, choices: [...content.matchAll(/<li\b([^>]*\bdata-choice=[^>]*)>/g)].map(([, item]) => choiceOf(item)) });
+    const choices = [...content.matchAll(/<li\b([^>]*\bdata-choice=[^>]*)>/g)].map(([, item]) => choiceOf(item));
+    exercises.push(withoutGaps({ exercise, widget, state, fact, tolerance: numberOf(tolerance), unit, choices }));
   }
   return exercises;
 }
 
 function choiceOf(item) {
   const { 'data-choice': choice, 'data-from': from, 'data-to': to } = attributes(item);
-  return { choice, from, to };
+  return withoutGaps({ choice, from: numberOf(from), to: numberOf(to) });
+}
+
+function numberOf(text) {
+  return text === undefined ? undefined : Number(text);
+}
+
+/** What JSON leaves out anyway. */
+function withoutGaps(object) {
+  return Object.fromEntries(Object.entries(object).filter(([, value]) => value !== undefined));
 }
 
 function attributes(tag) {
