@@ -20,6 +20,8 @@ export interface Prediction {
   result: string;
   /** Whether the prediction came true. A wrong guess is no mistake. */
   correct: boolean;
+  /** The choice that is right, if one is; else the number. */
+  right: string | null;
   /** Prediction minus result; null for choices. */
   gap: number | null;
 }

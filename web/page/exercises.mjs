@@ -25,6 +25,20 @@ export function readExercises(html) {
   return exercises;
 }
 
+/**
+ * Each exercise as a frame shows it, by itself: its title, what comes before its questions, and the questions. Links to
+ * other places of the page become text; `render` turns formulas into HTML.
+ */
+export function frameExercises(html, render) {
+  return html.split('<div class="exercise"').slice(1).map((part) => {
+    const inner = render(part).replace(/<a [^>]*href="#[^>]*>([\s\S]*?)<\/a>/g, '$1').replace(/<slam-widget\b[^>]*><\/slam-widget>/g, '');
+    const title = inner.match(/<h3>([\s\S]*?)<\/h3>/)[1].replace(/<[^>]*>/g, '');
+    const intro = inner.slice(inner.indexOf('</h3>') + '</h3>'.length, inner.indexOf('<slam-predict'));
+    const questions = [...inner.matchAll(/<slam-predict exercise="([^"]*)" widget="([^"]*)"[\s\S]*?<\/slam-predict>/g)];
+    return { title, intro, questions: questions.map(([text, exercise, widget]) => ({ exercise, widget, html: text })) };
+  });
+}
+
 function choiceOf(item) {
   const { 'data-choice': choice, 'data-from': from, 'data-to': to } = attributes(item);
   return withoutGaps({ choice, from: numberOf(from), to: numberOf(to) });

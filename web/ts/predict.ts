@@ -26,7 +26,7 @@ import type { SlamWidget } from './element';
 import type { Outcome } from './instance';
 import type { Prediction } from '../slam-predict';
 
-type Verdict = Pick<Prediction, 'prediction' | 'result' | 'correct' | 'gap'>;
+type Verdict = Pick<Prediction, 'prediction' | 'result' | 'right' | 'correct' | 'gap'>;
 
 /** What a widget shows in the state of the question. */
 interface Shown {
@@ -92,8 +92,10 @@ export class SlamPredict extends HTMLElement {
     const commit = document.createElement('button');
     commit.textContent = 'Commit and see';
     form.append(fields, commit);
-    form.addEventListener('submit', (event) => {
+    // Enter presses it, too. A sandbox without `allow-forms` lets nothing be submitted.
+    commit.addEventListener('click', (event) => {
       event.preventDefault();
+      if (!form.reportValidity()) return;
       const prediction = new FormData(form).get('prediction');
       if (typeof prediction === 'string' && prediction !== '') void this.#check(prediction);
     });
@@ -146,34 +148,38 @@ export class SlamPredict extends HTMLElement {
       const seed = seedOf(person, exercise, attempt);
       widget.set('seed', seed);
       const own = outcomeOf(widget);
-      if (this.#answers(own)) return { state: `${state}&seed=${seed}`, outcome: own };
+      if (this.#right(own) !== null) return { state: `${state}&seed=${seed}`, outcome: own };
     }
     return { state, outcome: await outcomeAt(widget, state) };
   }
 
-  /** Whether one of the choices, or a number, is right for this outcome. */
-  #answers(outcome: Outcome): boolean {
+  /** The choice, or the number, that is right for this outcome; null if there is none. */
+  #right(outcome: Outcome): string | null {
     const choices = [...this.querySelectorAll<HTMLElement>('[data-choice]')];
     const fact = this.getAttribute('fact');
-    if (fact === null) return choices.some((choice) => choice.dataset['choice'] === outcome.verdict);
-    const result = outcome.facts[fact] ?? undefined;
-    return result !== undefined && (choices.length === 0 || choices.some((choice) => covers(choice, result)));
+    const value = fact === null ? undefined : (outcome.facts[fact] ?? undefined);
+    if (fact !== null && value === undefined) return null;
+    if (choices.length === 0) return String(value);
+    const right = choices.find((choice) =>
+      value === undefined ? choice.dataset['choice'] === outcome.verdict : covers(choice, value));
+    return right?.dataset['choice'] ?? null;
   }
 
   #judge(prediction: string, outcome: Outcome): Verdict {
     const fact = this.getAttribute('fact');
+    const right = this.#right(outcome);
     if (fact === null) {
-      return { prediction, result: outcome.verdict, correct: prediction === outcome.verdict, gap: null };
+      return { prediction, result: outcome.verdict, right, correct: prediction === outcome.verdict, gap: null };
     }
     const result = outcome.facts[fact] ?? undefined;
     if (result === undefined) throw new RangeError(`the widget tells no number \`${fact}\` here`);
     const choice = this.#item(prediction);
     if (choice !== null) {
-      return { prediction, result: String(result), correct: covers(choice, result), gap: null };
+      return { prediction, result: String(result), right, correct: covers(choice, result), gap: null };
     }
     const gap = Number(prediction) - result;
     const tolerance = Number(this.getAttribute('tolerance') ?? 0);
-    return { prediction, result: String(result), correct: Math.abs(gap) <= tolerance, gap };
+    return { prediction, result: String(result), right, correct: Math.abs(gap) <= tolerance, gap };
   }
 
   #show(verdict: Verdict, { state, outcome }: Shown, widget: SlamWidget): void {

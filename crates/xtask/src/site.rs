@@ -123,8 +123,15 @@ pub fn package() -> anyhow::Result<()> {
     run(
         "Packing the npm archive and the Python wheel",
         program("node").args(["web/package.mjs", "dist", "target/packages"]),
+    )?;
+    run(
+        "Packing the exercises for learning management systems",
+        program("node").args(["web/scorm.mjs", "dist", SCORM]),
     )
 }
+
+/// The exercises as a SCORM 1.2 package.
+const SCORM: &str = "target/packages/slam2d-exercises-scorm.zip";
 
 /// Variants of the module: a folder, the difference from the published one, more options of cargo.
 const VARIANTS: [(&str, &str, &[&str]); 5] = [
