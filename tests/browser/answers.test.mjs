@@ -76,7 +76,7 @@ it('counts attempts, and keeps answers in the browser only while the reader want
       await question.getByText(/^(As you predicted|It comes out otherwise)/).waitFor();
     };
     await answer();
-    await question.getByText(/^This is your own task, seed \d+\. Numbers in the text are of the chapter’s\.$/).waitFor();
+    await question.getByText(/^This is your own task, seed \d+\. The numbers in the text are those of the chapter’s\.$/).waitFor();
     await question.getByRole('button', { name: 'Predict again' }).click();
     await answer();
     assert.equal(await tab.evaluate(() => localStorage.length), 0);

@@ -195,7 +195,7 @@ export class SlamPredict extends HTMLElement {
       : `${judged} ${said} You said ${prediction}${unit} and are off by ${Math.abs(gap).toPrecision(2)}${unit}.`;
     const isPersonal = state !== (this.getAttribute('state') ?? '');
     const seed = new URLSearchParams(state).get('seed');
-    const own = `This is your own task, seed ${seed}. Numbers in the text are of the chapter’s.`;
+    const own = `This is your own task, seed ${seed}. The numbers in the text are those of the chapter’s.`;
     this.#say(isPersonal ? [answered, own] : [answered]);
     // The widget may be far away: the reader decides when to leave the answer.
     const show = button('Show it in the widget', () => {

@@ -5,7 +5,7 @@ import { create, keepKeys } from './dom';
 import { saveBlob } from './export';
 
 const STYLE = `
-:host { display: block; border: 1px solid currentColor; border-radius: 6px; padding: 0.75rem 1rem; }
+:host { display: block; margin: 1rem 0; border: 1px solid currentColor; border-radius: 6px; padding: 0.75rem 1rem; }
 fieldset { border: 0; margin: 0; padding: 0; }
 label { display: flex; flex-wrap: wrap; align-items: center; gap: 0.5rem; padding: 0.25rem 0; }
 input[type='text'], button { font: inherit; min-height: 2rem; padding: 0.1rem 0.6rem; }
