@@ -26,7 +26,7 @@ const spec = named?.widget ?? first;
 
 const exercise = new URLSearchParams(location.search).get('exercise');
 if (exercise === null) showWidget();
-else await showQuestions(exercise);
+else void showQuestions(exercise);
 
 function showWidget(): void {
   const widget = new (Element as typeof SlamWidget)();
