@@ -18,6 +18,7 @@ import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
 import { colorStyle } from '../palette.mjs';
 import { frameExercises, readExercises } from './exercises.mjs';
 import { addListings } from './listings.mjs';
+import { slidesPage } from './slides.mjs';
 import { drawStills } from './stills.mjs';
 
 const here = path.dirname(fileURLToPath(import.meta.url));
@@ -36,6 +37,8 @@ const exercises = readExercises(source);
 await writeFile(path.join(root, 'crates/slam2d_cli/src/mark/exercises.json'), `${JSON.stringify(exercises, null, 1)}\n`);
 const frames = frameExercises(source, (html) => renderFormulas(html, 'mathml'));
 await writeFile(path.join(outDir, 'exercises.json'), JSON.stringify(frames));
+const scripts = await readFile(path.join(root, 'docs/teaching/widgets.md'), 'utf8');
+await writeFile(path.join(outDir, 'slides.html'), slidesPage(scripts));
 const pictured = addPictures(renderFormulas(source), await widgetSpecs());
 const { sketches, story } = await drawStills(outDir);
 const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story));
