@@ -3,7 +3,7 @@
 mod answers;
 mod exercise;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rayon::prelude::*;
@@ -63,7 +63,7 @@ struct Sheet {
 /// # Errors
 /// If a file cannot be read; the others are marked.
 pub fn run(args: &MarkArgs) -> Result<(), MarkError> {
-    let sheets: Vec<_> = args.files.par_iter().map(sheet_of).collect();
+    let sheets: Vec<_> = args.files.par_iter().map(|path| sheet_of(path)).collect();
     if args.csv && sheets.iter().any(Result::is_ok) {
         say!("{}", CSV_HEAD);
     }
@@ -87,7 +87,7 @@ pub fn run(args: &MarkArgs) -> Result<(), MarkError> {
     Ok(())
 }
 
-fn sheet_of(path: &PathBuf) -> Result<Sheet, AnswersError> {
+fn sheet_of(path: &Path) -> Result<Sheet, AnswersError> {
     let file = Answers::read(path)?;
     let answers: Vec<Marked> = file
         .answers
