@@ -174,7 +174,7 @@ async function bundle() {
     const { metafile } = await esbuild.build({
       ...shared,
       entryPoints: [join(WEB, 'ts', `${entry}.ts`)],
-      external: ['./slam-widget.js'],
+      external: ['./slam-widget.js', './slam-predict.js'],
       outfile: join(dist, `slam-${entry}.js`),
       write: true,
     });

@@ -16,7 +16,9 @@ import katex from 'katex';
 import { endWithOneSentence } from '../licences/allowed.mjs';
 import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
 import { colorStyle } from '../palette.mjs';
+import { frameExercises, readExercises } from './exercises.mjs';
 import { addListings } from './listings.mjs';
+import { slidesPage } from './slides.mjs';
 import { drawStills } from './stills.mjs';
 
 const here = path.dirname(fileURLToPath(import.meta.url));
@@ -30,6 +32,13 @@ if (outDir === undefined) {
 
 await mkdir(outDir, { recursive: true });
 const source = await readFile(path.join(root, 'index.html'), 'utf8');
+const exercises = readExercises(source);
+// `slam2d mark` marks by the same questions.
+await writeFile(path.join(root, 'crates/slam2d_cli/src/mark/exercises.json'), `${JSON.stringify(exercises, null, 1)}\n`);
+const frames = frameExercises(source, (html) => renderFormulas(html, 'mathml'));
+await writeFile(path.join(outDir, 'exercises.json'), JSON.stringify(frames));
+const scripts = await readFile(path.join(root, 'docs/teaching/widgets.md'), 'utf8');
+await writeFile(path.join(outDir, 'slides.html'), slidesPage(scripts));
 const pictured = addPictures(renderFormulas(source), await widgetSpecs());
 const { sketches, story } = await drawStills(outDir);
 const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story));
@@ -103,11 +112,11 @@ function addSketches(html, sketches) {
 }
 
 /** `<tex>…</tex>` in the line and `<tex display>…</tex>` on lines of its own. */
-function renderFormulas(html) {
+function renderFormulas(html, output = 'htmlAndMathml') {
   return html.replace(/(\(?)<tex( display)?>([\s\S]*?)<\/tex>((?:&nbsp;[^\s<.,;:]+|[.,;:?!)°])*)/g, (_, before, display, escaped, after) => {
     const formula = katex.renderToString(dropFigureNames(unescapeHtml(escaped)), {
       displayMode: display !== undefined,
-      output: 'htmlAndMathml',
+      output,
       throwOnError: true,
       strict: 'error',
     });

@@ -1,15 +1,17 @@
-// embed.html: one widget that fills a frame, and its messages to and from the surrounding page.
+// embed.html: one widget that fills a frame, and its messages to and from the surrounding page. With
+// `?exercise=5` it is an exercise with its widget, which also reports to a learning management system.
 //
 // Every message contains `slam: 1`, the version of this protocol. Messages of other programs are ignored; an
 // invalid one of ours is answered with an error message.
 //
 //   in   {slam: 1, type: 'set', values: {heading: 60}}   {slam: 1, type: 'press', button: 'play'}
 //        {slam: 1, type: 'get', id?: 'any'}
-//   out  ready, changed, result, state (answers get), error, size
+//   out  ready, changed, result, state (answers get), error, size; answer, from an exercise
 
 // @ts-expect-error: stays a file of its own beside this one.
 import { SlamWidget as Element, widgets as schemas } from './slam-widget.js';
 import type { SlamWidget } from './element';
+import { showExercise } from './exercise';
 import { readQuery } from './links';
 import { receive, VERSION, type Message } from './messages';
 import type { WidgetSpec } from './schema';
@@ -22,15 +24,34 @@ const linked = readQuery(location.search);
 const named = linked !== undefined && 'widget' in linked ? linked : undefined;
 const spec = named?.widget ?? first;
 
-const widget = new (Element as typeof SlamWidget)();
-setUp();
-main.querySelector('.absent')?.remove();
-main.append(widget);
-listen(widget);
-for (const message of linked?.problems ?? ['The address names no widget: ?w=16.1']) tell(message);
+const exercise = new URLSearchParams(location.search).get('exercise');
+if (exercise === null) showWidget();
+else void showQuestions(exercise);
+
+function showWidget(): void {
+  const widget = new (Element as typeof SlamWidget)();
+  setUp(widget);
+  main.querySelector('.absent')?.remove();
+  main.append(widget);
+  listen(widget);
+  for (const message of linked?.problems ?? ['The address names no widget: ?w=16.1']) tell(message);
+}
+
+/** The exercise in place of a single widget; its answers go to the surrounding page. */
+async function showQuestions(id: string): Promise<void> {
+  document.addEventListener('slam-predict', ({ detail }) => post({ type: 'answer', ...detail }));
+  new ResizeObserver(tellSize).observe(main);
+  try {
+    const title = await showExercise(main, id);
+    document.title = title;
+  } catch (error) {
+    tell(error instanceof Error ? error.message : String(error));
+  }
+  main.querySelector('.absent')?.remove();
+}
 
 /** Creates the widget of the address, and a page with its title around it. */
-function setUp(): void {
+function setUp(widget: SlamWidget): void {
   widget.setAttribute('name', spec?.id ?? '');
   for (const [id, text] of named?.values ?? []) widget.setAttribute(id, text);
   const theme = new URLSearchParams(location.search).get('theme');

@@ -1,6 +1,6 @@
 // <slam-predict>: the reader commits to an answer, and only then sees what happens.
 //
-//   <slam-predict widget="w16.1" state="heading=60&dx=0&dy=0">
+//   <slam-predict exercise="16.4" widget="w16.1" state="heading=60&dx=0&dy=0">
 //     <p>Where does registration end from 60° off?</p>
 //     <ul><li data-choice="right minimum">at the truth</li>
 //         <li data-choice="quarter turn">a quarter turn off</li></ul>
@@ -11,16 +11,28 @@
 // a number, which is compared with that fact of the outcome. With a fact and choices, each choice is right
 // for a range of values: `<li data-choice="smaller" data-to="0.02">`, from the first value to below the
 // second.
+//
+// With a student (attribute `student`, or `?student=` of the page), an exercise whose widget has a seed becomes a
+// task of that student's own.
 
 // @ts-expect-error: stays a file of its own beside this one.
 import './slam-widget.js';
+import { attemptsAt, student } from './answers';
 import { keepKeys, marked } from './dom';
+import { MOST_TRIES, seedOf } from './personal';
+import './slam-answers';
 import { offerWayBack } from './way-back';
 import type { SlamWidget } from './element';
 import type { Outcome } from './instance';
 import type { Prediction } from '../slam-predict';
 
-type Verdict = Omit<Prediction, 'widget'>;
+type Verdict = Pick<Prediction, 'prediction' | 'result' | 'right' | 'correct' | 'gap'>;
+
+/** What a widget shows in the state of the question. */
+interface Shown {
+  state: string;
+  outcome: Outcome;
+}
 
 const STYLE = `
 :host { display: block; border: 1px solid currentColor; border-radius: 6px; padding: 0.75rem 1rem; }
@@ -39,6 +51,8 @@ const DECIMALS = 3;
 export class SlamPredict extends HTMLElement {
   #form: HTMLFormElement | undefined;
   #answer: HTMLElement | undefined;
+  /** Of a question without an id, which nobody collects. */
+  #attempts = 0;
 
   connectedCallback(): void {
     if (this.#form !== undefined) return;
@@ -78,8 +92,10 @@ export class SlamPredict extends HTMLElement {
     const commit = document.createElement('button');
     commit.textContent = 'Commit and see';
     form.append(fields, commit);
-    form.addEventListener('submit', (event) => {
+    // Enter presses it, too. A sandbox without `allow-forms` lets nothing be submitted.
+    commit.addEventListener('click', (event) => {
       event.preventDefault();
+      if (!form.reportValidity()) return;
       const prediction = new FormData(form).get('prediction');
       if (typeof prediction === 'string' && prediction !== '') void this.#check(prediction);
     });
@@ -95,10 +111,21 @@ export class SlamPredict extends HTMLElement {
     }
     this.#lock(true);
     try {
-      const outcome = await outcomeAt(widget, this.getAttribute('state') ?? '');
-      const verdict = this.#judge(prediction, outcome);
-      this.#show(verdict, outcome, widget);
-      const detail: Prediction = { widget: name, ...verdict };
+      const exercise = this.getAttribute('exercise');
+      const person = this.getAttribute('student') ?? student();
+      const shown = await this.#outcome(widget, exercise ?? '', person);
+      const verdict = this.#judge(prediction, shown.outcome);
+      this.#show(verdict, shown, widget);
+      this.#attempts = (exercise === null ? this.#attempts : attemptsAt(exercise, person)) + 1;
+      const detail: Prediction = {
+        exercise,
+        student: person,
+        attempts: this.#attempts,
+        widget: widget.name,
+        state: shown.state,
+        time: new Date().toISOString(),
+        ...verdict,
+      };
       this.dispatchEvent(new CustomEvent('slam-predict', { detail, bubbles: true, composed: true }));
     } catch (error) {
       const reason = error instanceof Error ? error.message : String(error);
@@ -111,37 +138,65 @@ export class SlamPredict extends HTMLElement {
     this.#answer?.focus({ preventScroll: true });
   }
 
+  /** The state of the question; a student's own has the first of their seeds at which one of the choices is right. */
+  async #outcome(widget: SlamWidget, exercise: string, person: string): Promise<Shown> {
+    const state = this.getAttribute('state') ?? '';
+    const outcome = await outcomeAt(widget, state);
+    const isFixed = widget.get('seed') === undefined || new URLSearchParams(state).has('seed');
+    if (exercise === '' || person === '' || isFixed) return { state, outcome };
+    for (let attempt = 0; attempt < MOST_TRIES; attempt += 1) {
+      const seed = seedOf(person, exercise, attempt);
+      widget.set('seed', seed);
+      const own = outcomeOf(widget);
+      if (this.#right(own) !== null) return { state: `${state}&seed=${seed}`, outcome: own };
+    }
+    return { state, outcome: await outcomeAt(widget, state) };
+  }
+
+  /** The choice, or the number, that is right for this outcome; null if there is none. */
+  #right(outcome: Outcome): string | null {
+    const choices = [...this.querySelectorAll<HTMLElement>('[data-choice]')];
+    const fact = this.getAttribute('fact');
+    const value = fact === null ? undefined : (outcome.facts[fact] ?? undefined);
+    if (fact !== null && value === undefined) return null;
+    if (choices.length === 0) return String(value);
+    const right = choices.find((choice) =>
+      value === undefined ? choice.dataset['choice'] === outcome.verdict : covers(choice, value));
+    return right?.dataset['choice'] ?? null;
+  }
+
   #judge(prediction: string, outcome: Outcome): Verdict {
     const fact = this.getAttribute('fact');
+    const right = this.#right(outcome);
     if (fact === null) {
-      return { prediction, result: outcome.verdict, correct: prediction === outcome.verdict, gap: null };
+      return { prediction, result: outcome.verdict, right, correct: prediction === outcome.verdict, gap: null };
     }
     const result = outcome.facts[fact] ?? undefined;
     if (result === undefined) throw new RangeError(`the widget tells no number \`${fact}\` here`);
     const choice = this.#item(prediction);
     if (choice !== null) {
-      const { from, to } = choice.dataset;
-      const correct = result >= Number(from ?? -Infinity) && result < Number(to ?? Infinity);
-      return { prediction, result: String(result), correct, gap: null };
+      return { prediction, result: String(result), right, correct: covers(choice, result), gap: null };
     }
     const gap = Number(prediction) - result;
     const tolerance = Number(this.getAttribute('tolerance') ?? 0);
-    return { prediction, result: String(result), correct: Math.abs(gap) <= tolerance, gap };
+    return { prediction, result: String(result), right, correct: Math.abs(gap) <= tolerance, gap };
   }
 
-  #show(verdict: Verdict, outcome: Outcome, widget: SlamWidget): void {
+  #show(verdict: Verdict, { state, outcome }: Shown, widget: SlamWidget): void {
     const { correct, gap, prediction, result } = verdict;
     const unit = this.getAttribute('unit') ?? '';
-    const judged = correct ? 'Right.' : 'Not right.';
+    const judged = correct ? 'As you predicted.' : 'It comes out otherwise, and a wrong guess is no mistake.';
     // The widget's own sentence may be about another quantity than the number in question.
     const digits = Math.max(gap === null ? 0 : decimalsOf(prediction), DECIMALS);
     const said = `It is ${Number(result).toFixed(digits)}${unit}.`;
-    if (gap === null) {
-      const told = this.hasAttribute('fact') ? said : outcome.sentence;
-      this.#say([`${judged} You said: ${this.#wordsOf(prediction)}. ${told}`]);
-    } else {
-      this.#say([`${judged} ${said} You said ${prediction}${unit} and are off by ${Math.abs(gap).toPrecision(2)}${unit}.`]);
-    }
+    const told = this.hasAttribute('fact') ? said : outcome.sentence;
+    const answered = gap === null
+      ? `${judged} You said: ${this.#wordsOf(prediction)}. ${told}`
+      : `${judged} ${said} You said ${prediction}${unit} and are off by ${Math.abs(gap).toPrecision(2)}${unit}.`;
+    const isPersonal = state !== (this.getAttribute('state') ?? '');
+    const seed = new URLSearchParams(state).get('seed');
+    const own = `This is your own task, seed ${seed}. The numbers in the text are those of the chapter’s.`;
+    this.#say(isPersonal ? [answered, own] : [answered]);
     // The widget may be far away: the reader decides when to leave the answer.
     const show = button('Show it in the widget', () => {
       widget.scrollIntoView({ block: 'start' });
@@ -193,9 +248,17 @@ export class SlamPredict extends HTMLElement {
 async function outcomeAt(widget: SlamWidget, state: string): Promise<Outcome> {
   await widget.press('defaults');
   for (const [id, text] of new URLSearchParams(state)) widget.set(id, text);
-  const { outcome } = widget;
+  return outcomeOf(widget);
+}
+
+function outcomeOf({ outcome }: SlamWidget): Outcome {
   if (outcome === undefined) throw new Error('the widget cannot run here');
   return outcome;
+}
+
+/** Whether a choice is right for this value: from its first end to below its second. */
+function covers({ dataset: { from, to } }: HTMLElement, value: number): boolean {
+  return value >= Number(from ?? -Infinity) && value < Number(to ?? Infinity);
 }
 
 function decimalsOf(number: string): number {

@@ -15,6 +15,7 @@ mod localize;
 mod log_file;
 mod logs;
 mod map;
+mod mark;
 mod numbers;
 mod optimize;
 mod output;
@@ -66,6 +67,7 @@ enum Command {
     Evaluate(evaluate::EvaluateArgs),
     Convert(convert::ConvertArgs),
     Map(map::MapArgs),
+    Mark(mark::MarkArgs),
 }
 
 fn main() -> ExitCode {
@@ -101,6 +103,7 @@ fn main() -> ExitCode {
         Command::Evaluate(args) => evaluate::run(args).map_err(|e| e.to_string()),
         Command::Convert(args) => convert::run(args).map_err(|e| e.to_string()),
         Command::Map(args) => map::run(args).map_err(|e| e.to_string()),
+        Command::Mark(args) => mark::run(args).map_err(|e| e.to_string()),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -6,6 +6,7 @@ mod doctor;
 mod estimators;
 mod files;
 mod logs;
+mod mark;
 mod optimize;
 mod recordings;
 mod sessions;

@@ -123,8 +123,21 @@ pub fn package() -> anyhow::Result<()> {
     run(
         "Packing the npm archive and the Python wheel",
         program("node").args(["web/package.mjs", "dist", "target/packages"]),
+    )?;
+    run(
+        "Packing the exercises for learning management systems",
+        program("node").args(["web/scorm.mjs", "dist", SCORM]),
+    )?;
+    run(
+        "Packing the site for a folder without a server",
+        program("node").args(["web/offline.mjs", "dist", OFFLINE]),
     )
 }
+
+/// The exercises as a SCORM 1.2 package.
+const SCORM: &str = "target/packages/slam2d-exercises-scorm.zip";
+/// The site as a zip whose pages open by a double click.
+const OFFLINE: &str = "target/packages/slam2d-offline.zip";
 
 /// Variants of the module: a folder, the difference from the published one, more options of cargo.
 const VARIANTS: [(&str, &str, &[&str]); 5] = [

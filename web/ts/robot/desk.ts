@@ -435,14 +435,14 @@ export function hand(widget: Widget, { kind, text, numbers, bytes }: Delivery): 
 /**
  * A page of another origin may not start our script as a worker, but may start its own one that imports
  * ours. A sandboxed frame has another origin regardless of its address, and its own script may only be a
- * module in a data address.
+ * module in a data address; so may a page from the disk, which imports nothing from there.
  */
 async function startWorker(): Promise<Worker> {
   const address = addressOf(ROBOT_WORKER_FILE);
   if (address !== undefined && new URL(address).origin === self.origin) {
     return new Worker(address, { type: 'module' });
   }
-  const text = address === undefined ? await (await ask(ROBOT_WORKER_FILE)).text() : `import ${JSON.stringify(address)};`;
+  const text = address === undefined || location.protocol === 'file:' ? await (await ask(ROBOT_WORKER_FILE)).text() : `import ${JSON.stringify(address)};`;
   const script =
     self.origin === 'null'
       ? `data:text/javascript,${encodeURIComponent(text)}`

@@ -1,0 +1,222 @@
+//! `slam2d mark`: recomputes the answers that students saved from the page, and marks them.
+
+mod answers;
+mod exercise;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rayon::prelude::*;
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::output::{print_json, say};
+use answers::{Answers, AnswersError};
+use exercise::{Mark, Marked};
+
+/// Mark the answers that students saved from the page.
+#[derive(Args, Clone, Debug)]
+pub struct MarkArgs {
+    /// Files that the page saved by "Save my answers".
+    #[arg(required = true, value_name = "ANSWERS.json")]
+    files: Vec<PathBuf>,
+    /// Print a table with a row for each answer, for a spreadsheet.
+    #[arg(long, conflicts_with = "json")]
+    csv: bool,
+    /// Print one JSON object for each file, a line each.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Why some files are not marked.
+#[derive(Debug, Error)]
+pub enum MarkError {
+    /// The only file.
+    #[error(transparent)]
+    File(#[from] AnswersError),
+    /// Some of many; each has its line above.
+    #[error("{unusable} of {files} files are not marked")]
+    Some {
+        /// Number of files without marks.
+        unusable: usize,
+        /// Number of files.
+        files: usize,
+    },
+}
+
+/// The marks of one file.
+#[derive(Serialize)]
+struct Sheet {
+    file: String,
+    student: String,
+    /// Whether the file is as the page saved it.
+    intact: bool,
+    /// Number of exercises in the chapter.
+    exercises: usize,
+    /// Number of answers that are right or within tolerance.
+    right: usize,
+    answers: Vec<Marked>,
+}
+
+/// Marks every file that can be read, in order.
+///
+/// # Errors
+/// If a file cannot be read; the others are marked.
+pub fn run(args: &MarkArgs) -> Result<(), MarkError> {
+    let sheets: Vec<_> = args.files.par_iter().map(|path| sheet_of(path)).collect();
+    if args.csv && sheets.iter().any(Result::is_ok) {
+        say!("{}", CSV_HEAD);
+    }
+    let files = sheets.len();
+    let mut unusable = 0;
+    for sheet in sheets {
+        match sheet {
+            Ok(sheet) if args.json => print_json(&sheet),
+            Ok(sheet) if args.csv => sheet.print_csv(),
+            Ok(sheet) => sheet.print(),
+            Err(error) if files == 1 => return Err(error.into()),
+            Err(error) => {
+                eprintln!("slam2d: {error}");
+                unusable += 1;
+            }
+        }
+    }
+    if unusable > 0 {
+        return Err(MarkError::Some { unusable, files });
+    }
+    Ok(())
+}
+
+fn sheet_of(path: &Path) -> Result<Sheet, AnswersError> {
+    let file = Answers::read(path)?;
+    let answers: Vec<Marked> = file
+        .answers
+        .iter()
+        .map(|answer| exercise::mark(answer, &file.student))
+        .collect();
+    let is_right = |answer: &&Marked| matches!(answer.mark, Mark::Right | Mark::WithinTolerance);
+    Ok(Sheet {
+        file: path.display().to_string(),
+        intact: file.is_intact(),
+        exercises: exercise::count(),
+        right: answers.iter().filter(is_right).count(),
+        answers,
+        student: file.student,
+    })
+}
+
+const CSV_HEAD: &str =
+    "file,student,intact,exercise,mark,prediction,right,result,unit,attempts,time,note";
+
+impl Sheet {
+    fn print(&self) {
+        let student = match self.student.as_str() {
+            "" => "no name, the chapter's own tasks".to_owned(),
+            name => one_line(name),
+        };
+        say!(
+            "{}: {student}; {} of {} answered, {} as predicted",
+            self.file,
+            self.answers.len(),
+            self.exercises,
+            self.right
+        );
+        if !self.intact {
+            say!("  the digest is broken: the file was changed after the page saved it");
+        }
+        for answer in &self.answers {
+            let right = match (&answer.right, &answer.result) {
+                (Some(right), Some(result)) if right != result => {
+                    format!("{right} ({result}{})", spaced(&answer.unit))
+                }
+                (Some(right), _) => format!("{right}{}", spaced(&answer.unit)),
+                _ => String::new(),
+            };
+            say!(
+                "  {:<16} {:<16} {} → {right}",
+                one_line(&answer.exercise),
+                answer.mark.words(),
+                one_line(&answer.prediction)
+            );
+            if let Some(note) = &answer.note {
+                say!("    {}", one_line(note));
+            }
+        }
+    }
+
+    fn print_csv(&self) {
+        for answer in &self.answers {
+            let attempts = answer.attempts.to_string();
+            let cells = [
+                self.file.as_str(),
+                &self.student,
+                if self.intact { "yes" } else { "no" },
+                &answer.exercise,
+                answer.mark.words(),
+                &answer.prediction,
+                answer.right.as_deref().unwrap_or_default(),
+                answer.result.as_deref().unwrap_or_default(),
+                &answer.unit,
+                &attempts,
+                &answer.time,
+                answer.note.as_deref().unwrap_or_default(),
+            ];
+            say!("{}", cells.map(csv_cell).join(","));
+        }
+    }
+}
+
+impl Mark {
+    fn words(self) -> &'static str {
+        match self {
+            Self::Right => "right",
+            Self::WithinTolerance => "within tolerance",
+            Self::Wrong => "wrong",
+            Self::NotMarked => "not marked",
+        }
+    }
+}
+
+fn spaced(unit: &str) -> String {
+    if unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {unit}")
+    }
+}
+
+/// A student's text, which may not add a line to the report.
+fn one_line(text: &str) -> String {
+    text.chars()
+        .map(|letter| if letter.is_control() { ' ' } else { letter })
+        .collect()
+}
+
+/// One cell. A spreadsheet computes a text that starts like a formula, so such a text gets an apostrophe.
+fn csv_cell(text: &str) -> String {
+    let is_formula =
+        text.starts_with(['=', '+', '-', '@', '\t', '\r']) && text.parse::<f64>().is_err();
+    let guarded = if is_formula {
+        format!("'{text}")
+    } else {
+        text.to_owned()
+    };
+    if guarded.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", guarded.replace('"', "\"\""))
+    } else {
+        guarded
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_is_text_whatever_a_student_writes() {
+        assert_eq!(csv_cell("0.585"), "0.585");
+        assert_eq!(csv_cell("-3"), "-3");
+        assert_eq!(csv_cell("=SUM(A1)"), "'=SUM(A1)");
+        assert_eq!(csv_cell("Ann, \"B\""), "\"Ann, \"\"B\"\"\"");
+    }
+}

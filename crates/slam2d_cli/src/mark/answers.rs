@@ -1,0 +1,159 @@
+//! The file of answers that a reader saves from the page.
+//!
+//! ```json
+//! {"schema": "slam2d-answers/1", "student": "Ann", "digest": "9f86…", "answers": [{"exercise": "16.5a",
+//!  "widget": "w16.2", "state": "noise=4&t=129&seed=7", "prediction": "twice", "result": "1.2",
+//!  "attempts": 1, "time": "2026-11-27T02:06:47.000Z"}]}
+//! ```
+//!
+//! The digest is the SHA-256 of `["slam2d-answers/1","Ann",["16.5a","w16.2",…,1,"2026-…"],…]` as compact JSON. It
+//! reveals an accidental change. Who reads this source can compute it for any answers.
+
+use std::collections::HashSet;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+use thiserror::Error;
+
+/// Name and version of the format.
+const SCHEMA: &str = "slam2d-answers/1";
+/// Size limit; the answers to all exercises of a chapter are a few kilobytes.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// The answers of one student.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Answers {
+    schema: String,
+    /// Name or token; empty for the tasks of the chapter.
+    pub student: String,
+    /// One for each exercise, in the order in which they were first given.
+    pub answers: Vec<Answer>,
+    digest: String,
+}
+
+/// The last answer to one exercise.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Answer {
+    /// Id of the exercise.
+    pub exercise: String,
+    widget: String,
+    /// State of the widget, as in a link.
+    pub state: String,
+    /// Name of a choice, or a number.
+    pub prediction: String,
+    /// Verdict or number that the page showed.
+    pub result: String,
+    /// Number of answers to this exercise.
+    pub attempts: u32,
+    /// Moment of this answer, by the student's clock.
+    pub time: String,
+}
+
+/// Why a file cannot be marked.
+#[derive(Debug, Error)]
+pub enum AnswersError {
+    /// It cannot be read.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        source: io::Error,
+    },
+    /// It is too long.
+    #[error("{} has more than {MOST_BYTES} bytes; give a file that the page saved", .0.display())]
+    TooLong(PathBuf),
+    /// It is malformed.
+    #[error("{}: {source}; give a file that the page saved by “Save my answers”", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with line and column.
+        source: serde_json::Error,
+    },
+    /// Another version of the format.
+    #[error("{} has the schema `{found}`, not `{SCHEMA}`; mark it with the version of its page", path.display())]
+    Schema {
+        /// The file.
+        path: PathBuf,
+        /// Its schema.
+        found: String,
+    },
+    /// Two answers to one exercise.
+    #[error("{} answers exercise {exercise} twice; keep one of the two", path.display())]
+    Twice {
+        /// The file.
+        path: PathBuf,
+        /// The exercise.
+        exercise: String,
+    },
+}
+
+impl Answers {
+    /// Reads a file of answers.
+    ///
+    /// # Errors
+    /// If it is not a file of answers of this version, with at most one for each exercise.
+    pub fn read(path: &Path) -> Result<Self, AnswersError> {
+        let owned = || path.to_path_buf();
+        let io = |source| AnswersError::Io {
+            path: owned(),
+            source,
+        };
+        let mut bytes = Vec::new();
+        let file = File::open(path).map_err(io)?;
+        file.take(MOST_BYTES + 1)
+            .read_to_end(&mut bytes)
+            .map_err(io)?;
+        if bytes.len() as u64 > MOST_BYTES {
+            return Err(AnswersError::TooLong(owned()));
+        }
+        let answers: Self =
+            serde_json::from_slice(&bytes).map_err(|source| AnswersError::Malformed {
+                path: owned(),
+                source,
+            })?;
+        if answers.schema != SCHEMA {
+            return Err(AnswersError::Schema {
+                path: owned(),
+                found: answers.schema,
+            });
+        }
+        let mut seen = HashSet::new();
+        if let Some(twice) = answers.answers.iter().find(|a| !seen.insert(&a.exercise)) {
+            return Err(AnswersError::Twice {
+                path: owned(),
+                exercise: twice.exercise.clone(),
+            });
+        }
+        Ok(answers)
+    }
+
+    /// Whether the digest is that of the answers.
+    pub fn is_intact(&self) -> bool {
+        let digest = Sha256::digest(self.canonical());
+        let hexadecimal: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+        hexadecimal == self.digest
+    }
+
+    fn canonical(&self) -> String {
+        let mut rows = vec![self.schema.as_str().into(), self.student.as_str().into()];
+        rows.extend(self.answers.iter().map(|answer| {
+            serde_json::json!([
+                answer.exercise,
+                answer.widget,
+                answer.state,
+                answer.prediction,
+                answer.result,
+                answer.attempts,
+                answer.time,
+            ])
+        }));
+        serde_json::Value::Array(rows).to_string()
+    }
+}

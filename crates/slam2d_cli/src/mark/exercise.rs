@@ -1,0 +1,304 @@
+//! The exercises of the chapter, computed without a page.
+
+use std::sync::LazyLock;
+
+use kit::model::{Model, Outcome};
+use serde::{Deserialize, Serialize};
+use widgets::registry::{MODELS, SPECS};
+
+use super::answers::Answer;
+
+/// Number of seeds that are tried until one of the choices is right.
+const MOST_TRIES: u32 = 100;
+
+/// The exercises, in the order of the page, from which the build writes the file.
+static EXERCISES: LazyLock<Vec<Exercise>> = LazyLock::new(|| {
+    serde_json::from_str(include_str!("exercises.json")).expect("a test reads the file")
+});
+
+/// One question of the page.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Exercise {
+    /// Its id: `16.5a`.
+    pub exercise: String,
+    widget: String,
+    state: String,
+    /// The fact in question; else the verdict is.
+    fact: Option<String>,
+    /// Largest error of a typed number.
+    #[serde(default)]
+    tolerance: f64,
+    #[serde(default)]
+    unit: String,
+    choices: Vec<Choice>,
+}
+
+/// One of the answers offered.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Choice {
+    choice: String,
+    /// Smallest value for which it is right.
+    from: Option<f64>,
+    /// The values for which it is right are below.
+    to: Option<f64>,
+}
+
+/// What the widget shows to one student.
+#[derive(Clone, Debug)]
+pub struct Task {
+    /// The state of the widget, with the student's seed.
+    pub state: String,
+    outcome: Outcome,
+}
+
+/// The assessment of one answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mark {
+    /// The right choice, or exactly the number.
+    Right,
+    /// A number that is close enough.
+    WithinTolerance,
+    /// Another choice, or another number.
+    Wrong,
+    /// No answer to this exercise; the note gives the reason.
+    NotMarked,
+}
+
+/// A marked answer.
+#[derive(Clone, Debug, Serialize)]
+pub struct Marked {
+    /// Id of the exercise.
+    pub exercise: String,
+    /// The mark.
+    pub mark: Mark,
+    /// The student's choice or number.
+    pub prediction: String,
+    /// The right choice, or the number.
+    pub right: Option<String>,
+    /// The recomputed verdict or number.
+    pub result: Option<String>,
+    /// Unit of the number.
+    pub unit: String,
+    /// Number of answers to this exercise.
+    pub attempts: u32,
+    /// Moment of the answer, by the student's clock.
+    pub time: String,
+    /// What to know about the answer.
+    pub note: Option<String>,
+}
+
+/// Number of exercises.
+pub fn count() -> usize {
+    EXERCISES.len()
+}
+
+/// Recomputes the exercise of an answer and marks it.
+pub fn mark(answer: &Answer, student: &str) -> Marked {
+    let mut marked = Marked {
+        exercise: answer.exercise.clone(),
+        mark: Mark::NotMarked,
+        prediction: answer.prediction.clone(),
+        right: None,
+        result: None,
+        unit: String::new(),
+        attempts: answer.attempts,
+        time: answer.time.clone(),
+        note: None,
+    };
+    let found = EXERCISES.iter().find(|e| e.exercise == answer.exercise);
+    let Some(exercise) = found else {
+        let known: Vec<&str> = EXERCISES.iter().map(|e| e.exercise.as_str()).collect();
+        marked.note = Some(format!(
+            "there is no such exercise; there are {}",
+            known.join(", ")
+        ));
+        return marked;
+    };
+    let task = exercise.task(student);
+    exercise.judge(answer, &task, &mut marked);
+    marked
+}
+
+impl Exercise {
+    /// The exercise as the page sets it for a student.
+    pub fn task(&self, student: &str) -> Task {
+        let mut model = self.model();
+        let takes_seed = model.spec().params.iter().any(|param| param.id == "seed");
+        let has_seed = self.state.split('&').any(|pair| pair.starts_with("seed="));
+        if !student.is_empty() && takes_seed && !has_seed {
+            for attempt in 0..MOST_TRIES {
+                let seed = seed_of(student, &self.exercise, attempt);
+                model
+                    .set("seed", f64::from(seed))
+                    .expect("a seed is any whole number of 32 bits");
+                model.finish_work();
+                let outcome = model.outcome();
+                if self.has_answer(&outcome) {
+                    let state = format!("{}&seed={seed}", self.state);
+                    return Task { state, outcome };
+                }
+            }
+            model = self.model();
+        }
+        model.finish_work();
+        Task {
+            state: self.state.clone(),
+            outcome: model.outcome(),
+        }
+    }
+
+    /// The widget in the state of the question.
+    fn model(&self) -> Box<dyn Model> {
+        let at = SPECS.iter().position(|spec| spec.id == self.widget);
+        let mut model = MODELS[at.expect("the build checks the widget")]();
+        for pair in self.state.split('&') {
+            let (id, text) = pair.split_once('=').expect("a name and a value");
+            model.set_text(id, text).expect("a test sets each state");
+        }
+        model
+    }
+
+    fn fact(&self, outcome: &Outcome) -> Option<f64> {
+        let fact = self.fact.as_deref()?;
+        let found = outcome.facts.iter().find(|candidate| candidate.id == fact);
+        found
+            .map(|fact| fact.value)
+            .filter(|value| value.is_finite())
+    }
+
+    /// The choice that is right for this outcome.
+    fn right_choice(&self, outcome: &Outcome) -> Option<&Choice> {
+        let value = self.fact(outcome);
+        self.choices.iter().find(|choice| match value {
+            Some(value) => {
+                choice.from.is_none_or(|from| value >= from)
+                    && choice.to.is_none_or(|to| value < to)
+            }
+            None => self.fact.is_none() && choice.choice == outcome.verdict,
+        })
+    }
+
+    /// Whether one of the choices, or a number, is right.
+    fn has_answer(&self, outcome: &Outcome) -> bool {
+        if self.choices.is_empty() {
+            self.fact(outcome).is_some()
+        } else {
+            self.right_choice(outcome).is_some()
+        }
+    }
+
+    fn judge(&self, answer: &Answer, task: &Task, marked: &mut Marked) {
+        if answer.state != task.state {
+            marked.note = Some(format!(
+                "the state `{}` is not this student's task, which is `{}`",
+                answer.state, task.state
+            ));
+            return;
+        }
+        let value = self.fact(&task.outcome);
+        let result = value.map_or_else(|| task.outcome.verdict.clone(), |value| value.to_string());
+        let is_same = value.map_or(answer.result == result, |value| {
+            answer.result.parse() == Ok(value)
+        });
+        if !is_same {
+            marked.note = Some(format!(
+                "the file says that the page showed `{}`, but the result is `{result}`",
+                answer.result
+            ));
+        }
+        marked.result = Some(result);
+        self.unit.trim().clone_into(&mut marked.unit);
+        if self.choices.is_empty() {
+            marked.right.clone_from(&marked.result);
+            match (answer.prediction.parse::<f64>(), value) {
+                (Ok(number), Some(value)) if number == value => marked.mark = Mark::Right,
+                (Ok(number), Some(value)) if (number - value).abs() <= self.tolerance => {
+                    marked.mark = Mark::WithinTolerance;
+                }
+                (Ok(_), _) => marked.mark = Mark::Wrong,
+                (Err(_), _) => {
+                    marked.note = Some(format!("`{}` is not a number", answer.prediction));
+                }
+            }
+            return;
+        }
+        let right = self.right_choice(&task.outcome);
+        marked.right = right.map(|choice| choice.choice.clone());
+        if marked.right.as_ref() == Some(&answer.prediction) {
+            marked.mark = Mark::Right;
+        } else if self.choices.iter().any(|c| c.choice == answer.prediction) {
+            marked.mark = Mark::Wrong;
+        } else {
+            let choices: Vec<&str> = self.choices.iter().map(|c| c.choice.as_str()).collect();
+            marked.note = Some(format!(
+                "`{}` is none of the choices: {}",
+                answer.prediction,
+                choices.join(", ")
+            ));
+        }
+    }
+}
+
+/// The seed of a student's exercise: FNV-1a over the text, then the finalizer of `MurmurHash3`.
+///
+/// The page derives the same (`web/ts/personal.ts`).
+fn seed_of(student: &str, exercise: &str, attempt: u32) -> u32 {
+    let text = format!("{student}\n{exercise}\n{attempt}");
+    let mut hash = text.bytes().fold(0x811c_9dc5_u32, |hash, byte| {
+        (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
+    });
+    hash = (hash ^ (hash >> 16)).wrapping_mul(0x85eb_ca6b);
+    hash = (hash ^ (hash >> 13)).wrapping_mul(0xc2b2_ae35);
+    hash ^ (hash >> 16)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Deserialize)]
+    struct Seed {
+        student: String,
+        exercise: String,
+        attempt: u32,
+        seed: u32,
+    }
+
+    #[test]
+    fn seeds_are_those_of_the_page() {
+        let text = include_str!("../../../../tests/reference/student-seeds.json");
+        let seeds: Vec<Seed> = serde_json::from_str(text).unwrap();
+        assert!(seeds.len() >= 5);
+        for seed in seeds {
+            let derived = seed_of(&seed.student, &seed.exercise, seed.attempt);
+            assert_eq!(derived, seed.seed, "{} {}", seed.student, seed.exercise);
+        }
+    }
+
+    #[test]
+    fn every_exercise_has_an_answer_for_the_chapter_and_for_each_student() {
+        for exercise in EXERCISES.iter() {
+            for student in ["", "Ann", "Βασίλης", "3217"] {
+                let task = exercise.task(student);
+                assert!(
+                    exercise.has_answer(&task.outcome),
+                    "{} for {student:?}: {:?}",
+                    exercise.exercise,
+                    task.outcome
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn neighbours_have_other_laps() {
+        let lap = EXERCISES.iter().find(|e| e.exercise == "16.5b").unwrap();
+        let [ann, bob, chapter] = ["Ann", "Bob", ""].map(|student| lap.task(student).state);
+        assert!(ann.starts_with("noise=4&t=92&seed="), "{ann}");
+        assert_ne!(ann, bob);
+        assert_eq!(chapter, "noise=4&t=92");
+    }
+}

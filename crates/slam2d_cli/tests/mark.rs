@@ -1,0 +1,187 @@
+//! `slam2d mark` on files as the page saves them, changed ones, and ones that are none.
+
+use std::fs;
+use std::path::PathBuf;
+
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+use crate::support::{assert_refused, json, slam2d};
+
+/// Fields of an answer, in the order of the digest.
+const FIELDS: [&str; 7] = [
+    "exercise",
+    "widget",
+    "state",
+    "prediction",
+    "result",
+    "attempts",
+    "time",
+];
+
+fn answer(exercise: &str, widget: &str, state: &str, prediction: &str, result: &str) -> Value {
+    json!({
+        "exercise": exercise, "widget": widget, "state": state, "prediction": prediction, "result": result,
+        "attempts": 1, "time": "2026-11-27T02:06:47.000Z",
+    })
+}
+
+fn mirror(prediction: &str) -> Value {
+    answer(
+        "16.1",
+        "w16.11",
+        "shape=two",
+        prediction,
+        "turn and mirror image tie",
+    )
+}
+
+fn rank(prediction: &str) -> Value {
+    answer("16.2", "w16.3", "scene=corridor", prediction, "2")
+}
+
+/// A file with a digest that fits.
+fn file(student: &str, answers: &[Value]) -> Value {
+    let schema = "slam2d-answers/1";
+    let mut rows = vec![json!(schema), json!(student)];
+    rows.extend(
+        answers
+            .iter()
+            .map(|answer| FIELDS.iter().map(|field| answer[field].clone()).collect()),
+    );
+    let digest = Sha256::digest(Value::Array(rows).to_string());
+    let digest: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+    json!({"schema": schema, "student": student, "answers": answers, "digest": digest})
+}
+
+/// A folder that holds `content` as `answers.json`.
+fn saved(content: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("answers.json");
+    fs::write(&path, content).unwrap();
+    (folder, path)
+}
+
+fn marks(file: &Value) -> Value {
+    let (_folder, path) = saved(&file.to_string());
+    json(&["mark", path.to_str().unwrap(), "--json"])
+}
+
+#[test]
+fn answers_are_marked_by_what_the_core_computes() {
+    let answers = [
+        mirror("turn and mirror image tie"),
+        rank("2"),
+        answer(
+            "16.variants",
+            "w16.1",
+            "heading=180&dx=0&dy=0&variant=point-to-plane",
+            "larger",
+            "0.015",
+        ),
+    ];
+    let sheet = marks(&file("", &answers));
+    assert_eq!(sheet["intact"], true);
+    assert_eq!(
+        (&sheet["right"], &sheet["exercises"]),
+        (&json!(2), &json!(11))
+    );
+    let marked = sheet["answers"].as_array().unwrap();
+    let given: Vec<_> = marked.iter().map(|a| a["mark"].as_str().unwrap()).collect();
+    assert_eq!(given, ["right", "right", "wrong"]);
+    assert_eq!(marked[2]["right"], "smaller");
+    // The chapter prints 0.015; the page saves every digit.
+    let note = marked[2]["note"].as_str().unwrap();
+    assert!(note.contains("showed `0.015`, but"), "{note}");
+}
+
+#[test]
+fn a_number_beside_the_right_one_is_within_tolerance_or_wrong() {
+    for (prediction, mark) in [
+        ("2.4", "within-tolerance"),
+        ("3", "wrong"),
+        ("two", "not-marked"),
+    ] {
+        let sheet = marks(&file("", &[rank(prediction)]));
+        assert_eq!(sheet["answers"][0]["mark"], mark, "{prediction}");
+    }
+}
+
+#[test]
+fn a_changed_file_is_marked_and_its_digest_is_broken() {
+    let mut changed = file("", &[mirror("a turn fits best")]);
+    changed["answers"][0]["prediction"] = json!("turn and mirror image tie");
+    let sheet = marks(&changed);
+    assert_eq!(sheet["intact"], false);
+    assert_eq!(sheet["answers"][0]["mark"], "right");
+}
+
+#[test]
+fn the_lap_of_a_neighbour_is_not_marked() {
+    let neighbours = answer(
+        "16.5a",
+        "w16.2",
+        "noise=4&t=129&seed=1526909936",
+        "as before",
+        "1",
+    );
+    let bob = marks(&file("Bob", std::slice::from_ref(&neighbours)));
+    assert_ne!(bob["answers"][0]["mark"], "not-marked", "{bob}");
+    let ann = marks(&file("Ann", &[neighbours]));
+    assert_eq!(ann["answers"][0]["mark"], "not-marked");
+    let note = ann["answers"][0]["note"].as_str().unwrap();
+    assert!(
+        note.contains("which is `noise=4&t=129&seed=3281447463`"),
+        "{note}"
+    );
+}
+
+#[test]
+fn an_unknown_exercise_or_choice_is_not_marked_and_says_which_there_are() {
+    let unknown = [answer("17.1", "w16.1", "", "a", "a"), mirror("none")];
+    let sheet = marks(&file("", &unknown));
+    let note = |k: usize| sheet["answers"][k]["note"].as_str().unwrap();
+    assert!(
+        note(0).contains("there are 16.1, 16.2") && note(1).contains("choices: a turn"),
+        "{sheet}"
+    );
+}
+
+#[test]
+fn what_is_no_file_of_answers_is_refused_in_one_line() {
+    let twice = file("", &[rank("2"), rank("2")]).to_string();
+    let newer = file("", &[]).to_string().replace("answers/1", "answers/2");
+    for (content, said) in [
+        (
+            "{\"schema\": ",
+            "line 1 column 11; give a file that the page saved",
+        ),
+        ("[]", "give a file that the page saved"),
+        (
+            newer.as_str(),
+            "has the schema `slam2d-answers/2`, not `slam2d-answers/1`",
+        ),
+        (twice.as_str(), "answers exercise 16.2 twice"),
+        (&" ".repeat((1 << 20) + 1), "more than 1048576 bytes"),
+    ] {
+        let (_folder, path) = saved(content);
+        assert_refused(&["mark", path.to_str().unwrap()], said);
+    }
+    assert_refused(&["mark", "nowhere.json"], "nowhere.json: ");
+}
+
+#[test]
+fn one_bad_file_of_many_leaves_the_marks_of_the_others() {
+    let (_folder, good) = saved(&file("", &[rank("=1+1")]).to_string());
+    let output = slam2d(&["mark", "nowhere.json", good.to_str().unwrap(), "--csv"]);
+    assert_eq!(output.status.code(), Some(2));
+    let table = String::from_utf8(output.stdout).unwrap();
+    let rows: Vec<&str> = table.lines().collect();
+    assert_eq!(rows.len(), 2, "{table}");
+    assert!(
+        rows[1].contains(",,yes,16.2,not marked,'=1+1,2,2,,1,2026-11-27T02:06:47.000Z,`=1+1`"),
+        "{table}"
+    );
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert!(errors.contains("1 of 2 files are not marked"), "{errors}");
+}

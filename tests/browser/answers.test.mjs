@@ -1,0 +1,100 @@
+// The reader's answers: personal tasks, kept only if asked, saved as a file that `slam2d mark` marks as the page does.
+
+import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { it } from 'node:test';
+import { violations } from './axe.mjs';
+import * as h from './harness.mjs';
+import { native } from '../native.mjs';
+
+const visit = h.visitor();
+const reading = (query, test, how = {}) => visit('', test, { path: `/index.html${query}`, fresh: true, ...how });
+
+/** Answers every question of the page with its last choice, or with 3; returns the events. */
+const answerAll = (tab) => tab.evaluate(async () => {
+  const told = [];
+  for (const question of document.querySelectorAll('slam-predict')) {
+    const answered = new Promise((resolve) => question.addEventListener('slam-predict', resolve, { once: true }));
+    const form = question.shadowRoot.querySelector('form');
+    const fields = [...form.querySelectorAll('input')];
+    if (fields[0].type === 'radio') fields.at(-1).checked = true;
+    else fields[0].value = '3';
+    form.querySelector('button').click();
+    told.push((await answered).detail);
+  }
+  return told;
+});
+
+const isDefined = (tab) => tab.waitForFunction(() => customElements.get('slam-answers') !== undefined);
+
+/** The saved file, and the marks that the command gives it. */
+async function marked(tab) {
+  const [download] = await Promise.all([
+    tab.waitForEvent('download'),
+    tab.getByRole('button', { name: 'Save my answers' }).click(),
+  ]);
+  const text = (await h.bytesOf(download)).toString();
+  const folder = mkdtempSync(join(tmpdir(), 'answers-'));
+  try {
+    const file = join(folder, download.suggestedFilename());
+    writeFileSync(file, text);
+    return { file: JSON.parse(text), name: download.suggestedFilename(), sheet: JSON.parse(native('slam2d', 'mark', file, '--json')) };
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+}
+
+for (const student of ['', 'Βασίλης “7”']) {
+  it(`is marked by the command as by the page: ${student === '' ? 'the chapter’s tasks' : 'tasks of a student'}`, async () => {
+    await reading(student === '' ? '' : `?student=${encodeURIComponent(student)}`, async (tab) => {
+      await isDefined(tab);
+      const told = await answerAll(tab);
+      const { file, name, sheet } = await marked(tab);
+      assert.equal(name, student === '' ? 'answers.json' : 'answers-Βασίλης-7-.json');
+      assert.equal(file.student, student);
+      assert.deepEqual([sheet.intact, sheet.exercises, sheet.answers.length], [true, told.length, told.length]);
+      for (const [at, { exercise, correct, right, state, time }] of told.entries()) {
+        const answer = sheet.answers[at];
+        assert.deepEqual([answer.exercise, answer.note, answer.mark, answer.right], [exercise, null, correct ? 'right' : 'wrong', right]);
+        assert.equal(state.includes('seed='), student !== '');
+        assert.equal(new Date(time).toISOString(), time);
+      }
+      assert.ok(sheet.right > 0 && sheet.right < told.length, `${sheet.right} right: nothing is compared`);
+    });
+  });
+}
+
+it('counts attempts, and keeps answers in the browser only while the reader wants it', async () => {
+  await reading('?student=Ann', async (tab, server) => {
+    await isDefined(tab);
+    const question = tab.locator('slam-predict[exercise="16.1"]');
+    const answer = async () => {
+      await question.locator('input').first().check();
+      await question.getByRole('button', { name: 'Commit and see' }).click();
+      await question.getByText(/^(As you predicted|It comes out otherwise)/).waitFor();
+    };
+    await answer();
+    await question.getByText(/^This is your own task, seed \d+\. The numbers in the text are those of the chapter’s\.$/).waitFor();
+    await question.getByRole('button', { name: 'Predict again' }).click();
+    await answer();
+    assert.equal(await tab.evaluate(() => localStorage.length), 0);
+    const box = tab.getByLabel('Keep my answers in this browser');
+    await box.check();
+    await tab.goto(`${server.url}/index.html`);
+    await isDefined(tab);
+    assert.equal(await tab.getByLabel(/^Name or token/).inputValue(), 'Ann');
+    await tab.getByText('1 exercise answered.').waitFor();
+    const { file, sheet } = await marked(tab);
+    assert.equal(file.answers[0].attempts, 2);
+    assert.equal(sheet.answers[0].mark, 'wrong');
+    assert.deepEqual(await violations(tab), []);
+    await box.uncheck();
+    assert.equal(await tab.evaluate(() => localStorage.length), 0);
+    // Another student has answered nothing.
+    await tab.getByLabel(/^Name or token/).fill('Bob');
+    await tab.getByLabel(/^Name or token/).press('Enter');
+    await tab.getByText('0 exercises answered.').waitFor();
+  });
+});

@@ -1,0 +1,79 @@
+// The site as a zip: its pages open from a folder, without any server.
+
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+import { after, before, it } from 'node:test';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+import * as h from './harness.mjs';
+
+const { unzipSync } = createRequire(new URL('../../web/package.json', import.meta.url))('fflate');
+let folder;
+let browser;
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'offline-'));
+  const zip = join(folder, 'site.zip');
+  execFileSync(process.execPath, [fileURLToPath(new URL('../../web/offline.mjs', import.meta.url)), h.DIST, zip]);
+  for (const [name, bytes] of Object.entries(unzipSync(readFileSync(zip)))) {
+    const file = join(folder, 'site', name);
+    mkdirSync(dirname(file), { recursive: true });
+    writeFileSync(file, bytes);
+  }
+  browser = await h.launch();
+});
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true });
+});
+
+/** Opens a page of the folder; nothing may fail in it, and nothing may be asked of a network. */
+async function opened(page, test) {
+  const context = await browser.newContext({ viewport: { width: 1100, height: 900 } });
+  const tab = await context.newPage();
+  const troubles = [];
+  tab.on('console', (message) => message.type() === 'error' && troubles.push(message.text()));
+  tab.on('pageerror', (error) => troubles.push(error.message));
+  tab.on('request', (request) => /^(https?|wss?):/.test(request.url()) && troubles.push(request.url()));
+  try {
+    await tab.goto(`${pathToFileURL(join(folder, 'site')).href}/${page}`);
+    await test(tab);
+    assert.deepEqual(troubles, []);
+  } finally {
+    await context.close();
+  }
+}
+
+it('runs a widget of the chapter, replays its lap, drives laps in workers, and maps the sample log', async () => {
+  await opened('index.html', async (tab) => {
+    await tab.waitForSelector('#lap.live');
+    await tab.locator('slam-widget[name="w16.1"]').scrollIntoViewIfNeeded();
+    await h.ready(tab, 'slam-widget[name="w16.1"]');
+    const verdict = await tab.evaluate(() => {
+      const one = document.querySelector('slam-widget[name="w16.1"]');
+      one.value = { heading: 90, dx: 0, dy: 0 };
+      return one.outcome.verdict;
+    });
+    assert.equal(verdict, 'quarter turn');
+    const [worker] = await Promise.all([tab.waitForEvent('worker'), tab.locator('#laps').scrollIntoViewIfNeeded()]);
+    assert.match(worker.url(), /^data:text\/javascript,/);
+    await tab.waitForFunction(() => /^[1-9]\d* of \d+ seeds/.test(document.querySelector('.laps-count')?.textContent ?? ''));
+    const robot = 'slam-widget[name="w16.10"]';
+    await tab.locator(robot).scrollIntoViewIfNeeded();
+    await h.ready(tab, robot);
+    await tab.evaluate((css) => document.querySelector(css).press('sample'), robot);
+    await tab.waitForFunction((css) => document.querySelector(css).outcome?.facts.keyframes > 3, robot);
+  });
+});
+
+it('shows an exercise by itself, whose answer is checked', async () => {
+  await opened('embed.html?exercise=16.1', async (tab) => {
+    const question = tab.locator('slam-predict');
+    await question.locator('input').nth(2).check();
+    await question.getByRole('button', { name: 'Commit and see' }).click();
+    await question.getByText(/^As you predicted/).waitFor();
+  });
+});

@@ -1,0 +1,41 @@
+// slides.html: a slide for each widget, in the state with which its script begins.
+
+import assert from 'node:assert/strict';
+import { it } from 'node:test';
+import { violations } from './axe.mjs';
+import * as h from './harness.mjs';
+
+const visit = h.visitor();
+
+it('has a slide for each widget, whose links set it and whose script is the speaker’s', async () => {
+  await visit('', async (tab) => {
+    const names = await tab.evaluate(() => [...document.querySelectorAll('section > slam-widget')].map(({ name }) => name));
+    assert.deepEqual([...names].sort(), h.schema.map(({ id }) => id).sort());
+    const first = 'slam-widget[name="w16.1"]';
+    await tab.locator(first).scrollIntoViewIfNeeded();
+    await h.ready(tab, first);
+    assert.equal(await tab.evaluate((css) => document.querySelector(css).get('heading'), first), 25);
+    const slide = tab.locator('section').filter({ has: tab.locator(first) });
+    await slide.getByRole('link', { name: '75° off' }).click();
+    assert.equal(await tab.evaluate((css) => document.querySelector(css).outcome.verdict, first), 'quarter turn');
+    await slide.getByText('Script').click();
+    await slide.getByText('Cover the verdict and ask what the robot').waitFor();
+    assert.deepEqual(await violations(tab), []);
+  }, { path: '/slides.html', fresh: true });
+});
+
+it('shows each widget whole within the screen of a projector', async () => {
+  await visit('', async (tab) => {
+    for (const { id } of h.schema) {
+      const css = `slam-widget[name="${id}"]`;
+      await tab.locator(css).scrollIntoViewIfNeeded();
+      await h.ready(tab, css);
+      const box = await tab.locator(css).evaluate((widget) => {
+        widget.closest('section').scrollIntoView();
+        const { top, bottom } = widget.getBoundingClientRect();
+        return { top, bottom, height: innerHeight };
+      });
+      assert.ok(box.top >= 0 && box.bottom <= box.height, `${id}: ${JSON.stringify(box)}`);
+    }
+  }, { path: '/slides.html', fresh: true, options: { viewport: { width: 1280, height: 720 } } });
+});

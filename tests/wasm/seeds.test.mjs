@@ -1,0 +1,15 @@
+// The page derives a student's seeds as `slam2d mark` does: both are compared with the same numbers.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { it } from 'node:test';
+import * as esbuild from '../../web/node_modules/esbuild/lib/main.js';
+
+const source = readFileSync(new URL('../../web/ts/personal.ts', import.meta.url), 'utf8');
+const { code } = await esbuild.transform(source, { loader: 'ts' });
+const { seedOf } = await import(`data:text/javascript;base64,${Buffer.from(code).toString('base64')}`);
+
+it('gives each student and exercise the seed that the command gives', () => {
+  const seeds = JSON.parse(readFileSync(new URL('../reference/student-seeds.json', import.meta.url), 'utf8'));
+  for (const { student, exercise, attempt, seed } of seeds) assert.equal(seedOf(student, exercise, attempt), seed, student);
+});

@@ -1,0 +1,59 @@
+// The questions of the chapter as data: what the page asks is what a frame shows and what `slam2d mark` marks.
+
+/** Chapter, exercise and part, `16.5a`; or a name in place of the number, `16.flat-ground`. */
+const ID = /^\d+\.(\d+[a-z]?|[a-z]+(-[a-z]+)*)$/;
+
+/**
+ * Reads every `<slam-predict>` of a page's source, in order.
+ * @throws {Error} if an exercise has no id, a malformed one, or one that another exercise has.
+ */
+export function readExercises(html) {
+  const exercises = [];
+  for (const [, tag, content] of html.matchAll(/<slam-predict\b([^>]*)>([\s\S]*?)<\/slam-predict>/g)) {
+    const given = attributes(tag);
+    const { exercise, widget, state, fact, tolerance, unit } = given;
+    if (exercise === undefined) {
+      throw new Error(`the question <slam-predict${tag}> has no id: add exercise="16.5a", its chapter, number and part`);
+    }
+    if (!ID.test(exercise)) throw new Error(`exercise="${exercise}" is no id such as 16.5a or 16.flat-ground`);
+    if (exercises.some((other) => other.exercise === exercise)) {
+      throw new Error(`two questions have exercise="${exercise}": give each an id of its own`);
+    }
+    const choices = [...content.matchAll(/<li\b([^>]*\bdata-choice=[^>]*)>/g)].map(([, item]) => choiceOf(item));
+    exercises.push(withoutGaps({ exercise, widget, state, fact, tolerance: numberOf(tolerance), unit, choices }));
+  }
+  return exercises;
+}
+
+/**
+ * Each exercise as a frame shows it, by itself: its title, what comes before its questions, and the questions. Links to
+ * other places of the page become text; `render` turns formulas into HTML.
+ */
+export function frameExercises(html, render) {
+  return html.split('<div class="exercise"').slice(1).map((part) => {
+    const inner = render(part).replace(/<a [^>]*href="#[^>]*>([\s\S]*?)<\/a>/g, '$1').replace(/<slam-widget\b[^>]*><\/slam-widget>/g, '');
+    const title = inner.match(/<h3>([\s\S]*?)<\/h3>/)[1].replace(/<[^>]*>/g, '');
+    const intro = inner.slice(inner.indexOf('</h3>') + '</h3>'.length, inner.indexOf('<slam-predict'));
+    const questions = [...inner.matchAll(/<slam-predict exercise="([^"]*)" widget="([^"]*)"[\s\S]*?<\/slam-predict>/g)];
+    return { title, intro, questions: questions.map(([text, exercise, widget]) => ({ exercise, widget, html: text })) };
+  });
+}
+
+function choiceOf(item) {
+  const { 'data-choice': choice, 'data-from': from, 'data-to': to } = attributes(item);
+  return withoutGaps({ choice, from: numberOf(from), to: numberOf(to) });
+}
+
+function numberOf(text) {
+  return text === undefined ? undefined : Number(text);
+}
+
+/** What JSON leaves out anyway. */
+function withoutGaps(object) {
+  return Object.fromEntries(Object.entries(object).filter(([, value]) => value !== undefined));
+}
+
+function attributes(tag) {
+  const pairs = [...tag.matchAll(/([\w-]+)="([^"]*)"/g)];
+  return Object.fromEntries(pairs.map(([, name, text]) => [name, text.replaceAll('&lt;', '<').replaceAll('&gt;', '>').replaceAll('&amp;', '&')]));
+}

@@ -1,0 +1,67 @@
+// slides.html: a slide for each widget, from the scripts of docs/teaching/widgets.md. The states of a script are links on
+// its slide, its words are the speaker's notes.
+
+/** The page of slides for the text of the scripts. */
+export function slidesPage(scripts) {
+  const slides = scripts.split(/^## /m).slice(1).map(slide);
+  return `<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>SLAM in two dimensions: slides</title>
+<link rel="icon" href="data:,">
+<style>
+html { scroll-snap-type: y mandatory; color-scheme: light dark; font: 1.125rem/1.4 system-ui, sans-serif; }
+body { margin: 0; }
+section { box-sizing: border-box; min-height: 100vh; padding: 2vh 3vw; scroll-snap-align: start; }
+h1, h2 { margin: 0 0 0.5rem; }
+.title { display: grid; align-content: center; justify-items: center; text-align: center; }
+p { margin: 0 0 0.5rem; }
+nav { display: flex; flex-wrap: wrap; gap: 0.5rem; margin-bottom: 0.75rem; }
+nav a { padding: 0.25rem 0.75rem; border: 1px solid; border-radius: 6px; color: inherit; text-decoration: none; }
+slam-widget { max-height: 72vh; overflow: auto; }
+details { margin-top: 0.5rem; }
+</style>
+<script type="module" src="slam-widget.js"></script>
+</head>
+<body>
+<main>
+<section class="title"><div><h1>SLAM in two dimensions</h1>
+<p>Page Down turns a slide. The links set the widget; the script of each slide is folded below it.</p></div></section>
+${slides.join('\n')}
+</main>
+</body>
+</html>
+`;
+}
+
+/** `w16.1 Basin explorer`, goal, misconception, numbered steps with links. */
+function slide(text) {
+  const [, name, title] = text.match(/^(w\S+) (.*)$/m);
+  const [, misconception] = text.match(/^\*\*Misconception\.\*\* ([\s\S]*?)\n\n/m);
+  const [, goal] = text.match(/^\*\*Goal\.\*\* ([\s\S]*?)\n\n/m);
+  const links = [...text.matchAll(/\[([^\]]+)\]\(index\.html(\?w=[^)]+)\)/g)];
+  const steps = text.split(/^\d+\. /m).slice(1).map((step) => `<li>${inLine(step)}</li>`);
+  const first = new URLSearchParams(links[0]?.[2] ?? '');
+  const state = [...first].filter(([id]) => id !== 'w').map(([id, value]) => ` ${id}="${escape(value)}"`).join('');
+  return `<section>
+<h2>${escape(title)}</h2>
+<p>${inLine(misconception)}</p>
+<nav aria-label="States of ${escape(title)}">${links.map(([, words, query]) => `<a class="slam-link" href="${escape(query)}">${inLine(words)}</a>`).join('')}</nav>
+<slam-widget name="${name}"${state}></slam-widget>
+<details><summary>Script</summary><p>${inLine(goal)}</p><ol>${steps.join('')}</ol></details>
+</section>`;
+}
+
+/** Markdown within a paragraph. Its figures are HTML already. */
+function inLine(text) {
+  return text.trim()
+    .replace(/\[([^\]]+)\]\([^)]*\)/g, '$1')
+    .replace(/\*\*([^*]+)\*\*/g, '<b>$1</b>')
+    .replace(/`([^`]+)`/g, '<code>$1</code>');
+}
+
+function escape(text) {
+  return text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('"', '&quot;');
+}

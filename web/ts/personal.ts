@@ -1,0 +1,17 @@
+// Personal tasks: a student's name gives each exercise a seed of its own, so that neighbours have other laps.
+//
+// `slam2d mark` derives the same seeds; tests/reference/student-seeds.json holds both to the same numbers.
+
+/** Number of seeds that are tried until one of the choices is right. */
+export const MOST_TRIES = 100;
+
+/** FNV-1a over the UTF-8 text `student`, newline, exercise, newline, attempt; then the finalizer of MurmurHash3. */
+export function seedOf(student: string, exercise: string, attempt: number): number {
+  let hash = 0x811c9dc5;
+  for (const byte of new TextEncoder().encode(`${student}\n${exercise}\n${attempt}`)) {
+    hash = Math.imul(hash ^ byte, 0x01000193);
+  }
+  hash = Math.imul(hash ^ (hash >>> 16), 0x85ebca6b);
+  hash = Math.imul(hash ^ (hash >>> 13), 0xc2b2ae35);
+  return (hash ^ (hash >>> 16)) >>> 0;
+}

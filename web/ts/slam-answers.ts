@@ -1,0 +1,89 @@
+// <slam-answers>: the reader's name for personal tasks, and the file of answers.
+
+import { answered, answerFile, changes, keepAnswers, keepsAnswers, setStudent, student } from './answers';
+import { create, keepKeys } from './dom';
+import { saveBlob } from './export';
+
+const STYLE = `
+:host { display: block; margin: 1rem 0; border: 1px solid currentColor; border-radius: 6px; padding: 0.75rem 1rem; }
+fieldset { border: 0; margin: 0; padding: 0; }
+label { display: flex; flex-wrap: wrap; align-items: center; gap: 0.5rem; padding: 0.25rem 0; }
+input[type='text'], button { font: inherit; min-height: 2rem; padding: 0.1rem 0.6rem; }
+input[type='text'] { min-width: 0; max-width: 100%; }
+input[type='checkbox'] { flex: none; width: 1.25rem; height: 1.25rem; margin: 0; }
+p { margin: 0.5rem 0 0; }
+`;
+
+export class SlamAnswers extends HTMLElement {
+  #name: HTMLInputElement | undefined;
+  #status: HTMLElement | undefined;
+  readonly #show = (): void => this.#showCount();
+
+  connectedCallback(): void {
+    changes.addEventListener('change', this.#show);
+    if (this.#status !== undefined) {
+      this.#show();
+      return;
+    }
+    const shadow = this.attachShadow({ mode: 'open' });
+    const style = create('style');
+    style.textContent = STYLE;
+    const fields = create('fieldset');
+    const legend = create('legend');
+    legend.textContent = 'Your answers';
+    this.#name = create('input', { type: 'text', autocomplete: 'off', maxlength: '100' });
+    this.#name.value = student();
+    this.#name.addEventListener('change', () => setStudent(this.#name?.value ?? ''));
+    const named = create('label');
+    named.append('Name or token, for tasks of your own:', this.#name);
+    const save = create('button', { type: 'button' });
+    save.textContent = 'Save my answers';
+    save.addEventListener('click', () => void this.#save());
+    this.#status = create('p', { role: 'status' });
+    fields.append(legend, named, this.#keepBox(), save, this.#status);
+    keepKeys(fields);
+    shadow.append(style, fields);
+    this.#show();
+  }
+
+  disconnectedCallback(): void {
+    changes.removeEventListener('change', this.#show);
+  }
+
+  #keepBox(): HTMLLabelElement {
+    const box = create('input', { type: 'checkbox' });
+    box.checked = keepsAnswers();
+    box.addEventListener('change', () => {
+      try {
+        keepAnswers(box.checked);
+      } catch {
+        box.checked = false;
+        this.#say('This browser lets the page store nothing. Save the file instead.');
+      }
+    });
+    const label = create('label');
+    label.append(box, 'Keep my answers in this browser');
+    return label;
+  }
+
+  async #save(): Promise<void> {
+    try {
+      const { name, text } = await answerFile();
+      saveBlob(new Blob([text], { type: 'application/json' }), name);
+    } catch (error) {
+      this.#say(`The answers could not be saved: ${error instanceof Error ? error.message : String(error)}.`);
+    }
+  }
+
+  #showCount(): void {
+    if (this.#name !== undefined) this.#name.value = student();
+    const count = answered();
+    this.#say(`${count} ${count === 1 ? 'exercise' : 'exercises'} answered. Nothing leaves this browser unless you save the file.`);
+  }
+
+  #say(sentence: string): void {
+    this.#status?.replaceChildren(sentence);
+  }
+}
+
+if (customElements.get('slam-answers') === undefined) customElements.define('slam-answers', SlamAnswers);
