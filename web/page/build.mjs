@@ -31,14 +31,14 @@ if (outDir === undefined) {
 await mkdir(outDir, { recursive: true });
 const source = await readFile(path.join(root, 'index.html'), 'utf8');
 const pictured = addPictures(renderFormulas(source), await widgetSpecs());
-const { sketches, story } = await drawStills(outDir);
-const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story));
+const { sketches, story, match } = await drawStills(outDir);
+const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story), match.scene);
 names.set('page.css', await copyStyle());
 await Promise.all([renderPage(), copyKatex()]);
 await writeNotices(metafiles).catch(endWithOneSentence);
 
 async function renderPage() {
-  const page = await addListings(addSketches(addStills(pictured), sketches), root);
+  const page = await addListings(addSketches(addMatch(addStills(pictured)), sketches), root);
   await writeFile(path.join(outDir, 'index.html'), withNames(page));
 }
 
@@ -89,6 +89,11 @@ function addStills(html) {
       <source media="(prefers-color-scheme: dark)" srcset="pictures/${name}-dark.svg">
       <img src="pictures/${name}-light.svg"${rest}>
     </picture>`);
+}
+
+/** The sweeps of the first figure, which its script then moves. */
+function addMatch(html) {
+  return html.replace('<div class="match-picture" data-drawing="match">', (open) => `${open}${match.svg}`);
 }
 
 /** The small figures at their first place: `<figure class="drawing sketch" data-sketch="gate">`. */
@@ -155,7 +160,7 @@ async function copyKatex() {
 }
 
 /** Writes the scripts of the page and of its workers; returns their names, and what esbuild took into them. */
-async function bundleScripts(storyFile) {
+async function bundleScripts(storyFile, matchScene) {
   const bundle = async (source, define) => {
     const { outputFiles, metafile } = await build({
       entryPoints: [path.join(here, source)],
@@ -175,6 +180,7 @@ async function bundleScripts(storyFile) {
   const workerFile = await writeHashed('laps-worker.js', worker.text);
   const page = await bundle('page.ts', {
     LAP_STORY_FILE: JSON.stringify(`./${storyFile}`),
+    MATCH_SCENE: matchScene,
     LAPS_WORKER_FILE: JSON.stringify(`./${workerFile}`),
   });
   const names = new Map([['page.js', await writeHashed('page.js', page.text)]]);

@@ -10,10 +10,14 @@ import { DecideFigure } from './decide';
 import { LapPlayer } from './lap/player';
 import type { Story } from './lap/story';
 import { LapsFigure } from './laps/laps';
+import type { Scene } from './match/drawing';
+import { MatchFigure } from './match/figure';
 import { SketchFigure, type SketchSchema } from './sketch';
 
 /** Set by the build: the lap that the page calls canonical, as the core has driven it. */
 declare const LAP_STORY_FILE: string;
+/** Set by the build: the two sweeps that the reader lays on each other. */
+declare const MATCH_SCENE: Scene;
 
 /** What needs the program of the widgets. */
 const NEEDS_CORE = 'slam-widget, [data-sketch], #decide, #laps';
@@ -27,9 +31,15 @@ listenToThemeButtons();
 letKeyboardScroll(document.querySelectorAll<HTMLElement>('.math, .scroll'));
 keepFromFiles();
 addCopyButtons(document.querySelectorAll<HTMLElement>('figure.listing'));
+letReaderMatch();
 void replayLap();
 driveLaps();
 whenNear(document.querySelectorAll(NEEDS_CORE), () => void useCore());
+
+function letReaderMatch(): void {
+  const figure = document.querySelector<HTMLElement>('#match');
+  if (figure !== null) new MatchFigure(figure, MATCH_SCENE, core as () => Promise<Glue>);
+}
 
 /** The still picture stays if the story cannot be had. */
 async function replayLap(): Promise<void> {
