@@ -16,6 +16,7 @@ import katex from 'katex';
 import { endWithOneSentence } from '../licences/allowed.mjs';
 import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
 import { colorStyle } from '../palette.mjs';
+import { readExercises } from './exercises.mjs';
 import { addListings } from './listings.mjs';
 import { drawStills } from './stills.mjs';
 
@@ -30,6 +31,8 @@ if (outDir === undefined) {
 
 await mkdir(outDir, { recursive: true });
 const source = await readFile(path.join(root, 'index.html'), 'utf8');
+const exercises = readExercises(source);
+await writeFile(path.join(outDir, 'exercises.json'), JSON.stringify(exercises, null, 1));
 const pictured = addPictures(renderFormulas(source), await widgetSpecs());
 const { sketches, story, match } = await drawStills(outDir);
 const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story), match.scene);

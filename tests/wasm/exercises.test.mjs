@@ -1,0 +1,24 @@
+// Each question of the page has an id of its own, by which an answer is collected and marked.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { it } from 'node:test';
+
+import { readExercises } from '../../web/page/exercises.mjs';
+
+const page = readFileSync(new URL('../../index.html', import.meta.url), 'utf8');
+const first = /<slam-predict exercise="16\.1"/;
+
+it('gives each question of the page an id', () => {
+  const exercises = readExercises(page);
+  assert.equal(exercises.length, page.match(/<slam-predict/g).length);
+  const { choices, ...rest } = exercises.find(({ exercise }) => exercise === '16.5a');
+  assert.deepEqual(rest, { exercise: '16.5a', widget: 'w16.2', state: 'noise=4&t=129', fact: 'front_end_error_m', unit: ' m' });
+  assert.deepEqual(choices[1], { choice: 'twice', from: '1', to: '2' });
+});
+
+it('refuses a question without an id, with one that is none, and with one that is taken', () => {
+  assert.throws(() => readExercises(page.replace(first, '<slam-predict')), /w16\.11.* has no id: add exercise="16\.5a"/);
+  assert.throws(() => readExercises(page.replace(first, '<slam-predict exercise="first"')), /exercise="first" is no id/);
+  assert.throws(() => readExercises(page.replace(first, '<slam-predict exercise="16.2"')), /two questions have exercise="16\.2"/);
+});
