@@ -1,4 +1,4 @@
-// Renders the chapter: index.html with its formulas as HTML and MathML, its style, its script and
+// Renders the companion: its pages in one frame with formulas as HTML and MathML, their style, their script and
 // KaTeX's style and fonts, and the page of licences and notices, all into one directory. Nothing of it is loaded from another host.
 //
 //     node web/page/build.mjs <out-dir>
@@ -18,6 +18,7 @@ import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
 import { colorStyle } from '../palette.mjs';
 import { readExercises } from './exercises.mjs';
 import { addListings } from './listings.mjs';
+import { placesOf, readPages, withFrame } from './pages.mjs';
 import { drawStills } from './stills.mjs';
 
 const here = path.dirname(fileURLToPath(import.meta.url));
@@ -30,19 +31,22 @@ if (outDir === undefined) {
 }
 
 await mkdir(outDir, { recursive: true });
-const source = await readFile(path.join(root, 'index.html'), 'utf8');
-const exercises = readExercises(source);
+const pages = await readPages(root);
+const places = placesOf(pages);
+const exercises = readExercises(pages.map(({ html }) => html).join(''));
 await writeFile(path.join(outDir, 'exercises.json'), JSON.stringify(exercises, null, 1));
-const pictured = addPictures(renderFormulas(source), await widgetSpecs());
+const specOf = await widgetSpecs();
+const template = await readFile(path.join(here, 'template.html'), 'utf8');
+const pictured = pages.map((page) => ({ ...page, html: addPictures(renderFormulas(withFrame(template, page, pages, places)), page.source) }));
 const { sketches, story, match } = await drawStills(outDir);
 const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story), match.scene);
 names.set('page.css', await copyStyle());
-await Promise.all([renderPage(), copyKatex()]);
+await Promise.all([...pictured.map(renderPage), copyKatex()]);
 await writeNotices(metafiles).catch(endWithOneSentence);
 
-async function renderPage() {
-  const page = await addListings(addSketches(addMatch(addStills(pictured)), sketches), root);
-  await writeFile(path.join(outDir, 'index.html'), withNames(page));
+async function renderPage({ file, source, html }) {
+  const page = await addListings(addSketches(addMatch(addStills(html)), sketches, source), root);
+  await writeFile(path.join(outDir, file), withNames(page));
 }
 
 /** The names with a hash in place of those of the sources. */
@@ -69,12 +73,12 @@ async function widgetSpecs() {
 }
 
 /** What a reader sees where no script runs or none arrives; the element hides it once it is defined. */
-function addPictures(html, specOf) {
+function addPictures(html, source) {
   return html.replace(/(<slam-widget\b[^>]*>)\s*(<\/slam-widget>)/g, (_, open, close) => {
     const id = open.match(/\bname="([^"]*)"/)?.[1];
     const spec = specOf.get(id);
     if (spec === undefined) {
-      throw new Error(`index.html has a widget ${id}, which does not exist: the widgets are ${[...specOf.keys()].join(', ')}`);
+      throw new Error(`${source} has a widget ${id}, which does not exist: the widgets are ${[...specOf.keys()].join(', ')}`);
     }
     return `${open}
     <picture>
@@ -100,11 +104,11 @@ function addMatch(html) {
 }
 
 /** The small figures at their first place: `<figure class="drawing sketch" data-sketch="gate">`. */
-function addSketches(html, sketches) {
+function addSketches(html, sketches, source) {
   return html.replace(/<figure [^>]*data-sketch="([a-z]+)"[^>]*>/g, (open, name) => {
     const sketch = sketches.get(name);
     if (sketch === undefined) {
-      throw new Error(`index.html has a figure ${name}, which does not exist: the figures are ${[...sketches.keys()].join(', ')}`);
+      throw new Error(`${source} has a figure ${name}, which does not exist: the figures are ${[...sketches.keys()].join(', ')}`);
     }
     return `${open}\n    ${sketch}`;
   });
@@ -184,6 +188,7 @@ async function bundleScripts(storyFile, matchScene) {
   const page = await bundle('page.ts', {
     LAP_STORY_FILE: JSON.stringify(`./${storyFile}`),
     MATCH_SCENE: matchScene,
+    PLACES: JSON.stringify(places),
     LAPS_WORKER_FILE: JSON.stringify(`./${workerFile}`),
   });
   const names = new Map([['page.js', await writeHashed('page.js', page.text)]]);
