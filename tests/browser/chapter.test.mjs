@@ -1,4 +1,4 @@
-// The companion chapter: dist/index.html as readers get it.
+// The companion chapter: the pages as readers get them.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -13,9 +13,8 @@ import { cloudSpot, restingSpot, sliderRail } from './spots.mjs';
 
 /** The chapter's addition to the element's policy: its own fonts. */
 const POLICY = `${h.STRICT_POLICY}; font-src 'self'`;
-/** The widgets on the page: each one once. */
-const IN_ORDER = [...readFileSync(join(h.DIST, 'index.html'), 'utf8').matchAll(/<slam-widget name="([^"]+)"/g)].map(([, id]) => id);
-assert.deepEqual([...IN_ORDER].sort(), h.schema.map(({ id }) => id).sort());
+/** The widgets are on one page each, once. */
+assert.deepEqual(h.PAGES.flatMap(h.widgetsOf).sort(), h.schema.map(({ id }) => id).sort());
 
 const PHONE = { width: 390, height: 844 };
 
@@ -24,6 +23,9 @@ const reading = (test, options = {}, how = {}) =>
   visit('', test, { path: '/index.html', server: { policy: POLICY }, options, ...how });
 
 const widget = (id) => `slam-widget[name="${id}"]`;
+const onEach = async (test, options = {}, how = {}) => {
+  for (const page of h.PAGES) await reading((tab, server) => test(tab, h.widgetsOf(page), server), options, { path: `/${page}`, ...how });
+};
 /** Runs in the page. */
 const isSeen = (css) => {
   const { top, bottom } = document.querySelector(css).getBoundingClientRect();
@@ -33,12 +35,12 @@ const background = (tab) => tab.evaluate(() => getComputedStyle(document.body).b
 
 describe('the chapter', () => {
   it('holds its widgets, starts each when it comes near, and paints it', async () => {
-    await reading(async (tab) => {
+    await onEach(async (tab, inOrder) => {
       const states = () => tab.evaluate(
-        (ids) => ids.map((id) => document.querySelector(`slam-widget[name="${id}"]`).state), IN_ORDER);
-      for (const [place, id] of IN_ORDER.entries()) {
+        (ids) => ids.map((id) => document.querySelector(`slam-widget[name="${id}"]`).state), inOrder);
+      for (const [place, id] of inOrder.entries()) {
         // Those further down have not started.
-        const later = IN_ORDER.length - place - 1;
+        const later = inOrder.length - place - 1;
         assert.deepEqual((await states()).slice(place + 1), Array(later).fill('resting'));
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
         await h.ready(tab, widget(id));
@@ -48,7 +50,7 @@ describe('the chapter', () => {
   });
 
   it('is walked through by Tab with few stops in its widgets', async () => {
-    await reading(async (tab) => {
+    await onEach(async (tab) => {
       const stops = await tab.evaluate(() => [...document.querySelectorAll('slam-widget')].map(({ name, shadowRoot }) => {
         const can = [...shadowRoot.querySelectorAll('button, input, select, [tabindex="0"]')];
         return [name, can.filter((one) => one.tabIndex >= 0 && one.checkVisibility()).length];
@@ -189,8 +191,9 @@ describe('the chapter', () => {
   }
 
   it('fits a phone: nothing is wider than the screen, and no widget higher than two', async () => {
-    await reading(async (tab) => {
-      for (const id of IN_ORDER) {
+    let found = 0;
+    await onEach(async (tab, inOrder) => {
+      for (const id of inOrder) {
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
         await h.ready(tab, widget(id));
         const height = await tab.evaluate((css) => document.querySelector(css).offsetHeight, widget(id));
@@ -202,17 +205,18 @@ describe('the chapter', () => {
         for (const folded of document.querySelectorAll('main details')) folded.open = true;
         return [...document.querySelectorAll('.scroll')].map((box) => box.scrollWidth - box.clientWidth);
       });
-      assert.deepEqual(tables, [0, 0, 0, 0], 'no table has to be scrolled to be read');
+      assert.deepEqual(tables, tables.map(() => 0), 'no table has to be scrolled to be read');
+      found += tables.length;
       const opened = await tab.evaluate(() => document.documentElement.scrollWidth);
       assert.equal(opened, 390, 'nor with all of it unfolded');
     }, { viewport: PHONE, deviceScaleFactor: 1 });
+    assert.equal(found, 4);
   });
 
-  it('shows at most five numbers a screen before the exercises', async () => {
+  it('shows at most five numbers a screen outside of the exercises', async () => {
     await reading(async (tab) => {
       const places = await tab.evaluate(() => {
-        const end = document.querySelector('#exercises').getBoundingClientRect().top;
-        const isSeen = (element) => element.checkVisibility() && element.getBoundingClientRect().top < end;
+        const isSeen = (element) => element.checkVisibility() && element.closest('.exercise') === null;
         const marked = [...document.querySelectorAll('main .figure, main a.slam-link')].filter(
           (element) => element.matches('.figure') || /\d/.test(element.textContent));
         // A formula names and counts with single digits; measured values have more.
@@ -229,8 +233,7 @@ describe('the chapter', () => {
   });
 
   it('breaks no rule of accessibility that axe knows, in light and dark', async () => {
-    await reading(async (tab) => {
-      await tab.locator('#further-variants slam-predict').scrollIntoViewIfNeeded();
+    await onEach(async (tab) => {
       assert.deepEqual(await violations(tab), []);
       await tab.emulateMedia({ colorScheme: 'dark' });
       assert.deepEqual(await violations(tab, OF_COLORS), []);
@@ -238,8 +241,8 @@ describe('the chapter', () => {
   });
 
   it('shows pictures and says why where scripts do not run', async () => {
-    await reading(async (tab, server) => {
-      for (const id of IN_ORDER) {
+    await onEach(async (tab, inOrder, server) => {
+      for (const id of inOrder) {
         const picture = tab.locator(`${widget(id)} img`);
         await picture.scrollIntoViewIfNeeded();
         assert.ok(await picture.evaluate((image) => image.decode().then(() => image.naturalWidth > 100)), id);
@@ -287,7 +290,7 @@ describe('the chapter', () => {
       // Text dragged over the page keeps its default action.
       assert.ok(await tab.evaluate(() => document.body.dispatchEvent(
         new DragEvent('dragover', { dataTransfer: new DataTransfer(), bubbles: true, cancelable: true }))));
-    });
+    }, {}, { path: '/own-robot.html' });
   });
 
   it('lists code as it stands in the tested files, and copies it', async () => {
@@ -351,8 +354,33 @@ describe('the chapter', () => {
     };
     assert.match(build(), /schema\.json is missing: run node web\/build\.mjs first/);
     writeFileSync(join(out, 'schema.json'), '[]');
-    assert.match(build(), /index\.html has a widget w16\.1, which does not exist/);
+    assert.match(build(), /index\.html has a widget w16\.\d+, which does not exist/);
     rmSync(out, { recursive: true });
+  });
+
+  it('prints words in place of a map without a log', async () => {
+    await reading(async (tab) => {
+      await tab.emulateMedia({ media: 'print' });
+      assert.equal(await tab.locator(`${widget('w16.10')} .stage`).isVisible(), false);
+      assert.match(await tab.locator(`${widget('w16.10')} .summary`).innerText(), /log/);
+    }, {}, { path: '/own-robot.html' });
+  });
+
+  it('names the section that one reads, leads to the others, and shows how far one has come', async () => {
+    await reading(async (tab) => {
+      const list = tab.locator('.contents details');
+      await tab.evaluate(() => document.querySelector('#ndt').scrollIntoView({ behavior: 'instant' }));
+      await tab.waitForFunction(() => document.querySelector('.contents summary').textContent.startsWith('NDT'));
+      await list.locator('summary').click();
+      assert.equal(await list.locator('[aria-current]').getAttribute('href'), '#ndt');
+      await list.getByRole('link', { name: 'The pose graph', exact: true }).click();
+      await tab.waitForURL(/#pose-graph$/);
+      assert.equal(await list.evaluate((sheet) => sheet.open), false);
+      await tab.evaluate(() => scrollTo({ top: document.documentElement.scrollHeight, behavior: 'instant' }));
+      await tab.waitForFunction(() => Number(document.querySelector('.reading').style.getPropertyValue('--read')) > 0.98);
+      await tab.getByRole('link', { name: 'Next What robots run' }).click();
+      await tab.waitForURL(/robots\.html$/);
+    });
   });
 
   it('prints its text and pictures without the buttons', async () => {
@@ -361,9 +389,6 @@ describe('the chapter', () => {
       assert.equal(await tab.locator('.theme').isVisible(), false);
       assert.equal(await tab.locator('.contents').isVisible(), false);
       assert.ok(await tab.locator('h1').isVisible());
-      // Without a log a map is an empty grid: words stand in its place.
-      assert.equal(await tab.locator(`${widget('w16.10')} .stage`).isVisible(), false);
-      assert.match(await tab.locator(`${widget('w16.10')} .summary`).innerText(), /log/);
       await tab.evaluate(() => dispatchEvent(new Event('beforeprint')));
       await tab.locator(`${widget('w16.1')} .stage`).waitFor();
       // The answers stand open, asked or not.

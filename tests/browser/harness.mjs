@@ -13,6 +13,19 @@ export { launch };
 
 export const DIST = fileURLToPath(new URL('../../dist/', import.meta.url));
 
+/** The pages of the companion, in the order in which they are read. */
+export const PAGES = ['index.html', 'robots.html', 'own-robot.html', 'reference.html'];
+
+/** The widgets of a page, in order. */
+export function widgetsOf(page) {
+  return [...readFileSync(join(DIST, page), 'utf8').matchAll(/<slam-widget name="([^"]+)"/g)].map(([, id]) => id);
+}
+
+/** The path of the page with that widget. */
+export function pageOf(id) {
+  return `/${PAGES.find((page) => widgetsOf(page).includes(id))}`;
+}
+
 /** The strictest policy under which the element has to work. */
 export const STRICT_POLICY =
   "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'; " +

@@ -1,7 +1,8 @@
 // The strip under the title: the canonical lap, replayed from data of the core.
 
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { readFileSync, readdirSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { brotliCompressSync } from 'node:zlib';
 import { describe, it } from 'node:test';
@@ -10,6 +11,15 @@ import * as h from './harness.mjs';
 const visit = h.visitor();
 const reading = (test, options = {}, how = {}) => visit('', test, { path: '/index.html', options, ...how });
 const live = (tab) => tab.waitForSelector('#lap.live');
+/** A module of the strip, for Node. */
+async function load(file) {
+  const web = new URL('../../web/', import.meta.url);
+  const { build } = createRequire(web)('esbuild');
+  const { outputFiles } = await build({
+    entryPoints: [new URL(`page/lap/${file}`, web).pathname], bundle: true, format: 'esm', write: false, logLevel: 'warning',
+  });
+  return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`);
+}
 const slider = (tab) => tab.locator('.lap-controls input');
 const button = (tab) => tab.locator('.lap-controls button');
 const tick = (tab) => tab.evaluate(() => Number(document.querySelector('#lap').dataset.tick));
@@ -97,7 +107,7 @@ describe('the lap under the title', () => {
       assert.ok(lengthS > 9 && lengthS < 12, `${lengthS} s`);
       await tab.waitForFunction(() => document.querySelector('.lap-controls button').textContent === 'Play again');
       assert.equal(await tick(tab), 129);
-      assert.deepEqual(await tab.evaluate(() => acts), ['Wheels leave the building.', 'Walls double.', 'The loop snaps.']);
+      assert.deepEqual(await tab.evaluate(() => acts), ['Wheels drive through walls.', 'Walls double.', 'The loop snaps.']);
       await h.quiet(tab);
     }, {}, { server: { pages: { '/index.html': noting } } });
   });
@@ -132,7 +142,7 @@ describe('the lap under the title', () => {
       assert.equal(await tick(tab), 129);
       // It plays from there, so the clock stops until the test has seen the position.
       await tab.evaluate(() => frameClock.hold(true));
-      await tab.getByRole('button', { name: 'Wheels leave the building.' }).tap();
+      await tab.getByRole('button', { name: 'Wheels drive through walls.' }).tap();
       assert.equal(await button(tab).textContent(), 'Pause');
       assert.ok((await tick(tab)) < 64);
       await button(tab).tap();
@@ -141,6 +151,50 @@ describe('the lap under the title', () => {
       await tab.touchscreen.tap(x + 0.8 * width, y + height / 2);
       assert.match(await act(tab), /^The loop snaps/);
     }, { reducedMotion: 'reduce', hasTouch: true });
+  });
+
+  it('is dragged by its robot, out to the turn and on the way back', async () => {
+    await reading(async (tab) => {
+      await live(tab);
+      await slider(tab).press('Home');
+      const { x, y, width, height } = await tab.locator('.lap-picture canvas').boundingBox();
+      const cursor = () => tab.evaluate(() => document.querySelector('.lap-picture canvas').style.cursor);
+      // Where the pointer becomes a hand, there is the robot.
+      let at = x;
+      while ((await cursor()) !== 'grab' && at < x + width) {
+        at += 20;
+        await tab.mouse.move(at, y + height / 2);
+      }
+      assert.ok(at < x + 0.25 * width, `${at - x} of ${width} px`);
+      await tab.mouse.down();
+      await tab.mouse.move(x + 0.5 * width, y + height / 2, { steps: 20 });
+      const out = await tick(tab);
+      assert.ok(out > 20 && out < 50, `tick ${out}`);
+      await tab.mouse.move(x + 0.95 * width, y + height / 2, { steps: 20 });
+      const turned = await tick(tab);
+      await tab.mouse.move(x + 0.6 * width, y + height / 2, { steps: 30 });
+      const back = await tick(tab);
+      assert.ok(turned > 50 && back > turned + 5, `tick ${turned}, then ${back}`);
+      await tab.mouse.up();
+      await tab.mouse.move(x, y);
+      assert.equal(await tick(tab), back);
+      assert.equal(await button(tab).textContent(), 'Play');
+    }, { reducedMotion: 'reduce' });
+  });
+
+  it('keeps both robots in the picture at every moment, and ends with the walls of before', async () => {
+    const { Replay } = await load('story.ts');
+    const { camera, ASPECT } = await load('drawing.ts');
+    const story = JSON.parse(readFileSync(join(h.DIST, readdirSync(h.DIST).find((name) => name.startsWith('lap-story'))), 'utf8'));
+    const replay = new Replay(story);
+    for (let seconds = 0; seconds <= replay.lengthS; seconds += 0.1) {
+      const { robot, wheels, closeness } = replay.at(seconds);
+      for (const [x, y] of [robot, wheels.at(-1)].map(([x, y]) => camera(closeness, 900)([x, y]))) {
+        assert.ok(x > 10 && x < 890 && y > 10 && y < 900 / ASPECT - 10, `${seconds} s: ${x}, ${y}`);
+      }
+    }
+    assert.equal(replay.at(replay.doubledS).before.strength, 0);
+    assert.equal(replay.at(replay.lengthS).before.strength, 1);
   });
 
   it('is a picture where no script runs', async () => {

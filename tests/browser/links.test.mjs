@@ -101,21 +101,18 @@ describe('a link in the text', () => {
 
   it('that leads elsewhere offers the way back to its sentence', async () => {
     await reading(async (tab) => {
-      const here = link(tab, 'τ = 0.1 m');
-      await here.evaluate((a) => {
-        a.closest('details').open = true;
-        a.scrollIntoView({ block: 'center' });
-      });
+      const here = link(tab, '60°');
+      await here.evaluate((a) => a.scrollIntoView({ block: 'center' }));
       await here.click();
       await tab.waitForFunction((css) => document.querySelector(css).getBoundingClientRect().top < innerHeight, widget('w16.1'));
-      assert.equal(await wayBack(tab).textContent(), 'Back to “τ = 0.1 m”');
+      assert.equal(await wayBack(tab).textContent(), 'Back to “60°”');
       await wayBack(tab).click();
       assert.equal(await wayBack(tab).count(), 0);
       assert.ok(await here.evaluate((a) => {
         const { top, bottom } = a.getBoundingClientRect();
         return document.activeElement === a && top > 0 && bottom < innerHeight;
       }));
-      assert.equal(await get(tab, 'w16.1', 'tau'), 0.1, 'the widget stays as the link has set it');
+      assert.equal(await get(tab, 'w16.1', 'heading'), 60, 'the widget stays as the link has set it');
     });
   });
 
@@ -152,7 +149,7 @@ describe('a link in the text', () => {
 
   it('is not alone: an answer that is shown in its widget offers the way back to the question', async () => {
     await reading(async (tab) => {
-      const question = tab.locator('#exercise-7 slam-predict');
+      const question = tab.locator('#further-variants slam-predict');
       await question.scrollIntoViewIfNeeded();
       await tab.waitForFunction(() => customElements.get('slam-predict') !== undefined);
       await question.locator('input').first().check();
@@ -170,26 +167,40 @@ describe('a link in the text', () => {
         const { top, bottom } = element.getBoundingClientRect();
         return element.getRootNode().activeElement === element && top > 0 && bottom < innerHeight;
       }));
-    });
+    }, { viewport: { width: 390, height: 844 } });
   });
 
   it('sets its widget to exactly what it names, each of them', async () => {
-    await reading(async (tab) => {
-      const asked = await tab.evaluate(() => [...document.querySelectorAll('a.slam-link')].map((a) => {
-        a.closest('details')?.setAttribute('open', '');
-        a.click();
-        const query = new URLSearchParams(a.search);
-        const element = document.querySelector(`slam-widget[name="w${query.get('w')}"]`);
-        // A switch is true or false for a script, and on or off in a link.
-        const said = (value) => ({ true: 'on', false: 'off' })[value] ?? String(value);
-        const wrong = [...query].filter(([id, text]) => id !== 'w' && said(element.get(id)) !== text);
-        const back = new URLSearchParams(location.search);
-        return { href: a.search, wrong, kept: [...query].every(([id, text]) => id === 'w' || back.get(id) === text
-          || !element.query.includes(`${id}=`)) };
-      }));
-      assert.ok(asked.length >= 24);
-      for (const { href, wrong, kept } of asked) assert.deepEqual([wrong, kept], [[], true], href);
-    });
+    let count = 0;
+    for (const page of h.PAGES) {
+      await visit('', async (tab) => {
+        const asked = await tab.evaluate(() => [...document.querySelectorAll('a.slam-link[href^="?"]')].map((a) => {
+          a.closest('details')?.setAttribute('open', '');
+          a.click();
+          const query = new URLSearchParams(a.search);
+          const element = document.querySelector(`slam-widget[name="w${query.get('w')}"]`);
+          // A switch is true or false for a script, and on or off in a link.
+          const said = (value) => ({ true: 'on', false: 'off' })[value] ?? String(value);
+          const wrong = [...query].filter(([id, text]) => id !== 'w' && said(element.get(id)) !== text);
+          const back = new URLSearchParams(location.search);
+          return { href: a.search, wrong, kept: [...query].every(([id, text]) => id === 'w' || back.get(id) === text
+            || !element.query.includes(`${id}=`)) };
+        }));
+        count += asked.length;
+        for (const { href, wrong, kept } of asked) assert.deepEqual([wrong, kept], [[], true], href);
+      }, { path: `/${page}` });
+    }
+    assert.ok(count >= 24, `${count} links`);
+  });
+
+  it('leads to the page that has its widget, in that state', async () => {
+    await visit('', async (tab) => {
+      const elsewhere = tab.locator('main a.slam-link[href^="index.html?"]').first();
+      await elsewhere.evaluate((a) => a.closest('details')?.setAttribute('open', ''));
+      await elsewhere.click();
+      await tab.waitForURL(/\/index\.html\?w=16\.1&heading=40/);
+      await has(tab, 'w16.1', 'heading', 40);
+    }, { path: '/reference.html' });
   });
 });
 

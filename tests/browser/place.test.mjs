@@ -26,7 +26,7 @@ const head = `<script>(${keepHeights})()</script>`;
 describe('a link to a state', () => {
   for (const { id } of h.schema) {
     it(`opens the page at ${id}, however much the page grows meanwhile`, async () => {
-      await chapter(`/index.html?w=${id.slice(1)}`, async (tab) => {
+      await chapter(`${h.pageOf(id)}?w=${id.slice(1)}`, async (tab) => {
         await h.ready(tab, named(id));
         // Anything taller than the screen begins at its top.
         await tab.waitForFunction((css) => {
@@ -36,6 +36,28 @@ describe('a link to a state', () => {
       });
     });
   }
+
+  for (const [old, page] of [
+    ['?w=16.10', '/own-robot.html'], ['#own-robot', '/own-robot.html'], ['?w=w16.6&heading=60', '/robots.html'],
+    ['#production', '/robots.html'], ['#umeyama1991', '/reference.html'], ['#exercise-7', '/robots.html'],
+    ['?theme=dark#differences', '/reference.html'],
+  ]) {
+    it(`finds what stood on the one page before: ${old}`, async () => {
+      await chapter(`/index.html${old}`, async (tab) => {
+        await tab.waitForURL((url) => url.pathname === page);
+        assert.ok(tab.url().endsWith(`${page}${old}`), tab.url());
+      });
+    });
+  }
+
+  it('stays on the page that has it, and that nothing else has', async () => {
+    for (const address of ['/index.html?w=16.2', '/index.html#exercises', '/robots.html?w=16.99', '/reference.html#nowhere']) {
+      await chapter(address, async (tab) => {
+        await tab.waitForFunction(() => document.documentElement.dataset.script === 'on');
+        assert.ok(tab.url().includes(address), tab.url());
+      }, { quiet: false });
+    }
+  });
 
   it('lets go of the page once the reader scrolls', async () => {
     await chapter('/index.html?w=16.3', async (tab) => {
@@ -90,7 +112,7 @@ describe('a widget beside its text', () => {
   for (const spec of h.schema.filter((spec) => opening(spec).length > 0)) {
     it(`shows scene, control and verdict together on wide screens: ${spec.id}`, async () => {
       const css = named(spec.id);
-      await chapter(`/index.html?w=${spec.id.slice(1)}`, async (tab) => {
+      await chapter(`${h.pageOf(spec.id)}?w=${spec.id.slice(1)}`, async (tab) => {
         await h.ready(tab, css);
         for (const viewport of WIDE) {
           await tab.setViewportSize(viewport);

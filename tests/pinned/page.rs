@@ -1,4 +1,4 @@
-//! The chapter in `index.html`: every number in it is computed again.
+//! The pages of the companion: every number in them is computed again.
 //!
 //! A number is a figure (`data-figure`, or `\fig{name}{text}` in a formula), a link that sets a widget, the
 //! year of a citation, or marked as a count that the reader can make on the page. Any other digit or number
@@ -14,12 +14,12 @@ mod registrations;
 mod thousand_laps;
 pub mod widgets;
 
-use document::{Document, Figure, NumberLink, numbers_in, source};
+use document::{Document, Figure, NumberLink, companion, numbers_in};
 use figures::Figures;
 use widgets::Widgets;
 
 fn page() -> Document {
-    Document::parse(&source("index.html"))
+    Document::parse(&companion())
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn every_question_has_an_answer_in_its_widget() {
 
 #[test]
 fn a_link_to_a_loop_sets_the_tick_of_that_loop() {
-    let html = source("index.html");
+    let html = companion();
     let mut figures = Figures::default();
     let links: Vec<_> = html.split("href=\"").skip(1).collect();
     let ticks = links.iter().filter_map(|link| {

@@ -1,6 +1,6 @@
 //! What `docs/teaching` says: its figures are those of the page, and its links show what they promise.
 
-use crate::page::document::{Document, source};
+use crate::page::document::{Document, companion, source};
 use crate::page::widgets::Widgets;
 
 const PAGES: [&str; 3] = ["widgets", "lectures", "questions"];
@@ -12,7 +12,7 @@ fn text(page: &str) -> String {
 /// The page's are compared with the core.
 #[test]
 fn every_figure_of_the_teaching_pages_is_one_of_the_page() {
-    let known = Document::parse(&source("index.html")).figures;
+    let known = Document::parse(&companion()).figures;
     for page in PAGES {
         let figures = Document::parse(&text(page)).figures;
         assert!(figures.len() >= 10, "{page} has lost its figures");

@@ -6,7 +6,8 @@ import { it } from 'node:test';
 
 import { readExercises } from '../../web/page/exercises.mjs';
 
-const page = readFileSync(new URL('../../index.html', import.meta.url), 'utf8');
+const pages = ['index.html', 'web/page/robots.html'];
+const page = pages.map((file) => readFileSync(new URL(`../../${file}`, import.meta.url), 'utf8')).join('');
 const first = /<slam-predict exercise="16\.1"/;
 
 it('gives each question of the page an id', () => {

@@ -1,4 +1,4 @@
-// Renders the chapter: index.html with its formulas as HTML and MathML, its style, its script and
+// Renders the companion: its pages in one frame with formulas as HTML and MathML, their style, their script and
 // KaTeX's style and fonts, and the page of licences and notices, all into one directory. Nothing of it is loaded from another host.
 //
 //     node web/page/build.mjs <out-dir>
@@ -18,6 +18,7 @@ import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
 import { colorStyle } from '../palette.mjs';
 import { frameExercises, readExercises } from './exercises.mjs';
 import { addListings } from './listings.mjs';
+import { placesOf, readPages, withFrame } from './pages.mjs';
 import { slidesPage } from './slides.mjs';
 import { drawStills } from './stills.mjs';
 
@@ -31,7 +32,9 @@ if (outDir === undefined) {
 }
 
 await mkdir(outDir, { recursive: true });
-const source = await readFile(path.join(root, 'index.html'), 'utf8');
+const pages = await readPages(root);
+const places = placesOf(pages);
+const source = pages.map(({ html }) => html).join('');
 const exercises = readExercises(source);
 // `slam2d mark` marks by the same questions.
 await writeFile(path.join(root, 'crates/slam2d_cli/src/mark/exercises.json'), `${JSON.stringify(exercises, null, 1)}\n`);
@@ -39,16 +42,18 @@ const frames = frameExercises(source, (html) => renderFormulas(html, 'mathml'));
 await writeFile(path.join(outDir, 'exercises.json'), JSON.stringify(frames));
 const scripts = await readFile(path.join(root, 'docs/teaching/widgets.md'), 'utf8');
 await writeFile(path.join(outDir, 'slides.html'), slidesPage(scripts));
-const pictured = addPictures(renderFormulas(source), await widgetSpecs());
-const { sketches, story } = await drawStills(outDir);
-const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story));
+const specOf = await widgetSpecs();
+const template = await readFile(path.join(here, 'template.html'), 'utf8');
+const pictured = pages.map((page) => ({ ...page, html: addPictures(renderFormulas(withFrame(template, page, pages, places)), page.source) }));
+const { sketches, story, match } = await drawStills(outDir);
+const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story), match.scene);
 names.set('page.css', await copyStyle());
-await Promise.all([renderPage(), copyKatex()]);
+await Promise.all([...pictured.map(renderPage), copyKatex()]);
 await writeNotices(metafiles).catch(endWithOneSentence);
 
-async function renderPage() {
-  const page = await addListings(addSketches(addStills(pictured), sketches), root);
-  await writeFile(path.join(outDir, 'index.html'), withNames(page));
+async function renderPage({ file, source, html }) {
+  const page = await addListings(addSketches(addMatch(addStills(html)), sketches, source), root);
+  await writeFile(path.join(outDir, file), withNames(page));
 }
 
 /** The names with a hash in place of those of the sources. */
@@ -75,12 +80,12 @@ async function widgetSpecs() {
 }
 
 /** What a reader sees where no script runs or none arrives; the element hides it once it is defined. */
-function addPictures(html, specOf) {
+function addPictures(html, source) {
   return html.replace(/(<slam-widget\b[^>]*>)\s*(<\/slam-widget>)/g, (_, open, close) => {
     const id = open.match(/\bname="([^"]*)"/)?.[1];
     const spec = specOf.get(id);
     if (spec === undefined) {
-      throw new Error(`index.html has a widget ${id}, which does not exist: the widgets are ${[...specOf.keys()].join(', ')}`);
+      throw new Error(`${source} has a widget ${id}, which does not exist: the widgets are ${[...specOf.keys()].join(', ')}`);
     }
     return `${open}
     <picture>
@@ -100,12 +105,17 @@ function addStills(html) {
     </picture>`);
 }
 
+/** The sweeps of the first figure, which its script then moves. */
+function addMatch(html) {
+  return html.replace('<div class="match-picture" data-drawing="match">', (open) => `${open}${match.svg}`);
+}
+
 /** The small figures at their first place: `<figure class="drawing sketch" data-sketch="gate">`. */
-function addSketches(html, sketches) {
+function addSketches(html, sketches, source) {
   return html.replace(/<figure [^>]*data-sketch="([a-z]+)"[^>]*>/g, (open, name) => {
     const sketch = sketches.get(name);
     if (sketch === undefined) {
-      throw new Error(`index.html has a figure ${name}, which does not exist: the figures are ${[...sketches.keys()].join(', ')}`);
+      throw new Error(`${source} has a figure ${name}, which does not exist: the figures are ${[...sketches.keys()].join(', ')}`);
     }
     return `${open}\n    ${sketch}`;
   });
@@ -164,7 +174,7 @@ async function copyKatex() {
 }
 
 /** Writes the scripts of the page and of its workers; returns their names, and what esbuild took into them. */
-async function bundleScripts(storyFile) {
+async function bundleScripts(storyFile, matchScene) {
   const bundle = async (source, define) => {
     const { outputFiles, metafile } = await build({
       entryPoints: [path.join(here, source)],
@@ -184,6 +194,8 @@ async function bundleScripts(storyFile) {
   const workerFile = await writeHashed('laps-worker.js', worker.text);
   const page = await bundle('page.ts', {
     LAP_STORY_FILE: JSON.stringify(`./${storyFile}`),
+    MATCH_SCENE: matchScene,
+    PLACES: JSON.stringify(places),
     LAPS_WORKER_FILE: JSON.stringify(`./${workerFile}`),
   });
   const names = new Map([['page.js', await writeHashed('page.js', page.text)]]);

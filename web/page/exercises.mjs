@@ -30,7 +30,7 @@ export function readExercises(html) {
  * other places of the page become text; `render` turns formulas into HTML.
  */
 export function frameExercises(html, render) {
-  return html.split('<div class="exercise"').slice(1).map((part) => {
+  return html.split('<article class="exercise"').slice(1).map((part) => {
     const inner = render(part).replace(/<a [^>]*href="#[^>]*>([\s\S]*?)<\/a>/g, '$1').replace(/<slam-widget\b[^>]*><\/slam-widget>/g, '');
     const title = inner.match(/<h3>([\s\S]*?)<\/h3>/)[1].replace(/<[^>]*>/g, '');
     const intro = inner.slice(inner.indexOf('</h3>') + '</h3>'.length, inner.indexOf('<slam-predict'));

@@ -24,7 +24,7 @@ export async function addListings(html, root) {
 /** A function of a source file from its signature to its closing brace, without what stands before it. */
 export function itemOf(source, name, file) {
   const start = source.search(new RegExp(`^(?:pub(?:\\([a-z]+\\))? )?fn ${name}\\b`, 'm'));
-  if (start < 0) throw new Error(`${file} has no function ${name}, which index.html lists`);
+  if (start < 0) throw new Error(`${file} has no function ${name}, which a page lists`);
   const end = source.indexOf('\n}\n', start);
   return source.slice(start, end + 2);
 }

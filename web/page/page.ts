@@ -7,29 +7,45 @@ import { core, coreModule } from './slam-widget.js';
 import type { Glue } from '../pkg/glue.js';
 import { addCopyButtons } from './copy';
 import { DecideFigure } from './decide';
+import { type Places, leadOn } from './places';
 import { LapPlayer } from './lap/player';
 import type { Story } from './lap/story';
 import { LapsFigure } from './laps/laps';
+import type { Scene } from './match/drawing';
+import { MatchFigure } from './match/figure';
 import { SketchFigure, type SketchSchema } from './sketch';
 
 /** Set by the build: the lap that the page calls canonical, as the core has driven it. */
 declare const LAP_STORY_FILE: string;
+/** Set by the build: the two sweeps that the reader lays on each other. */
+declare const MATCH_SCENE: Scene;
 
 /** What needs the program of the widgets. */
 const NEEDS_CORE = 'slam-widget, [data-sketch], #decide, #laps';
 /** The program is fetched so far before the first of these is seen. */
 const FETCH_MARGIN = '200% 0px';
 
+/** Set by the build: where anchors and widgets stand. */
+declare const PLACES: Places;
+
 type ThemeChoice = 'auto' | 'light' | 'dark';
 
+leadOn(PLACES);
 document.documentElement.dataset['script'] = 'on';
+followReading();
 listenToThemeButtons();
 letKeyboardScroll(document.querySelectorAll<HTMLElement>('.math, .scroll'));
 keepFromFiles();
 addCopyButtons(document.querySelectorAll<HTMLElement>('figure.listing'));
+letReaderMatch();
 void replayLap();
 driveLaps();
 whenNear(document.querySelectorAll(NEEDS_CORE), () => void useCore());
+
+function letReaderMatch(): void {
+  const figure = document.querySelector<HTMLElement>('#match');
+  if (figure !== null) new MatchFigure(figure, MATCH_SCENE, core as () => Promise<Glue>);
+}
 
 /** The still picture stays if the story cannot be had. */
 async function replayLap(): Promise<void> {
@@ -77,6 +93,43 @@ function driveLaps(): void {
   new LapsFigure(figure, {
     module: coreModule as () => Promise<WebAssembly.Module>,
     driver: async () => new (await (core as () => Promise<Glue>)()).Laps(),
+  });
+}
+
+/** How far one has read, as a thin bar, and the section as the name of the contents list. */
+function followReading(): void {
+  const list = document.querySelector<HTMLDetailsElement>('.contents details');
+  const summary = list?.querySelector('summary');
+  if (list === null || list === undefined || summary === null || summary === undefined) return;
+  const bar = document.createElement('div');
+  bar.className = 'reading';
+  document.body.append(bar);
+  const links = [...list.querySelectorAll<HTMLAnchorElement>('a')];
+  const targets = links.map(({ hash }) => document.getElementById(hash.slice(1)));
+  let frame = 0;
+  const show = (): void => {
+    frame = 0;
+    const { scrollHeight, scrollTop, clientHeight } = document.documentElement;
+    bar.style.setProperty('--read', String(scrollTop / Math.max(scrollHeight - clientHeight, 1)));
+    const here = links[targets.findLastIndex((target) => (target?.getBoundingClientRect().top ?? Infinity) < clientHeight / 3)];
+    for (const link of links) {
+      if (link === here) link.setAttribute('aria-current', 'location');
+      else link.removeAttribute('aria-current');
+    }
+    summary.textContent = here?.textContent ?? 'Contents';
+    list.parentElement?.classList.toggle('away', scrollTop < clientHeight / 2);
+  };
+  const wake = (): void => { if (frame === 0) frame = requestAnimationFrame(show); };
+  addEventListener('scroll', wake, { passive: true });
+  addEventListener('resize', wake);
+  show();
+  // A sheet closes once one has chosen, pressed Escape or looked elsewhere.
+  list.addEventListener('click', ({ target }) => { if (target instanceof HTMLAnchorElement) list.open = false; });
+  document.addEventListener('pointerdown', ({ target }) => { if (!list.contains(target as Node)) list.open = false; });
+  list.addEventListener('keydown', ({ key }) => {
+    if (key !== 'Escape' || !list.open) return;
+    list.open = false;
+    summary.focus();
   });
 }
 

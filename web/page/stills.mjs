@@ -15,13 +15,19 @@ const CANONICAL_SEED = 12648430;
 
 /**
  * Writes `pictures/lap-light.svg` and its dark sister, and those of the small figures. Returns the figures' HTML by name,
- * and the lap as the page replays it, as JSON.
+ * the lap as the page replays it, as JSON, and the two sweeps of the first figure as JSON and as SVG.
  */
 export async function drawStills(outDir) {
   const core = await instantiate();
   const story = JSON.parse(core.lapStory(CANONICAL_SEED, 1));
   await drawLap(story, outDir);
-  return { sketches: await drawSketches(core, outDir), story: JSON.stringify(withShortSweeps(story)) };
+  const { drawing } = await load('match/drawing.ts');
+  const scene = core.matcherScene();
+  return {
+    sketches: await drawSketches(core, outDir),
+    story: JSON.stringify(withShortSweeps(story)),
+    match: { scene, svg: drawing(JSON.parse(scene)) },
+  };
 }
 
 /** The sweeps are most of the file. Those that make the map keep millimetres, those between centimetres: a pixel. */

@@ -2,10 +2,12 @@
 
 use ch16_lab::lap::{LapConfig, LapFrontEnd, LapRunner};
 use kit::param::ParamKind;
+use pr_geom::SE2;
 use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
 
 use crate::app::theme_of;
+use crate::matcher;
 use crate::outcomes::Outcomes;
 use widgets::registry;
 
@@ -77,6 +79,33 @@ pub fn loop_candidates(width_px: f32, theme: &str) -> String {
 pub fn judge_candidates(answers: &str, width_px: f32, theme: &str) -> String {
     let answers: Vec<bool> = answers.chars().map(|letter| letter == '1').collect();
     candidates::judged(&answers, width_px, theme_of(theme)).to_string()
+}
+
+/// The two sweeps of the page's first figure as JSON; see [`matcher::scene`].
+#[wasm_bindgen(js_name = matcherScene)]
+pub fn matcher_scene() -> String {
+    matcher::scene().to_string()
+}
+
+/// Runs ICP on these sweeps.
+#[wasm_bindgen]
+#[derive(Default)]
+pub struct Matcher {
+    matcher: matcher::Matcher,
+}
+
+#[wasm_bindgen]
+impl Matcher {
+    /// Creates it before its first run.
+    #[wasm_bindgen(constructor)]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A run from that `world_from_source` as JSON; see [`matcher::Matcher::run`].
+    pub fn run(&mut self, x: f64, y: f64, theta: f64) -> String {
+        self.matcher.run(&SE2::new(x, y, theta)).to_string()
+    }
 }
 
 /// Runs one lap after the other.

@@ -68,11 +68,13 @@ fn points(cloud: &PointCloud) -> Vec<Value> {
         .collect()
 }
 
-fn pose(pose: &SE2) -> Value {
+/// `[x, y, θ]`, to a tenth of a millimetre.
+pub fn pose(pose: &SE2) -> Value {
     Value::from(vec![short(pose.x()), short(pose.y()), short(pose.theta())])
 }
 
-fn short(value: f64) -> Value {
+/// A length to a tenth of a millimetre.
+pub fn short(value: f64) -> Value {
     Value::from((value * 1e4).round() / 1e4)
 }
 

@@ -86,6 +86,19 @@ pub fn source(path: &str) -> String {
     fs::read_to_string(root.join(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
 }
 
+/// The sources of the pages, in the order in which they are read.
+pub const PAGES: [&str; 4] = [
+    "index.html",
+    "web/page/robots.html",
+    "web/page/own-robot.html",
+    "web/page/reference.html",
+];
+
+/// The sources of all pages.
+pub fn companion() -> String {
+    PAGES.map(source).concat()
+}
+
 impl Document {
     /// Parses the source of a page.
     pub fn parse(html: &str) -> Self {

@@ -1,6 +1,6 @@
-//! The length of the page before its exercises.
+//! The length of the pages without their exercises and references.
 
-use super::document::source;
+use super::document::companion;
 
 /// Largest number of words, folded text included; a formula counts as one word, code as none.
 const MOST_WORDS: usize = 7_000;
@@ -45,16 +45,16 @@ fn words(html: &str) -> usize {
 }
 
 #[test]
-fn the_page_is_short_before_its_exercises() {
-    let page = source("index.html");
-    let (_, body) = page.split_once("<body>").expect("a body");
-    let (before, _) = body
-        .split_once("<section id=\"exercises\">")
-        .expect("the exercises");
+fn the_pages_are_short_without_their_exercises() {
+    let pages = companion();
+    let (before, _) = pages
+        .split_once("<section id=\"references\">")
+        .expect("the references");
+    let before = without(before, "article");
     let formulas_as_words = before.replace("<tex", " formula <tex");
     let before = without(&formulas_as_words, "tex");
     let (all, seen) = (words(&before), words(&without(&before, "details")));
-    println!("{all} words before the exercises, {seen} of them unfolded");
+    println!("{all} words without the exercises, {seen} of them unfolded");
     assert!(all <= MOST_WORDS, "{all} words");
     assert!(seen <= MOST_SEEN_WORDS, "{seen} words unfolded");
     let counted = words("<p>A <b>bold</b> word, 0.24&nbsp;m – and <i>one</i></p><p>more.</p>");

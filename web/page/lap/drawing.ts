@@ -3,13 +3,15 @@
 import type { Moment, Point, Pose, Story } from './story';
 
 /** Names of colours; the style of the page says which. */
-export type Ink = 'truth' | 'prediction' | 'outbound' | 'return' | 'posterior' | 'prior' | 'measurement';
+export type Ink = 'truth' | 'prediction' | 'outbound' | 'return' | 'posterior' | 'prior' | 'measurement' | 'ink' | 'paper';
 
 /** What is drawn on, in pixels from its upper left corner. */
 export interface Surface {
   line(points: readonly Point[], ink: Ink, width: number, options?: { alpha?: number; dash?: number[] }): void;
-  dots(points: readonly Point[], ink: Ink, size: number): void;
+  dots(points: readonly Point[], ink: Ink, size: number, alpha?: number): void;
   area(points: readonly Point[], ink: Ink): void;
+  /** Words whose middle stands at a point, with a rim of paper. */
+  words(text: string, at: Point, ink: Ink, size: number): void;
 }
 
 /** Width and height of the strip are in this proportion. */
@@ -18,6 +20,8 @@ export const ASPECT = 2.4;
 /** Middle and width of what is seen, in metres: of the whole flat's corridor, and closer. */
 const WHOLE = { x: 6, y: 4.55, width: 12.5 };
 const CLOSE = { x: 4.9, y: 4.7, width: 9.3 };
+/** Where the walls have their names, in metres. */
+const WALL_NAMES = { out: [2.1, 5.35], back: [7.6, 5.35] } as const;
 /** At this width of the strip lines have their widths, and are thinner or thicker in proportion, within limits. */
 const USUAL_WIDTH_PX = 900;
 
@@ -30,6 +34,7 @@ export function draw(story: Story, moment: Moment, surface: Surface, widthPx: nu
   const [out, back] = mapOf(story, moment);
   surface.dots(out.map(to), 'outbound', 3 * unit);
   surface.dots(back.map(to), 'return', 3 * unit);
+  drawBefore(story, moment, surface, to, unit);
   drawMoved(moment, surface, to, unit);
   const way = moment.keyframes.map(([x, y]): Point => [x, y]);
   const [robotX, robotY] = moment.robot;
@@ -42,15 +47,55 @@ export function draw(story: Story, moment: Moment, surface: Surface, widthPx: nu
   const [wheelsX, wheelsY] = moment.wheels.at(-1) ?? [robotX, robotY];
   drawRobot(surface, to, [wheelsX, wheelsY, wheelsHeading(moment)], 'prediction', 8 * unit);
   drawRobot(surface, to, moment.robot, 'posterior', 10 * unit);
+  nameActors(moment, surface, to, unit);
+}
+
+/** Each line has its name at its end, in its colour; the walls have theirs once there are two. */
+function nameActors(moment: Moment, surface: Surface, to: Camera, unit: number): void {
+  const size = Math.max(14 * unit, 11);
+  const robot = to([moment.robot[0], moment.robot[1]]);
+  const wheels = to(moment.wheels.at(-1) ?? [moment.robot[0], moment.robot[1]]);
+  const side = wheels[1] > robot[1] ? 1 : -1;
+  // Above the wheels there may be no room left.
+  const ofWheels = wheels[1] + side * 1.7 * size < size ? 1 : side;
+  surface.words('by the wheels', [wheels[0], wheels[1] + ofWheels * 1.7 * size], 'prediction', size);
+  surface.words('by the sweeps', [robot[0], robot[1] - side * 1.7 * size], 'posterior', size);
+  if (moment.act === 0) return;
+  surface.words('walls, way out', to(WALL_NAMES.out), 'outbound', size);
+  surface.words('walls, way back', to(WALL_NAMES.back), 'return', size);
+}
+
+/** At the end: where the walls of the way back stood before a loop closed, and how far the farthest keyframe has moved. */
+function drawBefore(story: Story, { before: { poses, strength }, keyframes }: Moment, surface: Surface, to: Camera, unit: number): void {
+  if (strength === 0) return;
+  const doubled = poses.flatMap((pose, node) => (node <= story.turn ? [] : placed(story.ticks[story.keyframes[node] ?? 0]?.sweep ?? [], pose)));
+  surface.dots(doubled.map(to), 'prior', 3 * unit, 0.4 * strength);
+  const moved = poses.map((pose, node) => ({ pose, now: keyframes[node] ?? pose }));
+  const far = ({ pose, now }: (typeof moved)[number]): number => Math.hypot(now[0] - pose[0], now[1] - pose[1]);
+  const farthest = moved.reduce((most, one) => (far(one) > far(most) ? one : most));
+  const [x, y] = to([farthest.now[0], farthest.now[1]]);
+  const size = Math.max(14 * unit, 11);
+  surface.line([[x, y], to([farthest.pose[0], farthest.pose[1]])], 'prior', 2.5 * unit, { alpha: strength });
+  surface.words(`moved by ${Math.round(100 * far(farthest))} cm`, [x, y + 2.6 * size], 'prior', size);
 }
 
 type Camera = (point: Point) => Point;
 
-function camera(closeness: number, widthPx: number): Camera {
+function frame(closeness: number, widthPx: number): { scale: number; middleX: number; middleY: number } {
   const mix = (key: keyof typeof WHOLE): number => WHOLE[key] + closeness * (CLOSE[key] - WHOLE[key]);
-  const scale = widthPx / mix('width');
-  const [middleX, middleY] = [mix('x'), mix('y')];
+  return { scale: widthPx / mix('width'), middleX: mix('x'), middleY: mix('y') };
+}
+
+/** From metres to pixels of the picture. */
+export function camera(closeness: number, widthPx: number): Camera {
+  const { scale, middleX, middleY } = frame(closeness, widthPx);
   return ([x, y]) => [widthPx / 2 + scale * (x - middleX), widthPx / ASPECT / 2 - scale * (y - middleY)];
+}
+
+/** From pixels of the picture to metres. */
+export function worldAt([x, y]: Point, closeness: number, widthPx: number): Point {
+  const { scale, middleX, middleY } = frame(closeness, widthPx);
+  return [middleX + (x - widthPx / 2) / scale, middleY - (y - widthPx / ASPECT / 2) / scale];
 }
 
 /** The points of all sweeps at the keyframes' poses: those of the way out, those of the way back. */

@@ -3,13 +3,15 @@
 // It plays once, where the reader wants motion and while it is seen; after that, and always by the
 // slider, the reader has the time in hand.
 
-import { ASPECT, draw, type Ink } from './drawing';
-import { Replay, type Story } from './story';
+import { ASPECT, camera, draw, type Ink, worldAt } from './drawing';
+import { type Point, Replay, type Story } from './story';
 import { canvasSurface, type Inks } from './surfaces';
 
 /** A step of the slider, and of an arrow key. */
 const STEP_S = 0.05;
-const INKS: Ink[] = ['truth', 'prediction', 'outbound', 'return', 'posterior', 'prior', 'measurement'];
+const INKS: Ink[] = ['truth', 'prediction', 'outbound', 'return', 'posterior', 'prior', 'measurement', 'ink', 'paper'];
+/** A hand that comes so near takes the robot, px. */
+const REACH_PX = 40;
 
 export class LapPlayer {
   readonly #figure: HTMLElement;
@@ -72,6 +74,7 @@ export class LapPlayer {
       });
       name?.replaceChildren(button);
     });
+    this.#letDrag();
     new IntersectionObserver((entries) => {
       this.#isSeen = entries.at(-1)?.isIntersecting === true;
       this.#wake();
@@ -84,6 +87,41 @@ export class LapPlayer {
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaint);
     new MutationObserver(repaint).observe(document.documentElement, { attributeFilter: ['data-theme'] });
     document.addEventListener('visibilitychange', () => this.#wake());
+  }
+
+  /** The robot can be dragged along its path, out and on the way back. */
+  #letDrag(): void {
+    const canvas = this.#canvas;
+    let ahead = 0;
+    const isNear = ({ offsetX, offsetY }: PointerEvent): boolean => {
+      const [x, y] = this.#robotPx();
+      return Math.hypot(offsetX - x, offsetY - y) < REACH_PX;
+    };
+    canvas.addEventListener('pointerdown', (event) => {
+      if (event.button !== 0 || !isNear(event)) return;
+      canvas.setPointerCapture(event.pointerId);
+      this.#stop();
+      ahead = 1;
+    });
+    canvas.addEventListener('pointermove', (event) => {
+      if (ahead === 0) {
+        canvas.style.cursor = isNear(event) ? 'grab' : '';
+        return;
+      }
+      const { closeness } = this.#replay.at(this.#seconds);
+      const hand = worldAt([event.offsetX, event.offsetY], closeness, canvas.clientWidth);
+      const next = this.#replay.nearest(hand, this.#seconds, ahead);
+      if (next !== this.#seconds) ahead = Math.sign(next - this.#seconds);
+      this.#goTo(next);
+    });
+    for (const type of ['pointerup', 'pointercancel'] as const) canvas.addEventListener(type, () => { ahead = 0; });
+    // A finger on the robot drags it; elsewhere it scrolls the page.
+    canvas.addEventListener('touchstart', (event) => { if (ahead !== 0) event.preventDefault(); }, { passive: false });
+  }
+
+  #robotPx(): Point {
+    const { robot, closeness } = this.#replay.at(this.#seconds);
+    return camera(closeness, this.#canvas.clientWidth)([robot[0], robot[1]]);
   }
 
   #play(): void {

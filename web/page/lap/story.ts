@@ -42,6 +42,8 @@ export interface Moment {
   closed: readonly { from: number; to: number }[];
   /** Where keyframes came from that a loop has just moved; stronger where it was just now. */
   moved: { from: readonly Pose[]; strength: number };
+  /** At the end the walls stand as they did before the first loop, too; stronger as it comes. */
+  before: { poses: readonly Pose[]; strength: number };
   /** How close the picture looks: 0 at the whole flat, 1 at where the walls meet again. */
   closeness: number;
 }
@@ -53,10 +55,18 @@ const SNAP_S = [1.1, 0.6, 0.6];
 const BETWEEN_S = 0.5;
 /** Before the first loop the doubled walls stand for a moment, and at the end the mended map. */
 const PAUSE_S = 0.5;
-/** While the second act begins, the picture comes closer. */
-const APPROACH_S = 0.8;
+const END_S = 1.2;
+/** On the way back the picture comes closer, from where both robots are left of this, over so many metres. */
+const APPROACH = { fromX: 9.6, overM: 1.2 };
+/** At the end the walls of before appear over so long. */
+const GHOST_S = 0.6;
 /** So long one sees whence the keyframes came. */
 const TRACE_S = 0.5;
+
+/** A hand moves the robot by so much of the replay at once; out and back lie on each other, so it goes on as it went. */
+const HAND_S = 0.8;
+const HAND_STEP_S = 0.04;
+const HAND_BIAS_M = 0.15;
 
 export class Replay {
   readonly #story: Story;
@@ -75,7 +85,7 @@ export class Replay {
       tick = loop.tick;
     });
     this.#drive(2, BETWEEN_S, tick, ticks.length - 1, loops.length);
-    this.#drive(2, PAUSE_S, ticks.length - 1, ticks.length - 1, loops.length);
+    this.#drive(2, END_S, ticks.length - 1, ticks.length - 1, loops.length);
   }
 
   /** How long it takes, in seconds. */
@@ -103,16 +113,30 @@ export class Replay {
     const wheels = ticks.slice(0, Math.floor(tick) + 1).map(({ wheels: [x, y] }): Point => [x, y]);
     const [x, y] = between(this.#tickAt(tick).wheels, this.#tickAt(tick + 1).wheels, tick % 1);
     const started = stretch.epoch + (stretch.closes ? 1 : 0);
+    const robot = this.#robot(tick, stretch, share);
+    const toLeft = APPROACH.fromX - Math.max(x, robot[0]);
     return {
       act: stretch.act,
       tick: Math.floor(tick + 1e-9),
-      robot: this.#robot(tick, stretch, share),
+      robot,
       keyframes: this.#poses(stretch, tick, share),
       wheels: [...wheels, [x, y]],
       closed: loops.slice(0, started),
       moved: this.#moved(stretch, seconds, tick),
-      closeness: ease((seconds - (this.actsS[1] ?? 0)) / APPROACH_S),
+      before: { poses: this.#story.epochs[0]?.poses ?? [], strength: ease((seconds - (this.lengthS - END_S)) / GHOST_S) },
+      closeness: stretch.act === 0 ? 0 : ease(toLeft / APPROACH.overM),
     };
+  }
+
+  /** The second near another at which the robot is nearest to a point; between equals the one `ahead` (1) or before (−1). */
+  nearest([x, y]: Point, seconds: number, ahead: number): number {
+    let best = { cost: Infinity, at: seconds };
+    for (let at = Math.max(seconds - HAND_S, 0); at <= Math.min(seconds + HAND_S, this.lengthS); at += HAND_STEP_S) {
+      const { robot } = this.at(at);
+      const cost = Math.hypot(robot[0] - x, robot[1] - y) - HAND_BIAS_M * Math.sign(at - seconds) * ahead;
+      if (cost < best.cost) best = { cost, at };
+    }
+    return best.at;
   }
 
   #drive(act: number, seconds: number, fromTick: number, toTick: number, epoch: number): void {

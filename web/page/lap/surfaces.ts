@@ -5,6 +5,8 @@ import type { Point } from './story';
 
 export type Inks = Record<Ink, string>;
 
+const FONT = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", "Liberation Sans", sans-serif';
+
 /** A canvas whose unit is the CSS pixel. */
 export function canvasSurface(context: CanvasRenderingContext2D, inks: Inks): Surface {
   const trace = (points: readonly Point[]): void => {
@@ -23,14 +25,32 @@ export function canvasSurface(context: CanvasRenderingContext2D, inks: Inks): Su
       context.stroke();
       context.globalAlpha = 1;
     },
-    dots(points, ink, size) {
+    dots(points, ink, size, alpha = 1) {
+      context.globalAlpha = alpha;
       context.fillStyle = inks[ink];
       for (const [x, y] of points) context.fillRect(x - size / 2, y - size / 2, size, size);
+      context.globalAlpha = 1;
     },
     area(points, ink) {
       trace(points);
       context.fillStyle = inks[ink];
       context.fill();
+    },
+    words(text, at, ink, size) {
+      context.font = `600 ${size}px ${FONT}`;
+      context.textBaseline = 'middle';
+      context.textAlign = 'center';
+      // They stay in the picture.
+      const half = context.measureText(text).width / 2 + size / 3;
+      const x = Math.min(Math.max(at[0], half), context.canvas.clientWidth - half);
+      const y = Math.min(Math.max(at[1], size), context.canvas.clientHeight - size);
+      context.lineWidth = size / 4;
+      context.lineJoin = 'round';
+      context.setLineDash([]);
+      context.strokeStyle = inks.paper;
+      context.strokeText(text, x, y);
+      context.fillStyle = inks[ink];
+      context.fillText(text, x, y);
     },
   };
 }
@@ -51,13 +71,18 @@ export class SvgSurface implements Surface {
   }
 
   /** Dots of one ink are one path of strokes that have no length. */
-  dots(points: readonly Point[], ink: Ink, size: number): void {
+  dots(points: readonly Point[], ink: Ink, size: number, alpha = 1): void {
+    const opacity = alpha === 1 ? '' : ` stroke-opacity="${alpha}"`;
     const path = points.map(([x, y]) => `M${short(x)} ${short(y)}h0`).join('');
-    this.text += `<path d="${path}" stroke="${this.#inks[ink]}" stroke-width="${short(size)}" stroke-linecap="square"/>`;
+    this.text += `<path d="${path}" stroke="${this.#inks[ink]}" stroke-width="${short(size)}" stroke-linecap="square"${opacity}/>`;
   }
 
   area(points: readonly Point[], ink: Ink): void {
     this.text += `<path d="${pathOf(points)}Z" fill="${this.#inks[ink]}"/>`;
+  }
+
+  words(text: string, [x, y]: Point, ink: Ink, size: number): void {
+    this.text += `<text x="${short(x)}" y="${short(y)}" font-family="${FONT.replaceAll('"', "'")}" font-size="${short(size)}" font-weight="600" text-anchor="middle" dominant-baseline="middle" fill="${this.#inks[ink]}" stroke="${this.#inks.paper}" stroke-width="${short(size / 4)}" stroke-linejoin="round" paint-order="stroke">${text}</text>`;
   }
 }
 

@@ -1,0 +1,151 @@
+// The first figure: two sweeps that the reader lays on each other, and ICP from there.
+
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import * as h from './harness.mjs';
+
+const visit = h.visitor();
+const reading = (test, options = {}, how = {}) => visit('', test, { path: '/index.html', options, ...how });
+const SIZES = [[1440, 900], [1280, 680], [390, 844]].map(([width, height]) => ({ width, height }));
+const live = async (tab) => {
+  await tab.waitForSelector('#match.live');
+  await tab.evaluate(() => document.querySelector('#match').scrollIntoView({ behavior: 'instant' }));
+};
+const off = async (tab) => {
+  const [cm, degrees] = await Promise.all(['cm', 'degrees'].map((name) => tab.locator(`.match-${name}`).textContent()));
+  return { cm: parseFloat(cm), degrees: parseFloat(degrees) };
+};
+const says = (tab) => tab.locator('#match-says').textContent();
+/** ICP has ended when it says where. */
+const ended = (tab) => tab.waitForFunction(() => /^ICP (came|stopped)/.test(document.querySelector('#match-says').textContent));
+const press = (tab, name) => tab.getByRole('button', { name, exact: true }).click();
+const middle = (tab, selector) => tab.locator(selector).evaluate((part) => {
+  const { left, top, width, height } = part.getBoundingClientRect();
+  return { x: left + width / 2, y: top + height / 2 };
+});
+/** Drags with the mouse from one point to another by a few steps. */
+async function drag(tab, from, to) {
+  await tab.mouse.move(from.x, from.y);
+  await tab.mouse.down();
+  await tab.mouse.move(to.x, to.y, { steps: 4 });
+  await tab.mouse.up();
+}
+/** By keys from the start to the truth: the start is 0.6 m to the left, 0.75 m up and turned by 48°. */
+async function layOn(tab) {
+  await tab.locator('#match svg').focus();
+  for (let step = 0; step < 24; step += 1) await tab.keyboard.press('Shift+ArrowRight');
+  for (let step = 0; step < 12; step += 1) await tab.keyboard.press('ArrowRight');
+  for (let step = 0; step < 15; step += 1) await tab.keyboard.press('ArrowDown');
+}
+
+describe('the sweeps that the reader lays on each other', () => {
+  for (const viewport of SIZES) {
+    it(`stand within two screens, and move before the program is there, at ${viewport.width}×${viewport.height}`, async () => {
+      const asked = [];
+      const answer = (path) => void (path.endsWith('.wasm') && asked.push(path));
+      await reading(async (tab) => {
+        await tab.waitForSelector('#match.live');
+        const bottom = await tab.locator('.match-buttons').evaluate((row) => row.getBoundingClientRect().bottom + scrollY);
+        assert.ok(bottom <= 2 * viewport.height, `${bottom} px`);
+        await live(tab);
+        await h.quiet(tab);
+        assert.deepEqual(asked, []);
+        const from = await middle(tab, '.match-robot');
+        const before = await off(tab);
+        const request = tab.waitForRequest((one) => one.url().endsWith('.wasm'));
+        await drag(tab, from, { x: from.x + 20, y: from.y + 30 });
+        await request;
+        const after = await off(tab);
+        assert.ok(after.cm < before.cm - 20, `${before.cm} cm, then ${after.cm}`);
+        assert.equal(after.degrees, before.degrees);
+        assert.match(await says(tab), new RegExp(`^By hand: ${after.cm} cm and ${after.degrees}° off`));
+        assert.ok(await tab.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+      }, { viewport }, { server: { answer } });
+    });
+  }
+
+  it('are turned by the knob of the ring, about the robot', async () => {
+    await reading(async (tab) => {
+      await live(tab);
+      const before = await off(tab);
+      const [robot, knob] = [await middle(tab, '.match-robot'), await middle(tab, '.match-knob')];
+      // From its direction to that of the x axis of the room, which is past the truth by its heading of 20°.
+      await drag(tab, knob, { x: robot.x + Math.hypot(knob.x - robot.x, knob.y - robot.y), y: robot.y });
+      const after = await off(tab);
+      assert.equal(after.cm, before.cm);
+      assert.ok(Math.abs(after.degrees - 20) < 3, `${after.degrees}°`);
+    });
+  });
+
+  it('are laid on each other by keys, and from there ICP comes home', async () => {
+    await reading(async (tab) => {
+      await live(tab);
+      await layOn(tab);
+      assert.deepEqual(await off(tab), { cm: 0, degrees: 0 });
+      assert.match(await says(tab), /^By hand: .* That is home/);
+      for (let step = 0; step < 5; step += 1) await tab.keyboard.press('Shift+ArrowUp');
+      for (let step = 0; step < 6; step += 1) await tab.keyboard.press('ArrowLeft');
+      assert.deepEqual(await off(tab), { cm: 30, degrees: 10 });
+      await press(tab, 'Let ICP take over');
+      await ended(tab);
+      assert.match(await says(tab), /^ICP came home in \d+ steps/);
+      const end = await off(tab);
+      assert.ok(end.cm < 12 && end.degrees < 3, JSON.stringify(end));
+      assert.equal(await tab.locator('.match-left').getAttribute('visibility'), 'visible');
+    });
+  });
+
+  it('end wrong from their first place, as the figure says, and from a quarter turn with a fit that looks right', async () => {
+    await reading(async (tab) => {
+      await live(tab);
+      assert.match(await says(tab), /ICP alone ends in a wrong place/);
+      await press(tab, 'Let ICP take over');
+      await ended(tab);
+      assert.match(await says(tab), /^ICP stopped after \d+ steps in a wrong place/);
+      await press(tab, 'From a quarter turn');
+      await ended(tab);
+      assert.match(await says(tab), /^ICP stopped a quarter turn wrong, .* Its pairs are 13 cm apart/);
+      await press(tab, 'Again');
+      assert.deepEqual(await off(tab), { cm: 96, degrees: 48 });
+    }, { reducedMotion: 'reduce' });
+  });
+
+  it('stay where the reader takes them while ICP moves them', async () => {
+    await reading(async (tab) => {
+      await live(tab);
+      await press(tab, 'Let ICP take over');
+      await tab.waitForFunction(() => /^step [2-9]$/.test(document.querySelector('.match-step').textContent));
+      await tab.locator('#match svg').press('ArrowLeft');
+      const taken = await off(tab);
+      await h.quiet(tab);
+      assert.deepEqual(await off(tab), taken);
+      assert.match(await says(tab), /^By hand/);
+    }, { stepMs: 60 });
+  });
+
+  it('follow two fingers', async () => {
+    await reading(async (tab) => {
+      await live(tab);
+      const before = await off(tab);
+      const { x, y } = await middle(tab, '.match-robot');
+      const client = await tab.context().newCDPSession(tab);
+      const touch = (type, ...points) => client.send('Input.dispatchTouchEvent', {
+        type, touchPoints: points.map(([dx, dy], id) => ({ x: x + dx, y: y + dy, id })),
+      });
+      await touch('touchStart', [-20, 0]);
+      await touch('touchStart', [-20, 0], [20, 0]);
+      await touch('touchMove', [-20, 0], [20, 20]);
+      await touch('touchEnd');
+      const after = await off(tab);
+      // A turn by atan(1/2) to the right, about the finger that rests.
+      assert.ok(Math.abs(before.degrees - after.degrees - 26.6) < 2, `${before.degrees}°, then ${after.degrees}°`);
+    }, { hasTouch: true, viewport: SIZES[2] });
+  });
+
+  it('are a picture where no script runs', async () => {
+    await reading(async (tab) => {
+      assert.ok(await tab.locator('.match-target').isVisible());
+      assert.equal(await tab.locator('.match-buttons').isVisible(), false);
+    }, { javaScriptEnabled: false });
+  });
+});

@@ -1,0 +1,67 @@
+// The two sweeps of the first figure as an SVG: the build puts it into the page, and the script moves its source.
+
+/** `[x, y, θ]`, metres and radians, of the source in the world. */
+export type Pose = readonly [number, number, number];
+
+/** What `matcherScene` of the module writes. */
+export interface Scene {
+  target: number[];
+  source: number[];
+  truth: Pose;
+  /** Nearer than this in metres and degrees counts as right. */
+  home: [number, number];
+}
+
+/** What is seen, in metres of the world; a wide picture shows more to the left and to the right. */
+const VIEW = { left: -1.5, top: 5.2, side: 7 };
+/** Radius of the ring by which the source is turned, m. */
+const RING_M = 1.3;
+/** Half of a mark, m. */
+const MARK_M = 0.06;
+/** Where the source stands at first: too far for ICP, so the reader has to begin. */
+const START_OFF = { x: -0.6, y: 0.75, degrees: 48 };
+
+export function startOf({ truth: [x, y, heading] }: Scene): Pose {
+  return [x + START_OFF.x, y + START_OFF.y, heading + (START_OFF.degrees * Math.PI) / 180];
+}
+
+/** The transform of a group that stands at a pose; y points up. */
+export function placedAt([x, y, heading]: Pose): string {
+  return `translate(${x} ${y}) rotate(${(heading * 180) / Math.PI})`;
+}
+
+/** The SVG with the source at its first pose. */
+export function drawing(scene: Scene): string {
+  const crosses = points(scene.target).map(([x, y]) => {
+    const [m, span] = [MARK_M, 2 * MARK_M];
+    return `M${short(x - m)} ${short(y - m)}l${span} ${span}m0-${span}l-${span} ${span}`;
+  });
+  const squares = points(scene.source).map(([x, y]) => `M${short(x)} ${short(y)}h0`).join('');
+  const at = placedAt(startOf(scene));
+  return `<svg viewBox="${VIEW.left} ${-VIEW.top} ${VIEW.side} ${VIEW.side}" tabindex="-1" role="application"
+      aria-labelledby="match-name" aria-describedby="match-keys match-says">
+      <title id="match-name">Two sweeps of one room, to be laid on each other</title>
+      <g transform="scale(1 -1)">
+        <path class="match-target" d="${crosses.join('')}"/>
+        <path class="match-source match-left" d="${squares}" transform="${at}" visibility="hidden"/>
+        <g class="match-moved" transform="${at}">
+          <path class="match-source" d="${squares}"/>
+          <circle class="match-grab" data-grab="move" r="${RING_M}"/>
+          <path class="match-grab match-near" data-grab="move" d="${squares}"/>
+          <circle class="match-ring" r="${RING_M}"/>
+          <circle class="match-grab match-near" data-grab="turn" r="${RING_M}"/>
+          <circle class="match-knob" data-grab="turn" cx="${RING_M}" r="0.15"/>
+          <path class="match-robot" d="M0.22 0L-0.15 0.14V-0.14Z"/>
+        </g>
+      </g>
+    </svg>`;
+}
+
+function points(numbers: readonly number[]): [number, number][] {
+  return Array.from({ length: numbers.length / 2 }, (_, at) => [numbers[2 * at] ?? 0, numbers[2 * at + 1] ?? 0]);
+}
+
+/** Millimetres. */
+function short(metres: number): number {
+  return Number(metres.toFixed(3));
+}

@@ -1,0 +1,265 @@
+// The first figure of the page: the reader lays one sweep on another, and ICP goes on from there.
+
+import type { Glue } from '../../pkg/glue.js';
+import { type Pose, type Scene, placedAt, startOf } from './drawing';
+
+/** What `Matcher.run` of the module writes: the guess and the pose after each iteration. */
+interface Run {
+  poses: Pose[];
+  rmse: number;
+  ending: string;
+}
+
+type Point = readonly [number, number];
+type Matcher = InstanceType<Glue['Matcher']>;
+
+/** What an arrow key moves, m, and turns with Shift. */
+const KEY_M = 0.05;
+const KEY_RAD = (2 * Math.PI) / 180;
+/** An iteration of ICP takes so long on the screen. */
+const ITERATION_MS = 110;
+const ARROWS: Record<string, Point> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+export class MatchFigure {
+  readonly #figure: HTMLElement;
+  readonly #scene: Scene;
+  readonly #core: () => Promise<Glue>;
+  readonly #svg: SVGSVGElement;
+  /** Fingers on the sweep, where they are in the world, and what the first one took hold of. */
+  readonly #fingers = new Map<number, Point>();
+  #turns = false;
+  #pose: Pose;
+  #matcher: Promise<Matcher> | undefined;
+  /** Counts what the reader does, which ends a run of ICP. */
+  #hand = 0;
+
+  constructor(figure: HTMLElement, scene: Scene, core: () => Promise<Glue>) {
+    this.#figure = figure;
+    this.#scene = scene;
+    this.#core = core;
+    this.#svg = figure.querySelector('svg') as SVGSVGElement;
+    this.#pose = startOf(scene);
+    this.#svg.tabIndex = 0;
+    this.#listen();
+    this.#show();
+    figure.classList.add('live');
+  }
+
+  #listen(): void {
+    const svg = this.#svg;
+    svg.addEventListener('pointerdown', (event) => this.#take(event));
+    svg.addEventListener('pointermove', (event) => this.#drag(event));
+    for (const type of ['pointerup', 'pointercancel'] as const) {
+      svg.addEventListener(type, (event) => {
+        if (this.#fingers.delete(event.pointerId) && this.#fingers.size === 0) this.#sayByHand();
+      });
+    }
+    svg.addEventListener('keydown', (event) => this.#press(event));
+    const presses = {
+      icp: () => void this.#takeOver(),
+      quarter: () => {
+        const [x, y, heading] = this.#scene.truth;
+        this.#place([x, y, heading + Math.PI / 2]);
+        void this.#takeOver();
+      },
+      again: () => {
+        this.#place(startOf(this.#scene));
+        this.#sayByHand();
+      },
+    };
+    for (const [name, press] of Object.entries(presses)) {
+      const button = this.#figure.querySelector<HTMLButtonElement>(`[data-match="${name}"]`);
+      button?.addEventListener('click', press);
+      button?.removeAttribute('disabled');
+    }
+  }
+
+  #take(event: PointerEvent): void {
+    const grab = (event.target as Element).closest<SVGElement>('[data-grab]');
+    if (grab === null || event.button !== 0) return;
+    event.preventDefault();
+    this.#svg.focus({ preventScroll: true });
+    this.#svg.setPointerCapture(event.pointerId);
+    if (this.#fingers.size === 0) this.#turns = grab.dataset['grab'] === 'turn';
+    this.#fingers.set(event.pointerId, this.#worldAt(event));
+    this.#place(this.#pose);
+    // It has to be there when the reader lets go.
+    void this.#loaded().catch(() => {});
+  }
+
+  #drag(event: PointerEvent): void {
+    const before = this.#fingers.get(event.pointerId);
+    if (before === undefined) return;
+    const now = this.#worldAt(event);
+    this.#fingers.set(event.pointerId, now);
+    const other = [...this.#fingers].find(([id]) => id !== event.pointerId)?.[1];
+    const [x, y] = this.#pose;
+    if (other !== undefined) this.#place(this.#turned(other, turnBetween(other, before, now)));
+    else if (this.#turns) this.#place(this.#turned([x, y], turnBetween([x, y], before, now)));
+    else this.#place(this.#moved([now[0] - before[0], now[1] - before[1]]));
+  }
+
+  #press(event: KeyboardEvent): void {
+    const way = ARROWS[event.key];
+    if (way === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
+    event.preventDefault();
+    const [x, y] = this.#pose;
+    // To the right and down is clockwise, as a wheel turns.
+    if (event.shiftKey) this.#place(this.#turned([x, y], KEY_RAD * (way[1] - way[0])));
+    else this.#place(this.#moved([KEY_M * way[0], KEY_M * way[1]]));
+    this.#sayByHand();
+  }
+
+  #worldAt({ clientX, clientY }: PointerEvent): Point {
+    const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(this.#svg.getScreenCTM()?.inverse());
+    return [x, -y];
+  }
+
+  #moved([dx, dy]: Point): Pose {
+    const [x, y, heading] = this.#pose;
+    return [x + dx, y + dy, heading];
+  }
+
+  #turned([aboutX, aboutY]: Point, angle: number): Pose {
+    const [x, y, heading] = this.#pose;
+    const [dx, dy] = [x - aboutX, y - aboutY];
+    const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+    return [aboutX + cos * dx - sin * dy, aboutY + sin * dx + cos * dy, heading + angle];
+  }
+
+  /** The reader’s hand puts it there. */
+  #place(pose: Pose): void {
+    this.#hand += 1;
+    this.#pose = pose;
+    this.#leftAt(undefined);
+    this.#show();
+  }
+
+  async #takeOver(): Promise<void> {
+    this.#hand += 1;
+    const hand = this.#hand;
+    const from = this.#pose;
+    this.#say('ICP is on its way.');
+    const matcher = await this.#loaded().catch(() => undefined);
+    if (hand !== this.#hand) return;
+    if (matcher === undefined) {
+      this.#say('ICP could not be fetched. Try again once there is a connection.');
+      return;
+    }
+    const run = JSON.parse(matcher.run(...from)) as Run;
+    this.#leftAt(from);
+    const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
+    if (!isStill) await this.#play(run.poses, hand);
+    if (hand !== this.#hand) return;
+    this.#pose = run.poses.at(-1) ?? from;
+    this.#show();
+    this.#say(this.#told(run));
+  }
+
+  /** Moves through the iterations, one after the other, until the reader takes hold. */
+  #play(poses: readonly Pose[], hand: number): Promise<void> {
+    return new Promise((end) => {
+      let first: number | undefined;
+      const next = (now: number): void => {
+        first ??= now;
+        const at = (now - first) / ITERATION_MS;
+        const [before, after] = [poses[Math.floor(at)], poses[Math.floor(at) + 1]];
+        if (hand !== this.#hand || before === undefined || after === undefined) {
+          end();
+          return;
+        }
+        this.#pose = between(before, after, at % 1);
+        this.#show();
+        this.#readout(`step ${Math.floor(at) + 1}`);
+        requestAnimationFrame(next);
+      };
+      requestAnimationFrame(next);
+    });
+  }
+
+  /** The core is fetched once the reader takes part. */
+  #loaded(): Promise<Matcher> {
+    this.#matcher ??= this.#core().then((glue) => new glue.Matcher());
+    this.#matcher.catch(() => { this.#matcher = undefined; });
+    return this.#matcher;
+  }
+
+  #show(): void {
+    this.#svg.querySelector('.match-moved')?.setAttribute('transform', placedAt(this.#pose));
+    this.#figure.classList.toggle('home', this.#isHome());
+    this.#readout('');
+  }
+
+  /** A shadow at the place where the reader let go. */
+  #leftAt(pose: Pose | undefined): void {
+    const shadow = this.#svg.querySelector('.match-left');
+    shadow?.setAttribute('visibility', pose === undefined ? 'hidden' : 'visible');
+    if (pose !== undefined) shadow?.setAttribute('transform', placedAt(pose));
+  }
+
+  #off(): { metres: number; degrees: number } {
+    const [x, y, heading] = this.#pose;
+    const [trueX, trueY, trueHeading] = this.#scene.truth;
+    return { metres: Math.hypot(x - trueX, y - trueY), degrees: Math.abs(wrapped(heading - trueHeading)) * (180 / Math.PI) };
+  }
+
+  #isHome(): boolean {
+    const { metres, degrees } = this.#off();
+    return metres < this.#scene.home[0] && degrees <= this.#scene.home[1];
+  }
+
+  #readout(step: string): void {
+    const { metres, degrees } = this.#off();
+    this.#write('.match-cm', `${Math.round(100 * metres)} cm`);
+    this.#write('.match-degrees', `${degrees.toFixed(degrees < 10 ? 1 : 0)}°`);
+    this.#write('.match-step', step === '' ? 'off the truth' : step);
+  }
+
+  #sayByHand(): void {
+    const end = this.#isHome() ? 'That is home: the walls are sharp. Can ICP do better?' : 'Nearer, or let ICP take over.';
+    this.#say(`By hand: ${this.#offInWords()} off. ${end}`);
+  }
+
+  #told({ poses, rmse, ending }: Run): string {
+    const steps = poses.length - 1;
+    const by = `${steps} ${steps === 1 ? 'step' : 'steps'}`;
+    const off = `${this.#offInWords()} off`;
+    if (ending === 'right minimum') return `ICP came home in ${by}: ${off}.`;
+    const fit = `Its pairs are ${Math.round(100 * rmse)} cm apart`;
+    if (ending === 'quarter turn' || ending === 'half turn') {
+      return `ICP stopped a ${ending} wrong, ${off}. ${fit}: the room is nearly square, so a wrong turn looks right, to you and to ICP.`;
+    }
+    return `ICP stopped after ${by} in a wrong place, ${off}. ${fit}. Lay it nearer, and let it try again.`;
+  }
+
+  #offInWords(): string {
+    const { metres, degrees } = this.#off();
+    return `${Math.round(100 * metres)} cm and ${degrees.toFixed(degrees < 10 ? 1 : 0)}°`;
+  }
+
+  #say(sentence: string): void {
+    this.#write('#match-says', sentence);
+  }
+
+  #write(selector: string, text: string): void {
+    const element = this.#figure.querySelector(selector);
+    if (element !== null && element.textContent !== text) element.textContent = text;
+  }
+}
+
+/** The angle by which a point has gone round another. */
+function turnBetween([x, y]: Point, before: Point, now: Point): number {
+  return wrapped(Math.atan2(now[1] - y, now[0] - x) - Math.atan2(before[1] - y, before[0] - x));
+}
+
+function wrapped(angle: number): number {
+  return Math.atan2(Math.sin(angle), Math.cos(angle));
+}
+
+function between(from: Pose, to: Pose, share: number): Pose {
+  return [
+    from[0] + share * (to[0] - from[0]),
+    from[1] + share * (to[1] - from[1]),
+    from[2] + share * wrapped(to[2] - from[2]),
+  ];
+}

@@ -1,0 +1,104 @@
+//! The first figure of the page: two sweeps of one room that the reader lays on each other, and ICP from there.
+//!
+//! Poses are `world_from_source`, `[x, y, θ]` in metres and radians, so that the room stands upright.
+
+use ch16_lab::basin::{BasinScene, HOME_HEADING_DEG, SUCCESS_RADIUS_M};
+use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
+use pr_geom::SE2;
+use serde_json::{Value, json};
+
+use crate::story::{pose, short};
+
+/// Pairing distance of w16.1 at its defaults, m.
+const TAU_M: f64 = 0.7;
+
+/// The sweeps as JSON: points of the target in the world, points of the source in its sensor's frame,
+/// `[x0, y0, x1, y1, …]`, the true pose of the source, and how near counts as right, in metres and degrees.
+#[must_use]
+pub fn scene() -> Value {
+    let scene = BasinScene::new();
+    let world_from_target = scene.world_from_target();
+    let target = scene.target().iter();
+    let target = target.map(|point| world_from_target.transform(point));
+    let source = scene.source().iter();
+    let flat =
+        |points: Vec<[f64; 2]>| -> Vec<Value> { points.into_iter().flatten().map(short).collect() };
+    json!({
+        "target": flat(target.map(|point| [point.x, point.y]).collect()),
+        "source": flat(source.map(|point| [point.x, point.y]).collect()),
+        "truth": pose(&(world_from_target * scene.truth())),
+        "home": [SUCCESS_RADIUS_M, HOME_HEADING_DEG],
+    })
+}
+
+/// Runs ICP on the same sweeps, from one guess after the other.
+pub struct Matcher {
+    scene: BasinScene,
+    workspace: IcpWorkspace,
+}
+
+impl Default for Matcher {
+    fn default() -> Self {
+        Self {
+            scene: BasinScene::new(),
+            workspace: IcpWorkspace::new(),
+        }
+    }
+}
+
+impl Matcher {
+    /// Point to point from a guess: `{"poses", "rmse", "ending"}`, the guess and the pose after each iteration, the
+    /// final rmse in metres, and the name of the minimum.
+    pub fn run(&mut self, world_from_source: &SE2) -> Value {
+        let world_from_target = self.scene.world_from_target();
+        let start = self
+            .scene
+            .start_of(&world_from_target.between(world_from_source));
+        let config = BasinScene::config(IcpVariant::PointToPoint, TAU_M);
+        let found = self
+            .scene
+            .register_from(&start, &config, &mut self.workspace);
+        let trace = self.workspace.trace().iter();
+        let poses: Vec<Value> = trace
+            .map(|state| pose(&(world_from_target * state.pose)))
+            .collect();
+        json!({ "poses": poses, "rmse": short(found.rmse_m), "ending": found.ending.name() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn truth() -> SE2 {
+        let scene = BasinScene::new();
+        scene.world_from_target() * scene.truth()
+    }
+
+    fn turned(degrees: f64) -> SE2 {
+        let truth = truth();
+        SE2::new(truth.x(), truth.y(), truth.theta() + degrees.to_radians())
+    }
+
+    /// The endings that the page tells of the two starts.
+    #[test]
+    fn a_guess_nearby_comes_home_and_a_quarter_turn_does_not() {
+        let mut matcher = Matcher::default();
+        let near = matcher.run(&turned(20.0));
+        assert_eq!(near["ending"], "right minimum");
+        let quarter = matcher.run(&turned(90.0));
+        assert_eq!(quarter["ending"], "quarter turn");
+        // The figure says that both fit: w16.1 has 0.03 m and 0.13 m.
+        assert!(near["rmse"].as_f64().unwrap() < 0.04, "{near}");
+        assert!(quarter["rmse"].as_f64().unwrap() < 0.15, "{quarter}");
+    }
+
+    #[test]
+    fn a_run_begins_at_the_guess_and_the_scene_has_its_truth() {
+        let run = Matcher::default().run(&turned(10.0));
+        assert_eq!(run["poses"][0], pose(&turned(10.0)));
+        assert_eq!(scene()["truth"], pose(&truth()));
+        let points = |name: &str| scene()[name].as_array().unwrap().len();
+        assert!(points("target") > 300 && points("source") > 200);
+    }
+}
