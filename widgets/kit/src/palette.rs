@@ -97,6 +97,9 @@ pub fn accent(theme: Theme) -> Rgb {
     SHADES[theme as usize]
 }
 
+/// Largest share of white or black in the colour of a relief's slope.
+const MOST_LIGHT: f32 = 0.55;
+
 /// Classes differ mainly in lightness, which keeps them distinct for every kind of colour vision. The first
 /// four are areas below marks: they differ from the colours of the meanings and from paper.
 fn class_color(theme: Theme, class: u8) -> Rgb {
@@ -115,6 +118,10 @@ pub fn cell(theme: Theme, cell: Cell) -> Rgb {
     match cell {
         Cell::Unknown => tone(theme, Tone::Unseen),
         Cell::Level(level) => level_color(level),
+        Cell::Relief { level, light } => {
+            let lit = if light > 0.0 { [255; 3] } else { [0; 3] };
+            mix(level_color(level), lit, MOST_LIGHT * light.abs())
+        }
         Cell::Class(class) => class_color(theme, class),
         Cell::Occupancy(share) => mix(tone(theme, Tone::Paper), tone(theme, Tone::Ink), share),
     }
