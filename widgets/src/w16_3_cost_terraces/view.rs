@@ -7,6 +7,9 @@ use kit::view::{Arrangement, Column, PANEL_GAP, Row, Slot, View};
 /// Width from which a relief leaves space beside it, also if the controls are beside the stage.
 const BESIDE: f32 = 640.0;
 
+/// Width from which two reliefs are beside each other.
+const PAIRED: f32 = 440.0;
+
 /// Width and height of a relief: its steps have to be seen.
 const MAP_PX: f32 = 350.0;
 const PHONE_MAP_PX: f32 = 322.0;
@@ -35,6 +38,20 @@ impl View for TerracesView {
             slot("rows", PlotHeight::Fixed(190.0)),
         ];
         let slices = [["icp-x", "icp-y"], ["ndt-x", "ndt-y"]].map(|pair| pair.map(cut));
+        if (PAIRED..BESIDE).contains(&width) {
+            // Beside the text a widget is low: both reliefs share a row, and so do the profiles.
+            let pair = |ids: [&'static str; 2], height| Row::new(&ids.map(|id| slot(id, height)));
+            let stage = vec![
+                pair(["icp", "ndt"], PlotHeight::Natural { most }),
+                pair(["icp-path", "ndt-path"], PlotHeight::Fixed(px(110.0, 90.0))),
+                Row::new(&[matched("sweep")]),
+            ];
+            let below = [&[matched("bells")], &rest[..], slices.as_flattened()].concat();
+            return Arrangement {
+                stage,
+                below: below_each_other(&below),
+            };
+        }
         if narrow {
             // NDT's profile and bells stand with the rest: two screens of a phone hold everything else.
             let stage = [&[map("icp")], &beside_icp[..], &[map("ndt")]].concat();
