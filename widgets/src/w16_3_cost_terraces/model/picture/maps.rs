@@ -28,12 +28,9 @@ pub fn icp(landscape: &Landscape, moment: Moment, rests_m: &[[f64; 2]]) -> Panel
 pub fn ndt(landscape: &Landscape, moment: Moment) -> Panel {
     let title = |height: f64| format!("NDT score {:.4}", -height);
     let mut panel = map("ndt", &title, "score", landscape, moment);
-    if let Some(bar) = &mut panel.color_bar {
-        match moment.colors {
-            // From the highest score, which is dark, to the lowest.
-            Colors::ByHeight => (bar.min, bar.max) = (-bar.min, -bar.max),
-            Colors::ByRank => bar.label = "% of cells score higher".to_owned(),
-        }
+    if let (Some(bar), Colors::ByHeight) = (&mut panel.color_bar, moment.colors) {
+        // From the highest score, which is dark, to the lowest.
+        (bar.min, bar.max) = (-bar.min, -bar.max);
     }
     panel
 }
@@ -90,7 +87,7 @@ fn map(
                 max: landscape.range[1],
             },
             Colors::ByRank => ColorBar {
-                label: "% of cells are lower".to_owned(),
+                label: "% fit better".to_owned(),
                 min: 0.0,
                 max: 100.0,
             },

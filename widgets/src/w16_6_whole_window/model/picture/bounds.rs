@@ -49,8 +49,8 @@ pub fn panel(window: &WholeWindow) -> Panel {
         id: panel::BOUNDS,
         title: format!(
             "{} poses, {} looked at",
-            grouped(moment.counts.window as u64),
-            grouped(moment.counts.scored() as u64)
+            grouped(moment.counts.window),
+            grouped(moment.counts.scored())
         ),
         weight: Weight::Half,
         aspect: Aspect::Free,
