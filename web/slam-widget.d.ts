@@ -147,7 +147,7 @@ export interface ControlRoomState {
 export interface PoseGraphToyState {
   /** Information of the loop, relative to each edge of odometry: a stiffer spring gives way less. 0.1 to 10 ×. */
   stiffness: number;
-  /** The chapter's three poses on a line, four around a square, or six around a ring. */
+  /** The chapter's three poses on a line, four around a square, or a ring of six whose ends do not meet. */
   graph: 'line' | 'square' | 'ring';
   /** How much farther ahead of the first pose the loop sees the last one than odometry does. -1.5 to 1.5 m. */
   gap: number;

@@ -73,9 +73,17 @@ impl PanelLayout {
     /// Lays out a panel at that width.
     #[must_use]
     pub fn new(panel: &Panel, width: f32, height: PlotHeight, measure: &mut dyn Measure) -> Self {
-        let left = tick_label_width(&panel.y, measure) + TICK + 2.0;
+        let left = if panel.y.is_drawn() {
+            tick_label_width(&panel.y, measure) + TICK + 2.0
+        } else {
+            1.0
+        };
         // Half of the last label of the horizontal axis extends beyond the plot's edge.
-        let right = 0.5 * measure.text_width(&format!("{:.0}", panel.x.max), TextSize::Small) + 4.0;
+        let right = if panel.x.is_drawn() {
+            0.5 * measure.text_width(&format!("{:.0}", panel.x.max), TextSize::Small) + 4.0
+        } else {
+            1.0
+        };
         let plot_width = (width - left - right).max(40.0);
         let plot_height = match height {
             PlotHeight::Fixed(height) => height,
@@ -95,7 +103,7 @@ impl PanelLayout {
             .into_iter()
             .map(|line| (line, row(TITLE_ROW)))
             .collect();
-        let y_name_y = row(ROW);
+        let y_name_y = row(if panel.y.is_drawn() { ROW } else { 0.0 });
         row(GAP);
         let plot_middle = row(plot_height);
         let plot = PxRect::new(
@@ -104,9 +112,10 @@ impl PanelLayout {
             plot_width,
             plot_height,
         );
+        let below = if panel.x.is_drawn() { ROW } else { 0.0 };
         row(TICK - 4.0);
-        let x_ticks_y = row(ROW);
-        let x_name_y = row(ROW);
+        let x_ticks_y = row(below);
+        let x_name_y = row(below);
         let color_bar_y = panel.color_bar.is_some().then(|| {
             row(GAP);
             row(ROW)
@@ -175,6 +184,9 @@ pub fn wrap(text: &str, width: f32, size: TextSize, measure: &mut dyn Measure) -
 /// Ticks of the shown part of a vertical axis of that height in pixels.
 #[must_use]
 pub fn y_ticks(axis: &Axis, min: f64, max: f64, height: f32) -> Ticks {
+    if !axis.is_drawn() {
+        return Ticks::of_names(&[], min, max);
+    }
     if !axis.names.is_empty() {
         return Ticks::of_names(&axis.names, min, max);
     }
@@ -185,6 +197,9 @@ pub fn y_ticks(axis: &Axis, min: f64, max: f64, height: f32) -> Ticks {
 /// Ticks of the shown part of a horizontal axis of that width, as many as fit beside each other.
 #[must_use]
 pub fn x_ticks(axis: &Axis, min: f64, max: f64, width: f32, measure: &mut dyn Measure) -> Ticks {
+    if !axis.is_drawn() {
+        return Ticks::of_names(&[], min, max);
+    }
     if !axis.names.is_empty() {
         return Ticks::of_names(&axis.names, min, max);
     }

@@ -97,11 +97,14 @@ pub fn accent(theme: Theme) -> Rgb {
     SHADES[theme as usize]
 }
 
+/// Largest share of white or black in the colour of a relief's slope.
+const MOST_LIGHT: f32 = 0.55;
+
 /// Classes differ mainly in lightness, which keeps them distinct for every kind of colour vision. The first
-/// four are areas below marks: they differ from the colours of the meanings and from paper.
+/// five are areas below marks: they differ from the colours of the meanings and from paper.
 fn class_color(theme: Theme, class: u8) -> Rgb {
-    const LIGHT: [u32; 6] = [0xd6e8fb, 0xf2d84b, 0x772a67, 0x889abf, 0x48a181, 0x1e293b];
-    const DARK: [u32; 6] = [0x113460, 0xe8d84a, 0x9c4b55, 0x6c7aa8, 0x2a9d8f, 0xf8fafc];
+    const LIGHT: [u32; 6] = [0xd6e8fb, 0xf2d84b, 0x9b3408, 0x889abf, 0xf9cc9e, 0x1e293b];
+    const DARK: [u32; 6] = [0x113460, 0xe8d84a, 0x9c4b55, 0x6c7aa8, 0x873a07, 0xf8fafc];
     let table = match theme {
         Theme::Light => LIGHT,
         Theme::Dark => DARK,
@@ -115,6 +118,10 @@ pub fn cell(theme: Theme, cell: Cell) -> Rgb {
     match cell {
         Cell::Unknown => tone(theme, Tone::Unseen),
         Cell::Level(level) => level_color(level),
+        Cell::Relief { level, light } => {
+            let lit = if light > 0.0 { [255; 3] } else { [0; 3] };
+            mix(level_color(level), lit, MOST_LIGHT * light.abs())
+        }
         Cell::Class(class) => class_color(theme, class),
         Cell::Occupancy(share) => mix(tone(theme, Tone::Paper), tone(theme, Tone::Ink), share),
     }

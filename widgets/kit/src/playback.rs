@@ -75,6 +75,12 @@ impl Playback {
         }
     }
 
+    /// The part of the next step that has passed while it plays, 0…1: for motion between two steps.
+    #[must_use]
+    pub fn part(&self) -> f64 {
+        self.part
+    }
+
     /// Stops at the current position.
     pub fn pause(&mut self) {
         self.playing = false;

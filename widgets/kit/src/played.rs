@@ -56,6 +56,12 @@ impl Played {
         values.get(self.param).min(last)
     }
 
+    /// [`Playback::part`].
+    #[must_use]
+    pub fn part(&self) -> f64 {
+        self.playback.part()
+    }
+
     /// Stops at the current position.
     pub fn pause(&mut self) {
         self.playback.pause();

@@ -68,6 +68,7 @@ fn numbers_are_finite(layer: &Layer) -> bool {
             raster.cells.len() == raster.columns * raster.rows
                 && raster.cells.iter().all(|cell| match cell {
                     Cell::Level(level) | Cell::Occupancy(level) => level.is_finite(),
+                    Cell::Relief { level, light } => level.is_finite() && light.is_finite(),
                     Cell::Unknown | Cell::Class(_) => true,
                 })
         }

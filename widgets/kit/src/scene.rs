@@ -264,6 +264,13 @@ pub enum Cell {
     Unknown,
     /// Position in the perceptual colour map, 0…1.
     Level(f32),
+    /// The same on a relief that is lit from the upper left.
+    Relief {
+        /// Position in the colour map, 0…1.
+        level: f32,
+        /// From −1, turned away from the light, to 1, turned towards it.
+        light: f32,
+    },
     /// Class n, see [`Tone::Class`].
     Class(u8),
     /// Occupancy, 0 (free) … 1 (occupied): paper to ink.
@@ -273,7 +280,7 @@ pub enum Cell {
 /// How an axis is divided.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// Name with unit: `Δx (m)`.
+    /// Name with unit: `Δx (m)`. An axis without a name has no ticks and takes no space.
     pub label: String,
     /// Smallest value shown.
     pub min: f64,
@@ -293,6 +300,18 @@ impl Axis {
             max,
             names: Vec::new(),
         }
+    }
+
+    /// An axis that is not drawn: of a picture that its marks explain.
+    #[must_use]
+    pub fn hidden(min: f64, max: f64) -> Self {
+        Self::new("", min, max)
+    }
+
+    /// Whether the axis is drawn.
+    #[must_use]
+    pub fn is_drawn(&self) -> bool {
+        !self.label.is_empty() || !self.names.is_empty()
     }
 
     /// An axis with these names at 1, 2, … in place of numbers.

@@ -169,11 +169,11 @@ fn the_six_classes_stay_apart() {
 
 /// Marks are drawn on the areas of a picture of classes, and a picture fills in on paper.
 #[test]
-fn the_first_four_classes_differ_from_meanings_and_paper() {
+fn the_first_five_classes_differ_from_meanings_and_paper() {
     /// Half of that: an area next to paper needs no name.
     const FROM_PAPER: f32 = 0.5 * APART;
     for theme in THEMES {
-        for class in 0..4 {
+        for class in 0..5 {
             let area = cell(theme, Cell::Class(class));
             for meaning in MEANINGS {
                 assert_apart(&[area, tone(theme, meaning)], "a class and a meaning");

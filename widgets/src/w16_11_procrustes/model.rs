@@ -44,7 +44,7 @@ pub struct ProcrustesTrace {
 }
 
 impl Default for ProcrustesTrace {
-    /// Four corners, seen twice.
+    /// Four corners, the second time by a sensor that hangs upside down: the unchecked map is mirrored.
     fn default() -> Self {
         let values = Values::defaults(PARAMS);
         let pairs = settings::pairs(&values);

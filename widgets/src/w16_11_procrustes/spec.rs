@@ -26,6 +26,7 @@ pub(super) static SHAPE: OneOf<Shape> = OneOf::new(
     ],
     &[Shape::Corners, Shape::Two, Shape::Wall, Shape::UpsideDown],
 )
+.default("upside-down")
 .help(
     "Points of two sweeps in pairs; for the last one the sensor hangs upside down the second time.",
 );
@@ -109,7 +110,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "Over a whole turn the trace is one sinusoid: it has one top, and the alignment knows its place in closed form.",
         "Mirror images have a sinusoid of their own. The higher top of the two is the sum of the singular values, and nothing passes it.",
         "On two points, and on a straight line, both tops are equally high. Along a bare wall noise decides between them.",
-        "A mirrored map fits its points as well as any. It has its doors on the wrong side.",
+        "A mirrored map fits its points as well as any. It has its doors on the wrong side: compare the two flats.",
     ],
     opening: Opening {
         panels: &["points", "trace", "map-turn", "map-unchecked"],
@@ -123,7 +124,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "corners",
             label: "Turn four corners",
             help: "The trace climbs to its bound at one angle, and falls again: the mirror images stay far below.",
-            set: &[],
+            set: &[SHAPE.to("corners")],
             then: &["play"],
         },
         Preset {

@@ -1,4 +1,4 @@
-//! Layout of the panels: points beside the trace, the two maps beside each other.
+//! Layout of the panels: the two maps beside each other, the points beside the trace below them.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -15,20 +15,20 @@ impl View for TraceView {
         let slot = |panel, height| Slot { panel, height };
         let wide = width >= SIDE_BY_SIDE;
         let [most, plot, map] = if wide {
-            [300.0, 240.0, 210.0]
+            [240.0, 200.0, 300.0]
         } else {
-            [230.0, 150.0, 130.0]
+            [200.0, 140.0, 170.0]
         };
         let points = slot(panel::POINTS, PlotHeight::Natural { most });
         let trace = slot(panel::TRACE, PlotHeight::Fixed(plot));
         let maps = [panel::MAP_TURN, panel::MAP_UNCHECKED]
             .map(|panel| slot(panel, PlotHeight::Natural { most: map }));
-        let mut stage = if wide {
-            vec![Row::new(&[points, trace])]
+        let mut stage = vec![Row::new(&maps)];
+        if wide {
+            stage.push(Row::new(&[points, trace]));
         } else {
-            vec![Row::new(&[points]), Row::new(&[trace])]
-        };
-        stage.push(Row::new(&maps));
+            stage.extend([points, trace].map(|slot| Row::new(&[slot])));
+        }
         Arrangement {
             stage,
             below: Vec::new(),

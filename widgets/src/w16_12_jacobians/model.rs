@@ -25,8 +25,8 @@ use crate::w16_12_jacobians::spec::{CURVE, MOST_STEPS, PARAMS, SPEC, STEPS};
 
 /// Names of the panels.
 pub mod panel {
-    /// The graph of each solver, in the order of [`NAMES`](super::NAMES).
-    pub const MAPS: [&str; 4] = ["exact", "approximate", "jacobian", "residual"];
+    /// The graphs of all solvers over the optimum.
+    pub const GRAPHS: &str = "graphs";
     /// Distance to the optimum over the steps.
     pub const CURVE: &str = "curve";
 }

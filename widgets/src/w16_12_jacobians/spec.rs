@@ -83,7 +83,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "Without a contradiction all four end at the same place. A test on clean data does not find a wrong residual.",
     ],
     opening: Opening {
-        panels: &["exact", "approximate", "jacobian", "residual", "curve"],
+        panels: &["graphs", "curve"],
         params: &["bias"],
         buttons: &["play"],
     },

@@ -19,7 +19,7 @@ use kit::model::{
 use kit::param::{MORE, ParamError};
 use kit::playback::Playback;
 use kit::playback::SPEED;
-use kit::scene::Scene;
+use kit::scene::{Axis, Scene};
 use kit::spec::{DEFAULTS, WidgetSpec};
 use kit::values::{Changed, Values};
 
@@ -63,6 +63,8 @@ pub struct BasinExplorer {
     /// The edge of the basin along pure rotations, for the question about it.
     edges: Edges,
     preview: Preview,
+    /// The axes of the sweeps while something is dragged.
+    held_frame: Option<[Axis; 2]>,
 }
 
 /// Whether the result of the run is shown before it is played.
@@ -93,6 +95,7 @@ impl Default for BasinExplorer {
             paths: Paths::new(&values),
             edges: Edges::new(&values),
             preview: Preview::Hidden,
+            held_frame: None,
             run: Run {
                 trace: workspace.trace().to_vec(),
                 outcome,
@@ -321,7 +324,14 @@ impl Model for BasinExplorer {
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        if self.held_frame.is_none() {
+            self.held_frame = Some(picture::frame(self));
+        }
         hands::drag(self, handle, at);
+    }
+
+    fn release(&mut self) {
+        self.held_frame = None;
     }
 
     fn set_motion(&mut self, motion: Motion) {

@@ -18,7 +18,7 @@ impl View for BasinView {
         let stage = if width >= SIDE_BY_SIDE {
             let columns = vec![
                 Column {
-                    share: 1.1,
+                    share: 1.5,
                     slots: vec![sweeps],
                 },
                 Column {

@@ -2,62 +2,83 @@
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
-use kit::view::{Arrangement, Column, Row, Slot, View};
+use kit::view::{Arrangement, Column, PANEL_GAP, Row, Slot, View};
 
-/// Width from which a map leaves space beside it, also if the controls are beside the stage.
-const BESIDE: f32 = 440.0;
+/// Width from which a relief leaves space beside it, also if the controls are beside the stage.
+const BESIDE: f32 = 640.0;
 
-/// Share of its row that the map takes; the target of the match gets the rest.
-const MAP_SHARE: f32 = 5.0;
-const MATCHED_SHARE: f32 = 4.0;
+/// Width from which two reliefs are beside each other.
+const PAIRED: f32 = 440.0;
 
-/// Each map beside the target of the match, the slices below.
+/// Width and height of a relief: its steps have to be seen.
+const MAP_PX: f32 = 350.0;
+const PHONE_MAP_PX: f32 = 322.0;
+
+/// Each relief beside the ground under its ball and the target of the match, the slices below.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TerracesView;
 
 impl View for TerracesView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let narrow = width < BESIDE;
-        // Four panels below each other have to fit two screens of a phone.
-        let most = if narrow { 205.0 } else { 235.0 };
+        let px = |wide, phone| if narrow { phone } else { wide };
+        let most = px(MAP_PX, PHONE_MAP_PX);
         let map = |id| slot(id, PlotHeight::Natural { most });
         // Room and corridor have different shapes; fixed heights keep what is below in place.
-        let matched = |id| slot(id, PlotHeight::Fixed(if narrow { 120.0 } else { 190.0 }));
-        let cut = |id| slot(id, PlotHeight::Fixed(130.0));
-        let stage = [
-            [map("icp"), matched("sweep")],
-            [map("ndt"), matched("bells")],
+        let matched = |id| slot(id, PlotHeight::Fixed(px(195.0, 110.0)));
+        let cut = |id| slot(id, PlotHeight::Fixed(px(110.0, 90.0)));
+        let beside_icp = [cut("icp-path"), matched("sweep")];
+        let beside_ndt = [cut("ndt-path"), matched("bells")];
+        let below_each_other = |slots: &[Slot]| -> Vec<Row> {
+            let rows = slots.iter().map(|slot| Row::new(&[*slot]));
+            rows.collect()
+        };
+        let rest = [
+            slot("information", PlotHeight::Fixed(300.0)),
+            slot("rows", PlotHeight::Fixed(190.0)),
         ];
         let slices = [["icp-x", "icp-y"], ["ndt-x", "ndt-y"]].map(|pair| pair.map(cut));
-        let rests = slot("information", PlotHeight::Fixed(300.0));
-        let side_by_side = |slots: [Slot; 2], shares: [f32; 2]| Row {
-            columns: (slots.into_iter().zip(shares))
-                .map(|(slot, share)| Column {
-                    share,
-                    slots: vec![slot],
-                })
-                .collect(),
-        };
-        let rows = |pairs: [[Slot; 2]; 2], shares: [f32; 2]| -> Vec<Row> {
-            if narrow {
-                pairs
-                    .iter()
-                    .flatten()
-                    .map(|slot| Row::new(&[*slot]))
-                    .collect()
-            } else {
-                let pairs = pairs.into_iter();
-                pairs.map(|pair| side_by_side(pair, shares)).collect()
-            }
-        };
-        let rows_of_h = slot("rows", PlotHeight::Fixed(190.0));
-        let mut below = vec![Row::new(&[rests]), Row::new(&[rows_of_h])];
-        below.extend(rows(slices, [1.0, 1.0]));
-        Arrangement {
-            stage: rows(stage, [MAP_SHARE, MATCHED_SHARE]),
-            below,
+        if (PAIRED..BESIDE).contains(&width) {
+            // Beside the text a widget is low: both reliefs share a row, and so do the profiles.
+            let pair = |ids: [&'static str; 2], height| Row::new(&ids.map(|id| slot(id, height)));
+            let stage = vec![
+                pair(["icp", "ndt"], PlotHeight::Natural { most }),
+                pair(["icp-path", "ndt-path"], PlotHeight::Fixed(px(110.0, 90.0))),
+                Row::new(&[matched("sweep")]),
+            ];
+            let below = [&[matched("bells")], &rest[..], slices.as_flattened()].concat();
+            return Arrangement {
+                stage,
+                below: below_each_other(&below),
+            };
         }
+        if narrow {
+            // NDT's profile and bells stand with the rest: two screens of a phone hold everything else.
+            let stage = [&[map("icp")], &beside_icp[..], &[map("ndt")]].concat();
+            let below = [&beside_ndt[..], &rest, slices.as_flattened()].concat();
+            return Arrangement {
+                stage: below_each_other(&stage),
+                below: below_each_other(&below),
+            };
+        }
+        let beside = |map: Slot, slots: [Slot; 2]| Row {
+            columns: vec![
+                column(MAP_PX, vec![map]),
+                column(width - PANEL_GAP - MAP_PX, slots.to_vec()),
+            ],
+        };
+        let stage = vec![
+            beside(map("icp"), beside_icp),
+            beside(map("ndt"), beside_ndt),
+        ];
+        let mut below = below_each_other(&rest);
+        below.extend(slices.map(|pair| Row::new(&pair)));
+        Arrangement { stage, below }
     }
+}
+
+fn column(share: f32, slots: Vec<Slot>) -> Column {
+    Column { share, slots }
 }
 
 fn slot(panel: &'static str, height: PlotHeight) -> Slot {

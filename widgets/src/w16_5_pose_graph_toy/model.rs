@@ -9,6 +9,7 @@ mod settings;
 mod tables;
 mod words;
 
+use kit::layers::Layer;
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
@@ -16,12 +17,13 @@ use kit::param::MORE;
 use kit::param::ParamError;
 use kit::playback::SPEED;
 use kit::played::{Played, Pressed};
-use kit::scene::Scene;
-use kit::spec::WidgetSpec;
+use kit::scene::{Axis, Scene};
+use kit::spec::{PLAY, WidgetSpec};
 use kit::values::{Changed, Values};
 
-use crate::w16_5_pose_graph_toy::spec::{PARAMS, SPEC, STEPS};
+use crate::w16_5_pose_graph_toy::spec::{GRAPH, MOST_POSES, PARAMS, SPEC, STEPS};
 use course::{Course, Moment};
+use pr_geom::SE2;
 
 /// Names of the panels.
 pub mod panel {
@@ -36,21 +38,33 @@ pub mod panel {
 /// Steps a second at normal speed.
 const STEPS_PER_S: f64 = 1.5;
 
+/// Part of a beat in which the poses move; then they stand still.
+const MOVING_PART: f64 = 0.6;
+
+/// The controls of each pose.
+const CONTROLS_OF_POSES: [&str; 3 * MOST_POSES] = [
+    "x1", "y1", "turn1", "x2", "y2", "turn2", "x3", "y3", "turn3", "x4", "y4", "turn4", "x5", "y5",
+    "turn5", "x6", "y6", "turn6",
+];
+
 /// The model of the widget.
 pub struct PoseGraphToy {
     values: Values,
     course: Course,
     played: Played,
+    /// The axes while something is dragged, so that they stay.
+    held_axes: Option<[Axis; 2]>,
 }
 
 impl Default for PoseGraphToy {
-    /// The chapter's three poses, before the first step.
+    /// The ring before the first step.
     fn default() -> Self {
         let values = Values::defaults(PARAMS);
         Self {
             course: Course::new(settings::graph(&values)),
             values,
             played: Played::along(&STEPS),
+            held_axes: None,
         }
     }
 }
@@ -67,6 +81,25 @@ impl PoseGraphToy {
 
     fn shown(&self) -> &Moment {
         &self.course.moments[self.step()]
+    }
+
+    /// The poses on screen: while it plays, they move from step to step, each a beat.
+    fn poses(&self) -> Vec<SE2> {
+        let now = &self.shown().poses;
+        let Some(next) = self.course.moments.get(self.step() + 1) else {
+            return now.clone();
+        };
+        let part = (self.played.part() / MOVING_PART).min(1.0);
+        // Starts and ends at rest.
+        let share = part * part * (3.0 - 2.0 * part);
+        let between = |(from, to): (&SE2, &SE2)| {
+            SE2::new(
+                from.x() + share * (to.x() - from.x()),
+                from.y() + share * (to.y() - from.y()),
+                from.theta() + share * from.between(to).theta(),
+            )
+        };
+        now.iter().zip(&next.poses).map(between).collect()
     }
 }
 
@@ -140,7 +173,27 @@ impl Model for PoseGraphToy {
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        if self.held_axes.is_none() {
+            self.held_axes = Some(picture::axes(self));
+        }
         hands::drag(self, handle, at);
+    }
+
+    /// The springs pull the graph to rest.
+    fn release(&mut self) {
+        self.held_axes = None;
+        let last = self.course.last() as f64;
+        if self.step() == 0 {
+            self.played.press(&mut self.values, PLAY.id, last);
+        }
+    }
+
+    fn layer(&self) -> Layer {
+        let poses = self.values.get(&GRAPH).poses();
+        match Layer::visible(SPEC.opening, &self.values) {
+            Layer::All if poses < MOST_POSES => Layer::AllBut(&CONTROLS_OF_POSES[3 * poses..]),
+            layer => layer,
+        }
     }
 
     fn set_motion(&mut self, motion: Motion) {

@@ -50,7 +50,8 @@ pub(super) static GRAPH: OneOf<Shape> = OneOf::new(
     ],
     &[Shape::Line, Shape::Square, Shape::Ring],
 )
-.help("The chapter's three poses on a line, four around a square, or six around a ring.");
+.default("ring")
+.help("The chapter's three poses on a line, four around a square, or a ring of six whose ends do not meet.");
 
 pub(super) static GAP: Param<f64> = Param::slider(
     "gap",
@@ -164,13 +165,14 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "Pose-graph toy",
     misconception: "No measurement is put right and none is thrown away: each gives way by as much as it is unsure.",
     notice: &[
-        "Each edge is a spring at rest where its measurement holds. The dotted line shows what is missing, the bar what it costs.",
+        "Each edge is a spring at rest where its measurement holds. The dotted line shows what is missing, the number on the spring what it costs.",
+        "Pull a pose and let go: every Gauss–Newton step is a beat. Draw the green spring tight, and it grows thick and stiff.",
         "On a line one step is the answer, from anywhere: the problem is linear. Headings make it bend, and then it takes a few.",
         "The disagreement does not vanish. It is shared out, and a stiff spring takes less of it.",
         "Without a pin nothing changes but the place: χ² knows only differences, so the whole graph floats.",
     ],
     opening: Opening {
-        panels: &["graph", "bars"],
+        panels: &["graph", "steps"],
         params: &["stiffness"],
         buttons: &["play", "step", "reset"],
     },
@@ -181,21 +183,21 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "three-poses",
             label: "The chapter's three poses",
             help: "One step takes χ² from 0.36 to 0.12: each of the three edges gives way by 0.2 m.",
-            set: &[],
+            set: &[GRAPH.to("line")],
             then: &["step"],
         },
         Preset {
             id: "stiff",
             label: "A loop that is sure",
             help: "Ten times as stiff, the loop keeps almost all of its word, and odometry gives way.",
-            set: &[STIFFNESS.to(10.0)],
+            set: &[GRAPH.to("line"), STIFFNESS.to(10.0)],
             then: &["step"],
         },
         Preset {
             id: "unpinned",
             label: "Unpin the gauge",
             help: "The last pose is put 1 m too far, and nothing is held: χ² falls to 0.12 all the same, with all poses elsewhere.",
-            set: &[PINNED.to(false), MOVED[2][0].to(1.0)],
+            set: &[GRAPH.to("line"), PINNED.to(false), MOVED[2][0].to(1.0)],
             then: &["step"],
         },
         Preset {

@@ -1,4 +1,4 @@
-//! Layout of the panels: the graph beside the bars of its springs, χ² over the steps below.
+//! Layout of the panels: the graph beside χ² over its steps, the bars of the springs below.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -22,14 +22,14 @@ impl View for ToyView {
                 slots: vec![slot],
             };
             vec![Row {
-                columns: vec![column(1.5, graph), column(1.0, bars)],
+                columns: vec![column(1.8, graph), column(1.0, steps)],
             }]
         } else {
-            vec![Row::new(&[graph]), Row::new(&[bars])]
+            vec![Row::new(&[graph]), Row::new(&[steps])]
         };
         Arrangement {
             stage,
-            below: vec![Row::new(&[steps])],
+            below: vec![Row::new(&[bars])],
         }
     }
 }

@@ -82,7 +82,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
                     can rule out all of them at once, and the answer is still the best one there is.",
     notice: &[
         "A bar is a box of poses, as high as no pose in it can score. Boxes are split, and their bars fall towards the true scores.",
-        "Whatever falls below the best pose so far is dropped unseen. That is why it is exact.",
+        "Whatever falls below the best pose so far is dropped unseen, and turns black. That is why it is exact.",
         "The half turn is the runner-up. The quarter turn, which traps ICP, is far behind: the search counts the points that fit nowhere.",
         "The search is as fine as its cells. ICP does the rest, from a start that it can use.",
     ],

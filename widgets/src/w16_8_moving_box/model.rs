@@ -19,7 +19,9 @@ use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
-use crate::w16_8_moving_box::spec::{ITERATION, MOST_SHARE, PARAMS, SHARE, SPEC};
+use crate::w16_8_moving_box::spec::{
+    ITERATION, MOST_MOVED_M, MOST_SHARE, MOVED, PARAMS, SHARE, SPEC,
+};
 use curves::Curves;
 
 /// Names of the panels.
@@ -32,6 +34,10 @@ pub mod panel {
 
 /// Iterations a second at normal speed.
 const STEPS_PER_S: f64 = 5.0;
+
+/// Name of the box as a draggable thing, and half its width, m: a press on the box takes it.
+const BOX: &str = "box";
+const BOX_REACH_M: f64 = 0.2;
 
 /// One registration: its trace and its result.
 struct Run {
@@ -77,6 +83,16 @@ impl MovingBox {
         self.scene = BoxScene::new(&config);
         self.runs = register(&self.scene, &methods, &mut self.workspace);
         self.curves.follow(methods, config.moved_m);
+    }
+
+    /// The line at the current share.
+    fn grab_share(&self, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        let away = at[0] - self.values.get(&SHARE);
+        (away.abs() <= reach[0]).then_some(Handle {
+            panel: panel::BIAS,
+            id: "share",
+            offset: [away, 0.0],
+        })
     }
 
     /// Last iteration of the longest run.
@@ -174,22 +190,35 @@ impl Model for MovingBox {
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        // The line at the current share.
-        let away = at[0] - self.values.get(&SHARE);
-        (panel == panel::BIAS && away.abs() <= reach[0]).then_some(Handle {
-            panel: panel::BIAS,
-            id: "share",
-            offset: [away, 0.0],
+        if panel == panel::BIAS {
+            return self.grab_share(at, reach);
+        }
+        let panel = panel::SWEEPS.into_iter().find(|id| *id == panel)?;
+        let middle = picture::box_middle(&self.scene);
+        let offset = [at[0] - middle[0], at[1] - middle[1]];
+        let reaches = |i: usize| offset[i].abs() <= reach[i].max(BOX_REACH_M);
+        (reaches(0) && reaches(1)).then_some(Handle {
+            panel,
+            id: BOX,
+            offset,
         })
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
-        let share = (at[0] - handle.offset[0]).round();
-        if share.is_finite() {
-            self.played.pause();
-            self.values.put(&SHARE, share.clamp(0.0, MOST_SHARE));
-            self.follow();
+        let spot = at[0] - handle.offset[0];
+        if !spot.is_finite() {
+            return;
         }
+        self.played.pause();
+        if handle.id == BOX {
+            let further_m = spot - picture::box_middle(&self.scene)[0];
+            let moved_m = self.values.get(&MOVED) + further_m;
+            let whole_cm = (100.0 * moved_m).round() / 100.0;
+            self.values.put(&MOVED, whole_cm.clamp(0.0, MOST_MOVED_M));
+        } else {
+            self.values.put(&SHARE, spot.round().clamp(0.0, MOST_SHARE));
+        }
+        self.follow();
     }
 
     fn set_motion(&mut self, motion: Motion) {

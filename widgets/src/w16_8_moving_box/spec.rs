@@ -9,6 +9,9 @@ use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 /// Largest share of the box, %.
 pub const MOST_SHARE: f64 = 60.0;
 
+/// Largest distance by which the box is moved, m.
+pub const MOST_MOVED_M: f64 = 0.8;
+
 /// Largest number of iterations of a registration.
 pub const MOST_ITERATIONS: f64 = 30.0;
 
@@ -18,10 +21,11 @@ pub(super) static SHARE: Param<f64> =
         .default(20.0)
         .help("Which share of the points of both sweeps lies on the box that was moved.");
 
-pub(super) static MOVED: Param<f64> = Param::slider("moved", "box moved by", [0.0, 0.8], 0.05)
-    .unit("m")
-    .default(0.3)
-    .help("How far the box was moved between the sweeps, away from the sensor along x.");
+pub(super) static MOVED: Param<f64> =
+    Param::slider("moved", "box moved by", [0.0, MOST_MOVED_M], 0.05)
+        .unit("m")
+        .default(0.3)
+        .help("How far the box was moved between the sweeps, away from the sensor along x.");
 
 pub(super) static DROPPED: Param<f64> =
     Param::slider("dropped", "trimmed: pairs dropped", [0.0, 70.0], 5.0)

@@ -15,9 +15,9 @@ impl View for BoxView {
         let slot = |panel, height| Slot { panel, height };
         // Four panels below each other have to fit two screens of a phone.
         let [most, plot] = if width >= SIDE_BY_SIDE {
-            [230.0, 170.0]
+            [270.0, 170.0]
         } else {
-            [150.0, 130.0]
+            [190.0, 130.0]
         };
         let sweeps = panel::SWEEPS.map(|panel| slot(panel, PlotHeight::Natural { most }));
         let bias = slot(panel::BIAS, PlotHeight::Fixed(plot));

@@ -25,7 +25,7 @@ fn title(trace: &ProcrustesTrace, id: &str) -> String {
 
 #[test]
 fn four_corners_are_rotated_and_the_trace_peaks_at_the_alignment() {
-    let mut trace = ProcrustesTrace::default();
+    let mut trace = with(&[("shape", 0.0)]);
     assert_eq!(trace.outcome().verdict, "a turn fits best");
     let bound = fact(&trace, "bound_m2");
     assert!((fact(&trace, "turn_trace_m2") - bound).abs() < 1e-12);
@@ -71,7 +71,7 @@ fn the_two_maps_are_equal_if_a_rotation_fits_best_and_mirrored_otherwise() {
     let both = |trace: &ProcrustesTrace| {
         [panel::MAP_TURN, panel::MAP_UNCHECKED].map(|id| walls(trace, id))
     };
-    let [turned, unchecked] = both(&ProcrustesTrace::default());
+    let [turned, unchecked] = both(&with(&[("shape", 0.0)]));
     assert_eq!(turned, unchecked);
     // The first two walls span a parallelogram whose sign is the handedness.
     let sign = |walls: &[[[f64; 2]; 2]]| {
@@ -85,7 +85,7 @@ fn the_two_maps_are_equal_if_a_rotation_fits_best_and_mirrored_otherwise() {
 
 #[test]
 fn a_point_of_the_target_is_dragged_and_the_answer_follows() {
-    let mut trace = ProcrustesTrace::default();
+    let mut trace = with(&[("shape", 0.0)]);
     let seen = Pairs::seen(Shape::Corners, 1).target;
     let at = |p: Point2<f64>| [p.x, p.y];
     let before = fact(&trace, "aligned_deg");
@@ -158,4 +158,12 @@ fn every_preset_does_what_its_button_claims() {
     assert_eq!(verdict("bare-wall"), "a mirror image fits best");
     assert_eq!(verdict("upside-down"), "a mirror image fits best");
     assert_eq!(SPEC.presets.len(), 4, "a preset without a test");
+}
+
+#[test]
+fn it_opens_with_the_mirrored_flat_beside_the_right_one() {
+    let trace = ProcrustesTrace::default();
+    assert_eq!(trace.outcome().verdict, "a mirror image fits best");
+    assert_eq!(title(&trace, panel::MAP_TURN), "By svd_align: det +1");
+    assert!(title(&trace, panel::MAP_UNCHECKED).ends_with("mirrored"));
 }

@@ -8,7 +8,7 @@ use crate::support::{drawn_whole, press_key, value};
 #[test]
 fn a_slider_moves_a_point_and_a_button_the_shape() {
     let mut harness = drawn_whole("w16.11", 1100.0);
-    assert!(harness.query_by_label("a turn fits best").is_some());
+    assert!(harness.query_by_label("a mirror image fits best").is_some());
     press_key(&mut harness, "target 1: moved in x", Key::ArrowRight);
     assert!(value(&harness, "x1") > 0.0);
     let param = harness.state().model().spec().params.iter();
@@ -21,5 +21,5 @@ fn a_slider_moves_a_point_and_a_button_the_shape() {
     harness.run_steps(3);
     let verdict = harness.state().model().outcome().verdict;
     assert!(harness.query_by_label(&verdict).is_some());
-    assert_ne!(verdict, "a turn fits best");
+    assert_ne!(verdict, "a mirror image fits best");
 }

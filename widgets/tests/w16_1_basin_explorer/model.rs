@@ -290,3 +290,44 @@ fn tables_hold_every_iteration_and_every_start() {
         }
     }
 }
+
+/// Points of the sweeps and of the run's end that lie outside of the axes.
+fn cut_off(model: &BasinExplorer) -> usize {
+    let sweeps = panel_of(model, panel::SWEEPS);
+    let is_inside = |at: &&[f64; 2]| {
+        (sweeps.x.min..=sweeps.x.max).contains(&at[0])
+            && (sweeps.y.min..=sweeps.y.max).contains(&at[1])
+    };
+    let points = sweeps.layers.iter().filter_map(|layer| match layer {
+        Layer::Points { points, .. } => Some(points),
+        _ => None,
+    });
+    points.flatten().filter(|at| !is_inside(at)).count()
+}
+
+#[test]
+fn the_whole_sweep_is_in_view_at_every_heading_and_after_every_drag() {
+    for heading in [-180.0, -75.0, 25.0, 45.0, 75.0, 180.0] {
+        for offset in [-1.5, 0.0, 1.5] {
+            let model = with(&[("heading", heading), ("dx", offset), ("dy", -offset)]);
+            assert_eq!(cut_off(&model), 0, "{heading}° at {offset} m");
+        }
+    }
+    let mut model = with(&[]);
+    let sensor = [1.05, 0.1];
+    let held = model.grab(panel::SWEEPS, sensor, [0.2, 0.2]).unwrap();
+    model.drag(held, [1.2, 0.3]);
+    let axes = |model: &BasinExplorer| {
+        let sweeps = panel_of(model, panel::SWEEPS);
+        (sweeps.x, sweeps.y)
+    };
+    let during = axes(&model);
+    model.drag(held, [2.0, -1.0]);
+    assert_eq!(
+        axes(&model),
+        during,
+        "the axes stay while the source is dragged"
+    );
+    model.release();
+    assert_eq!(cut_off(&model), 0);
+}

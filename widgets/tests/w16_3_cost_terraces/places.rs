@@ -367,3 +367,78 @@ fn drawn(model: &dyn Model, wanted: Tone) -> Vec<[[f64; 2]; 2]> {
     });
     segments.flatten().collect()
 }
+
+/// The ball on its profile, and the ground: distance from the drop (m), height (% of the highest).
+fn ball_and_ground(model: &dyn Model, id: &str) -> ([f64; 2], Vec<[f64; 2]>) {
+    let layers = panel(model, id).layers;
+    let ball = layers.iter().find_map(|layer| match layer {
+        Layer::Points {
+            points,
+            tone: Tone::Posterior,
+            ..
+        } => Some(points[0]),
+        _ => None,
+    });
+    let ground = layers.iter().find_map(|layer| match layer {
+        Layer::Line { points, .. } => Some(points.clone()),
+        _ => None,
+    });
+    (ball.unwrap(), ground.unwrap())
+}
+
+#[test]
+fn icps_ball_stops_on_a_step_with_the_pit_ahead_and_ndts_in_the_pit() {
+    let model = CostTerraces::default();
+    let (ball, ground) = ball_and_ground(&model, "icp-path");
+    let [end_m, end] = ground[ground.len() - 1];
+    assert!(ball[1] > 50.0 && end < 1.0, "{ball:?} of {end}");
+    assert!((end_m - ball[0] - fact(&model, "icp_rest_m")).abs() < 1e-9);
+    // Level for more than 10 cm ahead: a step, not a slope.
+    let ahead = ground
+        .iter()
+        .filter(|at| (0.0..0.1).contains(&(at[0] - ball[0])));
+    assert!(ahead.count() >= 10);
+    let step = ground.iter().find(|at| at[0] > ball[0] + 0.1).unwrap();
+    assert!((step[1] - ball[1]).abs() < 2.0, "{step:?} after {ball:?}");
+    let (ball, ground) = ball_and_ground(&model, "ndt-path");
+    assert!(ball[1] < 5.0, "{ball:?} on {ground:?}");
+}
+
+#[test]
+fn the_ball_rolls_along_its_ground_from_the_drop() {
+    let mut model = CostTerraces::default();
+    for step in [0.0, 3.0, 9.0] {
+        model.set("t", step).unwrap();
+        let (ball, ground) = ball_and_ground(&model, "icp-path");
+        assert_eq!(ball, ground[step as usize]);
+    }
+    model.set("t", 0.0).unwrap();
+    assert_eq!(ball_and_ground(&model, "icp-path").0[0], 0.0);
+}
+
+#[test]
+fn ndts_colour_bar_runs_from_the_highest_score_which_is_dark_to_none() {
+    let bar = |colours| {
+        let panel = panel(&with(&[("colours", colours)]), "ndt");
+        panel.color_bar.unwrap()
+    };
+    assert!(bar(0.0).min > 0.5 && bar(0.0).max == 0.0, "{:?}", bar(0.0));
+    assert_eq!(bar(1.0).label, "% fit better");
+}
+
+#[test]
+fn a_slope_that_faces_the_light_is_brighter_than_one_that_turns_away() {
+    let panel = panel(&with(&[("tau", 0.6), ("colours", 0.0)]), "icp");
+    let raster = panel.layers.iter().find_map(|layer| match layer {
+        Layer::Raster(raster) => Some(raster.clone()),
+        _ => None,
+    });
+    let raster = raster.unwrap();
+    let light = |column: usize, row: usize| match raster.cells[row * raster.columns + column] {
+        kit::scene::Cell::Relief { light, .. } => light,
+        other => panic!("{other:?}"),
+    };
+    // A bowl about cell 24: its lower right wall faces the upper left.
+    assert!(light(32, 16) > 0.1, "{}", light(32, 16));
+    assert!(light(16, 32) < -0.1, "{}", light(16, 32));
+}

@@ -1,13 +1,16 @@
 //! The toy without its picture; reference values from the chapter's worked example.
 
 use kit::model::{Activity, Model, Standing};
+use kit::scene::{Layer, Tone};
 use widgets::w16_5_pose_graph_toy::model::{PoseGraphToy, panel};
 use widgets::w16_5_pose_graph_toy::spec::SPEC;
 
 use crate::support::fact;
 
+/// The chapter's three poses, with these values.
 fn with(values: &[(&str, f64)]) -> PoseGraphToy {
     let mut toy = PoseGraphToy::default();
+    toy.set("graph", 0.0).unwrap();
     for (id, value) in values {
         toy.set(id, *value).unwrap();
     }
@@ -23,7 +26,7 @@ fn springs(toy: &PoseGraphToy) -> Vec<f64> {
 
 #[test]
 fn one_step_takes_the_chapters_three_poses_from_0_36_to_0_12() {
-    let mut toy = PoseGraphToy::default();
+    let mut toy = with(&[]);
     assert!((fact(&toy, "chi2") - 0.36).abs() < 1e-12);
     assert_eq!(springs(&toy), [0.0, 0.0, 0.36]);
     toy.press("step").unwrap();
@@ -32,6 +35,11 @@ fn one_step_takes_the_chapters_three_poses_from_0_36_to_0_12() {
     assert!((fact(&toy, "last_x_m") - 2.4).abs() < 1e-9);
     assert_eq!(toy.outcome().verdict, "at rest");
     assert_eq!(toy.timeline().unwrap().last, 1.0);
+    let said = toy.outcome().sentence;
+    assert!(
+        said.ends_with("every spring has the same part, 0.040"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -60,7 +68,7 @@ fn without_a_fixed_pose_the_graph_has_the_same_cost_elsewhere() {
 
 #[test]
 fn a_dragged_pose_is_the_new_start_and_the_others_keep_theirs() {
-    let mut toy = PoseGraphToy::default();
+    let mut toy = with(&[]);
     toy.press("step").unwrap();
     let handle = toy.grab(panel::GRAPH, [2.4, 0.0], [0.1, 0.1]).unwrap();
     toy.drag(handle, [2.4, 1.0]);
@@ -77,7 +85,7 @@ fn a_dragged_pose_is_the_new_start_and_the_others_keep_theirs() {
 
 #[test]
 fn a_drag_to_nan_moves_no_pose_and_a_far_one_is_limited() {
-    let mut toy = PoseGraphToy::default();
+    let mut toy = with(&[]);
     let handle = toy.grab(panel::GRAPH, [1.0, 0.0], [0.1, 0.1]).unwrap();
     let before = toy.values().clone();
     toy.drag(handle, [f64::NAN, 0.0]);
@@ -115,4 +123,81 @@ fn every_preset_does_what_its_button_claims() {
         fact(&tangled, "steps_to_rest") > 2.0,
         "headings bend the problem"
     );
+}
+
+#[test]
+fn it_opens_with_a_ring_whose_ends_do_not_meet_and_the_springs_close_it() {
+    let mut toy = PoseGraphToy::default();
+    let apart = |toy: &PoseGraphToy| fact(toy, "last_x_m").hypot(fact(toy, "last_y_m"));
+    assert!((apart(&toy) - 0.6).abs() < 1e-9, "{}", apart(&toy));
+    assert_eq!(springs(&toy), [0.0, 0.0, 0.0, 0.0, 0.0, 0.36]);
+    toy.set("steps", 20.0).unwrap();
+    assert!(apart(&toy) < 0.15, "{}", apart(&toy));
+}
+
+/// Positions of the draggable poses on screen, m.
+fn seen(toy: &PoseGraphToy) -> Vec<[f64; 2]> {
+    let scene = toy.scene();
+    let handles = scene.panels[0]
+        .layers
+        .iter()
+        .filter_map(|layer| match layer {
+            Layer::Handle {
+                at,
+                tone: Tone::Posterior,
+                ..
+            } => Some(*at),
+            _ => None,
+        });
+    handles.collect()
+}
+
+#[test]
+fn a_released_pose_springs_back_a_step_a_beat() {
+    let mut toy = with(&[]);
+    let handle = toy.grab(panel::GRAPH, [2.0, 0.0], [0.1, 0.1]).unwrap();
+    toy.drag(handle, [2.0, 1.0]);
+    let axes = |toy: &PoseGraphToy| {
+        let graph = &toy.scene().panels[0];
+        (graph.x.clone(), graph.y.clone())
+    };
+    let held = axes(&toy);
+    toy.drag(handle, [2.0, 2.5]);
+    assert_eq!(axes(&toy), held, "the axes stay while a pose is dragged");
+    let pulled = seen(&toy)[2];
+    assert_eq!(pulled, [2.0, 2.5]);
+    toy.release();
+    toy.advance(0.2);
+    assert_eq!(toy.values().number("steps"), 0.0, "within the first beat");
+    let moving = seen(&toy)[2];
+    assert!(moving[1] < pulled[1] && moving[1] > 0.5, "{moving:?}");
+    while toy.advance(0.2) == Activity::Busy {}
+    assert_eq!(toy.outcome().verdict, "at rest");
+    assert!(fact(&toy, "last_y_m").abs() < 0.1);
+}
+
+#[test]
+fn the_loops_spring_grows_stiff_as_it_is_drawn_tight() {
+    let mut toy = with(&[]);
+    // Half a metre below the line at a stiffness of 1, a quarter at 10.
+    let knob = toy.grab(panel::GRAPH, [1.0, -0.5], [0.1, 0.1]).unwrap();
+    toy.drag(knob, [1.0, -0.25]);
+    assert_eq!(toy.values().number("stiffness"), 10.0);
+    toy.drag(knob, [5.0, 0.5]);
+    assert_eq!(
+        toy.values().number("stiffness"),
+        10.0,
+        "the end of the range"
+    );
+    toy.drag(knob, [1.0, -9.0]);
+    assert_eq!(toy.values().number("stiffness"), 0.1);
+    assert_eq!(toy.values().number("x3"), 0.0, "no pose has moved");
+}
+
+#[test]
+fn a_pose_that_does_not_exist_has_no_control() {
+    let mut toy = with(&[("more", 1.0)]);
+    assert!(toy.layer().has_param("turn3") && !toy.layer().has_param("x4"));
+    toy.set("graph", 2.0).unwrap();
+    assert!(toy.layer().has_param("turn6"));
 }

@@ -1,10 +1,11 @@
 //! The whole window without its picture; reference values from the room of the chapter's basins.
 
 use kit::model::{Activity, Model, Standing};
+use kit::scene::{Layer, Tone};
 use widgets::w16_6_whole_window::model::{WholeWindow, panel};
 use widgets::w16_6_whole_window::spec::SPEC;
 
-use crate::support::fact;
+use crate::support::{fact, panel_of};
 
 fn with(values: &[(&str, f64)]) -> WholeWindow {
     let mut window = WholeWindow::default();
@@ -137,4 +138,30 @@ fn every_preset_does_what_its_button_claims() {
         fact(&coarse, "quarter_behind"),
     );
     assert!((half - quarter).abs() < 0.02, "{half} and {quarter}");
+}
+
+/// Number of bars in that tone over the headings.
+fn bars(window: &WholeWindow, of: Tone) -> usize {
+    let layers = panel_of(window, panel::BOUNDS).layers;
+    let found = layers.iter().filter_map(|layer| match layer {
+        Layer::Segments { segments, tone, .. } if *tone == of => Some(segments.len()),
+        _ => None,
+    });
+    found.sum()
+}
+
+#[test]
+fn dropped_boxes_turn_black_and_stay_and_the_poses_looked_at_are_counted() {
+    let mut seen = Vec::new();
+    for progress in [0.0, 300.0, 600.0] {
+        let window = with(&[("progress", progress)]);
+        seen.push(bars(&window, Tone::Ink));
+    }
+    assert!(
+        seen[0] == 0 && seen[0] < seen[1] && seen[1] < seen[2],
+        "{seen:?}"
+    );
+    let end = with(&[("progress", 200_000.0)]);
+    let title = panel_of(&end, panel::BOUNDS).title;
+    assert_eq!(title, "1,652,124 poses, 1,116 looked at");
 }

@@ -98,3 +98,25 @@ fn every_preset_does_what_its_button_claims() {
     assert!(after("fifth").timeline().unwrap().last > 2.0);
     assert_eq!(SPEC.presets.len(), 4, "a preset without a test");
 }
+
+#[test]
+fn the_box_is_dragged_in_each_of_the_three_pictures() {
+    for id in panel::SWEEPS {
+        let mut moving = MovingBox::default();
+        let picture = crate::support::panel_of(&moving, id);
+        let middle = picture.layers.iter().find_map(|layer| match layer {
+            kit::scene::Layer::Handle { at, .. } => Some(*at),
+            _ => None,
+        });
+        let [x, y] = middle.expect("a handle on the box");
+        let held = moving.grab(id, [x + 0.05, y], [0.05, 0.05]).expect(id);
+        moving.drag(held, [x + 0.25, y + 0.3]);
+        assert!((moving.values().number("moved") - 0.5).abs() < 1e-9, "{id}");
+        moving.drag(held, [f64::NAN, y]);
+        moving.drag(held, [x + 9.0, y]);
+        assert_eq!(moving.values().number("moved"), 0.8);
+        moving.drag(held, [x - 9.0, y]);
+        assert_eq!(moving.values().number("moved"), 0.0);
+        assert!(moving.grab(id, [-2.0, -2.0], [0.05, 0.05]).is_none());
+    }
+}

@@ -79,7 +79,7 @@ fn points(trace: &ProcrustesTrace) -> Panel {
     let far = |at: &[f64; 2]| math::norm2(at[0] - middle[0], at[1] - middle[1]) + 0.4;
     let reach = (target.iter().chain(&moved).map(far)).fold(LEAST_REACH_M, math::max);
     let reach = (2.0 * reach).ceil() / 2.0;
-    let axis = |i: usize, label: &str| Axis::new(label, middle[i] - reach, middle[i] + reach);
+    let axis = |i: usize| Axis::hidden(middle[i] - reach, middle[i] + reach);
     Panel {
         id: panel::POINTS,
         title: format!(
@@ -89,8 +89,8 @@ fn points(trace: &ProcrustesTrace) -> Panel {
         ),
         weight: Weight::Main,
         aspect: Aspect::Equal,
-        x: axis(0, "x (m)"),
-        y: axis(1, "y (m)"),
+        x: axis(0),
+        y: axis(1),
         layers,
         legend: vec![
             LegendEntry::mark("target, to be dragged", Tone::Measurement, Mark::Circle),
@@ -151,12 +151,11 @@ fn curves(trace: &ProcrustesTrace) -> Panel {
         layers.push(Layer::points(place, mark(kind), tone(kind), 4.5));
     }
     let here = problem.trace_m2(trace.tried(), trace.theta_rad());
-    layers.push(Layer::points(
-        vec![[turn, here]],
-        Mark::Circle,
-        Tone::Ink,
-        5.0,
-    ));
+    layers.push(Layer::Handle {
+        at: [turn, here],
+        tone: tone(trace.tried()),
+        label: "drag the angle along the wave",
+    });
     Panel {
         id: panel::TRACE,
         title: "The trace over the angle".to_owned(),
@@ -218,8 +217,8 @@ fn map(id: &'static str, by: &str, kind: Handedness, theta_rad: f64) -> Panel {
         title: format!("{by}: {how}"),
         weight: Weight::Half,
         aspect: Aspect::Equal,
-        x: Axis::new("x (m)", -half, half),
-        y: Axis::new("y (m)", -half, half),
+        x: Axis::hidden(-half, half),
+        y: Axis::hidden(-half, half),
         layers,
         legend: Vec::new(),
         color_bar: None,

@@ -1,4 +1,4 @@
-//! The panels: the graph of each solver, and the distance to the optimum over the steps.
+//! The panels: the graphs of all solvers, and the distance to the optimum over the steps.
 
 use ch16_lab::jacobians::Moment;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
@@ -22,9 +22,9 @@ const MARGIN_M: f64 = 0.4;
 const LOWEST_POWER: f64 = -9.0;
 
 pub fn scene(widget: &WrongJacobians) -> Scene {
-    let mut panels: Vec<Panel> = (0..NAMES.len()).map(|k| map(widget, k)).collect();
-    panels.push(curve(widget));
-    Scene { panels }
+    Scene {
+        panels: vec![graphs(widget), curve(widget)],
+    }
 }
 
 fn places(poses: &[SE2]) -> Vec<[f64; 2]> {
@@ -47,55 +47,55 @@ fn axes(widget: &WrongJacobians) -> [Axis; 2] {
             .map(|[low, high]| high - low)
             .fold(0.0, math::max);
     // In steps of half a metre, so that a slider seldom moves the axes.
-    let axis = |[low, high]: [f64; 2], label| {
+    let axis = |[low, high]: [f64; 2]| {
         let middle = 0.5 * (low + high);
-        Axis::new(
-            label,
+        Axis::hidden(
             (2.0 * (middle - half)).floor() / 2.0,
             (2.0 * (middle + half)).ceil() / 2.0,
         )
     };
-    [axis(spans[0], "x (m)"), axis(spans[1], "y (m)")]
+    spans.map(axis)
 }
 
-fn map(widget: &WrongJacobians, solver: usize) -> Panel {
-    let shown = widget.shown(solver);
-    let now = places(&shown.poses);
-    let best = places(&widget.solved.optimum);
+/// The graphs of all four over the optimum.
+fn graphs(widget: &WrongJacobians) -> Panel {
     let [x, y] = axes(widget);
     let line =
         |points: Vec<[f64; 2]>, stroke, tone, width_px| Layer::line(points, stroke, tone, width_px);
-    let ends = now.first().zip(now.last());
-    let layers = vec![
-        line(best, Stroke::Dotted, Tone::Ink, 1.5),
-        Layer::segments(
-            ends.map(|(first, last)| [*first, *last])
-                .into_iter()
-                .collect(),
-            Stroke::Solid,
-            Tone::Faint,
-            1.5,
-        ),
-        line(now.clone(), Stroke::Solid, TONES[solver], 1.5),
-        Layer::points(now, MARKS[solver], TONES[solver], 3.5),
-    ];
+    let best = places(&widget.solved.optimum);
+    let mut layers = vec![line(best, Stroke::Dotted, Tone::Ink, 2.0)];
+    for (solver, (tone, mark)) in TONES.into_iter().zip(MARKS).enumerate() {
+        let now = places(&widget.shown(solver).poses);
+        layers.push(line(now.clone(), Stroke::Solid, tone, 1.75));
+        layers.push(Layer::points(now, mark, tone, 4.0));
+    }
+    let title = match widget.step() {
+        0 => "All four start here; play to see them end".to_owned(),
+        step => format!("Step {step} of {}", widget.last()),
+    };
+    let mut legend: Vec<_> = (0..NAMES.len())
+        .map(|k| LegendEntry::marked_line(NAMES[k], TONES[k], MARKS[k], Stroke::Solid))
+        .collect();
+    legend.push(LegendEntry::line("optimum", Tone::Ink, Stroke::Dotted));
     Panel {
-        id: panel::MAPS[solver],
-        title: format!("{}: {:.3} m", capital(NAMES[solver]), shown.off_m),
+        id: panel::GRAPHS,
+        title,
         weight: Weight::Main,
         aspect: Aspect::Equal,
         x,
         y,
         layers,
-        legend: Vec::new(),
+        legend,
         color_bar: None,
     }
 }
 
-fn capital(name: &str) -> String {
-    let mut letters = name.chars();
-    let first = letters.next().into_iter().flat_map(char::to_uppercase);
-    first.chain(letters).collect()
+/// Decades of the distance from the least one drawn, each with its unit.
+fn decades() -> impl Iterator<Item = String> {
+    let names = [
+        "1 nm", "10 nm", "100 nm", "1 µm", "10 µm", "100 µm", "1 mm", "1 cm", "10 cm", "1 m",
+    ];
+    names.into_iter().map(str::to_owned)
 }
 
 /// Powers of ten over the steps: linear convergence is a straight line.
@@ -110,7 +110,13 @@ fn curve(widget: &WrongJacobians) -> Panel {
         };
         // Zero and rounding are drawn at the lower end.
         let floor = math::exp(LOWEST_POWER * core::f64::consts::LN_10);
-        math::ln(math::max(value, floor)) / core::f64::consts::LN_10
+        let power = math::ln(math::max(value, floor)) / core::f64::consts::LN_10;
+        // The names of the decades stand at 1, 2, … from the lowest.
+        if is_distance {
+            power - LOWEST_POWER + 1.0
+        } else {
+            power
+        }
     };
     let lines = widget.solved.runs.each_ref().map(|run| {
         let moments = run.moments.iter().enumerate();
@@ -118,8 +124,19 @@ fn curve(widget: &WrongJacobians) -> Panel {
         points.collect::<Vec<_>>()
     });
     let highest = lines.iter().flatten().map(|at| at[1]).fold(0.0, math::max);
-    let top = highest.ceil() + 0.5;
-    let low = LOWEST_POWER - 0.5;
+    let y = if is_distance {
+        Axis {
+            max: highest.ceil().max(10.0) + 0.5,
+            ..Axis::of_names("distance, a decade a line", decades())
+        }
+    } else {
+        Axis::new(
+            "power of ten of χ² above it",
+            LOWEST_POWER - 0.5,
+            highest.ceil() + 0.5,
+        )
+    };
+    let [low, top] = [y.min, y.max];
     let now = widget.step() as f64;
     let mut layers = vec![Layer::line(
         vec![[now, low], [now, top]],
@@ -127,7 +144,9 @@ fn curve(widget: &WrongJacobians) -> Panel {
         Tone::Faint,
         2.5,
     )];
-    for (solver, line) in lines.into_iter().enumerate() {
+    for (solver, mut line) in lines.into_iter().enumerate() {
+        // What is to come would give the answer away.
+        line.truncate(widget.step() + 1);
         layers.push(Layer::points(
             line.clone(),
             MARKS[solver],
@@ -136,27 +155,20 @@ fn curve(widget: &WrongJacobians) -> Panel {
         ));
         layers.push(Layer::line(line, Stroke::Solid, TONES[solver], 1.75));
     }
-    let [title, label] = if is_distance {
-        [
-            "Distance to the optimum",
-            "power of ten of the distance (m)",
-        ]
+    let title = if is_distance {
+        "Distance to the optimum"
     } else {
-        ["χ² above the optimum", "power of ten of χ² above it"]
+        "χ² above the optimum"
     };
-    let mut legend: Vec<_> = (0..NAMES.len())
-        .map(|k| LegendEntry::marked_line(NAMES[k], TONES[k], MARKS[k], Stroke::Solid))
-        .collect();
-    legend.push(LegendEntry::line("optimum", Tone::Ink, Stroke::Dotted));
     Panel {
         id: panel::CURVE,
         title: title.to_owned(),
         weight: Weight::Half,
         aspect: Aspect::Free,
         x: Axis::new("step", 0.0, widget.last().max(1) as f64),
-        y: Axis::new(label, low, top),
+        y,
         layers,
-        legend,
+        legend: Vec::new(),
         color_bar: None,
     }
 }

@@ -43,6 +43,14 @@ fn verdict(widget: &WrongJacobians) -> &'static str {
 }
 
 pub fn outcome(widget: &WrongJacobians) -> Outcome {
+    if widget.step() == 0 {
+        return Outcome {
+            standing: Standing::Neutral,
+            verdict: "before the first step".to_owned(),
+            sentence: "All four start from the same poses: play, or make a step".to_owned(),
+            facts: facts(widget),
+        };
+    }
     let told = widget.solved.runs.iter().zip(NAMES).map(|(run, name)| {
         let ends = if run.rests {
             format!("{name} {:.3} m off after", run.end().off_m)

@@ -166,8 +166,8 @@ pub fn class(minimum: Minimum) -> u8 {
         Minimum::Right => 0,
         Minimum::QuarterTurn | Minimum::OnePost => 1,
         Minimum::HalfTurn | Minimum::MorePosts => 2,
-        // Neither follows from the room's shape; their letters differ.
-        Minimum::WrongHeading | Minimum::Other => 3,
+        Minimum::Other => 3,
+        Minimum::WrongHeading => 4,
     }
 }
 

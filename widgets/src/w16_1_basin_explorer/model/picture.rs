@@ -5,7 +5,7 @@ use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpVariant, Pair};
 use kit::chart::{Series, TimeChart};
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
-use pr_geom::{Point2, SE2};
+use pr_geom::{Point2, SE2, math};
 
 use super::basins::{class, spot_of, start_spot};
 use super::edge;
@@ -18,6 +18,9 @@ use crate::w16_1_basin_explorer::spec::{EDGE, OFFSET_SPAN_M, Phase};
 
 /// One point in this many leaves a trail.
 const POINTS_PER_TRAIL: usize = 11;
+
+/// Distance of a handle's word from its center, pixels.
+const HANDLE_CLEAR_PX: f32 = 12.0;
 
 /// Margin around a basin map, so that a mark at its edge is complete, ° and m.
 const BASIN_ROOM: [f64; 2] = [12.0, 0.15];
@@ -109,12 +112,39 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
         },
     ]);
 
+    layers.push(Layer::label(
+        [turn.x, turn.y],
+        "turn".to_owned(),
+        HANDLE_CLEAR_PX,
+    ));
+    let [x, y] = frame(explorer);
     let entry = |label: &str, tone, mark, stroke| LegendEntry {
         label: label.to_owned(),
         tone,
         mark,
         stroke,
     };
+    let mut legend = vec![
+        entry("target", Tone::Measurement, Some(Mark::Cross), None),
+        entry("source now", Tone::Posterior, Some(Mark::Square), None),
+        entry(
+            "truth: where it belongs",
+            Tone::Truth,
+            Some(Mark::Plus),
+            Some(Stroke::Dashed),
+        ),
+        entry("without a pair", Tone::Series(0), Some(Mark::Circle), None),
+    ];
+    if iteration > 0 {
+        legend.push(entry("first guess", Tone::Prior, Some(Mark::Circle), None));
+    } else if explorer.previews_end() {
+        legend.push(entry(
+            "where it ends",
+            Tone::Posterior,
+            Some(Mark::Dot),
+            Some(Stroke::Dotted),
+        ));
+    }
     Panel {
         id: panel::SWEEPS,
         title: format!(
@@ -125,41 +155,42 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
         ),
         weight: Weight::Main,
         aspect: Aspect::Equal,
-        x: Axis::new("x from the target's sensor (m)", -3.2, 3.2),
-        y: Axis::new("y (m)", -2.9, 3.3),
+        x,
+        y,
         layers,
-        legend: vec![
-            entry("target", Tone::Measurement, Some(Mark::Cross), None),
-            entry("source now", Tone::Posterior, Some(Mark::Square), None),
-            entry("first guess", Tone::Prior, Some(Mark::Circle), None),
-            entry(
-                "truth: where the source belongs",
-                Tone::Truth,
-                Some(Mark::Plus),
-                Some(Stroke::Dashed),
-            ),
-            entry("pairs", Tone::Ink, None, Some(Stroke::Solid)),
-            entry(
-                "points without a pair",
-                Tone::Series(0),
-                Some(Mark::Circle),
-                None,
-            ),
-            entry(
-                "final pose, and the path to it",
-                Tone::Posterior,
-                Some(Mark::Dot),
-                Some(Stroke::Dotted),
-            ),
-            entry(
-                "ring: turns the source",
-                Tone::Posterior,
-                Some(Mark::Circle),
-                Some(Stroke::Solid),
-            ),
-        ],
+        legend,
         color_bar: None,
     }
+}
+
+/// Axes that hold the target, and the source at any heading about its sensor: at the first guess, at the truth
+/// and at the end. They stay while the source is dragged.
+pub fn frame(explorer: &BasinExplorer) -> [Axis; 2] {
+    if let Some(held) = &explorer.held_frame {
+        return held.clone();
+    }
+    let BasinExplorer { scene, .. } = explorer;
+    let reach_m = |cloud: &PointCloud| {
+        let distances = cloud.iter().map(|point| math::norm2(point.x, point.y));
+        distances.fold(0.0, math::max)
+    };
+    let turned_m = reach_m(scene.source());
+    let sensors = [
+        scene.guess(&start(&explorer.values)),
+        scene.truth(),
+        explorer.run.outcome.pose,
+    ];
+    let axis = |i: usize| {
+        let target = scene.target().iter().map(|point| [point.x, point.y][i]);
+        let source = sensors.iter().map(|pose| [pose.x(), pose.y()][i]);
+        let source = source.flat_map(|at| [at - turned_m, at + turned_m]);
+        let all: Vec<f64> = target.chain(source).collect();
+        let low = all.iter().copied().fold(f64::INFINITY, math::min);
+        let high = all.iter().copied().fold(f64::NEG_INFINITY, math::max);
+        // In steps of half a metre, so that a start beside the last one has the same axes.
+        Axis::hidden((2.0 * low).floor() / 2.0, (2.0 * high).ceil() / 2.0)
+    };
+    [axis(0), axis(1)]
 }
 
 /// The result of the run as a ghost, and the path of the sensor and of some points to it.
@@ -292,7 +323,7 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
         weight: Weight::Half,
         aspect: Aspect::Free,
         x: Axis::new(
-            "heading error of the first guess (°)",
+            "first guess off by (°)",
             -180.0 - BASIN_ROOM[0],
             180.0 + BASIN_ROOM[0],
         ),

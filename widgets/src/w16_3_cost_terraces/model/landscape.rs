@@ -11,6 +11,9 @@ use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;
 /// A ball that stops this close to the truth counts as a success, m: the limit of the chapter's basin runs.
 const HOME_M: f64 = 0.12;
 
+/// Light on a slope that rises from the lowest to the highest colour within a metre.
+const LIGHT_PER_SLOPE_M: f32 = 0.2;
+
 /// Heights on a square grid over ±1.3 m, row by row from the smallest Δy; low is good.
 #[derive(Clone, Debug)]
 pub struct Landscape {
@@ -22,6 +25,8 @@ pub struct Landscape {
     pub lowest_m: [f64; 2],
     /// The ball that was dropped at the cross hair.
     pub ball: Ball,
+    /// Heights from its end straight on to the truth, as `[distance from the end (m), height]`.
+    pub ahead: Vec<[f64; 2]>,
     heights: Vec<f64>,
 }
 
@@ -58,6 +63,17 @@ impl Ball {
     /// Number of steps.
     pub fn steps(&self) -> usize {
         self.path_m.len() - 1
+    }
+
+    /// Distance from the drop along the path after every step, m.
+    pub fn rolled_m(&self) -> Vec<f64> {
+        let mut rolled = vec![0.0];
+        for pair in self.path_m.windows(2) {
+            let [from, to] = [pair[0], pair[1]];
+            let step_m = pr_geom::math::norm2(to[0] - from[0], to[1] - from[1]);
+            rolled.push(rolled[rolled.len() - 1] + step_m);
+        }
+        rolled
     }
 
     /// Final shift, m.
@@ -100,6 +116,7 @@ impl Landscape {
             range: [0.0, 1.0],
             lowest_m: [0.0, 0.0],
             ball: Ball::at([0.0, 0.0], 0.0),
+            ahead: Vec::new(),
             heights: Vec::new(),
         }
     }
@@ -137,28 +154,62 @@ impl Landscape {
         (self.raster.columns, self.raster.rows) = (cells, cells);
     }
 
-    /// Colours the heights: dark is low.
+    /// A height as a share of the whole range: the same scale for every measure.
+    pub fn share(&self, height: f64) -> f64 {
+        let [low, high] = self.range;
+        if high > low {
+            (height - low) / (high - low)
+        } else {
+            0.0
+        }
+    }
+
+    /// The ground from the drop along the ball's path and straight on to the truth: the distance from the
+    /// drop, m, and the height.
+    pub fn profile(&self) -> Vec<[f64; 2]> {
+        let rolled = self.ball.rolled_m();
+        let end_m = rolled[self.ball.steps()];
+        let path = rolled.into_iter().zip(&self.ball.heights);
+        let ahead = self.ahead.iter().map(|[at, height]| [end_m + at, *height]);
+        path.map(|(at, height)| [at, *height])
+            .chain(ahead)
+            .collect()
+    }
+
+    /// Colours the heights: dark is low, and slopes are lit from the upper left.
     pub fn color(&mut self, colors: Colors) {
         let heights = self.heights.iter();
-        self.raster.cells = match colors {
-            Colors::ByHeight => {
-                let [low, high] = self.range;
-                let scale = if high > low { 1.0 / (high - low) } else { 0.0 };
-                let level = |height: &f64| Cell::Level(((height - low) * scale) as f32);
-                heights.map(level).collect()
-            }
+        let levels: Vec<f32> = match colors {
+            Colors::ByHeight => heights.map(|height| self.share(*height) as f32).collect(),
             Colors::ByRank => {
                 let mut sorted = self.heights.clone();
                 sort_numbers(&mut sorted);
                 // Equal heights share a rank, so level ground has one colour.
                 let below = |height: &f64| sorted.partition_point(|other| other < height);
                 let scale = 1.0 / sorted.len() as f32;
-                heights
-                    .map(|h| Cell::Level(below(h) as f32 * scale))
-                    .collect()
+                heights.map(|h| below(h) as f32 * scale).collect()
             }
         };
+        self.raster.cells = self.lit(&levels);
         self.raster.revision += 1;
+    }
+
+    /// The relief: each cell with the slope to its neighbours.
+    fn lit(&self, levels: &[f32]) -> Arc<[Cell]> {
+        let cells = self.cells();
+        let gain = LIGHT_PER_SLOPE_M / (2.0 * spacing_m(cells)) as f32;
+        let rise = |along: usize, stride: usize, index: usize| {
+            let (before, after) = (along.min(1), (cells - 1 - along).min(1));
+            levels[index + after * stride] - levels[index - before * stride]
+        };
+        let cell = |(index, level): (usize, &f32)| {
+            let up_right = rise(index % cells, 1, index) - rise(index / cells, cells, index);
+            Cell::Relief {
+                level: *level,
+                light: (gain * up_right).clamp(-1.0, 1.0),
+            }
+        };
+        levels.iter().enumerate().map(cell).collect()
     }
 
     /// Number of cells on a side.

@@ -1,12 +1,13 @@
-//! The panels: both landscapes, the sweep on the map and on the Gaussians, the slices, the results of many
+//! The panels: both landscapes, the ground along their balls' paths, the sweep on the map and on the Gaussians, the slices, the results of many
 //! sweeps.
 
 mod maps;
 mod places;
 mod plots;
+mod profiles;
 mod rows;
 
-use kit::scene::{Axis, Scene};
+use kit::scene::{Axis, Layer, Mark, Scene, Tone};
 
 use super::landscape::Landscape;
 use super::rests::Rests;
@@ -63,7 +64,9 @@ pub fn scene(terrains: &Terrains, rests: &Rests, moment: Moment) -> Scene {
         panels: vec![
             maps::icp(&terrains.icp, moment, &rests.now_m()),
             places::pairs(terrains, moment),
+            profiles::icp(&terrains.icp, moment),
             maps::ndt(&terrains.ndt, moment),
+            profiles::ndt(&terrains.ndt, moment),
             places::bells(terrains, moment),
             plots::slice(terrains, moment, Measure::Icp, Along::X),
             plots::slice(terrains, moment, Measure::Icp, Along::Y),
@@ -73,6 +76,21 @@ pub fn scene(terrains: &Terrains, rests: &Rests, moment: Moment) -> Scene {
             rows::panel(terrains),
         ],
     }
+}
+
+/// A mark on a slightly larger one of paper.
+fn haloed(at: [f64; 2], mark: Mark, tone: Tone, radius_px: f32) -> [Layer; 2] {
+    let halo = if mark == Mark::Plus { Mark::Dot } else { mark };
+    [
+        (Tone::Paper, halo, radius_px + 2.0),
+        (tone, mark, radius_px),
+    ]
+    .map(|(tone, mark, radius_px)| Layer::points(vec![at], mark, tone, radius_px))
+}
+
+/// The ball: in its landscape and on its profile.
+fn ball(at: [f64; 2]) -> [Layer; 2] {
+    haloed(at, Mark::Dot, Tone::Posterior, 7.0)
 }
 
 /// An axis of shifts.

@@ -20,6 +20,9 @@ const LEAST_INFORMATION_PER_M2: f64 = 1.0;
 /// Size of a shift within which a pair counts as about to change, m.
 const ABOUT_M: f64 = 0.004;
 
+/// Distance of the samples on the line from a ball's end to the truth, m: less than any step of the cost.
+const AHEAD_SPACING_M: f64 = 0.01;
+
 /// Everything that follows from the settings.
 #[derive(Debug)]
 pub struct Terrains {
@@ -187,9 +190,11 @@ impl Terrains {
             let probe = TerrainProbe::new(&self.scene, &grid);
             if stale.icp_ball {
                 self.icp.ball = roll(&probe, Objective::IcpCost, probe_m);
+                self.icp.ahead = ahead(self.icp.ball.end_m(), |at| probe.icp_cost_m2(at));
             }
             if stale.ndt_ball {
                 self.ndt.ball = roll(&probe, Objective::NdtScore, probe_m);
+                self.ndt.ahead = ahead(self.ndt.ball.end_m(), |at| -probe.ndt_score(at));
             }
         }
     }
@@ -317,6 +322,17 @@ fn roll(probe: &TerrainProbe<'_>, objective: Objective, [x, y]: [f64; 2]) -> Bal
         heights,
         end,
     }
+}
+
+/// Heights on the straight line from a shift to the truth, both ends included.
+fn ahead(from_m: [f64; 2], height: impl Fn(Vector2<f64>) -> f64) -> Vec<[f64; 2]> {
+    let from = Vector2::from(from_m);
+    let length_m = math::norm2(from.x, from.y);
+    let pieces = (length_m / AHEAD_SPACING_M).ceil().max(1.0) as usize;
+    (0..=pieces)
+        .map(|k| k as f64 / pieces as f64)
+        .map(|share| [share * length_m, height(from * (1.0 - share))])
+        .collect()
 }
 
 /// With pairs up to the chapter's τ, like the information.

@@ -7,21 +7,19 @@ use kit::scene::{
 };
 use pr_geom::{SE2, math};
 
-use super::hands::turn_handle;
+use super::hands::{bow_m, knob, turn_handle};
 use super::{PoseGraphToy, panel};
 
-use crate::w16_5_pose_graph_toy::spec::PINNED;
+use crate::w16_5_pose_graph_toy::spec::{PINNED, STIFFNESS};
 
 /// Margin around the poses, m.
-const MARGIN_M: f64 = 0.7;
+const MARGIN_M: f64 = 0.4;
 /// Smallest size of the map, m.
 const LEAST_SIZE_M: [f64; 2] = [3.6, 2.2];
 /// Windings of a spring.
 const WINDINGS: usize = 7;
 /// Half the width of a spring, m.
-const SPRING_M: f64 = 0.05;
-/// Distance of the loop's spring from the edges that it spans, m.
-const LOOP_BOW_M: f64 = 0.35;
+const SPRING_M: f64 = 0.06;
 
 pub fn scene(toy: &PoseGraphToy) -> Scene {
     Scene {
@@ -37,9 +35,14 @@ fn tone(edge: &EdgeView) -> Tone {
 }
 
 fn graph(toy: &PoseGraphToy) -> Panel {
-    let poses = &toy.shown().poses;
+    let poses = toy.poses();
     let start = &toy.course.moments[0].poses;
     let mut layers = Vec::new();
+    let mut legend = vec![
+        LegendEntry::line("odometry", Tone::Prediction, Stroke::Solid),
+        LegendEntry::line("loop: drag its ring", Tone::Measurement, Stroke::Solid),
+        LegendEntry::marked_line("what is missing", Tone::Ink, Mark::Plus, Stroke::Dotted),
+    ];
     if toy.step() > 0 {
         layers.extend(trails(toy));
         layers.extend(
@@ -47,38 +50,60 @@ fn graph(toy: &PoseGraphToy) -> Panel {
                 .iter()
                 .map(|pose| Layer::pose(pose.to_array(), Mark::Circle, Tone::Prior, 6.0)),
         );
+        legend.push(LegendEntry::mark(
+            "as it was put",
+            Tone::Prior,
+            Mark::Circle,
+        ));
     }
-    for edge in &toy.course.edges {
+    let mut costs = Vec::new();
+    for (edge, chi2) in toy.course.edges.iter().zip(&toy.shown().edge_chi2) {
         let (from, to) = (&poses[edge.from.index()], &poses[edge.to.index()]);
         let bow_m = match edge.edge.kind {
             EdgeKind::Odometry => 0.0,
-            EdgeKind::Loop => LOOP_BOW_M,
+            EdgeKind::Loop => bow_m(toy.values.get(&STIFFNESS)),
         };
+        let points = spring([from.x(), from.y()], [to.x(), to.y()], bow_m);
+        costs.push(Layer::Label {
+            at: points[points.len() / 2],
+            text: short(*chi2),
+            tone: tone(edge),
+            clear_px: 10.0,
+        });
         layers.push(Layer::Line {
-            points: spring([from.x(), from.y()], [to.x(), to.y()], bow_m),
+            points,
             stroke: Stroke::Solid,
             tone: tone(edge),
             // A stiff spring is a thick one.
-            width_px: (0.7 + 1.2 * math::sqrt(edge.edge.information[(0, 0)])) as f32,
+            width_px: (0.7 + 1.6 * math::sqrt(edge.edge.information[(0, 0)])) as f32,
         });
         let wanted = *from * edge.edge.measurement;
+        let missing = [[to.x(), to.y()], [wanted.x(), wanted.y()]];
         layers.push(Layer::segments(
-            vec![[[to.x(), to.y()], [wanted.x(), wanted.y()]]],
+            vec![missing],
             Stroke::Dotted,
-            tone(edge),
+            Tone::Ink,
             2.0,
         ));
-        layers.push(Layer::points(
-            vec![[wanted.x(), wanted.y()]],
-            Mark::Plus,
-            tone(edge),
-            5.0,
-        ));
+        layers.push(Layer::points(vec![missing[1]], Mark::Plus, Tone::Ink, 5.0));
     }
-    layers.extend(poses.iter().enumerate().flat_map(|(k, pose)| node(k, pose)));
-    if toy.values.get(&PINNED) {
-        layers.push(words([poses[0].x(), poses[0].y() - 0.28], "pinned"));
-    }
+    layers.extend(poses.iter().flat_map(node));
+    layers.push(Layer::Handle {
+        at: knob(toy).into(),
+        tone: Tone::Measurement,
+        label: "draw the spring tight: stiffer; let it hang: softer",
+    });
+    layers.extend(poses.iter().enumerate().map(|(k, pose)| {
+        let pinned = k == 0 && toy.values.get(&PINNED);
+        let name = (k + 1).to_string();
+        let text = if pinned {
+            format!("{name}, pinned")
+        } else {
+            name
+        };
+        Layer::label([pose.x(), pose.y()], text, 12.0)
+    }));
+    layers.extend(costs);
     let [x, y] = axes(toy);
     Panel {
         id: panel::GRAPH,
@@ -93,23 +118,12 @@ fn graph(toy: &PoseGraphToy) -> Panel {
         x,
         y,
         layers,
-        legend: vec![
-            LegendEntry::mark("pose now, to be dragged", Tone::Posterior, Mark::Square),
-            LegendEntry::mark("as it was put", Tone::Prior, Mark::Circle),
-            LegendEntry::line("odometry", Tone::Prediction, Stroke::Solid),
-            LegendEntry::line("loop", Tone::Measurement, Stroke::Solid),
-            LegendEntry::marked_line(
-                "where an edge sees its pose",
-                Tone::Ink,
-                Mark::Plus,
-                Stroke::Dotted,
-            ),
-        ],
+        legend,
         color_bar: None,
     }
 }
 
-fn node(k: usize, pose: &SE2) -> Vec<Layer> {
+fn node(pose: &SE2) -> Vec<Layer> {
     let tip = turn_handle(pose);
     vec![
         Layer::segments(
@@ -122,9 +136,8 @@ fn node(k: usize, pose: &SE2) -> Vec<Layer> {
         Layer::Handle {
             at: [pose.x(), pose.y()],
             tone: Tone::Posterior,
-            label: "drag the pose; its tip turns it",
+            label: "pull the pose and let go; its tip turns it",
         },
-        words([pose.x(), pose.y() + 0.24], &(k + 1).to_string()),
     ]
 }
 
@@ -172,8 +185,11 @@ fn spring(from: [f64; 2], to: [f64; 2], bow_m: f64) -> Vec<[f64; 2]> {
     (0..=count).map(at).collect()
 }
 
-/// Axes over all poses of all steps, constant during playback.
-fn axes(toy: &PoseGraphToy) -> [Axis; 2] {
+/// Axes over all poses of all steps, constant during playback and while something is dragged.
+pub fn axes(toy: &PoseGraphToy) -> [Axis; 2] {
+    if let Some(held) = &toy.held_axes {
+        return held.clone();
+    }
     let mut bounds = Bounds {
         min: [f64::INFINITY; 2],
         max: [f64::NEG_INFINITY; 2],
@@ -187,14 +203,14 @@ fn axes(toy: &PoseGraphToy) -> [Axis; 2] {
         }
     }
     let (middle, size) = (bounds.middle(), bounds.size());
-    let axis = |i: usize, label: &str| {
-        // In steps of half a metre, so that a drag seldom moves the axes.
+    let axis = |i: usize| {
+        // In steps of half a metre, so that a changed setting seldom moves the axes.
         let half = 0.5 * (size[i] + 2.0 * MARGIN_M).max(LEAST_SIZE_M[i]);
         let low = (2.0 * (middle[i] - half)).floor() / 2.0;
         let high = (2.0 * (middle[i] + half)).ceil() / 2.0;
-        Axis::new(label, low, high)
+        Axis::hidden(low, high)
     };
-    [axis(0, "x (m)"), axis(1, "y (m)")]
+    [axis(0), axis(1)]
 }
 
 /// A bar for the χ² of each spring, and what it was at the start.

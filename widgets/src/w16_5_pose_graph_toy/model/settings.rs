@@ -3,7 +3,7 @@
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 use kit::values::Values;
 use nalgebra::Matrix3;
-use pr_geom::SE2;
+use pr_geom::{SE2, math};
 
 use crate::w16_5_pose_graph_toy::spec::{GAP, GRAPH, MOVED, ODOMETRY, PINNED, STIFFNESS, Shape};
 
@@ -20,30 +20,36 @@ impl Shape {
         }
     }
 
-    /// The measurement of each edge of odometry.
-    fn odometry(self) -> SE2 {
-        match self {
-            Self::Line => SE2::translation(SIDE_M, 0.0),
-            Self::Square | Self::Ring => {
-                let turn = core::f64::consts::TAU / self.poses() as f64;
-                SE2::new(SIDE_M, 0.0, turn)
-            }
-        }
+    /// The measurements of odometry from each pose to the next. The last pose of the ring is the first one
+    /// again, and odometry misses it by `gap_m`: every side is off by what it has of that direction.
+    fn odometry(self, gap_m: f64) -> Vec<SE2> {
+        let edges = self.poses() - 1;
+        let turn = match self {
+            Self::Line => 0.0,
+            Self::Square => core::f64::consts::FRAC_PI_2,
+            Self::Ring => core::f64::consts::TAU / edges as f64,
+        };
+        let side_m = |k: usize| match self {
+            Self::Line | Self::Square => SIDE_M,
+            // The squares of the cosines of evenly spread directions add up to half their number.
+            Self::Ring => SIDE_M - gap_m * 2.0 / edges as f64 * math::sin_cos(turn * k as f64).1,
+        };
+        (0..edges).map(|k| SE2::new(side_m(k), 0.0, turn)).collect()
     }
 
     /// The poses by odometry, the first one at the origin.
-    pub fn driven(self) -> Vec<SE2> {
-        let step = self.odometry();
-        let next = |pose: &SE2| Some(*pose * step);
-        core::iter::successors(Some(SE2::identity()), next)
-            .take(self.poses())
-            .collect()
+    pub fn driven(self, gap_m: f64) -> Vec<SE2> {
+        let mut poses = vec![SE2::identity()];
+        for step in self.odometry(gap_m) {
+            poses.push(poses[poses.len() - 1] * step);
+        }
+        poses
     }
 }
 
 /// The poses set by the reader.
 pub fn start(values: &Values) -> Vec<SE2> {
-    let driven = values.get(&GRAPH).driven();
+    let driven = values.get(&GRAPH).driven(values.get(&GAP));
     let put = driven.iter().zip(&MOVED).map(|(pose, [x, y, turn])| {
         SE2::new(
             pose.x() + values.get(x),
@@ -68,14 +74,14 @@ pub fn graph(values: &Values) -> PoseGraph {
         }
     }
     let odometry = Matrix3::from_diagonal_element(values.get(&ODOMETRY));
-    let step = shape.odometry();
+    let gap_m = values.get(&GAP);
     let last = shape.poses() - 1;
-    for k in 0..last {
+    for (k, step) in shape.odometry(gap_m).into_iter().enumerate() {
         graph.add_edge(k, k + 1, step, odometry, EdgeKind::Odometry);
     }
     // Ahead of the first pose, in its frame.
-    let gap = SE2::translation(values.get(&GAP), 0.0);
-    let seen = gap * shape.driven()[last];
+    let gap = SE2::translation(gap_m, 0.0);
+    let seen = gap * shape.driven(gap_m)[last];
     let stiffness = Matrix3::from_diagonal_element(values.get(&STIFFNESS));
     graph.add_edge(0, last, seen, stiffness, EdgeKind::Loop);
     graph

@@ -7,6 +7,9 @@ use super::PoseGraphToy;
 
 use crate::w16_5_pose_graph_toy::spec::PINNED;
 
+/// Costs that differ by a smaller share are called the same.
+const ALIKE: f64 = 0.01;
+
 /// `2 to 3`, as the poses are numbered on screen.
 pub fn ends(edge: &EdgeView) -> String {
     format!("{} to {}", edge.from.index() + 1, edge.to.index() + 1)
@@ -45,24 +48,7 @@ pub fn outcome(toy: &PoseGraphToy) -> Outcome {
         (true, false) => "at rest, anywhere",
         (false, _) => "springs pull",
     };
-    let worst = toy
-        .course
-        .edges
-        .iter()
-        .zip(&shown.edge_chi2)
-        .max_by(|(_, a), (_, b)| a.total_cmp(b));
-    let worst = worst.map_or(String::new(), |(edge, chi2)| {
-        let share = if *chi2 > 0.5 * shown.chi2 {
-            "most of it"
-        } else {
-            "the largest part"
-        };
-        format!(
-            "; {share}, {chi2:.3}, is in the {} from {}",
-            kind(edge),
-            ends(edge)
-        )
-    });
+    let worst = worst(toy);
     let sentence = if step == 0 {
         format!("before the first step χ² is {:.3}{worst}", shown.chi2)
     } else {
@@ -104,6 +90,32 @@ pub fn outcome(toy: &PoseGraphToy) -> Outcome {
         sentence: format!("{sentence}{floats}"),
         facts,
     }
+}
+
+/// Where the cost is: most of it in one spring, a largest part, or the same part in several.
+fn worst(toy: &PoseGraphToy) -> String {
+    let shown = toy.shown();
+    let costs = toy.course.edges.iter().zip(&shown.edge_chi2);
+    let Some((edge, chi2)) = costs.max_by(|(_, a), (_, b)| a.total_cmp(b)) else {
+        return String::new();
+    };
+    let alike = |other: &&f64| **other > (1.0 - ALIKE) * chi2;
+    let share = if *chi2 > 0.5 * shown.chi2 {
+        "most of it"
+    } else {
+        match shown.edge_chi2.iter().filter(alike).count() {
+            1 => "the largest part",
+            count if count == shown.edge_chi2.len() => {
+                return format!("; every spring has the same part, {chi2:.3}");
+            }
+            count => return format!("; {count} springs have the largest part, {chi2:.3} each"),
+        }
+    };
+    format!(
+        "; {share}, {chi2:.3}, is in the {} from {}",
+        kind(edge),
+        ends(edge)
+    )
 }
 
 pub fn summary(toy: &PoseGraphToy) -> String {

@@ -5,11 +5,14 @@ mod places;
 
 use ch16_slam2d::cloud::PointCloud;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
-use pr_geom::SE2;
+use pr_geom::{SE2, math};
 
 use super::hands::turn_handle;
 use super::words::now;
 use super::{WholeWindow, panel};
+
+/// Space around the sweeps, m.
+const MARGIN_M: f64 = 0.1;
 
 pub fn scene(window: &WholeWindow) -> Scene {
     Scene {
@@ -69,13 +72,14 @@ fn sweeps(window: &WholeWindow) -> Panel {
         // Before the search the source is at the start.
         layers.pop();
     }
+    let [x, y] = frame(window);
     Panel {
         id: panel::SWEEPS,
         title: now(window),
         weight: Weight::Main,
         aspect: Aspect::Equal,
-        x: Axis::new("x from the target's sensor (m)", -3.2, 3.2),
-        y: Axis::new("y (m)", -2.9, 3.3),
+        x,
+        y,
         layers,
         legend: vec![
             LegendEntry::mark("target", Tone::Measurement, Mark::Cross),
@@ -86,6 +90,20 @@ fn sweeps(window: &WholeWindow) -> Panel {
         ],
         color_bar: None,
     }
+}
+
+/// Axes that hold the target, and the source at any heading about the truth.
+fn frame(window: &WholeWindow) -> [Axis; 2] {
+    let (scene, truth) = (&window.scene, position(&window.scene.truth()));
+    let distances = scene.source().iter().map(|p| math::norm2(p.x, p.y));
+    let reach_m = distances.fold(0.0, math::max);
+    let axis = |i: usize| {
+        let target = scene.target().iter().map(|p| [p.x, p.y][i]);
+        let low = target.clone().fold(truth[i] - reach_m, math::min);
+        let high = target.fold(truth[i] + reach_m, math::max);
+        Axis::hidden(low - MARGIN_M, high + MARGIN_M)
+    };
+    [axis(0), axis(1)]
 }
 
 /// Position of a sensor.

@@ -58,8 +58,8 @@ fn sweeps(moving: &MovingBox, method: usize) -> Panel {
         ),
         weight: Weight::Main,
         aspect: Aspect::Equal,
-        x: Axis::new("x (m)", -2.3, 2.3),
-        y: Axis::new("y (m)", -2.2, 2.2),
+        x: Axis::hidden(-2.3, 2.3),
+        y: Axis::hidden(-2.2, 2.2),
         layers: vec![
             outline(before, Stroke::Dotted),
             outline(after, Stroke::Solid),
@@ -71,6 +71,11 @@ fn sweeps(moving: &MovingBox, method: usize) -> Panel {
             ),
             sensor(truth, Mark::Plus, Tone::Truth),
             sensor(shown.pose, Mark::Square, Tone::Posterior),
+            Layer::Handle {
+                at: box_middle(scene),
+                tone: Tone::Ink,
+                label: "drag the box",
+            },
         ],
         legend: if method + 1 == panel::SWEEPS.len() {
             legend.to_vec()
@@ -79,6 +84,13 @@ fn sweeps(moving: &MovingBox, method: usize) -> Panel {
         },
         color_bar: None,
     }
+}
+
+/// The middle of the box after it was moved.
+pub fn box_middle(scene: &BoxScene) -> [f64; 2] {
+    let [_, after] = scene.boxes();
+    let sum = |of: fn(&Point2<f64>) -> f64| after.iter().map(of).sum::<f64>();
+    [0.25 * sum(|corner| corner.x), 0.25 * sum(|corner| corner.y)]
 }
 
 fn capital(name: &str) -> String {

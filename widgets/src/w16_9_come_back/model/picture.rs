@@ -47,14 +47,18 @@ fn map(back: &ComeBack) -> Panel {
         },
         pose(start, Mark::Circle, Tone::Prior),
     ]);
-    let axis = |label, most: f64| Axis::new(label, -0.5, most + 0.5);
+    if back.moment().is_none_or(|moment| moment.best.is_none()) {
+        // Nobody has told the robot where it is.
+        layers.push(Layer::label([start.x(), start.y()], "?".to_owned(), 10.0));
+    }
+    let axis = |most: f64| Axis::hidden(-0.5, most + 0.5);
     Panel {
         id: panel::MAP,
         title: now(back),
         weight: Weight::Main,
         aspect: Aspect::Equal,
-        x: axis("x (m)", PLAN_M[0]),
-        y: axis("y (m)", PLAN_M[1]),
+        x: axis(PLAN_M[0]),
+        y: axis(PLAN_M[1]),
         layers,
         legend: vec![
             LegendEntry::mark("the saved map", Tone::Ink, Mark::Dot),

@@ -1,8 +1,8 @@
 //! The two landscapes with cross hair, ball, lowest cell and truth.
 
-use kit::scene::{Aspect, ColorBar, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use kit::scene::{Aspect, Axis, ColorBar, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
-use super::{Looked, Moment, shift_axis};
+use super::{Looked, Moment, ball, haloed};
 use crate::w16_3_cost_terraces::model::landscape::Landscape;
 use crate::w16_3_cost_terraces::spec::Colors;
 use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;
@@ -32,8 +32,6 @@ pub fn ndt(landscape: &Landscape, moment: Moment) -> Panel {
         // From the highest score, which is dark, to the lowest.
         (bar.min, bar.max) = (-bar.min, -bar.max);
     }
-    // One legend for both maps, below the first.
-    panel.legend.clear();
     panel
 }
 
@@ -57,6 +55,7 @@ fn map(
         }
     };
     layers.extend(haloed_line(&landscape.ball.path_m, Stroke::Dotted));
+    let bounds = landscape.raster.bounds;
     let step = moment.step.min(landscape.ball.path_m.len() - 1);
     layers.extend(haloed_line(&landscape.ball.path_m[..=step], Stroke::Solid));
     layers.extend(haloed([0.0, 0.0], Mark::Plus, Tone::Truth, 8.0));
@@ -66,27 +65,21 @@ fn map(
         tone: Tone::Prior,
         label: "choose where the balls drop",
     });
-    layers.extend(haloed(
-        landscape.ball.path_m[step],
-        Mark::Square,
-        Tone::Posterior,
-        6.0,
-    ));
+    layers.extend(ball(landscape.ball.path_m[step]));
+    layers.push(Layer::label([0.0, 0.0], "truth".to_owned(), 10.0));
+    if landscape.lowest_m != [0.0, 0.0] {
+        layers.push(Layer::label(landscape.lowest_m, "lowest".to_owned(), 6.0));
+    }
+    layers.push(Layer::label(moment.probe_m, "drop".to_owned(), 12.0));
     Panel {
         id,
         title,
         weight: Weight::Half,
         aspect: Aspect::Equal,
-        x: shift_axis("Δx (m)"),
-        y: shift_axis("Δy (m)"),
+        x: Axis::hidden(bounds.min[0], bounds.max[0]),
+        y: Axis::hidden(bounds.min[1], bounds.max[1]),
         layers,
-        legend: vec![
-            LegendEntry::mark("drop", Tone::Prior, Mark::Circle),
-            LegendEntry::mark("ball", Tone::Posterior, Mark::Square),
-            LegendEntry::line("its path", Tone::Posterior, Stroke::Dotted),
-            LegendEntry::mark("lowest cell", Tone::Ink, Mark::Dot),
-            LegendEntry::mark("truth", Tone::Truth, Mark::Plus),
-        ],
+        legend: Vec::new(),
         color_bar: Some(match moment.colors {
             Colors::ByHeight => ColorBar {
                 label: bar_label.to_owned(),
@@ -94,7 +87,7 @@ fn map(
                 max: landscape.range[1],
             },
             Colors::ByRank => ColorBar {
-                label: "% of cells are lower".to_owned(),
+                label: "% fit better".to_owned(),
                 min: 0.0,
                 max: 100.0,
             },
@@ -110,16 +103,6 @@ fn cross_hair([x, y]: [f64; 2], stroke: Stroke) -> [Layer; 2] {
     ];
     [(Tone::Paper, Stroke::Solid, 3.0), (Tone::Ink, stroke, 1.0)]
         .map(|(tone, stroke, width_px)| Layer::segments(segments.clone(), stroke, tone, width_px))
-}
-
-/// A mark on a slightly larger one of paper.
-fn haloed(at: [f64; 2], mark: Mark, tone: Tone, radius_px: f32) -> [Layer; 2] {
-    let halo = if mark == Mark::Plus { Mark::Dot } else { mark };
-    [
-        (Tone::Paper, halo, radius_px + 2.0),
-        (tone, mark, radius_px),
-    ]
-    .map(|(tone, mark, radius_px)| Layer::points(vec![at], mark, tone, radius_px))
 }
 
 /// A posterior line on a band of paper.

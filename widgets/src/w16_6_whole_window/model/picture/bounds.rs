@@ -7,9 +7,6 @@ use kit::scene::{Aspect, Axis, Layer, LegendEntry, Panel, Stroke, Tone, Weight};
 use super::super::words::heading_error_deg;
 use super::super::{WholeWindow, panel};
 
-/// Number of steps for which a dropped box stays visible.
-const SEEN_FALLING: usize = 120;
-
 /// Largest number of points of the gap's lines.
 const GAP_POINTS: usize = 300;
 
@@ -20,14 +17,14 @@ pub fn panel(window: &WholeWindow) -> Panel {
     let bar = |seen: &SeenBox| bar(window, seen);
     let waiting = search.boxes().iter().filter(|seen| seen.waits_after(step));
     let dropped = search.boxes().iter().filter(|seen| {
-        let just = |until: usize| until <= step && until + SEEN_FALLING > step;
-        seen.fate == Some(BoxFate::Pruned) && seen.until.is_some_and(just)
+        let is_past = seen.until.is_some_and(|until| until <= step);
+        is_past && seen.fate == Some(BoxFate::Pruned)
     });
     let segments =
         |segments: Vec<_>, tone, width_px| Layer::segments(segments, Stroke::Solid, tone, width_px);
     let mut layers = vec![
-        Layer::line(surface(window), Stroke::Solid, Tone::Ink, 1.5),
-        segments(dropped.map(bar).collect(), Tone::Series(3), 1.5),
+        segments(dropped.map(bar).collect(), Tone::Ink, 2.0),
+        Layer::line(surface(window), Stroke::Solid, Tone::Series(3), 1.5),
         segments(waiting.map(bar).collect(), Tone::Series(0), 2.5),
     ];
     if let Some(taken) = moment.taken {
@@ -50,10 +47,11 @@ pub fn panel(window: &WholeWindow) -> Panel {
     );
     Panel {
         id: panel::BOUNDS,
-        title: match moment.best {
-            Some(best) => format!("Bounds of the boxes; best score so far {:.3}", best.score),
-            None => "Bounds of the boxes; no pose scored yet".to_owned(),
-        },
+        title: format!(
+            "{} poses, {} looked at",
+            grouped(moment.counts.window),
+            grouped(moment.counts.scored())
+        ),
         weight: Weight::Half,
         aspect: Aspect::Free,
         x: Axis::new("heading, from the truth (°)", -180.0, 180.0),
@@ -62,12 +60,21 @@ pub fn panel(window: &WholeWindow) -> Panel {
         legend: vec![
             LegendEntry::line("box that waits", Tone::Series(0), Stroke::Solid),
             LegendEntry::line("box taken up", Tone::Series(2), Stroke::Solid),
-            LegendEntry::line("just dropped", Tone::Series(3), Stroke::Solid),
+            LegendEntry::line("dropped", Tone::Ink, Stroke::Solid),
             LegendEntry::line("best score so far", Tone::Posterior, Stroke::Dotted),
-            LegendEntry::line("best true score at a heading", Tone::Ink, Stroke::Solid),
+            LegendEntry::line("best true score", Tone::Series(3), Stroke::Solid),
         ],
         color_bar: None,
     }
+}
+
+/// A whole number in groups of three digits: `1,652,124`.
+fn grouped(number: u64) -> String {
+    let (rest, group) = (number / 1000, number % 1000);
+    if rest == 0 {
+        return group.to_string();
+    }
+    format!("{},{group:03}", grouped(rest))
 }
 
 /// A box as a bar over its headings, at least one step wide.

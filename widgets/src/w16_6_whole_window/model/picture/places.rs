@@ -51,8 +51,8 @@ pub fn panel(window: &WholeWindow) -> Panel {
         title: format!("Where the sensor may stand: best score{filled}"),
         weight: Weight::Half,
         aspect: Aspect::Equal,
-        x: Axis::new("x (m)", low[0] - margin, high[0] + margin),
-        y: Axis::new("y (m)", low[1] - margin, high[1] + margin),
+        x: Axis::hidden(low[0] - margin, high[0] + margin),
+        y: Axis::hidden(low[1] - margin, high[1] + margin),
         layers,
         legend: vec![
             LegendEntry::line("box that waits", Tone::Series(0), Stroke::Solid),

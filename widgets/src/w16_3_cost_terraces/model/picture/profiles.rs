@@ -1,0 +1,94 @@
+//! The ground under each ball, from its drop along its path and straight on to the truth.
+
+use kit::scene::{Aspect, Axis, Layer, Panel, Stroke, Tone, Weight};
+
+use super::{Moment, ball};
+use crate::w16_3_cost_terraces::model::landscape::Landscape;
+
+/// Columns that fill the ground: they touch on the widest screen.
+const COLUMNS: usize = 240;
+const COLUMN_PX: f32 = 4.0;
+
+/// Part of the axis of heights above the highest ground: room for the ball and the words.
+const SKY: f64 = 0.3;
+
+/// ICP's cost under its ball.
+pub fn icp(landscape: &Landscape, moment: Moment) -> Panel {
+    profile("icp-path", "ICP", landscape, moment)
+}
+
+/// NDT's negated score under its ball.
+pub fn ndt(landscape: &Landscape, moment: Moment) -> Panel {
+    profile("ndt-path", "NDT", landscape, moment)
+}
+
+/// Both have the same scale: the share of the whole range of their landscape.
+fn profile(id: &'static str, name: &str, landscape: &Landscape, moment: Moment) -> Panel {
+    let ground: Vec<[f64; 2]> = landscape
+        .profile()
+        .iter()
+        .map(|[at, height]| [*at, 100.0 * landscape.share(*height)])
+        .collect();
+    let length_m = ground[ground.len() - 1][0];
+    // A profile is as high as its ground: on a plain near 100 % the steps are low.
+    let highest = ground.iter().map(|at| at[1]).fold(1.0, f64::max);
+    let step = moment.step.min(landscape.ball.steps());
+    let sky = SKY * highest;
+    let flag = [[length_m, 0.0], [length_m, highest + 0.5 * sky]];
+    let title = if !landscape.ball.is_home() && step == landscape.ball.steps() {
+        format!(
+            "{name}: the ball stops {:.2} m before the truth",
+            landscape.ball.rest_distance_m()
+        )
+    } else {
+        format!("{name}: the ground from the drop to the truth")
+    };
+    let mut layers = vec![
+        Layer::segments(columns(&ground), Stroke::Solid, Tone::Faint, COLUMN_PX),
+        Layer::segments(vec![flag], Stroke::Dashed, Tone::Truth, 1.5),
+        Layer::line(ground.clone(), Stroke::Solid, Tone::Ink, 2.0),
+    ];
+    layers.extend(ball(ground[step]));
+    layers.push(Layer::Label {
+        at: flag[1],
+        text: "truth".to_owned(),
+        tone: Tone::Truth,
+        clear_px: 6.0,
+    });
+    Panel {
+        id,
+        title,
+        weight: Weight::Side,
+        aspect: Aspect::Free,
+        x: Axis::new("distance from the drop (m)", 0.0, 1.04 * length_m.max(0.05)),
+        y: Axis::new("height (% of the highest)", 0.0, highest + sky),
+        layers,
+        legend: Vec::new(),
+        color_bar: None,
+    }
+}
+
+/// Upright lines from zero to the ground, evenly apart.
+fn columns(ground: &[[f64; 2]]) -> Vec<[[f64; 2]; 2]> {
+    let length_m = ground[ground.len() - 1][0];
+    let mut next = 1;
+    (0..=COLUMNS)
+        .map(|k| {
+            let at = length_m * k as f64 / COLUMNS as f64;
+            while next + 1 < ground.len() && ground[next][0] < at {
+                next += 1;
+            }
+            let [from, to] = [ground[next - 1], ground[next]];
+            let width = to[0] - from[0];
+            let share = if width > 0.0 {
+                (at - from[0]) / width
+            } else {
+                0.0
+            };
+            [
+                [at, 0.0],
+                [at, from[1] + share.clamp(0.0, 1.0) * (to[1] - from[1])],
+            ]
+        })
+        .collect()
+}
