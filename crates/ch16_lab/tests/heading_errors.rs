@@ -26,7 +26,7 @@ fn turned(recording: &Recording, share: f64, gap_m: f64) -> Recording {
 
 #[test]
 fn loops_correct_a_heading_error_of_20_degrees_over_a_gap() {
-    // Without the heading's share in the position's deviation, the hallway ends 1 m off; with poses far from the
+    // Without the sideways error of a heading, the hallway ends 1 m off; with poses far from the
     // odometry that half of the scan does not support, the circle turns by 90° and ends 32 m off.
     for (kind, seed, gap_m) in [(Kind::Hallway, 402, 3.0), (Kind::Circle, 401, 6.0)] {
         let (recording, robot) = recorded(kind, seed);

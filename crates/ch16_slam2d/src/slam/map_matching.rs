@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use nalgebra::Matrix3;
-use pr_geom::{SE2, math};
+use nalgebra::{Matrix3, Vector2};
+use pr_geom::SE2;
 
 use super::RobotConfig;
 use super::front_end::WindowSweep;
@@ -103,8 +103,8 @@ impl MapMatching {
         let pose = found.registered.pose;
         self.scan_information = found.information();
         let adjoint = motion.inverse().adjoint();
-        self.motion_covariance =
-            adjoint * self.motion_covariance * adjoint.transpose() + prior.covariance(&pose);
+        self.motion_covariance = adjoint * self.motion_covariance * adjoint.transpose()
+            + motion_covariance(motion, &prior, &pose);
         MatchSummary {
             pose,
             rmse_m: found.fit.rmse_m,
@@ -124,20 +124,30 @@ impl MapMatching {
         };
         let noise = self.config.motion_noise(is_measured);
         let (sigma_m, sigma_rad) = noise.deviations(motion);
-        // A heading error that accumulates evenly along the motion moves its end sideways. Without odometry the
-        // noise covers that already.
-        let sideways_m = if is_measured {
-            sigma_rad * math::norm2(motion.x(), motion.y()) / math::sqrt(3.0)
-        } else {
-            0.0
-        };
         MotionPrior {
             pose: *before * *motion,
-            sigma_m: math::norm2(sigma_m, sideways_m),
+            sigma_m,
             sigma_rad,
             tail,
         }
     }
+}
+
+/// Covariance of a motion in the frame at its end. A heading error that accumulates evenly along the motion also moves its
+/// end sideways, which matters after metres without a scan.
+fn motion_covariance(motion: &SE2, prior: &MotionPrior, pose: &SE2) -> Matrix3<f64> {
+    let mut covariance = prior.covariance(pose);
+    let (x, y) = motion.rotation().unrotate(-motion.y(), motion.x());
+    let sideways = Vector2::new(x, y);
+    let heading = covariance.m33;
+    let mut position = covariance.fixed_view_mut::<2, 2>(0, 0);
+    position += sideways * sideways.transpose() * (heading / 3.0);
+    let cross = sideways * (heading / 2.0);
+    covariance.fixed_view_mut::<2, 1>(0, 2).copy_from(&cross);
+    covariance
+        .fixed_view_mut::<1, 2>(2, 0)
+        .copy_from(&cross.transpose());
+    covariance
 }
 
 #[cfg(test)]
