@@ -80,9 +80,7 @@ fn uncertain_keyframes(keyframes: &[KeyframeQuality]) -> Vec<String> {
     let mut sorted: Vec<f64> = keyframes.iter().map(KeyframeQuality::sigma_m).collect();
     sort_numbers(&mut sorted);
     let median_m = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
-    let limit_m = (UNCERTAIN_FACTOR * median_m)
-        .max(LEAST_UNCERTAIN_M)
-        .min(MOST_OFF_M / RADIUS_95);
+    let limit_m = (UNCERTAIN_FACTOR * median_m).clamp(LEAST_UNCERTAIN_M, MOST_OFF_M / RADIUS_95);
     let is_uncertain = |number: &usize| keyframes[*number].sigma_m() > limit_m;
     let uncertain: Vec<usize> = (0..keyframes.len()).filter(is_uncertain).collect();
     let runs = uncertain.chunk_by(|a, b| b - a == 1).map(|run| {
