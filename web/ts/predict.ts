@@ -45,6 +45,7 @@ button { min-height: 2.25rem; padding: 0.2rem 1rem; color: inherit; background: 
 button:disabled { opacity: 0.6; cursor: default; }
 legend { padding: 0; font-weight: 600; }
 .answer { outline: none; }
+::slotted([slot="why"]) { margin-top: 0.75rem; }
 .answer:not(:empty) { border-top: 1px solid currentColor; margin-top: 0.75rem; }
 `;
 
