@@ -4,7 +4,7 @@ import { accent } from '../../widgets/palette.json';
 import { create } from './dom';
 
 const STYLE = `
-div { position: fixed; inset: auto auto 1rem 50%; translate: -50% 0; z-index: 5; display: flex; max-width: calc(100vw - 2rem);
+div { position: fixed; inset: auto auto 3rem 50%; translate: -50% 0; z-index: 5; display: flex; max-width: calc(100vw - 2rem);
   color: #fff; background: ${accent[0]}; border: 2px solid #fff; border-radius: 999px; box-shadow: 0 2px 8px #0006; }
 button { font: 600 0.95rem/1.3 system-ui, sans-serif; color: inherit; background: none; border: 0; border-radius: 999px;
   padding: 0.6rem 0.4rem 0.6rem 1.2rem; min-height: 2.75rem; cursor: pointer; }

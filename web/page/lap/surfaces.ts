@@ -49,7 +49,7 @@ export function canvasSurface(context: CanvasRenderingContext2D, inks: Inks): Su
       context.setLineDash([]);
       context.strokeStyle = inks.paper;
       context.strokeText(text, x, y);
-      context.fillStyle = inks[ink];
+      context.fillStyle = inkForWords(inks, ink);
       context.fillText(text, x, y);
     },
   };
@@ -82,8 +82,15 @@ export class SvgSurface implements Surface {
   }
 
   words(text: string, [x, y]: Point, ink: Ink, size: number): void {
-    this.text += `<text x="${short(x)}" y="${short(y)}" font-family="${FONT.replaceAll('"', "'")}" font-size="${short(size)}" font-weight="600" text-anchor="middle" dominant-baseline="middle" fill="${this.#inks[ink]}" stroke="${this.#inks.paper}" stroke-width="${short(size / 4)}" stroke-linejoin="round" paint-order="stroke">${text}</text>`;
+    this.text += `<text x="${short(x)}" y="${short(y)}" font-family="${FONT.replaceAll('"', "'")}" font-size="${short(size)}" font-weight="600" text-anchor="middle" dominant-baseline="middle" fill="${inkForWords(this.#inks, ink)}" stroke="${this.#inks.paper}" stroke-width="${short(size / 4)}" stroke-linejoin="round" paint-order="stroke">${text}</text>`;
   }
+}
+
+/** Words are thinner than lines, so a share of the text's colour keeps their contrast above 4.5. */
+function inkForWords(inks: Inks, ink: Ink): string {
+  const channels = (color: string): number[] => [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16));
+  const text = channels(inks.ink);
+  return `rgb(${channels(inks[ink]).map((channel, at) => Math.round(0.7 * channel + 0.3 * (text[at] ?? 0))).join(' ')})`;
 }
 
 function pathOf(points: readonly Point[]): string {

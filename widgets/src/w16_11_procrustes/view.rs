@@ -15,7 +15,8 @@ impl View for TraceView {
         let slot = |panel, height| Slot { panel, height };
         let wide = width >= SIDE_BY_SIDE;
         let [most, plot, map] = if wide {
-            [240.0, 200.0, 300.0]
+            // Maps and points are seen together on a low screen.
+            [200.0, 180.0, 190.0]
         } else {
             [200.0, 140.0, 170.0]
         };

@@ -39,12 +39,16 @@ impl View for TerracesView {
         ];
         let slices = [["icp-x", "icp-y"], ["ndt-x", "ndt-y"]].map(|pair| pair.map(cut));
         if (PAIRED..BESIDE).contains(&width) {
-            // Beside the text a widget is low: both reliefs share a row, and so do the profiles.
-            let pair = |ids: [&'static str; 2], height| Row::new(&ids.map(|id| slot(id, height)));
+            // Beside the text a widget is low: both reliefs share a row, and the sweep stands beside the profiles.
             let stage = vec![
-                pair(["icp", "ndt"], PlotHeight::Natural { most }),
-                pair(["icp-path", "ndt-path"], PlotHeight::Fixed(px(110.0, 90.0))),
-                Row::new(&[matched("sweep")]),
+                Row::new(&[map("icp"), map("ndt")]),
+                Row {
+                    columns: vec![
+                        column(0.37, vec![cut("icp-path")]),
+                        column(0.37, vec![cut("ndt-path")]),
+                        column(0.26, vec![matched("sweep")]),
+                    ],
+                },
             ];
             let below = [&[matched("bells")], &rest[..], slices.as_flattened()].concat();
             return Arrangement {
