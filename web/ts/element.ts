@@ -322,10 +322,12 @@ export class SlamWidget extends HTMLElement {
     parts.frame.setAttribute('aria-label', `Widget ${spec.id.replace(/^w/, '')}: ${spec.title}`);
     parts.summary.textContent = spec.summary;
     this.#looks.become(spec.id);
-    for (const param of spec.params) {
-      const text = this.getAttribute(param.id);
-      if (text !== null) this.#tryToSet(param.id, text);
-    }
+    this.#news.given(() => {
+      for (const param of spec.params) {
+        const text = this.getAttribute(param.id);
+        if (text !== null) this.#tryToSet(param.id, text);
+      }
+    });
     if (this.hasAttribute('linked')) {
       readAddress(this, spec, {
         set: (id, text) => this.#tryToSet(id, text),

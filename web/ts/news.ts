@@ -29,6 +29,8 @@ export class News {
   #timer: ReturnType<typeof setTimeout> | undefined;
   /** Whether a screen reader is told what the timer waits for. */
   #isNews = false;
+  /** Whether values are being set that the page gave as attributes. */
+  #isGiven = false;
   /** Values settled before the widget had run: their result is reported as soon as there is one. */
   #isOwed = false;
   /** Start of the changes that have not settled since, or the time of the last report about them. */
@@ -46,6 +48,13 @@ export class News {
   setUp(): void {
     this.#isNews = false;
     this.#isOwed = false;
+  }
+
+  /** Sets values that the page gave as attributes: the address stays with the widget that the reader has set. */
+  given(set: () => void): void {
+    this.#isGiven = true;
+    set();
+    this.#isGiven = false;
   }
 
   /** The first frame is on the canvas, that many milliseconds after its start. */
@@ -69,7 +78,7 @@ export class News {
       this.#emit('slam-change', { parameter, value, text, outcome });
     }
     // A playback leaves the address to the widget that the reader has set.
-    if (changes.length > 0) tellOf(this.#source);
+    if (changes.length > 0 && !this.#isGiven) tellOf(this.#source);
     clearTimeout(this.#timer);
     this.#isNews = true;
     this.#isOwed = false;
