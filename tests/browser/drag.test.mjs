@@ -120,12 +120,13 @@ describe('w16.1', () => {
       // Grabbing the cloud shows the registered pose: that is the new start.
       await h.moreFrames(tab, 3);
       const taken = await value();
+      // The scale holds while the cloud is dragged; then the picture fits the whole sweep again.
+      const [zero, east] = [await h.pointOf(tab, 'sweeps', 0, 0, '#here'), await h.pointOf(tab, 'sweeps', 1, 0, '#here')];
+      const pxPerM = east[0] - zero[0];
       await tab.mouse.move(left + 25, top + 20, { steps: 4 });
       await tab.mouse.up();
       await h.moreFrames(tab, 3);
       const moved = await value();
-      const [zero, east] = [await h.pointOf(tab, 'sweeps', 0, 0, '#here'), await h.pointOf(tab, 'sweeps', 1, 0, '#here')];
-      const pxPerM = east[0] - zero[0];
       assert.ok(Math.abs(moved.dx - taken.dx - 25 / pxPerM) < 0.02, `${taken.dx} to ${moved.dx}`);
       assert.ok(Math.abs(moved.dy - taken.dy + 20 / pxPerM) < 0.02, `${taken.dy} to ${moved.dy}`);
       assert.equal(moved.heading, taken.heading);
