@@ -47,7 +47,7 @@ async function opened(page, test) {
   }
 }
 
-it('runs a widget of the chapter, replays its lap, drives laps in workers, and maps the sample log', async () => {
+it('runs a widget of the chapter, replays its lap, and drives laps in workers', async () => {
   await opened('index.html', async (tab) => {
     await tab.waitForSelector('#lap.live');
     await tab.locator('slam-widget[name="w16.1"]').scrollIntoViewIfNeeded();
@@ -61,6 +61,11 @@ it('runs a widget of the chapter, replays its lap, drives laps in workers, and m
     const [worker] = await Promise.all([tab.waitForEvent('worker'), tab.locator('#laps').scrollIntoViewIfNeeded()]);
     assert.match(worker.url(), /^data:text\/javascript,/);
     await tab.waitForFunction(() => /^[1-9]\d* of \d+ seeds/.test(document.querySelector('.laps-count')?.textContent ?? ''));
+  });
+});
+
+it('maps the sample log', async () => {
+  await opened('own-robot.html', async (tab) => {
     const robot = 'slam-widget[name="w16.10"]';
     await tab.locator(robot).scrollIntoViewIfNeeded();
     await h.ready(tab, robot);

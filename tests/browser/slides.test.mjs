@@ -24,6 +24,18 @@ it('has a slide for each widget, whose links set it and whose script is the spea
   }, { path: '/slides.html', fresh: true });
 });
 
+it('lets a class predict: the answer is the widget’s on the slide before', async () => {
+  await visit('', async (tab) => {
+    const question = tab.locator('slam-predict[exercise="16.4"]');
+    await question.scrollIntoViewIfNeeded();
+    await question.getByRole('radio').first().check();
+    await question.getByRole('button', { name: 'Commit and see' }).click();
+    await question.getByText(/^(As you predicted|It comes out otherwise)/).waitFor();
+    assert.equal(await tab.evaluate(() => document.querySelector('slam-widget[name="w16.1"]').get('tau')), 1.4);
+    assert.equal(await tab.locator('slam-predict').count(), 11);
+  }, { path: '/slides.html', fresh: true });
+});
+
 it('shows each widget whole within the screen of a projector', async () => {
   await visit('', async (tab) => {
     for (const { id } of h.schema) {

@@ -41,7 +41,7 @@ await writeFile(path.join(root, 'crates/slam2d_cli/src/mark/exercises.json'), `$
 const frames = frameExercises(source, (html) => renderFormulas(html, 'mathml'));
 await writeFile(path.join(outDir, 'exercises.json'), JSON.stringify(frames));
 const scripts = await readFile(path.join(root, 'docs/teaching/widgets.md'), 'utf8');
-await writeFile(path.join(outDir, 'slides.html'), slidesPage(scripts));
+await writeFile(path.join(outDir, 'slides.html'), slidesPage(scripts, frames));
 const specOf = await widgetSpecs();
 const template = await readFile(path.join(here, 'template.html'), 'utf8');
 const pictured = pages.map((page) => ({ ...page, html: addPictures(renderFormulas(withFrame(template, page, pages, places)), page.source) }));

@@ -4,7 +4,7 @@
 const ID = /^\d+\.(\d+[a-z]?|[a-z]+(-[a-z]+)*)$/;
 
 /**
- * Reads every `<slam-predict>` of a page's source, in order.
+ * Reads every `<slam-predict>` of the pages, in the order of the ids; the pages have another order.
  * @throws {Error} if an exercise has no id, a malformed one, or one that another exercise has.
  */
 export function readExercises(html) {
@@ -22,7 +22,11 @@ export function readExercises(html) {
     const choices = [...content.matchAll(/<li\b([^>]*\bdata-choice=[^>]*)>/g)].map(([, item]) => choiceOf(item));
     exercises.push(withoutGaps({ exercise, widget, state, fact, tolerance: numberOf(tolerance), unit, choices }));
   }
-  return exercises;
+  return exercises.sort(byId(({ exercise }) => exercise));
+}
+
+function byId(idOf) {
+  return (one, other) => idOf(one).localeCompare(idOf(other), 'en', { numeric: true });
 }
 
 /**
@@ -36,7 +40,7 @@ export function frameExercises(html, render) {
     const intro = inner.slice(inner.indexOf('</h3>') + '</h3>'.length, inner.indexOf('<slam-predict'));
     const questions = [...inner.matchAll(/<slam-predict exercise="([^"]*)" widget="([^"]*)"[\s\S]*?<\/slam-predict>/g)];
     return { title, intro, questions: questions.map(([text, exercise, widget]) => ({ exercise, widget, html: text })) };
-  });
+  }).sort(byId(({ questions }) => questions[0].exercise));
 }
 
 function choiceOf(item) {

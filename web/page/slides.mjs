@@ -1,9 +1,10 @@
-// slides.html: a slide for each widget, from the scripts of docs/teaching/widgets.md. The states of a script are links on
-// its slide, its words are the speaker's notes.
+// slides.html: a slide for each widget, from the scripts of docs/teaching/widgets.md, and one for each question about it,
+// to predict before the class sees the result. The states of a script are links on its slide, its words are the speaker's
+// notes.
 
-/** The page of slides for the text of the scripts. */
-export function slidesPage(scripts) {
-  const slides = scripts.split(/^## /m).slice(1).map(slide);
+/** The page of slides for the text of the scripts and the exercises of `frameExercises`. */
+export function slidesPage(scripts, exercises) {
+  const slides = scripts.split(/^## /m).slice(1).flatMap((text) => [slide(text), ...questions(text.match(/^\S+/)[0], exercises)]);
   return `<!doctype html>
 <html lang="en">
 <head>
@@ -22,8 +23,10 @@ nav { display: flex; flex-wrap: wrap; gap: 0.5rem; margin-bottom: 0.75rem; }
 nav a { padding: 0.25rem 0.75rem; border: 1px solid; border-radius: 6px; color: inherit; text-decoration: none; }
 slam-widget { max-height: 72vh; overflow: auto; }
 details { margin-top: 0.5rem; }
+slam-predict { max-width: 45rem; }
 </style>
 <script type="module" src="slam-widget.js"></script>
+<script type="module" src="slam-predict.js"></script>
 </head>
 <body>
 <main>
@@ -52,6 +55,16 @@ function slide(text) {
 <slam-widget name="${name}"${state}></slam-widget>
 <details><summary>Script</summary><p>${inLine(goal)}</p><ol>${steps.join('')}</ol></details>
 </section>`;
+}
+
+/** A slide for each question about a widget, whose answer the widget on the slide before shows. */
+function questions(widget, exercises) {
+  return exercises.flatMap(({ title, intro, questions: asked }) => asked.filter((question) => question.widget === widget)
+    .map(({ html }) => `<section>
+<h2>${title}</h2>
+${html}
+<details><summary>The exercise</summary>${intro}</details>
+</section>`));
 }
 
 /** Markdown within a paragraph. Its figures are HTML already. */

@@ -142,7 +142,7 @@ fn an_unknown_exercise_or_choice_is_not_marked_and_says_which_there_are() {
     let sheet = marks(&file("", &unknown));
     let note = |k: usize| sheet["answers"][k]["note"].as_str().unwrap();
     assert!(
-        note(0).contains("there are 16.1, 16.4") && note(1).contains("choices: a turn"),
+        note(0).contains("there are 16.1, 16.2") && note(1).contains("choices: a turn"),
         "{sheet}"
     );
 }
