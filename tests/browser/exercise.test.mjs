@@ -37,6 +37,7 @@ const answers = (tab) => tab.evaluate(() => heard.filter((data) => data?.type ==
 
 it('shows one part in a sandbox under the strict policy, and tells the answer to the page around', async () => {
   await framed('?exercise=16.5a&student=Ann', async (tab, frame) => {
+    await frame.locator('slam-predict').first().waitFor();
     assert.equal(await frame.locator('slam-predict').count(), 1);
     assert.equal(await frame.locator('slam-widget').getAttribute('name'), 'w16.2');
     assert.equal(await frame.locator('h1').textContent(), 'Exercise 5: noise, gates, and luck');
