@@ -3,12 +3,12 @@
 // A browser that shows a file from the disk fetches nothing beside it and runs no module script. So each page gets one
 // classic script of its modules, and a second one that holds the files which they would fetch.
 
-import { mkdir, readFile, readdir, writeFile } from 'node:fs/promises';
-import { dirname, join, resolve } from 'node:path';
+import { readFile, readdir } from 'node:fs/promises';
+import { join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 import * as esbuild from 'esbuild';
-import { zipSync } from 'fflate';
+import { writeZip } from './zip.mjs';
 
 /** What scripts fetch: programs, data, and the scripts of workers. */
 const FETCHED = /\.(wasm|json|log|tum)$|worker-\w+\.js$|^slam-robot-\w+\.js$/;
@@ -29,11 +29,7 @@ for (const name of files) {
 }
 contents['offline-files.js'] = Buffer.from(await carried());
 for (const name of files.filter((one) => one.endsWith('.html'))) await convert(name);
-// The same bytes from the same site.
-const packed = zipSync(contents, { level: 9, mtime: new Date(1980, 0, 1) });
-await mkdir(dirname(target), { recursive: true });
-await writeFile(target, packed);
-console.log(`${target}: ${packed.length} bytes`);
+console.log(`${target}: ${await writeZip(target, contents)} bytes`);
 
 /** Scripts of workers as text, because a worker starts at once; all else compressed. */
 async function carried() {

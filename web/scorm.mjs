@@ -2,9 +2,10 @@
 //
 // Each is embed.html with the exercise in its address; web/ts/scorm.ts reports the answers.
 
-import { mkdir, readFile, readdir, writeFile } from 'node:fs/promises';
-import { dirname, join } from 'node:path';
-import { zipSync } from 'fflate';
+import { readFile, readdir } from 'node:fs/promises';
+import { join } from 'node:path';
+import { escapeHtml } from './html.mjs';
+import { writeZip } from './zip.mjs';
 
 /** What embed.html loads, and the licences. */
 const FILES = /^(embed\.html|exercises\.json|slam-[\w-]+\.js|slam_web-\w+\.wasm|pictures\/.*|LICENSE-.*|THIRD-PARTY-NOTICES\.txt)$/;
@@ -16,24 +17,19 @@ const files = (await readdir(dist, { recursive: true })).map((name) => name.repl
 const exercises = JSON.parse(await readFile(join(dist, 'exercises.json'), 'utf8'));
 const contents = { 'imsmanifest.xml': new TextEncoder().encode(manifest()) };
 for (const name of files) contents[name] = new Uint8Array(await readFile(join(dist, name)));
-// The same bytes from the same site.
-const packed = zipSync(contents, { level: 9, mtime: new Date(1980, 0, 1) });
-await mkdir(dirname(target), { recursive: true });
-await writeFile(target, packed);
-console.log(`${target}: ${exercises.length} exercises, ${packed.length} bytes`);
+console.log(`${target}: ${exercises.length} exercises, ${await writeZip(target, contents)} bytes`);
 
 /** SCORM 1.2 Content Aggregation Model, section 2.3. */
 function manifest() {
-  const all = exercises.map(({ title, questions: [first] }) => ({ title, name: first.exercise.replace(/(\d)[a-z]$/, '$1') }));
-  const items = all.map(({ title, name }) => `
-      <item identifier="item-${name}" identifierref="exercise-${name}"><title>${escape(title)}</title></item>`);
-  const resources = all.map(({ name }) => `
+  const items = exercises.map(({ title, name }) => `
+      <item identifier="item-${name}" identifierref="exercise-${name}"><title>${escapeHtml(title.replaceAll('&amp;', '&'))}</title></item>`);
+  const resources = exercises.map(({ name }) => `
     <resource identifier="exercise-${name}" type="webcontent" adlcp:scormtype="sco" href="embed.html?exercise=${name}">
       <file href="embed.html"/>
       <dependency identifierref="program"/>
     </resource>`);
   const program = files.filter((name) => name !== 'embed.html').map((name) => `
-      <file href="${escape(name)}"/>`);
+      <file href="${escapeHtml(name)}"/>`);
   return `<?xml version="1.0" encoding="UTF-8"?>
 <manifest identifier="slam2d-exercises" version="1.0"
   xmlns="http://www.imsproject.org/xsd/imscp_rootv1p1p2" xmlns:adlcp="http://www.adlnet.org/xsd/adlcp_rootv1p2">
@@ -49,8 +45,4 @@ function manifest() {
   </resources>
 </manifest>
 `;
-}
-
-function escape(text) {
-  return text.replaceAll('&amp;', '&').replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('"', '&quot;');
 }

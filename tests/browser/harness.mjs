@@ -8,13 +8,14 @@ import { after, before } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { LAST_RESORT_MS, launch } from './chromium.mjs';
 import * as clock from './clock.mjs';
+import { PAGES as pages } from '../../web/page/pages.mjs';
 
 export { launch };
 
 export const DIST = fileURLToPath(new URL('../../dist/', import.meta.url));
 
 /** The pages of the companion, in the order in which they are read. */
-export const PAGES = ['index.html', 'robots.html', 'own-robot.html', 'reference.html'];
+export const PAGES = Object.freeze(pages.map(({ file }) => file));
 
 /** The widgets of a page, in order. */
 export function widgetsOf(page) {

@@ -3,11 +3,12 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { it } from 'node:test';
+import { fileURLToPath } from 'node:url';
 
 import { readExercises } from '../../web/page/exercises.mjs';
+import { readPages } from '../../web/page/pages.mjs';
 
-const pages = ['index.html', 'web/page/robots.html'];
-const page = pages.map((file) => readFileSync(new URL(`../../${file}`, import.meta.url), 'utf8')).join('');
+const page = (await readPages(fileURLToPath(new URL('../..', import.meta.url)))).map(({ html }) => html).join('');
 const first = /<slam-predict exercise="16\.1"/;
 
 it('gives each question of the page an id', () => {

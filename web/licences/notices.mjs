@@ -3,6 +3,7 @@
 import { cp, readFile, writeFile } from 'node:fs/promises';
 import path from 'node:path';
 
+import { escapeHtml } from '../html.mjs';
 import { ROOT, cratesOfModule, npmPackage, npmPackagesIn, rustVersion } from './packages.mjs';
 import { squeezed, withTexts } from './texts.mjs';
 
@@ -138,7 +139,3 @@ function textsOf(parts) {
 }
 
 const titleOf = ({ name, version }) => `${name} ${version}`;
-
-function escapeHtml(text) {
-  return text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;').replaceAll('"', '&quot;');
-}

@@ -13,6 +13,7 @@ import { fileURLToPath } from 'node:url';
 import { build } from 'esbuild';
 import katex from 'katex';
 
+import { escapeHtml } from '../html.mjs';
 import { endWithOneSentence } from '../licences/allowed.mjs';
 import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
 import { colorStyle } from '../palette.mjs';
@@ -46,7 +47,7 @@ const specOf = await widgetSpecs();
 const template = await readFile(path.join(here, 'template.html'), 'utf8');
 const pictured = pages.map((page) => ({ ...page, html: addPictures(renderFormulas(withFrame(template, page, pages, places)), page.source) }));
 const { sketches, story, match } = await drawStills(outDir);
-const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story), match.scene);
+const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story), match.answer);
 names.set('page.css', await copyStyle());
 await Promise.all([...pictured.map(renderPage), copyKatex()]);
 await writeNotices(metafiles).catch(endWithOneSentence);
@@ -144,10 +145,6 @@ function dropFigureNames(tex) {
   return tex.replace(/\\fig\{[^{}]*\}\{([^{}]*)\}/g, '{$1}');
 }
 
-function escapeHtml(text) {
-  return text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('"', '&quot;');
-}
-
 function unescapeHtml(text) {
   return text.replaceAll('&lt;', '<').replaceAll('&gt;', '>').replaceAll('&amp;', '&');
 }
@@ -174,7 +171,7 @@ async function copyKatex() {
 }
 
 /** Writes the scripts of the page and of its workers; returns their names, and what esbuild took into them. */
-async function bundleScripts(storyFile, matchScene) {
+async function bundleScripts(storyFile, matchAnswer) {
   const bundle = async (source, define) => {
     const { outputFiles, metafile } = await build({
       entryPoints: [path.join(here, source)],
@@ -194,7 +191,7 @@ async function bundleScripts(storyFile, matchScene) {
   const workerFile = await writeHashed('laps-worker.js', worker.text);
   const page = await bundle('page.ts', {
     LAP_STORY_FILE: JSON.stringify(`./${storyFile}`),
-    MATCH_SCENE: matchScene,
+    MATCH_ANSWER: matchAnswer,
     PLACES: JSON.stringify(places),
     LAPS_WORKER_FILE: JSON.stringify(`./${workerFile}`),
   });

@@ -30,8 +30,8 @@ function byId(idOf) {
 }
 
 /**
- * Each exercise as a frame shows it, by itself: its title, what comes before its questions, and the questions. Links to
- * other places of the page become text; `render` turns formulas into HTML.
+ * Each exercise as a frame shows it, by itself: its name without a part, `16.5`, its title, what comes before its questions,
+ * and the questions. Links to other places of the page become text; `render` turns formulas into HTML.
  */
 export function frameExercises(html, render) {
   return html.split('<article class="exercise"').slice(1).map((part) => {
@@ -39,8 +39,9 @@ export function frameExercises(html, render) {
     const title = inner.match(/<h3>([\s\S]*?)<\/h3>/)[1].replace(/<[^>]*>/g, '');
     const intro = inner.slice(inner.indexOf('</h3>') + '</h3>'.length, inner.indexOf('<slam-predict'));
     const questions = [...inner.matchAll(/<slam-predict exercise="([^"]*)" widget="([^"]*)"[\s\S]*?<\/slam-predict>/g)];
-    return { title, intro, questions: questions.map(([text, exercise, widget]) => ({ exercise, widget, html: text })) };
-  }).sort(byId(({ questions }) => questions[0].exercise));
+    const name = questions[0][1].replace(/(\d)[a-z]$/, '$1');
+    return { name, title, intro, questions: questions.map(([text, exercise, widget]) => ({ exercise, widget, html: text })) };
+  }).sort(byId(({ name }) => name));
 }
 
 function choiceOf(item) {

@@ -11,14 +11,14 @@ import { type Places, leadOn } from './places';
 import { LapPlayer } from './lap/player';
 import type { Story } from './lap/story';
 import { LapsFigure } from './laps/laps';
-import type { Scene } from './match/drawing';
+import type { Answer } from './match/drawing';
 import { MatchFigure } from './match/figure';
 import { SketchFigure, type SketchSchema } from './sketch';
 
 /** Set by the build: the lap that the page calls canonical, as the core has driven it. */
 declare const LAP_STORY_FILE: string;
-/** Set by the build: the two sweeps that the reader lays on each other. */
-declare const MATCH_SCENE: Scene;
+/** Set by the build: where the sweep belongs that the reader moves. */
+declare const MATCH_ANSWER: Answer;
 
 /** What needs the program of the widgets. */
 const NEEDS_CORE = 'slam-widget, [data-sketch], #decide, #laps';
@@ -44,7 +44,7 @@ whenNear(document.querySelectorAll(NEEDS_CORE), () => void useCore());
 
 function letReaderMatch(): void {
   const figure = document.querySelector<HTMLElement>('#match');
-  if (figure !== null) new MatchFigure(figure, MATCH_SCENE, core as () => Promise<Glue>);
+  if (figure !== null) new MatchFigure(figure, MATCH_ANSWER, core as () => Promise<Glue>);
 }
 
 /** The still picture stays if the story cannot be had. */

@@ -4,7 +4,7 @@ import { readFile } from 'node:fs/promises';
 import path from 'node:path';
 
 /** In the order in which they are read: the file of the site, its source, its name in the navigation. */
-const PAGES = [
+export const PAGES = [
   { file: 'index.html', source: 'index.html', name: 'Matching and the graph' },
   { file: 'robots.html', source: 'web/page/robots.html', name: 'What robots run' },
   { file: 'own-robot.html', source: 'web/page/own-robot.html', name: 'Your own robot' },

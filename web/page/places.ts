@@ -10,8 +10,8 @@ export interface Places {
 export function leadOn({ anchors, widgets }: Places): void {
   const { hash, search } = location;
   const anchor = decodeURIComponent(hash.slice(1));
-  const widget = new URLSearchParams(search).get('w');
-  const page = anchor === '' ? widgets[`w${widget?.replace(/^w/, '')}`] : anchors[anchor];
-  const isHere = anchor === '' ? document.querySelector(`slam-widget[name="w${widget?.replace(/^w/, '')}"]`) : document.getElementById(anchor);
-  if (page !== undefined && isHere === null) location.replace(new URL(`${page}${search}${hash}`, location.href));
+  const widget = `w${new URLSearchParams(search).get('w')?.replace(/^w/, '')}`;
+  const page = anchor === '' ? widgets[widget] : anchors[anchor];
+  const here = anchor === '' ? document.querySelector(`slam-widget[name="${CSS.escape(widget)}"]`) : document.getElementById(anchor);
+  if (page !== undefined && here === null) location.replace(new URL(`${page}${search}${hash}`, location.href));
 }

@@ -2,6 +2,8 @@
 // to predict before the class sees the result. The states of a script are links on its slide, its words are the speaker's
 // notes.
 
+import { escapeHtml } from '../html.mjs';
+
 /** The page of slides for the text of the scripts and the exercises of `frameExercises`. */
 export function slidesPage(scripts, exercises) {
   const slides = scripts.split(/^## /m).slice(1).flatMap((text) => [slide(text), ...questions(text.match(/^\S+/)[0], exercises)]);
@@ -47,11 +49,11 @@ function slide(text) {
   const links = [...text.matchAll(/\[([^\]]+)\]\(index\.html(\?w=[^)]+)\)/g)];
   const steps = text.split(/^\d+\. /m).slice(1).map((step) => `<li>${inLine(step)}</li>`);
   const first = new URLSearchParams(links[0]?.[2] ?? '');
-  const state = [...first].filter(([id]) => id !== 'w').map(([id, value]) => ` ${id}="${escape(value)}"`).join('');
+  const state = [...first].filter(([id]) => id !== 'w').map(([id, value]) => ` ${id}="${escapeHtml(value)}"`).join('');
   return `<section>
-<h2>${escape(title)}</h2>
+<h2>${escapeHtml(title)}</h2>
 <p>${inLine(misconception)}</p>
-<nav aria-label="States of ${escape(title)}">${links.map(([, words, query]) => `<a class="slam-link" href="${escape(query)}">${inLine(words)}</a>`).join('')}</nav>
+<nav aria-label="States of ${escapeHtml(title)}">${links.map(([, words, query]) => `<a class="slam-link" href="${escapeHtml(query)}">${inLine(words)}</a>`).join('')}</nav>
 <slam-widget name="${name}"${state}></slam-widget>
 <details><summary>Script</summary><p>${inLine(goal)}</p><ol>${steps.join('')}</ol></details>
 </section>`;
@@ -73,8 +75,4 @@ function inLine(text) {
     .replace(/\[([^\]]+)\]\([^)]*\)/g, '$1')
     .replace(/\*\*([^*]+)\*\*/g, '<b>$1</b>')
     .replace(/`([^`]+)`/g, '<code>$1</code>');
-}
-
-function escape(text) {
-  return text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('"', '&quot;');
 }

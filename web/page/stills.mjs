@@ -15,18 +15,18 @@ const CANONICAL_SEED = 12648430;
 
 /**
  * Writes `pictures/lap-light.svg` and its dark sister, and those of the small figures. Returns the figures' HTML by name,
- * the lap as the page replays it, as JSON, and the two sweeps of the first figure as JSON and as SVG.
+ * the lap as the page replays it, as JSON, and the first figure: its two sweeps as SVG, where one belongs as JSON.
  */
 export async function drawStills(outDir) {
   const core = await instantiate();
   const story = JSON.parse(core.lapStory(CANONICAL_SEED, 1));
   await drawLap(story, outDir);
   const { drawing } = await load('match/drawing.ts');
-  const scene = core.matcherScene();
+  const scene = JSON.parse(core.matcherScene());
   return {
     sketches: await drawSketches(core, outDir),
     story: JSON.stringify(withShortSweeps(story)),
-    match: { scene, svg: drawing(JSON.parse(scene)) },
+    match: { svg: drawing(scene), answer: JSON.stringify({ truth: scene.truth, home: scene.home }) },
   };
 }
 

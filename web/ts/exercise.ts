@@ -4,6 +4,8 @@ import { connect } from './scorm';
 
 /** What web/page/build.mjs writes into exercises.json, from the source of the page. */
 interface Exercise {
+  /** Without a part: `16.5`. */
+  name: string;
   title: string;
   intro: string;
   questions: Question[];
@@ -53,12 +55,9 @@ export async function showExercise(main: HTMLElement, id: string): Promise<strin
 
 /** The questions whose id is the one asked for, with or without chapter and part. */
 function find(exercises: Exercise[], id: string): { exercise: Exercise; questions: Question[] } {
-  const isAsked = (question: Question): boolean => {
-    const whole = question.exercise.replace(/(\d)[a-z]$/, '$1');
-    return [question.exercise, whole].some((name) => name === id || name.replace(/^\d+\./, '') === id);
-  };
+  const isAsked = (name: string): boolean => name === id || name.replace(/^\d+\./, '') === id;
   for (const exercise of exercises) {
-    const questions = exercise.questions.filter(isAsked);
+    const questions = exercise.questions.filter((question) => isAsked(exercise.name) || isAsked(question.exercise));
     if (questions.length > 0) return { exercise, questions };
   }
   const known = exercises.flatMap(({ questions }) => questions.map(({ exercise }) => exercise)).join(', ');

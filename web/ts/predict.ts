@@ -145,16 +145,17 @@ export class SlamPredict extends HTMLElement {
   /** The state of the question; a student's own has the first of their seeds at which one of the choices is right. */
   async #outcome(widget: SlamWidget, exercise: string, person: string): Promise<Shown> {
     const state = this.getAttribute('state') ?? '';
-    const outcome = await outcomeAt(widget, state);
+    await setState(widget, state);
     const isFixed = widget.get('seed') === undefined || new URLSearchParams(state).has('seed');
-    if (exercise === '' || person === '' || isFixed) return { state, outcome };
+    if (exercise === '' || person === '' || isFixed) return { state, outcome: outcomeOf(widget) };
     for (let attempt = 0; attempt < MOST_TRIES; attempt += 1) {
       const seed = seedOf(person, exercise, attempt);
       widget.set('seed', seed);
       const own = outcomeOf(widget);
       if (this.#right(own) !== null) return { state: `${state}&seed=${seed}`, outcome: own };
     }
-    return { state, outcome: await outcomeAt(widget, state) };
+    await setState(widget, state);
+    return { state, outcome: outcomeOf(widget) };
   }
 
   /** The choice, or the number, that is right for this outcome; null if there is none. */
@@ -248,13 +249,13 @@ export class SlamPredict extends HTMLElement {
   }
 }
 
-/** The outcome of a state, with defaults for the rest; fails if the widget cannot run. */
-async function outcomeAt(widget: SlamWidget, state: string): Promise<Outcome> {
+/** Sets a state, with defaults for the rest. */
+async function setState(widget: SlamWidget, state: string): Promise<void> {
   await widget.press('defaults');
   for (const [id, text] of new URLSearchParams(state)) widget.set(id, text);
-  return outcomeOf(widget);
 }
 
+/** The outcome of the present state; fails if the widget cannot run. */
 function outcomeOf({ outcome }: SlamWidget): Outcome {
   if (outcome === undefined) throw new Error('the widget cannot run here');
   return outcome;

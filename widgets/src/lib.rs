@@ -4,6 +4,7 @@
 //! the layout.
 
 pub mod registry;
+mod sweep_bounds;
 
 pub mod w16_10_own_robot;
 pub mod w16_11_procrustes;

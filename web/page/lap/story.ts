@@ -202,7 +202,8 @@ function snap(share: number): number {
   return ease((share - 0.25) / 0.5);
 }
 
-function between(from: Pose, to: Pose, share: number): Pose {
+/** A pose on the way from one to another; the heading turns the shorter way. */
+export function between(from: Pose, to: Pose, share: number): Pose {
   const turn = Math.atan2(Math.sin(to[2] - from[2]), Math.cos(to[2] - from[2]));
   return [
     from[0] + share * (to[0] - from[0]),

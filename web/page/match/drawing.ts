@@ -1,15 +1,18 @@
 // The two sweeps of the first figure as an SVG: the build puts it into the page, and the script moves its source.
 
-/** `[x, y, θ]`, metres and radians, of the source in the world. */
-export type Pose = readonly [number, number, number];
+import type { Pose } from '../lap/story';
 
-/** What `matcherScene` of the module writes. */
-export interface Scene {
-  target: number[];
-  source: number[];
+/** Where the source belongs, in metres and radians of the world. */
+export interface Answer {
   truth: Pose;
   /** Nearer than this in metres and degrees counts as right. */
   home: [number, number];
+}
+
+/** What `matcherScene` of the module writes. */
+export interface Scene extends Answer {
+  target: number[];
+  source: number[];
 }
 
 /** What is seen, in metres of the world; a wide picture shows more to the left and to the right. */
@@ -21,7 +24,7 @@ const MARK_M = 0.06;
 /** Where the source stands at first: too far for ICP, so the reader has to begin. */
 const START_OFF = { x: -0.6, y: 0.75, degrees: 48 };
 
-export function startOf({ truth: [x, y, heading] }: Scene): Pose {
+export function startOf({ truth: [x, y, heading] }: Answer): Pose {
   return [x + START_OFF.x, y + START_OFF.y, heading + (START_OFF.degrees * Math.PI) / 180];
 }
 

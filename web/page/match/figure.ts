@@ -1,7 +1,8 @@
 // The first figure of the page: the reader lays one sweep on another, and ICP goes on from there.
 
 import type { Glue } from '../../pkg/glue.js';
-import { type Pose, type Scene, placedAt, startOf } from './drawing';
+import { type Point, type Pose, between } from '../lap/story';
+import { type Answer, placedAt, startOf } from './drawing';
 
 /** What `Matcher.run` of the module writes: the guess and the pose after each iteration. */
 interface Run {
@@ -10,7 +11,6 @@ interface Run {
   ending: string;
 }
 
-type Point = readonly [number, number];
 type Matcher = InstanceType<Glue['Matcher']>;
 
 /** What an arrow key moves, m, and turns with Shift. */
@@ -22,7 +22,7 @@ const ARROWS: Record<string, Point> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], 
 
 export class MatchFigure {
   readonly #figure: HTMLElement;
-  readonly #scene: Scene;
+  readonly #scene: Answer;
   readonly #core: () => Promise<Glue>;
   readonly #svg: SVGSVGElement;
   /** Fingers on the sweep, where they are in the world, and what the first one took hold of. */
@@ -33,7 +33,7 @@ export class MatchFigure {
   /** Counts what the reader does, which ends a run of ICP. */
   #hand = 0;
 
-  constructor(figure: HTMLElement, scene: Scene, core: () => Promise<Glue>) {
+  constructor(figure: HTMLElement, scene: Answer, core: () => Promise<Glue>) {
     this.#figure = figure;
     this.#scene = scene;
     this.#core = core;
@@ -254,12 +254,4 @@ function turnBetween([x, y]: Point, before: Point, now: Point): number {
 
 function wrapped(angle: number): number {
   return Math.atan2(Math.sin(angle), Math.cos(angle));
-}
-
-function between(from: Pose, to: Pose, share: number): Pose {
-  return [
-    from[0] + share * (to[0] - from[0]),
-    from[1] + share * (to[1] - from[1]),
-    from[2] + share * wrapped(to[2] - from[2]),
-  ];
 }

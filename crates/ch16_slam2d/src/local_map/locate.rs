@@ -50,9 +50,7 @@ impl LocalMap {
         // With few pairs the registration is pulled farther than its information justifies.
         if prior.cost(&best.registered.pose) > MAX_PRIOR_COST {
             let predicted = self.register(scan, prior.pose, &[], Some(prior), config);
-            if predicted.cost < best.cost || !is_justified(&best) {
-                best = predicted;
-            }
+            best = cheaper(predicted, best);
         }
         // A registration from a distant start may slide along a wall although the scan fits better at the prediction.
         if self.fit(scan, &prior.pose, config).score > best.fit.score {

@@ -168,7 +168,7 @@ fn limits(config: &loops::LoopConfig) -> LoopConfig {
 }
 
 /// A lap by the student's functions.
-pub struct Driven {
+pub struct ExerciseLap {
     /// What the estimator did.
     pub record: LapRecord,
     verdicts: Vec<(usize, usize, VerifiedLoop)>,
@@ -181,7 +181,7 @@ pub struct Driven {
 ///
 /// # Errors
 /// If an exercise that it needs is not written or panics, or there is none for what is asked.
-pub fn drive(config: &LapConfig) -> Result<Driven, LapError> {
+pub fn drive(config: &LapConfig) -> Result<ExerciseLap, LapError> {
     let chapter = &config.slam.chapter;
     let matcher = TheirIcp::new(&chapter.matcher, chapter.local_map)?;
     let loop_matcher = TheirIcp::new(&chapter.loops.matcher, chapter.loops.submap)?;
@@ -218,7 +218,7 @@ pub fn drive(config: &LapConfig) -> Result<Driven, LapError> {
         .lock()
         .unwrap_or_else(PoisonError::into_inner)
         .clone();
-    Ok(Driven {
+    Ok(ExerciseLap {
         record,
         verdicts,
         by_histogram: histogram.is_some(),
@@ -272,7 +272,7 @@ fn solved_again(record: &LapRecord) -> Option<f64> {
     Some(graph.chi2())
 }
 
-impl Driven {
+impl ExerciseLap {
     /// Prints which exercises steer, and what they said.
     pub fn print(&self) {
         say!("steered by your functions:");

@@ -11,7 +11,7 @@ use super::answers::Answer;
 /// Number of seeds that are tried until one of the choices is right.
 const MOST_TRIES: u32 = 100;
 
-/// The exercises, in the order of the page, from which the build writes the file.
+/// The exercises in the order of their ids; the build writes the file from the pages.
 static EXERCISES: LazyLock<Vec<Exercise>> = LazyLock::new(|| {
     serde_json::from_str(include_str!("exercises.json")).expect("a test reads the file")
 });

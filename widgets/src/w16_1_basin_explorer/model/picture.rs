@@ -5,7 +5,7 @@ use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpVariant, Pair};
 use kit::chart::{Series, TimeChart};
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
-use pr_geom::{Point2, SE2, math};
+use pr_geom::{Point2, SE2};
 
 use super::basins::{class, spot_of, start_spot};
 use super::edge;
@@ -14,6 +14,7 @@ use super::paths::split_at_half_turn;
 use super::settings::{axis, start, variant, variant_name};
 use super::words::error_m;
 use super::{BasinExplorer, panel};
+use crate::sweep_bounds::sweep_bounds;
 use crate::w16_1_basin_explorer::spec::{EDGE, OFFSET_SPAN_M, Phase};
 
 /// One point in this many leaves a trail.
@@ -170,27 +171,14 @@ pub fn frame(explorer: &BasinExplorer) -> [Axis; 2] {
         return held.clone();
     }
     let BasinExplorer { scene, .. } = explorer;
-    let reach_m = |cloud: &PointCloud| {
-        let distances = cloud.iter().map(|point| math::norm2(point.x, point.y));
-        distances.fold(0.0, math::max)
-    };
-    let turned_m = reach_m(scene.source());
     let sensors = [
         scene.guess(&start(&explorer.values)),
         scene.truth(),
         explorer.run.outcome.pose,
     ];
-    let axis = |i: usize| {
-        let target = scene.target().iter().map(|point| [point.x, point.y][i]);
-        let source = sensors.iter().map(|pose| [pose.x(), pose.y()][i]);
-        let source = source.flat_map(|at| [at - turned_m, at + turned_m]);
-        let all: Vec<f64> = target.chain(source).collect();
-        let low = all.iter().copied().fold(f64::INFINITY, math::min);
-        let high = all.iter().copied().fold(f64::NEG_INFINITY, math::max);
-        // In steps of half a metre, so that a start beside the last one has the same axes.
-        Axis::hidden((2.0 * low).floor() / 2.0, (2.0 * high).ceil() / 2.0)
-    };
-    [axis(0), axis(1)]
+    // In steps of half a metre, so that a start beside the last one has the same axes.
+    sweep_bounds(scene, &sensors)
+        .map(|[low, high]| Axis::hidden((2.0 * low).floor() / 2.0, (2.0 * high).ceil() / 2.0))
 }
 
 /// The result of the run as a ghost, and the path of the sensor and of some points to it.

@@ -5,11 +5,12 @@ mod places;
 
 use ch16_slam2d::cloud::PointCloud;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
-use pr_geom::{SE2, math};
+use pr_geom::SE2;
 
 use super::hands::turn_handle;
 use super::words::now;
 use super::{WholeWindow, panel};
+use crate::sweep_bounds::sweep_bounds;
 
 /// Space around the sweeps, m.
 const MARGIN_M: f64 = 0.1;
@@ -94,16 +95,9 @@ fn sweeps(window: &WholeWindow) -> Panel {
 
 /// Axes that hold the target, and the source at any heading about the truth.
 fn frame(window: &WholeWindow) -> [Axis; 2] {
-    let (scene, truth) = (&window.scene, position(&window.scene.truth()));
-    let distances = scene.source().iter().map(|p| math::norm2(p.x, p.y));
-    let reach_m = distances.fold(0.0, math::max);
-    let axis = |i: usize| {
-        let target = scene.target().iter().map(|p| [p.x, p.y][i]);
-        let low = target.clone().fold(truth[i] - reach_m, math::min);
-        let high = target.fold(truth[i] + reach_m, math::max);
-        Axis::hidden(low - MARGIN_M, high + MARGIN_M)
-    };
-    [axis(0), axis(1)]
+    let scene = &window.scene;
+    sweep_bounds(scene, &[scene.truth()])
+        .map(|[low, high]| Axis::hidden(low - MARGIN_M, high + MARGIN_M))
 }
 
 /// Position of a sensor.
