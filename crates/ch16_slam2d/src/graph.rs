@@ -20,13 +20,14 @@ use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::robust::{GncSettings, InlierSelection, select_inliers};
 use pr_optim::{Between, FactorUse, Method, OptimizeError, Optimizer, Problem, Report, Settings};
+use serde::{Deserialize, Serialize};
 
 pub use ids::{EdgeId, NodeId};
 pub use marginalize::{MarginalizeError, Marginalized};
 pub use pr_optim::{JacobianModel, RobustKernel, StopReason};
 
 /// Origin of a measurement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum EdgeKind {
     /// From one keyframe to the next, by scan matching or odometry; also the edges that replace marginalized
     /// nodes.
@@ -36,7 +37,7 @@ pub enum EdgeKind {
 }
 
 /// A pose in the graph.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PoseNode {
     /// Present estimate, `world_from_body`.
     pub pose: SE2,
@@ -45,7 +46,7 @@ pub struct PoseNode {
 }
 
 /// A measured relative pose of two nodes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PoseEdge {
     /// The measured pose of the target in the frame of the source.
     pub measurement: SE2,
@@ -66,9 +67,10 @@ impl PoseEdge {
 }
 
 /// An edge with its ends, as the iterators return it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EdgeView {
-    /// Handle of the edge.
+    /// Handle of the edge. Not serialized: edges are numbered by their order.
+    #[serde(skip)]
     pub id: EdgeId,
     /// The node from which the other was measured.
     pub from: NodeId,

@@ -6,6 +6,7 @@
 //! It reads no files and does not repair stamps: scans have to be in order of time.
 
 use pr_geom::SE2;
+use serde::{Deserialize, Serialize};
 
 use crate::graph::PoseGraph;
 use crate::scan::{Frame, FrameError, LaserScan};
@@ -23,7 +24,7 @@ pub struct LogFrame {
 }
 
 /// Pose of a scan in the frame of the previous keyframe, because loops move that.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScanPose {
     /// Time of the scan, s.
     pub stamp_s: f64,

@@ -50,7 +50,7 @@ pub use map_pruning::{MapPruning, MapPruningConfig};
 pub use pending::PendingFrame;
 pub use report::{Change, Conclusion, Keyframe, LoopAttempt, LoopEffect, SlamReport};
 pub use robots::{RobotConfig, SubmapLoopConfig};
-pub use snapshot::{FrontEndSnapshot, SlamSnapshot, SnapshotError};
+pub use snapshot::{FrontEndSnapshot, SlamSnapshot, SnapshotError, is_within_limits};
 
 use crate::chapter::SlamParts;
 use crate::graph::{EdgeKind, PoseGraph};

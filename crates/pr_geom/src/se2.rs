@@ -3,6 +3,7 @@
 use core::ops::Mul;
 
 use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
+use serde::{Deserialize, Serialize};
 
 use crate::angle::wrap_angle;
 use crate::math;
@@ -13,7 +14,8 @@ use crate::math;
 const SMALL_ANGLE_RAD: f64 = 1e-4;
 
 /// A rigid motion `world_from_body`: rotate by θ, then translate by `(x, y)`.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[serde(from = "[f64; 3]", into = "[f64; 3]")]
 pub struct SE2 {
     x: f64,
     y: f64,
@@ -50,6 +52,18 @@ impl Rotation {
     #[must_use]
     pub fn unrotate(&self, x: f64, y: f64) -> (f64, f64) {
         (self.cos * x + self.sin * y, self.cos * y - self.sin * x)
+    }
+}
+
+impl From<[f64; 3]> for SE2 {
+    fn from([x, y, theta]: [f64; 3]) -> Self {
+        Self::new(x, y, theta)
+    }
+}
+
+impl From<SE2> for [f64; 3] {
+    fn from(pose: SE2) -> Self {
+        pose.to_array()
     }
 }
 

@@ -1,13 +1,11 @@
 //! Saved sessions: the complete state of a run in one file, for continuing, mapping and localization.
 //!
-//! `docs/sessions.md` describes the file byte by byte. Content is checked when it is read: a file that is truncated,
+//! `docs/sessions.md` describes the file. Content is checked when it is read: a file that is truncated,
 //! damaged, of another format or version gives one sentence, and no length is trusted beyond the bytes that are
 //! present. A written session restores the same estimator, and writing that again gives the same bytes.
 
-mod bytes;
+mod body;
 mod error;
-mod parts;
-mod pending;
 mod rays;
 mod scans;
 #[cfg(test)]
@@ -19,18 +17,17 @@ use ch16_slam2d::digest::Digest;
 use ch16_slam2d::graph::{EdgeKind, EdgeView, PoseGraph, PoseNode};
 use ch16_slam2d::pipeline::ScanPose;
 use ch16_slam2d::scan::LaserScan;
-use ch16_slam2d::slam::SlamSnapshot;
+use ch16_slam2d::slam::{SlamSnapshot, is_within_limits};
 use pr_geom::SE2;
+use serde::{Deserialize, Serialize};
 
 pub use error::SessionError;
 pub use rays::rays;
 
-use bytes::{Cursor, Writer};
-
 /// The first bytes of a session.
 pub const MAGIC: [u8; 8] = *b"SLAM2D\r\n";
 /// The version that is written and read.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 /// Default name of a session in the folder of a run.
 pub const FILE_NAME: &str = "session.slam2d";
 /// Larger files are rejected before they are read, bytes: 150,000 keyframes.
@@ -42,7 +39,7 @@ const HEAD_BYTES: usize = 20;
 const TAIL_BYTES: usize = 8;
 
 /// A saved session.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Session {
     /// The estimator after its last frame.
     pub driven: SlamSnapshot,
@@ -76,7 +73,7 @@ pub(crate) fn selected_scan_poses(poses: &[ScanPose]) -> Vec<ScanPose> {
 }
 
 /// Poses and loops after the final pass; odometry edges are those of the run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MappedGraph {
     /// Poses of all keyframes, `world_from_body`.
     pub poses: Vec<SE2>,
@@ -152,9 +149,7 @@ impl Session {
     /// Serializes the session.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mut body = Writer::default();
-        parts::write(self, &mut body);
-        let body = body.finish();
+        let body = body::write(self);
         let mut file = Vec::with_capacity(HEAD_BYTES + body.len() + TAIL_BYTES);
         file.extend_from_slice(&MAGIC);
         file.extend_from_slice(&VERSION.to_le_bytes());
@@ -230,18 +225,12 @@ impl Session {
         if checksum(content).to_le_bytes() != sum {
             return Err(SessionError::Damaged { name: named() });
         }
-        let mut cursor = Cursor::new(content, HEAD_BYTES);
-        let session = parts::read(&mut cursor).map_err(|broken| SessionError::Content {
+        let invalid = |problem| SessionError::Content {
             name: named(),
-            byte: broken.byte,
-            expected: broken.expected,
-        })?;
-        session
-            .check()
-            .map_err(|problem| SessionError::Contradiction {
-                name: named(),
-                problem,
-            })?;
+            problem,
+        };
+        let session = body::read(&content[HEAD_BYTES..]).map_err(invalid)?;
+        session.check().map_err(invalid)?;
         Ok(session)
     }
 
@@ -249,6 +238,15 @@ impl Session {
         self.driven.check().map_err(|problem| problem.to_string())?;
         if let Some(sensor) = &self.sensor {
             sensor.validate().map_err(|problem| problem.to_string())?;
+        }
+        let scan_poses = self.scan_poses.iter().map(|scan| &scan.keyframe_from_body);
+        if !self
+            .last_odometry
+            .iter()
+            .chain(scan_poses)
+            .all(is_within_limits)
+        {
+            return Err("a pose is not within ±1e50".to_owned());
         }
         // The next scan must be later than all of them.
         let (keyframes, end_s) = (&self.driven.keyframes, self.driven.last_stamp_s);

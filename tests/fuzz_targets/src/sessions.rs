@@ -1,7 +1,7 @@
 //! Saved sessions: loaded, written, continued, mapped, and used for localization.
 //!
-//! The first byte selects how much of the file is repaired, see [`crate::sealed`]; the rest is the file
-//! or its sections.
+//! The first byte selects how much of the file is added, see [`crate::sealed`]; the rest is the file
+//! or its content.
 
 use std::f64::consts::TAU;
 
@@ -16,7 +16,7 @@ use robot_io::session::Session;
 use robot_io::settings::SETTINGS;
 
 use crate::runs::{assert_finite, assert_loads, drive};
-use crate::sealed::{sealed, with_lengths};
+use crate::sealed::{sealed, with_parameters};
 use crate::sentences::{NAME, assert_refusal, assert_sentence};
 
 /// Larger sessions are loaded and written, but not continued: this target tests the file format.
@@ -37,7 +37,7 @@ pub fn fuzz(data: &[u8]) {
     let file = match how % 4 {
         0 => text.to_vec(),
         1 => sealed(text),
-        _ => sealed(&with_lengths(text)),
+        _ => sealed(&with_parameters(text)),
     };
     let session = match Session::from_bytes(&file, NAME) {
         Ok(session) => session,

@@ -1,11 +1,12 @@
 //! Loop candidates: which old keyframes might show the same location.
 
 use pr_geom::{SE2, math};
+use serde::{Deserialize, Serialize};
 
 use super::LoopConfig;
 
 /// An old node that may show the same location as the new one.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoopCandidate {
     /// The old node.
     pub node: usize,

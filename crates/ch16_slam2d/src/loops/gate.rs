@@ -1,9 +1,10 @@
 //! The χ² gate of an innovation.
 
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Result of the χ² gate.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GateTest {
     /// `νᵀ Ω ν`.
     pub chi2: f64,

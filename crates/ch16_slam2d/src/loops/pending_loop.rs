@@ -1,9 +1,11 @@
 //! A loop that waits for confirmation.
 
+use serde::{Deserialize, Serialize};
+
 use super::LoopVerification;
 
 /// A loop that passed its own tests and waits until another one along the path confirms it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PendingLoop {
     /// Result of its verification.
     pub verification: LoopVerification,

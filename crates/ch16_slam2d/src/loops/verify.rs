@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
 use pr_optim::{OptimizeError, StopReason};
+use serde::{Deserialize, Serialize};
 
 use super::gate::{GateTest, chi_squared_gate};
 use super::{LoopCandidate, LoopConfig};
@@ -125,7 +126,7 @@ impl core::fmt::Display for LoopRejection {
 }
 
 /// A verified loop: the registration and the results of the tests.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoopVerification {
     /// The new node.
     pub from_node: usize,
@@ -156,7 +157,8 @@ pub struct LoopVerification {
     pub gate: GateTest,
     /// Information of the loop edge.
     pub information: Matrix3<f64>,
-    /// Why it was rejected; `None` if it was accepted.
+    /// Why it was rejected; `None` if it was accepted. Not serialized: a pending loop has none.
+    #[serde(skip)]
     pub rejection: Option<LoopRejection>,
 }
 

@@ -1,6 +1,7 @@
 //! A sweep of a planar laser with its geometry.
 
 use pr_geom::SE2;
+use serde::{Deserialize, Serialize};
 
 use super::FrameError;
 
@@ -9,7 +10,7 @@ use super::FrameError;
 /// Beam k leaves the sensor at the bearing `first_angle_rad + k · angle_step_rad`. A range is a return
 /// if it is above 0, at least `range_min_m` and below `range_max_m`; 0, NaN and infinite ranges
 /// and those at the maximum are no return.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LaserScan {
     /// Bearing of the first beam in the sensor's frame, rad.
     pub first_angle_rad: f64,

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
+use serde::{Deserialize, Serialize};
 
 use super::config::SlamConfig;
 use super::map_matching::MapMatching;
@@ -20,7 +21,7 @@ const MIN_INTERVAL_S: f64 = 1e-6;
 const MAX_MOTION_M: f64 = 1e9;
 
 /// A sweep of the local map.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WindowSweep {
     /// The frame in which it was taken.
     pub frame: usize,

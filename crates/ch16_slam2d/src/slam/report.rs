@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use pr_geom::SE2;
+use serde::{Deserialize, Serialize};
 
 use super::front_end::Registration;
 use crate::cloud::PointCloud;
 use crate::loops::LoopVerification;
 
 /// A keyframe: a node of the graph with its scan.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Keyframe {
     /// Index of its node.
     pub node: usize,
@@ -17,7 +18,8 @@ pub struct Keyframe {
     pub frame: usize,
     /// Time of its frame, s.
     pub stamp_s: f64,
-    /// Its thinned scan with normals, body frame.
+    /// Its thinned scan with normals, body frame. Not serialized with the rest: a session stores it compactly.
+    #[serde(skip)]
     pub scan: Arc<PointCloud>,
 }
 

@@ -2,26 +2,30 @@
 //!
 //! [`Slam::snapshot`] takes it, [`Slam::restore`] continues from it. The results are the same to the
 //! bit as without an interruption: only buffers that every frame refills are left out.
+//! Serialized it has neither the parameters nor the scans, which a session file stores in its own form.
 
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::{Keyframe, Slam, SlamConfig, SlamParts, WindowSweep};
 use crate::cloud::PointCloud;
 use crate::graph::{EdgeView, PoseGraph, PoseNode};
 use crate::loops::PendingLoop;
-use crate::scan::is_finite;
 
+/// Larger numbers are not measurements, and their products would overflow.
+const LARGEST: f64 = 1e50;
 /// Upper limit of the number of frames.
 const MAX_FRAMES: usize = 1 << 30;
 
 /// An estimator between two frames.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SlamSnapshot {
     /// The parameters.
+    #[serde(skip)]
     pub config: SlamConfig,
     /// Number of frames.
     pub frames: usize,
@@ -46,7 +50,7 @@ pub struct SlamSnapshot {
 }
 
 /// A front end between two frames.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrontEndSnapshot {
     /// The estimated pose, `world_from_body`.
     pub estimate: SE2,
@@ -57,6 +61,7 @@ pub struct FrontEndSnapshot {
     /// The sweeps of the next local map, oldest first.
     pub window: Vec<WindowSweep>,
     /// Their scans, body frame.
+    #[serde(skip)]
     pub scans: Vec<Arc<PointCloud>>,
     /// Sum of the squared deviations in the threshold, m².
     pub deviations_m2: f64,
@@ -95,9 +100,9 @@ pub enum SnapshotError {
         /// The last node.
         last: usize,
     },
-    /// A number is not finite.
-    #[error("{what} {number} has a value that is not finite")]
-    NotFinite {
+    /// A number is not finite, or too large.
+    #[error("{what} {number} has a value that is not within ±1e50")]
+    OutOfRange {
         /// Kind of the part.
         what: &'static str,
         /// Its index.
@@ -109,7 +114,7 @@ pub enum SnapshotError {
 }
 
 impl SlamSnapshot {
-    /// Checks that all numbers are finite and all indices exist.
+    /// Checks that all numbers are within ±1e50 and all indices exist.
     ///
     /// # Errors
     /// The first inconsistency.
@@ -124,17 +129,17 @@ impl SlamSnapshot {
         if nodes > 0 && !self.nodes.iter().any(|node| node.fixed) {
             return Err(SnapshotError::NothingFixed);
         }
-        let not_finite = |what, number| SnapshotError::NotFinite { what, number };
+        let out_of_range = |what, number| SnapshotError::OutOfRange { what, number };
         for (number, node) in self.nodes.iter().enumerate() {
             let keyframe = &self.keyframes[number];
-            if !is_finite(&node.pose) || !keyframe.stamp_s.is_finite() {
-                return Err(not_finite("node", number));
+            if !is_within_limits(&node.pose) || !keyframe.stamp_s.is_finite() {
+                return Err(out_of_range("node", number));
             }
             if keyframe.node != number {
                 return Err(SnapshotError::Counter("number of a keyframe's node"));
             }
             if !is_cloud(&keyframe.scan) {
-                return Err(not_finite("the scan of keyframe", number));
+                return Err(out_of_range("the scan of keyframe", number));
             }
         }
         for (number, view) in self.edges.iter().enumerate() {
@@ -147,9 +152,9 @@ impl SlamSnapshot {
                     last: nodes.saturating_sub(1),
                 });
             }
-            let known = view.edge.information.iter().all(|value| value.is_finite());
-            if !is_finite(&view.edge.measurement) || !known {
-                return Err(not_finite("edge", number));
+            if !is_within_limits(&view.edge.measurement) || !is_each_number(&view.edge.information)
+            {
+                return Err(out_of_range("edge", number));
             }
         }
         let is_node = |node: usize| node < nodes || (node == 0 && nodes == 0);
@@ -167,18 +172,25 @@ impl SlamSnapshot {
             }
             let poses = [&found.belief, &found.initial, &found.registered];
             let matrices = [&found.information, &found.gate_information];
-            let known = poses.into_iter().all(is_finite)
-                && found.candidate.proposal.as_ref().is_none_or(is_finite)
-                && matrices.iter().all(|m| m.iter().all(|v| v.is_finite()))
-                && found.innovation.iter().all(|v| v.is_finite())
-                && waiting.path_m.is_finite();
+            let known = poses.into_iter().all(is_within_limits)
+                && found
+                    .candidate
+                    .proposal
+                    .as_ref()
+                    .is_none_or(is_within_limits)
+                && matrices.into_iter().all(is_each_number)
+                && is_each_number(&found.innovation)
+                && is_number(waiting.path_m);
             if !known {
-                return Err(not_finite("pending loop", number));
+                return Err(out_of_range("pending loop", number));
             }
         }
         let is_counted = (self.frames == 0) == (nodes == 0) && self.frames < MAX_FRAMES;
         if !is_counted || self.last_stamp_s.is_nan() {
             return Err(SnapshotError::Counter("number of frames"));
+        }
+        if !is_within_limits(&self.config.start) {
+            return Err(out_of_range("start pose", 0));
         }
         self.front_end.check(nodes > 0)
     }
@@ -191,27 +203,24 @@ impl FrontEndSnapshot {
         }
         let sweeps = self.window.iter().zip(&self.scans).enumerate();
         for (number, (sweep, scan)) in sweeps {
-            if !is_finite(&sweep.pose) || !is_cloud(scan) {
-                return Err(SnapshotError::NotFinite {
+            if !is_within_limits(&sweep.pose) || !is_cloud(scan) {
+                return Err(SnapshotError::OutOfRange {
                     what: "sweep",
                     number,
                 });
             }
         }
         let matrices = [Some(self.motion_covariance), self.unregistered];
-        let known = matrices
-            .iter()
-            .flatten()
-            .all(|m| m.iter().all(|v| v.is_finite()))
-            && self.velocity.iter().all(|v| v.is_finite())
-            && self.deviations_m2.is_finite()
+        let known = matrices.iter().flatten().all(is_each_number)
+            && is_each_number(&self.velocity)
+            && is_number(self.deviations_m2)
             && self.deviations_m2 >= 0.0
-            && is_finite(&self.estimate)
+            && is_within_limits(&self.estimate)
             && self.last_dt_s > 0.0;
         if known {
             Ok(())
         } else {
-            Err(SnapshotError::NotFinite {
+            Err(SnapshotError::OutOfRange {
                 what: "front end",
                 number: 0,
             })
@@ -220,8 +229,21 @@ impl FrontEndSnapshot {
 }
 
 fn is_cloud(cloud: &PointCloud) -> bool {
-    let mut values = cloud.xs().iter().chain(cloud.ys());
-    values.all(|value| value.is_finite())
+    is_each_number(cloud.xs().iter().chain(cloud.ys()))
+}
+
+fn is_each_number<'a>(values: impl IntoIterator<Item = &'a f64>) -> bool {
+    values.into_iter().copied().all(is_number)
+}
+
+fn is_number(value: f64) -> bool {
+    value.abs() <= LARGEST
+}
+
+/// Whether all components of a pose are within ±1e50, as in a snapshot.
+#[must_use]
+pub fn is_within_limits(pose: &SE2) -> bool {
+    is_each_number(&pose.to_array())
 }
 
 impl Slam {

@@ -74,21 +74,11 @@ pub enum SessionError {
         name: String,
     },
     /// The content is invalid although the checksum matches.
-    #[error("{name}: byte {byte}: {expected}; run the log again")]
+    #[error("{name}: {problem}; run the log again")]
     Content {
         /// The file's name.
         name: String,
-        /// Position.
-        byte: usize,
-        /// What was expected and what was found.
-        expected: String,
-    },
-    /// The parts are inconsistent.
-    #[error("{name}: {problem}; run the log again")]
-    Contradiction {
-        /// The file's name.
-        name: String,
-        /// The inconsistency.
+        /// What is invalid or inconsistent.
         problem: String,
     },
 }
