@@ -146,19 +146,16 @@ impl LogFormat {
                 "give one log at a time",
             ));
         }
+        let mounted = |reader: io::Result<Box<dyn LogReader + 'a>>| {
+            let reader = reader.map_err(io)?;
+            Ok(match options.laser {
+                Some(mount) => Box::new(MountedReader::new(reader, mount)),
+                None => reader,
+            })
+        };
         match found {
-            Self::Carmen | Self::Json => {
-                let reader = if found == Self::Json {
-                    restamped(&first, |source| JsonLogReader::new(source, name))
-                } else {
-                    restamped(&first, |source| CarmenReader::new(source, name))
-                };
-                let reader = reader.map_err(io)?;
-                Ok(match options.laser {
-                    Some(mount) => Box::new(MountedReader::new(reader, mount)),
-                    None => reader,
-                })
-            }
+            Self::Carmen => mounted(restamped(&first, |source| CarmenReader::new(source, name))),
+            Self::Json => mounted(restamped(&first, |source| JsonLogReader::new(source, name))),
             Self::Mcap | Self::RosBag | Self::Sqlite => {
                 Ok(Box::new(RosReader::new(parts, name, options)))
             }
