@@ -5,6 +5,8 @@
 // @ts-expect-error: a file of its own beside this one, which has the module.
 import { core, coreModule } from './slam-widget.js';
 import type { Glue } from '../pkg/glue.js';
+import { BuildingFigure } from './building/figure';
+import type { Building } from './building/drawing';
 import { addCopyButtons } from './copy';
 import { DecideFigure } from './decide';
 import { type Places, leadOn } from './places';
@@ -17,6 +19,8 @@ import { SketchFigure, type SketchSchema } from './sketch';
 
 /** Set by the build: the lap that the page calls canonical, as the core has driven it. */
 declare const LAP_STORY_FILE: string;
+/** Set by the build: the simulated office. */
+declare const BUILDING_FILE: string;
 /** Set by the build: where the sweep belongs that the reader moves. */
 declare const MATCH_ANSWER: Answer;
 
@@ -38,7 +42,8 @@ letKeyboardScroll(document.querySelectorAll<HTMLElement>('.math, .scroll'));
 keepFromFiles();
 addCopyButtons(document.querySelectorAll<HTMLElement>('figure.listing'));
 letReaderMatch();
-void replayLap();
+void replay('#lap', LAP_STORY_FILE, (figure, story: Story) => new LapPlayer(figure, story));
+void replay('#building', BUILDING_FILE, (figure, story: Building) => new BuildingFigure(figure, story));
 driveLaps();
 whenNear(document.querySelectorAll(NEEDS_CORE), () => void useCore());
 
@@ -48,10 +53,11 @@ function letReaderMatch(): void {
 }
 
 /** The still picture stays if the story cannot be had. */
-async function replayLap(): Promise<void> {
-  const figure = document.querySelector<HTMLElement>('#lap');
-  const response = await fetch(new URL(LAP_STORY_FILE, import.meta.url)).catch(() => undefined);
-  if (figure !== null && response?.ok === true) new LapPlayer(figure, (await response.json()) as Story);
+async function replay<T>(name: string, file: string, play: (figure: HTMLElement, story: T) => unknown): Promise<void> {
+  const figure = document.querySelector<HTMLElement>(name);
+  if (figure === null) return;
+  const response = await fetch(new URL(file, import.meta.url)).catch(() => undefined);
+  if (response?.ok === true) play(figure, (await response.json()) as T);
 }
 
 /** Calls once, when the first of them comes near the screen. */
