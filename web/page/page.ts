@@ -107,6 +107,11 @@ function followReading(): void {
   const list = document.querySelector<HTMLDetailsElement>('.contents details');
   const summary = list?.querySelector('summary');
   if (list === null || list === undefined || summary === null || summary === undefined) return;
+  // At the side it stays open; the page's style knows the width, too.
+  const side = matchMedia('(width >= 1280px)');
+  const fold = (): void => { list.open = side.matches; };
+  side.addEventListener('change', fold);
+  fold();
   const bar = document.createElement('div');
   bar.className = 'reading';
   document.body.append(bar);
@@ -122,21 +127,29 @@ function followReading(): void {
       if (link === here) link.setAttribute('aria-current', 'location');
       else link.removeAttribute('aria-current');
     }
+    if (side.matches) keepInView(list.parentElement, here);
     summary.textContent = here?.textContent ?? 'Contents';
-    list.parentElement?.classList.toggle('away', scrollTop < clientHeight / 2);
+    list.parentElement?.classList.toggle('away', !side.matches && scrollTop < clientHeight / 2);
   };
   const wake = (): void => { if (frame === 0) frame = requestAnimationFrame(show); };
   addEventListener('scroll', wake, { passive: true });
   addEventListener('resize', wake);
   show();
   // A sheet closes once one has chosen, pressed Escape or looked elsewhere.
-  list.addEventListener('click', ({ target }) => { if (target instanceof HTMLAnchorElement) list.open = false; });
-  document.addEventListener('pointerdown', ({ target }) => { if (!list.contains(target as Node)) list.open = false; });
+  list.addEventListener('click', ({ target }) => { if (target instanceof HTMLAnchorElement) fold(); });
+  document.addEventListener('pointerdown', ({ target }) => { if (!list.contains(target as Node)) fold(); });
   list.addEventListener('keydown', ({ key }) => {
-    if (key !== 'Escape' || !list.open) return;
+    if (key !== 'Escape' || !list.open || side.matches) return;
     list.open = false;
     summary.focus();
   });
+}
+
+/** Scrolls a long list until the link stands in it. */
+function keepInView(list: HTMLElement | null, link: HTMLElement | undefined): void {
+  if (list === null || link === undefined) return;
+  const [{ top, bottom }, room] = [link.getBoundingClientRect(), list.getBoundingClientRect()];
+  if (top < room.top || bottom > room.bottom) list.scrollTop += top - room.top - room.height / 3;
 }
 
 /** The choice holds until the page is left: it is not worth storing anything on the reader's disk. */
