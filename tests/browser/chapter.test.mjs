@@ -383,6 +383,24 @@ describe('the chapter', () => {
     });
   });
 
+  for (const width of [1280, 1440]) {
+    it(`keeps the contents beside the text, open, ${width} px wide`, async () => {
+      await reading(async (tab) => {
+        const contents = tab.locator('.contents');
+        const link = contents.getByRole('link', { name: 'The pose graph', exact: true });
+        await link.click();
+        await tab.waitForURL(/#pose-graph$/);
+        await tab.waitForFunction(() => document.querySelector('.contents [aria-current]')?.hash === '#pose-graph');
+        assert.ok(await link.isVisible(), 'it stays open once one has chosen');
+        const { x, width: wide } = await contents.boundingBox();
+        const clear = await tab.evaluate((edge) => [...document.querySelectorAll('main > section > *, main slam-widget, .masthead > *')]
+          .every((box) => box.getBoundingClientRect().width === 0 || box.getBoundingClientRect().left >= edge), x + wide);
+        assert.ok(clear, 'nothing stands under it');
+        assert.ok(await tab.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+      }, { viewport: { width, height: 900 } });
+    });
+  }
+
   it('prints its text and pictures without the buttons', async () => {
     await reading(async (tab) => {
       await tab.emulateMedia({ media: 'print' });

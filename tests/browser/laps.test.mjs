@@ -23,6 +23,8 @@ const errors = LEVELS.map((noise) => {
   return [1, 2].map((column) => numbers.map((lap) => lap[column]).sort((a, b) => a - b));
 });
 
+const wrong = LEVELS.map((noise) => Array.from({ length: SEEDS }, (_, at) => laps.drive(at + 1, noise)[4]).filter((many) => many > 0).length);
+
 const look = (tab) => tab.locator('#laps').scrollIntoViewIfNeeded();
 const done = (tab, frame = tab) => frame.waitForFunction(() => /^(\d+) of \1 seeds/.test(
   document.querySelector('.laps-count')?.textContent ?? ''));
@@ -46,6 +48,8 @@ describe('the thousand laps', () => {
       await worker;
       await done(tab);
       assert.deepEqual(await medians(tab), expected);
+      const marked = await tab.locator('.laps-grid canvas').evaluateAll((strips) => strips.map(({ dataset }) => Number(dataset.false)));
+      assert.deepEqual(marked, wrong.flatMap((many) => [0, many]), 'the front end alone takes no loop');
     });
   });
 

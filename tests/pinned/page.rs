@@ -4,6 +4,7 @@
 //! year of a citation, or marked as a count that the reader can make on the page. Any other digit or number
 //! word on the page fails.
 
+mod building;
 mod claims;
 pub mod document;
 mod drawings;

@@ -22,6 +22,14 @@ fn every_figure_of_the_teaching_pages_is_one_of_the_page() {
     }
 }
 
+/// Whether a page of the site has the widget.
+fn holds(page: &str, number: &str) -> bool {
+    let folder = if page == "index" { "" } else { "web/page/" };
+    let root = env!("CARGO_MANIFEST_DIR");
+    let html = std::fs::read_to_string(format!("{root}/../{folder}{page}.html"));
+    html.is_ok_and(|html| html.contains(&format!("<slam-widget name=\"w{number}\"")))
+}
+
 /// `[words](index.html?w=16.1&heading=60), says “quarter turn”`.
 #[test]
 fn every_link_of_a_script_sets_its_widget_and_has_the_verdict_that_it_says() {
@@ -29,9 +37,12 @@ fn every_link_of_a_script_sets_its_widget_and_has_the_verdict_that_it_says() {
     let mut widgets = Widgets::new();
     let mut wrong = Vec::new();
     let (mut links, mut verdicts) = (0, 0);
-    for link in script.split("](index.html?w=").skip(1) {
-        let (query, after) = link.split_once(')').expect("a link ends");
+    let parts: Vec<&str> = script.split(".html?w=").collect();
+    for pair in parts.windows(2) {
+        let (_, page) = pair[0].rsplit_once("](").expect("a link begins");
+        let (query, after) = pair[1].split_once(')').expect("a link ends");
         let (number, state) = query.split_once('&').expect("a link sets something");
+        assert!(holds(page, number), "w{number} is not on {page}.html");
         let outcome = widgets.set(&format!("w{number}"), state).outcome();
         links += 1;
         let after: Vec<&str> = after.split_whitespace().take(12).collect();

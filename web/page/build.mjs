@@ -46,8 +46,11 @@ await writeFile(path.join(outDir, 'slides.html'), slidesPage(scripts, frames));
 const specOf = await widgetSpecs();
 const template = await readFile(path.join(here, 'template.html'), 'utf8');
 const pictured = pages.map((page) => ({ ...page, html: addPictures(renderFormulas(withFrame(template, page, pages, places)), page.source) }));
-const { sketches, story, match } = await drawStills(outDir);
-const { names, metafiles } = await bundleScripts(await writeHashed('lap-story.json', story), match.answer);
+const { sketches, story, match, building } = await drawStills(outDir);
+const { names, metafiles } = await bundleScripts({
+  LAP_STORY_FILE: await writeHashed('lap-story.json', story),
+  BUILDING_FILE: await writeHashed('building.json', building),
+}, match.answer);
 names.set('page.css', await copyStyle());
 await Promise.all([...pictured.map(renderPage), copyKatex()]);
 await writeNotices(metafiles).catch(endWithOneSentence);
@@ -171,7 +174,7 @@ async function copyKatex() {
 }
 
 /** Writes the scripts of the page and of its workers; returns their names, and what esbuild took into them. */
-async function bundleScripts(storyFile, matchAnswer) {
+async function bundleScripts(stories, matchAnswer) {
   const bundle = async (source, define) => {
     const { outputFiles, metafile } = await build({
       entryPoints: [path.join(here, source)],
@@ -190,7 +193,7 @@ async function bundleScripts(storyFile, matchAnswer) {
   const worker = await bundle('laps/worker.ts', {});
   const workerFile = await writeHashed('laps-worker.js', worker.text);
   const page = await bundle('page.ts', {
-    LAP_STORY_FILE: JSON.stringify(`./${storyFile}`),
+    ...Object.fromEntries(Object.entries(stories).map(([name, file]) => [name, JSON.stringify(`./${file}`)])),
     MATCH_ANSWER: matchAnswer,
     PLACES: JSON.stringify(places),
     LAPS_WORKER_FILE: JSON.stringify(`./${workerFile}`),

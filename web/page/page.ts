@@ -5,6 +5,8 @@
 // @ts-expect-error: a file of its own beside this one, which has the module.
 import { core, coreModule } from './slam-widget.js';
 import type { Glue } from '../pkg/glue.js';
+import { BuildingFigure } from './building/figure';
+import type { Building } from './building/drawing';
 import { addCopyButtons } from './copy';
 import { DecideFigure } from './decide';
 import { type Places, leadOn } from './places';
@@ -17,6 +19,8 @@ import { SketchFigure, type SketchSchema } from './sketch';
 
 /** Set by the build: the lap that the page calls canonical, as the core has driven it. */
 declare const LAP_STORY_FILE: string;
+/** Set by the build: the simulated office. */
+declare const BUILDING_FILE: string;
 /** Set by the build: where the sweep belongs that the reader moves. */
 declare const MATCH_ANSWER: Answer;
 
@@ -38,7 +42,8 @@ letKeyboardScroll(document.querySelectorAll<HTMLElement>('.math, .scroll'));
 keepFromFiles();
 addCopyButtons(document.querySelectorAll<HTMLElement>('figure.listing'));
 letReaderMatch();
-void replayLap();
+void replay('#lap', LAP_STORY_FILE, (figure, story: Story) => new LapPlayer(figure, story));
+void replay('#building', BUILDING_FILE, (figure, story: Building) => new BuildingFigure(figure, story));
 driveLaps();
 whenNear(document.querySelectorAll(NEEDS_CORE), () => void useCore());
 
@@ -48,10 +53,11 @@ function letReaderMatch(): void {
 }
 
 /** The still picture stays if the story cannot be had. */
-async function replayLap(): Promise<void> {
-  const figure = document.querySelector<HTMLElement>('#lap');
-  const response = await fetch(new URL(LAP_STORY_FILE, import.meta.url)).catch(() => undefined);
-  if (figure !== null && response?.ok === true) new LapPlayer(figure, (await response.json()) as Story);
+async function replay<T>(name: string, file: string, play: (figure: HTMLElement, story: T) => unknown): Promise<void> {
+  const figure = document.querySelector<HTMLElement>(name);
+  if (figure === null) return;
+  const response = await fetch(new URL(file, import.meta.url)).catch(() => undefined);
+  if (response?.ok === true) play(figure, (await response.json()) as T);
 }
 
 /** Calls once, when the first of them comes near the screen. */
@@ -101,6 +107,11 @@ function followReading(): void {
   const list = document.querySelector<HTMLDetailsElement>('.contents details');
   const summary = list?.querySelector('summary');
   if (list === null || list === undefined || summary === null || summary === undefined) return;
+  // At the side it stays open; the page's style knows the width, too.
+  const side = matchMedia('(width >= 1280px)');
+  const fold = (): void => { list.open = side.matches; };
+  side.addEventListener('change', fold);
+  fold();
   const bar = document.createElement('div');
   bar.className = 'reading';
   document.body.append(bar);
@@ -116,21 +127,29 @@ function followReading(): void {
       if (link === here) link.setAttribute('aria-current', 'location');
       else link.removeAttribute('aria-current');
     }
+    if (side.matches) keepInView(list.parentElement, here);
     summary.textContent = here?.textContent ?? 'Contents';
-    list.parentElement?.classList.toggle('away', scrollTop < clientHeight / 2);
+    list.parentElement?.classList.toggle('away', !side.matches && scrollTop < clientHeight / 2);
   };
   const wake = (): void => { if (frame === 0) frame = requestAnimationFrame(show); };
   addEventListener('scroll', wake, { passive: true });
   addEventListener('resize', wake);
   show();
   // A sheet closes once one has chosen, pressed Escape or looked elsewhere.
-  list.addEventListener('click', ({ target }) => { if (target instanceof HTMLAnchorElement) list.open = false; });
-  document.addEventListener('pointerdown', ({ target }) => { if (!list.contains(target as Node)) list.open = false; });
+  list.addEventListener('click', ({ target }) => { if (target instanceof HTMLAnchorElement) fold(); });
+  document.addEventListener('pointerdown', ({ target }) => { if (!list.contains(target as Node)) fold(); });
   list.addEventListener('keydown', ({ key }) => {
-    if (key !== 'Escape' || !list.open) return;
+    if (key !== 'Escape' || !list.open || side.matches) return;
     list.open = false;
     summary.focus();
   });
+}
+
+/** Scrolls a long list until the link stands in it. */
+function keepInView(list: HTMLElement | null, link: HTMLElement | undefined): void {
+  if (list === null || link === undefined) return;
+  const [{ top, bottom }, room] = [link.getBoundingClientRect(), list.getBoundingClientRect()];
+  if (top < room.top || bottom > room.bottom) list.scrollTop += top - room.top - room.height / 3;
 }
 
 /** The choice holds until the page is left: it is not worth storing anything on the reader's disk. */

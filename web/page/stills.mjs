@@ -20,11 +20,14 @@ const CANONICAL_SEED = 12648430;
 export async function drawStills(outDir) {
   const core = await instantiate();
   const story = JSON.parse(core.lapStory(CANONICAL_SEED, 1));
-  await drawLap(story, outDir);
+  await drawStory('lap', story, outDir);
+  const building = await readFile(path.join(here, 'building/building.json'), 'utf8');
+  await drawStory('building', JSON.parse(building), outDir);
   const { drawing } = await load('match/drawing.ts');
   const scene = JSON.parse(core.matcherScene());
   return {
     sketches: await drawSketches(core, outDir),
+    building,
     story: JSON.stringify(withShortSweeps(story)),
     match: { svg: drawing(scene), answer: JSON.stringify({ truth: scene.truth, home: scene.home }) },
   };
@@ -40,10 +43,10 @@ function withShortSweeps(story) {
   return { ...story, ticks };
 }
 
-async function drawLap(story, outDir) {
-  const { still } = await load('lap/still.ts');
+async function drawStory(name, story, outDir) {
+  const { still } = await load(`${name}/still.ts`);
   for (const theme of ['light', 'dark']) {
-    await writeFile(path.join(outDir, 'pictures', `lap-${theme}.svg`), still(story, shades(theme)));
+    await writeFile(path.join(outDir, 'pictures', `${name}-${theme}.svg`), still(story, shades(theme)));
   }
 }
 

@@ -12,10 +12,12 @@ pub mod kinds;
 mod plan;
 mod recording;
 mod robots;
+mod story;
 mod trial;
 
 pub use kinds::{Kind, recorded, recorded_by};
 pub use plan::{BuildingConfig, BuildingPlan, Layout, Rooms};
 pub use recording::{Mounting, RecordedFrame, Recorder, Recording};
 pub use robots::Robot;
+pub use story::BuildingStory;
 pub use trial::{Trial, TrialLoops};

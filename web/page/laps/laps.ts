@@ -16,6 +16,8 @@ export class LapsFigure {
   readonly #link = document.createElement('a');
   readonly #about = document.createElement('span');
   readonly #seeds: number;
+  readonly #falseLaps: HTMLElement[] = [];
+  readonly #wrong = LEVELS.map(() => 0);
   #driven = 0;
 
   constructor(figure: HTMLElement, core: Core) {
@@ -39,7 +41,11 @@ export class LapsFigure {
         chosen: (lap) => this.#choose(lap),
       }));
       this.#strips.push(strips);
-      grid.append(text(`×${noise}`, 'laps-level'), ...strips.map(({ element }) => element));
+      const name = text(`×${noise}`, 'laps-level');
+      const wrong = text('', 'laps-false');
+      name.append(wrong);
+      this.#falseLaps.push(wrong);
+      grid.append(name, ...strips.map(({ element }) => element));
     });
     const ends = KINDS.map(() => text('', 'laps-axis'));
     for (const axis of ends) axis.append(...['0', '1', '≥ 2 m'].map((label) => text(label)));
@@ -57,7 +63,13 @@ export class LapsFigure {
   }
 
   #add(laps: Lap[]): void {
-    for (const lap of laps) for (const strip of this.#strips[lap.level] ?? []) strip.add(lap);
+    for (const lap of laps) {
+      for (const strip of this.#strips[lap.level] ?? []) strip.add(lap);
+      if (lap.wrong === 0) continue;
+      const wrong = (this.#wrong[lap.level] ?? 0) + 1;
+      this.#wrong[lap.level] = wrong;
+      (this.#falseLaps[lap.level] as HTMLElement).textContent = `${wrong} false`;
+    }
     this.#driven += 1;
     this.#tell();
   }

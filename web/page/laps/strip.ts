@@ -8,7 +8,9 @@ export type Kind = 'frontEnd' | 'withLoops';
 
 /** Where the axis ends, m; what is beyond stands at its end. */
 export const AXIS_END_M = 2;
-const HEIGHT_PX = 64;
+const HEIGHT_PX = 76;
+/** With loops the laps that took a false one stand in a row of their own at the bottom; the front end has none. */
+const FALSE_ROW_PX = 18;
 const DOT_PX = 2.6;
 /** Room for half a dot at either end. */
 const EDGE_PX = 6;
@@ -78,6 +80,11 @@ export class Strip {
     });
   }
 
+  /** With loops, a false one can be taken. */
+  #tookFalse({ wrong }: Lap): boolean {
+    return this.#kind === 'withLoops' && wrong > 0;
+  }
+
   #paint(): void {
     const { element } = this;
     const width = element.clientWidth;
@@ -91,13 +98,22 @@ export class Strip {
     const colors = INKS.map(ink);
     context.strokeStyle = ink('--faint');
     for (let at = 0; at <= AXIS_END_M; at += 0.5) line(context, this.#x(at, width), 0, HEIGHT_PX, 1);
-    for (const lap of this.#laps) {
+    const isFalse = (lap: Lap): boolean => this.#tookFalse(lap);
+    if (this.#kind === 'withLoops') {
+      context.beginPath();
+      context.moveTo(0, HEIGHT_PX - FALSE_ROW_PX);
+      context.lineTo(width, HEIGHT_PX - FALSE_ROW_PX);
+      context.stroke();
+    }
+    for (const lap of this.#laps.filter((one) => !isFalse(one))) {
       context.fillStyle = colors[Math.min(lap.closed, 3)] ?? '';
       const [x, y] = this.#place(lap, width);
       context.fillRect(x - DOT_PX / 2, y - DOT_PX / 2, DOT_PX, DOT_PX);
     }
     context.strokeStyle = ink('--laps-false');
-    for (const lap of this.#laps.filter(({ wrong }) => wrong > 0)) cross(context, this.#place(lap, width));
+    const wrong = this.#laps.filter(isFalse);
+    for (const lap of wrong) cross(context, this.#place(lap, width));
+    element.dataset['false'] = String(wrong.length);
     this.#paintSpread(context, width, ink('--ink'));
     if (this.#selected === undefined) return;
     const [x, y] = this.#place(this.#selected, width);
@@ -129,7 +145,9 @@ export class Strip {
   /** Seeds spread evenly over the height: the golden section never repeats itself. */
   #place(lap: Lap, width: number): [number, number] {
     const share = (lap.seed * 0.6180339887) % 1;
-    return [this.#x(lap[this.#kind], width), EDGE_PX + share * (HEIGHT_PX - 2 * EDGE_PX)];
+    const x = this.#x(lap[this.#kind], width);
+    const row = HEIGHT_PX - FALSE_ROW_PX;
+    return this.#tookFalse(lap) ? [x, row + 5 + share * (FALSE_ROW_PX - 10)] : [x, EDGE_PX + share * (row - 2 * EDGE_PX)];
   }
 
   #point({ offsetX, offsetY }: MouseEvent): Lap | undefined {

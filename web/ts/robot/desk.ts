@@ -6,6 +6,7 @@ import type { Widget } from '../../pkg/glue.js';
 import { saveBlob } from '../export';
 import { addressOf, openFile } from '../beside';
 import { LoadError, ModuleFile, StaleError } from '../module';
+import { LOGS } from './files';
 import { told, type Delivery, type Order, type Report } from './protocol';
 
 /** Set by the build: the program that maps logs, its worker, and the sample with its truth. */
@@ -15,8 +16,6 @@ declare const SAMPLE_FILES: readonly string[];
 
 /** Extensions of files that are a reference instead of a log. */
 const REFERENCES = ['.relations', '.tum'];
-/** The file types that the picker offers first; a recording of several files may have a description. */
-const LOGS = '.yaml,.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd,.g2o,.graph,.toro,.slam2d';
 /** The same for the log of a robot to be localized. */
 const SCANS = '.yaml,.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd';
 /** Extension of a session. */

@@ -2,6 +2,9 @@
 
 import { create } from '../dom';
 
+/** The file types that the picker offers first; a recording of several files may have a description. */
+export const LOGS = '.yaml,.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd,.g2o,.graph,.toro,.slam2d';
+
 /** The request of a dialog. */
 export interface Wanted {
   accept: string;

@@ -1,0 +1,75 @@
+// The page of the reader's own robot: it opens with a building, and a log takes its place.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { describe, it } from 'node:test';
+import * as h from './harness.mjs';
+
+const visit = h.visitor();
+const opened = (test, options = {}, more = {}) => visit('', test, { path: '/own-robot.html', options, ...more });
+const still = { reducedMotion: 'reduce' };
+const { worst_cm: worst } = JSON.parse(readFileSync(new URL('../../web/page/building/building.json', import.meta.url), 'utf8'));
+const live = (tab) => tab.waitForSelector('#building.live');
+const says = (tab) => tab.locator('.building-says').textContent();
+
+describe('the building of the own-robot page', () => {
+  for (const [width, height] of [[1440, 900], [1280, 680], [390, 844]]) {
+    it(`is drawn on the first screen, ${width}×${height}`, async () => {
+      await opened(async (tab) => {
+        await live(tab);
+        const picture = await tab.locator('.building-picture').boundingBox();
+        const slider = await tab.locator('#building input').boundingBox();
+        assert.ok(picture.height >= 250 && slider.y + slider.height <= height, `${picture.height}, ${slider.y}`);
+        const inked = await tab.locator('.building-picture canvas').evaluate((canvas) => {
+          const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+          return data.filter((value, at) => at % 4 === 3 && value > 0).length;
+        });
+        assert.ok(inked > 3000, `${inked} pixels are drawn`);
+        assert.ok(await tab.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+      }, { ...still, viewport: { width, height } });
+    });
+  }
+
+  it('rests at the finished map without motion, and names the error of each estimate by keys', async () => {
+    await opened(async (tab) => {
+      await live(tab);
+      const slider = tab.getByRole('slider', { name: 'From the wheels to the map' });
+      assert.equal(await slider.inputValue(), '2');
+      assert.ok((await says(tab)).includes(`${worst[2]} cm`));
+      await slider.press('Home');
+      assert.ok((await says(tab)).includes(`${Math.round(worst[0] / 100)} m`), await says(tab));
+      assert.equal(await slider.getAttribute('aria-valuetext'), await says(tab));
+    }, still);
+  });
+
+  it('plays from the wheels to the loops, and stops where the reader takes the slider', async () => {
+    await opened(async (tab) => {
+      await live(tab);
+      await tab.waitForFunction(() => document.querySelector('#building input').value === '0');
+      await tab.waitForFunction(() => Number(document.querySelector('#building input').value) > 0.5);
+      await tab.locator('#building input').press('End');
+      assert.equal(await tab.locator('[data-building="play"]').textContent(), 'Play');
+      assert.equal(await tab.locator('#building input').inputValue(), '2');
+    }, { reducedMotion: 'no-preference' });
+  });
+
+  it('gives way to a log that the reader picks', async () => {
+    await opened(async (tab) => {
+      await live(tab);
+      const chooser = tab.waitForEvent('filechooser');
+      await tab.getByRole('button', { name: /Drop your log here/ }).click();
+      await (await chooser).setFiles({ name: 'ring.log', mimeType: 'text/plain', buffer: readFileSync(`${h.DIST}/samples/ring.log`) });
+      await tab.waitForFunction(() => document.querySelector('#building').hidden
+        && document.querySelector('slam-widget[name="w16.10"]').getBoundingClientRect().top < 200);
+      assert.equal(await tab.locator('#building').isVisible(), false);
+    }, still);
+  });
+
+  it('stands as a picture without a script', async () => {
+    await opened(async (tab) => {
+      const picture = tab.locator('.building-picture img');
+      assert.ok(await picture.evaluate((img) => img.decode().then(() => img.naturalWidth > 100)));
+      assert.equal(await tab.locator('#building input').isVisible(), false);
+    }, { javaScriptEnabled: false });
+  });
+});

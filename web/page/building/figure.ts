@@ -1,0 +1,127 @@
+// The building with which the page of the reader's own robot opens: odometry's scribble becomes a map. A log that the
+// reader drops on it, or picks, goes to the widget below, which takes its place.
+
+import { chooseFiles, LOGS, takeDrops } from '../../ts/robot/files';
+import { type Ink } from '../lap/drawing';
+import { canvasSurface, type Inks } from '../lap/surfaces';
+import { type Building, draw, LOOPS, sayError } from './drawing';
+
+/** The replay, as seconds and places of the slider between which it moves evenly: first the map comes apart. */
+const REPLAY: [number, number][] = [[0, 2], [0.9, 0], [2, 0], [4.4, 1], [5.4, 1], [7.4, 2]];
+const INKS: Ink[] = ['prediction', 'posterior', 'ink', 'paper'];
+
+interface Mapper extends HTMLElement {
+  openFile(files: readonly File[]): void;
+}
+
+export class BuildingFigure {
+  readonly #figure: HTMLElement;
+  readonly #story: Building;
+  readonly #canvas = document.createElement('canvas');
+  readonly #slider: HTMLInputElement;
+  readonly #play: HTMLButtonElement;
+  #at = LOOPS;
+  #startedMs: number | undefined;
+  #frame = 0;
+
+  constructor(figure: HTMLElement, story: Building) {
+    this.#figure = figure;
+    this.#story = story;
+    this.#slider = figure.querySelector('input') as HTMLInputElement;
+    this.#play = figure.querySelector('[data-building="play"]') as HTMLButtonElement;
+    const picture = figure.querySelector('.building-picture') as HTMLElement;
+    this.#canvas.setAttribute('role', 'img');
+    this.#canvas.setAttribute('aria-label', picture.querySelector('img')?.alt ?? '');
+    picture.prepend(this.#canvas);
+    figure.classList.add('live');
+    this.#slider.addEventListener('input', () => {
+      this.#startedMs = undefined;
+      this.#show(Number(this.#slider.value));
+    });
+    this.#play.addEventListener('click', () => {
+      if (this.#startedMs === undefined) this.#start();
+      else this.#startedMs = undefined;
+      this.#show(this.#at);
+    });
+    new ResizeObserver(() => this.#paint()).observe(this.#canvas);
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.#paint());
+    new MutationObserver(() => this.#paint()).observe(document.documentElement, { attributeFilter: ['data-theme'] });
+    this.#takeLogs(picture);
+    this.#show(LOOPS);
+    if (!matchMedia('(prefers-reduced-motion: reduce)').matches) this.#startWhenSeen();
+  }
+
+  #startWhenSeen(): void {
+    const observer = new IntersectionObserver((entries) => {
+      if (entries.at(-1)?.isIntersecting !== true) return;
+      observer.disconnect();
+      this.#start();
+    }, { threshold: 0.3 });
+    observer.observe(this.#canvas);
+  }
+
+  #takeLogs(picture: HTMLElement): void {
+    const widget = document.querySelector<Mapper>('slam-widget[name="w16.10"]');
+    const take = (files: File[]): void => {
+      if (widget === null) return;
+      this.#startedMs = undefined;
+      this.#figure.hidden = true;
+      widget.openFile(files);
+      widget.scrollIntoView();
+    };
+    takeDrops(picture, take);
+    const choose = this.#figure.querySelector('[data-building="open"]');
+    choose?.addEventListener('click', () => chooseFiles(picture, { accept: LOGS, label: 'A log of your robot', several: true }, take));
+  }
+
+  #start(): void {
+    this.#startedMs = performance.now();
+    this.#wake();
+  }
+
+  #wake(): void {
+    if (this.#frame === 0) this.#frame = requestAnimationFrame((now) => this.#next(now));
+  }
+
+  #next(now: number): void {
+    this.#frame = 0;
+    if (this.#startedMs === undefined) return;
+    const seconds = Math.max(now - this.#startedMs, 0) / 1000;
+    const next = REPLAY.findIndex(([at]) => at > seconds);
+    if (next === -1) this.#startedMs = undefined;
+    else this.#wake();
+    const [[from, there], [to, goal]] = [REPLAY[next - 1] ?? [0, LOOPS], REPLAY[next] ?? [1, LOOPS]];
+    const share = next === -1 ? 1 : (seconds - from) / (to - from);
+    this.#show(there + share * share * (3 - 2 * share) * (goal - there));
+  }
+
+  #show(at: number): void {
+    this.#at = at;
+    this.#slider.value = String(at);
+    const says = wordsAt(this.#story, at);
+    this.#slider.setAttribute('aria-valuetext', says);
+    (this.#figure.querySelector('.building-says') as HTMLElement).textContent = says;
+    this.#play.textContent = this.#startedMs === undefined ? 'Play' : 'Pause';
+    this.#paint();
+  }
+
+  #paint(): void {
+    const { clientWidth: width, clientHeight: height } = this.#canvas;
+    const context = this.#canvas.getContext('2d');
+    if (width === 0 || context === null) return;
+    this.#canvas.width = Math.round(width * devicePixelRatio);
+    this.#canvas.height = Math.round(height * devicePixelRatio);
+    context.scale(devicePixelRatio, devicePixelRatio);
+    const style = getComputedStyle(this.#figure);
+    const inks = Object.fromEntries(INKS.map((ink) => [ink, style.getPropertyValue(`--${ink}`).trim()])) as Inks;
+    draw(this.#story, this.#at, canvasSurface(context, inks), width, height);
+  }
+}
+
+/** The estimate in words; between two of them no error is known. */
+export function wordsAt({ worst_cm: [wheels, walls, loops] }: Building, at: number): string {
+  if (at === 0) return `By the wheels alone: up to ${sayError(wheels)} off.`;
+  if (at === 1) return `Each scan laid on the walls before it: up to ${sayError(walls)} off.`;
+  if (at === LOOPS) return `Places known again, loops closed: up to ${sayError(loops)} off.`;
+  return at < 1 ? 'From the wheels to the walls …' : 'From the walls to the loops …';
+}
