@@ -81,6 +81,8 @@ export interface TheFullLapState {
   'own-gate': boolean;
   /** The robust kernel of your own loop: plain least squares, Huber's kernel from 1.345 standard deviations on, or dynamic covariance scaling from χ² 10 on. */
   kernel: 'quadratic' | 'huber' | 'dcs';
+  /** At a closed loop: left of the line the map before it, right of it the map after it. The line's place, as a share of the map's width. 0 to 1. */
+  wipe: number;
   /** The moment shown; a tick is a quarter of a second, the marks are loops, and beyond the end means the end. 0 to 2000. */
   t: number;
   /** Draws the whole lap into the plots, including what comes after the moment shown. */
@@ -357,8 +359,8 @@ export interface TurnOrMirrorImageState {
   more: boolean;
 }
 
-/** Wrong Jacobians, wrong residual: every parameter. */
-export interface WrongJacobiansWrongResidualState {
+/** One graph, solved in four ways: every parameter. */
+export interface OneGraphSolvedInFourWaysState {
   /** How much odometry contradicts the loop: at 0 all measurements agree. 0 to 10 °. */
   bias: number;
   /** Twice the exact one, or that of a perturbation on the other side of the pose. */
@@ -390,7 +392,7 @@ export interface WidgetStates {
   'w16.9': ComeBackTomorrowState;
   'w16.10': YourOwnRobotState;
   'w16.11': TurnOrMirrorImageState;
-  'w16.12': WrongJacobiansWrongResidualState;
+  'w16.12': OneGraphSolvedInFourWaysState;
 }
 
 /** The buttons and presets of each widget, for `press`. */
@@ -503,6 +505,7 @@ export interface SlamWidgetProperties {
   'own-gate': boolean | undefined;
   ownGate: boolean | undefined;
   kernel: 'quadratic' | 'huber' | 'dcs' | undefined;
+  wipe: number | undefined;
   t: number | undefined;
   future: boolean | undefined;
   'ndt-cell': number | undefined;

@@ -39,7 +39,7 @@ const fn choice(id: &'static str, label: &'static str) -> Choice {
 pub const PARAMS: &[&ParamSpec] = &[
     &ParamSpec {
         id: "colour",
-        label: "colour the way by",
+        label: "colour the path by",
         unit: "",
         kind: ParamKind::Choice {
             options: &[

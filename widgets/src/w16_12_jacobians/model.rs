@@ -7,7 +7,7 @@ mod settings;
 mod tables;
 mod words;
 
-use ch16_lab::jacobians::{Descent, Moment, descend, optimum, ring};
+use ch16_lab::jacobians::{Descent, Moment, Recipe, RingConfig, descend, optimum, ring};
 use kit::chart::{dragged_to, grab_now};
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
@@ -19,9 +19,11 @@ use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
-use pr_geom::SE2;
+use pr_geom::{SE2, math};
 
-use crate::w16_12_jacobians::spec::{CURVE, MOST_STEPS, PARAMS, SPEC, STEPS};
+use crate::w16_12_jacobians::spec::{
+    BIAS, BIAS_STEP_DEG, CURVE, MOST_BIAS_DEG, MOST_STEPS, PARAMS, SPEC, STEPS,
+};
 
 /// Names of the panels.
 pub mod panel {
@@ -90,6 +92,33 @@ impl WrongJacobians {
         self.played.place(&self.values, self.last() as f64) as usize
     }
 
+    /// Where the chain ends at the start, if each edge turns too little by that many degrees.
+    fn loose_end(&self, bias_deg: f64) -> [f64; 2] {
+        let config = RingConfig {
+            turn_bias_rad: bias_deg.to_radians(),
+            ..settings::ring(&self.values)
+        };
+        let start = descend(&ring(&config), Recipe::Exact, &self.solved.optimum, 0);
+        let end = start.moments[0].poses.last();
+        end.map_or([0.0; 2], |pose| [pose.x(), pose.y()])
+    }
+
+    /// Bends the chain until its loose end is as near to a spot as it gets.
+    fn bend(&mut self, at: [f64; 2]) {
+        let steps = (0..=(MOST_BIAS_DEG / BIAS_STEP_DEG) as u32).map(f64::from);
+        let away = |bias_deg: &f64| {
+            let [x, y] = self.loose_end(*bias_deg);
+            math::norm2(x - at[0], y - at[1])
+        };
+        let nearest = steps
+            .map(|step| step * BIAS_STEP_DEG)
+            .min_by(|a, b| away(a).total_cmp(&away(b)));
+        if let Some(bias_deg) = nearest.filter(|bias_deg| *bias_deg != self.values.get(&BIAS)) {
+            self.values.put(&BIAS, bias_deg);
+            self.solved = Solved::new(&self.values);
+        }
+    }
+
     /// A solver's graph at the current step, or at its last one.
     fn shown(&self, solver: usize) -> &Moment {
         let run = &self.solved.runs[solver];
@@ -148,7 +177,9 @@ impl Model for WrongJacobians {
         Some(
             self.played.timeline(
                 self.last() as f64,
+                // A mark ahead of the current step would give the answer away.
                 marks
+                    .filter(|(_, run)| run.steps() <= self.step())
                     .map(|(solver, run)| TimelineMark {
                         at: run.steps() as f64,
                         label: format!("{} ends", NAMES[solver]),
@@ -164,6 +195,16 @@ impl Model for WrongJacobians {
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        if panel == panel::GRAPHS {
+            let end = self.loose_end(self.values.get(&BIAS));
+            let off = [at[0] - end[0], at[1] - end[1]];
+            let is_near = self.step() == 0 && (0..2).all(|i| off[i].abs() <= reach[i]);
+            return is_near.then_some(Handle {
+                panel: panel::GRAPHS,
+                id: BIAS.id,
+                offset: off,
+            });
+        }
         if panel != panel::CURVE {
             return None;
         }
@@ -171,7 +212,9 @@ impl Model for WrongJacobians {
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
-        if at[0].is_finite() {
+        if handle.panel == panel::GRAPHS {
+            self.bend([at[0] - handle.offset[0], at[1] - handle.offset[1]]);
+        } else if at[0].is_finite() {
             self.played.pause();
             self.values
                 .put(&STEPS, dragged_to(handle, at).min(self.last() as f64));

@@ -9,6 +9,12 @@ use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 /// Largest number of steps.
 pub const MOST_STEPS: usize = 40;
 
+/// Largest contradiction of an edge, °.
+pub const MOST_BIAS_DEG: f64 = 10.0;
+
+/// Step of the contradiction, °.
+pub const BIAS_STEP_DEG: f64 = 0.5;
+
 /// The quantity of the curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Curve {
@@ -18,11 +24,15 @@ pub enum Curve {
     Chi2,
 }
 
-pub(super) static BIAS: Param<f64> =
-    Param::slider("bias", "each edge turns too little by", [0.0, 10.0], 0.5)
-        .unit("°")
-        .default(6.0)
-        .help("How much odometry contradicts the loop: at 0 all measurements agree.");
+pub(super) static BIAS: Param<f64> = Param::slider(
+    "bias",
+    "each edge turns too little by",
+    [0.0, MOST_BIAS_DEG],
+    BIAS_STEP_DEG,
+)
+.unit("°")
+.default(6.0)
+.help("How much odometry contradicts the loop: at 0 all measurements agree.");
 
 pub(super) static WRONG: OneOf<WrongJacobian> = OneOf::new(
     "wrong",
@@ -74,8 +84,8 @@ pub const PARAMS: &[&ParamSpec] = &[
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.12",
-    title: "Wrong Jacobians, wrong residual",
-    misconception: "An approximate Jacobian costs steps, and where residuals remain moves the answer to second order. A wrong residual moves it to first order, and converges as if all were well.",
+    title: "One graph, solved in four ways",
+    misconception: "That a solver converges does not say that it ends where χ² is least: bend the chain by its loose end, and see which of the four do.",
     notice: &[
         "With the exact Jacobian each step takes the distance down by some two powers of ten, until only rounding is left.",
         "The Jacobian that is twice too long goes half the way each time, and still ends at the optimum.",
@@ -93,7 +103,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "four",
             label: "Solve it in four ways",
-            help: "Three end alike, after few steps or many; the wrong residual is among the quick ones, and ends elsewhere.",
+            help: "From one start, step by step: watch where each of them ends.",
             set: &[STEPS.to(0.0)],
             then: &["play"],
         },

@@ -38,7 +38,9 @@ use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 use pr_sim::{Course, Sketch};
 
-use crate::w16_2_full_lap::spec::{EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WORLD};
+use crate::w16_2_full_lap::spec::{
+    EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WIPE, WORLD,
+};
 use flat::{Flat, Tool};
 use moment::Moment;
 use own::Own;
@@ -205,6 +207,7 @@ impl FullLap {
             picked: Part::chosen(&self.values),
             hovered: self.hovered,
             tied: self.own.tied,
+            wipe: self.values.get(&WIPE),
             drawn: drawing::drawn(self),
             ..Moment::new(&self.runs, self.tick(), share, seen_until, own)
         }
@@ -247,7 +250,7 @@ impl Model for FullLap {
             // A lap under way may be longer than the one on screen.
             "t" if self.laps.is_running() && value > self.last() => self.refresh_own(),
             "t" => self.go_to(self.tick()),
-            "speed" | "more" | "future" | "pick" | "number" => {}
+            "speed" | "more" | "future" | "pick" | "number" | "wipe" => {}
             "world" => self.world_chosen(before.get(&WORLD)),
             "edit" | "piece" | "piece-number" => {
                 self.end_stroke();
@@ -384,6 +387,10 @@ impl Model for FullLap {
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
         if self.stroke(handle, at) {
+            return;
+        }
+        if let Some(share) = hands::dragged_wipe(&self.moment(), handle, at) {
+            self.values.put(&WIPE, share);
             return;
         }
         if handle.panel == panel::MAP {

@@ -219,6 +219,10 @@ pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", MOST_TICKS)
     .default(FIRST_LOOP_TICK)
     .help("The moment shown; a tick is a quarter of a second, the marks are loops, and beyond the end means the end.");
 
+pub(super) static WIPE: Param<f64> = Param::slider("wipe", "before and after", [0.0, 1.0], 0.01)
+    .default(0.45)
+    .help("At a closed loop: left of the line the map before it, right of it the map after it. The line's place, as a share of the map's width.");
+
 pub(super) static FUTURE: Param<bool> = Param::switch("future", "show what is to come")
     .help("Draws the whole lap into the plots, including what comes after the moment shown.");
 
@@ -243,6 +247,7 @@ pub const PARAMS: &[&ParamSpec] = &[
     &OWN_TO.spec,
     &OWN_GATE.spec,
     &KERNEL.spec,
+    &WIPE.spec,
     &TICK.spec,
     &FUTURE.spec,
     &SPEED.spec,
@@ -562,6 +567,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
                 OWN_FROM.to(40),
                 OWN_TO.to(12),
                 OWN_GATE.to(false),
+                WIPE.to(0.2),
                 TICK.to(LAP_TICKS),
             ],
             then: &[],

@@ -162,3 +162,34 @@ fn before_the_first_step_neither_picture_nor_words_tell_the_end() {
         }
     }
 }
+
+#[test]
+fn the_chain_is_bent_by_its_loose_end_and_no_mark_is_ahead_of_the_step() {
+    let mut widget = WrongJacobians::default();
+    widget.set("steps", 0.0).unwrap();
+    assert!(
+        widget.timeline().unwrap().marks.is_empty(),
+        "a mark gives the answer away"
+    );
+    let end = |widget: &WrongJacobians| {
+        let layers = widget.scene().panels[0].layers.clone();
+        let handle = layers.iter().find_map(|layer| match layer {
+            kit::scene::Layer::Handle { at, .. } => Some(*at),
+            _ => None,
+        });
+        handle.expect("a handle at the loose end")
+    };
+    let wanted = {
+        let mut other = WrongJacobians::default();
+        other.set("steps", 0.0).unwrap();
+        other.set("bias", 2.5).unwrap();
+        end(&other)
+    };
+    let at = end(&widget);
+    let held = widget.grab("graphs", at, [0.1; 2]).expect("the loose end");
+    widget.drag(held, wanted);
+    assert_eq!(widget.values().number("bias"), 2.5);
+    assert_eq!(end(&widget), wanted);
+    widget.set("steps", 5.0).unwrap();
+    assert!(widget.grab("graphs", wanted, [0.1; 2]).is_none());
+}

@@ -6,7 +6,7 @@ use pr_geom::{SE2, math};
 
 use super::{NAMES, WrongJacobians, panel};
 
-use crate::w16_12_jacobians::spec::{CURVE, Curve};
+use crate::w16_12_jacobians::spec::{BIAS, CURVE, Curve};
 
 /// Tones and marks of the solvers.
 const TONES: [Tone; 4] = [
@@ -68,6 +68,15 @@ fn graphs(widget: &WrongJacobians) -> Panel {
         let now = places(&widget.shown(solver).poses);
         layers.push(line(now.clone(), Stroke::Solid, tone, 1.75));
         layers.push(Layer::points(now, mark, tone, 4.0));
+    }
+    if widget.step() == 0 {
+        let at = widget.loose_end(widget.values.get(&BIAS));
+        layers.push(Layer::Handle {
+            at,
+            tone: Tone::Ink,
+            label: "bend the chain: drag its loose end",
+        });
+        layers.push(Layer::label(at, "bend".to_owned(), 14.0));
     }
     let title = match widget.step() {
         0 => "All four start here; play to see them end".to_owned(),
@@ -155,6 +164,12 @@ fn curve(widget: &WrongJacobians) -> Panel {
         ));
         layers.push(Layer::line(line, Stroke::Solid, TONES[solver], 1.75));
     }
+    let exact = widget.solved.runs[0].moments.get(widget.step());
+    layers.push(Layer::Handle {
+        at: [now, exact.map_or(low, &of)],
+        tone: Tone::Ink,
+        label: "drag along the steps",
+    });
     let title = if is_distance {
         "Distance to the optimum"
     } else {
@@ -165,7 +180,12 @@ fn curve(widget: &WrongJacobians) -> Panel {
         title: title.to_owned(),
         weight: Weight::Half,
         aspect: Aspect::Free,
-        x: Axis::new("step", 0.0, widget.last().max(1) as f64),
+        // The handle at the first step is whole.
+        x: Axis::new(
+            "step",
+            -0.05 * widget.last().max(1) as f64,
+            widget.last().max(1) as f64,
+        ),
         y,
         layers,
         legend: Vec::new(),

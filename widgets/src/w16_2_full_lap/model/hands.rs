@@ -4,6 +4,7 @@ use ch16_lab::lap::edge_strain;
 use kit::model::Handle;
 use pr_geom::math;
 
+use super::found::find;
 use super::moment::Moment;
 use super::panel;
 use super::pick::Part;
@@ -17,6 +18,9 @@ const HOVER_SHARE: f64 = 0.03;
 
 /// The handle of a keyframe: dragging it creates a loop.
 const KEYFRAME: &str = "keyframe";
+
+/// The handle of the line between before and after.
+const WIPE: &str = "wipe";
 
 /// The part of the graph nearest to a point of a panel, within `reach` along each axis.
 pub fn part_at(moment: &Moment, name: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Part> {
@@ -50,7 +54,7 @@ fn places(moment: &Moment, name: &str) -> Vec<(Part, [f64; 2])> {
     let nodes = &moment.nodes;
     match name {
         panel::MAP => {
-            let at = |node: usize| [nodes[node].x(), nodes[node].y()];
+            let at = |node: usize| picture::shown_node(moment, node);
             let keyframes = (0..nodes.len()).map(|node| (Part::Keyframe(node), at(node)));
             let mut places: Vec<_> = keyframes.collect();
             places.extend((1..nodes.len()).map(|to| {
@@ -90,13 +94,36 @@ fn places(moment: &Moment, name: &str) -> Vec<(Part, [f64; 2])> {
     }
 }
 
-/// Grabs the selected keyframe.
+/// Grabs the selected keyframe, or the line between before and after.
 pub fn grab(moment: &Moment, name: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-    let Some(Part::Keyframe(node)) = moment.picked else {
+    if name != panel::MAP {
+        return None;
+    }
+    grab_keyframe(moment, at, reach).or_else(|| {
+        let off = at[0] - picture::divider(moment)?;
+        (off.abs() <= reach[0]).then_some(Handle {
+            panel: panel::MAP,
+            id: WIPE,
+            offset: [off, 0.0],
+        })
+    })
+}
+
+/// Where a drag puts the line between before and after, as a share of the map's width.
+pub fn dragged_wipe(moment: &Moment, handle: Handle, at: [f64; 2]) -> Option<f64> {
+    let bounds = picture::map_bounds(moment);
+    let share = (at[0] - handle.offset[0] - bounds.min[0]) / bounds.size()[0];
+    let is_held = handle.panel == panel::MAP && handle.id == WIPE && share.is_finite();
+    is_held.then(|| (100.0 * share.clamp(0.0, 1.0)).round() / 100.0)
+}
+
+fn grab_keyframe(moment: &Moment, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+    let Some(Part::Keyframe(node)) = moment.picked.filter(|part| find(moment, *part).is_some())
+    else {
         return None;
     };
-    let pose = moment.nodes.get(node).filter(|_| name == panel::MAP)?;
-    let off = [at[0] - pose.x(), at[1] - pose.y()];
+    let [x, y] = picture::shown_node(moment, node);
+    let off = [at[0] - x, at[1] - y];
     let is_near = off[0].abs() <= reach[0] && off[1].abs() <= reach[1];
     is_near.then_some(Handle {
         panel: panel::MAP,
@@ -115,8 +142,8 @@ pub fn dragged_ends(moment: &Moment, handle: Handle, at: [f64; 2]) -> Option<[us
     let [from, reach] = handle.offset;
     let from = from as usize;
     let away = |node: usize| {
-        let pose = &moment.nodes[node];
-        math::norm2(pose.x() - at[0], pose.y() - at[1])
+        let [x, y] = picture::shown_node(moment, node);
+        math::norm2(x - at[0], y - at[1])
     };
     let near = (0..moment.nodes.len())
         .map(|node| (node, away(node)))

@@ -51,6 +51,8 @@ pub struct Moment<'a> {
     pub hovered: Option<Part>,
     /// The keyframe at which an unfinished custom loop begins.
     pub tied: Option<usize>,
+    /// Where the map changes from before the loop to after it, as a share of its width.
+    pub wipe: f64,
     /// The drawing of the reader's own flat.
     pub drawn: Option<Drawn<'a>>,
 }
@@ -103,6 +105,7 @@ impl<'a> Moment<'a> {
             picked: None,
             hovered: None,
             tied: None,
+            wipe: 0.0,
             drawn: None,
         }
     }

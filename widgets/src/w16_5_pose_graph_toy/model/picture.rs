@@ -18,6 +18,8 @@ const MARGIN_M: f64 = 0.4;
 const LEAST_SIZE_M: [f64; 2] = [3.6, 2.2];
 /// Windings of a spring.
 const WINDINGS: usize = 7;
+/// Distance of the name of the pinned pose below it, m.
+const PINNED_BELOW_M: f64 = 0.22;
 /// Half the width of a spring, m.
 const SPRING_M: f64 = 0.06;
 
@@ -101,7 +103,16 @@ fn graph(toy: &PoseGraphToy) -> Panel {
         } else {
             name
         };
-        Layer::label([pose.x(), pose.y()], text, 12.0)
+        if pinned {
+            // Below the pose: its springs leave it to the side and upwards.
+            Layer::Text {
+                at: [pose.x(), pose.y() - PINNED_BELOW_M],
+                text,
+                tone: Tone::Ink,
+            }
+        } else {
+            Layer::label([pose.x(), pose.y()], text, 12.0)
+        }
     }));
     layers.extend(costs);
     let [x, y] = axes(toy);

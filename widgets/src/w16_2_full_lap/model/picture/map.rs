@@ -1,13 +1,13 @@
 //! The map panel: the world, the three estimates, the graph and its map.
 
-use ch16_lab::lap::{BuiltInWorld, LoopAttempt, OwnLoop};
+use ch16_lab::lap::{BuiltInWorld, LoopAttempt};
 use kit::scene::{Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::{SE2, math};
 use pr_sim::{Wall, World};
 
 use super::loop_style::LoopStyle;
 use super::shapes::{arc, xy};
-use super::{flat, parts};
+use super::{flat, parts, wipe};
 use crate::w16_2_full_lap::model::flat::extent;
 use crate::w16_2_full_lap::model::moment::{Drawn, Moment};
 use crate::w16_2_full_lap::model::panel;
@@ -17,9 +17,6 @@ const MARGIN_M: f64 = 0.4;
 
 /// Margin during editing: how far outside a stroke may go, m.
 const EDIT_MARGIN_M: f64 = 1.0;
-
-/// Length of the head of an arrow, m.
-const ARROW_HEAD_M: f64 = 0.09;
 
 /// The world at a tick.
 pub fn map(moment: &Moment) -> Panel {
@@ -35,13 +32,18 @@ pub fn map(moment: &Moment) -> Panel {
     if moment.runs.place() == Some(BuiltInWorld::Apartment) && moment.drawn.is_none() {
         layers.extend(rooms());
     }
+    // The walls give the scale; a pencil needs coordinates.
+    let axis = |label, i: usize| match moment.drawn.and_then(|drawn| drawn.tool) {
+        Some(_) => Axis::new(label, bounds.min[i], bounds.max[i]),
+        None => Axis::hidden(bounds.min[i], bounds.max[i]),
+    };
     Panel {
         id: panel::MAP,
         title: title(moment),
         weight: Weight::Main,
         aspect: Aspect::Equal,
-        x: Axis::new("x (m)", bounds.min[0], bounds.max[0]),
-        y: Axis::new("y (m)", bounds.min[1], bounds.max[1]),
+        x: axis("x (m)", 0),
+        y: axis("y (m)", 1),
         layers,
         legend: legend(moment),
         color_bar: None,
@@ -52,11 +54,11 @@ pub fn map(moment: &Moment) -> Panel {
 fn lap(moment: &Moment) -> Vec<Layer> {
     let mut layers = Vec::from(map_points(moment));
     layers.extend(paths(moment));
-    layers.extend(history(moment));
     layers.extend(graph(moment));
     layers.extend(robots(moment));
     layers.extend(parts::looked_at(moment));
     layers.extend(attempt_now(moment));
+    layers.extend(wipe::layers(moment));
     layers
 }
 
@@ -72,7 +74,16 @@ fn title(moment: &Moment) -> String {
     }
     let mut words = moment.runs.place_label().to_owned();
     words[..1].make_ascii_uppercase();
-    format!("{words} after tick {}", moment.tick)
+    let words = format!("{words} after tick {}", moment.tick);
+    let (moved, name) = match (moment.own, moment.attempt) {
+        (Some(own), _) => (own.attempt.effect, "your loop"),
+        (None, Some(attempt)) => (attempt.effect, "the loop"),
+        (None, None) => (None, ""),
+    };
+    match moved {
+        Some(moved) => format!("{words}: {name} moves it by {:.2} m", moved.max_shift_m),
+        None => words,
+    }
 }
 
 /// The world with a margin, and the extent of the estimates except in the Apartment, whose axes are fixed.
@@ -141,13 +152,16 @@ fn map_points(moment: &Moment) -> [Layer; 2] {
     let turn = moment.runs.graph.turn_node();
     let mut out = Vec::new();
     let mut back = Vec::new();
-    for (node, pose) in moment.nodes.iter().enumerate() {
-        let pass = if turn.is_some_and(|turn| node > turn) {
-            &mut back
-        } else {
-            &mut out
-        };
-        pass.extend(moment.runs.sweep_at(node, *pose));
+    for (poses, before) in [(&moment.old_nodes, true), (&moment.nodes, false)] {
+        for (node, pose) in poses.iter().enumerate() {
+            let pass = if turn.is_some_and(|turn| node > turn) {
+                &mut back
+            } else {
+                &mut out
+            };
+            let sweep = moment.runs.sweep_at(node, *pose);
+            pass.extend(sweep.filter(|at| wipe::is_before(moment, *at) == before));
+        }
     }
     [
         Layer::points(out, Mark::Dot, Tone::Measurement, 1.2),
@@ -182,7 +196,8 @@ fn paths(moment: &Moment) -> [Layer; 3] {
 
 /// Nodes, the factors between neighbours, and the factors of the loops closed so far.
 fn graph(moment: &Moment) -> Vec<Layer> {
-    let nodes: Vec<_> = moment.nodes.iter().map(xy).collect();
+    let nodes = moment.nodes.iter().map(xy);
+    let nodes: Vec<_> = nodes.filter(|at| !wipe::is_before(moment, *at)).collect();
     let mut layers = parts::edges(moment);
     layers.extend(moment.loops_tried().flat_map(|attempt| {
         let arc = arc(moment, attempt);
@@ -207,38 +222,6 @@ fn loop_layers(attempt: &LoopAttempt, arc: Vec<[f64; 2]>, top: [f64; 2]) -> [Lay
         Layer::line(arc, look.stroke, look.tone, 2.5),
         Layer::points(vec![top], look.mark, look.tone, 4.5),
     ]
-}
-
-/// At a closed loop, of the lap or custom: the old positions of the nodes, and the displacement of each.
-fn history(moment: &Moment) -> Vec<Layer> {
-    if !moment.has_moved() {
-        return Vec::new();
-    }
-    let old: Vec<_> = moment.old_nodes.iter().map(xy).collect();
-    let moved = old.iter().zip(moment.nodes.iter().map(xy));
-    vec![
-        Layer::segments(
-            moved.flat_map(|(old, new)| arrow(*old, new)).collect(),
-            Stroke::Solid,
-            Tone::Prior,
-            1.5,
-        ),
-        Layer::points(old, Mark::Circle, Tone::Prior, 3.5),
-    ]
-}
-
-/// A line with a head, as segments; without the head if it would be longer than the line.
-fn arrow(from: [f64; 2], to: [f64; 2]) -> Vec<[[f64; 2]; 2]> {
-    let along = [to[0] - from[0], to[1] - from[1]];
-    let length = math::norm2(along[0], along[1]);
-    let mut segments = vec![[from, to]];
-    if length > ARROW_HEAD_M {
-        let [x, y] = along.map(|value| value / length * ARROW_HEAD_M);
-        for aside in [-0.5, 0.5] {
-            segments.push([to, [to[0] - x - aside * y, to[1] - y + aside * x]]);
-        }
-    }
-    segments
 }
 
 /// The label of the loop tried in this tick.
@@ -275,11 +258,10 @@ fn robots(moment: &Moment) -> [Layer; 4] {
 
 fn legend(moment: &Moment) -> Vec<LegendEntry> {
     let mut legend = vec![
-        LegendEntry::line("walls", Tone::Ink, Stroke::Solid),
         LegendEntry::marked_line("truth", Tone::Truth, Mark::Plus, Stroke::Dashed),
         LegendEntry::marked_line("odometry", Tone::Prediction, Mark::Triangle, Stroke::Solid),
         LegendEntry::marked_line(
-            "front end alone; nodes before a loop",
+            "front end alone; graph before the loop",
             Tone::Prior,
             Mark::Circle,
             Stroke::Solid,
@@ -293,14 +275,16 @@ fn legend(moment: &Moment) -> Vec<LegendEntry> {
         LegendEntry::mark("map, way out", Tone::Measurement, Mark::Dot),
         LegendEntry::mark("map, way back", Tone::Revisit, Mark::Cross),
         LoopStyle::ACCEPTED.entry("loop accepted"),
-        LoopStyle::REFUSED.entry("loop refused"),
     ];
+    if moment.loops_tried().any(|attempt| !attempt.accepted()) || moment.own.is_some() {
+        legend.push(LoopStyle::REFUSED.entry("loop refused"));
+    }
+    if parts::is_any_past_the_gate(moment) {
+        let label = "strained: χ² past the gate";
+        legend.push(LegendEntry::line(label, parts::STRAINED, Stroke::Solid));
+    }
     if moment.drawn.as_ref().is_some_and(is_planned) {
         legend.push(flat::legend());
-    }
-    if moment.own.is_some_and(OwnLoop::is_closed) {
-        let wide = "wide: strained by your loop";
-        legend.push(LegendEntry::line(wide, Tone::Posterior, Stroke::Solid));
     }
     legend
 }

@@ -1,11 +1,11 @@
 //! The selected part of the graph and the custom loop, on the map.
 
-use ch16_lab::lap::{OwnLoop, RecordedEdge, edge_strain};
+use ch16_lab::lap::{RecordedEdge, edge_strain};
 use kit::scene::{Layer, Mark, Stroke, Tone};
-use pr_geom::math;
 
 use super::loop_style::LoopStyle;
 use super::shapes::{arc, xy};
+use super::wipe::{clipped, shown_node};
 use crate::w16_2_full_lap::model::found::{Found, find};
 use crate::w16_2_full_lap::model::moment::Moment;
 use crate::w16_2_full_lap::model::pick::Part;
@@ -14,27 +14,44 @@ use crate::w16_2_full_lap::model::words::{ends, part_label};
 /// Distance of text from its mark, in pixels.
 const CLEAR_PX: f32 = 12.0;
 
-/// Line widths of edges by their strain √χ²: the upper limit in standard deviations, and the width in pixels.
-const WIDTHS: [(f64, f32); 4] = [(1.0, 1.0), (2.0, 3.0), (4.0, 5.0), (f64::INFINITY, 7.5)];
+/// The colour of an edge whose χ² is past the gate.
+pub const STRAINED: Tone = Tone::Class(2);
 
-/// The edges between neighbours; wide if a custom loop strains them.
+/// Looks of edges by their χ²: its upper limit as a share of the gate's, the colour, and the width in pixels.
+const LOOKS: [(f64, Tone, f32); 3] = [
+    (0.25, Tone::Posterior, 1.5),
+    (1.0, Tone::Posterior, 3.5),
+    (f64::INFINITY, STRAINED, 6.0),
+];
+
+/// The edges between neighbours, each with its look; by χ² against the gate.
+fn neighbours<'a>(moment: &'a Moment) -> impl Iterator<Item = (usize, &'a RecordedEdge)> {
+    let chain = moment.edges().filter(|edge| edge.to == edge.from + 1);
+    chain.map(|edge| {
+        let share = edge_strain(edge, &moment.nodes).chi2 / moment.runs.gate_chi2();
+        let look = LOOKS.iter().position(|(most, ..)| share <= *most);
+        (look.unwrap_or(0), edge)
+    })
+}
+
+/// Whether an edge between neighbours is strained past the gate.
+pub fn is_any_past_the_gate(moment: &Moment) -> bool {
+    neighbours(moment).any(|(look, _)| look == LOOKS.len() - 1)
+}
+
+/// The edges between neighbours after the loop, wider and in another colour the more they are strained.
 pub fn edges(moment: &Moment) -> Vec<Layer> {
-    let strained = moment.own.is_some_and(OwnLoop::is_closed);
-    let nodes: Vec<_> = moment.nodes.iter().map(xy).collect();
-    let ends = |edge: &RecordedEdge| [nodes[edge.from], nodes[edge.to]];
-    let neighbours = || moment.edges().filter(|edge| edge.to == edge.from + 1);
-    let mut widths = vec![Vec::new(); WIDTHS.len()];
-    for edge in neighbours() {
-        let sigmas = math::sqrt(edge_strain(edge, &moment.nodes).chi2);
-        let class = WIDTHS.iter().position(|(most, _)| sigmas <= *most);
-        let class = class.filter(|_| strained).unwrap_or(0);
-        widths[class].push(ends(edge));
+    let at = |node: usize| xy(&moment.nodes[node]);
+    let mut by_look = vec![Vec::new(); LOOKS.len()];
+    for (look, edge) in neighbours(moment) {
+        by_look[look].push([at(edge.from), at(edge.to)]);
     }
-    let layers = widths.into_iter().zip(WIDTHS);
+    let layers = by_look.into_iter().zip(LOOKS);
     layers
         .filter(|(segments, _)| !segments.is_empty())
-        .map(|(segments, (_, width_px))| {
-            Layer::segments(segments, Stroke::Solid, Tone::Posterior, width_px)
+        .map(|(segments, (_, tone, width_px))| {
+            let segments = clipped(moment, segments, false);
+            Layer::segments(segments, Stroke::Solid, tone, width_px)
         })
         .collect()
 }
@@ -43,7 +60,7 @@ pub fn edges(moment: &Moment) -> Vec<Layer> {
 pub fn looked_at(moment: &Moment) -> Vec<Layer> {
     let mut layers = Vec::new();
     if let Some(node) = moment.tied.filter(|node| *node < moment.nodes.len()) {
-        let at = xy(&moment.nodes[node]);
+        let at = shown_node(moment, node);
         layers.push(Layer::points(
             vec![at],
             Mark::Circle,
@@ -66,7 +83,7 @@ fn part_layers(moment: &Moment, part: Part, is_picked: bool) -> Vec<Layer> {
     let line = |points| Layer::line(points, Stroke::Solid, Tone::Ink, 3.0);
     let at = match find(moment, part) {
         Some(Found::Keyframe(node)) => {
-            let at = xy(&moment.nodes[node]);
+            let at = shown_node(moment, node);
             layers.push(if is_picked {
                 Layer::Handle {
                     at,
@@ -79,7 +96,7 @@ fn part_layers(moment: &Moment, part: Part, is_picked: bool) -> Vec<Layer> {
             at
         }
         Some(Found::Edge(edge)) => {
-            let (a, b) = (xy(&moment.nodes[edge.from]), xy(&moment.nodes[edge.to]));
+            let (a, b) = (shown_node(moment, edge.from), shown_node(moment, edge.to));
             layers.push(line(vec![a, b]));
             [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
         }

@@ -13,6 +13,8 @@ fn ends(model: &FullLap) -> [f64; 3] {
 #[test]
 fn the_settings_define_the_loop_and_the_picture_shows_where_its_error_goes() {
     let mut model = at(&WRONG);
+    // The whole map after the loop.
+    set(&mut model, "wipe", 0.0);
     let words = model.outcome();
     assert_eq!(words.standing, Standing::Bad);
     assert_eq!(words.verdict, "your wrong loop accepted");
@@ -25,9 +27,9 @@ fn the_settings_define_the_loop_and_the_picture_shows_where_its_error_goes() {
     assert!(fact(&model, "own_chi2_after") < fact(&model, "own_chi2_before"));
     let scene = model.scene();
     let wide = scene.panels[0].layers.iter().any(|layer| {
-        matches!(layer, Layer::Segments { tone: Tone::Posterior, width_px, .. } if *width_px > 2.0)
+        matches!(layer, Layer::Segments { tone: Tone::Class(2), segments, .. } if segments.len() > 5)
     });
-    assert!(wide, "strained edges are wide");
+    assert!(wide, "edges past the gate have a colour of their own");
     assert_eq!(
         model.runs.graph.poses_at(129).len(),
         shown_nodes(&model).len()

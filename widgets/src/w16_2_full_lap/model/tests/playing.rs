@@ -32,7 +32,7 @@ fn before_at_and_after_stay_with_their_loop_and_next_goes_round() {
 
 #[test]
 fn at_a_loop_the_nodes_move_from_the_old_poses_to_the_new_ones() {
-    let mut model = FullLap::default();
+    let mut model = at(&[("wipe", 0.0)]);
     let settled = shown_nodes(&model);
     press(&mut model, "at");
     let old = shown_nodes(&model);
@@ -260,11 +260,36 @@ fn the_outward_and_the_return_path_have_two_shades() {
 }
 
 #[test]
-fn arrows_show_how_a_closed_loop_moved_the_history() {
-    let model = at(&[("t", 92.0)]);
-    let scene = model.scene();
-    let heads = scene.panels[0].layers.iter().any(|layer| {
-        matches!(layer, Layer::Segments { segments, tone: Tone::Prior, .. } if segments.len() > 30)
+fn left_of_the_line_the_map_is_that_before_the_loop_and_right_of_it_that_after() {
+    let mut model = at(&[("t", 92.0), ("wipe", 0.0)]);
+    let after = shown_nodes(&model);
+    set(&mut model, "wipe", 1.0);
+    assert!(shown_nodes(&model).is_empty(), "all of it is before");
+    let map = &model.scene().panels[0];
+    let before = map.layers.iter().find_map(|layer| match layer {
+        Layer::Points {
+            points,
+            tone: Tone::Prior,
+            ..
+        } => Some(points.clone()),
+        _ => None,
     });
-    assert!(heads, "a line and a head for each node that moved");
+    let before = before.expect("the old nodes");
+    assert_eq!(before.len(), after.len());
+    assert_ne!(before, after);
+    // A drag moves the line by the pointer's way, over the whole width and not beyond.
+    set(&mut model, "wipe", 0.5);
+    let (low, high) = (map.x.min, map.x.max);
+    let middle = 0.5 * (low + high);
+    let held = model.grab("map", [middle + 0.05, 8.0], [0.18; 2]);
+    let held = held.expect("the line is held anywhere along it");
+    model.drag(held, [low + 0.25 * (high - low) + 0.05, 2.0]);
+    assert_eq!(model.values().number("wipe"), 0.25);
+    let line = low + 0.25 * (high - low);
+    assert!(shown_nodes(&model).iter().all(|at| at[0] >= line));
+    model.drag(held, [high + 9.0, 2.0]);
+    assert_eq!(model.values().number("wipe"), 1.0);
+    // Without a closed loop there is no line.
+    set(&mut model, "t", 60.0);
+    assert!(model.grab("map", [high, 8.0], [0.18; 2]).is_none());
 }

@@ -330,6 +330,7 @@ fn the_corners_of_the_settings_have_a_picture_at_every_tick() {
         for noise in [0.25, 4.0] {
             for gate in [0.9, 0.999] {
                 let mut model = at(&[("seed", seed), ("noise", noise), ("gate", gate)]);
+                set(&mut model, "wipe", 0.0);
                 assert_eq!(model.last(), crate::w16_2_full_lap::spec::LAP_TICKS);
                 for tick in 0..=model.runs.ticks() {
                     set(&mut model, "t", tick as f64);
