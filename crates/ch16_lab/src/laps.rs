@@ -241,14 +241,24 @@ fn is_at_first_wardrobe(point: &Point2<f64>) -> bool {
         && (y - margin_m..=y + deep + margin_m).contains(&point.y)
 }
 
-fn with_wardrobe(world: &World, [x, y]: [f64; 2]) -> World {
+/// The corners of the wardrobe before its move and after it, world frame, m.
+#[must_use]
+pub fn wardrobe_corners() -> [[Point2<f64>; 4]; 2] {
+    WARDROBE_AT.map(corners)
+}
+
+fn corners([x, y]: [f64; 2]) -> [Point2<f64>; 4] {
     let [wide, deep] = WARDROBE_M;
-    let corners = [
+    [
         Point2::new(x, y),
         Point2::new(x + wide, y),
         Point2::new(x + wide, y + deep),
         Point2::new(x, y + deep),
-    ];
+    ]
+}
+
+fn with_wardrobe(world: &World, at: [f64; 2]) -> World {
+    let corners = corners(at);
     let sides = (0..4).map(|k| Wall {
         start: corners[k],
         end: corners[(k + 1) % 4],

@@ -5,7 +5,9 @@
 //! influence depends on how long pairs are treated: full weight, rejection, or reduced weight.
 
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
-use ch16_slam2d::icp::{Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace};
+use ch16_slam2d::icp::{
+    Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace, Pair, correspondences,
+};
 use nalgebra::Point2;
 use pr_geom::{SE2, math, sort_numbers};
 use pr_sim::{Rng, Wall, World};
@@ -19,6 +21,8 @@ pub const BOX_SIDE_M: f64 = 0.4;
 pub const SWEEP_POINTS: usize = 180;
 
 const RANGE_SIGMA_M: f64 = 0.012;
+/// Five standard deviations of the range noise.
+const NOISE_MARGIN_M: f64 = 5.0 * RANGE_SIGMA_M;
 const MAX_RANGE_M: f64 = 6.0;
 /// Rays per point of a sweep that classify box and walls.
 const RAYS_PER_POINT: usize = 4;
@@ -166,6 +170,26 @@ impl BoxScene {
         Icp::new(&self.source, &self.map, start, config, workspace).run()
     }
 
+    /// The pairs of a registration with the source at `target_from_source`.
+    #[must_use]
+    pub fn pairs(&self, target_from_source: SE2, config: &IcpConfig) -> Vec<Pair> {
+        correspondences(&self.source, &self.map, target_from_source, config)
+    }
+
+    /// Whether a point of the source lies on the box.
+    #[must_use]
+    pub fn is_on_box(&self, source_index: usize) -> bool {
+        let [_, outline] = &self.boxes;
+        let point = Self::truth().transform(self.source.point(source_index));
+        let within = |of: fn(&Point2<f64>) -> f64| {
+            let ends = outline.iter().map(of);
+            let low = ends.clone().fold(f64::INFINITY, f64::min) - NOISE_MARGIN_M;
+            let high = ends.fold(f64::NEG_INFINITY, f64::max) + NOISE_MARGIN_M;
+            (low..high).contains(&of(&point))
+        };
+        within(|p| p.x) && within(|p| p.y)
+    }
+
     /// Error of the translation of a registered `target_from_source`, m, in the target's frame.
     #[must_use]
     pub fn error_m(found: &SE2) -> [f64; 2] {
@@ -301,6 +325,13 @@ mod tests {
                 assert_eq!(count, (share * SWEEP_POINTS as f64).round() as usize);
             }
         }
+    }
+
+    #[test]
+    fn the_points_on_the_box_are_as_many_as_its_share() {
+        let scene = BoxScene::new(&BoxConfig::default());
+        let count = (0..scene.source().len()).filter(|k| scene.is_on_box(*k));
+        assert_eq!(count.count(), SWEEP_POINTS / 5);
     }
 
     #[test]

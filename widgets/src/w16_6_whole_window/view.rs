@@ -13,7 +13,7 @@ pub struct WindowView;
 impl View for WindowView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
-        // Three panels below each other have to fit two screens of a phone.
+        // On a phone the sweeps, the bounds and the control fit one screen without the positions.
         let most = if width >= SIDE_BY_SIDE { 330.0 } else { 240.0 };
         let sweeps = slot(panel::SWEEPS, PlotHeight::Natural { most });
         let places = slot(panel::PLACES, PlotHeight::Natural { most });
@@ -31,14 +31,12 @@ impl View for WindowView {
                 Row::new(&[bounds]),
             ]
         } else {
-            [sweeps, places, bounds]
-                .iter()
-                .map(|slot| Row::new(&[*slot]))
-                .collect()
+            vec![Row::new(&[sweeps]), Row::new(&[bounds])]
         };
-        Arrangement {
-            stage,
-            below: vec![Row::new(&[gap])],
+        let mut below = vec![Row::new(&[gap])];
+        if width < SIDE_BY_SIDE {
+            below.insert(0, Row::new(&[places]));
         }
+        Arrangement { stage, below }
     }
 }

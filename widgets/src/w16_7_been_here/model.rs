@@ -1,5 +1,6 @@
 //! The state of the comparison and its logic.
 
+mod hands;
 mod lap;
 mod picture;
 mod settings;
@@ -18,26 +19,31 @@ use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
 use crate::w16_7_been_here::spec::{
-    CALLED, LAST_OLD, MOST_ALIKE, MOST_KEYFRAMES, NEWEST, OLDER, PARAMS, SPEC,
+    CALLED, LAST_OLD, MOST_ALIKE, MOST_KEYFRAMES, NEWEST, OLDER, PARAMS, SPEC, TURN,
 };
 use lap::{Places, Work};
 
 /// Names of the panels.
 pub mod panel {
+    /// The two robots with their views.
+    pub const FLAT: &str = "flat";
+    /// The distances of all pairs, and the threshold.
+    pub const SCORES: &str = "scores";
+    /// The descriptors of the two views.
+    pub const LOOKS: &str = "looks";
     /// All pairs.
     pub const MATRIX: &str = "matrix";
-    /// The two scans of a pair.
-    pub const SCANS: &str = "scans";
-    /// Their descriptors.
-    pub const LOOKS: &str = "looks";
     /// Precision over recall.
     pub const CURVES: &str = "curves";
-    /// The positions of the two keyframes.
-    pub const MAP: &str = "map";
 }
 
 /// Keyframes a second at normal speed.
-const KEYFRAMES_PER_S: f64 = 5.0;
+const KEYFRAMES_PER_S: f64 = 2.5;
+
+/// While it plays, the newer view turns from here to its best fit at each keyframe, degrees.
+const TURNS_FROM_DEG: f64 = -90.0;
+/// Part of a keyframe's time in which it turns.
+const TURNING_PART: f64 = 0.6;
 
 /// The model of the widget.
 pub struct BeenHere {
@@ -104,7 +110,8 @@ impl BeenHere {
         let places = self.places.as_ref()?;
         let new = self.newest();
         let asked = self.values.get(&OLDER);
-        let old = if asked == MOST_ALIKE {
+        // At each keyframe of a run the robot looks for it among all earlier ones.
+        let old = if asked == MOST_ALIKE || self.played.is_playing() {
             places
                 .most_alike(self.detector(), new)
                 .or_else(|| new.checked_sub(1))?
@@ -112,6 +119,35 @@ impl BeenHere {
             (asked as usize).min(new.checked_sub(1)?)
         };
         Some([old, new])
+    }
+
+    /// How far the newer view is turned away from its best fit on screen, degrees.
+    fn turned_away_deg(&self) -> f64 {
+        let part = (self.played.part() / TURNING_PART).min(1.0);
+        let is_turning = self.played.is_playing() && part < 1.0;
+        let still = self.values.get(&TURN);
+        if is_turning {
+            still + TURNS_FROM_DEG * (1.0 - part)
+        } else {
+            still
+        }
+    }
+
+    /// Selects a pair.
+    fn select(&mut self, [old, new]: [usize; 2]) {
+        self.played.pause();
+        self.values.put(&NEWEST, new as f64);
+        self.values
+            .put(&OLDER, (old.min(new - 1) as f64).min(LAST_OLD));
+    }
+
+    /// The newest keyframe whose pairs are on screen: while it plays, those of later ones are unknown.
+    fn known(&self) -> usize {
+        if self.played.is_playing() {
+            self.newest()
+        } else {
+            self.last()
+        }
     }
 
     /// The threshold of a detector.
@@ -209,27 +245,16 @@ impl Model for BeenHere {
         tables::shown(self)
     }
 
-    fn grab(&self, panel: &str, at: [f64; 2], _reach: [f64; 2]) -> Option<Handle> {
-        // Every spot of the matrix is a pair.
-        let pair = picture::pair_at(self, at)?;
-        (panel == panel::MATRIX && pair[1] > 0).then_some(Handle {
-            panel: panel::MATRIX,
-            id: "pair",
-            offset: [0.0, 0.0],
-        })
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        hands::grab(self, panel, at, reach)
     }
 
-    fn drag(&mut self, _handle: Handle, at: [f64; 2]) {
-        let Some([old, new]) = picture::pair_at(self, at) else {
-            return;
-        };
-        if new == 0 {
-            return;
-        }
-        self.played.pause();
-        self.values.put(&NEWEST, new as f64);
-        self.values
-            .put(&OLDER, (old.min(new - 1) as f64).min(LAST_OLD));
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        hands::drag(self, handle, at);
+    }
+
+    fn tap(&mut self, panel: &str, at: [f64; 2], reach: [f64; 2]) {
+        hands::tap(self, panel, at, reach);
     }
 
     fn set_motion(&mut self, motion: Motion) {

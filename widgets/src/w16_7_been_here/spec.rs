@@ -14,6 +14,9 @@ pub const MOST_KEYFRAMES: f64 = 400.0;
 /// The last keyframe that can be selected for comparison: a lap of the ring has about a hundred.
 pub const LAST_OLD: f64 = 120.0;
 
+/// Width of a sector of Scan Context.
+pub const SECTOR_DEG: f64 = 6.0;
+
 /// The value of `old` that selects the most similar keyframe.
 pub const MOST_ALIKE: f64 = -1.0;
 
@@ -59,8 +62,17 @@ pub(super) static OLDER: Param<f64> = Param::slider(
     [MOST_ALIKE, LAST_OLD],
     1.0,
 )
-.default(MOST_ALIKE)
+.default(18.0)
 .help("The older keyframe that is compared with the newest one; −1 is the most similar one.");
+
+pub(super) static TURN: Param<f64> = Param::slider(
+    "turn",
+    "turned away from the best fit",
+    [-180.0, 180.0],
+    SECTOR_DEG,
+)
+.unit("°")
+.help("How far the newer view is turned away from the heading at which Scan Context fits best.");
 
 pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
 
@@ -74,6 +86,7 @@ pub const PARAMS: &[&ParamSpec] = &[
     &DETECTOR.spec,
     &WORLD.spec,
     &OLDER.spec,
+    &TURN.spec,
     &SEED.spec,
     &run::NOISE.spec,
     &NEWEST.spec,
@@ -95,13 +108,14 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     misconception: "To look alike is not to be the same: a descriptor proposes, and how often it is \
                     right depends on the threshold and on the building.",
     notice: &[
-        "Ink is alike. The stripe that runs down to the right is the way back: places in the order in which they were left.",
+        "Each dot is a pair of places. What lies left of the line is called the same place, whether it is or not.",
+        "In the matrix ink is alike. The stripe that runs down to the right is the way back: places in the order in which they were left.",
         "In the corridor all histograms look alike: a beam says how far, and not in which direction.",
-        "Scan Context knows directions. Turn the robot, and its columns shift: the best shift is the heading.",
+        "Scan Context knows directions. Slide one view over the other: they differ least at the heading between them.",
         "A looser threshold finds more of the true pairs, and calls more false ones. No point of the curve is free.",
     ],
     opening: Opening {
-        panels: &["matrix", "scans", "looks", "curves"],
+        panels: &["flat", "scores", "looks", "matrix"],
         params: &["called"],
         buttons: &["play", "step", "reset"],
     },
@@ -112,7 +126,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "lap",
             label: "Drive the lap",
             help: "Each new keyframe is compared with all older ones, and a column is added.",
-            set: &[NEWEST.to(0.0)],
+            set: &[OLDER.to(MOST_ALIKE), NEWEST.to(0.0)],
             then: &["play"],
         },
         Preset {
@@ -140,7 +154,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "ring",
             label: "A ring of corridors",
             help: "Four corridors that look alike: every look-alike is a trap here.",
-            set: &[WORLD.to("ring")],
+            set: &[WORLD.to("ring"), OLDER.to(MOST_ALIKE)],
             then: &[],
         },
     ],

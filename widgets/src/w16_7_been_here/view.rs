@@ -1,4 +1,4 @@
-//! Layout of the panels: all pairs beside the selected one, the curves below.
+//! Layout of the panels: the flat above the distances, the views above the matrix, the curves below.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -13,35 +13,32 @@ pub struct PlacesView;
 impl View for PlacesView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
-        // Four panels below each other have to fit two screens of a phone.
-        let [most, most_scans, plot] = if width >= SIDE_BY_SIDE {
-            [300.0, 300.0, 130.0]
-        } else {
-            [210.0, 140.0, 90.0]
-        };
-        let matrix = slot(panel::MATRIX, PlotHeight::Natural { most });
-        let scans = slot(panel::SCANS, PlotHeight::Natural { most: most_scans });
-        let looks = slot(panel::LOOKS, PlotHeight::Fixed(plot));
-        let curves = slot(panel::CURVES, PlotHeight::Fixed(plot));
-        let map = slot(panel::MAP, PlotHeight::Natural { most: 260.0 });
-        let stage = if width >= SIDE_BY_SIDE {
-            let column = |slot| Column {
-                share: 1.0,
-                slots: vec![slot],
+        let is_wide = width >= SIDE_BY_SIDE;
+        let flat = slot(panel::FLAT, PlotHeight::Natural { most: 360.0 });
+        let scores = slot(panel::SCORES, PlotHeight::Fixed(120.0));
+        let looks = slot(
+            panel::LOOKS,
+            PlotHeight::Fixed(if is_wide { 170.0 } else { 100.0 }),
+        );
+        let matrix = slot(panel::MATRIX, PlotHeight::Natural { most: 290.0 });
+        let curves = slot(panel::CURVES, PlotHeight::Fixed(130.0));
+        if is_wide {
+            let column = |share, slots| Column { share, slots };
+            return Arrangement {
+                stage: vec![Row {
+                    columns: vec![
+                        column(1.55, vec![flat, scores]),
+                        column(1.0, vec![looks, matrix]),
+                    ],
+                }],
+                below: vec![Row::new(&[curves])],
             };
-            let row = |a, b| Row {
-                columns: vec![column(a), column(b)],
-            };
-            vec![row(matrix, scans), row(curves, looks)]
-        } else {
-            [matrix, scans, looks, curves]
-                .iter()
-                .map(|slot| Row::new(&[*slot]))
-                .collect()
-        };
+        }
+        // On a phone the flat, the threshold and the control fit one screen without the matrix.
+        let rows = |slots: &[Slot]| slots.iter().map(|slot| Row::new(&[*slot])).collect();
         Arrangement {
-            stage,
-            below: vec![Row::new(&[map])],
+            stage: rows(&[flat, scores, looks]),
+            below: rows(&[matrix, curves]),
         }
     }
 }

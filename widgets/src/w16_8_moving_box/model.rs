@@ -20,14 +20,14 @@ use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
 use crate::w16_8_moving_box::spec::{
-    ITERATION, MOST_MOVED_M, MOST_SHARE, MOVED, PARAMS, SHARE, SPEC,
+    ITERATION, METHOD, MOST_MOVED_M, MOST_SHARE, MOVED, PARAMS, SHARE, SPEC,
 };
 use curves::Curves;
 
 /// Names of the panels.
 pub mod panel {
-    /// The sweeps as each method registers them, in the order of the core.
-    pub const SWEEPS: [&str; 3] = ["plain", "trimmed", "huber"];
+    /// The room as a method registers it, with the pull of each pair.
+    pub const ROOM: &str = "room";
     /// Bias over the share of the box.
     pub const BIAS: &str = "bias";
 }
@@ -95,6 +95,11 @@ impl MovingBox {
         })
     }
 
+    /// The method on screen.
+    fn method(&self) -> usize {
+        self.values.get(&METHOD)
+    }
+
     /// Last iteration of the longest run.
     fn last(&self) -> usize {
         let lasts = self.runs.iter().map(|run| run.trace.len() - 1);
@@ -134,7 +139,7 @@ impl Model for MovingBox {
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         if self.values.set(SPEC.id, id, value)? == Changed::Yes
-            && ![ITERATION.id, SPEED.id, MORE.id].contains(&id)
+            && ![METHOD.spec.id, ITERATION.id, SPEED.id, MORE.id].contains(&id)
         {
             self.follow();
         }
@@ -193,12 +198,14 @@ impl Model for MovingBox {
         if panel == panel::BIAS {
             return self.grab_share(at, reach);
         }
-        let panel = panel::SWEEPS.into_iter().find(|id| *id == panel)?;
+        if panel != panel::ROOM {
+            return None;
+        }
         let middle = picture::box_middle(&self.scene);
         let offset = [at[0] - middle[0], at[1] - middle[1]];
         let reaches = |i: usize| offset[i].abs() <= reach[i].max(BOX_REACH_M);
         (reaches(0) && reaches(1)).then_some(Handle {
-            panel,
+            panel: panel::ROOM,
             id: BOX,
             offset,
         })

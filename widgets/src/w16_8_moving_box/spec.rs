@@ -15,6 +15,18 @@ pub const MOST_MOVED_M: f64 = 0.8;
 /// Largest number of iterations of a registration.
 pub const MOST_ITERATIONS: f64 = 30.0;
 
+pub(super) static METHOD: OneOf<usize> = OneOf::new(
+    "method",
+    "registered",
+    &[
+        Choice::new("plain", "plain"),
+        Choice::new("trimmed", "trimmed"),
+        Choice::new("huber", "with Huber"),
+    ],
+    &[0, 1, 2],
+)
+.help("Whose pairs are drawn: all of them, without the longest ones, or the long ones with less weight.");
+
 pub(super) static SHARE: Param<f64> =
     Param::slider("share", "points on the box", [0.0, MOST_SHARE], 1.0)
         .unit("%")
@@ -67,6 +79,7 @@ pub(super) static ITERATION: Param<f64> = Param::timeline(
 
 /// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
+    &METHOD.spec,
     &SHARE.spec,
     &MOVED.spec,
     &DROPPED.spec,
@@ -86,15 +99,16 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     misconception: "Least squares has no majority: a few points that moved together pull the answer after \
                     them, and the rmse does not say so.",
     notice: &[
-        "The walls do not quite meet where the box pulls. A few centimetres look like noise, and are none: they do not average out.",
+        "Drag the box. Its pairs all pull the same way, and the walls give way until their many short pulls balance them.",
+        "A few centimetres look like noise, and are none: they do not average out.",
         "Trimming drops the longest pairs, and the longest are mostly those of the box. It gives way last, and slowly.",
         "Huber's kernel never drops a pair. It holds a small box back; one with half of the points leads it farther away than plain.",
         "A short τ does the same work as trimming, until the start is farther off than τ.",
     ],
     opening: Opening {
-        panels: &["plain", "trimmed", "huber", "bias"],
-        params: &["share"],
-        buttons: &["play"],
+        panels: &["room", "bias"],
+        params: &["method"],
+        buttons: &["play", "step", "reset"],
     },
     params: PARAMS,
     buttons: &[PLAY, STEP, RESET, DEFAULTS],

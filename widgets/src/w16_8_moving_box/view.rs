@@ -1,8 +1,8 @@
-//! Layout of the panels: the three registrations side by side, the curves below them.
+//! Layout of the panels: the room, the curves beside it or below it.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
-use kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot, View};
+use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_8_moving_box::model::panel;
 
@@ -13,20 +13,19 @@ pub struct BoxView;
 impl View for BoxView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
-        // Four panels below each other have to fit two screens of a phone.
-        let [most, plot] = if width >= SIDE_BY_SIDE {
-            [270.0, 170.0]
+        let room = slot(panel::ROOM, PlotHeight::Natural { most: 430.0 });
+        let bias = |height| slot(panel::BIAS, PlotHeight::Fixed(height));
+        let stage = if width >= SIDE_BY_SIDE {
+            let column = |share, slot| Column {
+                share,
+                slots: vec![slot],
+            };
+            vec![Row {
+                columns: vec![column(1.5, room), column(1.0, bias(240.0))],
+            }]
         } else {
-            [190.0, 130.0]
+            vec![Row::new(&[room]), Row::new(&[bias(110.0)])]
         };
-        let sweeps = panel::SWEEPS.map(|panel| slot(panel, PlotHeight::Natural { most }));
-        let bias = slot(panel::BIAS, PlotHeight::Fixed(plot));
-        let mut stage = if width >= SIDE_BY_SIDE {
-            vec![Row::new(&sweeps)]
-        } else {
-            sweeps.iter().map(|slot| Row::new(&[*slot])).collect()
-        };
-        stage.push(Row::new(&[bias]));
         Arrangement {
             stage,
             below: Vec::new(),

@@ -76,6 +76,19 @@ impl ComeBack {
         });
     }
 
+    fn has_wardrobe(&self) -> bool {
+        settings::laps_config(&self.values).wardrobe.is_some()
+    }
+
+    /// The moment at which the robot is found, or the last one.
+    fn decided(&self, run: &LocalizationRun) -> usize {
+        let moments = run.moments();
+        let found = run.found();
+        found.map_or(moments.len(), |found| {
+            moments.partition_point(|moment| moment.tick <= found)
+        }) - 1
+    }
+
     fn start(&self) -> SE2 {
         settings::start(&self.values)
     }
@@ -197,14 +210,13 @@ impl Model for ComeBack {
     fn timeline(&self) -> Option<Timeline> {
         let mut marks = Vec::new();
         if let Some((_, run)) = self.finished()
-            && let Some(found) = run.found()
+            && run.found().is_some()
         {
-            let moments = run.moments();
-            let at = moments.partition_point(|moment| moment.tick <= found) - 1;
+            let ending = words::ending(run);
             marks.push(TimelineMark {
-                at: at as f64,
-                label: words::verdict(self).to_owned(),
-                standing: words::standing(self),
+                at: self.decided(run) as f64,
+                label: words::verdict(ending).to_owned(),
+                standing: words::standing(ending),
             });
         }
         Some(self.played.timeline(self.last() as f64, marks))

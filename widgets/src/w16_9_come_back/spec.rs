@@ -46,7 +46,6 @@ pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
 pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
 
 pub(super) static MOMENT: Param<f64> = Param::timeline("moment", "moment", MOST_MOMENTS)
-    .default(MOST_MOMENTS)
     .help("Which moment is shown: boxes of a search, and scans.");
 
 /// The widget's parameters.
@@ -83,7 +82,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     misconception: "A saved map does not say where the robot is. It has to be looked for everywhere, and \
                     an honest robot says when two places look alike.",
     notice: &[
-        "Orange boxes are places that are not ruled out yet. What is left of them is where the robot may be.",
+        "A ghost is a pose that is not ruled out yet, the larger the better it may fit. What is left of them is where the robot may be.",
         "Where the map was driven, one scan is enough. In a room that it never saw, or in one of two rooms alike, no pose is reported before the robot is out of the door.",
         "Once it is found, each scan is registered on the map around it, and nothing is searched any more.",
         "The wardrobe was moved overnight. The map still shows it where it stood; after another lap it is gone from there.",

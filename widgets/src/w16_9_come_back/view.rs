@@ -23,10 +23,10 @@ impl View for ComeBackView {
                 slots: vec![slot],
             };
             vec![Row {
-                columns: vec![column(3.0, map), column(2.0, scores(300.0))],
+                columns: vec![column(2.4, map), column(1.0, scores(300.0))],
             }]
         } else {
-            vec![Row::new(&[map]), Row::new(&[scores(150.0)])]
+            vec![Row::new(&[map]), Row::new(&[scores(110.0)])]
         };
         Arrangement {
             stage,

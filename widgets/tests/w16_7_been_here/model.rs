@@ -4,10 +4,11 @@ use ch16_lab::lap::{Choice, LapConfig, LapDetector, LapMatcher};
 use ch16_lab::places::{place_curves, place_pairs};
 use kit::model::{Activity, Model, Motion, Standing};
 use kit::param::ParamKind;
+use kit::scene::{Layer, Tone};
 use widgets::w16_7_been_here::model::{BeenHere, panel};
 use widgets::w16_7_been_here::spec::SPEC;
 
-use crate::support::fact;
+use crate::support::{fact, panel_of};
 
 fn set(been: &mut BeenHere, values: &[(&str, f64)]) {
     for (id, value) in values {
@@ -96,7 +97,119 @@ fn a_pair_is_chosen_in_the_matrix_by_either_of_its_two_places() {
     let last = been.timeline().unwrap().last;
     assert_eq!(been.values().number("new"), last);
     assert!(been.values().number("old") < last);
-    assert!(been.grab(panel::SCANS, [0.0, 0.0], [1.0, 1.0]).is_none());
+}
+
+/// Where the handles of a panel are.
+fn handles(been: &BeenHere, panel: &str) -> Vec<[f64; 2]> {
+    let layers = panel_of(been, panel).layers;
+    let at = layers.iter().filter_map(|layer| match layer {
+        Layer::Handle { at, .. } => Some(*at),
+        _ => None,
+    });
+    at.collect()
+}
+
+#[test]
+fn both_robots_are_dragged_along_the_path_with_their_views() {
+    let mut been = with(&[("new", 30.0), ("old", 4.0)]);
+    let [then, now] = handles(&been, panel::FLAT)[..] else {
+        panic!("two robots");
+    };
+    let further = handles(&with(&[("new", 34.0), ("old", 8.0)]), panel::FLAT);
+    for (id, from, to, expected) in [
+        ("new", now, further[1], 34.0),
+        ("old", then, further[0], 8.0),
+    ] {
+        let held = been.grab(panel::FLAT, from, [0.1, 0.1]).unwrap();
+        been.drag(held, to);
+        assert_eq!(been.values().number(id), expected);
+        been.drag(held, [f64::NAN, 0.0]);
+        assert_eq!(been.values().number(id), expected);
+    }
+    assert!(been.outcome().sentence.contains("Keyframes 8 and 34"));
+    assert!(been.grab(panel::FLAT, [1.0, 8.0], [0.1, 0.1]).is_none());
+}
+
+#[test]
+fn the_threshold_is_dragged_over_the_distances_and_its_slider_follows() {
+    let mut been = with(&[]);
+    let found = fact(&been, "context_recall");
+    let [line] = handles(&been, panel::SCORES)[..] else {
+        panic!("a threshold");
+    };
+    let held = been.grab(panel::SCORES, line, [0.01, 1.0]).unwrap();
+    been.drag(held, [line[0] + 0.08, 0.0]);
+    assert!(been.values().number("called") > 30.0);
+    assert!(fact(&been, "context_recall") > found);
+    been.drag(held, [-1e300, 0.0]);
+    assert_eq!(been.values().number("called"), 0.0);
+    been.drag(held, [1e300, 0.0]);
+    assert_eq!(been.values().number("called"), 60.0);
+}
+
+#[test]
+fn a_dot_is_a_pair_and_a_tap_on_it_shows_both_places() {
+    let mut been = with(&[]);
+    let marked = |been: &BeenHere| {
+        let layers = panel_of(been, panel::SCORES).layers;
+        layers.iter().find_map(|layer| match layer {
+            Layer::Points {
+                points,
+                tone: Tone::Posterior,
+                ..
+            } => points.first().copied(),
+            _ => None,
+        })
+    };
+    let dots = panel_of(&been, panel::SCORES).layers;
+    let dots = dots.iter().filter_map(|layer| match layer {
+        Layer::Points {
+            points,
+            tone: Tone::Series(_),
+            ..
+        } => Some(points.len()),
+        _ => None,
+    });
+    assert_eq!(dots.sum::<usize>() as f64, fact(&been, "graded"));
+    let before = marked(&been).unwrap();
+    let same = [0.26, 1.0];
+    been.tap(panel::SCORES, same, [0.02, 1.0]);
+    assert_ne!(marked(&been).unwrap(), before);
+    assert!(
+        been.outcome()
+            .sentence
+            .contains("called the same place, and they are:")
+    );
+}
+
+#[test]
+fn the_newer_view_is_slid_and_differs_least_at_its_best_turn() {
+    let mut been = with(&[]);
+    let [at] = handles(&been, panel::LOOKS)[..] else {
+        panic!("a view to slide");
+    };
+    let held = been.grab(panel::LOOKS, at, [1.0, 0.1]).unwrap();
+    for away in [-60.0, 30.0, 90.0] {
+        been.drag(held, [at[0] + away, 0.0]);
+        assert_eq!(been.values().number("turn"), away);
+        assert!(handles(&been, panel::LOOKS)[0][1] > at[1], "{away}");
+    }
+    // A whole turn further it is the same view.
+    been.drag(held, [at[0] + 360.0, 0.0]);
+    assert_eq!(been.values().number("turn"), 0.0);
+}
+
+#[test]
+fn while_it_plays_the_newer_view_turns_to_its_best_fit_at_each_keyframe() {
+    let mut been = with(&[("new", 20.0)]);
+    been.press("play").unwrap();
+    let mut turns = 0;
+    for _ in 0..40 {
+        let before = handles(&been, panel::LOOKS)[0][0];
+        been.advance(0.02);
+        turns += usize::from(handles(&been, panel::LOOKS)[0][0] != before);
+    }
+    assert!(turns > 10, "{turns} of 40 frames");
 }
 
 #[test]

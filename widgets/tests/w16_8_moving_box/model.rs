@@ -1,10 +1,11 @@
 //! The moving box without its picture.
 
 use kit::model::{Activity, Model};
+use kit::scene::{Layer, Stroke, Tone};
 use widgets::w16_8_moving_box::model::{MovingBox, panel};
 use widgets::w16_8_moving_box::spec::SPEC;
 
-use crate::support::fact;
+use crate::support::{fact, panel_of};
 
 fn with(values: &[(&str, f64)]) -> MovingBox {
     let mut moving = MovingBox::default();
@@ -78,7 +79,7 @@ fn the_share_is_dragged_along_the_curves() {
     moving.drag(handle, [1e300, 0.0]);
     assert_eq!(moving.values().number("share"), 60.0);
     assert!(moving.grab(panel::BIAS, [20.0, 1.0], [1.0, 1.0]).is_none());
-    assert!(moving.grab("plain", [60.0, 1.0], [1.0, 1.0]).is_none());
+    assert!(moving.grab(panel::ROOM, [60.0, 1.0], [1.0, 1.0]).is_none());
 }
 
 #[test]
@@ -100,23 +101,66 @@ fn every_preset_does_what_its_button_claims() {
 }
 
 #[test]
-fn the_box_is_dragged_in_each_of_the_three_pictures() {
-    for id in panel::SWEEPS {
-        let mut moving = MovingBox::default();
-        let picture = crate::support::panel_of(&moving, id);
-        let middle = picture.layers.iter().find_map(|layer| match layer {
-            kit::scene::Layer::Handle { at, .. } => Some(*at),
+fn the_box_is_dragged_in_the_room() {
+    let mut moving = MovingBox::default();
+    let middle = panel_of(&moving, panel::ROOM)
+        .layers
+        .iter()
+        .find_map(|layer| match layer {
+            Layer::Handle { at, .. } => Some(*at),
             _ => None,
         });
-        let [x, y] = middle.expect("a handle on the box");
-        let held = moving.grab(id, [x + 0.05, y], [0.05, 0.05]).expect(id);
-        moving.drag(held, [x + 0.25, y + 0.3]);
-        assert!((moving.values().number("moved") - 0.5).abs() < 1e-9, "{id}");
-        moving.drag(held, [f64::NAN, y]);
-        moving.drag(held, [x + 9.0, y]);
-        assert_eq!(moving.values().number("moved"), 0.8);
-        moving.drag(held, [x - 9.0, y]);
-        assert_eq!(moving.values().number("moved"), 0.0);
-        assert!(moving.grab(id, [-2.0, -2.0], [0.05, 0.05]).is_none());
+    let [x, y] = middle.expect("a handle on the box");
+    let held = moving
+        .grab(panel::ROOM, [x + 0.05, y], [0.05, 0.05])
+        .unwrap();
+    moving.drag(held, [x + 0.25, y + 0.3]);
+    assert!((moving.values().number("moved") - 0.5).abs() < 1e-9);
+    moving.drag(held, [f64::NAN, y]);
+    moving.drag(held, [x + 9.0, y]);
+    assert_eq!(moving.values().number("moved"), 0.8);
+    moving.drag(held, [x - 9.0, y]);
+    assert_eq!(moving.values().number("moved"), 0.0);
+    let far = moving.grab(panel::ROOM, [-2.0, -2.0], [0.05, 0.05]);
+    assert!(far.is_none());
+}
+
+/// The drawn lengths of the pulls on the box and of those on the walls, m.
+fn pulls(moving: &MovingBox) -> [Vec<f64>; 2] {
+    let layers = panel_of(moving, panel::ROOM).layers;
+    let arrows = layers.iter().filter_map(|layer| match layer {
+        Layer::Line {
+            points,
+            stroke: Stroke::Solid,
+            tone: Tone::Series(k),
+            ..
+        } => Some((*k == 3, points)),
+        _ => None,
+    });
+    let mut lengths = [Vec::new(), Vec::new()];
+    for (on_box, points) in arrows {
+        let of = |arrow: &[[f64; 2]]| {
+            let [from, to] = [arrow[0], arrow[1]];
+            (to[0] - from[0]).hypot(to[1] - from[1])
+        };
+        lengths[usize::from(!on_box)].extend(points.chunks(7).map(of));
     }
+    lengths
+}
+
+#[test]
+fn each_method_weighs_the_pulls_of_the_box_in_its_own_way() {
+    let longest = |moving: &MovingBox| pulls(moving)[0].iter().copied().fold(0.0, f64::max);
+    let [plain, trimmed, huber] = [0.0, 1.0, 2.0].map(|method| with(&[("method", method)]));
+    // 180 points; the walls between them have pairs within τ.
+    assert!(pulls(&plain).concat().len() > 150);
+    assert!(pulls(&trimmed)[0].len() < pulls(&plain)[0].len());
+    assert!(longest(&plain) > 1.0, "{}", longest(&plain));
+    // Huber's width of 0.05 m, tenfold.
+    assert!((longest(&huber) - 0.5).abs() < 1e-9, "{}", longest(&huber));
+    let title = panel_of(&huber, panel::ROOM).title;
+    assert!(
+        title.starts_with("Huber: ") && title.contains("tenfold"),
+        "{title}"
+    );
 }

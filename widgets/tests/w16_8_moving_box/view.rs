@@ -3,11 +3,11 @@
 use egui::Key;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::support::{drawn, fact, press_key, value};
+use crate::support::{drawn_whole, fact, press_key, value};
 
 #[test]
 fn a_slider_takes_the_share_of_the_box() {
-    let mut harness = drawn("w16.8", 390.0, |_| ());
+    let mut harness = drawn_whole("w16.8", 390.0);
     let off_m = |harness: &egui_kittest::Harness<'_, _>| {
         let shell: &kit::shell::Shell = harness.state();
         fact(shell.model(), "plain_error_m")

@@ -3,10 +3,11 @@
 use ch16_lab::lap::{BuiltInWorld, Choice};
 use kit::model::{Activity, Model, Motion, Standing};
 use kit::param::ParamKind;
+use kit::scene::{Layer, Tone};
 use widgets::w16_9_come_back::model::{ComeBack, panel};
 use widgets::w16_9_come_back::spec::SPEC;
 
-use crate::support::fact;
+use crate::support::{fact, panel_of};
 
 /// The outcome as text, in which equal NaN are equal.
 fn told(back: &ComeBack) -> String {
@@ -17,6 +18,7 @@ fn pressed(id: &str) -> ComeBack {
     let mut back = ComeBack::default();
     back.press(id).unwrap();
     back.finish_work();
+    back.set("moment", 4000.0).unwrap();
     back
 }
 
@@ -54,6 +56,7 @@ fn another_lap_removes_the_wardrobe_from_its_old_position() {
     assert!(fact(&back, "wardrobe_points") > 20.0);
     back.press("forget").unwrap();
     back.finish_work();
+    back.set("moment", 4000.0).unwrap();
     assert_eq!(fact(&back, "wardrobe_points"), 0.0);
     assert_eq!(back.outcome().verdict, "found");
 }
@@ -140,4 +143,28 @@ fn playing_goes_through_the_boxes_and_the_scans_to_the_end() {
     back.press("reset").unwrap();
     back.press("play").unwrap();
     assert_eq!(back.values().number("moment"), at);
+}
+
+#[test]
+fn it_opens_before_the_search_and_the_ghosts_collapse_onto_the_right_place() {
+    let mut back = ComeBack::default();
+    back.finish_work();
+    assert_eq!(back.values().number("moment"), 0.0);
+    assert_eq!(back.outcome().verdict, "where am I?");
+    let ghosts = |back: &ComeBack| {
+        let layers = panel_of(back, panel::MAP).layers;
+        let here = layers.iter().filter_map(|layer| match layer {
+            Layer::Points {
+                points,
+                tone: Tone::Series(0),
+                ..
+            } => Some(points.len()),
+            _ => None,
+        });
+        here.sum::<usize>()
+    };
+    assert!(ghosts(&back) > 20, "{}", ghosts(&back));
+    back.set("moment", 4000.0).unwrap();
+    assert_eq!(ghosts(&back), 0);
+    assert_eq!(back.outcome().verdict, "found");
 }

@@ -119,8 +119,9 @@ impl ScanContext {
         best
     }
 
-    /// Distance with the other scan rotated by `shift` sectors.
-    fn distance_at(&self, other: &Self, shift: usize) -> f64 {
+    /// Distance with the other scan rotated by `shift` sectors, fewer than there are.
+    #[must_use]
+    pub fn distance_at(&self, other: &Self, shift: usize) -> f64 {
         let sectors = self.norms.len();
         let (mut agreement, mut seen) = (0.0, 0.0);
         for here in 0..sectors {

@@ -94,6 +94,18 @@ impl Places {
         }
     }
 
+    /// The percentage of the pairs that a detector reports at a threshold.
+    pub fn called_percent(&self, detector: usize, threshold: f64) -> f64 {
+        let ranked = &self.ranked[detector];
+        let called = ranked.partition_point(|distance| *distance <= threshold);
+        100.0 * called as f64 / ranked.len().max(1) as f64
+    }
+
+    /// The largest distance of a detector.
+    pub fn largest(&self, detector: usize) -> f64 {
+        self.ranked[detector].last().copied().unwrap_or(1.0)
+    }
+
     /// The grade of a detector at a threshold; equal distances share it.
     pub fn graded_at(&self, detector: usize, threshold: f64) -> Grade {
         let mut grade = Grade::default();

@@ -1,33 +1,39 @@
-//! The panels: all pairs, the two scans of one, their descriptors, the curves, and the map.
+//! The panels: two robots on the flat, the distances of all pairs, the descriptors of two views, the matrix of
+//! all pairs, and the curves.
 
-mod looks;
+mod flat;
+pub mod looks;
+pub mod scores;
 
 use std::sync::Arc;
 
 use ch16_lab::lap::{Choice, LapDetector};
-use ch16_lab::places::PlaceStudy;
-use ch16_slam2d::cloud::PointCloud;
 use kit::scene::{
     Aspect, Axis, Bounds, Cell, Layer, LegendEntry, Mark, Panel, Raster, Scene, Stroke, Tone,
     Weight,
 };
-use pr_geom::SE2;
 
 use super::lap::Places;
 use super::{BeenHere, panel};
 
 /// Tones of the detectors, in the order of [`LapDetector::ALL`].
 pub const TONES: [Tone; 3] = [Tone::Series(0), Tone::Series(1), Tone::Series(2)];
+/// Tones of a pair that is the same place, and of one that is not.
+const SAME: Tone = Tone::Series(0);
+const OTHER: Tone = Tone::Series(3);
+/// Tones of the older keyframe and of the newer one.
+const THEN: Tone = Tone::Measurement;
+const NOW: Tone = Tone::Posterior;
 const MARKS: [Mark; 3] = [Mark::Circle, Mark::Triangle, Mark::Square];
 
 pub fn scene(been: &BeenHere) -> Scene {
     Scene {
         panels: vec![
-            matrix(been),
-            scans(been),
+            flat::panel(been),
+            scores::panel(been),
             looks::panel(been),
+            matrix(been),
             curves(been),
-            map(been),
         ],
     }
 }
@@ -48,33 +54,16 @@ fn empty(id: &'static str, title: &str) -> Panel {
 
 fn matrix(been: &BeenHere) -> Panel {
     let last = been.last().max(1) as f64;
-    let axis = |label| Axis::new(label, -0.5, last + 0.5);
+    let axis = || Axis::hidden(-0.5, last + 0.5);
     let mut panel = Panel {
-        weight: Weight::Main,
-        x: axis("newer keyframe"),
-        y: axis("older keyframe"),
-        legend: vec![
-            LegendEntry::mark("called the same, and it is", Tone::Series(0), Mark::Cross),
-            LegendEntry::mark(
-                "called the same, and it is not",
-                Tone::Series(3),
-                Mark::Triangle,
-            ),
-            LegendEntry::mark("the same, and not called", Tone::Series(2), Mark::Plus),
-            LegendEntry::mark("the pair that is looked at", Tone::Posterior, Mark::Circle),
-            LegendEntry::mark("the more ink, the more alike", Tone::Ink, Mark::Dot),
-        ],
-        ..empty(panel::MATRIX, "The lap is driven")
+        x: axis(),
+        y: axis(),
+        ..empty(panel::MATRIX, "Every pair of places: press one")
     };
     let Some(places) = &been.places else {
         return panel;
     };
-    let (detector, newest) = (been.detector(), been.newest());
-    panel.title = format!(
-        "Alike by {}, keyframe {newest} of {}",
-        LapDetector::ALL[detector].label(),
-        places.last()
-    );
+    let (detector, newest) = (been.detector(), been.known());
     panel.layers.push(Layer::Raster(raster(been, places)));
     let threshold = been.threshold(detector);
     let known = places.study.graded().filter(|pair| pair.nodes[1] <= newest);
@@ -91,9 +80,9 @@ fn matrix(been: &BeenHere) -> Panel {
     let radius_px = if places.last() > 70 { 1.6 } else { 2.4 };
     let [right, wrong, missed] = judged;
     panel.layers.extend([
-        Layer::points(missed, Mark::Plus, Tone::Series(2), radius_px),
-        Layer::points(wrong, Mark::Triangle, Tone::Series(3), radius_px),
-        Layer::points(right, Mark::Cross, Tone::Series(0), radius_px),
+        Layer::points(missed, Mark::Plus, SAME, radius_px),
+        Layer::points(wrong, Mark::Dot, OTHER, radius_px),
+        Layer::points(right, Mark::Dot, SAME, radius_px),
     ]);
     if let Some([old, new]) = been.pair() {
         panel.layers.push(Layer::Handle {
@@ -108,11 +97,8 @@ fn matrix(been: &BeenHere) -> Panel {
 /// Ink for similar keyframes; future keyframes are unknown.
 fn raster(been: &BeenHere, places: &Places) -> Raster {
     let count = places.study.places().len();
-    let (detector, newest) = (been.detector(), been.newest());
-    let graded = places.study.graded();
-    let widest = graded
-        .map(|pair| pair.distances[detector])
-        .fold(f64::MIN_POSITIVE, f64::max);
+    let (detector, newest) = (been.detector(), been.known());
+    let widest = places.largest(detector).max(f64::MIN_POSITIVE);
     let cell = |k: usize| {
         let (old, new) = (k / count, k % count);
         if new > newest {
@@ -151,58 +137,6 @@ pub fn pair_at(been: &BeenHere, at: [f64; 2]) -> Option<[usize; 2]> {
     Some([old.min(new), new.max(old)])
 }
 
-/// The rotation of the pair's newer scan in the picture: that of Scan Context, or none.
-fn shown_turn(been: &BeenHere, study: &PlaceStudy, [old, new]: [usize; 2]) -> SE2 {
-    match LapDetector::ALL[been.detector()] {
-        LapDetector::Context => SE2::new(0.0, 0.0, study.turned(old, new).turn_rad),
-        LapDetector::Nearby | LapDetector::Histogram => SE2::identity(),
-    }
-}
-
-fn scans(been: &BeenHere) -> Panel {
-    let told = been.places.as_ref().zip(been.pair());
-    let Some((places, [old, new])) = told else {
-        return Panel {
-            legend: two_keyframes(),
-            ..empty(
-                panel::SCANS,
-                "Scans of two keyframes, once the lap is driven",
-            )
-        };
-    };
-    let study = &places.study;
-    let turn = shown_turn(been, study, [old, new]);
-    let reach = study.max_range_m();
-    let points = |scan: &PointCloud, mark, tone| {
-        Layer::points(scan.iter().map(|p| [p.x, p.y]).collect(), mark, tone, 2.6)
-    };
-    let of = |node: usize| &study.places()[node].scan;
-    let turned = if turn == SE2::identity() {
-        "as the robot sees them".to_owned()
-    } else {
-        format!("the newer turned by {:.0}°", turn.theta().to_degrees())
-    };
-    Panel {
-        title: format!("Scans of keyframes {old} and {new}, {turned}"),
-        x: Axis::new("ahead of the robot (m)", -reach, reach),
-        y: Axis::new("to its left (m)", -reach, reach),
-        layers: vec![
-            points(of(old), Mark::Cross, Tone::Measurement),
-            points(&of(new).transformed(&turn), Mark::Square, Tone::Posterior),
-            Layer::pose([0.0; 3], Mark::Plus, Tone::Ink, 6.0),
-        ],
-        legend: two_keyframes(),
-        ..empty(panel::SCANS, "")
-    }
-}
-
-fn two_keyframes() -> Vec<LegendEntry> {
-    vec![
-        LegendEntry::mark("older keyframe", Tone::Measurement, Mark::Cross),
-        LegendEntry::mark("newer keyframe", Tone::Posterior, Mark::Square),
-    ]
-}
-
 fn curves(been: &BeenHere) -> Panel {
     let mut panel = Panel {
         weight: Weight::Half,
@@ -237,53 +171,4 @@ fn curves(been: &BeenHere) -> Panel {
             .push(Layer::points(at.collect(), MARKS[k], TONES[k], 5.0));
     }
     panel
-}
-
-fn map(been: &BeenHere) -> Panel {
-    let told = been.places.as_ref().zip(been.pair());
-    let Some((places, pair)) = told else {
-        return empty(panel::MAP, "Where the keyframes are");
-    };
-    let walls = been.config.drive.world.walls();
-    let bounds = been.config.drive.world.bounds();
-    let truth = |node: usize| places.study.places()[node].truth;
-    let way = places.study.places()[..=been.newest()].iter();
-    let [old, new] = pair.map(truth);
-    Panel {
-        weight: Weight::Side,
-        x: Axis::new("x (m)", bounds.min.x - 0.4, bounds.max.x + 0.4),
-        y: Axis::new("y (m)", bounds.min.y - 0.4, bounds.max.y + 0.4),
-        layers: vec![
-            Layer::segments(
-                walls
-                    .iter()
-                    .map(|wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]])
-                    .collect(),
-                Stroke::Solid,
-                Tone::Ink,
-                1.5,
-            ),
-            Layer::points(
-                way.map(|place| [place.truth.x(), place.truth.y()])
-                    .collect(),
-                Mark::Dot,
-                Tone::Truth,
-                2.0,
-            ),
-            Layer::segments(
-                vec![[[old.x(), old.y()], [new.x(), new.y()]]],
-                Stroke::Dotted,
-                Tone::Posterior,
-                1.75,
-            ),
-            Layer::pose(old.to_array(), Mark::Cross, Tone::Measurement, 6.0),
-            Layer::pose(new.to_array(), Mark::Square, Tone::Posterior, 6.0),
-        ],
-        legend: vec![
-            LegendEntry::mark("older keyframe", Tone::Measurement, Mark::Cross),
-            LegendEntry::mark("newer keyframe", Tone::Posterior, Mark::Square),
-            LegendEntry::mark("keyframes, where they truly are", Tone::Truth, Mark::Dot),
-        ],
-        ..empty(panel::MAP, "Where the keyframes are")
-    }
 }

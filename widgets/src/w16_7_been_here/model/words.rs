@@ -59,29 +59,37 @@ pub fn outcome(been: &BeenHere) -> Outcome {
     }
 }
 
-/// The selected pair, in a sentence.
-fn pair_words(been: &BeenHere) -> String {
-    let told = been.places.as_ref().zip(been.pair());
-    let Some((places, [old, new])) = told else {
-        return String::new();
-    };
-    let Some(pair) = places.study.pair(old, new) else {
+/// The selected pair, and what the detector makes of it.
+pub fn pair_title(been: &BeenHere) -> String {
+    let judged = been.places.as_ref().zip(been.pair());
+    let judged = judged.and_then(|(places, [old, new])| {
+        let pair = places.study.pair(old, new)?;
+        Some((pair, places.study.is_loop(pair.nodes)))
+    });
+    let Some((pair, is_loop)) = judged else {
         return String::new();
     };
     let detector = been.detector();
-    let distance = pair.distances[detector];
-    let (is_called, is_same) = (distance <= been.threshold(detector), pair.is_same);
-    let said = if !places.study.is_loop([old, new]) {
-        "are neighbours in time, and no loop"
-    } else {
-        match (is_called, is_same) {
-            (true, true) => "are called the same place, and they are",
-            (true, false) => "are called the same place, and they are not",
-            (false, true) => "are the same place, and it is not seen",
-            (false, false) => "are told apart",
-        }
+    let is_called = pair.distances[detector] <= been.threshold(detector);
+    let said = match (is_called, pair.is_same) {
+        _ if !is_loop => "are neighbours in time, and no loop",
+        (true, true) => "are called the same place, and they are",
+        (true, false) => "are called the same place, and they are not",
+        (false, true) => "are the same place, and it is not seen",
+        (false, false) => "are told apart",
     };
-    format!("Keyframes {old} and {new} {said}: distance {distance:.2}.")
+    let [old, new] = pair.nodes;
+    format!("Keyframes {old} and {new} {said}")
+}
+
+/// The selected pair, in a sentence.
+fn pair_words(been: &BeenHere) -> String {
+    let pair = been.places.as_ref().zip(been.pair());
+    let pair = pair.and_then(|(places, [old, new])| places.study.pair(old, new));
+    pair.map_or_else(String::new, |pair| {
+        let distance = pair.distances[been.detector()];
+        format!("{}: distance {distance:.2}.", pair_title(been))
+    })
 }
 
 fn facts(been: &BeenHere) -> Vec<Fact> {

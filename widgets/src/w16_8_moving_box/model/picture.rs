@@ -1,13 +1,14 @@
-//! The panels: the sweeps as each method registers them, and the bias over the share of the box.
+//! The panels: the room with the pull of each pair, and the bias over the share of the box.
 
 use ch16_lab::moving_box::{BoxMethods, BoxScene};
 use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::icp::IcpVariant;
 use kit::chart::axis_from_zero;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
-use pr_geom::{Point2, SE2};
+use pr_geom::{Point2, Vector2, math};
 
 use super::curves::SEEDS;
-use super::{MovingBox, panel};
+use super::{MovingBox, panel, settings};
 use crate::w16_8_moving_box::spec::{MOST_SHARE, SHARE};
 
 /// Tones and marks of the methods.
@@ -15,75 +16,135 @@ const TONES: [Tone; 3] = [Tone::Series(0), Tone::Series(1), Tone::Series(2)];
 const MARKS: [Mark; 3] = [Mark::Triangle, Mark::Circle, Mark::Square];
 
 pub fn scene(moving: &MovingBox) -> Scene {
-    let mut panels: Vec<Panel> = (0..3).map(|method| sweeps(moving, method)).collect();
-    panels.push(bias(moving));
-    Scene { panels }
+    Scene {
+        panels: vec![room(moving), bias(moving)],
+    }
 }
 
-fn sweeps(moving: &MovingBox, method: usize) -> Panel {
-    let shown = moving.shown(method);
-    let scene = &moving.scene;
+/// Pulls and errors are drawn so many times as long.
+const LARGER: f64 = 10.0;
+/// Tone of the pairs on the box.
+const ON_BOX: Tone = Tone::Series(3);
+/// Length of an arrow's barbs as a share of the arrow, and at most, m.
+const BARB_SHARE: f64 = 0.3;
+const BARB_M: f64 = 0.07;
+
+fn room(moving: &MovingBox) -> Panel {
+    let (scene, method) = (&moving.scene, moving.method());
+    let pose = moving.shown(method).pose;
     let truth = BoxScene::truth();
     let points = |cloud: &PointCloud, mark, tone| {
         Layer::points(cloud.iter().map(|p| [p.x, p.y]).collect(), mark, tone, 2.0)
     };
-    let outline = |corners: &[Point2<f64>; 4], stroke| {
-        Layer::line(
-            corners
-                .iter()
-                .chain([&corners[0]])
-                .map(|c| [c.x, c.y])
-                .collect(),
-            stroke,
-            Tone::Ink,
-            1.25,
-        )
+    let outline = |corners: &[Point2<f64>; 4], stroke, width_px| {
+        let corners = corners.iter().chain([&corners[0]]);
+        let points = corners.map(|c| [c.x, c.y]).collect();
+        Layer::line(points, stroke, Tone::Ink, width_px)
     };
     let [before, after] = scene.boxes();
-    let [x, y] = BoxScene::error_m(&shown.pose);
-    // One legend for all three, below the last.
-    let legend = [
-        LegendEntry::mark("target", Tone::Measurement, Mark::Cross),
-        LegendEntry::mark("source", Tone::Posterior, Mark::Square),
-        LegendEntry::line("box before", Tone::Ink, Stroke::Dotted),
-        LegendEntry::line("box after", Tone::Ink, Stroke::Solid),
-        LegendEntry::mark("truth", Tone::Truth, Mark::Plus),
+    let mut layers = vec![
+        outline(before, Stroke::Dotted, 1.5),
+        outline(after, Stroke::Solid, 3.0),
+        points(scene.target(), Mark::Cross, Tone::Measurement),
+        points(
+            &scene.source().transformed(&pose),
+            Mark::Square,
+            Tone::Posterior,
+        ),
     ];
+    for (on_box, tone) in [(false, TONES[method]), (true, ON_BOX)] {
+        let pulls = pulls(moving).filter(|pull| pull.on_box == on_box);
+        layers.push(Layer::line(
+            pulls.flat_map(|pull| arrow(pull.from, pull.by_m)).collect(),
+            Stroke::Solid,
+            tone,
+            1.25,
+        ));
+    }
+    layers.push(Layer::pose(truth.to_array(), Mark::Plus, Tone::Truth, 6.0));
+    for (k, name) in BoxMethods::NAMES.into_iter().enumerate() {
+        let [x, y] = BoxScene::error_m(&moving.shown(k).pose);
+        let at = [truth.x() + LARGER * x, truth.y() + LARGER * y];
+        let radius_px = if k == method { 6.0 } else { 4.0 };
+        layers.push(Layer::points(vec![at], MARKS[k], TONES[k], radius_px));
+        layers.push(Layer::Label {
+            at,
+            text: name.to_owned(),
+            tone: TONES[k],
+            clear_px: 8.0,
+        });
+    }
+    layers.push(Layer::Handle {
+        at: box_middle(scene),
+        tone: Tone::Ink,
+        label: "drag the box",
+    });
+    let [x, y] = BoxScene::error_m(&pose);
     Panel {
-        id: panel::SWEEPS[method],
+        id: panel::ROOM,
         title: format!(
-            "{}: {:.3} m off",
+            "{}: {:.0} mm off. Pulls and errors are drawn tenfold",
             capital(BoxMethods::NAMES[method]),
-            pr_geom::math::norm2(x, y)
+            1e3 * math::norm2(x, y)
         ),
         weight: Weight::Main,
         aspect: Aspect::Equal,
         x: Axis::hidden(-2.3, 2.3),
         y: Axis::hidden(-2.2, 2.2),
-        layers: vec![
-            outline(before, Stroke::Dotted),
-            outline(after, Stroke::Solid),
-            points(scene.target(), Mark::Cross, Tone::Measurement),
-            points(
-                &scene.source().transformed(&shown.pose),
-                Mark::Square,
-                Tone::Posterior,
-            ),
-            sensor(truth, Mark::Plus, Tone::Truth),
-            sensor(shown.pose, Mark::Square, Tone::Posterior),
-            Layer::Handle {
-                at: box_middle(scene),
-                tone: Tone::Ink,
-                label: "drag the box",
-            },
+        layers,
+        legend: vec![
+            LegendEntry::line("pull of a pair on the box", ON_BOX, Stroke::Solid),
+            LegendEntry::line("of a pair on a wall", TONES[method], Stroke::Solid),
+            LegendEntry::mark("the true place of the sensor", Tone::Truth, Mark::Plus),
         ],
-        legend: if method + 1 == panel::SWEEPS.len() {
-            legend.to_vec()
-        } else {
-            Vec::new()
-        },
         color_bar: None,
     }
+}
+
+/// The pull of a pair: its residual, as the method weighs it.
+struct Pull {
+    from: Point2<f64>,
+    by_m: Vector2<f64>,
+    on_box: bool,
+}
+
+fn pulls(moving: &MovingBox) -> impl Iterator<Item = Pull> {
+    let (scene, method) = (&moving.scene, moving.method());
+    let config = settings::methods(&moving.values).configs()[method];
+    let pairs = scene.pairs(moving.shown(method).pose, &config);
+    pairs.into_iter().map(move |pair| {
+        let residual = match (config.variant, pair.normal) {
+            (IcpVariant::PointToPlane, Some(normal)) => normal * -pair.plane_distance_m(),
+            _ => pair.target - pair.source,
+        };
+        let length_m = math::norm2(residual.x, residual.y);
+        let weight = (config.huber_width_m / length_m.max(f64::MIN_POSITIVE)).min(1.0);
+        Pull {
+            from: pair.source,
+            by_m: residual * weight,
+            on_box: scene.is_on_box(pair.source_index),
+        }
+    })
+}
+
+/// An arrow with two barbs, as an open line that ends in a gap.
+fn arrow(from: Point2<f64>, by_m: Vector2<f64>) -> [[f64; 2]; 7] {
+    let along = by_m * LARGER;
+    let tip = from + along;
+    let length_m = math::norm2(along.x, along.y).max(f64::MIN_POSITIVE);
+    let back = along * ((BARB_SHARE * length_m).min(BARB_M) / length_m);
+    let aside = Vector2::new(-back.y, back.x) * 0.5;
+    let [left, right] = [tip - back + aside, tip - back - aside];
+    let at = |point: Point2<f64>| [point.x, point.y];
+    [
+        at(from),
+        at(tip),
+        [f64::NAN; 2],
+        at(left),
+        at(tip),
+        at(right),
+        [f64::NAN; 2],
+    ]
 }
 
 /// The middle of the box after it was moved.
@@ -99,9 +160,8 @@ fn capital(name: &str) -> String {
     first.chain(letters).collect()
 }
 
-fn sensor(pose: SE2, mark: Mark, tone: Tone) -> Layer {
-    Layer::pose(pose.to_array(), mark, tone, 5.0)
-}
+/// The vertical axis reaches at least this far, mm: it stays while the box is dragged.
+const LEAST_TOP_MM: f64 = 140.0;
 
 /// Bias in millimetres over the share of the box.
 fn bias(moving: &MovingBox) -> Panel {
@@ -114,7 +174,11 @@ fn bias(moving: &MovingBox) -> Panel {
             .collect::<Vec<_>>()
     };
     let lines = [0, 1, 2].map(known);
-    let highest = lines.iter().flatten().map(|at| at[1]).fold(10.0, f64::max);
+    let highest = lines
+        .iter()
+        .flatten()
+        .map(|at| at[1])
+        .fold(LEAST_TOP_MM, f64::max);
     let y = axis_from_zero("bias of the translation (mm)", highest);
     let mut layers = vec![Layer::line(
         vec![[share, 0.0], [share, y.max]],

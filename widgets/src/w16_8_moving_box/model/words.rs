@@ -111,8 +111,9 @@ pub fn summary(moving: &MovingBox) -> String {
     });
     let curves: Vec<_> = curves.collect();
     format!(
-        "Two sweeps of one room with a box that moved between them, registered in three ways, iteration {} of {last}. {} Bias over {} seeds: {}.",
+        "Two sweeps of one room with a box that moved between them, registered in three ways, iteration {} of {last}. The picture shows the pull of each pair of {}, tenfold. {} Bias over {} seeds: {}.",
         moving.iteration(),
+        BoxMethods::NAMES[moving.method()],
         outcome(moving).sentence,
         moving.curves.seeds(),
         curves.join("; ")

@@ -1,13 +1,17 @@
 //! The panels: the map with the localization, and the scores over the scans.
 
+use ch16_lab::laps::wardrobe_corners;
 use ch16_slam2d::search::PoseBox;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
-use pr_geom::SE2;
+use pr_geom::{Point2, SE2};
 
 use super::hands::turn_handle;
 use super::words::now;
 use super::{ComeBack, panel};
 use crate::w16_9_come_back::spec::PLAN_M;
+
+/// Tone of the poses that are not ruled out.
+const GHOST: Tone = Tone::Series(0);
 
 pub fn scene(back: &ComeBack) -> Scene {
     Scene {
@@ -29,6 +33,9 @@ fn map(back: &ComeBack) -> Panel {
         ));
         let points = known.map.points().iter().map(|p| [p.x, p.y]).collect();
         layers.push(Layer::points(points, Mark::Dot, Tone::Ink, 1.4));
+        if back.has_wardrobe() {
+            layers.extend(wardrobe());
+        }
     }
     layers.extend(localization(back));
     let start = back.start();
@@ -63,10 +70,9 @@ fn map(back: &ComeBack) -> Panel {
         legend: vec![
             LegendEntry::mark("the saved map", Tone::Ink, Mark::Dot),
             LegendEntry::mark("switched on here, to be put", Tone::Prior, Mark::Circle),
-            LegendEntry::line("box that waits", Tone::Series(0), Stroke::Solid),
+            LegendEntry::mark("it may be here", GHOST, Mark::Circle),
             LegendEntry::mark("best place, with the scan", Tone::Posterior, Mark::Square),
             LegendEntry::mark("next place", Tone::Series(1), Mark::Triangle),
-            LegendEntry::mark("truth", Tone::Truth, Mark::Plus),
         ],
         color_bar: None,
     }
@@ -80,11 +86,11 @@ fn localization(back: &ComeBack) -> Vec<Layer> {
     let drive = run.drive();
     let truth = |tick: usize| drive.truth(tick);
     let way = (0..=moment.tick).map(|tick| [truth(tick).x(), truth(tick).y()]);
-    let mut layers = vec![
-        boxes(&moment.boxes),
+    let mut layers = ghosts(&moment.boxes);
+    layers.extend([
         Layer::line(way.collect(), Stroke::Dashed, Tone::Truth, 1.5),
         pose(truth(moment.tick), Mark::Plus, Tone::Truth),
-    ];
+    ]);
     if let Some(next) = moment.runner_up {
         layers.push(pose(next.pose, Mark::Triangle, Tone::Series(1)));
     }
@@ -102,25 +108,57 @@ fn pose(pose: SE2, mark: Mark, tone: Tone) -> Layer {
     Layer::pose(pose.to_array(), mark, tone, 6.0)
 }
 
-/// The outlines of boxes from above.
-fn boxes(boxes: &[PoseBox]) -> Layer {
-    let outline = |seen: &PoseBox| {
-        let ([west, east], [south, north]) = (seen.x_m, seen.y_m);
-        [
-            [west, south],
-            [east, south],
-            [east, north],
-            [west, north],
-            [west, south],
-            [f64::NAN; 2],
-        ]
+/// Sizes of the ghosts.
+const GHOSTS: usize = 3;
+/// Length of the heading of the smallest ghost, m.
+const GHOST_M: f64 = 0.14;
+
+/// The middle of each box as a ghost of the robot, the larger the higher its bound.
+fn ghosts(boxes: &[PoseBox]) -> Vec<Layer> {
+    let bounds = boxes.iter().map(|seen| seen.bound);
+    let low = bounds.clone().fold(f64::INFINITY, f64::min);
+    let high = bounds.fold(f64::NEG_INFINITY, f64::max);
+    let size_of = |seen: &PoseBox| {
+        let share = (seen.bound - low) / (high - low).max(f64::MIN_POSITIVE);
+        ((share * GHOSTS as f64) as usize).min(GHOSTS - 1)
     };
-    Layer::line(
-        boxes.iter().flat_map(outline).collect(),
-        Stroke::Solid,
-        Tone::Series(0),
-        1.0,
-    )
+    let mut layers = Vec::new();
+    for size in 0..GHOSTS {
+        let length_m = GHOST_M * (size + 1) as f64;
+        let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
+        let (mut places, mut headings) = (Vec::new(), Vec::new());
+        for seen in boxes.iter().filter(|seen| size_of(seen) == size) {
+            let pose = SE2::new(middle(seen.x_m), middle(seen.y_m), middle(seen.heading_rad));
+            let tip = pose.transform(Point2::new(length_m, 0.0));
+            places.push([pose.x(), pose.y()]);
+            headings.push([[pose.x(), pose.y()], [tip.x, tip.y]]);
+        }
+        layers.extend([
+            Layer::segments(headings, Stroke::Solid, GHOST, 0.75),
+            Layer::points(places, Mark::Circle, GHOST, 1.5 + 1.5 * size as f32),
+        ]);
+    }
+    layers
+}
+
+/// The wardrobe where the map has it, and where it stands now.
+fn wardrobe() -> Vec<Layer> {
+    let outline = |corners: [Point2<f64>; 4]| {
+        let closed = corners.iter().chain([&corners[0]]);
+        closed
+            .map(|corner| [corner.x, corner.y])
+            .collect::<Vec<_>>()
+    };
+    let [before, now] = wardrobe_corners().map(outline);
+    let label = |points: &[[f64; 2]], text: &str| {
+        Layer::label([points[0][0] + 0.35, points[2][1]], text.to_owned(), 4.0)
+    };
+    vec![
+        label(&before, "wardrobe yesterday"),
+        label(&now, "wardrobe today"),
+        Layer::line(before, Stroke::Dotted, Tone::Ink, 2.0),
+        Layer::line(now, Stroke::Solid, Tone::Ink, 2.5),
+    ]
 }
 
 fn scores(back: &ComeBack) -> Panel {
@@ -129,6 +167,11 @@ fn scores(back: &ComeBack) -> Panel {
     if let Some((_, run)) = back.finished() {
         let reports = run.reports();
         last = (reports.len() as f64).max(2.0);
+        // Scans of later moments are not yet taken.
+        let taken = back.moment().map_or(0, |moment| {
+            moment.tick + usize::from(moment.report.is_some())
+        });
+        let reports = &reports[..taken];
         let at = |tick: usize, score: f64| [tick as f64 + 1.0, score];
         let fits = reports.iter().enumerate().filter_map(|(tick, report)| {
             let is_told = report.verdict.is_localized();
@@ -166,11 +209,7 @@ fn scores(back: &ComeBack) -> Panel {
         legend: vec![
             LegendEntry::mark("best place of a search", Tone::Posterior, Mark::Square),
             LegendEntry::mark("next place", Tone::Series(1), Mark::Triangle),
-            LegendEntry::line(
-                "scan that follows its place",
-                Tone::Measurement,
-                Stroke::Solid,
-            ),
+            LegendEntry::line("follows its place", Tone::Measurement, Stroke::Solid),
         ],
         color_bar: None,
     }

@@ -11,18 +11,26 @@ const WRONG_POSE_M: f64 = 0.5;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Ending {
+pub enum Ending {
     Computing,
+    Unknown,
     Found,
     WrongPose,
     Ambiguous,
     Lost,
 }
 
-fn ending(back: &ComeBack) -> Ending {
-    let Some((_, run)) = back.finished() else {
-        return Ending::Computing;
-    };
+/// What is known at the moment on screen.
+fn so_far(back: &ComeBack) -> Ending {
+    match back.finished() {
+        None => Ending::Computing,
+        Some((_, run)) if back.place() < back.decided(run) => Ending::Unknown,
+        Some((_, run)) => ending(run),
+    }
+}
+
+/// How a run ends.
+pub fn ending(run: &LocalizationRun) -> Ending {
     let ticks = 0..run.reports().len();
     let is_localized = |tick: &usize| run.reports()[*tick].verdict.is_localized();
     let is_off = |tick: usize| run.error_m(tick).is_some_and(|m| m > WRONG_POSE_M);
@@ -37,17 +45,18 @@ fn ending(back: &ComeBack) -> Ending {
 }
 
 /// Good is a localized robot.
-pub fn standing(back: &ComeBack) -> Standing {
-    match ending(back) {
-        Ending::Computing | Ending::Ambiguous | Ending::Lost => Standing::Neutral,
+pub fn standing(ending: Ending) -> Standing {
+    match ending {
+        Ending::Computing | Ending::Unknown | Ending::Ambiguous | Ending::Lost => Standing::Neutral,
         Ending::Found => Standing::Good,
         Ending::WrongPose => Standing::Bad,
     }
 }
 
 /// The run in a few words.
-pub fn verdict(back: &ComeBack) -> &'static str {
-    match ending(back) {
+pub fn verdict(ending: Ending) -> &'static str {
+    match ending {
+        Ending::Unknown => "where am I?",
         Ending::Computing => "a lap is driven",
         Ending::Found => "found",
         Ending::WrongPose => "in the wrong place",
@@ -57,7 +66,9 @@ pub fn verdict(back: &ComeBack) -> &'static str {
 }
 
 pub fn outcome(back: &ComeBack) -> Outcome {
-    let sentence = match (ending(back), back.finished()) {
+    let ending = so_far(back);
+    let sentence = match (ending, back.finished()) {
+        (Ending::Unknown, _) => "The robot is switched on, and nobody has told it where. It compares what it sees with the whole saved map: each ghost is a pose that may be right, and those that cannot win disappear.".to_owned(),
         (Ending::Found, Some((_, run))) => found_words(run),
         (Ending::WrongPose, _) => "The robot is localized at a wrong pose, and drives on. A place that looks the same is enough for that, if no other scan contradicts it.".to_owned(),
         (Ending::Ambiguous, Some((_, run))) => format!(
@@ -72,8 +83,8 @@ pub fn outcome(back: &ComeBack) -> Outcome {
         _ => "A lap is driven and its map is saved. Then the robot is switched on where you put it, on another day: it searches the whole map for its pose, box by box.".to_owned(),
     };
     Outcome {
-        standing: standing(back),
-        verdict: verdict(back).to_owned(),
+        standing: standing(ending),
+        verdict: verdict(ending).to_owned(),
         sentence,
         facts: facts(back),
     }

@@ -1,39 +1,59 @@
-//! The descriptors of the pair: two histograms over the range, or rings and sectors, before and after the
-//! rotation.
+//! The descriptors of the two views: two histograms over the range, or the views unrolled by bearing, the newer
+//! one slid over the older one.
 
 use ch16_lab::lap::{Choice, LapDetector};
-use ch16_lab::places::{Place, PlaceStudy};
+use ch16_lab::places::Place;
 use ch16_slam2d::places::RangeHistogram;
 use kit::chart::axis_from_zero;
-use kit::scene::{
-    Aspect, Axis, Bounds, Cell, Layer, LegendEntry, Mark, Panel, Raster, Stroke, Tone, Weight,
-};
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use pr_geom::SE2;
 
+use super::super::lap::Places;
 use super::super::{BeenHere, panel};
-use super::{empty, shown_turn, two_keyframes};
+use super::{NOW, THEN, empty};
 
-/// Rings of empty space between two contexts.
-const GAP_RINGS: usize = 2;
+/// The rows of the plot: the curve of the distance in the first one, the views in the rest.
+const CURVE: [f64; 2] = [0.5, 1.8];
+const VIEWS: [f64; 2] = [2.2, 4.3];
+
+/// The lowest bearing of the plot, degrees: places of the way back are seen half a turn away.
+const LOWEST_DEG: f64 = -90.0;
 
 pub fn panel(been: &BeenHere) -> Panel {
-    let told = been.places.as_ref().zip(been.pair());
-    let Some((places, [old, new])) = told else {
-        return Panel {
-            aspect: Aspect::Free,
-            legend: two_keyframes(),
-            ..empty(panel::LOOKS, "How alike they look, once the lap is driven")
-        };
+    let empty = Panel {
+        weight: Weight::Half,
+        aspect: Aspect::Free,
+        ..empty(panel::LOOKS, "What both robots see")
+    };
+    let Some((places, [old, new])) = been.places.as_ref().zip(been.pair()) else {
+        return empty;
     };
     match LapDetector::ALL[been.detector()] {
-        LapDetector::Context => contexts(been, &places.study, [old, new]),
+        LapDetector::Context => contexts(been, places, [old, new], empty),
         LapDetector::Nearby | LapDetector::Histogram => {
             let of = |node: usize| &places.study.places()[node].histogram;
-            histograms(of(old), of(new), places.study.max_range_m())
+            histograms(of(old), of(new), places.study.max_range_m(), empty)
         }
     }
 }
 
-fn histograms(old: &RangeHistogram, new: &RangeHistogram, max_range_m: f64) -> Panel {
+/// The turn of the newer view on screen, degrees; `None` without Scan Context.
+pub fn turn_deg(been: &BeenHere) -> Option<f64> {
+    let (places, [old, new]) = been.places.as_ref().zip(been.pair())?;
+    if LapDetector::ALL[been.detector()] != LapDetector::Context {
+        return None;
+    }
+    let best = places.study.turned(old, new).turn_rad;
+    let turn = SE2::new(0.0, 0.0, best + been.turned_away_deg().to_radians());
+    Some(on_axis(turn.theta().to_degrees()))
+}
+
+/// The same bearing on the axis of the plot.
+fn on_axis(bearing_deg: f64) -> f64 {
+    (bearing_deg - LOWEST_DEG).rem_euclid(360.0) + LOWEST_DEG
+}
+
+fn histograms(old: &RangeHistogram, new: &RangeHistogram, max_range_m: f64, empty: Panel) -> Panel {
     let highest = old.shares().iter().chain(new.shares()).copied();
     let steps = |histogram: &RangeHistogram| {
         let width = max_range_m / histogram.shares().len() as f64;
@@ -44,71 +64,75 @@ fn histograms(old: &RangeHistogram, new: &RangeHistogram, max_range_m: f64) -> P
     let line =
         |histogram, tone, width_px| Layer::line(steps(histogram), Stroke::Solid, tone, width_px);
     Panel {
-        id: panel::LOOKS,
-        title: format!("Histograms of ranges: χ² distance {:.3}", old.distance(new)),
-        weight: Weight::Half,
-        aspect: Aspect::Free,
+        title: format!("How far they see: they differ by {:.2}", old.distance(new)),
         x: Axis::new("range (m)", 0.0, max_range_m),
-        y: axis_from_zero("share", highest.fold(0.0, f64::max)),
-        layers: vec![
-            line(old, Tone::Measurement, 2.5),
-            line(new, Tone::Posterior, 1.5),
-        ],
+        y: axis_from_zero("share of the returns", highest.fold(0.0, f64::max)),
+        layers: vec![line(old, THEN, 2.5), line(new, NOW, 1.5)],
         legend: vec![
-            LegendEntry::line("older keyframe", Tone::Measurement, Stroke::Solid),
-            LegendEntry::line("newer keyframe", Tone::Posterior, Stroke::Solid),
+            LegendEntry::line("then", THEN, Stroke::Solid),
+            LegendEntry::line("now", NOW, Stroke::Solid),
         ],
-        color_bar: None,
+        ..empty
     }
 }
 
-/// The older one on top, the newer one in the middle, and the newer one shifted by its best rotation below.
-fn contexts(been: &BeenHere, study: &PlaceStudy, [old, new]: [usize; 2]) -> Panel {
-    let places = study.places();
-    let rings = places[old].context.ring_key().len();
-    let sectors = places[old].context.bins().len() / rings.max(1);
-    let turn = shown_turn(been, study, [old, new]).theta();
-    let shift = (turn / core::f64::consts::TAU * sectors as f64).round() as i64;
-    let shift = shift.rem_euclid(sectors as i64) as usize;
-    let row = rings + GAP_RINGS;
-    let rows = 3 * rings + 2 * GAP_RINGS;
-    let occupied = |place: &Place, sector: usize, ring: usize| {
-        let bin = place.context.bins()[sector * rings + ring];
-        Cell::Occupancy((0.06 + 0.9 * bin) as f32)
+fn contexts(been: &BeenHere, places: &Places, [old, new]: [usize; 2], empty: Panel) -> Panel {
+    let all = places.study.places();
+    let (old, new) = (&all[old], &all[new]);
+    let rings = old.context.ring_key().len();
+    let sectors = old.context.bins().len() / rings.max(1);
+    let sector_deg = 360.0 / sectors as f64;
+    let turn_deg = turn_deg(been).unwrap_or_default();
+    let shift_of = |turn_deg: f64| (turn_deg / sector_deg).round().rem_euclid(sectors as f64);
+    let differ = |shift: f64| {
+        old.context
+            .distance_at(&new.context, shift as usize % sectors)
     };
-    let cell = |k: usize| {
-        // Straight ahead is in the middle: the sector of −180° comes first.
-        let (sector, ring) = ((k % sectors + sectors / 2) % sectors, k / sectors);
-        match (ring / row, ring % row) {
-            (_, ring) if ring >= rings => Cell::Occupancy(0.0),
-            (0, ring) => occupied(&places[new], (sector + sectors - shift) % sectors, ring),
-            (1, ring) => occupied(&places[new], sector, ring),
-            (_, ring) => occupied(&places[old], sector, ring),
-        }
+    let height = |distance: f64| CURVE[0] + (CURVE[1] - CURVE[0]) * distance;
+    let seen = |place: &Place, by_deg: f64| {
+        let bins = place.context.bins().iter().enumerate();
+        let returns = bins.filter(|(_, bin)| **bin > 0.0);
+        let spot = |(k, _): (usize, &f64)| {
+            let bearing = on_axis((k / rings) as f64 * sector_deg + 0.5 * sector_deg + by_deg);
+            let ring = ((k % rings) as f64 + 0.5) / rings as f64;
+            [bearing, VIEWS[0] + (VIEWS[1] - VIEWS[0]) * ring]
+        };
+        returns.map(spot).collect::<Vec<_>>()
     };
-    let distance = study.turned(old, new).distance;
-    let revision = (been.laps << 40) + ((old as u64) << 20) + new as u64;
+    let curve = (0..=sectors).map(|k| {
+        let at = LOWEST_DEG + k as f64 * sector_deg;
+        [at, height(differ(shift_of(at)))]
+    });
+    let distance = differ(shift_of(turn_deg));
+    let names = ["unlike", "", "view"].map(str::to_owned);
     Panel {
-        id: panel::LOOKS,
-        title: format!(
-            "Rings and sectors, shifted by {:.0}°: distance {distance:.3}",
-            turn.to_degrees()
-        ),
-        weight: Weight::Half,
-        aspect: Aspect::Free,
-        x: Axis::new("bearing (°)", -180.0, 180.0),
-        y: Axis::new("rings: older above, newer, newer shifted", 0.0, rows as f64),
-        layers: vec![Layer::Raster(Raster {
-            bounds: Bounds {
-                min: [-180.0, 0.0],
-                max: [180.0, rows as f64],
+        title: format!("Turned by {turn_deg:.0}° they differ by {distance:.2}"),
+        x: Axis::new("bearing (°)", LOWEST_DEG, LOWEST_DEG + 360.0),
+        y: Axis {
+            min: 0.4,
+            max: 4.4,
+            ..Axis::of_names("", names)
+        },
+        layers: vec![
+            Layer::line(curve.collect(), Stroke::Solid, Tone::Ink, 1.75),
+            Layer::segments(
+                vec![[[turn_deg, CURVE[0]], [turn_deg, VIEWS[1]]]],
+                Stroke::Dotted,
+                NOW,
+                1.5,
+            ),
+            Layer::points(seen(old, 0.0), Mark::Cross, THEN, 2.6),
+            Layer::points(seen(new, turn_deg), Mark::Square, NOW, 2.0),
+            Layer::Handle {
+                at: [turn_deg, height(distance)],
+                tone: NOW,
+                label: "slide the newer view over the older one",
             },
-            columns: sectors,
-            rows,
-            cells: (0..rows * sectors).map(cell).collect(),
-            revision,
-        })],
-        legend: vec![LegendEntry::mark("a return", Tone::Ink, Mark::Dot)],
-        color_bar: None,
+        ],
+        legend: vec![
+            LegendEntry::mark("then", THEN, Mark::Cross),
+            LegendEntry::mark("now", NOW, Mark::Square),
+        ],
+        ..empty
     }
 }
