@@ -235,6 +235,8 @@ export interface HaveIBeenHereState {
   world: 'apartment' | 'ring';
   /** The older keyframe that is compared with the newest one; −1 is the most similar one. -1 to 120. */
   old: number;
+  /** How far the newer view is turned away from the heading at which Scan Context fits best. -180 to 180 °. */
+  turn: number;
   /** Another seed is another lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
   /** Multiplies the variances of the wheel odometry: 1 is the chapter's robot. 0.25 to 4. */
@@ -249,6 +251,8 @@ export interface HaveIBeenHereState {
 
 /** The moving box: every parameter. */
 export interface TheMovingBoxState {
+  /** Whose pairs are drawn: all of them, without the longest ones, or the long ones with less weight. */
+  method: 'plain' | 'trimmed' | 'huber';
   /** Which share of the points of both sweeps lies on the box that was moved. 0 to 60 %. */
   share: number;
   /** How far the box was moved between the sweeps, away from the sensor along x. 0 to 0.8 m. */
@@ -551,6 +555,7 @@ export interface SlamWidgetProperties {
   detector: 'nearby' | 'histogram' | 'context' | undefined;
   old: number | undefined;
   new: number | undefined;
+  method: 'plain' | 'trimmed' | 'huber' | undefined;
   share: number | undefined;
   moved: number | undefined;
   dropped: number | undefined;
