@@ -73,12 +73,12 @@ const MEASURING: [&str; 31] = [
 /// Names of false minima, which are not numbers.
 const NAMES: [&str; 2] = ["quarter turn", "half turn"];
 
-/// Checks whether `text` prints `value`.
+/// Checks whether `text` prints `value`; commas between thousands are optional.
 ///
 /// # Errors
 /// The value in the form of the text.
 pub fn check(text: &str, value: f64) -> Result<(), String> {
-    let text = words_of(text);
+    let text = words_of(text).replace(',', "");
     let (relation, amount) = match text.split_once(" than ") {
         Some((relation, amount)) => (relation, amount),
         None => ("", text.as_str()),

@@ -110,7 +110,7 @@ fn every_meaning_has_its_own_colour_in_each_theme() {
     for (theme, colors) in [
         (
             Theme::Light,
-            [0x2563eb, 0xc2410c, 0x166534, 0x581c87, 0x6b7280],
+            [0x2563eb, 0xea580c, 0x166534, 0x581c87, 0x6b7280],
         ),
         (
             Theme::Dark,

@@ -92,7 +92,7 @@ fn map(recording: &Recording, robot: &RobotConfig, closure: LoopClosure) -> (Sla
     let frames = &recording.frames;
     let mut slam = Slam::new(SlamConfig {
         start: frames[0].truth,
-        ..SlamConfig::from_robot(robot.clone())
+        ..SlamConfig::from_robot(*robot)
     })
     .with_outlier_test(PoseGraph::inlier_edges);
     slam.set_loop_closure(closure);
