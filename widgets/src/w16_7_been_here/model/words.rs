@@ -38,7 +38,7 @@ pub fn verdict(been: &BeenHere) -> &'static str {
 pub fn outcome(been: &BeenHere) -> Outcome {
     let sentence = match grade(been) {
         // As long as the text that follows, so that the page below does not move.
-        None => "The lap is driven, and its keyframes are compared pair by pair: by what is near, by histograms of ranges, and by Scan Context. Then the truth grades every threshold."
+        None => "The lap is driven, and its keyframes are compared pair by pair: which of them show the same place, by what is near, by histograms of ranges, and by Scan Context. Then every threshold is graded by the truth."
             .to_owned(),
         Some((_, grade)) => {
             let called = format!(
@@ -67,7 +67,8 @@ pub fn pair_title(been: &BeenHere) -> String {
         Some((pair, places.study.is_loop(pair.nodes)))
     });
     let Some((pair, is_loop)) = judged else {
-        return String::new();
+        // As high as the title that follows.
+        return "Two places of the lap are about to be compared".to_owned();
     };
     let detector = been.detector();
     let is_called = pair.distances[detector] <= been.threshold(detector);

@@ -23,6 +23,11 @@ pub fn panel(been: &BeenHere) -> Panel {
     let empty = Panel {
         weight: Weight::Half,
         aspect: Aspect::Free,
+        // Present from the start, so that the page below does not move.
+        legend: vec![
+            LegendEntry::mark("then", THEN, Mark::Cross),
+            LegendEntry::mark("now", NOW, Mark::Square),
+        ],
         ..empty(panel::LOOKS, "What both robots see")
     };
     let Some((places, [old, new])) = been.places.as_ref().zip(been.pair()) else {
@@ -128,10 +133,6 @@ fn contexts(been: &BeenHere, places: &Places, [old, new]: [usize; 2], empty: Pan
                 tone: NOW,
                 label: "slide the newer view over the older one",
             },
-        ],
-        legend: vec![
-            LegendEntry::mark("then", THEN, Mark::Cross),
-            LegendEntry::mark("now", NOW, Mark::Square),
         ],
         ..empty
     }
