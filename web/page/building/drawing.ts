@@ -50,9 +50,13 @@ export function draw(story: Building, at: number, surface: Surface, width: numbe
   if (last !== undefined) surface.words('by the wheels', last, 'prediction', size);
 }
 
+/** The two of three between which `at` is, and how far it is from the first of them. */
+function spanAt<T>([wheels, walls, loops]: readonly [T, T, T], at: number): [from: T, to: T, share: number] {
+  return at < 1 ? [wheels, walls, at] : [walls, loops, at - 1];
+}
+
 function posesAt({ wheels, walls, loops }: Building, at: number): Pose[] {
-  const [from, to] = at < 1 ? [wheels, walls] : [walls, loops];
-  const share = at < 1 ? at : at - 1;
+  const [from, to, share] = spanAt([wheels, walls, loops], at);
   const radians = ([x, y, heading]: Pose): Pose => [x, y, heading / 1000];
   return from.map((pose, k) => between(radians(pose), radians(to[k] ?? pose), share));
 }
@@ -86,8 +90,7 @@ function viewAt(story: Building, at: number, width: number, height: number): Vie
     known = { width, height, of: [fit(0), fit(1), fit(LOOPS)] };
     views.set(story, known);
   }
-  const [from, to] = at < 1 ? [known.of[0], known.of[1]] : [known.of[1], known.of[2]];
-  const share = at < 1 ? at : at - 1;
+  const [from, to, share] = spanAt(known.of, at);
   const mix = (a: number, b: number): number => a + share * (b - a);
   return { x: mix(from.x, to.x), y: mix(from.y, to.y), scale: mix(from.scale, to.scale) };
 }

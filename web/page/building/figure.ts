@@ -3,7 +3,7 @@
 
 import { chooseFiles, LOGS, takeDrops } from '../../ts/robot/files';
 import { type Ink } from '../lap/drawing';
-import { canvasSurface, type Inks } from '../lap/surfaces';
+import { canvasSurface, contextOf, readInks, watchColors } from '../lap/surfaces';
 import { type Building, draw, LOOPS, sayError } from './drawing';
 
 /** The replay, as seconds and places of the slider between which it moves evenly: first the map comes apart. */
@@ -44,8 +44,7 @@ export class BuildingFigure {
       this.#show(this.#at);
     });
     new ResizeObserver(() => this.#paint()).observe(this.#canvas);
-    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.#paint());
-    new MutationObserver(() => this.#paint()).observe(document.documentElement, { attributeFilter: ['data-theme'] });
+    watchColors(() => this.#paint());
     this.#takeLogs(picture);
     this.#show(LOOPS);
     if (!matchMedia('(prefers-reduced-motion: reduce)').matches) this.#startWhenSeen();
@@ -107,14 +106,8 @@ export class BuildingFigure {
 
   #paint(): void {
     const { clientWidth: width, clientHeight: height } = this.#canvas;
-    const context = this.#canvas.getContext('2d');
-    if (width === 0 || context === null) return;
-    this.#canvas.width = Math.round(width * devicePixelRatio);
-    this.#canvas.height = Math.round(height * devicePixelRatio);
-    context.scale(devicePixelRatio, devicePixelRatio);
-    const style = getComputedStyle(this.#figure);
-    const inks = Object.fromEntries(INKS.map((ink) => [ink, style.getPropertyValue(`--${ink}`).trim()])) as Inks;
-    draw(this.#story, this.#at, canvasSurface(context, inks), width, height);
+    const context = contextOf(this.#canvas, height);
+    if (context !== undefined) draw(this.#story, this.#at, canvasSurface(context, readInks(this.#figure, INKS)), width, height);
   }
 }
 

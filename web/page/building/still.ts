@@ -13,5 +13,5 @@ export function still(story: Building, inks: Inks): string {
   const dots = surface.dots.bind(surface);
   surface.dots = (points, ...rest) => dots([...new Set(points.map((point) => point.map(Math.round).join()))].map((key) => key.split(',').map(Number) as unknown as Point), ...rest);
   draw(story, LOOPS, surface, WIDTH, HEIGHT);
-  return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${WIDTH} ${HEIGHT}" width="${WIDTH}" height="${HEIGHT}">${surface.text}</svg>\n`;
+  return surface.file(WIDTH, HEIGHT);
 }

@@ -5,7 +5,7 @@
 
 import { ASPECT, camera, draw, type Ink, worldAt } from './drawing';
 import { type Point, Replay, type Story } from './story';
-import { canvasSurface, type Inks } from './surfaces';
+import { canvasSurface, contextOf, type Inks, readInks, watchColors } from './surfaces';
 
 /** A step of the slider, and of an arrow key. */
 const STEP_S = 0.05;
@@ -84,8 +84,7 @@ export class LapPlayer {
       this.#inks = undefined;
       this.#paint();
     };
-    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaint);
-    new MutationObserver(repaint).observe(document.documentElement, { attributeFilter: ['data-theme'] });
+    watchColors(repaint);
     document.addEventListener('visibilitychange', () => this.#wake());
   }
 
@@ -176,19 +175,10 @@ export class LapPlayer {
 
   #paint(): void {
     const width = this.#canvas.clientWidth;
-    const context = this.#canvas.getContext('2d');
-    if (width === 0 || context === null) return;
-    const ratio = devicePixelRatio;
-    this.#canvas.width = Math.round(width * ratio);
-    this.#canvas.height = Math.round((width / ASPECT) * ratio);
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    this.#inks ??= this.#readInks();
+    const context = contextOf(this.#canvas, width / ASPECT);
+    if (context === undefined) return;
+    this.#inks ??= readInks(this.#figure, INKS);
     draw(this.#story, this.#replay.at(this.#seconds), canvasSurface(context, this.#inks), width);
-  }
-
-  #readInks(): Inks {
-    const style = getComputedStyle(this.#figure);
-    return Object.fromEntries(INKS.map((ink) => [ink, style.getPropertyValue(`--${ink}`).trim()])) as Inks;
   }
 }
 

@@ -12,6 +12,5 @@ export function still(story: Story, inks: Inks): string {
   const surface = new SvgSurface(inks);
   const replay = new Replay(story);
   draw(story, replay.at(replay.doubledS), surface, WIDTH);
-  const height = WIDTH / ASPECT;
-  return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${WIDTH} ${height}" width="${WIDTH}" height="${height}">${surface.text}</svg>\n`;
+  return surface.file(WIDTH, WIDTH / ASPECT);
 }

@@ -64,6 +64,11 @@ export class SvgSurface implements Surface {
     this.#inks = inks;
   }
 
+  /** The picture as a file. */
+  file(width: number, height: number): string {
+    return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}">${this.text}</svg>\n`;
+  }
+
   line(points: readonly Point[], ink: Ink, width: number, { alpha = 1, dash = [] }: { alpha?: number; dash?: number[] } = {}): void {
     const dashes = dash.length === 0 ? ' stroke-linecap="round"' : ` stroke-dasharray="${dash.map(short).join(' ')}"`;
     const opacity = alpha === 1 ? '' : ` stroke-opacity="${alpha}"`;
@@ -91,6 +96,29 @@ function inkForWords(inks: Inks, ink: Ink): string {
   const channels = (color: string): number[] => [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16));
   const text = channels(inks.ink);
   return `rgb(${channels(inks[ink]).map((channel, at) => Math.round(0.7 * channel + 0.3 * (text[at] ?? 0))).join(' ')})`;
+}
+
+/** The colours of a figure by their names in the style sheet. */
+export function readInks(figure: HTMLElement, names: readonly Ink[]): Inks {
+  const style = getComputedStyle(figure);
+  return Object.fromEntries(names.map((ink) => [ink, style.getPropertyValue(`--${ink}`).trim()])) as Inks;
+}
+
+/** The context of a canvas of this height, in CSS pixels and cleared; `undefined` while it has no width. */
+export function contextOf(canvas: HTMLCanvasElement, height: number): CanvasRenderingContext2D | undefined {
+  const width = canvas.clientWidth;
+  const context = canvas.getContext('2d');
+  if (width === 0 || context === null) return undefined;
+  canvas.width = Math.round(width * devicePixelRatio);
+  canvas.height = Math.round(height * devicePixelRatio);
+  context.scale(devicePixelRatio, devicePixelRatio);
+  return context;
+}
+
+/** Calls when the colours of the page change. */
+export function watchColors(changed: () => void): void {
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', changed);
+  new MutationObserver(changed).observe(document.documentElement, { attributeFilter: ['data-theme'] });
 }
 
 function pathOf(points: readonly Point[]): string {

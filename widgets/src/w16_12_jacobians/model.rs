@@ -7,7 +7,7 @@ mod settings;
 mod tables;
 mod words;
 
-use ch16_lab::jacobians::{Descent, Moment, Recipe, RingConfig, descend, optimum, ring};
+use ch16_lab::jacobians::{Descent, Moment, RingConfig, descend, optimum, ring};
 use kit::chart::{dragged_to, grab_now};
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
@@ -92,22 +92,21 @@ impl WrongJacobians {
         self.played.place(&self.values, self.last() as f64) as usize
     }
 
-    /// Where the chain ends at the start, if each edge turns too little by that many degrees.
-    fn loose_end(&self, bias_deg: f64) -> [f64; 2] {
-        let config = RingConfig {
-            turn_bias_rad: bias_deg.to_radians(),
-            ..settings::ring(&self.values)
-        };
-        let start = descend(&ring(&config), Recipe::Exact, &self.solved.optimum, 0);
-        let end = start.moments[0].poses.last();
-        end.map_or([0.0; 2], |pose| [pose.x(), pose.y()])
+    /// The loose end of the chain, which is there to bend before the first step.
+    fn loose_end(&self) -> Option<[f64; 2]> {
+        let start = &self.solved.runs[0].moments[0].poses;
+        (self.step() == 0).then(|| last_position(start))
     }
 
     /// Bends the chain until its loose end is as near to a spot as it gets.
     fn bend(&mut self, at: [f64; 2]) {
         let steps = (0..=(MOST_BIAS_DEG / BIAS_STEP_DEG) as u32).map(f64::from);
         let away = |bias_deg: &f64| {
-            let [x, y] = self.loose_end(*bias_deg);
+            let config = RingConfig {
+                turn_bias_rad: bias_deg.to_radians(),
+                ..settings::ring(&self.values)
+            };
+            let [x, y] = last_position(ring(&config).poses());
             math::norm2(x - at[0], y - at[1])
         };
         let nearest = steps
@@ -124,6 +123,11 @@ impl WrongJacobians {
         let run = &self.solved.runs[solver];
         &run.moments[self.step().min(run.steps())]
     }
+}
+
+fn last_position(poses: &[SE2]) -> [f64; 2] {
+    let end = poses.last().copied().unwrap_or_default();
+    [end.x(), end.y()]
 }
 
 impl Model for WrongJacobians {
@@ -196,9 +200,9 @@ impl Model for WrongJacobians {
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
         if panel == panel::GRAPHS {
-            let end = self.loose_end(self.values.get(&BIAS));
+            let end = self.loose_end()?;
             let off = [at[0] - end[0], at[1] - end[1]];
-            let is_near = self.step() == 0 && (0..2).all(|i| off[i].abs() <= reach[i]);
+            let is_near = (0..2).all(|i| off[i].abs() <= reach[i]);
             return is_near.then_some(Handle {
                 panel: panel::GRAPHS,
                 id: BIAS.id,

@@ -1,13 +1,13 @@
 //! A mapped building as plain data, for the picture with which the page of the reader's own robot opens.
 
-use ch16_slam2d::graph::PoseGraph;
 use ch16_slam2d::metrics::position_error_m;
-use ch16_slam2d::slam::{LoopClosure, RobotConfig, Slam, SlamConfig};
+use ch16_slam2d::slam::{LoopClosure, RobotConfig, Slam};
 use pr_geom::SE2;
 use serde::Serialize;
 
 use super::kinds::{Kind, recorded};
 use super::recording::Recording;
+use super::trial::estimator;
 
 /// Beams of a scan that the picture keeps.
 const BEAMS: usize = 36;
@@ -90,11 +90,7 @@ impl BuildingStory {
 /// The estimator after the last scan, and its pose at every frame.
 fn map(recording: &Recording, robot: &RobotConfig, closure: LoopClosure) -> (Slam, Vec<SE2>) {
     let frames = &recording.frames;
-    let mut slam = Slam::new(SlamConfig {
-        start: frames[0].truth,
-        ..SlamConfig::from_robot(*robot)
-    })
-    .with_outlier_test(PoseGraph::inlier_edges);
+    let mut slam = estimator(recording, *robot);
     slam.set_loop_closure(closure);
     let mut poses = Vec::with_capacity(frames.len());
     for number in 0..frames.len() {

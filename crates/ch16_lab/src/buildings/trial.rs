@@ -53,11 +53,7 @@ impl Trial {
     #[must_use]
     pub fn run(recording: &Recording, robot: RobotConfig, with_wheels: bool) -> Self {
         let frames = &recording.frames;
-        let mut slam = Slam::new(SlamConfig {
-            start: frames[0].truth,
-            ..SlamConfig::from_robot(robot)
-        })
-        .with_outlier_test(PoseGraph::inlier_edges);
+        let mut slam = estimator(recording, robot);
         let (mut tried, mut closed) = (0, TrialLoops::default());
         for number in 0..frames.len() {
             let Ok(report) = slam.step(&recording.frame(number, with_wheels)) else {
@@ -104,6 +100,18 @@ impl Trial {
         let within = self.nees.iter().filter(|nees| **nees <= CHAPTER_GATE);
         within.count() as f64 / self.nees.len() as f64
     }
+}
+
+/// The estimator for a recorded log, at the true pose of the first frame.
+///
+/// # Panics
+/// If the recording has no frame.
+pub(super) fn estimator(recording: &Recording, robot: RobotConfig) -> Slam {
+    let config = SlamConfig {
+        start: recording.frames[0].truth,
+        ..SlamConfig::from_robot(robot)
+    };
+    Slam::new(config).with_outlier_test(PoseGraph::inlier_edges)
 }
 
 impl TrialLoops {

@@ -30,6 +30,17 @@ pub struct IcpConfig {
     pub huber_width_m: f64,
 }
 
+/// The weight of a pair by the size of its residual, m: 1 up to the width, then width/residual (Huber 1964).
+#[inline]
+#[must_use]
+pub fn huber_weight(residual_m: f64, width_m: f64) -> f64 {
+    if residual_m > width_m {
+        width_m / residual_m
+    } else {
+        1.0
+    }
+}
+
 impl Default for IcpConfig {
     fn default() -> Self {
         Self {

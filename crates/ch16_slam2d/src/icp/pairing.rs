@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector2};
 use pr_geom::{SE2, math};
 
 use super::align::{PlanePair, PointPair, point_to_plane, point_to_point};
-use super::{IcpConfig, IcpTrace, IcpVariant, PairRejection, Trimmed};
+use super::{IcpConfig, IcpTrace, IcpVariant, PairRejection, Trimmed, huber_weight};
 use crate::cloud::{NearestMap, PointCloud, QueryCache};
 
 /// A moved cloud point and the map point nearest to it.
@@ -209,21 +209,14 @@ impl IcpWorkspace {
 
     /// The increment by the last pairs.
     pub(super) fn increment(&self, config: &IcpConfig) -> SE2 {
-        let width = config.huber_width_m;
-        let weight = |residual_m: f64| {
-            if residual_m > width {
-                width / residual_m
-            } else {
-                1.0
-            }
-        };
+        let width_m = config.huber_width_m;
         match config.variant {
             IcpVariant::PointToPoint => {
                 point_to_point(self.pairs.iter().map(|pair| PointPair {
                     source: pair.source,
                     target: pair.target,
-                    weight: if width.is_finite() {
-                        weight(math::sqrt(pair.distance_squared_m2))
+                    weight: if width_m.is_finite() {
+                        huber_weight(math::sqrt(pair.distance_squared_m2), width_m)
                     } else {
                         1.0
                     },
@@ -238,7 +231,7 @@ impl IcpWorkspace {
                         source: pair.source,
                         residual_m,
                         normal: pair.normal,
-                        weight: weight(residual_m.abs()),
+                        weight: huber_weight(residual_m.abs(), width_m),
                     }
                 }))
             }

@@ -85,9 +85,12 @@ pub fn store_all<'a>(
     let fitted: Vec<Fitted<'_>> = scans.map(|scan| fit(scan, radius_m, most_bytes)).collect();
     let exact: usize = fitted.iter().map(|scan| scan.bytes(Precision::Exact)).sum();
     let all_exact = exact <= most_bytes * fitted.len();
-    let store = |scan: &Fitted<'_>| match all_exact {
-        true => scan.stored(Precision::Exact),
-        false => scan.stored(scan.precision),
+    let store = |scan: &Fitted<'_>| {
+        scan.stored(if all_exact {
+            Precision::Exact
+        } else {
+            scan.precision
+        })
     };
     fitted.iter().map(store).collect()
 }

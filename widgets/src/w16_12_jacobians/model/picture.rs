@@ -6,7 +6,7 @@ use pr_geom::{SE2, math};
 
 use super::{NAMES, WrongJacobians, panel};
 
-use crate::w16_12_jacobians::spec::{BIAS, CURVE, Curve};
+use crate::w16_12_jacobians::spec::{CURVE, Curve};
 
 /// Tones and marks of the solvers.
 const TONES: [Tone; 4] = [
@@ -69,8 +69,7 @@ fn graphs(widget: &WrongJacobians) -> Panel {
         layers.push(line(now.clone(), Stroke::Solid, tone, 1.75));
         layers.push(Layer::points(now, mark, tone, 4.0));
     }
-    if widget.step() == 0 {
-        let at = widget.loose_end(widget.values.get(&BIAS));
+    if let Some(at) = widget.loose_end() {
         layers.push(Layer::Handle {
             at,
             tone: Tone::Ink,

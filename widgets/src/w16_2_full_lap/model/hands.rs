@@ -54,7 +54,8 @@ fn places(moment: &Moment, name: &str) -> Vec<(Part, [f64; 2])> {
     let nodes = &moment.nodes;
     match name {
         panel::MAP => {
-            let at = |node: usize| picture::shown_node(moment, node);
+            let shown = picture::shown_nodes(moment);
+            let at = |node: usize| shown[node];
             let keyframes = (0..nodes.len()).map(|node| (Part::Keyframe(node), at(node)));
             let mut places: Vec<_> = keyframes.collect();
             places.extend((1..nodes.len()).map(|to| {
@@ -122,7 +123,7 @@ fn grab_keyframe(moment: &Moment, at: [f64; 2], reach: [f64; 2]) -> Option<Handl
     else {
         return None;
     };
-    let [x, y] = picture::shown_node(moment, node);
+    let [x, y] = picture::shown_nodes(moment)[node];
     let off = [at[0] - x, at[1] - y];
     let is_near = off[0].abs() <= reach[0] && off[1].abs() <= reach[1];
     is_near.then_some(Handle {
@@ -141,8 +142,9 @@ pub fn dragged_ends(moment: &Moment, handle: Handle, at: [f64; 2]) -> Option<[us
     }
     let [from, reach] = handle.offset;
     let from = from as usize;
+    let shown = picture::shown_nodes(moment);
     let away = |node: usize| {
-        let [x, y] = picture::shown_node(moment, node);
+        let [x, y] = shown[node];
         math::norm2(x - at[0], y - at[1])
     };
     let near = (0..moment.nodes.len())

@@ -17,7 +17,7 @@ use super::moment::Moment;
 pub use map::{loop_mark, shown_bounds as map_bounds};
 pub use plots::{OVER_TIME, gate_mark};
 pub use strain::{part_of, strain_mark};
-pub use wipe::{divider, shown_node};
+pub use wipe::{divider, shown_nodes};
 
 /// The whole picture.
 pub fn scene(moment: &Moment) -> Scene {

@@ -2,7 +2,7 @@
 
 use ch16_lab::moving_box::{BoxMethods, BoxScene};
 use ch16_slam2d::cloud::PointCloud;
-use ch16_slam2d::icp::IcpVariant;
+use ch16_slam2d::icp::{IcpVariant, huber_weight};
 use kit::chart::axis_from_zero;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::{Point2, Vector2, math};
@@ -52,14 +52,10 @@ fn room(moving: &MovingBox) -> Panel {
             Tone::Posterior,
         ),
     ];
-    for (on_box, tone) in [(false, TONES[method]), (true, ON_BOX)] {
-        let pulls = pulls(moving).filter(|pull| pull.on_box == on_box);
-        layers.push(Layer::line(
-            pulls.flat_map(|pull| arrow(pull.from, pull.by_m)).collect(),
-            Stroke::Solid,
-            tone,
-            1.25,
-        ));
+    let (on_box, on_wall): (Vec<Pull>, Vec<Pull>) = pulls(moving).partition(|pull| pull.on_box);
+    for (pulls, tone) in [(on_wall, TONES[method]), (on_box, ON_BOX)] {
+        let arrows = pulls.iter().flat_map(|pull| arrow(pull.from, pull.by_m));
+        layers.push(Layer::line(arrows.collect(), Stroke::Solid, tone, 1.25));
     }
     layers.push(Layer::pose(truth.to_array(), Mark::Plus, Tone::Truth, 6.0));
     for (k, name) in BoxMethods::NAMES.into_iter().enumerate() {
@@ -117,11 +113,10 @@ fn pulls(moving: &MovingBox) -> impl Iterator<Item = Pull> {
             (IcpVariant::PointToPlane, Some(normal)) => normal * -pair.plane_distance_m(),
             _ => pair.target - pair.source,
         };
-        let length_m = math::norm2(residual.x, residual.y);
-        let weight = (config.huber_width_m / length_m.max(f64::MIN_POSITIVE)).min(1.0);
         Pull {
             from: pair.source,
-            by_m: residual * weight,
+            by_m: residual
+                * huber_weight(math::norm2(residual.x, residual.y), config.huber_width_m),
             on_box: scene.is_on_box(pair.source_index),
         }
     })

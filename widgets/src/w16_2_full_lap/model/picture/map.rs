@@ -152,7 +152,9 @@ fn map_points(moment: &Moment) -> [Layer; 2] {
     let turn = moment.runs.graph.turn_node();
     let mut out = Vec::new();
     let mut back = Vec::new();
-    for (poses, before) in [(&moment.old_nodes, true), (&moment.nodes, false)] {
+    let line = wipe::divider(moment);
+    let old = line.map(|_| (&moment.old_nodes, true));
+    for (poses, before) in old.into_iter().chain([(&moment.nodes, false)]) {
         for (node, pose) in poses.iter().enumerate() {
             let pass = if turn.is_some_and(|turn| node > turn) {
                 &mut back
@@ -160,7 +162,7 @@ fn map_points(moment: &Moment) -> [Layer; 2] {
                 &mut out
             };
             let sweep = moment.runs.sweep_at(node, *pose);
-            pass.extend(sweep.filter(|at| wipe::is_before(moment, *at) == before));
+            pass.extend(sweep.filter(|at| wipe::is_before(line, *at) == before));
         }
     }
     [
@@ -196,8 +198,9 @@ fn paths(moment: &Moment) -> [Layer; 3] {
 
 /// Nodes, the factors between neighbours, and the factors of the loops closed so far.
 fn graph(moment: &Moment) -> Vec<Layer> {
+    let line = wipe::divider(moment);
     let nodes = moment.nodes.iter().map(xy);
-    let nodes: Vec<_> = nodes.filter(|at| !wipe::is_before(moment, *at)).collect();
+    let nodes: Vec<_> = nodes.filter(|at| !wipe::is_before(line, *at)).collect();
     let mut layers = parts::edges(moment);
     layers.extend(moment.loops_tried().flat_map(|attempt| {
         let arc = arc(moment, attempt);

@@ -5,7 +5,7 @@ use kit::scene::{Layer, Mark, Stroke, Tone};
 
 use super::loop_style::LoopStyle;
 use super::shapes::{arc, xy};
-use super::wipe::{clipped, shown_node};
+use super::wipe::{clipped, divider, shown_nodes};
 use crate::w16_2_full_lap::model::found::{Found, find};
 use crate::w16_2_full_lap::model::moment::Moment;
 use crate::w16_2_full_lap::model::pick::Part;
@@ -41,6 +41,7 @@ pub fn is_any_past_the_gate(moment: &Moment) -> bool {
 
 /// The edges between neighbours after the loop, wider and in another colour the more they are strained.
 pub fn edges(moment: &Moment) -> Vec<Layer> {
+    let line = divider(moment);
     let at = |node: usize| xy(&moment.nodes[node]);
     let mut by_look = vec![Vec::new(); LOOKS.len()];
     for (look, edge) in neighbours(moment) {
@@ -50,7 +51,7 @@ pub fn edges(moment: &Moment) -> Vec<Layer> {
     layers
         .filter(|(segments, _)| !segments.is_empty())
         .map(|(segments, (_, tone, width_px))| {
-            let segments = clipped(moment, segments, false);
+            let segments = clipped(line, segments, false);
             Layer::segments(segments, Stroke::Solid, tone, width_px)
         })
         .collect()
@@ -60,7 +61,7 @@ pub fn edges(moment: &Moment) -> Vec<Layer> {
 pub fn looked_at(moment: &Moment) -> Vec<Layer> {
     let mut layers = Vec::new();
     if let Some(node) = moment.tied.filter(|node| *node < moment.nodes.len()) {
-        let at = shown_node(moment, node);
+        let at = shown_nodes(moment)[node];
         layers.push(Layer::points(
             vec![at],
             Mark::Circle,
@@ -83,7 +84,7 @@ fn part_layers(moment: &Moment, part: Part, is_picked: bool) -> Vec<Layer> {
     let line = |points| Layer::line(points, Stroke::Solid, Tone::Ink, 3.0);
     let at = match find(moment, part) {
         Some(Found::Keyframe(node)) => {
-            let at = shown_node(moment, node);
+            let at = shown_nodes(moment)[node];
             layers.push(if is_picked {
                 Layer::Handle {
                     at,
@@ -96,7 +97,8 @@ fn part_layers(moment: &Moment, part: Part, is_picked: bool) -> Vec<Layer> {
             at
         }
         Some(Found::Edge(edge)) => {
-            let (a, b) = (shown_node(moment, edge.from), shown_node(moment, edge.to));
+            let nodes = shown_nodes(moment);
+            let (a, b) = (nodes[edge.from], nodes[edge.to]);
             layers.push(line(vec![a, b]));
             [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
         }

@@ -23,24 +23,33 @@ pub fn divider(moment: &Moment) -> Option<f64> {
         .then(|| bounds.min[0] + moment.wipe * bounds.size()[0])
 }
 
-/// Whether a spot is on the side of the line that shows the graph before the loop.
-pub fn is_before(moment: &Moment, at: [f64; 2]) -> bool {
-    divider(moment).is_some_and(|x| at[0] < x)
+/// Whether a spot is left of the line, on the side of the graph before the loop.
+pub fn is_before(line: Option<f64>, at: [f64; 2]) -> bool {
+    line.is_some_and(|x| at[0] < x)
 }
 
-/// The position of a node on the map: before the loop if that is left of the line, else after it.
-pub fn shown_node(moment: &Moment, node: usize) -> [f64; 2] {
-    let old = moment.old_nodes.get(node).map(xy);
-    old.filter(|old| is_before(moment, *old))
-        .unwrap_or_else(|| xy(&moment.nodes[node]))
+/// The positions of the nodes on the map: each before the loop if that is left of the line, else after it.
+pub fn shown_nodes(moment: &Moment) -> Vec<[f64; 2]> {
+    let line = divider(moment);
+    let mut shown: Vec<_> = moment.nodes.iter().map(xy).collect();
+    for (at, old) in shown.iter_mut().zip(moment.old_nodes.iter().map(xy)) {
+        if is_before(line, old) {
+            *at = old;
+        }
+    }
+    shown
 }
 
 /// The part of each segment on one side of the line.
-pub fn clipped(moment: &Moment, segments: Vec<[[f64; 2]; 2]>, before: bool) -> Vec<[[f64; 2]; 2]> {
-    let Some(x) = divider(moment) else {
+pub fn clipped(
+    line: Option<f64>,
+    segments: Vec<[[f64; 2]; 2]>,
+    before: bool,
+) -> Vec<[[f64; 2]; 2]> {
+    let Some(x) = line else {
         return if before { Vec::new() } else { segments };
     };
-    let is_in = |at: &[f64; 2]| (at[0] < x) == before;
+    let is_in = |at: &[f64; 2]| is_before(line, *at) == before;
     let kept = segments.into_iter().filter_map(|[a, b]| {
         let share = (x - a[0]) / (b[0] - a[0]);
         let cut = [x, a[1] + share * (b[1] - a[1])];
@@ -56,7 +65,8 @@ pub fn clipped(moment: &Moment, segments: Vec<[[f64; 2]; 2]>, before: bool) -> V
 
 /// The old graph left of the line, the line, its handle and its two words.
 pub fn layers(moment: &Moment) -> Vec<Layer> {
-    let Some(x) = divider(moment) else {
+    let line = divider(moment);
+    let Some(x) = line else {
         return Vec::new();
     };
     let old: Vec<_> = moment.old_nodes.iter().map(xy).collect();
@@ -70,16 +80,9 @@ pub fn layers(moment: &Moment) -> Vec<Layer> {
         tone: Tone::Ink,
     };
     vec![
-        Layer::segments(
-            clipped(moment, chain, true),
-            Stroke::Solid,
-            Tone::Prior,
-            1.5,
-        ),
+        Layer::segments(clipped(line, chain, true), Stroke::Solid, Tone::Prior, 1.5),
         Layer::points(
-            old.into_iter()
-                .filter(|at| is_before(moment, *at))
-                .collect(),
+            old.into_iter().filter(|at| is_before(line, *at)).collect(),
             Mark::Circle,
             Tone::Prior,
             3.5,
