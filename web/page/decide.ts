@@ -68,8 +68,8 @@ export class DecideFigure {
   }
 
   #conclude(): void {
-    const told = this.#glue.judgeCandidates(this.#answers, this.#width, themeOf(this.#place));
-    const judged = JSON.parse(told) as Judged;
+    const verdict = this.#glue.judgeCandidates(this.#answers, this.#width, themeOf(this.#place));
+    const judged = JSON.parse(verdict) as Judged;
     const list = document.createElement('ol');
     list.className = 'decide-each';
     list.append(...judged.each.map((sentence) => {

@@ -1,4 +1,4 @@
-// What the chapter does around its widgets: the choice of light and dark, and wide formulas and
+// The page outside of its widgets: the choice of light and dark, and wide formulas and
 // tables that the keyboard can scroll. The widgets and the numbers that set them are the custom
 // element's business.
 

@@ -1,6 +1,6 @@
 // The small figures beside the text: a slider, and a picture and a sentence that follow it.
 //
-// The picture of the build stays until the reader moves something: it shows the slider's first place.
+// The picture drawn by the build stays until the reader moves something: it shows the slider's initial value.
 
 import type { Glue } from '../pkg/glue.js';
 import { themeOf, watchTheme } from '../ts/theme';
@@ -69,9 +69,9 @@ export class SketchFigure {
     const width = this.#narrow.matches ? WIDTHS.narrow : WIDTHS.wide;
     const drawn = this.#glue.drawSketch(this.#schema.name, value, width, themeOf(figure));
     const { svg, sentence } = JSON.parse(drawn) as Drawn;
-    const said = sayValue(this.#schema, value);
-    this.#slider.setAttribute('aria-valuetext', said);
-    (figure.querySelector('output') as HTMLElement).textContent = said;
+    const text = sayValue(this.#schema, value);
+    this.#slider.setAttribute('aria-valuetext', text);
+    (figure.querySelector('output') as HTMLElement).textContent = text;
     (figure.querySelector('.sketch-says') as HTMLElement).textContent = sentence;
     (figure.querySelector('.sketch-picture') as HTMLElement).innerHTML = svg;
   }

@@ -53,22 +53,22 @@ export interface Linked extends HTMLElement {
 }
 
 /** The linked widget in the address: the one that changed last. */
-let told: Linked | undefined;
+let addressed: Linked | undefined;
 
 /** Records that a linked widget has changed: the next entry's address names it. */
 export function tellOf(widget: Linked): void {
-  if (widget.hasAttribute('linked')) told = widget;
+  if (widget.hasAttribute('linked')) addressed = widget;
 }
 
 /** Stores the current state in the present history entry; also in its address if `settled` is the widget it names. */
 export function keepEntry(settled?: Linked): void {
-  const address = settled !== undefined && settled === told ? settled.link : location.href;
+  const address = settled !== undefined && settled === addressed ? settled.link : location.href;
   history.replaceState(withStates(), '', address);
 }
 
 /** Adds a history entry with the current state, whose address names that widget. */
 export function pushEntry(widget: Linked): void {
-  told = widget;
+  addressed = widget;
   history.pushState(withStates(), '', widget.link);
 }
 

@@ -4,6 +4,7 @@
 // position of the widget on the screen (life.ts).
 
 import { linkTo, readAddress } from './address';
+import { Appearance } from './appearance';
 import { boxOf, type Box } from './box';
 import { Controls, MORE } from './controls';
 import { listen, upgradeProperties } from './dom';
@@ -12,8 +13,6 @@ import type { Widget } from '../pkg/glue.js';
 import { CrashError, type CsvFile, type Outcome, type Timeline } from './instance';
 import { Life, TakenAwayError, type LifeHost } from './life';
 import { LoadError } from './module';
-import { lookBar, type Way } from './look';
-import { Looks } from './looks';
 import { News } from './news';
 import { Notes } from './notes';
 import { build, type Parts } from './parts';
@@ -28,6 +27,7 @@ import { DoctorScreen, type Diagnosis } from './robot/doctor';
 import { chooseFiles, takeDrops } from './robot/files';
 import { carryTextOrder, takeTextFile, type TextFileHost } from './text-files';
 import type { Delivery } from './robot/protocol';
+import { type ViewChange, zoomButtons } from './zoom-buttons';
 
 export class SlamWidget extends HTMLElement {
   static readonly observedAttributes: string[] = ['name', 'theme'];
@@ -38,11 +38,11 @@ export class SlamWidget extends HTMLElement {
   readonly #pictures: Pictures;
   readonly #place: Place;
   readonly #life: Life;
-  readonly #looks: Looks;
+  readonly #appearance: Appearance;
   #state: State | undefined;
   #isSetUp = false;
   #controls: Controls | undefined;
-  #look: HTMLElement | undefined;
+  #zoom: HTMLElement | undefined;
   #lastOutcome: Outcome | undefined;
   #unwatch: (() => void)[] = [];
   readonly #textFiles: TextFileHost;
@@ -64,7 +64,7 @@ export class SlamWidget extends HTMLElement {
     this.#pictures = new Pictures(this.#parts.picture);
     this.#place = new Place(this.#parts.stage);
     this.#life = new Life(this.#parts, this.#lifeHost());
-    this.#looks = new Looks(this, this.#parts, this.#life, this.#pictures);
+    this.#appearance = new Appearance(this, this.#parts, this.#life, this.#pictures);
   }
 
   connectedCallback(): void {
@@ -72,7 +72,7 @@ export class SlamWidget extends HTMLElement {
     if (!this.#isSetUp) this.#setUp();
     upgradeProperties(this);
     this.#unwatch = [
-      ...this.#looks.watch(),
+      ...this.#appearance.watch(),
       listen(window, 'error', () => this.#life.checkCrash()),
       listen(window, 'resize', () => this.#resized()),
       listen(document, 'visibilitychange', () => this.#life.wake()),
@@ -110,7 +110,7 @@ export class SlamWidget extends HTMLElement {
       this.#setUp();
       this.#life.restart();
     } else if (name === 'theme') {
-      this.#looks.showTheme();
+      this.#appearance.showTheme();
     } else {
       const spec = this.#state && findParam(this.#state.spec, name);
       if (spec !== undefined) this.#tryToSet(name, value ?? defaultText(spec));
@@ -242,7 +242,7 @@ export class SlamWidget extends HTMLElement {
   }
 
   /** Zooms every map, or moves the visible part. */
-  look(way: Way): void {
+  look(way: ViewChange): void {
     this.#life.ask((widget) => widget.look(shorten(String(way))));
     this.#life.wake();
   }
@@ -313,15 +313,15 @@ export class SlamWidget extends HTMLElement {
         this.#finishWork();
         this.#showTimeline();
       },
-      focus: (id) => this.#looks.showFocus(id),
+      focus: (id) => this.#appearance.showFocus(id),
     });
-    const look = lookBar((way) => this.look(way));
-    look.hidden = true;
-    this.#look = look;
-    parts.bar.append(this.#controls.element, look, takeAwayBar(this, spec.id, parts.status));
+    const zoom = zoomButtons((view) => this.look(view));
+    zoom.hidden = true;
+    this.#zoom = zoom;
+    parts.bar.append(this.#controls.element, zoom, takeAwayBar(this, spec.id, parts.status));
     parts.frame.setAttribute('aria-label', `Widget ${spec.id.replace(/^w/, '')}: ${spec.title}`);
     parts.summary.textContent = spec.summary;
-    this.#looks.become(spec.id);
+    this.#appearance.become(spec.id);
     this.#news.given(() => {
       for (const param of spec.params) {
         const text = this.getAttribute(param.id);
@@ -361,7 +361,7 @@ export class SlamWidget extends HTMLElement {
         for (const id of state?.texts.keys() ?? []) state?.keep(id, widget.text(id));
         this.#controls?.show(state?.texts ?? []);
         this.#offerControls(widget);
-        this.#looks.prepare(widget);
+        this.#appearance.prepare(widget);
         widget.setRoom(this.#place.room);
       },
       live: (milliseconds) => {
@@ -371,12 +371,12 @@ export class SlamWidget extends HTMLElement {
       },
       drew: (canvas) => {
         this.#pictures.handOut(canvas);
-        this.#looks.drew(canvas);
+        this.#appearance.drew(canvas);
         this.#sync();
       },
       rested: () => this.#news.rested(),
       leaving: () => {
-        this.#looks.drawPicture();
+        this.#appearance.drawPicture();
         this.#shownOutcome();
         this.#place.keep();
       },
@@ -399,7 +399,7 @@ export class SlamWidget extends HTMLElement {
       const now = Number(new Map(changes).get(timeline.param) ?? before);
       this.#news.passed(timeline, before, now);
     }
-    this.#told(changes);
+    this.#announce(changes);
   }
 
   /** Values of the widget that the element does not have yet. */
@@ -457,7 +457,7 @@ export class SlamWidget extends HTMLElement {
     const isMoved = deliveries.filter((delivery) => this.#doctor?.hear(delivery) === true).length > 0;
     if (isMoved) this.#resized();
     this.#life.ask((widget) => deliveries.forEach((delivery) => hand(widget, delivery)));
-    this.#told(this.#changes());
+    this.#announce(this.#changes());
     this.#carryOrders();
     this.#life.wake();
   }
@@ -471,13 +471,13 @@ export class SlamWidget extends HTMLElement {
       return;
     }
     this.#life.ask(deed);
-    this.#told(this.#changes());
+    this.#announce(this.#changes());
     this.#carryOrders();
     this.#life.wake();
   }
 
   /** Stores changes, and reports them to controls and page. */
-  #told(changes: readonly [string, string][]): void {
+  #announce(changes: readonly [string, string][]): void {
     for (const [id, text] of changes) this.#state?.keep(id, text);
     this.#controls?.show(changes);
     if (changes.length > 0) this.#offerControls();
@@ -495,7 +495,7 @@ export class SlamWidget extends HTMLElement {
     const all = (): string[] => [...spec.presets, ...spec.params, ...spec.buttons].map(({ id }) => id);
     const shown = running?.shownControls() ?? this.#life.ask((widget) => widget.shownControls());
     this.#controls?.offer(shown ?? (isOpen ? all() : spec.opening));
-    if (this.#look !== undefined) this.#look.hidden = !isOpen;
+    if (this.#zoom !== undefined) this.#zoom.hidden = !isOpen;
   }
 
   /** Figures are read of the values that are set: what the picture still waits for is finished. */
@@ -545,7 +545,7 @@ export class SlamWidget extends HTMLElement {
     if (problem !== undefined) return problem;
     // The result of the old values is invalid now.
     if (kept === undefined) this.#lastOutcome = undefined;
-    this.#told([...new Map([[id, kept ?? parsed.text], ...this.#changes()])]);
+    this.#announce([...new Map([[id, kept ?? parsed.text], ...this.#changes()])]);
     this.#carryOrders();
     this.#life.wake();
     return undefined;

@@ -95,8 +95,8 @@ export class ModuleFile {
     if (!response.ok || response.body === null) {
       throw new LoadError(`the program could not be fetched (${response.status})`);
     }
-    const told = (share: number): void => this.#tell(share);
-    const counted = new Response(count(response.body, expectedLength(response), silence, told), {
+    const onShare = (share: number): void => this.#tell(share);
+    const counted = new Response(count(response.body, expectedLength(response), silence, onShare), {
       // Regardless of the server's type: anything else than wasm is rejected by its first bytes.
       headers: { 'Content-Type': 'application/wasm' },
     });
@@ -167,7 +167,7 @@ function count(
   body: ReadableStream<Uint8Array>,
   expected: number,
   silence: Silence,
-  told: Listener,
+  onShare: Listener,
 ): ReadableStream<Uint8Array> {
   let arrived = 0;
   return body.pipeThrough(
@@ -175,7 +175,7 @@ function count(
       transform(chunk, controller) {
         silence.heard();
         arrived += chunk.byteLength;
-        told(expected > 0 ? Math.min(arrived / expected, 1) : arrived / (arrived + 1e6));
+        onShare(expected > 0 ? Math.min(arrived / expected, 1) : arrived / (arrived + 1e6));
         controller.enqueue(chunk);
       },
       // A complete module may take its time to compile.

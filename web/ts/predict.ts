@@ -193,11 +193,11 @@ export class SlamPredict extends HTMLElement {
     const judged = correct ? 'As you predicted.' : 'It comes out otherwise, and a wrong guess is no mistake.';
     // The widget's own sentence may be about another quantity than the number in question.
     const digits = Math.max(gap === null ? 0 : decimalsOf(prediction), DECIMALS);
-    const said = `It is ${Number(result).toFixed(digits)}${unit}.`;
-    const told = this.hasAttribute('fact') ? said : outcome.sentence;
+    const number = `It is ${Number(result).toFixed(digits)}${unit}.`;
+    const answer = this.hasAttribute('fact') ? number : outcome.sentence;
     const answered = gap === null
-      ? `${judged} You said: ${this.#wordsOf(prediction)}. ${told}`
-      : `${judged} ${said} You said ${prediction}${unit} and are off by ${Math.abs(gap).toPrecision(2)}${unit}.`;
+      ? `${judged} You said: ${this.#wordsOf(prediction)}. ${answer}`
+      : `${judged} ${number} You said ${prediction}${unit} and are off by ${Math.abs(gap).toPrecision(2)}${unit}.`;
     const isPersonal = state !== (this.getAttribute('state') ?? '');
     const seed = new URLSearchParams(state).get('seed');
     const own = `This is your own task, seed ${seed}. The numbers in the text are those of the chapter’s.`;

@@ -15,8 +15,8 @@ const listeners = new Set<() => void>();
 /** The theme at an element: its own, else that of the nearest ancestor, else the system's. */
 export function themeOf(element: Element): Theme {
   for (let at: Element | null = element; at !== null; at = parentOf(at)) {
-    const said = at === element ? named(at.getAttribute('theme')) : saidBy(at);
-    if (said !== undefined) return said;
+    const theme = at === element ? named(at.getAttribute('theme')) : declaredBy(at);
+    if (theme !== undefined) return theme;
   }
   return systemDark?.matches === true ? 'dark' : 'light';
 }
@@ -50,10 +50,10 @@ function parentOf(element: Element): Element | null {
   return root instanceof ShadowRoot ? root.host : null;
 }
 
-function saidBy(element: Element): Theme | undefined {
+function declaredBy(element: Element): Theme | undefined {
   for (const attribute of ATTRIBUTES) {
-    const said = named(element.getAttribute(attribute));
-    if (said !== undefined) return said;
+    const theme = named(element.getAttribute(attribute));
+    if (theme !== undefined) return theme;
   }
   const jupyterIsLight = element.getAttribute(JUPYTER_IS_LIGHT);
   if (jupyterIsLight !== null) return jupyterIsLight === 'false' ? 'dark' : 'light';

@@ -1,4 +1,4 @@
-// The finished map as the build draws it: for the time before the data has come, and for pages without script.
+// The finished map as the build draws it: shown until the data arrives, and for pages without script.
 
 import { type Building, draw, LOOPS } from './drawing';
 import { type Inks, SvgSurface } from '../lap/surfaces';

@@ -1,4 +1,4 @@
-// The strip as the build draws it: for the time before the module has come, and for pages without script.
+// The strip as the build draws it: shown until the module arrives, and for pages without script.
 
 import { ASPECT, draw } from './drawing';
 import { Replay, type Story } from './story';

@@ -1,4 +1,4 @@
-// The lap as the module tells it, and what of it stands at each second of its replay.
+// The lap as the module computes it, and what its replay shows at each second.
 
 /** `[x, y, θ]`, metres and radians, in the frame of the world. */
 export type Pose = readonly [number, number, number];

@@ -1,4 +1,4 @@
-// What a moment of the lap is drawn on: a canvas in the page, an SVG in the build.
+// Drawing surfaces for a moment of the lap: a canvas in the page, an SVG in the build.
 
 import type { Ink, Surface } from './drawing';
 import type { Point } from './story';

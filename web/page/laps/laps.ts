@@ -1,5 +1,5 @@
 // A thousand laps as a picture: a dot for each, at four levels of the wheels' noise, the front end
-// alone beside the lap with its loops. They are driven in the page, while one looks.
+// alone beside the lap with its loops. They run in the page while the figure is in view.
 
 import { Pool, type Core } from './pool';
 import { LEVELS, type Lap } from './protocol';

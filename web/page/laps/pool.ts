@@ -1,5 +1,4 @@
-// Drives many laps without holding up the page: on workers, or, where those are not to be had, one lap
-// at a time between frames.
+// Runs many laps without blocking the page: on workers or, if there are none, one lap at a time between frames.
 
 import { driven, LEVELS, type Driver, type Lap } from './protocol';
 

@@ -1,4 +1,4 @@
-// What the page and a worker that drives laps say to each other, and what a lap leaves.
+// Messages between the page and a worker that runs laps, and the result of a lap.
 
 /** Levels of the wheels' noise, as factors of their variances. */
 export const LEVELS = [0.25, 1, 2, 4] as const;

@@ -1,4 +1,4 @@
-// The middle of many numbers and where their tails begin, as the results table counts them.
+// Median and quantiles, by the rule of the results table.
 
 export interface Spread {
   p05: number;

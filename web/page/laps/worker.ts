@@ -1,4 +1,4 @@
-// Drives laps beside the page: the program comes first, then one seed after the other.
+// A worker that runs laps: it gets the program first, then one seed after the other.
 
 import { createGlue } from '../../pkg/glue.js';
 import { driven, LEVELS, type Driver, type Order } from './protocol';

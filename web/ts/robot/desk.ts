@@ -7,7 +7,7 @@ import { saveBlob } from '../export';
 import { addressOf, openFile } from '../beside';
 import { LoadError, ModuleFile, StaleError } from '../module';
 import { LOGS } from './files';
-import { told, type Delivery, type Order, type Report } from './protocol';
+import { textDelivery, type Delivery, type Order, type Report } from './protocol';
 
 /** Set by the build: the program that maps logs, its worker, and the sample with its truth. */
 declare const ROBOT_WASM_FILE: string;
@@ -127,7 +127,7 @@ export class Desk {
         this.#isOpen = false;
         this.#early = undefined;
         this.#latest.clear();
-        this.#host.deliver([told('closed', '')]);
+        this.#host.deliver([textDelivery('closed', '')]);
         break;
       case 'save':
         this.#send({ save: words.join(' ') });
@@ -155,7 +155,7 @@ export class Desk {
       if (reference !== undefined) void this.#grade(reference);
       // The widget provides the start pose and then requests the localization.
       this.#dropped = log;
-      this.#host.deliver([told('dropped', nameOf(log))]);
+      this.#host.deliver([textDelivery('dropped', nameOf(log))]);
     } else if (log.length > 0) this.open(log, reference);
     else if (reference !== undefined) void this.#grade(reference);
   }
@@ -220,7 +220,7 @@ export class Desk {
   choose(option: string | undefined): void {
     const files = this.#files;
     if (files.length === 0) {
-      this.#tell([told('answer', 'Open a log first.')]);
+      this.#tell([textDelivery('answer', 'Open a log first.')]);
       return;
     }
     this.close();
@@ -247,14 +247,14 @@ export class Desk {
   #visit(files: File[], start: readonly string[]): void {
     const name = nameOf(files);
     if (!this.#isOpen) {
-      this.#tell([told('answer', `${name} needs a map: open a log or a session first.`)]);
+      this.#tell([textDelivery('answer', `${name} needs a map: open a log or a session first.`)]);
       return;
     }
     this.#visitor = { files, start: start.map(Number) };
     if (this.#stands) this.#sendVisitor();
     else {
       this.#owesVisitor = true;
-      this.#tell([told('answer', `${name} waits until the map stands.`)]);
+      this.#tell([textDelivery('answer', `${name} waits until the map stands.`)]);
     }
   }
 
@@ -270,7 +270,7 @@ export class Desk {
       const log = await fetchFile(SAMPLE_FILES[2] ?? '');
       if (turn === this.#turn) this.#visit([log], start);
     } catch {
-      if (turn === this.#turn) this.#tell([told('answer', 'The sample could not be fetched; try again.')]);
+      if (turn === this.#turn) this.#tell([textDelivery('answer', 'The sample could not be fetched; try again.')]);
     }
   }
 
@@ -287,7 +287,7 @@ export class Desk {
     this.#owesVisitor = this.#visitor !== undefined;
     this.#stands = false;
     this.#latest.clear();
-    this.#tell([told('opening', nameOf(files))]);
+    this.#tell([textDelivery('opening', nameOf(files))]);
     try {
       const module = await program.load(() => {});
       if (turn !== this.#turn) return;
@@ -336,7 +336,7 @@ export class Desk {
       else asked.take(new File([bytes], report.saved));
     } else if ('unsaved' in report) {
       const asked = this.#next(report.unsaved);
-      if (asked === undefined) this.#tell([told('answer', report.why)]);
+      if (asked === undefined) this.#tell([textDelivery('answer', report.why)]);
       else asked.refuse(new Error(report.why));
     } else if ('failed' in report) {
       this.#fail(report.failed);
@@ -350,7 +350,7 @@ export class Desk {
     if (this.#crashes <= MOST_CRASHES && this.#files.length > 0) {
       this.close();
       void this.#begin(this.#files);
-      this.#tell([told('answer', 'The mapping stopped by an error in its program and was begun again.')]);
+      this.#tell([textDelivery('answer', 'The mapping stopped by an error in its program and was begun again.')]);
       return;
     }
     const megabytes = Math.ceil(this.#files.reduce((sum, { size }) => sum + size, 0) / 1e6);
@@ -363,7 +363,7 @@ export class Desk {
   #fail(sentence: string): void {
     this.close();
     this.#isOpen = false;
-    this.#tell([told('failed', sentence)]);
+    this.#tell([textDelivery('failed', sentence)]);
   }
 
   /** Once the map is finished, waiting work is done; after a crash that includes all changes by the reader. */
@@ -386,7 +386,7 @@ export class Desk {
   async #grade(file: File): Promise<void> {
     if (!this.#isOpen) {
       this.#early = file;
-      this.#tell([told('answer', `${file.name} waits for a log to be opened.`)]);
+      this.#tell([textDelivery('answer', `${file.name} waits for a log to be opened.`)]);
       return;
     }
     this.#reference = file;
@@ -397,19 +397,19 @@ export class Desk {
   async #sendReference(file: File): Promise<void> {
     const turn = this.#turn;
     if (file.size > MOST_REFERENCE) {
-      this.#tell([told('answer', `${file.name} is larger than a reference of 256 MB.`)]);
+      this.#tell([textDelivery('answer', `${file.name} is larger than a reference of 256 MB.`)]);
       return;
     }
     try {
       const bytes = new Uint8Array(await file.arrayBuffer());
       if (turn === this.#turn) this.#send({ reference: bytes, name: file.name });
     } catch {
-      this.#tell([told('answer', `${file.name} cannot be read any more; it may have moved or changed.`)]);
+      this.#tell([textDelivery('answer', `${file.name} cannot be read any more; it may have moved or changed.`)]);
     }
   }
 
   #send(order: Order): void {
-    if (!this.#isOpen) this.#tell([told('answer', 'Open a log first.')]);
+    if (!this.#isOpen) this.#tell([textDelivery('answer', 'Open a log first.')]);
     else if (this.#worker === undefined) this.#waiting.push(order);
     else this.#worker.postMessage(order);
   }

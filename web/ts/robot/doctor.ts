@@ -84,10 +84,10 @@ export class DoctorScreen {
 
   #show(diagnosis: Diagnosis): void {
     this.#diagnosis = diagnosis;
-    const said = inShort(diagnosis);
-    this.#replace(said, [this.#list(diagnosis.remarks), this.#choices(), this.#laser(diagnosis)]);
+    const summary = inShort(diagnosis);
+    this.#replace(summary, [this.#list(diagnosis.remarks), this.#choices(), this.#laser(diagnosis)]);
     this.element.hidden = false;
-    this.#live.textContent = said;
+    this.#live.textContent = summary;
   }
 
   #replace(heading: string, body: HTMLElement[]): void {

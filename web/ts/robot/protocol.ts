@@ -32,6 +32,6 @@ export type Report =
 const NONE = new Uint8Array();
 
 /** A delivery of text, or of text and numbers. */
-export function told(kind: string, text: string, numbers: number[] = []): Delivery {
+export function textDelivery(kind: string, text: string, numbers: number[] = []): Delivery {
   return { kind, text, numbers: Float64Array.from(numbers), bytes: NONE };
 }

@@ -2,7 +2,7 @@
 // slices, and handles orders in between.
 
 import init, { Robot } from '../../pkg-robot/slam_robot.js';
-import { told, type Delivery, type Order, type Report } from './protocol';
+import { textDelivery, type Delivery, type Order, type Report } from './protocol';
 
 /** Length of a slice. */
 const SLICE_MS = 40;
@@ -87,7 +87,7 @@ function obey(order: Order): void {
 
 function hold(isOn: boolean): void {
   isHeld = isOn;
-  say({ deliveries: [told('paused', '', [isOn ? 1 : 0])] });
+  say({ deliveries: [textDelivery('paused', '', [isOn ? 1 : 0])] });
 }
 
 function save(from: Robot, name: string): void {
@@ -104,7 +104,7 @@ function locate(on: Robot, log: File[], options: string, start: number[]): void 
     on.locate(...readable(log), options, Float64Array.from(start));
     if (isHeld) hold(false);
     // Clears the message about the wait.
-    say({ deliveries: [told('answer', '')] });
+    say({ deliveries: [textDelivery('answer', '')] });
     tell(on);
   } catch (error) {
     answer(error);
@@ -122,7 +122,7 @@ function grade(by: Robot, bytes: Uint8Array, name: string): void {
 
 /** Reports an error of the program; a panic propagates. */
 function answer(error: unknown): void {
-  say({ deliveries: [told('answer', refusal(error))] });
+  say({ deliveries: [textDelivery('answer', refusal(error))] });
 }
 
 function refusal(error: unknown): string {

@@ -14,14 +14,14 @@ const reducedMotion = globalThis.matchMedia?.('(prefers-reduced-motion: reduce)'
 const NARROWEST_PX = 320;
 
 /** The element, as far as its appearance is concerned. */
-export interface LooksHost extends HTMLElement {
+export interface AppearanceHost extends HTMLElement {
   readonly summary: string;
   controlBox(id: string): Box | null;
   sceneBox(): Box | null;
 }
 
-export class Looks {
-  readonly #host: LooksHost;
+export class Appearance {
+  readonly #host: AppearanceHost;
   readonly #parts: Parts;
   readonly #life: Life;
   readonly #pictures: Pictures;
@@ -29,7 +29,7 @@ export class Looks {
   /** The widget whose picture replaces it while it rests. */
   #widget: string | undefined;
 
-  constructor(host: LooksHost, parts: Parts, life: Life, pictures: Pictures) {
+  constructor(host: AppearanceHost, parts: Parts, life: Life, pictures: Pictures) {
     this.#host = host;
     this.#parts = parts;
     this.#life = life;

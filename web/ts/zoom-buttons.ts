@@ -1,15 +1,15 @@
-// Ctrl and the wheel on the canvas, for the keyboard: zoom, and move what is zoomed.
+// Buttons and arrow keys that zoom and pan the maps, as Ctrl and the wheel do on the canvas.
 
 import { create } from './dom';
 
-export type Way = 'in' | 'out' | 'left' | 'right' | 'up' | 'down' | 'whole';
+export type ViewChange = 'in' | 'out' | 'left' | 'right' | 'up' | 'down' | 'whole';
 
-const BUTTONS: [Way, string][] = [
+const BUTTONS: [ViewChange, string][] = [
   ['in', 'Zoom in'],
   ['out', 'Zoom out'],
   ['whole', 'Whole map'],
 ];
-const ARROWS: Record<string, Way> = {
+const ARROWS: Record<string, ViewChange> = {
   ArrowLeft: 'left',
   ArrowRight: 'right',
   ArrowUp: 'up',
@@ -17,23 +17,23 @@ const ARROWS: Record<string, Way> = {
 };
 
 /** Three buttons, seen while one of them has the focus; the arrow keys move. */
-export function lookBar(look: (way: Way) => void): HTMLElement {
+export function zoomButtons(change: (view: ViewChange) => void): HTMLElement {
   const bar = create('div', { class: 'control', role: 'group', 'aria-label': 'Zoom' });
   const line = create('span', { class: 'line' });
   const help = create('span', { class: 'help', id: 'help-zoom' });
   help.textContent = 'Acts on every map of the widget; the arrow keys move a zoomed map.';
-  for (const [way, label] of BUTTONS) {
+  for (const [view, label] of BUTTONS) {
     const button = create('button', { type: 'button', 'aria-describedby': help.id });
     button.textContent = label;
-    button.addEventListener('click', () => look(way));
+    button.addEventListener('click', () => change(view));
     line.append(button);
   }
   bar.append(line, help);
   bar.addEventListener('keydown', (event) => {
-    const way = ARROWS[event.key];
-    if (way === undefined) return;
+    const view = ARROWS[event.key];
+    if (view === undefined) return;
     event.preventDefault();
-    look(way);
+    change(view);
   });
   return bar;
 }
