@@ -1,12 +1,15 @@
 //! The pointer over the panels: grab, drag, hover, zoom, pan.
 
-use egui::{CursorIcon, Event, MultiTouchInfo, PointerButton, Pos2, Response, Sense, Ui};
+use egui::{CursorIcon, Event, MultiTouchInfo, PointerButton, Pos2, Response, Sense, Tooltip, Ui};
 
 use crate::hot::Hot;
 use crate::model::{Handle, Model};
 use crate::scene::{Layer, Panel};
 use crate::transform::Transform;
 use crate::zoom::Zoom;
+
+/// Distance of a tooltip from the pointer: what is grabbed stays visible.
+const POINTER_GAP_PX: f32 = 16.0;
 
 /// Distance within which a mouse grabs something, pixels.
 pub const MOUSE_REACH_PX: f64 = 14.0;
@@ -255,7 +258,8 @@ impl Pointer {
                 ui.ctx().set_cursor_icon(CursorIcon::Grab);
             }
             if let Some(label) = handle_label(panel, to, at) {
-                response.show_tooltip_text(label);
+                let tooltip = Tooltip::for_widget(response).at_pointer().gap(POINTER_GAP_PX);
+                tooltip.show(|ui| ui.label(label));
             }
         }
         if place == self.hovered || (place.is_none() && !was_here) {

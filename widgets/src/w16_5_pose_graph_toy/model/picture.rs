@@ -42,8 +42,8 @@ fn graph(toy: &PoseGraphToy) -> Panel {
     let mut layers = Vec::new();
     let mut legend = vec![
         LegendEntry::line("odometry", Tone::Prediction, Stroke::Solid),
-        LegendEntry::line("loop: drag its ring", Tone::Measurement, Stroke::Solid),
-        LegendEntry::marked_line("what is missing", Tone::Ink, Mark::Plus, Stroke::Dotted),
+        LegendEntry::line("loop", Tone::Measurement, Stroke::Solid),
+        LegendEntry::marked_line("missing", Tone::Ink, Mark::Plus, Stroke::Dotted),
     ];
     if toy.step() > 0 {
         layers.extend(trails(toy));
@@ -52,11 +52,7 @@ fn graph(toy: &PoseGraphToy) -> Panel {
                 .iter()
                 .map(|pose| Layer::pose(pose.to_array(), Mark::Circle, Tone::Prior, 6.0)),
         );
-        legend.push(LegendEntry::mark(
-            "as it was put",
-            Tone::Prior,
-            Mark::Circle,
-        ));
+        legend.push(LegendEntry::mark("before", Tone::Prior, Mark::Circle));
     }
     let mut costs = Vec::new();
     for (edge, chi2) in toy.course.edges.iter().zip(&toy.shown().edge_chi2) {
