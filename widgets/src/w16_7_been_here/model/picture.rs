@@ -7,7 +7,8 @@ pub mod scores;
 
 use std::sync::Arc;
 
-use ch16_lab::lap::{Choice, LapDetector};
+use ch16_lab::lap::Choice;
+use ch16_lab::places::GRADED;
 use kit::scene::{
     Aspect, Axis, Bounds, Cell, Layer, LegendEntry, Mark, Panel, Raster, Scene, Stroke, Tone,
     Weight,
@@ -16,7 +17,7 @@ use kit::scene::{
 use super::lap::Places;
 use super::{BeenHere, panel};
 
-/// Tones of the detectors, in the order of [`LapDetector::ALL`].
+/// Tones of the detectors, in the order of [`GRADED`].
 pub const TONES: [Tone; 3] = [Tone::Series(0), Tone::Series(1), Tone::Series(2)];
 /// Tones of a pair that is the same place, and of one that is not.
 const SAME: Tone = Tone::Series(0);
@@ -143,7 +144,7 @@ fn curves(been: &BeenHere) -> Panel {
         aspect: Aspect::Free,
         x: Axis::new("recall", 0.0, 1.0),
         y: Axis::new("precision", 0.0, 1.05),
-        legend: LapDetector::ALL
+        legend: GRADED
             .iter()
             .enumerate()
             .map(|(k, detector)| {

@@ -1,6 +1,7 @@
 //! Converts the values of the parameters to the types of the core.
 
-use ch16_lab::lap::{Choice, LapConfig, LapDetector, LapMatcher};
+use ch16_lab::lap::{LapConfig, LapDetector, LapMatcher};
+use ch16_lab::places::GRADED;
 use kit::run::NOISE;
 use kit::values::Values;
 
@@ -13,16 +14,16 @@ pub fn config(values: &Values) -> LapConfig {
         .without_loops()
 }
 
-/// Index of the selected detector, in the order of [`LapDetector::ALL`].
+/// Index of the selected detector, in the order of [`GRADED`].
 pub fn detector(values: &Values) -> usize {
     values.get(&DETECTOR)
 }
 
 /// Name of a detector's distance, with its unit.
 pub fn distance_label(detector: usize) -> &'static str {
-    match LapDetector::ALL[detector] {
-        LapDetector::Nearby => "distance in deviations of the drift",
+    match GRADED[detector] {
         LapDetector::Histogram => "χ² distance of the histograms",
         LapDetector::Context => "distance of the contexts",
+        _ => "distance in deviations of the drift",
     }
 }

@@ -1,6 +1,7 @@
 //! The tables: the detectors beside the picture, all pairs for the export.
 
-use ch16_lab::lap::{Choice, LapDetector};
+use ch16_lab::lap::Choice;
+use ch16_lab::places::GRADED;
 use kit::model::Table;
 
 use super::BeenHere;
@@ -19,7 +20,7 @@ pub fn all(been: &BeenHere) -> Vec<Table> {
 
 fn detectors(been: &BeenHere) -> Table {
     let rows = been.places.iter().flat_map(|places| {
-        LapDetector::ALL.iter().enumerate().map(|(k, detector)| {
+        GRADED.iter().enumerate().map(|(k, detector)| {
             let threshold = been.threshold(k);
             let grade = places.graded_at(k, threshold);
             let point = grade.point(threshold);

@@ -1,6 +1,7 @@
 //! The result in words and numbers.
 
-use ch16_lab::lap::{Choice, LapDetector};
+use ch16_lab::lap::Choice;
+use ch16_lab::places::GRADED;
 use kit::model::{Fact, Outcome, Standing};
 
 use super::BeenHere;
@@ -43,7 +44,7 @@ pub fn outcome(been: &BeenHere) -> Outcome {
         Some((_, grade)) => {
             let called = format!(
                 "By {}, {} pairs are called the same place, and {} of them are; {} are not found.",
-                LapDetector::ALL[been.detector()].label(),
+                GRADED[been.detector()].label(),
                 grade.called,
                 grade.right,
                 grade.same - grade.right

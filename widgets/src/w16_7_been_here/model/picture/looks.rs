@@ -1,8 +1,8 @@
 //! The descriptors of the two views: two histograms over the range, or the views unrolled by bearing, the newer
 //! one slid over the older one.
 
-use ch16_lab::lap::{Choice, LapDetector};
-use ch16_lab::places::Place;
+use ch16_lab::lap::LapDetector;
+use ch16_lab::places::{GRADED, Place};
 use ch16_slam2d::places::RangeHistogram;
 use kit::chart::axis_from_zero;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
@@ -33,9 +33,9 @@ pub fn panel(been: &BeenHere) -> Panel {
     let Some((places, [old, new])) = been.places.as_ref().zip(been.pair()) else {
         return empty;
     };
-    match LapDetector::ALL[been.detector()] {
+    match GRADED[been.detector()] {
         LapDetector::Context => contexts(been, places, [old, new], empty),
-        LapDetector::Nearby | LapDetector::Histogram => {
+        _ => {
             let of = |node: usize| &places.study.places()[node].histogram;
             histograms(of(old), of(new), places.study.max_range_m(), empty)
         }
@@ -45,7 +45,7 @@ pub fn panel(been: &BeenHere) -> Panel {
 /// The turn of the newer view on screen, degrees; `None` without Scan Context.
 pub fn turn_deg(been: &BeenHere) -> Option<f64> {
     let (places, [old, new]) = been.places.as_ref().zip(been.pair())?;
-    if LapDetector::ALL[been.detector()] != LapDetector::Context {
+    if GRADED[been.detector()] != LapDetector::Context {
         return None;
     }
     let best = places.study.turned(old, new).turn_rad;
