@@ -21,7 +21,7 @@ function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
   // Some hosts call back for values that the widget itself wrote; these need no reaction.
   let isGiving = false;
   const take = (): void => {
-    if (!isGiving) refused.textContent = setNews(widget, model.get('value'), agreed).join(' ');
+    if (!isGiving) refused.textContent = setChanged(widget, model.get('value'), agreed).join(' ');
   };
   const give = (): void => {
     isGiving = true;
@@ -52,7 +52,7 @@ function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
  * JupyterLab requests all values from the kernel when the first cell is shown. The answer may come after the
  * reader has changed something, and then contains nothing new.
  */
-function setNews(widget: SlamWidget, wanted: unknown, agreed: Map<string, Value>): string[] {
+function setChanged(widget: SlamWidget, wanted: unknown, agreed: Map<string, Value>): string[] {
   if (wanted === undefined || wanted === null) return [];
   if (typeof wanted !== 'object' || Array.isArray(wanted)) {
     return ['`value` takes an object of parameters, such as {"noise": 2}.'];

@@ -3,7 +3,7 @@
 import type { Widget } from '../pkg/glue.js';
 import type { Box } from './box';
 import { listen, reveal } from './dom';
-import type { Life } from './life';
+import type { Lifecycle } from './lifecycle';
 import type { Parts } from './parts';
 import { Pinned } from './pinned';
 import type { Pictures } from './pictures';
@@ -23,20 +23,20 @@ export interface AppearanceHost extends HTMLElement {
 export class Appearance {
   readonly #host: AppearanceHost;
   readonly #parts: Parts;
-  readonly #life: Life;
+  readonly #lifecycle: Lifecycle;
   readonly #pictures: Pictures;
   readonly #pinned: Pinned;
   /** The widget whose picture replaces it while it rests. */
   #widget: string | undefined;
 
-  constructor(host: AppearanceHost, parts: Parts, life: Life, pictures: Pictures) {
+  constructor(host: AppearanceHost, parts: Parts, lifecycle: Lifecycle, pictures: Pictures) {
     this.#host = host;
     this.#parts = parts;
-    this.#life = life;
+    this.#lifecycle = lifecycle;
     this.#pictures = pictures;
     this.#pinned = new Pinned(parts, {
       sceneBox: () => host.sceneBox() ?? undefined,
-      wake: () => life.wake(),
+      wake: () => lifecycle.wake(),
     });
   }
 
@@ -52,7 +52,7 @@ export class Appearance {
       this.#pinned.watch(),
     ];
     if (reducedMotion === undefined) return ends;
-    return [...ends, listen(reducedMotion, 'change', () => this.#life.ask(showMotion))];
+    return [...ends, listen(reducedMotion, 'change', () => this.#lifecycle.ask(showMotion))];
   }
 
   /** Switches to another widget. */
@@ -70,14 +70,14 @@ export class Appearance {
   showTheme(): void {
     const theme = themeOf(this.#host);
     this.#parts.frame.classList.toggle('dark', theme === 'dark');
-    this.#life.ask((widget) => widget.setTheme(theme));
-    this.#life.wake();
-    if (!this.#life.hasInstance && this.#widget !== undefined) this.#pictures.showStart(this.#widget, theme);
+    this.#lifecycle.ask((widget) => widget.setTheme(theme));
+    this.#lifecycle.wake();
+    if (!this.#lifecycle.hasInstance && this.#widget !== undefined) this.#pictures.showStart(this.#widget, theme);
   }
 
   showFocus(id: string | undefined): void {
-    this.#life.ask((widget) => widget.setFocus(id));
-    this.#life.wake();
+    this.#lifecycle.ask((widget) => widget.setFocus(id));
+    this.#lifecycle.wake();
     const box = id === undefined ? null : this.#host.controlBox(id);
     const { stage, bar } = this.#parts;
     // The ring is on the canvas, not at the position of the focus.
@@ -92,7 +92,7 @@ export class Appearance {
   /** The picture of the current state, drawn by the widget itself. */
   drawPicture(theme: Theme = themeOf(this.#host)): void {
     const width = Math.max(this.#host.clientWidth, NARROWEST_PX);
-    const svg = this.#life.ask((widget) => widget.picture(width, theme));
+    const svg = this.#lifecycle.ask((widget) => widget.picture(width, theme));
     if (svg !== undefined) this.#pictures.showDrawn(svg, this.#host.summary);
   }
 }

@@ -1,7 +1,7 @@
 // <slam-widget name="w16.1" heading="60">: a widget on any page.
 //
 // The element keeps the values and communicates with the page; what draws them comes and goes with the
-// position of the widget on the screen (life.ts).
+// position of the widget on the screen (lifecycle.ts).
 
 import { linkTo, readAddress } from './address';
 import { Appearance } from './appearance';
@@ -11,13 +11,13 @@ import { listen, upgradeProperties } from './dom';
 import { takeAwayBar } from './export';
 import type { Widget } from '../pkg/glue.js';
 import { CrashError, type CsvFile, type Outcome, type Timeline } from './instance';
-import { Life, TakenAwayError, type LifeHost } from './life';
+import { Lifecycle, TakenAwayError, type LifecycleHost } from './lifecycle';
 import { LoadError } from './module';
-import { News } from './news';
+import { Notifier } from './notifier';
 import { Notes } from './notes';
 import { build, type Parts } from './parts';
 import { Pictures } from './pictures';
-import { Place } from './place';
+import { ReservedHeight } from './reserved-height';
 import { findParam, findWidget, widgets } from './schema';
 import { State } from './state';
 import { defaultText, shorten, type Value } from './values';
@@ -34,10 +34,10 @@ export class SlamWidget extends HTMLElement {
 
   readonly #parts: Parts;
   readonly #notes: Notes;
-  readonly #news: News;
+  readonly #notifier: Notifier;
   readonly #pictures: Pictures;
-  readonly #place: Place;
-  readonly #life: Life;
+  readonly #reservedHeight: ReservedHeight;
+  readonly #lifecycle: Lifecycle;
   readonly #appearance: Appearance;
   #state: State | undefined;
   #isSetUp = false;
@@ -57,14 +57,14 @@ export class SlamWidget extends HTMLElement {
     this.#textFiles = {
       frame: this.#parts.frame,
       act: (deed) => void this.#act(deed),
-      refuse: (problem) => this.#news.wrong('value', problem),
+      refuse: (problem) => this.#notifier.wrong('value', problem),
     };
     const shownSummary = (): string => this.#shownSummary();
-    this.#news = new News(this, this.#parts, this.#notes, () => this.#showTimeline(), shownSummary);
+    this.#notifier = new Notifier(this, this.#parts, this.#notes, () => this.#showTimeline(), shownSummary);
     this.#pictures = new Pictures(this.#parts.picture);
-    this.#place = new Place(this.#parts.stage);
-    this.#life = new Life(this.#parts, this.#lifeHost());
-    this.#appearance = new Appearance(this, this.#parts, this.#life, this.#pictures);
+    this.#reservedHeight = new ReservedHeight(this.#parts.stage);
+    this.#lifecycle = new Lifecycle(this.#parts, this.#lifecycleHost());
+    this.#appearance = new Appearance(this, this.#parts, this.#lifecycle, this.#pictures);
   }
 
   connectedCallback(): void {
@@ -73,28 +73,28 @@ export class SlamWidget extends HTMLElement {
     upgradeProperties(this);
     this.#unwatch = [
       ...this.#appearance.watch(),
-      listen(window, 'error', () => this.#life.checkCrash()),
+      listen(window, 'error', () => this.#lifecycle.checkCrash()),
       listen(window, 'resize', () => this.#resized()),
-      listen(document, 'visibilitychange', () => this.#life.wake()),
+      listen(document, 'visibilitychange', () => this.#lifecycle.wake()),
       // The element in the reader's focus comes first if not all can draw.
-      listen(this, 'pointerenter', () => this.#life.askAgain()),
-      listen(this, 'focusin', () => this.#life.askAgain()),
+      listen(this, 'pointerenter', () => this.#lifecycle.askAgain()),
+      listen(this, 'focusin', () => this.#lifecycle.askAgain()),
     ];
     if (this.#takesFiles) {
       // A resting widget has to run to provide the start pose of a log.
       const take = (files: File[]): void => void this.#act(() => this.#takeFiles(files));
       this.#unwatch.push(takeDrops(this.#parts.frame, take));
     }
-    this.#place.fit();
-    watchVisibility(this, this.#life);
+    this.#reservedHeight.fit();
+    watchVisibility(this, this.#lifecycle);
   }
 
   disconnectedCallback(): void {
     unwatchVisibility(this);
     for (const end of this.#unwatch) end();
     this.#unwatch = [];
-    this.#news.stop();
-    this.#life.leave();
+    this.#notifier.stop();
+    this.#lifecycle.leave();
     // An element that moves within its page is back at once.
     setTimeout(() => {
       if (!this.isConnected) this.#closeDesk();
@@ -106,9 +106,9 @@ export class SlamWidget extends HTMLElement {
     if (!this.#isSetUp) return;
     if (name === 'name') {
       if (old === value) return;
-      this.#life.suspend();
+      this.#lifecycle.suspend();
       this.#setUp();
-      this.#life.restart();
+      this.#lifecycle.restart();
     } else if (name === 'theme') {
       this.#appearance.showTheme();
     } else {
@@ -158,13 +158,13 @@ export class SlamWidget extends HTMLElement {
     const button = String(id);
     const problem = this.#state?.buttonProblem(button);
     if (problem !== undefined) throw new RangeError(problem);
-    await this.#life.ensureInstance();
+    await this.#lifecycle.ensureInstance();
     // A button acts on the values that are set, not on what the picture still waits for.
     this.#finishWork();
-    this.#life.ask((widget) => widget.press(button));
+    this.#lifecycle.ask((widget) => widget.press(button));
     this.#sync();
     this.#showTimeline();
-    this.#life.wake();
+    this.#lifecycle.wake();
   }
 
   /** The result of the values that are set, once the widget has run with them. */
@@ -199,58 +199,58 @@ export class SlamWidget extends HTMLElement {
   async tables(): Promise<CsvFile[]> {
     await this.#ensureInstance();
     this.#finishWork();
-    return this.#life.ask((_, instance) => instance.tables()) ?? [];
+    return this.#lifecycle.ask((_, instance) => instance.tables()) ?? [];
   }
 
   /** The pixels of the canvas; waits until the widget runs and draws. */
   snapshot(): Promise<ImageBitmap> {
-    if (this.#life.hasFailed) return Promise.reject(new LoadError('the widget does not run'));
+    if (this.#lifecycle.hasFailed) return Promise.reject(new LoadError('the widget does not run'));
     const picture = this.#pictures.nextFrame();
-    this.#life.wake();
+    this.#lifecycle.wake();
     return picture;
   }
 
   /** `running` while it has a canvas. */
   get state(): 'running' | 'resting' {
-    return this.#life.isRunning ? 'running' : 'resting';
+    return this.#lifecycle.isRunning ? 'running' : 'resting';
   }
 
   /** Frames drawn since this instance started. */
   get frames(): number {
-    return this.#life.ask((widget) => widget.frames()) ?? 0;
+    return this.#lifecycle.ask((widget) => widget.frames()) ?? 0;
   }
 
   /** Whether something draggable is at that position, in CSS pixels from the canvas's corner. */
   dragsAt(x: number, y: number): boolean {
-    return this.#life.ask((widget) => widget.dragsAt(x, y)) ?? false;
+    return this.#lifecycle.ask((widget) => widget.dragsAt(x, y)) ?? false;
   }
 
   /** The rectangle of a control on the canvas: left, top, width, height; null while it rests. */
   controlBox(id: string): Box | null {
-    return boxOf(this.#life.ask((widget) => widget.controlBox(String(id))));
+    return boxOf(this.#lifecycle.ask((widget) => widget.controlBox(String(id))));
   }
 
   /** The rectangle of the picture on the canvas: left, top, width, height; null while it rests. */
   sceneBox(): Box | null {
-    return boxOf(this.#life.ask((widget) => widget.sceneBox()));
+    return boxOf(this.#lifecycle.ask((widget) => widget.sceneBox()));
   }
 
   /** Position of a panel's point on the canvas, in CSS pixels; null if it is not visible. */
   panelToScreen(panel: string, x: number, y: number): [number, number] | null {
-    const at = this.#life.ask((widget) => widget.panelToScreen(String(panel), x, y));
+    const at = this.#lifecycle.ask((widget) => widget.panelToScreen(String(panel), x, y));
     return at === undefined ? null : [at[0] ?? 0, at[1] ?? 0];
   }
 
   /** Zooms every map, or moves the visible part. */
   look(way: ViewChange): void {
-    this.#life.ask((widget) => widget.look(shorten(String(way))));
-    this.#life.wake();
+    this.#lifecycle.ask((widget) => widget.look(shorten(String(way))));
+    this.#lifecycle.wake();
   }
 
   /** Panics on purpose, in the widget or in the worker beside it, for tests of a page's recovery. */
   crashForTest(where?: 'worker'): void {
     if (where === 'worker') this.#desk?.crashForTest();
-    else this.#life.ask((widget) => widget.crashForTest());
+    else this.#lifecycle.ask((widget) => widget.crashForTest());
   }
 
   /**
@@ -277,14 +277,14 @@ export class SlamWidget extends HTMLElement {
 
   /** Releases context and memory; the values stay, and the picture shows them. */
   suspend(): void {
-    this.#life.suspend();
+    this.#lifecycle.suspend();
   }
 
   // ---- setting up ---------------------------------------------------------------------------
 
   async #ensureInstance(): Promise<void> {
     if (!this.#isSetUp) this.#setUp();
-    await this.#life.ensureInstance();
+    await this.#lifecycle.ensureInstance();
   }
 
   #setUp(): void {
@@ -298,11 +298,11 @@ export class SlamWidget extends HTMLElement {
     this.#lastOutcome = undefined;
     this.#notes.clear();
     this.#pictures.clear(spec?.summary ?? '');
-    this.#place.reserve(spec?.heights ?? []);
+    this.#reservedHeight.reserve(spec?.heights ?? []);
     parts.bar.replaceChildren();
     if (spec === undefined) {
       const known = widgets.map((widget) => widget.id).join(', ');
-      this.#news.wrong('name', `There is no widget \`${this.name.slice(0, 60)}\`; there are ${known}.`);
+      this.#notifier.wrong('name', `There is no widget \`${this.name.slice(0, 60)}\`; there are ${known}.`);
       return;
     }
     this.#controls = new Controls(spec, {
@@ -322,7 +322,7 @@ export class SlamWidget extends HTMLElement {
     parts.frame.setAttribute('aria-label', `Widget ${spec.id.replace(/^w/, '')}: ${spec.title}`);
     parts.summary.textContent = spec.summary;
     this.#appearance.become(spec.id);
-    this.#news.given(() => {
+    this.#notifier.given(() => {
       for (const param of spec.params) {
         const text = this.getAttribute(param.id);
         if (text !== null) this.#tryToSet(param.id, text);
@@ -331,22 +331,22 @@ export class SlamWidget extends HTMLElement {
     if (this.hasAttribute('linked')) {
       readAddress(this, spec, {
         set: (id, text) => this.#tryToSet(id, text),
-        wrong: (kind, problem) => this.#news.wrong(kind, problem),
+        wrong: (kind, problem) => this.#notifier.wrong(kind, problem),
       });
     }
     this.#controls.show(this.#state?.texts ?? []);
     this.#offerControls();
-    this.#news.setUp();
+    this.#notifier.setUp();
   }
 
   /** Ignores an error if the element has left its page, because the reader cannot see it. */
   #pressFailed(error: unknown): void {
-    if (!(error instanceof TakenAwayError)) this.#life.fail(error);
+    if (!(error instanceof TakenAwayError)) this.#lifecycle.fail(error);
   }
 
   // ---- running ------------------------------------------------------------------------------
 
-  #lifeHost(): LifeHost {
+  #lifecycleHost(): LifecycleHost {
     return {
       widget: () => this.#state?.spec,
       isHere: () => this.isConnected,
@@ -355,35 +355,35 @@ export class SlamWidget extends HTMLElement {
         this.#desk?.restore(widget);
         for (const [id, text] of state?.texts ?? []) {
           const problem = refusal(() => widget.set(id, text));
-          if (problem !== undefined) this.#news.wrong('value', `${problem}. The default stands.`, id);
+          if (problem !== undefined) this.#notifier.wrong('value', `${problem}. The default stands.`, id);
         }
         // The model may keep less than was asked for: no moment after the end of its run.
         for (const id of state?.texts.keys() ?? []) state?.keep(id, widget.text(id));
         this.#controls?.show(state?.texts ?? []);
         this.#offerControls(widget);
         this.#appearance.prepare(widget);
-        widget.setRoom(this.#place.room);
+        widget.setRoom(this.#reservedHeight.room);
       },
       live: (milliseconds) => {
         this.#showTimeline();
         this.#shownOutcome();
-        this.#news.ready(milliseconds);
+        this.#notifier.ready(milliseconds);
       },
       drew: (canvas) => {
         this.#pictures.handOut(canvas);
         this.#appearance.drew(canvas);
         this.#sync();
       },
-      rested: () => this.#news.rested(),
+      rested: () => this.#notifier.rested(),
       leaving: () => {
         this.#appearance.drawPicture();
         this.#shownOutcome();
-        this.#place.keep();
+        this.#reservedHeight.keep();
       },
       failed: (error) => {
-        this.#place.free();
+        this.#reservedHeight.free();
         this.#pictures.refuse(error);
-        this.#news.failed(error, () => this.#life.restart());
+        this.#notifier.failed(error, () => this.#lifecycle.restart());
       },
     };
   }
@@ -397,21 +397,21 @@ export class SlamWidget extends HTMLElement {
     if (timeline?.playing === true) {
       const before = Number(this.#state?.text(timeline.param));
       const now = Number(new Map(changes).get(timeline.param) ?? before);
-      this.#news.passed(timeline, before, now);
+      this.#notifier.passed(timeline, before, now);
     }
     this.#announce(changes);
   }
 
   /** Values of the widget that the element does not have yet. */
   #changes(): [string, string][] {
-    const values = this.#life.ask((_, instance) => instance.values()) ?? {};
+    const values = this.#lifecycle.ask((_, instance) => instance.values()) ?? {};
     const known = [...(this.#state?.texts ?? [])];
     return known.map(([id, text]): [string, string] => [id, values[id] ?? text]).filter(([id, text]) => this.#state?.text(id) !== text);
   }
 
   /** Executes the widget's requests to its host: a file, its mapping, a file to save. */
   #carryOrders(): void {
-    const orders = this.#life.ask((widget) => widget.takeOrders()) ?? [];
+    const orders = this.#lifecycle.ask((widget) => widget.takeOrders()) ?? [];
     for (const order of orders) {
       if (!carryTextOrder(order, this.#textFiles)) this.#openDesk().order(order);
     }
@@ -456,10 +456,10 @@ export class SlamWidget extends HTMLElement {
   #deliver(deliveries: readonly Delivery[]): void {
     const isMoved = deliveries.filter((delivery) => this.#doctor?.hear(delivery) === true).length > 0;
     if (isMoved) this.#resized();
-    this.#life.ask((widget) => deliveries.forEach((delivery) => hand(widget, delivery)));
+    this.#lifecycle.ask((widget) => deliveries.forEach((delivery) => hand(widget, delivery)));
     this.#announce(this.#changes());
     this.#carryOrders();
-    this.#life.wake();
+    this.#lifecycle.wake();
   }
 
   /** Executes an action on the widget, at once if it runs, else as soon as it does. */
@@ -470,10 +470,10 @@ export class SlamWidget extends HTMLElement {
       this.#pressFailed(error);
       return;
     }
-    this.#life.ask(deed);
+    this.#lifecycle.ask(deed);
     this.#announce(this.#changes());
     this.#carryOrders();
-    this.#life.wake();
+    this.#lifecycle.wake();
   }
 
   /** Stores changes, and reports them to controls and page. */
@@ -482,7 +482,7 @@ export class SlamWidget extends HTMLElement {
     this.#controls?.show(changes);
     if (changes.length > 0) this.#offerControls();
     this.#showTimeline();
-    this.#news.changed(changes, this.#shownOutcome());
+    this.#notifier.changed(changes, this.#shownOutcome());
   }
 
   /** The controls that the widget shows are the stops of the keyboard; one that rests shows its opening, or all. */
@@ -493,28 +493,28 @@ export class SlamWidget extends HTMLElement {
     const hasMore = spec.params.some(({ id }) => id === MORE);
     const isOpen = !hasMore || state.text(MORE) === 'on';
     const all = (): string[] => [...spec.presets, ...spec.params, ...spec.buttons].map(({ id }) => id);
-    const shown = running?.shownControls() ?? this.#life.ask((widget) => widget.shownControls());
+    const shown = running?.shownControls() ?? this.#lifecycle.ask((widget) => widget.shownControls());
     this.#controls?.offer(shown ?? (isOpen ? all() : spec.opening));
     if (this.#zoom !== undefined) this.#zoom.hidden = !isOpen;
   }
 
   /** Figures are read of the values that are set: what the picture still waits for is finished. */
   #finishWork(): void {
-    if (this.#life.ask((widget) => widget.finish_work()) === true) this.#life.wake();
+    if (this.#lifecycle.ask((widget) => widget.finish_work()) === true) this.#lifecycle.wake();
   }
 
   /** The result of what the picture shows, which may wait for newer values. */
   #shownOutcome(): Outcome | undefined {
-    this.#lastOutcome = this.#life.ask((_, instance) => instance.outcome()) ?? this.#lastOutcome;
+    this.#lastOutcome = this.#lifecycle.ask((_, instance) => instance.outcome()) ?? this.#lastOutcome;
     return this.#lastOutcome;
   }
 
   #shownSummary(): string {
-    return this.#life.ask((widget) => widget.summary()) ?? this.#state?.spec.summary ?? '';
+    return this.#lifecycle.ask((widget) => widget.summary()) ?? this.#state?.spec.summary ?? '';
   }
 
   #shownTimeline(): Timeline | null {
-    return this.#life.ask((_, instance) => instance.timeline()) ?? null;
+    return this.#lifecycle.ask((_, instance) => instance.timeline()) ?? null;
   }
 
   #showTimeline(): void {
@@ -522,9 +522,9 @@ export class SlamWidget extends HTMLElement {
   }
 
   #resized(): void {
-    this.#place.fit();
-    this.#life.ask((widget) => widget.setRoom(this.#place.room));
-    this.#life.wake();
+    this.#reservedHeight.fit();
+    this.#lifecycle.ask((widget) => widget.setRoom(this.#reservedHeight.room));
+    this.#lifecycle.wake();
   }
 
   // ---- values -------------------------------------------------------------------------------
@@ -538,7 +538,7 @@ export class SlamWidget extends HTMLElement {
     if (!parsed.ok) return parsed.problem;
     if (state.text(id) === parsed.text) return undefined;
     let problem: string | undefined;
-    const kept = this.#life.ask((running) => {
+    const kept = this.#lifecycle.ask((running) => {
       problem = refusal(() => running.set(id, parsed.text));
       return running.text(id);
     });
@@ -547,7 +547,7 @@ export class SlamWidget extends HTMLElement {
     if (kept === undefined) this.#lastOutcome = undefined;
     this.#announce([...new Map([[id, kept ?? parsed.text], ...this.#changes()])]);
     this.#carryOrders();
-    this.#life.wake();
+    this.#lifecycle.wake();
     return undefined;
   }
 
@@ -560,7 +560,7 @@ export class SlamWidget extends HTMLElement {
     }
     const label = this.#state?.label(id);
     const stands = label === undefined ? '' : ` It stays at ${label}.`;
-    this.#news.wrong('value', `${problem}.${stands}`, id);
+    this.#notifier.wrong('value', `${problem}.${stands}`, id);
     return problem;
   }
 }

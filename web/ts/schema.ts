@@ -1,7 +1,7 @@
 // The descriptions of the widgets, written by the core's own code at build time.
 
 import schemas from '../pkg/schema.json';
-import type { Heights } from './place';
+import type { Heights } from './reserved-height';
 
 export interface OptionSpec {
   id: string;

@@ -12,10 +12,10 @@ export const STYLE = `
 .frame.dark { --paper: ${paper[1]}; --ink: ${ink[1]}; --soft: ${soft[1]}; --line: ${faint[1]}; --accent: ${accent[1]};
   --good: ${good[1]}; --fair: ${fair[1]}; --bad: ${bad[1]};
   color-scheme: dark; }
-.stage { position: relative; overflow: hidden; border-radius: 6px 6px 0 0; min-height: 12rem; height: var(--place); }
+.stage { position: relative; overflow: hidden; border-radius: 6px 6px 0 0; min-height: 12rem; height: var(--reserved-height); }
 .stage.live { min-height: 0; height: auto; }
 .picture { display: block; width: 100%; height: auto; }
-.stage[style*='--place'] .picture { height: 100%; object-fit: contain; object-position: top; }
+.stage[style*='--reserved-height'] .picture { height: 100%; object-fit: contain; object-position: top; }
 canvas { display: block; width: 100%; touch-action: pan-y pinch-zoom; outline: none; }
 .frame.takes-files canvas { touch-action: pan-y; }
 .frame.dropping { border-color: var(--accent); box-shadow: 0 0 0 3px var(--accent); }

@@ -12,15 +12,15 @@ const SETTLED_MS = 350;
 const UNDER_WAY_MS = 10_000;
 
 /** The reported widget. */
-export interface NewsSource extends Linked {
+export interface NotifierSource extends Linked {
   readonly value: Record<string, Value>;
   readonly outcome: Outcome | undefined;
   readonly timeline: Timeline | null;
   get(id: string): Value | undefined;
 }
 
-export class News {
-  readonly #source: NewsSource;
+export class Notifier {
+  readonly #source: NotifierSource;
   readonly #parts: Parts;
   readonly #notes: Notes;
   readonly #onSettled: () => void;
@@ -36,7 +36,7 @@ export class News {
   /** Start of the changes that have not settled since, or the time of the last report about them. */
   #saidAt = 0;
 
-  constructor(source: NewsSource, parts: Parts, notes: Notes, onSettled: () => void, shownSummary: () => string) {
+  constructor(source: NotifierSource, parts: Parts, notes: Notes, onSettled: () => void, shownSummary: () => string) {
     this.#onSettled = onSettled;
     this.#shownSummary = shownSummary;
     this.#source = source;

@@ -4,7 +4,7 @@
 /** Widths of a canvas with the widget's height at each of them, in CSS pixels, ascending. */
 export type Heights = readonly (readonly [width: number, height: number])[];
 
-export class Place {
+export class ReservedHeight {
   readonly #stage: HTMLElement;
   #heights: Heights = [];
   #kept: { width: number; height: number } | undefined;
@@ -33,7 +33,7 @@ export class Place {
     if (width === 0) return;
     const height = this.#kept?.width === width ? this.#kept.height : heightAt(this.#heights, width);
     if (height === undefined) this.free();
-    else this.#stage.style.setProperty('--place', `${Math.min(height, this.room)}px`);
+    else this.#stage.style.setProperty('--reserved-height', `${Math.min(height, this.room)}px`);
   }
 
   /** The available height: infinite if the element has no `max-height` in its style. */
@@ -47,7 +47,7 @@ export class Place {
 
   /** Nothing will be drawn: the picture takes its natural space. */
   free(): void {
-    this.#stage.style.removeProperty('--place');
+    this.#stage.style.removeProperty('--reserved-height');
   }
 }
 

@@ -29,7 +29,7 @@ class LostError extends LoadError {
   }
 }
 
-export interface LifeHost {
+export interface LifecycleHost {
   /** The widget to draw; undefined if the page names none. */
   widget(): { id: string; title: string } | undefined;
   /** Whether the element is on a page. */
@@ -48,9 +48,9 @@ export interface LifeHost {
   failed(error: Error): void;
 }
 
-export class Life implements Visibility, Drawer {
+export class Lifecycle implements Visibility, Drawer {
   readonly #parts: Parts;
-  readonly #host: LifeHost;
+  readonly #host: LifecycleHost;
   #instance: Instance | undefined;
   #creating: Promise<Instance> | undefined;
   /** The canvas, from before its first frame on. */
@@ -67,7 +67,7 @@ export class Life implements Visibility, Drawer {
   /** Increases with every end, so that asynchronous work of an earlier start can detect that it is outdated. */
   #generation = 0;
 
-  constructor(parts: Parts, host: LifeHost) {
+  constructor(parts: Parts, host: LifecycleHost) {
     this.#parts = parts;
     this.#host = host;
   }
