@@ -66,7 +66,7 @@ async function wholeModule() {
   const inside = {
     name: 'inside',
     setup(build) {
-      build.onResolve({ filter: /^carried-files$/ }, () => ({ path: 'carried', namespace: 'inside' }));
+      build.onResolve({ filter: /^embedded-files$/ }, () => ({ path: 'carried', namespace: 'inside' }));
       build.onLoad({ filter: /.*/, namespace: 'inside' }, () => ({
         contents: `export default ${JSON.stringify(carried)};`,
       }));
@@ -75,7 +75,7 @@ async function wholeModule() {
     },
   };
   const { outputFiles } = await esbuild.build({
-    entryPoints: [join(WEB, 'ts', 'whole.ts')],
+    entryPoints: [join(WEB, 'ts', 'anywidget-standalone.ts')],
     bundle: true,
     format: 'esm',
     target: 'es2022',

@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { it } from 'node:test';
 import * as esbuild from '../../web/node_modules/esbuild/lib/main.js';
 
-const source = readFileSync(new URL('../../web/ts/personal.ts', import.meta.url), 'utf8');
+const source = readFileSync(new URL('../../web/ts/personal-seeds.ts', import.meta.url), 'utf8');
 const { code } = await esbuild.transform(source, { loader: 'ts' });
 const { seedOf } = await import(`data:text/javascript;base64,${Buffer.from(code).toString('base64')}`);
 

@@ -2,7 +2,7 @@
 //
 // An entry of the browser's history keeps the states of all linked widgets: Back finds each as it was.
 
-import { addressOf } from './beside';
+import { assetUrl } from './assets';
 import { readQuery, withState } from './links';
 import type { WidgetSpec } from './schema';
 
@@ -33,7 +33,7 @@ export function readAddress(element: HTMLElement, spec: WidgetSpec, to: Addresse
  */
 export function linkTo(element: HTMLElement, spec: WidgetSpec | undefined, query: string): string {
   const isLinked = element.hasAttribute('linked');
-  const page = isLinked ? location.href : addressOf('embed.html');
+  const page = isLinked ? location.href : assetUrl('embed.html');
   if (page === undefined) return spec === undefined ? '' : withState('', query);
   const link = new URL(page);
   if (spec !== undefined) link.search = withState(link.search, query);

@@ -1,6 +1,6 @@
 // The compiled module of the page. Every widget is an instance of it with separate memory.
 
-import { openFile } from './beside';
+import { fetchAsset } from './assets';
 
 /** Set by the build: the name of the wasm file contains a hash of its content. */
 declare const WASM_FILE: string;
@@ -88,7 +88,7 @@ export class ModuleFile {
   async #fetchAndCompile(silence: Silence): Promise<WebAssembly.Module> {
     let response: Response;
     try {
-      response = await openFile(this.#name, this.#isRetry, silence.signal);
+      response = await fetchAsset(this.#name, this.#isRetry, silence.signal);
     } catch {
       throw new LoadError('the program could not be fetched');
     }

@@ -4,10 +4,10 @@
 
 import { keepEntry, pushEntry, statesIn } from './address';
 import { SlamWidget } from './element';
-import { keepInView } from './follow';
+import { keepInView } from './keep-in-view';
 import { readQuery, type LinkedState } from './links';
 import { defaultText } from './values';
-import { endWayBack, offerWayBack } from './way-back';
+import { hideBackButton, showBackButton } from './back-button';
 
 /** Listens to clicks on every slam-link of the document. */
 export function installLinks(): void {
@@ -32,14 +32,14 @@ function follow(link: HTMLAnchorElement): boolean {
   if (isKept) keepEntry();
   setWhole(widget, linked);
   if (isKept) pushEntry(widget);
-  endWayBack();
-  if (bringIntoView(widget)) offerWayBack(link, widget);
+  hideBackButton();
+  if (bringIntoView(widget)) showBackButton(link, widget);
   return true;
 }
 
 /** Restores the state of every linked widget from a history entry. */
 function returnTo(entry: unknown): void {
-  endWayBack();
+  hideBackButton();
   for (const [name, query] of statesIn(entry)) {
     const widget = widgetNamed(name);
     const kept = readQuery(query);

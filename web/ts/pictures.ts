@@ -1,6 +1,6 @@
 // The picture that replaces the canvas, and the pixels of frames.
 
-import { addressOf } from './beside';
+import { assetUrl } from './assets';
 import type { Theme } from './theme';
 
 interface Wish {
@@ -19,7 +19,7 @@ export class Pictures {
   /** The picture of the initial state from the build; a picture of the reader's state is better. */
   showStart(widget: string, theme: Theme): void {
     if (this.#image.src.startsWith('data:')) return;
-    const drawn = addressOf(`pictures/${widget}-${theme}.svg`);
+    const drawn = assetUrl(`pictures/${widget}-${theme}.svg`);
     if (drawn !== undefined) this.#image.src = drawn;
   }
 

@@ -19,9 +19,9 @@
 import './slam-widget.js';
 import { attemptsAt, student } from './answers';
 import { keepKeys, marked } from './dom';
-import { MOST_TRIES, seedOf } from './personal';
+import { MOST_TRIES, seedOf } from './personal-seeds';
 import './slam-answers';
-import { offerWayBack } from './way-back';
+import { showBackButton } from './back-button';
 import type { SlamWidget } from './element';
 import type { Outcome } from './instance';
 import type { Prediction } from '../slam-predict';
@@ -205,7 +205,7 @@ export class SlamPredict extends HTMLElement {
     // The widget may be far away: the reader decides when to leave the answer.
     const show = button('Show it in the widget', () => {
       widget.scrollIntoView({ block: 'start' });
-      offerWayBack(show, widget, 'the question');
+      showBackButton(show, widget, 'the question');
     });
     const again = button('Predict again', () => this.#reset());
     this.#answer?.append(show, ' ', again);

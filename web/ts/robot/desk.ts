@@ -4,7 +4,7 @@
 
 import type { Widget } from '../../pkg/glue.js';
 import { saveBlob } from '../export';
-import { addressOf, openFile } from '../beside';
+import { assetUrl, fetchAsset } from '../assets';
 import { LoadError, ModuleFile, StaleError } from '../module';
 import { LOGS } from './files';
 import { textDelivery, type Delivery, type Order, type Report } from './protocol';
@@ -437,7 +437,7 @@ export function hand(widget: Widget, { kind, text, numbers, bytes }: Delivery): 
  * module in a data address; so may a page from the disk, which imports nothing from there.
  */
 async function startWorker(): Promise<Worker> {
-  const address = addressOf(ROBOT_WORKER_FILE);
+  const address = assetUrl(ROBOT_WORKER_FILE);
   if (address !== undefined && new URL(address).origin === self.origin) {
     return new Worker(address, { type: 'module' });
   }
@@ -450,7 +450,7 @@ async function startWorker(): Promise<Worker> {
 }
 
 function ask(name: string): Promise<Response> {
-  return openFile(name, false, new AbortController().signal);
+  return fetchAsset(name, false, new AbortController().signal);
 }
 
 async function fetchFile(name: string): Promise<File> {

@@ -1,10 +1,10 @@
 // The anywidget module as one self-contained file, for a notebook without a server.
 
-import { carryFiles } from './beside';
+import { useEmbeddedFiles } from './assets';
 // @ts-expect-error: the build puts the compressed files here, as text by their names.
-import carried from 'carried-files';
+import carried from 'embedded-files';
 
-carryFiles(async (file) => {
+useEmbeddedFiles(async (file) => {
   const text = (carried as Record<string, string>)[file];
   if (text === undefined) throw new Error(`${file} is not inside`);
   const packed = Uint8Array.from(atob(text), (digit) => digit.charCodeAt(0));

@@ -21,8 +21,8 @@ let end: (() => void) | undefined;
  * Shows the way from `target` back to a link, or to what has a name, until it was gone or closed, the link is seen again,
  * or the reader has scrolled on.
  */
-export function offerWayBack(link: HTMLElement, target: Element, name = `“${link.textContent?.trim() ?? ''}”`): void {
-  endWayBack();
+export function showBackButton(link: HTMLElement, target: Element, name = `“${link.textContent?.trim() ?? ''}”`): void {
+  hideBackButton();
   const host = create('div', { class: 'slam-way-back' });
   const style = create('style');
   style.textContent = STYLE;
@@ -37,7 +37,7 @@ export function offerWayBack(link: HTMLElement, target: Element, name = `“${li
   const seen = new IntersectionObserver((entries) => {
     const isSeen = entries.at(-1)?.isIntersecting === true;
     // The page scrolls only after the click: the sentence is still visible at first.
-    if (isSeen && hasLeft) endWayBack();
+    if (isSeen && hasLeft) hideBackButton();
     hasLeft ||= !isSeen;
   });
   const listening = new AbortController();
@@ -46,7 +46,7 @@ export function offerWayBack(link: HTMLElement, target: Element, name = `“${li
   let hasArrived = false;
   window.addEventListener('scroll', () => {
     hasArrived ||= away() < window.innerHeight;
-    if (hasArrived && away() > MOST_SCREENS * window.innerHeight) endWayBack();
+    if (hasArrived && away() > MOST_SCREENS * window.innerHeight) hideBackButton();
   }, { passive: true, signal: listening.signal });
   end = () => {
     seen.disconnect();
@@ -54,16 +54,16 @@ export function offerWayBack(link: HTMLElement, target: Element, name = `“${li
     host.remove();
   };
   back.addEventListener('click', () => {
-    endWayBack();
+    hideBackButton();
     link.scrollIntoView({ behavior: 'instant', block: 'center' });
     link.focus({ preventScroll: true });
   });
-  close.addEventListener('click', endWayBack);
+  close.addEventListener('click', hideBackButton);
   document.body.append(host);
   seen.observe(link);
 }
 
-export function endWayBack(): void {
+export function hideBackButton(): void {
   end?.();
   end = undefined;
 }
