@@ -36,7 +36,7 @@ describe('a context that is lost while a widget starts', () => {
     await on(ONE, async (tab) => {
       const failure = tab.locator('slam-widget .failure');
       await failure.waitFor();
-      assert.match(await failure.innerText(), /takes its drawing surface away/);
+      assert.match(await failure.innerText(), /keeps discarding its WebGL context/);
       assert.equal(await canvases(tab), 0);
       await tab.evaluate(() => (window.toLose = 0));
       await tab.getByRole('button', { name: 'Try again' }).click();

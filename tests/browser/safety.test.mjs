@@ -234,7 +234,7 @@ describe('a wasm file', () => {
       },
     };
     await on(ONE, async (tab) => {
-      await fallsBack(tab, /two versions\. Reload the page\./);
+      await fallsBack(tab, /different versions\. Reload the page\./);
       assert.equal(await tab.locator('slam-widget .failure p').count(), 1);
       isOld.now = false;
       await tab.getByRole('button', { name: 'Reload the page' }).click();

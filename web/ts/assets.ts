@@ -1,20 +1,20 @@
-// The files beside this script: at addresses or, in a file that has to work alone, inside it.
+// The files that this script loads: fetched from the same folder, or embedded in the standalone module.
 
-let carried: ((file: string) => Promise<Response>) | undefined;
+let embedded: ((file: string) => Promise<Response>) | undefined;
 
-/** Reads files from `open` from now on, without any request to a server. */
+/** From now on files come from `open` instead of the server. */
 export function useEmbeddedFiles(open: (file: string) => Promise<Response>): void {
-  carried = open;
+  embedded = open;
 }
 
-/** Requests a file; a retry bypasses every cache. */
+/** Fetches a file; a retry bypasses the HTTP cache. */
 export function fetchAsset(file: string, isRetry: boolean, signal: AbortSignal): Promise<Response> {
-  if (carried !== undefined) return carried(file);
+  if (embedded !== undefined) return embedded(file);
   const url = new URL(file, import.meta.url);
   return fetch(url, { cache: isRetry ? 'reload' : 'default', signal });
 }
 
-/** The address of a file; undefined if files have no address. */
+/** The URL of a file; undefined if files are embedded. */
 export function assetUrl(file: string): string | undefined {
-  return carried === undefined ? new URL(file, import.meta.url).href : undefined;
+  return embedded === undefined ? new URL(file, import.meta.url).href : undefined;
 }

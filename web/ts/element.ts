@@ -1,7 +1,7 @@
 // <slam-widget name="w16.1" heading="60">: a widget on any page.
 //
-// The element keeps the values and communicates with the page; what draws them comes and goes with the
-// position of the widget on the screen (lifecycle.ts).
+// The element keeps the values and communicates with the page. The instance that draws them exists only near the
+// viewport (lifecycle.ts).
 
 import { linkTo, readAddress } from './address';
 import { Appearance } from './appearance';
@@ -11,7 +11,7 @@ import { listen, upgradeProperties } from './dom';
 import { takeAwayBar } from './export';
 import type { Widget } from '../pkg/glue.js';
 import { CrashError, type CsvFile, type Outcome, type Timeline } from './instance';
-import { Lifecycle, TakenAwayError, type LifecycleHost } from './lifecycle';
+import { Lifecycle, RemovedError, type LifecycleHost } from './lifecycle';
 import { LoadError } from './module';
 import { Notifier } from './notifier';
 import { Notes } from './notes';
@@ -25,7 +25,7 @@ import { unwatchVisibility, watchVisibility } from './visibility';
 import { Desk, hand, type FileUse } from './robot/desk';
 import { DoctorScreen, type Diagnosis } from './robot/doctor';
 import { chooseFiles, takeDrops } from './robot/files';
-import { carryTextOrder, takeTextFile, type TextFileHost } from './text-files';
+import { executeTextOrder, takeTextFile, type TextFileHost } from './text-files';
 import type { Delivery } from './robot/protocol';
 import { type ViewChange, zoomButtons } from './zoom-buttons';
 
@@ -46,7 +46,7 @@ export class SlamWidget extends HTMLElement {
   #lastOutcome: Outcome | undefined;
   #unwatch: (() => void)[] = [];
   readonly #textFiles: TextFileHost;
-  /** Processes a reader's own file, once there is one. */
+  /** Maps a reader's log, once a file was opened. */
   #desk: Desk | undefined;
   #doctor: DoctorScreen | undefined;
 
@@ -56,8 +56,8 @@ export class SlamWidget extends HTMLElement {
     this.#notes = new Notes(this.#parts.note);
     this.#textFiles = {
       frame: this.#parts.frame,
-      act: (deed) => void this.#act(deed),
-      refuse: (problem) => this.#notifier.wrong('value', problem),
+      act: (action) => void this.#act(action),
+      refuse: (problem) => this.#notifier.invalid('value', problem),
     };
     const shownSummary = (): string => this.#shownSummary();
     this.#notifier = new Notifier(this, this.#parts, this.#notes, () => this.#showTimeline(), shownSummary);
@@ -76,12 +76,12 @@ export class SlamWidget extends HTMLElement {
       listen(window, 'error', () => this.#lifecycle.checkCrash()),
       listen(window, 'resize', () => this.#resized()),
       listen(document, 'visibilitychange', () => this.#lifecycle.wake()),
-      // The element in the reader's focus comes first if not all can draw.
-      listen(this, 'pointerenter', () => this.#lifecycle.askAgain()),
-      listen(this, 'focusin', () => this.#lifecycle.askAgain()),
+      // Focus and pointer give priority if not all widgets can draw.
+      listen(this, 'pointerenter', () => this.#lifecycle.retry()),
+      listen(this, 'focusin', () => this.#lifecycle.retry()),
     ];
     if (this.#takesFiles) {
-      // A resting widget has to run to provide the start pose of a log.
+      // The start pose of a log comes from the running widget.
       const take = (files: File[]): void => void this.#act(() => this.#takeFiles(files));
       this.#unwatch.push(takeDrops(this.#parts.frame, take));
     }
@@ -95,14 +95,14 @@ export class SlamWidget extends HTMLElement {
     this.#unwatch = [];
     this.#notifier.stop();
     this.#lifecycle.leave();
-    // An element that moves within its page is back at once.
+    // An element that moves within its page is connected again in the same task.
     setTimeout(() => {
       if (!this.isConnected) this.#closeDesk();
     });
   }
 
   attributeChangedCallback(name: string, old: string | null, value: string | null): void {
-    // Before the set-up there is nothing to change, because it reads all attributes.
+    // The set-up reads all attributes anyway.
     if (!this.#isSetUp) return;
     if (name === 'name') {
       if (old === value) return;
@@ -128,13 +128,13 @@ export class SlamWidget extends HTMLElement {
     this.setAttribute('name', name);
   }
 
-  /** The whole state as JSON; the setter takes an object or its text, complete or in part. */
+  /** All parameters; the setter takes an object or its JSON, complete or partial. */
   get value(): Record<string, Value> {
     return this.#state?.toJSON() ?? {};
   }
 
-  set value(given: Record<string, Value> | string) {
-    const state: unknown = typeof given === 'string' ? JSON.parse(given) : given;
+  set value(input: Record<string, Value> | string) {
+    const state: unknown = typeof input === 'string' ? JSON.parse(input) : input;
     if (typeof state !== 'object' || state === null || Array.isArray(state)) {
       throw new TypeError('value takes an object of parameters');
     }
@@ -159,7 +159,7 @@ export class SlamWidget extends HTMLElement {
     const problem = this.#state?.buttonProblem(button);
     if (problem !== undefined) throw new RangeError(problem);
     await this.#lifecycle.ensureInstance();
-    // A button acts on the values that are set, not on what the picture still waits for.
+    // A button acts on the values that are set, which the picture may not show yet.
     this.#finishWork();
     this.#lifecycle.ask((widget) => widget.press(button));
     this.#sync();
@@ -179,7 +179,7 @@ export class SlamWidget extends HTMLElement {
     return this.#shownTimeline();
   }
 
-  /** The text that stands for the picture. */
+  /** The text alternative of the picture. */
   get summary(): string {
     this.#finishWork();
     return this.#shownSummary();
@@ -220,7 +220,7 @@ export class SlamWidget extends HTMLElement {
     return this.#lifecycle.ask((widget) => widget.frames()) ?? 0;
   }
 
-  /** Whether something draggable is at that position, in CSS pixels from the canvas's corner. */
+  /** Whether something can be dragged at a position, in CSS pixels from the canvas's corner. */
   dragsAt(x: number, y: number): boolean {
     return this.#lifecycle.ask((widget) => widget.dragsAt(x, y)) ?? false;
   }
@@ -247,7 +247,7 @@ export class SlamWidget extends HTMLElement {
     this.#lifecycle.wake();
   }
 
-  /** Panics on purpose, in the widget or in the worker beside it, for tests of a page's recovery. */
+  /** Panics on purpose in the widget or in its worker, for tests of the recovery. */
   crashForTest(where?: 'worker'): void {
     if (where === 'worker') this.#desk?.crashForTest();
     else this.#lifecycle.ask((widget) => widget.crashForTest());
@@ -302,7 +302,7 @@ export class SlamWidget extends HTMLElement {
     parts.bar.replaceChildren();
     if (spec === undefined) {
       const known = widgets.map((widget) => widget.id).join(', ');
-      this.#notifier.wrong('name', `There is no widget \`${this.name.slice(0, 60)}\`; there are ${known}.`);
+      this.#notifier.invalid('name', `There is no widget \`${this.name.slice(0, 60)}\`; there are ${known}.`);
       return;
     }
     this.#controls = new Controls(spec, {
@@ -322,7 +322,7 @@ export class SlamWidget extends HTMLElement {
     parts.frame.setAttribute('aria-label', `Widget ${spec.id.replace(/^w/, '')}: ${spec.title}`);
     parts.summary.textContent = spec.summary;
     this.#appearance.become(spec.id);
-    this.#notifier.given(() => {
+    this.#notifier.fromAttributes(() => {
       for (const param of spec.params) {
         const text = this.getAttribute(param.id);
         if (text !== null) this.#tryToSet(param.id, text);
@@ -331,7 +331,7 @@ export class SlamWidget extends HTMLElement {
     if (this.hasAttribute('linked')) {
       readAddress(this, spec, {
         set: (id, text) => this.#tryToSet(id, text),
-        wrong: (kind, problem) => this.#notifier.wrong(kind, problem),
+        invalid: (kind, problem) => this.#notifier.invalid(kind, problem),
       });
     }
     this.#controls.show(this.#state?.texts ?? []);
@@ -339,9 +339,9 @@ export class SlamWidget extends HTMLElement {
     this.#notifier.setUp();
   }
 
-  /** Ignores an error if the element has left its page, because the reader cannot see it. */
+  /** Reports a failed press, unless the element has left its page. */
   #pressFailed(error: unknown): void {
-    if (!(error instanceof TakenAwayError)) this.#lifecycle.fail(error);
+    if (!(error instanceof RemovedError)) this.#lifecycle.fail(error);
   }
 
   // ---- running ------------------------------------------------------------------------------
@@ -349,15 +349,15 @@ export class SlamWidget extends HTMLElement {
   #lifecycleHost(): LifecycleHost {
     return {
       widget: () => this.#state?.spec,
-      isHere: () => this.isConnected,
+      isConnected: () => this.isConnected,
       prepare: (widget) => {
         const state = this.#state;
         this.#desk?.restore(widget);
         for (const [id, text] of state?.texts ?? []) {
           const problem = refusal(() => widget.set(id, text));
-          if (problem !== undefined) this.#notifier.wrong('value', `${problem}. The default stands.`, id);
+          if (problem !== undefined) this.#notifier.invalid('value', `${problem}. The default is used.`, id);
         }
-        // The model may keep less than was asked for: no moment after the end of its run.
+        // The model may clamp a value: a time to the end of the run.
         for (const id of state?.texts.keys() ?? []) state?.keep(id, widget.text(id));
         this.#controls?.show(state?.texts ?? []);
         this.#offerControls(widget);
@@ -388,9 +388,9 @@ export class SlamWidget extends HTMLElement {
     };
   }
 
-  /** Copies what changed in the widget: pointer, playback, presets. */
+  /** Copies values that changed in the widget, by pointer, playback or preset. */
   #sync(): void {
-    this.#carryOrders();
+    this.#executeOrders();
     const changes = this.#changes();
     if (changes.length === 0) return;
     const timeline = this.#shownTimeline();
@@ -409,15 +409,15 @@ export class SlamWidget extends HTMLElement {
     return known.map(([id, text]): [string, string] => [id, values[id] ?? text]).filter(([id, text]) => this.#state?.text(id) !== text);
   }
 
-  /** Executes the widget's requests to its host: a file, its mapping, a file to save. */
-  #carryOrders(): void {
+  /** Executes the widget's requests to its host: to open, map or save a file. */
+  #executeOrders(): void {
     const orders = this.#lifecycle.ask((widget) => widget.takeOrders()) ?? [];
     for (const order of orders) {
-      if (!carryTextOrder(order, this.#textFiles)) this.#openDesk().order(order);
+      if (!executeTextOrder(order, this.#textFiles)) this.#openDesk().order(order);
     }
   }
 
-  /** Whether the widget accepts a file: a log, or a world, which a text can contain as well. */
+  /** Whether the widget accepts a file: a log, or a world for its text parameter. */
   get #takesFiles(): boolean {
     const spec = this.#state?.spec;
     return spec?.takesFiles === true || spec?.params.some(({ kind }) => kind === 'text') === true;
@@ -458,25 +458,25 @@ export class SlamWidget extends HTMLElement {
     if (isMoved) this.#resized();
     this.#lifecycle.ask((widget) => deliveries.forEach((delivery) => hand(widget, delivery)));
     this.#announce(this.#changes());
-    this.#carryOrders();
+    this.#executeOrders();
     this.#lifecycle.wake();
   }
 
-  /** Executes an action on the widget, at once if it runs, else as soon as it does. */
-  async #act(deed: (widget: Widget) => void): Promise<void> {
+  /** Executes an action on the widget, which is started if necessary. */
+  async #act(action: (widget: Widget) => void): Promise<void> {
     try {
       await this.#ensureInstance();
     } catch (error) {
       this.#pressFailed(error);
       return;
     }
-    this.#lifecycle.ask(deed);
+    this.#lifecycle.ask(action);
     this.#announce(this.#changes());
-    this.#carryOrders();
+    this.#executeOrders();
     this.#lifecycle.wake();
   }
 
-  /** Stores changes, and reports them to controls and page. */
+  /** Stores changes, and reports them to the controls and the page. */
   #announce(changes: readonly [string, string][]): void {
     for (const [id, text] of changes) this.#state?.keep(id, text);
     this.#controls?.show(changes);
@@ -485,7 +485,7 @@ export class SlamWidget extends HTMLElement {
     this.#notifier.changed(changes, this.#shownOutcome());
   }
 
-  /** The controls that the widget shows are the stops of the keyboard; one that rests shows its opening, or all. */
+  /** Makes the controls that the canvas shows focusable. Without an instance these are its first ones, or all. */
   #offerControls(running?: Widget): void {
     const state = this.#state;
     if (state === undefined) return;
@@ -498,12 +498,12 @@ export class SlamWidget extends HTMLElement {
     if (this.#zoom !== undefined) this.#zoom.hidden = !isOpen;
   }
 
-  /** Figures are read of the values that are set: what the picture still waits for is finished. */
+  /** Finishes pending work before results are read: they belong to the values that are set. */
   #finishWork(): void {
     if (this.#lifecycle.ask((widget) => widget.finish_work()) === true) this.#lifecycle.wake();
   }
 
-  /** The result of what the picture shows, which may wait for newer values. */
+  /** The result of the picture as drawn, which may lag behind the values. */
   #shownOutcome(): Outcome | undefined {
     this.#lastOutcome = this.#lifecycle.ask((_, instance) => instance.outcome()) ?? this.#lastOutcome;
     return this.#lastOutcome;
@@ -530,11 +530,11 @@ export class SlamWidget extends HTMLElement {
   // ---- values -------------------------------------------------------------------------------
 
   /** Sets a parameter; returns the error, if there is one. */
-  #set(id: string, given: unknown): string | undefined {
+  #set(id: string, input: unknown): string | undefined {
     if (!this.#isSetUp) this.#setUp();
     const state = this.#state;
     if (state === undefined) return 'there is no such widget';
-    const parsed = state.parse(id, given);
+    const parsed = state.parse(id, input);
     if (!parsed.ok) return parsed.problem;
     if (state.text(id) === parsed.text) return undefined;
     let problem: string | undefined;
@@ -546,29 +546,29 @@ export class SlamWidget extends HTMLElement {
     // The result of the old values is invalid now.
     if (kept === undefined) this.#lastOutcome = undefined;
     this.#announce([...new Map([[id, kept ?? parsed.text], ...this.#changes()])]);
-    this.#carryOrders();
+    this.#executeOrders();
     this.#lifecycle.wake();
     return undefined;
   }
 
   /** Sets a value from outside; reports and returns the error, if there is one. */
-  #tryToSet(id: string, given: unknown): string | undefined {
-    const problem = this.#set(id, given);
+  #tryToSet(id: string, input: unknown): string | undefined {
+    const problem = this.#set(id, input);
     if (problem === undefined) {
-      this.#notes.settle(id);
+      this.#notes.remove(id);
       return undefined;
     }
     const label = this.#state?.label(id);
-    const stands = label === undefined ? '' : ` It stays at ${label}.`;
-    this.#notifier.wrong('value', `${problem}.${stands}`, id);
+    const kept = label === undefined ? '' : ` It stays at ${label}.`;
+    this.#notifier.invalid('value', `${problem}.${kept}`, id);
     return problem;
   }
 }
 
-/** The core's reason to reject a well-formed value; a panic propagates. */
-function refusal(deed: () => void): string | undefined {
+/** Returns the core's reason to reject a well-formed value; rethrows a panic. */
+function refusal(action: () => void): string | undefined {
   try {
-    deed();
+    action();
     return undefined;
   } catch (error) {
     if (error instanceof WebAssembly.RuntimeError || error instanceof CrashError) throw error;

@@ -31,7 +31,7 @@ export function readQuery(query: string): LinkedState | { problems: string[] } |
     }
     const parsed = parseValue(spec, text);
     if (parsed.ok) values.push([id, parsed.text]);
-    else problems.push(`${parsed.problem}. The default stands.`);
+    else problems.push(`${parsed.problem}. The default is used.`);
   }
   return { widget, values, problems };
 }

@@ -1,15 +1,15 @@
 // Notifications about a widget: events for programs, sentences for screen readers, the page's address.
 
-import { keepEntry, type Linked, tellOf } from './address';
+import { updateEntry, type Linked, setAddressed } from './address';
 import { CrashError, type Outcome, type Timeline } from './instance';
 import type { Notes } from './notes';
 import { failureBox, type Parts } from './parts';
 import type { Value } from './values';
 
-/** Delay between the last change and the result, so that not every frame of a drag is reported. */
-const SETTLED_MS = 350;
-/** During permanent changes, such as the mapping of a log, a screen reader gets progress at this interval. */
-const UNDER_WAY_MS = 10_000;
+/** Debounces the result: a drag changes a value with every frame. */
+const DEBOUNCE_MS = 350;
+/** While values keep changing, as during the mapping of a log, a screen reader gets progress at this interval. */
+const PROGRESS_MS = 10_000;
 
 /** The reported widget. */
 export interface NotifierSource extends Linked {
@@ -24,17 +24,17 @@ export class Notifier {
   readonly #parts: Parts;
   readonly #notes: Notes;
   readonly #onSettled: () => void;
-  /** The text for the picture as it is, whatever it still waits for. */
+  /** The text for the picture as drawn, which may lag behind the values. */
   readonly #shownSummary: () => string;
   #timer: ReturnType<typeof setTimeout> | undefined;
-  /** Whether a screen reader is told what the timer waits for. */
-  #isNews = false;
-  /** Whether values are being set that the page gave as attributes. */
-  #isGiven = false;
-  /** Values settled before the widget had run: their result is reported as soon as there is one. */
-  #isOwed = false;
-  /** Start of the changes that have not settled since, or the time of the last report about them. */
-  #saidAt = 0;
+  /** Whether a screen reader gets the next result. */
+  #isAnnounced = false;
+  /** Whether the values being set come from attributes. */
+  #isFromAttributes = false;
+  /** Whether values settled before the widget had run: the result follows its first run. */
+  #isResultPending = false;
+  /** Time of the last announcement, or of the first change since the last result. */
+  #announcedAt = 0;
 
   constructor(source: NotifierSource, parts: Parts, notes: Notes, onSettled: () => void, shownSummary: () => string) {
     this.#onSettled = onSettled;
@@ -44,66 +44,66 @@ export class Notifier {
     this.#notes = notes;
   }
 
-  /** The widget was set up: values of attributes and address are not reported. */
+  /** Ends the set-up of the widget: a screen reader does not get the values of attributes and address. */
   setUp(): void {
-    this.#isNews = false;
-    this.#isOwed = false;
+    this.#isAnnounced = false;
+    this.#isResultPending = false;
   }
 
-  /** Sets values that the page gave as attributes: the address stays with the widget that the reader has set. */
-  given(set: () => void): void {
-    this.#isGiven = true;
+  /** Sets values of attributes: the address still names the widget that the reader changed last. */
+  fromAttributes(set: () => void): void {
+    this.#isFromAttributes = true;
     set();
-    this.#isGiven = false;
+    this.#isFromAttributes = false;
   }
 
-  /** The first frame is on the canvas, that many milliseconds after its start. */
+  /** The first frame is on the canvas; `milliseconds` since the start. */
   ready(milliseconds: number): void {
     this.#describe();
     this.#emit('slam-ready', { value: this.#source.value, ms: milliseconds });
-    if (this.#isOwed) this.#tellResult();
+    if (this.#isResultPending) this.#reportResult();
   }
 
-  /** Progressive work is finished: the summary is that of the complete picture. */
+  /** Progressive work is finished: updates the summary. */
   rested(): void {
     this.#describe();
   }
 
-  /** Values changed; the outcome is that of the picture so far. The result follows once they settle. */
+  /** Reports changes with the outcome of the picture so far. The result follows after the debounce. */
   changed(changes: readonly [string, string][], outcome: Outcome | undefined): void {
-    if (this.#timer === undefined) this.#saidAt = performance.now();
+    if (this.#timer === undefined) this.#announcedAt = performance.now();
     for (const [parameter, text] of changes) {
-      this.#notes.settle(parameter);
+      this.#notes.remove(parameter);
       const value = this.#source.get(parameter);
       this.#emit('slam-change', { parameter, value, text, outcome });
     }
-    // A playback leaves the address to the widget that the reader has set.
-    if (changes.length > 0 && !this.#isGiven) tellOf(this.#source);
+    // A playback changes no address: it stays with the widget that the reader changed last.
+    if (changes.length > 0 && !this.#isFromAttributes) setAddressed(this.#source);
     clearTimeout(this.#timer);
-    this.#isNews = true;
-    this.#isOwed = false;
-    const isLong = performance.now() - this.#saidAt > UNDER_WAY_MS;
-    if (isLong && outcome !== undefined) this.#say(outcome.sentence);
-    this.#timer = setTimeout(() => this.#settled(), SETTLED_MS);
+    this.#isAnnounced = true;
+    this.#isResultPending = false;
+    const isLong = performance.now() - this.#announcedAt > PROGRESS_MS;
+    if (isLong && outcome !== undefined) this.#announce(outcome.sentence);
+    this.#timer = setTimeout(() => this.#settled(), DEBOUNCE_MS);
   }
 
-  /** A playback settles only at its end; events that it passes are reported on the way. */
+  /** Announces events that a playback passes, because its result comes only at the end. */
   passed({ marks }: Timeline, before: number, now: number): void {
     const passed = marks.filter(({ at }) => before < at && at <= now);
-    if (passed.length > 0) this.#say(passed.map(({ label }) => label).join('; '));
+    if (passed.length > 0) this.#announce(passed.map(({ label }) => label).join('; '));
   }
 
-  /** A value from outside was invalid. */
-  wrong(kind: 'name' | 'value', message: string, subject?: string): void {
-    this.#notes.say(message, subject);
+  /** Reports an invalid value from outside. */
+  invalid(kind: 'name' | 'value', message: string, subject?: string): void {
+    this.#notes.show(message, subject);
     this.#emit('slam-error', { kind, message });
   }
 
-  /** Nothing runs until the reader asks for it. */
+  /** Reports a failure, with a button that restarts the widget. */
   failed(error: Error, restart: () => void): void {
     const { note, frame } = this.#parts;
     const box = failureBox(error, () => {
-      // The button disappears: the focus stays in the widget.
+      // The button disappears; without this the focus would move to the document.
       frame.focus({ preventScroll: true });
       box.remove();
       restart();
@@ -113,27 +113,27 @@ export class Notifier {
     this.#emit('slam-error', { kind, message: error.message });
   }
 
-  /** The element left its page: pending results are dropped. */
+  /** Drops pending results, because the element left its page. */
   stop(): void {
     clearTimeout(this.#timer);
     this.#timer = undefined;
-    this.#isOwed = false;
+    this.#isResultPending = false;
   }
 
   #settled(): void {
     const source = this.#source;
     this.#timer = undefined;
     this.#onSettled();
-    this.#tellResult();
+    this.#reportResult();
     this.#describe();
-    if (source.hasAttribute('linked')) keepEntry(source);
+    if (source.hasAttribute('linked')) updateEntry(source);
   }
 
-  #tellResult(): void {
+  #reportResult(): void {
     const { value, outcome } = this.#source;
-    this.#isOwed = outcome === undefined;
+    this.#isResultPending = outcome === undefined;
     if (outcome === undefined) return;
-    if (this.#isNews) this.#say(outcome.sentence);
+    if (this.#isAnnounced) this.#announce(outcome.sentence);
     this.#emit('slam-result', { value, outcome });
   }
 
@@ -141,8 +141,8 @@ export class Notifier {
     this.#parts.summary.textContent = this.#shownSummary();
   }
 
-  #say(sentence: string): void {
-    this.#saidAt = performance.now();
+  #announce(sentence: string): void {
+    this.#announcedAt = performance.now();
     this.#parts.live.textContent = sentence;
   }
 

@@ -2,7 +2,7 @@
 // Without script the link opens the page with that state; with script the widget on the page is set to it. If
 // the page keeps states in its address, each link is an entry of the browser's history.
 
-import { keepEntry, pushEntry, statesIn } from './address';
+import { updateEntry, pushEntry, statesIn } from './address';
 import { SlamWidget } from './element';
 import { keepInView } from './keep-in-view';
 import { readQuery, type LinkedState } from './links';
@@ -29,7 +29,7 @@ function follow(link: HTMLAnchorElement): boolean {
   const widget = widgetNamed(linked.widget.id);
   if (widget === undefined) return false;
   const isKept = widget.hasAttribute('linked');
-  if (isKept) keepEntry();
+  if (isKept) updateEntry();
   setWhole(widget, linked);
   if (isKept) pushEntry(widget);
   hideBackButton();

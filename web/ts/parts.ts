@@ -1,6 +1,6 @@
 // The element's shadow tree: picture and canvas above, notes, controls and tools below.
 
-import { create, keepKeys } from './dom';
+import { create, stopKeyPropagation } from './dom';
 import { copyText } from './export';
 import { CrashError } from './instance';
 import { StaleError } from './module';
@@ -37,7 +37,7 @@ export function build(shadow: ShadowRoot): Parts {
   const live = create('p', { class: 'hidden', role: 'status', 'aria-live': 'polite' });
   const status = create('span', { class: 'status', role: 'status' });
   note.classList.add('note');
-  keepKeys(bar);
+  stopKeyPropagation(bar);
   stage.append(picture, progress);
   frame.append(stage, note, summary, bar, live);
   shadow.append(style, frame);

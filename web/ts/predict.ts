@@ -18,8 +18,8 @@
 // @ts-expect-error: stays a file of its own beside this one.
 import './slam-widget.js';
 import { attemptsAt, student } from './answers';
-import { keepKeys, marked } from './dom';
-import { MOST_TRIES, seedOf } from './personal-seeds';
+import { stopKeyPropagation, withCode } from './dom';
+import { MAX_ATTEMPTS, seedOf } from './personal-seeds';
 import './slam-answers';
 import { showBackButton } from './back-button';
 import type { SlamWidget } from './element';
@@ -68,7 +68,7 @@ export class SlamPredict extends HTMLElement {
     this.#answer.className = 'answer';
     this.#answer.setAttribute('role', 'status');
     this.#answer.tabIndex = -1;
-    keepKeys(this.#form);
+    stopKeyPropagation(this.#form);
     // The explanation belongs below the answer, wherever the page wrote it.
     const why = document.createElement('slot');
     why.name = 'why';
@@ -148,7 +148,7 @@ export class SlamPredict extends HTMLElement {
     await setState(widget, state);
     const isFixed = widget.get('seed') === undefined || new URLSearchParams(state).has('seed');
     if (exercise === '' || person === '' || isFixed) return { state, outcome: outcomeOf(widget) };
-    for (let attempt = 0; attempt < MOST_TRIES; attempt += 1) {
+    for (let attempt = 0; attempt < MAX_ATTEMPTS; attempt += 1) {
       const seed = seedOf(person, exercise, attempt);
       widget.set('seed', seed);
       const own = outcomeOf(widget);
@@ -242,7 +242,7 @@ export class SlamPredict extends HTMLElement {
     this.#answer?.replaceChildren(
       ...sentences.map((sentence) => {
         const line = document.createElement('p');
-        line.append(...marked(sentence));
+        line.append(...withCode(sentence));
         return line;
       }),
     );

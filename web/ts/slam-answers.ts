@@ -1,7 +1,7 @@
 // <slam-answers>: the reader's name for personal tasks, and the file of answers.
 
 import { answered, answerFile, changes, keepAnswers, keepsAnswers, setStudent, student } from './answers';
-import { create, keepKeys } from './dom';
+import { create, stopKeyPropagation } from './dom';
 import { saveBlob } from './export';
 
 const STYLE = `
@@ -44,7 +44,7 @@ export class SlamAnswers extends HTMLElement {
     save.addEventListener('click', () => void this.#save());
     this.#status = create('p', { role: 'status' });
     fields.append(legend, named, this.#keepBox(), save, this.#status);
-    keepKeys(fields);
+    stopKeyPropagation(fields);
     shadow.append(style, fields);
     this.#show();
   }

@@ -16,7 +16,7 @@ export interface TextFileHost {
 }
 
 /** Executes an order of the widget about text files; returns false for other orders. */
-export function carryTextOrder(order: string, host: TextFileHost): boolean {
+export function executeTextOrder(order: string, host: TextFileHost): boolean {
   const [head = '', ...lines] = order.split('\n');
   const [name, given = ''] = head.split(' ');
   if (name === 'open-text') {

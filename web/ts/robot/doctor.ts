@@ -1,7 +1,7 @@
 // The doctor's report above the picture: what is right, repaired or wrong about a log, the options that
 // correct it, and the pose of the laser. The worker computes it; this only lays it out.
 
-import { create, keepKeys } from '../dom';
+import { create, stopKeyPropagation } from '../dom';
 import type { Delivery } from './protocol';
 
 export type Verdict = 'good' | 'mended' | 'wrong';
@@ -49,7 +49,7 @@ export class DoctorScreen {
     const fold = create('details', { open: '' });
     fold.append(this.#heading, this.#body);
     this.element.append(fold, this.#live);
-    keepKeys(this.element);
+    stopKeyPropagation(this.element);
   }
 
   /** The last report on the open log. */
