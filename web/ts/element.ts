@@ -8,7 +8,7 @@ import { Appearance } from './appearance';
 import { boxOf, type Box } from './box';
 import { Controls, MORE } from './controls';
 import { listen, upgradeProperties } from './dom';
-import { takeAwayBar } from './export';
+import { exportBar } from './export';
 import type { Widget } from '../pkg/glue.js';
 import { CrashError, type CsvFile, type Outcome, type Timeline } from './instance';
 import { Lifecycle, RemovedError, type LifecycleHost } from './lifecycle';
@@ -318,7 +318,7 @@ export class SlamWidget extends HTMLElement {
     const zoom = zoomButtons((view) => this.look(view));
     zoom.hidden = true;
     this.#zoom = zoom;
-    parts.bar.append(this.#controls.element, zoom, takeAwayBar(this, spec.id, parts.status));
+    parts.bar.append(this.#controls.element, zoom, exportBar(this, spec.id, parts.status));
     parts.frame.setAttribute('aria-label', `Widget ${spec.id.replace(/^w/, '')}: ${spec.title}`);
     parts.summary.textContent = spec.summary;
     this.#appearance.become(spec.id);
@@ -370,7 +370,7 @@ export class SlamWidget extends HTMLElement {
         this.#notifier.ready(milliseconds);
       },
       drew: (canvas) => {
-        this.#pictures.handOut(canvas);
+        this.#pictures.resolveSnapshots(canvas);
         this.#appearance.drew(canvas);
         this.#sync();
       },
@@ -382,7 +382,7 @@ export class SlamWidget extends HTMLElement {
       },
       failed: (error) => {
         this.#reservedHeight.free();
-        this.#pictures.refuse(error);
+        this.#pictures.rejectSnapshots(error);
         this.#notifier.failed(error, () => this.#lifecycle.restart());
       },
     };
