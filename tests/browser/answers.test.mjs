@@ -73,10 +73,10 @@ it('counts attempts, and keeps answers in the browser only while the reader want
     const answer = async () => {
       await question.locator('input').first().check();
       await question.getByRole('button', { name: 'Commit and see' }).click();
-      await question.getByText(/^(As you predicted|It comes out otherwise)/).waitFor();
+      await question.getByText(/^(As you predicted|It turns out differently)/).waitFor();
     };
     await answer();
-    await question.getByText(/^This is your own task, seed \d+\. The numbers in the text are those of the chapter’s\.$/).waitFor();
+    await question.getByText(/^This is your personal task, seed \d+\. The numbers in the text belong to the chapter’s task\.$/).waitFor();
     await question.getByRole('button', { name: 'Predict again' }).click();
     await answer();
     assert.equal(await tab.evaluate(() => localStorage.length), 0);

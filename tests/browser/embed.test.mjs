@@ -155,7 +155,7 @@ describe('a frame', () => {
         [{ slam: 1, type: 'press', button: long }, /no button `x+…`/],
         [{ slam: 1, type: 'set', values: { [long]: 1 } }, /no parameter `x+…`/],
         [{ slam: 1, type: 'set', values: { heading: long } }, /takes a number, not `x+…`/],
-        [{ slam: 1, type: 'set', values: many }, /99992 more values do not fit/],
+        [{ slam: 1, type: 'set', values: many }, /99992 more values are invalid/],
       ]) {
         await post(message);
         await hear('error', { message: reason });

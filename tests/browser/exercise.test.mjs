@@ -30,7 +30,7 @@ async function answer(frame, exercise, place) {
   const question = frame.locator(`slam-predict[exercise="${exercise}"]`);
   await question.locator('input').nth(place).check();
   await question.getByRole('button', { name: 'Commit and see' }).click();
-  await question.getByText(/^(As you predicted|It comes out otherwise)/).waitFor();
+  await question.getByText(/^(As you predicted|It turns out differently)/).waitFor();
 }
 
 const answers = (tab) => tab.evaluate(() => heard.filter((data) => data?.type === 'answer'));

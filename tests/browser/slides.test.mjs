@@ -30,7 +30,7 @@ it('lets a class predict: the answer is the widget’s on the slide before', asy
     await question.scrollIntoViewIfNeeded();
     await question.getByRole('radio').first().check();
     await question.getByRole('button', { name: 'Commit and see' }).click();
-    await question.getByText(/^(As you predicted|It comes out otherwise)/).waitFor();
+    await question.getByText(/^(As you predicted|It turns out differently)/).waitFor();
     assert.equal(await tab.evaluate(() => document.querySelector('slam-widget[name="w16.1"]').get('tau')), 1.4);
     assert.equal(await tab.locator('slam-predict').count(), 11);
   }, { path: '/slides.html', fresh: true });

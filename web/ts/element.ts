@@ -24,7 +24,7 @@ import { defaultText, shorten, type Value } from './values';
 import { unwatchVisibility, watchVisibility } from './visibility';
 import { Desk, hand, type FileUse } from './robot/desk';
 import { DoctorScreen, type Diagnosis } from './robot/doctor';
-import { chooseFiles, takeDrops } from './robot/files';
+import { chooseFiles, acceptDrops } from './robot/files';
 import { executeTextOrder, takeTextFile, type TextFileHost } from './text-files';
 import type { Delivery } from './robot/protocol';
 import { type ViewChange, zoomButtons } from './zoom-buttons';
@@ -83,7 +83,7 @@ export class SlamWidget extends HTMLElement {
     if (this.#takesFiles) {
       // The start pose of a log comes from the running widget.
       const take = (files: File[]): void => void this.#act(() => this.#takeFiles(files));
-      this.#unwatch.push(takeDrops(this.#parts.frame, take));
+      this.#unwatch.push(acceptDrops(this.#parts.frame, take));
     }
     this.#reservedHeight.fit();
     watchVisibility(this, this.#lifecycle);
@@ -454,7 +454,7 @@ export class SlamWidget extends HTMLElement {
   }
 
   #deliver(deliveries: readonly Delivery[]): void {
-    const isMoved = deliveries.filter((delivery) => this.#doctor?.hear(delivery) === true).length > 0;
+    const isMoved = deliveries.filter((delivery) => this.#doctor?.receive(delivery) === true).length > 0;
     if (isMoved) this.#resized();
     this.#lifecycle.ask((widget) => deliveries.forEach((delivery) => hand(widget, delivery)));
     this.#announce(this.#changes());

@@ -37,13 +37,13 @@ export class SlamAnswers extends HTMLElement {
     this.#name = create('input', { type: 'text', autocomplete: 'off', maxlength: '100' });
     this.#name.value = student();
     this.#name.addEventListener('change', () => setStudent(this.#name?.value ?? ''));
-    const named = create('label');
-    named.append('Name or token, for tasks of your own:', this.#name);
+    const nameLabel = create('label');
+    nameLabel.append('Name or token, for personal tasks:', this.#name);
     const save = create('button', { type: 'button' });
     save.textContent = 'Save my answers';
     save.addEventListener('click', () => void this.#save());
     this.#status = create('p', { role: 'status' });
-    fields.append(legend, named, this.#keepBox(), save, this.#status);
+    fields.append(legend, nameLabel, this.#keepBox(), save, this.#status);
     stopKeyPropagation(fields);
     shadow.append(style, fields);
     this.#show();
@@ -61,7 +61,7 @@ export class SlamAnswers extends HTMLElement {
         keepAnswers(box.checked);
       } catch {
         box.checked = false;
-        this.#say('This browser lets the page store nothing. Save the file instead.');
+        this.#say('This browser does not let the page store anything. Save the file instead.');
       }
     });
     const label = create('label');

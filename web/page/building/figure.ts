@@ -1,7 +1,7 @@
 // The building with which the page of the reader's own robot opens: odometry's scribble becomes a map. A log that the
 // reader drops on it, or picks, goes to the widget below, which takes its place.
 
-import { chooseFiles, LOGS, takeDrops } from '../../ts/robot/files';
+import { chooseFiles, LOGS, acceptDrops } from '../../ts/robot/files';
 import { type Ink } from '../lap/drawing';
 import { canvasSurface, contextOf, readInks, watchColors } from '../lap/surfaces';
 import { type Building, draw, LOOPS, sayError } from './drawing';
@@ -68,7 +68,7 @@ export class BuildingFigure {
       widget.openFile(files);
       widget.scrollIntoView();
     };
-    takeDrops(picture, take);
+    acceptDrops(picture, take);
     const choose = this.#figure.querySelector('[data-building="open"]');
     choose?.addEventListener('click', () => chooseFiles(picture, { accept: LOGS, label: 'A log of your robot', several: true }, take));
   }
