@@ -1,34 +1,33 @@
-// One moment of the lap as shapes, for a canvas and for a still picture alike.
+// Draws one moment of the lap to a canvas or an SVG.
 
 import type { Moment, Point, Pose, Story } from './story';
 
-/** Names of colours; the style of the page says which. */
+/** Colours by their names in page.css. */
 export type Ink = 'truth' | 'prediction' | 'outbound' | 'return' | 'posterior' | 'prior' | 'measurement' | 'ink' | 'paper';
 
-/** What is drawn on, in pixels from its upper left corner. */
+/** A canvas or an SVG; positions in pixels from the upper left corner. */
 export interface Surface {
   line(points: readonly Point[], ink: Ink, width: number, options?: { alpha?: number; dash?: number[] }): void;
   dots(points: readonly Point[], ink: Ink, size: number, alpha?: number): void;
   area(points: readonly Point[], ink: Ink): void;
-  /** Words whose middle stands at a point, with a rim of paper. */
+  /** Text centred at a point, with a halo in the colour of the paper. */
   words(text: string, at: Point, ink: Ink, size: number): void;
 }
 
-/** Width and height of the strip are in this proportion. */
+/** Aspect ratio of the strip. */
 export const ASPECT = 2.4;
 
-/** Middle and width of what is seen, in metres: of the whole flat's corridor, and closer. */
+/** Centre and width of the view, in metres: the corridor of the flat, and a close-up. */
 const WHOLE = { x: 6, y: 4.55, width: 12.5 };
 const CLOSE = { x: 4.9, y: 4.7, width: 9.3 };
-/** Where the walls have their names, in metres. */
-const WALL_NAMES = { out: [2.1, 5.35], back: [7.6, 5.35] } as const;
-/** At this width of the strip lines have their widths, and are thinner or thicker in proportion, within limits. */
-const USUAL_WIDTH_PX = 900;
+/** Positions of the labels of the walls, in metres. */
+const WALL_LABELS = { out: [2.1, 5.35], back: [7.6, 5.35] } as const;
+/** At this width line widths are as given; at others they scale, within limits. */
+const REFERENCE_WIDTH_PX = 900;
 
-/** Draws a moment into a width. */
 export function draw(story: Story, moment: Moment, surface: Surface, widthPx: number): void {
   const to = camera(moment.closeness, widthPx);
-  const unit = Math.min(Math.max(widthPx / USUAL_WIDTH_PX, 0.65), 1.3);
+  const unit = Math.min(Math.max(widthPx / REFERENCE_WIDTH_PX, 0.65), 1.3);
   for (const [x0, y0, x1, y1] of story.walls) surface.line([to([x0, y0]), to([x1, y1])], 'truth', unit, { alpha: 0.55 });
   drawRays(story, moment, surface, to, unit);
   const [out, back] = mapOf(story, moment);
@@ -36,36 +35,36 @@ export function draw(story: Story, moment: Moment, surface: Surface, widthPx: nu
   surface.dots(back.map(to), 'return', 3 * unit);
   drawBefore(story, moment, surface, to, unit);
   drawMoved(moment, surface, to, unit);
-  const way = moment.keyframes.map(([x, y]): Point => [x, y]);
+  const path = moment.keyframes.map(([x, y]): Point => [x, y]);
   const [robotX, robotY] = moment.robot;
-  surface.line([...way, [robotX, robotY] as Point].map(to), 'posterior', 2 * unit);
+  surface.line([...path, [robotX, robotY] as Point].map(to), 'posterior', 2 * unit);
   for (const { from, to: old } of moment.closed) {
-    const ends = [way[from], way[old]].filter((end) => end !== undefined);
+    const ends = [path[from], path[old]].filter((end) => end !== undefined);
     surface.line(ends.map(to), 'measurement', 4 * unit);
   }
   surface.line(moment.wheels.map(to), 'prediction', 2.5 * unit, { dash: [7 * unit, 4 * unit] });
   const [wheelsX, wheelsY] = moment.wheels.at(-1) ?? [robotX, robotY];
   drawRobot(surface, to, [wheelsX, wheelsY, wheelsHeading(moment)], 'prediction', 8 * unit);
   drawRobot(surface, to, moment.robot, 'posterior', 10 * unit);
-  nameActors(moment, surface, to, unit);
+  drawLabels(moment, surface, to, unit);
 }
 
-/** Each line has its name at its end, in its colour; the walls have theirs once there are two. */
-function nameActors(moment: Moment, surface: Surface, to: Camera, unit: number): void {
+/** Labels each path at its end, and the walls once the way back has some. */
+function drawLabels(moment: Moment, surface: Surface, to: Camera, unit: number): void {
   const size = Math.max(14 * unit, 11);
   const robot = to([moment.robot[0], moment.robot[1]]);
   const wheels = to(moment.wheels.at(-1) ?? [moment.robot[0], moment.robot[1]]);
   const side = wheels[1] > robot[1] ? 1 : -1;
-  // Above the wheels there may be no room left.
+  // There may be no room above the wheels' robot.
   const ofWheels = wheels[1] + side * 1.7 * size < size ? 1 : side;
   surface.words('by the wheels', [wheels[0], wheels[1] + ofWheels * 1.7 * size], 'prediction', size);
   surface.words('by the sweeps', [robot[0], robot[1] - side * 1.7 * size], 'posterior', size);
   if (moment.act === 0) return;
-  surface.words('walls, way out', to(WALL_NAMES.out), 'outbound', size);
-  surface.words('walls, way back', to(WALL_NAMES.back), 'return', size);
+  surface.words('walls, way out', to(WALL_LABELS.out), 'outbound', size);
+  surface.words('walls, way back', to(WALL_LABELS.back), 'return', size);
 }
 
-/** At the end: where the walls of the way back stood before a loop closed, and how far the farthest keyframe has moved. */
+/** At the end: the walls of the way back before the loops closed, and the largest correction of a keyframe. */
 function drawBefore(story: Story, { before: { poses, strength }, keyframes }: Moment, surface: Surface, to: Camera, unit: number): void {
   if (strength === 0) return;
   const doubled = poses.flatMap((pose, node) => (node <= story.turn ? [] : placed(story.ticks[story.keyframes[node] ?? 0]?.sweep ?? [], pose)));
@@ -86,19 +85,19 @@ function frame(closeness: number, widthPx: number): { scale: number; middleX: nu
   return { scale: widthPx / mix('width'), middleX: mix('x'), middleY: mix('y') };
 }
 
-/** From metres to pixels of the picture. */
+/** Converts metres to pixels. */
 export function camera(closeness: number, widthPx: number): Camera {
   const { scale, middleX, middleY } = frame(closeness, widthPx);
   return ([x, y]) => [widthPx / 2 + scale * (x - middleX), widthPx / ASPECT / 2 - scale * (y - middleY)];
 }
 
-/** From pixels of the picture to metres. */
+/** Converts pixels to metres. */
 export function worldAt([x, y]: Point, closeness: number, widthPx: number): Point {
   const { scale, middleX, middleY } = frame(closeness, widthPx);
   return [middleX + (x - widthPx / 2) / scale, middleY - (y - widthPx / ASPECT / 2) / scale];
 }
 
-/** The points of all sweeps at the keyframes' poses: those of the way out, those of the way back. */
+/** The points of all sweeps at the poses of their keyframes, of the way out and of the way back. */
 function mapOf(story: Story, { keyframes }: Moment): [Point[], Point[]] {
   const ways: [Point[], Point[]] = [[], []];
   keyframes.forEach((pose, node) => {
@@ -118,7 +117,7 @@ function placed(sweep: readonly number[], [x, y, heading]: Pose): Point[] {
   return points;
 }
 
-/** What the laser sees just now. */
+/** The beams of the current sweep. */
 function drawRays(story: Story, moment: Moment, surface: Surface, to: Camera, unit: number): void {
   const [x, y] = moment.robot;
   const sweep = story.ticks[moment.tick]?.sweep ?? [];
@@ -127,7 +126,7 @@ function drawRays(story: Story, moment: Moment, surface: Surface, to: Camera, un
   }
 }
 
-/** An arrow from where a keyframe was to where it is. */
+/** An arrow from the old to the new position of each corrected keyframe. */
 function drawMoved(moment: Moment, surface: Surface, to: Camera, unit: number): void {
   const { from, strength } = moment.moved;
   if (strength === 0) return;
