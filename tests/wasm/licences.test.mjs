@@ -7,13 +7,13 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { describe, it } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { LicenceProblem, SHIPPED, waysToTake } from '../../web/licences/allowed.mjs';
+import { LicenceProblem, SHIPPED, acceptedChoices } from '../../web/licences/allowed.mjs';
 import { npmPackagesIn } from '../../web/licences/packages.mjs';
 import { withTexts } from '../../web/licences/texts.mjs';
 
 const ROOT = fileURLToPath(new URL('../../', import.meta.url));
 const ALLOWED = ['MIT', 'Apache-2.0', 'Unicode-3.0'];
-const ways = (expression) => waysToTake(expression, ALLOWED, 'foo 1.0.0');
+const ways = (expression) => acceptedChoices(expression, ALLOWED, 'foo 1.0.0');
 
 describe('an expression of licences', () => {
   it('is taken by its first accepted choice, and with all that hold together', () => {
