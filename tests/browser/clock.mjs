@@ -14,36 +14,36 @@ export const PAUSE_MS = 60;
 export const FROZEN_MS = 0;
 
 /** Timers of at least this delay fire only if a test skips it: the page may wait for another process. */
-export const PATIENCE_MS = 5000;
+export const LONG_DELAY_MS = 5000;
 
 /** Advance of the clock at each reading: work with a time limit has to end. */
-const LOOK_MS = 0.25;
+const READING_MS = 0.25;
 
 /** Clock readings in a slow frame. A low number limits the work in a frame, and keeps tests fast that need no work. */
 const READINGS_PER_SLOW_FRAME = 300;
 
 /** Advance at each reading while a test waits for all work, which then takes a frame or two. */
-export const QUICK_LOOK_MS = 0.01;
+export const QUICK_READING_MS = 0.01;
 
 /** Advance at each reading for a frame duration. */
-export function lookMs(stepMs) {
-  return stepMs >= COARSE_MS ? stepMs / READINGS_PER_SLOW_FRAME : LOOK_MS;
+export function readingMs(stepMs) {
+  return stepMs >= COARSE_MS ? stepMs / READINGS_PER_SLOW_FRAME : READING_MS;
 }
 
 /**
  * Init script. Replaces `performance.now`, the time of animation frames, and `setTimeout` with a delay. Tests control the
- * clock by `frameClock`. Timers of `patienceMs` or more fire only if a test skips the delay. Frames are at least `pauseMs`
+ * clock by `frameClock`. Timers of `longDelayMs` or more fire only if a test skips the delay. Frames are at least `pauseMs`
  * apart.
  */
-export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
+export function install({ pauseMs, stepMs, readingMs, quickReadingMs, longDelayMs }) {
   // A tab between two tests.
   if (location.href === 'about:blank') return;
-  const displayed = window.requestAnimationFrame.bind(window);
-  const [soon, forget] = [window.setTimeout.bind(window), window.clearTimeout.bind(window)];
+  const realRequestFrame = window.requestAnimationFrame.bind(window);
+  const [realSetTimeout, realClearTimeout] = [window.setTimeout.bind(window), window.clearTimeout.bind(window)];
   const timers = new Map();
   const watchers = new Set();
   let nowMs = 0;
-  let takesMs = lookMs;
+  let advanceMs = readingMs;
   let isStopped = false;
   let skippedMs = 0;
   let requests = 0;
@@ -55,7 +55,7 @@ export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
   // Does not collide with the browser's timer ids.
   let lastTimer = 1e9;
 
-  const show = () => {
+  const runFrame = () => {
     [due, waiting] = [waiting, new Map()];
     for (const callback of due.values()) {
       try {
@@ -66,13 +66,13 @@ export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
     }
   };
   const nextFrame = (callback) => {
-    if (waiting.size === 0) soon(() => displayed(show), pauseMs);
+    if (waiting.size === 0) realSetTimeout(() => realRequestFrame(runFrame), pauseMs);
     lastFrame += 1;
     waiting.set(lastFrame, callback);
     return lastFrame;
   };
 
-  performance.now = () => (nowMs += isStopped ? 0 : takesMs);
+  performance.now = () => (nowMs += isStopped ? 0 : advanceMs);
   window.requestAnimationFrame = (callback) => {
     requests += 1;
     requestedAt = { ms: nowMs, tick: ticks };
@@ -83,22 +83,22 @@ export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
     if (!waiting.delete(frame)) due.delete(frame);
   };
   window.setTimeout = (callback, delay, ...args) => {
-    if (typeof callback !== 'function' || !(delay > 0)) return soon(callback, delay, ...args);
+    if (typeof callback !== 'function' || !(delay > 0)) return realSetTimeout(callback, delay, ...args);
     lastTimer += 1;
-    const isPatient = delay >= patienceMs;
-    const atMs = (isPatient ? skippedMs : nowMs) + delay;
-    timers.set(lastTimer, { atMs, isPatient, call: () => callback(...args) });
+    const isLong = delay >= longDelayMs;
+    const atMs = (isLong ? skippedMs : nowMs) + delay;
+    timers.set(lastTimer, { atMs, isLong, call: () => callback(...args) });
     return lastTimer;
   };
   window.clearTimeout = (timer) => {
-    if (!timers.delete(timer)) forget(timer);
+    if (!timers.delete(timer)) realClearTimeout(timer);
   };
 
   const tick = () => {
     nextFrame(tick);
     ticks += 1;
     nowMs += isStopped ? 0 : stepMs;
-    const due = [...timers].filter(([, { atMs, isPatient }]) => atMs <= (isPatient ? skippedMs : nowMs));
+    const due = [...timers].filter(([, { atMs, isLong }]) => atMs <= (isLong ? skippedMs : nowMs));
     for (const [timer, { call }] of due.sort(([, a], [, b]) => a.atMs - b.atMs)) {
       // An earlier callback may have cancelled a due one.
       if (timers.delete(timer)) call();
@@ -122,9 +122,9 @@ export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
       const before = requests;
       const from = { ms: nowMs, tick: ticks };
       const since = (name, now) => now - Math.max(from[name], requestedAt[name]);
-      takesMs = Math.min(lookMs, quickLookMs);
+      advanceMs = Math.min(readingMs, quickReadingMs);
       await when(() => since('ms', nowMs) >= ms && since('tick', ticks) >= 3);
-      takesMs = lookMs;
+      advanceMs = readingMs;
       return requests - before;
     },
     /** Stops or resumes the clock: a quick touch has to be quick on a slow machine, too. */

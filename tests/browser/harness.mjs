@@ -104,7 +104,7 @@ async function newTab(browser, { stepMs = clock.COARSE_MS, sees = false, ...opti
   context.setDefaultTimeout(LAST_RESORT_MS);
   context.setDefaultNavigationTimeout(LAST_RESORT_MS);
   await context.addInitScript(clock.install, {
-    pauseMs: clock.PAUSE_MS, stepMs, lookMs: clock.lookMs(stepMs), quickLookMs: clock.QUICK_LOOK_MS, patienceMs: clock.PATIENCE_MS,
+    pauseMs: clock.PAUSE_MS, stepMs, readingMs: clock.readingMs(stepMs), quickReadingMs: clock.QUICK_READING_MS, longDelayMs: clock.LONG_DELAY_MS,
   });
   await context.addInitScript(drawCheaply, { sees });
   const tab = await context.newPage();
