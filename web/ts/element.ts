@@ -22,7 +22,7 @@ import { findParam, findWidget, widgets } from './schema';
 import { State } from './state';
 import { defaultText, shorten, type Value } from './values';
 import { unwatchVisibility, watchVisibility } from './visibility';
-import { Desk, hand, type FileUse } from './robot/desk';
+import { LogMapper, deliverTo, type FileUse } from './robot/log-mapper';
 import { DoctorScreen, type Diagnosis } from './robot/doctor';
 import { chooseFiles, acceptDrops } from './robot/files';
 import { executeTextOrder, takeTextFile, type TextFileHost } from './text-files';
@@ -47,7 +47,7 @@ export class SlamWidget extends HTMLElement {
   #unwatch: (() => void)[] = [];
   readonly #textFiles: TextFileHost;
   /** Maps a reader's log, once a file was opened. */
-  #desk: Desk | undefined;
+  #mapper: LogMapper | undefined;
   #doctor: DoctorScreen | undefined;
 
   constructor() {
@@ -97,7 +97,7 @@ export class SlamWidget extends HTMLElement {
     this.#lifecycle.leave();
     // An element that moves within its page is connected again in the same task.
     setTimeout(() => {
-      if (!this.isConnected) this.#closeDesk();
+      if (!this.isConnected) this.#closeMapper();
     });
   }
 
@@ -249,7 +249,7 @@ export class SlamWidget extends HTMLElement {
 
   /** Panics on purpose in the widget or in its worker, for tests of the recovery. */
   crashForTest(where?: 'worker'): void {
-    if (where === 'worker') this.#desk?.crashForTest();
+    if (where === 'worker') this.#mapper?.crashForTest();
     else this.#lifecycle.ask((widget) => widget.crashForTest());
   }
 
@@ -272,7 +272,7 @@ export class SlamWidget extends HTMLElement {
 
   /** The bytes of a file that w16.10 saves, such as `session.slam2d`; rejects with a sentence if there is none. */
   savedFile(name: string): Promise<File> {
-    return this.#desk?.file(String(name)) ?? Promise.reject(new Error('Open a log first.'));
+    return this.#mapper?.file(String(name)) ?? Promise.reject(new Error('Open a log first.'));
   }
 
   /** Releases context and memory; the values stay, and the picture shows them. */
@@ -290,7 +290,7 @@ export class SlamWidget extends HTMLElement {
   #setUp(): void {
     const parts = this.#parts;
     this.#isSetUp = true;
-    this.#closeDesk();
+    this.#closeMapper();
     const spec = findWidget(this.name);
     parts.frame.classList.toggle('takes-files', spec?.takesFiles === true);
     parts.frame.classList.toggle('without-file', spec?.takesFiles === true);
@@ -352,7 +352,7 @@ export class SlamWidget extends HTMLElement {
       isConnected: () => this.isConnected,
       prepare: (widget) => {
         const state = this.#state;
-        this.#desk?.restore(widget);
+        this.#mapper?.restore(widget);
         for (const [id, text] of state?.texts ?? []) {
           const problem = refusal(() => widget.set(id, text));
           if (problem !== undefined) this.#notifier.invalid('value', `${problem}. The default is used.`, id);
@@ -413,7 +413,7 @@ export class SlamWidget extends HTMLElement {
   #executeOrders(): void {
     const orders = this.#lifecycle.ask((widget) => widget.takeOrders()) ?? [];
     for (const order of orders) {
-      if (!executeTextOrder(order, this.#textFiles)) this.#openDesk().order(order);
+      if (!executeTextOrder(order, this.#textFiles)) this.#openMapper().order(order);
     }
   }
 
@@ -425,30 +425,30 @@ export class SlamWidget extends HTMLElement {
 
   #takeFiles(files: File[], use?: FileUse): void {
     const [first] = files;
-    if (this.#state?.spec.takesFiles === true) this.#openDesk().take(files, use);
+    if (this.#state?.spec.takesFiles === true) this.#openMapper().take(files, use);
     else if (first !== undefined) void takeTextFile(first, this.#textFiles);
   }
 
-  #openDesk(): Desk {
-    if (this.#desk !== undefined) return this.#desk;
+  #openMapper(): LogMapper {
+    if (this.#mapper !== undefined) return this.#mapper;
     const label = 'A log, or a reference for it';
-    const desk = new Desk({
+    const mapper = new LogMapper({
       deliver: (deliveries) => this.#deliver(deliveries),
       choose: (accept, chosen) => chooseFiles(this.#parts.frame, { accept, label, several: true }, chosen),
     });
     this.#doctor = new DoctorScreen({
-      choose: (option) => desk.choose(option?.replace(/^--/, '')),
-      chosen: () => desk.chosen,
+      choose: (option) => mapper.choose(option?.replace(/^--/, '')),
+      chosen: () => mapper.chosen,
     });
     this.#parts.frame.prepend(this.#doctor.element);
     this.#parts.frame.classList.remove('without-file');
-    this.#desk = desk;
-    return desk;
+    this.#mapper = mapper;
+    return mapper;
   }
 
-  #closeDesk(): void {
-    this.#desk?.close();
-    this.#desk = undefined;
+  #closeMapper(): void {
+    this.#mapper?.close();
+    this.#mapper = undefined;
     this.#doctor?.element.remove();
     this.#doctor = undefined;
   }
@@ -456,7 +456,7 @@ export class SlamWidget extends HTMLElement {
   #deliver(deliveries: readonly Delivery[]): void {
     const isMoved = deliveries.filter((delivery) => this.#doctor?.receive(delivery) === true).length > 0;
     if (isMoved) this.#resized();
-    this.#lifecycle.ask((widget) => deliveries.forEach((delivery) => hand(widget, delivery)));
+    this.#lifecycle.ask((widget) => deliveries.forEach((delivery) => deliverTo(widget, delivery)));
     this.#announce(this.#changes());
     this.#executeOrders();
     this.#lifecycle.wake();

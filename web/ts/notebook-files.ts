@@ -3,7 +3,7 @@
 
 import type { Model } from '../slam-anywidget';
 import type { SlamWidget } from './element';
-import type { FileUse } from './robot/desk';
+import type { FileUse } from './robot/log-mapper';
 
 /** A message from the kernel. */
 type Request =

@@ -42,15 +42,15 @@ interface Asked {
   refuse(problem: Error): void;
 }
 
-export interface DeskHost {
+export interface LogMapperHost {
   /** Passes it to the widget, if one runs. */
   deliver(deliveries: readonly Delivery[]): void;
   /** Opens the system's dialog for a file. */
   choose(accept: string, chosen: (files: File[]) => void): void;
 }
 
-export class Desk {
-  readonly #host: DeskHost;
+export class LogMapper {
+  readonly #host: LogMapperHost;
   /** The latest of each kind, in the order in which they first came. */
   readonly #latest = new Map<string, Delivery>();
   #worker: Worker | undefined;
@@ -83,13 +83,13 @@ export class Desk {
   /** Counts the files: late reports about an older one are dropped. */
   #turn = 0;
 
-  constructor(host: DeskHost) {
+  constructor(host: LogMapperHost) {
     this.#host = host;
   }
 
   /** Sends a new picture all that is known. */
   restore(widget: Widget): void {
-    for (const delivery of this.#latest.values()) hand(widget, delivery);
+    for (const delivery of this.#latest.values()) deliverTo(widget, delivery);
   }
 
   /** Executes an order of the widget. */
@@ -427,7 +427,7 @@ function nameOf([first, ...rest]: readonly File[]): string {
 }
 
 /** Passes a delivery to a widget's model. */
-export function hand(widget: Widget, { kind, text, numbers, bytes }: Delivery): void {
+export function deliverTo(widget: Widget, { kind, text, numbers, bytes }: Delivery): void {
   widget.deliver(kind, text, numbers, bytes);
 }
 
