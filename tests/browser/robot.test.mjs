@@ -420,7 +420,7 @@ describe('a log of one’s own', () => {
       await press(tab, 'turn');
       await says(tab, /was removed from the graph/);
       await widget(tab, (it) => it.crashForTest('worker'));
-      await says(tab, /was begun again/);
+      await says(tab, /was restarted/);
       await says(tab, /^(mapped|loops contradict): .*is found at its scan \d+: of/);
 
       // A file that is not a log changes no result.
@@ -530,7 +530,7 @@ describe('a log of one’s own', () => {
       await same();
 
       await widget(tab, (it) => it.crashForTest('worker'));
-      await says(tab, /was begun again/);
+      await says(tab, /was restarted/);
       await isMapped(tab);
       await tab.waitForFunction((goal) => document.querySelector('slam-widget').outcome.facts.loops === goal, loops);
     }, { quiet: false });

@@ -1,6 +1,5 @@
-// The host of a widget that shows a reader's own log: it keeps the file and the worker that maps it, and
-// passes on orders and reports. The widget's picture may come and go meanwhile; the latest reports are
-// repeated to the next one.
+// Maps a reader's log for w16.10: keeps the files and the worker, and passes orders and deliveries between widget and
+// worker. It survives the widget's instance; a new instance gets the latest deliveries again.
 
 import type { Widget } from '../../pkg/glue.js';
 import { saveBlob } from '../export';
@@ -9,25 +8,25 @@ import { LoadError, ModuleFile, StaleError } from '../module';
 import { LOGS } from './files';
 import { textDelivery, type Delivery, type Order, type Report } from './protocol';
 
-/** Set by the build: the program that maps logs, its worker, and the sample with its truth. */
+/** Set by the build: the module that maps logs, its worker, and the samples. */
 declare const ROBOT_WASM_FILE: string;
 declare const ROBOT_WORKER_FILE: string;
 declare const SAMPLE_FILES: readonly string[];
 
-/** Extensions of files that are a reference instead of a log. */
+/** Extensions of references. */
 const REFERENCES = ['.relations', '.tum'];
-/** The same for the log of a robot to be localized. */
+/** File types of logs to localize. */
 const SCANS = '.yaml,.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd';
 /** Extension of a session. */
 const SESSION = '.slam2d';
-/** The stage in which the map is finished. */
+/** The stage of a finished map, in deliveries. */
 const DONE = 5;
-/** Largest size of a reference, bytes. */
-const MOST_REFERENCE = 1 << 28;
-/** Number of times that a file is restarted after a crash. */
-const MOST_CRASHES = 1;
+/** Maximum size of a reference. */
+const MAX_REFERENCE_BYTES = 1 << 28;
+/** Retries of a log after a crash. */
+const MAX_RETRIES = 1;
 
-/** The purpose of a file: to become the map, to be localized on the current map, or to grade it. */
+/** The purpose of a file: to be mapped, to be localized on the present map, or to grade the map. */
 export type FileUse = 'map' | 'where' | 'grade';
 
 const NO_WORKER =
@@ -36,58 +35,57 @@ const NO_WORKER =
 
 const program = new ModuleFile(ROBOT_WASM_FILE);
 
-/** A program that requested a file. */
-interface Asked {
+/** A pending request of a program for a saved file. */
+interface FileRequest {
   take(file: File): void;
   refuse(problem: Error): void;
 }
 
 export interface LogMapperHost {
-  /** Passes it to the widget, if one runs. */
+  /** Passes deliveries to the widget, if it runs. */
   deliver(deliveries: readonly Delivery[]): void;
-  /** Opens the system's dialog for a file. */
+  /** Opens the file dialog. */
   choose(accept: string, chosen: (files: File[]) => void): void;
 }
 
 export class LogMapper {
   readonly #host: LogMapperHost;
-  /** The latest of each kind, in the order in which they first came. */
+  /** The latest delivery of each kind, in the order of first arrival. */
   readonly #latest = new Map<string, Delivery>();
   #worker: Worker | undefined;
-  /** One file, or those of a recording. */
+  /** The log: one file, or several of one recording. */
   #files: File[] = [];
   #reference: File | undefined;
-  /** A reference that came before its log. */
-  #early: File | undefined;
-  /** Orders before the worker was ready. */
+  /** A reference that waits for its log. */
+  #earlyReference: File | undefined;
+  /** Orders that wait for the worker. */
   #waiting: Order[] = [];
   /** Whether a log was opened and not closed. */
   #isOpen = false;
   #crashes = 0;
   /** The reader's changes of the graph; repeated after a crash. */
   #edits: string[] = [];
-  #owesEdits = false;
+  #mustRepeatEdits = false;
   /** The reader's options: topics, frames, the pose of the laser and others. */
   readonly #options = new Map<string, string>();
-  /** The log of a robot to be localized on the map, and its start pose. */
-  #visitor: { files: File[]; start: number[] } | undefined;
-  #owesVisitor = false;
+  /** A log to localize on the map, and its start pose. */
+  #localization: { files: File[]; start: number[] } | undefined;
+  #mustLocalize = false;
   /** A log that waits for the start pose from the widget. */
-  #dropped: File[] | undefined;
+  #droppedLog: File[] | undefined;
   /** The purpose of a dropped log. */
   #dropUse: FileUse = 'map';
-  /** Programs that wait for a file, by its name. */
-  readonly #asked = new Map<string, Asked[]>();
-  /** Whether the map is finished. */
-  #stands = false;
-  /** Counts the files: late reports about an older one are dropped. */
-  #turn = 0;
+  /** Pending requests by file name. */
+  readonly #fileRequests = new Map<string, FileRequest[]>();
+  #isMapFinished = false;
+  /** Increases with every log: late reports about an older one are dropped. */
+  #generation = 0;
 
   constructor(host: LogMapperHost) {
     this.#host = host;
   }
 
-  /** Sends a new picture all that is known. */
+  /** Repeats the latest deliveries to a new instance. */
   restore(widget: Widget): void {
     for (const delivery of this.#latest.values()) deliverTo(widget, delivery);
   }
@@ -97,7 +95,7 @@ export class LogMapper {
     const [name = '', ...words] = order.split(' ');
     switch (name) {
       case 'open':
-        // A reference that the reader picks here grades the current map all the same.
+        // A reference that the reader picks here still grades the present map.
         this.#host.choose(LOGS, (files) => this.take(files, 'map'));
         break;
       case 'reference':
@@ -107,14 +105,14 @@ export class LogMapper {
         void this.#openSample();
         break;
       case 'locate':
-        this.#host.choose(SCANS, (files) => this.#visit(files, words));
+        this.#host.choose(SCANS, (files) => this.#localize(files, words));
         break;
       case 'locate-sample':
-        void this.#visitSample(words);
+        void this.#localizeSample(words);
         break;
       case 'locate-dropped':
-        if (this.#dropped !== undefined) this.#visit(this.#dropped, words);
-        this.#dropped = undefined;
+        if (this.#droppedLog !== undefined) this.#localize(this.#droppedLog, words);
+        this.#droppedLog = undefined;
         break;
       case 'drop':
         this.#dropUse = words[0] === 'where' ? 'where' : 'map';
@@ -123,9 +121,9 @@ export class LogMapper {
         this.choose(words.join(' '));
         break;
       case 'close':
-        this.#renew();
+        this.#reset();
         this.#isOpen = false;
-        this.#early = undefined;
+        this.#earlyReference = undefined;
         this.#latest.clear();
         this.#host.deliver([textDelivery('closed', '')]);
         break;
@@ -138,56 +136,56 @@ export class LogMapper {
     }
   }
 
-  /** Accepts files that were dropped or passed: a log, a reference, or both; a session and a log for it. */
-  take(files: readonly File[], asked?: FileUse): void {
-    const use = asked ?? this.#dropUse;
+  /** Opens files: a log, a reference, or both; or a session with a log to localize. */
+  take(files: readonly File[], purpose?: FileUse): void {
+    const use = purpose ?? this.#dropUse;
     const ends = (file: File, end: string): boolean => file.name.toLowerCase().endsWith(end);
     const isReference = (file: File): boolean => use === 'grade' || REFERENCES.some((end) => ends(file, end));
-    const given = files.filter((file) => !isReference(file));
-    const session = asked === 'where' ? undefined : given.find((file) => ends(file, SESSION));
-    // Several files are the parts of one recording.
-    const log = given.filter((file) => file !== session);
+    const logs = files.filter((file) => !isReference(file));
+    const session = purpose === 'where' ? undefined : logs.find((file) => ends(file, SESSION));
+    // Several files are parts of one recording.
+    const log = logs.filter((file) => file !== session);
     const reference = files.find(isReference);
     if (session !== undefined) {
       this.open([session], reference);
-      if (log.length > 0) this.#visit(log, []);
+      if (log.length > 0) this.#localize(log, []);
     } else if (log.length > 0 && use === 'where') {
       if (reference !== undefined) void this.#grade(reference);
-      // The widget provides the start pose and then requests the localization.
-      this.#dropped = log;
+      // The widget answers with the order `locate-dropped` and a start pose.
+      this.#droppedLog = log;
       this.#host.deliver([textDelivery('dropped', nameOf(log))]);
     } else if (log.length > 0) this.open(log, reference);
     else if (reference !== undefined) void this.#grade(reference);
   }
 
-  /** Maps a log from its start; an earlier map is dropped. */
+  /** Maps a log, and drops the present map. */
   open(files: File[], reference?: File): void {
-    this.#renew();
-    this.#setOut(files, reference);
+    this.#reset();
+    this.#openFiles(files, reference);
   }
 
-  /** The bytes of a file that can be saved; rejects with a sentence if there is no data for it. */
+  /** Returns a saved file by its name; rejects with a sentence if there is no data for it. */
   file(name: string): Promise<File> {
     return new Promise((take, refuse) => {
       if (this.#worker === undefined) {
         refuse(new Error('Open a log first.'));
         return;
       }
-      this.#asked.set(name, [...(this.#asked.get(name) ?? []), { take, refuse }]);
+      this.#fileRequests.set(name, [...(this.#fileRequests.get(name) ?? []), { take, refuse }]);
       this.#send({ save: name });
     });
   }
 
-  /** The first program that waits for a file of that name. */
-  #next(name: string): Asked | undefined {
-    return this.#asked.get(name)?.shift();
+  /** Takes the first pending request for a file. */
+  #takeRequest(name: string): FileRequest | undefined {
+    return this.#fileRequests.get(name)?.shift();
   }
 
   /** Releases worker and memory. */
   close(): void {
-    this.#turn += 1;
-    for (const { refuse } of [...this.#asked.values()].flat()) refuse(new Error('The log was closed.'));
-    this.#asked.clear();
+    this.#generation += 1;
+    for (const { refuse } of [...this.#fileRequests.values()].flat()) refuse(new Error('The log was closed.'));
+    this.#fileRequests.clear();
     this.#worker?.terminate();
     this.#worker = undefined;
     this.#waiting = [];
@@ -198,29 +196,26 @@ export class LogMapper {
     this.#send({ order: 'crash-for-test' });
   }
 
-  /** Prepares for another file, or none; later orders are for it. */
-  #renew(): void {
+  /** Drops the present log; later orders are for the next one. */
+  #reset(): void {
     this.close();
     this.#isOpen = true;
     this.#options.clear();
-    this.#beginAnew();
+    this.#forgetMap();
   }
 
-  /** Forgets the changes of the earlier map. */
-  #beginAnew(): void {
+  /** Forgets what belongs to the present map. */
+  #forgetMap(): void {
     this.#crashes = 0;
     this.#edits = [];
-    this.#visitor = undefined;
+    this.#localization = undefined;
   }
 
-  /**
-   * Sets another value of an option, such as `scan-topic /front`, or resets all; the same log is mapped from
-   * its start.
-   */
+  /** Sets an option, such as `scan-topic /front`, or resets all, and maps the same log again. */
   choose(option: string | undefined): void {
     const files = this.#files;
     if (files.length === 0) {
-      this.#tell([textDelivery('answer', 'Open a log first.')]);
+      this.#publish([textDelivery('answer', 'Open a log first.')]);
       return;
     }
     this.close();
@@ -230,11 +225,11 @@ export class LogMapper {
       const [name = '', ...value] = option.split(' ');
       this.#options.set(name, value.join(' '));
     }
-    this.#beginAnew();
-    void this.#begin(files);
+    this.#forgetMap();
+    void this.#start(files);
   }
 
-  /** The command-line options with which the log is mapped. */
+  /** The options of the present map, as on the command line. */
   get chosen(): string[] {
     return [...this.#options].map(([name, value]) => `--${name} ${value}`.trimEnd());
   }
@@ -243,101 +238,101 @@ export class LogMapper {
     return this.chosen.map((option) => option.slice(2)).join('\n');
   }
 
-  /** Localizes the robot of a log on the map, once that is finished. */
-  #visit(files: File[], start: readonly string[]): void {
+  /** Localizes a log on the map, once that is finished. */
+  #localize(files: File[], start: readonly string[]): void {
     const name = nameOf(files);
     if (!this.#isOpen) {
-      this.#tell([textDelivery('answer', `${name} needs a map: open a log or a session first.`)]);
+      this.#publish([textDelivery('answer', `${name} needs a map: open a log or a session first.`)]);
       return;
     }
-    this.#visitor = { files, start: start.map(Number) };
-    if (this.#stands) this.#sendVisitor();
+    this.#localization = { files, start: start.map(Number) };
+    if (this.#isMapFinished) this.#sendLocalization();
     else {
-      this.#owesVisitor = true;
-      this.#tell([textDelivery('answer', `${name} waits until the map stands.`)]);
+      this.#mustLocalize = true;
+      this.#publish([textDelivery('answer', `${name} waits until the map is finished.`)]);
     }
   }
 
-  #sendVisitor(): void {
-    if (this.#visitor === undefined) return;
-    const { files, start } = this.#visitor;
+  #sendLocalization(): void {
+    if (this.#localization === undefined) return;
+    const { files, start } = this.#localization;
     this.#send({ locate: files, options: this.#optionLines, start });
   }
 
-  async #visitSample(start: readonly string[]): Promise<void> {
-    const turn = this.#turn;
+  async #localizeSample(start: readonly string[]): Promise<void> {
+    const generation = this.#generation;
     try {
       const log = await fetchFile(SAMPLE_FILES[2] ?? '');
-      if (turn === this.#turn) this.#visit([log], start);
+      if (generation === this.#generation) this.#localize([log], start);
     } catch {
-      if (turn === this.#turn) this.#tell([textDelivery('answer', 'The sample could not be fetched; try again.')]);
+      if (generation === this.#generation) this.#publish([textDelivery('answer', 'The sample could not be fetched; try again.')]);
     }
   }
 
-  #setOut(files: File[], reference: File | undefined): void {
+  #openFiles(files: File[], reference: File | undefined): void {
     this.#files = files;
-    this.#reference = reference ?? this.#early;
-    this.#early = undefined;
-    void this.#begin(files);
+    this.#reference = reference ?? this.#earlyReference;
+    this.#earlyReference = undefined;
+    void this.#start(files);
   }
 
-  async #begin(files: File[]): Promise<void> {
-    const turn = this.#turn;
-    this.#owesEdits = this.#edits.length > 0;
-    this.#owesVisitor = this.#visitor !== undefined;
-    this.#stands = false;
+  async #start(files: File[]): Promise<void> {
+    const generation = this.#generation;
+    this.#mustRepeatEdits = this.#edits.length > 0;
+    this.#mustLocalize = this.#localization !== undefined;
+    this.#isMapFinished = false;
     this.#latest.clear();
-    this.#tell([textDelivery('opening', nameOf(files))]);
+    this.#publish([textDelivery('opening', nameOf(files))]);
     try {
       const module = await program.load(() => {});
-      if (turn !== this.#turn) return;
+      if (generation !== this.#generation) return;
       const worker = await startWorker();
-      if (turn !== this.#turn) {
+      if (generation !== this.#generation) {
         worker.terminate();
         return;
       }
       worker.addEventListener('message', ({ data }: MessageEvent<Report>) => {
-        if (turn === this.#turn) this.#hear(data);
+        if (generation === this.#generation) this.#receive(data);
       });
       worker.addEventListener('error', (event) => {
         event.preventDefault();
-        if (turn === this.#turn) this.#fail(NO_WORKER);
+        if (generation === this.#generation) this.#fail(NO_WORKER);
       });
       this.#worker = worker;
       this.#send({ module, files, options: this.#optionLines });
       for (const order of this.#waiting.splice(0)) this.#send(order);
       if (this.#reference !== undefined) void this.#sendReference(this.#reference);
     } catch (error) {
-      if (turn !== this.#turn) return;
+      if (generation !== this.#generation) return;
       const remedy = error instanceof StaleError ? ' Reload the page.' : '';
       this.#fail(error instanceof LoadError ? `The log cannot be mapped: ${error.message}.${remedy}` : NO_WORKER);
     }
   }
 
   async #openSample(): Promise<void> {
-    this.#renew();
-    const turn = this.#turn;
+    this.#reset();
+    const generation = this.#generation;
     try {
       const [log, truth] = await Promise.all(SAMPLE_FILES.slice(0, 2).map(fetchFile));
-      if (log !== undefined && turn === this.#turn) this.#setOut([log], truth);
+      if (log !== undefined && generation === this.#generation) this.#openFiles([log], truth);
     } catch {
-      if (turn === this.#turn) this.#fail('The sample could not be fetched; open a log of your own, or try again.');
+      if (generation === this.#generation) this.#fail('The sample could not be fetched; open a log of your own, or try again.');
     }
   }
 
-  #hear(report: Report): void {
+  #receive(report: Report): void {
     if ('deliveries' in report) {
-      this.#tell(report.deliveries);
-      this.#doAgain(report.deliveries);
+      this.#publish(report.deliveries);
+      this.#continueOnMap(report.deliveries);
     } else if ('saved' in report) {
       const bytes = report.bytes as Uint8Array<ArrayBuffer>;
-      const asked = this.#next(report.saved);
-      if (asked === undefined) saveBlob(new Blob([bytes]), report.saved);
-      else asked.take(new File([bytes], report.saved));
+      const request = this.#takeRequest(report.saved);
+      if (request === undefined) saveBlob(new Blob([bytes]), report.saved);
+      else request.take(new File([bytes], report.saved));
     } else if ('unsaved' in report) {
-      const asked = this.#next(report.unsaved);
-      if (asked === undefined) this.#tell([textDelivery('answer', report.why)]);
-      else asked.refuse(new Error(report.why));
+      const request = this.#takeRequest(report.unsaved);
+      if (request === undefined) this.#publish([textDelivery('answer', report.why)]);
+      else request.refuse(new Error(report.why));
     } else if ('failed' in report) {
       this.#fail(report.failed);
     } else {
@@ -347,10 +342,10 @@ export class LogMapper {
 
   #crashed(): void {
     this.#crashes += 1;
-    if (this.#crashes <= MOST_CRASHES && this.#files.length > 0) {
+    if (this.#crashes <= MAX_RETRIES && this.#files.length > 0) {
       this.close();
-      void this.#begin(this.#files);
-      this.#tell([textDelivery('answer', 'The mapping stopped by an error in its program and was begun again.')]);
+      void this.#start(this.#files);
+      this.#publish([textDelivery('answer', 'The mapping stopped because of an error in its program, and was restarted.')]);
       return;
     }
     const megabytes = Math.ceil(this.#files.reduce((sum, { size }) => sum + size, 0) / 1e6);
@@ -363,20 +358,20 @@ export class LogMapper {
   #fail(sentence: string): void {
     this.close();
     this.#isOpen = false;
-    this.#tell([textDelivery('failed', sentence)]);
+    this.#publish([textDelivery('failed', sentence)]);
   }
 
-  /** Once the map is finished, waiting work is done; after a crash that includes all changes by the reader. */
-  #doAgain(deliveries: readonly Delivery[]): void {
+  /** Does the work that waits for the map. After a crash this includes the reader's changes. */
+  #continueOnMap(deliveries: readonly Delivery[]): void {
     if (!deliveries.some(({ kind, numbers }) => kind === 'stage' && numbers[0] === DONE)) return;
-    this.#stands = true;
-    if (this.#owesEdits) for (const order of this.#edits) this.#send({ order });
-    if (this.#owesVisitor) this.#sendVisitor();
-    this.#owesEdits = false;
-    this.#owesVisitor = false;
+    this.#isMapFinished = true;
+    if (this.#mustRepeatEdits) for (const order of this.#edits) this.#send({ order });
+    if (this.#mustLocalize) this.#sendLocalization();
+    this.#mustRepeatEdits = false;
+    this.#mustLocalize = false;
   }
 
-  /** Only the last pose of a dragged keyframe is kept. */
+  /** Records a change; of a dragged keyframe only the last pose. */
   #keepEdit(order: string): void {
     const pinned = (text: string | undefined): string => /^pin \d+ /.exec(text ?? '')?.[0] ?? '';
     if (pinned(order) !== '' && pinned(order) === pinned(this.#edits.at(-1))) this.#edits.pop();
@@ -385,63 +380,61 @@ export class LogMapper {
 
   async #grade(file: File): Promise<void> {
     if (!this.#isOpen) {
-      this.#early = file;
-      this.#tell([textDelivery('answer', `${file.name} waits for a log to be opened.`)]);
+      this.#earlyReference = file;
+      this.#publish([textDelivery('answer', `${file.name} waits for a log to be opened.`)]);
       return;
     }
     this.#reference = file;
-    // Before the worker is ready it waits: it is sent at the start.
+    // A new worker gets it at its start.
     if (this.#worker !== undefined) await this.#sendReference(file);
   }
 
   async #sendReference(file: File): Promise<void> {
-    const turn = this.#turn;
-    if (file.size > MOST_REFERENCE) {
-      this.#tell([textDelivery('answer', `${file.name} is larger than a reference of 256 MB.`)]);
+    const generation = this.#generation;
+    if (file.size > MAX_REFERENCE_BYTES) {
+      this.#publish([textDelivery('answer', `${file.name} is larger than a reference of 256 MB.`)]);
       return;
     }
     try {
       const bytes = new Uint8Array(await file.arrayBuffer());
-      if (turn === this.#turn) this.#send({ reference: bytes, name: file.name });
+      if (generation === this.#generation) this.#send({ reference: bytes, name: file.name });
     } catch {
-      this.#tell([textDelivery('answer', `${file.name} cannot be read any more; it may have moved or changed.`)]);
+      this.#publish([textDelivery('answer', `${file.name} cannot be read any more; it may have moved or changed.`)]);
     }
   }
 
   #send(order: Order): void {
-    if (!this.#isOpen) this.#tell([textDelivery('answer', 'Open a log first.')]);
+    if (!this.#isOpen) this.#publish([textDelivery('answer', 'Open a log first.')]);
     else if (this.#worker === undefined) this.#waiting.push(order);
     else this.#worker.postMessage(order);
   }
 
-  #tell(deliveries: readonly Delivery[]): void {
+  #publish(deliveries: readonly Delivery[]): void {
     for (const delivery of deliveries) this.#latest.set(delivery.kind, delivery);
     this.#host.deliver(deliveries);
   }
 }
 
-/** The name of a log of several files until the worker has sorted them. */
+/** The name of a log until the worker has read it. */
 function nameOf([first, ...rest]: readonly File[]): string {
   const more = rest.length === 0 ? '' : ` and ${rest.length} more`;
   return `${first?.name ?? ''}${more}`;
 }
 
-/** Passes a delivery to a widget's model. */
 export function deliverTo(widget: Widget, { kind, text, numbers, bytes }: Delivery): void {
   widget.deliver(kind, text, numbers, bytes);
 }
 
 /**
- * A page of another origin may not start our script as a worker, but may start its own one that imports
- * ours. A sandboxed frame has another origin regardless of its address, and its own script may only be a
- * module in a data address; so may a page from the disk, which imports nothing from there.
+ * Workers must have the page's origin. A page of another origin starts a blob that imports our script. A sandboxed frame has
+ * an opaque origin, and starts a data URL. Without a server, the script is part of the blob or data URL.
  */
 async function startWorker(): Promise<Worker> {
   const address = assetUrl(ROBOT_WORKER_FILE);
   if (address !== undefined && new URL(address).origin === self.origin) {
     return new Worker(address, { type: 'module' });
   }
-  const text = address === undefined || location.protocol === 'file:' ? await (await ask(ROBOT_WORKER_FILE)).text() : `import ${JSON.stringify(address)};`;
+  const text = address === undefined || location.protocol === 'file:' ? await (await fetchWithoutTimeout(ROBOT_WORKER_FILE)).text() : `import ${JSON.stringify(address)};`;
   const script =
     self.origin === 'null'
       ? `data:text/javascript,${encodeURIComponent(text)}`
@@ -449,12 +442,12 @@ async function startWorker(): Promise<Worker> {
   return new Worker(script, { type: 'module' });
 }
 
-function ask(name: string): Promise<Response> {
+function fetchWithoutTimeout(name: string): Promise<Response> {
   return fetchAsset(name, false, new AbortController().signal);
 }
 
 async function fetchFile(name: string): Promise<File> {
-  const response = await ask(name);
+  const response = await fetchWithoutTimeout(name);
   if (!response.ok) throw new LoadError(`${name} could not be fetched`);
   return new File([await response.blob()], name.replace(/^.*\//, ''));
 }
