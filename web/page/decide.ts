@@ -45,11 +45,11 @@ export class DecideFigure {
 
   #draw(): void {
     const next = this.#candidates[this.#answers.length];
-    if (next === undefined) this.#conclude();
-    else this.#ask(next);
+    if (next === undefined) this.#showVerdict();
+    else this.#showCandidate(next);
   }
 
-  #ask(candidate: Candidate): void {
+  #showCandidate(candidate: Candidate): void {
     const { length } = this.#answers;
     const count = paragraph(`Candidate ${length + 1} of ${this.#candidates.length}`);
     count.className = 'decide-count';
@@ -67,7 +67,7 @@ export class DecideFigure {
     (letter === '1' ? buttons[0] : buttons[buttons.length - 1])?.focus({ preventScroll: true });
   }
 
-  #conclude(): void {
+  #showVerdict(): void {
     const verdict = this.#glue.judgeCandidates(this.#answers, this.#width, themeOf(this.#place));
     const judged = JSON.parse(verdict) as Judged;
     const list = document.createElement('ol');

@@ -27,7 +27,7 @@ export interface Drawn {
 }
 
 /** A value with its unit, `0.12 m`, and a typographic minus. */
-export function sayValue({ unit, decimals }: SketchSchema, value: number): string {
+export function formatValue({ unit, decimals }: SketchSchema, value: number): string {
   return `${value.toFixed(decimals).replace('-', '−')}${unit}`;
 }
 
@@ -68,7 +68,7 @@ export class SketchFigure {
     const width = this.#narrow.matches ? WIDTHS.narrow : WIDTHS.wide;
     const drawn = this.#glue.drawSketch(this.#schema.name, value, width, themeOf(figure));
     const { svg, sentence } = JSON.parse(drawn) as Drawn;
-    const text = sayValue(this.#schema, value);
+    const text = formatValue(this.#schema, value);
     this.#slider.setAttribute('aria-valuetext', text);
     (figure.querySelector('output') as HTMLElement).textContent = text;
     (figure.querySelector('.sketch-says') as HTMLElement).textContent = sentence;

@@ -52,7 +52,7 @@ async function drawStory(name, story, outDir) {
 
 /** Draws the initial state of each small figure for both themes and both widths; returns its HTML by name. */
 async function drawSketches(core, outDir) {
-  const { NARROW, WIDTHS, sayValue } = await load('sketch.ts');
+  const { NARROW, WIDTHS, formatValue } = await load('sketch.ts');
   const html = new Map();
   for (const sketch of JSON.parse(core.sketchSchemas())) {
     const sizes = {};
@@ -67,7 +67,7 @@ async function drawSketches(core, outDir) {
     }
     const source = (width, theme, media) =>
       `<source media="${media}" srcset="pictures/${sketch.name}-${width}-${theme}.svg"${sizes[width]}>`;
-    const value = sayValue(sketch, sketch.default);
+    const value = formatValue(sketch, sketch.default);
     html.set(sketch.name, `<div class="sketch-picture"><picture>
       ${source('narrow', 'dark', `${NARROW} and (prefers-color-scheme: dark)`)}
       ${source('narrow', 'light', NARROW)}

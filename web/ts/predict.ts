@@ -109,7 +109,7 @@ export class SlamPredict extends HTMLElement {
     const name = this.getAttribute('widget') ?? '';
     const widget = document.querySelector<SlamWidget>(`slam-widget[name="${CSS.escape(name)}"]`);
     if (widget === null) {
-      this.#say([`There is no widget ${name} on this page.`]);
+      this.#showSentences([`There is no widget ${name} on this page.`]);
       return;
     }
     this.#lock(true);
@@ -132,7 +132,7 @@ export class SlamPredict extends HTMLElement {
       this.dispatchEvent(new CustomEvent('slam-predict', { detail, bubbles: true, composed: true }));
     } catch (error) {
       const reason = error instanceof Error ? error.message : String(error);
-      this.#say([`Your answer could not be checked: ${reason}.`]);
+      this.#showSentences([`Your answer could not be checked: ${reason}.`]);
       this.#answer?.append(button('Predict again', () => this.#reset()));
     }
     // A committed answer earns the explanation, even if the widget cannot run.
@@ -200,7 +200,7 @@ export class SlamPredict extends HTMLElement {
     const isPersonal = state !== (this.getAttribute('state') ?? '');
     const seed = new URLSearchParams(state).get('seed');
     const note = `This is your personal task, seed ${seed}. The numbers in the text belong to the chapter’s task.`;
-    this.#say(isPersonal ? [answered, note] : [answered]);
+    this.#showSentences(isPersonal ? [answered, note] : [answered]);
     // The widget may be far away, so the page does not scroll by itself.
     const show = button('Show it in the widget', () => {
       widget.scrollIntoView({ block: 'start' });
@@ -237,7 +237,7 @@ export class SlamPredict extends HTMLElement {
     for (const why of this.querySelectorAll<HTMLElement>('[data-why]')) why.hidden = !isShown;
   }
 
-  #say(sentences: string[]): void {
+  #showSentences(sentences: string[]): void {
     this.#answer?.replaceChildren(
       ...sentences.map((sentence) => {
         const line = document.createElement('p');

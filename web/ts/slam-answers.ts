@@ -61,7 +61,7 @@ export class SlamAnswers extends HTMLElement {
         keepAnswers(box.checked);
       } catch {
         box.checked = false;
-        this.#say('This browser does not let the page store anything. Save the file instead.');
+        this.#showStatus('This browser does not let the page store anything. Save the file instead.');
       }
     });
     const label = create('label');
@@ -74,17 +74,17 @@ export class SlamAnswers extends HTMLElement {
       const { name, text } = await answerFile();
       saveBlob(new Blob([text], { type: 'application/json' }), name);
     } catch (error) {
-      this.#say(`The answers could not be saved: ${error instanceof Error ? error.message : String(error)}.`);
+      this.#showStatus(`The answers could not be saved: ${error instanceof Error ? error.message : String(error)}.`);
     }
   }
 
   #showCount(): void {
     if (this.#name !== undefined) this.#name.value = student();
     const count = answered();
-    this.#say(`${count} ${count === 1 ? 'exercise' : 'exercises'} answered. Nothing leaves this browser unless you save the file.`);
+    this.#showStatus(`${count} ${count === 1 ? 'exercise' : 'exercises'} answered. Nothing leaves this browser unless you save the file.`);
   }
 
-  #say(sentence: string): void {
+  #showStatus(sentence: string): void {
     this.#status?.replaceChildren(sentence);
   }
 }

@@ -32,11 +32,11 @@ interface View {
 export function draw(story: Building, at: number, surface: Surface, width: number, height: number): void {
   const poses = posesAt(story, at);
   const view = viewAt(story, at, width, height);
-  const to = ([x, y]: Point): Point => [width / 2 + view.scale * (x - view.x), height / 2 - view.scale * (y - view.y)];
+  const toPixels = ([x, y]: Point): Point => [width / 2 + view.scale * (x - view.x), height / 2 - view.scale * (y - view.y)];
   const unit = Math.min(Math.max(width / 900, 0.65), 1.3);
-  const way = (of: readonly Pose[]): Point[] => of.map(([x, y]) => to([x, y]));
+  const way = (of: readonly Pose[]): Point[] => of.map(([x, y]) => toPixels([x, y]));
   if (at > 0) surface.line(way(story.wheels), 'prediction', 1.5 * unit, { alpha: 0.55, dash: [6 * unit, 4 * unit] });
-  surface.dots(onPicture(pointsOf(story, poses).map(to), width, height), 'ink', 2 * unit);
+  surface.dots(onPicture(pointsOf(story, poses).map(toPixels), width, height), 'ink', 2 * unit);
   const ink = at === 0 ? 'prediction' : 'posterior';
   const path = way(poses);
   surface.line(path, ink, 2.5 * unit);
@@ -102,6 +102,6 @@ function spanOf(values: readonly number[]): [number, number] {
 }
 
 /** An error in metres, or in centimetres below half a metre. */
-export function sayError(cm: number): string {
+export function formatError(cm: number): string {
   return cm < 50 ? `${cm} cm` : `${(cm / 100).toFixed(cm < 1000 ? 1 : 0)} m`;
 }

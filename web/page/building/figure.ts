@@ -4,7 +4,7 @@
 import { chooseFiles, LOGS, acceptDrops } from '../../ts/robot/files';
 import { type Ink } from '../lap/drawing';
 import { canvasSurface, contextOf, readInks, watchColors } from '../lap/surfaces';
-import { type Building, draw, LOOPS, sayError } from './drawing';
+import { type Building, draw, LOOPS, formatError } from './drawing';
 
 /** Keyframes of the replay, as time and slider value: first the map comes apart. */
 const REPLAY: [number, number][] = [[0, 2], [0.9, 0], [2, 0], [4.4, 1], [5.4, 1], [7.4, 2]];
@@ -113,8 +113,8 @@ export class BuildingFigure {
 
 /** Describes the estimate; between two of them the error is unknown. */
 export function wordsAt({ worst_cm: [wheels, walls, loops] }: Building, at: number): string {
-  if (at === 0) return `By the wheels alone: up to ${sayError(wheels)} off.`;
-  if (at === 1) return `Each scan laid on the walls before it: up to ${sayError(walls)} off.`;
-  if (at === LOOPS) return `Places known again, loops closed: up to ${sayError(loops)} off.`;
+  if (at === 0) return `By the wheels alone: up to ${formatError(wheels)} off.`;
+  if (at === 1) return `Each scan laid on the walls before it: up to ${formatError(walls)} off.`;
+  if (at === LOOPS) return `Places known again, loops closed: up to ${formatError(loops)} off.`;
   return at < 1 ? 'From the wheels to the walls …' : 'From the walls to the loops …';
 }

@@ -53,7 +53,7 @@ export class MatchFigure {
     svg.addEventListener('pointermove', (event) => this.#drag(event));
     for (const type of ['pointerup', 'pointercancel'] as const) {
       svg.addEventListener(type, (event) => {
-        if (this.#pointers.delete(event.pointerId) && this.#pointers.size === 0) this.#reportByHand();
+        if (this.#pointers.delete(event.pointerId) && this.#pointers.size === 0) this.#announcePose();
       });
     }
     svg.addEventListener('keydown', (event) => this.#press(event));
@@ -66,7 +66,7 @@ export class MatchFigure {
       },
       again: () => {
         this.#place(startOf(this.#scene));
-        this.#reportByHand();
+        this.#announcePose();
       },
     };
     for (const [name, press] of Object.entries(presses)) {
@@ -109,7 +109,7 @@ export class MatchFigure {
     // Right and down turn clockwise.
     if (event.shiftKey) this.#place(this.#turned([x, y], KEY_RAD * (way[1] - way[0])));
     else this.#place(this.#moved([KEY_M * way[0], KEY_M * way[1]]));
-    this.#reportByHand();
+    this.#announcePose();
   }
 
   #worldAt({ clientX, clientY }: PointerEvent): Point {
@@ -141,11 +141,11 @@ export class MatchFigure {
     this.#generation += 1;
     const generation = this.#generation;
     const from = this.#pose;
-    this.#say('ICP is running.');
+    this.#announce('ICP is running.');
     const matcher = await this.#loaded().catch(() => undefined);
     if (generation !== this.#generation) return;
     if (matcher === undefined) {
-      this.#say('ICP could not be fetched. Try again once there is a connection.');
+      this.#announce('ICP could not be fetched. Try again once there is a connection.');
       return;
     }
     const run = JSON.parse(matcher.run(...from)) as Run;
@@ -155,7 +155,7 @@ export class MatchFigure {
     if (generation !== this.#generation) return;
     this.#pose = run.poses.at(-1) ?? from;
     this.#show();
-    this.#say(this.#summary(run));
+    this.#announce(this.#summary(run));
   }
 
   /** Animates the iterations until the reader intervenes. */
@@ -217,9 +217,9 @@ export class MatchFigure {
     this.#write('.match-step', step === '' ? 'off the truth' : step);
   }
 
-  #reportByHand(): void {
+  #announcePose(): void {
     const hint = this.#isHome() ? 'That is home: the walls are sharp. Can ICP do better?' : 'Nearer, or let ICP take over.';
-    this.#say(`By hand: ${this.#errorText()} off. ${hint}`);
+    this.#announce(`By hand: ${this.#errorText()} off. ${hint}`);
   }
 
   #summary({ poses, rmse, ending }: Run): string {
@@ -239,7 +239,7 @@ export class MatchFigure {
     return `${Math.round(100 * metres)} cm and ${degrees.toFixed(degrees < 10 ? 1 : 0)}°`;
   }
 
-  #say(sentence: string): void {
+  #announce(sentence: string): void {
     this.#write('#match-says', sentence);
   }
 
