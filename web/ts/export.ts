@@ -13,7 +13,7 @@ interface Source extends HTMLElement {
 
 /** The export buttons; `status` is the live region for their results. */
 export function exportBar(source: Source, name: string, status: HTMLElement): HTMLElement {
-  const bar = create('div', { class: 'tools', role: 'group', 'aria-label': 'Take away' });
+  const bar = create('div', { class: 'tools', role: 'group', 'aria-label': 'Export' });
   const button = (label: string, press: () => Promise<void>): HTMLElement => {
     const element = create('button', { type: 'button' });
     element.textContent = label;

@@ -51,7 +51,7 @@ export function failureBox(error: Error, onAgain: () => void): HTMLElement {
   const sentence = create('p');
   const again = create('button', { type: 'button' });
   const isStale = error instanceof StaleError;
-  const remedy = isStale ? 'Reload the page' : 'The picture shows its start';
+  const remedy = isStale ? 'Reload the page' : 'The picture shows the initial state';
   sentence.textContent = isCrash
     ? 'This widget stopped because of an error in its program. Your settings are kept.'
     : `The interactive widget cannot run here: ${error.message}. ${remedy}.`;

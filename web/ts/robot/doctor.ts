@@ -32,7 +32,7 @@ export interface DoctorHost {
 }
 
 const SIGNS: Record<Verdict, string> = { good: '✓', mended: '!', wrong: '✗' };
-const WORDS: Record<Verdict, string> = { good: 'in order', mended: 'repaired or done without', wrong: 'not repaired' };
+const WORDS: Record<Verdict, string> = { good: 'in order', mended: 'repaired or worked around', wrong: 'not repaired' };
 
 export class DoctorScreen {
   readonly element = create('section', { class: 'doctor', hidden: '', 'aria-label': 'What the doctor found' });
@@ -148,7 +148,7 @@ export class DoctorScreen {
     const name = create('label');
     name.append(upsideDown, ' upside down');
     const button = create('button', { type: 'submit' });
-    button.textContent = 'Map with it there';
+    button.textContent = 'Map with this pose';
     form.append(name, button);
     form.addEventListener('submit', (event) => {
       event.preventDefault();

@@ -30,8 +30,8 @@ const MAX_RETRIES = 1;
 export type FileUse = 'map' | 'where' | 'grade';
 
 const NO_WORKER =
-  'A log is read by a worker beside the page, and this page may not start one: its frame or its security ' +
-  'policy forbids it. Open the widget on a page of its own.';
+  'A worker maps the log, and this page may not start one: its frame or its security policy forbids it. ' +
+  'Open the widget on a separate page.';
 
 const program = new ModuleFile(ROBOT_WASM_FILE);
 
@@ -316,7 +316,7 @@ export class LogMapper {
       const [log, truth] = await Promise.all(SAMPLE_FILES.slice(0, 2).map(fetchFile));
       if (log !== undefined && generation === this.#generation) this.#openFiles([log], truth);
     } catch {
-      if (generation === this.#generation) this.#fail('The sample could not be fetched; open a log of your own, or try again.');
+      if (generation === this.#generation) this.#fail('The sample could not be fetched; open your own log, or try again.');
     }
   }
 
@@ -351,7 +351,7 @@ export class LogMapper {
     const megabytes = Math.ceil(this.#files.reduce((sum, { size }) => sum + size, 0) / 1e6);
     this.#fail(
       `The program that maps the log stopped again (the file has ${megabytes} MB); ` +
-        'it may need more memory than the browser gives. Try slam2d run on the command line.',
+        'it may need more memory than the browser allows. Try slam2d run on the command line.',
     );
   }
 
