@@ -48,7 +48,7 @@ async function marked(tab) {
 }
 
 for (const student of ['', 'Βασίλης “7”']) {
-  for (const page of ['index.html', 'robots.html']) it(`gets the same marks from slam2d as from ${page}: ${student === '' ? 'the chapter’s tasks' : 'tasks of a student'}`, async () => {
+  for (const page of ['index.html', 'robots.html']) it(`the saved file gets the same marks from slam2d as from ${page}: ${student === '' ? 'the chapter’s tasks' : 'tasks of a student'}`, async () => {
     await reading(student === '' ? '' : `?student=${encodeURIComponent(student)}`, async (tab) => {
       await isDefined(tab);
       const predictions = await answerAll(tab);
@@ -67,7 +67,7 @@ for (const student of ['', 'Βασίλης “7”']) {
   });
 }
 
-it('counts attempts, and stores answers in the browser only on request', async () => {
+it('the page counts attempts, and stores answers in the browser only on request', async () => {
   await reading('?student=Ann', async (tab, server) => {
     await isDefined(tab);
     const question = tab.locator('slam-predict[exercise="16.1"]');

@@ -35,7 +35,7 @@ async function answer(frame, exercise, place) {
 
 const answers = (tab) => tab.evaluate(() => heard.filter((data) => data?.type === 'answer'));
 
-it('shows one part in a sandbox under the strict policy, and reports the answer to the surrounding page', async () => {
+it('embed.html shows one part in a sandbox under the strict policy, and reports the answer to the surrounding page', async () => {
   await framed('?exercise=16.5a&student=Ann', async (tab, frame) => {
     await frame.locator('slam-predict').first().waitFor();
     assert.equal(await frame.locator('slam-predict').count(), 1);
@@ -48,7 +48,7 @@ it('shows one part in a sandbox under the strict policy, and reports the answer 
   }, { sandbox: 'sandbox="allow-scripts"', server: { policy: `${h.STRICT_POLICY}; frame-src 'self'`.replace("script-src 'self'", "script-src 'self' 'unsafe-inline'") } });
 });
 
-it('shows every part of an exercise, each widget once, and satisfies axe-core', async () => {
+it('embed.html shows every part of an exercise, each widget once, and satisfies axe-core', async () => {
   await visit('', async (tab) => {
     await tab.locator('slam-predict').nth(2).waitFor();
     assert.equal(await tab.locator('slam-predict').count(), 3);
@@ -59,7 +59,7 @@ it('shows every part of an exercise, each widget once, and satisfies axe-core', 
   }, { path: '/embed.html?exercise=5', fresh: true });
 });
 
-it('lists the exercises if the address names an unknown one', async () => {
+it('embed.html lists the exercises if the address names an unknown one', async () => {
   await visit('', async (tab) => {
     await tab.getByText('There is no exercise `99`; there are 16.1, 16.2, 16.3').waitFor();
     assert.equal(await tab.locator('slam-predict').count(), 0);
@@ -101,7 +101,7 @@ const RUNTIME = `
     LMSGetLastError: () => '0', LMSGetErrorString: () => '', LMSGetDiagnostic: () => '',
   };`;
 
-it('reports answers, score and status by SCORM 1.2, and gets the student from it', async () => {
+it('an exercise reports answers, score and status by SCORM 1.2, and gets the student from it', async () => {
   await framed('?exercise=5', async (tab, frame) => {
     for (const part of ['a', 'b', 'c']) await answer(frame, `16.5${part}`, 0);
     const told = await answers(tab);
@@ -122,7 +122,7 @@ it('reports answers, score and status by SCORM 1.2, and gets the student from it
   }, { head: RUNTIME });
 });
 
-it('is a SCORM package with every file that its manifest and exercises need', async () => {
+it('the SCORM package has every file that its manifest and exercises need', async () => {
   const folder = mkdtempSync(join(tmpdir(), 'scorm-'));
   try {
     const target = join(folder, 'exercises.zip');

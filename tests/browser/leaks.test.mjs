@@ -35,7 +35,7 @@ const REMEMBER = `<script>
 /** A page with an empty container for widgets. */
 const on = (test) => visit('<div id="here"></div>', test, { head: REMEMBER, fresh: true });
 
-it('is mounted and removed thirty times without leaking memory, contexts or listeners', async () => {
+it('a widget is mounted and removed thirty times without leaking memory, contexts or listeners', async () => {
   await on(async (tab) => {
     const session = await tab.context().newCDPSession(tab);
     const mount = async () => {
@@ -77,7 +77,7 @@ it('is mounted and removed thirty times without leaking memory, contexts or list
   });
 });
 
-it('holds no context if it is removed at any moment of its start', async () => {
+it('a widget that is removed at any moment of its start keeps no context', async () => {
   await on(async (tab) => {
     // The cleanup must not depend on the garbage collector.
     await tab.evaluate(() => (window.kept = []));

@@ -47,7 +47,7 @@ async function opened(page, test) {
   }
 }
 
-it('runs a widget of the chapter, replays its lap, and runs laps in workers', async () => {
+it('a page from the disk runs a widget, replays the lap, and runs laps in workers', async () => {
   await opened('index.html', async (tab) => {
     await tab.waitForSelector('#lap.live');
     await tab.locator('slam-widget[name="w16.1"]').scrollIntoViewIfNeeded();
@@ -64,7 +64,7 @@ it('runs a widget of the chapter, replays its lap, and runs laps in workers', as
   });
 });
 
-it('maps the sample log', async () => {
+it('a page from the disk maps the sample log', async () => {
   await opened('own-robot.html', async (tab) => {
     const robot = 'slam-widget[name="w16.10"]';
     await tab.locator(robot).scrollIntoViewIfNeeded();
@@ -74,7 +74,7 @@ it('maps the sample log', async () => {
   });
 });
 
-it('shows a single exercise, and checks its answer', async () => {
+it('a page from the disk shows a single exercise, and checks its answer', async () => {
   await opened('embed.html?exercise=16.1', async (tab) => {
     const question = tab.locator('slam-predict');
     await question.locator('input').nth(2).check();

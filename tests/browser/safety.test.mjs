@@ -26,7 +26,7 @@ async function fallsBack(tab, reason) {
   assert.ok(picture.alt.length > 40, picture.alt);
 }
 
-it('paints, predicts, and saves picture and data under the strict policy', async () => {
+it('a widget paints, predicts, and saves picture and data under the strict policy', async () => {
   const body = `<script type="module" src="/slam-predict.js"></script>
     <slam-predict widget="w16.1" state="heading=90&dx=0&dy=0">
       <p>Where does it end?</p>
@@ -50,7 +50,7 @@ it('paints, predicts, and saves picture and data under the strict policy', async
   }, { server: { policy: h.STRICT_POLICY }, options: { sees: true } });
 });
 
-it('shows texts of the address and of attributes as text, never as HTML', async () => {
+it('a widget shows texts of the address and of attributes as text, never as HTML', async () => {
   const html = '<img src=x onerror="window.ran = true"><b id=made>';
   const attribute = html.replaceAll('"', '&quot;').replaceAll('<', '&lt;');
   const body = `<slam-widget linked name="w16.1" heading="${attribute}"></slam-widget><slam-widget name="${attribute}"></slam-widget>`;
@@ -67,7 +67,7 @@ it('shows texts of the address and of attributes as text, never as HTML', async 
   }, { path: `/t.html?${query}` });
 });
 
-it('stores nothing: no cookie, no local storage, no database', async () => {
+it('a widget stores nothing: no cookie, no local storage, no database', async () => {
   await on(ONE, async (tab) => {
     await h.ready(tab);
     await tab.evaluate(() => (document.querySelector('slam-widget').noise = 2));
@@ -108,7 +108,7 @@ describe('a wasm file', () => {
     await on(ONE, (tab) => h.ready(tab), { server: answerWasm(answer) });
   });
 
-  it('that is missing: picture and one sentence', async () => {
+  it('that is missing leaves the picture and one sentence', async () => {
     const answer = (response) => {
       response.statusCode = 404;
       response.end();
@@ -118,7 +118,7 @@ describe('a wasm file', () => {
     });
   });
 
-  it('that is truncated: picture and one sentence', async () => {
+  it('that is truncated leaves the picture and one sentence', async () => {
     const bytes = readFileSync(join(h.DIST, WASM));
     const answer = (response) => {
       response.setHeader('Content-Type', 'application/wasm');
@@ -263,7 +263,7 @@ describe('a wasm file', () => {
     }, { server });
   });
 
-  it('shows its download progress', async () => {
+  it('reports its download progress', async () => {
     const bytes = readFileSync(join(h.DIST, WASM));
     let finish;
     const answer = (response) => {
@@ -284,11 +284,11 @@ describe('a wasm file', () => {
   });
 });
 
-it('shows the picture and one sentence without WebAssembly', async () => {
+it('a widget shows the picture and one sentence without WebAssembly', async () => {
   await on(ONE, (tab) => fallsBack(tab, /no WebAssembly/), { head: '<script>delete window.WebAssembly</script>' });
 });
 
-it('shows the picture and one sentence without WebGL 2', async () => {
+it('a widget shows the picture and one sentence without WebGL 2', async () => {
   const other = await h.launch(['--disable-3d-apis']);
   try {
     await on(ONE, (tab) => fallsBack(tab, /no WebGL 2/), { with: other });
@@ -297,7 +297,7 @@ it('shows the picture and one sentence without WebGL 2', async () => {
   }
 });
 
-it('never pairs old glue with new wasm: both names have hashes of their content', () => {
+it('old glue is never paired with new wasm: both names have hashes of their content', () => {
   const entry = readFileSync(join(h.DIST, 'slam-widget.js'), 'utf8');
   const [, core] = entry.match(/'\.\/(slam-widget-[0-9a-f]{12}\.js)'/);
   assert.ok(statSync(join(h.DIST, core)).size > 10_000);
@@ -350,7 +350,7 @@ describe('a cached slam-widget.js whose core is gone', () => {
   });
 });
 
-it('starts on a machine so slow that the canvas gets its size seconds later', async () => {
+it('a widget starts on a machine so slow that the canvas gets its size seconds later', async () => {
   const head = `<script>
     const Prompt = ResizeObserver;
     window.ResizeObserver = class extends Prompt {
@@ -362,7 +362,7 @@ it('starts on a machine so slow that the canvas gets its size seconds later', as
   await on(ONE, (tab) => h.ready(tab), { head });
 });
 
-it('loads the wasm once for a page of many widgets', async () => {
+it('a page of many widgets fetches the wasm once', async () => {
   let asked = 0;
   const server = { answer: (path) => ((asked += path.endsWith('.wasm') ? 1 : 0), false) };
   await on(ONE + ONE + ONE, async (tab) => {

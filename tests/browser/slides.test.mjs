@@ -7,7 +7,7 @@ import * as h from './harness.mjs';
 
 const visit = h.visitor();
 
-it('has a slide for each widget, with links that set it and the speaker’s script', async () => {
+it('slides.html has a slide for each widget, with links that set it and the speaker’s script', async () => {
   await visit('', async (tab) => {
     const names = await tab.evaluate(() => [...document.querySelectorAll('section > slam-widget')].map(({ name }) => name));
     assert.deepEqual([...names].sort(), h.schema.map(({ id }) => id).sort());
@@ -24,7 +24,7 @@ it('has a slide for each widget, with links that set it and the speaker’s scri
   }, { path: '/slides.html', fresh: true });
 });
 
-it('lets a class predict: the widget on the slide before has the answer', async () => {
+it('slides.html lets a class predict: the widget on the slide before has the answer', async () => {
   await visit('', async (tab) => {
     const question = tab.locator('slam-predict[exercise="16.4"]');
     await question.scrollIntoViewIfNeeded();
@@ -36,7 +36,7 @@ it('lets a class predict: the widget on the slide before has the answer', async 
   }, { path: '/slides.html', fresh: true });
 });
 
-it('fits each widget on the screen of a projector', async () => {
+it('slides.html fits each widget on the screen of a projector', async () => {
   await visit('', async (tab) => {
     for (const { id } of h.schema) {
       const css = `slam-widget[name="${id}"]`;

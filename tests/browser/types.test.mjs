@@ -28,7 +28,7 @@ function compileErrors(program) {
   }
 }
 
-it('have every parameter and button of every widget', () => {
+it('the types have every parameter and button of every widget', () => {
   const lines = h.schema.flatMap((widget) => [
     ...widget.params.map((param, i) => {
       const value = { choice: `'${param.options[param.default]?.id}'`, switch: 'true', text: "''" }[param.kind] ?? param.default;
@@ -40,7 +40,7 @@ it('have every parameter and button of every widget', () => {
   assert.equal(compileErrors(lines.join('\n')), '');
 });
 
-it('accept what the element accepts', () => {
+it('the types accept what the element accepts', () => {
   const program = `
     const widget: SlamWidget = document.createElement('slam-widget');
     widget.heading = 60;
@@ -50,12 +50,12 @@ it('accept what the element accepts', () => {
   assert.equal(compileErrors(program), '');
 });
 
-it('reject unknown parameters and options', () => {
+it('the types reject unknown parameters and options', () => {
   assert.match(compileErrors("const x: WidgetStates['w16.1']['headin'] = 1;"), /headin/);
   assert.match(compileErrors("document.createElement('slam-widget').variant = 'plane';"), /not assignable/);
 });
 
-it('have the prediction element and its event', () => {
+it('the types have the prediction element and its event', () => {
   const ask = (field) => `
     import 'slam-widgets/predict';
     const question = document.createElement('slam-predict');
@@ -64,7 +64,7 @@ it('have the prediction element and its event', () => {
   assert.match(compileErrors(ask('gap')), /not assignable/);
 });
 
-it('have the module for notebooks', () => {
+it('the types have the module for notebooks', () => {
   const render = (cell) => `
     import widget, { type Model } from 'slam-widgets/anywidget';
     export const show = (model: Model, el: HTMLElement): (() => void) => widget.render(${cell});`;
