@@ -1,10 +1,8 @@
 // node web/build.mjs DIST PROFILE: from wasm-pack's output to the element and its files in DIST.
 //
-// 1. wraps the glue in a function, so that a page can hold an instance for each widget;
-// 2. runs the module in Node, which writes its schema, the height of each widget at each width, and the
-// static pictures;
-// 3. bundles the element; wasm, bundle, worker and its module have a hash of their content in their names, so
-// an old cached file is never combined with a new one;
+// 1. wraps the glue in a function: a page then has an instance for each widget;
+// 2. runs the module in Node, which writes its schema, the height of each widget at each width, and the static pictures;
+// 3. bundles the element. For cache busting, wasm files, bundle and worker have a hash of their content in their names;
 // 4. writes our licences and the notices of third parties;
 // 5. measures the size of the downloads.
 
@@ -19,17 +17,14 @@ import { writeParameterTables, writeTypes } from './generate.mjs';
 import { heightTable } from './heights.mjs';
 import { endWithOneSentence } from './licences/allowed.mjs';
 import { partsOfWidgets, writePackageNotices } from './licences/notices.mjs';
-import { writeMarked } from './marked.mjs';
-import { brotli, withMark, withoutNames } from './wasm-file.mjs';
+import { writeGeneratedBlock } from './generated-block.mjs';
+import { brotli, withBuildId, withoutNames } from './wasm-file.mjs';
 
 const WEB = dirname(fileURLToPath(import.meta.url));
 const PKG = join(WEB, 'pkg');
 const ROBOT_PKG = join(WEB, 'pkg-robot');
 const PICTURE_WIDTH_PX = 900;
-/**
- * All widgets together, wasm and glue, brotli −11. The first five fit into 1.0 MB; those on recorded logs
- * (search, place recognition, sessions) came later.
- */
+/** For wasm and glue of all widgets, brotli −11. */
 const BUDGET_BYTES = 1_150_000;
 
 const [dist, profile] = process.argv.slice(2);
@@ -63,15 +58,15 @@ await writeFile(join(dist, 'schema.json'), JSON.stringify(schema, null, 1));
 await writeParameterTables(schema, join(WEB, '..', 'docs', 'parameters.md'));
 await measure();
 
-/** The glue as a module that exports one function; its argument provides the frames. */
+/** Writes the glue as a module that exports one function; its argument provides the frames. */
 async function wrapGlue() {
   let text = await readFile(join(PKG, 'slam_web.js'), 'utf8');
-  // A hidden page schedules by timers, which go through the same object.
+  // In a hidden page eframe schedules by timers: they become frame requests, too.
   text = replaceOnce(text, /arg0\.requestAnimationFrame\(arg1\)/, 'frames.request(arg1)');
   text = replaceOnce(text, /arg0\.cancelAnimationFrame\(arg1\)/, 'frames.cancel(arg1)');
   text = replaceOnce(text, /arg0\.setTimeout\(arg1, arg2\)/, 'frames.request(arg1)');
   text = replaceOnce(text, /arg0\.clearTimeout\(arg1\)/, 'frames.cancel(arg1)');
-  // A browser with an emulated pixel ratio reports inconsistent device pixels.
+  // With an emulated pixel ratio a browser reports inconsistent device pixels.
   text = replaceOnce(text, /arg0\.devicePixelContentBoxSize/, 'frames.deviceSize(arg0)');
   text = replaceOnce(text, /arg0\.devicePixelRatio/, 'frames.pixelRatio()');
   const wrapped = `export function createGlue(frames) {\n${text}\nreturn wasm_bindgen;\n}\n`;
@@ -88,12 +83,12 @@ function replaceOnce(text, pattern, replacement) {
 async function instantiate(bytes) {
   const { createGlue } = await import(pathToFileURL(join(PKG, 'glue.js')).href);
   const noFrames = { request: () => 0, cancel: () => {}, deviceSize: () => [], pixelRatio: () => 1 };
-  const made = createGlue(noFrames);
-  made.initSync({ module: bytes });
-  return made;
+  const core = createGlue(noFrames);
+  core.initSync({ module: bytes });
+  return core;
 }
 
-/** A widget at its defaults with all work done. */
+/** A widget with default values and all work finished. */
 function finish(id) {
   const widget = new glue.Widget(id);
   widget.finish();
@@ -108,15 +103,15 @@ async function drawPictures(id) {
   }
 }
 
-/** A module that carries the hash of its name inside, too: what comes under a name may be another build's. */
+/** Writes a module with a build id in its name and content: a cache may serve another build under the same name. */
 async function writeModule(name, bytes) {
-  const mark = hash(bytes);
-  const file = `${name}-${mark}.wasm`;
-  await writeFile(join(dist, file), withMark(bytes, mark));
+  const id = hash(bytes);
+  const file = `${name}-${id}.wasm`;
+  await writeFile(join(dist, file), withBuildId(bytes, id));
   return file;
 }
 
-/** The log that a reader may map who has none: the simulator's ring, the truth of it, and another day in it. */
+/** The sample for readers without a log: a simulated ring, its ground truth, and a log of another day. */
 async function writeSample() {
   const robot = await import(pathToFileURL(join(ROBOT_PKG, 'slam_robot.js')).href);
   robot.initSync({ module: robotWasm });
@@ -126,7 +121,7 @@ async function writeSample() {
   return names.map((name) => `./${name}`);
 }
 
-/** The worker is a separate file, whose name the element contains. */
+/** Bundles the worker into a separate file; its name is a constant of the element. */
 async function bundleWorker(shared) {
   const { outputFiles, metafile } = await esbuild.build({
     ...shared,
@@ -167,7 +162,7 @@ async function bundle() {
   const [code] = built.outputFiles.filter((file) => file.path.endsWith('.js'));
   const coreFile = `slam-widget-${hash(code.contents)}.js`;
   await writeFile(join(dist, coreFile), code.contents);
-  // The only name that pages use; small, and fetched again each time.
+  // Pages load this small file, whose name is stable, and revalidate it each time.
   await writeFile(join(dist, 'slam-widget.js'), `export * from './${coreFile}';\n`);
   const metafiles = [robotWorker.metafile, built.metafile];
   for (const entry of ['embed', 'predict', 'anywidget']) {
@@ -187,27 +182,27 @@ async function bundle() {
   return metafiles;
 }
 
-/** As text for the package; the page, which is built later, shows the same parts. */
+/** Writes the notices for the package; the page, which is built later, reads the same parts. */
 async function writeNotices(metafiles) {
   const parts = await partsOfWidgets(metafiles);
   await writePackageNotices(parts, dist);
   await writeFile(join(PKG, 'parts.json'), JSON.stringify(parts));
 }
 
-/** `dist/` is the npm package, too: `npm pack ./dist`. Files that only the build needs stay out of it. */
+/** Writes the manifest of the npm package, which is `dist/`: `npm pack ./dist`. */
 async function writePackage() {
   const source = JSON.parse(await readFile(join(WEB, 'package.json'), 'utf8'));
   for (const key of ['//', 'private', 'engines', 'scripts', 'devDependencies']) delete source[key];
   await writeFile(join(dist, 'package.json'), `${JSON.stringify(source, null, 2)}\n`);
 }
 
-/** The slides stay in the repository: they need an installed reveal.js, which the site lacks. */
+/** Copies the examples, except the slides: they need reveal.js, which the site does not have. */
 async function copyExamples() {
-  const isWhole = (file) => !basename(file).startsWith('reveal');
-  await cp(join(WEB, 'examples'), join(dist, 'examples'), { recursive: true, filter: isWhole });
+  const worksOnSite = (file) => !basename(file).startsWith('reveal');
+  await cp(join(WEB, 'examples'), join(dist, 'examples'), { recursive: true, filter: worksOnSite });
 }
 
-/** Sizes of the program; above the budget the build of the published profile fails. */
+/** Measures the downloads; the published profile fails above the budget. */
 async function measure() {
   const glueBundle = await esbuild.build({
     stdin: { contents: "export { createGlue } from './glue.js';", resolveDir: PKG },
@@ -219,7 +214,7 @@ async function measure() {
   const files = {
     wasm: await readFile(join(dist, wasmFile)),
     glue: Buffer.from(glueBundle.outputFiles[0].contents),
-    // Fetched only once a reader opens a log.
+    // Fetched when a reader opens a log.
     'wasm of the worker': await readFile(join(dist, robotWasmFile)),
     'script of the worker': Buffer.from(robotWorker.code.contents),
   };
@@ -239,12 +234,12 @@ async function measure() {
   if (total > BUDGET_BYTES) throw new Error(`${total} bytes are over the budget`);
 }
 
-/** The table in the README. */
+/** Writes the table of the README. */
 async function writeSizes(sizes) {
   const rows = Object.entries(sizes).map(
     ([name, { raw, gzip, brotli: small }]) => `| ${name} | ${raw} | ${gzip} | ${small} |`,
   );
-  // Downloads of the page are above its sum, those for a log below.
+  // The page's downloads come before their sum, those for a log after it.
   const [ofPage, ofWorker] = [rows.slice(0, 2), rows.slice(2)];
   const total = (which) => sizes.wasm[which] + sizes.glue[which];
   const table = [
@@ -254,7 +249,7 @@ async function writeSizes(sizes) {
     `| both | ${total('raw')} | ${total('gzip')} | ${total('brotli')} |`,
     ...ofWorker,
   ];
-  await writeMarked(join(WEB, '..', 'README.md'), 'sizes', table.join('\n'));
+  await writeGeneratedBlock(join(WEB, '..', 'README.md'), 'sizes', table.join('\n'));
 }
 
 function hash(bytes) {

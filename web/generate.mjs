@@ -1,9 +1,9 @@
-// Generates texts from the widgets' parameter lists: types for TypeScript, tables for the docs.
+// Generates TypeScript types and tables of the docs from the widgets' parameter lists.
 
 import { mkdir, readFile, writeFile } from 'node:fs/promises';
 import { dirname } from 'node:path';
 
-/** `slam-widget.d.ts`: the parameters of each widget. */
+/** Writes `slam-widget.d.ts`. */
 export async function writeTypes(schema, path) {
   const names = schema.map((widget) => `'${widget.id}'`).join(' | ');
   const states = schema.map((widget) => {
@@ -38,7 +38,7 @@ export async function writeTypes(schema, path) {
   await writeIfChanged(path, text);
 }
 
-/** `docs/parameters.md`: every parameter, button and preset of every widget. */
+/** Writes `docs/parameters.md`: every parameter, button and preset of every widget. */
 export async function writeParameterTables(schema, path) {
   const parts = schema.map((widget) => {
     const params = widget.params.map((param) =>

@@ -1,12 +1,12 @@
-// The height of a widget at each width: enough widths for an error below a fraction of a line.
+// Tabulates the height of a widget over its width, adaptively: an interpolation error of a fraction of a line is invisible.
 
 const NARROWEST_PX = 280;
 const WIDEST_PX = 1400;
 const STEP_PX = 40;
-/** A line of text is four times as high: a height that falls by one is seen from either side. */
+/** A quarter of a line of text: the table resolves every step by a line. */
 const TOLERANCE_PX = 4;
 
-/** Pairs of width and height in CSS pixels, ascending, from a function that lays out the widget. */
+/** Pairs of width and height in CSS pixels by ascending width; `heightAt` lays out the widget. */
 export function heightTable(heightAt) {
   const at = (width) => [width, Math.ceil(heightAt(width))];
   const table = [at(NARROWEST_PX)];

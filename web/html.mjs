@@ -1,4 +1,4 @@
-/** A text as it stands in HTML and XML, also inside an attribute. */
+/** Escapes a text for HTML and XML, including attributes. */
 export function escapeHtml(text) {
   return text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;').replaceAll('"', '&quot;');
 }

@@ -1,7 +1,7 @@
-// node web/offline.mjs DIST FILE: the site as a zip whose pages open from a folder by a double click.
+// node web/offline.mjs DIST FILE: the site as a zip whose pages open from the disk by a double click.
 //
-// A browser that shows a file from the disk fetches nothing beside it and runs no module script. So each page gets one
-// classic script of its modules, and a second one that holds the files which they would fetch.
+// For file URLs browsers block fetch and module scripts. So each page gets its modules as one classic script, and a second
+// script with the files that they fetch.
 
 import { readFile, readdir } from 'node:fs/promises';
 import { join, resolve } from 'node:path';
@@ -10,10 +10,10 @@ import { gzipSync } from 'node:zlib';
 import * as esbuild from 'esbuild';
 import { writeZip } from './zip.mjs';
 
-/** What scripts fetch: programs, data, and the scripts of workers. */
+/** Files that scripts fetch: wasm, data, and workers. */
 const FETCHED = /\.(wasm|json|log|tum)$|worker-\w+\.js$|^slam-robot-\w+\.js$/;
-/** What only programs of other authors use: the package, and examples that need a server. */
-const LEFT_OUT = /^(examples\/|package\.json$|.*\.d\.ts$|slam-anywidget\.js$)/;
+/** Files of the npm package, and examples that need a server. */
+const EXCLUDED = /^(examples\/|package\.json$|.*\.d\.ts$|slam-anywidget\.js$)/;
 const MODULE = /<script type="module" src="([^"]+)"[^>]*><\/script>\n?/g;
 
 const [from, target] = process.argv.slice(2);
@@ -22,26 +22,26 @@ const dist = resolve(from);
 
 const all = (await readdir(dist, { recursive: true, withFileTypes: true })).filter((entry) => entry.isFile())
   .map((entry) => join(entry.parentPath, entry.name).slice(dist.length + 1).replaceAll('\\', '/')).sort();
-const files = all.filter((name) => !LEFT_OUT.test(name));
+const files = all.filter((name) => !EXCLUDED.test(name));
 const contents = {};
 for (const name of files) {
   if (!FETCHED.test(name) && !name.endsWith('.js')) contents[name] = await readFile(join(dist, name));
 }
-contents['offline-files.js'] = Buffer.from(await carried());
+contents['offline-files.js'] = Buffer.from(await embeddedFiles());
 for (const name of files.filter((one) => one.endsWith('.html'))) await convert(name);
 console.log(`${target}: ${await writeZip(target, contents)} bytes`);
 
-/** Scripts of workers as text, because a worker starts at once; all else compressed. */
-async function carried() {
-  const held = {};
+/** The script with the fetched files: workers as text, because they are started synchronously; others compressed. */
+async function embeddedFiles() {
+  const embedded = {};
   for (const name of files.filter((one) => FETCHED.test(one))) {
     const bytes = await readFile(join(dist, name));
-    held[name] = name.endsWith('.js') ? bytes.toString() : gzipSync(bytes, { level: 9 }).toString('base64');
+    embedded[name] = name.endsWith('.js') ? bytes.toString() : gzipSync(bytes, { level: 9 }).toString('base64');
   }
-  return `globalThis.slamFiles = ${JSON.stringify(held)};\n`;
+  return `globalThis.slamFiles = ${JSON.stringify(embedded)};\n`;
 }
 
-/** Puts the modules of a page into one classic script. */
+/** Bundles the modules of a page into one classic script. */
 async function convert(name) {
   const html = contents[name].toString();
   const modules = [...html.matchAll(MODULE)].map(([, src]) => src);

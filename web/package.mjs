@@ -1,7 +1,7 @@
-// node web/package.mjs DIST OUT: from the built site in DIST to the installable packages in OUT.
+// node web/package.mjs DIST OUT: builds installable packages in OUT from the site in DIST.
 //
 // 1. the npm archive, packed from DIST;
-// 2. the Python wheel: the anywidget module as one file with the program inside, beside `web/python`.
+// 2. the Python wheel: `web/python` and the standalone anywidget module.
 
 import { execFileSync } from 'node:child_process';
 import { cp, mkdir, mkdtemp, readFile, readdir, rm, writeFile } from 'node:fs/promises';
@@ -13,9 +13,9 @@ import * as esbuild from 'esbuild';
 
 const WEB = dirname(fileURLToPath(import.meta.url));
 
-/** The programs by their names in the module: the widgets, the worker's, and its script. */
+/** Files with a hash in their names, by the names in the standalone module. */
 const PROGRAMS = { program: /^slam_web-.*\.wasm$/, robot: /^slam_robot-.*\.wasm$/, worker: /^slam-robot-.*\.js$/ };
-/** The samples of w16.10, in the order of `web/build.mjs`. */
+/** The samples of w16.10, in the same order as in `web/build.mjs`. */
 const SAMPLES = ['samples/ring.log', 'samples/ring-truth.tum', 'samples/ring-another-day.log'];
 
 const [dist, out] = process.argv.slice(2).map((path) => resolve(path));
@@ -34,10 +34,10 @@ async function wheel() {
   const folder = await mkdtemp(join(tmpdir(), 'slam-wheel-'));
   try {
     await cp(join(WEB, 'python'), folder, { recursive: true });
-    const inside = join(folder, 'slam_widgets', 'static');
-    await mkdir(inside);
-    await writeFile(join(inside, 'slam-widgets.js'), await wholeModule());
-    await cp(join(dist, 'schema.json'), join(inside, 'schema.json'));
+    const assets = join(folder, 'slam_widgets', 'static');
+    await mkdir(assets);
+    await writeFile(join(assets, 'slam-widgets.js'), await standaloneModule());
+    await cp(join(dist, 'schema.json'), join(assets, 'schema.json'));
     for (const text of ['LICENSE-MIT', 'LICENSE-APACHE', 'THIRD-PARTY-NOTICES.txt']) {
       await cp(join(dist, text), join(folder, text));
     }
@@ -48,39 +48,39 @@ async function wheel() {
   }
 }
 
-/** A file of the site, compressed, as text. */
-async function packed(file) {
+/** A file of the site, gzipped, as base64. */
+async function compressed(file) {
   return gzipSync(await readFile(join(dist, file)), { level: 9 }).toString('base64');
 }
 
-/** The element, the programs, the samples and the anywidget module, in one file of text. */
-async function wholeModule() {
-  const carried = {};
+/** The anywidget module with the element, the programs and the samples in one file. */
+async function standaloneModule() {
+  const embedded = {};
   const files = await readdir(dist);
   for (const [name, pattern] of Object.entries(PROGRAMS)) {
     const file = files.find((one) => pattern.test(one));
-    if (file === undefined) throw new Error(`${dist} holds no ${name}; run cargo xtask build`);
-    carried[name] = await packed(file);
+    if (file === undefined) throw new Error(`${dist} has no ${name}; run cargo xtask build`);
+    embedded[name] = await compressed(file);
   }
-  for (const name of SAMPLES) carried[name] = await packed(name);
-  const inside = {
-    name: 'inside',
+  for (const name of SAMPLES) embedded[name] = await compressed(name);
+  const embed = {
+    name: 'embed',
     setup(build) {
-      build.onResolve({ filter: /^carried-files$/ }, () => ({ path: 'carried', namespace: 'inside' }));
-      build.onLoad({ filter: /.*/, namespace: 'inside' }, () => ({
-        contents: `export default ${JSON.stringify(carried)};`,
+      build.onResolve({ filter: /^embedded-files$/ }, () => ({ path: 'embedded-files', namespace: 'embed' }));
+      build.onLoad({ filter: /.*/, namespace: 'embed' }, () => ({
+        contents: `export default ${JSON.stringify(embedded)};`,
       }));
-      // Files that are beside this one elsewhere are inside it here.
+      // The element is a separate bundle elsewhere.
       build.onResolve({ filter: /^\.\/slam-widget\.js$/ }, () => ({ path: join(WEB, 'ts', 'main.ts') }));
     },
   };
   const { outputFiles } = await esbuild.build({
-    entryPoints: [join(WEB, 'ts', 'whole.ts')],
+    entryPoints: [join(WEB, 'ts', 'anywidget-standalone.ts')],
     bundle: true,
     format: 'esm',
     target: 'es2022',
     minify: true,
-    // No address is ever requested.
+    // Names of embedded files. No URL is ever fetched.
     define: {
       WASM_FILE: '"program"',
       ROBOT_WASM_FILE: '"robot"',
@@ -91,7 +91,7 @@ async function wholeModule() {
     write: false,
     legalComments: 'none',
     logLevel: 'warning',
-    plugins: [inside],
+    plugins: [embed],
   });
   return outputFiles[0].text;
 }

@@ -1,15 +1,15 @@
-// The colours of widgets/palette.json as properties of a style.
+// The colours of widgets/palette.json as CSS custom properties.
 
 import { readFileSync } from 'node:fs';
 
 const PALETTE = JSON.parse(readFileSync(new URL('../widgets/palette.json', import.meta.url), 'utf8'));
 
-/** The shade of each colour in a theme, `light` or `dark`, by its name. */
+/** The shade of each colour, by name, in the theme `light` or `dark`. */
 export function shades(theme) {
   return Object.fromEntries(Object.entries(PALETTE).map(([name, pair]) => [name, pair[theme === 'dark' ? 1 : 0]]));
 }
 
-/** Light; dark by the system's setting, and dark by the reader's choice. */
+/** The style sheet: light, dark by the system's setting, and dark by the reader's choice. */
 export function colorStyle() {
   const properties = (theme) => {
     const lines = Object.entries(shades(theme)).map(([name, shade]) => `  --${name}: ${shade};`);

@@ -1,13 +1,13 @@
 // node web/scorm.mjs DIST FILE: a SCORM 1.2 package of the exercises, one shareable content object for each.
 //
-// Each is embed.html with the exercise in its address; web/ts/scorm.ts reports the answers.
+// Each object is embed.html with the exercise in its address; web/ts/scorm.ts reports the answers.
 
 import { readFile, readdir } from 'node:fs/promises';
 import { join } from 'node:path';
 import { escapeHtml } from './html.mjs';
 import { writeZip } from './zip.mjs';
 
-/** What embed.html loads, and the licences. */
+/** Files that embed.html loads, and the licences. */
 const FILES = /^(embed\.html|exercises\.json|slam-[\w-]+\.js|slam_web-\w+\.wasm|pictures\/.*|LICENSE-.*|THIRD-PARTY-NOTICES\.txt)$/;
 
 const [dist, target] = process.argv.slice(2);

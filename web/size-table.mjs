@@ -1,9 +1,9 @@
-// node web/size-table.mjs PAGE WHAT=FILE…: the sizes of builds of the module compared with the first one, the
-// published one, as a table in PAGE.
+// node web/size-table.mjs PAGE WHAT=FILE…: writes a table into PAGE that compares the sizes of builds of the module with
+// the first one, which is published.
 
 import { readFileSync } from 'node:fs';
 
-import { writeMarked } from './marked.mjs';
+import { writeGeneratedBlock } from './generated-block.mjs';
 import { brotli, withoutNames } from './wasm-file.mjs';
 
 const [page, ...named] = process.argv.slice(2);
@@ -28,4 +28,4 @@ const table = [
   }),
 ].join('\n');
 console.log(table);
-await writeMarked(page, 'sizes', table);
+await writeGeneratedBlock(page, 'sizes', table);

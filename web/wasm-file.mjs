@@ -1,8 +1,8 @@
-// The size of a wasm file, and the parts that it does not need.
+// Edits and measures wasm files.
 
 import { brotliCompressSync, constants } from 'node:zlib';
 
-/** The names of functions are for debuggers only, and a quarter of the module. */
+/** Removes the function names: only debuggers need them, and they are a quarter of the module. */
 export function withoutNames(module) {
   const kept = [module.subarray(0, 8)];
   for (let at = 8; at < module.length; ) {
@@ -18,18 +18,18 @@ export function withoutNames(module) {
   return Buffer.concat(kept);
 }
 
-/** The section that holds the mark of a build; web/ts/module.ts looks for it. */
-const MARK = 'build';
+/** The custom section with the build id; web/ts/module.ts reads it. */
+const BUILD_ID_SECTION = 'build';
 
-/** Adds the mark of a build: whoever has compiled the module can read which one it is. */
-export function withMark(module, mark) {
-  const [name, text] = [MARK, mark].map((words) => Buffer.from(words));
+/** Adds the id of a build as a custom section. */
+export function withBuildId(module, id) {
+  const [name, text] = [BUILD_ID_SECTION, id].map((words) => Buffer.from(words));
   const section = Buffer.concat([Buffer.from([name.length]), name, text]);
-  if (section.length > 127) throw new Error('a mark is short: its size takes one byte');
+  if (section.length > 127) throw new Error('a build id must be short: the size of its section is one byte');
   return Buffer.concat([module, Buffer.from([0, section.length]), section]);
 }
 
-/** An unsigned number at an offset, and the offset behind it. */
+/** Reads an unsigned LEB128 number; returns it with the offset after it. */
 function leb128(bytes, at) {
   let value = 0;
   for (let shift = 0; ; shift += 7) {
@@ -40,7 +40,7 @@ function leb128(bytes, at) {
   }
 }
 
-/** The transferred bytes if the server compresses with brotli at its best level. */
+/** The size after brotli compression at the highest level. */
 export function brotli(bytes) {
   const params = {
     [constants.BROTLI_PARAM_QUALITY]: 11,

@@ -1,7 +1,7 @@
 // Measures the script time of a frame in Chromium while a slider changes in every frame: `node
 // tests/bench/changing.mjs [PAGE.md] [FRAMES]`. Prints a table, and writes it into the page.
 
-import { writeMarked } from '../../web/marked.mjs';
+import { writeGeneratedBlock } from '../../web/generated-block.mjs';
 import { launchForTimes } from '../browser/chromium.mjs';
 import { bare, schema, serve } from '../browser/harness.mjs';
 import { machine, quantile } from './in_chromium.mjs';
@@ -26,7 +26,7 @@ const WATCH = `<script>
 
 const text = table(await measure(Number(frames)));
 console.log(text);
-if (page !== undefined) await writeMarked(page, 'changing', text);
+if (page !== undefined) await writeGeneratedBlock(page, 'changing', text);
 
 /** The script time of each frame in which the slider's value changes, ms, for each slider. */
 async function measure(count) {

@@ -1,7 +1,7 @@
 // Measures the first frame of each widget in Chromium, beside a bare canvas with the same WebGL start:
 // `node tests/bench/first_frame.mjs [PAGE.md] [ROUNDS]`. Prints a table, and writes it into the page.
 
-import { writeMarked } from '../../web/marked.mjs';
+import { writeGeneratedBlock } from '../../web/generated-block.mjs';
 import { launchForTimes } from '../browser/chromium.mjs';
 import { bare, schema, serve } from '../browser/harness.mjs';
 import { machine, quantile } from './in_chromium.mjs';
@@ -45,7 +45,7 @@ for (const { id } of schema) pages[`/${id}.html`] = bare(`<slam-widget name="${i
 const times = await measure(Object.keys(pages), Number(rounds));
 const text = table(times);
 console.log(text);
-if (page !== undefined) await writeMarked(page, 'first frame', text);
+if (page !== undefined) await writeGeneratedBlock(page, 'first frame', text);
 
 /** Milliseconds from the navigation to the first frame, of each page in turns. */
 async function measure(paths, count) {

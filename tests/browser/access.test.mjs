@@ -1,4 +1,4 @@
-// Accessibility: the native controls beside the canvas, by keyboard alone and for screen readers.
+// Accessibility: the native controls that mirror the canvas, by keyboard alone and for screen readers.
 
 import assert from 'node:assert/strict';
 import { before, beforeEach, describe, it } from 'node:test';
@@ -31,13 +31,13 @@ const focused = (tab) =>
     };
   });
 
-/** Controls that the canvas does not show. */
+/** Parameters without a control on the canvas. */
 function withoutBox(tab, widget) {
   const ids = [...widget.presets, ...widget.params, ...widget.buttons].map(({ id }) => id);
   return tab.evaluate((all) => all.filter((id) => document.querySelector('slam-widget').controlBox(id) === null), ids);
 }
 
-/** Whether the canvas's control that belongs to the focused one is visible. */
+/** Whether the control on the canvas that mirrors the focused one is in view. */
 function ringInSight(tab, control) {
   return tab.evaluate((id) => {
     const widget = document.querySelector('slam-widget');
@@ -58,7 +58,7 @@ for (const widget of h.schema) {
       document.querySelector('h1').focus();
     }));
 
-    it('says outcomes in words once they settle, and sums the picture up', async () => {
+    it('announces results once they settle, and summarizes the picture', async () => {
       const { tab } = page;
       const live = tab.locator('slam-widget [aria-live="polite"]');
       assert.equal(await live.textContent(), '');
@@ -69,7 +69,7 @@ for (const widget of h.schema) {
         const said = widget.shadowRoot.querySelector('[aria-live="polite"]').textContent;
         return said.length > 15 && said === widget.outcome.sentence;
       });
-      // A widget with work in progress reports more later, and its page follows.
+      // A widget with work in progress announces more later.
       await tab.waitForFunction(() => {
         const widget = document.querySelector('slam-widget');
         const written = widget.shadowRoot.querySelector('.summary').textContent;
@@ -77,9 +77,9 @@ for (const widget of h.schema) {
       });
     });
 
-    it('gives every control to the keyboard, in reading order and in sight', async () => {
+    it('makes every control focusable, in reading order and in view', async () => {
       const { tab } = page;
-      // Controls of a mode are on their own lines until the mode is on; a text always is.
+      // Controls of a mode that is off, and texts, are not on the canvas but on their own lines.
       const offCanvas = await withoutBox(tab, widget);
       if (widget.params.some(({ id }) => id === 'edit')) {
         await tab.evaluate(() => document.querySelector('slam-widget').press('edit-flat'));
@@ -102,7 +102,7 @@ for (const widget of h.schema) {
         stops.push(stop.control);
       }
       const order = [...new Set(stops.filter((control) => control !== null))];
-      // What belongs to a mode that is off is no stop; a text has no place on the canvas.
+      // Controls of a mode that is off are no tab stops; a text is not on the canvas.
       const texts = widget.params.filter(({ kind }) => kind === 'text').map(({ id }) => id);
       const isStop = (id) => texts.includes(id) || !offCanvas.includes(id);
       const rank = (id) => (id === 'play' ? 0 : id === 'more' ? 2 : widget.opening.includes(id) ? 1 : 3);
@@ -110,7 +110,7 @@ for (const widget of h.schema) {
       assert.deepEqual(order, all.sort((a, b) => rank(a) - rank(b)));
     });
 
-    it('stops at Play, its control and More while that is closed, and keeps its height', async () => {
+    it('has Play, its first controls and More as tab stops while More is closed, and keeps its height', async () => {
       const { tab } = page;
       await tab.evaluate(() => (document.querySelector('slam-widget').more = false));
       await h.quiet(tab);
@@ -132,7 +132,7 @@ for (const widget of h.schema) {
       await tab.evaluate(() => (document.querySelector('slam-widget').more = true));
     });
 
-    it('describes its picture by what it shows', async () => {
+    it('describes its picture', async () => {
       const { tab } = page;
       const session = await tab.context().newCDPSession(tab);
       const { nodes } = await session.send('Accessibility.getFullAXTree');
@@ -142,13 +142,13 @@ for (const widget of h.schema) {
       assert.equal(nodes.filter(({ role, name }) => role?.value === 'StaticText' && name?.value === summary).length, 0);
     });
 
-    it('changes every parameter by keys alone, with fine steps under Shift', async () => {
+    it('changes every parameter by keyboard alone, with fine steps under Shift', async () => {
       const { tab } = page;
       for (const param of widget.params) {
-        // The extremes of other parameters may leave a run without a single step.
+        // Extreme values of other parameters may make a run empty.
         await tab.evaluate(() => document.querySelector('slam-widget').press('defaults'));
         const control = tab.locator(`slam-widget #control-${param.id}`);
-        // What belongs to a mode needs it.
+        // Controls of a mode need it.
         if (await control.evaluate((input) => input.closest('[hidden]') !== null)) {
           await tab.evaluate(() => document.querySelector('slam-widget').press('edit-flat'));
         }
@@ -166,7 +166,7 @@ for (const widget of h.schema) {
           await type(tab, '11');
           assert.equal(await value(tab, param.id), 11);
         } else if (param.kind === 'text') {
-          // A text written by the widget itself: its own flat.
+          // A text that the widget encodes: a custom flat.
           const text = await tab.evaluate(async (id) => {
             const other = document.createElement('slam-widget');
             other.name = document.querySelector('slam-widget').name;
@@ -195,12 +195,12 @@ for (const widget of h.schema) {
       }
     });
 
-    it('presses every button and preset by keys', async () => {
+    it('presses every button and preset by keyboard', async () => {
       const { tab } = page;
       await tab.evaluate(() => {
         const widget = document.querySelector('slam-widget');
         const told = ({ query, timeline }) => ({ query, playing: timeline?.playing ?? false });
-        // The effect of a press is tested on a widget that is not drawn and so does not play.
+        // The expected effect comes from a widget that is not drawn, and so does not play.
         const other = document.createElement('slam-widget');
         other.name = widget.name;
         other.more = widget.more;
@@ -220,7 +220,7 @@ for (const widget of h.schema) {
       for (const button of [...widget.presets, ...widget.buttons]) {
         const control = tab.locator(`slam-widget button[data-control="${button.id}"]`);
         await tab.evaluate(() => document.querySelector('slam-widget').press('defaults'));
-        // What belongs to a mode needs it.
+        // Controls of a mode need it.
         const mode = (await control.evaluate((element) => element.closest('[hidden]') !== null)) ? 'edit-flat' : null;
         const expected = await tab.evaluate(([id, its]) => window.expected(id, its), [button.id, mode]);
         await tab.evaluate(async (its) => {
@@ -238,7 +238,7 @@ for (const widget of h.schema) {
       assert.equal(state, `?w=${widget.id.slice(1)}&more=on`);
     });
 
-    it('keeps its keys from the page, and leaves it all others', async () => {
+    it('hides the keys that it uses from the page, and no others', async () => {
       const { tab } = page;
       await tab.evaluate(() => {
         window.heard = [];
@@ -254,7 +254,7 @@ for (const widget of h.schema) {
       assert.deepEqual(await tab.evaluate(() => heard), ['Escape', 'ArrowLeft']);
     });
 
-    it('names every control with role, value and unit in the accessibility tree', async () => {
+    it('has every control in the accessibility tree with role, name, value and unit', async () => {
       const { tab } = page;
       const session = await tab.context().newCDPSession(tab);
       const { nodes } = await session.send('Accessibility.getFullAXTree');
@@ -297,7 +297,7 @@ for (const widget of h.schema) {
 }
 
 describe('the focus ring', () => {
-  it('shows on the canvas at the control that has the focus, and goes with it', async () => {
+  it('is drawn on the canvas around the focused control, and disappears with the focus', async () => {
     await visit(body('w16.2'), async (tab) => {
       await h.ready(tab);
       const look = () => tab.evaluate(async () => {

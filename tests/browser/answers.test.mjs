@@ -1,4 +1,5 @@
-// The reader's answers: personal tasks, kept only if asked, saved as a file that `slam2d mark` marks as the page does.
+// The reader's answers: personal tasks, stored only on request, and saved as a file that `slam2d mark` marks as the page
+// does.
 
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -14,7 +15,7 @@ const reading = (query, test, page = 'index.html') => visit('', test, { path: `/
 
 /** Answers every question of the page with its last choice, or with 3; returns the events. */
 const answerAll = (tab) => tab.evaluate(async () => {
-  const told = [];
+  const predictions = [];
   for (const question of document.querySelectorAll('slam-predict')) {
     const answered = new Promise((resolve) => question.addEventListener('slam-predict', resolve, { once: true }));
     const form = question.shadowRoot.querySelector('form');
@@ -22,9 +23,9 @@ const answerAll = (tab) => tab.evaluate(async () => {
     if (fields[0].type === 'radio') fields.at(-1).checked = true;
     else fields[0].value = '3';
     form.querySelector('button').click();
-    told.push((await answered).detail);
+    predictions.push((await answered).detail);
   }
-  return told;
+  return predictions;
 });
 
 const isDefined = (tab) => tab.waitForFunction(() => customElements.get('slam-answers') !== undefined);
@@ -47,36 +48,36 @@ async function marked(tab) {
 }
 
 for (const student of ['', 'Βασίλης “7”']) {
-  for (const page of ['index.html', 'robots.html']) it(`is marked by the command as by ${page}: ${student === '' ? 'the chapter’s tasks' : 'tasks of a student'}`, async () => {
+  for (const page of ['index.html', 'robots.html']) it(`the saved file gets the same marks from slam2d as from ${page}: ${student === '' ? 'the chapter’s tasks' : 'tasks of a student'}`, async () => {
     await reading(student === '' ? '' : `?student=${encodeURIComponent(student)}`, async (tab) => {
       await isDefined(tab);
-      const told = await answerAll(tab);
+      const predictions = await answerAll(tab);
       const { file, name, sheet } = await marked(tab);
       assert.equal(name, student === '' ? 'answers.json' : 'answers-Βασίλης-7-.json');
       assert.equal(file.student, student);
-      assert.deepEqual([sheet.intact, sheet.exercises, sheet.answers.length], [true, 11, told.length]);
-      for (const [at, { exercise, correct, right, state, time }] of told.entries()) {
+      assert.deepEqual([sheet.intact, sheet.exercises, sheet.answers.length], [true, 11, predictions.length]);
+      for (const [at, { exercise, correct, right, state, time }] of predictions.entries()) {
         const answer = sheet.answers[at];
         assert.deepEqual([answer.exercise, answer.note, answer.mark, answer.right], [exercise, null, correct ? 'right' : 'wrong', right]);
         assert.equal(state.includes('seed='), student !== '');
         assert.equal(new Date(time).toISOString(), time);
       }
-      assert.equal(sheet.right, told.filter(({ correct }) => correct).length);
+      assert.equal(sheet.right, predictions.filter(({ correct }) => correct).length);
     }, page);
   });
 }
 
-it('counts attempts, and keeps answers in the browser only while the reader wants it', async () => {
+it('the page counts attempts, and stores answers in the browser only on request', async () => {
   await reading('?student=Ann', async (tab, server) => {
     await isDefined(tab);
     const question = tab.locator('slam-predict[exercise="16.1"]');
     const answer = async () => {
       await question.locator('input').first().check();
       await question.getByRole('button', { name: 'Commit and see' }).click();
-      await question.getByText(/^(As you predicted|It comes out otherwise)/).waitFor();
+      await question.getByText(/^(As you predicted|It turns out differently)/).waitFor();
     };
     await answer();
-    await question.getByText(/^This is your own task, seed \d+\. The numbers in the text are those of the chapter’s\.$/).waitFor();
+    await question.getByText(/^This is your personal task, seed \d+\. The numbers in the text belong to the chapter’s task\.$/).waitFor();
     await question.getByRole('button', { name: 'Predict again' }).click();
     await answer();
     assert.equal(await tab.evaluate(() => localStorage.length), 0);

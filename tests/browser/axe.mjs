@@ -1,4 +1,4 @@
-// Violations found by axe-core, by the rules for all pages of this project.
+// Accessibility violations, by axe-core.
 
 import { readFileSync } from 'node:fs';
 
@@ -6,14 +6,14 @@ const AXE = readFileSync(new URL('./node_modules/axe-core/axe.min.js', import.me
 
 const TAGS = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
 
-/** Rules that depend on colours: a page that satisfies all rules in light has to satisfy these in dark. */
+/** Rules that depend on colours: a page that satisfies all rules in light only needs these in dark. */
 export const OF_COLORS = ['color-contrast', 'link-in-text-block'];
 
-/** Every violation of tags or rules with its elements; frames within the page are excluded. */
+/** Every violation of tags or rules with its elements, without frames. */
 export async function violations(page, runOnly = TAGS) {
   if (!(await page.evaluate(() => 'axe' in window))) await page.evaluate(AXE);
-  // axe checks the size of targets only on request.
+  // Off by default in axe.
   const options = { runOnly, rules: { 'target-size': { enabled: true } }, iframes: false };
-  const found = await page.evaluate((given) => axe.run(document, given), options);
-  return found.violations.map(({ id, nodes }) => [id, nodes.map((node) => node.html)]);
+  const results = await page.evaluate((settings) => axe.run(document, settings), options);
+  return results.violations.map(({ id, nodes }) => [id, nodes.map((node) => node.html)]);
 }

@@ -1,4 +1,4 @@
-// The page of the reader's own robot: it opens with a building, and a log takes its place.
+// own-robot.html: it opens with a mapped building, which the reader's log replaces.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -14,7 +14,7 @@ const says = (tab) => tab.locator('.building-says').textContent();
 
 describe('the building of the own-robot page', () => {
   for (const [width, height] of [[1440, 900], [1280, 680], [390, 844]]) {
-    it(`is drawn on the first screen, ${width}×${height}`, async () => {
+    it(`fits on the first screen, ${width}×${height}`, async () => {
       await opened(async (tab) => {
         await live(tab);
         const picture = await tab.locator('.building-picture').boundingBox();
@@ -30,7 +30,7 @@ describe('the building of the own-robot page', () => {
     });
   }
 
-  it('rests at the finished map without motion, and names the error of each estimate by keys', async () => {
+  it('shows the finished map under reduced motion, and the error of each estimate by keyboard', async () => {
     await opened(async (tab) => {
       await live(tab);
       const slider = tab.getByRole('slider', { name: 'From the wheels to the map' });
@@ -42,7 +42,7 @@ describe('the building of the own-robot page', () => {
     }, still);
   });
 
-  it('plays from the wheels to the loops, and stops where the reader takes the slider', async () => {
+  it('plays from odometry to loop closure, and stops if the reader moves the slider', async () => {
     await opened(async (tab) => {
       await live(tab);
       await tab.waitForFunction(() => document.querySelector('#building input').value === '0');
@@ -53,7 +53,7 @@ describe('the building of the own-robot page', () => {
     }, { reducedMotion: 'no-preference' });
   });
 
-  it('gives way to a log that the reader picks', async () => {
+  it('is replaced by a log that the reader picks', async () => {
     await opened(async (tab) => {
       await live(tab);
       const chooser = tab.waitForEvent('filechooser');
@@ -65,7 +65,7 @@ describe('the building of the own-robot page', () => {
     }, still);
   });
 
-  it('stands as a picture without a script', async () => {
+  it('is a still picture without scripts', async () => {
     await opened(async (tab) => {
       const picture = tab.locator('.building-picture img');
       assert.ok(await picture.evaluate((img) => img.decode().then(() => img.naturalWidth > 100)));

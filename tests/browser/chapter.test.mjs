@@ -1,4 +1,4 @@
-// The companion chapter: the pages as readers get them.
+// The pages of the companion as readers get them.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -13,7 +13,7 @@ import { cloudSpot, restingSpot, sliderRail } from './spots.mjs';
 
 /** The chapter's addition to the element's policy: its own fonts. */
 const POLICY = `${h.STRICT_POLICY}; font-src 'self'`;
-/** The widgets are on one page each, once. */
+/** Each widget is on exactly one page. */
 assert.deepEqual(h.PAGES.flatMap(h.widgetsOf).sort(), h.schema.map(({ id }) => id).sort());
 
 const PHONE = { width: 390, height: 844 };
@@ -34,12 +34,12 @@ const isSeen = (css) => {
 const background = (tab) => tab.evaluate(() => getComputedStyle(document.body).backgroundColor);
 
 describe('the chapter', () => {
-  it('holds its widgets, starts each when it comes near, and paints it', async () => {
+  it('starts and paints each of its widgets near the viewport', async () => {
     await onEach(async (tab, inOrder) => {
       const states = () => tab.evaluate(
         (ids) => ids.map((id) => document.querySelector(`slam-widget[name="${id}"]`).state), inOrder);
       for (const [place, id] of inOrder.entries()) {
-        // Those further down have not started.
+        // Widgets further down have not started.
         const later = inOrder.length - place - 1;
         assert.deepEqual((await states()).slice(place + 1), Array(later).fill('resting'));
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
@@ -49,7 +49,7 @@ describe('the chapter', () => {
     }, { sees: true });
   });
 
-  it('is walked through by Tab with few stops in its widgets', async () => {
+  it('has few tab stops in its widgets', async () => {
     await onEach(async (tab) => {
       const stops = await tab.evaluate(() => [...document.querySelectorAll('slam-widget')].map(({ name, shadowRoot }) => {
         const can = [...shadowRoot.querySelectorAll('button, input, select, [tabindex="0"]')];
@@ -60,7 +60,7 @@ describe('the chapter', () => {
     });
   });
 
-  it('lets its widgets be dragged, scrolled over and passed by Tab', async () => {
+  it('has widgets that can be dragged, scrolled over and passed by Tab', async () => {
     await reading(async (tab) => {
       const css = widget('w16.1');
       await tab.locator(css).scrollIntoViewIfNeeded();
@@ -101,14 +101,14 @@ describe('the chapter', () => {
     }, { viewport: { width: 1000, height: 900 } });
   });
 
-  it('gives a widget the width that the window has', async () => {
+  it('gives a widget the width of the window', async () => {
     await reading(async (tab) => {
       const css = widget('w16.2');
       await tab.locator(css).scrollIntoViewIfNeeded();
       await h.ready(tab, css);
       for (const width of [700, 390, 1100]) {
         await tab.setViewportSize({ width, height: 800 });
-        // The text around it is as high as it is narrow.
+        // The narrow text beside it is high enough.
         await tab.locator(css).scrollIntoViewIfNeeded();
         await h.ready(tab, css);
         await tab.waitForFunction((name) => {
@@ -120,7 +120,7 @@ describe('the chapter', () => {
     });
   });
 
-  it('has every formula as MathML and as text, and none left as source', async () => {
+  it('has every formula as MathML and as HTML, and none as source', async () => {
     await reading(async (tab) => {
       const counts = await tab.evaluate(() => ({
         sources: document.querySelectorAll('tex').length,
@@ -136,7 +136,7 @@ describe('the chapter', () => {
     });
   });
 
-  it('sets a widget by a number in the text and brings it into view', async () => {
+  it('sets a widget by a link in the text, and scrolls to it', async () => {
     await reading(async (tab) => {
       await tab.locator('a.slam-link[href*="w=16.1"]', { hasText: '75°' }).first().click();
       await tab.waitForFunction((css) => document.querySelector(css).get('heading') === 75, widget('w16.1'));
@@ -146,7 +146,7 @@ describe('the chapter', () => {
     });
   });
 
-  it('asks first and answers afterwards', async () => {
+  it('shows the answer only after the prediction', async () => {
     await reading(async (tab) => {
       const question = tab.locator('#further-variants slam-predict');
       const why = question.locator('[data-why]');
@@ -157,7 +157,7 @@ describe('the chapter', () => {
       await question.locator('button').first().click();
       await why.waitFor({ state: 'visible' });
       const said = await question.evaluate((element) => element.shadowRoot.querySelector('.answer').textContent);
-      assert.match(said, /^It comes out otherwise, and a wrong guess is no mistake\. You said: larger: it is the wrong place\. It is 0\.015 m\./);
+      assert.match(said, /^It turns out differently, and a wrong guess is no mistake\. You said: larger: it is the wrong place\. It is 0\.015 m\./);
       assert.ok(await tab.evaluate(isSeen, '#further-variants slam-predict'), 'the page stays at the answer');
       await question.getByRole('button', { name: 'Show it in the widget' }).click();
       await tab.waitForFunction(isSeen, widget('w16.1'));
@@ -168,7 +168,7 @@ describe('the chapter', () => {
     ['light', 'rgb(255, 255, 255)'],
     ['dark', 'rgb(20, 24, 31)'],
   ]) {
-    it(`goes ${choice} by its button, against the system, and its widgets follow`, async () => {
+    it(`turns ${choice} by its button, whatever the system prefers, and its widgets follow`, async () => {
       const colorScheme = choice === 'light' ? 'dark' : 'light';
       await reading(async (tab) => {
         assert.notEqual(await background(tab), shade);
@@ -181,7 +181,7 @@ describe('the chapter', () => {
           widget('w16.1'),
         );
         assert.equal(isDark, choice === 'dark');
-        // Code was once in the colours of the system's theme.
+        // Regression: code had the colours of the system's theme.
         await tab.evaluate(() => document.querySelectorAll('details').forEach((fold) => (fold.open = true)));
         assert.deepEqual(await violations(tab, OF_COLORS), []);
         await tab.click('[data-theme-choice="auto"]');
@@ -213,13 +213,13 @@ describe('the chapter', () => {
     assert.equal(found, 4);
   });
 
-  it('shows at most five numbers a screen outside of the exercises', async () => {
+  it('shows at most five numbers per screen outside of the exercises', async () => {
     await reading(async (tab) => {
       const places = await tab.evaluate(() => {
         const isSeen = (element) => element.checkVisibility() && element.closest('.exercise') === null;
         const marked = [...document.querySelectorAll('main .figure, main a.slam-link')].filter(
           (element) => element.matches('.figure') || /\d/.test(element.textContent));
-        // A formula names and counts with single digits; measured values have more.
+        // Single digits are names and counts; measured values have more digits.
         const written = [...document.querySelectorAll('main .katex-html .mord')].filter(
           (element) => element.childElementCount === 0 && /^[\d.]{2,}$/.test(element.textContent));
         return [...marked, ...written].filter(isSeen)
@@ -232,7 +232,7 @@ describe('the chapter', () => {
     }, { viewport: { width: 1440, height: 900 } });
   });
 
-  it('breaks no rule of accessibility that axe knows, in light and dark', async () => {
+  it('satisfies axe-core in light and dark', async () => {
     await onEach(async (tab) => {
       assert.deepEqual(await violations(tab), []);
       await tab.emulateMedia({ colorScheme: 'dark' });
@@ -240,7 +240,7 @@ describe('the chapter', () => {
     }, { colorScheme: 'light' }, { quiet: false });
   });
 
-  it('shows pictures and says why where scripts do not run', async () => {
+  it('shows still pictures and the reason without scripts', async () => {
     await onEach(async (tab, inOrder, server) => {
       for (const id of inOrder) {
         const picture = tab.locator(`${widget(id)} img`);
@@ -256,7 +256,7 @@ describe('the chapter', () => {
     }, { javaScriptEnabled: false });
   });
 
-  it('says right or wrong in words, and of the number that was asked for', async () => {
+  it('judges predictions in words, and by the number in question', async () => {
     await reading(async (tab) => {
       const question = tab.locator('#exercise-5 slam-predict[fact="map_disagreement_m"]');
       await question.scrollIntoViewIfNeeded();
@@ -272,11 +272,11 @@ describe('the chapter', () => {
       await rank.locator('input').fill('3');
       await rank.locator('button').first().click();
       await rank.locator('[data-why]').waitFor({ state: 'visible' });
-      assert.match(await answer(rank), /^It comes out otherwise, and a wrong guess is no mistake\. It is 2\.000\. You said 3 and are off by 1\.0\.$/);
+      assert.match(await answer(rank), /^It turns out differently, and a wrong guess is no mistake\. It is 2\.000\. You said 3 and are off by 1\.0\.$/);
     });
   });
 
-  it('stays where a file is dropped beside a widget, which takes one that is dropped on it', async () => {
+  it('ignores a file dropped outside of a widget, and opens one dropped on it', async () => {
     await reading(async (tab) => {
       const isKept = (css) => tab.evaluate((target) => {
         const files = new DataTransfer();
@@ -293,7 +293,7 @@ describe('the chapter', () => {
     }, {}, { path: '/own-robot.html' });
   });
 
-  it('lists code as it stands in the tested files, and copies it', async () => {
+  it('lists code of the tested files, and copies it', async () => {
     await reading(async (tab) => {
       const listings = await tab.evaluate(() => [...document.querySelectorAll('figure.listing')].map((figure) => ({
         file: figure.querySelector('figcaption code').textContent,
@@ -317,7 +317,7 @@ describe('the chapter', () => {
     });
   });
 
-  it('lets the reader judge ten loop candidates by the keyboard, and draws what a gate does', async () => {
+  it('lets the reader judge ten loop candidates by keyboard, and draws the effect of a gate', async () => {
     await reading(async (tab) => {
       const place = tab.locator('#decide .decide-place');
       await tab.locator('#decide').scrollIntoViewIfNeeded();
@@ -345,7 +345,7 @@ describe('the chapter', () => {
     });
   });
 
-  it('is not built without the picture of a widget', () => {
+  it('fails to build without the picture of a widget', () => {
     const out = mkdtempSync(join(tmpdir(), 'chapter-'));
     const build = () => {
       const run = spawnSync(process.execPath, ['web/page/build.mjs', out], { cwd: join(h.DIST, '..') });
@@ -358,7 +358,7 @@ describe('the chapter', () => {
     rmSync(out, { recursive: true });
   });
 
-  it('prints words in place of a map without a log', async () => {
+  it('prints a text instead of a map without a log', async () => {
     await reading(async (tab) => {
       await tab.emulateMedia({ media: 'print' });
       assert.equal(await tab.locator(`${widget('w16.10')} .stage`).isVisible(), false);
@@ -366,7 +366,7 @@ describe('the chapter', () => {
     }, {}, { path: '/own-robot.html' });
   });
 
-  it('names the section that one reads, leads to the others, and shows how far one has come', async () => {
+  it('shows the current section, links to the others, and the reading progress', async () => {
     await reading(async (tab) => {
       const list = tab.locator('.contents details');
       await tab.evaluate(() => document.querySelector('#ndt').scrollIntoView({ behavior: 'instant' }));
@@ -384,7 +384,7 @@ describe('the chapter', () => {
   });
 
   for (const width of [1280, 1440]) {
-    it(`keeps the contents beside the text, open, ${width} px wide`, async () => {
+    it(`keeps the contents list open beside the text, ${width} px wide`, async () => {
       await reading(async (tab) => {
         const contents = tab.locator('.contents');
         const link = contents.getByRole('link', { name: 'The pose graph', exact: true });
@@ -395,7 +395,7 @@ describe('the chapter', () => {
         const { x, width: wide } = await contents.boundingBox();
         const clear = await tab.evaluate((edge) => [...document.querySelectorAll('main > section > *, main slam-widget, .masthead > *')]
           .every((box) => box.getBoundingClientRect().width === 0 || box.getBoundingClientRect().left >= edge), x + wide);
-        assert.ok(clear, 'nothing stands under it');
+        assert.ok(clear, 'it covers nothing');
         assert.ok(await tab.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
       }, { viewport: { width, height: 900 } });
     });
@@ -409,7 +409,7 @@ describe('the chapter', () => {
       assert.ok(await tab.locator('h1').isVisible());
       await tab.evaluate(() => dispatchEvent(new Event('beforeprint')));
       await tab.locator(`${widget('w16.1')} .stage`).waitFor();
-      // The answers stand open, asked or not.
+      // Print shows all answers.
       for (const css of ['.exercise details > p', 'slam-predict [data-why]', 'table.results']) {
         for (const part of await tab.locator(css).all()) assert.ok(await part.isVisible(), css);
       }

@@ -3,18 +3,18 @@
 import { existsSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 
-/** Ends a wait in a page that hangs; no result depends on it. */
+/** Timeout for a page that hangs; no result depends on it. */
 export const LAST_RESORT_MS = 5 * 60_000;
 
-/** Features that Playwright turns off, from its chromiumSwitches.ts. */
+/** Features that Playwright disables, from its chromiumSwitches.ts. */
 const PLAYWRIGHT_DISABLES = ['AvoidUnnecessaryBeforeUnloadCheckSync', 'DestroyProfileOnBrowserClose', 'HttpsUpgrades',
   'HttpsFirstBalancedModeAutoEnable', 'LensOverlay', 'MediaRouter', 'PaintHolding', 'ThirdPartyStoragePartitioning',
   'AvoidCorsURLLoaderRestartOnRedirect', 'TcpPortRandomizationWin', 'OptimizationHints', 'NetworkTimeServiceQuerying',
   'AimEnabled', 'PreconnectToSearch'];
-/** Internal pages of the browser, loaded beside each tab: a second of needless work. */
+/** Internal pages of the browser that it loads for each tab, which takes a second. */
 const NOT_FOR_TESTS = ['WebUIOmniboxPopup', 'WebUIOmniboxAimPopup', 'WebUIOmniboxFullPopup', 'PreloadTopChromeWebUI'];
 
-/** V8's flags in every Chromium; only the last list of flags counts. */
+/** V8 flags. Chromium uses only the last `--js-flags`. */
 const V8_FLAGS = '--expose-gc';
 
 const HOW = {
@@ -28,11 +28,11 @@ const HOW = {
     '--disable-background-networking',
     '--disable-component-update',
     '--disable-sync',
-    // An animated scroll needs frames, which software GL may deliver late.
+    // Software GL may deliver the frames of an animated scroll late.
     '--disable-smooth-scrolling',
     // Software drawing is the largest cost, and no test is about the browser's compositing.
     '--disable-gpu-compositing',
-    // The last list counts, so it starts with Playwright's own.
+    // Chromium uses only the last list, so it includes Playwright's.
     `--disable-features=${[...PLAYWRIGHT_DISABLES, ...NOT_FOR_TESTS]}`,
     `--js-flags=${V8_FLAGS}`,
   ],
@@ -40,10 +40,10 @@ const HOW = {
 
 /** The browser of readers. */
 const WITH_WINDOWS = '/usr/bin/chromium';
-/** The same engine without windows: a page takes a sixth less time there. */
+/** The same engine without windows takes a sixth less time. */
 const WITHOUT_WINDOWS = '/usr/bin/chromium-headless-shell';
 
-/** The first of these that exists, unless the environment names one. */
+/** `CHROMIUM`, or the first path that exists. */
 function oneOf(...paths) {
   return process.env.CHROMIUM ?? paths.find((path) => existsSync(path)) ?? WITH_WINDOWS;
 }
@@ -52,7 +52,7 @@ const forTests = () => oneOf(WITHOUT_WINDOWS, WITH_WINDOWS);
 /** Path of the browser for measurements. */
 export const forTimes = () => oneOf(WITH_WINDOWS);
 
-/** The Chromium that run.mjs started for all files, else a separate one, also if there are flags. */
+/** Connects to the Chromium of run.mjs; starts a separate one without run.mjs, or with extra flags. */
 export function launch(extra = []) {
   const shared = process.env.SLAM_CHROMIUM;
   if (shared !== undefined && extra.length === 0) return chromium.connect(shared, { timeout: LAST_RESORT_MS });
@@ -65,9 +65,8 @@ export function launchForTimes() {
 }
 
 /**
- * A Chromium for the test files to connect to, with settings that pay off for pages that live for seconds:
- * pages of one site share a process, and WebAssembly is optimized much later. Each saves a fifteenth of the
- * work. Measurements of first frames or of drags start each page like a reader's browser.
+ * Starts a Chromium that all test files connect to, with settings for short-lived pages: pages of one site share a process,
+ * and V8 optimizes WebAssembly much later. Each saves a fifteenth of the work. Measurements do not use them.
  */
 export function launchServer() {
   const compiledLater = `--js-flags=${V8_FLAGS} --wasm-tiering-budget=100000000`;

@@ -1,71 +1,61 @@
-// The clock of the pages under test: it counts their animation frames.
-//
-// A second of a page is a number of frames instead of real time. A slow machine slows the page's clock down
-// as well, so no result of a test depends on the drawing speed.
+// A fake clock for pages under test: time is a number of animation frames. No result of a test depends on the speed of the
+// machine.
 
-/** A frame of a display at 60 Hz, for tests that depend on the duration of a press or a fade. */
+/** A frame at 60 Hz, for tests that depend on the duration of a press or a fade. */
 export const SMOOTH_MS = 1000 / 60;
 
-/** A frame of a slow display: a widget that settles for 0.9 s draws three frames instead of sixty. */
+/** A slow frame: a widget that settles for 0.9 s draws three frames instead of 54. */
 export const COARSE_MS = 300;
 
-/**
- * Smallest real time between frames. Otherwise a page that plays would draw as fast as it can while its test
- * inspects something.
- */
+/** Minimum real time between frames: an unthrottled playback would keep the CPU busy while its test inspects something. */
 export const PAUSE_MS = 60;
 
-/** Frame duration of a page whose clock stands still. */
+/** Frame duration of a stopped clock. */
 export const FROZEN_MS = 0;
 
-/** Delays of at least this length never end by themselves: the page may wait for another process. */
-export const PATIENCE_MS = 5000;
+/** Timers of at least this delay fire only if a test skips it: the page may wait for another process. */
+export const LONG_DELAY_MS = 5000;
 
-/** Advance of the clock at each reading, so that work with a time limit comes to its end. */
-const LOOK_MS = 0.25;
+/** Advance of the clock at each reading: work with a time limit has to end. */
+const READING_MS = 0.25;
 
-/**
- * Number of clock readings in a slow frame: little work is done in it, so tests that do not wait for work
- * stay fast.
- */
-const LOOKS_OF_A_SLOW_FRAME = 300;
+/** Clock readings in a slow frame. A low number limits the work in a frame, and keeps tests fast that need no work. */
+const READINGS_PER_SLOW_FRAME = 300;
 
-/** Advance at each reading while a test waits for all work: it is finished in a frame or two. */
-export const QUICK_LOOK_MS = 0.01;
+/** Advance at each reading while a test waits for all work, which then takes a frame or two. */
+export const QUICK_READING_MS = 0.01;
 
-/** Advance at each reading for frames of that length. */
-export function lookMs(stepMs) {
-  return stepMs >= COARSE_MS ? stepMs / LOOKS_OF_A_SLOW_FRAME : LOOK_MS;
+/** Advance at each reading for a frame duration. */
+export function readingMs(stepMs) {
+  return stepMs >= COARSE_MS ? stepMs / READINGS_PER_SLOW_FRAME : READING_MS;
 }
 
 /**
- * Runs in every page before its own scripts. `frameClock` is the tests' interface.
- *
- * It replaces the sources of time of the widgets: `performance.now`, the time of an animation frame, and
- * `setTimeout` with a delay. A delay of `patienceMs` or more ends only if a test skips it. Frames are at
- * least `pauseMs` apart.
+ * Init script. Replaces `performance.now`, the time of animation frames, and `setTimeout` with a delay. Tests control the
+ * clock by `frameClock`. Timers of `longDelayMs` or more fire only if a test skips the delay. Frames are at least `pauseMs`
+ * apart.
  */
-export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
-  // A tab that waits for its next test does nothing.
+export function install({ pauseMs, stepMs, readingMs, quickReadingMs, longDelayMs }) {
+  // A tab between two tests.
   if (location.href === 'about:blank') return;
-  const displayed = window.requestAnimationFrame.bind(window);
-  const [soon, forget] = [window.setTimeout.bind(window), window.clearTimeout.bind(window)];
+  const realRequestFrame = window.requestAnimationFrame.bind(window);
+  const [realSetTimeout, realClearTimeout] = [window.setTimeout.bind(window), window.clearTimeout.bind(window)];
   const timers = new Map();
   const watchers = new Set();
   let nowMs = 0;
-  let takesMs = lookMs;
-  let isHeld = false;
+  let advanceMs = readingMs;
+  let isStopped = false;
   let skippedMs = 0;
-  let asked = 0;
-  let askedAt = { ms: 0, tick: 0 };
+  let requests = 0;
+  let requestedAt = { ms: 0, tick: 0 };
   let ticks = 0;
   let waiting = new Map();
   let due = new Map();
   let lastFrame = 0;
-  // Far from the numbers of the browser.
+  // Does not collide with the browser's timer ids.
   let lastTimer = 1e9;
 
-  const show = () => {
+  const runFrame = () => {
     [due, waiting] = [waiting, new Map()];
     for (const callback of due.values()) {
       try {
@@ -76,75 +66,72 @@ export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
     }
   };
   const nextFrame = (callback) => {
-    if (waiting.size === 0) soon(() => displayed(show), pauseMs);
+    if (waiting.size === 0) realSetTimeout(() => realRequestFrame(runFrame), pauseMs);
     lastFrame += 1;
     waiting.set(lastFrame, callback);
     return lastFrame;
   };
 
-  performance.now = () => (nowMs += isHeld ? 0 : takesMs);
+  performance.now = () => (nowMs += isStopped ? 0 : advanceMs);
   window.requestAnimationFrame = (callback) => {
-    asked += 1;
-    askedAt = { ms: nowMs, tick: ticks };
+    requests += 1;
+    requestedAt = { ms: nowMs, tick: ticks };
     return nextFrame(() => callback(nowMs));
   };
   window.cancelAnimationFrame = (frame) => {
-    // Also a due one: an earlier callback may have cancelled it.
+    // An earlier callback of the same frame may cancel a due one.
     if (!waiting.delete(frame)) due.delete(frame);
   };
-  window.setTimeout = (callback, delay, ...given) => {
-    if (typeof callback !== 'function' || !(delay > 0)) return soon(callback, delay, ...given);
+  window.setTimeout = (callback, delay, ...args) => {
+    if (typeof callback !== 'function' || !(delay > 0)) return realSetTimeout(callback, delay, ...args);
     lastTimer += 1;
-    const isPatient = delay >= patienceMs;
-    const atMs = (isPatient ? skippedMs : nowMs) + delay;
-    timers.set(lastTimer, { atMs, isPatient, call: () => callback(...given) });
+    const isLong = delay >= longDelayMs;
+    const atMs = (isLong ? skippedMs : nowMs) + delay;
+    timers.set(lastTimer, { atMs, isLong, call: () => callback(...args) });
     return lastTimer;
   };
   window.clearTimeout = (timer) => {
-    if (!timers.delete(timer)) forget(timer);
+    if (!timers.delete(timer)) realClearTimeout(timer);
   };
 
   const tick = () => {
     nextFrame(tick);
     ticks += 1;
-    nowMs += isHeld ? 0 : stepMs;
-    const due = [...timers].filter(([, { atMs, isPatient }]) => atMs <= (isPatient ? skippedMs : nowMs));
+    nowMs += isStopped ? 0 : stepMs;
+    const due = [...timers].filter(([, { atMs, isLong }]) => atMs <= (isLong ? skippedMs : nowMs));
     for (const [timer, { call }] of due.sort(([, a], [, b]) => a.atMs - b.atMs)) {
       // An earlier callback may have cancelled a due one.
       if (timers.delete(timer)) call();
     }
-    for (const look of [...watchers]) if (look()) watchers.delete(look);
+    for (const check of [...watchers]) if (check()) watchers.delete(check);
   };
   nextFrame(tick);
 
-  const when = (holds) => new Promise((resolve) => {
-    watchers.add(() => holds() && (resolve(), true));
+  const when = (condition) => new Promise((resolve) => {
+    watchers.add(() => condition() && (resolve(), true));
   });
   window.frameClock = {
-    /** Resolves after that much time, with the number of frames that the page requested meanwhile. */
+    /** Resolves after a time, with the number of frames that the page requested meanwhile. */
     pass: async (ms) => {
-      const [from, before] = [nowMs, asked];
+      const [from, before] = [nowMs, requests];
       await when(() => nowMs - from >= ms);
-      return asked - before;
+      return requests - before;
     },
-    /**
-     * Resolves after that much time and at least three frames without a requested one, with the number of
-     * earlier ones.
-     */
+    /** Resolves after a time and at least three frames without a request, with the number of earlier requests. */
     quiet: async (ms) => {
-      const before = asked;
+      const before = requests;
       const from = { ms: nowMs, tick: ticks };
-      const since = (name, now) => now - Math.max(from[name], askedAt[name]);
-      takesMs = Math.min(lookMs, quickLookMs);
+      const since = (name, now) => now - Math.max(from[name], requestedAt[name]);
+      advanceMs = Math.min(readingMs, quickReadingMs);
       await when(() => since('ms', nowMs) >= ms && since('tick', ticks) >= 3);
-      takesMs = lookMs;
-      return asked - before;
+      advanceMs = readingMs;
+      return requests - before;
     },
-    /** Stops or resumes the clock, so that a quick touch is quick regardless of the test's speed. */
-    hold: (holds) => {
-      isHeld = holds;
+    /** Stops or resumes the clock: a quick touch has to be quick on a slow machine, too. */
+    hold: (isOn) => {
+      isStopped = isOn;
     },
-    /** Advances the clock by that much at once, including long delays. */
+    /** Advances the clock at once, including long delays. */
     skip: async (ms) => {
       const tick = ticks;
       nowMs += ms;

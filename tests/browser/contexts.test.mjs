@@ -7,7 +7,7 @@ import * as h from './harness.mjs';
 const on = h.visitor();
 const ONE = '<slam-widget name="w16.2"></slam-widget>';
 
-/** Runs in the page before its scripts: the first contexts are lost as soon as they are created. */
+/** Init script: the first contexts are lost as soon as they are created. */
 const losing = (count) => `<script>
   const { getContext } = HTMLCanvasElement.prototype;
   window.toLose = ${count};
@@ -23,7 +23,7 @@ const canvases = (tab) => tab.evaluate(() =>
   document.querySelector('slam-widget').shadowRoot.querySelectorAll('canvas').length);
 
 describe('a context that is lost while a widget starts', () => {
-  it('is asked for anew, and the reader sees the widget', async () => {
+  it('is requested again, and the reader sees the widget', async () => {
     await on(ONE, async (tab) => {
       await h.ready(tab);
       assert.equal(await tab.locator('slam-widget .failure').count(), 0);
@@ -32,11 +32,11 @@ describe('a context that is lost while a widget starts', () => {
     }, { head: losing(2), quiet: false, options: { sees: true } });
   });
 
-  it('again and again ends in a sentence, and the widget comes after "Try again"', async () => {
+  it('is given up after repeated losses, with one sentence and "Try again"', async () => {
     await on(ONE, async (tab) => {
       const failure = tab.locator('slam-widget .failure');
       await failure.waitFor();
-      assert.match(await failure.innerText(), /takes its drawing surface away/);
+      assert.match(await failure.innerText(), /keeps discarding its WebGL context/);
       assert.equal(await canvases(tab), 0);
       await tab.evaluate(() => (window.toLose = 0));
       await tab.getByRole('button', { name: 'Try again' }).click();
@@ -53,7 +53,7 @@ describe('eighteen widgets in view at once', () => {
   const running = (tab) => tab.evaluate(() =>
     [...document.querySelectorAll('slam-widget')].filter(({ state }) => state === 'running').map(({ id }) => id));
 
-  it('share eight contexts: the rest are pictures, and draw when the reader turns to them', async () => {
+  it('share eight contexts; the others are pictures, and draw once the reader turns to them', async () => {
     await on(body, async (tab) => {
       await tab.waitForFunction(() => [...document.querySelectorAll('slam-widget')]
         .filter(({ shadowRoot }) => shadowRoot.querySelector('.stage.live') !== null).length === 8);
@@ -74,7 +74,7 @@ describe('eighteen widgets in view at once', () => {
   });
 });
 
-it('a widget longer than a canvas can be is drawn coarser, to its end', async () => {
+it('a widget longer than the largest canvas is drawn completely, at a lower resolution', async () => {
   await on('<slam-widget name="w16.3" more="on"></slam-widget>', async (tab) => {
     await h.ready(tab);
     const canvas = await tab.evaluate(() => {
@@ -86,7 +86,7 @@ it('a widget longer than a canvas can be is drawn coarser, to its end', async ()
     assert.ok(canvas.height > 7000 && canvas.height <= 8192, `${canvas.height} pixels`);
     const [across, down] = [canvas.width / canvas.clientWidth, canvas.height / canvas.clientHeight];
     assert.ok(Math.abs(across - down) < 0.01, `${across} and ${down} pixels for a CSS pixel`);
-    // The browser provides all of it, and the widget fills it.
+    // The browser provides the whole buffer, and the widget fills it.
     const last = await tab.evaluate(async () => {
       const picture = await document.querySelector('slam-widget').snapshot();
       const copy = new OffscreenCanvas(picture.width, 400).getContext('2d');

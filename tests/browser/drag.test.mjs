@@ -1,5 +1,4 @@
-// Dragging recomputes everything on every move: the picture belongs to the last value, and the whole chain
-// from the finger to the result is on the screen in the next frame.
+// During a drag every move recomputes everything, and the next frame shows the result of the last value.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -73,7 +72,7 @@ for (const [name, parameter] of [['w16.2', 'noise'], ['w16.3', 'tau'], ['w16.1',
           const fresh = await freshOutcome(tab);
           assert.equal(last.parameter, parameter);
           assert.equal(last.value, value);
-          // A lap takes longer than a frame: a change reports the picture so far.
+          // A lap takes several frames, and a change reports the picture so far.
           if (name !== 'w16.2') assert.deepEqual(last.outcome, fresh);
           assert.deepEqual(shown, fresh);
         }
@@ -81,7 +80,7 @@ for (const [name, parameter] of [['w16.2', 'noise'], ['w16.3', 'tau'], ['w16.1',
       });
     });
 
-    it('shows the picture of a widget that starts there', async () => {
+    it('shows the same picture as a widget that starts with that value', async () => {
       await on(name, async (tab) => {
         const { x, y, width } = await sliderRail(tab, parameter);
         await h.quiet(tab);
@@ -111,7 +110,7 @@ for (const [name, parameter] of [['w16.2', 'noise'], ['w16.3', 'tau'], ['w16.1',
 }
 
 describe('w16.1', () => {
-  it('moves the cloud with the pointer, metre by metre', async () => {
+  it('moves the cloud with the pointer, to scale', async () => {
     await on('w16.1', async (tab) => {
       const value = () => tab.evaluate(() => document.querySelector('#here').value);
       const [left, top] = await cloudSpot(tab);
@@ -120,7 +119,7 @@ describe('w16.1', () => {
       // Grabbing the cloud shows the registered pose: that is the new start.
       await h.moreFrames(tab, 3);
       const taken = await value();
-      // The scale holds while the cloud is dragged; then the picture fits the whole sweep again.
+      // The scale is fixed during the drag; afterwards the picture fits the whole sweep again.
       const [zero, east] = [await h.pointOf(tab, 'sweeps', 0, 0, '#here'), await h.pointOf(tab, 'sweeps', 1, 0, '#here')];
       const pxPerM = east[0] - zero[0];
       await tab.mouse.move(left + 25, top + 20, { steps: 4 });

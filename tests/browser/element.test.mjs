@@ -41,7 +41,7 @@ for (const name of names) {
 }
 
 describe('values', () => {
-  it('come in by attribute, property, value and link, and go out by all of them', async () => {
+  it('can be set and read by attribute, property, value and link', async () => {
     await on('<slam-widget name="w16.1" heading="60"></slam-widget>', async (tab) => {
       const read = () => tab.evaluate(() => document.querySelector('slam-widget').value);
       assert.equal((await read()).heading, 60);
@@ -61,7 +61,7 @@ describe('values', () => {
     });
   });
 
-  it('reach the running widget and come back in its outcome', async () => {
+  it('reach the running widget, and its outcome reflects them', async () => {
     await on('<slam-widget name="w16.1" heading="60"></slam-widget>', async (tab) => {
       await h.ready(tab);
       const before = await tab.evaluate(() => document.querySelector('slam-widget').outcome);
@@ -72,7 +72,7 @@ describe('values', () => {
     });
   });
 
-  it('that are broken are named, as text, and the default stands', async () => {
+  it('that are invalid are reported as text, and the default is used', async () => {
     const evil = '&lt;img src=x onerror=&quot;document.title=1&quot;&gt;';
     await on(`<slam-widget name="w16.1" heading="${evil}"></slam-widget>`, async (tab) => {
       const note = await tab.evaluate(() => {
@@ -100,7 +100,7 @@ describe('values', () => {
     }, { path: '/t.html?w=16.1&heading=70&bogus=1' });
   });
 
-  it('of an address that names no widget are reported once', async () => {
+  it('of an address without a known widget are reported once', async () => {
     const two = '<slam-widget name="w16.1" linked></slam-widget><slam-widget name="w16.2" linked></slam-widget>';
     await on(two, async (tab) => {
       const notes = await tab.evaluate(() => [...document.querySelectorAll('slam-widget')].map(
@@ -109,7 +109,7 @@ describe('values', () => {
     }, { path: '/t.html?w=99' });
   });
 
-  it('that were set before the element was defined, or connected, are taken', async () => {
+  it('that were set before the element was defined or connected are used', async () => {
     const body = `<slam-widget name="w16.1" id="early"></slam-widget>
       <script>document.querySelector('#early').heading = 61;</script>`;
     await on(body, async (tab) => {
@@ -126,7 +126,7 @@ describe('values', () => {
     });
   });
 
-  it('stay when the element moves within its page', async () => {
+  it('are kept when the element moves within its page', async () => {
     await on('<div id="a"><slam-widget name="w16.1"></slam-widget></div><div id="b"></div>', async (tab) => {
       await h.ready(tab);
       await tab.evaluate(() => {
@@ -139,7 +139,7 @@ describe('values', () => {
     });
   });
 
-  it('that are refused are named once, and the note goes when they are right', async () => {
+  it('that are invalid are reported once, and the note disappears when they are valid', async () => {
     await on('<slam-widget name="w16.1"></slam-widget>', async (tab) => {
       await h.ready(tab);
       const field = tab.getByRole('spinbutton', { name: 'Heading' });
@@ -161,7 +161,7 @@ describe('values', () => {
     });
   });
 
-  it('that come in while the reader types leave what is typed, until it is set or the reader goes', async () => {
+  it('that change while the reader types do not overwrite the input before it is set or loses focus', async () => {
     await on('<slam-widget name="w16.1"></slam-widget>', async (tab) => {
       await h.ready(tab);
       const field = tab.getByRole('spinbutton', { name: 'Heading' });
@@ -175,7 +175,7 @@ describe('values', () => {
       assert.equal(await field.inputValue(), '12');
       await tab.keyboard.press('Enter');
       assert.equal(await heading(), 12);
-      // It is gone once the reader has set the value.
+      // The typed text is replaced once the reader has set the value.
       await comesIn(50);
       assert.equal(await field.inputValue(), '50');
       await tab.keyboard.type('3');
@@ -189,7 +189,7 @@ describe('values', () => {
     });
   });
 
-  it('beyond the end of a run come back as its end', async () => {
+  it('beyond the end of a run are clamped to its end', async () => {
     await on('<slam-widget name="w16.2"></slam-widget>', async (tab) => {
       await h.ready(tab);
       const [set, last, shown] = await tab.evaluate(() => {
@@ -203,7 +203,7 @@ describe('values', () => {
     });
   });
 
-  it('of the page itself stay in its address', async () => {
+  it('of the page itself are kept in its address', async () => {
     await on('<slam-widget name="w16.1" linked></slam-widget>', async (tab) => {
       await h.ready(tab);
       await tab.evaluate(() => (document.querySelector('slam-widget').heading = 20));
@@ -212,7 +212,7 @@ describe('values', () => {
     }, { path: '/t.html?id=12' });
   });
 
-  it('in an unknown widget name the widgets there are', async () => {
+  it('of an unknown widget are answered with the list of widgets', async () => {
     await on('<slam-widget name="w99"></slam-widget>', async (tab) => {
       const note = await tab.evaluate(
         () => document.querySelector('slam-widget').shadowRoot.querySelector('.note').textContent,
@@ -222,8 +222,8 @@ describe('values', () => {
   });
 });
 
-describe('a name that is no text', () => {
-  it('is a name that does not exist, and the widget goes on', async () => {
+describe('a name that is not a string', () => {
+  it('is unknown, and the widget keeps working', async () => {
     await on('<slam-widget name="w16.1"></slam-widget>', async (tab) => {
       await h.ready(tab);
       const said = await tab.evaluate(async () => {
@@ -255,7 +255,7 @@ describe('a name that is no text', () => {
 });
 
 describe('events', () => {
-  it('tell of readiness, each change, and the result once it settles', async () => {
+  it('report readiness, each change, and the result once it settles', async () => {
     const head = `<script>
       window.heard = [];
       for (const type of ['slam-ready', 'slam-change', 'slam-result', 'slam-error'])
@@ -279,7 +279,7 @@ describe('events', () => {
     }, { head });
   });
 
-  it('tell the page of what it asked for at the start, and say it to nobody', async () => {
+  it('report the result of the initial values to the page, but not to a screen reader', async () => {
     const head = `<script>
       window.results = [];
       document.addEventListener('slam-result', ({ detail }) => results.push(detail.value.heading));
@@ -290,7 +290,7 @@ describe('events', () => {
     }, { head });
   });
 
-  it('tell the result of what was set out of sight once the widget runs again, and no older one', async () => {
+  it('report the result of values set out of view once the widget runs again, and no older one', async () => {
     const head = `<script>
       window.results = [];
       document.addEventListener('slam-result', ({ detail }) => results.push(detail));
@@ -341,7 +341,7 @@ describe('exports', () => {
     });
   });
 
-  it('copy a link that opens the widget in the same state', async () => {
+  it('copy a link to the same state', async () => {
     await on('<slam-widget name="w16.1" heading="60"></slam-widget>', async (tab) => {
       await h.ready(tab);
       await tab.getByRole('button', { name: 'Copy link' }).click();
@@ -354,7 +354,7 @@ describe('exports', () => {
     }, { options: { permissions: ['clipboard-read', 'clipboard-write'] } });
   });
 
-  it('print the picture of the present state in place of the canvas', async () => {
+  it('print the picture of the present state instead of the canvas', async () => {
     await on('<slam-widget name="w16.1" heading="60"></slam-widget>', async (tab) => {
       await h.ready(tab);
       await tab.evaluate(() => window.dispatchEvent(new Event('beforeprint')));

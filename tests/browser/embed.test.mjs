@@ -38,7 +38,7 @@ const alone = (query, test, how) => visit('', test, { path: `/embed.html${query}
 
 describe('a frame', () => {
   for (const sandbox of [undefined, 'allow-scripts']) {
-    it(`${sandbox === undefined ? 'of the same origin' : 'in a sandbox'} runs, is set, answers and tells`, async () => {
+    it(`${sandbox === undefined ? 'of the same origin' : 'in a sandbox'} runs, can be set, answers and reports`, async () => {
       await framed('?w=16.1&heading=60', async ({ post, hear }) => {
         const ready = await hear('ready');
         assert.equal(ready.slam, 1);
@@ -67,7 +67,7 @@ describe('a frame', () => {
     }, { sandbox: 'allow-scripts allow-downloads' });
   });
 
-  it('tells its size, to learning management systems too', async () => {
+  it('reports its size, also to learning management systems', async () => {
     await framed('?w=16.1', async ({ tab, hear }) => {
       await hear('ready');
       await tab.waitForFunction(() => {
@@ -78,7 +78,7 @@ describe('a frame', () => {
     });
   });
 
-  it('tells its size again when it is ready, and with its state: who listens late has missed the first', async () => {
+  it('repeats its size when it is ready, and in its state, for late listeners', async () => {
     await framed('?w=16.1', async ({ tab, frame, post, hear }) => {
       await hear('ready');
       await tab.waitForFunction(() => heard.slice(heard.findIndex((data) => data.type === 'ready'))
@@ -90,7 +90,7 @@ describe('a frame', () => {
     });
   });
 
-  it('is as high as it says: in a frame of that height nothing scrolls', async () => {
+  it('does not scroll in a frame of the reported height', async () => {
     await framed('?w=16.1&bogus=1', async ({ tab, frame, hear }) => {
       await hear('ready');
       await tab.evaluate(() => addEventListener('message', ({ data }) => {
@@ -104,7 +104,7 @@ describe('a frame', () => {
     });
   });
 
-  it('names what is wrong in its address, to the page and to the reader, and goes on', async () => {
+  it('reports errors in its address to page and reader, and keeps working', async () => {
     await framed('?w=16.1&heading=abc&bogus=1', async ({ frame, hear }) => {
       const { kind, name } = await hear('error', { message: /`heading` takes a number/ });
       assert.deepEqual([kind, name], ['address', 'w16.1']);
@@ -116,7 +116,7 @@ describe('a frame', () => {
     });
   });
 
-  it('refuses messages that do not fit, and leaves those of others alone', async () => {
+  it('rejects invalid messages, and ignores those of others', async () => {
     await framed('?w=16.1', async ({ tab, post, hear }) => {
       await hear('ready');
       for (const [message, reason] of [
@@ -131,7 +131,7 @@ describe('a frame', () => {
         await post(message);
         assert.equal((await hear('error', { message: reason })).kind, 'message');
       }
-      // Values beside an invalid one are set all the same.
+      // Valid values of the same message are set.
       await hear('changed', { parameter: 'dx', value: 0.5 });
       const before = (await tab.evaluate(() => heard)).length;
       await post('hello');
@@ -143,7 +143,7 @@ describe('a frame', () => {
     });
   });
 
-  it('answers a megabyte with a sentence', async () => {
+  it('answers a message of a megabyte with a sentence', async () => {
     await framed('?w=16.1', async ({ tab, post, hear }) => {
       await hear('ready');
       const long = 'x'.repeat(1e6);
@@ -155,7 +155,7 @@ describe('a frame', () => {
         [{ slam: 1, type: 'press', button: long }, /no button `x+…`/],
         [{ slam: 1, type: 'set', values: { [long]: 1 } }, /no parameter `x+…`/],
         [{ slam: 1, type: 'set', values: { heading: long } }, /takes a number, not `x+…`/],
-        [{ slam: 1, type: 'set', values: many }, /99992 more values do not fit/],
+        [{ slam: 1, type: 'set', values: many }, /99992 more values are invalid/],
       ]) {
         await post(message);
         await hear('error', { message: reason });
@@ -166,7 +166,7 @@ describe('a frame', () => {
     });
   });
 
-  it('listens to its parent alone', async () => {
+  it('accepts messages only from its parent', async () => {
     await framed('?w=16.1&heading=60', async ({ tab, post, hear }) => {
       await hear('ready');
       await tab.evaluate(() => {
@@ -189,7 +189,7 @@ describe('a frame that cannot start', () => {
   /** The page's sentence for this case. */
   const says = (frame) => frame.getByText('The widget has not started.').waitFor();
 
-  it('says what a sandbox needs where the server sends no Access-Control-Allow-Origin', async () => {
+  it('explains what a sandbox needs if the server sends no Access-Control-Allow-Origin', async () => {
     const answer = (_, response) => {
       response.removeHeader('Access-Control-Allow-Origin');
       return false;
@@ -201,11 +201,11 @@ describe('a frame that cannot start', () => {
     }, { sandbox: 'allow-scripts', answer, quiet: false });
   });
 
-  it('says so without JavaScript', async () => {
+  it('shows a sentence without JavaScript', async () => {
     await alone('?w=16.1', says, { options: { javaScriptEnabled: false } });
   });
 
-  it('says nothing of the kind where it starts', async () => {
+  it('shows no such sentence if it starts', async () => {
     await alone('?w=16.1', async (tab) => {
       await h.ready(tab);
       assert.equal(await tab.getByText('The widget has not started.').count(), 0);
@@ -214,7 +214,7 @@ describe('a frame that cannot start', () => {
 });
 
 describe('embed.html as a page', () => {
-  it('has the title of its widget, as a heading too', async () => {
+  it('has the title of its widget, also as a heading', async () => {
     await alone('', async (tab, server) => {
       for (const { id, title } of h.schema) {
         await tab.goto(`${server.url}/embed.html?w=${id.slice(1)}`);
@@ -232,7 +232,7 @@ describe('embed.html as a page', () => {
     }, { server: { policy: h.STRICT_POLICY } });
   });
 
-  it('shows what its address says as text, never as HTML', async () => {
+  it('shows texts of its address as text, never as HTML', async () => {
     const html = '<img src=x onerror="window.ran = true"><b id=made>';
     const part = encodeURIComponent(html);
     for (const [query, sentences] of [[`?w=${part}`, 1], [`?w=16.1&heading=${part}&${part}=1&theme=${part}`, 2]]) {

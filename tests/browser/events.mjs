@@ -3,7 +3,7 @@
 export default async function* events(source) {
   for await (const { type, data } of source) {
     if (type !== 'test:pass' && type !== 'test:fail') continue;
-    // A group is counted by its tests; node's own name for a file is not one of our groups.
+    // Node reports a group as a test of its own.
     if (data.details?.type === 'suite') continue;
     yield `${JSON.stringify({
       name: data.name,

@@ -31,7 +31,7 @@ function send(file, response) {
   return true;
 }
 
-/** Opens an example as beside the widgets; at its end axe must report no violation. */
+/** Opens an example of the site; at the end axe must report no violation. */
 function example(file, test) {
   const answer = (path, response) => {
     if (path.startsWith('/examples/reveal/')) return send(join(REVEAL, path.slice('/examples/reveal/'.length)), response);
@@ -65,15 +65,15 @@ it('plain.html: a widget, a link that sets it, and a prediction', async () => {
   });
 });
 
-it('iframe.html: a sandboxed frame that is set and answers', async () => {
+it('iframe.html: a sandboxed frame that can be set and answers', async () => {
   await example('iframe.html', async (tab) => {
-    // The page's own script sets the height that the frame reports.
+    // The script of the page sets the height that the frame reports.
     const frame = tab.frames().find((candidate) => candidate !== tab.mainFrame());
     await h.ready(frame);
     const fits = () => frame.waitForFunction(
       () => innerHeight === Math.ceil(document.querySelector('main').getBoundingClientRect().height));
     await fits();
-    // On a slow network the frame may exist before the script does.
+    // On a slow network the frame may have loaded before the script.
     await tab.evaluate(() => {
       document.querySelector('#lap').style.height = '1000px';
       return import('/examples/iframe.js?late');
@@ -109,7 +109,7 @@ for (const [file, parameter, value] of [
   });
 }
 
-it('mdbook.html: an arrow key sets the slider that has the focus, and turns no page', async () => {
+it('mdbook.html: an arrow key moves the focused slider, and turns no page', async () => {
   await example('mdbook.html', async (tab) => {
     await h.ready(tab);
     const value = await focusSlider(tab, 'w16.3');
@@ -123,7 +123,7 @@ it('mdbook.html: an arrow key sets the slider that has the focus, and turns no p
   });
 });
 
-it('jupyter.html: the anywidget module in step with its model, both ways', async () => {
+it('jupyter.html: the anywidget module in sync with its model, both ways', async () => {
   await example('jupyter.html', async (tab) => {
     await h.ready(tab);
     await tab.waitForFunction(() => traits.outcome !== null);
@@ -137,7 +137,7 @@ it('jupyter.html: the anywidget module in step with its model, both ways', async
   });
 });
 
-it('jupyter.html: what the kernel says again takes nothing back, and what it says anew is taken', async () => {
+it('jupyter.html: values that the kernel repeats revert nothing, and new ones are set', async () => {
   await example('jupyter.html', async (tab) => {
     await h.ready(tab);
     await tab.waitForFunction(() => traits.value.seed !== undefined);
@@ -155,7 +155,7 @@ it('jupyter.html: what the kernel says again takes nothing back, and what it say
   });
 });
 
-it('jupyter.html: a value that does not fit is named in the cell, and the others are set', async () => {
+it('jupyter.html: an invalid value is reported in the cell, and the others are set', async () => {
   await example('jupyter.html', async (tab) => {
     const cell = tab.locator('#cell');
     const noise = () => tab.evaluate(() => document.querySelector('slam-widget').noise);
@@ -163,7 +163,7 @@ it('jupyter.html: a value that does not fit is named in the cell, and the others
     await cell.getByText('w16.2 has no parameter `bogus`').waitFor();
     await cell.getByText('`seed` takes a number, not `many`. It keeps its value.').waitFor();
     assert.equal(await noise(), 3);
-    // A value that the widget writes into the model removes no message.
+    // Values that the widget writes to the model do not clear the message.
     await h.ready(tab);
     await tab.waitForFunction(() => traits.value.noise === 3);
     assert.match(await cell.innerText(), /no parameter `bogus`; it has [a-z, -]+\. `seed`/);
@@ -175,7 +175,7 @@ it('jupyter.html: a value that does not fit is named in the cell, and the others
   });
 });
 
-it('a notebook that starts with a bad value gets the widget and the sentence', async () => {
+it('a notebook that starts with an invalid value gets the widget and a sentence', async () => {
   await example('jupyter.html', async (tab) => {
     await tab.evaluate(() => {
       unmount();
@@ -216,7 +216,7 @@ it('myst.md: the widget runs from the file that MyST copies', async () => {
   }, { server: { pages: { '/t.html': page }, answer } });
 });
 
-it('reveal.html: the widget runs on its slide and leaves the keys to the deck', async () => {
+it('reveal.html: the widget runs on its slide, and the deck gets its keys', async () => {
   await example('reveal.html', async (tab) => {
     await tab.evaluate(() => deck);
     await tab.keyboard.press('ArrowRight');
@@ -235,7 +235,7 @@ it('reveal.html: the widget runs on its slide and leaves the keys to the deck', 
   });
 });
 
-it('the npm package, packed and installed, works from a bundler and links to its own frame', async () => {
+it('the npm package, packed and installed, works in a bundle, and links to its own embed.html', async () => {
   const project = installPackage();
   try {
     const manifest = JSON.parse(readFileSync(join(project.installed, 'package.json'), 'utf8'));
@@ -250,7 +250,7 @@ it('the npm package, packed and installed, works from a bundler and links to its
     const { outputFiles } = await esbuild.build({
       entryPoints: [join(project.folder, 'main.js')], bundle: true, minify: true, format: 'esm', write: false, outdir: project.folder,
     });
-    // Beside the bundle are only the files that docs/embedding.md lists.
+    // Only the files that docs/embedding.md lists are next to the bundle.
     const isBeside = /^\/app\/([^/]+\.wasm|pictures\/[^/]+|embed\.html|slam-[^/]+\.js)$/;
     const answer = (path, response) => {
       if (path === '/app/main.js') {
@@ -283,7 +283,7 @@ it('the npm package, packed and installed, works from a bundler and links to its
   }
 });
 
-it('the examples of the site ask for nothing that it has not', () => {
+it('the examples of the site request only files that exist', () => {
   const folder = join(h.DIST, 'examples');
   for (const file of readdirSync(folder).filter((name) => /\.(html|js|mjs)$/.test(name))) {
     const text = readFileSync(join(folder, file), 'utf8');
@@ -292,7 +292,7 @@ it('the examples of the site ask for nothing that it has not', () => {
   }
 });
 
-it('the recipes in docs/embedding.md name files that exist, and no recipe is left out', () => {
+it('each recipe of docs/embedding.md names existing files, and each example has a recipe', () => {
   const text = readFileSync(new URL('../../docs/embedding.md', import.meta.url), 'utf8');
   const named = new Set([...text.matchAll(/web\/examples\/([\w.-]+)/g)].map(([, file]) => file));
   const folder = new URL('../../web/examples/', import.meta.url);

@@ -1,4 +1,4 @@
-// One exercise by itself in a frame: its answers go to the page around it, and to a learning management system.
+// A single exercise in a frame: its answers go to the surrounding page and to a learning management system.
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -14,7 +14,7 @@ import * as h from './harness.mjs';
 const { unzipSync } = createRequire(new URL('../../web/package.json', import.meta.url))('fflate');
 const visit = h.visitor();
 
-/** A page with the frame, which records messages; `head` is the system around it. */
+/** A page that embeds the frame and records its messages; `head` has the learning management system. */
 async function framed(query, test, { head = '', sandbox = '', ...how } = {}) {
   const page = `<!doctype html><html lang="en"><title>Host</title><link rel="icon" href="data:,">
     <script>window.heard = []; addEventListener('message', (event) => heard.push(event.data));${head}</script>
@@ -25,17 +25,17 @@ async function framed(query, test, { head = '', sandbox = '', ...how } = {}) {
   }, { path: '/host.html', fresh: true, ...how, server: { ...how.server, pages: { '/host.html': page } } });
 }
 
-/** Commits to the choice of that place, and waits for the words. */
+/** Commits to a choice by its index, and waits for the verdict. */
 async function answer(frame, exercise, place) {
   const question = frame.locator(`slam-predict[exercise="${exercise}"]`);
   await question.locator('input').nth(place).check();
   await question.getByRole('button', { name: 'Commit and see' }).click();
-  await question.getByText(/^(As you predicted|It comes out otherwise)/).waitFor();
+  await question.getByText(/^(As you predicted|It turns out differently)/).waitFor();
 }
 
 const answers = (tab) => tab.evaluate(() => heard.filter((data) => data?.type === 'answer'));
 
-it('shows one part in a sandbox under the strict policy, and tells the answer to the page around', async () => {
+it('embed.html shows one part in a sandbox under the strict policy, and reports the answer to the surrounding page', async () => {
   await framed('?exercise=16.5a&student=Ann', async (tab, frame) => {
     await frame.locator('slam-predict').first().waitFor();
     assert.equal(await frame.locator('slam-predict').count(), 1);
@@ -48,7 +48,7 @@ it('shows one part in a sandbox under the strict policy, and tells the answer to
   }, { sandbox: 'sandbox="allow-scripts"', server: { policy: `${h.STRICT_POLICY}; frame-src 'self'`.replace("script-src 'self'", "script-src 'self' 'unsafe-inline'") } });
 });
 
-it('shows every part of an exercise with its widget once, readable by all', async () => {
+it('embed.html shows every part of an exercise, each widget once, and satisfies axe-core', async () => {
   await visit('', async (tab) => {
     await tab.locator('slam-predict').nth(2).waitFor();
     assert.equal(await tab.locator('slam-predict').count(), 3);
@@ -59,7 +59,7 @@ it('shows every part of an exercise with its widget once, readable by all', asyn
   }, { path: '/embed.html?exercise=5', fresh: true });
 });
 
-it('says which exercises there are if the address names none', async () => {
+it('embed.html lists the exercises if the address names an unknown one', async () => {
   await visit('', async (tab) => {
     await tab.getByText('There is no exercise `99`; there are 16.1, 16.2, 16.3').waitFor();
     assert.equal(await tab.locator('slam-predict').count(), 0);
@@ -101,7 +101,7 @@ const RUNTIME = `
     LMSGetLastError: () => '0', LMSGetErrorString: () => '', LMSGetDiagnostic: () => '',
   };`;
 
-it('reports answers, score and status by SCORM 1.2, and takes the student from there', async () => {
+it('an exercise reports answers, score and status by SCORM 1.2, and gets the student from it', async () => {
   await framed('?exercise=5', async (tab, frame) => {
     for (const part of ['a', 'b', 'c']) await answer(frame, `16.5${part}`, 0);
     const told = await answers(tab);
@@ -122,7 +122,7 @@ it('reports answers, score and status by SCORM 1.2, and takes the student from t
   }, { head: RUNTIME });
 });
 
-it('is a SCORM package whose manifest and exercises find every file in it', async () => {
+it('the SCORM package has every file that its manifest and exercises need', async () => {
   const folder = mkdtempSync(join(tmpdir(), 'scorm-'));
   try {
     const target = join(folder, 'exercises.zip');
@@ -133,7 +133,7 @@ it('is a SCORM package whose manifest and exercises find every file in it', asyn
     for (const [, file] of hrefs) assert.ok(inside[file], file);
     const named = hrefs.map(([, , , exercise]) => exercise).filter(Boolean);
     assert.deepEqual(named.slice(0, 3), ['16.1', '16.2', '16.3']);
-    // Files come from the package alone.
+    // Serves only files of the package.
     const answerFromZip = (path, response) => {
       const bytes = inside[path.slice('/course/'.length)];
       if (!path.startsWith('/course/') || bytes === undefined) return false;

@@ -1,4 +1,4 @@
-// The reader's own flat in w16.2: drawn by mouse, finger and keys, stored in links, history and files.
+// A custom flat in w16.2: drawn by mouse, touch and keyboard, stored in links, history and files.
 
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -42,8 +42,8 @@ async function saved(tab) {
   return (await h.bytesOf(await download)).toString('utf8');
 }
 
-describe('a flat of one’s own', () => {
-  it('follows the mouse: a wall is there at once, and the lap after it', async () => {
+describe('a custom flat', () => {
+  it('follows the mouse: the wall appears at once, and the lap after it', async () => {
     await on(async (tab) => {
       const before = await outcome(tab);
       await drag(tab, [5, 3.8], [5, 4.1]);
@@ -62,7 +62,7 @@ describe('a flat of one’s own', () => {
     });
   });
 
-  it('follows a finger that draws across, and the page stays where it is', async () => {
+  it('follows a finger that draws horizontally, and the page does not scroll', async () => {
     await on(async (tab) => {
       const scrolled = () => tab.evaluate(() => scrollY);
       const before = await scrolled();
@@ -81,7 +81,7 @@ describe('a flat of one’s own', () => {
     }, { hasTouch: true });
   });
 
-  it('is edited by keys alone, and a screen reader hears it', async () => {
+  it('is edited by keyboard alone, with announcements for a screen reader', async () => {
     await on(async (tab) => {
       await tab.evaluate(() => document.querySelector('slam-widget').shadowRoot.querySelector('[data-control="piece-on"]').focus());
       await tab.keyboard.press('PageDown');
@@ -109,7 +109,7 @@ describe('a flat of one’s own', () => {
     });
   });
 
-  it('travels in a link of less than 2 kB, and Back in the history finds it', async () => {
+  it('fits into a link of less than 2 kB, and Back restores it', async () => {
     await on(async (tab, server) => {
       await drag(tab, [1, 1], [2, 1]);
       await changed(tab, '');
@@ -136,7 +136,7 @@ describe('a flat of one’s own', () => {
     });
   });
 
-  it('that is damaged leaves the widget with its world and one sentence', async () => {
+  it('that is damaged is reported in one sentence, and the widget keeps its world', async () => {
     const note = (tab, pattern) => tab.waitForFunction((source) => new RegExp(source)
       .test(document.querySelector('slam-widget').shadowRoot.querySelector('.note').textContent), pattern);
     await on(async (tab) => {
@@ -160,7 +160,7 @@ describe('a flat of one’s own', () => {
     }, { query: '?w=16.2&flat=BAAAAAAAAAAA' });
   });
 
-  it('goes out as a file that the command line drives to the same end, and comes in again', async () => {
+  it('is saved as a file that gives the same lap on the command line, and opened again', async () => {
     await on(async (tab) => {
       await drag(tab, [5, 3.8], [5, 4.1]);
       await changed(tab, '');

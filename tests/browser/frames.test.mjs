@@ -1,4 +1,4 @@
-// A widget draws while something moves or settles, and at no other time.
+// A widget draws only while something moves or settles.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -8,7 +8,7 @@ import * as h from './harness.mjs';
 const TALL = '<p style="height: 3000px">Much text.</p>';
 /** A widget that computes everything at once; w16.1 fills its map for a while. */
 const CALM = '<slam-widget name="w16.2"></slam-widget>';
-/** Stock eframe would request frames forever. */
+/** Stock eframe requests frames forever. */
 const SETTLE_MS = 900;
 const SETTLE_FRAMES = 3;
 
@@ -22,7 +22,7 @@ for (const { id } of h.schema) {
   describe(id, () => {
     const page = visit.once(`<slam-widget name="${id}"></slam-widget>`);
 
-    it('draws nothing, nor even asks for a frame, while nothing changes', async () => {
+    it('neither draws nor requests frames while idle', async () => {
       const { tab } = page;
       await h.ready(tab);
       await h.quiet(tab);
@@ -31,7 +31,7 @@ for (const { id } of h.schema) {
       assert.equal(await drawn(tab), before);
     });
 
-    it('shows the end of a run at once where the reader wants no motion', async () => {
+    it('shows the end of a run at once under reduced motion', async () => {
       const { tab } = page;
       const play = (from) => tab.evaluate(async (start) => {
         const widget = document.querySelector('slam-widget');
@@ -55,7 +55,7 @@ for (const { id } of h.schema) {
 }
 
 describe('a widget', () => {
-  it('draws while something plays, and stops when it is scrolled out of view', async () => {
+  it('draws during a playback, and stops when it is scrolled out of view', async () => {
     await on(CALM + TALL, async (tab) => {
       await h.ready(tab);
       await h.quiet(tab);

@@ -1,4 +1,4 @@
-// A server that can misbehave on request, a browser, and pages that record their errors.
+// A server, a browser, and tabs that record their errors.
 
 import assert from 'node:assert/strict';
 import { createReadStream, existsSync, readFileSync, statSync } from 'node:fs';
@@ -14,7 +14,7 @@ export { launch };
 
 export const DIST = fileURLToPath(new URL('../../dist/', import.meta.url));
 
-/** The pages of the companion, in the order in which they are read. */
+/** The pages of the companion, in reading order. */
 export const PAGES = Object.freeze(pages.map(({ file }) => file));
 
 /** The widgets of a page, in order. */
@@ -27,7 +27,7 @@ export function pageOf(id) {
   return `/${PAGES.find((page) => widgetsOf(page).includes(id))}`;
 }
 
-/** The strictest policy under which the element has to work. */
+/** The strictest content security policy under which the element has to work. */
 export const STRICT_POLICY =
   "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'; " +
   "img-src 'self' data:; style-src 'self' 'unsafe-inline'";
@@ -73,19 +73,19 @@ export async function serve({ pages = {}, policy, answer } = {}) {
     url: `http://localhost:${server.address().port}`,
     close: () => {
       const closed = new Promise((resolve) => server.close(resolve));
-      // A response that was held back must not block the end of the test.
+      // Otherwise a response that the test never sent would block.
       server.closeAllConnections();
       return closed;
     },
   };
 }
 
-/** A screen with few pixels: with antialiasing, software drawing would compute each of them four times. */
+/** A screen with few pixels, because drawing is by software. */
 const SCREEN = { viewport: { width: 1100, height: 900 }, deviceScaleFactor: 0.5 };
 
 /**
- * Runs in every page before its own scripts. Turns antialiasing off. In a page whose pixels no test
- * inspects, WebGL does not fill triangles, which takes two thirds of a frame in software.
+ * Init script: turns antialiasing off, because software drawing would compute each pixel four times. If no test inspects
+ * the pixels of a page, WebGL fills no triangles: that takes two thirds of a frame.
  */
 function drawCheaply({ sees }) {
   const { getContext } = HTMLCanvasElement.prototype;
@@ -96,15 +96,15 @@ function drawCheaply({ sees }) {
 }
 
 /**
- * A tab that records errors, and requests to hosts other than `home`. The clock of its pages counts frames,
- * each of `stepMs`; a test that inspects pixels sets `sees`; the other options are Playwright's.
+ * A tab that records errors, and requests to hosts other than `home`. A frame takes `stepMs` on the clock of its pages; a
+ * test that inspects pixels sets `sees`; the other options are Playwright's.
  */
 async function newTab(browser, { stepMs = clock.COARSE_MS, sees = false, ...options } = {}) {
   const context = await browser.newContext({ ...SCREEN, ...options });
   context.setDefaultTimeout(LAST_RESORT_MS);
   context.setDefaultNavigationTimeout(LAST_RESORT_MS);
   await context.addInitScript(clock.install, {
-    pauseMs: clock.PAUSE_MS, stepMs, lookMs: clock.lookMs(stepMs), quickLookMs: clock.QUICK_LOOK_MS, patienceMs: clock.PATIENCE_MS,
+    pauseMs: clock.PAUSE_MS, stepMs, readingMs: clock.readingMs(stepMs), quickReadingMs: clock.QUICK_READING_MS, longDelayMs: clock.LONG_DELAY_MS,
   });
   await context.addInitScript(drawCheaply, { sees });
   const tab = await context.newPage();
@@ -122,13 +122,13 @@ async function newTab(browser, { stepMs = clock.COARSE_MS, sees = false, ...opti
   return tab;
 }
 
-/** Removes everything from a tab that its next test could see: each visit has a new origin. */
+/** Resets a tab for its next test; storage needs no reset, because each visit has a new origin. */
 async function tidy(tab) {
   await tab.mouse.move(0, 0);
   await tab.goto('about:blank');
 }
 
-/** Sets what a tab can change for each test: the rest of Playwright's options are permanent. */
+/** Sets the options that an existing tab can change. */
 async function prepare(tab, { viewport = SCREEN.viewport, colorScheme = null, reducedMotion = null }) {
   await tab.emulateMedia({ media: null, colorScheme, reducedMotion });
   await tab.setViewportSize(viewport);
@@ -142,11 +142,11 @@ export function bare(body, head = '') {
 }
 
 /**
- * For one test file: opens a page for a test, a bare page with `body` at /t.html or any other `path` of the
- * server. The browser starts with the first page and is closed after the last test.
+ * Returns a function, one for each test file, that opens a page for a test: a bare page with `body` at /t.html, or any
+ * other `path` of the server. The browser starts with the first page and is closed after the last test.
  *
- * Tests whose options a tab can change share one tab, because a new one costs more than most tests. A test
- * may request a `fresh` tab, or a browser `with` other flags.
+ * Tests share a tab if it can change to their options, because a new one costs more than most tests. A test may request a
+ * `fresh` tab, or a browser `with` other flags.
  */
 export function visitor() {
   const tabs = new Map();
@@ -210,7 +210,7 @@ export function ready(page, selector = 'slam-widget') {
     && document.querySelector(css).shadowRoot.querySelector('.stage.live') !== null, selector);
 }
 
-/** Waits until a widget that has a reason to draw has drawn that many more frames. */
+/** Waits until a widget has drawn `count` more frames. */
 export async function moreFrames(page, count, selector = 'slam-widget') {
   const before = await page.evaluate((css) => document.querySelector(css).frames, selector);
   await page.waitForFunction(
@@ -223,7 +223,7 @@ export async function moreFrames(page, count, selector = 'slam-widget') {
   );
 }
 
-/** The page's coordinates of a point of a panel of the widget. */
+/** Converts a point of a panel to page coordinates. */
 export function pointOf(page, panel, x, y, selector = 'slam-widget') {
   return page.evaluate(
     ([css, panelId, px, py]) => {
@@ -239,17 +239,17 @@ export function pointOf(page, panel, x, y, selector = 'slam-widget') {
 /** The widgets' schema from the build. */
 export const schema = JSON.parse(readFileSync(join(DIST, 'schema.json'), 'utf8'));
 
-/** Counts the animation frames that a page requests during that much time of its clock. */
+/** Counts the animation frames that a page requests during a time on its clock. */
 export function countFrames(page, milliseconds) {
   return page.evaluate((ms) => frameClock.pass(ms), milliseconds);
 }
 
-/** Waits until no frame has been requested for a second of the page's clock; returns the number of earlier ones. */
+/** Waits until the page has requested no frame for a second of its clock; returns the number of earlier requests. */
 export function quiet(page) {
   return page.evaluate(() => frameClock.quiet(1000));
 }
 
-/** The bytes that a page gave to the reader for saving. */
+/** The bytes of a download. */
 export async function bytesOf(download) {
   const chunks = [];
   for await (const chunk of await download.createReadStream()) chunks.push(chunk);

@@ -1,5 +1,5 @@
-// The Python wheel in a real JupyterLab: the widget runs in its cell without any network but the notebook's
-// own; values and results go both ways, and logs in.
+// The Python wheel in JupyterLab: the widget runs in its cell with only the notebook's server, and exchanges values, results
+// and files with the kernel.
 
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
@@ -53,7 +53,7 @@ async function startLab(folder, site) {
   throw new Error(`JupyterLab does not start:\n${said.join('\n')}`);
 }
 
-test('the wheel lives in JupyterLab without a network, and values and results go both ways, and logs in', async (context) => {
+test('the wheel works in JupyterLab without a network: values and results in both directions, and logs to the page', async (context) => {
   const why = without('jupyterlab', 'anywidget', 'hatchling');
   if (why !== undefined) {
     skip(context, why);

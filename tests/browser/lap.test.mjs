@@ -11,7 +11,7 @@ import * as h from './harness.mjs';
 const visit = h.visitor();
 const reading = (test, options = {}, how = {}) => visit('', test, { path: '/index.html', options, ...how });
 const live = (tab) => tab.waitForSelector('#lap.live');
-/** A module of the strip, for Node. */
+/** Loads a module of the strip in Node. */
 async function load(file) {
   const web = new URL('../../web/', import.meta.url);
   const { build } = createRequire(web)('esbuild');
@@ -24,7 +24,7 @@ const slider = (tab) => tab.locator('.lap-controls input');
 const button = (tab) => tab.locator('.lap-controls button');
 const tick = (tab) => tab.evaluate(() => Number(document.querySelector('#lap').dataset.tick));
 const act = (tab) => tab.locator('.lap-acts li[aria-current]').textContent();
-/** Waits until a hundredth of the canvas has ink: it is painted in the frame after its size is known. */
+/** Waits until a hundredth of the canvas is painted, which happens in the frame after its resize. */
 const inked = (tab) => tab.waitForFunction(() => {
   const canvas = document.querySelector('.lap-picture canvas');
   if (canvas.width === 0 || canvas.height === 0) return false;
@@ -32,7 +32,7 @@ const inked = (tab) => tab.waitForFunction(() => {
   return data.reduce((sum, value, at) => sum + (at % 4 === 3 && value > 128 ? 1 : 0), 0) > 0.01 * (data.length / 4);
 });
 
-/** The page, modified to record the acts in the order in which they are played. */
+/** The page, modified to record the order of the acts. */
 const noting = readFileSync(join(h.DIST, 'index.html'), 'utf8').replace('<head>', `<head><script>
   window.acts = [];
   addEventListener('DOMContentLoaded', () => new MutationObserver(() => {
@@ -43,7 +43,7 @@ const noting = readFileSync(join(h.DIST, 'index.html'), 'utf8').replace('<head>'
 
 describe('the lap under the title', () => {
   for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 844 }]) {
-    it(`is the first thing that lives, without scrolling, at ${viewport.width}×${viewport.height}`, async () => {
+    it(`is interactive on the first screen, at ${viewport.width}×${viewport.height}`, async () => {
       await reading(async (tab) => {
         const place = () => tab.evaluate(() => {
           const { top, bottom } = document.querySelector('.lap-picture').getBoundingClientRect();
@@ -55,14 +55,14 @@ describe('the lap under the title', () => {
         const after = await place();
         assert.ok(after.top >= 0 && after.bottom <= viewport.height, JSON.stringify(after));
         await inked(tab);
-        // The picture of the build was at the position of the canvas.
+        // The still picture was at the same position.
         assert.ok(Math.abs(after.height - before.height) <= 2, `${before.height} px, then ${after.height}`);
         assert.equal(before.top, after.top);
       }, { viewport });
     });
   }
 
-  it('plays before the program of the widgets is asked for, and its page weighs 300 kB at most', async () => {
+  it('plays before the module of the widgets is fetched, on a page of at most 300 kB', async () => {
     for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 844 }]) {
       const asked = new Set();
       const answer = (path) => void asked.add(path);
@@ -71,7 +71,7 @@ describe('the lap under the title', () => {
         await h.quiet(tab);
         const weights = [...asked].filter((path) => !path.endsWith('.woff2')).map((path) => {
           const bytes = readFileSync(join(h.DIST, path));
-          // The script of a quick build carries its sources.
+          // The script of a quick build includes a source map.
           const sent = path.endsWith('.js') ? Buffer.from(bytes.toString().replace(/\n\/\/# sourceMappingURL=.*/s, '')) : bytes;
           return [path, brotliCompressSync(sent).length];
         });
@@ -82,7 +82,7 @@ describe('the lap under the title', () => {
     }
   });
 
-  it('asks for the program once, for itself and for the widgets, two screens before the first', async () => {
+  it('fetches the module once for page and widgets, two screens ahead of the first use', async () => {
     const asked = [];
     const answer = (path) => void (path.endsWith('.wasm') && asked.push(path));
     await reading(async (tab) => {
@@ -100,7 +100,7 @@ describe('the lap under the title', () => {
     }, {}, { server: { answer } });
   });
 
-  it('plays through its acts in about ten seconds, and stops', async () => {
+  it('plays its acts in about ten seconds, and stops', async () => {
     await reading(async (tab) => {
       await live(tab);
       const lengthS = Number(await slider(tab).getAttribute('max'));
@@ -112,7 +112,7 @@ describe('the lap under the title', () => {
     }, {}, { server: { pages: { '/index.html': noting } } });
   });
 
-  it('waits while it is out of sight', async () => {
+  it('pauses while it is out of view', async () => {
     await reading(async (tab) => {
       await live(tab);
       await tab.evaluate(() => scrollTo(0, 3 * innerHeight));
@@ -126,7 +126,7 @@ describe('the lap under the title', () => {
     }, { stepMs: 100 });
   });
 
-  it('rests with reduced motion where the walls stand twice, and is the reader’s by keys and by touch', async () => {
+  it('shows the doubled walls under reduced motion, and is controlled by keyboard and touch', async () => {
     await reading(async (tab) => {
       await live(tab);
       await h.quiet(tab);
@@ -140,7 +140,7 @@ describe('the lap under the title', () => {
       assert.match(await slider(tab).getAttribute('aria-valuetext'), /^Walls double, tick \d+$/);
       await tab.keyboard.press('End');
       assert.equal(await tick(tab), 129);
-      // It plays from there, so the clock stops until the test has seen the position.
+      // It plays from there: the clock is stopped until the test has read the position.
       await tab.evaluate(() => frameClock.hold(true));
       await tab.getByRole('button', { name: 'Wheels drive through walls.' }).tap();
       assert.equal(await button(tab).textContent(), 'Pause');
@@ -153,13 +153,13 @@ describe('the lap under the title', () => {
     }, { reducedMotion: 'reduce', hasTouch: true });
   });
 
-  it('is dragged by its robot, out to the turn and on the way back', async () => {
+  it('is scrubbed by dragging the robot, to the turn and back', async () => {
     await reading(async (tab) => {
       await live(tab);
       await slider(tab).press('Home');
       const { x, y, width, height } = await tab.locator('.lap-picture canvas').boundingBox();
       const cursor = () => tab.evaluate(() => document.querySelector('.lap-picture canvas').style.cursor);
-      // Where the pointer becomes a hand, there is the robot.
+      // The cursor changes over the robot.
       let at = x;
       while ((await cursor()) !== 'grab' && at < x + width) {
         at += 20;
@@ -182,7 +182,7 @@ describe('the lap under the title', () => {
     }, { reducedMotion: 'reduce' });
   });
 
-  it('keeps both robots in the picture at every moment, and ends with the walls of before', async () => {
+  it('keeps both robots in view at every moment, and ends with the uncorrected walls', async () => {
     const { Replay } = await load('story.ts');
     const { camera, ASPECT } = await load('drawing.ts');
     const story = JSON.parse(readFileSync(join(h.DIST, readdirSync(h.DIST).find((name) => name.startsWith('lap-story'))), 'utf8'));
@@ -197,7 +197,7 @@ describe('the lap under the title', () => {
     assert.equal(replay.at(replay.lengthS).before.strength, 1);
   });
 
-  it('is a picture where no script runs', async () => {
+  it('is a still picture without scripts', async () => {
     await reading(async (tab) => {
       const picture = tab.locator('#lap img');
       assert.ok(await picture.evaluate((image) => image.decode().then(() => image.naturalWidth > 300)));

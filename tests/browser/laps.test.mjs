@@ -40,7 +40,7 @@ const medians = (frame) => frame.evaluate(() => new Promise((resolve) => {
 const expected = errors.flat().map((sorted) => sorted[(SEEDS - 1) / 2].toFixed(2));
 
 describe('the thousand laps', () => {
-  it('are driven by workers while one looks, and say what the core says', async () => {
+  it('run in workers while the figure is in view, with the same results as the core', async () => {
     await reading(async (tab) => {
       assert.equal(tab.workers().length, 0, 'nobody looks yet');
       const worker = tab.waitForEvent('worker');
@@ -53,7 +53,7 @@ describe('the thousand laps', () => {
     });
   });
 
-  it('are driven between frames where workers are not to be had', async () => {
+  it('run between frames if workers are unavailable', async () => {
     const framed = '<!doctype html><title>Around</title><link rel="icon" href="data:,"><iframe sandbox="allow-scripts" '
       + 'src="/index.html#laps" style="width: 1000px; height: 800px"></iframe>';
     await reading(async (tab) => {
@@ -65,7 +65,7 @@ describe('the thousand laps', () => {
     }, { path: '/around.html', server: { pages: { '/around.html': framed } }, quiet: false });
   });
 
-  it('are said in words under the arrow keys, and one is driven in w16.2 by a click', async () => {
+  it('are described in words by the arrow keys, and opened in w16.2 by a click', async () => {
     await reading(async (tab) => {
       await look(tab);
       await done(tab);

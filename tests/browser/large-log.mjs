@@ -1,9 +1,9 @@
-// Maps a large log in w16.10 and prints the peak memory of the renderer, which is page and worker together:
+// Maps a large log in w16.10 and prints the peak memory of the renderer process, with page and worker:
 //
 //     node tests/browser/large-log.mjs LOG [CANCEL_AT_PERCENT]
 //
-// Not a test, because it takes minutes. `crates/robot_io/recordings/long.py` writes the log. Needs `cargo
-// xtask build` before, and Linux.
+// Takes minutes, and so is no test. `crates/robot_io/recordings/long.py` writes the log. Needs Linux and a finished
+// `cargo xtask build`.
 
 import { readFileSync } from 'node:fs';
 import { launch } from './chromium.mjs';
@@ -18,19 +18,19 @@ const server = await h.serve({ pages: { '/t.html': h.bare('<slam-widget name="w1
 try {
   const tab = await browser.newPage({ viewport: { width: 1100, height: 900 }, deviceScaleFactor: 0.5 });
   tab.setDefaultTimeout(0);
-  // Software drawing would occupy the core that the worker needs.
+  // Software drawing would take CPU time from the worker.
   await tab.addInitScript(() => { WebGL2RenderingContext.prototype.drawElements = () => {}; });
   await tab.goto(`${server.url}/t.html`);
   await h.ready(tab);
   const { processInfo } = await (await browser.newBrowserCDPSession()).send('SystemInfo.getProcessInfo');
-  let mostMb = 0;
-  /** Peak memory of a renderer, MB. The kernel counts it, and Chromium resets it now and then. */
+  let maxMb = 0;
+  /** Peak memory of a renderer, MB. Chromium resets the kernel's counter now and then. */
   const peakMb = () => {
     for (const { id } of processInfo.filter(({ type }) => type === 'renderer')) {
       const [, kilobytes] = /VmHWM:\s+(\d+)/.exec(readFileSync(`/proc/${id}/status`, 'utf8'));
-      mostMb = Math.max(mostMb, Math.round(Number(kilobytes) / 1000));
+      maxMb = Math.max(maxMb, Math.round(Number(kilobytes) / 1000));
     }
-    return mostMb;
+    return maxMb;
   };
   console.log(`before: ${peakMb()} MB`);
   const isOver = () => /^(mapped|loops contradict|no map)$/.test(document.querySelector('slam-widget').outcome.verdict);

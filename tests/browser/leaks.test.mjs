@@ -6,7 +6,7 @@ import * as h from './harness.mjs';
 
 const visit = h.visitor();
 
-/** Runs before all scripts of a page: records every WebGL context and every wasm memory. */
+/** Init script: records every WebGL context and every wasm memory. */
 const REMEMBER = `<script>
   window.contexts = [];
   window.memories = [];
@@ -32,10 +32,10 @@ const REMEMBER = `<script>
   };
 </script>`;
 
-/** A page with a container for widgets and nothing in it. */
+/** A page with an empty container for widgets. */
 const on = (test) => visit('<div id="here"></div>', test, { head: REMEMBER, fresh: true });
 
-it('is mounted and taken away thirty times without leaking memory, contexts or listeners', async () => {
+it('a widget is mounted and removed thirty times without leaking memory, contexts or listeners', async () => {
   await on(async (tab) => {
     const session = await tab.context().newCDPSession(tab);
     const mount = async () => {
@@ -43,7 +43,7 @@ it('is mounted and taken away thirty times without leaking memory, contexts or l
         document.querySelector('#here').innerHTML = '<slam-widget name="w16.4"></slam-widget>';
       });
       await h.ready(tab);
-      // The context is alive until the moment in which the element is removed.
+      // The context is alive until the element is removed.
       const [before, after] = await tab.evaluate(() => {
         const { onPage, elsewhere } = heldContexts();
         document.querySelector('#here').replaceChildren();
@@ -70,16 +70,16 @@ it('is mounted and taken away thirty times without leaking memory, contexts or l
       memories: 3,
     };
     const over = (now) => Object.keys(limits).filter((name) => now[name] >= limits[name]);
-    // The collector frees memory at any time, but never leaked memory.
+    // The garbage collector may run at any time, but never frees leaked memory.
     let now = await measure();
     for (let tries = 0; tries < 20 && over(now).length > 0; tries += 1) now = await measure();
     assert.deepEqual(over(now), [], `${JSON.stringify(before)} → ${JSON.stringify(now)}`);
   });
 });
 
-it('taken away while it loads, at any moment, holds no context', async () => {
+it('a widget that is removed at any moment of its start keeps no context', async () => {
   await on(async (tab) => {
-    // The collector must not do the widget's cleanup.
+    // The cleanup must not depend on the garbage collector.
     await tab.evaluate(() => (window.kept = []));
     const mountUntil = (moment) => tab.evaluate(async ([hasCanvas, frames]) => {
       const here = document.querySelector('#here');
@@ -94,17 +94,17 @@ it('taken away while it loads, at any moment, holds no context', async () => {
       here.replaceChildren();
       return state;
     }, moment);
-    // The program is loaded before the moments are tried.
+    // The module has loaded before the tested moments.
     await tab.evaluate(() => (document.querySelector('#here').innerHTML = '<slam-widget name="w16.1"></slam-widget>'));
     await h.ready(tab);
-    // Before there is a canvas, when it comes, and frame by frame until its first picture.
+    // Before the canvas exists, when it is created, and frame by frame until its first picture.
     assert.deepEqual(await mountUntil([false, 0]), { isLive: false, hasCanvas: false });
     assert.deepEqual(await mountUntil([true, 0]), { isLive: false, hasCanvas: true });
     for (let frames = 1; frames < 6; frames += 1) {
       await mountUntil([false, frames]);
       await mountUntil([true, frames]);
     }
-    // A start under way ends a little later.
+    // A pending start ends a little later.
     await tab.waitForFunction(() => {
       const { onPage, elsewhere } = heldContexts();
       return onPage.length === 0 && elsewhere.length === 0;

@@ -34,7 +34,7 @@ describe('a link in the text', () => {
     }, { viewport: { width: 1100, height: 900 } });
   });
 
-  it('is an entry of the history: Back returns to the state before, and stays on the page', async () => {
+  it('is a history entry: Back restores the state before it, and stays on the page', async () => {
     await reading(async (tab) => {
       const path = await tab.evaluate(() => location.pathname);
       const start = await get(tab, 'w16.1', 'heading');
@@ -61,7 +61,7 @@ describe('a link in the text', () => {
     });
   });
 
-  it('stands in the address, also where another widget settles after it', async () => {
+  it('stays in the address, even if another widget settles after it', async () => {
     await reading(async (tab) => {
       await tab.locator(widget('w16.1')).scrollIntoViewIfNeeded();
       await h.ready(tab, widget('w16.1'));
@@ -84,7 +84,7 @@ describe('a link in the text', () => {
     });
   });
 
-  it('leaves no parameter of another widget in the address, and what belongs to the page', async () => {
+  it('removes parameters of other widgets from the address, and keeps those of the page', async () => {
     await visit('', async (tab) => {
       await link(tab, 'last').click();
       await tab.waitForURL(/w=16.2&t=119/);
@@ -92,14 +92,14 @@ describe('a link in the text', () => {
       const search = new URL(tab.url()).searchParams;
       assert.deepEqual(Object.fromEntries(search), { theme: 'light', w: '16.1', dx: '0', dy: '0', heading: '45' });
       assert.equal(await tab.evaluate((css) => document.querySelector(css).link, widget('w16.1')), tab.url());
-      // Opened, it has nothing to complain of.
+      // Opening the address reports no problems.
       await tab.goto(tab.url());
       await has(tab, 'w16.1', 'heading', 45);
       assert.equal(await tab.locator('slam-widget .note p').count(), 0);
     }, { path: '/index.html?theme=light' });
   });
 
-  it('that leads elsewhere offers the way back to its sentence', async () => {
+  it('that scrolls away shows a button back to its sentence', async () => {
     await reading(async (tab) => {
       const here = link(tab, '60°');
       await here.evaluate((a) => a.scrollIntoView({ block: 'center' }));
@@ -116,7 +116,7 @@ describe('a link in the text', () => {
     });
   });
 
-  it('takes its way back away when the reader closes it or has scrolled two screens on', async () => {
+  it('hides its back button when the reader closes it or scrolls two screens further', async () => {
     await reading(async (tab) => {
       const here = link(tab, 'τ = 0.1 m');
       const led = async () => {
@@ -132,7 +132,7 @@ describe('a link in the text', () => {
       await tab.getByRole('button', { name: 'Stay here' }).click();
       assert.equal(await wayBack(tab).count(), 0);
       await led();
-      // The wheel of a reader: what holds the widget in view lets go.
+      // A wheel event ends the alignment of the widget.
       const scrollOn = async (screens) => {
         const from = await scrolled(tab);
         await tab.mouse.move(200, 400);
@@ -147,7 +147,7 @@ describe('a link in the text', () => {
     }, { viewport: { width: 390, height: 844 } });
   });
 
-  it('is not alone: an answer that is shown in its widget offers the way back to the question', async () => {
+  it('has a back button, and so has an answer that is shown in its widget', async () => {
     await reading(async (tab) => {
       const question = tab.locator('#further-variants slam-predict');
       await question.scrollIntoViewIfNeeded();
@@ -170,7 +170,7 @@ describe('a link in the text', () => {
     }, { viewport: { width: 390, height: 844 } });
   });
 
-  it('sets its widget to exactly what it names, each of them', async () => {
+  it('sets its widget to exactly the named state, for every link', async () => {
     let count = 0;
     for (const page of h.PAGES) {
       await visit('', async (tab) => {
@@ -179,7 +179,7 @@ describe('a link in the text', () => {
           a.click();
           const query = new URLSearchParams(a.search);
           const element = document.querySelector(`slam-widget[name="w${query.get('w')}"]`);
-          // A switch is true or false for a script, and on or off in a link.
+          // A switch is a boolean for scripts, and on or off in a link.
           const said = (value) => ({ true: 'on', false: 'off' })[value] ?? String(value);
           const wrong = [...query].filter(([id, text]) => id !== 'w' && said(element.get(id)) !== text);
           const back = new URLSearchParams(location.search);
@@ -193,7 +193,7 @@ describe('a link in the text', () => {
     assert.ok(count >= 24, `${count} links`);
   });
 
-  it('leads to the page that has its widget, in that state', async () => {
+  it('leads to the page of its widget, in that state', async () => {
     await visit('', async (tab) => {
       const elsewhere = tab.locator('main a.slam-link[href^="index.html?"]').first();
       await elsewhere.evaluate((a) => a.closest('details')?.setAttribute('open', ''));
@@ -205,12 +205,12 @@ describe('a link in the text', () => {
 });
 
 describe('on a narrow screen', () => {
-  it('the scene stays in sight while one moves a slider below it', async () => {
+  it('the scene stays in view while the reader moves a slider below it', async () => {
     await reading(async (tab) => {
       const css = widget('w16.1');
       await tab.locator(css).scrollIntoViewIfNeeded();
       await h.ready(tab, css);
-      // The slider is where the picture has left the screen.
+      // At the slider the picture is out of view.
       await tab.evaluate((name) => {
         const element = document.querySelector(name);
         const canvas = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
@@ -236,12 +236,12 @@ describe('on a narrow screen', () => {
       await tab.mouse.move(...at);
       await tab.mouse.down();
       await isPinned(true);
-      // The copy takes the next picture of the canvas.
+      // The copy is drawn with the next frame.
       await h.moreFrames(tab, 2, css);
       const shown = await pinned();
       assert.ok(shown.top === 0 && shown.bottom < at[1] - 20 && shown.colors > 3, JSON.stringify(shown));
       assert.ok(shown.left >= 0 && shown.right <= 390);
-      // The last frames before it rests draw nothing, and the canvas is empty after them.
+      // The last frames before it rests paint nothing, and leave the canvas empty.
       await h.quiet(tab);
       const rested = await pinned();
       assert.ok(rested.colors > 3, `a copy of ${rested.colors} colours`);

@@ -1,5 +1,5 @@
-// Effects of stock eframe on the surrounding page that this element must not have. Each test fails on
-// eframe's own defaults (measured on 0.37).
+// Side effects of eframe on the surrounding page that the element prevents. Each test fails with eframe's defaults
+// (measured with 0.37).
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -13,14 +13,14 @@ const ONE = '<slam-widget name="w16.1"></slam-widget>';
 /** A widget that computes everything at once; w16.1 fills its map for a while. */
 const CALM = '<slam-widget name="w16.2"></slam-widget>';
 
-/** A long rest of a finger has another meaning, so its time is that of a smooth display. */
+/** A smooth display: in slow frames a touch would become a long press. */
 const TOUCH = { options: { hasTouch: true, stepMs: SMOOTH_MS } };
 
 const on = h.visitor();
 const scrolled = (tab) => tab.evaluate(() => window.scrollY);
 
 describe('focus', () => {
-  it('stays where it was while a widget starts, without so much as a blur', async () => {
+  it('stays in place while a widget starts, without a blur event', async () => {
     const head = '<script>window.blurs = 0;</script>';
     const body = `<input id="typing" autofocus onblur="blurs++">${ONE}`;
     await on(body, async (tab) => {
@@ -62,7 +62,7 @@ describe('focus', () => {
 });
 
 describe('scrolling', () => {
-  it('by wheel over the canvas moves the page', async () => {
+  it('by wheel over the canvas scrolls the page', async () => {
     await on(ONE + TALL, async (tab) => {
       await h.ready(tab);
       const box = await canvasBox(tab);
@@ -72,7 +72,7 @@ describe('scrolling', () => {
     });
   });
 
-  it('with ctrl held zooms the view and leaves the page', async () => {
+  it('with Ctrl zooms the map, not the page', async () => {
     await on(ONE + TALL, async (tab) => {
       await h.ready(tab);
       const prevented = await tab.evaluate(() => {
@@ -86,7 +86,7 @@ describe('scrolling', () => {
     });
   });
 
-  it('by touch over the canvas moves the page', async () => {
+  it('by touch over the canvas scrolls the page', async () => {
     await on(ONE + TALL, async (tab) => {
       await h.ready(tab);
       const [x, y] = await restingSpot(tab);
@@ -97,7 +97,7 @@ describe('scrolling', () => {
 });
 
 describe('touch', () => {
-  it('that starts on something that drags drags it, and the page stays', async () => {
+  it('that starts on something draggable drags it, and the page does not scroll', async () => {
     await on(ONE + TALL, async (tab) => {
       await h.ready(tab);
       const [x, y] = await draggingSpot(tab);
@@ -108,8 +108,8 @@ describe('touch', () => {
     }, TOUCH);
   });
 
-  it('up or down moves the page, also where it starts on a slider or on the map', async () => {
-    // However far the swipe goes, the widget stays in view: it draws only there.
+  it('up or down scrolls the page, even from a slider or the map', async () => {
+    // Keeps the widget in view during the swipe: it draws only there.
     const toItsEnd = '<p style="height: 60vh">Little text.</p>';
     await on(ONE + toItsEnd, async (tab) => {
       await h.ready(tab);
@@ -125,7 +125,7 @@ describe('touch', () => {
     }, TOUCH);
   });
 
-  it('that rests first drags up and down as well', async () => {
+  it('drags vertically after a long press', async () => {
     await on(ONE + TALL, async (tab) => {
       await h.ready(tab);
       const [x, y] = await draggingSpot(tab);
@@ -136,7 +136,7 @@ describe('touch', () => {
     }, TOUCH);
   });
 
-  it('that is cancelled leaves no drag behind', async () => {
+  it('that is cancelled ends its drag', async () => {
     await on(ONE + TALL, async (tab) => {
       await h.ready(tab);
       const { touch } = await fingers(tab);
@@ -146,7 +146,7 @@ describe('touch', () => {
       for (const [x, y] of [await cloudSpot(tab), onRail]) {
         const untouched = await query();
         await touch('touchStart', [[x, y]]);
-        // The first move decides who gets the touch, the next ones move.
+        // The first move decides between page and widget, the next ones move.
         for (const on of [12, 24, 36]) {
           await touch('touchMove', [[x + on, y]]);
           await h.moreFrames(tab, 1);
@@ -165,7 +165,7 @@ describe('touch', () => {
 });
 
 describe('contexts', () => {
-  it('are given back far away: twenty widgets on a page all run when they are seen', async () => {
+  it('are released far away: all of twenty widgets on a page run when they are in view', async () => {
     const many = Array.from({ length: 20 }, (_, i) =>
       `<slam-widget name="${h.schema[i % h.schema.length].id}" id="w${i}"></slam-widget><div style="height:700px"></div>`).join('');
     await on(many, async (tab) => {
@@ -181,7 +181,7 @@ describe('contexts', () => {
     });
   });
 
-  it('that are lost are made anew with the state as it was', async () => {
+  it('that are lost are created again with the same state', async () => {
     await on(ONE, async (tab) => {
       await h.ready(tab);
       await tab.evaluate(() => {
@@ -202,7 +202,7 @@ describe('contexts', () => {
 });
 
 describe('a panic', () => {
-  it('stays in its widget, says so, and a restart keeps the parameters', async () => {
+  it('stays in its widget and is reported, and a restart keeps the parameters', async () => {
     const two = '<slam-widget name="w16.1" id="a"></slam-widget><slam-widget name="w16.1" id="b"></slam-widget>';
     await on(two, async (tab) => {
       await h.ready(tab, '#a');
@@ -235,11 +235,11 @@ describe('a panic', () => {
   });
 });
 
-describe('looks', () => {
-  it('follow the page from light to dark and back', async () => {
+describe('the appearance', () => {
+  it('follows the page from light to dark and back', async () => {
     await on(ONE, async (tab) => {
       await h.ready(tab);
-      // The page notices a changed media query with its next frame, so the picture is checked repeatedly.
+      // Media queries change with the next frame of the page, so the picture is checked repeatedly.
       const turns = (isDark) => tab.waitForFunction(async (wanted) => {
         const picture = await document.querySelector('slam-widget').snapshot();
         const copy = new OffscreenCanvas(1, 1).getContext('2d');
@@ -263,7 +263,7 @@ describe('looks', () => {
     }, { options: { sees: true } });
   });
 
-  it('stay sharp at any pixel ratio', async () => {
+  it('is sharp at any pixel ratio', async () => {
     for (const deviceScaleFactor of [1, 1.5, 3]) {
       await on(ONE, async (tab) => {
         await h.ready(tab);
@@ -276,7 +276,7 @@ describe('looks', () => {
     }
   });
 
-  it('follow the width without a resize loop', async () => {
+  it('follows the width without a resize loop', async () => {
     await on(CALM, async (tab) => {
       await h.ready(tab);
       for (const width of [1400, 500, 390, 900]) {
@@ -292,7 +292,7 @@ describe('looks', () => {
   });
 });
 
-/** Presses a key until the element with that id has the focus; gives up after 120 stops. */
+/** Presses a key until the element with that id has the focus; gives up after 120 presses. */
 async function tabUntil(tab, key, id) {
   for (let stops = 0; stops < 120; stops += 1) {
     await tab.keyboard.press(key);
@@ -301,7 +301,7 @@ async function tabUntil(tab, key, id) {
   return assert.fail(`${key} never reaches #${id}`);
 }
 
-/** A finger that moves at once, or after resting for `rest`. */
+/** A finger that moves at once, or after a rest of `rest` ms. */
 async function swipe(tab, from, to, rest) {
   const hold = (holds) => tab.evaluate((held) => frameClock.hold(held), holds);
   const { touch } = await fingers(tab);

@@ -1,4 +1,4 @@
-// The first figure: two sweeps that the reader lays on each other, and ICP from there.
+// The first figure: the reader aligns two sweeps, and ICP refines the pose.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -16,7 +16,7 @@ const off = async (tab) => {
   return { cm: parseFloat(cm), degrees: parseFloat(degrees) };
 };
 const says = (tab) => tab.locator('#match-says').textContent();
-/** ICP has ended when it says where. */
+/** Waits until ICP has reported its result. */
 const ended = (tab) => tab.waitForFunction(() => /^ICP (came|stopped)/.test(document.querySelector('#match-says').textContent));
 const press = (tab, name) => tab.getByRole('button', { name, exact: true }).click();
 const middle = (tab, selector) => tab.locator(selector).evaluate((part) => {
@@ -30,7 +30,7 @@ async function drag(tab, from, to) {
   await tab.mouse.move(to.x, to.y, { steps: 4 });
   await tab.mouse.up();
 }
-/** By keys from the start to the truth: the start is 0.6 m to the left, 0.75 m up and turned by 48°. */
+/** Moves the source from its start to the truth by keyboard: the start is 0.6 m left, 0.75 m up and turned by 48°. */
 async function layOn(tab) {
   await tab.locator('#match svg').focus();
   for (let step = 0; step < 24; step += 1) await tab.keyboard.press('Shift+ArrowRight');
@@ -38,9 +38,9 @@ async function layOn(tab) {
   for (let step = 0; step < 15; step += 1) await tab.keyboard.press('ArrowDown');
 }
 
-describe('the sweeps that the reader lays on each other', () => {
+describe('the sweeps that the reader aligns', () => {
   for (const viewport of SIZES) {
-    it(`stand within two screens, and move before the program is there, at ${viewport.width}×${viewport.height}`, async () => {
+    it(`are within two screens, and can be moved before the module has loaded, at ${viewport.width}×${viewport.height}`, async () => {
       const asked = [];
       const answer = (path) => void (path.endsWith('.wasm') && asked.push(path));
       await reading(async (tab) => {
@@ -64,12 +64,12 @@ describe('the sweeps that the reader lays on each other', () => {
     });
   }
 
-  it('are turned by the knob of the ring, about the robot', async () => {
+  it('turn about the robot by the knob of the ring', async () => {
     await reading(async (tab) => {
       await live(tab);
       const before = await off(tab);
       const [robot, knob] = [await middle(tab, '.match-robot'), await middle(tab, '.match-knob')];
-      // From its direction to that of the x axis of the room, which is past the truth by its heading of 20°.
+      // Turns it to heading zero, which overshoots the true heading of 20°.
       await drag(tab, knob, { x: robot.x + Math.hypot(knob.x - robot.x, knob.y - robot.y), y: robot.y });
       const after = await off(tab);
       assert.equal(after.cm, before.cm);
@@ -77,7 +77,7 @@ describe('the sweeps that the reader lays on each other', () => {
     });
   });
 
-  it('are laid on each other by keys, and from there ICP comes home', async () => {
+  it('can be aligned by keyboard, and ICP converges from there', async () => {
     await reading(async (tab) => {
       await live(tab);
       await layOn(tab);
@@ -95,7 +95,7 @@ describe('the sweeps that the reader lays on each other', () => {
     });
   });
 
-  it('end wrong from their first place, as the figure says, and from a quarter turn with a fit that looks right', async () => {
+  it('end in a false minimum from their initial pose, and from a quarter turn with a fit that looks right', async () => {
     await reading(async (tab) => {
       await live(tab);
       assert.match(await says(tab), /ICP alone ends in a wrong place/);
@@ -110,7 +110,7 @@ describe('the sweeps that the reader lays on each other', () => {
     }, { reducedMotion: 'reduce' });
   });
 
-  it('stay where the reader takes them while ICP moves them', async () => {
+  it('obey the reader who drags them while ICP runs', async () => {
     await reading(async (tab) => {
       await live(tab);
       await press(tab, 'Let ICP take over');
@@ -137,12 +137,12 @@ describe('the sweeps that the reader lays on each other', () => {
       await touch('touchMove', [-20, 0], [20, 20]);
       await touch('touchEnd');
       const after = await off(tab);
-      // A turn by atan(1/2) to the right, about the finger that rests.
+      // A clockwise turn by atan(1/2) about the resting finger.
       assert.ok(Math.abs(before.degrees - after.degrees - 26.6) < 2, `${before.degrees}°, then ${after.degrees}°`);
     }, { hasTouch: true, viewport: SIZES[2] });
   });
 
-  it('are a picture where no script runs', async () => {
+  it('are a still picture without scripts', async () => {
     await reading(async (tab) => {
       assert.ok(await tab.locator('.match-target').isVisible());
       assert.equal(await tab.locator('.match-buttons').isVisible(), false);

@@ -1,4 +1,4 @@
-// The page of licences and notices, reached from the foot of the chapter.
+// The page of licences and notices, linked from the footer.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -11,7 +11,7 @@ const reading = (test, options) =>
 
 describe('the page of notices', () => {
   for (const colorScheme of ['light', 'dark']) {
-    it(`breaks no rule of accessibility that axe knows, ${colorScheme}`, async () => {
+    it(`satisfies axe-core, ${colorScheme}`, async () => {
       await reading(async (tab) => assert.deepEqual(await violations(tab), []), { colorScheme });
     });
   }
@@ -25,9 +25,9 @@ describe('the page of notices', () => {
     }, { viewport: { width: 390, height: 800 } });
   });
 
-  it('leads from a crate to its text', async () => {
+  it('links from a crate to its licence text', async () => {
     await reading(async (tab) => {
-      // Each list that names the crate leads to the same text; the first is the page's own.
+      // Each list with the crate links to the same text.
       const row = tab.locator('li', { has: tab.getByRole('link', { name: 'nalgebra', exact: true }) }).first();
       await row.getByRole('link', { name: 'Apache-2.0', exact: true }).click();
       const text = await tab.evaluate(() => document.querySelector(location.hash).parentElement.textContent);

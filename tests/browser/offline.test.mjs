@@ -30,7 +30,7 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 
-/** Opens a page of the folder; nothing may fail in it, and nothing may be asked of a network. */
+/** Opens a page of the folder, which must cause neither errors nor network requests. */
 async function opened(page, test) {
   const context = await browser.newContext({ viewport: { width: 1100, height: 900 } });
   const tab = await context.newPage();
@@ -47,7 +47,7 @@ async function opened(page, test) {
   }
 }
 
-it('runs a widget of the chapter, replays its lap, and drives laps in workers', async () => {
+it('a page from the disk runs a widget, replays the lap, and runs laps in workers', async () => {
   await opened('index.html', async (tab) => {
     await tab.waitForSelector('#lap.live');
     await tab.locator('slam-widget[name="w16.1"]').scrollIntoViewIfNeeded();
@@ -64,7 +64,7 @@ it('runs a widget of the chapter, replays its lap, and drives laps in workers', 
   });
 });
 
-it('maps the sample log', async () => {
+it('a page from the disk maps the sample log', async () => {
   await opened('own-robot.html', async (tab) => {
     const robot = 'slam-widget[name="w16.10"]';
     await tab.locator(robot).scrollIntoViewIfNeeded();
@@ -74,7 +74,7 @@ it('maps the sample log', async () => {
   });
 });
 
-it('shows an exercise by itself, whose answer is checked', async () => {
+it('a page from the disk shows a single exercise, and checks its answer', async () => {
   await opened('embed.html?exercise=16.1', async (tab) => {
     const question = tab.locator('slam-predict');
     await question.locator('input').nth(2).check();

@@ -1,4 +1,4 @@
-// The graph of w16.2: keyframes that are tapped, a loop that is dragged out of one, and the same by keys,
+// The graph of w16.2: keyframes that are tapped, a loop that is dragged from one to another, and the same by keyboard,
 // with the same texts for a screen reader.
 
 import assert from 'node:assert/strict';
@@ -28,7 +28,7 @@ async function screenOf(tab, node) {
 }
 
 describe('the graph of w16.2', () => {
-  it('tells of a keyframe that is clicked, and ties it to the one it is dragged to', async () => {
+  it('describes a clicked keyframe, and adds a loop to the keyframe that it is dragged to', async () => {
     await visit(BODY, async (tab) => {
       await h.ready(tab);
       await tab.mouse.click(...await screenOf(tab, 10));
@@ -51,7 +51,7 @@ describe('the graph of w16.2', () => {
     });
   });
 
-  it('answers to a tap, and to a tap beside it', async () => {
+  it('selects a keyframe by a tap, and deselects it by a tap beside it', async () => {
     await visit(BODY, async (tab) => {
       await h.ready(tab);
       await tab.touchscreen.tap(...await screenOf(tab, 10));
@@ -62,7 +62,7 @@ describe('the graph of w16.2', () => {
     }, { options: { viewport: { width: 390, height: 844 }, hasTouch: true } });
   });
 
-  it('is walked through by keys, with the words that a screen reader gets', async () => {
+  it('is navigated by keyboard, with the same texts for a screen reader', async () => {
     await visit('<slam-widget name="w16.2" t="129" more="on"></slam-widget>', async (tab) => {
       await h.ready(tab);
       const button = tab.locator('slam-widget button[data-control="one-on"]');

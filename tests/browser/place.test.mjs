@@ -1,4 +1,4 @@
-// The position of a widget on its page: a link scrolls there, and the text around it does not move.
+// Scrolling to a widget by link, and no layout shifts around it.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
@@ -8,14 +8,14 @@ const visit = h.visitor();
 const chapter = (path, test, how) => visit('', test, { path, ...how });
 const named = (id) => `slam-widget[name="${id}"]`;
 
-/** Runs in the page before its scripts: records every height of a widget. */
+/** Init script: records every height of a widget. */
 function keepHeights() {
   window.heights = {};
   addEventListener('DOMContentLoaded', () => {
     const observer = new ResizeObserver((entries) => {
       for (const { target } of entries) (heights[target.getAttribute('name')] ??= []).push(target.offsetHeight);
     });
-    // Before that it is a still picture in the page.
+    // Before its definition it is a still picture.
     void customElements.whenDefined('slam-widget').then(() => {
       for (const widget of document.querySelectorAll('slam-widget')) observer.observe(widget);
     });
@@ -25,10 +25,10 @@ const head = `<script>(${keepHeights})()</script>`;
 
 describe('a link to a state', () => {
   for (const { id } of h.schema) {
-    it(`opens the page at ${id}, however much the page grows meanwhile`, async () => {
+    it(`scrolls the page to ${id}, despite layout shifts`, async () => {
       await chapter(`${h.pageOf(id)}?w=${id.slice(1)}`, async (tab) => {
         await h.ready(tab, named(id));
-        // Anything taller than the screen begins at its top.
+        // A widget taller than the screen is aligned to its top.
         await tab.waitForFunction((css) => {
           const { top } = document.querySelector(css).getBoundingClientRect();
           return top >= 0 && top < 100;
@@ -42,7 +42,7 @@ describe('a link to a state', () => {
     ['#production', '/robots.html'], ['#umeyama1991', '/reference.html'], ['#exercise-7', '/robots.html'],
     ['?theme=dark#differences', '/reference.html'],
   ]) {
-    it(`finds what stood on the one page before: ${old}`, async () => {
+    it(`redirects from the former single page: ${old}`, async () => {
       await chapter(`/index.html${old}`, async (tab) => {
         await tab.waitForURL((url) => url.pathname === page);
         assert.ok(tab.url().endsWith(`${page}${old}`), tab.url());
@@ -50,7 +50,7 @@ describe('a link to a state', () => {
     });
   }
 
-  it('stays on the page that has it, and that nothing else has', async () => {
+  it('stays on a page that has its target, or if no page has it', async () => {
     for (const address of ['/index.html?w=16.2', '/index.html#exercises', '/robots.html?w=16.99', '/reference.html#nowhere']) {
       await chapter(address, async (tab) => {
         await tab.waitForFunction(() => document.documentElement.dataset.script === 'on');
@@ -59,15 +59,14 @@ describe('a link to a state', () => {
     }
   });
 
-  it('lets go of the page once the reader scrolls', async () => {
+  it('stops scrolling once the reader scrolls', async () => {
     await chapter('/index.html?w=16.3', async (tab) => {
       await h.ready(tab, named('w16.3'));
       await tab.mouse.move(5, 5);
       await tab.mouse.wheel(0, -600);
       const top = () => tab.evaluate((css) => document.querySelector(css).getBoundingClientRect().top, named('w16.3'));
       await tab.waitForFunction((css) => document.querySelector(css).getBoundingClientRect().top > 500, named('w16.3'));
-      // The page grows above the visible part: the browser keeps the text in place, and no script scrolls
-      // back.
+      // The page grows above the viewport: the browser anchors the scroll position, and no script scrolls back.
       await tab.evaluate(() => document.querySelector('main').style.setProperty('padding-bottom', '900px'));
       await h.quiet(tab);
       assert.ok((await top()) > 500);
@@ -75,13 +74,13 @@ describe('a link to a state', () => {
   });
 });
 
-/** Line breaks depend slightly on the pixel ratio: use that of a common screen. */
+/** Line breaks depend slightly on the pixel ratio: this is the most common one. */
 const deviceScaleFactor = 1;
 
 describe('a widget', () => {
   for (const width of [1100, 390]) {
-    it(`is as high before it starts, while it draws, and while it rests, ${width} px wide`, async () => {
-      // So far apart that one rests before the next one starts.
+    it(`has the same height before it starts, while it draws, and while it rests, ${width} px wide`, async () => {
+      // Far enough apart that one rests before the next one starts.
       const apart = '<div style="height: 30000px"></div>';
       const body = h.schema.map(({ id }) => `<slam-widget name="${id}"></slam-widget>${apart}`).join('');
       await visit(head + body, async (tab) => {
@@ -99,13 +98,13 @@ describe('a widget', () => {
   }
 });
 
-/** The opening parts of a widget that are tested: its parameter, Play, and More. */
+/** The tested first controls of a widget: its parameter, Play and More. */
 const opening = ({ id }) => {
   const control = { 'w16.1': 'heading', 'w16.2': 'loops', 'w16.3': 'tau', 'w16.4': 'noise' }[id];
   return control === undefined ? [] : [control, 'play', 'more'];
 };
 
-/** Screens with a widget beside the text. */
+/** Screens with the widget beside the text. */
 const WIDE = [{ width: 1440, height: 900 }, { width: 1100, height: 900 }, { width: 1280, height: 800 }];
 
 describe('a widget beside its text', () => {
@@ -135,14 +134,14 @@ describe('a widget beside its text', () => {
             assert.ok(top >= 0 && bottom <= viewport.height, `${JSON.stringify(seen.boxes)} ${where}`);
           }
           const [scene] = seen.boxes;
-          // The maps of w16.3 are the lowest: each still takes a tenth of the screen.
+          // The maps of w16.3 are the smallest.
           assert.ok(scene[1] - scene[0] >= 0.1 * viewport.height, `the scene has ${scene[1] - scene[0]} px ${where}`);
         }
       }, { options: { deviceScaleFactor, viewport: WIDE[0] } });
     });
   }
 
-  it('shows all that it has once more is asked for, and scrolls', async () => {
+  it('shows all controls once More is open, and scrolls', async () => {
     await chapter('/index.html?w=16.3&more=on', async (tab) => {
       await h.ready(tab, named('w16.3'));
       await h.quiet(tab);

@@ -106,8 +106,8 @@ const longLog = (times) => {
   return Array.from({ length: times }, (_, round) => lines.map((line) => later(line, round * last)).join('\n')).join('\n');
 };
 
-describe('a log of one’s own', () => {
-  it('is asked for with a promise, and the sample is mapped, held, and graded', async () => {
+describe('a reader’s log', () => {
+  it('stays in the browser, and the sample is mapped, paused and graded', async () => {
     await page(async (tab) => {
       assert.match((await outcome(tab)).sentence, /nothing of it is sent anywhere/);
       await press(tab, 'sample');
@@ -125,7 +125,7 @@ describe('a log of one’s own', () => {
     }, { options: { sees: true }, server: { policy: h.STRICT_POLICY } });
   });
 
-  it('comes by the button, by a drop, and from a program, and the next one takes its place', async () => {
+  it('is opened by button, drop and program, and replaced by the next one', async () => {
     await page(async (tab) => {
       const chosen = tab.waitForEvent('filechooser');
       await press(tab, 'open');
@@ -150,7 +150,7 @@ describe('a log of one’s own', () => {
     });
   });
 
-  it('maps and saves in a frame with a sandbox, which has no origin', async () => {
+  it('is mapped and saved in a sandboxed frame without an origin', async () => {
     const frame = '<iframe title="A robot" src="/embed.html?w=16.10" sandbox="allow-scripts allow-downloads" ' +
       'style="width: 800px; height: 900px"></iframe>';
     await visit(frame, async (tab) => {
@@ -169,7 +169,7 @@ describe('a log of one’s own', () => {
     });
   });
 
-  it('is zoomed by two fingers wherever they start, and drags nothing then', async () => {
+  it('is zoomed by two fingers wherever they start, without a drag', async () => {
     await page(async (tab) => {
       await give(tab, 'square.g2o', SQUARE);
       await says(tab, /mapped: square\.g2o: 4 poses/);
@@ -211,7 +211,7 @@ describe('a log of one’s own', () => {
     }, { options: { viewport: { width: 390, height: 844 }, hasTouch: true } });
   });
 
-  it('is stopped half way, and keeps what was read', async () => {
+  it('can be stopped halfway, and keeps its map', async () => {
     await page(async (tab) => {
       const log = longLog(40);
       await give(tab, 'long.log', log);
@@ -235,7 +235,7 @@ describe('a log of one’s own', () => {
     });
   });
 
-  it('leaves the address to what the reader set meanwhile', async () => {
+  it('does not change an address that the reader set meanwhile', async () => {
     const two = '<slam-widget name="w16.10" linked></slam-widget><slam-widget name="w16.1" linked hidden></slam-widget>';
     await visit(two, async (tab) => {
       await h.ready(tab);
@@ -252,7 +252,7 @@ describe('a log of one’s own', () => {
     });
   });
 
-  it('shows its loops, takes one out and in again, ties one by hand, and follows a keyframe that is dragged', async () => {
+  it('shows its loops, removes and restores one, adds one by hand, and follows a dragged keyframe', async () => {
     await page(async (tab) => {
       await press(tab, 'sample');
       await isMapped(tab);
@@ -302,7 +302,7 @@ describe('a log of one’s own', () => {
     }, { viewport: { width: 1000, height: 1200 } });
   });
 
-  it('is saved as map, trajectory, graph and report, each of which is what its name says', async () => {
+  it('is saved as map, trajectory, graph and report', async () => {
     await page(async (tab) => {
       await press(tab, 'sample');
       await isMapped(tab);
@@ -336,7 +336,7 @@ describe('a log of one’s own', () => {
     });
   });
 
-  it('is saved as the session that the command leaves, opened again, changed further, and saved with the changes', async () => {
+  it('is saved as the same session as by the command, opened again, and saved with changes', async () => {
     const folder = mkdtempSync(join(tmpdir(), 'slam-session-'));
     try {
       native('slam2d', 'run', join(h.DIST, 'samples', 'ring.log'), '-o', folder);
@@ -388,7 +388,7 @@ describe('a log of one’s own', () => {
     }
   });
 
-  it('is a map for the robot of another day, which is found, followed, said in words, saved, and kept through a crash', async () => {
+  it('localizes the robot of another day, describes and saves its track, and keeps it after a crash', async () => {
     await page(async (tab) => {
       await giveBytes(tab, 'early.log', Buffer.from(OTHER_DAY), 'where');
       await says(tab, /early\.log needs a map/);
@@ -420,7 +420,7 @@ describe('a log of one’s own', () => {
       await press(tab, 'turn');
       await says(tab, /was removed from the graph/);
       await widget(tab, (it) => it.crashForTest('worker'));
-      await says(tab, /was begun again/);
+      await says(tab, /was restarted/);
       await says(tab, /^(mapped|loops contradict): .*is found at its scan \d+: of/);
 
       // A file that is not a log changes no result.
@@ -432,7 +432,7 @@ describe('a log of one’s own', () => {
     }, { options: { sees: true } });
   });
 
-  it('takes a session and a log that are dropped together as map and robot, and a log as the setting says', async () => {
+  it('localizes a log dropped with a session, and uses a single log as the setting says', async () => {
     await page(async (tab) => {
       await press(tab, 'sample');
       await isMapped(tab);
@@ -455,7 +455,7 @@ describe('a log of one’s own', () => {
     });
   });
 
-  it('offers the topics and frames of a recording, and maps it anew with another one', async () => {
+  it('offers the topics and frames of a recording, and maps it again with another one', async () => {
     await page(async (tab) => {
       await giveBytes(tab, 'plain.mcap', readFileSync(join(RECORDINGS, 'plain.mcap')));
       await says(tab, /(mapped|contradict): plain\.mcap: 24 scans/);
@@ -477,7 +477,7 @@ describe('a log of one’s own', () => {
     });
   });
 
-  it('answers broken, empty, foreign and half-written files in a sentence, and maps the next one', async () => {
+  it('reports broken, empty, foreign and truncated files in a sentence, and maps the next one', async () => {
     await page(async (tab) => {
       for (const [name, text, said] of [
         ['empty.log', '', /no map: empty\.log is empty; give a recorded log/],
@@ -501,7 +501,7 @@ describe('a log of one’s own', () => {
     });
   });
 
-  it('is kept when the picture goes: by scrolling away, a lost context, a crash of the widget or of the worker', async () => {
+  it('survives scrolling away, a lost context, and crashes of widget and worker', async () => {
     await page(async (tab) => {
       await press(tab, 'sample');
       await isMapped(tab);
@@ -530,13 +530,13 @@ describe('a log of one’s own', () => {
       await same();
 
       await widget(tab, (it) => it.crashForTest('worker'));
-      await says(tab, /was begun again/);
+      await says(tab, /was restarted/);
       await isMapped(tab);
       await tab.waitForFunction((goal) => document.querySelector('slam-widget').outcome.facts.loops === goal, loops);
     }, { quiet: false });
   });
 
-  it('says in a sentence where a page may start no worker', async () => {
+  it('reports in a sentence that the page may start no worker', async () => {
     const policy = `${h.STRICT_POLICY}; worker-src 'none'`;
     await page(async (tab) => {
       await press(tab, 'sample');
@@ -544,7 +544,7 @@ describe('a log of one’s own', () => {
     }, { quiet: false, server: { policy } });
   });
 
-  it('takes the Intel log from file to map', async (context) => {
+  it('maps the Intel log', async (context) => {
     const log = join(LOGS, 'intel.clf');
     if (!existsSync(log)) return skip(context, 'recorded logs: see docs/testing.md');
     await page(async (tab) => {
@@ -566,7 +566,7 @@ describe('a log of one’s own', () => {
 });
 
 describe('the doctor', () => {
-  it('shows its screen before the map, whose buttons and fields map the log again, by keyboard and in any width', async () => {
+  it('shows a report before the map, with buttons and fields that map the log again, by keyboard and in any width', async () => {
     await visit(`<main><h1>A robot</h1>${BODY}</main>`, async (tab) => {
       await h.ready(tab);
       await give(tab, 'ring.log', SAMPLE);
@@ -615,7 +615,7 @@ describe('the doctor', () => {
     }, { options: { viewport: { width: 1000, height: 900 } }, fresh: true });
   });
 
-  it('takes a folder of rosbag2 as it is dropped, and names a file that its metadata lists and it lacks', async () => {
+  it('opens a dropped rosbag2 folder, and reports a file that is missing from it', async () => {
     const folder = mkdtempSync(join(tmpdir(), 'slam-bag-'));
     try {
       cpSync(join(RECORDINGS, 'plain.db3'), join(folder, 'bag_0.db3'));
@@ -639,7 +639,7 @@ describe('the doctor', () => {
     }
   });
 
-  it('says of recordings as people have them what the command says', async (context) => {
+  it('reports the same as the command on real recordings', async (context) => {
     if (!existsSync(FIELD)) return skip(context, 'recordings with the faults that people report: see docs/recordings.md');
     await page(async (tab) => {
       for (const name of [

@@ -1,7 +1,7 @@
 // Runs the browser tests: `node tests/browser/run.mjs [--only manners,drag] [--jobs 2]`.
 //
-// All files share one Chromium, each with its own windows. Two files run at a time; those whose measurements
-// others could disturb run alone. The output of a failing file is printed.
+// All files share one Chromium. Two files run at a time; those with measurements that others could disturb run alone. The
+// output of a failing file is printed.
 
 import { spawn } from 'node:child_process';
 import { mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
@@ -11,14 +11,14 @@ import { fileURLToPath } from 'node:url';
 import { launchServer } from './chromium.mjs';
 
 const HERE = fileURLToPath(new URL('.', import.meta.url));
-/** These count frames, or check what the garbage collector leaves. */
+/** These count frames, or depend on the garbage collector. */
 const ALONE = ['frames', 'leaks'];
 /** Time limit of a file that hangs; no test takes that long. */
 const LAST_RESORT_MS = 20 * 60_000;
 /** Number of slowest tests to list. */
 const SLOWEST = 10;
 
-/** The running files, which are ended with this program. */
+/** The child processes, which are killed with this one. */
 const running = new Set();
 for (const signal of ['SIGINT', 'SIGTERM']) {
   process.on(signal, () => {
@@ -41,12 +41,12 @@ try {
 report(results);
 process.exitCode = results.every(({ failed, code }) => failed === 0 && code === 0) ? 0 : 1;
 
-/** The tests to run; a wrong argument ends the program with one line. */
-function readArguments(given) {
+/** Parses the arguments; exits with one line if one is wrong. */
+function readArguments(args) {
   const known = readdirSync(HERE).map((file) => file.match(/^(.+)\.test\.mjs$/)?.[1]).filter(Boolean).sort();
   const found = { only: known, jobs: 2 };
-  for (let at = 0; at < given.length; at += 2) {
-    const [option, value = ''] = given.slice(at, at + 2);
+  for (let at = 0; at < args.length; at += 2) {
+    const [option, value = ''] = args.slice(at, at + 2);
     if (option === '--only') {
       found.only = value.split(',');
       const unknown = found.only.filter((name) => !known.includes(name));
@@ -72,7 +72,7 @@ async function runAll() {
     for (let name = queue.shift(); name !== undefined; name = queue.shift()) {
       const result = await runFile(name);
       done.push(result);
-      tell(result);
+      reportFile(result);
     }
   };
   await Promise.all(Array.from({ length: jobs }, () => worker(together)));
@@ -123,7 +123,7 @@ function seconds(ms) {
   return `${(ms / 1000).toFixed(1).padStart(7)} s`;
 }
 
-function tell({ name, tests, failed, code, signal, ms, printed }) {
+function reportFile({ name, tests, failed, code, signal, ms, printed }) {
   const isWell = failed === 0 && code === 0;
   if (!isWell) console.log(printed);
   const end = signal === null ? '' : `, ended by ${signal}`;

@@ -26,7 +26,7 @@ async function fallsBack(tab, reason) {
   assert.ok(picture.alt.length > 40, picture.alt);
 }
 
-it('paints, predicts, and saves picture and data under the strict policy', async () => {
+it('a widget paints, predicts, and saves picture and data under the strict policy', async () => {
   const body = `<script type="module" src="/slam-predict.js"></script>
     <slam-predict widget="w16.1" state="heading=90&dx=0&dy=0">
       <p>Where does it end?</p>
@@ -50,7 +50,7 @@ it('paints, predicts, and saves picture and data under the strict policy', async
   }, { server: { policy: h.STRICT_POLICY }, options: { sees: true } });
 });
 
-it('shows texts of the address and of attributes as text, never as HTML', async () => {
+it('a widget shows texts of the address and of attributes as text, never as HTML', async () => {
   const html = '<img src=x onerror="window.ran = true"><b id=made>';
   const attribute = html.replaceAll('"', '&quot;').replaceAll('<', '&lt;');
   const body = `<slam-widget linked name="w16.1" heading="${attribute}"></slam-widget><slam-widget name="${attribute}"></slam-widget>`;
@@ -67,7 +67,7 @@ it('shows texts of the address and of attributes as text, never as HTML', async 
   }, { path: `/t.html?${query}` });
 });
 
-it('stores nothing: no cookie, no local storage, no database', async () => {
+it('a widget stores nothing: no cookie, no local storage, no database', async () => {
   await on(ONE, async (tab) => {
     await h.ready(tab);
     await tab.evaluate(() => (document.querySelector('slam-widget').noise = 2));
@@ -100,7 +100,7 @@ describe('a wasm file', () => {
     answer: (path, response) => path.endsWith('.wasm') && (answer(response), true),
   });
 
-  it('of the wrong type runs all the same', async () => {
+  it('with the wrong MIME type runs', async () => {
     const answer = (response) => {
       response.setHeader('Content-Type', 'text/plain');
       createReadStream(join(h.DIST, WASM)).pipe(response);
@@ -118,7 +118,7 @@ describe('a wasm file', () => {
     });
   });
 
-  it('that is cut short leaves the picture and one sentence', async () => {
+  it('that is truncated leaves the picture and one sentence', async () => {
     const bytes = readFileSync(join(h.DIST, WASM));
     const answer = (response) => {
       response.setHeader('Content-Type', 'application/wasm');
@@ -127,7 +127,7 @@ describe('a wasm file', () => {
     await on(ONE, (tab) => fallsBack(tab, /arrived incomplete/), { server: answerWasm(answer), quiet: false });
   });
 
-  it('that comes at the second attempt runs after "Try again"', async () => {
+  it('that arrives at the second attempt runs after "Try again"', async () => {
     let asked = 0;
     const server = {
       answer: (path, response) => {
@@ -144,8 +144,8 @@ describe('a wasm file', () => {
     }, { server, quiet: false });
   });
 
-  for (const [what, share] of [['never comes', 0], ['stops half way', 0.5]]) {
-    it(`that ${what} is given up after ten seconds of silence, and comes after "Try again"`, async () => {
+  for (const [what, share] of [['never arrives', 0], ['stalls halfway', 0.5]]) {
+    it(`that ${what} times out after ten seconds, and loads after "Try again"`, async () => {
       const bytes = readFileSync(join(h.DIST, WASM));
       let asked = 0;
       let heard;
@@ -177,7 +177,7 @@ describe('a wasm file', () => {
     });
   }
 
-  it('that comes late reaches a widget that moved meanwhile, and the preset that was pressed', async () => {
+  it('that arrives late starts a widget that moved meanwhile, with the preset that was pressed', async () => {
     const { asked, send, server } = heldBack();
     const [{ id: preset }] = h.schema.find(({ id }) => id === 'w16.2').presets;
     await on(`${ONE}<div id="there"></div>`, async (tab) => {
@@ -200,7 +200,7 @@ describe('a wasm file', () => {
     }, { server, options: { stepMs: FROZEN_MS } });
   });
 
-  it('that comes after the values have settled has their result told all the same, to programs alone', async () => {
+  it('that arrives after the values have settled reports their result to programs only', async () => {
     const { asked, send, server } = heldBack();
     const head = `<script>
       window.heard = [];
@@ -219,8 +219,8 @@ describe('a wasm file', () => {
     }, { server, head });
   });
 
-  it('of another build is told in one sentence, with a button that reloads the page', async () => {
-    // It has all that the glue links to, and lacks a name that the glue calls once the widget stands.
+  it('of another build is reported in one sentence, with a button that reloads the page', async () => {
+    // It has all imports and exports for linking, but lacks a function that the glue calls after the start.
     const [, mark] = WASM.match(/-([0-9a-f]+)\.wasm/);
     const bytes = readFileSync(join(h.DIST, WASM)).toString('latin1');
     const other = Buffer.from(bytes.replace('widget_settle', 'widget_rested').replace(mark, '0'.repeat(mark.length)), 'latin1');
@@ -234,7 +234,7 @@ describe('a wasm file', () => {
       },
     };
     await on(ONE, async (tab) => {
-      await fallsBack(tab, /two versions\. Reload the page\./);
+      await fallsBack(tab, /different versions\. Reload the page\./);
       assert.equal(await tab.locator('slam-widget .failure p').count(), 1);
       isOld.now = false;
       await tab.getByRole('button', { name: 'Reload the page' }).click();
@@ -242,8 +242,8 @@ describe('a wasm file', () => {
     }, { server, quiet: false });
   });
 
-  it('that a cache holds in place of another is fetched afresh, and the reader sees nothing of it', async () => {
-    // A module without a function: it compiles, and no glue fits it.
+  it('that is outdated in the cache is fetched again, unnoticed by the reader', async () => {
+    // An empty module: it compiles, but fits no glue.
     const empty = Buffer.from([0, 97, 115, 109, 1, 0, 0, 0]);
     let asked = 0;
     const server = {
@@ -263,7 +263,7 @@ describe('a wasm file', () => {
     }, { server });
   });
 
-  it('shows how much of it has arrived', async () => {
+  it('reports its download progress', async () => {
     const bytes = readFileSync(join(h.DIST, WASM));
     let finish;
     const answer = (response) => {
@@ -284,11 +284,11 @@ describe('a wasm file', () => {
   });
 });
 
-it('falls back without WebAssembly', async () => {
+it('a widget shows the picture and one sentence without WebAssembly', async () => {
   await on(ONE, (tab) => fallsBack(tab, /no WebAssembly/), { head: '<script>delete window.WebAssembly</script>' });
 });
 
-it('falls back without WebGL 2', async () => {
+it('a widget shows the picture and one sentence without WebGL 2', async () => {
   const other = await h.launch(['--disable-3d-apis']);
   try {
     await on(ONE, (tab) => fallsBack(tab, /no WebGL 2/), { with: other });
@@ -297,14 +297,14 @@ it('falls back without WebGL 2', async () => {
   }
 });
 
-it('never pairs an old glue with a new wasm: both names hold hashes of what they need', () => {
+it('old glue is never paired with new wasm: both names have hashes of their content', () => {
   const entry = readFileSync(join(h.DIST, 'slam-widget.js'), 'utf8');
   const [, core] = entry.match(/'\.\/(slam-widget-[0-9a-f]{12}\.js)'/);
   assert.ok(statSync(join(h.DIST, core)).size > 10_000);
   assert.match(readFileSync(join(h.DIST, core), 'utf8'), new RegExp(`["']\\./${WASM}["']`));
 });
 
-describe('an old entry that names a core which is gone', () => {
+describe('a cached slam-widget.js whose core is gone', () => {
   const server = {
     answer: (path, response) => {
       if (path !== '/slam-widget.js') return false;
@@ -320,7 +320,7 @@ describe('an old entry that names a core which is gone', () => {
       const found = [];
       for (const widget of document.querySelectorAll('slam-widget')) {
         const image = widget.querySelector('img');
-        // One after the other, because a picture is fetched when it is near the screen.
+        // One after the other, because of lazy loading.
         image.scrollIntoView();
         await image.decode();
         found.push(image.naturalWidth > 300 && isSeen(image) && isSeen(widget.querySelector('p')));
@@ -330,11 +330,11 @@ describe('an old entry that names a core which is gone', () => {
     assert.ok(widgets.length > 0 && widgets.every(Boolean), JSON.stringify(widgets));
   };
 
-  it('leaves the page its pictures and sentences', async () => {
+  it('leaves the pictures and sentences of the page', async () => {
     await on('', showsItsContent, { server, path: '/', quiet: false });
   });
 
-  it('leaves any page what it put into the element; an element that runs hides it', async () => {
+  it('leaves the fallback content of any page, which a running element hides', async () => {
     const body = '<slam-widget name="w16.2"><img src="/pictures/w16.2-light.svg" alt="The lap"><p>A still picture.</p></slam-widget>';
     await on(body, showsItsContent, { server, quiet: false });
     await on(body, async (tab) => {
@@ -343,14 +343,14 @@ describe('an old entry that names a core which is gone', () => {
     });
   });
 
-  it('leaves a frame a sentence', async () => {
+  it('leaves a sentence in a frame', async () => {
     await on('', (tab) => tab.getByText('reload this page').waitFor(), {
       server, path: '/embed.html?w=16.1', quiet: false,
     });
   });
 });
 
-it('starts on a machine so slow that it learns its size seconds later', async () => {
+it('a widget starts on a machine so slow that the canvas gets its size seconds later', async () => {
   const head = `<script>
     const Prompt = ResizeObserver;
     window.ResizeObserver = class extends Prompt {
@@ -362,7 +362,7 @@ it('starts on a machine so slow that it learns its size seconds later', async ()
   await on(ONE, (tab) => h.ready(tab), { head });
 });
 
-it('loads the wasm once for a page of many widgets', async () => {
+it('a page of many widgets fetches the wasm once', async () => {
   let asked = 0;
   const server = { answer: (path) => ((asked += path.endsWith('.wasm') ? 1 : 0), false) };
   await on(ONE + ONE + ONE, async (tab) => {

@@ -8,10 +8,10 @@ const visit = h.visitor();
 const reading = (test, options = {}) => visit('', test, { path: '/index.html', options });
 const NAMES = ['nearest', 'slide', 'bells', 'ellipse', 'gate', 'push', 'incremental'];
 const figure = (tab, name) => tab.locator(`[data-sketch="${name}"]`);
-/** Some stand in a fold. */
+/** Opens the fold of a figure, if it is in one. */
 const unfold = (tab, name) => tab.evaluate(
   (id) => document.querySelector(`[data-sketch="${id}"]`).closest('details')?.setAttribute('open', ''), name);
-/** Its slider, once the core has come: that is fetched when a reader comes near. */
+/** The slider of a figure, once the core has loaded; it is fetched near the viewport. */
 async function slider(tab, name) {
   await unfold(tab, name);
   await figure(tab, name).scrollIntoViewIfNeeded();
@@ -34,7 +34,7 @@ const changed = (tab, name, says) => tab.waitForFunction(
 
 describe('a small figure', () => {
   for (const name of NAMES) {
-    it(`follows its slider by keys, in picture, value and sentence: ${name}`, async () => {
+    it(`follows its slider by keyboard, in picture, value and sentence: ${name}`, async () => {
       await reading(async (tab) => {
         const range = await slider(tab, name);
         await figure(tab, name).scrollIntoViewIfNeeded();
@@ -74,7 +74,7 @@ describe('a small figure', () => {
     });
   }
 
-  it('is drawn in the colours that the reader chooses', async () => {
+  it('is drawn in the theme that the reader chooses', async () => {
     await reading(async (tab) => {
       const range = await slider(tab, 'gate');
       await range.press('End');
@@ -87,7 +87,7 @@ describe('a small figure', () => {
     }, { colorScheme: 'light' });
   });
 
-  it('stands as a picture with its sentence where no script runs', async () => {
+  it('is a still picture with its sentence without scripts', async () => {
     await reading(async (tab) => {
       for (const name of NAMES) {
         await unfold(tab, name);

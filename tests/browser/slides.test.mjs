@@ -1,4 +1,4 @@
-// slides.html: a slide for each widget, in the state with which its script begins.
+// slides.html: a slide for each widget, in the first state of its script.
 
 import assert from 'node:assert/strict';
 import { it } from 'node:test';
@@ -7,7 +7,7 @@ import * as h from './harness.mjs';
 
 const visit = h.visitor();
 
-it('has a slide for each widget, whose links set it and whose script is the speaker’s', async () => {
+it('slides.html has a slide for each widget, with links that set it and the speaker’s script', async () => {
   await visit('', async (tab) => {
     const names = await tab.evaluate(() => [...document.querySelectorAll('section > slam-widget')].map(({ name }) => name));
     assert.deepEqual([...names].sort(), h.schema.map(({ id }) => id).sort());
@@ -24,19 +24,19 @@ it('has a slide for each widget, whose links set it and whose script is the spea
   }, { path: '/slides.html', fresh: true });
 });
 
-it('lets a class predict: the answer is the widget’s on the slide before', async () => {
+it('slides.html lets a class predict: the widget on the slide before has the answer', async () => {
   await visit('', async (tab) => {
     const question = tab.locator('slam-predict[exercise="16.4"]');
     await question.scrollIntoViewIfNeeded();
     await question.getByRole('radio').first().check();
     await question.getByRole('button', { name: 'Commit and see' }).click();
-    await question.getByText(/^(As you predicted|It comes out otherwise)/).waitFor();
+    await question.getByText(/^(As you predicted|It turns out differently)/).waitFor();
     assert.equal(await tab.evaluate(() => document.querySelector('slam-widget[name="w16.1"]').get('tau')), 1.4);
     assert.equal(await tab.locator('slam-predict').count(), 11);
   }, { path: '/slides.html', fresh: true });
 });
 
-it('shows each widget whole within the screen of a projector', async () => {
+it('slides.html fits each widget on the screen of a projector', async () => {
   await visit('', async (tab) => {
     for (const { id } of h.schema) {
       const css = `slam-widget[name="${id}"]`;

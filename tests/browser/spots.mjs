@@ -1,4 +1,4 @@
-// Positions for the pointer on a widget: the widget reports what is draggable, so no test counts pixels.
+// Positions for the pointer: widgets report what is draggable, so tests need no fixed coordinates.
 
 import assert from 'node:assert/strict';
 import { moreFrames } from './harness.mjs';
@@ -35,7 +35,7 @@ async function spot(tab, css, drags) {
   return at;
 }
 
-/** A point on the rail of a slider beside the picture, found by its parameter. */
+/** A point on the rail of a parameter's slider on the canvas. */
 export async function sliderRail(tab, parameter, css = 'slam-widget') {
   const found = await tab.evaluate(([name, id]) => {
     const widget = document.querySelector(name);
@@ -51,12 +51,12 @@ export async function sliderRail(tab, parameter, css = 'slam-widget') {
   return found;
 }
 
-/** A point of the picture of w16.1 where the mouse can grab the cloud: there its pointer becomes a hand. */
+/** A point of the picture of w16.1 at which the mouse can grab the cloud. */
 export async function cloudSpot(tab, css = 'slam-widget') {
   const spots = await tab.evaluate((name) => {
     const widget = document.querySelector(name);
     const box = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
-    // Well within the picture: other draggable things are around it.
+    // Away from the other draggable things around the picture.
     const [left, bottom] = widget.panelToScreen('sweeps', -2, -2);
     const [right, top] = widget.panelToScreen('sweeps', 2, 2);
     const found = [];
@@ -67,7 +67,7 @@ export async function cloudSpot(tab, css = 'slam-widget') {
     }
     return found;
   }, css);
-  // A finger has a larger reach than the mouse, so not all of them are suitable.
+  // `dragsAt` has the larger reach of a finger: the cursor shows whether the mouse grabs.
   for (const [x, y] of spots) {
     await tab.mouse.move(x, y);
     await moreFrames(tab, 2, css);

@@ -1,15 +1,14 @@
-// Fingers on the glass of a page.
+// Touch input.
 //
-// Chromium acknowledges a touch before a busy page has processed it, and a touch that begins and ends between
-// two frames has no effect. So each touch here ends once the page has processed it.
+// Chromium acknowledges a touch before a busy page has processed it, and a touch that begins and ends between two frames
+// has no effect. So each touch here waits until the page has processed it.
 
 /** The pointer event of each touch. */
 const FELT = { touchStart: 'pointerdown', touchMove: 'pointermove', touchEnd: 'pointerup', touchCancel: 'pointercancel' };
 
 /**
- * Fingers for a tab: `touch(type, spots)` sends a touch with each finger that is down at a spot `[x, y]`,
- * and `felt()` lists the events that the page got. A finger that scrolls the page is cancelled, and its
- * later events do not arrive.
+ * Touch input for a tab: `touch(type, spots)` dispatches a touch event with one finger for each spot `[x, y]`, and `felt()`
+ * lists the pointer events that the page got. If a finger scrolls the page, its touch is cancelled.
  */
 export async function fingers(tab) {
   const session = await tab.context().newCDPSession(tab);

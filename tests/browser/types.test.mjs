@@ -1,4 +1,4 @@
-// The types of the package match its contents: right uses compile, wrong ones do not.
+// The types of the package: correct uses compile, incorrect ones do not.
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -16,7 +16,7 @@ before(() => (project = installPackage()));
 after(() => project.remove());
 
 /** The compiler's errors for a program that uses the package. */
-function complaints(program) {
+function compileErrors(program) {
   const file = join(project.folder, 'main.ts');
   writeFileSync(file, `import type { WidgetStates, WidgetButtons, SlamWidget } from 'slam-widgets';\n${program}\nexport {};`);
   try {
@@ -28,7 +28,7 @@ function complaints(program) {
   }
 }
 
-it('name every parameter and button of every widget', () => {
+it('the types have every parameter and button of every widget', () => {
   const lines = h.schema.flatMap((widget) => [
     ...widget.params.map((param, i) => {
       const value = { choice: `'${param.options[param.default]?.id}'`, switch: 'true', text: "''" }[param.kind] ?? param.default;
@@ -37,37 +37,37 @@ it('name every parameter and button of every widget', () => {
     ...[...widget.buttons, ...widget.presets].map((button, i) =>
       `const b${widget.id.replace('.', '_')}_${i}: WidgetButtons['${widget.id}'] = '${button.id}';`),
   ]);
-  assert.equal(complaints(lines.join('\n')), '');
+  assert.equal(compileErrors(lines.join('\n')), '');
 });
 
-it('take what the element takes', () => {
+it('the types accept what the element accepts', () => {
   const program = `
     const widget: SlamWidget = document.createElement('slam-widget');
     widget.heading = 60;
     widget.value = { heading: 12 };
     widget.addEventListener('slam-change', (event) => console.log(event.detail.parameter, event.detail.value));
     void widget.press('play');`;
-  assert.equal(complaints(program), '');
+  assert.equal(compileErrors(program), '');
 });
 
-it('refuse a parameter that is not there and an option that does not exist', () => {
-  assert.match(complaints("const x: WidgetStates['w16.1']['headin'] = 1;"), /headin/);
-  assert.match(complaints("document.createElement('slam-widget').variant = 'plane';"), /not assignable/);
+it('the types reject unknown parameters and options', () => {
+  assert.match(compileErrors("const x: WidgetStates['w16.1']['headin'] = 1;"), /headin/);
+  assert.match(compileErrors("document.createElement('slam-widget').variant = 'plane';"), /not assignable/);
 });
 
-it('know the prediction and what it tells', () => {
+it('the types have the prediction element and its event', () => {
   const ask = (field) => `
     import 'slam-widgets/predict';
     const question = document.createElement('slam-predict');
     question.addEventListener('slam-predict', ({ detail }) => { const told: boolean = detail.${field}; });`;
-  assert.equal(complaints(ask('correct')), '');
-  assert.match(complaints(ask('gap')), /not assignable/);
+  assert.equal(compileErrors(ask('correct')), '');
+  assert.match(compileErrors(ask('gap')), /not assignable/);
 });
 
-it('know the module for notebooks', () => {
+it('the types have the module for notebooks', () => {
   const render = (cell) => `
     import widget, { type Model } from 'slam-widgets/anywidget';
     export const show = (model: Model, el: HTMLElement): (() => void) => widget.render(${cell});`;
-  assert.equal(complaints(render('{ model, el }')), '');
-  assert.match(complaints(render('{ model }')), /'el' is missing/);
+  assert.equal(compileErrors(render('{ model, el }')), '');
+  assert.match(compileErrors(render('{ model }')), /'el' is missing/);
 });

@@ -19,12 +19,12 @@ it('gives each question of the page an id', () => {
   assert.deepEqual(choices[1], { choice: 'twice', from: 1, to: 2 });
 });
 
-it('marks by the questions of the page', () => {
+it('slam2d mark has the questions of the page', () => {
   const marked = JSON.parse(readFileSync(new URL('../../crates/slam2d_cli/src/mark/exercises.json', import.meta.url), 'utf8'));
   assert.deepEqual(marked, readExercises(page), 'run cargo xtask build, which writes the file, and commit it');
 });
 
-it('refuses a question without an id, with one that is none, and with one that is taken', () => {
+it('rejects a question with a missing, malformed or duplicate id', () => {
   assert.throws(() => readExercises(page.replace(first, '<slam-predict')), /w16\.11.* has no id: add exercise="16\.5a"/);
   assert.throws(() => readExercises(page.replace(first, '<slam-predict exercise="first"')), /exercise="first" is no id/);
   assert.throws(() => readExercises(page.replace(first, '<slam-predict exercise="16.2"')), /two questions have exercise="16\.2"/);

@@ -7,23 +7,23 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { describe, it } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { LicenceProblem, SHIPPED, waysToTake } from '../../web/licences/allowed.mjs';
+import { LicenceProblem, SHIPPED, acceptedChoices } from '../../web/licences/allowed.mjs';
 import { npmPackagesIn } from '../../web/licences/packages.mjs';
 import { withTexts } from '../../web/licences/texts.mjs';
 
 const ROOT = fileURLToPath(new URL('../../', import.meta.url));
 const ALLOWED = ['MIT', 'Apache-2.0', 'Unicode-3.0'];
-const ways = (expression) => waysToTake(expression, ALLOWED, 'foo 1.0.0');
+const ways = (expression) => acceptedChoices(expression, ALLOWED, 'foo 1.0.0');
 
 describe('an expression of licences', () => {
-  it('is taken by its first accepted choice, and with all that hold together', () => {
+  it('is resolved to its first accepted choice, with all licences that apply together', () => {
     assert.deepEqual(ways('Apache-2.0 OR MIT'), [['MIT'], ['Apache-2.0']]);
     assert.deepEqual(ways('MIT/Apache-2.0'), [['MIT'], ['Apache-2.0']]);
     assert.deepEqual(ways('GPL-2.0-only OR Apache-2.0'), [['Apache-2.0']]);
     assert.deepEqual(ways('(MIT OR GPL-3.0-only) AND Unicode-3.0'), [['MIT', 'Unicode-3.0']]);
   });
 
-  it('that leaves nothing accepted is one sentence that names package and licence', () => {
+  it('without an accepted choice gives one sentence with package and licence', () => {
     for (const expression of ['GPL-3.0-only', 'MIT AND GPL-2.0-only', 'Apache-2.0 WITH LLVM-exception', 'MPL-2.0+']) {
       assert.throws(() => ways(expression), (problem) => problem instanceof LicenceProblem
         && problem.message.startsWith(`foo 1.0.0 is under ${expression}, which web/licences/allowed.mjs does not accept`));
@@ -52,34 +52,34 @@ describe('the texts of a package', () => {
     }
   }
 
-  it('are known by their words, whatever their files are called', () => {
+  it('are recognized by their wording, whatever their files are called', () => {
     assert.deepEqual(taken('Zlib OR MIT', { 'LICENSE.md': MIT }), [{ id: 'MIT', text: MIT }]);
   });
 
-  it('come with the further notices of the package', () => {
+  it('include further notices of the package', () => {
     const texts = taken('MIT', { LICENSE: MIT, 'COPYING.OTHER': 'Parts are by others.' });
     assert.deepEqual(texts.slice(1), [{ id: 'COPYING.OTHER', text: 'Parts are by others.' }]);
   });
 
-  it('are taken from a package of the same repository where its own has none', () => {
+  it('come from another package of the same repository if its own has none', () => {
     const bar = { name: 'bar', licence: 'MIT', files: { LICENSE: MIT } };
     assert.deepEqual(taken('MIT', {}, [bar]), [{ id: 'MIT', text: MIT }]);
   });
 
-  it('of the Apache License name nobody where the package has none', () => {
+  it('of the Apache License name nobody if the package has none', () => {
     const [{ id, text }] = taken('MIT OR Apache-2.0', {});
     assert.equal(id, 'Apache-2.0');
     assert.match(text, /END OF TERMS AND CONDITIONS\s*$/);
     assert.doesNotMatch(text, /RustSLAM/);
   });
 
-  it('that are missing are one sentence that says where to put them', () => {
+  it('that are missing give one sentence with the place for them', () => {
     assert.throws(() => taken('MIT', { LICENSE: 'See the manifest.' }), (problem) => problem instanceof LicenceProblem
       && /^foo 1\.0\.0 is under MIT, and its package has no text of it: put .* into web\/licences\/texts\//.test(problem.message));
   });
 });
 
-it('npm packages are known by what esbuild took into a bundle', async () => {
+it('npm packages in a bundle come from esbuild’s metafile', async () => {
   const inputs = { 'web/node_modules/katex/dist/katex.mjs': {}, 'web/ts/main.ts': {}, 'web/node_modules/katex/src/a.js': {} };
   process.chdir(ROOT);
   const [katex, ...others] = await npmPackagesIn({ inputs });
@@ -87,7 +87,7 @@ it('npm packages are known by what esbuild took into a bundle', async () => {
   assert.deepEqual(others, []);
 });
 
-describe('what is published', () => {
+describe('the published notices', () => {
   const dist = (file) => readFileSync(`${ROOT}dist/${file}`, 'utf8');
   // Requested as lines of names, independently of the build's own query.
   const tree = execFileSync('cargo', ['tree', '-p', 'slam_web', '--target', 'wasm32-unknown-unknown',
@@ -95,7 +95,7 @@ describe('what is published', () => {
   const others = tree.split('\n').filter((line) => line !== '' && !line.includes('(/'));
   const crates = [...new Set(others.map((line) => line.split(' ').slice(0, 2).join(' ').replace(' v', ' ')))];
 
-  it('names every crate of the module, in the page and in the package', () => {
+  it('name every crate of the module, in the page and in the package', () => {
     assert.ok(crates.length > 100);
     const [text, page] = [dist('THIRD-PARTY-NOTICES.txt'), dist('notices.html').replace(/<[^>]*>/g, '')];
     for (const crate of crates) {
@@ -104,7 +104,7 @@ describe('what is published', () => {
     }
   });
 
-  it('has the texts of the fonts, of KaTeX and of the standard library', () => {
+  it('have the texts of the fonts, of KaTeX and of the standard library', () => {
     const page = dist('notices.html');
     for (const words of ['Bitstream Vera Fonts Copyright', 'SIL OPEN FONT LICENSE', 'Khan Academy', 'The Rust standard library', 'UNICODE LICENSE V3']) {
       assert.ok(page.includes(words), words);
@@ -112,7 +112,7 @@ describe('what is published', () => {
     assert.ok(dist('THIRD-PARTY-NOTICES.txt').includes('Bitstream Vera Fonts Copyright'));
   });
 
-  it('gives each package a link to each of its texts', () => {
+  it('link each package to each of its texts', () => {
     const page = dist('notices.html');
     const anchors = new Set([...page.matchAll(/<h3 id="([^"]*)"/g)].map(([, id]) => `#${id}`));
     const rows = page.match(/^<li>.*<\/li>$/gm);
@@ -123,7 +123,7 @@ describe('what is published', () => {
     }
   });
 
-  it('carries our own licences, and the chapter links to the notices', () => {
+  it('include our own licences, and are linked from the chapter', () => {
     const { files } = JSON.parse(dist('package.json'));
     for (const file of ['LICENSE-MIT', 'LICENSE-APACHE']) {
       assert.equal(dist(file), readFileSync(`${ROOT}${file}`, 'utf8'));
@@ -134,7 +134,7 @@ describe('what is published', () => {
   });
 });
 
-it('every accepted licence is told from every other by its text', () => {
+it('every accepted licence is distinguished from every other by its text', () => {
   const texts = { MIT: `${ROOT}LICENSE-MIT`, 'Apache-2.0': `${ROOT}LICENSE-APACHE`,
     'OFL-1.1': `${ROOT}web/licences/texts/katex-fonts-OFL-1.1.txt`, 'Bitstream-Vera': `${ROOT}web/fonts/LICENSE.txt` };
   for (const [id, file] of Object.entries(texts)) {

@@ -95,7 +95,7 @@ function listener(spec) {
   };
 }
 
-it('no message throws, and none changes what it does not name', async () => {
+it('no message throws, or changes a parameter that it does not name', async () => {
   const counts = { taken: 0, refused: 0, answered: 0 };
   for (const [index, spec] of SCHEMA.entries()) {
     const inventor = new Inventor(spec, 1 + index);
@@ -130,7 +130,7 @@ it('no message throws, and none changes what it does not name', async () => {
   for (const [what, count] of Object.entries(counts)) assert.ok(count > 500, `${count} ${what}`);
 });
 
-it('a value that is kept is one that the core takes', () => {
+it('a value that is accepted here is valid in the core', () => {
   for (const [index, spec] of SCHEMA.entries()) {
     const inventor = new Inventor(spec, 100 + index);
     const state = new State(spec);

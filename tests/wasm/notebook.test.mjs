@@ -14,7 +14,7 @@ import { PYTHON, install, without } from '../wheel.mjs';
 const root = fileURLToPath(new URL('../../', import.meta.url));
 const dist = join(root, 'dist');
 
-test('the wheel holds the program, and a class for each widget with its parameters', (context) => {
+test('the wheel has the module, and a class for each widget with its parameters', (context) => {
   const why = without('anywidget', 'hatchling');
   if (why !== undefined) {
     skip(context, why);

@@ -14,7 +14,7 @@ describe('a lap', () => {
     });
   }
 
-  it('by the estimator for logs has the same digest of all poses, and another one than by the chapter\'s', () => {
+  it('by the estimator for logs has the same digest of all poses, and a different one than by the chapter\'s', () => {
     const words = ['--seed', '12648430', '--noise', '2', '--front-end', 'local-map', '--json'];
     const digest = wasm.lapDigest(12648430, 2, true);
     assert.equal(digest, JSON.parse(native('slam2d', 'lap', ...words)).digest);
@@ -28,7 +28,7 @@ describe('a lap', () => {
 
 describe('every widget', () => {
   for (const { id } of schema) {
-    it(`${id} says the same after each preset`, () => {
+    it(`${id} reports the same as natively after each preset`, () => {
       const lines = afterEachPreset(id).split('\n');
       const expected = native('states', id).split('\n');
       assert.equal(lines.length, expected.length);

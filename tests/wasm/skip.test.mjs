@@ -9,7 +9,7 @@ import { it } from 'node:test';
 
 const SKIP = new URL('../skip.mjs', import.meta.url).href;
 
-it('what is skipped stands in the list, and fails where nothing may skip', () => {
+it('a skipped test is listed, and fails if no test may be skipped', () => {
   const folder = mkdtempSync(join(tmpdir(), 'slam-skip-'));
   try {
     const [file, list] = [join(folder, 'one.mjs'), join(folder, 'list')];

@@ -28,7 +28,7 @@ function comparable(text) {
   return Number.isNaN(Number(text)) ? text : Number(text) + 0;
 }
 
-it('a text is taken or refused by both sides alike', () => {
+it('both sides accept and reject the same texts', () => {
   let taken = 0;
   for (const widget of schema) {
     for (const param of widget.params) {
@@ -52,7 +52,7 @@ it('a text is taken or refused by both sides alike', () => {
   assert.ok(taken > 100, `${taken} texts were taken`);
 });
 
-it('a link written for a state reads back to that state', () => {
+it('a link written for a state is parsed to the same state', () => {
   for (const widget of schema) {
     const values = new Map(widget.params.map((param) => [param.id, defaultText(param)]));
     assert.equal(writeQuery(widget, values), `?w=${widget.id.slice(1)}`);
@@ -68,7 +68,7 @@ it('a link written for a state reads back to that state', () => {
   }
 });
 
-it('a broken link names each thing that is wrong', () => {
+it('each error of a broken link is reported', () => {
   const { problems, values } = readQuery('?w=16.1&heading=abc&bogus=1&heading=30');
   assert.match(problems[0], /`heading` takes a number, not `abc`/);
   assert.match(problems[1], /has no parameter `bogus`; it has heading/);

@@ -14,5 +14,5 @@ document.querySelector('#noisy').addEventListener('click', () => {
   frame.contentWindow.postMessage({ slam: 1, type: 'set', values: { noise: 2 } }, '*');
 });
 
-// A frame that was there before this script has told its size already; the state holds it, too.
+// A frame that loaded before this script has already sent its size, which is in its state, too.
 frame.contentWindow.postMessage({ slam: 1, type: 'get' }, '*');

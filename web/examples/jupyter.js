@@ -1,4 +1,4 @@
-// The part of a notebook: a model with traits, and the module's render.
+// Stands in for a notebook: a model with traits that renders the module.
 
 import module from '../slam-anywidget.js';
 
@@ -7,7 +7,7 @@ const callbacks = new Map();
 
 const model = {
   get: (trait) => traits[trait],
-  /** A notebook calls back for what the widget itself writes, too. */
+  /** Like a notebook, it also calls back for values that the widget writes. */
   set: (trait, value) => {
     traits[trait] = value;
     callbacks.get(`change:${trait}`)?.();
@@ -17,7 +17,7 @@ const model = {
   off: (event) => callbacks.delete(event),
 };
 
-/** What `lap.value = {...}` does in Python. */
+/** The effect of `lap.value = {...}` in Python. */
 window.assign = (value) => model.set('value', value);
 window.traits = traits;
 /** Runs the cell. */

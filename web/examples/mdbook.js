@@ -1,4 +1,4 @@
-// The part of mdBook: its arrow keys turn the page, whatever has the focus. Here they change the address.
+// Stands in for mdBook, whose arrow keys turn the page, whatever has the focus. Here they change the address.
 
 const turns = { ArrowLeft: '#previous', ArrowRight: '#next' };
 

@@ -1,3 +1,3 @@
-// MyST copies this file alone into its own build. So it names the module by the site's whole address.
+// MyST copies only this file into its build, so the module has an absolute address.
 
 export { default } from 'http://localhost:8016/slam-anywidget.js';

@@ -1,4 +1,4 @@
-// Slides are scaled by `zoom: 1` only: a transform would blur the canvas and shift the pointer.
+// Disables scaling: a transform would blur the canvas and shift the pointer.
 
 import Reveal from './reveal/reveal.mjs';
 

@@ -4,9 +4,9 @@
     lap = SlamWidget(name="w16.2", value={"noise": 2})
     lap
 
-Afterwards `lap.value` is the state and `lap.outcome` the result; setting `lap.value` moves it.
-A value that does not fit is named below the widget, and the others are set.
-In marimo wrap it, `lap = mo.ui.anywidget(SlamWidget(name="w16.2"))`, and cells follow its traits.
+Then `lap.value` is the state and `lap.outcome` the result. Setting `lap.value` changes the widget; an invalid value is
+reported below it, and the others are set.
+In marimo, wrap it, `lap = mo.ui.anywidget(SlamWidget(name="w16.2"))`, and cells react to its traits.
 """
 
 import anywidget
@@ -17,7 +17,7 @@ SITE = "http://localhost:8016"
 
 
 class SlamWidget(anywidget.AnyWidget):
-    """One widget of the chapter; names and parameters are in docs/parameters.md."""
+    """A widget of the chapter; docs/parameters.md lists names and parameters."""
 
     _esm = f"{SITE}/slam-anywidget.js"
 

@@ -1,10 +1,10 @@
-// The accepted licences, and how an SPDX expression is judged by them.
+// The accepted licences, and the evaluation of SPDX expressions.
 
 import parse from 'spdx-expression-parse';
 
 /**
- * Accepted licences for the module and the page, by preference, and the pattern of their texts. Texts are
- * compared in lower case with single spaces.
+ * Accepted licences for the module and the page, by preference, each with a pattern that matches its text in lower case
+ * with single spaces.
  */
 export const SHIPPED = new Map([
   ['MIT', /permission is hereby granted, free of charge, to any person obtaining a copy of this software.*this permission notice.{0,40} shall be included/],
@@ -18,7 +18,7 @@ export const SHIPPED = new Map([
   ['Bitstream-Vera', /bitstream vera fonts copyright/],
 ]);
 
-/** Licences accepted for build and test only, which do not reach readers. */
+/** Accepted licences for build and test, which are not distributed. */
 export const TOOLS = [
   ...SHIPPED.keys(),
   'Apache-2.0 WITH LLVM-exception',
@@ -30,10 +30,10 @@ export const TOOLS = [
   'Ubuntu-font-1.0',
 ];
 
-/** A licence question that a person has to decide; the message is one sentence. */
+/** A question that a person has to decide; the message is one sentence. */
 export class LicenceProblem extends Error {}
 
-/** Ends a script with the message alone, without a stack trace. */
+/** Ends a script with the message of a LicenceProblem, without a stack trace. */
 export function endWithOneSentence(error) {
   if (!(error instanceof LicenceProblem)) throw error;
   console.error(error.message);
@@ -41,37 +41,35 @@ export function endWithOneSentence(error) {
 }
 
 /**
- * The alternatives of an SPDX `expression`, each as the list of licences that then apply, with only accepted
- * ones; by preference.
- *
- * `what` names the package in a LicenceProblem.
+ * Returns the alternatives of an SPDX `expression` that have only accepted licences, by preference. Each is the list of
+ * licences that apply together. `what` names the package in a LicenceProblem.
  */
-export function waysToTake(expression, allowed, what) {
+export function acceptedChoices(expression, allowed, what) {
   if (typeof expression !== 'string' || expression.trim() === '') {
     throw new LicenceProblem(`${what} names no licence: read its sources, and do without it if they name none.`);
   }
   const ranks = [...allowed];
-  const ways = alternatives(parsed(expression, what)).filter((way) => way.every((id) => ranks.includes(id)));
-  if (ways.length === 0) {
+  const choices = alternatives(parsed(expression, what)).filter((ids) => ids.every((id) => ranks.includes(id)));
+  if (choices.length === 0) {
     throw new LicenceProblem(
       `${what} is under ${expression}, which web/licences/allowed.mjs does not accept: `
       + 'do without it, or add its licence there once somebody has read it.',
     );
   }
-  const rank = (way) => Math.max(...way.map((id) => ranks.indexOf(id)));
-  return ways.sort((a, b) => rank(a) - rank(b));
+  const rank = (ids) => Math.max(...ids.map((id) => ranks.indexOf(id)));
+  return choices.sort((a, b) => rank(a) - rank(b));
 }
 
 function parsed(expression, what) {
   try {
-    // Manifests of old crates contain a slash.
+    // Old crates separate alternatives by a slash.
     return parse(expression.replaceAll('/', ' OR '));
   } catch {
     throw new LicenceProblem(`${what} is under \`${expression}\`, which is no expression of SPDX: ask its authors what it means.`);
   }
 }
 
-/** The tree as a list of alternatives; each is a list of licences that apply together. */
+/** Expands the expression to a list of alternatives; each is a list of licences that apply together. */
 function alternatives(tree) {
   if (tree.conjunction === 'or') return [...alternatives(tree.left), ...alternatives(tree.right)];
   if (tree.conjunction === 'and') {

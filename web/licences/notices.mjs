@@ -1,4 +1,4 @@
-// The notices for everything that is published: a text for the npm package, a page for the site.
+// The notices for everything that we distribute: a text for the npm package, a page for the site.
 
 import { cp, readFile, writeFile } from 'node:fs/promises';
 import path from 'node:path';
@@ -11,7 +11,7 @@ export const OWN_LICENCES = ['LICENSE-MIT', 'LICENSE-APACHE'];
 export const PACKAGE_NOTICES = 'THIRD-PARTY-NOTICES.txt';
 export const PAGE = 'notices.html';
 
-/** Third-party packages in the widgets, in groups, `{ title, packages }`. */
+/** Third-party packages in the widgets, as groups `{ title, packages }`. */
 export async function partsOfWidgets(metafiles) {
   const library = {
     name: 'The Rust standard library',
@@ -35,7 +35,7 @@ export async function partsOfWidgets(metafiles) {
   });
 }
 
-/** Third-party packages in the chapter's page. */
+/** Third-party packages in the pages of the chapter. */
 export async function partsOfPage(metafiles) {
   const katex = await npmPackage(path.join(ROOT, 'web/node_modules/katex'));
   const fonts = { ...katex, name: 'KaTeX fonts', licence: 'OFL-1.1', folder: undefined };
@@ -48,18 +48,18 @@ function grouped(packagesOf) {
     .map(([title, packages]) => ({ title, packages: withTexts(packages) }));
 }
 
-/** Our licences, and the notices as text, for the npm package. */
+/** Writes our licences, and the notices as text, for the npm package. */
 export async function writePackageNotices(parts, folder) {
   for (const file of OWN_LICENCES) await cp(path.join(ROOT, file), path.join(folder, file));
   const lines = parts.flatMap(({ title, packages }) => ['', `${title}:`, ...packages.map((one) => `  ${titleOf(one)}: ${one.licence}`)]);
   const texts = textsOf(parts).flatMap(({ heading, names, text }) => ['-'.repeat(80), `${heading}: ${names.join(', ')}`, '', text.trimEnd(), '']);
   await writeFile(
     path.join(folder, PACKAGE_NOTICES),
-    ['This package holds work of others, under the licences below.', ...lines, '', ...texts].join('\n'),
+    ['This package contains work of others under the licences below.', ...lines, '', ...texts].join('\n'),
   );
 }
 
-/** The notices as a page in the style of the chapter, the file `style`. */
+/** Writes the notices as a page with the chapter's style sheet `style`. */
 export async function writeNoticesPage(parts, folder, style) {
   const own = await Promise.all(OWN_LICENCES.map((file) => readFile(path.join(ROOT, file), 'utf8')));
   const texts = textsOf(parts);
@@ -94,7 +94,7 @@ export async function writeNoticesPage(parts, folder, style) {
   <p class="kicker"><a href="index.html">Scan matching and the pose graph</a></p>
   <h1>Licences and notices</h1>
   <p class="lede">This page and its widgets are under the MIT licence or the Apache License 2.0, as you choose.
-  They hold work of others, listed here with the texts that go with it.</p>
+  They contain work of others, listed here with the texts of its licences.</p>
 </header>
 
 <nav class="contents" aria-labelledby="contents-title">
@@ -120,7 +120,7 @@ function section([title, content], at) {
 
 const verbatim = (text) => `<pre class="verbatim">${escapeHtml(text.trimEnd())}</pre>`;
 
-/** Each text once, with all packages under it. */
+/** Each licence text once, with its packages. */
 function textsOf(parts) {
   const found = new Map();
   for (const one of parts.flatMap(({ packages }) => packages)) {

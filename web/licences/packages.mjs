@@ -13,10 +13,10 @@ function run(program, ...words) {
   return execFileSync(program, words, { cwd: ROOT, encoding: 'utf8', maxBuffer: 1 << 28 });
 }
 
-/** The cargo that started this script, if there is one. */
+/** `CARGO` is set if cargo started this script. */
 const cargo = (...words) => run(process.env.CARGO ?? 'cargo', ...words);
 
-/** All external crates of a workspace: every target, tests and tools included. */
+/** All external crates of a workspace, for every target, including tests and tools. */
 export function cratesOf(manifest, ...filter) {
   const metadata = cargo('metadata', '--format-version', '1', '--manifest-path', manifest, ...filter);
   return JSON.parse(metadata)
@@ -32,11 +32,10 @@ export function cratesOf(manifest, ...filter) {
 }
 
 /**
- * The external crates in a WebAssembly module: that of the widgets, `slam_web`, or that of the worker,
- * `slam_robot`.
+ * The external crates in a WebAssembly module, `slam_web` or `slam_robot`, without procedural macros.
  *
- * `cargo metadata` unites the features of all members, and so lists crates that the module does not contain;
- * `cargo tree` resolves the module's own. Macros run during compilation and are excluded.
+ * `cargo metadata` unites the features of all members, and so lists crates that are not in the module; `cargo tree`
+ * resolves the features of one package.
  */
 export function cratesOfModule(name) {
   const tree = cargo('tree', '--package', name, '--target', TARGET, '--edges', 'normal,no-proc-macro',
@@ -46,12 +45,12 @@ export function cratesOfModule(name) {
   return all.filter(({ name, version }) => inside.has(`${name} ${version}`));
 }
 
-/** The version of the standard library that is compiled into the module. */
+/** The version of the standard library. */
 export function rustVersion() {
   return run('rustc', '--version').split(' ')[1];
 }
 
-/** The npm packages of a lock file, for build and test, on every system. */
+/** All npm packages of a lock file, for every system. */
 export async function npmPackagesOf(folder) {
   const lock = JSON.parse(await readFile(path.join(ROOT, folder, 'package-lock.json'), 'utf8'));
   return Object.entries(lock.packages)
@@ -59,7 +58,7 @@ export async function npmPackagesOf(folder) {
     .map(([place, { version, license }]) => ({ name: place.replace(/^.*node_modules\//, ''), version, licence: license }));
 }
 
-/** The npm packages whose code esbuild put into a bundle, from its `metafile`. */
+/** The npm packages in bundles of esbuild, from their metafiles. */
 export async function npmPackagesIn(...metafiles) {
   const folders = new Set();
   for (const input of metafiles.flatMap((metafile) => Object.keys(metafile.inputs))) {

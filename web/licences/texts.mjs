@@ -3,14 +3,14 @@
 import { readFileSync, readdirSync } from 'node:fs';
 import path from 'node:path';
 
-import { LicenceProblem, SHIPPED, waysToTake } from './allowed.mjs';
+import { LicenceProblem, SHIPPED, acceptedChoices } from './allowed.mjs';
 import { ROOT } from './packages.mjs';
 
 const LICENCE_FILE = /^(licen[cs]e|copying|copyright|notice|authors|unlicense)/i;
-/** Files with additional notices, which are included. */
+/** Files with additional notices. */
 const NOTICE_FILE = /^(copying|copyright|notice|authors)/i;
 
-/** Texts that packages lack; `README.md` beside them documents their sources. */
+/** Texts that packages lack; `texts/README.md` documents their sources. */
 const SUPPLIED = [
   { file: 'faer-MIT.txt', id: 'MIT', packages: ['faer', 'faer-traits'] },
   { file: 'nano-gemm-MIT.txt', id: 'MIT', packages: /^nano-gemm(-\w+)?$/ },
@@ -19,19 +19,18 @@ const SUPPLIED = [
 ];
 
 /**
- * The packages with their licence texts: `texts` is a list of `{ id, text }`, where `id` is a licence or the
- * name of a further notice.
+ * Adds the licence texts to packages: `texts` is a list of `{ id, text }`, and `id` a licence or the file of a notice.
  *
- * A package with a choice is used under the first licence of SHIPPED whose text exists.
+ * A package with a choice of licences is used under the first one of SHIPPED whose text exists.
  */
 export function withTexts(packages) {
   return packages.map((one) => {
     const files = licenceFiles(one.folder);
     const neighbours = packages.filter((other) => other.repository !== '' && other.repository === one.repository);
     const what = `${one.name} ${one.version}`;
-    const ways = waysToTake(one.licence, SHIPPED.keys(), what);
+    const choices = acceptedChoices(one.licence, SHIPPED.keys(), what);
     const textOf = (id) => ownText(files, id) ?? supplied(one.name, id) ?? fromNeighbour(neighbours, id) ?? terms(id);
-    const found = ways.map((way) => way.map((id) => ({ id, text: textOf(id) })));
+    const found = choices.map((ids) => ids.map((id) => ({ id, text: textOf(id) })));
     const complete = found.find((texts) => texts.every(({ text }) => text !== undefined));
     if (complete === undefined) {
       throw new LicenceProblem(
@@ -46,8 +45,8 @@ export function withTexts(packages) {
   });
 }
 
-/** Files that no package needs any more. */
-export function idleTexts(packages) {
+/** Supplied texts that no package uses any more. */
+export function unusedTexts(packages) {
   return SUPPLIED.filter((entry) => !packages.some(({ name }) => isFor(entry, name))).map(({ file }) => file);
 }
 
@@ -59,7 +58,7 @@ function licenceFiles(folder) {
     .sort((a, b) => (a.name < b.name ? -1 : 1));
 }
 
-/** The shortest text: a file may contain several licences. */
+/** The shortest matching file: a longer one may contain several licences. */
 function ownText(files, id) {
   const fitting = files.filter(({ text }) => SHIPPED.get(id).test(squeezed(text)));
   return fitting.sort((a, b) => a.text.length - b.text.length)[0]?.text;
@@ -72,12 +71,12 @@ function supplied(name, id) {
   return entry && readFileSync(path.join(ROOT, 'web/licences/texts', entry.file), 'utf8');
 }
 
-/** Another package of the same repository. */
+/** The text from another package of the same repository. */
 function fromNeighbour(neighbours, id) {
   return neighbours.map(({ folder }) => ownText(licenceFiles(folder), id)).find((text) => text !== undefined);
 }
 
-/** The terms of the Apache License contain no names: our copy serves others, without its appendix, which names us. */
+/** The terms of the Apache License are the same for all: our copy without its appendix, which names us. */
 function terms(id) {
   if (id !== 'Apache-2.0') return undefined;
   const end = 'END OF TERMS AND CONDITIONS\n';
@@ -85,7 +84,7 @@ function terms(id) {
   return `${before}${end}`;
 }
 
-/** For comparison: texts with the same words are equal. */
+/** Normalizes case and white space for comparison. */
 export function squeezed(text) {
   return text.toLowerCase().replace(/\s+/g, ' ').trim();
 }

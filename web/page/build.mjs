@@ -1,5 +1,5 @@
-// Renders the companion: its pages in one frame with formulas as HTML and MathML, their style, their script and
-// KaTeX's style and fonts, and the page of licences and notices, all into one directory. Nothing of it is loaded from another host.
+// Builds the pages of the companion in one directory: HTML with formulas as HTML and MathML, style, scripts, KaTeX's style
+// and fonts, and the page of licences and notices. Pages load nothing from other hosts.
 //
 //     node web/page/build.mjs <out-dir>
 
@@ -60,14 +60,14 @@ async function renderPage({ file, source, html }) {
   await writeFile(path.join(outDir, file), withNames(page));
 }
 
-/** The names with a hash in place of those of the sources. */
+/** Replaces the names of sources by those with a hash. */
 function withNames(html) {
   return html.replace(/((?:href|src)=")([a-z]+\.(?:css|js))"/g, (whole, before, name) => {
     return names.has(name) ? `${before}${names.get(name)}"` : whole;
   });
 }
 
-/** Writes a file under a name with a hash of its content, so that a browser may keep it for ever; returns that name. */
+/** Writes a file under a name with a hash of its content, which a browser may cache for ever; returns that name. */
 async function writeHashed(name, content) {
   const { name: stem, ext } = path.parse(name);
   const hashed = `${stem}-${createHash('sha256').update(content).digest('hex').slice(0, 12)}${ext}`;
@@ -75,7 +75,7 @@ async function writeHashed(name, content) {
   return hashed;
 }
 
-/** Title and summary of each widget, by its id: web/build.mjs leaves them beside the pictures. */
+/** The schema of each widget by its id, which web/build.mjs writes. */
 async function widgetSpecs() {
   const file = path.join(outDir, 'schema.json');
   if (!existsSync(file)) throw new Error(`${file} is missing: run node web/build.mjs first, which draws the pictures`);
@@ -83,7 +83,7 @@ async function widgetSpecs() {
   return new Map(widgets.map((widget) => [widget.id, widget]));
 }
 
-/** What a reader sees where no script runs or none arrives; the element hides it once it is defined. */
+/** Adds the fallback content of widgets without scripts; the element hides it once it is defined. */
 function addPictures(html, source) {
   return html.replace(/(<slam-widget\b[^>]*>)\s*(<\/slam-widget>)/g, (_, open, close) => {
     const id = open.match(/\bname="([^"]*)"/)?.[1];
@@ -101,7 +101,7 @@ function addPictures(html, source) {
   });
 }
 
-/** What the page draws by itself is a picture until the core is there: `<img data-still="lap" alt="…">`. */
+/** Adds the still pictures of figures, shown until their scripts start: `<img data-still="lap" alt="…">`. */
 function addStills(html) {
   return html.replace(/<img data-still="([a-z]+)"([^>]*)>/g, (_, name, rest) => `<picture>
       <source media="(prefers-color-scheme: dark)" srcset="pictures/${name}-dark.svg">
@@ -109,12 +109,12 @@ function addStills(html) {
     </picture>`);
 }
 
-/** The sweeps of the first figure, which its script then moves. */
+/** Adds the SVG of the first figure. */
 function addMatch(html) {
   return html.replace('<div class="match-picture" data-drawing="match">', (open) => `${open}${match.svg}`);
 }
 
-/** The small figures at their first place: `<figure class="drawing sketch" data-sketch="gate">`. */
+/** Fills the small figures with their initial state: `<figure class="drawing sketch" data-sketch="gate">`. */
 function addSketches(html, sketches, source) {
   return html.replace(/<figure [^>]*data-sketch="([a-z]+)"[^>]*>/g, (open, name) => {
     const sketch = sketches.get(name);
@@ -125,7 +125,7 @@ function addSketches(html, sketches, source) {
   });
 }
 
-/** `<tex>…</tex>` in the line and `<tex display>…</tex>` on lines of its own. */
+/** Renders inline formulas, `<tex>…</tex>`, and display formulas, `<tex display>…</tex>`. */
 function renderFormulas(html, output = 'htmlAndMathml') {
   return html.replace(/(\(?)<tex( display)?>([\s\S]*?)<\/tex>((?:&nbsp;[^\s<.,;:]+|[.,;:?!)°])*)/g, (_, before, display, escaped, after) => {
     const formula = katex.renderToString(dropFigureNames(unescapeHtml(escaped)), {
@@ -137,13 +137,13 @@ function renderFormulas(html, output = 'htmlAndMathml') {
     if (display !== undefined) {
       return `${before}<div class="math" role="group" aria-label="Formula">${formula}</div>${after}`;
     }
-    // A unit or a full stop must not begin a line, nor may an opening bracket end one.
+    // Keeps brackets, units and punctuation on the line of the formula.
     const text = `${before}${formula}${after}`;
     return text === formula ? formula : `<span class="unbroken">${text}</span>`;
   });
 }
 
-/** \fig{name}{text} prints the text; the name says which result a test compares it with. */
+/** `\fig{name}{text}` prints the text; a test compares it with the figure `name`. */
 function dropFigureNames(tex) {
   return tex.replace(/\\fig\{[^{}]*\}\{([^{}]*)\}/g, '{$1}');
 }
@@ -152,14 +152,14 @@ function unescapeHtml(text) {
   return text.replaceAll('&lt;', '<').replaceAll('&gt;', '>').replaceAll('&amp;', '&');
 }
 
-/** With the colours before it; and the table that the page links to. Returns the name of the style. */
+/** Writes the style with the colours, and copies the linked table. Returns the name of the style. */
 async function copyStyle() {
   const style = await readFile(path.join(here, 'page.css'), 'utf8');
   await cp(path.join(here, 'thousand-laps.csv'), path.join(outDir, 'thousand-laps.csv'));
   return writeHashed('page.css', colorStyle() + style);
 }
 
-/** Browsers that run WebAssembly all read woff2: the older font formats stay out. */
+/** Copies KaTeX with woff2 fonts only: all browsers with WebAssembly support them. */
 async function copyKatex() {
   const dist = path.dirname(createRequire(import.meta.url).resolve('katex'));
   const target = path.join(outDir, 'katex');
@@ -173,7 +173,7 @@ async function copyKatex() {
   });
 }
 
-/** Writes the scripts of the page and of its workers; returns their names, and what esbuild took into them. */
+/** Bundles the scripts of the page and of its worker; returns their names and esbuild's metafiles. */
 async function bundleScripts(stories, matchAnswer) {
   const bundle = async (source, define) => {
     const { outputFiles, metafile } = await build({
@@ -202,7 +202,7 @@ async function bundleScripts(stories, matchAnswer) {
   return { names, metafiles: [worker.metafile, page.metafile] };
 }
 
-/** What the widgets hold, which their build has left, and what the page adds. */
+/** Writes the notices of the widgets, from their build, and of the page. */
 async function writeNotices(metafiles) {
   const ofWidgets = JSON.parse(await readFile(path.join(root, 'web', 'pkg', 'parts.json'), 'utf8'));
   await writeNoticesPage([...ofWidgets, ...(await partsOfPage(metafiles))], outDir, names.get('page.css'));

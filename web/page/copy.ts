@@ -1,4 +1,4 @@
-// A button on every listing that copies its code.
+// Adds a copy button to every listing.
 
 const DONE_MS = 2000;
 
@@ -8,12 +8,12 @@ export function addCopyButtons(listings: Iterable<HTMLElement>): void {
     const button = document.createElement('button');
     button.type = 'button';
     button.textContent = 'Copy';
-    const say = (words: string): void => {
-      button.textContent = words;
+    const show = (text: string): void => {
+      button.textContent = text;
       setTimeout(() => (button.textContent = 'Copy'), DONE_MS);
     };
     button.addEventListener('click', () => {
-      navigator.clipboard.writeText(code?.textContent ?? '').then(() => say('Copied'), () => say('The browser refuses'));
+      navigator.clipboard.writeText(code?.textContent ?? '').then(() => show('Copied'), () => show('Copying failed'));
     });
     button.ariaLive = 'polite';
     listing.querySelector('figcaption')?.append(button);

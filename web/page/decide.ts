@@ -1,4 +1,4 @@
-// Ten loop candidates: the reader accepts or refuses each, and then sees which were right.
+// Ten loop candidates: the reader accepts or rejects each, and then sees which were right.
 
 import type { Glue } from '../pkg/glue.js';
 import { themeOf, watchTheme } from '../ts/theme';
@@ -23,7 +23,7 @@ export class DecideFigure {
   constructor(figure: HTMLElement, glue: Glue) {
     this.#place = figure.querySelector<HTMLElement>('.decide-place') as HTMLElement;
     this.#glue = glue;
-    // Its laps are driven when a reader comes near, and not while the page opens.
+    // Its laps take a while, so they run once the figure is near the viewport.
     const observer = new IntersectionObserver((entries) => {
       if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
       observer.disconnect();
@@ -44,12 +44,12 @@ export class DecideFigure {
   }
 
   #draw(): void {
-    const asked = this.#candidates[this.#answers.length];
-    if (asked === undefined) this.#conclude();
-    else this.#ask(asked);
+    const next = this.#candidates[this.#answers.length];
+    if (next === undefined) this.#showVerdict();
+    else this.#showCandidate(next);
   }
 
-  #ask(candidate: Candidate): void {
+  #showCandidate(candidate: Candidate): void {
     const { length } = this.#answers;
     const count = paragraph(`Candidate ${length + 1} of ${this.#candidates.length}`);
     count.className = 'decide-count';
@@ -62,12 +62,12 @@ export class DecideFigure {
   #answer(letter: '0' | '1'): void {
     this.#answers += letter;
     this.#draw();
-    // The button that was pressed is gone: the keyboard goes on where it was.
+    // The pressed button is gone: its successor gets the focus.
     const buttons = this.#place.querySelectorAll('button');
     (letter === '1' ? buttons[0] : buttons[buttons.length - 1])?.focus({ preventScroll: true });
   }
 
-  #conclude(): void {
+  #showVerdict(): void {
     const verdict = this.#glue.judgeCandidates(this.#answers, this.#width, themeOf(this.#place));
     const judged = JSON.parse(verdict) as Judged;
     const list = document.createElement('ol');
@@ -84,7 +84,7 @@ export class DecideFigure {
     })));
   }
 
-  /** A picture with its sentence, which a screen reader tells, and what stands below. */
+  /** Shows a picture, its sentence as a live region, and the elements below. */
   #show({ svg, says }: Candidate, ...below: HTMLElement[]): void {
     const picture = document.createElement('div');
     picture.className = 'sketch-picture';

@@ -1,17 +1,16 @@
-// The questions of the chapter as data: what the page asks is what a frame shows and what `slam2d mark` marks.
+// The questions of the chapter as data, for frames and for `slam2d mark`. Their source is the page.
 
-/** Chapter, exercise and part, `16.5a`; or a name in place of the number, `16.flat-ground`. */
+/** Chapter, exercise and part: `16.5a`; or a name instead of the number: `16.flat-ground`. */
 const ID = /^\d+\.(\d+[a-z]?|[a-z]+(-[a-z]+)*)$/;
 
 /**
- * Reads every `<slam-predict>` of the pages, in the order of the ids; the pages have another order.
- * @throws {Error} if an exercise has no id, a malformed one, or one that another exercise has.
+ * Reads every `<slam-predict>` of the pages, sorted by id.
+ * @throws {Error} if an id is missing, malformed or used twice.
  */
 export function readExercises(html) {
   const exercises = [];
   for (const [, tag, content] of html.matchAll(/<slam-predict\b([^>]*)>([\s\S]*?)<\/slam-predict>/g)) {
-    const given = attributes(tag);
-    const { exercise, widget, state, fact, tolerance, unit } = given;
+    const { exercise, widget, state, fact, tolerance, unit } = attributes(tag);
     if (exercise === undefined) {
       throw new Error(`the question <slam-predict${tag}> has no id: add exercise="16.5a", its chapter, number and part`);
     }
@@ -20,7 +19,7 @@ export function readExercises(html) {
       throw new Error(`two questions have exercise="${exercise}": give each an id of its own`);
     }
     const choices = [...content.matchAll(/<li\b([^>]*\bdata-choice=[^>]*)>/g)].map(([, item]) => choiceOf(item));
-    exercises.push(withoutGaps({ exercise, widget, state, fact, tolerance: numberOf(tolerance), unit, choices }));
+    exercises.push(withoutUndefined({ exercise, widget, state, fact, tolerance: numberOf(tolerance), unit, choices }));
   }
   return exercises.sort(byId(({ exercise }) => exercise));
 }
@@ -30,8 +29,8 @@ function byId(idOf) {
 }
 
 /**
- * Each exercise as a frame shows it, by itself: its name without a part, `16.5`, its title, what comes before its questions,
- * and the questions. Links to other places of the page become text; `render` turns formulas into HTML.
+ * Each exercise for a frame: its name without a part, `16.5`, its title, the text before its questions, and the questions.
+ * Links within the page become text; `render` turns formulas into HTML.
  */
 export function frameExercises(html, render) {
   return html.split('<article class="exercise"').slice(1).map((part) => {
@@ -46,15 +45,15 @@ export function frameExercises(html, render) {
 
 function choiceOf(item) {
   const { 'data-choice': choice, 'data-from': from, 'data-to': to } = attributes(item);
-  return withoutGaps({ choice, from: numberOf(from), to: numberOf(to) });
+  return withoutUndefined({ choice, from: numberOf(from), to: numberOf(to) });
 }
 
 function numberOf(text) {
   return text === undefined ? undefined : Number(text);
 }
 
-/** What JSON leaves out anyway. */
-function withoutGaps(object) {
+/** Removes undefined properties. */
+function withoutUndefined(object) {
   return Object.fromEntries(Object.entries(object).filter(([, value]) => value !== undefined));
 }
 

@@ -1,4 +1,4 @@
-// Code in the text, taken from the files that are compiled and tested, and highlighted by the build:
+// Listings with functions from source files that are compiled and tested, highlighted in the build:
 // `<pre class="listing" data-file="crates/…/align.rs" data-items="motion corners"></pre>`.
 
 import { readFile } from 'node:fs/promises';
@@ -6,10 +6,10 @@ import path from 'node:path';
 
 const KEYWORDS = new Set(('as assert break const continue else enum false fn for if impl in let loop match mod mut pub '
   + 'ref return self Self static struct super true type use where while').split(' '));
-/** In this order: comment, text, number, macro, word, anything else. */
+/** Groups: comment, string, number, macro, word, anything else. */
 const TOKEN = /(\/\/[^\n]*)|("(?:[^"\\]|\\.)*")|(\b\d[\d_]*(?:\.\d+)?(?:e-?\d+)?(?:f64|usize)?\b)|(\b[a-z_]+!)|([A-Za-z_]\w*)|([\s\S])/g;
 
-/** Puts the code into every listing of a page. */
+/** Fills every listing of a page. */
 export async function addListings(html, root) {
   const places = [...html.matchAll(/<pre class="listing" data-file="([^"]*)" data-items="([^"]*)"><\/pre>/g)];
   for (const [place, file, items] of places) {
@@ -21,7 +21,7 @@ export async function addListings(html, root) {
   return html;
 }
 
-/** A function of a source file from its signature to its closing brace, without what stands before it. */
+/** A function of a source file from its signature to its closing brace, without comments and attributes. */
 export function itemOf(source, name, file) {
   const start = source.search(new RegExp(`^(?:pub(?:\\([a-z]+\\))? )?fn ${name}\\b`, 'm'));
   if (start < 0) throw new Error(`${file} has no function ${name}, which a page lists`);
@@ -29,7 +29,7 @@ export function itemOf(source, name, file) {
   return source.slice(start, end + 2);
 }
 
-/** Rust with its kinds of words in spans. */
+/** Highlights Rust code with a span for each token. */
 export function highlight(code) {
   return code.replace(TOKEN, (token, comment, text, number, macro, word) => {
     const escaped = token.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;');

@@ -1,15 +1,14 @@
-// The page outside of its widgets: the choice of light and dark, and wide formulas and
-// tables that the keyboard can scroll. The widgets and the numbers that set them are the custom
-// element's business.
+// The page outside of its widgets: figures, contents list, theme buttons, and scrolling by keyboard. The custom element
+// handles the widgets and the links that set them.
 
-// @ts-expect-error: a file of its own beside this one, which has the module.
+// @ts-expect-error: a separate bundle, which contains the module.
 import { core, coreModule } from './slam-widget.js';
 import type { Glue } from '../pkg/glue.js';
 import { BuildingFigure } from './building/figure';
 import type { Building } from './building/drawing';
 import { addCopyButtons } from './copy';
 import { DecideFigure } from './decide';
-import { type Places, leadOn } from './places';
+import { type Places, redirectOldAddress } from './redirects';
 import { LapPlayer } from './lap/player';
 import type { Story } from './lap/story';
 import { LapsFigure } from './laps/laps';
@@ -17,97 +16,94 @@ import type { Answer } from './match/drawing';
 import { MatchFigure } from './match/figure';
 import { SketchFigure, type SketchSchema } from './sketch';
 
-/** Set by the build: the lap that the page calls canonical, as the core has driven it. */
+/** Set by the build: the canonical lap. */
 declare const LAP_STORY_FILE: string;
 /** Set by the build: the simulated office. */
 declare const BUILDING_FILE: string;
-/** Set by the build: where the sweep belongs that the reader moves. */
+/** Set by the build: the true pose of the sweep that the reader moves. */
 declare const MATCH_ANSWER: Answer;
 
-/** What needs the program of the widgets. */
+/** Elements that need the module of the widgets. */
 const NEEDS_CORE = 'slam-widget, [data-sketch], #decide, #laps';
-/** The program is fetched so far before the first of these is seen. */
-const FETCH_MARGIN = '200% 0px';
+/** Distance from the viewport at which the module is prefetched. */
+const PREFETCH_MARGIN = '200% 0px';
 
-/** Set by the build: where anchors and widgets stand. */
+/** Set by the build: the page of each anchor and widget. */
 declare const PLACES: Places;
 
 type ThemeChoice = 'auto' | 'light' | 'dark';
 
-leadOn(PLACES);
+redirectOldAddress(PLACES);
 document.documentElement.dataset['script'] = 'on';
-followReading();
+trackReading();
 listenToThemeButtons();
-letKeyboardScroll(document.querySelectorAll<HTMLElement>('.math, .scroll'));
-keepFromFiles();
+makeScrollableFocusable(document.querySelectorAll<HTMLElement>('.math, .scroll'));
+ignoreStrayDrops();
 addCopyButtons(document.querySelectorAll<HTMLElement>('figure.listing'));
-letReaderMatch();
-void replay('#lap', LAP_STORY_FILE, (figure, story: Story) => new LapPlayer(figure, story));
-void replay('#building', BUILDING_FILE, (figure, story: Building) => new BuildingFigure(figure, story));
-driveLaps();
-whenNear(document.querySelectorAll(NEEDS_CORE), () => void useCore());
+startMatchFigure();
+void startReplay('#lap', LAP_STORY_FILE, (figure, story: Story) => new LapPlayer(figure, story));
+void startReplay('#building', BUILDING_FILE, (figure, story: Building) => new BuildingFigure(figure, story));
+startLapsFigure();
+onceNear(document.querySelectorAll(NEEDS_CORE), () => void startCoreFigures());
 
-function letReaderMatch(): void {
+function startMatchFigure(): void {
   const figure = document.querySelector<HTMLElement>('#match');
   if (figure !== null) new MatchFigure(figure, MATCH_ANSWER, core as () => Promise<Glue>);
 }
 
-/** The still picture stays if the story cannot be had. */
-async function replay<T>(name: string, file: string, play: (figure: HTMLElement, story: T) => unknown): Promise<void> {
+/** Starts a replay; if its data are unavailable, the still picture stays. */
+async function startReplay<T>(name: string, file: string, play: (figure: HTMLElement, story: T) => unknown): Promise<void> {
   const figure = document.querySelector<HTMLElement>(name);
   if (figure === null) return;
   const response = await fetch(new URL(file, import.meta.url)).catch(() => undefined);
   if (response?.ok === true) play(figure, (await response.json()) as T);
 }
 
-/** Calls once, when the first of them comes near the screen. */
-function whenNear(elements: Iterable<Element>, come: () => void): void {
+/** Calls back once, when the first of the elements comes near the viewport. */
+function onceNear(elements: Iterable<Element>, callback: () => void): void {
   const observer = new IntersectionObserver((entries) => {
     if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
     observer.disconnect();
-    come();
-  }, { rootMargin: FETCH_MARGIN });
+    callback();
+  }, { rootMargin: PREFETCH_MARGIN });
   for (const element of elements) observer.observe(element);
 }
 
-/** What the page draws by itself shares one core. Where that cannot be had, the pictures stay, and the widgets say why. */
-async function useCore(): Promise<void> {
+/** Starts the figures that share one core. If it is unavailable, the still pictures stay, and the widgets report why. */
+async function startCoreFigures(): Promise<void> {
   const glue = await (core as () => Promise<Glue>)().catch(() => undefined);
   if (glue === undefined) return;
-  moveSketches(glue);
-  askForLoops(glue);
+  startSketches(glue);
+  startDecideFigure(glue);
 }
 
-/** The sliders of the small figures wait for the core. */
-function moveSketches(glue: Glue): void {
+function startSketches(glue: Glue): void {
   for (const schema of JSON.parse(glue.sketchSchemas()) as SketchSchema[]) {
     const figure = document.querySelector<HTMLElement>(`[data-sketch="${schema.name}"]`);
     if (figure !== null) new SketchFigure(figure, schema, glue);
   }
 }
 
-/** Ten loop candidates for the reader to judge. */
-function askForLoops(glue: Glue): void {
+function startDecideFigure(glue: Glue): void {
   const figure = document.querySelector<HTMLElement>('#decide');
   if (figure !== null) new DecideFigure(figure, glue);
 }
 
-/** A thousand laps, once one comes to look at them. */
-function driveLaps(): void {
+function startLapsFigure(): void {
   const figure = document.querySelector<HTMLElement>('#laps');
   if (figure === null) return;
   new LapsFigure(figure, {
     module: coreModule as () => Promise<WebAssembly.Module>,
-    driver: async () => new (await (core as () => Promise<Glue>)()).Laps(),
+    runner: async () => new (await (core as () => Promise<Glue>)()).Laps(),
   });
 }
 
-/** How far one has read, as a thin bar, and the section as the name of the contents list. */
-function followReading(): void {
+/** Shows the reading progress as a thin bar, and the current section in the contents list. */
+function trackReading(): void {
   const list = document.querySelector<HTMLDetailsElement>('.contents details');
   const summary = list?.querySelector('summary');
   if (list === null || list === undefined || summary === null || summary === undefined) return;
-  // At the side it stays open; the page's style knows the width, too.
+  // The side bar stays open. page.css has the same width.
   const side = matchMedia('(width >= 1280px)');
   const fold = (): void => { list.open = side.matches; };
   side.addEventListener('change', fold);
@@ -135,7 +131,7 @@ function followReading(): void {
   addEventListener('scroll', wake, { passive: true });
   addEventListener('resize', wake);
   show();
-  // A sheet closes once one has chosen, pressed Escape or looked elsewhere.
+  // On narrow screens the list is a sheet: a choice, Escape or a press outside closes it.
   list.addEventListener('click', ({ target }) => { if (target instanceof HTMLAnchorElement) fold(); });
   document.addEventListener('pointerdown', ({ target }) => { if (!list.contains(target as Node)) fold(); });
   list.addEventListener('keydown', ({ key }) => {
@@ -145,14 +141,14 @@ function followReading(): void {
   });
 }
 
-/** Scrolls a long list until the link stands in it. */
+/** Scrolls a long list until the link is visible. */
 function keepInView(list: HTMLElement | null, link: HTMLElement | undefined): void {
   if (list === null || link === undefined) return;
   const [{ top, bottom }, room] = [link.getBoundingClientRect(), list.getBoundingClientRect()];
   if (top < room.top || bottom > room.bottom) list.scrollTop += top - room.top - room.height / 3;
 }
 
-/** The choice holds until the page is left: it is not worth storing anything on the reader's disk. */
+/** The choice lasts until the page is left: the page stores nothing in the browser. */
 function listenToThemeButtons(): void {
   const buttons = document.querySelectorAll<HTMLButtonElement>('[data-theme-choice]');
   for (const button of buttons) {
@@ -165,7 +161,7 @@ function listenToThemeButtons(): void {
   }
 }
 
-/** The style and the widgets both follow `data-theme`; without it, the system's choice. */
+/** Style and widgets follow `data-theme`, or the system without it. */
 function chooseTheme(choice: ThemeChoice): void {
   if (choice === 'auto') {
     delete document.documentElement.dataset['theme'];
@@ -174,8 +170,8 @@ function chooseTheme(choice: ThemeChoice): void {
   }
 }
 
-/** A log that is dropped beside its widget must not take the place of the page, and of the map that stands there. */
-function keepFromFiles(): void {
+/** Ignores a file that is dropped outside of a widget: the browser would navigate to it, and the reader's map be lost. */
+function ignoreStrayDrops(): void {
   for (const type of ['dragover', 'drop'] as const) {
     document.addEventListener(type, (event) => {
       const { dataTransfer } = event;
@@ -186,8 +182,8 @@ function keepFromFiles(): void {
   }
 }
 
-/** What is wider than its box can be reached by Tab; what fits is no stop on the way. */
-function letKeyboardScroll(boxes: Iterable<HTMLElement>): void {
+/** Makes a box focusable while its content overflows: arrow keys then scroll it. */
+function makeScrollableFocusable(boxes: Iterable<HTMLElement>): void {
   const observer = new ResizeObserver((entries) => {
     for (const { target } of entries) {
       const box = target as HTMLElement;

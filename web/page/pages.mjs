@@ -1,9 +1,9 @@
-// The pages of the companion: what each is called, what stands on it, and what all of them share.
+// The pages of the companion: their files and names, and the layout that they share.
 
 import { readFile } from 'node:fs/promises';
 import path from 'node:path';
 
-/** In the order in which they are read: the file of the site, its source, its name in the navigation. */
+/** In reading order: the file of the site, its source, its name in the navigation. */
 export const PAGES = [
   { file: 'index.html', source: 'index.html', name: 'Matching and the graph' },
   { file: 'robots.html', source: 'web/page/robots.html', name: 'What robots run' },
@@ -16,7 +16,7 @@ export function readPages(root) {
   return Promise.all(PAGES.map(async (page) => ({ ...page, html: await readFile(path.join(root, page.source), 'utf8') })));
 }
 
-/** The page of each anchor and of each widget: old addresses and links between pages are led there. */
+/** The page of each anchor and widget, for redirects and for links between pages. */
 export function placesOf(pages) {
   const each = (pattern) => pages.flatMap(({ file, html }) => [...html.matchAll(pattern)].map(([, name]) => [name, file]));
   return {
@@ -25,7 +25,7 @@ export function placesOf(pages) {
   };
 }
 
-/** Puts the head, the navigation and the end that all pages share around a page. */
+/** Puts the shared head, navigation and footer around a page. */
 export function withFrame(template, page, pages, places) {
   const parts = page.html.match(/^([\s\S]*?)(<header[\s\S]*<\/main>)\s*$/);
   if (parts === null) throw new Error(`${page.source} is no title, description, header and main`);
@@ -45,7 +45,7 @@ function step(rel, page) {
   return page === undefined ? '' : `<a rel="${rel}" href="${page.file}"><small>${rel === 'next' ? 'Next' : 'Before'}</small> ${page.name}</a>`;
 }
 
-/** Links to what stands on another page name that page. */
+/** Adds the page to links whose target is on another one. */
 function withLinks(html, { file, source }, { anchors, widgets }) {
   const inText = html.replace(/(<a\b[^>]*\bhref=")#([^"]+)"/g, (whole, before, id) => {
     if (anchors[id] === undefined) throw new Error(`${source} links to #${id}, which is on no page`);
@@ -57,10 +57,10 @@ function withLinks(html, { file, source }, { anchors, widgets }) {
   });
 }
 
-/** The id of a section is that of its first heading, if that has none. */
+/** A heading with its id, or with that of the section that it opens. */
 const HEADING = /(<(?:section|article)\b[^>]*\bid="([^"]+)"[^>]*>\s*)?<h([23])(\s+id="([^"]+)")?>([\s\S]*?)<\/h\3>/g;
 
-/** Each heading with an anchor gets a link to itself. */
+/** Adds a link to itself to each heading with an id. */
 function withAnchors(html) {
   return html.replace(HEADING, (whole, before = '', ofSection, level, attribute = '', own, text) => {
     const id = ofSection ?? own;

@@ -1,13 +1,12 @@
-// The small figures beside the text: a slider, and a picture and a sentence that follow it.
-//
-// The picture drawn by the build stays until the reader moves something: it shows the slider's initial value.
+// The small figures beside the text: a slider with a picture and a sentence that follow it. The build's picture, which
+// shows the initial value, stays until the reader moves the slider.
 
 import type { Glue } from '../pkg/glue.js';
 import { themeOf, watchTheme } from '../ts/theme';
 
-/** Widths at which the kit draws, px: panels beside each other, and above each other. */
+/** Widths of the picture, px: with panels side by side, and stacked. */
 export const WIDTHS = { wide: 600, narrow: 360 } as const;
-/** Where panels stand above each other. The page's style and the pictures of the build know it, too. */
+/** Screens with stacked panels, as in page.css and stills.mjs. */
 export const NARROW = '(max-width: 40rem)';
 
 export interface SketchSchema {
@@ -27,8 +26,8 @@ export interface Drawn {
   sentence: string;
 }
 
-/** A value as the page says it: `0.12 m`, with the minus of the text. */
-export function sayValue({ unit, decimals }: SketchSchema, value: number): string {
+/** A value with its unit, `0.12 m`, and a typographic minus. */
+export function formatValue({ unit, decimals }: SketchSchema, value: number): string {
   return `${value.toFixed(decimals).replace('-', '−')}${unit}`;
 }
 
@@ -48,7 +47,7 @@ export class SketchFigure {
     slider.addEventListener('input', () => this.#wake());
     this.#narrow.addEventListener('change', () => this.#wake());
     watchTheme(figure, () => this.#wake());
-    // The pictures of the build follow the system's theme, and a browser may restore a slider's place.
+    // The build's picture follows the system's theme, and the browser may have restored another slider value.
     const isSystems = themeOf(figure) === (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light');
     if (!isSystems || Number(slider.value) !== schema.default) this.#wake();
   }
@@ -57,7 +56,7 @@ export class SketchFigure {
     return this.#figure.querySelector<HTMLInputElement>('input') as HTMLInputElement;
   }
 
-  /** One picture a frame, of the newest value. */
+  /** Draws at most once a frame. */
   #wake(): void {
     if (this.#frame === 0) this.#frame = requestAnimationFrame(() => this.#draw());
   }
@@ -69,7 +68,7 @@ export class SketchFigure {
     const width = this.#narrow.matches ? WIDTHS.narrow : WIDTHS.wide;
     const drawn = this.#glue.drawSketch(this.#schema.name, value, width, themeOf(figure));
     const { svg, sentence } = JSON.parse(drawn) as Drawn;
-    const text = sayValue(this.#schema, value);
+    const text = formatValue(this.#schema, value);
     this.#slider.setAttribute('aria-valuetext', text);
     (figure.querySelector('output') as HTMLElement).textContent = text;
     (figure.querySelector('.sketch-says') as HTMLElement).textContent = sentence;

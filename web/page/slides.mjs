@@ -1,10 +1,10 @@
 // slides.html: a slide for each widget, from the scripts of docs/teaching/widgets.md, and one for each question about it,
-// to predict before the class sees the result. The states of a script are links on its slide, its words are the speaker's
-// notes.
+// to predict before the class sees the result. The states of a script are links on its slide, and its text is folded below the
+// widget.
 
 import { escapeHtml } from '../html.mjs';
 
-/** The page of slides for the text of the scripts and the exercises of `frameExercises`. */
+/** The page of slides; `exercises` are those of `frameExercises`. */
 export function slidesPage(scripts, exercises) {
   const slides = scripts.split(/^## /m).slice(1).flatMap((text) => [slide(text), ...questions(text.match(/^\S+/)[0], exercises)]);
   return `<!doctype html>
@@ -41,7 +41,7 @@ ${slides.join('\n')}
 `;
 }
 
-/** `w16.1 Basin explorer`, goal, misconception, numbered steps with links. */
+/** The slide of a script: title, `w16.1 Basin explorer`, goal, misconception, numbered steps with links. */
 function slide(text) {
   const [, name, title] = text.match(/^(w\S+) (.*)$/m);
   const [, misconception] = text.match(/^\*\*Misconception\.\*\* ([\s\S]*?)\n\n/m);
@@ -59,7 +59,7 @@ function slide(text) {
 </section>`;
 }
 
-/** A slide for each question about a widget, whose answer the widget on the slide before shows. */
+/** A slide for each question about a widget. The widget on the slide before shows the answer. */
 function questions(widget, exercises) {
   return exercises.flatMap(({ title, intro, questions: asked }) => asked.filter((question) => question.widget === widget)
     .map(({ html }) => `<section>
@@ -69,7 +69,7 @@ ${html}
 </section>`));
 }
 
-/** Markdown within a paragraph. Its figures are HTML already. */
+/** Converts inline Markdown to HTML. */
 function inLine(text) {
   return text.trim()
     .replace(/\[([^\]]+)\]\([^)]*\)/g, '$1')

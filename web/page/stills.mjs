@@ -1,4 +1,4 @@
-// The pictures of what the page draws by itself, drawn in the build by the same code and the same core.
+// Still pictures of the page's figures, drawn in the build by the same code and core.
 
 import { readFile, writeFile } from 'node:fs/promises';
 import path from 'node:path';
@@ -10,7 +10,7 @@ import { shades } from '../palette.mjs';
 
 const here = path.dirname(fileURLToPath(import.meta.url));
 const PKG = path.join(here, '..', 'pkg');
-/** The run that the page calls canonical. */
+/** Seed of the canonical lap. */
 const CANONICAL_SEED = 12648430;
 
 /**
@@ -33,7 +33,7 @@ export async function drawStills(outDir) {
   };
 }
 
-/** The sweeps are most of the file. Those that make the map keep millimetres, those between centimetres: a pixel. */
+/** Rounds sweeps, which are most of the file: those of keyframes to millimetres, the others to centimetres, a pixel. */
 function withShortSweeps(story) {
   const makesMap = new Set(story.keyframes);
   const ticks = story.ticks.map((tick, at) => {
@@ -50,9 +50,9 @@ async function drawStory(name, story, outDir) {
   }
 }
 
-/** Each small figure at its slider's first place, for both themes and both widths: its HTML, by its name. */
+/** Draws the initial state of each small figure for both themes and both widths; returns its HTML by name. */
 async function drawSketches(core, outDir) {
-  const { NARROW, WIDTHS, sayValue } = await load('sketch.ts');
+  const { NARROW, WIDTHS, formatValue } = await load('sketch.ts');
   const html = new Map();
   for (const sketch of JSON.parse(core.sketchSchemas())) {
     const sizes = {};
@@ -67,7 +67,7 @@ async function drawSketches(core, outDir) {
     }
     const source = (width, theme, media) =>
       `<source media="${media}" srcset="pictures/${sketch.name}-${width}-${theme}.svg"${sizes[width]}>`;
-    const value = sayValue(sketch, sketch.default);
+    const value = formatValue(sketch, sketch.default);
     html.set(sketch.name, `<div class="sketch-picture"><picture>
       ${source('narrow', 'dark', `${NARROW} and (prefers-color-scheme: dark)`)}
       ${source('narrow', 'light', NARROW)}
@@ -82,7 +82,7 @@ async function drawSketches(core, outDir) {
   return html;
 }
 
-/** A module of the page in TypeScript, for Node. */
+/** Bundles and imports a TypeScript module of the page. */
 async function load(file) {
   const { outputFiles } = await build({
     entryPoints: [path.join(here, file)],

@@ -1,85 +1,85 @@
-// An element and the address of its page: `linked` elements read their state from it and store it there.
+// The address of the page: `linked` elements read their state from it and store it there.
 //
-// An entry of the browser's history keeps the states of all linked widgets: Back finds each as it was.
+// Each history entry contains the states of all linked widgets, and Back restores them.
 
-import { addressOf } from './beside';
+import { assetUrl } from './assets';
 import { readQuery, withState } from './links';
 import type { WidgetSpec } from './schema';
 
-/** The receiver of the state in an address. */
-export interface Addressee {
+/** Receives the state of an address. */
+export interface AddressReader {
   set(id: string, text: string): void;
-  wrong(kind: 'name' | 'value', problem: string): void;
+  invalid(kind: 'name' | 'value', problem: string): void;
 }
 
-/** Reads the state of the widget from the page's address, if the address names this widget. */
-export function readAddress(element: HTMLElement, spec: WidgetSpec, to: Addressee): void {
+/** Reads the state of the widget from the page's address, if that names this widget. */
+export function readAddress(element: HTMLElement, spec: WidgetSpec, to: AddressReader): void {
   const linked = readQuery(location.search);
   if (linked === undefined) return;
   if (!('widget' in linked)) {
-    // One of them reports for all.
+    // Only the first linked element reports it.
     if (document.querySelector('slam-widget[linked]') !== element) return;
-    for (const problem of linked.problems) to.wrong('name', problem);
+    for (const problem of linked.problems) to.invalid('name', problem);
     return;
   }
   if (linked.widget !== spec) return;
   for (const [id, text] of linked.values) to.set(id, text);
-  for (const problem of linked.problems) to.wrong('value', problem);
+  for (const problem of linked.problems) to.invalid('value', problem);
 }
 
 /**
- * The page, if it keeps the widget's state in its address; else a separate page with the widget; if there is
- * none, the query alone, which a notebook accepts as well.
+ * Returns the page's address for a linked element, else that of `embed.html`. In the standalone module, which has no
+ * `embed.html`, it is only the query, which `from_link` of the Python package accepts.
  */
 export function linkTo(element: HTMLElement, spec: WidgetSpec | undefined, query: string): string {
   const isLinked = element.hasAttribute('linked');
-  const page = isLinked ? location.href : addressOf('embed.html');
+  const page = isLinked ? location.href : assetUrl('embed.html');
   if (page === undefined) return spec === undefined ? '' : withState('', query);
   const link = new URL(page);
   if (spec !== undefined) link.search = withState(link.search, query);
   return link.href;
 }
 
-/** Our part of a history entry, besides the parts of others. */
-interface Kept {
+/** Our part of a history entry; other scripts may store more. */
+interface HistoryState {
   slam?: Record<string, string>;
 }
 
-/** A linked widget, as far as the history is concerned. */
+/** What the history needs of a widget. */
 export interface Linked extends HTMLElement {
   readonly name: string;
   readonly query: string;
   readonly link: string;
 }
 
-/** The linked widget in the address: the one that changed last. */
+/** The linked widget that changed last; the address names it. */
 let addressed: Linked | undefined;
 
-/** Records that a linked widget has changed: the next entry's address names it. */
-export function tellOf(widget: Linked): void {
+/** Makes a linked widget the one that the next address names. */
+export function setAddressed(widget: Linked): void {
   if (widget.hasAttribute('linked')) addressed = widget;
 }
 
-/** Stores the current state in the present history entry; also in its address if `settled` is the widget it names. */
-export function keepEntry(settled?: Linked): void {
+/** Stores the states in the current history entry; also in its address if `settled` is the widget that it names. */
+export function updateEntry(settled?: Linked): void {
   const address = settled !== undefined && settled === addressed ? settled.link : location.href;
   history.replaceState(withStates(), '', address);
 }
 
-/** Adds a history entry with the current state, whose address names that widget. */
+/** Adds a history entry with the current states, whose address names `widget`. */
 export function pushEntry(widget: Linked): void {
   addressed = widget;
   history.pushState(withStates(), '', widget.link);
 }
 
-/** The query of each linked widget in an entry, by its name. */
+/** Returns name and query of each linked widget in a history entry. */
 export function statesIn(entry: unknown): [name: string, query: string][] {
-  const states = (entry as Kept | null)?.slam;
+  const states = (entry as HistoryState | null)?.slam;
   return typeof states === 'object' ? Object.entries(states) : [];
 }
 
-function withStates(): Kept {
+function withStates(): HistoryState {
   const linked = document.querySelectorAll<Linked>('slam-widget[linked]');
   const slam = Object.fromEntries([...linked].map(({ name, query }) => [name, query]));
-  return { ...(history.state as Kept | null), slam };
+  return { ...(history.state as HistoryState | null), slam };
 }

@@ -1,12 +1,11 @@
-// The reader's answers on this page: collected from the events of <slam-predict>, kept in the browser if the
-// reader asks for it, and saved as one file that `slam2d mark` reads.
+// The reader's answers: collected from the events of <slam-predict>, kept in the browser on request, and saved as a file
+// for `slam2d mark`.
 
 import type { Prediction } from '../slam-predict';
 
 /** Name and version of the file's format. */
 const SCHEMA = 'slam2d-answers/1';
-/** Where the browser keeps the answers. */
-const PLACE = SCHEMA;
+const STORAGE_KEY = SCHEMA;
 
 /** The last answer to an exercise. */
 interface Answer {
@@ -19,8 +18,8 @@ interface Answer {
   time: string;
 }
 
-/** What the browser keeps. */
-interface Kept {
+/** The stored value. */
+interface Stored {
   student: string;
   answers: Record<string, Answer[]>;
 }
@@ -28,11 +27,11 @@ interface Kept {
 /** Answers by student and exercise. */
 const collected = new Map<string, Map<string, Answer>>();
 let current = new URLSearchParams(location.search).get('student')?.trim() ?? '';
-let isKept = false;
+let isStored = false;
 /** Dispatches `change` when a student or an answer changes. */
 export const changes = new EventTarget();
 
-readKept();
+readStored();
 document.addEventListener('slam-predict', ({ detail }: CustomEvent<Prediction>) => {
   const { exercise, student, widget, state, prediction, result, attempts, time } = detail;
   if (exercise === null) return;
@@ -61,14 +60,14 @@ export function answered(): number {
 }
 
 export function keepsAnswers(): boolean {
-  return isKept;
+  return isStored;
 }
 
-/** Starts or stops to keep the answers in this browser; stopping deletes what it kept. Throws if it may not store. */
+/** Starts or stops to store the answers in the browser; stopping deletes them. Throws if storage is blocked. */
 export function keepAnswers(isOn: boolean): void {
-  if (isOn) localStorage.setItem(PLACE, keptText());
-  else localStorage.removeItem(PLACE);
-  isKept = isOn;
+  if (isOn) localStorage.setItem(STORAGE_KEY, storedText());
+  else localStorage.removeItem(STORAGE_KEY);
+  isStored = isOn;
 }
 
 /** The current student's answers as a file. */
@@ -80,7 +79,7 @@ export async function answerFile(): Promise<{ name: string; text: string }> {
   return { name: name === '' ? 'answers.json' : `answers-${name}.json`, text: `${text}\n` };
 }
 
-/** The text whose digest is in the file: arrays of texts and whole numbers, which have one form in JSON. */
+/** The text that the digest covers: only arrays, strings and integers, whose JSON is the same everywhere. */
 function canonical(name: string, answers: Answer[]): string {
   const rows = answers.map(({ exercise, widget, state, prediction, result, attempts, time }) =>
     [exercise, widget, state, prediction, result, attempts, time]);
@@ -88,7 +87,7 @@ function canonical(name: string, answers: Answer[]): string {
 }
 
 async function sha256(text: string): Promise<string> {
-  // Browsers have it only on pages that nobody in between can have changed.
+  // `crypto.subtle` exists only in secure contexts.
   if (!isSecureContext) throw new Error('answers can be saved from a page under https, from this machine, or from a file');
   const digest = await crypto.subtle.digest('SHA-256', new TextEncoder().encode(text));
   return [...new Uint8Array(digest)].map((byte) => byte.toString(16).padStart(2, '0')).join('');
@@ -101,26 +100,26 @@ function answersOf(name: string): Map<string, Answer> {
 }
 
 function changed(): void {
-  if (isKept) localStorage.setItem(PLACE, keptText());
+  if (isStored) localStorage.setItem(STORAGE_KEY, storedText());
   changes.dispatchEvent(new Event('change'));
 }
 
-function keptText(): string {
+function storedText(): string {
   const answers = Object.fromEntries([...collected].map(([name, of]) => [name, [...of.values()]]));
-  return JSON.stringify({ student: current, answers } satisfies Kept);
+  return JSON.stringify({ student: current, answers } satisfies Stored);
 }
 
-/** What an earlier visit kept. A frame in a sandbox may not ask, and what cannot be read is as good as nothing. */
-function readKept(): void {
+/** Reads the answers of an earlier visit. Access throws in a sandboxed frame; unreadable answers are ignored. */
+function readStored(): void {
   try {
-    const text = localStorage.getItem(PLACE);
+    const text = localStorage.getItem(STORAGE_KEY);
     if (text === null) return;
-    const { student: name, answers } = JSON.parse(text) as Kept;
+    const { student: name, answers } = JSON.parse(text) as Stored;
     for (const [of, list] of Object.entries(answers)) {
       for (const answer of list) answersOf(of).set(answer.exercise, answer);
     }
     if (current === '') current = name;
-    isKept = true;
+    isStored = true;
   } catch {
     collected.clear();
   }

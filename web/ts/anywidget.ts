@@ -1,7 +1,7 @@
-// The widget for Jupyter, marimo and MyST through anywidget: traits `name`, `value`, `outcome`; and for w16.10
-// `tables`, with files as messages (notebook-files.ts).
+// The widget for Jupyter, marimo and MyST through anywidget: traits `name`, `value` and `outcome`. w16.10 also has
+// `tables`, and exchanges files as messages (notebook-files.ts).
 
-// @ts-expect-error: stays a file of its own beside this one.
+// @ts-expect-error: a separate bundle.
 import './slam-widget.js';
 import type Declared from '../slam-anywidget';
 import type { Model } from '../slam-anywidget';
@@ -11,61 +11,61 @@ import type { Value } from './values';
 
 function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
   const widget = document.createElement('slam-widget') as SlamWidget;
-  const refused = document.createElement('div');
-  refused.setAttribute('role', 'status');
+  const problems = document.createElement('div');
+  problems.setAttribute('role', 'status');
   widget.setAttribute('name', String(model.get('name') ?? ''));
-  el.append(widget, refused);
+  el.append(widget, problems);
 
-  // Values that kernel and widget agree on.
-  const agreed = new Map<string, Value>();
-  // Some hosts call back for values that the widget itself wrote; these need no reaction.
-  let isGiving = false;
-  const take = (): void => {
-    if (!isGiving) refused.textContent = setNews(widget, model.get('value'), agreed).join(' ');
+  // The last values that kernel and widget had in common.
+  const synced = new Map<string, Value>();
+  // Some hosts also call back for values that the widget wrote.
+  let isWriting = false;
+  const readModel = (): void => {
+    if (!isWriting) problems.textContent = setChanged(widget, model.get('value'), synced).join(' ');
   };
-  const give = (): void => {
-    isGiving = true;
+  const writeModel = (): void => {
+    isWriting = true;
     const value = widget.value;
-    for (const [id, given] of Object.entries(value)) agreed.set(id, given);
+    for (const [id, current] of Object.entries(value)) synced.set(id, current);
     model.set('value', value);
     model.set('outcome', widget.outcome ?? null);
-    isGiving = false;
+    isWriting = false;
     model.save_changes();
   };
   const files = exchangeFiles(model, widget);
-  take();
-  widget.addEventListener('slam-ready', give);
-  widget.addEventListener('slam-result', give);
-  widget.addEventListener('slam-result', files.tell);
-  model.on('change:value', take);
+  readModel();
+  widget.addEventListener('slam-ready', writeModel);
+  widget.addEventListener('slam-result', writeModel);
+  widget.addEventListener('slam-result', files.writeTables);
+  model.on('change:value', readModel);
   return () => {
-    model.off('change:value', take);
+    model.off('change:value', readModel);
     files.end();
     widget.remove();
-    refused.remove();
+    problems.remove();
   };
 }
 
 /**
- * Sets values that are valid and not yet agreed on; returns a sentence for each invalid value.
+ * Sets the valid values that differ from the synced ones; returns a sentence for each invalid value.
  *
- * JupyterLab requests all values from the kernel when the first cell is shown. The answer may come after the
- * reader has changed something, and then contains nothing new.
+ * JupyterLab requests all values from the kernel when it shows the first cell. If the reader changes a value before the
+ * answer comes, the answer must not revert it.
  */
-function setNews(widget: SlamWidget, wanted: unknown, agreed: Map<string, Value>): string[] {
+function setChanged(widget: SlamWidget, wanted: unknown, synced: Map<string, Value>): string[] {
   if (wanted === undefined || wanted === null) return [];
   if (typeof wanted !== 'object' || Array.isArray(wanted)) {
     return ['`value` takes an object of parameters, such as {"noise": 2}.'];
   }
   const problems: string[] = [];
   for (const [id, value] of Object.entries(wanted) as [string, Value][]) {
-    if (agreed.get(id) === value) continue;
+    if (synced.get(id) === value) continue;
     try {
       if (widget.get(id) !== value) widget.set(id, value);
-      agreed.set(id, value);
+      synced.set(id, value);
     } catch (error) {
-      const stands = widget.get(id) === undefined ? '' : ' It keeps its value.';
-      problems.push(`${(error as Error).message}.${stands}`);
+      const kept = widget.get(id) === undefined ? '' : ' It keeps its value.';
+      problems.push(`${(error as Error).message}.${kept}`);
     }
   }
   return problems;

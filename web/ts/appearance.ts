@@ -1,19 +1,18 @@
-// The appearance of a widget on its page: light or dark, animated or still, focus, print.
+// How a widget follows its page: theme, reduced motion, focus ring, print.
 
 import type { Widget } from '../pkg/glue.js';
 import type { Box } from './box';
 import { listen, reveal } from './dom';
-import type { Life } from './life';
+import type { Lifecycle } from './lifecycle';
 import type { Parts } from './parts';
-import { Pinned } from './pinned';
+import { PinnedPicture } from './pinned';
 import type { Pictures } from './pictures';
 import { themeOf, watchTheme, type Theme } from './theme';
 
 const reducedMotion = globalThis.matchMedia?.('(prefers-reduced-motion: reduce)');
-/** Smallest width of a picture. */
-const NARROWEST_PX = 320;
+/** Minimum width of a picture. */
+const MIN_WIDTH_PX = 320;
 
-/** The element, as far as its appearance is concerned. */
 export interface AppearanceHost extends HTMLElement {
   readonly summary: string;
   controlBox(id: string): Box | null;
@@ -23,36 +22,36 @@ export interface AppearanceHost extends HTMLElement {
 export class Appearance {
   readonly #host: AppearanceHost;
   readonly #parts: Parts;
-  readonly #life: Life;
+  readonly #lifecycle: Lifecycle;
   readonly #pictures: Pictures;
-  readonly #pinned: Pinned;
-  /** The widget whose picture replaces it while it rests. */
+  readonly #pinnedPicture: PinnedPicture;
+  /** The widget whose picture is shown before its first start. */
   #widget: string | undefined;
 
-  constructor(host: AppearanceHost, parts: Parts, life: Life, pictures: Pictures) {
+  constructor(host: AppearanceHost, parts: Parts, lifecycle: Lifecycle, pictures: Pictures) {
     this.#host = host;
     this.#parts = parts;
-    this.#life = life;
+    this.#lifecycle = lifecycle;
     this.#pictures = pictures;
-    this.#pinned = new Pinned(parts, {
+    this.#pinnedPicture = new PinnedPicture(parts, {
       sceneBox: () => host.sceneBox() ?? undefined,
-      wake: () => life.wake(),
+      wake: () => lifecycle.wake(),
     });
   }
 
-  /** Follows the page until one of the returned functions is called. */
+  /** Adds listeners to the page; returns the functions that remove them. */
   watch(): (() => void)[] {
     const ends = [
       watchTheme(this.#host, () => this.showTheme()),
       listen(window, 'beforeprint', () => {
-        // Paper shows every picture, also one that was not near the screen.
+        // Lazy loading leaves pictures blank in print that were never near the viewport.
         this.#parts.picture.loading = 'eager';
         this.drawPicture('light');
       }),
-      this.#pinned.watch(),
+      this.#pinnedPicture.watch(),
     ];
     if (reducedMotion === undefined) return ends;
-    return [...ends, listen(reducedMotion, 'change', () => this.#life.ask(showMotion))];
+    return [...ends, listen(reducedMotion, 'change', () => this.#lifecycle.ask(showMotion))];
   }
 
   /** Switches to another widget. */
@@ -70,29 +69,29 @@ export class Appearance {
   showTheme(): void {
     const theme = themeOf(this.#host);
     this.#parts.frame.classList.toggle('dark', theme === 'dark');
-    this.#life.ask((widget) => widget.setTheme(theme));
-    this.#life.wake();
-    if (!this.#life.hasInstance && this.#widget !== undefined) this.#pictures.showStart(this.#widget, theme);
+    this.#lifecycle.ask((widget) => widget.setTheme(theme));
+    this.#lifecycle.wake();
+    if (!this.#lifecycle.hasInstance && this.#widget !== undefined) this.#pictures.showStart(this.#widget, theme);
   }
 
   showFocus(id: string | undefined): void {
-    this.#life.ask((widget) => widget.setFocus(id));
-    this.#life.wake();
+    this.#lifecycle.ask((widget) => widget.setFocus(id));
+    this.#lifecycle.wake();
     const box = id === undefined ? null : this.#host.controlBox(id);
     const { stage, bar } = this.#parts;
-    // The ring is on the canvas, not at the position of the focus.
+    // The focused element is elsewhere: the browser does not scroll to the ring on the canvas.
     if (box !== null) reveal(stage, box, bar.offsetHeight);
   }
 
-  /** A frame was drawn; the canvas holds it until the end of this task. */
+  /** Handles a frame that was just drawn. */
   drew(canvas: HTMLCanvasElement): void {
-    this.#pinned.drew(canvas);
+    this.#pinnedPicture.drew(canvas);
   }
 
   /** The picture of the current state, drawn by the widget itself. */
   drawPicture(theme: Theme = themeOf(this.#host)): void {
-    const width = Math.max(this.#host.clientWidth, NARROWEST_PX);
-    const svg = this.#life.ask((widget) => widget.picture(width, theme));
+    const width = Math.max(this.#host.clientWidth, MIN_WIDTH_PX);
+    const svg = this.#lifecycle.ask((widget) => widget.picture(width, theme));
     if (svg !== undefined) this.#pictures.showDrawn(svg, this.#host.summary);
   }
 }

@@ -1,28 +1,28 @@
-// Distributes WebGL contexts: browsers discard the oldest one beyond sixteen, so widgets share fewer.
+// A pool of WebGL contexts. Browsers discard the oldest context beyond sixteen, so widgets share fewer.
 //
-// The reader's attention decides: the widget with the focus or the pointer comes first, then those next to
-// the middle of the screen. The others show a picture.
+// The widget with focus or pointer has priority, then those closest to the middle of the viewport. The others show
+// a picture.
 
-/** Largest number of contexts of widgets that draw or start to. */
-const MOST = 8;
+/** Widgets that may have a context at a time. */
+const MAX_CONTEXTS = 8;
 
 export interface Drawer {
-  /** Distance from the reader's attention, in CSS pixels. */
+  /** Distance from the middle of the viewport, in CSS pixels; zero with focus or pointer. */
   readonly distance: number;
-  /** Gives its context to another widget. */
+  /** Gives up the context, which another widget needs. */
   yield(): void;
-  /** Requests a context again, if it still needs one. */
-  askAgain(): void;
+  /** Claims a context again, if one is still needed. */
+  retry(): void;
 }
 
 const holding = new Set<Drawer>();
 const waiting = new Set<Drawer>();
 
-/** Takes a context, if necessary from the farthest widget; returns false if that is the requesting one. */
+/** Claims a context, if necessary from the farthest widget; returns false if `drawer` itself is the farthest. */
 export function claim(drawer: Drawer): boolean {
   waiting.delete(drawer);
   if (holding.has(drawer)) return true;
-  if (holding.size >= MOST) {
+  if (holding.size >= MAX_CONTEXTS) {
     const farthest = [...holding].reduce((far, other) => (other.distance > far.distance ? other : far));
     if (farthest.distance <= drawer.distance) {
       waiting.add(drawer);
@@ -36,13 +36,13 @@ export function claim(drawer: Drawer): boolean {
   return true;
 }
 
-/** Releases a context, or withdraws a request. */
+/** Releases a context, or withdraws a claim. */
 export function release(drawer: Drawer): void {
   waiting.delete(drawer);
-  if (holding.delete(drawer)) lookAgain();
+  if (holding.delete(drawer)) retryWaiting();
 }
 
-/** Lets waiting widgets request again after the reader has moved, the nearest first. */
-export function lookAgain(): void {
-  for (const drawer of [...waiting].sort((a, b) => a.distance - b.distance)) drawer.askAgain();
+/** Lets waiting widgets claim again, the nearest first. */
+export function retryWaiting(): void {
+  for (const drawer of [...waiting].sort((a, b) => a.distance - b.distance)) drawer.retry();
 }

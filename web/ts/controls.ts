@@ -1,18 +1,17 @@
-// The parallel DOM: every control that the canvas shows, again as a native one with name, value,
-// unit and help. It has the keyboard focus; the canvas shows the ring. A control is seen on a line
-// under the picture while it has the focus, and by a screen reader always. What the canvas does not show, as long as
-// "More" is closed for example, is no stop of the keyboard.
+// Native controls that mirror those on the canvas, with name, value, unit and help. They have the keyboard focus, and the
+// canvas shows the focus ring. A control is visible under the picture while it has the focus; a screen reader always has
+// it. Controls that the canvas does not show, such as those under "More", are no tab stops.
 
 import { create } from './dom';
 import type { Timeline } from './instance';
 import type { ButtonSpec, ParamSpec, WidgetSpec } from './schema';
 import { toLabel } from './values';
 
-/** The switch that shows everything. */
+/** The switch that shows all controls. */
 export const MORE = 'more';
 
 export interface ControlHost {
-  /** Returns what was wrong. */
+  /** Sets a value; returns the error, if there is one. */
   set(id: string, text: string): string | undefined;
   /** The widget's value. */
   text(id: string): string;
@@ -34,7 +33,7 @@ export class Controls {
   readonly #ranges = new Map<string, HTMLInputElement>();
   readonly #buttons = new Map<string, HTMLButtonElement>();
   readonly #host: ControlHost;
-  /** The button that a key presses while one of these buttons has the focus. */
+  /** The button for each key. Keys work while one of these buttons has the focus. */
   readonly #keys: ReadonlyMap<string, string>;
   readonly #keyed: ReadonlySet<string>;
 
@@ -59,7 +58,7 @@ export class Controls {
     });
   }
 
-  /** A key of a button other than the focused one. */
+  /** Presses the button of a key, which need not be the focused one. */
   #keyDown(event: KeyboardEvent): void {
     const { target } = event;
     if (event.altKey || !(target instanceof HTMLButtonElement)) return;
@@ -71,11 +70,11 @@ export class Controls {
     this.#host.press(button);
   }
 
-  /** Takes the controls that the canvas does not show from keyboard and screen reader. */
+  /** Hides the controls that the canvas does not show from keyboard and screen reader. */
   offer(shown: readonly string[]): void {
     for (const [id, row] of this.#rows) {
       const isShown = shown.includes(id);
-      // Whoever closed "More" by a control of it goes on beside it.
+      // A hidden control must not keep the focus: "More" gets it.
       if (!isShown && row.matches(':focus-within')) this.#rows.get(MORE)?.querySelector('input')?.focus();
       row.hidden = !isShown;
     }
@@ -94,7 +93,7 @@ export class Controls {
     const range = this.#ranges.get(timeline.param);
     if (range === undefined) return;
     range.max = String(timeline.last);
-    // A run can be shorter than the requested position: it shows its end.
+    // A run can be shorter than the requested time: the control shows its end.
     const asked = Number(this.#host.text(timeline.param));
     this.#params.get(timeline.param)?.show(String(Math.min(asked, timeline.last)));
   }
@@ -169,14 +168,14 @@ export class Controls {
 
   #range(spec: ParamSpec): HTMLInputElement {
     const { min, max } = spec;
-    // Any step: the field also shows values between its steps, such as fine steps.
+    // `any`: values between the steps are valid, such as those of fine steps.
     const range = create('input', { type: 'range', min: `${min}`, max: `${max}`, step: 'any' });
     range.addEventListener('input', () => {
       const steps = Math.round((Number(range.value) - min) / spec.step);
       this.#host.set(spec.id, tidy(min + steps * spec.step));
     });
     range.addEventListener('keydown', (event) => {
-      // While a run is being computed, its end is not known.
+      // The end of the run is unknown while it is being computed.
       if (spec.kind === 'timeline') this.#host.finishRun();
       const now = Number(range.value);
       const last = Number(range.max);
@@ -211,7 +210,7 @@ export class Controls {
       field.setAttribute('aria-invalid', 'false');
     };
     field.addEventListener('input', () => (isBegun = true));
-    // Before the typed value is set, because the accepted value is shown at once.
+    // Capture: has to run before the value is set, which shows the accepted value at once.
     field.addEventListener('change', () => (isBegun = false), { capture: true });
     field.addEventListener('blur', () => {
       if (!isBegun) return;
@@ -240,7 +239,7 @@ export class Controls {
   }
 }
 
-/** Play, what the widget opens with, "More", and then the rest. */
+/** Play, the first controls of the widget, "More", and then the rest. */
 function inOrder({ opening }: WidgetSpec, ids: readonly string[]): string[] {
   const rank = (id: string): number => {
     if (id === 'play') return 0;
@@ -250,7 +249,7 @@ function inOrder({ opening }: WidgetSpec, ids: readonly string[]): string[] {
   return [...ids].sort((a, b) => rank(a) - rank(b));
 }
 
-/** What an arrow key makes of a value; undefined for keys that are not ours. */
+/** The value after a key press; undefined for keys that change no value. */
 function afterKey(
   key: string,
   now: number,
@@ -277,7 +276,7 @@ function afterKey(
   }
 }
 
-/** Ten digits: 0.1 + 0.2 is 0.3 to a reader. */
+/** Rounds to ten digits: 0.1 + 0.2 becomes 0.3. */
 function tidy(value: number): string {
   return String(Number(value.toPrecision(10)));
 }

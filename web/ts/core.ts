@@ -1,4 +1,4 @@
-// An instance of the module: with frames for a widget, or without, for pictures of the page.
+// An instance of the module: with frames for a widget, or without frames for figures of the page.
 
 import { createGlue, type FrameSource, type Glue } from '../pkg/glue.js';
 import { forgetModule, loadModule, StaleError } from './module';
@@ -10,12 +10,12 @@ const NO_FRAMES: FrameSource = {
   deviceSize: () => [],
 };
 
-/** The compiled program of the widgets, for a separate instance, for example in a worker. */
+/** The compiled module, for example for a worker. */
 export function coreModule(progress: (share: number) => void = () => {}): Promise<WebAssembly.Module> {
   return loadModule(progress);
 }
 
-/** The core without any widget, or with frames for one. */
+/** An instance without a widget. */
 export async function core(frames = NO_FRAMES, progress?: (share: number) => void): Promise<Glue> {
   const module = await coreModule(progress);
   const glue = createGlue(frames);

@@ -1,4 +1,4 @@
-// Small helpers on the document.
+// DOM helpers.
 
 export function create<K extends keyof HTMLElementTagNameMap>(
   tag: K,
@@ -9,13 +9,13 @@ export function create<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** Listens until the returned function is called. */
+/** Adds a listener; returns a function that removes it. */
 export function listen(target: EventTarget, type: string, callback: () => void): () => void {
   target.addEventListener(type, callback);
   return () => target.removeEventListener(type, callback);
 }
 
-/** The next task: what the reader does comes between. Timers would wait for milliseconds. */
+/** Yields to the event loop, which handles input first. Nested timers would add a delay of 4 ms. */
 export function nextTask(): Promise<void> {
   return new Promise((resolve) => {
     const { port1, port2 } = new MessageChannel();
@@ -27,14 +27,14 @@ export function nextTask(): Promise<void> {
   });
 }
 
-/** Keeps keys from the page: slides and chapters turn on arrows, whatever has the focus. */
-export function keepKeys(element: HTMLElement): void {
+/** Hides key presses from the page: on arrow keys slides and books turn a page, whatever has the focus. */
+export function stopKeyPropagation(element: HTMLElement): void {
   element.addEventListener('keydown', (event) => {
     if (event.key !== 'Tab' && event.key !== 'Escape') event.stopPropagation();
   });
 }
 
-/** Scrolls until a box (left, top, width, height) inside an element is visible above a bar. */
+/** Scrolls a box (left, top, width, height) inside an element into view, above a bar at the bottom. */
 export function reveal(
   inside: HTMLElement,
   [left, top, width, height]: readonly [number, number, number, number],
@@ -52,7 +52,7 @@ export function reveal(
   marker.remove();
 }
 
-/** Properties that were set before an element was defined hide those of its class: sets them again. */
+/** Sets properties again that were set before the element was defined, and hide those of its class. */
 export function upgradeProperties(element: HTMLElement): void {
   const early = element as unknown as Record<string, unknown>;
   for (const [key, value] of Object.entries(early)) {
@@ -62,8 +62,8 @@ export function upgradeProperties(element: HTMLElement): void {
   }
 }
 
-/** A sentence with `names` marked, as text and never as HTML. */
-export function marked(sentence: string): (string | HTMLElement)[] {
+/** Converts a sentence with `names` in backticks to text and code elements, never HTML. */
+export function withCode(sentence: string): (string | HTMLElement)[] {
   return sentence.split('`').map((part, at) => {
     if (at % 2 === 0) return part;
     const name = create('code');

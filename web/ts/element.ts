@@ -1,31 +1,31 @@
 // <slam-widget name="w16.1" heading="60">: a widget on any page.
 //
-// The element keeps the values and communicates with the page; what draws them comes and goes with the
-// position of the widget on the screen (life.ts).
+// The element keeps the values and communicates with the page. The instance that draws them exists only near the
+// viewport (lifecycle.ts).
 
 import { linkTo, readAddress } from './address';
 import { Appearance } from './appearance';
 import { boxOf, type Box } from './box';
 import { Controls, MORE } from './controls';
 import { listen, upgradeProperties } from './dom';
-import { takeAwayBar } from './export';
+import { exportBar } from './export';
 import type { Widget } from '../pkg/glue.js';
 import { CrashError, type CsvFile, type Outcome, type Timeline } from './instance';
-import { Life, TakenAwayError, type LifeHost } from './life';
+import { Lifecycle, RemovedError, type LifecycleHost } from './lifecycle';
 import { LoadError } from './module';
-import { News } from './news';
+import { Notifier } from './notifier';
 import { Notes } from './notes';
 import { build, type Parts } from './parts';
 import { Pictures } from './pictures';
-import { Place } from './place';
+import { ReservedHeight } from './reserved-height';
 import { findParam, findWidget, widgets } from './schema';
 import { State } from './state';
 import { defaultText, shorten, type Value } from './values';
 import { unwatchVisibility, watchVisibility } from './visibility';
-import { Desk, hand, type FileUse } from './robot/desk';
+import { LogMapper, deliverTo, type FileUse } from './robot/log-mapper';
 import { DoctorScreen, type Diagnosis } from './robot/doctor';
-import { chooseFiles, takeDrops } from './robot/files';
-import { carryTextOrder, takeTextFile, type TextFileHost } from './text-files';
+import { chooseFiles, acceptDrops } from './robot/files';
+import { executeTextOrder, takeTextFile, type TextFileHost } from './text-files';
 import type { Delivery } from './robot/protocol';
 import { type ViewChange, zoomButtons } from './zoom-buttons';
 
@@ -34,10 +34,10 @@ export class SlamWidget extends HTMLElement {
 
   readonly #parts: Parts;
   readonly #notes: Notes;
-  readonly #news: News;
+  readonly #notifier: Notifier;
   readonly #pictures: Pictures;
-  readonly #place: Place;
-  readonly #life: Life;
+  readonly #reservedHeight: ReservedHeight;
+  readonly #lifecycle: Lifecycle;
   readonly #appearance: Appearance;
   #state: State | undefined;
   #isSetUp = false;
@@ -46,8 +46,8 @@ export class SlamWidget extends HTMLElement {
   #lastOutcome: Outcome | undefined;
   #unwatch: (() => void)[] = [];
   readonly #textFiles: TextFileHost;
-  /** Processes a reader's own file, once there is one. */
-  #desk: Desk | undefined;
+  /** Maps a reader's log, once a file was opened. */
+  #mapper: LogMapper | undefined;
   #doctor: DoctorScreen | undefined;
 
   constructor() {
@@ -56,15 +56,15 @@ export class SlamWidget extends HTMLElement {
     this.#notes = new Notes(this.#parts.note);
     this.#textFiles = {
       frame: this.#parts.frame,
-      act: (deed) => void this.#act(deed),
-      refuse: (problem) => this.#news.wrong('value', problem),
+      act: (action) => void this.#act(action),
+      refuse: (problem) => this.#notifier.invalid('value', problem),
     };
     const shownSummary = (): string => this.#shownSummary();
-    this.#news = new News(this, this.#parts, this.#notes, () => this.#showTimeline(), shownSummary);
+    this.#notifier = new Notifier(this, this.#parts, this.#notes, () => this.#showTimeline(), shownSummary);
     this.#pictures = new Pictures(this.#parts.picture);
-    this.#place = new Place(this.#parts.stage);
-    this.#life = new Life(this.#parts, this.#lifeHost());
-    this.#appearance = new Appearance(this, this.#parts, this.#life, this.#pictures);
+    this.#reservedHeight = new ReservedHeight(this.#parts.stage);
+    this.#lifecycle = new Lifecycle(this.#parts, this.#lifecycleHost());
+    this.#appearance = new Appearance(this, this.#parts, this.#lifecycle, this.#pictures);
   }
 
   connectedCallback(): void {
@@ -73,42 +73,42 @@ export class SlamWidget extends HTMLElement {
     upgradeProperties(this);
     this.#unwatch = [
       ...this.#appearance.watch(),
-      listen(window, 'error', () => this.#life.checkCrash()),
+      listen(window, 'error', () => this.#lifecycle.checkCrash()),
       listen(window, 'resize', () => this.#resized()),
-      listen(document, 'visibilitychange', () => this.#life.wake()),
-      // The element in the reader's focus comes first if not all can draw.
-      listen(this, 'pointerenter', () => this.#life.askAgain()),
-      listen(this, 'focusin', () => this.#life.askAgain()),
+      listen(document, 'visibilitychange', () => this.#lifecycle.wake()),
+      // Focus and pointer give priority if not all widgets can draw.
+      listen(this, 'pointerenter', () => this.#lifecycle.retry()),
+      listen(this, 'focusin', () => this.#lifecycle.retry()),
     ];
     if (this.#takesFiles) {
-      // A resting widget has to run to provide the start pose of a log.
+      // The start pose of a log comes from the running widget.
       const take = (files: File[]): void => void this.#act(() => this.#takeFiles(files));
-      this.#unwatch.push(takeDrops(this.#parts.frame, take));
+      this.#unwatch.push(acceptDrops(this.#parts.frame, take));
     }
-    this.#place.fit();
-    watchVisibility(this, this.#life);
+    this.#reservedHeight.fit();
+    watchVisibility(this, this.#lifecycle);
   }
 
   disconnectedCallback(): void {
     unwatchVisibility(this);
     for (const end of this.#unwatch) end();
     this.#unwatch = [];
-    this.#news.stop();
-    this.#life.leave();
-    // An element that moves within its page is back at once.
+    this.#notifier.stop();
+    this.#lifecycle.leave();
+    // An element that moves within its page is connected again in the same task.
     setTimeout(() => {
-      if (!this.isConnected) this.#closeDesk();
+      if (!this.isConnected) this.#closeMapper();
     });
   }
 
   attributeChangedCallback(name: string, old: string | null, value: string | null): void {
-    // Before the set-up there is nothing to change, because it reads all attributes.
+    // The set-up reads all attributes anyway.
     if (!this.#isSetUp) return;
     if (name === 'name') {
       if (old === value) return;
-      this.#life.suspend();
+      this.#lifecycle.suspend();
       this.#setUp();
-      this.#life.restart();
+      this.#lifecycle.restart();
     } else if (name === 'theme') {
       this.#appearance.showTheme();
     } else {
@@ -128,13 +128,13 @@ export class SlamWidget extends HTMLElement {
     this.setAttribute('name', name);
   }
 
-  /** The whole state as JSON; the setter takes an object or its text, complete or in part. */
+  /** All parameters; the setter takes an object or its JSON, complete or partial. */
   get value(): Record<string, Value> {
     return this.#state?.toJSON() ?? {};
   }
 
-  set value(given: Record<string, Value> | string) {
-    const state: unknown = typeof given === 'string' ? JSON.parse(given) : given;
+  set value(input: Record<string, Value> | string) {
+    const state: unknown = typeof input === 'string' ? JSON.parse(input) : input;
     if (typeof state !== 'object' || state === null || Array.isArray(state)) {
       throw new TypeError('value takes an object of parameters');
     }
@@ -158,13 +158,13 @@ export class SlamWidget extends HTMLElement {
     const button = String(id);
     const problem = this.#state?.buttonProblem(button);
     if (problem !== undefined) throw new RangeError(problem);
-    await this.#life.ensureInstance();
-    // A button acts on the values that are set, not on what the picture still waits for.
+    await this.#lifecycle.ensureInstance();
+    // A button acts on the values that are set, which the picture may not show yet.
     this.#finishWork();
-    this.#life.ask((widget) => widget.press(button));
+    this.#lifecycle.ask((widget) => widget.press(button));
     this.#sync();
     this.#showTimeline();
-    this.#life.wake();
+    this.#lifecycle.wake();
   }
 
   /** The result of the values that are set, once the widget has run with them. */
@@ -179,7 +179,7 @@ export class SlamWidget extends HTMLElement {
     return this.#shownTimeline();
   }
 
-  /** The text that stands for the picture. */
+  /** The text alternative of the picture. */
   get summary(): string {
     this.#finishWork();
     return this.#shownSummary();
@@ -199,58 +199,58 @@ export class SlamWidget extends HTMLElement {
   async tables(): Promise<CsvFile[]> {
     await this.#ensureInstance();
     this.#finishWork();
-    return this.#life.ask((_, instance) => instance.tables()) ?? [];
+    return this.#lifecycle.ask((_, instance) => instance.tables()) ?? [];
   }
 
   /** The pixels of the canvas; waits until the widget runs and draws. */
   snapshot(): Promise<ImageBitmap> {
-    if (this.#life.hasFailed) return Promise.reject(new LoadError('the widget does not run'));
+    if (this.#lifecycle.hasFailed) return Promise.reject(new LoadError('the widget does not run'));
     const picture = this.#pictures.nextFrame();
-    this.#life.wake();
+    this.#lifecycle.wake();
     return picture;
   }
 
   /** `running` while it has a canvas. */
   get state(): 'running' | 'resting' {
-    return this.#life.isRunning ? 'running' : 'resting';
+    return this.#lifecycle.isRunning ? 'running' : 'resting';
   }
 
   /** Frames drawn since this instance started. */
   get frames(): number {
-    return this.#life.ask((widget) => widget.frames()) ?? 0;
+    return this.#lifecycle.ask((widget) => widget.frames()) ?? 0;
   }
 
-  /** Whether something draggable is at that position, in CSS pixels from the canvas's corner. */
+  /** Whether something can be dragged at a position, in CSS pixels from the canvas's corner. */
   dragsAt(x: number, y: number): boolean {
-    return this.#life.ask((widget) => widget.dragsAt(x, y)) ?? false;
+    return this.#lifecycle.ask((widget) => widget.dragsAt(x, y)) ?? false;
   }
 
   /** The rectangle of a control on the canvas: left, top, width, height; null while it rests. */
   controlBox(id: string): Box | null {
-    return boxOf(this.#life.ask((widget) => widget.controlBox(String(id))));
+    return boxOf(this.#lifecycle.ask((widget) => widget.controlBox(String(id))));
   }
 
   /** The rectangle of the picture on the canvas: left, top, width, height; null while it rests. */
   sceneBox(): Box | null {
-    return boxOf(this.#life.ask((widget) => widget.sceneBox()));
+    return boxOf(this.#lifecycle.ask((widget) => widget.sceneBox()));
   }
 
   /** Position of a panel's point on the canvas, in CSS pixels; null if it is not visible. */
   panelToScreen(panel: string, x: number, y: number): [number, number] | null {
-    const at = this.#life.ask((widget) => widget.panelToScreen(String(panel), x, y));
+    const at = this.#lifecycle.ask((widget) => widget.panelToScreen(String(panel), x, y));
     return at === undefined ? null : [at[0] ?? 0, at[1] ?? 0];
   }
 
   /** Zooms every map, or moves the visible part. */
   look(way: ViewChange): void {
-    this.#life.ask((widget) => widget.look(shorten(String(way))));
-    this.#life.wake();
+    this.#lifecycle.ask((widget) => widget.look(shorten(String(way))));
+    this.#lifecycle.wake();
   }
 
-  /** Panics on purpose, in the widget or in the worker beside it, for tests of a page's recovery. */
+  /** Panics on purpose in the widget or in its worker, for tests of the recovery. */
   crashForTest(where?: 'worker'): void {
-    if (where === 'worker') this.#desk?.crashForTest();
-    else this.#life.ask((widget) => widget.crashForTest());
+    if (where === 'worker') this.#mapper?.crashForTest();
+    else this.#lifecycle.ask((widget) => widget.crashForTest());
   }
 
   /**
@@ -272,25 +272,25 @@ export class SlamWidget extends HTMLElement {
 
   /** The bytes of a file that w16.10 saves, such as `session.slam2d`; rejects with a sentence if there is none. */
   savedFile(name: string): Promise<File> {
-    return this.#desk?.file(String(name)) ?? Promise.reject(new Error('Open a log first.'));
+    return this.#mapper?.file(String(name)) ?? Promise.reject(new Error('Open a log first.'));
   }
 
   /** Releases context and memory; the values stay, and the picture shows them. */
   suspend(): void {
-    this.#life.suspend();
+    this.#lifecycle.suspend();
   }
 
   // ---- setting up ---------------------------------------------------------------------------
 
   async #ensureInstance(): Promise<void> {
     if (!this.#isSetUp) this.#setUp();
-    await this.#life.ensureInstance();
+    await this.#lifecycle.ensureInstance();
   }
 
   #setUp(): void {
     const parts = this.#parts;
     this.#isSetUp = true;
-    this.#closeDesk();
+    this.#closeMapper();
     const spec = findWidget(this.name);
     parts.frame.classList.toggle('takes-files', spec?.takesFiles === true);
     parts.frame.classList.toggle('without-file', spec?.takesFiles === true);
@@ -298,11 +298,11 @@ export class SlamWidget extends HTMLElement {
     this.#lastOutcome = undefined;
     this.#notes.clear();
     this.#pictures.clear(spec?.summary ?? '');
-    this.#place.reserve(spec?.heights ?? []);
+    this.#reservedHeight.reserve(spec?.heights ?? []);
     parts.bar.replaceChildren();
     if (spec === undefined) {
       const known = widgets.map((widget) => widget.id).join(', ');
-      this.#news.wrong('name', `There is no widget \`${this.name.slice(0, 60)}\`; there are ${known}.`);
+      this.#notifier.invalid('name', `There is no widget \`${this.name.slice(0, 60)}\`; there are ${known}.`);
       return;
     }
     this.#controls = new Controls(spec, {
@@ -318,11 +318,11 @@ export class SlamWidget extends HTMLElement {
     const zoom = zoomButtons((view) => this.look(view));
     zoom.hidden = true;
     this.#zoom = zoom;
-    parts.bar.append(this.#controls.element, zoom, takeAwayBar(this, spec.id, parts.status));
+    parts.bar.append(this.#controls.element, zoom, exportBar(this, spec.id, parts.status));
     parts.frame.setAttribute('aria-label', `Widget ${spec.id.replace(/^w/, '')}: ${spec.title}`);
     parts.summary.textContent = spec.summary;
     this.#appearance.become(spec.id);
-    this.#news.given(() => {
+    this.#notifier.fromAttributes(() => {
       for (const param of spec.params) {
         const text = this.getAttribute(param.id);
         if (text !== null) this.#tryToSet(param.id, text);
@@ -331,93 +331,93 @@ export class SlamWidget extends HTMLElement {
     if (this.hasAttribute('linked')) {
       readAddress(this, spec, {
         set: (id, text) => this.#tryToSet(id, text),
-        wrong: (kind, problem) => this.#news.wrong(kind, problem),
+        invalid: (kind, problem) => this.#notifier.invalid(kind, problem),
       });
     }
     this.#controls.show(this.#state?.texts ?? []);
     this.#offerControls();
-    this.#news.setUp();
+    this.#notifier.setUp();
   }
 
-  /** Ignores an error if the element has left its page, because the reader cannot see it. */
+  /** Reports a failed press, unless the element has left its page. */
   #pressFailed(error: unknown): void {
-    if (!(error instanceof TakenAwayError)) this.#life.fail(error);
+    if (!(error instanceof RemovedError)) this.#lifecycle.fail(error);
   }
 
   // ---- running ------------------------------------------------------------------------------
 
-  #lifeHost(): LifeHost {
+  #lifecycleHost(): LifecycleHost {
     return {
       widget: () => this.#state?.spec,
-      isHere: () => this.isConnected,
+      isConnected: () => this.isConnected,
       prepare: (widget) => {
         const state = this.#state;
-        this.#desk?.restore(widget);
+        this.#mapper?.restore(widget);
         for (const [id, text] of state?.texts ?? []) {
           const problem = refusal(() => widget.set(id, text));
-          if (problem !== undefined) this.#news.wrong('value', `${problem}. The default stands.`, id);
+          if (problem !== undefined) this.#notifier.invalid('value', `${problem}. The default is used.`, id);
         }
-        // The model may keep less than was asked for: no moment after the end of its run.
+        // The model may clamp a value: a time to the end of the run.
         for (const id of state?.texts.keys() ?? []) state?.keep(id, widget.text(id));
         this.#controls?.show(state?.texts ?? []);
         this.#offerControls(widget);
         this.#appearance.prepare(widget);
-        widget.setRoom(this.#place.room);
+        widget.setRoom(this.#reservedHeight.room);
       },
       live: (milliseconds) => {
         this.#showTimeline();
         this.#shownOutcome();
-        this.#news.ready(milliseconds);
+        this.#notifier.ready(milliseconds);
       },
       drew: (canvas) => {
-        this.#pictures.handOut(canvas);
+        this.#pictures.resolveSnapshots(canvas);
         this.#appearance.drew(canvas);
         this.#sync();
       },
-      rested: () => this.#news.rested(),
+      rested: () => this.#notifier.rested(),
       leaving: () => {
         this.#appearance.drawPicture();
         this.#shownOutcome();
-        this.#place.keep();
+        this.#reservedHeight.keep();
       },
       failed: (error) => {
-        this.#place.free();
-        this.#pictures.refuse(error);
-        this.#news.failed(error, () => this.#life.restart());
+        this.#reservedHeight.free();
+        this.#pictures.rejectSnapshots(error);
+        this.#notifier.failed(error, () => this.#lifecycle.restart());
       },
     };
   }
 
-  /** Copies what changed in the widget: pointer, playback, presets. */
+  /** Copies values that changed in the widget, by pointer, playback or preset. */
   #sync(): void {
-    this.#carryOrders();
+    this.#executeOrders();
     const changes = this.#changes();
     if (changes.length === 0) return;
     const timeline = this.#shownTimeline();
     if (timeline?.playing === true) {
       const before = Number(this.#state?.text(timeline.param));
       const now = Number(new Map(changes).get(timeline.param) ?? before);
-      this.#news.passed(timeline, before, now);
+      this.#notifier.passed(timeline, before, now);
     }
     this.#announce(changes);
   }
 
   /** Values of the widget that the element does not have yet. */
   #changes(): [string, string][] {
-    const values = this.#life.ask((_, instance) => instance.values()) ?? {};
+    const values = this.#lifecycle.ask((_, instance) => instance.values()) ?? {};
     const known = [...(this.#state?.texts ?? [])];
     return known.map(([id, text]): [string, string] => [id, values[id] ?? text]).filter(([id, text]) => this.#state?.text(id) !== text);
   }
 
-  /** Executes the widget's requests to its host: a file, its mapping, a file to save. */
-  #carryOrders(): void {
-    const orders = this.#life.ask((widget) => widget.takeOrders()) ?? [];
+  /** Executes the widget's requests to its host: to open, map or save a file. */
+  #executeOrders(): void {
+    const orders = this.#lifecycle.ask((widget) => widget.takeOrders()) ?? [];
     for (const order of orders) {
-      if (!carryTextOrder(order, this.#textFiles)) this.#openDesk().order(order);
+      if (!executeTextOrder(order, this.#textFiles)) this.#openMapper().order(order);
     }
   }
 
-  /** Whether the widget accepts a file: a log, or a world, which a text can contain as well. */
+  /** Whether the widget accepts a file: a log, or a world for its text parameter. */
   get #takesFiles(): boolean {
     const spec = this.#state?.spec;
     return spec?.takesFiles === true || spec?.params.some(({ kind }) => kind === 'text') === true;
@@ -425,67 +425,67 @@ export class SlamWidget extends HTMLElement {
 
   #takeFiles(files: File[], use?: FileUse): void {
     const [first] = files;
-    if (this.#state?.spec.takesFiles === true) this.#openDesk().take(files, use);
+    if (this.#state?.spec.takesFiles === true) this.#openMapper().take(files, use);
     else if (first !== undefined) void takeTextFile(first, this.#textFiles);
   }
 
-  #openDesk(): Desk {
-    if (this.#desk !== undefined) return this.#desk;
+  #openMapper(): LogMapper {
+    if (this.#mapper !== undefined) return this.#mapper;
     const label = 'A log, or a reference for it';
-    const desk = new Desk({
+    const mapper = new LogMapper({
       deliver: (deliveries) => this.#deliver(deliveries),
       choose: (accept, chosen) => chooseFiles(this.#parts.frame, { accept, label, several: true }, chosen),
     });
     this.#doctor = new DoctorScreen({
-      choose: (option) => desk.choose(option?.replace(/^--/, '')),
-      chosen: () => desk.chosen,
+      choose: (option) => mapper.choose(option?.replace(/^--/, '')),
+      chosen: () => mapper.chosen,
     });
     this.#parts.frame.prepend(this.#doctor.element);
     this.#parts.frame.classList.remove('without-file');
-    this.#desk = desk;
-    return desk;
+    this.#mapper = mapper;
+    return mapper;
   }
 
-  #closeDesk(): void {
-    this.#desk?.close();
-    this.#desk = undefined;
+  #closeMapper(): void {
+    this.#mapper?.close();
+    this.#mapper = undefined;
     this.#doctor?.element.remove();
     this.#doctor = undefined;
   }
 
   #deliver(deliveries: readonly Delivery[]): void {
-    const isMoved = deliveries.filter((delivery) => this.#doctor?.hear(delivery) === true).length > 0;
+    const isMoved = deliveries.filter((delivery) => this.#doctor?.receive(delivery) === true).length > 0;
     if (isMoved) this.#resized();
-    this.#life.ask((widget) => deliveries.forEach((delivery) => hand(widget, delivery)));
+    this.#lifecycle.ask((widget) => deliveries.forEach((delivery) => deliverTo(widget, delivery)));
     this.#announce(this.#changes());
-    this.#carryOrders();
-    this.#life.wake();
+    this.#executeOrders();
+    this.#lifecycle.wake();
   }
 
-  /** Executes an action on the widget, at once if it runs, else as soon as it does. */
-  async #act(deed: (widget: Widget) => void): Promise<void> {
+  /** Executes an action on the widget, which is started if necessary. */
+  async #act(action: (widget: Widget) => void): Promise<void> {
     try {
       await this.#ensureInstance();
     } catch (error) {
       this.#pressFailed(error);
       return;
     }
-    this.#life.ask(deed);
+    this.#lifecycle.ask(action);
     this.#announce(this.#changes());
-    this.#carryOrders();
-    this.#life.wake();
+    this.#executeOrders();
+    this.#lifecycle.wake();
   }
 
-  /** Stores changes, and reports them to controls and page. */
+  /** Stores changes, and reports them to the controls and the page. */
   #announce(changes: readonly [string, string][]): void {
     for (const [id, text] of changes) this.#state?.keep(id, text);
     this.#controls?.show(changes);
     if (changes.length > 0) this.#offerControls();
     this.#showTimeline();
-    this.#news.changed(changes, this.#shownOutcome());
+    this.#notifier.changed(changes, this.#shownOutcome());
   }
 
-  /** The controls that the widget shows are the stops of the keyboard; one that rests shows its opening, or all. */
+  /** Makes the controls that the canvas shows focusable. Without an instance these are its first ones, or all. */
   #offerControls(running?: Widget): void {
     const state = this.#state;
     if (state === undefined) return;
@@ -493,28 +493,28 @@ export class SlamWidget extends HTMLElement {
     const hasMore = spec.params.some(({ id }) => id === MORE);
     const isOpen = !hasMore || state.text(MORE) === 'on';
     const all = (): string[] => [...spec.presets, ...spec.params, ...spec.buttons].map(({ id }) => id);
-    const shown = running?.shownControls() ?? this.#life.ask((widget) => widget.shownControls());
+    const shown = running?.shownControls() ?? this.#lifecycle.ask((widget) => widget.shownControls());
     this.#controls?.offer(shown ?? (isOpen ? all() : spec.opening));
     if (this.#zoom !== undefined) this.#zoom.hidden = !isOpen;
   }
 
-  /** Figures are read of the values that are set: what the picture still waits for is finished. */
+  /** Finishes pending work before results are read: they belong to the values that are set. */
   #finishWork(): void {
-    if (this.#life.ask((widget) => widget.finish_work()) === true) this.#life.wake();
+    if (this.#lifecycle.ask((widget) => widget.finish_work()) === true) this.#lifecycle.wake();
   }
 
-  /** The result of what the picture shows, which may wait for newer values. */
+  /** The result of the picture as drawn, which may lag behind the values. */
   #shownOutcome(): Outcome | undefined {
-    this.#lastOutcome = this.#life.ask((_, instance) => instance.outcome()) ?? this.#lastOutcome;
+    this.#lastOutcome = this.#lifecycle.ask((_, instance) => instance.outcome()) ?? this.#lastOutcome;
     return this.#lastOutcome;
   }
 
   #shownSummary(): string {
-    return this.#life.ask((widget) => widget.summary()) ?? this.#state?.spec.summary ?? '';
+    return this.#lifecycle.ask((widget) => widget.summary()) ?? this.#state?.spec.summary ?? '';
   }
 
   #shownTimeline(): Timeline | null {
-    return this.#life.ask((_, instance) => instance.timeline()) ?? null;
+    return this.#lifecycle.ask((_, instance) => instance.timeline()) ?? null;
   }
 
   #showTimeline(): void {
@@ -522,23 +522,23 @@ export class SlamWidget extends HTMLElement {
   }
 
   #resized(): void {
-    this.#place.fit();
-    this.#life.ask((widget) => widget.setRoom(this.#place.room));
-    this.#life.wake();
+    this.#reservedHeight.fit();
+    this.#lifecycle.ask((widget) => widget.setRoom(this.#reservedHeight.room));
+    this.#lifecycle.wake();
   }
 
   // ---- values -------------------------------------------------------------------------------
 
   /** Sets a parameter; returns the error, if there is one. */
-  #set(id: string, given: unknown): string | undefined {
+  #set(id: string, input: unknown): string | undefined {
     if (!this.#isSetUp) this.#setUp();
     const state = this.#state;
     if (state === undefined) return 'there is no such widget';
-    const parsed = state.parse(id, given);
+    const parsed = state.parse(id, input);
     if (!parsed.ok) return parsed.problem;
     if (state.text(id) === parsed.text) return undefined;
     let problem: string | undefined;
-    const kept = this.#life.ask((running) => {
+    const kept = this.#lifecycle.ask((running) => {
       problem = refusal(() => running.set(id, parsed.text));
       return running.text(id);
     });
@@ -546,29 +546,29 @@ export class SlamWidget extends HTMLElement {
     // The result of the old values is invalid now.
     if (kept === undefined) this.#lastOutcome = undefined;
     this.#announce([...new Map([[id, kept ?? parsed.text], ...this.#changes()])]);
-    this.#carryOrders();
-    this.#life.wake();
+    this.#executeOrders();
+    this.#lifecycle.wake();
     return undefined;
   }
 
   /** Sets a value from outside; reports and returns the error, if there is one. */
-  #tryToSet(id: string, given: unknown): string | undefined {
-    const problem = this.#set(id, given);
+  #tryToSet(id: string, input: unknown): string | undefined {
+    const problem = this.#set(id, input);
     if (problem === undefined) {
-      this.#notes.settle(id);
+      this.#notes.remove(id);
       return undefined;
     }
     const label = this.#state?.label(id);
-    const stands = label === undefined ? '' : ` It stays at ${label}.`;
-    this.#news.wrong('value', `${problem}.${stands}`, id);
+    const kept = label === undefined ? '' : ` It stays at ${label}.`;
+    this.#notifier.invalid('value', `${problem}.${kept}`, id);
     return problem;
   }
 }
 
-/** The core's reason to reject a well-formed value; a panic propagates. */
-function refusal(deed: () => void): string | undefined {
+/** Returns the core's reason to reject a well-formed value; rethrows a panic. */
+function refusal(action: () => void): string | undefined {
   try {
-    deed();
+    action();
     return undefined;
   } catch (error) {
     if (error instanceof WebAssembly.RuntimeError || error instanceof CrashError) throw error;

@@ -1,14 +1,14 @@
-// embed.html: one widget that fills a frame, and its messages to and from the surrounding page. With
-// `?exercise=5` it is an exercise with its widget, which also reports to a learning management system.
+// embed.html: one widget in a frame, and its messages to and from the surrounding page. With `?exercise=5` it shows an
+// exercise with its widgets, which also reports to a learning management system.
 //
-// Every message contains `slam: 1`, the version of this protocol. Messages of other programs are ignored; an
-// invalid one of ours is answered with an error message.
+// Every message contains `slam: 1`, the version of this protocol. Other messages are ignored; an invalid one is answered
+// with an error.
 //
 //   in   {slam: 1, type: 'set', values: {heading: 60}}   {slam: 1, type: 'press', button: 'play'}
 //        {slam: 1, type: 'get', id?: 'any'}
 //   out  ready, changed, result, state (answers get), error, size; answer, from an exercise
 
-// @ts-expect-error: stays a file of its own beside this one.
+// @ts-expect-error: a separate bundle.
 import { SlamWidget as Element, widgets as schemas } from './slam-widget.js';
 import type { SlamWidget } from './element';
 import { showExercise } from './exercise';
@@ -34,10 +34,10 @@ function showWidget(): void {
   main.querySelector('.absent')?.remove();
   main.append(widget);
   listen(widget);
-  for (const message of linked?.problems ?? ['The address names no widget: ?w=16.1']) tell(message);
+  for (const message of linked?.problems ?? ['The address names no widget: ?w=16.1']) reportProblem(message);
 }
 
-/** The exercise in place of a single widget; its answers go to the surrounding page. */
+/** Shows an exercise; its answers go to the surrounding page. */
 async function showQuestions(id: string): Promise<void> {
   document.addEventListener('slam-predict', ({ detail }) => post({ type: 'answer', ...detail }));
   new ResizeObserver(tellSize).observe(main);
@@ -45,12 +45,12 @@ async function showQuestions(id: string): Promise<void> {
     const title = await showExercise(main, id);
     document.title = title;
   } catch (error) {
-    tell(error instanceof Error ? error.message : String(error));
+    reportProblem(error instanceof Error ? error.message : String(error));
   }
   main.querySelector('.absent')?.remove();
 }
 
-/** Creates the widget of the address, and a page with its title around it. */
+/** Applies the address to the widget, and its title to the page. */
 function setUp(widget: SlamWidget): void {
   widget.setAttribute('name', spec?.id ?? '');
   for (const [id, text] of named?.values ?? []) widget.setAttribute(id, text);
@@ -63,8 +63,8 @@ function setUp(widget: SlamWidget): void {
   main.querySelector('h1')?.replaceChildren(document.title);
 }
 
-/** Reports an error in the address to the reader, and to the surrounding page. */
-function tell(message: string): void {
+/** Reports a problem with the address to the reader and to the surrounding page. */
+function reportProblem(message: string): void {
   const line = document.createElement('p');
   line.textContent = message;
   main.querySelector('.problems')?.append(line);
@@ -75,7 +75,7 @@ function listen(element: SlamWidget): void {
   const detail = (event: Event): Message => (event as CustomEvent<Message>).detail;
   element.addEventListener('slam-ready', (event) => {
     post({ type: 'ready', ...detail(event) });
-    // The surrounding page may have started to listen after the frame got its size.
+    // The surrounding page may have missed the first size.
     tellSize();
   });
   element.addEventListener('slam-change', (event) => post({ type: 'changed', ...detail(event) }));
@@ -102,7 +102,7 @@ function refuse({ message }: Error): void {
   post({ type: 'error', name: spec?.id ?? null, kind: 'message', message });
 }
 
-/** The size of the frame's content, CSS pixels. */
+/** The size of the content, in CSS pixels. */
 function size(): { width: number; height: number } {
   const { width, height } = main.getBoundingClientRect();
   return { width: Math.ceil(width), height: Math.ceil(height) };
@@ -111,12 +111,12 @@ function size(): { width: number; height: number } {
 function tellSize(): void {
   const { width, height } = size();
   post({ type: 'size', width, height });
-  // The message that learning management systems expect.
+  // The message that Canvas and other learning management systems expect.
   const lti = { subject: 'lti.frameResize', height };
   if (window.parent !== window) window.parent.postMessage(JSON.stringify(lti), '*');
 }
 
-/** Outgoing messages are not secret, and a sandboxed frame does not know its parent. */
+/** Posts to any origin: messages are not secret, and a sandboxed frame does not know the origin of its parent. */
 function post(message: Message): void {
   if (window.parent !== window) window.parent.postMessage({ slam: VERSION, ...message }, '*');
 }

@@ -1,10 +1,10 @@
-// An exercise of the chapter by itself: its questions and the widgets that answer them.
+// A single exercise of the chapter: its questions and their widgets.
 
 import { connect } from './scorm';
 
-/** What web/page/build.mjs writes into exercises.json, from the source of the page. */
+/** An entry of exercises.json, which web/page/build.mjs writes. */
 interface Exercise {
-  /** Without a part: `16.5`. */
+  /** The id without a part: `16.5`. */
   name: string;
   title: string;
   intro: string;
@@ -19,18 +19,18 @@ interface Question {
 
 /**
  * Shows an exercise, `16.5` or `5`, or one part of it, `16.5a`. Returns its title.
- * @throws {Error} with a sentence, if there is none or the list of exercises does not arrive.
+ * @throws {Error} with a sentence, if there is no such exercise or exercises.json cannot be loaded.
  */
 export async function showExercise(main: HTMLElement, id: string): Promise<string> {
   const response = await fetch(new URL('./exercises.json', import.meta.url)).catch(() => undefined);
   if (response?.ok !== true) throw new Error('The exercises could not be loaded: exercises.json is missing beside embed.html.');
   const { exercise, questions } = find((await response.json()) as Exercise[], id);
   const reports = connect(window, questions.map((question) => question.exercise));
-  // @ts-expect-error: stays a file of its own beside this one.
+  // @ts-expect-error: a separate bundle.
   await import('./slam-predict.js');
   const article = document.createElement('article');
   article.className = 'exercise';
-  // Of our own build; what the address names only chooses one of them.
+  // Safe: the HTML is from our build, and the address only selects one exercise.
   article.innerHTML = `${exercise.intro}${questions.map(({ html }) => html).join('')}`;
   const title = document.createElement('h1');
   title.textContent = exercise.title;
@@ -53,11 +53,11 @@ export async function showExercise(main: HTMLElement, id: string): Promise<strin
   return exercise.title;
 }
 
-/** The questions whose id is the one asked for, with or without chapter and part. */
+/** Finds the questions for an id, with or without chapter and part. */
 function find(exercises: Exercise[], id: string): { exercise: Exercise; questions: Question[] } {
-  const isAsked = (name: string): boolean => name === id || name.replace(/^\d+\./, '') === id;
+  const matches = (name: string): boolean => name === id || name.replace(/^\d+\./, '') === id;
   for (const exercise of exercises) {
-    const questions = exercise.questions.filter((question) => isAsked(exercise.name) || isAsked(question.exercise));
+    const questions = exercise.questions.filter((question) => matches(exercise.name) || matches(question.exercise));
     if (questions.length > 0) return { exercise, questions };
   }
   const known = exercises.flatMap(({ questions }) => questions.map(({ exercise }) => exercise)).join(', ');

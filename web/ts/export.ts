@@ -3,7 +3,7 @@
 import { create } from './dom';
 import type { CsvFile } from './instance';
 
-/** The source of an export: a widget. */
+/** The exported widget. */
 interface Source extends HTMLElement {
   /** The page, or a separate page, with the widget in its present state. */
   readonly link: string;
@@ -11,9 +11,9 @@ interface Source extends HTMLElement {
   tables(): Promise<CsvFile[]>;
 }
 
-/** The export buttons; `status` reports what happened to the link, and what is unavailable. */
-export function takeAwayBar(source: Source, name: string, status: HTMLElement): HTMLElement {
-  const bar = create('div', { class: 'tools', role: 'group', 'aria-label': 'Take away' });
+/** The export buttons; `status` is the live region for their results. */
+export function exportBar(source: Source, name: string, status: HTMLElement): HTMLElement {
+  const bar = create('div', { class: 'tools', role: 'group', 'aria-label': 'Export' });
   const button = (label: string, press: () => Promise<void>): HTMLElement => {
     const element = create('button', { type: 'button' });
     element.textContent = label;
@@ -39,7 +39,7 @@ async function savePng(picture: ImageBitmap, name: string): Promise<void> {
   saveBlob(await canvas.convertToBlob({ type: 'image/png' }), `${name}.png`);
 }
 
-/** All tables as separate files, or as one if there is only one. */
+/** Saves each table as a file. */
 function saveCsv(files: CsvFile[], name: string): void {
   for (const file of files) {
     saveBlob(new Blob([file.csv], { type: 'text/csv;charset=utf-8' }), `${name}-${file.id}.csv`);
@@ -53,7 +53,7 @@ export function saveBlob(blob: Blob, fileName: string): void {
   link.href = url;
   link.download = fileName;
   link.click();
-  // The browser has taken the blob when the click returns; Safari needs more time.
+  // Safari reads the blob after the click has returned.
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 

@@ -1,18 +1,17 @@
-// Decides when a widget may draw. eframe requests the next animation frame at the end of every frame,
-// forever; here the request waits for a reason: an event, a change, a playback.
+// Decides when a widget draws. eframe requests an animation frame at the end of every frame; here the request waits for
+// an event, a change or a playback, because an idle widget should use no CPU.
 
 type Callback = (time: number) => void;
 
 /** Time after an event during which egui may need frames: hover delays and fades end by then. */
 const SETTLE_MS = 900;
-/** Number of frames after an event, however slow they are: one to process it, two to settle. */
+/** Frames after an event, however long they take: one to process it, two to settle. */
 const SETTLE_FRAMES = 3;
 
-/** Largest number of pixels along a side of a canvas: browsers clip a longer one, and leave the rest blank. */
-const MOST_PIXELS = 8192;
+/** Longest side of a canvas: browsers leave the rest of a longer one blank. */
+const MAX_SIDE_PX = 8192;
 
 export class FrameGate {
-  /** The canvas. */
   canvas: HTMLCanvasElement | undefined;
   /** Called after each frame; returns whether another one is needed at once. */
   afterFrame: () => boolean = () => false;
@@ -22,17 +21,16 @@ export class FrameGate {
   #waiting: Callback | undefined;
   #scheduled = 0;
   #awakeUntil = 0;
-  #owed = 0;
+  #framesLeft = 0;
   #open = false;
   #isInFrame = false;
-  /** The pixel ratio of a widget that is too long for the screen's own. */
-  #held = Infinity;
+  /** The reduced pixel ratio of a widget that is too long for the screen's. */
+  #reducedRatio = Infinity;
 
   /** The glue calls this in place of `window.requestAnimationFrame`. */
   request(callback: Callback): number {
     this.#waiting = callback;
-    // At the end of a frame eframe always requests one; at any other time it has a reason, such as a new
-    // size.
+    // eframe requests a frame at the end of every frame; outside of frames it has a reason, such as a resize.
     if (this.#isInFrame) this.#schedule();
     else this.wake();
     return 1;
@@ -47,13 +45,12 @@ export class FrameGate {
   /** The glue calls this in place of `window.devicePixelRatio`. A very long widget gets a lower resolution. */
   pixelRatio(): number {
     const longest = Math.max(this.canvas?.clientWidth ?? 0, this.canvas?.clientHeight ?? 0, 1);
-    const fits = MOST_PIXELS / longest;
+    const fits = MAX_SIDE_PX / longest;
     if (window.devicePixelRatio <= fits) return window.devicePixelRatio;
-    // Lines break differently at another ratio, which changes the height, so the ratio must not follow each
-    // change.
-    const isHeld = this.#held <= fits && this.#held > fits - 0.25;
-    if (!isHeld) this.#held = Math.floor(8 * fits) / 8 || fits;
-    return this.#held;
+    // Hysteresis: another ratio breaks lines differently, which changes the height and so the ratio.
+    const isStillGood = this.#reducedRatio <= fits && this.#reducedRatio > fits - 0.25;
+    if (!isStillGood) this.#reducedRatio = Math.floor(8 * fits) / 8 || fits;
+    return this.#reducedRatio;
   }
 
   /** The glue calls this in place of `entry.devicePixelContentBoxSize`. */
@@ -61,11 +58,10 @@ export class FrameGate {
     const ratio = this.pixelRatio();
     const { width, height } = entry.contentRect;
     const [exact] = entry.devicePixelContentBoxSize;
-    // The exact size differs from the rounded one by less than a pixel, except under an emulated or limited
-    // ratio.
+    // An emulated or reduced ratio is not in the exact size, which otherwise differs by rounding only.
     if (exact !== undefined && Math.abs(exact.inlineSize - width * ratio) < 2) return [exact];
     const [inlineSize, blockSize] = [width * ratio, height * ratio].map(Math.round);
-    // The glue expects an instance of the class, which has no constructor.
+    // The glue checks the class, which has no public constructor.
     return [
       Object.create(ResizeObserverSize.prototype, {
         inlineSize: { value: inlineSize },
@@ -74,7 +70,7 @@ export class FrameGate {
     ];
   }
 
-  /** Draws while open, if there is a reason. */
+  /** Allows drawing. */
   open(): void {
     this.#open = true;
     this.wake();
@@ -86,15 +82,15 @@ export class FrameGate {
     this.#unschedule();
   }
 
-  /** Draws for a moment after an event. */
+  /** Draws until egui has settled. */
   wake(): void {
     this.#awakeUntil = performance.now() + SETTLE_MS;
-    this.#owed = SETTLE_FRAMES;
+    this.#framesLeft = SETTLE_FRAMES;
     this.#schedule();
   }
 
   #schedule(): void {
-    const wanted = this.#open && (this.#owed > 0 || performance.now() < this.#awakeUntil);
+    const wanted = this.#open && (this.#framesLeft > 0 || performance.now() < this.#awakeUntil);
     if (!wanted || this.#waiting === undefined || this.#scheduled !== 0) return;
     this.#scheduled = requestAnimationFrame((time) => this.#run(time));
   }
@@ -109,7 +105,7 @@ export class FrameGate {
     const callback = this.#waiting;
     this.#waiting = undefined;
     if (callback === undefined) return;
-    this.#owed = Math.max(this.#owed - 1, 0);
+    this.#framesLeft = Math.max(this.#framesLeft - 1, 0);
     this.#isInFrame = true;
     try {
       // The glue requests the next frame in here.

@@ -1,5 +1,4 @@
-// One instance of the module: its own memory, its own widget. Its state, including a panic, is isolated. An
-// instance is never repaired, but replaced by a new one with its values.
+// One instance of the module, with its own memory and widget. A panic stays inside, and the instance is replaced.
 
 import type { Widget } from '../pkg/glue.js';
 import { core } from './core';
@@ -33,7 +32,7 @@ export interface CsvFile {
   csv: string;
 }
 
-/** The widget's code panicked: the instance is unusable. */
+/** The widget's code panicked, and its instance is unusable. */
 export class CrashError extends Error {
   constructor(readonly details: string) {
     super('the widget stopped because of an error in its program');
@@ -52,7 +51,7 @@ export class Instance {
   static async create(name: string, progress: (share: number) => void): Promise<Instance> {
     const frames = new FrameGate();
     const glue = await core(frames, progress);
-    // A start is several tasks, so that none of them holds up the page.
+    // A start is split into several tasks: a long one would block the page.
     await nextTask();
     try {
       return new Instance(new glue.Widget(name), frames);
@@ -96,7 +95,7 @@ export class Instance {
       this.#widget.destroy();
       this.#widget.free();
     } catch {
-      // After a panic nothing can be freed; the garbage collector takes the whole memory.
+      // After a panic the garbage collector frees the whole memory.
     }
   }
 
@@ -112,7 +111,7 @@ export class Instance {
     return JSON.parse(this.use((widget) => widget.tables())) as CsvFile[];
   }
 
-  /** Every value in the form of a link. */
+  /** Every value as in a link. */
   values(): Record<string, string> {
     return JSON.parse(this.use((widget) => widget.values())) as Record<string, string>;
   }

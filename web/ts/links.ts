@@ -6,22 +6,22 @@ import { defaultText, parseValue } from './values';
 export interface LinkedState {
   /** The widget: `w16.2`. */
   widget: WidgetSpec;
-  /** Its parameters as checked texts. */
+  /** Its parameters as valid texts. */
   values: [string, string][];
-  /** The errors, a sentence each. */
+  /** A sentence for each error. */
   problems: string[];
 }
 
-/** Reads a query; undefined if it names no widget. */
+/** Parses a query; undefined if it has no `w`. */
 export function readQuery(query: string): LinkedState | { problems: string[] } | undefined {
-  const asked = new URLSearchParams(query);
-  const name = asked.get('w');
+  const params = new URLSearchParams(query);
+  const name = params.get('w');
   if (name === null) return undefined;
   const widget = findWidget(name.startsWith('w') ? name : `w${name}`);
   if (widget === undefined) return { problems: [`There is no widget \`${name.slice(0, 60)}\`.`] };
   const values: [string, string][] = [];
   const problems: string[] = [];
-  for (const [id, text] of asked) {
+  for (const [id, text] of params) {
     if (id === 'w' || id === 'theme') continue;
     const spec = findParam(widget, id);
     if (spec === undefined) {
@@ -31,12 +31,12 @@ export function readQuery(query: string): LinkedState | { problems: string[] } |
     }
     const parsed = parseValue(spec, text);
     if (parsed.ok) values.push([id, parsed.text]);
-    else problems.push(`${parsed.problem}. The default stands.`);
+    else problems.push(`${parsed.problem}. The default is used.`);
   }
   return { widget, values, problems };
 }
 
-/** The query of a page one of whose widgets is in that state; what no widget knows belongs to the page and stays. */
+/** Replaces the state in the query of a page. Parameters that belong to no widget are kept. */
 export function withState(search: string, state: string): string {
   const query = new URLSearchParams(search);
   for (const id of ['w', ...allParamIds()]) query.delete(id);

@@ -1,4 +1,4 @@
-// Defines <slam-widget>. A page only has to load this module.
+// Defines <slam-widget>: the only module that a page has to load.
 
 import { SlamWidget } from './element';
 import './properties';

@@ -1,20 +1,20 @@
-// Messages from the page around an embedded widget, and the answers. No message throws: an invalid one is
-// answered with an error message.
+// Messages from the page around an embedded widget, and the answers. An invalid message is answered with an error; none
+// throws.
 
 import { shorten, type Value } from './values';
 
-/** The version of the protocol, contained in every message. */
+/** Protocol version, part of every message. */
 export const VERSION = 1;
 
-/** Number of rejected values per message that are named; of the others only the number is reported. */
-const MOST_REFUSALS = 8;
-/** Largest length of a sender's id in an answer. */
-const LONGEST_ID = 200;
+/** Invalid values of a message with an error each; the others are only counted. */
+const MAX_ERRORS = 8;
+/** Maximum length of an id that is repeated in an answer. */
+const MAX_ID_LENGTH = 200;
 
 export type Message = Record<string, unknown>;
 
-/** The addressed widget. */
-export interface Addressed {
+/** What messages need of a widget. */
+export interface MessageTarget {
   /** Sets one parameter; throws if the value is invalid. */
   set(id: string, value: Value): void;
   /** Presses a button; fails if there is none. */
@@ -23,9 +23,9 @@ export interface Addressed {
   state(): Message;
 }
 
-/** Processes a message, if it is for us; `post` sends an answer, `refuse` reports an error. */
+/** Handles a message of our protocol; `post` sends an answer, `refuse` an error. */
 export function receive(
-  widget: Addressed,
+  widget: MessageTarget,
   data: unknown,
   post: (message: Message) => void,
   refuse: (error: Error) => void,
@@ -43,14 +43,14 @@ function isOurs(data: unknown): data is Message {
 }
 
 function answer(
-  widget: Addressed,
+  widget: MessageTarget,
   message: Message,
   post: (message: Message) => void,
   refuse: (error: Error) => void,
 ): void {
   if (message['slam'] !== VERSION) {
-    const spoken = shorten(String(message['slam']));
-    throw new RangeError(`this widget speaks version ${VERSION}, not ${spoken}`);
+    const version = shorten(String(message['slam']));
+    throw new RangeError(`this widget speaks version ${VERSION}, not ${version}`);
   }
   switch (message['type']) {
     case 'set': {
@@ -77,16 +77,16 @@ function answer(
   }
 }
 
-/** The sender's id of the question. */
+/** The id with which the sender recognizes the answer. */
 function idOf({ id }: Message): string | number | null {
   if (id === undefined || id === null) return null;
-  if (typeof id === 'number' || (typeof id === 'string' && id.length <= LONGEST_ID)) return id;
-  throw new RangeError(`get takes as \`id\` a number, or a text of at most ${LONGEST_ID} characters`);
+  if (typeof id === 'number' || (typeof id === 'string' && id.length <= MAX_ID_LENGTH)) return id;
+  throw new RangeError(`get takes as \`id\` a number, or a text of at most ${MAX_ID_LENGTH} characters`);
 }
 
-/** Sets all valid values, even if others are invalid. */
+/** Sets the valid values, and reports the invalid ones. */
 function setAll(
-  widget: Addressed,
+  widget: MessageTarget,
   values: Record<string, Value>,
   refuse: (error: Error) => void,
 ): void {
@@ -96,9 +96,9 @@ function setAll(
       widget.set(id, value);
     } catch (error) {
       refused += 1;
-      if (refused <= MOST_REFUSALS) refuse(error as Error);
+      if (refused <= MAX_ERRORS) refuse(error as Error);
     }
   }
-  const more = refused - MOST_REFUSALS;
-  if (more > 0) refuse(new RangeError(`${more} more values do not fit, either`));
+  const more = refused - MAX_ERRORS;
+  if (more > 0) refuse(new RangeError(`${more} more values are invalid`));
 }

@@ -1,33 +1,33 @@
 // The compiled module of the page. Every widget is an instance of it with separate memory.
 
-import { openFile } from './beside';
+import { fetchAsset } from './assets';
 
 /** Set by the build: the name of the wasm file contains a hash of its content. */
 declare const WASM_FILE: string;
 
 export class LoadError extends Error {}
 
-/** A complete module, but from another build than this script. */
+/** The module is complete, but from another build than this script. */
 export class StaleError extends LoadError {
   constructor() {
-    super('this page and the program of its widgets are of two versions');
+    super('this page and the program of its widgets have different versions');
   }
 }
 
-/** The section of a module that holds the mark of its build, as `web/wasm-file.mjs` writes it. */
-const MARK = 'build';
+/** The custom section with the build id, which `web/wasm-file.mjs` writes. */
+const BUILD_ID_SECTION = 'build';
 
-/** So long may a server say nothing, before or between two parts of the program. */
-const SILENCE_MS = 10_000;
+/** Timeout for the response and for each chunk after it. */
+const STALL_TIMEOUT_MS = 10_000;
 
 type Listener = (share: number) => void;
 
-/** A wasm file beside this script: fetched once, compiled once, for all instances. */
+/** A wasm file, fetched and compiled once for all instances. */
 export class ModuleFile {
   readonly #name: string;
   #compiled: Promise<WebAssembly.Module> | undefined;
   #share = 0;
-  /** Whether the last attempt failed: a cache may contain a damaged copy. */
+  /** Whether to bypass the HTTP cache, which may hold a damaged copy. */
   #isRetry = false;
   readonly #listeners = new Set<Listener>();
 
@@ -35,7 +35,7 @@ export class ModuleFile {
     this.#name = name;
   }
 
-  /** Compiles it, once for the page; `progress` gets the share that has arrived, 0 to 1. */
+  /** Compiles the file once for the page; `progress` gets the downloaded share, 0 to 1. */
   load(progress: Listener): Promise<WebAssembly.Module> {
     this.#listeners.add(progress);
     progress(this.#share);
@@ -46,7 +46,7 @@ export class ModuleFile {
     return this.#compiled.finally(() => this.#listeners.delete(progress));
   }
 
-  /** Makes the next attempt bypass every cache. */
+  /** Makes the next attempt bypass the HTTP cache. */
   forget(): void {
     this.#compiled = undefined;
     this.#share = 0;
@@ -59,45 +59,45 @@ export class ModuleFile {
     }
     const module = await this.#attempt();
     if (this.#isOurs(module)) return module;
-    // A cache may hold another build under this name.
+    // A cache may hold another build under the same name.
     this.#isRetry = true;
     const fresh = await this.#attempt();
     if (this.#isOurs(fresh)) return fresh;
     throw new StaleError();
   }
 
-  /** Whether it is of the build whose mark stands in its name; in a file that works alone names have none. */
+  /** Whether the module has the build id of its file name. Names in the standalone module have none. */
   #isOurs(module: WebAssembly.Module): boolean {
-    const mark = /-([0-9a-f]+)\.wasm$/.exec(this.#name)?.[1];
-    if (mark === undefined) return true;
-    const marks = WebAssembly.Module.customSections(module, MARK);
-    return marks.some((bytes) => new TextDecoder().decode(bytes) === mark);
+    const id = /-([0-9a-f]+)\.wasm$/.exec(this.#name)?.[1];
+    if (id === undefined) return true;
+    const sections = WebAssembly.Module.customSections(module, BUILD_ID_SECTION);
+    return sections.some((bytes) => new TextDecoder().decode(bytes) === id);
   }
 
   async #attempt(): Promise<WebAssembly.Module> {
-    const silence = new Silence();
+    const timeout = new StallTimeout();
     try {
-      return await this.#fetchAndCompile(silence);
+      return await this.#fetchAndCompile(timeout);
     } catch (error) {
-      throw silence.isOver ? new LoadError('the server of the program does not answer') : error;
+      throw timeout.hasExpired ? new LoadError('the server of the program does not answer') : error;
     } finally {
-      silence.end();
+      timeout.clear();
     }
   }
 
-  async #fetchAndCompile(silence: Silence): Promise<WebAssembly.Module> {
+  async #fetchAndCompile(timeout: StallTimeout): Promise<WebAssembly.Module> {
     let response: Response;
     try {
-      response = await openFile(this.#name, this.#isRetry, silence.signal);
+      response = await fetchAsset(this.#name, this.#isRetry, timeout.signal);
     } catch {
       throw new LoadError('the program could not be fetched');
     }
     if (!response.ok || response.body === null) {
       throw new LoadError(`the program could not be fetched (${response.status})`);
     }
-    const onShare = (share: number): void => this.#tell(share);
-    const counted = new Response(count(response.body, expectedLength(response), silence, onShare), {
-      // Regardless of the server's type: anything else than wasm is rejected by its first bytes.
+    const onShare = (share: number): void => this.#reportProgress(share);
+    const counted = new Response(withProgress(response.body, expectedLength(response), timeout, onShare), {
+      // Overrides the server's type: the magic number already rejects anything but wasm.
       headers: { 'Content-Type': 'application/wasm' },
     });
     try {
@@ -110,7 +110,7 @@ export class ModuleFile {
     }
   }
 
-  #tell(share: number): void {
+  #reportProgress(share: number): void {
     this.#share = share;
     for (const listener of this.#listeners) listener(share);
   }
@@ -123,63 +123,61 @@ export function loadModule(progress: Listener): Promise<WebAssembly.Module> {
   return widgets.load(progress);
 }
 
-/** Makes the next attempt bypass every cache. */
+/** Makes the next attempt bypass the HTTP cache. */
 export function forgetModule(): void {
   widgets.forget();
 }
 
 function expectedLength(response: Response): number {
-  // With a content encoding the header counts other bytes than those that arrive here.
+  // With a content encoding the header counts compressed bytes, and the stream decompressed ones.
   const encoded = response.headers.get('Content-Encoding') !== null;
   return encoded ? 0 : Number(response.headers.get('Content-Length') ?? 0);
 }
 
-/** Aborts a fetch after too long a silence. */
-class Silence {
-  readonly #giveUp = new AbortController();
+/** Aborts a fetch that stalls. */
+class StallTimeout {
+  readonly #controller = new AbortController();
   #timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor() {
-    this.heard();
+    this.restart();
   }
 
   get signal(): AbortSignal {
-    return this.#giveUp.signal;
+    return this.#controller.signal;
   }
 
-  get isOver(): boolean {
+  get hasExpired(): boolean {
     return this.signal.aborted;
   }
 
-  /** Data have arrived. */
-  heard(): void {
+  restart(): void {
     clearTimeout(this.#timer);
-    this.#timer = setTimeout(() => this.#giveUp.abort(), SILENCE_MS);
+    this.#timer = setTimeout(() => this.#controller.abort(), STALL_TIMEOUT_MS);
   }
 
-  /** The transfer is complete. */
-  end(): void {
+  clear(): void {
     clearTimeout(this.#timer);
   }
 }
 
-function count(
+function withProgress(
   body: ReadableStream<Uint8Array>,
   expected: number,
-  silence: Silence,
+  timeout: StallTimeout,
   onShare: Listener,
 ): ReadableStream<Uint8Array> {
   let arrived = 0;
   return body.pipeThrough(
     new TransformStream<Uint8Array, Uint8Array>({
       transform(chunk, controller) {
-        silence.heard();
+        timeout.restart();
         arrived += chunk.byteLength;
         onShare(expected > 0 ? Math.min(arrived / expected, 1) : arrived / (arrived + 1e6));
         controller.enqueue(chunk);
       },
-      // A complete module may take its time to compile.
-      flush: () => silence.end(),
+      // Compilation after the download has no time limit.
+      flush: () => timeout.clear(),
     }),
   );
 }

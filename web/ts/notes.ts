@@ -1,6 +1,6 @@
-// Messages of a widget about input from outside: lines of text under the picture.
+// Messages about invalid input, as lines of text under the picture.
 
-import { create, marked } from './dom';
+import { create, withCode } from './dom';
 
 export class Notes {
   readonly #box: HTMLElement;
@@ -10,19 +10,19 @@ export class Notes {
     this.#box = box;
   }
 
-  /** Shows a message; of one subject only the latest stays. As text, never as HTML. */
-  say(message: string, subject?: string): void {
+  /** Shows a message as text, never as HTML. It replaces an earlier one about the same subject. */
+  show(message: string, subject?: string): void {
     const line = create('p');
-    line.append(...marked(message));
+    line.append(...withCode(message));
     if (subject !== undefined) {
-      this.settle(subject);
+      this.remove(subject);
       this.#lines.set(subject, line);
     }
     this.#box.append(line);
   }
 
-  /** Removes the message about a subject, which is valid now. */
-  settle(subject: string): void {
+  /** Removes the message about a subject that is valid now. */
+  remove(subject: string): void {
     this.#lines.get(subject)?.remove();
     this.#lines.delete(subject);
   }

@@ -1,15 +1,14 @@
-// Numbers in the text that set a widget: <a class="slam-link" href="?w=16.1&heading=60">60°</a>.
-// Without script the link opens the page with that state; with script the widget on the page is set to it. If
-// the page keeps states in its address, each link is an entry of the browser's history.
+// Links in the text that set a widget: <a class="slam-link" href="?w=16.1&heading=60">60°</a>.
+// Without scripts the link opens the page with that state. If the widget is `linked`, each click adds a history entry.
 
-import { keepEntry, pushEntry, statesIn } from './address';
+import { updateEntry, pushEntry, statesIn } from './address';
 import { SlamWidget } from './element';
-import { keepInView } from './follow';
+import { keepInView } from './keep-in-view';
 import { readQuery, type LinkedState } from './links';
 import { defaultText } from './values';
-import { endWayBack, offerWayBack } from './way-back';
+import { hideBackButton, showBackButton } from './back-button';
 
-/** Listens to clicks on every slam-link of the document. */
+/** Handles clicks on all slam-links of the document. */
 export function installLinks(): void {
   document.addEventListener('click', (event) => {
     if (event.defaultPrevented || event.button !== 0) return;
@@ -18,8 +17,8 @@ export function installLinks(): void {
     const link = origin instanceof Element ? origin.closest('a.slam-link') : null;
     if (link instanceof HTMLAnchorElement && follow(link)) event.preventDefault();
   });
-  window.addEventListener('popstate', ({ state }) => returnTo(state));
-  showAddressed();
+  window.addEventListener('popstate', ({ state }) => restore(state));
+  scrollToAddressed();
 }
 
 /** Sets the widget that a link names; returns false if it is not on this page. */
@@ -28,36 +27,36 @@ function follow(link: HTMLAnchorElement): boolean {
   if (linked === undefined || !('widget' in linked)) return false;
   const widget = widgetNamed(linked.widget.id);
   if (widget === undefined) return false;
-  const isKept = widget.hasAttribute('linked');
-  if (isKept) keepEntry();
-  setWhole(widget, linked);
-  if (isKept) pushEntry(widget);
-  endWayBack();
-  if (bringIntoView(widget)) offerWayBack(link, widget);
+  const isLinked = widget.hasAttribute('linked');
+  if (isLinked) updateEntry();
+  setState(widget, linked);
+  if (isLinked) pushEntry(widget);
+  hideBackButton();
+  if (bringIntoView(widget)) showBackButton(link, widget);
   return true;
 }
 
 /** Restores the state of every linked widget from a history entry. */
-function returnTo(entry: unknown): void {
-  endWayBack();
+function restore(entry: unknown): void {
+  hideBackButton();
   for (const [name, query] of statesIn(entry)) {
     const widget = widgetNamed(name);
-    const kept = readQuery(query);
-    if (widget?.hasAttribute('linked') === true && kept !== undefined && 'widget' in kept) setWhole(widget, kept);
+    const stored = readQuery(query);
+    if (widget?.hasAttribute('linked') === true && stored !== undefined && 'widget' in stored) setState(widget, stored);
   }
 }
 
-/** A query contains a whole state: missing parameters get their defaults. Opened parts stay open. */
-function setWhole(widget: SlamWidget, { widget: spec, values }: LinkedState): void {
-  const asked = new Map(values);
+/** Sets all parameters: those that the query lacks get their defaults, except that "More" stays open. */
+function setState(widget: SlamWidget, { widget: spec, values }: LinkedState): void {
+  const texts = new Map(values);
   for (const param of spec.params) {
-    const text = asked.get(param.id) ?? (param.id === 'more' ? undefined : defaultText(param));
+    const text = texts.get(param.id) ?? (param.id === 'more' ? undefined : defaultText(param));
     if (text !== undefined) widget.set(param.id, text);
   }
 }
 
-/** A page that was opened by a link with a state scrolls to that widget. */
-function showAddressed(): void {
+/** Scrolls to the widget whose state is in the page's address. */
+function scrollToAddressed(): void {
   const linked = readQuery(location.search);
   if (linked === undefined || !('widget' in linked) || location.hash !== '') return;
   const widget = widgetNamed(linked.widget.id);
@@ -69,7 +68,7 @@ function widgetNamed(name: string): SlamWidget | undefined {
   return found instanceof SlamWidget ? found : undefined;
 }
 
-/** Scrolls if less than half of the widget, or of the screen, shows it; returns whether it did. */
+/** Scrolls if less than half of the widget is visible and it fills less than half of the screen; returns whether it did. */
 function bringIntoView(widget: SlamWidget): boolean {
   const { top, bottom } = widget.getBoundingClientRect();
   const visible = Math.min(bottom, innerHeight) - Math.max(top, 0);

@@ -1,35 +1,34 @@
 // The picture that replaces the canvas, and the pixels of frames.
 
-import { addressOf } from './beside';
+import { assetUrl } from './assets';
 import type { Theme } from './theme';
 
-interface Wish {
+interface PendingSnapshot {
   resolve(picture: ImageBitmap): void;
   reject(reason: Error): void;
 }
 
 export class Pictures {
   readonly #image: HTMLImageElement;
-  #wishes: Wish[] = [];
+  #pending: PendingSnapshot[] = [];
 
   constructor(image: HTMLImageElement) {
     this.#image = image;
   }
 
-  /** The picture of the initial state from the build; a picture of the reader's state is better. */
+  /** Shows the build's picture of the initial state, unless there is one of the reader's state. */
   showStart(widget: string, theme: Theme): void {
     if (this.#image.src.startsWith('data:')) return;
-    const drawn = addressOf(`pictures/${widget}-${theme}.svg`);
+    const drawn = assetUrl(`pictures/${widget}-${theme}.svg`);
     if (drawn !== undefined) this.#image.src = drawn;
   }
 
-  /** The picture of the present state, drawn by the widget itself. */
+  /** Shows a picture of the present state, drawn by the widget. */
   showDrawn(svg: string, alt: string): void {
     this.#image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
     this.#image.alt = alt;
   }
 
-  /** Switches to another widget. */
   clear(alt: string): void {
     this.#image.removeAttribute('src');
     this.#image.alt = alt;
@@ -37,18 +36,18 @@ export class Pictures {
 
   /** The pixels of the next frame. */
   nextFrame(): Promise<ImageBitmap> {
-    return new Promise((resolve, reject) => this.#wishes.push({ resolve, reject }));
+    return new Promise((resolve, reject) => this.#pending.push({ resolve, reject }));
   }
 
-  /** A canvas holds its pixels until the end of the task that drew them. */
-  handOut(canvas: HTMLCanvasElement): void {
-    for (const { resolve, reject } of this.#wishes.splice(0)) {
+  /** Resolves pending snapshots. Has to run in the task that drew the frame: later the canvas is empty. */
+  resolveSnapshots(canvas: HTMLCanvasElement): void {
+    for (const { resolve, reject } of this.#pending.splice(0)) {
       createImageBitmap(canvas).then(resolve, reject);
     }
   }
 
-  /** Rejects, because no frame will come. */
-  refuse(reason: Error): void {
-    for (const { reject } of this.#wishes.splice(0)) reject(reason);
+  /** Rejects pending snapshots, because no frame will come. */
+  rejectSnapshots(reason: Error): void {
+    for (const { reject } of this.#pending.splice(0)) reject(reason);
   }
 }

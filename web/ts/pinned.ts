@@ -1,16 +1,15 @@
-// On a narrow screen the picture and the slider that changes it do not fit together: while a control below it
-// is moved, a copy of the picture is shown at the top of the screen.
+// A narrow screen has no room for both the picture and a slider far below it. While the reader moves such a control, a
+// copy of the picture is pinned to the top of the screen.
 
 import type { Box } from './box';
 import { create } from './dom';
 
-/** Width from which the page has space for both. */
 const NARROW = '(width < 1100px)';
-/** Visible share of a picture above which no copy is needed. */
+/** Above this visible share of the picture no copy is needed. */
 const SEEN_SHARE = 0.6;
-/** Largest height of the copy as a share of the screen, which leaves the rest to the controls. */
-const MOST_HEIGHT = 0.45;
-/** The title stands above what is drawn, the axis below it. */
+/** Maximum height of the copy as a share of the screen; the rest is for the controls. */
+const MAX_HEIGHT_SHARE = 0.45;
+/** Space for the title above the scene and for the axis below it. */
 const ABOVE_PX = 54;
 const BELOW_PX = 34;
 
@@ -21,7 +20,7 @@ export interface PinnedHost {
   wake(): void;
 }
 
-export class Pinned {
+export class PinnedPicture {
   readonly #stage: HTMLElement;
   readonly #bar: HTMLElement;
   readonly #host: PinnedHost;
@@ -34,12 +33,12 @@ export class Pinned {
     this.#stage = stage;
     this.#bar = bar;
     this.#host = host;
-    stage.addEventListener('pointerdown', (event) => this.#begin(event), { capture: true, passive: true });
+    stage.addEventListener('pointerdown', (event) => this.#press(event), { capture: true, passive: true });
     bar.addEventListener('focusin', () => this.#set(this.#holdsControl()));
     bar.addEventListener('focusout', () => this.#set(false));
   }
 
-  /** Adds listeners beyond the element; returns a function that removes them. */
+  /** Adds listeners to the window; returns a function that removes them. */
   watch(): () => void {
     const end = (): void => this.#set(this.#holdsControl());
     const moves = ['pointerup', 'pointercancel', 'blur'];
@@ -53,7 +52,7 @@ export class Pinned {
     };
   }
 
-  /** A frame was drawn; the canvas holds it until the end of this task. */
+  /** Copies a frame that was just drawn. */
   drew(canvas: HTMLCanvasElement): void {
     const box = this.#isMoved && matchMedia(NARROW).matches ? this.#host.sceneBox() : undefined;
     if (box === undefined || this.#isSeen(canvas, box)) {
@@ -63,8 +62,8 @@ export class Pinned {
     this.#show(canvas, box);
   }
 
-  /** The pointer was pressed below the picture: on a control. */
-  #begin({ clientY, target }: PointerEvent): void {
+  /** A press below the scene is on a control. */
+  #press({ clientY, target }: PointerEvent): void {
     const box = this.#host.sceneBox();
     if (box === undefined || !(target instanceof HTMLCanvasElement)) return;
     this.#set(clientY - target.getBoundingClientRect().top > box[1] + box[3]);
@@ -96,7 +95,7 @@ export class Pinned {
     const { left, width } = this.#stage.getBoundingClientRect();
     const from = Math.max(top - ABOVE_PX, 0);
     const tall = Math.min(top + height + BELOW_PX, canvas.clientHeight) - from;
-    const scale = Math.min(1, (MOST_HEIGHT * window.innerHeight) / tall);
+    const scale = Math.min(1, (MAX_HEIGHT_SHARE * window.innerHeight) / tall);
     const ratio = canvas.width / canvas.clientWidth;
     this.#copy ??= create('canvas', { class: 'pinned', 'aria-hidden': 'true' });
     const copy = this.#copy;

@@ -1,4 +1,4 @@
-// <slam-predict>: the reader commits to an answer, and only then sees what happens.
+// <slam-predict>: the reader commits to an answer before seeing the result.
 //
 //   <slam-predict exercise="16.4" widget="w16.1" state="heading=60&dx=0&dy=0">
 //     <p>Where does registration end from 60° off?</p>
@@ -7,29 +7,28 @@
 //     <p data-why>The walls of an almost square room fit after a quarter turn, too.</p>
 //   </slam-predict>
 //
-// A choice is compared with the verdict of the widget. With `fact="rmse_m" tolerance="0.02"` the reader types
-// a number, which is compared with that fact of the outcome. With a fact and choices, each choice is right
-// for a range of values: `<li data-choice="smaller" data-to="0.02">`, from the first value to below the
-// second.
+// A choice is compared with the widget's verdict. With `fact="rmse_m" tolerance="0.02"` the reader types a number, which
+// is compared with that fact of the outcome. With a fact and choices, each choice covers a half-open range of values:
+// `<li data-choice="smaller" data-to="0.02">`, or `data-from` inclusive and `data-to` exclusive.
 //
-// With a student (attribute `student`, or `?student=` of the page), an exercise whose widget has a seed becomes a
-// task of that student's own.
+// For a student (attribute `student`, or `?student=` of the page), an exercise whose widget has a seed becomes a personal
+// task.
 
-// @ts-expect-error: stays a file of its own beside this one.
+// @ts-expect-error: a separate bundle.
 import './slam-widget.js';
 import { attemptsAt, student } from './answers';
-import { keepKeys, marked } from './dom';
-import { MOST_TRIES, seedOf } from './personal';
+import { stopKeyPropagation, withCode } from './dom';
+import { MAX_ATTEMPTS, seedOf } from './personal-seeds';
 import './slam-answers';
-import { offerWayBack } from './way-back';
+import { showBackButton } from './back-button';
 import type { SlamWidget } from './element';
 import type { Outcome } from './instance';
 import type { Prediction } from '../slam-predict';
 
 type Verdict = Pick<Prediction, 'prediction' | 'result' | 'right' | 'correct' | 'gap'>;
 
-/** What a widget shows in the state of the question. */
-interface Shown {
+/** A state of the widget with its outcome. */
+interface Result {
   state: string;
   outcome: Outcome;
 }
@@ -49,13 +48,13 @@ legend { padding: 0; font-weight: 600; }
 .answer:not(:empty) { border-top: 1px solid currentColor; margin-top: 0.75rem; }
 `;
 
-/** Smallest number of decimals of a result. */
+/** Minimum number of decimals of a result. */
 const DECIMALS = 3;
 
 export class SlamPredict extends HTMLElement {
   #form: HTMLFormElement | undefined;
   #answer: HTMLElement | undefined;
-  /** Of a question without an id, which nobody collects. */
+  /** Attempts at a question without an id, which answers.ts does not count. */
   #attempts = 0;
 
   connectedCallback(): void {
@@ -68,8 +67,8 @@ export class SlamPredict extends HTMLElement {
     this.#answer.className = 'answer';
     this.#answer.setAttribute('role', 'status');
     this.#answer.tabIndex = -1;
-    keepKeys(this.#form);
-    // The explanation belongs below the answer, wherever the page wrote it.
+    stopKeyPropagation(this.#form);
+    // The slot puts the explanation below the answer, wherever it is in the markup.
     const why = document.createElement('slot');
     why.name = 'why';
     shadow.append(style, document.createElement('slot'), this.#form, this.#answer, why);
@@ -96,7 +95,7 @@ export class SlamPredict extends HTMLElement {
     const commit = document.createElement('button');
     commit.textContent = 'Commit and see';
     form.append(fields, commit);
-    // Enter presses it, too. A sandbox without `allow-forms` lets nothing be submitted.
+    // A click handler, because a sandbox without `allow-forms` blocks submit events. Enter clicks the button, too.
     commit.addEventListener('click', (event) => {
       event.preventDefault();
       if (!form.reportValidity()) return;
@@ -110,55 +109,55 @@ export class SlamPredict extends HTMLElement {
     const name = this.getAttribute('widget') ?? '';
     const widget = document.querySelector<SlamWidget>(`slam-widget[name="${CSS.escape(name)}"]`);
     if (widget === null) {
-      this.#say([`There is no widget ${name} on this page.`]);
+      this.#showSentences([`There is no widget ${name} on this page.`]);
       return;
     }
     this.#lock(true);
     try {
       const exercise = this.getAttribute('exercise');
       const person = this.getAttribute('student') ?? student();
-      const shown = await this.#outcome(widget, exercise ?? '', person);
-      const verdict = this.#judge(prediction, shown.outcome);
-      this.#show(verdict, shown, widget);
+      const result = await this.#result(widget, exercise ?? '', person);
+      const verdict = this.#judge(prediction, result.outcome);
+      this.#show(verdict, result, widget);
       this.#attempts = (exercise === null ? this.#attempts : attemptsAt(exercise, person)) + 1;
       const detail: Prediction = {
         exercise,
         student: person,
         attempts: this.#attempts,
         widget: widget.name,
-        state: shown.state,
+        state: result.state,
         time: new Date().toISOString(),
         ...verdict,
       };
       this.dispatchEvent(new CustomEvent('slam-predict', { detail, bubbles: true, composed: true }));
     } catch (error) {
       const reason = error instanceof Error ? error.message : String(error);
-      this.#say([`Your answer could not be checked: ${reason}.`]);
+      this.#showSentences([`Your answer could not be checked: ${reason}.`]);
       this.#answer?.append(button('Predict again', () => this.#reset()));
     }
-    // After committing to an answer the reader gets the explanation, even if no widget runs.
+    // A committed answer earns the explanation, even if the widget cannot run.
     this.#showWhy(true);
-    // The button that had the focus is disabled now.
+    // The focused button is disabled now, and would lose the focus.
     this.#answer?.focus({ preventScroll: true });
   }
 
-  /** The state of the question; a student's own has the first of their seeds at which one of the choices is right. */
-  async #outcome(widget: SlamWidget, exercise: string, person: string): Promise<Shown> {
+  /** Runs the question. A personal task has the student's first seed for which one of the choices is right. */
+  async #result(widget: SlamWidget, exercise: string, person: string): Promise<Result> {
     const state = this.getAttribute('state') ?? '';
     await setState(widget, state);
     const isFixed = widget.get('seed') === undefined || new URLSearchParams(state).has('seed');
     if (exercise === '' || person === '' || isFixed) return { state, outcome: outcomeOf(widget) };
-    for (let attempt = 0; attempt < MOST_TRIES; attempt += 1) {
+    for (let attempt = 0; attempt < MAX_ATTEMPTS; attempt += 1) {
       const seed = seedOf(person, exercise, attempt);
       widget.set('seed', seed);
-      const own = outcomeOf(widget);
-      if (this.#right(own) !== null) return { state: `${state}&seed=${seed}`, outcome: own };
+      const outcome = outcomeOf(widget);
+      if (this.#right(outcome) !== null) return { state: `${state}&seed=${seed}`, outcome };
     }
     await setState(widget, state);
     return { state, outcome: outcomeOf(widget) };
   }
 
-  /** The choice, or the number, that is right for this outcome; null if there is none. */
+  /** The right choice or number for an outcome; null if there is none. */
   #right(outcome: Outcome): string | null {
     const choices = [...this.querySelectorAll<HTMLElement>('[data-choice]')];
     const fact = this.getAttribute('fact');
@@ -177,7 +176,7 @@ export class SlamPredict extends HTMLElement {
       return { prediction, result: outcome.verdict, right, correct: prediction === outcome.verdict, gap: null };
     }
     const result = outcome.facts[fact] ?? undefined;
-    if (result === undefined) throw new RangeError(`the widget tells no number \`${fact}\` here`);
+    if (result === undefined) throw new RangeError(`the widget reports no number \`${fact}\` here`);
     const choice = this.#item(prediction);
     if (choice !== null) {
       return { prediction, result: String(result), right, correct: covers(choice, result), gap: null };
@@ -187,32 +186,32 @@ export class SlamPredict extends HTMLElement {
     return { prediction, result: String(result), right, correct: Math.abs(gap) <= tolerance, gap };
   }
 
-  #show(verdict: Verdict, { state, outcome }: Shown, widget: SlamWidget): void {
+  #show(verdict: Verdict, { state, outcome }: Result, widget: SlamWidget): void {
     const { correct, gap, prediction, result } = verdict;
     const unit = this.getAttribute('unit') ?? '';
-    const judged = correct ? 'As you predicted.' : 'It comes out otherwise, and a wrong guess is no mistake.';
-    // The widget's own sentence may be about another quantity than the number in question.
+    const judged = correct ? 'As you predicted.' : 'It turns out differently, and a wrong guess is no mistake.';
+    // The widget's sentence may be about another quantity than the fact.
     const digits = Math.max(gap === null ? 0 : decimalsOf(prediction), DECIMALS);
     const number = `It is ${Number(result).toFixed(digits)}${unit}.`;
     const answer = this.hasAttribute('fact') ? number : outcome.sentence;
     const answered = gap === null
-      ? `${judged} You said: ${this.#wordsOf(prediction)}. ${answer}`
+      ? `${judged} You said: ${this.#textOf(prediction)}. ${answer}`
       : `${judged} ${number} You said ${prediction}${unit} and are off by ${Math.abs(gap).toPrecision(2)}${unit}.`;
     const isPersonal = state !== (this.getAttribute('state') ?? '');
     const seed = new URLSearchParams(state).get('seed');
-    const own = `This is your own task, seed ${seed}. The numbers in the text are those of the chapter’s.`;
-    this.#say(isPersonal ? [answered, own] : [answered]);
-    // The widget may be far away: the reader decides when to leave the answer.
+    const note = `This is your personal task, seed ${seed}. The numbers in the text belong to the chapter’s task.`;
+    this.#showSentences(isPersonal ? [answered, note] : [answered]);
+    // The widget may be far away, so the page does not scroll by itself.
     const show = button('Show it in the widget', () => {
       widget.scrollIntoView({ block: 'start' });
-      offerWayBack(show, widget, 'the question');
+      showBackButton(show, widget, 'the question');
     });
     const again = button('Predict again', () => this.#reset());
     this.#answer?.append(show, ' ', again);
   }
 
-  /** The page's words for a choice. */
-  #wordsOf(choice: string): string {
+  /** The text of a choice on the page. */
+  #textOf(choice: string): string {
     return this.#item(choice)?.textContent?.trim() ?? choice;
   }
 
@@ -228,7 +227,7 @@ export class SlamPredict extends HTMLElement {
     this.#form?.querySelector('input')?.focus();
   }
 
-  /** An answer given cannot be changed while its result is shown. */
+  /** Disables the form while a result is shown. */
   #lock(isLocked: boolean): void {
     const fields = this.#form?.querySelectorAll<HTMLInputElement | HTMLButtonElement>('input, button');
     for (const field of fields ?? []) field.disabled = isLocked;
@@ -238,30 +237,30 @@ export class SlamPredict extends HTMLElement {
     for (const why of this.querySelectorAll<HTMLElement>('[data-why]')) why.hidden = !isShown;
   }
 
-  #say(sentences: string[]): void {
+  #showSentences(sentences: string[]): void {
     this.#answer?.replaceChildren(
       ...sentences.map((sentence) => {
         const line = document.createElement('p');
-        line.append(...marked(sentence));
+        line.append(...withCode(sentence));
         return line;
       }),
     );
   }
 }
 
-/** Sets a state, with defaults for the rest. */
+/** Sets a state; the other parameters get their defaults. */
 async function setState(widget: SlamWidget, state: string): Promise<void> {
   await widget.press('defaults');
   for (const [id, text] of new URLSearchParams(state)) widget.set(id, text);
 }
 
-/** The outcome of the present state; fails if the widget cannot run. */
+/** The outcome of the present state; throws if the widget cannot run. */
 function outcomeOf({ outcome }: SlamWidget): Outcome {
   if (outcome === undefined) throw new Error('the widget cannot run here');
   return outcome;
 }
 
-/** Whether a choice is right for this value: from its first end to below its second. */
+/** Whether a choice is right for a value: `data-from` is inclusive, `data-to` exclusive. */
 function covers({ dataset: { from, to } }: HTMLElement, value: number): boolean {
   return value >= Number(from ?? -Infinity) && value < Number(to ?? Infinity);
 }

@@ -1,4 +1,4 @@
-// A property and an attribute for every parameter, from the widgets' own lists.
+// A property and an attribute for every parameter of every widget.
 
 import { SlamWidget } from './element';
 import { allParamIds } from './schema';

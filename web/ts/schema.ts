@@ -1,7 +1,7 @@
-// The descriptions of the widgets, written by the core's own code at build time.
+// The parameter lists of the widgets, which the build exports from the core.
 
 import schemas from '../pkg/schema.json';
-import type { Heights } from './place';
+import type { Heights } from './reserved-height';
 
 export interface OptionSpec {
   id: string;
@@ -45,10 +45,10 @@ export interface WidgetSpec {
   presets: ButtonSpec[];
   /** Keys that press a button while one of these buttons has the focus. */
   keys: KeySpec[];
-  /** The controls that it opens with. */
+  /** The controls that are visible before "More". */
   opening: string[];
   summary: string;
-  /** Whether a reader may hand it a log. A widget with a text takes that text's file. */
+  /** Whether the widget accepts logs. A widget with a text parameter accepts a file for it in any case. */
   takesFiles: boolean;
   heights: Heights;
 }
@@ -64,7 +64,7 @@ export function findParam(widget: WidgetSpec, id: string): ParamSpec | undefined
   return widget.params.find((param) => param.id === id);
 }
 
-/** Every parameter name of every widget, each once. */
+/** The parameter names of all widgets, without duplicates. */
 export function allParamIds(): string[] {
   return [...new Set(widgets.flatMap((widget) => widget.params.map((param) => param.id)))];
 }

@@ -1,7 +1,7 @@
 // <slam-answers>: the reader's name for personal tasks, and the file of answers.
 
 import { answered, answerFile, changes, keepAnswers, keepsAnswers, setStudent, student } from './answers';
-import { create, keepKeys } from './dom';
+import { create, stopKeyPropagation } from './dom';
 import { saveBlob } from './export';
 
 const STYLE = `
@@ -37,14 +37,14 @@ export class SlamAnswers extends HTMLElement {
     this.#name = create('input', { type: 'text', autocomplete: 'off', maxlength: '100' });
     this.#name.value = student();
     this.#name.addEventListener('change', () => setStudent(this.#name?.value ?? ''));
-    const named = create('label');
-    named.append('Name or token, for tasks of your own:', this.#name);
+    const nameLabel = create('label');
+    nameLabel.append('Name or token, for personal tasks:', this.#name);
     const save = create('button', { type: 'button' });
     save.textContent = 'Save my answers';
     save.addEventListener('click', () => void this.#save());
     this.#status = create('p', { role: 'status' });
-    fields.append(legend, named, this.#keepBox(), save, this.#status);
-    keepKeys(fields);
+    fields.append(legend, nameLabel, this.#keepBox(), save, this.#status);
+    stopKeyPropagation(fields);
     shadow.append(style, fields);
     this.#show();
   }
@@ -61,7 +61,7 @@ export class SlamAnswers extends HTMLElement {
         keepAnswers(box.checked);
       } catch {
         box.checked = false;
-        this.#say('This browser lets the page store nothing. Save the file instead.');
+        this.#showStatus('This browser does not let the page store anything. Save the file instead.');
       }
     });
     const label = create('label');
@@ -74,17 +74,17 @@ export class SlamAnswers extends HTMLElement {
       const { name, text } = await answerFile();
       saveBlob(new Blob([text], { type: 'application/json' }), name);
     } catch (error) {
-      this.#say(`The answers could not be saved: ${error instanceof Error ? error.message : String(error)}.`);
+      this.#showStatus(`The answers could not be saved: ${error instanceof Error ? error.message : String(error)}.`);
     }
   }
 
   #showCount(): void {
     if (this.#name !== undefined) this.#name.value = student();
     const count = answered();
-    this.#say(`${count} ${count === 1 ? 'exercise' : 'exercises'} answered. Nothing leaves this browser unless you save the file.`);
+    this.#showStatus(`${count} ${count === 1 ? 'exercise' : 'exercises'} answered. Nothing leaves this browser unless you save the file.`);
   }
 
-  #say(sentence: string): void {
+  #showStatus(sentence: string): void {
     this.#status?.replaceChildren(sentence);
   }
 }

@@ -1,4 +1,4 @@
-// The canvas and its input: events that eframe would take from the page are given back.
+// The canvas and its input. eframe would consume keys and touches that belong to the page.
 
 import type { Instance } from './instance';
 import { LoadError } from './module';
@@ -19,7 +19,7 @@ export class Stage {
     this.#element = element;
     this.#instance = instance;
     this.canvas = document.createElement('canvas');
-    // A canvas has one context: eframe gets this one.
+    // eframe gets the same context, because a canvas has only one.
     const context = this.canvas.getContext('webgl2');
     if (context === null) throw new LoadError('this browser draws no WebGL 2');
     this.#context = context;
@@ -47,7 +47,7 @@ export class Stage {
     } finally {
       element.inert = false;
     }
-    // The Tab key stops at the native controls, never in here.
+    // Tab stops only at the native controls.
     this.canvas.tabIndex = -1;
     for (const agent of element.querySelectorAll('input')) {
       agent.tabIndex = -1;
@@ -60,7 +60,7 @@ export class Stage {
     this.#listening.abort();
     this.#context.getExtension('WEBGL_lose_context')?.loseContext();
     this.canvas.remove();
-    // A start that panicked never ends, and does not clean up.
+    // A start that panicked never resolves, so its cleanup does not run.
     this.#element.inert = false;
     for (const agent of this.#element.querySelectorAll('input')) agent.remove();
   }
@@ -115,7 +115,7 @@ export class Stage {
       this.#instance.use((widget) => widget.wantsKeyboard());
     if (event.key !== 'Tab' && typing) return;
     event.stopImmediatePropagation();
-    // The page's own shortcuts still get it: the next slide, the search field.
+    // Shortcuts of the page still work: next slide, search.
     const { host } = this.#element.getRootNode() as ShadowRoot;
     if (!host.dispatchEvent(new KeyboardEvent(event.type, event))) event.preventDefault();
   }

@@ -1,4 +1,4 @@
-// The values of one widget: checked on input, and always complete.
+// The values of one widget: validated, and always complete.
 
 import { writeQuery } from './links';
 import { findParam, type WidgetSpec } from './schema';
@@ -13,7 +13,7 @@ export class State {
     this.#texts = new Map(spec.params.map((param) => [param.id, defaultText(param)]));
   }
 
-  /** Every value in the form of a link. */
+  /** Every value as in a link. */
   get texts(): ReadonlyMap<string, string> {
     return this.#texts;
   }
@@ -22,7 +22,7 @@ export class State {
     return this.#texts.get(id) ?? '';
   }
 
-  /** For JavaScript; undefined if the widget has no such parameter. */
+  /** The value for JavaScript; undefined if the widget has no such parameter. */
   value(id: string): Value | undefined {
     const spec = findParam(this.spec, id);
     return spec && toValue(spec, this.text(id));
@@ -44,10 +44,10 @@ export class State {
     return writeQuery(this.spec, this.#texts);
   }
 
-  /** Checks a value from outside; stores nothing. */
-  parse(id: string, given: unknown): Parsed {
+  /** Validates a value from outside, without storing it. */
+  parse(id: string, input: unknown): Parsed {
     const spec = findParam(this.spec, id);
-    if (spec !== undefined) return parseValue(spec, given);
+    if (spec !== undefined) return parseValue(spec, input);
     const known = this.spec.params.map((param) => param.id).join(', ');
     const problem = `${this.spec.id} has no parameter \`${shorten(id)}\`; it has ${known}`;
     return { ok: false, problem };
@@ -60,7 +60,7 @@ export class State {
     return `${this.spec.id} has no button \`${shorten(id)}\`; it has ${known.join(', ')}`;
   }
 
-  /** Stores a checked text. */
+  /** Stores a valid text. */
   keep(id: string, text: string): void {
     this.#texts.set(id, text);
   }

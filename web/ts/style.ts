@@ -1,4 +1,4 @@
-// The element's own style. It lays out everything inside; the page sets width and margins.
+// The style of the shadow tree. The page sets width and margins of the element.
 
 import { accent, bad, fair, faint, good, ink, paper, soft } from '../../widgets/palette.json';
 
@@ -12,10 +12,10 @@ export const STYLE = `
 .frame.dark { --paper: ${paper[1]}; --ink: ${ink[1]}; --soft: ${soft[1]}; --line: ${faint[1]}; --accent: ${accent[1]};
   --good: ${good[1]}; --fair: ${fair[1]}; --bad: ${bad[1]};
   color-scheme: dark; }
-.stage { position: relative; overflow: hidden; border-radius: 6px 6px 0 0; min-height: 12rem; height: var(--place); }
+.stage { position: relative; overflow: hidden; border-radius: 6px 6px 0 0; min-height: 12rem; height: var(--reserved-height); }
 .stage.live { min-height: 0; height: auto; }
 .picture { display: block; width: 100%; height: auto; }
-.stage[style*='--place'] .picture { height: 100%; object-fit: contain; object-position: top; }
+.stage[style*='--reserved-height'] .picture { height: 100%; object-fit: contain; object-position: top; }
 canvas { display: block; width: 100%; touch-action: pan-y pinch-zoom; outline: none; }
 .frame.takes-files canvas { touch-action: pan-y; }
 .frame.dropping { border-color: var(--accent); box-shadow: 0 0 0 3px var(--accent); }
@@ -42,7 +42,7 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .doctor input[type='number'] { width: 5.5rem; }
 .bar { position: relative; background: var(--paper);
   border-top: 1px solid var(--line); border-radius: 0 0 6px 6px; min-height: 2.75rem; }
-/* While a control has the focus its line stays on the screen, whatever part of the picture is. */
+/* The line of the focused control stays in view at any scroll position. */
 .bar:has(.control:focus-within) { position: sticky; bottom: 0; z-index: 1; }
 .tools { display: flex; flex-wrap: wrap; gap: 0.5rem; padding: 0.4rem 0.75rem; align-items: center; }
 button, select, input[type='number'] { font: inherit; color: inherit; background: var(--paper);
@@ -55,7 +55,7 @@ input[type='range'] { flex: 1 1 8rem; min-width: 3rem; min-height: 1.75rem; acce
 input[type='checkbox'] { width: 1.5rem; height: 1.5rem; accent-color: var(--accent); }
 .control:not(:focus-within), .hidden { position: absolute; width: 1px; height: 1px; margin: -1px;
   overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
-/* It covers the tools: the widget does not grow under the reader's finger. */
+/* Covers the tools to avoid a layout shift under the reader's finger. */
 .control:focus-within { position: absolute; inset: 0; z-index: 1; display: flex; flex-direction: column;
   justify-content: center; line-height: 1.15; padding: 0 0.75rem; background: var(--paper); border-radius: 0 0 6px 6px; }
 [hidden] { display: none !important; }
@@ -71,7 +71,7 @@ input[type='checkbox'] { width: 1.5rem; height: 1.5rem; accent-color: var(--acce
   .stage, .stage .picture { height: auto !important; min-height: 0; }
   .stage .picture { max-height: 15cm; object-fit: contain; object-position: top left; }
   .stage canvas { display: none; }
-  /* Without a log the picture is an empty grid. */
+  /* Without a log the picture is an empty grid: print the text instead. */
   .without-file .stage { display: none; }
   .without-file .summary { display: block !important; margin: 0; padding: 0.5rem 0.75rem; }
   .stage .picture, .stage.live .picture { display: block; }

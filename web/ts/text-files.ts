@@ -1,38 +1,38 @@
-// Texts that a widget reads from a file of the reader, and writes to one: a world as JSON.
+// Text files that a widget opens and saves: a world as JSON.
 
 import type { Widget } from '../pkg/glue.js';
 import { saveBlob } from './export';
 import { chooseFiles } from './robot/files';
 
-/** Largest size of a world, bytes: two thousand walls take a tenth of it. */
-const MOST_BYTES = 1 << 20;
+/** Maximum size of a world: two thousand walls take a tenth of it. */
+const MAX_BYTES = 1 << 20;
 
 export interface TextFileHost {
   readonly frame: HTMLElement;
   /** Executes an action on the widget, once it runs. */
-  act(deed: (widget: Widget) => void): void;
-  /** Reports an error of a file. */
+  act(action: (widget: Widget) => void): void;
+  /** Reports a problem with a file. */
   refuse(problem: string): void;
 }
 
 /** Executes an order of the widget about text files; returns false for other orders. */
-export function carryTextOrder(order: string, host: TextFileHost): boolean {
+export function executeTextOrder(order: string, host: TextFileHost): boolean {
   const [head = '', ...lines] = order.split('\n');
-  const [name, given = ''] = head.split(' ');
+  const [name, argument = ''] = head.split(' ');
   if (name === 'open-text') {
-    const wanted = { accept: given, label: 'A world as JSON', several: false };
+    const wanted = { accept: argument, label: 'A world as JSON', several: false };
     chooseFiles(host.frame, wanted, ([file]) => void (file && takeTextFile(file, host)));
   } else if (name === 'save-text') {
-    saveBlob(new Blob([lines.join('\n')], { type: 'application/json' }), given);
+    saveBlob(new Blob([lines.join('\n')], { type: 'application/json' }), argument);
   } else {
     return false;
   }
   return true;
 }
 
-/** Passes a file of the reader to the widget. */
+/** Passes a reader's file to the widget. */
 export async function takeTextFile(file: File, host: TextFileHost): Promise<void> {
-  if (file.size > MOST_BYTES) {
+  if (file.size > MAX_BYTES) {
     host.refuse(`\`${file.name.slice(0, 60)}\` is larger than a world of 1 MB.`);
     return;
   }

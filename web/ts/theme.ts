@@ -1,18 +1,18 @@
-// The surrounding page's theme, light or dark, and its changes.
+// The theme of the surrounding page, light or dark.
 
 export type Theme = 'light' | 'dark';
 
-/** Class names of a dark theme in common page generators: Tailwind, Quarto, mdBook, Sphinx. */
+/** Classes of dark themes in common site generators: Tailwind, Quarto, mdBook, Sphinx. */
 const DARK_CLASSES = ['dark', 'dark-mode', 'quarto-dark', 'theme-dark', 'coal', 'navy', 'ayu'];
 const LIGHT_CLASSES = ['light', 'light-mode', 'quarto-light', 'theme-light', 'rust'];
 const ATTRIBUTES = ['data-theme', 'data-bs-theme', 'data-color-mode', 'data-md-color-scheme'];
-/** JupyterLab's attribute on its body, which tells whether its theme is light. */
+/** JupyterLab's attribute on the body: `true` for light themes. */
 const JUPYTER_IS_LIGHT = 'data-jp-theme-light';
 
 const systemDark = globalThis.matchMedia?.('(prefers-color-scheme: dark)');
 const listeners = new Set<() => void>();
 
-/** The theme at an element: its own, else that of the nearest ancestor, else the system's. */
+/** The theme of an element: its own, else that of the nearest ancestor, else the system's. */
 export function themeOf(element: Element): Theme {
   for (let at: Element | null = element; at !== null; at = parentOf(at)) {
     const theme = at === element ? named(at.getAttribute('theme')) : declaredBy(at);
@@ -21,28 +21,28 @@ export function themeOf(element: Element): Theme {
   return systemDark?.matches === true ? 'dark' : 'light';
 }
 
-/** Calls back whenever the theme at an element may have changed; returns a function that ends it. */
+/** Calls back whenever the theme of an element may have changed; returns a function that removes the listeners. */
 export function watchTheme(element: Element, callback: () => void): () => void {
   const attributeFilter = ['class', ...ATTRIBUTES, JUPYTER_IS_LIGHT];
   for (let at = parentOf(element); at !== null; at = parentOf(at)) {
     observer.observe(at, { attributes: true, attributeFilter });
   }
-  if (listeners.size === 0) systemDark?.addEventListener('change', tell);
+  if (listeners.size === 0) systemDark?.addEventListener('change', notify);
   listeners.add(callback);
   return () => {
     listeners.delete(callback);
     if (listeners.size > 0) return;
     observer.disconnect();
-    systemDark?.removeEventListener('change', tell);
+    systemDark?.removeEventListener('change', notify);
   };
 }
 
-function tell(): void {
+function notify(): void {
   for (const listener of listeners) listener();
 }
 
 const observer: MutationObserver =
-  typeof MutationObserver === 'function' ? new MutationObserver(tell) : (undefined as never);
+  typeof MutationObserver === 'function' ? new MutationObserver(notify) : (undefined as never);
 
 function parentOf(element: Element): Element | null {
   if (element.parentElement !== null) return element.parentElement;

@@ -1,25 +1,25 @@
-// Decides who gets a touch that starts on something draggable: a vertical swipe scrolls the page; a
-// horizontal swipe, a tap, and a finger that rests for a moment belong to the widget. Two fingers zoom a
-// full-size map, wherever they start, and drag nothing.
+// Decides between page and widget for a touch on something draggable: a vertical swipe scrolls the page; a horizontal
+// swipe, a tap and a long press belong to the widget. On a full-size map two fingers zoom and drag nothing, wherever they
+// start.
 
-/** Largest movement of a finger that rests. */
+/** Maximum movement of a tap or a long press. */
 const SLACK_PX = 6;
-/** Time for which a finger rests before a vertical drag. */
-const HOLD_MS = 220;
+/** Duration of a long press, after which a vertical move drags. */
+const LONG_PRESS_MS = 220;
 
-/** Far outside, where a press has no effect. */
-const NOWHERE_PX = -1e4;
-/** A pointer id that no browser uses. */
-const NO_FINGER = 1e6;
+/** A position far outside, where a press has no effect. */
+const OFFSCREEN_PX = -1e4;
+/** A touch id that no browser uses. */
+const UNUSED_ID = 1e6;
 
-interface Held {
+/** A touch whose owner is undecided. */
+interface PendingTouch {
   touch: Touch;
   timer: ReturnType<typeof setTimeout>;
 }
 
-/** The touched widget. */
-export interface Touched {
-  /** Whether something draggable is at that position, in CSS pixels from the canvas's corner. */
+export interface TouchTarget {
+  /** Whether something can be dragged at a position, in CSS pixels from the canvas's corner. */
   dragsAt(x: number, y: number): boolean;
   /** Ends the drag. */
   letGo(): void;
@@ -27,28 +27,28 @@ export interface Touched {
 
 export class TouchGate {
   readonly #canvas: HTMLCanvasElement;
-  readonly #widget: Touched;
-  /** Whether two fingers belong to the widget. */
-  readonly #isPinched: boolean;
-  #held: Held | undefined;
-  /** The owner of the touch until its end. */
+  readonly #widget: TouchTarget;
+  /** Whether two fingers zoom the widget. */
+  readonly #pinchZooms: boolean;
+  #pending: PendingTouch | undefined;
+  /** Who gets the touch, once decided. */
   #owner: 'page' | 'widget' | undefined;
 
-  constructor(stage: HTMLElement, canvas: HTMLCanvasElement, widget: Touched, signal: AbortSignal) {
+  constructor(stage: HTMLElement, canvas: HTMLCanvasElement, widget: TouchTarget, signal: AbortSignal) {
     this.#canvas = canvas;
     this.#widget = widget;
-    this.#isPinched = stage.closest('.takes-files') !== null;
+    this.#pinchZooms = stage.closest('.takes-files') !== null;
     const early = { capture: true, passive: true, signal };
     stage.addEventListener('pointerdown', (event) => this.#press(event), early);
     stage.addEventListener('touchstart', (event) => this.#start(event), early);
-    // Not passive: a browser scrolls unless the first reported move is cancelled.
+    // Not passive: the browser scrolls unless the first touchmove is cancelled.
     stage.addEventListener('touchmove', (event) => this.#move(event), { capture: true, passive: false, signal });
     stage.addEventListener('touchend', (event) => this.#end(event), early);
     stage.addEventListener('touchcancel', () => this.#forget(), early);
     signal.addEventListener('abort', () => this.#forget());
   }
 
-  /** It comes before the touch itself. */
+  /** The pointer event comes before the touch event. */
   #press(event: PointerEvent): void {
     if (!event.isTrusted || event.pointerType !== 'touch' || event.target !== this.#canvas) return;
     if (this.#isHandle(event)) event.stopPropagation();
@@ -61,7 +61,7 @@ export class TouchGate {
 
   #start(event: TouchEvent): void {
     const [touch] = event.changedTouches;
-    // One of our own events.
+    // Untrusted events are our own, dispatched below.
     if (!event.isTrusted || touch === undefined || event.target !== this.#canvas) return;
     if (event.touches.length > 1) {
       this.#pinch(event, touch);
@@ -70,37 +70,37 @@ export class TouchGate {
     this.#owner = undefined;
     if (!this.#isHandle(touch)) return;
     event.stopPropagation();
-    this.#held = { touch, timer: setTimeout(() => this.#sendOn(), HOLD_MS) };
+    this.#pending = { touch, timer: setTimeout(() => this.#replay(), LONG_PRESS_MS) };
   }
 
-  /** A second finger ends the drag of the first one, and cancels a pending one. */
+  /** A second finger ends the drag of the first, and cancels a pending one. */
   #pinch(event: TouchEvent, second: Touch): void {
-    const first = this.#held?.touch;
-    const isOurs = this.#isPinched && this.#owner !== 'page' && event.touches.length === 2;
+    const first = this.#pending?.touch;
+    const isOurs = this.#pinchZooms && this.#owner !== 'page' && event.touches.length === 2;
     this.#forget();
     this.#owner = isOurs ? 'widget' : undefined;
     if (!isOurs) return;
     event.stopPropagation();
     if (first === undefined) this.#widget.letGo();
-    // eframe presses at the position of the finger that it follows. If a finger of that number is down, it
-    // follows the same one as before, so it first gets one far outside.
-    const nowhere = new Touch({
-      identifier: NO_FINGER,
+    // eframe presses where the finger is that it follows, and keeps following that finger while it is down. A finger far
+    // outside makes it let go.
+    const offscreen = new Touch({
+      identifier: UNUSED_ID,
       target: this.#canvas,
-      clientX: NOWHERE_PX,
-      clientY: NOWHERE_PX,
+      clientX: OFFSCREEN_PX,
+      clientY: OFFSCREEN_PX,
     });
     for (const changedTouches of [[], first === undefined ? [second] : [first, second]]) {
-      const options = { touches: [nowhere], changedTouches, bubbles: true, cancelable: true };
+      const options = { touches: [offscreen], changedTouches, bubbles: true, cancelable: true };
       this.#canvas.dispatchEvent(new TouchEvent('touchstart', options));
     }
   }
 
   #move(event: TouchEvent): void {
     const [touch] = event.changedTouches;
-    if (this.#held !== undefined && touch !== undefined) this.#decide(this.#held.touch, touch);
+    if (this.#pending !== undefined && touch !== undefined) this.#decide(this.#pending.touch, touch);
     if (this.#owner !== 'widget') {
-      if (this.#owner === 'page' || this.#held !== undefined) event.stopPropagation();
+      if (this.#owner === 'page' || this.#pending !== undefined) event.stopPropagation();
     } else if (event.cancelable) {
       event.preventDefault();
     }
@@ -111,7 +111,7 @@ export class TouchGate {
     const along = Math.abs(to.clientY - from.clientY);
     if (Math.max(across, along) <= SLACK_PX) return;
     if (along <= across) {
-      this.#sendOn();
+      this.#replay();
     } else {
       this.#forget();
       this.#owner = 'page';
@@ -120,20 +120,20 @@ export class TouchGate {
 
   #end(event: TouchEvent): void {
     if (this.#owner === 'page') event.stopPropagation();
-    // Neither movement nor a rest: it was a tap.
-    this.#sendOn();
+    // Still undecided: it was a tap.
+    this.#replay();
     this.#owner = undefined;
   }
 
-  /** Passes the touch to the widget as if it had just begun. */
-  #sendOn(): void {
-    const held = this.#held;
-    if (held === undefined) return;
+  /** Replays the start of the pending touch to the widget. */
+  #replay(): void {
+    const pending = this.#pending;
+    if (pending === undefined) return;
     this.#forget();
     this.#owner = 'widget';
-    const touches = [held.touch];
-    const { clientX, clientY } = held.touch;
-    // eframe runs at once on this event: a press and the next event are never in the same frame.
+    const touches = [pending.touch];
+    const { clientX, clientY } = pending.touch;
+    // On this event eframe runs a frame at once, so the press and the next event are in separate frames.
     this.#canvas.dispatchEvent(
       new PointerEvent('pointerdown', { pointerType: 'touch', clientX, clientY, buttons: 1, bubbles: true }),
     );
@@ -142,7 +142,7 @@ export class TouchGate {
   }
 
   #forget(): void {
-    clearTimeout(this.#held?.timer);
-    this.#held = undefined;
+    clearTimeout(this.#pending?.timer);
+    this.#pending = undefined;
   }
 }

@@ -1,9 +1,9 @@
-// Values in the form of links, attributes and messages. The rules are those of the core (`ParamSpec::parse`),
-// which allows checking a link before any wasm is loaded; a test compares the two on the same texts.
+// Validation of values from links, attributes and messages. It repeats the core's rules (`ParamSpec::parse`) to check a
+// link before the module has loaded; a test compares the two on the same texts.
 
 import type { ParamSpec } from './schema';
 
-/** A value for JavaScript: a number, a text or the name of an option, or on and off. */
+/** A value for JavaScript: a number, a text, the name of an option, or a boolean. */
 export type Value = number | string | boolean;
 
 export type Parsed = { ok: true; text: string } | { ok: false; problem: string };
@@ -11,9 +11,9 @@ export type Parsed = { ok: true; text: string } | { ok: false; problem: string }
 const WORD = /^[\w-]*$/;
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
-/** Checks a value from a reader, a link or a program. */
-export function parseValue(spec: ParamSpec, given: unknown): Parsed {
-  const text = String(given).trim();
+/** Validates a value from a reader, a link or a program. */
+export function parseValue(spec: ParamSpec, input: unknown): Parsed {
+  const text = String(input).trim();
   const refuse = (expected: string): Parsed => ({
     ok: false,
     problem: `\`${spec.id}\` takes ${expected}, not \`${shorten(text)}\``,
@@ -28,7 +28,7 @@ export function parseValue(spec: ParamSpec, given: unknown): Parsed {
       if (['off', '0', 'false'].includes(text)) return { ok: true, text: 'off' };
       return refuse('on or off');
     case 'text':
-      // The core checks the contents of the text once it runs.
+      // The core validates the content when it runs.
       return text.length <= spec.max && WORD.test(text)
         ? { ok: true, text }
         : refuse(`at most ${spec.max} letters, digits, - and _`);
@@ -39,13 +39,13 @@ export function parseValue(spec: ParamSpec, given: unknown): Parsed {
       if (!Number.isFinite(value) || value < spec.min - slack || value > spec.max + slack) {
         return refuse(`${spec.min} to ${spec.max}`);
       }
-      const kept = Math.min(Math.max(value, spec.min), spec.max);
-      return { ok: true, text: String(spec.kind === 'slider' ? kept : Math.round(kept)) };
+      const clamped = Math.min(Math.max(value, spec.min), spec.max);
+      return { ok: true, text: String(spec.kind === 'slider' ? clamped : Math.round(clamped)) };
     }
   }
 }
 
-/** The default in the form of a link. */
+/** The default as in a link. */
 export function defaultText(spec: ParamSpec): string {
   if (spec.kind === 'choice') return spec.options[spec.default]?.id ?? '';
   if (spec.kind === 'switch') return spec.default === 0 ? 'off' : 'on';
@@ -59,13 +59,13 @@ export function toValue(spec: ParamSpec, text: string): Value {
   return Number(text);
 }
 
-/** The value in words, with its unit: `60°`, `0.70 m`. */
+/** The value with its unit for display: `60°`, `0.70 m`. */
 export function toLabel(spec: ParamSpec, text: string): string {
   if (spec.kind === 'choice') {
     return spec.options.find((option) => option.id === text)?.label ?? text;
   }
   if (spec.kind === 'switch') return text;
-  // This text is never shown.
+  // The text itself is long and encoded.
   if (spec.kind === 'text') return text === '' ? 'none' : 'what it was';
   const value = Number(text);
   const onStep = Math.abs(value - Number(value.toFixed(spec.decimals))) < 1e-9;

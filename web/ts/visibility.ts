@@ -1,4 +1,4 @@
-// The position of a widget relative to the screen: near enough to start, in view, or far away.
+// Whether a widget is near the viewport, in view, or far away.
 
 export interface Visibility {
   near(isNear: boolean): void;
@@ -6,7 +6,7 @@ export interface Visibility {
   far(isFar: boolean): void;
 }
 
-/** Starts within a third of a screen, releases its context beyond four screens. */
+/** A widget starts within a third of a screen, and releases its context beyond four screens. */
 const NEAR_MARGIN = '33% 0px';
 const FAR_MARGIN = '400% 0px';
 
@@ -14,7 +14,7 @@ const watched = new WeakMap<Element, Visibility>();
 
 function observer(
   rootMargin: string,
-  tell: (visibility: Visibility, isInside: boolean) => void,
+  report: (visibility: Visibility, isInside: boolean) => void,
 ): () => IntersectionObserver {
   let made: IntersectionObserver | undefined;
   return () =>
@@ -22,7 +22,7 @@ function observer(
       (entries) => {
         for (const entry of entries) {
           const visibility = watched.get(entry.target);
-          if (visibility !== undefined) tell(visibility, entry.isIntersecting);
+          if (visibility !== undefined) report(visibility, entry.isIntersecting);
         }
       },
       { rootMargin },

@@ -16,7 +16,7 @@ const ARROWS: Record<string, ViewChange> = {
   ArrowDown: 'down',
 };
 
-/** Three buttons, seen while one of them has the focus; the arrow keys move. */
+/** Three buttons that are visible while one has the focus; arrow keys pan. */
 export function zoomButtons(change: (view: ViewChange) => void): HTMLElement {
   const bar = create('div', { class: 'control', role: 'group', 'aria-label': 'Zoom' });
   const line = create('span', { class: 'line' });

@@ -1,9 +1,9 @@
-// A mapped building between three estimates of the same drive: by the wheels, by the walls, with loops.
+// A building mapped by three estimates of the same drive: odometry, scan matching, loop closure.
 
 import type { Surface } from '../lap/drawing';
 import { type Point, type Pose, between } from '../lap/story';
 
-/** What `cargo run --release -p ch16_lab --example building_story` writes. */
+/** The output of `cargo run --release -p ch16_lab --example building_story`. */
 export interface Building {
   /** Poses of keyframes, `[cm, cm, mrad]`. */
   wheels: Pose[];
@@ -17,9 +17,9 @@ export interface Building {
 
 /** The last of the three estimates. */
 export const LOOPS = 2;
-/** Room around the building, as a share of it. */
+/** Size of the view relative to the building. */
 const MARGIN = 1.1;
-/** So many points of each scan are off the picture at either side: what came through glass. */
+/** Share of outliers, such as returns through glass, that the view ignores at each side. */
 const STRAY = 0.004;
 
 interface View {
@@ -32,11 +32,11 @@ interface View {
 export function draw(story: Building, at: number, surface: Surface, width: number, height: number): void {
   const poses = posesAt(story, at);
   const view = viewAt(story, at, width, height);
-  const to = ([x, y]: Point): Point => [width / 2 + view.scale * (x - view.x), height / 2 - view.scale * (y - view.y)];
+  const toPixels = ([x, y]: Point): Point => [width / 2 + view.scale * (x - view.x), height / 2 - view.scale * (y - view.y)];
   const unit = Math.min(Math.max(width / 900, 0.65), 1.3);
-  const way = (of: readonly Pose[]): Point[] => of.map(([x, y]) => to([x, y]));
+  const way = (of: readonly Pose[]): Point[] => of.map(([x, y]) => toPixels([x, y]));
   if (at > 0) surface.line(way(story.wheels), 'prediction', 1.5 * unit, { alpha: 0.55, dash: [6 * unit, 4 * unit] });
-  surface.dots(onPicture(pointsOf(story, poses).map(to), width, height), 'ink', 2 * unit);
+  surface.dots(onPicture(pointsOf(story, poses).map(toPixels), width, height), 'ink', 2 * unit);
   const ink = at === 0 ? 'prediction' : 'posterior';
   const path = way(poses);
   surface.line(path, ink, 2.5 * unit);
@@ -45,12 +45,12 @@ export function draw(story: Building, at: number, surface: Surface, width: numbe
   if (end === undefined) return;
   surface.dots([end], ink, 10 * unit);
   surface.words(at === 0 ? 'where the wheels put it' : 'the robot', [end[0], end[1] + 1.4 * size], ink, size);
-  // The dashed line mostly ends off the picture: its name stands where it leaves it.
+  // The dashed path mostly ends outside the picture: its label is at its last visible point.
   const last = at > 0 ? way(story.wheels).findLast(([x, y]) => x > 5 * size && x < width - 5 * size && y > 2 * size && y < height - 2 * size) : undefined;
   if (last !== undefined) surface.words('by the wheels', last, 'prediction', size);
 }
 
-/** The two of three between which `at` is, and how far it is from the first of them. */
+/** The two estimates around `at`, and its share of the way between them. */
 function spanAt<T>([wheels, walls, loops]: readonly [T, T, T], at: number): [from: T, to: T, share: number] {
   return at < 1 ? [wheels, walls, at] : [walls, loops, at - 1];
 }
@@ -101,7 +101,7 @@ function spanOf(values: readonly number[]): [number, number] {
   return [sorted[skipped] ?? 0, sorted.at(-1 - skipped) ?? 0];
 }
 
-/** An error as the page says it: metres, and centimetres below half a metre. */
-export function sayError(cm: number): string {
+/** An error in metres, or in centimetres below half a metre. */
+export function formatError(cm: number): string {
   return cm < 50 ? `${cm} cm` : `${(cm / 100).toFixed(cm < 1000 ? 1 : 0)} m`;
 }

@@ -1,12 +1,12 @@
-// The building with which the page of the reader's own robot opens: odometry's scribble becomes a map. A log that the
-// reader drops on it, or picks, goes to the widget below, which takes its place.
+// The first figure of own-robot.html: odometry's scribble becomes a map. The widget below replaces it once the reader
+// drops or picks a log.
 
-import { chooseFiles, LOGS, takeDrops } from '../../ts/robot/files';
+import { chooseFiles, LOGS, acceptDrops } from '../../ts/robot/files';
 import { type Ink } from '../lap/drawing';
 import { canvasSurface, contextOf, readInks, watchColors } from '../lap/surfaces';
-import { type Building, draw, LOOPS, sayError } from './drawing';
+import { type Building, draw, LOOPS, formatError } from './drawing';
 
-/** The replay, as seconds and places of the slider between which it moves evenly: first the map comes apart. */
+/** Keyframes of the replay, as time and slider value: first the map comes apart. */
 const REPLAY: [number, number][] = [[0, 2], [0.9, 0], [2, 0], [4.4, 1], [5.4, 1], [7.4, 2]];
 const INKS: Ink[] = ['prediction', 'posterior', 'ink', 'paper'];
 
@@ -68,7 +68,7 @@ export class BuildingFigure {
       widget.openFile(files);
       widget.scrollIntoView();
     };
-    takeDrops(picture, take);
+    acceptDrops(picture, take);
     const choose = this.#figure.querySelector('[data-building="open"]');
     choose?.addEventListener('click', () => chooseFiles(picture, { accept: LOGS, label: 'A log of your robot', several: true }, take));
   }
@@ -111,10 +111,10 @@ export class BuildingFigure {
   }
 }
 
-/** The estimate in words; between two of them no error is known. */
+/** Describes the estimate; between two of them the error is unknown. */
 export function wordsAt({ worst_cm: [wheels, walls, loops] }: Building, at: number): string {
-  if (at === 0) return `By the wheels alone: up to ${sayError(wheels)} off.`;
-  if (at === 1) return `Each scan laid on the walls before it: up to ${sayError(walls)} off.`;
-  if (at === LOOPS) return `Places known again, loops closed: up to ${sayError(loops)} off.`;
+  if (at === 0) return `By the wheels alone: up to ${formatError(wheels)} off.`;
+  if (at === 1) return `Each scan laid on the walls before it: up to ${formatError(walls)} off.`;
+  if (at === LOOPS) return `Places known again, loops closed: up to ${formatError(loops)} off.`;
   return at < 1 ? 'From the wheels to the walls …' : 'From the walls to the loops …';
 }

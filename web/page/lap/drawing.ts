@@ -1,81 +1,80 @@
-// One moment of the lap as shapes, for a canvas and for a still picture alike.
+// Draws one moment of the lap to a canvas or an SVG.
 
 import type { Moment, Point, Pose, Story } from './story';
 
-/** Names of colours; the style of the page says which. */
+/** Colours by their names in page.css. */
 export type Ink = 'truth' | 'prediction' | 'outbound' | 'return' | 'posterior' | 'prior' | 'measurement' | 'ink' | 'paper';
 
-/** What is drawn on, in pixels from its upper left corner. */
+/** A canvas or an SVG; positions in pixels from the upper left corner. */
 export interface Surface {
   line(points: readonly Point[], ink: Ink, width: number, options?: { alpha?: number; dash?: number[] }): void;
   dots(points: readonly Point[], ink: Ink, size: number, alpha?: number): void;
   area(points: readonly Point[], ink: Ink): void;
-  /** Words whose middle stands at a point, with a rim of paper. */
+  /** Text centred at a point, with a halo in the colour of the paper. */
   words(text: string, at: Point, ink: Ink, size: number): void;
 }
 
-/** Width and height of the strip are in this proportion. */
+/** Aspect ratio of the strip. */
 export const ASPECT = 2.4;
 
-/** Middle and width of what is seen, in metres: of the whole flat's corridor, and closer. */
+/** Centre and width of the view, in metres: the corridor of the flat, and a close-up. */
 const WHOLE = { x: 6, y: 4.55, width: 12.5 };
 const CLOSE = { x: 4.9, y: 4.7, width: 9.3 };
-/** Where the walls have their names, in metres. */
-const WALL_NAMES = { out: [2.1, 5.35], back: [7.6, 5.35] } as const;
-/** At this width of the strip lines have their widths, and are thinner or thicker in proportion, within limits. */
-const USUAL_WIDTH_PX = 900;
+/** Positions of the labels of the walls, in metres. */
+const WALL_LABELS = { out: [2.1, 5.35], back: [7.6, 5.35] } as const;
+/** At this width line widths are as given; at others they scale, within limits. */
+const REFERENCE_WIDTH_PX = 900;
 
-/** Draws a moment into a width. */
 export function draw(story: Story, moment: Moment, surface: Surface, widthPx: number): void {
-  const to = camera(moment.closeness, widthPx);
-  const unit = Math.min(Math.max(widthPx / USUAL_WIDTH_PX, 0.65), 1.3);
-  for (const [x0, y0, x1, y1] of story.walls) surface.line([to([x0, y0]), to([x1, y1])], 'truth', unit, { alpha: 0.55 });
-  drawRays(story, moment, surface, to, unit);
+  const toPixels = camera(moment.closeness, widthPx);
+  const unit = Math.min(Math.max(widthPx / REFERENCE_WIDTH_PX, 0.65), 1.3);
+  for (const [x0, y0, x1, y1] of story.walls) surface.line([toPixels([x0, y0]), toPixels([x1, y1])], 'truth', unit, { alpha: 0.55 });
+  drawRays(story, moment, surface, toPixels, unit);
   const [out, back] = mapOf(story, moment);
-  surface.dots(out.map(to), 'outbound', 3 * unit);
-  surface.dots(back.map(to), 'return', 3 * unit);
-  drawBefore(story, moment, surface, to, unit);
-  drawMoved(moment, surface, to, unit);
-  const way = moment.keyframes.map(([x, y]): Point => [x, y]);
+  surface.dots(out.map(toPixels), 'outbound', 3 * unit);
+  surface.dots(back.map(toPixels), 'return', 3 * unit);
+  drawBefore(story, moment, surface, toPixels, unit);
+  drawMoved(moment, surface, toPixels, unit);
+  const path = moment.keyframes.map(([x, y]): Point => [x, y]);
   const [robotX, robotY] = moment.robot;
-  surface.line([...way, [robotX, robotY] as Point].map(to), 'posterior', 2 * unit);
+  surface.line([...path, [robotX, robotY] as Point].map(toPixels), 'posterior', 2 * unit);
   for (const { from, to: old } of moment.closed) {
-    const ends = [way[from], way[old]].filter((end) => end !== undefined);
-    surface.line(ends.map(to), 'measurement', 4 * unit);
+    const ends = [path[from], path[old]].filter((end) => end !== undefined);
+    surface.line(ends.map(toPixels), 'measurement', 4 * unit);
   }
-  surface.line(moment.wheels.map(to), 'prediction', 2.5 * unit, { dash: [7 * unit, 4 * unit] });
+  surface.line(moment.wheels.map(toPixels), 'prediction', 2.5 * unit, { dash: [7 * unit, 4 * unit] });
   const [wheelsX, wheelsY] = moment.wheels.at(-1) ?? [robotX, robotY];
-  drawRobot(surface, to, [wheelsX, wheelsY, wheelsHeading(moment)], 'prediction', 8 * unit);
-  drawRobot(surface, to, moment.robot, 'posterior', 10 * unit);
-  nameActors(moment, surface, to, unit);
+  drawRobot(surface, toPixels, [wheelsX, wheelsY, wheelsHeading(moment)], 'prediction', 8 * unit);
+  drawRobot(surface, toPixels, moment.robot, 'posterior', 10 * unit);
+  drawLabels(moment, surface, toPixels, unit);
 }
 
-/** Each line has its name at its end, in its colour; the walls have theirs once there are two. */
-function nameActors(moment: Moment, surface: Surface, to: Camera, unit: number): void {
+/** Labels each path at its end, and the walls once the way back has some. */
+function drawLabels(moment: Moment, surface: Surface, toPixels: Camera, unit: number): void {
   const size = Math.max(14 * unit, 11);
-  const robot = to([moment.robot[0], moment.robot[1]]);
-  const wheels = to(moment.wheels.at(-1) ?? [moment.robot[0], moment.robot[1]]);
+  const robot = toPixels([moment.robot[0], moment.robot[1]]);
+  const wheels = toPixels(moment.wheels.at(-1) ?? [moment.robot[0], moment.robot[1]]);
   const side = wheels[1] > robot[1] ? 1 : -1;
-  // Above the wheels there may be no room left.
+  // There may be no room above the wheels' robot.
   const ofWheels = wheels[1] + side * 1.7 * size < size ? 1 : side;
   surface.words('by the wheels', [wheels[0], wheels[1] + ofWheels * 1.7 * size], 'prediction', size);
   surface.words('by the sweeps', [robot[0], robot[1] - side * 1.7 * size], 'posterior', size);
   if (moment.act === 0) return;
-  surface.words('walls, way out', to(WALL_NAMES.out), 'outbound', size);
-  surface.words('walls, way back', to(WALL_NAMES.back), 'return', size);
+  surface.words('walls, way out', toPixels(WALL_LABELS.out), 'outbound', size);
+  surface.words('walls, way back', toPixels(WALL_LABELS.back), 'return', size);
 }
 
-/** At the end: where the walls of the way back stood before a loop closed, and how far the farthest keyframe has moved. */
-function drawBefore(story: Story, { before: { poses, strength }, keyframes }: Moment, surface: Surface, to: Camera, unit: number): void {
+/** At the end: the walls of the way back before the loops closed, and the largest correction of a keyframe. */
+function drawBefore(story: Story, { before: { poses, strength }, keyframes }: Moment, surface: Surface, toPixels: Camera, unit: number): void {
   if (strength === 0) return;
   const doubled = poses.flatMap((pose, node) => (node <= story.turn ? [] : placed(story.ticks[story.keyframes[node] ?? 0]?.sweep ?? [], pose)));
-  surface.dots(doubled.map(to), 'prior', 3 * unit, 0.4 * strength);
+  surface.dots(doubled.map(toPixels), 'prior', 3 * unit, 0.4 * strength);
   const moved = poses.map((pose, node) => ({ pose, now: keyframes[node] ?? pose }));
   const far = ({ pose, now }: (typeof moved)[number]): number => Math.hypot(now[0] - pose[0], now[1] - pose[1]);
   const farthest = moved.reduce((most, one) => (far(one) > far(most) ? one : most));
-  const [x, y] = to([farthest.now[0], farthest.now[1]]);
+  const [x, y] = toPixels([farthest.now[0], farthest.now[1]]);
   const size = Math.max(14 * unit, 11);
-  surface.line([[x, y], to([farthest.pose[0], farthest.pose[1]])], 'prior', 2.5 * unit, { alpha: strength });
+  surface.line([[x, y], toPixels([farthest.pose[0], farthest.pose[1]])], 'prior', 2.5 * unit, { alpha: strength });
   surface.words(`moved by ${Math.round(100 * far(farthest))} cm`, [x, y + 2.6 * size], 'prior', size);
 }
 
@@ -86,19 +85,19 @@ function frame(closeness: number, widthPx: number): { scale: number; middleX: nu
   return { scale: widthPx / mix('width'), middleX: mix('x'), middleY: mix('y') };
 }
 
-/** From metres to pixels of the picture. */
+/** Converts metres to pixels. */
 export function camera(closeness: number, widthPx: number): Camera {
   const { scale, middleX, middleY } = frame(closeness, widthPx);
   return ([x, y]) => [widthPx / 2 + scale * (x - middleX), widthPx / ASPECT / 2 - scale * (y - middleY)];
 }
 
-/** From pixels of the picture to metres. */
+/** Converts pixels to metres. */
 export function worldAt([x, y]: Point, closeness: number, widthPx: number): Point {
   const { scale, middleX, middleY } = frame(closeness, widthPx);
   return [middleX + (x - widthPx / 2) / scale, middleY - (y - widthPx / ASPECT / 2) / scale];
 }
 
-/** The points of all sweeps at the keyframes' poses: those of the way out, those of the way back. */
+/** The points of all sweeps at the poses of their keyframes, of the way out and of the way back. */
 function mapOf(story: Story, { keyframes }: Moment): [Point[], Point[]] {
   const ways: [Point[], Point[]] = [[], []];
   keyframes.forEach((pose, node) => {
@@ -118,23 +117,23 @@ function placed(sweep: readonly number[], [x, y, heading]: Pose): Point[] {
   return points;
 }
 
-/** What the laser sees just now. */
-function drawRays(story: Story, moment: Moment, surface: Surface, to: Camera, unit: number): void {
+/** The beams of the current sweep. */
+function drawRays(story: Story, moment: Moment, surface: Surface, toPixels: Camera, unit: number): void {
   const [x, y] = moment.robot;
   const sweep = story.ticks[moment.tick]?.sweep ?? [];
   for (const point of placed(sweep, moment.robot)) {
-    surface.line([to([x, y]), to(point)], 'measurement', 0.75 * unit, { alpha: 0.16 });
+    surface.line([toPixels([x, y]), toPixels(point)], 'measurement', 0.75 * unit, { alpha: 0.16 });
   }
 }
 
-/** An arrow from where a keyframe was to where it is. */
-function drawMoved(moment: Moment, surface: Surface, to: Camera, unit: number): void {
+/** An arrow from the old to the new position of each corrected keyframe. */
+function drawMoved(moment: Moment, surface: Surface, toPixels: Camera, unit: number): void {
   const { from, strength } = moment.moved;
   if (strength === 0) return;
   from.forEach((before, node) => {
     const after = moment.keyframes[node];
     if (after === undefined) return;
-    const [start, end] = [to([before[0], before[1]]), to([after[0], after[1]])];
+    const [start, end] = [toPixels([before[0], before[1]]), toPixels([after[0], after[1]])];
     const [dx, dy] = [end[0] - start[0], end[1] - start[1]];
     const length = Math.hypot(dx, dy);
     if (length < 3 * unit) return;
@@ -157,8 +156,8 @@ function wheelsHeading({ wheels, robot }: Moment): number {
   return Math.atan2(last[1] - before[1], last[0] - before[0]);
 }
 
-function drawRobot(surface: Surface, to: Camera, [x, y, heading]: Pose, ink: Ink, size: number): void {
-  const [px, py] = to([x, y]);
+function drawRobot(surface: Surface, toPixels: Camera, [x, y, heading]: Pose, ink: Ink, size: number): void {
+  const [px, py] = toPixels([x, y]);
   const corner = (turn: number, reach: number): Point => [
     px + reach * size * Math.cos(heading + turn),
     py - reach * size * Math.sin(heading + turn),

@@ -1,17 +1,16 @@
-// The strip under the title: the canonical lap, replayed from what the core computes in the page.
+// The strip under the title: a replay of the canonical lap, which the core computed in the build.
 //
-// It plays once, where the reader wants motion and while it is seen; after that, and always by the
-// slider, the reader has the time in hand.
+// It plays once while it is in view, unless the reader prefers reduced motion. The slider sets the time at any moment.
 
 import { ASPECT, camera, draw, type Ink, worldAt } from './drawing';
 import { type Point, Replay, type Story } from './story';
 import { canvasSurface, contextOf, type Inks, readInks, watchColors } from './surfaces';
 
-/** A step of the slider, and of an arrow key. */
+/** Step of the slider and of an arrow key. */
 const STEP_S = 0.05;
 const INKS: Ink[] = ['truth', 'prediction', 'outbound', 'return', 'posterior', 'prior', 'measurement', 'ink', 'paper'];
-/** A hand that comes so near takes the robot, px. */
-const REACH_PX = 40;
+/** Distance from the robot within which a press drags it. */
+const GRAB_RADIUS_PX = 40;
 
 export class LapPlayer {
   readonly #figure: HTMLElement;
@@ -20,7 +19,7 @@ export class LapPlayer {
   readonly #canvas = document.createElement('canvas');
   readonly #slider = document.createElement('input');
   readonly #button = document.createElement('button');
-  /** One for each caption, which begins with its name. */
+  /** The captions, which begin with the name of their act. */
   readonly #acts: HTMLElement[];
   #inks: Inks | undefined;
   #seconds = 0;
@@ -94,7 +93,7 @@ export class LapPlayer {
     let ahead = 0;
     const isNear = ({ offsetX, offsetY }: PointerEvent): boolean => {
       const [x, y] = this.#robotPx();
-      return Math.hypot(offsetX - x, offsetY - y) < REACH_PX;
+      return Math.hypot(offsetX - x, offsetY - y) < GRAB_RADIUS_PX;
     };
     canvas.addEventListener('pointerdown', (event) => {
       if (event.button !== 0 || !isNear(event)) return;
@@ -108,13 +107,13 @@ export class LapPlayer {
         return;
       }
       const { closeness } = this.#replay.at(this.#seconds);
-      const hand = worldAt([event.offsetX, event.offsetY], closeness, canvas.clientWidth);
-      const next = this.#replay.nearest(hand, this.#seconds, ahead);
+      const pointer = worldAt([event.offsetX, event.offsetY], closeness, canvas.clientWidth);
+      const next = this.#replay.nearest(pointer, this.#seconds, ahead);
       if (next !== this.#seconds) ahead = Math.sign(next - this.#seconds);
       this.#goTo(next);
     });
     for (const type of ['pointerup', 'pointercancel'] as const) canvas.addEventListener(type, () => { ahead = 0; });
-    // A finger on the robot drags it; elsewhere it scrolls the page.
+    // A touch on the robot drags it; elsewhere it scrolls the page.
     canvas.addEventListener('touchstart', (event) => { if (ahead !== 0) event.preventDefault(); }, { passive: false });
   }
 
@@ -140,7 +139,7 @@ export class LapPlayer {
     this.#show();
   }
 
-  /** Asks for a frame where something moves and somebody sees it. */
+  /** Requests a frame if the replay plays in view. */
   #wake(): void {
     if (!this.#isPlaying || !this.#isSeen || document.hidden || this.#frame !== 0) return;
     this.#lastFrame = undefined;

@@ -1,10 +1,9 @@
-// The strip as the build draws it: shown until the module arrives, and for pages without script.
+// The still picture of the strip: shown until its script has started, or without scripts.
 
 import { ASPECT, draw } from './drawing';
 import { Replay, type Story } from './story';
 import { SvgSurface, type Inks } from './surfaces';
 
-/** Width of the picture in its own pixels. */
 const WIDTH = 900;
 
 /** The moment before the first loop closes, as an SVG. */

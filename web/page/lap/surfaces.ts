@@ -1,4 +1,4 @@
-// Drawing surfaces for a moment of the lap: a canvas in the page, an SVG in the build.
+// Drawing surfaces: a canvas in the page, an SVG in the build.
 
 import type { Ink, Surface } from './drawing';
 import type { Point } from './story';
@@ -7,7 +7,7 @@ export type Inks = Record<Ink, string>;
 
 const FONT = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", "Liberation Sans", sans-serif';
 
-/** A canvas whose unit is the CSS pixel. */
+/** A canvas in CSS pixels. */
 export function canvasSurface(context: CanvasRenderingContext2D, inks: Inks): Surface {
   const trace = (points: readonly Point[]): void => {
     context.beginPath();
@@ -40,7 +40,7 @@ export function canvasSurface(context: CanvasRenderingContext2D, inks: Inks): Su
       context.font = `600 ${size}px ${FONT}`;
       context.textBaseline = 'middle';
       context.textAlign = 'center';
-      // They stay in the picture.
+      // Keeps the text inside the canvas.
       const half = context.measureText(text).width / 2 + size / 3;
       const x = Math.min(Math.max(at[0], half), context.canvas.clientWidth - half);
       const y = Math.min(Math.max(at[1], size), context.canvas.clientHeight - size);
@@ -55,7 +55,7 @@ export function canvasSurface(context: CanvasRenderingContext2D, inks: Inks): Su
   };
 }
 
-/** Collects the shapes of an SVG; `text` is their source. */
+/** Collects the elements of an SVG in `text`. */
 export class SvgSurface implements Surface {
   readonly #inks: Inks;
   text = '';
@@ -64,7 +64,7 @@ export class SvgSurface implements Surface {
     this.#inks = inks;
   }
 
-  /** The picture as a file. */
+  /** The complete SVG file. */
   file(width: number, height: number): string {
     return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}">${this.text}</svg>\n`;
   }
@@ -75,7 +75,7 @@ export class SvgSurface implements Surface {
     this.text += `<path d="${pathOf(points)}" fill="none" stroke="${this.#inks[ink]}" stroke-width="${short(width)}" stroke-linejoin="round"${dashes}${opacity}/>`;
   }
 
-  /** Dots of one ink are one path of strokes that have no length. */
+  /** One path of zero-length strokes, which is smaller than an element for each dot. */
   dots(points: readonly Point[], ink: Ink, size: number, alpha = 1): void {
     const opacity = alpha === 1 ? '' : ` stroke-opacity="${alpha}"`;
     const path = points.map(([x, y]) => `M${short(x)} ${short(y)}h0`).join('');
@@ -91,20 +91,20 @@ export class SvgSurface implements Surface {
   }
 }
 
-/** Words are thinner than lines, so a share of the text's colour keeps their contrast above 4.5. */
+/** Mixes a line colour with the text colour: text needs a contrast of 4.5, more than lines. */
 function inkForWords(inks: Inks, ink: Ink): string {
   const channels = (color: string): number[] => [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16));
   const text = channels(inks.ink);
   return `rgb(${channels(inks[ink]).map((channel, at) => Math.round(0.7 * channel + 0.3 * (text[at] ?? 0))).join(' ')})`;
 }
 
-/** The colours of a figure by their names in the style sheet. */
+/** Reads the colours of a figure from its style. */
 export function readInks(figure: HTMLElement, names: readonly Ink[]): Inks {
   const style = getComputedStyle(figure);
   return Object.fromEntries(names.map((ink) => [ink, style.getPropertyValue(`--${ink}`).trim()])) as Inks;
 }
 
-/** The context of a canvas of this height, in CSS pixels and cleared; `undefined` while it has no width. */
+/** Clears and sizes a canvas; returns its context in CSS pixels, or `undefined` while it has no width. */
 export function contextOf(canvas: HTMLCanvasElement, height: number): CanvasRenderingContext2D | undefined {
   const width = canvas.clientWidth;
   const context = canvas.getContext('2d');
@@ -115,7 +115,7 @@ export function contextOf(canvas: HTMLCanvasElement, height: number): CanvasRend
   return context;
 }
 
-/** Calls when the colours of the page change. */
+/** Calls back when the colours of the page change. */
 export function watchColors(changed: () => void): void {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', changed);
   new MutationObserver(changed).observe(document.documentElement, { attributeFilter: ['data-theme'] });
@@ -125,7 +125,7 @@ function pathOf(points: readonly Point[]): string {
   return points.map(([x, y], at) => `${at === 0 ? 'M' : 'L'}${short(x)} ${short(y)}`).join('');
 }
 
-/** A tenth of a pixel is less than anyone sees. */
+/** Tenths of a pixel: less is invisible. */
 function short(value: number): string {
   return String(Math.round(value * 10) / 10);
 }

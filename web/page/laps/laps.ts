@@ -1,7 +1,7 @@
-// A thousand laps as a picture: a dot for each, at four levels of the wheels' noise, the front end
-// alone beside the lap with its loops. They run in the page while the figure is in view.
+// A thousand laps as dots: at four levels of odometry noise, by the front end alone and with loops. They run in the page
+// while the figure is in view.
 
-import { Pool, type Core } from './pool';
+import { WorkerPool, type Core } from './worker-pool';
 import { LEVELS, type Lap } from './protocol';
 import { nameOf, Strip, type Kind } from './strip';
 
@@ -18,16 +18,16 @@ export class LapsFigure {
   readonly #seeds: number;
   readonly #falseLaps: HTMLElement[] = [];
   readonly #wrong = LEVELS.map(() => 0);
-  #driven = 0;
+  #finishedSeeds = 0;
 
   constructor(figure: HTMLElement, core: Core) {
     this.#figure = figure;
     this.#seeds = Number(figure.dataset['seeds'] ?? 0);
     this.#build();
-    const pool = new Pool(core, this.#seeds, (laps) => this.#add(laps));
+    const pool = new WorkerPool(core, this.#seeds, (laps) => this.#add(laps));
     new IntersectionObserver((entries) => {
       const entry = entries.at(-1);
-      pool.turn(entry?.isIntersecting === true);
+      pool.setActive(entry?.isIntersecting === true);
     }).observe(figure);
   }
 
@@ -37,8 +37,8 @@ export class LapsFigure {
     grid.append(text('', 'laps-corner'), ...KINDS.map((kind) => text(capital(nameOf(kind)), 'laps-head')));
     LEVELS.forEach((noise, level) => {
       const strips = KINDS.map((kind) => new Strip(kind, level, {
-        looked: (lap) => this.#look(lap),
-        chosen: (lap) => this.#choose(lap),
+        onPoint: (lap) => this.#describe(lap),
+        onChoose: (lap) => this.#open(lap),
       }));
       this.#strips.push(strips);
       const name = text(`×${noise}`, 'laps-level');
@@ -55,11 +55,11 @@ export class LapsFigure {
     const chosen = document.createElement('p');
     chosen.className = 'laps-chosen';
     this.#link.className = 'slam-link';
-    this.#about.textContent = 'Point at a dot, or walk along a strip with the arrow keys. A click or Enter drives that lap.';
+    this.#about.textContent = 'Point at a dot, or walk along a strip with the arrow keys. A click or Enter opens that lap.';
     chosen.append(this.#about, ' ', this.#link);
     this.#link.hidden = true;
     this.#figure.querySelector('.laps-place')?.replaceChildren(grid, this.#count, chosen);
-    this.#tell();
+    this.#showCount();
   }
 
   #add(laps: Lap[]): void {
@@ -70,19 +70,19 @@ export class LapsFigure {
       this.#wrong[lap.level] = wrong;
       (this.#falseLaps[lap.level] as HTMLElement).textContent = `${wrong} false`;
     }
-    this.#driven += 1;
-    this.#tell();
+    this.#finishedSeeds += 1;
+    this.#showCount();
   }
 
-  #tell(): void {
-    const isDone = this.#driven === this.#seeds;
-    const words = `${this.#driven} of ${this.#seeds} seeds driven in this page${isDone ? '.' : ' …'}`;
-    // A screen reader hears of hundreds, not of each.
-    this.#count.ariaLive = isDone || this.#driven % 100 === 0 ? 'polite' : 'off';
-    this.#count.textContent = words;
+  #showCount(): void {
+    const isDone = this.#finishedSeeds === this.#seeds;
+    const text = `${this.#finishedSeeds} of ${this.#seeds} seeds run in this page${isDone ? '.' : ' …'}`;
+    // A screen reader announces only every hundredth.
+    this.#count.ariaLive = isDone || this.#finishedSeeds % 100 === 0 ? 'polite' : 'off';
+    this.#count.textContent = text;
   }
 
-  #look(lap: Lap): void {
+  #describe(lap: Lap): void {
     const { seed, level, frontEnd, withLoops, closed, wrong } = lap;
     for (const strips of this.#strips) for (const strip of strips) strip.select(lap);
     const noise = LEVELS[level];
@@ -94,8 +94,8 @@ export class LapsFigure {
     this.#link.href = `?w=16.2&seed=${seed}&noise=${noise}&t=${LAST_TICK}`;
   }
 
-  #choose(lap: Lap): void {
-    this.#look(lap);
+  #open(lap: Lap): void {
+    this.#describe(lap);
     this.#link.click();
   }
 }

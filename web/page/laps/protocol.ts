@@ -1,9 +1,9 @@
-// Messages between the page and a worker that runs laps, and the result of a lap.
+// Messages between the page and a worker that runs laps.
 
-/** Levels of the wheels' noise, as factors of their variances. */
+/** Levels of odometry noise, as factors of the variances. */
 export const LEVELS = [0.25, 1, 2, 4] as const;
 
-/** What came out of one lap: `Laps.drive` of the module, in its order. */
+/** The result of a lap; fields in the order of the module's `Laps.drive`. */
 export interface Lap {
   seed: number;
   level: number;
@@ -14,16 +14,16 @@ export interface Lap {
   wrong: number;
 }
 
-/** To a worker: first the program, then seeds. */
+/** To a worker: first the module, then seeds. */
 export type Order = { module: WebAssembly.Module } | { seed: number };
 
-/** What drives laps: an instance of the module. */
-export interface Driver {
+/** The module's `Laps`. */
+export interface LapRunner {
   drive(seed: number, noise: number): ArrayLike<number>;
 }
 
-/** The lap of a seed at one level. */
-export function driven(driver: Driver, seed: number, level: number): Lap {
-  const [, frontEnd = NaN, withLoops = NaN, closed = 0, wrong = 0] = Array.from(driver.drive(seed, LEVELS[level] ?? 1));
+/** Runs the lap of a seed at one level. */
+export function runLap(runner: LapRunner, seed: number, level: number): Lap {
+  const [, frontEnd = NaN, withLoops = NaN, closed = 0, wrong = 0] = Array.from(runner.drive(seed, LEVELS[level] ?? 1));
   return { seed, level, frontEnd, withLoops, closed, wrong };
 }

@@ -6,7 +6,7 @@ export interface Spread {
   p95: number;
 }
 
-/** Undefined of no numbers. Linear between neighbours (Hyndman & Fan 1996, type 7), as in the core. */
+/** Linear interpolation (Hyndman & Fan 1996, type 7), as in the core; undefined without values. */
 export function spreadOf(values: readonly number[]): Spread | undefined {
   const sorted = [...values].sort((a, b) => a - b);
   const quantile = (share: number): number => {

@@ -1,38 +1,38 @@
-// One strip of dots: a lap each, by the error at its end.
+// A strip plot of laps by their final position error.
 
 import { LEVELS, type Lap } from './protocol';
 import { spreadOf } from './spread';
 
-/** What the strip counts: the front end alone, or the lap with its loops. */
+/** The estimate of a strip: by the front end alone, or with loops. */
 export type Kind = 'frontEnd' | 'withLoops';
 
-/** Where the axis ends, m; what is beyond stands at its end. */
+/** End of the axis; larger errors are clamped to it. */
 export const AXIS_END_M = 2;
 const HEIGHT_PX = 76;
-/** With loops the laps that took a false one stand in a row of their own at the bottom; the front end has none. */
+/** Height of the bottom row for laps with false loops; the front end has no loops. */
 const FALSE_ROW_PX = 18;
 const DOT_PX = 2.6;
-/** Room for half a dot at either end. */
+/** Margin for half a dot at both ends. */
 const EDGE_PX = 6;
-/** Names of colours in the style of the page, by loops closed. */
+/** Colours by the number of closed loops, by their names in page.css. */
 const INKS = ['--laps-none', '--laps-one', '--laps-two', '--laps-more'];
 
 export interface StripHost {
-  /** A lap is looked at. */
-  looked(lap: Lap): void;
-  /** A lap shall be driven. */
-  chosen(lap: Lap): void;
+  /** The reader points at a lap, or moves to it by keys. */
+  onPoint(lap: Lap): void;
+  /** The reader opens a lap. */
+  onChoose(lap: Lap): void;
 }
 
 export class Strip {
   readonly element = document.createElement('canvas');
   readonly #kind: Kind;
   readonly #host: StripHost;
-  /** In the order of their errors, once somebody asks. */
+  /** Sorted by error if `#isSorted`. */
   #laps: Lap[] = [];
   #isSorted = true;
   #selected: Lap | undefined;
-  #asked = 0;
+  #frame = 0;
 
   constructor(kind: Kind, level: number, host: StripHost) {
     this.#kind = kind;
@@ -47,7 +47,7 @@ export class Strip {
     element.addEventListener('pointermove', (event) => this.#point(event));
     element.addEventListener('click', (event) => {
       const lap = this.#point(event);
-      if (lap !== undefined) this.#host.chosen(lap);
+      if (lap !== undefined) this.#host.onChoose(lap);
     });
     element.addEventListener('keydown', (event) => this.#key(event));
     new ResizeObserver(() => this.draw()).observe(element);
@@ -59,7 +59,7 @@ export class Strip {
     this.draw();
   }
 
-  /** The lap that the reader looks at stands out in every strip that has it. */
+  /** Highlights the lap of a seed. */
   select(lap: Lap): void {
     this.#selected = this.#laps.find(({ seed }) => seed === lap.seed);
     const sorted = this.#sorted();
@@ -71,17 +71,16 @@ export class Strip {
     this.draw();
   }
 
-  /** With the next frame: many laps may come at once. */
+  /** Draws in the next frame, because many laps may arrive at once. */
   draw(): void {
-    if (this.#asked !== 0) return;
-    this.#asked = requestAnimationFrame(() => {
-      this.#asked = 0;
+    if (this.#frame !== 0) return;
+    this.#frame = requestAnimationFrame(() => {
+      this.#frame = 0;
       this.#paint();
     });
   }
 
-  /** With loops, a false one can be taken. */
-  #tookFalse({ wrong }: Lap): boolean {
+  #hasFalseLoop({ wrong }: Lap): boolean {
     return this.#kind === 'withLoops' && wrong > 0;
   }
 
@@ -98,7 +97,7 @@ export class Strip {
     const colors = INKS.map(ink);
     context.strokeStyle = ink('--faint');
     for (let at = 0; at <= AXIS_END_M; at += 0.5) line(context, this.#x(at, width), 0, HEIGHT_PX, 1);
-    const isFalse = (lap: Lap): boolean => this.#tookFalse(lap);
+    const isFalse = (lap: Lap): boolean => this.#hasFalseLoop(lap);
     if (this.#kind === 'withLoops') {
       context.beginPath();
       context.moveTo(0, HEIGHT_PX - FALSE_ROW_PX);
@@ -124,7 +123,7 @@ export class Strip {
     context.stroke();
   }
 
-  /** The median as a long line, the tails as short ones. */
+  /** The median as a long line, the 5 % and 95 % quantiles as short ones. */
   #paintSpread(context: CanvasRenderingContext2D, width: number, ink: string): void {
     const spread = spreadOf(this.#laps.map((lap) => lap[this.#kind]));
     if (spread === undefined) return;
@@ -142,12 +141,12 @@ export class Strip {
     return EDGE_PX + (Math.min(errorM, AXIS_END_M) / AXIS_END_M) * (width - 2 * EDGE_PX);
   }
 
-  /** Seeds spread evenly over the height: the golden section never repeats itself. */
+  /** The golden ratio spreads consecutive seeds evenly over the height. */
   #place(lap: Lap, width: number): [number, number] {
     const share = (lap.seed * 0.6180339887) % 1;
     const x = this.#x(lap[this.#kind], width);
     const row = HEIGHT_PX - FALSE_ROW_PX;
-    return this.#tookFalse(lap) ? [x, row + 5 + share * (FALSE_ROW_PX - 10)] : [x, EDGE_PX + share * (row - 2 * EDGE_PX)];
+    return this.#hasFalseLoop(lap) ? [x, row + 5 + share * (FALSE_ROW_PX - 10)] : [x, EDGE_PX + share * (row - 2 * EDGE_PX)];
   }
 
   #point({ offsetX, offsetY }: MouseEvent): Lap | undefined {
@@ -159,7 +158,7 @@ export class Strip {
     const [first, ...rest] = this.#laps;
     if (first === undefined) return undefined;
     const nearest = rest.reduce((near, lap) => (distance(lap) < distance(near) ? lap : near), first);
-    if (nearest !== this.#selected) this.#host.looked(nearest);
+    if (nearest !== this.#selected) this.#host.onPoint(nearest);
     return nearest;
   }
 
@@ -172,9 +171,9 @@ export class Strip {
     }[event.key];
     if (goal !== undefined) {
       const lap = sorted[Math.min(Math.max(goal, 0), sorted.length - 1)];
-      if (lap !== undefined) this.#host.looked(lap);
+      if (lap !== undefined) this.#host.onPoint(lap);
     } else if (event.key === 'Enter' && this.#selected !== undefined) {
-      this.#host.chosen(this.#selected);
+      this.#host.onChoose(this.#selected);
     } else {
       return;
     }

@@ -1,23 +1,23 @@
-// A worker that runs laps: it gets the program first, then one seed after the other.
+// A worker that runs laps: it gets the module first, then one seed at a time.
 
 import { createGlue } from '../../pkg/glue.js';
-import { driven, LEVELS, type Driver, type Order } from './protocol';
+import { runLap, LEVELS, type LapRunner, type Order } from './protocol';
 
-let driver: Promise<Driver> | undefined;
+let runner: Promise<LapRunner> | undefined;
 
 self.addEventListener('message', ({ data }: MessageEvent<Order>) => {
-  if ('module' in data) driver = start(data.module);
-  else void drive(data.seed);
+  if ('module' in data) runner = start(data.module);
+  else void runSeed(data.seed);
 });
 
-async function start(module: WebAssembly.Module): Promise<Driver> {
+async function start(module: WebAssembly.Module): Promise<LapRunner> {
   const glue = createGlue({ request: () => 0, cancel: () => {}, pixelRatio: () => 1, deviceSize: () => [] });
   await glue({ module_or_path: module });
   return new glue.Laps();
 }
 
-async function drive(seed: number): Promise<void> {
-  const laps = await driver;
-  if (laps === undefined) throw new Error('a seed came before the program');
-  self.postMessage(LEVELS.map((_, level) => driven(laps, seed, level)));
+async function runSeed(seed: number): Promise<void> {
+  const laps = await runner;
+  if (laps === undefined) throw new Error('a seed came before the module');
+  self.postMessage(LEVELS.map((_, level) => runLap(laps, seed, level)));
 }

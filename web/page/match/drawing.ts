@@ -1,34 +1,34 @@
-// The two sweeps of the first figure as an SVG: the build puts it into the page, and the script moves its source.
+// The SVG of the first figure, with its two sweeps. The build puts it into the page; the script moves the source sweep.
 
 import type { Pose } from '../lap/story';
 
-/** Where the source belongs, in metres and radians of the world. */
 export interface Answer {
+  /** The true pose of the source sweep. */
   truth: Pose;
-  /** Nearer than this in metres and degrees counts as right. */
+  /** Tolerances in metres and degrees. */
   home: [number, number];
 }
 
-/** What `matcherScene` of the module writes. */
+/** The output of the module's `matcherScene`. */
 export interface Scene extends Answer {
   target: number[];
   source: number[];
 }
 
-/** What is seen, in metres of the world; a wide picture shows more to the left and to the right. */
+/** The visible square, in metres; a wide picture shows more at its sides. */
 const VIEW = { left: -1.5, top: 5.2, side: 7 };
-/** Radius of the ring by which the source is turned, m. */
+/** Radius of the ring that turns the source. */
 const RING_M = 1.3;
-/** Half of a mark, m. */
+/** Half the size of a cross. */
 const MARK_M = 0.06;
-/** Where the source stands at first: too far for ICP, so the reader has to begin. */
+/** Initial offset of the source: outside of ICP's basin of convergence, so the reader has to help. */
 const START_OFF = { x: -0.6, y: 0.75, degrees: 48 };
 
 export function startOf({ truth: [x, y, heading] }: Answer): Pose {
   return [x + START_OFF.x, y + START_OFF.y, heading + (START_OFF.degrees * Math.PI) / 180];
 }
 
-/** The transform of a group that stands at a pose; y points up. */
+/** The SVG transform of a pose, with y up. */
 export function placedAt([x, y, heading]: Pose): string {
   return `translate(${x} ${y}) rotate(${(heading * 180) / Math.PI})`;
 }
@@ -64,7 +64,7 @@ function points(numbers: readonly number[]): [number, number][] {
   return Array.from({ length: numbers.length / 2 }, (_, at) => [numbers[2 * at] ?? 0, numbers[2 * at + 1] ?? 0]);
 }
 
-/** Millimetres. */
+/** Rounds to millimetres. */
 function short(metres: number): number {
   return Number(metres.toFixed(3));
 }

@@ -1,11 +1,12 @@
-// The first figure of the page: the reader lays one sweep on another, and ICP goes on from there.
+// The first figure of the page: the reader aligns one sweep with another, and ICP refines the pose.
 
 import type { Glue } from '../../pkg/glue.js';
 import { type Point, type Pose, between } from '../lap/story';
 import { type Answer, placedAt, startOf } from './drawing';
 
-/** What `Matcher.run` of the module writes: the guess and the pose after each iteration. */
+/** The output of the module's `Matcher.run`. */
 interface Run {
+  /** The initial guess and the pose after each iteration. */
   poses: Pose[];
   rmse: number;
   ending: string;
@@ -13,10 +14,10 @@ interface Run {
 
 type Matcher = InstanceType<Glue['Matcher']>;
 
-/** What an arrow key moves, m, and turns with Shift. */
+/** Steps of an arrow key: translation, and rotation with Shift. */
 const KEY_M = 0.05;
 const KEY_RAD = (2 * Math.PI) / 180;
-/** An iteration of ICP takes so long on the screen. */
+/** Duration of an iteration in the animation. */
 const ITERATION_MS = 110;
 const ARROWS: Record<string, Point> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
@@ -25,13 +26,14 @@ export class MatchFigure {
   readonly #scene: Answer;
   readonly #core: () => Promise<Glue>;
   readonly #svg: SVGSVGElement;
-  /** Fingers on the sweep, where they are in the world, and what the first one took hold of. */
-  readonly #fingers = new Map<number, Point>();
+  /** World positions of the pressed pointers. */
+  readonly #pointers = new Map<number, Point>();
+  /** Whether the first pointer grabbed the ring. */
   #turns = false;
   #pose: Pose;
   #matcher: Promise<Matcher> | undefined;
-  /** Counts what the reader does, which ends a run of ICP. */
-  #hand = 0;
+  /** Increases with every action of the reader: an outdated run of ICP stops. */
+  #generation = 0;
 
   constructor(figure: HTMLElement, scene: Answer, core: () => Promise<Glue>) {
     this.#figure = figure;
@@ -47,24 +49,24 @@ export class MatchFigure {
 
   #listen(): void {
     const svg = this.#svg;
-    svg.addEventListener('pointerdown', (event) => this.#take(event));
+    svg.addEventListener('pointerdown', (event) => this.#grab(event));
     svg.addEventListener('pointermove', (event) => this.#drag(event));
     for (const type of ['pointerup', 'pointercancel'] as const) {
       svg.addEventListener(type, (event) => {
-        if (this.#fingers.delete(event.pointerId) && this.#fingers.size === 0) this.#sayByHand();
+        if (this.#pointers.delete(event.pointerId) && this.#pointers.size === 0) this.#announcePose();
       });
     }
     svg.addEventListener('keydown', (event) => this.#press(event));
     const presses = {
-      icp: () => void this.#takeOver(),
+      icp: () => void this.#runIcp(),
       quarter: () => {
         const [x, y, heading] = this.#scene.truth;
         this.#place([x, y, heading + Math.PI / 2]);
-        void this.#takeOver();
+        void this.#runIcp();
       },
       again: () => {
         this.#place(startOf(this.#scene));
-        this.#sayByHand();
+        this.#announcePose();
       },
     };
     for (const [name, press] of Object.entries(presses)) {
@@ -74,25 +76,25 @@ export class MatchFigure {
     }
   }
 
-  #take(event: PointerEvent): void {
+  #grab(event: PointerEvent): void {
     const grab = (event.target as Element).closest<SVGElement>('[data-grab]');
     if (grab === null || event.button !== 0) return;
     event.preventDefault();
     this.#svg.focus({ preventScroll: true });
     this.#svg.setPointerCapture(event.pointerId);
-    if (this.#fingers.size === 0) this.#turns = grab.dataset['grab'] === 'turn';
-    this.#fingers.set(event.pointerId, this.#worldAt(event));
+    if (this.#pointers.size === 0) this.#turns = grab.dataset['grab'] === 'turn';
+    this.#pointers.set(event.pointerId, this.#worldAt(event));
     this.#place(this.#pose);
-    // It has to be there when the reader lets go.
+    // Prefetches the core, which is needed when the reader lets go.
     void this.#loaded().catch(() => {});
   }
 
   #drag(event: PointerEvent): void {
-    const before = this.#fingers.get(event.pointerId);
+    const before = this.#pointers.get(event.pointerId);
     if (before === undefined) return;
     const now = this.#worldAt(event);
-    this.#fingers.set(event.pointerId, now);
-    const other = [...this.#fingers].find(([id]) => id !== event.pointerId)?.[1];
+    this.#pointers.set(event.pointerId, now);
+    const other = [...this.#pointers].find(([id]) => id !== event.pointerId)?.[1];
     const [x, y] = this.#pose;
     if (other !== undefined) this.#place(this.#turned(other, turnBetween(other, before, now)));
     else if (this.#turns) this.#place(this.#turned([x, y], turnBetween([x, y], before, now)));
@@ -104,10 +106,10 @@ export class MatchFigure {
     if (way === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
     const [x, y] = this.#pose;
-    // To the right and down is clockwise, as a wheel turns.
+    // Right and down turn clockwise.
     if (event.shiftKey) this.#place(this.#turned([x, y], KEY_RAD * (way[1] - way[0])));
     else this.#place(this.#moved([KEY_M * way[0], KEY_M * way[1]]));
-    this.#sayByHand();
+    this.#announcePose();
   }
 
   #worldAt({ clientX, clientY }: PointerEvent): Point {
@@ -127,44 +129,44 @@ export class MatchFigure {
     return [aboutX + cos * dx - sin * dy, aboutY + sin * dx + cos * dy, heading + angle];
   }
 
-  /** The reader’s hand puts it there. */
+  /** Sets the pose by hand. */
   #place(pose: Pose): void {
-    this.#hand += 1;
+    this.#generation += 1;
     this.#pose = pose;
-    this.#leftAt(undefined);
+    this.#showGhost(undefined);
     this.#show();
   }
 
-  async #takeOver(): Promise<void> {
-    this.#hand += 1;
-    const hand = this.#hand;
+  async #runIcp(): Promise<void> {
+    this.#generation += 1;
+    const generation = this.#generation;
     const from = this.#pose;
-    this.#say('ICP is on its way.');
+    this.#announce('ICP is running.');
     const matcher = await this.#loaded().catch(() => undefined);
-    if (hand !== this.#hand) return;
+    if (generation !== this.#generation) return;
     if (matcher === undefined) {
-      this.#say('ICP could not be fetched. Try again once there is a connection.');
+      this.#announce('ICP could not be fetched. Try again once there is a connection.');
       return;
     }
     const run = JSON.parse(matcher.run(...from)) as Run;
-    this.#leftAt(from);
+    this.#showGhost(from);
     const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
-    if (!isStill) await this.#play(run.poses, hand);
-    if (hand !== this.#hand) return;
+    if (!isStill) await this.#play(run.poses, generation);
+    if (generation !== this.#generation) return;
     this.#pose = run.poses.at(-1) ?? from;
     this.#show();
-    this.#say(this.#told(run));
+    this.#announce(this.#summary(run));
   }
 
-  /** Moves through the iterations, one after the other, until the reader takes hold. */
-  #play(poses: readonly Pose[], hand: number): Promise<void> {
+  /** Animates the iterations until the reader intervenes. */
+  #play(poses: readonly Pose[], generation: number): Promise<void> {
     return new Promise((end) => {
       let first: number | undefined;
       const next = (now: number): void => {
         first ??= now;
         const at = (now - first) / ITERATION_MS;
         const [before, after] = [poses[Math.floor(at)], poses[Math.floor(at) + 1]];
-        if (hand !== this.#hand || before === undefined || after === undefined) {
+        if (generation !== this.#generation || before === undefined || after === undefined) {
           end();
           return;
         }
@@ -177,7 +179,7 @@ export class MatchFigure {
     });
   }
 
-  /** The core is fetched once the reader takes part. */
+  /** Fetches the core on the reader's first action; a failure can be retried. */
   #loaded(): Promise<Matcher> {
     this.#matcher ??= this.#core().then((glue) => new glue.Matcher());
     this.#matcher.catch(() => { this.#matcher = undefined; });
@@ -190,40 +192,40 @@ export class MatchFigure {
     this.#readout('');
   }
 
-  /** A shadow at the place where the reader let go. */
-  #leftAt(pose: Pose | undefined): void {
-    const shadow = this.#svg.querySelector('.match-left');
-    shadow?.setAttribute('visibility', pose === undefined ? 'hidden' : 'visible');
-    if (pose !== undefined) shadow?.setAttribute('transform', placedAt(pose));
+  /** Shows the pose from which ICP started. */
+  #showGhost(pose: Pose | undefined): void {
+    const ghost = this.#svg.querySelector('.match-left');
+    ghost?.setAttribute('visibility', pose === undefined ? 'hidden' : 'visible');
+    if (pose !== undefined) ghost?.setAttribute('transform', placedAt(pose));
   }
 
-  #off(): { metres: number; degrees: number } {
+  #error(): { metres: number; degrees: number } {
     const [x, y, heading] = this.#pose;
     const [trueX, trueY, trueHeading] = this.#scene.truth;
     return { metres: Math.hypot(x - trueX, y - trueY), degrees: Math.abs(wrapped(heading - trueHeading)) * (180 / Math.PI) };
   }
 
   #isHome(): boolean {
-    const { metres, degrees } = this.#off();
+    const { metres, degrees } = this.#error();
     return metres < this.#scene.home[0] && degrees <= this.#scene.home[1];
   }
 
   #readout(step: string): void {
-    const { metres, degrees } = this.#off();
+    const { metres, degrees } = this.#error();
     this.#write('.match-cm', `${Math.round(100 * metres)} cm`);
     this.#write('.match-degrees', `${degrees.toFixed(degrees < 10 ? 1 : 0)}°`);
     this.#write('.match-step', step === '' ? 'off the truth' : step);
   }
 
-  #sayByHand(): void {
-    const end = this.#isHome() ? 'That is home: the walls are sharp. Can ICP do better?' : 'Nearer, or let ICP take over.';
-    this.#say(`By hand: ${this.#offInWords()} off. ${end}`);
+  #announcePose(): void {
+    const hint = this.#isHome() ? 'That is home: the walls are sharp. Can ICP do better?' : 'Nearer, or let ICP take over.';
+    this.#announce(`By hand: ${this.#errorText()} off. ${hint}`);
   }
 
-  #told({ poses, rmse, ending }: Run): string {
+  #summary({ poses, rmse, ending }: Run): string {
     const steps = poses.length - 1;
     const by = `${steps} ${steps === 1 ? 'step' : 'steps'}`;
-    const off = `${this.#offInWords()} off`;
+    const off = `${this.#errorText()} off`;
     if (ending === 'right minimum') return `ICP came home in ${by}: ${off}.`;
     const fit = `Its pairs are ${Math.round(100 * rmse)} cm apart`;
     if (ending === 'quarter turn' || ending === 'half turn') {
@@ -232,12 +234,12 @@ export class MatchFigure {
     return `ICP stopped after ${by} in a wrong place, ${off}. ${fit}. Lay it nearer, and let it try again.`;
   }
 
-  #offInWords(): string {
-    const { metres, degrees } = this.#off();
+  #errorText(): string {
+    const { metres, degrees } = this.#error();
     return `${Math.round(100 * metres)} cm and ${degrees.toFixed(degrees < 10 ? 1 : 0)}°`;
   }
 
-  #say(sentence: string): void {
+  #announce(sentence: string): void {
     this.#write('#match-says', sentence);
   }
 
@@ -247,7 +249,7 @@ export class MatchFigure {
   }
 }
 
-/** The angle by which a point has gone round another. */
+/** The angle of a movement about a centre. */
 function turnBetween([x, y]: Point, before: Point, now: Point): number {
   return wrapped(Math.atan2(now[1] - y, now[0] - x) - Math.atan2(before[1] - y, before[0] - x));
 }

@@ -1,8 +1,8 @@
 """The widgets of the chapter on scan matching and pose-graph SLAM, for notebooks.
 
-Each widget of the chapter is a class: `Basin`, `FullLap` and so on, see `WIDGETS`. Its parameters are arguments and
-attributes, `value` holds all of them, and `outcome` what came out. Parameters whose names have a hyphen in links have
-an underscore here: `gate_model`. `Robot("log.mcap")` maps a recorded log.
+Each widget of the chapter is a class, such as `Basin` or `FullLap`; `WIDGETS` lists them. Parameters are arguments and
+attributes: `value` has all of them, and `outcome` the result. Names with a hyphen in links have an underscore here:
+`gate_model`. `Robot("log.mcap")` maps a recorded log.
 """
 
 import json
@@ -20,7 +20,7 @@ _SCHEMA = {widget["id"]: widget for widget in json.loads((_STATIC / "schema.json
 
 
 class SlamWidget(anywidget.AnyWidget):
-    """One widget of the chapter by its name, such as `SlamWidget(name="w16.2", value={"noise": 2})`."""
+    """A widget of the chapter by its name, such as `SlamWidget(name="w16.2", value={"noise": 2})`."""
 
     _esm = (_STATIC / "slam-widgets.js").read_text("utf-8")
 
@@ -31,7 +31,7 @@ class SlamWidget(anywidget.AnyWidget):
     @traitlets.validate("name")
     def _check_name(self, proposal):
         if proposal["value"] not in _SCHEMA:
-            raise traitlets.TraitError(f"no widget is called {proposal['value']!r}; there are {', '.join(_SCHEMA)}")
+            raise traitlets.TraitError(f"there is no widget {proposal['value']!r}; there are {', '.join(_SCHEMA)}")
         return proposal["value"]
 
 
@@ -48,13 +48,13 @@ class _Widget(SlamWidget):
 
     @classmethod
     def from_link(cls, link):
-        """The widget in the state of a link, or of what “Copy link” gives: `?w=16.1&heading=60`."""
-        stated = dict(parse_qsl(link.partition("?")[2], keep_blank_values=True))
-        widget = "w" + stated.pop("w", cls._id[1:])
+        """Returns the widget in the state of a link from “Copy link”, or of its query: `?w=16.1&heading=60`."""
+        query = dict(parse_qsl(link.partition("?")[2], keep_blank_values=True))
+        widget = "w" + query.pop("w", cls._id[1:])
         if widget != cls._id:
-            raise ValueError(f"the link is of {widget}, and {cls.__name__} is {cls._id}")
+            raise ValueError(f"the link is for {widget}, and {cls.__name__} is {cls._id}")
         names = set(cls._ids.values())
-        return cls(value={name: _plain(text) for name, text in stated.items() if name in names})
+        return cls(value={name: _parse(text) for name, text in query.items() if name in names})
 
     @classmethod
     def _parameter(cls, attribute):
@@ -69,8 +69,8 @@ class _Widget(SlamWidget):
         self.value = {**self.value, parameter: given}
 
 
-def _plain(text):
-    """A number where the text is one."""
+def _parse(text):
+    """Returns a number if the text is one, else the text."""
     try:
         return float(text)
     except ValueError:
@@ -101,7 +101,7 @@ def _range(spec):
 
 
 def _class(widget):
-    """The class of a widget: its title in one word, its parameters as properties."""
+    """Creates the class of a widget, with its title as name and its parameters as properties."""
     title = "".join(word[:1].upper() + word[1:] for word in widget["title"].replace("-", " ").split())
     name = _SHORT.get(widget["id"], title.removeprefix("The"))
     ids = {spec["id"].replace("-", "_"): spec["id"] for spec in widget["params"]}
@@ -123,48 +123,49 @@ def _class(widget):
 
 _SHORT = {"w16.1": "Basin", "w16.10": "Robot"}
 
-#: So much of a file goes into one message, bytes.
-_PIECE = 1 << 20
+#: Size of a message with a piece of a file, bytes.
+_PIECE_BYTES = 1 << 20
 
 
 class _RobotWidget(_Widget):
-    """What w16.10 has beside parameters: files, which go from the kernel to the page in pieces, and back."""
+    """w16.10, which exchanges files between kernel and page."""
 
     #: Every plot and table as CSV, by its name: loops, keyframes, where.
     tables = traitlets.Dict().tag(sync=True)
-    #: What was refused last, in a sentence.
+    #: Why the last refused file was refused.
     refused = traitlets.Unicode("")
 
     def __init__(self, log=None, *, reference=None, where=None, **parameters):
-        # What a page that shows the widget is given, in this order, by what it is for.
-        self._given = {}
-        self._wanted = {}
+        # Files by their purpose, in order: each page that shows the widget gets them.
+        self._files = {}
+        # Target paths by the names of the requested files.
+        self._requested = {}
         self._saved = []
         super().__init__(**parameters)
-        self.on_msg(self._hear)
-        for path, give in ((log, self.load), (reference, self.grade), (where, self.locate)):
+        self.on_msg(self._receive)
+        for path, add in ((log, self.load), (reference, self.grade), (where, self.locate)):
             if path is not None:
-                give(path)
+                add(path)
 
     def load(self, path):
-        """Maps a log, or opens a session or a pose graph; what was there before is gone."""
-        self._given.clear()
-        self._give(path, "map")
+        """Maps a log, or opens a session or a pose graph; it replaces the present one."""
+        self._files.clear()
+        self._add(path, "map")
 
     def grade(self, path):
-        """Compares with relations (`.relations`) or true poses (`.tum`)."""
-        self._give(path, "grade")
+        """Grades the map against relations (`.relations`) or ground truth (`.tum`)."""
+        self._add(path, "grade")
 
     def locate(self, path):
-        """Looks for the robot of another log on the map."""
-        self._give(path, "where")
+        """Localizes the robot of another log on the map."""
+        self._add(path, "where")
 
     def save(self, name, path=None):
-        """Writes a file of the page, such as `session.slam2d` or `map.png`, to `path`, once the page has given it.
+        """Requests a file from the page, such as `session.slam2d` or `map.png`, and writes it to `path` on arrival.
 
-        `saved` says which files came, and `refused` why one did not.
+        `saved` lists the files that arrived, and `refused` has the reason why one did not.
         """
-        self._wanted.setdefault(name, []).append(Path(path or name))
+        self._requested.setdefault(name, []).append(Path(path or name))
         self.send({"type": "file", "name": name})
 
     @property
@@ -172,19 +173,19 @@ class _RobotWidget(_Widget):
         """The files that were written."""
         return list(self._saved)
 
-    def _give(self, path, use):
+    def _add(self, path, use):
         path = Path(path)
         if not path.is_file():
-            raise FileNotFoundError(f"{path} is no file that can be read; give a log, a session or a reference")
-        self._given[use] = path
-        self._carry(path, use)
+            raise FileNotFoundError(f"{path} is no readable file; give a log, a session or a reference")
+        self._files[use] = path
+        self._send_file(path, use)
 
-    def _carry(self, path, use):
+    def _send_file(self, path, use):
         size = path.stat().st_size
         with path.open("rb") as source:
             at = 0
             while at == 0 or at < size:
-                piece = source.read(_PIECE)
+                piece = source.read(_PIECE_BYTES)
                 last = at + len(piece) >= size or not piece
                 message = {"type": "piece", "name": path.name, "use": use, "first": at == 0, "last": last}
                 self.send(message, [piece])
@@ -192,22 +193,22 @@ class _RobotWidget(_Widget):
                 if last:
                     break
 
-    def _hear(self, _, message, buffers):
+    def _receive(self, _, message, buffers):
         kind = message.get("type")
         if kind == "ready":
-            # A page that shows it now has no files yet.
-            for use, path in self._given.items():
-                self._carry(path, use)
+            # A page that has just opened has no files.
+            for use, path in self._files.items():
+                self._send_file(path, use)
         elif kind == "file":
-            waiting = self._wanted.get(message["name"], [])
-            if waiting:
-                path = waiting.pop(0)
+            paths = self._requested.get(message["name"], [])
+            if paths:
+                path = paths.pop(0)
                 path.write_bytes(bytes(buffers[0]))
                 self._saved.append(path)
         elif kind == "refused":
-            waiting = self._wanted.get(message["name"], [])
-            if waiting:
-                waiting.pop(0)
+            paths = self._requested.get(message["name"], [])
+            if paths:
+                paths.pop(0)
             self.refused = message["why"]
 
 #: Every widget's class by its name in the chapter: `WIDGETS["w16.1"]` is `Basin`.

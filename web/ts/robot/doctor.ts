@@ -1,7 +1,7 @@
-// The doctor's report above the picture: what is right, repaired or wrong about a log, the options that
-// correct it, and the pose of the laser. The worker computes it; this only lays it out.
+// The doctor's report above the picture: what is right, repaired or wrong about a log, the options that correct it, and
+// the pose of the laser. The worker computes the report.
 
-import { create, keepKeys } from '../dom';
+import { create, stopKeyPropagation } from '../dom';
 import type { Delivery } from './protocol';
 
 export type Verdict = 'good' | 'mended' | 'wrong';
@@ -11,29 +11,28 @@ export interface Remark {
   verdict: Verdict;
   /** A sentence, without a full stop. */
   text: string;
-  /** Options of the command that correct it: any of them, not all. */
+  /** Options of the command that correct it; one is enough. */
   options?: string[];
 }
 
-/** The output of `slam2d doctor --json`, as far as it is shown here. */
+/** The part of `slam2d doctor --json` that is shown. */
 export interface Diagnosis {
   name: string;
   verdict: Verdict;
-  /** `x,y,degrees`, and `,flipped`; null if only the lines of the log have it. */
+  /** `x,y,degrees` or `x,y,degrees,flipped`; null if each line of the log has its own pose. */
   laser: string | null;
   remarks: Remark[];
 }
 
 export interface DoctorHost {
-  /** Maps the log again with an option, or without all of them. */
+  /** Maps the log again with a further option, or with none at all. */
   choose(option: string | undefined): void;
   /** The options of the current map. */
   chosen(): string[];
 }
 
 const SIGNS: Record<Verdict, string> = { good: '✓', mended: '!', wrong: '✗' };
-/** The signs in words. */
-const WORDS: Record<Verdict, string> = { good: 'in order', mended: 'repaired or done without', wrong: 'not repaired' };
+const WORDS: Record<Verdict, string> = { good: 'in order', mended: 'repaired or worked around', wrong: 'not repaired' };
 
 export class DoctorScreen {
   readonly element = create('section', { class: 'doctor', hidden: '', 'aria-label': 'What the doctor found' });
@@ -49,16 +48,15 @@ export class DoctorScreen {
     const fold = create('details', { open: '' });
     fold.append(this.#heading, this.#body);
     this.element.append(fold, this.#live);
-    keepKeys(this.element);
+    stopKeyPropagation(this.element);
   }
 
-  /** The last report on the open log. */
   get diagnosis(): Diagnosis | undefined {
     return this.#diagnosis;
   }
 
-  /** Handles a delivery of the worker; returns whether the size may have changed. */
-  hear({ kind, text }: Delivery): boolean {
+  /** Handles a delivery of the worker; returns whether the layout may have changed. */
+  receive({ kind, text }: Delivery): boolean {
     if (kind === 'opening') this.#wait(text);
     else if (kind === 'diagnosis') this.#show(JSON.parse(text) as Diagnosis);
     else if (kind === 'closed' || (kind === 'failed' && this.#diagnosis === undefined)) this.#hide();
@@ -74,26 +72,26 @@ export class DoctorScreen {
     this.#body.replaceChildren();
   }
 
-  /** The same log keeps its report, so that the focus stays; another one starts with an empty one. */
+  /** Keeps the report of the same log, and with it the focus; hides that of another log. */
   #wait(name: string): void {
     if (name !== this.#name) this.#hide();
     this.#name = name;
     this.#diagnosis = undefined;
-    this.#replace(`${name} is looked through.`, []);
+    this.#replace(`Checking ${name} …`, []);
   }
 
   #show(diagnosis: Diagnosis): void {
     this.#diagnosis = diagnosis;
-    const summary = inShort(diagnosis);
+    const summary = headingFor(diagnosis);
     this.#replace(summary, [this.#list(diagnosis.remarks), this.#choices(), this.#laser(diagnosis)]);
     this.element.hidden = false;
     this.#live.textContent = summary;
   }
 
   #replace(heading: string, body: HTMLElement[]): void {
-    const held = this.#body.contains((this.element.getRootNode() as ShadowRoot).activeElement);
-    // The element with the focus disappears; the heading stays.
-    if (held) this.#heading.focus();
+    const hadFocus = this.#body.contains((this.element.getRootNode() as ShadowRoot).activeElement);
+    // The focused element disappears.
+    if (hadFocus) this.#heading.focus();
     this.#heading.textContent = heading;
     this.#body.replaceChildren(...body);
   }
@@ -130,7 +128,7 @@ export class DoctorScreen {
     return line;
   }
 
-  /** The pose of the laser, to be set by hand. */
+  /** A form for the pose of the laser. */
   #laser({ laser }: Diagnosis): HTMLElement {
     const form = create('form');
     const [x = '0', y = '0', heading = '0', flipped] = (laser ?? '').split(',').filter((word) => word !== '');
@@ -145,25 +143,25 @@ export class DoctorScreen {
     legend.textContent = 'The laser sits';
     form.append(legend);
     const fields = [field('ahead, m', x), field('to the left, m', y), field('turned left, °', heading)];
-    const turnedOver = create('input', { type: 'checkbox' });
-    turnedOver.checked = flipped !== undefined;
+    const upsideDown = create('input', { type: 'checkbox' });
+    upsideDown.checked = flipped !== undefined;
     const name = create('label');
-    name.append(turnedOver, ' upside down');
+    name.append(upsideDown, ' upside down');
     const button = create('button', { type: 'submit' });
-    button.textContent = 'Map with it there';
+    button.textContent = 'Map with this pose';
     form.append(name, button);
     form.addEventListener('submit', (event) => {
       event.preventDefault();
       const words = fields.map((input) => String(input.valueAsNumber));
-      if (turnedOver.checked) words.push('flipped');
+      if (upsideDown.checked) words.push('flipped');
       this.#host.choose(`--laser ${words.join(',')}`);
     });
     return form;
   }
 }
 
-/** The heading: the sign, the name, and how many findings there are of each kind. */
-function inShort({ name, verdict, remarks }: Diagnosis): string {
+/** The heading: sign, name, and the number of findings of each kind. */
+function headingFor({ name, verdict, remarks }: Diagnosis): string {
   const count = (of: Verdict): number => remarks.filter((remark) => remark.verdict === of).length;
   const kinds = (['wrong', 'mended'] as const).filter((of) => count(of) > 0);
   const found = kinds.map((of) => `${count(of)} ${WORDS[of]}`);

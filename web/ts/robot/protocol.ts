@@ -1,6 +1,6 @@
-// Messages between the widget's host and the worker that maps a log.
+// Messages between the page and the worker that maps a log.
 
-/** One part of the worker's state, in the form of the widget's model. */
+/** One part of the worker's state, for the widget's model. */
 export interface Delivery {
   kind: string;
   text: string;
@@ -10,9 +10,9 @@ export interface Delivery {
 
 /** To the worker. */
 export type Order =
-  /** Comes first: the program, the files of the log, and the options for it, one per line. */
+  /** The first message: the program, the files of the log, and its options, one per line. */
   | { module: WebAssembly.Module; files: File[]; options: string }
-  /** Another log, to be localized on the map, starting near `[x, y, θ]`, or anywhere. */
+  /** A log to localize on the map, starting near `[x, y, θ]`, or anywhere if `start` is empty. */
   | { locate: File[]; options: string; start: number[] }
   | { order: string }
   | { reference: Uint8Array; name: string }
@@ -24,7 +24,7 @@ export type Report =
   | { saved: string; bytes: Uint8Array }
   /** Why a file cannot be saved. */
   | { unsaved: string; why: string }
-  /** The file cannot be used, in one sentence. */
+  /** Why the log cannot be used, in one sentence. */
   | { failed: string }
   /** The program crashed. */
   | { crashed: string };

@@ -244,7 +244,7 @@ impl Exercise {
 
 /// The seed of a student's exercise: FNV-1a over the text, then the finalizer of `MurmurHash3`.
 ///
-/// The page derives the same (`web/ts/personal.ts`).
+/// The page derives the same (`web/ts/personal-seeds.ts`).
 fn seed_of(student: &str, exercise: &str, attempt: u32) -> u32 {
     let text = format!("{student}\n{exercise}\n{attempt}");
     let mut hash = text.bytes().fold(0x811c_9dc5_u32, |hash, byte| {

@@ -1,9 +1,9 @@
-// Personal tasks: a student's name gives each exercise a seed of its own, so that neighbours have other laps.
+// Personal tasks: a separate seed for each student and exercise, because neighbours should get different laps.
 //
-// `slam2d mark` derives the same seeds; tests/reference/student-seeds.json holds both to the same numbers.
+// `slam2d mark` derives the same seeds; tests/reference/student-seeds.json pins both.
 
-/** Number of seeds that are tried until one of the choices is right. */
-export const MOST_TRIES = 100;
+/** Seeds to try until one of the choices is right. */
+export const MAX_ATTEMPTS = 100;
 
 /** FNV-1a over the UTF-8 text `student`, newline, exercise, newline, attempt; then the finalizer of MurmurHash3. */
 export function seedOf(student: string, exercise: string, attempt: number): number {

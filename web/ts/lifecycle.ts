@@ -1,10 +1,10 @@
-// The life cycle of a widget's drawing: an instance of the module and its canvas.
+// The lifecycle of a widget's instance and canvas.
 //
-// Both exist while the widget is near the screen. They are never repaired, but created again in one way:
-// after scrolling back, after a panic, after a lost context. The host keeps the values.
+// Both exist while the widget is near the screen. After a panic, a lost context or scrolling back they are created
+// again in the same way; nothing is repaired. The host keeps the values.
 
 import type { Widget } from '../pkg/glue.js';
-import { claim, lookAgain, release, type Drawer } from './contexts';
+import { claim, retryWaiting, release, type Drawer } from './contexts';
 import { CrashError, Instance } from './instance';
 import { nextTask } from './dom';
 import { LoadError } from './module';
@@ -12,62 +12,61 @@ import type { Parts } from './parts';
 import { Stage } from './stage';
 import type { Visibility } from './visibility';
 
-/** Number of times that a browser may take a context away before the first frame. */
-const MOST_LOSSES = 3;
+/** Contexts that may be lost before the first frame until we give up. */
+const MAX_LOST_CONTEXTS = 3;
 
-/** The element left its page, and its widget is not needed any more. */
-export class TakenAwayError extends LoadError {
+/** The element left its page while it loaded. */
+export class RemovedError extends LoadError {
   constructor() {
-    super('the widget was taken away while it loaded');
+    super('the widget was removed while it loaded');
   }
 }
 
-/** The browser took the context away: a fault of neither the page nor the widget. */
-class LostError extends LoadError {
+/** The browser keeps discarding the WebGL context. */
+class ContextLostError extends LoadError {
   constructor() {
-    super('the browser takes its drawing surface away again and again');
+    super('the browser keeps discarding its WebGL context');
   }
 }
 
-export interface LifeHost {
+export interface LifecycleHost {
   /** The widget to draw; undefined if the page names none. */
   widget(): { id: string; title: string } | undefined;
-  /** Whether the element is on a page. */
-  isHere(): boolean;
+  isConnected(): boolean;
   /** Sets the host's state in a new instance. */
   prepare(widget: Widget): void;
-  /** The first frame is on the canvas, that many milliseconds after its start. */
+  /** The first frame is on the canvas; `milliseconds` since the start. */
   live(milliseconds: number): void;
-  /** A frame was drawn; the canvas holds it until the end of this task. */
+  /** A frame was drawn; its pixels can be read until the end of this task. */
   drew(canvas: HTMLCanvasElement): void;
   /** Progressive work is finished. */
   rested(): void;
-  /** The instance is about to end: the last moment to take a picture. */
+  /** Called before the instance is disposed: the last moment to take a picture. */
   leaving(): void;
-  /** Nothing runs until the host calls `restart`. */
+  /** The widget failed, and waits for `restart`. */
   failed(error: Error): void;
 }
 
-export class Life implements Visibility, Drawer {
+export class Lifecycle implements Visibility, Drawer {
   readonly #parts: Parts;
-  readonly #host: LifeHost;
+  readonly #host: LifecycleHost;
   #instance: Instance | undefined;
   #creating: Promise<Instance> | undefined;
-  /** The canvas, from before its first frame on. */
+  /** The canvas, even before its first frame. */
   #stage: Stage | undefined;
-  /** Number of contexts lost since the last completed frame. */
-  #losses = 0;
+  /** Contexts lost since the last first frame. */
+  #lostContexts = 0;
   #isNear = false;
   #isFar = false;
   #isInView = false;
   #hasFailed = false;
   #isBusy = false;
-  /** Frames laid out by the instance when the last one was drawn. */
+  /** The instance's frame counter after the last drawn frame. */
   #drawnFrames = 0;
-  /** Increases with every end, so that asynchronous work of an earlier start can detect that it is outdated. */
+  /** Increases with every end: asynchronous work of an earlier start detects that it is outdated. */
   #generation = 0;
 
-  constructor(parts: Parts, host: LifeHost) {
+  constructor(parts: Parts, host: LifecycleHost) {
     this.#parts = parts;
     this.#host = host;
   }
@@ -77,17 +76,16 @@ export class Life implements Visibility, Drawer {
     return this.#stage !== undefined;
   }
 
-  /** Whether there is an instance, with a canvas or not. */
+  /** Whether there is an instance, with or without a canvas. */
   get hasInstance(): boolean {
     return this.#instance !== undefined;
   }
 
-  /** Whether nothing runs until a restart. */
   get hasFailed(): boolean {
     return this.#hasFailed;
   }
 
-  /** Queries the widget; undefined if there is none, or if the query made it panic. */
+  /** Queries the widget; undefined without an instance, or if the query panicked. */
   ask<T>(question: (widget: Widget, instance: Instance) => T): T | undefined {
     const instance = this.#instance;
     if (instance === undefined) return undefined;
@@ -100,7 +98,7 @@ export class Life implements Visibility, Drawer {
     }
   }
 
-  /** An instance, created now if there is none. */
+  /** Returns the instance, and creates it if necessary. */
   ensureInstance(): Promise<Instance> {
     const widget = this.#host.widget();
     if (widget === undefined) return Promise.reject(new LoadError('there is no such widget'));
@@ -118,11 +116,11 @@ export class Life implements Visibility, Drawer {
     this.#runOrSuspend();
   }
 
-  /** Draws only while it is visible; the first frames are drawn even before. */
+  /** Draws only in view, except for the first frames. */
   inView(isInView: boolean): void {
     this.#isInView = isInView;
     this.#openOrClose();
-    lookAgain();
+    retryWaiting();
   }
 
   get distance(): number {
@@ -131,7 +129,7 @@ export class Life implements Visibility, Drawer {
     const { top, bottom } = frame.getBoundingClientRect();
     const middle = window.innerHeight / 2;
     const isInView = bottom > 0 && top < window.innerHeight;
-    // Half a visible widget has priority over a whole one beyond the edge.
+    // A partly visible widget has priority over any outside the viewport.
     return Math.max(top - middle, middle - bottom, 0) + (isInView ? 1 : 2 * window.innerHeight);
   }
 
@@ -139,14 +137,14 @@ export class Life implements Visibility, Drawer {
     this.#end();
   }
 
-  askAgain(): void {
+  retry(): void {
     if (this.#isNear) void this.#run();
   }
 
-  /** Starts again if the widget is near the screen; a failure is forgotten. */
+  /** Clears a failure, and starts again if the widget is near the screen. */
   restart(): void {
     this.#hasFailed = false;
-    this.#losses = 0;
+    this.#lostContexts = 0;
     if (this.#isNear) void this.#run();
   }
 
@@ -157,7 +155,7 @@ export class Life implements Visibility, Drawer {
     this.suspend();
   }
 
-  /** Draws; does nothing if it draws already, has to wait for others, or failed. */
+  /** Starts to draw, unless it draws already, gets no context, or failed. */
   async #run(): Promise<void> {
     const { stage } = this.#parts;
     const widget = this.#host.widget();
@@ -169,7 +167,7 @@ export class Life implements Visibility, Drawer {
       const instance = await this.ensureInstance();
       await nextTask();
       if (generation !== this.#generation) return;
-      this.#stage = new Stage(stage, instance, widget.title, () => this.fail(new LostError()));
+      this.#stage = new Stage(stage, instance, widget.title, () => this.fail(new ContextLostError()));
       await this.#stage.start();
       await nextTask();
       if (generation === this.#generation) this.#begin(instance, this.#stage);
@@ -178,7 +176,7 @@ export class Life implements Visibility, Drawer {
     }
   }
 
-  /** Releases context and memory. */
+  /** Releases context and memory; waits for no context. */
   suspend(): void {
     this.#end();
     release(this);
@@ -202,27 +200,27 @@ export class Life implements Visibility, Drawer {
     this.#instance?.frames.wake();
   }
 
-  /** Ends an instance that panicked between two frames. */
+  /** Fails if the instance panicked between two frames. */
   checkCrash(): void {
     const crash = this.#instance?.crash();
     if (crash !== undefined) this.fail(crash);
   }
 
-  /** Ends everything and notifies the host, once; starts again if only the context was lost. */
+  /** Ends the instance and notifies the host, once. Retries instead if only the context was lost. */
   fail(error: unknown): void {
     if (this.#hasFailed) return;
     if (this.#stage?.isLost === true) {
-      this.#losses += 1;
-      if (this.#losses <= MOST_LOSSES) {
+      this.#lostContexts += 1;
+      if (this.#lostContexts <= MAX_LOST_CONTEXTS) {
         this.#end();
         if (this.#isNear) void this.#run();
         return;
       }
-      error = new LostError();
+      error = new ContextLostError();
     }
     this.#hasFailed = true;
     if (error instanceof CrashError) {
-      // A crashed instance cannot draw its picture any more, nor free its memory.
+      // After a panic an instance can neither draw its picture nor free its memory.
       this.#instance?.frames.close();
       this.#instance = undefined;
     }
@@ -238,9 +236,9 @@ export class Life implements Visibility, Drawer {
     await nextTask();
     if (generation !== this.#generation) {
       instance.dispose();
-      // It moved within its page, or rests, and an instance is still requested.
-      if (this.#host.isHere()) return this.ensureInstance();
-      throw new TakenAwayError();
+      // The element moved within its page or was suspended, and a caller still waits for an instance.
+      if (this.#host.isConnected()) return this.ensureInstance();
+      throw new RemovedError();
     }
     this.#instance = instance;
     instance.use((widget) => this.#host.prepare(widget));
@@ -255,14 +253,14 @@ export class Life implements Visibility, Drawer {
     instance.frames.open();
   }
 
-  /** The observers report one after the other, and not always consistently while a window changes. */
+  /** Between the two margins nothing changes. During a resize the observers may contradict each other. */
   #runOrSuspend(): void {
     if (this.#isNear) void this.#run();
     else if (this.#isFar) this.suspend();
   }
 
   #openOrClose(): void {
-    // Before its first frame it draws at any position.
+    // The first frame is drawn at any scroll position.
     if (!this.#parts.stage.classList.contains('live')) return;
     if (this.#isInView) this.#instance?.frames.open();
     else this.#instance?.frames.close();
@@ -277,20 +275,20 @@ export class Life implements Visibility, Drawer {
     if (!fits && height > 0) canvas.style.height = `${height}px`;
     else if (!this.#parts.stage.classList.contains('live')) this.#showLive(startedAt);
     const frames = instance.use((widget) => widget.frames());
-    // eframe draws only changes; a canvas without drawing is empty.
+    // eframe paints only changes, and without painting the canvas is empty.
     if (frames !== this.#drawnFrames) this.#host.drew(canvas);
     this.#drawnFrames = frames;
     const wasBusy = this.#isBusy;
     this.#isBusy = instance.use((widget) => widget.wantsFrame());
     if (wasBusy && !this.#isBusy) this.#host.rested();
-    // A new height needs a frame at that height, however slow the machine is.
+    // After a change of height the widget has to be painted again at that height.
     return !fits || this.#isBusy;
   }
 
   #showLive(startedAt: number): void {
     this.#parts.progress.hidden = true;
     this.#parts.stage.classList.replace('waiting', 'live');
-    this.#losses = 0;
+    this.#lostContexts = 0;
     this.#openOrClose();
     this.#host.live(performance.now() - startedAt);
   }

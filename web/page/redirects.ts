@@ -1,13 +1,13 @@
-// Old addresses: what one page held is on several, and each anchor and each widget is led to its page.
+// Redirects of old addresses: the companion was one page, and anchors and widgets are now on several.
 
-/** The page of each anchor and of each widget, by its name. */
+/** The page of each anchor and widget. */
 export interface Places {
   anchors: Record<string, string>;
   widgets: Record<string, string>;
 }
 
-/** Goes to the page with the anchor or the widget of this address if it is not here; states and anchors are kept. */
-export function leadOn({ anchors, widgets }: Places): void {
+/** Redirects to the page with the anchor or widget of the address, if it is not on this one. Keeps query and anchor. */
+export function redirectOldAddress({ anchors, widgets }: Places): void {
   const { hash, search } = location;
   const anchor = decodeURIComponent(hash.slice(1));
   const widget = `w${new URLSearchParams(search).get('w')?.replace(/^w/, '')}`;

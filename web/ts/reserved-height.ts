@@ -1,10 +1,9 @@
-// Reserves the space of a widget before its first frame and while it rests, so that the text around it does
-// not move when the canvas comes and goes.
+// Avoids layout shifts: reserves the height of a widget before its first frame and while its canvas is gone.
 
-/** Widths of a canvas with the widget's height at each of them, in CSS pixels, ascending. */
+/** The widget's height at each width, in CSS pixels, by ascending width. */
 export type Heights = readonly (readonly [width: number, height: number])[];
 
-export class Place {
+export class ReservedHeight {
   readonly #stage: HTMLElement;
   #heights: Heights = [];
   #kept: { width: number; height: number } | undefined;
@@ -13,30 +12,30 @@ export class Place {
     this.#stage = stage;
   }
 
-  /** Reserves the height of a widget at its defaults. */
+  /** Reserves the height at the default values. */
   reserve(heights: Heights): void {
     this.#heights = heights;
     this.#kept = undefined;
     this.fit();
   }
 
-  /** The canvas goes: its picture takes the same space. */
+  /** Keeps the present height for the picture that replaces the canvas. */
   keep(): void {
     const { clientWidth: width, clientHeight: height } = this.#stage;
     this.#kept = { width, height };
     this.fit();
   }
 
-  /** Updates after a possible change of the width or of the available height. */
+  /** Updates the reservation after a resize. */
   fit(): void {
     const width = this.#stage.clientWidth;
     if (width === 0) return;
     const height = this.#kept?.width === width ? this.#kept.height : heightAt(this.#heights, width);
     if (height === undefined) this.free();
-    else this.#stage.style.setProperty('--place', `${Math.min(height, this.room)}px`);
+    else this.#stage.style.setProperty('--reserved-height', `${Math.min(height, this.room)}px`);
   }
 
-  /** The available height: infinite if the element has no `max-height` in its style. */
+  /** The available height; infinite if the element has no `max-height`. */
   get room(): number {
     const frame = this.#stage.parentElement;
     const { host } = this.#stage.getRootNode() as ShadowRoot;
@@ -45,13 +44,13 @@ export class Place {
     return parseFloat(most) - (frame.offsetHeight - this.#stage.offsetHeight);
   }
 
-  /** Nothing will be drawn: the picture takes its natural space. */
+  /** Removes the reservation: the picture gets its natural height. */
   free(): void {
-    this.#stage.style.removeProperty('--place');
+    this.#stage.style.removeProperty('--reserved-height');
   }
 }
 
-/** Interpolates between two widths of the table; constant beyond its ends. */
+/** Linear interpolation between the widths of the table; constant beyond its ends. */
 function heightAt(heights: Heights, width: number): number | undefined {
   const next = heights.findIndex(([known]) => known >= width);
   const [below, above] = [heights.at(next - 1), heights.at(next)];

@@ -1,4 +1,4 @@
-// After a jump to a widget elsewhere on the page, offers to return to the sentence.
+// After a jump to a widget elsewhere on the page: a button that returns to the sentence.
 
 import { accent } from '../../widgets/palette.json';
 import { create } from './dom';
@@ -12,17 +12,17 @@ button { font: 600 0.95rem/1.3 system-ui, sans-serif; color: inherit; background
 button:focus-visible { outline: 3px solid #fff; outline-offset: -5px; }
 @media print { div { display: none; } }
 `;
-/** Who has read on for so many screens does not come back by a button. */
-const MOST_SCREENS = 2;
+/** Distance in screens from the widget at which the button disappears: the reader has read on. */
+const MAX_SCREENS = 2;
 
 let end: (() => void) | undefined;
 
 /**
- * Shows the way from `target` back to a link, or to what has a name, until it was gone or closed, the link is seen again,
- * or the reader has scrolled on.
+ * Shows a button that scrolls from `target` back to `link`. It disappears once pressed or closed, if the link is in view
+ * again, or if the reader scrolls on.
  */
-export function offerWayBack(link: HTMLElement, target: Element, name = `“${link.textContent?.trim() ?? ''}”`): void {
-  endWayBack();
+export function showBackButton(link: HTMLElement, target: Element, name = `“${link.textContent?.trim() ?? ''}”`): void {
+  hideBackButton();
   const host = create('div', { class: 'slam-way-back' });
   const style = create('style');
   style.textContent = STYLE;
@@ -36,17 +36,17 @@ export function offerWayBack(link: HTMLElement, target: Element, name = `“${li
   let hasLeft = false;
   const seen = new IntersectionObserver((entries) => {
     const isSeen = entries.at(-1)?.isIntersecting === true;
-    // The page scrolls only after the click: the sentence is still visible at first.
-    if (isSeen && hasLeft) endWayBack();
+    // The page scrolls only after the click: at first the link is still in view.
+    if (isSeen && hasLeft) hideBackButton();
     hasLeft ||= !isSeen;
   });
   const listening = new AbortController();
-  // The widget itself says how far: pictures that arrive above it move the page, and not the reader.
+  // Relative to the widget: pictures that load above it change the scroll position, too.
   const away = (): number => Math.abs(target.getBoundingClientRect().top);
   let hasArrived = false;
   window.addEventListener('scroll', () => {
     hasArrived ||= away() < window.innerHeight;
-    if (hasArrived && away() > MOST_SCREENS * window.innerHeight) endWayBack();
+    if (hasArrived && away() > MAX_SCREENS * window.innerHeight) hideBackButton();
   }, { passive: true, signal: listening.signal });
   end = () => {
     seen.disconnect();
@@ -54,16 +54,16 @@ export function offerWayBack(link: HTMLElement, target: Element, name = `“${li
     host.remove();
   };
   back.addEventListener('click', () => {
-    endWayBack();
+    hideBackButton();
     link.scrollIntoView({ behavior: 'instant', block: 'center' });
     link.focus({ preventScroll: true });
   });
-  close.addEventListener('click', endWayBack);
+  close.addEventListener('click', hideBackButton);
   document.body.append(host);
   seen.observe(link);
 }
 
-export function endWayBack(): void {
+export function hideBackButton(): void {
   end?.();
   end = undefined;
 }

@@ -1,0 +1,128 @@
+// A pool of workers that run laps. Without workers it runs one lap at a time between frames on the main thread.
+
+import { runLap, LEVELS, type LapRunner, type Lap } from './protocol';
+
+/** More workers heat the machine and save little time. */
+const MAX_WORKERS = 4;
+
+/** Set by the build: the worker's file, with a hash of its content in the name. */
+declare const LAPS_WORKER_FILE: string;
+
+export interface Core {
+  module(): Promise<WebAssembly.Module>;
+  runner(): Promise<LapRunner>;
+}
+
+export class WorkerPool {
+  readonly #core: Core;
+  readonly #lastSeed: number;
+  readonly #onLaps: (laps: Lap[]) => void;
+  #nextSeed = 1;
+  #isActive = false;
+  #hasStarted = false;
+  #workers: Worker[] = [];
+  #idle: Worker[] = [];
+  /** The seed that each busy worker runs. */
+  readonly #assigned = new Map<Worker, number>();
+  /** Seeds of workers that failed. */
+  #retries: number[] = [];
+  #mainThread: Promise<void> | undefined;
+
+  /** Runs the seeds from 1 to `lastSeed` at every level once active; `onLaps` gets the laps of each seed. */
+  constructor(core: Core, lastSeed: number, onLaps: (laps: Lap[]) => void) {
+    this.#core = core;
+    this.#lastSeed = lastSeed;
+    this.#onLaps = onLaps;
+  }
+
+  /** Resumes or pauses; running laps are finished. */
+  setActive(isActive: boolean): void {
+    this.#isActive = isActive;
+    if (!isActive) return;
+    if (!this.#hasStarted) void this.#start();
+    else this.#schedule();
+  }
+
+  async #start(): Promise<void> {
+    this.#hasStarted = true;
+    const module = await this.#core.module();
+    const count = Math.min(Math.max((navigator.hardwareConcurrency ?? 2) - 1, 1), MAX_WORKERS);
+    try {
+      for (let started = 0; started < count; started += 1) this.#addWorker(module);
+    } catch {
+      // A sandboxed page may start no workers.
+    }
+    this.#schedule();
+  }
+
+  #addWorker(module: WebAssembly.Module): void {
+    const worker = new Worker(new URL(LAPS_WORKER_FILE, import.meta.url), { type: 'module' });
+    worker.addEventListener('message', ({ data }: MessageEvent<Lap[]>) => {
+      this.#assigned.delete(worker);
+      this.#onLaps(data);
+      this.#idle.push(worker);
+      this.#schedule();
+    });
+    worker.addEventListener('error', () => this.#removeWorker(worker));
+    worker.postMessage({ module });
+    this.#workers.push(worker);
+    this.#idle.push(worker);
+  }
+
+  /** Removes a worker that failed; its seed is retried. */
+  #removeWorker(worker: Worker): void {
+    const seed = this.#assigned.get(worker);
+    if (seed !== undefined) this.#retries.push(seed);
+    this.#assigned.delete(worker);
+    this.#workers = this.#workers.filter((other) => other !== worker);
+    this.#idle = this.#idle.filter((other) => other !== worker);
+    worker.terminate();
+    this.#schedule();
+  }
+
+  #schedule(): void {
+    if (!this.#isActive) return;
+    if (this.#workers.length === 0) {
+      this.#mainThread ??= this.#runOnMainThread().finally(() => (this.#mainThread = undefined));
+      return;
+    }
+    for (let worker = this.#idle.pop(); worker !== undefined; worker = this.#idle.pop()) {
+      const seed = this.#takeSeed();
+      if (seed === undefined) {
+        if (this.#assigned.size === 0) this.#close();
+        return;
+      }
+      this.#assigned.set(worker, seed);
+      worker.postMessage({ seed });
+    }
+  }
+
+  #takeSeed(): number | undefined {
+    const retry = this.#retries.pop();
+    if (retry !== undefined) return retry;
+    if (this.#nextSeed > this.#lastSeed) return undefined;
+    this.#nextSeed += 1;
+    return this.#nextSeed - 1;
+  }
+
+  /** Frees the memory after the last seed. */
+  #close(): void {
+    for (const worker of this.#workers) worker.terminate();
+    this.#isActive = false;
+  }
+
+  async #runOnMainThread(): Promise<void> {
+    const runner = await this.#core.runner();
+    while (this.#isActive) {
+      const seed = this.#takeSeed();
+      if (seed === undefined) return;
+      const laps: Lap[] = [];
+      for (let level = 0; level < LEVELS.length; level += 1) {
+        // A timer started in an animation frame fires after the frame was painted.
+        await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
+        laps.push(runLap(runner, seed, level));
+      }
+      this.#onLaps(laps);
+    }
+  }
+}
