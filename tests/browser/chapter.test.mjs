@@ -330,7 +330,7 @@ describe('the chapter', () => {
       }
       assert.match(await place.locator('.sketch-says').textContent(), /^You took 5 of 5 right ones and 5 of 5 false ones\./);
       assert.equal(await place.locator('.decide-each li').count(), 10);
-      assert.match(await place.locator('svg').innerHTML(), /false ones taken/);
+      assert.match(await place.locator('svg').innerHTML(), /false ones accepted/);
       await place.getByRole('button', { name: 'Judge again' }).click();
       assert.equal(await place.locator('.decide-count').textContent(), 'Candidate 1 of 10');
     });

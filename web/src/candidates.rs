@@ -123,21 +123,21 @@ impl Candidate {
 }
 
 /// Numbers of accepted right and wrong candidates.
-fn taken(is_taken: impl Fn(usize, &Candidate) -> bool) -> [usize; 2] {
+fn accepted(is_accepted: impl Fn(usize, &Candidate) -> bool) -> [usize; 2] {
     let all = candidates().iter().enumerate();
-    let taken: Vec<_> = all
-        .filter(|(k, candidate)| is_taken(*k, candidate))
+    let accepted: Vec<_> = all
+        .filter(|(k, candidate)| is_accepted(*k, candidate))
         .collect();
-    let right = taken
+    let right = accepted
         .iter()
         .filter(|(_, candidate)| candidate.is_right)
         .count();
-    [right, taken.len() - right]
+    [right, accepted.len() - right]
 }
 
 /// Numbers accepted by both tests at a threshold of the gate.
-fn taken_by_gate(chi2: f64) -> [usize; 2] {
-    taken(|_, candidate| candidate.fits && candidate.chi2 <= chi2)
+fn accepted_by_gate(chi2: f64) -> [usize; 2] {
+    accepted(|_, candidate| candidate.fits && candidate.chi2 <= chi2)
 }
 
 /// The candidates, each with its picture and its registration in words.
@@ -158,8 +158,8 @@ pub fn shown(width_px: f32, theme: Theme) -> Value {
 #[must_use]
 pub fn judged(answers: &[bool], width_px: f32, theme: Theme) -> Value {
     let gate_chi2 = LapConfig::default().slam.chapter.loops.gate_chi2;
-    let [right, wrong] = taken(|k, _| answers.get(k) == Some(&true));
-    let [gate_right, gate_wrong] = taken_by_gate(gate_chi2);
+    let [right, wrong] = accepted(|k, _| answers.get(k) == Some(&true));
+    let [gate_right, gate_wrong] = accepted_by_gate(gate_chi2);
     let scene = Scene {
         panels: vec![curve([right, wrong], [gate_right, gate_wrong])],
     };
@@ -176,7 +176,7 @@ pub fn judged(answers: &[bool], width_px: f32, theme: Theme) -> Value {
         )
     });
     json!({
-        "svg": scene_svg(&scene, "Right and false ones taken", "candidates", width_px, theme),
+        "svg": scene_svg(&scene, "Right and false ones accepted", "candidates", width_px, theme),
         "says": format!(
             "You took {right} of {OF_EACH} right ones and {wrong} of {OF_EACH} false ones. Both tests, at their threshold \
              of {gate_chi2:.3}, take {gate_right} and {gate_wrong}."
@@ -193,15 +193,17 @@ fn curve([right, wrong]: [usize; 2], [gate_right, gate_wrong]: [usize; 2]) -> Pa
     thresholds.push(0.0);
     thresholds.sort_by(f64::total_cmp);
     let spot = |[right, wrong]: [usize; 2]| [wrong as f64, right as f64];
-    let points = thresholds.into_iter().map(|chi2| spot(taken_by_gate(chi2)));
+    let points = thresholds
+        .into_iter()
+        .map(|chi2| spot(accepted_by_gate(chi2)));
     let most = OF_EACH as f64 + 0.5;
     Panel {
         id: "curve",
-        title: "Right and false ones taken".to_owned(),
+        title: "Right and false ones accepted".to_owned(),
         weight: Weight::Main,
         aspect: Aspect::Free,
-        x: Axis::new("false ones taken", -0.5, most),
-        y: Axis::new("right ones taken", -0.5, most),
+        x: Axis::new("false ones accepted", -0.5, most),
+        y: Axis::new("right ones accepted", -0.5, most),
         layers: vec![
             Layer::line(points.collect(), Stroke::Dotted, Tone::Ink, 2.0),
             Layer::points(
@@ -241,7 +243,7 @@ mod tests {
         assert_eq!(right, OF_EACH);
         // A reader who knows the truth is better than every threshold.
         for threshold in [0.5, 2.0, 7.815, 20.0, 1e6] {
-            assert_ne!(taken_by_gate(threshold), [OF_EACH, 0], "{threshold}");
+            assert_ne!(accepted_by_gate(threshold), [OF_EACH, 0], "{threshold}");
         }
     }
 

@@ -298,7 +298,7 @@ impl<'a> Session<'a> {
             (_, Stage::First) => {
                 self.stage = Stage::Second;
                 self.start_from(Start::Chordal).is_ok() && {
-                    self.keep_on_where_chordal_costs_more();
+                    self.resume_first_if_chordal_costs_more();
                     true
                 }
             }

@@ -11,7 +11,7 @@ use crate::motion::Motion;
 use crate::remark::{Part, Remark, Verdict};
 
 /// A lower share of returns suggests a covered laser or wrong range limits.
-const LEAST_VALID: f64 = 0.1;
+const MIN_VALID: f64 = 0.1;
 
 /// Summary of the scans.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -187,7 +187,7 @@ fn sensor_remark(sensor: &SensorSummary) -> Remark {
         sensor.rate_hz,
         100.0 * sensor.valid
     );
-    if sensor.valid < LEAST_VALID {
+    if sensor.valid < MIN_VALID {
         let text = format!(
             "{text}. Check range_min and range_max, and whether something covers the laser"
         );

@@ -3,7 +3,7 @@
 use std::io::{self, BufRead};
 
 /// Longer lines are not log text: a scan of 10,000 beams has 100 kB.
-const MOST_BYTES: usize = 1 << 22;
+const MAX_BYTES: usize = 1 << 22;
 
 /// How a line ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +32,7 @@ pub fn next_line(
         }
         let end = buffer.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
         let part = &buffer[..end.unwrap_or(buffer.len())];
-        let room = MOST_BYTES - line.len();
+        let room = MAX_BYTES - line.len();
         is_kept &= part.len() <= room;
         line.extend_from_slice(&part[..part.len().min(room)]);
         let is_cr = end.is_some_and(|end| buffer[end] == b'\r');
@@ -123,12 +123,12 @@ mod tests {
 
     #[test]
     fn a_line_that_never_ends_costs_no_memory_and_the_next_one_is_read() {
-        let mut text = vec![b'x'; MOST_BYTES + 100];
+        let mut text = vec![b'x'; MAX_BYTES + 100];
         text.extend_from_slice(b"\nnext");
         let mut source = &text[..];
         let mut line = Vec::new();
         let (end, bytes) = next_line(&mut source, &mut line).unwrap().unwrap();
-        assert_eq!((end, bytes), (LineEnd::TooLong, MOST_BYTES as u64 + 101));
+        assert_eq!((end, bytes), (LineEnd::TooLong, MAX_BYTES as u64 + 101));
         let (end, _) = next_line(&mut source, &mut line).unwrap().unwrap();
         assert_eq!((end, &line[..]), (LineEnd::CutOff, &b"next"[..]));
         assert_eq!(next_line(&mut source, &mut line).unwrap(), None);

@@ -11,7 +11,7 @@ use flate2::bufread::MultiGzDecoder;
 use ruzstd::decoding::StreamingDecoder;
 
 /// Most bytes of a decompressed SQLite file: it needs random access and is kept in memory.
-const MOST_UNPACKED: u64 = 1 << 30;
+const MAX_UNPACKED: u64 = 1 << 30;
 
 /// First bytes of gzip.
 const GZIP: &[u8] = b"\x1f\x8b";
@@ -75,9 +75,9 @@ impl<'a> LogBytes<'a> {
         drop(source);
         let mut bytes = Vec::new();
         self.stream()?
-            .take(MOST_UNPACKED + 1)
+            .take(MAX_UNPACKED + 1)
             .read_to_end(&mut bytes)?;
-        if bytes.len() as u64 > MOST_UNPACKED {
+        if bytes.len() as u64 > MAX_UNPACKED {
             return Err(io::Error::other(
                 "it decompresses to more than 1 GB; decompress it with zstd -d or gunzip first",
             ));

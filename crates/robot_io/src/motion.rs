@@ -30,7 +30,7 @@ use lag::Heading;
 const STRETCH_M: f64 = 0.3;
 const STRETCH_RAD: f64 = 0.25;
 /// Scans closer in time add no information, s.
-const LEAST_APART_S: f64 = 0.08;
+const MIN_APART_S: f64 = 0.08;
 
 /// A segment of the path, by scans and by odometry.
 #[derive(Clone, Copy, Debug)]
@@ -67,7 +67,7 @@ impl Comparison {
     }
 
     fn take(&mut self, log: &LogFrame) {
-        if log.stamp_s - self.last_s < LEAST_APART_S {
+        if log.stamp_s - self.last_s < MIN_APART_S {
             return;
         }
         let frame = Frame {

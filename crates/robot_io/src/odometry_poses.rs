@@ -8,7 +8,7 @@ use crate::counted::counted;
 use crate::remark::{Part, Remark};
 
 /// Most poses kept of a log that is read once: 20 s at 200 per second.
-const MOST_POSES: usize = 4096;
+const MAX_POSES: usize = 4096;
 /// A pose is valid this long before the first and after the last one, s: until the next message would have come.
 const SLACK_S: f64 = 0.25;
 /// Poses farther apart than this are not interpolated, s.
@@ -20,9 +20,9 @@ const LONGEST_GAP_PERIODS: f64 = 10.0;
 /// last value (m/s) count as that.
 const JUMP: f64 = 0.5;
 const JUMP_SPEEDS: f64 = 10.0;
-const LEAST_SPEED: f64 = 0.3;
+const MIN_SPEED: f64 = 0.3;
 /// Least time between poses for a speed, s.
-const LEAST_APART_S: f64 = 1e-3;
+const MIN_APART_S: f64 = 1e-3;
 
 /// Odometry poses of the body in the order of time.
 #[derive(Clone, Debug)]
@@ -68,7 +68,7 @@ impl OdometryPoses {
         {
             return;
         }
-        if self.poses.len() == MOST_POSES {
+        if self.poses.len() == MAX_POSES {
             self.poses.pop_front();
         }
         self.poses.push_back((stamp_s, pose));
@@ -130,7 +130,7 @@ pub fn take_jumps_out(poses: &mut [(f64, SE2)]) -> Vec<f64> {
     let step = |two: &[(f64, SE2)]| {
         let motion = two[0].1.between(&two[1].1);
         let moved = math::norm2(motion.x(), motion.y());
-        (moved, moved / (two[1].0 - two[0].0).max(LEAST_APART_S))
+        (moved, moved / (two[1].0 - two[0].0).max(MIN_APART_S))
     };
     let mut speeds: Vec<f64> = poses.windows(2).map(|two| step(two).1).collect();
     sort_numbers(&mut speeds);
@@ -145,7 +145,7 @@ pub fn take_jumps_out(poses: &mut [(f64, SE2)]) -> Vec<f64> {
         // The pose before was shifted already.
         let unmoved = moved_back.inverse() * before;
         let (moved, speed) = step(&[(poses[at - 1].0, unmoved), (poses[at].0, after)]);
-        if moved > JUMP && speed > JUMP_SPEEDS * usual.max(LEAST_SPEED) {
+        if moved > JUMP && speed > JUMP_SPEEDS * usual.max(MIN_SPEED) {
             jumps.push(poses[at].0);
             moved_back = before * after.inverse();
         }

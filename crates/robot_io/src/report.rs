@@ -13,7 +13,7 @@ use crate::map_image::MapImage;
 use crate::quality::{LinkQuality, Quality};
 
 /// Longer tables are cut after this many rows, with a note.
-const MOST_ROWS: usize = 2000;
+const MAX_ROWS: usize = 2000;
 
 const STYLE: &str = "
 :root { color-scheme: light dark; --ink: #1d1d1f; --paper: #fff; --faint: #66666b; --wall: #333;
@@ -148,7 +148,7 @@ fn loops_table(page: &mut String, title: &str, loops: &[LinkQuality]) {
              <th class=\"text\">verdict</tr>"
         ),
     );
-    for tried in loops.iter().take(MOST_ROWS) {
+    for tried in loops.iter().take(MAX_ROWS) {
         let verdict = match (&tried.reason, tried.accepted) {
             (_, true) => "closed".to_owned(),
             (Some(why), false) => format!("rejected: {why}"),
@@ -182,7 +182,7 @@ fn keyframes_table(page: &mut String, quality: &Quality) {
              <tr><th>keyframe<th>time, s<th>x, m<th>y, m<th>heading, °<th>σ position, m<th>σ heading, °</tr>"
         ),
     );
-    for (index, keyframe) in quality.keyframes.iter().take(MOST_ROWS).enumerate() {
+    for (index, keyframe) in quality.keyframes.iter().take(MAX_ROWS).enumerate() {
         let [x, y, theta] = keyframe.pose;
         push_line(
             page,
@@ -201,12 +201,12 @@ fn keyframes_table(page: &mut String, quality: &Quality) {
 }
 
 fn more(page: &mut String, rows: usize) {
-    if rows > MOST_ROWS {
+    if rows > MAX_ROWS {
         push_line(
             page,
             format_args!(
                 "<p class=\"key\">{} more rows are in quality.json.</p>",
-                rows - MOST_ROWS
+                rows - MAX_ROWS
             ),
         );
     }

@@ -13,7 +13,7 @@ use crate::remark::Remark;
 use crate::stamps::MendedStamps;
 
 /// Most frames that wait for an earlier one which comes later in the file.
-const MOST_WAITING: usize = 1024;
+const MAX_WAITING: usize = 1024;
 
 /// Stamp as an ordered integer, and number of the frame.
 type Key = (u64, usize);
@@ -134,7 +134,7 @@ impl<R: LogReader> LogReader for Restamped<R> {
                     .copied()
                     .unwrap_or(f64::INFINITY),
             };
-            let is_full = self.waiting.len() > MOST_WAITING;
+            let is_full = self.waiting.len() > MAX_WAITING;
             if let Some(first) = self.waiting.last_entry()
                 && (is_full || self.is_done || first.get().stamp_s <= bound_s)
             {

@@ -31,7 +31,7 @@ pub const VERSION: u32 = 4;
 /// Default name of a session in the folder of a run.
 pub const FILE_NAME: &str = "session.slam2d";
 /// Larger files are rejected before they are read, bytes: 150,000 keyframes.
-pub const MOST_BYTES: u64 = 1 << 29;
+pub const MAX_BYTES: u64 = 1 << 29;
 
 /// Bytes of magic, version and length.
 const HEAD_BYTES: usize = 20;
@@ -170,7 +170,7 @@ impl Session {
             name: name.to_owned(),
             source,
         };
-        let mut source = source.take(MOST_BYTES + 1);
+        let mut source = source.take(MAX_BYTES + 1);
         source.read_to_end(&mut file).map_err(io_error)?;
         Self::from_bytes(&file, name)
     }
@@ -184,7 +184,7 @@ impl Session {
         if file.is_empty() {
             return Err(SessionError::Empty { name: named() });
         }
-        if file.len() as u64 > MOST_BYTES {
+        if file.len() as u64 > MAX_BYTES {
             return Err(SessionError::TooLarge { name: named() });
         }
         let known = file.len().min(MAGIC.len());

@@ -16,13 +16,13 @@ use pr_geom::sort_numbers;
 /// Number of stamps on each side that a stamp is compared with.
 const NEIGHBOURS: usize = 5;
 /// A stamp closer than this to the median of its neighbours is accepted, s.
-const LEAST_OFF_S: f64 = 0.5;
+const MIN_OFF_S: f64 = 0.5;
 /// The same in periods of the stream.
-const LEAST_OFF_PERIODS: f64 = 8.0;
+const MIN_OFF_PERIODS: f64 = 8.0;
 /// Smaller steps back are swapped messages, s.
-const LEAST_STEP_S: f64 = 1.0;
+const MIN_STEP_S: f64 = 1.0;
 /// Smallest step that the time of recording can show, s, and in multiples of the jitter.
-const LEAST_STEP_BY_RECORD_S: f64 = 0.15;
+const MIN_STEP_BY_RECORD_S: f64 = 0.15;
 const JITTERS: f64 = 8.0;
 /// Messages with coarse stamps are assumed to be at most this far apart, s.
 const LONGEST_SPREAD_S: f64 = 1.0;
@@ -161,7 +161,7 @@ impl<'a> Work<'a> {
             .filter(|&at| self.is_good[at])
             .collect();
         let stamps: Vec<f64> = good.iter().map(|&at| self.stamps_s[at]).collect();
-        let far_s = (LEAST_OFF_PERIODS * period_s(&stamps)).max(LEAST_OFF_S);
+        let far_s = (MIN_OFF_PERIODS * period_s(&stamps)).max(MIN_OFF_S);
         let all_ahead_s = self.ahead_s(0, self.stamps_s.len());
         let mut outliers = Vec::new();
         for (k, &at) in good.iter().enumerate() {
@@ -201,7 +201,7 @@ impl<'a> Work<'a> {
             let before = &stamps[cut.saturating_sub(NEIGHBOURS)..cut];
             let after = &stamps[cut..stamps.len().min(cut + NEIGHBOURS)];
             let is_wide = before.len() >= NEIGHBOURS && after.len() >= NEIGHBOURS;
-            is_wide && lowest(before) > highest(after) + LEAST_STEP_S
+            is_wide && lowest(before) > highest(after) + MIN_STEP_S
         })
     }
 
@@ -222,7 +222,7 @@ impl<'a> Work<'a> {
             .collect();
         let period_s = period_s(&good.iter().map(|&at| self.stamps_s[at]).collect::<Vec<_>>());
         let original: Vec<f64> = self.stamps_s.clone();
-        let least_s = (JITTERS * self.jitter_s(&good)).max(LEAST_STEP_BY_RECORD_S);
+        let least_s = (JITTERS * self.jitter_s(&good)).max(MIN_STEP_BY_RECORD_S);
         let mut steps = Vec::new();
         for k in 1..good.len() {
             let (last, now) = (good[k - 1], good[k]);
@@ -248,7 +248,7 @@ impl<'a> Work<'a> {
                 jumps && goes_on && by_s.abs() >= least_s
             });
             let stamps = |of: &[usize]| of.iter().map(|&at| original[at]).collect::<Vec<_>>();
-            let goes_back = lowest(&stamps(before)) > highest(&stamps(after)) + LEAST_STEP_S;
+            let goes_back = lowest(&stamps(before)) > highest(&stamps(after)) + MIN_STEP_S;
             let Some(by_s) = by_record.or(goes_back.then_some(moved_s - period_s)) else {
                 continue;
             };

@@ -62,7 +62,7 @@ pub enum TextError {
 }
 
 /// Stamps of at least this are nanoseconds: eleven days after 1970.
-const LEAST_STAMP_NS: f64 = 1e15;
+const MIN_STAMP_NS: f64 = 1e15;
 /// A nanosecond stamp that overflowed a 32-bit integer.
 const OVERFLOWN: f64 = 2_147_483_647.0;
 
@@ -89,7 +89,7 @@ impl Trajectory {
         let mut poses: Vec<StampedPose> = Vec::new();
         let mut numbers = NumberLines::new(source, name, TUM_LINE);
         while let Some([stamp, x, y, _, a, b, c, d]) = numbers.next_line()? {
-            let is_euroc = numbers.has_commas && stamp >= LEAST_STAMP_NS;
+            let is_euroc = numbers.has_commas && stamp >= MIN_STAMP_NS;
             let (stamp_s, [qx, qy, qz, qw]) = if is_euroc {
                 (stamp * 1e-9, [b, c, d, a])
             } else {

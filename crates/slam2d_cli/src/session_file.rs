@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{BufRead, Read};
 use std::path::{Path, PathBuf};
 
-use robot_io::session::{FILE_NAME, MOST_BYTES, Session, SessionError};
+use robot_io::session::{FILE_NAME, MAX_BYTES, Session, SessionError};
 use thiserror::Error;
 
 use crate::log_file::{FileError, open};
@@ -53,9 +53,9 @@ pub fn read_session(path: &Path) -> Result<(Session, u64), SessionFileError> {
     let name = file.display().to_string();
     let source = open(&file)?;
     let bytes = fs::metadata(&file).map_or(0, |about| about.len());
-    if bytes > MOST_BYTES {
+    if bytes > MAX_BYTES {
         return Err(SessionError::TooLarge { name }.into());
     }
-    let session = Session::read(source.take(MOST_BYTES + 1), &name)?;
+    let session = Session::read(source.take(MAX_BYTES + 1), &name)?;
     Ok((session, bytes))
 }

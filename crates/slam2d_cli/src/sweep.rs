@@ -174,7 +174,7 @@ pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
             let part = args.shard.unwrap_or(Shard::WHOLE);
             let driven = pool.install(|| shard::drive(args, &trial, part, path))?;
             if args.shard.is_some() {
-                say_driven(&driven, path, args.json);
+                print_shard(&driven, path, args.json);
                 return Ok(());
             }
             driven.by_seed
@@ -199,7 +199,7 @@ fn print(args: &SweepArgs, by_seed: &[Vec<LapOutcome>]) {
 }
 
 /// Prints where the rows of a shard are: a part of a sweep has no distribution of its own.
-fn say_driven(driven: &shard::ShardResult, path: &Path, json: bool) {
+fn print_shard(driven: &shard::ShardResult, path: &Path, json: bool) {
     let file = path.display();
     if json {
         print_json(&serde_json::json!({

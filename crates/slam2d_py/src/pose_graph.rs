@@ -176,7 +176,7 @@ fn check_tied(problem: &Problem) -> PyResult<()> {
 }
 
 /// The solver's error, with the node by its number.
-fn told(error: pr_optim::OptimizeError) -> PyErr {
+fn py_error(error: pr_optim::OptimizeError) -> PyErr {
     OptimizeError::new_err(error.to_string())
 }
 
@@ -187,7 +187,7 @@ impl PoseGraph {
         Self::of_file(&GraphFile::default())
     }
 
-    /// Reads a file of g2o, TORO or JSON; the formats are told apart by what stands in it.
+    /// Reads a file of g2o, TORO or JSON; the content decides the format.
     ///
     /// Raises OSError if the file cannot be read, GraphError with the line that is wrong.
     #[staticmethod]
@@ -331,13 +331,13 @@ impl PoseGraph {
             let chi2_initial = graph.problem.chi2();
             let mut solved = graph.problem.clone();
             let mut optimizer = Optimizer::new(settings);
-            let session = Session::new(&mut optimizer, &mut solved, *start).map_err(told)?;
+            let session = Session::new(&mut optimizer, &mut solved, *start).map_err(py_error)?;
             let outcome = session.run();
             if let StopReason::Failed { error } = outcome.report.stop {
-                return Err(told(error));
+                return Err(py_error(error));
             }
             if !outcome.report.chi2.is_finite() {
-                return Err(told(pr_optim::OptimizeError::NotFinite));
+                return Err(py_error(pr_optim::OptimizeError::NotFinite));
             }
             graph.problem = solved;
             Ok(OptimizeReport {
@@ -365,7 +365,7 @@ impl PoseGraph {
     fn marginals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let covariances = py.detach(|| {
             let marginals = Optimizer::default().marginals(&self.tied()?);
-            marginals.map_err(told)
+            marginals.map_err(py_error)
         });
         arrays::of_matrices(py, &covariances?)
     }
@@ -387,7 +387,7 @@ impl PoseGraph {
             let problem = self.tied()?;
             let joint = Optimizer::default().joint_covariance(&problem, i, j);
             let poses = problem.poses();
-            Ok::<_, PyErr>(joint.map_err(told)?.relative(&poses[i], &poses[j]))
+            Ok::<_, PyErr>(joint.map_err(py_error)?.relative(&poses[i], &poses[j]))
         });
         arrays::of_matrix(py, &covariance?)
     }
@@ -404,7 +404,7 @@ impl PoseGraph {
                 jacobians: JacobianModel::Exact,
                 ..Settings::default()
             };
-            select_inliers(&problem, &trusted, solver, &GncSettings::default()).map_err(told)
+            select_inliers(&problem, &trusted, solver, &GncSettings::default()).map_err(py_error)
         });
         Ok(PyArray1::from_vec(py, selection?.inliers))
     }

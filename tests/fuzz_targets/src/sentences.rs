@@ -3,7 +3,7 @@
 /// File name of the input.
 pub const NAME: &str = "it.file";
 /// Longest message: it may list twenty topics of a recording with their types.
-const MOST_BYTES: usize = 3000;
+const MAX_BYTES: usize = 3000;
 
 /// Asserts that an error is one line that starts with the file name.
 pub fn assert_refusal(said: &str) {
@@ -13,6 +13,6 @@ pub fn assert_refusal(said: &str) {
 
 /// Asserts that a message can be printed on one line.
 pub fn assert_sentence(said: &str) {
-    assert!((10..MOST_BYTES).contains(&said.len()), "{said:?}");
+    assert!((10..MAX_BYTES).contains(&said.len()), "{said:?}");
     assert!(!said.contains(char::is_control), "{said:?}");
 }

@@ -3,9 +3,9 @@
 use super::document::companion;
 
 /// Largest number of words, folded text included; a formula counts as one word, code as none.
-const MOST_WORDS: usize = 7_000;
+const MAX_WORDS: usize = 7_000;
 /// Largest number of words outside of folded text.
-const MOST_SEEN_WORDS: usize = 5_300;
+const MAX_SEEN_WORDS: usize = 5_300;
 
 /// The source between two positions without the elements in `dropped`, including nested ones.
 fn without(html: &str, dropped: &str) -> String {
@@ -55,8 +55,8 @@ fn the_pages_are_short_without_their_exercises() {
     let before = without(&formulas_as_words, "tex");
     let (all, seen) = (words(&before), words(&without(&before, "details")));
     println!("{all} words without the exercises, {seen} of them unfolded");
-    assert!(all <= MOST_WORDS, "{all} words");
-    assert!(seen <= MOST_SEEN_WORDS, "{seen} words unfolded");
+    assert!(all <= MAX_WORDS, "{all} words");
+    assert!(seen <= MAX_SEEN_WORDS, "{seen} words unfolded");
     let counted = words("<p>A <b>bold</b> word, 0.24&nbsp;m – and <i>one</i></p><p>more.</p>");
     assert_eq!(counted, 8);
 }

@@ -109,7 +109,7 @@ impl<'a> Engine<'a> {
         let start = source.fill_buf().map_err(describe)?;
         let lower = name.to_ascii_lowercase();
         if Session::begins(start) || lower.ends_with(".slam2d") {
-            if size_bytes > session::MOST_BYTES {
+            if size_bytes > session::MAX_BYTES {
                 let too_large = session::SessionError::TooLarge {
                     name: name.to_owned(),
                 };
@@ -123,7 +123,7 @@ impl<'a> Engine<'a> {
             .any(|end| lower.ends_with(end));
         let work =
             if !start.is_empty() && (is_graph || LogFormat::detect(start) == LogFormat::Graph) {
-                if size_bytes > graph_log::MOST_BYTES {
+                if size_bytes > graph_log::MAX_BYTES {
                     return Err(format!("{name} is larger than a pose graph of 256 MB"));
                 }
                 let mut bytes = Vec::new();

@@ -12,7 +12,7 @@ use robot_io::rosbag2;
 use robot_io::run::OdometryUse;
 
 /// Largest metadata file, bytes.
-const MOST_METADATA: u64 = 1 << 20;
+const MAX_METADATA: u64 = 1 << 20;
 
 /// A given file.
 pub struct GivenFile<'a> {
@@ -58,7 +58,7 @@ impl<'a> Given<'a> {
             let mut text = String::new();
             let source = files[at].bytes.stream();
             source
-                .and_then(|source| source.take(MOST_METADATA).read_to_string(&mut text))
+                .and_then(|source| source.take(MAX_METADATA).read_to_string(&mut text))
                 .map_err(|problem| format!("{} cannot be read: {problem}", names[at]))?;
             metadata = Some(text);
         }

@@ -9,7 +9,7 @@ use robot_io::quality::GATE_CHI2;
 use crate::links::{Link, Verdict};
 
 /// Larger text graphs are not read, bytes.
-pub const MOST_BYTES: u64 = 1 << 28;
+pub const MAX_BYTES: u64 = 1 << 28;
 /// Initial damping of the solver, relative to the diagonal.
 const DAMPING: f64 = 1e-4;
 

@@ -9,7 +9,7 @@ use crate::update::Update;
 /// Size of the finest cells, m.
 const FINEST_M: f64 = 0.05;
 /// A picture with more cells gets coarser ones.
-const MOST_CELLS: usize = 1_000_000;
+const MAX_CELLS: usize = 1_000_000;
 /// The map is repainted if a scan has moved by more than this share of a cell.
 const MOVED_CELLS: f64 = 0.5;
 /// The same for its heading, rad.
@@ -81,7 +81,7 @@ impl MapPicture {
             return None;
         }
         let map = self.map.finish().ok()?;
-        if map.width * map.height > MOST_CELLS {
+        if map.width * map.height > MAX_CELLS {
             self.begin(2.0 * self.cell_m);
             return None;
         }

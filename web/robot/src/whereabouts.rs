@@ -24,7 +24,7 @@ pub const HEAD: usize = 7;
 /// 1σ ellipse, long and short (m), and the heading of the long one (rad); NaN if unknown.
 pub const PLACE: usize = 10;
 /// Most scans in an update: of a longer log every n-th scan is sent.
-const MOST_SENT: usize = 20_000;
+const MAX_SENT: usize = 20_000;
 /// An update is sent once the number of scans has grown by this factor.
 const RESEND_GROWTH: f64 = 1.02;
 
@@ -161,7 +161,7 @@ impl<'a> Whereabouts<'a> {
             count(Verdict::Lost),
             first.map_or(f64::NAN, |first| first as f64),
         ];
-        let stride = reports.len().div_ceil(MOST_SENT).max(1);
+        let stride = reports.len().div_ceil(MAX_SENT).max(1);
         let posed = reports.iter().zip(&self.poses).enumerate();
         for (number, (report, anchored)) in posed.step_by(stride) {
             let pose = anchored.and_then(|anchored| world_pose(map, anchored));

@@ -16,7 +16,7 @@ use super::{Shown, Sketch, Slider};
 /// Width of a cell, and largest distance of a partner, m.
 const TAU_M: f64 = 0.5;
 /// Largest number of points in a cell.
-const MOST_IN_A_CELL: usize = 20;
+const MAX_IN_A_CELL: usize = 20;
 /// The query point, m, in the world's frame: near a wall that the first sweep sees.
 const QUERY: [f64; 2] = [1.3, 3.65];
 /// Half the side of the picture of the cells, m.
@@ -142,7 +142,7 @@ struct Grown {
 
 impl Grown {
     fn with_count(count: usize) -> Self {
-        let mut map = VoxelMap::new(TAU_M, MOST_IN_A_CELL);
+        let mut map = VoxelMap::new(TAU_M, MAX_IN_A_CELL);
         sweeps()
             .iter()
             .take(count)
@@ -318,7 +318,7 @@ mod tests {
             points(&few),
             points(&all)
         );
-        assert!(all.compared().len() <= 9 * MOST_IN_A_CELL);
+        assert!(all.compared().len() <= 9 * MAX_IN_A_CELL);
         assert!(all.compared().len() < 2 * few.compared().len());
         assert_eq!(
             all.tree.cuts_to_the_deepest(bounds()).len(),

@@ -258,7 +258,9 @@ impl Pointer {
                 ui.ctx().set_cursor_icon(CursorIcon::Grab);
             }
             if let Some(label) = handle_label(panel, to, at) {
-                let tooltip = Tooltip::for_widget(response).at_pointer().gap(POINTER_GAP_PX);
+                let tooltip = Tooltip::for_widget(response)
+                    .at_pointer()
+                    .gap(POINTER_GAP_PX);
                 tooltip.show(|ui| ui.label(label));
             }
         }

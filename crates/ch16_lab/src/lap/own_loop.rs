@@ -29,14 +29,14 @@ const ASSERTED_SIGMA_M: f64 = 0.05;
 const ASSERTED_SIGMA_RAD: f64 = core::f64::consts::PI / 180.0;
 
 /// Largest number of reweighting rounds, and the relative change of the weight at which they stop.
-const MOST_ROUNDS: usize = 60;
+const MAX_ROUNDS: usize = 60;
 const WEIGHT_TOLERANCE: f64 = 1e-6;
 
 /// Relative increase of the cost that rounding may cause.
 const COST_SLACK: f64 = 1e-9;
 
 /// Largest number of solver iterations: a wrong loop bends the whole graph.
-const MOST_ITERATIONS: usize = 100;
+const MAX_ITERATIONS: usize = 100;
 
 /// The cost of an edge of the graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -269,12 +269,12 @@ impl Site<'_> {
         let cost_before = chi2_before - loop_chi2 + kernel.cost(loop_chi2);
         let mut iterations = 0;
         let mut rejection = None;
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             let weight = kernel.weight(loop_chi2);
             graph.pop_edge();
             put(graph, verification, weight);
             let tolerance = self.config.slam.optimizer_tolerance;
-            let report = graph.optimize(MOST_ITERATIONS, tolerance);
+            let report = graph.optimize(MAX_ITERATIONS, tolerance);
             iterations += report.iterations;
             graph.pop_edge();
             loop_chi2 = put(graph, verification, 1.0);

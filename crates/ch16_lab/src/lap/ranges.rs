@@ -142,7 +142,7 @@ const START_Y: ConfigRange = ConfigRange {
 const WIDE: f64 = 50.0;
 
 /// A lap of the chapter has 129 ticks; a driver that never arrives is stopped at this limit.
-const MOST_RANDOM_TICKS: usize = 300;
+const MAX_RANDOM_TICKS: usize = 300;
 
 impl ConfigRange {
     /// Draws a number from the range, sometimes exactly one of its ends.
@@ -174,7 +174,7 @@ pub fn random_config(seed: u32) -> LapConfig {
         }
     }
     config.drive.seed = seed;
-    config.drive.max_ticks = config.drive.max_ticks.min(MOST_RANDOM_TICKS);
+    config.drive.max_ticks = config.drive.max_ticks.min(MAX_RANDOM_TICKS);
     let start = config.drive.start;
     if rng.unit() < 0.5 {
         config.drive.start = SE2::new(start.x(), start.y(), rng.uniform(-PI, PI));

@@ -73,7 +73,7 @@ impl Session<'_> {
     }
 
     /// Continues the abandoned first attempt if the chordal relaxation costs more than its result.
-    pub(super) fn keep_on_where_chordal_costs_more(&mut self) {
+    pub(super) fn resume_first_if_chordal_costs_more(&mut self) {
         let cost = self.optimizer.cost_at(self.problem, self.problem.poses());
         let first = self.ended.last().expect("the first attempt has ended");
         let was_given_up = matches!(first.report.stop, StopReason::LowGainRatio { .. });

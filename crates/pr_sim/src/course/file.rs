@@ -11,7 +11,7 @@ use crate::world::{Bounds, Wall, World};
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Largest number of characters of the JSON parser's message.
-const MOST_QUOTED: usize = 200;
+const MAX_QUOTED: usize = 200;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -94,7 +94,7 @@ fn refusal(error: &serde_json::Error) -> CourseError {
     let words = words.strip_suffix(&place).unwrap_or(&words);
     // The message may quote any text of the file.
     let printable = words.chars().filter(|c| !c.is_control());
-    let problem: String = printable.take(MOST_QUOTED).collect();
+    let problem: String = printable.take(MAX_QUOTED).collect();
     match error.classify() {
         Category::Data => CourseError::NotACourse {
             line,

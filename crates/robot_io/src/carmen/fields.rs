@@ -8,7 +8,7 @@ use crate::log::LogFrame;
 use crate::plausible::{plausible_pose, plausible_stamp_s};
 
 /// More beams than any planar laser has.
-const MOST_BEAMS: usize = 100_000;
+const MAX_BEAMS: usize = 100_000;
 
 /// The words of a line, one after the other.
 pub struct Fields<'a> {
@@ -47,10 +47,10 @@ impl<'a> Fields<'a> {
     pub fn list(&mut self, name: &str) -> Result<Vec<f64>, String> {
         let text = self.word();
         let count = match text.parse::<usize>() {
-            Ok(count) if count <= MOST_BEAMS => count,
+            Ok(count) if count <= MAX_BEAMS => count,
             _ => {
                 return Err(format!(
-                    "the number of {name} must be an integer up to {MOST_BEAMS}, not ‘{}’",
+                    "the number of {name} must be an integer up to {MAX_BEAMS}, not ‘{}’",
                     printable(text)
                 ));
             }

@@ -8,7 +8,7 @@ use crate::log::LogFrame;
 use crate::odometry_poses::OdometryPoses;
 
 /// Most scans that wait; beyond it, a scan takes the last known odometry.
-const MOST_WAITING: usize = 64;
+const MAX_WAITING: usize = 64;
 
 /// Scans without a pose, and the latest odometry poses: a scan may be logged after odometry that is newer than it.
 #[derive(Debug, Default)]
@@ -41,7 +41,7 @@ impl RawScans {
     pub fn pop(&mut self, is_done: bool) -> Option<LogFrame> {
         let stamp_s = self.waiting.front()?.stamp_s;
         let is_covered = self.odometry.reaches(stamp_s);
-        if !is_covered && !is_done && self.waiting.len() <= MOST_WAITING {
+        if !is_covered && !is_done && self.waiting.len() <= MAX_WAITING {
             return None;
         }
         let mut frame = self.waiting.pop_front()?;

@@ -20,7 +20,7 @@ const MOUNT_OFF_AXIS: [f64; 2] = [0.02, 0.01];
 /// Path length and turn after which a map pose has visibly drifted from odometry, m and rad.
 const MOUNT_TEST_MOTION: [f64; 2] = [0.3, 0.3];
 /// Most scans that wait for the mounting.
-const MOST_WAITING: usize = 512;
+const MAX_WAITING: usize = 512;
 
 /// Geometry of the front laser by PARAM lines and the first scans.
 #[derive(Clone, Debug, Default)]
@@ -160,7 +160,7 @@ impl FrontLaser {
             self.mount = is_mount.then_some(mount);
         } else if !self.is_one_mount()
             || self.has_moved_enough()
-            || self.waiting.len() >= MOST_WAITING
+            || self.waiting.len() >= MAX_WAITING
         {
             self.choose_mount();
         }

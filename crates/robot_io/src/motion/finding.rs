@@ -13,10 +13,10 @@ use crate::remark::{NO_ODOMETRY, Part, Remark};
 use crate::stamps::median;
 
 /// Fewer segments are not evaluated.
-const LEAST_STRETCHES: usize = 8;
+const MIN_STRETCHES: usize = 8;
 /// A shorter path or less turning is not evaluated, m and rad.
-const LEAST_M: f64 = 2.0;
-const LEAST_RAD: f64 = 1.5;
+const MIN_M: f64 = 2.0;
+const MIN_RAD: f64 = 1.5;
 /// Turns with at least this absolute correlation agree, or are opposite.
 const AGREE: f64 = 0.8;
 /// Directional concentration of the displacements needed for a turned mounting, and for a small correction.
@@ -116,10 +116,10 @@ impl Motion {
                 .sum(),
             ..Self::default()
         };
-        if stretches.len() < LEAST_STRETCHES {
+        if stretches.len() < MIN_STRETCHES {
             return motion;
         }
-        if motion.moved_m >= LEAST_M {
+        if motion.moved_m >= MIN_M {
             let by_odometry: f64 = stretches.iter().map(|stretch| length(&stretch.body)).sum();
             let turned: f64 = stretches
                 .iter()
@@ -136,7 +136,7 @@ impl Motion {
         let both = sum(|stretch| stretch.sensor.theta() * stretch.body.theta());
         let of_scans = sum(|stretch| stretch.sensor.theta() * stretch.sensor.theta());
         let of_body = sum(|stretch| stretch.body.theta() * stretch.body.theta());
-        if motion.turned_rad >= LEAST_RAD && of_body > 0.0 {
+        if motion.turned_rad >= MIN_RAD && of_body > 0.0 {
             motion.correlation = Some(both / math::sqrt(of_scans * of_body));
             motion.turn_scale = Some(both / of_scans);
         }
@@ -151,7 +151,7 @@ impl Motion {
             }
         }
         let mirror = if is_mirrored { -1.0 } else { 1.0 };
-        if motion.moved_m >= LEAST_M {
+        if motion.moved_m >= MIN_M {
             motion.compare_displacements(stretches, mount, mirror);
         }
         motion

@@ -11,15 +11,15 @@ use pr_geom::{math, wrap_angle};
 use crate::stamps::median;
 
 /// With fewer scans or less turning (rad) no lag is estimated.
-const LEAST_SCANS: usize = 40;
-const LEAST_RAD: f64 = 1.5;
+const MIN_SCANS: usize = 40;
+const MIN_RAD: f64 = 1.5;
 /// Largest lag searched, s: larger clock offsets are found by the recording's time.
 const LARGEST_S: f64 = 1.0;
 /// Search step, s.
 const STEP_S: f64 = 0.02;
 /// Smaller lags are usual for a driver, s; so is less than this share of the time between two scans.
-const LEAST_S: f64 = 0.1;
-const LEAST_PERIODS: f64 = 0.6;
+const MIN_S: f64 = 0.1;
+const MIN_PERIODS: f64 = 0.6;
 /// Number of scans over which turns are compared: over more, noise matters less, but so does a lag.
 const SPAN: usize = 3;
 /// Least correlation at the lag.
@@ -43,7 +43,7 @@ pub struct Heading {
 
 /// Returns the lag of odometry, s; `None` if it is too small, or the turns do not show it.
 pub fn lag_s(headings: &[Heading]) -> Option<f64> {
-    if headings.len() < LEAST_SCANS {
+    if headings.len() < MIN_SCANS {
         return None;
     }
     let turns = Turns::from_headings(headings);
@@ -59,7 +59,7 @@ pub fn lag_s(headings: &[Heading]) -> Option<f64> {
     let (lag_s, correlation) = turns.best(pairs.clone())?;
     let without = turns.correlation(pairs.clone(), 0.0)?;
     let is_surely_better = correlation >= AGREE && 1.0 - correlation <= BETTER * (1.0 - without);
-    let is_small = lag_s.abs() < LEAST_S.max(LEAST_PERIODS * period_s);
+    let is_small = lag_s.abs() < MIN_S.max(MIN_PERIODS * period_s);
     let is_open = lag_s.abs() > LARGEST_S - STEP_S;
     if !is_surely_better || is_small || is_open {
         return None;
@@ -125,7 +125,7 @@ impl Turns {
             turned += scan.abs() / SPAN as f64;
         }
         let size = math::sqrt(of_scans * of_odometry);
-        (turned >= LEAST_RAD / 2.0 && size > 0.0).then(|| (both / size).abs())
+        (turned >= MIN_RAD / 2.0 && size > 0.0).then(|| (both / size).abs())
     }
 
     /// Interpolated heading by odometry.

@@ -11,10 +11,10 @@ use crate::odometry_poses::OdometryPoses;
 use crate::remark::Remark;
 
 /// Most scans that are compared, and most beams together: they are kept in memory.
-const MOST_SCANS: usize = 2000;
-const MOST_BEAMS: usize = 1 << 21;
+const MAX_SCANS: usize = 2000;
+const MAX_BEAMS: usize = 1 << 21;
 /// Most scans that wait for late odometry: more than any sensor takes in a second.
-const MOST_LATE: usize = 200;
+const MAX_LATE: usize = 200;
 
 /// A corrected mounting.
 struct CorrectedMount {
@@ -47,7 +47,7 @@ impl Late {
     /// The next frame for which odometry has arrived.
     fn next(&mut self) -> Option<LogFrame> {
         let at_s = self.waiting.front()?.stamp_s + self.by_s;
-        let is_full = self.waiting.len() > MOST_LATE;
+        let is_full = self.waiting.len() > MAX_LATE;
         if !self.is_over && !is_full && !self.odometry.reaches(at_s) {
             return None;
         }
@@ -132,7 +132,7 @@ impl<'a> ComparedReader<'a> {
         let mut comparison: Option<Comparison> = None;
         let mut beams = 0;
         let mut has_odometry = false;
-        while self.waiting.len() < MOST_SCANS && beams < MOST_BEAMS {
+        while self.waiting.len() < MAX_SCANS && beams < MAX_BEAMS {
             let frame = match self.inner.next_frame() {
                 Ok(Some(frame)) => frame,
                 Ok(None) => break,

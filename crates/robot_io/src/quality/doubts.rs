@@ -10,15 +10,15 @@ use crate::evidence::{PoorFit, TriedLoop};
 /// Keyframes are doubted if their standard deviation exceeds the median one by this factor.
 const UNCERTAIN_FACTOR: f64 = 3.0;
 /// Keyframes with a smaller standard deviation are not doubted, m.
-const LEAST_UNCERTAIN_M: f64 = 0.1;
+const MIN_UNCERTAIN_M: f64 = 0.1;
 /// Keyframes whose 95 % ellipse has a larger half axis are doubted, however uncertain the others are, m.
-const MOST_OFF_M: f64 = 0.5;
+const MAX_OFF_M: f64 = 0.5;
 /// Half axis of the 95 % ellipse over that of the 1σ ellipse: √χ²₂(0.95) = √(−2 ln 0.05).
 const RADIUS_95: f64 = 2.4477;
 /// The map violates a loop that it differs from by more, m and degrees: as much as from a false loop.
 const VIOLATION: (f64, f64) = (0.3, 5.0);
 /// Most doubts of one kind that are listed.
-const MOST_DOUBTS: usize = 10;
+const MAX_DOUBTS: usize = 10;
 
 /// A loop that was accepted once and that the map violates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,8 +67,8 @@ pub(super) fn sentences(
         violated_loops(violated),
         poor_fits(poor),
     ] {
-        let more = kind.len().saturating_sub(MOST_DOUBTS);
-        doubts.extend(kind.into_iter().take(MOST_DOUBTS));
+        let more = kind.len().saturating_sub(MAX_DOUBTS);
+        doubts.extend(kind.into_iter().take(MAX_DOUBTS));
         if more > 0 {
             doubts.push(format!("and {more} more of this kind"));
         }
@@ -80,7 +80,7 @@ fn uncertain_keyframes(keyframes: &[KeyframeQuality]) -> Vec<String> {
     let mut sorted: Vec<f64> = keyframes.iter().map(KeyframeQuality::sigma_m).collect();
     sort_numbers(&mut sorted);
     let median_m = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
-    let limit_m = (UNCERTAIN_FACTOR * median_m).clamp(LEAST_UNCERTAIN_M, MOST_OFF_M / RADIUS_95);
+    let limit_m = (UNCERTAIN_FACTOR * median_m).clamp(MIN_UNCERTAIN_M, MAX_OFF_M / RADIUS_95);
     let is_uncertain = |number: &usize| keyframes[*number].sigma_m() > limit_m;
     let uncertain: Vec<usize> = (0..keyframes.len()).filter(is_uncertain).collect();
     let runs = uncertain.chunk_by(|a, b| b - a == 1).map(|run| {

@@ -6,7 +6,7 @@ use crate::map_image::MapImage;
 use crate::quality::Quality;
 
 /// Most ellipses that are drawn: more hide the path.
-const MOST_ELLIPSES: usize = 60;
+const MAX_ELLIPSES: usize = 60;
 
 /// The picture; walls are the map's occupied cells.
 pub fn map(quality: &Quality, map: Option<&MapImage>) -> String {
@@ -56,7 +56,7 @@ pub fn map(quality: &Quality, map: Option<&MapImage>) -> String {
         let _ = write!(svg, "{x:.3},{y:.3} ");
     }
     svg.push_str("\"/>\n");
-    let every = quality.keyframes.len().div_ceil(MOST_ELLIPSES).max(1);
+    let every = quality.keyframes.len().div_ceil(MAX_ELLIPSES).max(1);
     for keyframe in quality.keyframes.iter().step_by(every) {
         let (long, short, heading) = keyframe.ellipse();
         let [x, y, _] = keyframe.pose;

@@ -7,7 +7,7 @@ mod records;
 
 use std::io::BufRead;
 
-use super::container::{Container, ContainerError, DeclaredTopics, MOST_BYTES, Recorded};
+use super::container::{Container, ContainerError, DeclaredTopics, MAX_BYTES, Recorded};
 use super::decompress::Packing;
 use super::file_bytes::FileBytes;
 pub use records::Connections;
@@ -51,7 +51,7 @@ impl<R: BufRead> BagFile<R> {
             return Ok(false);
         };
         let length = u64::from(u32::from_le_bytes(length));
-        if length > MOST_BYTES as u64 {
+        if length > MAX_BYTES as u64 {
             return Ok(false);
         }
         let bytes = self.file.up_to(length, what)?;
@@ -178,7 +178,7 @@ impl<R: BufRead> Container for BagFile<R> {
 
 /// Decompresses a chunk with this header.
 fn unpacked(fields: &Fields<'_>, data: Vec<u8>) -> Result<Vec<u8>, String> {
-    let size = (fields.u32("size")? as usize).min(MOST_BYTES);
+    let size = (fields.u32("size")? as usize).min(MAX_BYTES);
     match fields.name("compression")?.as_str() {
         "none" => Ok(data),
         "lz4" => Packing::Lz4.unpack(&data, size),

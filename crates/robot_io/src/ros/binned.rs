@@ -9,12 +9,12 @@ use pr_geom::math;
 /// their step.
 const FINER: f64 = 4.0;
 /// More beams add no information.
-const MOST_BEAMS: f64 = 7200.0;
+const MAX_BEAMS: f64 = 7200.0;
 
 /// Keeps the nearest point in each direction from the body's origin; `step_rad` is the beam spacing of the finest
 /// sensor.
 pub fn binned(points: impl Iterator<Item = (f64, f64)>, step_rad: f64) -> LaserScan {
-    let beams = math::min((FINER * TAU / step_rad.abs()).round(), MOST_BEAMS).max(1.0);
+    let beams = math::min((FINER * TAU / step_rad.abs()).round(), MAX_BEAMS).max(1.0);
     let step = TAU / beams;
     let mut ranges_m = vec![0.0; beams as usize];
     for (x, y) in points {

@@ -7,7 +7,7 @@ use super::mcap_file::Records;
 use super::wire::Wire;
 
 /// Longer records, and chunks that decompress to more, are not from a robot's laser.
-pub const MOST_BYTES: usize = 1 << 28;
+pub const MAX_BYTES: usize = 1 << 28;
 
 /// A recorded message.
 #[derive(Clone, Debug)]

@@ -14,7 +14,7 @@ use super::survey::{SCANS, is_repeated, named, reader};
 use crate::log::{FilePosition, LogNotes};
 
 /// Most scans that wait for an earlier one which comes later in the file.
-const MOST_WAITING: usize = 1024;
+const MAX_WAITING: usize = 1024;
 /// Beam spacing of a cloud that is cut to a height band, rad: half a degree.
 const CLOUD_STEP_RAD: f64 = 0.0087;
 
@@ -123,7 +123,7 @@ impl<'a> ScanCursor<'a> {
             };
             let bound_s = bound_s.unwrap_or(f64::INFINITY);
             let is_ready = self.waiting.peek().is_some_and(|first| {
-                first.0.stamp_s <= bound_s || self.is_done || self.waiting.len() > MOST_WAITING
+                first.0.stamp_s <= bound_s || self.is_done || self.waiting.len() > MAX_WAITING
             });
             if is_ready {
                 return self.waiting.pop().map(|first| first.0);

@@ -6,7 +6,7 @@ use std::io::BufRead;
 use std::rc::Rc;
 
 use super::bag_file::BagFile;
-use super::container::{Container, ContainerError, DeclaredTopics, MOST_BYTES, Recorded};
+use super::container::{Container, ContainerError, DeclaredTopics, MAX_BYTES, Recorded};
 use super::decompress::Packing;
 use super::mcap_file::McapFile;
 use super::sqlite_file::SqliteFile;
@@ -152,7 +152,7 @@ impl Container for Messages<'_> {
 /// Decompresses a message that rosbag2 compressed individually.
 fn unpacked(mut message: Recorded) -> Result<Recorded, ContainerError> {
     if message.wire == Wire::Cdr && message.bytes.starts_with(ZSTD) {
-        let unpacked = Packing::Zstd.unpack(&message.bytes, MOST_BYTES);
+        let unpacked = Packing::Zstd.unpack(&message.bytes, MAX_BYTES);
         message.bytes = unpacked.map_err(ContainerError::Skipped)?;
     }
     Ok(message)

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Read};
 
-use super::container::{ContainerError, MOST_BYTES};
+use super::container::{ContainerError, MAX_BYTES};
 
 /// Bytes read at a time while searching for the next record.
 const PIECE: usize = 1 << 16;
@@ -51,9 +51,9 @@ impl<R: BufRead> FileBytes<R> {
 
     /// Reads up to `count` bytes. They are read in pieces, so a wrong length costs no memory.
     pub fn up_to(&mut self, count: u64, what: &str) -> Result<Vec<u8>, ContainerError> {
-        if count > MOST_BYTES as u64 {
+        if count > MAX_BYTES as u64 {
             return Err(ContainerError::Broken(format!(
-                "expected {what} of at most {MOST_BYTES} bytes, found {count}"
+                "expected {what} of at most {MAX_BYTES} bytes, found {count}"
             )));
         }
         let held = self.back.len().min(count as usize);

@@ -8,7 +8,7 @@ mod records;
 
 use std::io::BufRead;
 
-use super::container::{Container, ContainerError, DeclaredTopics, MOST_BYTES, Recorded};
+use super::container::{Container, ContainerError, DeclaredTopics, MAX_BYTES, Recorded};
 use super::file_bytes::FileBytes;
 pub use records::Records;
 use records::{HEAD_BYTES, head, op};
@@ -116,7 +116,7 @@ impl<R: BufRead> McapFile<R> {
         let next = self.file.up_to(HEAD_BYTES as u64, "a record's head")?;
         self.file.put_back(&next);
         let holds = head(&next)
-            .is_none_or(|(op, length)| (1..=15).contains(&op) && length <= MOST_BYTES as u64);
+            .is_none_or(|(op, length)| (1..=15).contains(&op) && length <= MAX_BYTES as u64);
         if holds {
             return Err(ContainerError::Skipped(problem));
         }

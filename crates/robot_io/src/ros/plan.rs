@@ -16,11 +16,11 @@ use crate::remark::{Part, Remark};
 use crate::stamps::MendedStamps;
 
 /// A topic with fewer scans than this share of the largest one is not the robot's laser.
-const LEAST_SHARE: f64 = 0.1;
+const MIN_SHARE: f64 = 0.1;
 /// Two lasers whose numbers of scans differ by more than this factor are not merged.
 const SAME_RATE: f64 = 1.5;
 /// Most topics listed in a sentence.
-const MOST_NAMED: usize = 10;
+const MAX_NAMED: usize = 10;
 
 /// The topic of transforms.
 pub const TRANSFORMS: &str = "/tf";
@@ -197,7 +197,7 @@ impl Plan {
         let others: Vec<String> = usable
             .filter(|(topic, _)| !is_read(topic))
             .map(|(topic, _)| topic.clone())
-            .take(MOST_NAMED)
+            .take(MAX_NAMED)
             .collect();
         if !others.is_empty() {
             let options = others.iter().map(|topic| format!("--scan-topic {topic}"));
@@ -276,7 +276,7 @@ fn chosen_scans<'a>(survey: &'a Survey, options: &LogOptions) -> Vec<(&'a str, &
         .map(|(_, stream)| stream.stamps_s.len())
         .max()
         .unwrap_or(0);
-    let is_rich = |count: usize| count as f64 >= LEAST_SHARE * most as f64;
+    let is_rich = |count: usize| count as f64 >= MIN_SHARE * most as f64;
     usable.retain(|(_, stream)| is_rich(stream.stamps_s.len()));
     let Some((_, first)) = usable.first().copied() else {
         return usable;

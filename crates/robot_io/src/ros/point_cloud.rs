@@ -16,7 +16,7 @@ use super::messages::{Header, header};
 use super::wire::{WireError, WireReader};
 
 /// More beams than any planar laser has.
-const MOST_BEAMS: f64 = 100_000.0;
+const MAX_BEAMS: f64 = 100_000.0;
 /// Largest RMS distance of the points of one ring from their cone, m: rings a degree apart are farther from each other
 /// beyond 6 m.
 const RING_M: f64 = 0.05;
@@ -231,7 +231,7 @@ fn scan_of(mut points: Vec<(f64, f64)>) -> Option<LaserScan> {
     sort_pairs(&mut points);
     let (first, last) = (points.first()?.0, points.last()?.0);
     let mut steps: Vec<f64> = points.windows(2).map(|two| two[1].0 - two[0].0).collect();
-    steps.retain(|&step| step > TAU / MOST_BEAMS);
+    steps.retain(|&step| step > TAU / MAX_BEAMS);
     sort_numbers(&mut steps);
     let median = *steps.get(steps.len() / 2)?;
     let count = ((last - first) / median).round();

@@ -20,7 +20,7 @@ use record::{Value, columns};
 use table::Table;
 
 /// More topics than any robot has.
-const MOST_TOPICS: usize = 10_000;
+const MAX_TOPICS: usize = 10_000;
 
 /// A topic with its type.
 struct Topic {
@@ -84,7 +84,7 @@ impl<'a> SqliteFile<'a> {
             ] = &row.values[..]
                 && kind == "table"
                 && let Some(root) = root.integer().and_then(|root| u32::try_from(root).ok())
-                && tables.len() < MOST_TOPICS
+                && tables.len() < MAX_TOPICS
             {
                 tables.insert(name.clone(), (root, columns(sql)));
             }
@@ -127,7 +127,7 @@ impl<'a> SqliteFile<'a> {
                 None | Some("cdr" | "") => Ok(Wire::Cdr),
                 Some(other) => Err(other.to_owned()),
             };
-            if self.topics.len() < MOST_TOPICS {
+            if self.topics.len() < MAX_TOPICS {
                 let kind = kind_of(&kind);
                 self.topics.insert(row.id, Topic { name, kind, wire });
             }

@@ -16,11 +16,11 @@ use crate::log::LogOptions;
 use crate::plausible::plausible_pose;
 
 /// Garbage has an unbounded number of topics.
-const MOST_TOPICS: usize = 1000;
+const MAX_TOPICS: usize = 1000;
 /// Most poses kept of one source; beyond it, every second one is dropped.
-const MOST_POSES: usize = 1 << 18;
+const MAX_POSES: usize = 1 << 18;
 /// Most transforms that are recorded as possible odometry.
-const MOST_TRACKS: usize = 32;
+const MAX_TRACKS: usize = 32;
 /// Number of messages of a topic that are fully decoded to check whether they are usable.
 const TRIED: usize = 3;
 /// Odometry within this has not moved, m and rad.
@@ -94,7 +94,7 @@ impl Track {
         self.stamps_s.push(stamp_s);
         self.recorded_s.push(recorded_s);
         self.poses.push(pose);
-        if self.poses.len() >= MOST_POSES {
+        if self.poses.len() >= MAX_POSES {
             self.every *= 2;
             thin(&mut self.stamps_s);
             thin(&mut self.recorded_s);
@@ -133,7 +133,7 @@ impl Survey {
     /// If the message is malformed; it is skipped. Scans are checked when they are read.
     pub fn take(&mut self, message: &Recorded, options: &LogOptions) -> Result<(), String> {
         let key = (message.topic.clone(), message.kind.clone());
-        if self.counts.len() < MOST_TOPICS || self.counts.contains_key(&key) {
+        if self.counts.len() < MAX_TOPICS || self.counts.contains_key(&key) {
             *self.counts.entry(key).or_default() += 1;
         }
         let named = |problem: String| named(message, problem);
@@ -158,7 +158,7 @@ impl Survey {
                         None => is_ground(parent) && parent.contains("odom"),
                     };
                     let key = (parent.clone(), transform.child.clone());
-                    let has_room = self.tracks.len() < MOST_TRACKS;
+                    let has_room = self.tracks.len() < MAX_TRACKS;
                     if may_be_odometry && (has_room || self.tracks.contains_key(&key)) {
                         let order = self.tracks.len();
                         let track = self.tracks.entry(key).or_insert_with(|| Track {
@@ -178,7 +178,7 @@ impl Survey {
 
     fn take_scan(&mut self, message: &Recorded, kind: usize, options: &LogOptions) {
         let order = self.scans.len();
-        if order >= MOST_TOPICS && !self.scans.contains_key(&message.topic) {
+        if order >= MAX_TOPICS && !self.scans.contains_key(&message.topic) {
             return;
         }
         let stream = self.scans.entry(message.topic.clone()).or_default();
@@ -221,7 +221,7 @@ impl Survey {
         let parsed = odometry(&mut fields).map_err(|problem| problem.to_string())?;
         let pose = plausible_pose(planar(&parsed.pose))?;
         let order = self.odometry.len();
-        if order >= MOST_TOPICS && !self.odometry.contains_key(&message.topic) {
+        if order >= MAX_TOPICS && !self.odometry.contains_key(&message.topic) {
             return Ok(());
         }
         let track = self

@@ -11,9 +11,9 @@ use crate::laser_mount::LaserMount;
 /// Longer chains of frames are cyclic.
 const LONGEST_CHAIN: usize = 64;
 /// More frames than any robot has: garbage has an unbounded number of names.
-const MOST_FRAMES: usize = 10_000;
+const MAX_FRAMES: usize = 10_000;
 /// A laser whose axis is tilted farther does not scan the plane, as the cosine of 30°.
-const LEAST_UPRIGHT: f64 = 0.866;
+const MIN_UPRIGHT: f64 = 0.866;
 
 /// A frame that moves by more from its first pose is not static, m.
 const MOVED_M: f64 = 0.01;
@@ -33,7 +33,7 @@ pub fn is_ground(frame: &str) -> bool {
 pub fn planar_mount(body_from_sensor: &Isometry3<f64>) -> Result<LaserMount, String> {
     let turn = body_from_sensor.rotation.to_rotation_matrix();
     let upright = turn.matrix()[(2, 2)];
-    if upright.abs() < LEAST_UPRIGHT {
+    if upright.abs() < MIN_UPRIGHT {
         return Err("the laser is tilted by more than 30° and does not scan the plane".to_owned());
     }
     Ok(LaserMount {
@@ -68,7 +68,7 @@ impl Transforms {
             edge.moves |= is_elsewhere && edge.parent == message.header.frame;
             edge.transform = message.transform;
             edge.parent.clone_from(&message.header.frame);
-        } else if self.above.len() < MOST_FRAMES {
+        } else if self.above.len() < MAX_FRAMES {
             let edge = Edge {
                 parent: message.header.frame.clone(),
                 transform: message.transform,

@@ -21,7 +21,7 @@ use thiserror::Error;
 /// Name and version of the format.
 const SCHEMA: &str = "slam2d-answers/1";
 /// Size limit; the answers to all exercises of a chapter are a few kilobytes.
-const MOST_BYTES: u64 = 1 << 20;
+const MAX_BYTES: u64 = 1 << 20;
 
 /// The answers of one student.
 #[derive(Clone, Debug, Deserialize)]
@@ -66,7 +66,7 @@ pub enum AnswersError {
         source: io::Error,
     },
     /// It is too long.
-    #[error("{} has more than {MOST_BYTES} bytes; give a file that the page saved", .0.display())]
+    #[error("{} has more than {MAX_BYTES} bytes; give a file that the page saved", .0.display())]
     TooLong(PathBuf),
     /// It is malformed.
     #[error("{}: {source}; give a file that the page saved by “Save my answers”", path.display())]
@@ -107,10 +107,10 @@ impl Answers {
         };
         let mut bytes = Vec::new();
         let file = File::open(path).map_err(io)?;
-        file.take(MOST_BYTES + 1)
+        file.take(MAX_BYTES + 1)
             .read_to_end(&mut bytes)
             .map_err(io)?;
-        if bytes.len() as u64 > MOST_BYTES {
+        if bytes.len() as u64 > MAX_BYTES {
             return Err(AnswersError::TooLong(owned()));
         }
         let answers: Self =

@@ -9,7 +9,7 @@ use widgets::registry::{MODELS, SPECS};
 use super::answers::Answer;
 
 /// Number of seeds that are tried until one of the choices is right.
-const MOST_TRIES: u32 = 100;
+const MAX_TRIES: u32 = 100;
 
 /// The exercises in the order of their ids; the build writes the file from the pages.
 static EXERCISES: LazyLock<Vec<Exercise>> = LazyLock::new(|| {
@@ -129,7 +129,7 @@ impl Exercise {
         let takes_seed = model.spec().params.iter().any(|param| param.id == "seed");
         let has_seed = self.state.split('&').any(|pair| pair.starts_with("seed="));
         if !student.is_empty() && takes_seed && !has_seed {
-            for attempt in 0..MOST_TRIES {
+            for attempt in 0..MAX_TRIES {
                 let seed = seed_of(student, &self.exercise, attempt);
                 model
                     .set("seed", f64::from(seed))

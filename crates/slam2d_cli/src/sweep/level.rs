@@ -8,7 +8,7 @@ use super::SweepArgs;
 use crate::output::say;
 
 /// Most laps whose digests are printed.
-const MOST_SAMPLES: usize = 20;
+const MAX_SAMPLES: usize = 20;
 
 /// The runs at one noise factor.
 #[derive(Serialize)]
@@ -130,7 +130,7 @@ fn samples(first_seed: u32, statistics: &LapStatistics) -> Vec<Sample> {
     let outcomes = &statistics.outcomes;
     let seeds = (first_seed..).zip(outcomes);
     seeds
-        .step_by(outcomes.len().div_ceil(MOST_SAMPLES).max(1))
+        .step_by(outcomes.len().div_ceil(MAX_SAMPLES).max(1))
         .map(|(seed, outcome)| Sample {
             seed,
             digest: format!("{:016x}", outcome.digest),

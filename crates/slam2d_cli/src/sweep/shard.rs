@@ -12,7 +12,7 @@ use super::{SweepArgs, progress_bar};
 use crate::trial::Trial;
 
 /// Most shards.
-const MOST_SHARDS: u32 = 100_000;
+const MAX_SHARDS: u32 = 100_000;
 
 /// Part `number`, counted from 1, of `count`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,11 +40,11 @@ pub fn shard(text: &str) -> Result<Shard, String> {
     let parts = text.split_once('/');
     let parts = parts.and_then(|(number, count)| Some((number.parse().ok()?, count.parse().ok()?)));
     match parts {
-        Some((number, count)) if (1..=count).contains(&number) && count <= MOST_SHARDS => {
+        Some((number, count)) if (1..=count).contains(&number) && count <= MAX_SHARDS => {
             Ok(Shard { number, count })
         }
         _ => Err(format!(
-            "not a part such as 2/4, the second of four, of at most {MOST_SHARDS}"
+            "not a part such as 2/4, the second of four, of at most {MAX_SHARDS}"
         )),
     }
 }

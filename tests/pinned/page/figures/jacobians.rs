@@ -5,7 +5,7 @@ use ch16_lab::jacobians::{
 };
 
 /// Largest number of steps of each solver, as in the widget.
-const MOST_STEPS: usize = 40;
+const MAX_STEPS: usize = 40;
 
 /// `6.exact.steps`, `3.residual.off_m`: by contradiction in degrees, and by solver.
 pub fn value(path: &[&str]) -> Option<f64> {
@@ -25,7 +25,7 @@ pub fn value(path: &[&str]) -> Option<f64> {
                 turn_bias_rad: bias_deg.parse::<f64>().ok()?.to_radians(),
                 ..RingConfig::default()
             });
-            let descent = descend(&graph, recipe, &optimum(&graph).0, MOST_STEPS);
+            let descent = descend(&graph, recipe, &optimum(&graph).0, MAX_STEPS);
             match what {
                 "steps" => Some(descent.steps() as f64),
                 "off_m" => Some(descent.end().off_m),

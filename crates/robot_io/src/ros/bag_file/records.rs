@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::ros::container::{MOST_BYTES, Recorded, kind_of};
+use crate::ros::container::{MAX_BYTES, Recorded, kind_of};
 use crate::ros::wire::Wire;
 
 /// More topics than any robot has.
-const MOST_CONNECTIONS: usize = 10_000;
+const MAX_CONNECTIONS: usize = 10_000;
 
 /// Kinds of records, by their `op` field.
 pub mod op {
@@ -47,7 +47,7 @@ impl Connections {
         let number = named.u32("conn")?;
         let topic = named.name("topic")?;
         let kind = Fields::parse(data)?.name("type")?;
-        if self.known.len() < MOST_CONNECTIONS {
+        if self.known.len() < MAX_CONNECTIONS {
             let kind = kind_of(&kind);
             self.known.insert(number, Connection { topic, kind });
         }
@@ -94,7 +94,7 @@ pub fn begins(bytes: &[u8]) -> bool {
         .first_chunk::<4>()
         .map(|length| u32::from_le_bytes(*length));
     is_known.is_ok_and(|op| (2..=7).contains(&op))
-        && length.is_some_and(|length| length as usize <= MOST_BYTES)
+        && length.is_some_and(|length| length as usize <= MAX_BYTES)
 }
 
 /// Splits off a length and that many bytes.

@@ -1,7 +1,7 @@
 //! Decompressed records of a chunk.
 
 use super::records::{HEAD_BYTES, broken, fields, head as record_head, op};
-use crate::ros::container::{ContainerError, MOST_BYTES};
+use crate::ros::container::{ContainerError, MAX_BYTES};
 use crate::ros::decompress::Packing;
 use crate::ros::wire::{WireError, WireReader};
 
@@ -37,7 +37,7 @@ pub fn records(chunk: &[u8], is_cut_off: bool) -> Result<Vec<u8>, ContainerError
             ))),
         };
     };
-    let size = head.size.min(MOST_BYTES as u64) as usize;
+    let size = head.size.min(MAX_BYTES as u64) as usize;
     let records = match head.packing.as_str() {
         "" => Ok(packed.to_vec()),
         "lz4" => Packing::Lz4.unpack(packed, size),
@@ -80,7 +80,7 @@ pub fn begins(bytes: &[u8]) -> bool {
     };
     let in_front = (before - fields.rest().len()) as u64;
     let is_known = matches!(head.packing.as_str(), "" | "lz4" | "zstd");
-    is_known && head.packed.checked_add(in_front) == Some(length) && head.size <= MOST_BYTES as u64
+    is_known && head.packed.checked_add(in_front) == Some(length) && head.size <= MAX_BYTES as u64
 }
 
 fn head(fields: &mut WireReader<'_>) -> Result<Head, WireError> {

@@ -8,7 +8,7 @@ use crate::log::{LogOffer, LogOption, LogOptions};
 use crate::ros::survey::{ODOMETRY, SCANS, Survey};
 
 /// Most topics or frames listed for an option.
-const MOST_OFFERED: usize = 100;
+const MAX_OFFERED: usize = 100;
 
 /// Lists the choices for each option, and the one in use.
 pub fn list(
@@ -50,7 +50,7 @@ pub fn list(
             LogOffer {
                 option,
                 taken,
-                names: names.into_iter().take(MOST_OFFERED).collect(),
+                names: names.into_iter().take(MAX_OFFERED).collect(),
             }
         })
         .to_vec()

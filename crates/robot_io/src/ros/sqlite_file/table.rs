@@ -2,7 +2,7 @@
 
 use super::pages::{FILE_HEADER, Pages};
 use super::record::{Value, values, varint};
-use crate::ros::container::{ContainerError, MOST_BYTES};
+use crate::ros::container::{ContainerError, MAX_BYTES};
 
 /// Deeper trees exceed any disk, or are cyclic.
 const DEEPEST: usize = 20;
@@ -131,7 +131,7 @@ fn row_of(cell: &[u8], pages: &mut Pages<'_>, what: &str) -> Result<Row, Contain
         let (id, second) = varint(&cell[first..])?;
         let length = usize::try_from(length)
             .ok()
-            .filter(|&length| length <= MOST_BYTES)?;
+            .filter(|&length| length <= MAX_BYTES)?;
         Some((length, id as i64, &cell[first + second..]))
     };
     let (length, id, rest) = read().ok_or_else(|| broken(what))?;
