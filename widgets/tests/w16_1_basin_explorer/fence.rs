@@ -25,7 +25,8 @@ fn the_basin_map_has_a_band_at_each_spacing() {
             "1 one post off",
             "2 two posts off or more",
             "W right place, wrong heading",
-            "F another false minimum"
+            "F another false minimum",
+            "S stopped before it converged"
         ]
     );
 }

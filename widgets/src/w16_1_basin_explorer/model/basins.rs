@@ -168,6 +168,7 @@ pub fn class(minimum: Minimum) -> u8 {
         Minimum::HalfTurn | Minimum::MorePosts => 2,
         Minimum::Other => 3,
         Minimum::WrongHeading => 4,
+        Minimum::NotConverged => 6,
     }
 }
 

@@ -224,6 +224,7 @@ fn ending(end: &BasinOutcome) -> String {
     match end.ending {
         Minimum::Right => format!("at home, {off}"),
         Minimum::Other => format!("in another false minimum, {off}"),
+        Minimum::NotConverged => format!("before it converged, {off}"),
         Minimum::WrongHeading => format!("at the right place with a wrong heading, {off}"),
         turn => format!("in the {}, {off}", turn.name()),
     }
