@@ -62,6 +62,9 @@ impl Shell {
         let y = self.block(ui, [at[0], y], width, Self::controls);
         let y = self.block(ui, [at[0], y], width, Self::outcome);
         let y = self.block(ui, [at[0], y], width, Self::more);
+        let mut under = self.view.under_control(width);
+        view::keep_shown(&mut under, &self.model.layer());
+        let y = self.reserve(ui, [at[0], y], width, &under, out);
         let y = self.reserve(ui, [at[0], y], width, &below, out);
         self.block(ui, [at[0], y], width, Self::tables)
     }
