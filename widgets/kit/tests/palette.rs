@@ -145,6 +145,30 @@ fn a_second_visit_is_another_green_and_no_other_meaning() {
 }
 
 #[test]
+fn the_way_back_is_the_lighter_green_in_both_themes() {
+    for theme in THEMES {
+        let [out, back] = [Tone::Outbound, Tone::Revisit].map(|pass| tone(theme, pass));
+        let lightness = |color| lab(linear(color))[0];
+        assert!(lightness(back) >= lightness(out) + APART, "{theme:?}");
+        assert_apart(&[out, back], "the two passes");
+        let ratio = contrast(out, tone(theme, Tone::Paper));
+        assert!(ratio >= 3.0, "{theme:?}: {ratio}");
+    }
+}
+
+#[test]
+fn a_strained_edge_is_taken_for_no_meaning_and_is_not_faint() {
+    for theme in THEMES {
+        let strained = tone(theme, Tone::Strained);
+        for other in MEANINGS.into_iter().chain([Tone::Outbound, Tone::Revisit]) {
+            assert_apart(&[strained, tone(theme, other)], "a strained edge");
+        }
+        let ratio = contrast(strained, tone(theme, Tone::Paper));
+        assert!(ratio >= 4.5, "{theme:?}: {ratio}");
+    }
+}
+
+#[test]
 fn the_series_stay_apart_and_are_taken_for_no_meaning() {
     for theme in THEMES {
         let series: [Rgb; 4] = core::array::from_fn(|n| tone(theme, Tone::Series(n as u8)));
