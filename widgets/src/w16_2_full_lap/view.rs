@@ -11,7 +11,7 @@ const BESIDE_THE_MAP: f32 = 860.0;
 const PLOT: PlotHeight = PlotHeight::Fixed(130.0);
 
 /// Largest height of the map: on a screen of 680 pixels it stands above Play and the scrubber, with the title.
-const MAP_PX: f32 = 400.0;
+const MAP_PX: f32 = 430.0;
 
 const MAP: Slot = Slot {
     panel: "map",
