@@ -3,6 +3,7 @@
 mod common;
 mod edge;
 mod fence;
+mod maps;
 mod model;
 mod view;
 mod words;

@@ -221,6 +221,31 @@ impl WindowSearch {
         self.search.result()
     }
 
+    /// The best score at each heading of a box, `[heading in rad, score]`: the box's bound is never below.
+    #[must_use]
+    pub fn best_by_heading(&self, poses: &PoseBox) -> Vec<[f64; 2]> {
+        let search = &self.search;
+        let ([rows, columns], [low, high]) = (search.places(), search.extent_m());
+        let cells = |axis: usize, count: usize, [from, to]: [f64; 2]| {
+            let side = (high[axis] - low[axis]) / count as f64;
+            let first = ((from - low[axis]) / side).round() as usize;
+            first..(((to - low[axis]) / side).round() as usize).min(count)
+        };
+        let (xs, ys) = (cells(0, columns, poses.x_m), cells(1, rows, poses.y_m));
+        let [from, to] = poses.heading_rad;
+        // Headings are equal to the last bit or a step apart.
+        let headings = (0..search.headings()).map(|k| (k, search.heading_rad(k)));
+        let inside = headings.filter(|(_, heading)| (from..=to).contains(heading));
+        let best = inside.map(|(k, heading)| {
+            let scores = ys.clone().flat_map(|row| {
+                let row = search.row_scores(k, row);
+                row.skip(xs.start).take(xs.len())
+            });
+            [heading, scores.fold(0.0, f64::max)]
+        });
+        best.collect()
+    }
+
     /// Searches for the best pose of the window whose heading differs from `best` by about that angle,
     /// degrees; `None` if the window holds no such heading.
     #[must_use]
@@ -334,6 +359,31 @@ mod tests {
                 assert!(seen.poses.bound <= best);
             }
         }
+    }
+
+    #[test]
+    fn no_score_of_a_box_is_above_its_bound_and_that_of_the_best_pose_is_its_bound() {
+        let window = searched(WindowConfig {
+            cell_m: 0.15,
+            ..WindowConfig::default()
+        });
+        let mut poses = 0;
+        for seen in window.boxes() {
+            let scores = window.best_by_heading(&seen.poses);
+            assert!(!scores.is_empty(), "{:?}", seen.poses);
+            let best = scores.iter().map(|[_, score]| *score).fold(0.0, f64::max);
+            assert!(
+                best > 0.0 && best <= seen.poses.bound,
+                "{best} in {:?}",
+                seen.poses
+            );
+            // The bound of a pose that cannot win need not be its score.
+            if seen.fate == Some(BoxFate::Best) {
+                assert_eq!((scores.len(), best), (1, seen.poses.bound));
+                poses += 1;
+            }
+        }
+        assert!(poses > 0, "the best pose is one");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::layers::Layer;
 use crate::outside::Delivery;
 use crate::param::{ParamError, printable};
 use crate::scene::Scene;
-use crate::spec::{Preset, WidgetSpec};
+use crate::spec::{ButtonSpec, Preset, WidgetSpec};
 use crate::values::Values;
 
 /// A widget without its drawing: tested headless, drawn by [`crate`]'s view half.
@@ -71,6 +71,11 @@ pub trait Model {
 
     /// The timeline, if the widget has one.
     fn timeline(&self) -> Option<Timeline> {
+        None
+    }
+
+    /// The tabs over the picture, if the widget has two views.
+    fn tabs(&self) -> Option<Tabs> {
         None
     }
 
@@ -262,6 +267,17 @@ impl Fact {
     pub fn count(id: &'static str, label: &'static str, value: f64) -> Self {
         Self::new(id, label, value, "", 0)
     }
+}
+
+/// Two views of a widget, as tabs.
+#[derive(Clone, Copy, Debug)]
+pub struct Tabs {
+    /// Name of the first view.
+    pub first: &'static str,
+    /// The button that changes between both; its label is the name of the second view.
+    pub button: &'static ButtonSpec,
+    /// Whether the second view is shown.
+    pub is_second: bool,
 }
 
 /// A run that can be scrubbed.

@@ -70,7 +70,9 @@ pub fn tone(theme: Theme, tone: Tone) -> Rgb {
         Tone::Prior => const { shades("prior") },
         Tone::Prediction => const { shades("prediction") },
         Tone::Measurement => const { shades("measurement") },
+        Tone::Outbound => const { shades("outbound") },
         Tone::Revisit => const { shades("revisit") },
+        Tone::Strained => const { shades("fair") },
         Tone::Posterior => const { shades("posterior") },
         Tone::Truth => const { shades("truth") },
         Tone::Ink => const { shades("ink") },
@@ -100,11 +102,15 @@ pub fn accent(theme: Theme) -> Rgb {
 /// Largest share of white or black in the colour of a relief's slope.
 const MOST_LIGHT: f32 = 0.55;
 
-/// Classes differ mainly in lightness, which keeps them distinct for every kind of colour vision. The first
-/// five are areas below marks: they differ from the colours of the meanings and from paper.
+/// Classes differ mainly in lightness, which keeps them distinct for every kind of colour vision. All but
+/// the sixth are areas below marks: they differ from the colours of the meanings and from paper.
 fn class_color(theme: Theme, class: u8) -> Rgb {
-    const LIGHT: [u32; 6] = [0xd6e8fb, 0xf2d84b, 0x9b3408, 0x889abf, 0xf9cc9e, 0x1e293b];
-    const DARK: [u32; 6] = [0x113460, 0xe8d84a, 0x9c4b55, 0x6c7aa8, 0x873a07, 0xf8fafc];
+    const LIGHT: [u32; 7] = [
+        0xd6e8fb, 0xf2d84b, 0x9b3408, 0x889abf, 0xf9cc9e, 0x1e293b, 0x88b8a8,
+    ];
+    const DARK: [u32; 7] = [
+        0x113460, 0xe8d84a, 0x9c4b55, 0x6c7aa8, 0x873a07, 0xf8fafc, 0x709850,
+    ];
     let table = match theme {
         Theme::Light => LIGHT,
         Theme::Dark => DARK,

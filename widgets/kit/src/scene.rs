@@ -15,10 +15,14 @@ pub enum Tone {
     Prediction,
     /// Sensor measurement: green, ×.
     Measurement,
-    /// Measurement of a second visit: the other green, ×.
+    /// Measurement on the way out: the darker green of the way out and the way back, in both themes.
+    Outbound,
+    /// Measurement of a second visit, as on the way back: the lighter green, ×.
     Revisit,
     /// Posterior estimate: purple, ■.
     Posterior,
+    /// An edge strained past the gate: amber, wide.
+    Strained,
     /// Ground truth: grey, dashed.
     Truth,
     /// Walls, axes and words.

@@ -36,12 +36,9 @@ const WORK_WHILE_CHANGING: Duration = Duration::from_millis(4);
 /// Duration for which more changes are expected after one, s: if drawing is slow, not every frame brings a
 /// change.
 const CHANGES_FOR_S: f64 = 0.2;
-/// Time budget otherwise: a frame at 60 Hz has 16 ms.
-const WORK_AT_REST: Duration = Duration::from_millis(9);
-/// If drawing is slow, the budget is this share of the time between frames.
-const SHARE_AT_REST: f32 = 1.0 / 3.0;
-/// Largest time budget, however slow drawing is.
-const MOST_WORK: Duration = Duration::from_millis(100);
+/// Time budget otherwise: a frame at 60 Hz has 16 ms. It does not grow if drawing is slow, because then the page
+/// needs its thread most.
+const WORK_AT_REST: Duration = Duration::from_millis(10);
 
 /// A widget on egui: model, view, and the state between frames.
 pub struct Shell {
@@ -271,15 +268,14 @@ impl Shell {
         };
         self.room.learn(width, column - whole.top() + MARGIN - GAP);
 
-        let (now_s, frame_s, pressed) =
-            ui.input(|input| (input.time, input.stable_dt, input.pointer.any_down()));
+        let (now_s, pressed) = ui.input(|input| (input.time, input.pointer.any_down()));
         if core::mem::take(&mut self.changed) || pressed {
             self.changes_until_s = now_s + CHANGES_FOR_S;
         }
         self.work(if now_s < self.changes_until_s {
             WORK_WHILE_CHANGING
         } else {
-            work_at_rest(frame_s)
+            WORK_AT_REST
         });
         self.paint(ui, &reserved);
         self.ring(ui);
@@ -366,24 +362,5 @@ impl Shell {
                 egui::StrokeKind::Outside,
             );
         }
-    }
-}
-
-/// Time budget of [`Model::work`] in a frame that came so many seconds after the last one.
-fn work_at_rest(frame_s: f32) -> Duration {
-    let share = Duration::try_from_secs_f32(SHARE_AT_REST * frame_s).unwrap_or_default();
-    share.clamp(WORK_AT_REST, MOST_WORK)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn work_fits_a_fast_frame_and_takes_a_third_of_a_slow_one() {
-        assert_eq!(work_at_rest(1.0 / 60.0), WORK_AT_REST);
-        assert!((work_at_rest(0.15).as_secs_f32() - 0.05).abs() < 1e-6);
-        assert_eq!(work_at_rest(5.0), MOST_WORK);
-        assert_eq!(work_at_rest(f32::NAN), WORK_AT_REST);
     }
 }

@@ -30,12 +30,14 @@ pub fn bar(ui: &mut Ui, model: &mut dyn Model, theme: Theme, hot: &mut Hot) -> T
     let mut touched = Touched::No;
     let layer = model.layer();
     let timeline = model.timeline();
+    let tab = model.tabs().map(|tabs| tabs.button.id);
     let playing = timeline.as_ref().is_some_and(|timeline| timeline.playing);
     // Beside few buttons the position on the timeline needs no separate row.
     let is_beside = !layer.is_all() && ui.available_width() >= PLACE_BESIDE;
     ui.horizontal_wrapped(|ui| {
         for spec in model.spec().buttons {
             if spec.id != DEFAULTS.id
+                && tab != Some(spec.id)
                 && layer.has_button(spec.id)
                 && button(ui, spec, playing, hot).clicked()
             {

@@ -17,6 +17,23 @@ pub trait View {
     fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
         Arrangement::by_weight(scene, width)
     }
+
+    /// Panels that stand below the opening control if everything is in one column: they may enter while the
+    /// control is held.
+    fn under_control(&self, _width: f32) -> Vec<Row> {
+        Vec::new()
+    }
+}
+
+/// Removes the panels that a layer hides.
+pub fn keep_shown(rows: &mut Vec<Row>, layer: &Layer) {
+    for row in rows.iter_mut() {
+        for column in &mut row.columns {
+            column.slots.retain(|slot| layer.has_panel(slot.panel));
+        }
+        row.columns.retain(|column| !column.slots.is_empty());
+    }
+    rows.retain(|row| !row.columns.is_empty());
 }
 
 /// The default view.
@@ -80,13 +97,7 @@ impl Arrangement {
         if layer.is_all() {
             return self;
         }
-        for row in &mut self.stage {
-            for column in &mut row.columns {
-                column.slots.retain(|slot| layer.has_panel(slot.panel));
-            }
-            row.columns.retain(|column| !column.slots.is_empty());
-        }
-        self.stage.retain(|row| !row.columns.is_empty());
+        keep_shown(&mut self.stage, layer);
         self.below.clear();
         self
     }

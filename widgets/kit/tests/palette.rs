@@ -145,6 +145,30 @@ fn a_second_visit_is_another_green_and_no_other_meaning() {
 }
 
 #[test]
+fn the_way_back_is_the_lighter_green_in_both_themes() {
+    for theme in THEMES {
+        let [out, back] = [Tone::Outbound, Tone::Revisit].map(|pass| tone(theme, pass));
+        let lightness = |color| lab(linear(color))[0];
+        assert!(lightness(back) >= lightness(out) + APART, "{theme:?}");
+        assert_apart(&[out, back], "the two passes");
+        let ratio = contrast(out, tone(theme, Tone::Paper));
+        assert!(ratio >= 3.0, "{theme:?}: {ratio}");
+    }
+}
+
+#[test]
+fn a_strained_edge_is_taken_for_no_meaning_and_is_not_faint() {
+    for theme in THEMES {
+        let strained = tone(theme, Tone::Strained);
+        for other in MEANINGS.into_iter().chain([Tone::Outbound, Tone::Revisit]) {
+            assert_apart(&[strained, tone(theme, other)], "a strained edge");
+        }
+        let ratio = contrast(strained, tone(theme, Tone::Paper));
+        assert!(ratio >= 4.5, "{theme:?}: {ratio}");
+    }
+}
+
+#[test]
 fn the_series_stay_apart_and_are_taken_for_no_meaning() {
     for theme in THEMES {
         let series: [Rgb; 4] = core::array::from_fn(|n| tone(theme, Tone::Series(n as u8)));
@@ -160,20 +184,20 @@ fn the_series_stay_apart_and_are_taken_for_no_meaning() {
 }
 
 #[test]
-fn the_six_classes_stay_apart() {
+fn the_seven_classes_stay_apart() {
     for theme in THEMES {
-        let classes: [Rgb; 6] = core::array::from_fn(|k| cell(theme, Cell::Class(k as u8)));
+        let classes: [Rgb; 7] = core::array::from_fn(|k| cell(theme, Cell::Class(k as u8)));
         assert_apart(&classes, "classes");
     }
 }
 
 /// Marks are drawn on the areas of a picture of classes, and a picture fills in on paper.
 #[test]
-fn the_first_five_classes_differ_from_meanings_and_paper() {
+fn the_classes_below_marks_differ_from_meanings_and_paper() {
     /// Half of that: an area next to paper needs no name.
     const FROM_PAPER: f32 = 0.5 * APART;
     for theme in THEMES {
-        for class in 0..5 {
+        for class in [0, 1, 2, 3, 4, 6] {
             let area = cell(theme, Cell::Class(class));
             for meaning in MEANINGS {
                 assert_apart(&[area, tone(theme, meaning)], "a class and a meaning");
@@ -217,7 +241,7 @@ fn text_has_a_contrast_of_four_and_a_half_to_one() {
             let ratio = contrast(standing(theme, verdict), paper);
             assert!(ratio >= 4.5, "{theme:?} {verdict:?}: {ratio}");
         }
-        for class in 0..6 {
+        for class in 0..7 {
             let back = cell(theme, Cell::Class(class));
             assert!(
                 contrast(readable_on(back), back) >= 4.5,

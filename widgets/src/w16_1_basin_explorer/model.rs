@@ -10,9 +10,9 @@ mod settings;
 mod tables;
 mod words;
 
-use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart};
+use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart, OffsetAxis};
 use ch16_slam2d::icp::{IcpTrace, IcpWorkspace, Pair, correspondences};
-use kit::layers::Layer;
+use kit::layers::{Layer, Opening};
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
 };
@@ -23,7 +23,7 @@ use kit::scene::{Axis, Scene};
 use kit::spec::{DEFAULTS, WidgetSpec};
 use kit::values::{Changed, Values};
 
-use crate::w16_1_basin_explorer::spec::{DX, DY, EDGE, HEADING, Phase};
+use crate::w16_1_basin_explorer::spec::{AXIS, DX, DY, EDGE, HEADING, PATHS, Phase};
 use crate::w16_1_basin_explorer::spec::{EDGES, ITERATION, OFFSET_SPAN_M, PARAMS, SPEC, SWEEP};
 use basins::Basins;
 use edge::Edges;
@@ -45,6 +45,12 @@ pub mod panel {
 /// The parameters of the start.
 const START: [&str; 3] = ["heading", "dx", "dy"];
 
+/// A start counts as one of the reader's once it has not moved for so long, s: a drag is one start.
+const SETTLES_AFTER_S: f64 = 0.3;
+
+/// The maps enter with so many starts of the reader: the picture comes first, and a map of two points asks for more.
+const STARTS_BEFORE_MAPS: usize = 2;
+
 /// Iterations a second at normal speed.
 const STEPS_PER_S: f64 = 6.0;
 
@@ -58,6 +64,10 @@ pub struct BasinExplorer {
     /// The result of the other variant from the same start, for comparison.
     other: BasinOutcome,
     basins: Basins,
+    /// Time until the start counts as one of the reader's, s; `None` if it does or never moved.
+    settles_in_s: Option<f64>,
+    /// Whether the reader's starts have opened the maps.
+    maps_are_open: bool,
     /// Paths from other starts, over the map of the selected variant.
     paths: Paths,
     /// The edge of the basin along pure rotations, for the question about it.
@@ -96,6 +106,8 @@ impl Default for BasinExplorer {
             edges: Edges::new(&values),
             preview: Preview::Hidden,
             held_frame: None,
+            settles_in_s: None,
+            maps_are_open: false,
             run: Run {
                 trace: workspace.trace().to_vec(),
                 outcome,
@@ -173,6 +185,32 @@ impl BasinExplorer {
         self.register();
         self.follow();
         self.preview = Preview::Shown;
+        self.settles_in_s = Some(SETTLES_AFTER_S);
+    }
+
+    /// Whether the basin maps are shown: after the reader's first starts, or if a state is about them.
+    fn shows_maps(&self) -> bool {
+        let values = &self.values;
+        self.maps_are_open
+            || values.get(&MORE)
+            || values.get(&PATHS)
+            || values.get(&EDGE) != Phase::Off
+            || values.get(&AXIS) != OffsetAxis::default()
+    }
+
+    /// Counts the start as one of the reader's once it has stood still.
+    fn settle(&mut self, elapsed_s: f64) -> Activity {
+        let Some(left_s) = self.settles_in_s.filter(|_| self.held_frame.is_none()) else {
+            return Activity::Idle;
+        };
+        if left_s > elapsed_s {
+            self.settles_in_s = Some(left_s - elapsed_s);
+            return Activity::Unseen;
+        }
+        self.settles_in_s = None;
+        let starts = self.basins.add(start(&self.values));
+        self.maps_are_open |= starts >= STARTS_BEFORE_MAPS;
+        Activity::Busy
     }
 
     /// Updates maps and paths to the settings.
@@ -194,7 +232,11 @@ impl Model for BasinExplorer {
 
     fn layer(&self) -> Layer {
         let opening = match self.values.get(&EDGE) {
-            Phase::Off => SPEC.opening,
+            Phase::Off if self.shows_maps() => SPEC.opening,
+            Phase::Off => Opening {
+                panels: &[panel::SWEEPS],
+                ..SPEC.opening
+            },
             Phase::Marking | Phase::Swept => edge::OPENING,
         };
         Layer::visible(opening, &self.values)
@@ -217,6 +259,7 @@ impl Model for BasinExplorer {
             _ => {
                 if START.contains(&id) {
                     self.preview = Preview::Shown;
+                    self.settles_in_s = Some(SETTLES_AFTER_S);
                 }
                 self.register();
                 self.follow();
@@ -247,8 +290,9 @@ impl Model for BasinExplorer {
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
+        let settling = self.settle(elapsed_s);
         if !self.playback.is_playing() {
-            return Activity::Idle;
+            return settling;
         }
         let rate = STEPS_PER_S * self.values.get(&SPEED);
         let (here, last) = (self.iteration() as f64, self.last() as f64);
@@ -265,6 +309,9 @@ impl Model for BasinExplorer {
         }
         if self.paths.work(&self.scene, &mut self.workspace) == Activity::Busy {
             return Activity::Busy;
+        }
+        if !self.shows_maps() {
+            return Activity::Idle;
         }
         self.basins.work(&self.scene, &mut self.workspace)
     }

@@ -1,4 +1,4 @@
-//! Layout of the panels: the sweeps beside the two basin maps, the curve below.
+//! Layout of the panels: the sweeps beside the two basin maps, or above them on a phone; the curve below.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -6,35 +6,48 @@ use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_1_basin_explorer::model::panel;
 
+/// Height of a map beside the sweeps: both maps together are as high as the sweeps alone, so nothing jumps as they
+/// enter.
+const BESIDE_PX: f32 = 126.0;
+/// Height of a map below the control of a phone.
+const BELOW_PX: f32 = 150.0;
+
 /// The layout of the widget.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BasinView;
 
 impl View for BasinView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
-        let slot = |panel, height| Slot { panel, height };
         let sweeps = slot(panel::SWEEPS, PlotHeight::Natural { most: 470.0 });
-        let basins = [panel::POINT, panel::PLANE].map(|id| slot(id, PlotHeight::Fixed(150.0)));
-        let stage = if width >= SIDE_BY_SIDE {
-            let columns = vec![
-                Column {
-                    share: 1.5,
-                    slots: vec![sweeps],
-                },
-                Column {
-                    share: 1.0,
-                    slots: basins.to_vec(),
-                },
-            ];
-            vec![Row { columns }]
-        } else {
-            let rows = core::iter::once(sweeps).chain(basins);
-            rows.map(|slot| Row::new(&[slot])).collect()
-        };
+        let mut columns = vec![Column {
+            share: 1.5,
+            slots: vec![sweeps],
+        }];
+        if width >= SIDE_BY_SIDE {
+            columns.push(Column {
+                share: 1.0,
+                slots: maps(BESIDE_PX).to_vec(),
+            });
+        }
         let curve = slot(panel::CURVE, PlotHeight::Fixed(120.0));
         Arrangement {
-            stage,
+            stage: vec![Row { columns }],
             below: vec![Row::new(&[curve])],
         }
     }
+
+    fn under_control(&self, width: f32) -> Vec<Row> {
+        if width >= SIDE_BY_SIDE {
+            return Vec::new();
+        }
+        maps(BELOW_PX).map(|map| Row::new(&[map])).to_vec()
+    }
+}
+
+fn slot(panel: &'static str, height: PlotHeight) -> Slot {
+    Slot { panel, height }
+}
+
+fn maps(height: f32) -> [Slot; 2] {
+    [panel::POINT, panel::PLANE].map(|id| slot(id, PlotHeight::Fixed(height)))
 }

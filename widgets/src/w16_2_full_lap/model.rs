@@ -27,7 +27,7 @@ use ch16_lab::lap::{LapRecord, LoopAttempt, NewestLap, NewestStep, OwnLoopError}
 use kit::chart::{dragged_to, grab_now};
 use kit::layers::Layer;
 use kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
+    Activity, Handle, Model, Motion, Outcome, Table, Tabs, Timeline, TimelineMark, press_preset,
 };
 use kit::outside::Delivery;
 use kit::param::ParamError;
@@ -39,7 +39,7 @@ use kit::values::{Changed, Values};
 use pr_sim::{Course, Sketch};
 
 use crate::w16_2_full_lap::spec::{
-    EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WIPE, WORLD,
+    EDIT_FLAT, EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WIPE, WORLD,
 };
 use flat::{Flat, Tool};
 use moment::Moment;
@@ -360,6 +360,14 @@ impl Model for FullLap {
                 .iter()
                 .map(mark)
                 .collect(),
+        })
+    }
+
+    fn tabs(&self) -> Option<Tabs> {
+        Some(Tabs {
+            first: "Lap",
+            button: &EDIT_FLAT,
+            is_second: Tool::chosen(&self.values).is_some(),
         })
     }
 

@@ -318,7 +318,7 @@ const fn flat_button(id: &'static str, label: &'static str, help: &'static str) 
 }
 
 /// Starts and ends the editing of the flat.
-const EDIT_FLAT: ButtonSpec = flat_button(
+pub const EDIT_FLAT: ButtonSpec = flat_button(
     "edit-flat",
     "Edit the flat",
     "Starts or ends editing: a drag on the map draws a wall.",

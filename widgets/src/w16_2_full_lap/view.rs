@@ -10,9 +10,12 @@ const BESIDE_THE_MAP: f32 = 860.0;
 /// Height of a plot over time.
 const PLOT: PlotHeight = PlotHeight::Fixed(130.0);
 
+/// Largest height of the map: on a screen of 680 pixels it stands above Play and the scrubber, with the title.
+const MAP_PX: f32 = 430.0;
+
 const MAP: Slot = Slot {
     panel: "map",
-    height: PlotHeight::Natural { most: 620.0 },
+    height: PlotHeight::Natural { most: MAP_PX },
 };
 
 const LOOP: Slot = Slot {

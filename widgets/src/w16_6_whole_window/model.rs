@@ -54,6 +54,15 @@ pub struct WholeWindow {
     search_task: SearchTask,
     /// Number of searches so far.
     searches: u64,
+    looked_at: Option<LookedAt>,
+}
+
+/// A box and its true scores.
+struct LookedAt {
+    /// Its index.
+    seen: usize,
+    /// The best score at each of its headings, `[heading in rad, score]`.
+    scores: Vec<[f64; 2]>,
 }
 
 impl Default for WholeWindow {
@@ -69,6 +78,7 @@ impl Default for WholeWindow {
             scene,
             workspace,
             searches: 1,
+            looked_at: None,
         }
     }
 }
@@ -78,6 +88,27 @@ impl WholeWindow {
         let config = settings::config(&self.values);
         self.search_task = SearchTask::new(&self.scene, config, &mut self.workspace);
         self.searches += 1;
+        self.looked_at = None;
+    }
+
+    /// Looks at a box: the one under the pointer, or else the one taken up.
+    fn look_at(&mut self, seen: Option<usize>) {
+        let window = &self.search_task.window;
+        let seen = seen.or(window.moments()[self.step()].taken);
+        if seen != self.looked_at.as_ref().map(|looked_at| looked_at.seen) {
+            self.looked_at = seen.map(|seen| LookedAt {
+                seen,
+                scores: window.best_by_heading(&window.boxes()[seen].poses),
+            });
+        }
+    }
+
+    /// The iteration of ICP alone, which races the search and ends halfway; `None` before the race.
+    fn raced(&self) -> Option<usize> {
+        let last = self.search_task.alone.path.len() - 1;
+        let boxes = self.boxes_taken().max(1);
+        let raced = (2 * last * self.step()).div_ceil(boxes).min(last);
+        (self.place() > 0).then_some(raced)
     }
 
     /// The start of ICP, which is the center of the window.
@@ -153,9 +184,12 @@ impl Model for WholeWindow {
     }
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
-        if self.values.set(SPEC.id, id, value)? == Changed::No
-            || [PROGRESS.id, SPEED.id, MORE.id].contains(&id)
+        if self.values.set(SPEC.id, id, value)? == Changed::No || [SPEED.id, MORE.id].contains(&id)
         {
+            return Ok(());
+        }
+        if id == PROGRESS.id {
+            self.look_at(None);
             return Ok(());
         }
         if id == "seed" {
@@ -173,7 +207,7 @@ impl Model for WholeWindow {
         }
         let last = self.last() as f64;
         match self.played.press(&mut self.values, id, last) {
-            Pressed::Transport => {}
+            Pressed::Transport => self.look_at(None),
             Pressed::Defaults => {
                 self.scene = BasinScene::with_seed(self.values.get(&SEED));
                 self.start_over();
@@ -200,11 +234,18 @@ impl Model for WholeWindow {
         if here < searched && self.played.is_playing() && self.place() as f64 > searched {
             self.values.put(&PROGRESS, searched);
         }
+        if !self.played.is_playing() {
+            self.look_at(None);
+        } else if here != self.place() as f64 {
+            // A curve that changes with each frame is noise.
+            self.looked_at = None;
+        }
         activity
     }
 
     fn work(&mut self) -> Activity {
         if self.search_task.search(&self.scene, &mut self.workspace) == Activity::Busy {
+            self.look_at(None);
             return Activity::Busy;
         }
         self.search_task.fill()
@@ -215,6 +256,7 @@ impl Model for WholeWindow {
             return Activity::Idle;
         }
         while self.search_task.search(&self.scene, &mut self.workspace) == Activity::Busy {}
+        self.look_at(None);
         Activity::Busy
     }
 
@@ -245,6 +287,12 @@ impl Model for WholeWindow {
             if let Some(at) = after {
                 mark(at - 1, "the best pose is certain", Standing::Neutral);
             }
+            let alone = &self.search_task.alone;
+            if self.boxes_taken() > 0 {
+                let stop = format!("ICP alone stops {}", words::stop(&alone.outcome));
+                let standing = words::standing_of(&alone.outcome);
+                mark(self.boxes_taken().div_ceil(2), &stop, standing);
+            }
             let standing = words::standing(self);
             mark(self.last(), words::verdict(self), standing);
         }
@@ -265,6 +313,17 @@ impl Model for WholeWindow {
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
         hands::drag(self, handle, at);
+    }
+
+    fn tap(&mut self, panel: &str, at: [f64; 2], _reach: [f64; 2]) {
+        self.look_at(picture::box_at(self, panel, at));
+    }
+
+    fn hover(&mut self, panel: &str, at: Option<[f64; 2]>) {
+        let seen = at.and_then(|at| picture::box_at(self, panel, at));
+        if seen.is_some() || !self.played.is_playing() {
+            self.look_at(seen);
+        }
     }
 
     fn set_motion(&mut self, motion: Motion) {

@@ -33,10 +33,17 @@ impl View for WindowView {
         } else {
             vec![Row::new(&[sweeps]), Row::new(&[bounds])]
         };
-        let mut below = vec![Row::new(&[gap])];
-        if width < SIDE_BY_SIDE {
-            below.insert(0, Row::new(&[places]));
-        }
+        let below = vec![Row::new(&[gap])];
         Arrangement { stage, below }
+    }
+
+    fn under_control(&self, width: f32) -> Vec<Row> {
+        if width >= SIDE_BY_SIDE {
+            return Vec::new();
+        }
+        vec![Row::new(&[Slot {
+            panel: panel::PLACES,
+            height: PlotHeight::Natural { most: 240.0 },
+        }])]
     }
 }

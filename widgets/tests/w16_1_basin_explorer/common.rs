@@ -14,7 +14,9 @@ pub fn with(values: &[(&str, f64)]) -> BasinExplorer {
     model
 }
 
+/// Fills the maps, which "More" shows. Returns the pieces of work.
 pub fn fill(model: &mut BasinExplorer) -> usize {
+    model.set("more", 1.0).expect("a switch");
     let mut pieces = 1;
     while model.work().goes_on() {
         pieces += 1;

@@ -190,6 +190,7 @@ fn a_basin_map_agrees_with_a_run_from_that_spot() {
                 "right minimum" => 0,
                 "quarter turn" => 1,
                 "half turn" => 2,
+                "stopped before it converged" => 6,
                 _ => 3,
             };
             let shown = class_at(&model, id, [heading, dx]);

@@ -8,13 +8,13 @@ use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
 use widgets::w16_1_basin_explorer::spec::SPEC;
 
 #[test]
-fn success_requires_position_and_heading_and_the_sentence_names_the_wrong_one() {
+fn success_requires_position_and_heading_and_the_sentence_reports_the_wrong_one() {
     // basin.json: heading 35°, no offset: 0.116 m, but 25.3° off, stopped at 30 iterations.
     let model = with(&[("heading", 35.0), ("dx", 0.0), ("dy", 0.0)]);
     assert!(fact(&model, "error_m") < 0.12);
     let outcome = model.outcome();
     assert_eq!(outcome.standing, Standing::Bad);
-    assert_eq!(outcome.verdict, "right place, wrong heading");
+    assert_eq!(outcome.verdict, "stopped before it converged");
     assert_eq!(fact(&model, "converged"), 0.0);
     let sentence = outcome.sentence;
     assert!(sentence.contains("stopped at the limit of 30 iterations"));
@@ -23,6 +23,11 @@ fn success_requires_position_and_heading_and_the_sentence_names_the_wrong_one() 
         sentence.contains("25.3° from the truth: rmse 0.344 m"),
         "{sentence}"
     );
+    // With hardly a pair in reach it converges where it stands: that is a wrong heading.
+    let short = [("heading", 25.0), ("dx", 0.0), ("dy", 0.0), ("tau", 0.1)];
+    let short = with(&short);
+    assert_eq!(short.outcome().verdict, "right place, wrong heading");
+    assert_eq!(fact(&short, "converged"), 1.0);
     // Within 3° it counts as right: from 32° it ends 2.0° off, from 33° 6.8°.
     for (from, standing) in [(32.0, Standing::Good), (33.0, Standing::Bad)] {
         let model = with(&[("heading", from), ("dx", 0.0), ("dy", 0.0)]);

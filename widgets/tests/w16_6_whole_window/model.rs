@@ -1,7 +1,7 @@
 //! The whole window without its picture; reference values from the room of the chapter's basins.
 
 use kit::model::{Activity, Model, Standing};
-use kit::scene::{Layer, Tone};
+use kit::scene::{Cell, Layer, Stroke, Tone};
 use widgets::w16_6_whole_window::model::{WholeWindow, panel};
 use widgets::w16_6_whole_window::spec::SPEC;
 
@@ -66,9 +66,14 @@ fn the_surface_fills_in_and_ends() {
         pieces += 1;
     }
     assert!(pieces > 10);
-    let scene = window.scene();
-    let places = scene.panels.iter().find(|p| p.id == panel::PLACES).unwrap();
-    assert!(!places.title.contains('%'), "{}", places.title);
+    let ink = panel_of(&window, panel::PLACES).layers;
+    let ink = ink.iter().find_map(|layer| match layer {
+        Layer::Raster(raster) => Some(raster.cells.clone()),
+        _ => None,
+    });
+    let fits = |cell: &&Cell| matches!(cell, Cell::Occupancy(share) if *share > 0.0);
+    let ink = ink.expect("the positions have a raster");
+    assert_eq!(ink.iter().filter(fits).count(), ink.len());
     assert_eq!(window.work(), Activity::Idle);
 }
 
@@ -164,4 +169,98 @@ fn dropped_boxes_turn_black_and_stay_and_the_poses_looked_at_are_counted() {
     let end = with(&[("progress", 200_000.0)]);
     let title = panel_of(&end, panel::BOUNDS).title;
     assert_eq!(title, "1,652,124 poses, 1,116 looked at");
+}
+
+/// The path of ICP on the positions: its stroke and its number of poses.
+fn icp_path(window: &WholeWindow) -> (Stroke, usize) {
+    let layers = panel_of(window, panel::PLACES).layers;
+    let path = layers.iter().find_map(|layer| match layer {
+        Layer::Line {
+            points,
+            tone: Tone::Series(2),
+            stroke,
+            ..
+        } => Some((*stroke, points.len())),
+        _ => None,
+    });
+    path.expect("ICP has a path")
+}
+
+#[test]
+fn icp_races_the_search_and_stops_in_a_false_minimum_first() {
+    let mut window = with(&[]);
+    let title = |window: &WholeWindow| panel_of(window, panel::PLACES).title;
+    let (stroke, whole) = icp_path(&window);
+    assert_eq!(stroke, Stroke::Dotted, "where it would go");
+    assert_eq!(title(&window), "ICP alone would stop in the quarter turn");
+    window.press("step").unwrap();
+    assert_eq!(icp_path(&window), (Stroke::Solid, 2));
+    assert_eq!(
+        title(&window),
+        format!("ICP alone: step 1 of {}", whole - 1)
+    );
+    let marks = window.timeline().unwrap().marks;
+    let stop = marks
+        .iter()
+        .find(|mark| mark.label.contains("ICP alone"))
+        .unwrap();
+    assert_eq!(
+        (stop.label.as_str(), stop.standing),
+        ("ICP alone stops in the quarter turn", Standing::Bad)
+    );
+    for (at, is_over) in [(stop.at - 50.0, false), (stop.at, true)] {
+        window.set("progress", at).unwrap();
+        assert_eq!(icp_path(&window).1 == whole, is_over, "at {at}");
+    }
+    assert_eq!(title(&window), "ICP alone stops in the quarter turn");
+    let home = with(&[("heading", 10.0), ("progress", 200_000.0)]);
+    assert_eq!(title(&home), "ICP alone stops at home");
+}
+
+/// The line of true scores on the bounds, and the bar above it.
+fn looked_into(window: &WholeWindow) -> Option<(Vec<[f64; 2]>, [[f64; 2]; 2])> {
+    let layers = panel_of(window, panel::BOUNDS).layers;
+    let line = layers.iter().find_map(|layer| match layer {
+        Layer::Line {
+            points,
+            tone: Tone::Series(3),
+            ..
+        } => Some(points.clone()),
+        _ => None,
+    });
+    let bar = layers.iter().find_map(|layer| match layer {
+        Layer::Segments {
+            segments,
+            tone: Tone::Series(3),
+            ..
+        } => Some(segments[0]),
+        _ => None,
+    });
+    line.zip(bar)
+}
+
+#[test]
+fn the_curve_belongs_to_the_box_under_the_pointer_or_to_the_one_taken_up() {
+    let mut window = with(&[("progress", 300.0)]);
+    let taken = looked_into(&window).expect("the box taken up");
+    // Over the headings: the bar next to the pointer, at the right heading and almost full score.
+    window.hover(panel::BOUNDS, Some([0.0, 0.95]));
+    let (line, bar) = looked_into(&window).unwrap();
+    assert_ne!((line.clone(), bar), taken);
+    assert!(bar[0][0] <= 0.0 && bar[1][0] >= 0.0, "{bar:?}");
+    for [heading, score] in &line {
+        assert!(*score <= bar[0][1], "{score} is above the bound {bar:?}");
+        // 1e-6: the ends of a bar are computed from its middle.
+        assert!((bar[0][0] - 1e-6..=bar[1][0] + 1e-6).contains(heading));
+    }
+    // From above: a box that holds the spot.
+    window.hover(panel::PLACES, Some([0.5, -0.35]));
+    assert!(looked_into(&window).is_some());
+    window.hover(panel::PLACES, None);
+    assert_eq!(looked_into(&window), Some(taken));
+    // A touch has no hover.
+    window.tap(panel::BOUNDS, [0.0, 0.95], [1.0, 0.1]);
+    assert_eq!(looked_into(&window), Some((line, bar)));
+    window.set("heading", 20.0).unwrap();
+    assert_eq!(looked_into(&window), None, "another search has other boxes");
 }

@@ -66,6 +66,21 @@ impl BasinMapAxes {
         }
     }
 
+    /// The start moved to the map's other offset.
+    #[must_use]
+    pub fn through(&self, start: &BasinStart) -> BasinStart {
+        match self.axis {
+            OffsetAxis::Dx => BasinStart {
+                dy_m: self.other_offset_m,
+                ..*start
+            },
+            OffsetAxis::Dy => BasinStart {
+                dx_m: self.other_offset_m,
+                ..*start
+            },
+        }
+    }
+
     /// Column and row of a start, in fractions of a cell; it may lie outside.
     #[must_use]
     pub fn position(&self, start: &BasinStart) -> (f64, f64) {
@@ -242,6 +257,11 @@ mod tests {
         let (column, row) = axes.position(&axes.start(17, 42));
         // 1e-9: a few roundings of numbers below 180.
         assert!((column - 17.0).abs() < 1e-9 && (row - 42.0).abs() < 1e-9);
+        let elsewhere = BasinStart {
+            dx_m: 1.0,
+            ..axes.start(17, 42)
+        };
+        assert_eq!(axes.through(&elsewhere), axes.start(17, 42));
     }
 
     #[test]

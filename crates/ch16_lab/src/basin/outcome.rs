@@ -26,8 +26,10 @@ pub enum Minimum {
     MorePosts,
     /// The right position, but the heading is off by more than 3°.
     WrongHeading,
-    /// Another false minimum, or a pose from which the iterations ran out.
+    /// Another false minimum; as [`BasinOutcome::minimum`], also a pose at which the iterations ran out.
     Other,
+    /// No minimum: the registration stopped elsewhere before it converged.
+    NotConverged,
 }
 
 impl Minimum {
@@ -42,6 +44,7 @@ impl Minimum {
             Self::MorePosts => '2',
             Self::WrongHeading => 'W',
             Self::Other => 'F',
+            Self::NotConverged => 'S',
         }
     }
 
@@ -56,17 +59,33 @@ impl Minimum {
             Self::MorePosts => "two posts off or more",
             Self::WrongHeading => "right place, wrong heading",
             Self::Other => "another false minimum",
+            Self::NotConverged => "stopped before it converged",
         }
     }
 
-    /// The minima that exist at a location, for legends.
+    /// The minima that exist at a location, and `NotConverged`, for legends.
     #[must_use]
-    pub fn at_place(place: BasinPlace) -> [Self; 5] {
+    pub fn at_place(place: BasinPlace) -> [Self; 6] {
         let [next, farther] = match place {
             BasinPlace::Room => [Self::QuarterTurn, Self::HalfTurn],
             BasinPlace::Fence => [Self::OnePost, Self::MorePosts],
         };
-        [Self::Right, next, farther, Self::WrongHeading, Self::Other]
+        [
+            Self::Right,
+            next,
+            farther,
+            Self::WrongHeading,
+            Self::Other,
+            Self::NotConverged,
+        ]
+    }
+
+    /// A pose away from every known minimum is one only if the registration converged there.
+    fn if_converged(self, stop: &StopReason) -> Self {
+        match self {
+            Self::WrongHeading | Self::Other if !stop.converged() => Self::NotConverged,
+            reached => reached,
+        }
     }
 }
 
@@ -77,7 +96,8 @@ pub struct BasinOutcome {
     pub pose: SE2,
     /// The minimum by the position alone, as the chapter counts.
     pub minimum: Minimum,
-    /// The minimum if the heading has to be right, too.
+    /// The minimum if the heading has to be right, too, and if registration has to converge outside of the
+    /// known ones.
     pub ending: Minimum,
     /// Length of the translation part of `log(truth⁻¹ ∘ pose)`, m.
     pub error_m: f64,
@@ -103,7 +123,7 @@ impl BasinOutcome {
         Self {
             pose: found.pose,
             minimum: classify(error_m, error_deg, f64::INFINITY),
-            ending: classify(error_m, error_deg, HOME_HEADING_DEG),
+            ending: classify(error_m, error_deg, HOME_HEADING_DEG).if_converged(&found.stop),
             error_m,
             error_deg,
             rmse_m: found.rmse_m,
@@ -135,7 +155,7 @@ impl BasinOutcome {
         };
         Self {
             minimum: minimum(f64::INFINITY),
-            ending: minimum(HOME_HEADING_DEG),
+            ending: minimum(HOME_HEADING_DEG).if_converged(&found.stop),
             ..outcome
         }
     }
@@ -180,5 +200,22 @@ mod tests {
         assert_eq!(home(0.11, 25.0), Minimum::WrongHeading);
         assert_eq!(home(0.0, 90.0), Minimum::QuarterTurn);
         assert_eq!(home(0.121, 0.0), Minimum::Other);
+    }
+    #[test]
+    fn a_pose_outside_of_the_known_minima_is_one_only_if_it_converged_there() {
+        let limit = StopReason::IterationLimit { max_iterations: 30 };
+        let small = StopReason::SmallStep {
+            step: 1e-5,
+            tolerance: 1e-4,
+        };
+        for lost in [Minimum::Other, Minimum::WrongHeading] {
+            assert_eq!(lost.if_converged(&limit), Minimum::NotConverged);
+            assert_eq!(lost.if_converged(&small), lost);
+        }
+        assert_eq!(Minimum::Right.if_converged(&limit), Minimum::Right);
+        assert_eq!(
+            Minimum::QuarterTurn.if_converged(&limit),
+            Minimum::QuarterTurn
+        );
     }
 }

@@ -5,11 +5,10 @@ use ch16_slam2d::search::ScanSearch;
 /// Stride of the first pass over the headings, a power of two: a coarse surface appears early.
 const FIRST_STRIDE: usize = 16;
 
-/// The best score at each position and at each heading, filled one row of positions at a time.
+/// The best score at each position, filled one row of positions at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScoreSurface {
     by_place: Vec<f64>,
-    by_heading: Vec<Option<f64>>,
     /// Headings in the order in which they are scored.
     order: Vec<usize>,
     columns: usize,
@@ -30,7 +29,6 @@ impl ScoreSurface {
         });
         Self {
             by_place: vec![0.0; rows * columns],
-            by_heading: vec![None; headings],
             order: order.collect(),
             columns,
             rows_done: 0,
@@ -45,12 +43,9 @@ impl ScoreSurface {
         };
         let row = self.rows_done % rows;
         let places = &mut self.by_place[row * self.columns..][..self.columns];
-        let mut highest = self.by_heading[heading].unwrap_or(0.0);
         for (place, score) in places.iter_mut().zip(search.row_scores(heading, row)) {
             *place = place.max(score);
-            highest = highest.max(score);
         }
-        self.by_heading[heading] = Some(highest);
         self.rows_done += 1;
         true
     }
@@ -59,12 +54,6 @@ impl ScoreSurface {
     #[must_use]
     pub fn by_place(&self) -> &[f64] {
         &self.by_place
-    }
-
-    /// The best score over all positions at each heading; `None` before it is scored.
-    #[must_use]
-    pub fn by_heading(&self) -> &[Option<f64>] {
-        &self.by_heading
     }
 
     /// Number of rows so far; it changes whenever a score may have changed.
@@ -100,7 +89,5 @@ mod tests {
         assert_eq!(surface.progress(), 1.0);
         let peak = surface.by_place().iter().copied().fold(0.0, f64::max);
         assert_eq!(peak, window.result().unwrap().best.score);
-        let by_heading = surface.by_heading().iter().map(|score| score.unwrap());
-        assert_eq!(by_heading.fold(0.0, f64::max), peak);
     }
 }

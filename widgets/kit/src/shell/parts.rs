@@ -52,6 +52,29 @@ impl Shell {
         }
     }
 
+    /// The tabs over the picture, if the widget has two views.
+    pub(super) fn tabs(&mut self, ui: &mut Ui) {
+        let Some(tabs) = self.model.tabs() else {
+            return;
+        };
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            for (is_second, name) in [(false, tabs.first), (true, tabs.button.label)] {
+                let is_shown = is_second == tabs.is_second;
+                let tab = Button::selectable(is_shown, name).frame_when_inactive(true);
+                let response = ui.add(tab.min_size(vec2(64.0, TARGET)));
+                if is_second {
+                    self.hot.control(tabs.button.id, &response);
+                }
+                if response.on_hover_text(tabs.button.help).clicked() && !is_shown {
+                    // The button is one of the widget's.
+                    let _ = self.model.press(tabs.button.id);
+                    self.touch();
+                }
+            }
+        });
+    }
+
     /// Buttons, speed, timeline.
     pub(super) fn transport(&mut self, ui: &mut Ui) {
         let touched = transport::bar(ui, self.model.as_mut(), self.theme, &mut self.hot);

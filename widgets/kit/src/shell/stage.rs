@@ -36,7 +36,8 @@ impl Shell {
         out: &mut Vec<Reserved>,
     ) -> f32 {
         let Arrangement { stage, below } = self.arrange(ui, width);
-        let y = self.reserve(ui, at, width, &stage, out);
+        let y = self.block(ui, at, width, Self::tabs);
+        let y = self.reserve(ui, [at[0], y], width, &stage, out);
         let y = self.block(ui, [at[0], y], width, Self::transport);
         self.reserve(ui, [at[0], y], width, &below, out)
     }
@@ -50,7 +51,8 @@ impl Shell {
         out: &mut Vec<Reserved>,
     ) -> f32 {
         let Arrangement { stage, below } = self.arrange(ui, width);
-        let y = self.reserve(ui, at, width, &stage, out);
+        let y = self.block(ui, at, width, Self::tabs);
+        let y = self.reserve(ui, [at[0], y], width, &stage, out);
         let y = self.block(ui, [at[0], y], width, Self::transport);
         if width >= BESIDE_THE_VERDICT && !self.model.layer().is_all() {
             let control = CONTROL_SHARE * width;
@@ -62,6 +64,9 @@ impl Shell {
         let y = self.block(ui, [at[0], y], width, Self::controls);
         let y = self.block(ui, [at[0], y], width, Self::outcome);
         let y = self.block(ui, [at[0], y], width, Self::more);
+        let mut under = self.view.under_control(width);
+        view::keep_shown(&mut under, &self.model.layer());
+        let y = self.reserve(ui, [at[0], y], width, &under, out);
         let y = self.reserve(ui, [at[0], y], width, &below, out);
         self.block(ui, [at[0], y], width, Self::tables)
     }

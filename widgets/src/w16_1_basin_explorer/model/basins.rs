@@ -1,4 +1,4 @@
-//! The two basin maps: filled in pieces, drawn as rasters with letters.
+//! The two basin maps: the reader's own starts, then all of them in pieces, drawn as rasters with letters.
 
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -13,6 +13,8 @@ use super::letters::{Room, rooms, spread};
 use super::settings::{axis, config, start};
 use crate::w16_1_basin_explorer::spec::OFFSET_SPAN_M;
 
+/// The reader's starts that stay on the maps: more would hide them.
+const MOST_TRIES: usize = 24;
 /// Registrations in one piece of work: some tenths of a millisecond.
 const REGISTRATIONS_PER_PIECE: usize = 3;
 /// Headings, 3° apart.
@@ -23,8 +25,15 @@ pub const ROWS: usize = 41;
 /// Both basin maps for the current settings: point-to-point, then point-to-plane.
 pub struct Basins {
     maps: [BasinMap; 2],
+    tries: Vec<Try>,
     revision: u64,
     drawn: [Drawn; 2],
+}
+
+/// One of the reader's starts, and the minima that it reaches on both maps; `None` before they are computed.
+struct Try {
+    start: BasinStart,
+    ends: Option<[Minimum; 2]>,
 }
 
 /// Cached drawing data of one map.
@@ -39,6 +48,7 @@ impl Basins {
     pub fn new(values: &Values) -> Self {
         Self {
             maps: empty_maps(values),
+            tries: Vec::new(),
             revision: 0,
             drawn: Default::default(),
         }
@@ -46,8 +56,18 @@ impl Basins {
 
     /// Empties the maps, because the sweeps changed.
     pub fn restart(&mut self, values: &Values) {
-        self.maps = empty_maps(values);
-        self.changed();
+        self.empty(empty_maps(values));
+    }
+
+    /// Adds a start of the reader. Returns how many there are.
+    pub fn add(&mut self, start: BasinStart) -> usize {
+        if self.tries.iter().all(|tried| tried.start != start) {
+            if self.tries.len() == MOST_TRIES {
+                self.tries.remove(0);
+            }
+            self.tries.push(Try { start, ends: None });
+        }
+        self.tries.len()
     }
 
     /// Empties the maps if their settings changed; otherwise keeps what is filled.
@@ -58,13 +78,29 @@ impl Basins {
         };
         // Both maps have the same axes and settings except for the variant.
         if self.maps.iter().zip(&fresh).any(differs) {
-            self.maps = fresh;
-            self.changed();
+            self.empty(fresh);
         }
     }
 
-    /// Fills some cells of the less complete map.
+    fn empty(&mut self, maps: [BasinMap; 2]) {
+        self.maps = maps;
+        for tried in &mut self.tries {
+            tried.ends = None;
+        }
+        self.changed();
+    }
+
+    /// Registers one of the reader's starts, at the maps' other offset, or fills some cells of the less complete
+    /// map.
     pub fn work(&mut self, scene: &BasinScene, workspace: &mut IcpWorkspace) -> Activity {
+        if let Some(tried) = self.tries.iter_mut().find(|tried| tried.ends.is_none()) {
+            let ends = self.maps.each_ref().map(|map| {
+                let start = map.axes().through(&tried.start);
+                scene.register_from(&start, map.config(), workspace).ending
+            });
+            tried.ends = Some(ends);
+            return Activity::Busy;
+        }
         let [point, plane] = &mut self.maps;
         let behind = if plane.progress() < point.progress() {
             plane
@@ -88,6 +124,16 @@ impl Basins {
     /// The map of a variant.
     pub fn map(&self, variant: IcpVariant) -> &BasinMap {
         &self.maps[place(variant)]
+    }
+
+    /// The reader's starts on a variant's map, with the minima that they reach.
+    pub fn tries(&self, variant: IcpVariant) -> impl Iterator<Item = ([f64; 2], Minimum)> {
+        let along_y = self.map(variant).axes().axis == OffsetAxis::Dy;
+        let spot = move |tried: &Try| {
+            let ends = tried.ends?;
+            Some((start_spot(&tried.start, along_y), ends[place(variant)]))
+        };
+        self.tries.iter().filter_map(spot)
     }
 
     /// The picture of a variant's map.
@@ -168,6 +214,7 @@ pub fn class(minimum: Minimum) -> u8 {
         Minimum::HalfTurn | Minimum::MorePosts => 2,
         Minimum::Other => 3,
         Minimum::WrongHeading => 4,
+        Minimum::NotConverged => 6,
     }
 }
 

@@ -251,25 +251,14 @@ fn outline(cloud: &PointCloud, gap_m: f64) -> Vec<[f64; 2]> {
 fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
     let chosen = of == variant(&explorer.values);
     let (name, other) = match axis(&explorer.values) {
-        OffsetAxis::Dx => (
-            "Δx (m)",
-            format!("Δy {:.2} m", start(&explorer.values).dy_m),
-        ),
-        OffsetAxis::Dy => (
-            "Δy (m)",
-            format!("Δx {:.2} m", start(&explorer.values).dx_m),
-        ),
-    };
-    let progress = explorer.basins.map(of).progress();
-    let state = if progress < 1.0 {
-        format!(", {:.0} % done", 100.0 * progress)
-    } else {
-        String::new()
+        OffsetAxis::Dx => ("Δx", format!("Δy {:.2} m", start(&explorer.values).dy_m)),
+        OffsetAxis::Dy => ("Δy", format!("Δx {:.2} m", start(&explorer.values).dx_m)),
     };
     let mut layers = Vec::new();
     let covered = explorer.values.get(&EDGE) == Phase::Marking;
     if !covered {
         layers.push(Layer::Raster(explorer.basins.raster(of)));
+        layers.extend(tries(explorer, of));
         layers.extend(letters(explorer, of));
     }
     layers.extend(edge::layers(explorer, of));
@@ -303,7 +292,7 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
     let title = if covered {
         format!("Where is the edge, {}?", variant_name(of))
     } else {
-        format!("Basins, {}, {other}{state}", variant_name(of))
+        format!("Where it ends, {}", variant_name(of))
     };
     Panel {
         id,
@@ -316,7 +305,7 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
             180.0 + BASIN_ROOM[0],
         ),
         y: Axis::new(
-            name,
+            &format!("{name} (m), at {other}"),
             -OFFSET_SPAN_M - BASIN_ROOM[1],
             OFFSET_SPAN_M + BASIN_ROOM[1],
         ),
@@ -329,6 +318,16 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
         },
         color_bar: None,
     }
+}
+
+/// The reader's own starts over the map of a variant, each in the colour of its end.
+fn tries(explorer: &BasinExplorer, of: IcpVariant) -> Vec<Layer> {
+    let tries = explorer.basins.tries(of);
+    let marks = tries.map(|(at, minimum)| {
+        let mark = |tone, radius_px| Layer::points(vec![at], Mark::Dot, tone, radius_px);
+        [mark(Tone::Ink, 5.0), mark(Tone::Class(class(minimum)), 3.5)]
+    });
+    marks.flatten().collect()
 }
 
 /// The letters of the minima over the map of a variant.

@@ -65,10 +65,14 @@ pub fn summary(explorer: &BasinExplorer) -> String {
         BasinPlace::Room => "one room",
         BasinPlace::Fence => "one row of equal posts",
     };
+    let maps = if explorer.shows_maps() {
+        " Two basin maps show the minimum reached from every heading and offset."
+    } else {
+        ""
+    };
     format!(
         "Two laser sweeps of {place}, {} and {} points. At iteration {} of {} the source lies \
-         {:.2} m from where it belongs, with {} pairs and rmse {:.3} m. {} Two basin maps show the \
-         minimum reached from every heading and offset.",
+         {:.2} m from where it belongs, with {} pairs and rmse {:.3} m. {}{maps}",
         explorer.scene.target().len(),
         explorer.scene.source().len(),
         explorer.iteration(),

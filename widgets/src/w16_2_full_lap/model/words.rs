@@ -246,6 +246,12 @@ pub fn summary(moment: &Moment, refused: Option<&OwnLoopError>) -> String {
     } else if let Some(refused) = refused {
         rest += &format!(" Your own loop: {refused}.");
     }
+    if moment.has_moved() {
+        rest += &format!(
+            " A line at {:.0} % of the map's width: left of it the map is as before the loop, right of it as after.",
+            100.0 * moment.wipe
+        );
+    }
     if let Some(drawn) = &moment.drawn {
         rest += &flat::summary(drawn);
     }

@@ -3,6 +3,8 @@
 mod bounds;
 mod places;
 
+pub use bounds::box_at;
+
 use ch16_slam2d::cloud::PointCloud;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::SE2;
@@ -33,21 +35,13 @@ fn sweeps(window: &WholeWindow) -> Panel {
     let turn = turn_handle(&guess);
     let mut layers = vec![
         points(scene.target(), Mark::Cross, Tone::Measurement, 3.0),
-        // ICP alone: its result, and its path.
         points(
-            &scene
-                .source()
-                .transformed(&window.search_task.alone.outcome.pose),
+            &scene.source().transformed(&icp_now(window)),
             Mark::Dot,
             Tone::Series(2),
             1.6,
         ),
-        Layer::line(
-            window.search_task.alone.path.iter().map(position).collect(),
-            Stroke::Dotted,
-            Tone::Series(2),
-            1.5,
-        ),
+        icp_path(window),
         points(
             &scene.source().transformed(&pose),
             Mark::Square,
@@ -86,11 +80,28 @@ fn sweeps(window: &WholeWindow) -> Panel {
             LegendEntry::mark("target", Tone::Measurement, Mark::Cross),
             LegendEntry::mark("best pose so far", Tone::Posterior, Mark::Square),
             LegendEntry::mark("start, to be turned", Tone::Prior, Mark::Circle),
-            LegendEntry::mark("where ICP alone ends", Tone::Series(2), Mark::Dot),
+            LegendEntry::mark("ICP alone", Tone::Series(2), Mark::Dot),
             LegendEntry::mark("truth", Tone::Truth, Mark::Plus),
         ],
         color_bar: None,
     }
+}
+
+/// The pose of ICP alone in the race; before it, the one where ICP would end.
+fn icp_now(window: &WholeWindow) -> SE2 {
+    let path = &window.search_task.alone.path;
+    path[window.raced().unwrap_or(path.len() - 1)]
+}
+
+/// The path of ICP alone: dotted before the race, then as far as it is.
+fn icp_path(window: &WholeWindow) -> Layer {
+    let path = &window.search_task.alone.path;
+    let (done, stroke) = match window.raced() {
+        Some(k) => (&path[..=k], Stroke::Solid),
+        None => (&path[..], Stroke::Dotted),
+    };
+    let positions = done.iter().map(position).collect();
+    Layer::line(positions, stroke, Tone::Series(2), 2.0)
 }
 
 /// Axes that hold the target, and the source at any heading about the truth.

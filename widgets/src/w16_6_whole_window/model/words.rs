@@ -19,6 +19,36 @@ pub fn standing(window: &WholeWindow) -> Standing {
     }
 }
 
+/// The assessment of a registration.
+pub fn standing_of(end: &BasinOutcome) -> Standing {
+    match end.ending {
+        Minimum::Right => Standing::Good,
+        _ => Standing::Bad,
+    }
+}
+
+/// Where ICP stops, after "stops".
+pub fn stop(end: &BasinOutcome) -> String {
+    match end.ending {
+        Minimum::Right => "at home".to_owned(),
+        Minimum::NotConverged => "before it converged".to_owned(),
+        Minimum::WrongHeading => "with a wrong heading".to_owned(),
+        Minimum::Other => "in another false minimum".to_owned(),
+        turn => format!("in the {}", turn.name()),
+    }
+}
+
+/// The race of ICP in a few words.
+pub fn race(window: &WholeWindow) -> String {
+    let alone = &window.search_task.alone;
+    let last = alone.path.len() - 1;
+    match window.raced() {
+        Some(k) if k < last => format!("ICP alone: step {k} of {last}"),
+        Some(_) => format!("ICP alone stops {}", stop(&alone.outcome)),
+        None => format!("ICP alone would stop {}", stop(&alone.outcome)),
+    }
+}
+
 /// The result in a few words.
 pub fn verdict(window: &WholeWindow) -> &'static str {
     match (&window.search_task.found, window.refined()) {
@@ -224,6 +254,7 @@ fn ending(end: &BasinOutcome) -> String {
     match end.ending {
         Minimum::Right => format!("at home, {off}"),
         Minimum::Other => format!("in another false minimum, {off}"),
+        Minimum::NotConverged => format!("before it converged, {off}"),
         Minimum::WrongHeading => format!("at the right place with a wrong heading, {off}"),
         turn => format!("in the {}, {off}", turn.name()),
     }

@@ -166,7 +166,7 @@ fn map_points(moment: &Moment) -> [Layer; 2] {
         }
     }
     [
-        Layer::points(out, Mark::Dot, Tone::Measurement, 1.2),
+        Layer::points(out, Mark::Dot, Tone::Outbound, 1.2),
         Layer::points(back, Mark::Cross, Tone::Revisit, 2.2),
     ]
 }
@@ -275,7 +275,7 @@ fn legend(moment: &Moment) -> Vec<LegendEntry> {
             Mark::Square,
             Stroke::Solid,
         ),
-        LegendEntry::mark("map, way out", Tone::Measurement, Mark::Dot),
+        LegendEntry::mark("map, way out", Tone::Outbound, Mark::Dot),
         LegendEntry::mark("map, way back", Tone::Revisit, Mark::Cross),
         LoopStyle::ACCEPTED.entry("loop accepted"),
     ];

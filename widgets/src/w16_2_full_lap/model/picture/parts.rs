@@ -15,12 +15,12 @@ use crate::w16_2_full_lap::model::words::{ends, part_label};
 const CLEAR_PX: f32 = 12.0;
 
 /// The colour of an edge whose χ² is past the gate.
-pub const STRAINED: Tone = Tone::Class(2);
+pub const STRAINED: Tone = Tone::Strained;
 
 /// Looks of edges by their χ²: its upper limit as a share of the gate's, the colour, and the width in pixels.
 const LOOKS: [(f64, Tone, f32); 3] = [
-    (0.25, Tone::Posterior, 1.5),
-    (1.0, Tone::Posterior, 3.5),
+    (0.25, Tone::Posterior, 2.0),
+    (1.0, Tone::Posterior, 4.0),
     (f64::INFINITY, STRAINED, 6.0),
 ];
 

@@ -353,3 +353,12 @@ fn the_controls_of_the_flat_are_shown_only_during_editing() {
         assert!(SPEC.buttons.iter().any(|it| it.id == *button), "{button}");
     }
 }
+
+#[test]
+fn the_flat_is_edited_on_a_tab_over_the_map() {
+    let mut model = at(&[]);
+    let tabs = |model: &FullLap| model.tabs().map(|tabs| (tabs.button.id, tabs.is_second));
+    assert_eq!(tabs(&model), Some(("edit-flat", false)));
+    press(&mut model, "edit-flat");
+    assert_eq!(tabs(&model), Some(("edit-flat", true)));
+}

@@ -27,7 +27,7 @@ fn the_settings_define_the_loop_and_the_picture_shows_where_its_error_goes() {
     assert!(fact(&model, "own_chi2_after") < fact(&model, "own_chi2_before"));
     let scene = model.scene();
     let wide = scene.panels[0].layers.iter().any(|layer| {
-        matches!(layer, Layer::Segments { tone: Tone::Class(2), segments, .. } if segments.len() > 5)
+        matches!(layer, Layer::Segments { tone: Tone::Strained, segments, .. } if segments.len() > 5)
     });
     assert!(wide, "edges past the gate have a colour of their own");
     assert_eq!(

@@ -255,7 +255,7 @@ fn the_outward_and_the_return_path_have_two_shades() {
         counts.sum::<usize>()
     };
     assert_eq!(points(20.0, Tone::Revisit), 0);
-    assert!(points(20.0, Tone::Measurement) > 500);
+    assert!(points(20.0, Tone::Outbound) > 500);
     assert!(points(129.0, Tone::Revisit) > 500);
 }
 
@@ -285,6 +285,11 @@ fn left_of_the_line_the_map_is_that_before_the_loop_and_right_of_it_that_after()
     let held = held.expect("the line is held anywhere along it");
     model.drag(held, [low + 0.25 * (high - low) + 0.05, 2.0]);
     assert_eq!(model.values().number("wipe"), 0.25);
+    assert!(
+        model.summary().contains("A line at 25 %"),
+        "{}",
+        model.summary()
+    );
     let line = low + 0.25 * (high - low);
     assert!(shown_nodes(&model).iter().all(|at| at[0] >= line));
     model.drag(held, [high + 9.0, 2.0]);

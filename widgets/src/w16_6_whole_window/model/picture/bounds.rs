@@ -1,11 +1,11 @@
 //! Boxes as bars over the heading, as high as their bounds; and the convergence of bound and best score.
 
 use ch16_lab::whole_window::SeenBox;
-use ch16_slam2d::search::BoxFate;
+use ch16_slam2d::search::{BoxFate, PoseBox};
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Panel, Stroke, Tone, Weight};
 
 use super::super::words::heading_error_deg;
-use super::super::{WholeWindow, panel};
+use super::super::{LookedAt, WholeWindow, panel};
 
 /// Largest number of points of the gap's lines.
 const GAP_POINTS: usize = 300;
@@ -16,20 +16,22 @@ pub fn panel(window: &WholeWindow) -> Panel {
     let moment = &search.moments()[step];
     let bar = |seen: &SeenBox| bar(window, seen);
     let waiting = search.boxes().iter().filter(|seen| seen.waits_after(step));
-    let dropped = search.boxes().iter().filter(|seen| {
-        let is_past = seen.until.is_some_and(|until| until <= step);
-        is_past && seen.fate == Some(BoxFate::Pruned)
-    });
+    let dropped = search.boxes().iter().filter(|seen| is_dropped(seen, step));
     let segments =
         |segments: Vec<_>, tone, width_px| Layer::segments(segments, Stroke::Solid, tone, width_px);
     let mut layers = vec![
         segments(dropped.map(bar).collect(), Tone::Ink, 2.0),
-        Layer::line(surface(window), Stroke::Solid, Tone::Series(3), 1.5),
         segments(waiting.map(bar).collect(), Tone::Series(0), 2.5),
     ];
-    if let Some(taken) = moment.taken {
-        let taken = vec![bar(&search.boxes()[taken])];
-        layers.push(segments(taken, Tone::Series(2), 5.0));
+    if let Some(looked_at) = &window.looked_at {
+        let its_bar = vec![bar(&search.boxes()[looked_at.seen])];
+        layers.push(segments(its_bar, Tone::Series(3), 5.0));
+        layers.push(Layer::line(
+            scores(window, looked_at),
+            Stroke::Solid,
+            Tone::Series(3),
+            2.0,
+        ));
     }
     let level = |score: f64, tone| {
         Layer::line(
@@ -59,10 +61,13 @@ pub fn panel(window: &WholeWindow) -> Panel {
         layers,
         legend: vec![
             LegendEntry::line("box that waits", Tone::Series(0), Stroke::Solid),
-            LegendEntry::line("box taken up", Tone::Series(2), Stroke::Solid),
+            LegendEntry::line(
+                "box looked into, over its true scores",
+                Tone::Series(3),
+                Stroke::Solid,
+            ),
             LegendEntry::line("dropped", Tone::Ink, Stroke::Solid),
             LegendEntry::line("best score so far", Tone::Posterior, Stroke::Dotted),
-            LegendEntry::line("best true score", Tone::Series(3), Stroke::Solid),
         ],
         color_bar: None,
     }
@@ -88,18 +93,48 @@ fn bar(window: &WholeWindow, seen: &SeenBox) -> [[f64; 2]; 2] {
     [[middle - half, bound], [middle + half, bound]]
 }
 
-/// The best score at each known heading, from the lowest error to the highest.
-fn surface(window: &WholeWindow) -> Vec<[f64; 2]> {
-    let search = window.search_task.window.search();
-    let by_heading = window.search_task.surface.by_heading().iter().enumerate();
-    let mut points: Vec<[f64; 2]> = by_heading
-        .filter_map(|(k, score)| {
-            let error = heading_error_deg(window, search.heading_rad(k));
-            Some([error, (*score)?])
-        })
-        .collect();
-    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    points
+/// The true scores of a box over its headings.
+fn scores(window: &WholeWindow, looked_at: &LookedAt) -> Vec<[f64; 2]> {
+    let scores = looked_at.scores.iter();
+    let mut line: Vec<[f64; 2]> = Vec::with_capacity(looked_at.scores.len());
+    for [heading_rad, score] in scores {
+        let at = heading_error_deg(window, *heading_rad);
+        if line.last().is_some_and(|last| (at - last[0]).abs() > 180.0) {
+            line.push([f64::NAN; 2]);
+        }
+        line.push([at, *score]);
+    }
+    line
+}
+
+/// Whether a box was dropped by that step.
+fn is_dropped(seen: &SeenBox, step: usize) -> bool {
+    let is_past = seen.until.is_some_and(|until| until <= step);
+    is_past && seen.fate == Some(BoxFate::Pruned)
+}
+
+/// The box at a spot of a panel, waiting or dropped: from above the smallest one, over the headings the bar that is
+/// next in height.
+pub fn box_at(window: &WholeWindow, panel: &str, at: [f64; 2]) -> Option<usize> {
+    let step = window.step();
+    let boxes = window.search_task.window.boxes().iter().enumerate();
+    let is_in = |[low, high]: [f64; 2], value: f64| (low..=high).contains(&value);
+    let distance = |seen: &SeenBox| match panel {
+        panel::PLACES => {
+            let PoseBox { x_m, y_m, .. } = seen.poses;
+            let is_here = is_in(x_m, at[0]) && is_in(y_m, at[1]);
+            (is_here && seen.waits_after(step)).then(|| (x_m[1] - x_m[0]) * (y_m[1] - y_m[0]))
+        }
+        panel::BOUNDS => {
+            let [from, to] = bar(window, seen);
+            let is_here = is_in([from[0], to[0]], at[0]);
+            let is_drawn = seen.waits_after(step) || is_dropped(seen, step);
+            (is_here && is_drawn).then(|| (seen.poses.bound - at[1]).abs())
+        }
+        _ => None,
+    };
+    let near = boxes.filter_map(|(k, seen)| Some((k, distance(seen)?)));
+    near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
 }
 
 /// The largest bound falls, the best score rises; the search ends where they meet.

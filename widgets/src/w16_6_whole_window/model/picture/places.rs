@@ -5,8 +5,9 @@ use kit::scene::{
     Aspect, Axis, Bounds, Cell, Layer, LegendEntry, Mark, Panel, Raster, Stroke, Tone, Weight,
 };
 
+use super::super::words::race;
 use super::super::{WholeWindow, panel};
-use super::sensor;
+use super::{icp_now, icp_path, sensor};
 
 /// Margin around the window as a share of its width.
 const MARGIN: f64 = 0.06;
@@ -28,27 +29,23 @@ pub fn panel(window: &WholeWindow) -> Panel {
             1.0,
         ),
     ];
-    if let Some(taken) = moment.taken {
-        let taken = core::iter::once(&search.boxes()[taken].poses);
-        layers.push(boxes(taken, Tone::Series(2), 2.5));
+    if let Some(looked_at) = &window.looked_at {
+        let looked_at = core::iter::once(&search.boxes()[looked_at.seen].poses);
+        layers.push(boxes(looked_at, Tone::Series(3), 2.5));
     }
     layers.push(sensor(window.scene.truth(), Mark::Plus, Tone::Truth));
     layers.push(sensor(window.guess(), Mark::Circle, Tone::Prior));
+    layers.push(icp_path(window));
+    layers.push(sensor(icp_now(window), Mark::Dot, Tone::Series(2)));
     if let Some(runner_up) = moment.runner_up {
         layers.push(sensor(runner_up.pose, Mark::Triangle, Tone::Series(1)));
     }
     if moment.best.is_some() {
         layers.push(sensor(window.shown_pose(), Mark::Square, Tone::Posterior));
     }
-    let progress = window.search_task.surface.progress();
-    let filled = if progress < 1.0 {
-        format!(", {:.0} % drawn", (100.0 * progress).floor())
-    } else {
-        String::new()
-    };
     Panel {
         id: panel::PLACES,
-        title: format!("Where the sensor may stand: best score{filled}"),
+        title: race(window),
         weight: Weight::Half,
         aspect: Aspect::Equal,
         x: Axis::hidden(low[0] - margin, high[0] + margin),
@@ -56,10 +53,11 @@ pub fn panel(window: &WholeWindow) -> Panel {
         layers,
         legend: vec![
             LegendEntry::line("box that waits", Tone::Series(0), Stroke::Solid),
-            LegendEntry::line("box taken up", Tone::Series(2), Stroke::Solid),
+            LegendEntry::line("box looked into", Tone::Series(3), Stroke::Solid),
+            LegendEntry::mark("ICP alone", Tone::Series(2), Mark::Dot),
             LegendEntry::mark("best", Tone::Posterior, Mark::Square),
             LegendEntry::mark("runner-up", Tone::Series(1), Mark::Triangle),
-            LegendEntry::mark("the more ink, the better it fits", Tone::Ink, Mark::Dot),
+            LegendEntry::mark("more ink: fits better", Tone::Ink, Mark::Dot),
         ],
         color_bar: None,
     }

@@ -1,0 +1,128 @@
+//! The basin maps enter after the reader's first starts, and begin with them.
+
+use kit::model::{Activity, Model};
+use kit::scene::{Layer, Mark, Tone};
+use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
+
+use crate::support::{drawn, panel_of};
+use crate::w16_1_basin_explorer::common::with;
+
+/// Advances until the start has stood still for long enough.
+fn stand_still(model: &mut BasinExplorer) {
+    while model.advance(0.1).goes_on() {}
+}
+
+fn shows_maps(model: &BasinExplorer) -> bool {
+    model.layer().has_panel(panel::POINT)
+}
+
+/// The classes of the reader's starts on a map, in their order.
+fn tried(model: &BasinExplorer, id: &str) -> Vec<u8> {
+    let layers = panel_of(model, id).layers;
+    let classes = layers.iter().filter_map(|layer| match layer {
+        Layer::Points {
+            mark: Mark::Dot,
+            tone: Tone::Class(class),
+            ..
+        } => Some(*class),
+        _ => None,
+    });
+    classes.collect()
+}
+
+#[test]
+fn the_maps_enter_with_the_second_start_and_nothing_is_filled_before() {
+    let mut model = BasinExplorer::default();
+    stand_still(&mut model);
+    assert!(!shows_maps(&model) && model.work() == Activity::Idle);
+    model.set("heading", 60.0).unwrap();
+    stand_still(&mut model);
+    assert!(!shows_maps(&model), "one start");
+    // The same start again is no other one.
+    model.set("heading", 0.0).unwrap();
+    model.set("heading", 60.0).unwrap();
+    stand_still(&mut model);
+    assert!(!shows_maps(&model), "one start, twice");
+    model.set("dx", 0.2).unwrap();
+    stand_still(&mut model);
+    assert!(shows_maps(&model));
+    assert_eq!(model.work(), Activity::Busy);
+}
+
+#[test]
+fn a_drag_is_one_start_however_long_it_takes() {
+    let mut model = BasinExplorer::default();
+    let handle = model.grab(panel::SWEEPS, [1.05, 0.1], [0.2, 0.2]).unwrap();
+    for k in 0..5 {
+        model.drag(handle, [1.0 - 0.1 * f64::from(k), 0.1]);
+        assert_eq!(model.advance(10.0), Activity::Idle);
+    }
+    model.release();
+    stand_still(&mut model);
+    assert!(!shows_maps(&model));
+    model.drag(handle, [0.9, -0.2]);
+    model.release();
+    stand_still(&mut model);
+    assert!(shows_maps(&model));
+}
+
+#[test]
+fn the_readers_starts_come_first_in_the_colours_of_their_ends() {
+    let mut model = with(&[("dx", 0.0), ("dy", 0.0)]);
+    for heading in [25.0, 45.0, 75.0, 180.0] {
+        model.set("heading", heading).unwrap();
+        stand_still(&mut model);
+    }
+    for _ in 0..4 {
+        assert_eq!(model.work(), Activity::Busy);
+    }
+    // Right, another false minimum, quarter turn, half turn; point to plane comes home from 45°.
+    assert_eq!(tried(&model, panel::POINT), [0, 3, 1, 2]);
+    assert_eq!(tried(&model, panel::PLANE), [0, 0, 1, 2]);
+    // With another τ they are computed again.
+    model.set("tau", 0.1).unwrap();
+    assert!(tried(&model, panel::POINT).is_empty());
+    for _ in 0..4 {
+        model.work();
+    }
+    assert_eq!(tried(&model, panel::POINT)[0], 4, "hardly a pair in reach");
+}
+
+#[test]
+fn a_state_about_the_maps_shows_them_at_once() {
+    for (id, value) in [
+        ("paths", 1.0),
+        ("axis", 1.0),
+        ("edge", 1.0),
+        ("edge", 2.0),
+        ("more", 1.0),
+    ] {
+        assert!(shows_maps(&with(&[(id, value)])), "{id}={value}");
+    }
+    assert!(!shows_maps(&with(&[("heading", 60.0), ("variant", 1.0)])));
+}
+
+/// Heights before and after the maps enter, at the widths of the page's columns and of a phone.
+#[test]
+fn the_maps_enter_beside_the_picture_without_a_jump_and_below_the_control_on_a_phone() {
+    let height = |width: f32, starts: &[f64]| {
+        let harness = drawn("w16.1", width, |shell| {
+            for heading in starts {
+                let model = shell.model_mut();
+                model.set("heading", *heading).unwrap();
+                while model.advance(0.1).goes_on() {}
+            }
+        });
+        let shell = harness.state();
+        let control = shell.control_rect("heading").expect("the opening control");
+        (shell.content_height(), control.top())
+    };
+    for width in [580.0, 640.0, 700.0, 760.0, 860.0] {
+        let (before, after) = (height(width, &[60.0]), height(width, &[45.0, 60.0]));
+        let jump = (after.0 - before.0).abs();
+        assert!(jump <= 20.0, "{width}: {before:?} and {after:?}");
+    }
+    let (before, after) = (height(390.0, &[60.0]), height(390.0, &[45.0, 60.0]));
+    assert_eq!(before.1, after.1);
+    assert!(after.0 > before.0 + 300.0, "{before:?} and {after:?}");
+}
