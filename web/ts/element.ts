@@ -518,6 +518,7 @@ export class SlamWidget extends HTMLElement {
   }
 
   #showTimeline(): void {
+    this.#controls?.disable(this.#life.ask((widget) => widget.disabledButtons()) ?? []);
     this.#controls?.showTimeline(this.#shownTimeline());
   }
 

@@ -49,6 +49,7 @@ button, select, input[type='number'] { font: inherit; color: inherit; background
   border: 1px solid var(--soft); border-radius: 4px; min-height: 1.75rem; padding: 0.1rem 0.6rem; }
 button { cursor: pointer; }
 button:hover { border-color: var(--accent); }
+button[aria-disabled='true'] { color: var(--soft); border-color: var(--line); cursor: default; }
 :focus-visible:not(.frame) { outline: 3px solid var(--accent); outline-offset: 2px; }
 input[type='number'] { width: 8rem; }
 input[type='range'] { flex: 1 1 8rem; min-width: 3rem; min-height: 1.75rem; accent-color: var(--accent); }

@@ -37,7 +37,7 @@ pub fn bar(ui: &mut Ui, model: &mut dyn Model, theme: Theme, hot: &mut Hot) -> T
         for spec in model.spec().buttons {
             if spec.id != DEFAULTS.id
                 && layer.has_button(spec.id)
-                && button(ui, spec, playing, hot).clicked()
+                && button(ui, spec, model.is_enabled(spec.id), playing, hot).clicked()
             {
                 // The buttons come from the widget's own list.
                 let _ = model.press(spec.id);
@@ -76,12 +76,20 @@ pub fn bar(ui: &mut Ui, model: &mut dyn Model, theme: Theme, hot: &mut Hot) -> T
 }
 
 /// One button; "Play" becomes "Pause" while the run plays.
-pub fn button(ui: &mut Ui, spec: &'static ButtonSpec, playing: bool, hot: &mut Hot) -> Response {
+pub fn button(
+    ui: &mut Ui,
+    spec: &'static ButtonSpec,
+    is_enabled: bool,
+    playing: bool,
+    hot: &mut Hot,
+) -> Response {
     let pressed = spec.id == PLAY.id && playing;
     let label = if pressed { "Pause" } else { spec.label };
-    let response = ui.add(Button::new(label).min_size(vec2(44.0, TARGET)));
+    let response = ui.add_enabled(is_enabled, Button::new(label).min_size(vec2(44.0, TARGET)));
     hot.control(spec.id, &response);
-    response.on_hover_text(spec.help)
+    response
+        .on_hover_text(spec.help)
+        .on_disabled_hover_text(spec.help)
 }
 
 /// The position on the timeline in words.

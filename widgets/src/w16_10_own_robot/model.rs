@@ -224,6 +224,10 @@ impl Model for OwnRobot {
         Ok(())
     }
 
+    fn is_enabled(&self, button: &str) -> bool {
+        self.has_work_for(button)
+    }
+
     fn advance(&mut self, elapsed_s: f64) -> Activity {
         if !self.playback.is_playing() {
             return Activity::Idle;

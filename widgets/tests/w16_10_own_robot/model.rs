@@ -7,7 +7,11 @@ use widgets::w16_10_own_robot::model::OwnRobot;
 use widgets::w16_10_own_robot::model::robot::Stage;
 
 pub fn tell(robot: &mut OwnRobot, kind: &str, text: &str, numbers: &[f64]) {
-    robot.receive(&Delivery {
+    deliver(robot, kind, text, numbers);
+}
+
+pub fn deliver(model: &mut dyn Model, kind: &str, text: &str, numbers: &[f64]) {
+    model.receive(&Delivery {
         kind,
         text,
         numbers,
