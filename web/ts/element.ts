@@ -26,6 +26,7 @@ import { unwatchVisibility, watchVisibility } from './visibility';
 import { Desk, hand, type FileUse } from './robot/desk';
 import { DoctorScreen, type Diagnosis } from './robot/doctor';
 import { chooseFiles, takeDrops } from './robot/files';
+import { LoopsToLookInto } from './robot/loops';
 import { carryTextOrder, takeTextFile, type TextFileHost } from './text-files';
 import type { Delivery } from './robot/protocol';
 
@@ -49,6 +50,7 @@ export class SlamWidget extends HTMLElement {
   /** Processes a reader's own file, once there is one. */
   #desk: Desk | undefined;
   #doctor: DoctorScreen | undefined;
+  #loops: LoopsToLookInto | undefined;
 
   constructor() {
     super();
@@ -440,7 +442,12 @@ export class SlamWidget extends HTMLElement {
       choose: (option) => desk.choose(option?.replace(/^--/, '')),
       chosen: () => desk.chosen,
     });
+    this.#loops = new LoopsToLookInto({
+      show: (loop) => this.#tryToSet('loop', loop),
+      decide: (order) => desk.order(order),
+    });
     this.#parts.frame.prepend(this.#doctor.element);
+    this.#parts.stage.after(this.#loops.element);
     this.#parts.frame.classList.remove('without-file');
     this.#desk = desk;
     return desk;
@@ -451,11 +458,14 @@ export class SlamWidget extends HTMLElement {
     this.#desk = undefined;
     this.#doctor?.element.remove();
     this.#doctor = undefined;
+    this.#loops?.element.remove();
+    this.#loops = undefined;
   }
 
   #deliver(deliveries: readonly Delivery[]): void {
-    const isMoved = deliveries.filter((delivery) => this.#doctor?.hear(delivery) === true).length > 0;
-    if (isMoved) this.#resized();
+    const besides = [this.#doctor, this.#loops];
+    const moved = deliveries.flatMap((delivery) => besides.filter((beside) => beside?.hear(delivery) === true));
+    if (moved.length > 0) this.#resized();
     this.#life.ask((widget) => deliveries.forEach((delivery) => hand(widget, delivery)));
     this.#told(this.#changes());
     this.#carryOrders();

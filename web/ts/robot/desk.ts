@@ -133,7 +133,7 @@ export class Desk {
         this.#send({ save: words.join(' ') });
         break;
       default:
-        if (['turn', 'add', 'pin', 'unpin'].includes(name)) this.#keepEdit(order);
+        if (['turn', 'accept', 'refuse', 'add', 'pin', 'unpin'].includes(name)) this.#keepEdit(order);
         this.#send({ order });
     }
   }

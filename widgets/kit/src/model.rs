@@ -180,6 +180,8 @@ pub enum Standing {
     Good,
     /// A result to beware of.
     Bad,
+    /// A result that the reader should check.
+    Doubtful,
     /// Neither.
     Neutral,
 }

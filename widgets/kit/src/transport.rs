@@ -196,10 +196,10 @@ fn paint(
     for mark in &timeline.marks {
         let x = painter.round_to_pixel_center(x_of(mark.at));
         let stroke = Stroke::new(2.0, color(palette::standing(theme, mark.standing)));
-        // Good events are above the rail, bad ones below it, in addition to their colour.
+        // Good events are above the rail, bad and doubtful ones below it, in addition to their colour.
         let (top, bottom) = match mark.standing {
             Standing::Good => (rail.top() - 9.0, rail.bottom()),
-            Standing::Bad => (rail.top(), rail.bottom() + 9.0),
+            Standing::Bad | Standing::Doubtful => (rail.top(), rail.bottom() + 9.0),
             Standing::Neutral => (rail.top() - 4.0, rail.bottom() + 4.0),
         };
         painter.line_segment([pos2(x, top), pos2(x, bottom)], stroke);

@@ -294,7 +294,7 @@ impl Model for OwnRobot {
         let doubts = self.doubts().into_iter().map(|keyframe| TimelineMark {
             at: keyframe as f64,
             label: format!("look into keyframe {keyframe}"),
-            standing: Standing::Bad,
+            standing: Standing::Doubtful,
         });
         // Before there is a path, the timeline has one step.
         let last = self.last().max(1) as f64;

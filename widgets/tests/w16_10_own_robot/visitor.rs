@@ -184,7 +184,7 @@ fn a_log_without_scans_is_reported_and_wrong_numbers_change_no_state() {
             .sentence
             .contains(" x.log is not a CARMEN log.")
     );
-    assert_eq!(robot.outcome().verdict, "loops contradict");
+    assert_eq!(robot.outcome().verdict, "1 of 1 loop to look into");
     let before = format!("{:?}", robot.robot());
     tell(&mut robot, "where", "y.log", &[1.0, 1.0]);
     assert_eq!(before, format!("{:?}", robot.robot()));
