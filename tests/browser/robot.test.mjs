@@ -526,7 +526,7 @@ describe('a log of one’s own', () => {
       const count = before.facts.loops_doubted;
       const buttons = (name) => list.getByRole('button', { name });
       assert.equal(await buttons(/^Refuse/).count(), Math.min(count, 6));
-      const picture = list.getByRole('img').first();
+      const picture = list.getByRole('button', { name: /^Show the loop/ }).first().locator('svg');
       assert.ok(await picture.evaluate((it) => [...it.children].every((dots) => dots.getTotalLength() === 0 && dots.getAttribute('d').length > 500)));
       assert.deepEqual(await violations(tab, 'slam-widget', OF_COLORS), []);
 

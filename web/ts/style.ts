@@ -47,11 +47,12 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
   grid-template-columns: repeat(auto-fill, minmax(9rem, 1fr)); }
 .loops li { display: flex; flex-wrap: wrap; gap: 0.35rem; align-items: center; max-width: 12rem; }
 .loops li[aria-busy] { opacity: 0.5; }
-.loops svg { flex: 1 0 100%; aspect-ratio: 1; border: 1px solid var(--line); border-radius: 4px; }
-.loops path { fill: none; stroke-width: 2.5; stroke-linecap: round; vector-effect: non-scaling-stroke; }
+.loops button:has(svg) { flex: 1 0 100%; padding: 0; }
+.loops svg { display: block; width: 100%; aspect-ratio: 1; }
+.loops path { fill: none; stroke-width: 2; stroke-linecap: round; vector-effect: non-scaling-stroke; }
 .loops .older { stroke: var(--older); }
 .loops .newer { stroke: var(--newer); }
-.loops span { color: var(--soft); font-size: 0.8125rem; }
+.loops span { flex: 1 0 100%; color: var(--soft); font-size: 0.8125rem; }
 .bar { position: relative; background: var(--paper);
   border-top: 1px solid var(--line); border-radius: 0 0 6px 6px; min-height: 2.75rem; }
 /* While a control has the focus its line stays on the screen, whatever part of the picture is. */

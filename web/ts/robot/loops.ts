@@ -1,5 +1,5 @@
-// The loops to look into, under the picture: of each both scans, laid on each other as the loop lays them, and
-// the reader's decision. The worker selects them; this only lays them out.
+// The loops to look into, under the picture: of each the surroundings of both ends, laid on each other as the loop
+// lays them, and the reader's decision. The worker selects them; this only lays them out.
 
 import { create, keepKeys } from '../dom';
 import type { Delivery } from './protocol';
@@ -17,24 +17,26 @@ interface Loop {
   loop: number;
   ends: string;
   chi2: string;
-  /** The points of the older scan and of the newer one, x and y in turn, m. */
+  /** The points around the older keyframe and around the newer one, x and y in turn, m. */
   scans: Float64Array[];
 }
 
-/** The share of the points that a picture shows: a few distant ones would make the rest small. */
-const SHOWN_SHARE = 0.95;
+/** The share of the points that may lie outside of a picture at each of its edges. */
+const HIDDEN_SHARE = 0.02;
 const SVG = 'http://www.w3.org/2000/svg';
 
 export class LoopsToLookInto {
   readonly element = create('section', { class: 'loops', hidden: '', 'aria-label': 'Loops to look into' });
   readonly #host: LoopsHost;
   readonly #heading = create('p', { class: 'question', tabindex: '-1' });
+  readonly #legend = create('p');
   readonly #list = create('ul');
   readonly #more = create('p');
 
   constructor(host: LoopsHost) {
     this.#host = host;
-    this.element.append(this.#heading, this.#list, this.#more);
+    this.#legend.textContent = 'Blue is the older visit and green the newer one, laid on each other as the loop lays them.';
+    this.element.append(this.#heading, this.#legend, this.#list, this.#more);
     keepKeys(this.element);
   }
 
@@ -55,6 +57,7 @@ export class LoopsToLookInto {
     const held = [...this.#list.querySelectorAll('button')].findIndex((button) => button === focused);
     this.#heading.textContent =
       count === 0 ? 'No loop is left to look into.' : 'Do these scans belong together? The rest of the graph contradicts it.';
+    this.#legend.hidden = count === 0;
     this.#list.replaceChildren(...loops.map((loop) => this.#item(loop)));
     this.#more.textContent = count > loops.length ? `and ${count - loops.length} more` : '';
     this.element.hidden = false;
@@ -64,22 +67,25 @@ export class LoopsToLookInto {
 
   #item(loop: Loop): HTMLElement {
     const item = create('li');
-    const show = this.#button(loop.ends, `Show the loop ${loop.ends} on the map`, () => this.#host.show(loop.loop));
-    const decide = (name: string, order: string): HTMLElement =>
-      this.#button(name, `${name} the loop ${loop.ends}`, () => {
+    const show = this.#button(`Show the loop ${loop.ends} on the map`, () => this.#host.show(loop.loop));
+    show.append(picture(loop));
+    const decide = (name: string, order: string): HTMLElement => {
+      const button = this.#button(`${name} the loop ${loop.ends}`, () => {
         // Until the graph is solved without it, or checked again.
         item.setAttribute('aria-busy', 'true');
         this.#host.decide(`${order} ${loop.loop}`);
       });
-    const chi2 = create('span');
-    chi2.textContent = loop.chi2;
-    item.append(picture(loop), show, chi2, decide('Accept', 'accept'), decide('Refuse', 'refuse'));
+      button.append(name);
+      return button;
+    };
+    const words = create('span');
+    words.textContent = `${loop.ends}: ${loop.chi2}`;
+    item.append(show, words, decide('Accept', 'accept'), decide('Refuse', 'refuse'));
     return item;
   }
 
-  #button(text: string, label: string, act: () => void): HTMLElement {
+  #button(label: string, act: () => void): HTMLElement {
     const button = create('button', { type: 'button', 'aria-label': label });
-    button.textContent = text;
     button.addEventListener('click', act);
     return button;
   }
@@ -93,19 +99,31 @@ function read(numbers: Float64Array): Loop[] {
     const [loop = 0, newer, older, chi2 = 0, gate = 0, ...sizes] = numbers.subarray(at, at + 7);
     at += 7;
     const scans = sizes.map((size) => numbers.subarray(at, (at += 2 * size)));
-    loops.push({ loop, ends: `${newer} to ${older}`, chi2: `χ² ${chi2.toFixed(1)} of ${gate.toFixed(1)}`, scans });
+    loops.push({ loop, ends: `${newer} to ${older}`, chi2: `χ² ${chi2.toFixed(0)} of ${gate.toFixed(0)}`, scans });
   }
   return loops;
 }
 
-/** Both scans in their colours; the origin is the older pose. */
-function picture({ ends, scans }: Loop): SVGElement {
-  const farthest = scans.flatMap((scan) => [...scan].map(Math.abs)).sort((a, b) => a - b);
-  const half = farthest[Math.floor(SHOWN_SHARE * (farthest.length - 1))] ?? 1;
+interface Range {
+  middle: number;
+  size: number;
+}
+
+/** The range of most points along an axis: a few distant ones would make the rest small. */
+function shownRange(scans: readonly Float64Array[], axis: number): Range {
+  const values = scans.flatMap((scan) => [...scan].filter((_, i) => i % 2 === axis)).sort((a, b) => a - b);
+  const at = (share: number): number => values[Math.round(share * (values.length - 1))] ?? 0;
+  const [low, high] = [at(HIDDEN_SHARE), at(1 - HIDDEN_SHARE)];
+  return { middle: 0.5 * (low + high), size: high - low };
+}
+
+/** Both surroundings in their colours. */
+function picture({ scans }: Loop): SVGElement {
+  const [x, y] = [0, 1].map((axis) => shownRange(scans, axis)) as [Range, Range];
+  const half = 0.5 * Math.max(x.size, y.size, 1);
   const svg = document.createElementNS(SVG, 'svg');
-  svg.setAttribute('viewBox', [-half, -half, 2 * half, 2 * half].join(' '));
-  svg.setAttribute('role', 'img');
-  svg.setAttribute('aria-label', `The scans of keyframes ${ends}, laid on each other`);
+  svg.setAttribute('viewBox', [x.middle - half, -y.middle - half, 2 * half, 2 * half].join(' '));
+  svg.setAttribute('aria-hidden', 'true');
   for (const [k, scan] of scans.entries()) {
     const dots = document.createElementNS(SVG, 'path');
     let path = '';

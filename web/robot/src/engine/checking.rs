@@ -1,6 +1,5 @@
 //! Quality of the graph: covariances, tests of each loop against the rest, and doubts.
 
-use ch16_slam2d::cloud::PointCloud;
 use pr_geom::SE2;
 use robot_io::quality::{LinkQuality, Quality, edge_tests};
 
@@ -8,8 +7,12 @@ use super::{Engine, Work};
 use crate::links::{Link, Verdict};
 use crate::update::Update;
 
-/// Number of contradicting loops that are sent with their scans.
+/// Number of contradicting loops that are sent with their evidence.
 const SHOWN: usize = 6;
+/// Neighbours of a keyframe, before and after it, that belong to its surroundings.
+const BESIDE: usize = 4;
+/// Largest number of points of the surroundings of a keyframe.
+const MOST_POINTS: usize = 1500;
 
 impl Engine<'_> {
     pub(super) fn check(&mut self) {
@@ -44,28 +47,47 @@ impl Engine<'_> {
         self.work = Work::Idle;
     }
 
-    /// The first loops that the rest of the graph contradicts, each with both scans in the frame of the older
-    /// one, as the loop lays them on each other.
+    /// The first loops that the rest of the graph contradicts, each with the surroundings of both ends in the frame
+    /// of the older one, as the loop lays them on each other.
     fn evidence(&self) -> Update {
-        let keyframes = self.run.slam().map_or(&[][..], |slam| slam.keyframes());
         let mut numbers = vec![contradicting(&self.links).count() as f64];
         for (index, link) in contradicting(&self.links).take(SHOWN) {
-            let scan = |k: usize, pose: &SE2| match keyframes.get(k) {
-                Some(keyframe) => keyframe.scan.transformed(pose),
-                None => PointCloud::default(),
-            };
-            let scans = [
-                scan(link.old, &SE2::identity()),
-                scan(link.new, &link.measurement),
-            ];
+            let older = self.surroundings(link.old, &SE2::identity());
+            let newer = self.surroundings(link.new, &link.measurement);
             let [new, old] = [link.new, link.old].map(|k| k as f64);
             let chi2 = link.chi2.unwrap_or(f64::NAN);
             numbers.extend([index as f64, new, old, chi2, link.gate_chi2]);
-            numbers.extend(scans.iter().map(|scan| scan.len() as f64));
-            let points = scans.iter().flat_map(|scan| scan.iter());
-            numbers.extend(points.flat_map(|point| [point.x, point.y]));
+            numbers.extend([&older, &newer].map(|points| points.len() as f64));
+            numbers.extend(older.iter().chain(&newer).flatten());
         }
         Update::numbers("evidence", numbers)
+    }
+
+    /// The scans of a keyframe at that pose and of its neighbours: a loop is registered with them too. Empty in a
+    /// graph file.
+    fn surroundings(&self, keyframe: usize, pose: &SE2) -> Vec<[f64; 2]> {
+        let Some(slam) = self.run.slam() else {
+            return Vec::new();
+        };
+        let poses = slam.graph().poses();
+        let near = slam
+            .keyframes()
+            .iter()
+            .zip(poses)
+            .take(keyframe + BESIDE + 1);
+        let clouds = near
+            .skip(keyframe.saturating_sub(BESIDE))
+            .map(|(near, at)| {
+                let place = pose.compose(&poses[keyframe].between(at));
+                near.scan.transformed(&place)
+            });
+        let points = clouds.flat_map(|cloud| {
+            let points = cloud.iter().map(|point| [point.x, point.y]);
+            points.collect::<Vec<_>>()
+        });
+        let points: Vec<[f64; 2]> = points.collect();
+        let every = points.len().div_ceil(MOST_POINTS).max(1);
+        points.into_iter().step_by(every).collect()
     }
 
     /// Sorts the loops by doubt: those of the graph that contradict it most come first. This is

@@ -233,13 +233,13 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize, closing: Option<f64>
         Tone::Faint,
         2.0,
     )];
+    let mut passed = done(record, now, Done::Passed);
+    if closing.is_some() {
+        // The pulses bring the marks of the loop.
+        passed.retain(|[tick, high]| *tick < now as f64 || *high > height(CANDIDATE));
+    }
     layers.extend([
-        Layer::points(
-            done(record, now, Done::Passed),
-            Mark::Dot,
-            Tone::Series(0),
-            2.4,
-        ),
+        Layer::points(passed, Mark::Dot, Tone::Series(0), 2.4),
         Layer::points(
             done(record, now, Done::Rejected),
             Mark::Circle,
