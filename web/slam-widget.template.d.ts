@@ -19,7 +19,7 @@ export type Value = number | string | boolean;
 
 /** The result of the current state. */
 export interface Outcome {
-  standing: 'good' | 'bad' | 'neutral';
+  standing: 'good' | 'bad' | 'doubtful' | 'neutral';
   /** One or two words: `quarter turn`. */
   verdict: string;
   /** One sentence with its numbers. */

@@ -65,6 +65,23 @@ describe('the building of the own-robot page', () => {
     }, still);
   });
 
+  it('gives way to a log that is dropped on it', async () => {
+    await opened(async (tab) => {
+      await live(tab);
+      const log = readFileSync(`${h.DIST}/samples/ring.log`, 'utf8');
+      const wasTaken = await tab.locator('#building canvas').evaluate((canvas, text) => {
+        const dataTransfer = new DataTransfer();
+        dataTransfer.items.add(new File([text], 'dropped.log'));
+        const send = (type) => canvas.dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
+        // The browser drops where a page takes the dragover, and would else open the file in its place.
+        return ['dragover', 'drop'].map((type) => !send(type));
+      }, log);
+      assert.deepEqual(wasTaken, [true, true]);
+      await tab.waitForFunction(() => document.querySelector('#building').hidden
+        && document.querySelector('slam-widget[name="w16.10"]').outcome?.sentence.startsWith('dropped.log'));
+    }, still);
+  });
+
   it('is a still picture without scripts', async () => {
     await opened(async (tab) => {
       const picture = tab.locator('.building-picture img');

@@ -43,7 +43,7 @@ const says = (tab, pattern) => tab.waitForFunction((source) => {
   const { verdict, sentence } = document.querySelector('slam-widget').outcome ?? {};
   return new RegExp(source).test(`${verdict}: ${sentence}`);
 }, pattern.source);
-const isMapped = (tab) => says(tab, /^(mapped|loops contradict):/);
+const isMapped = (tab) => says(tab, /^(mapped|[^:]*to look into):/);
 
 /** Passes a file with that text to the widget. */
 const give = (tab, name, text) => tab.evaluate(([file, content]) => {
@@ -130,7 +130,7 @@ describe('a reader’s log', () => {
       const chosen = tab.waitForEvent('filechooser');
       await press(tab, 'open');
       await (await chosen).setFiles({ name: 'first.log', mimeType: 'text/plain', buffer: Buffer.from(SAMPLE) });
-      await says(tab, /mapped: first\.log|contradict: first\.log/);
+      await says(tab, /(mapped|to look into): first\.log/);
       await tab.evaluate((text) => {
         const files = new DataTransfer();
         files.items.add(new File([text], 'second.log'));
@@ -139,14 +139,14 @@ describe('a reader’s log', () => {
           frame.dispatchEvent(new DragEvent(type, { dataTransfer: files, bubbles: true, cancelable: true }));
         }
       }, SAMPLE);
-      await says(tab, /(mapped|contradict): second\.log/);
+      await says(tab, /(mapped|to look into): second\.log/);
       // A reference does not replace the map, whichever button opened it.
       const picked = tab.waitForEvent('filechooser');
       await press(tab, 'open');
       await (await picked).setFiles(join(h.DIST, 'samples', 'ring-truth.tum'));
-      await says(tab, /(mapped|contradict): second\.log.*off the truth/);
+      await says(tab, /(mapped|to look into): second\.log.*off the truth/);
       await give(tab, 'third.log', SAMPLE.split('\n').slice(0, 80).join('\n'));
-      await says(tab, /(mapped|contradict): third\.log: 80 scans/);
+      await says(tab, /(mapped|to look into): third\.log: 80 scans/);
     });
   });
 
@@ -354,7 +354,7 @@ describe('a reader’s log', () => {
         const chosen = tab.waitForEvent('filechooser');
         await tab.getByRole('button', { name: 'Open a log…' }).press('Enter');
         await (await chosen).setFiles(join(folder, 'session.slam2d'));
-        await says(tab, /(mapped|contradict): session\.slam2d/);
+        await says(tab, /(mapped|to look into): session\.slam2d/);
         const after = (await outcome(tab)).facts;
         for (const id of ['scans', 'keyframes', 'loops', 'path_length_m']) assert.equal(after[id], before[id], id);
         await press(tab, 'turn');
@@ -362,12 +362,12 @@ describe('a reader’s log', () => {
         const [, changed] = await saved(tab, 'session');
         assert.ok(!changed.equals(session));
         await giveBytes(tab, 'changed.slam2d', changed);
-        await says(tab, /(mapped|contradict): changed\.slam2d/);
+        await says(tab, /(mapped|to look into): changed\.slam2d/);
         assert.equal((await outcome(tab)).facts.loops, before.loops - 1);
 
         // Also if its name has no extension; a damaged one is reported.
         await giveBytes(tab, 'monday', session);
-        await says(tab, /(mapped|contradict): monday:/);
+        await says(tab, /(mapped|to look into): monday:/);
         const spoilt = Buffer.from(session);
         spoilt[session.length >> 1] ^= 1;
         const newer = Buffer.from(session);
@@ -394,7 +394,7 @@ describe('a reader’s log', () => {
       await says(tab, /early\.log needs a map/);
       // The preset maps the sample and localizes the other day's robot on it.
       await press(tab, 'where');
-      await says(tab, /^(mapped|loops contradict): .*The robot of ring-another-day\.log is found at its scan \d+: of \d+ scans/);
+      await says(tab, /^(mapped|[^:]*to look into): .*The robot of ring-another-day\.log is found at its scan \d+: of \d+ scans/);
       const { facts } = await outcome(tab);
       const scans = OTHER_DAY.trim().split('\n').length;
       assert.equal(facts.where_localized + facts.where_doubtful + facts.where_lost, scans);
@@ -421,7 +421,7 @@ describe('a reader’s log', () => {
       await says(tab, /was removed from the graph/);
       await widget(tab, (it) => it.crashForTest('worker'));
       await says(tab, /was restarted/);
-      await says(tab, /^(mapped|loops contradict): .*is found at its scan \d+: of/);
+      await says(tab, /^(mapped|[^:]*to look into): .*is found at its scan \d+: of/);
 
       // A file that is not a log changes no result.
       await giveBytes(tab, 'empty.log', Buffer.alloc(0), 'where');
@@ -438,7 +438,7 @@ describe('a reader’s log', () => {
       await isMapped(tab);
       const [, session] = await saved(tab, 'session');
       await drop(tab, [['day.log', OTHER_DAY], ['monday.slam2d', session]]);
-      await says(tab, /^(mapped|loops contradict): monday\.slam2d.*The robot of day\.log is found/);
+      await says(tab, /^(mapped|[^:]*to look into): monday\.slam2d.*The robot of day\.log is found/);
       await tab.evaluate(() => Object.assign(document.querySelector('slam-widget'), { drop: 'where' }));
       // A resting picture is started to provide the start pose.
       await widget(tab, (it) => it.suspend());
@@ -450,7 +450,7 @@ describe('a reader’s log', () => {
       await says(tab, /The robot of near\.log is found/);
       await tab.evaluate(() => { document.querySelector('slam-widget').value = { drop: 'map' }; });
       await drop(tab, [['map.log', OTHER_DAY]]);
-      await says(tab, /^(mapped|loops contradict): map\.log/);
+      await says(tab, /^(mapped|[^:]*to look into): map\.log/);
       assert.doesNotMatch((await outcome(tab)).sentence, /The robot of/);
     });
   });
@@ -458,7 +458,7 @@ describe('a reader’s log', () => {
   it('offers the topics and frames of a recording, and maps it again with another one', async () => {
     await page(async (tab) => {
       await giveBytes(tab, 'plain.mcap', readFileSync(join(RECORDINGS, 'plain.mcap')));
-      await says(tab, /(mapped|contradict): plain\.mcap: 24 scans/);
+      await says(tab, /(mapped|to look into): plain\.mcap: 24 scans/);
       const taken = async () => (await table(tab, 'offers')).find(([label]) => label === 'body frame')[1];
       const before = await taken();
       const way = (await outcome(tab)).facts.path_length_m;
@@ -467,13 +467,13 @@ describe('a reader’s log', () => {
       // Another frame makes another map: the keyframes stand elsewhere.
       await tab.waitForFunction((way) => {
         const { verdict, facts } = document.querySelector('slam-widget').outcome;
-        return /mapped|contradict/.test(verdict) && facts.path_length_m !== way;
+        return /mapped|to look into/.test(verdict) && facts.path_length_m !== way;
       }, way);
       assert.notEqual(await taken(), before);
       assert.match((await outcome(tab)).sentence, /plain\.mcap: 24 scans/);
       await tab.evaluate(() => Object.assign(document.querySelector('slam-widget'), { option: 'scan-topic' }));
-      await press(tab, 'other');
-      await says(tab, /offers nothing else to take here/);
+      const other = tab.locator('slam-widget').getByRole('button', { name: 'Take another', exact: true });
+      assert.equal(await other.getAttribute('aria-disabled'), 'true', 'the recording has one topic of scans');
     });
   });
 
@@ -491,13 +491,61 @@ describe('a reader’s log', () => {
         await says(tab, said);
       }
       await give(tab, 'half.log', SAMPLE.slice(0, SAMPLE.length / 2));
-      await says(tab, /(mapped|contradict): half\.log/);
+      await says(tab, /(mapped|to look into): half\.log/);
       const remarks = (await tab.evaluate(() => document.querySelector('slam-widget').tables()))
         .find(({ id }) => id === 'remarks');
       assert.match(remarks.csv, /is incomplete/);
       await give(tab, 'truth.tum', 'not a pose\n');
       await says(tab, /truth\.tum: line 1/);
       assert.match((await outcome(tab)).sentence, /half\.log/, 'the map stays');
+    });
+  });
+
+  it('lays the scans of each contradicting loop on each other, to be accepted or refused', async () => {
+    await page(async (tab) => {
+      const host = tab.locator('slam-widget');
+      const stop = host.getByRole('button', { name: 'Stop', exact: true });
+      const isDisabled = async () => await stop.getAttribute('aria-disabled') === 'true';
+      assert.ok(await isDisabled(), 'at rest');
+      await press(tab, 'sample');
+      assert.ok(!(await isDisabled()), 'while the sample is mapped');
+      await isMapped(tab);
+      assert.ok(await isDisabled(), 'after it');
+      assert.match((await outcome(tab)).verdict, /^none of \d+ loops to look into$/);
+      const list = host.getByRole('region', { name: 'Loops to look into' });
+      assert.ok(await list.isHidden());
+
+      // A keyframe held beside its place contradicts its loops.
+      const [, [from]] = await table(tab, 'all-loops');
+      await tab.evaluate((keyframe) => document.querySelector('slam-widget').set('keyframe', keyframe), Number(from));
+      for (let k = 0; k < 10; k += 1) await press(tab, 'east');
+      await list.waitFor();
+      await says(tab, /^\d+ of \d+ loops to look into:/);
+      const before = await outcome(tab);
+      assert.equal(before.standing, 'doubtful');
+      const count = before.facts.loops_doubted;
+      const buttons = (name) => list.getByRole('button', { name });
+      assert.equal(await buttons(/^Refuse/).count(), Math.min(count, 6));
+      const picture = list.getByRole('button', { name: /^Show the loop/ }).first().locator('svg');
+      assert.ok(await picture.evaluate((it) => [...it.children].every((dots) => dots.getTotalLength() === 0 && dots.getAttribute('d').length > 500)));
+      assert.deepEqual(await violations(tab, 'slam-widget', OF_COLORS), []);
+
+      // The buttons do it with the keyboard, and the focus stays with the next loop.
+      await buttons(/^Accept/).first().focus();
+      await tab.keyboard.press('Enter');
+      await tab.waitForFunction((left) => document.querySelector('slam-widget').outcome.facts.loops_doubted === left, count - 1);
+      assert.equal((await outcome(tab)).facts.loops, before.facts.loops, 'an accepted loop stays');
+      assert.match((await outcome(tab)).sentence, /1 accepted by you/);
+      const refused = await buttons(/^Refuse/).first().getAttribute('aria-label');
+      await buttons(/^Refuse/).first().focus();
+      await tab.keyboard.press('Enter');
+      await says(tab, /was removed from the graph; keyframes moved/);
+      await list.getByRole('button', { name: refused }).waitFor({ state: 'detached' });
+      const after = await outcome(tab);
+      assert.equal(after.facts.loops, before.facts.loops - 1);
+      assert.ok(after.facts.loops_doubted <= count - 2, 'the refused one does not count');
+      const isInList = () => document.querySelector('slam-widget').shadowRoot.activeElement?.closest('.loops') !== null;
+      assert.ok(await tab.evaluate(isInList), 'the focus is lost');
     });
   });
 
@@ -627,7 +675,7 @@ describe('the doctor', () => {
         for (const type of ['dragEnter', 'dragOver', 'drop']) {
           await system.send('Input.dispatchDragEvent', { type, x, y, data });
         }
-        await says(tab, /(mapped|contradict): bag_0\.db3: 24 scans/);
+        await says(tab, /(mapped|to look into): bag_0\.db3: 24 scans/);
         const metadata = 'relative_file_paths:\n  - bag_0.db3\n  - bag_1.db3\n';
         await drop(tab, [['bag_0.db3', readFileSync(join(folder, 'bag_0.db3'))], ['metadata.yaml', metadata]]);
         await says(tab, /no map: metadata\.yaml lists bag_1\.db3, which is missing/);

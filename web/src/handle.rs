@@ -121,12 +121,12 @@ impl Widget {
         Ok(())
     }
 
-    /// Presses a button or a preset.
+    /// Presses a button or a preset; nothing happens if it has nothing to do.
     ///
     /// # Errors
     /// If the widget has no such button.
     pub fn press(&self, id: &str) -> Result<(), JsError> {
-        self.shared.shell.borrow_mut().model_mut().press(id)?;
+        self.shared.shell.borrow_mut().press(id)?;
         self.shared.request_repaint();
         Ok(())
     }
@@ -157,6 +157,13 @@ impl Widget {
         let shell = self.shared.shell.borrow();
         let shown = kit::controls::shown(shell.model());
         shown.into_iter().map(str::to_owned).collect()
+    }
+
+    /// The buttons that have nothing to do at present, by name.
+    #[wasm_bindgen(js_name = disabledButtons)]
+    pub fn disabled_buttons(&self) -> Vec<String> {
+        let disabled = self.shared.shell.borrow().disabled();
+        disabled.into_iter().map(str::to_owned).collect()
     }
 
     /// Every value as JSON, in the form of a link.

@@ -107,6 +107,7 @@ fn standing(standing: Standing) -> &'static str {
     match standing {
         Standing::Good => "good",
         Standing::Bad => "bad",
+        Standing::Doubtful => "doubtful",
         Standing::Neutral => "neutral",
     }
 }

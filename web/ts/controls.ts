@@ -80,6 +80,11 @@ export class Controls {
     }
   }
 
+  /** Dims the buttons that have nothing to do. They keep the focus: a press on one may be what ended its work. */
+  disable(disabled: readonly string[]): void {
+    for (const [id, button] of this.#buttons) button.setAttribute('aria-disabled', String(disabled.includes(id)));
+  }
+
   /** Shows values that changed elsewhere. */
   show(values: Iterable<[string, string]>): void {
     for (const [id, text] of values) this.#params.get(id)?.show(text);

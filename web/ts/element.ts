@@ -24,7 +24,8 @@ import { defaultText, shorten, type Value } from './values';
 import { unwatchVisibility, watchVisibility } from './visibility';
 import { LogMapper, deliverTo, type FileUse } from './robot/log-mapper';
 import { DoctorScreen, type Diagnosis } from './robot/doctor';
-import { chooseFiles, acceptDrops } from './robot/files';
+import { acceptDrops, chooseFiles } from './robot/files';
+import { LoopsToLookInto } from './robot/loops';
 import { executeTextOrder, takeTextFile, type TextFileHost } from './text-files';
 import type { Delivery } from './robot/protocol';
 import { type ViewChange, zoomButtons } from './zoom-buttons';
@@ -49,6 +50,7 @@ export class SlamWidget extends HTMLElement {
   /** Maps a reader's log, once a file was opened. */
   #mapper: LogMapper | undefined;
   #doctor: DoctorScreen | undefined;
+  #loops: LoopsToLookInto | undefined;
 
   constructor() {
     super();
@@ -440,7 +442,12 @@ export class SlamWidget extends HTMLElement {
       choose: (option) => mapper.choose(option?.replace(/^--/, '')),
       chosen: () => mapper.chosen,
     });
+    this.#loops = new LoopsToLookInto({
+      show: (loop) => this.#tryToSet('loop', loop),
+      decide: (order) => mapper.order(order),
+    });
     this.#parts.frame.prepend(this.#doctor.element);
+    this.#parts.stage.after(this.#loops.element);
     this.#parts.frame.classList.remove('without-file');
     this.#mapper = mapper;
     return mapper;
@@ -451,10 +458,13 @@ export class SlamWidget extends HTMLElement {
     this.#mapper = undefined;
     this.#doctor?.element.remove();
     this.#doctor = undefined;
+    this.#loops?.element.remove();
+    this.#loops = undefined;
   }
 
   #deliver(deliveries: readonly Delivery[]): void {
-    const isMoved = deliveries.filter((delivery) => this.#doctor?.receive(delivery) === true).length > 0;
+    const panels = [this.#doctor, this.#loops];
+    const isMoved = deliveries.filter((delivery) => panels.filter((panel) => panel?.receive(delivery) === true).length > 0).length > 0;
     if (isMoved) this.#resized();
     this.#lifecycle.ask((widget) => deliveries.forEach((delivery) => deliverTo(widget, delivery)));
     this.#announce(this.#changes());
@@ -518,6 +528,7 @@ export class SlamWidget extends HTMLElement {
   }
 
   #showTimeline(): void {
+    this.#controls?.disable(this.#lifecycle.ask((widget) => widget.disabledButtons()) ?? []);
     this.#controls?.showTimeline(this.#shownTimeline());
   }
 

@@ -7,7 +7,7 @@ import { FrameGate } from './frames';
 import { forgetModule, StaleError } from './module';
 
 export interface Outcome {
-  standing: 'good' | 'bad' | 'neutral';
+  standing: 'good' | 'bad' | 'doubtful' | 'neutral';
   verdict: string;
   sentence: string;
   facts: Record<string, number | null>;

@@ -1,16 +1,16 @@
 // The style of the shadow tree. The page sets width and margins of the element.
 
-import { accent, bad, fair, faint, good, ink, paper, soft } from '../../widgets/palette.json';
+import { accent, bad, fair, faint, good, ink, measurement, paper, prior, soft } from '../../widgets/palette.json';
 
 export const STYLE = `
 :host { display: block; position: relative; color-scheme: light; }
 :host([hidden]) { display: none; }
 .frame { --paper: ${paper[0]}; --ink: ${ink[0]}; --soft: ${soft[0]}; --line: ${faint[0]}; --accent: ${accent[0]};
-  --good: ${good[0]}; --fair: ${fair[0]}; --bad: ${bad[0]};
+  --good: ${good[0]}; --fair: ${fair[0]}; --bad: ${bad[0]}; --older: ${prior[0]}; --newer: ${measurement[0]};
   background: var(--paper); color: var(--ink); font: 0.875rem/1.4 system-ui, sans-serif;
   border: 1px solid var(--line); border-radius: 6px; outline: none; }
 .frame.dark { --paper: ${paper[1]}; --ink: ${ink[1]}; --soft: ${soft[1]}; --line: ${faint[1]}; --accent: ${accent[1]};
-  --good: ${good[1]}; --fair: ${fair[1]}; --bad: ${bad[1]};
+  --good: ${good[1]}; --fair: ${fair[1]}; --bad: ${bad[1]}; --older: ${prior[1]}; --newer: ${measurement[1]};
   color-scheme: dark; }
 .stage { position: relative; overflow: hidden; border-radius: 6px 6px 0 0; min-height: 12rem; height: var(--reserved-height); }
 .stage.live { min-height: 0; height: auto; }
@@ -40,6 +40,19 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .doctor form { display: flex; flex-wrap: wrap; gap: 0.35rem 0.75rem; align-items: center; }
 .doctor label { display: inline-flex; gap: 0.35rem; align-items: center; }
 .doctor input[type='number'] { width: 5.5rem; }
+.loops { padding: 0.5rem 0.75rem; border-top: 1px solid var(--line); }
+.loops p { margin: 0; }
+.loops .question { font-weight: 600; color: var(--fair); }
+.loops ul { list-style: none; margin: 0.5rem 0; padding: 0; display: grid; gap: 0.75rem;
+  grid-template-columns: repeat(auto-fill, minmax(9rem, 1fr)); }
+.loops li { display: flex; flex-wrap: wrap; gap: 0.35rem; align-items: center; max-width: 12rem; }
+.loops li[aria-busy] { opacity: 0.5; }
+.loops button:has(svg) { flex: 1 0 100%; padding: 0; }
+.loops svg { display: block; width: 100%; aspect-ratio: 1; }
+.loops path { fill: none; stroke-width: 2; stroke-linecap: round; vector-effect: non-scaling-stroke; }
+.loops .older { stroke: var(--older); }
+.loops .newer { stroke: var(--newer); }
+.loops span { flex: 1 0 100%; color: var(--soft); font-size: 0.8125rem; }
 .bar { position: relative; background: var(--paper);
   border-top: 1px solid var(--line); border-radius: 0 0 6px 6px; min-height: 2.75rem; }
 /* The line of the focused control stays in view at any scroll position. */
@@ -49,6 +62,7 @@ button, select, input[type='number'] { font: inherit; color: inherit; background
   border: 1px solid var(--soft); border-radius: 4px; min-height: 1.75rem; padding: 0.1rem 0.6rem; }
 button { cursor: pointer; }
 button:hover { border-color: var(--accent); }
+button[aria-disabled='true'] { color: var(--soft); border-color: var(--line); cursor: default; }
 :focus-visible:not(.frame) { outline: 3px solid var(--accent); outline-offset: 2px; }
 input[type='number'] { width: 8rem; }
 input[type='range'] { flex: 1 1 8rem; min-width: 3rem; min-height: 1.75rem; accent-color: var(--accent); }
@@ -67,7 +81,7 @@ input[type='checkbox'] { width: 1.5rem; height: 1.5rem; accent-color: var(--acce
 .help { color: var(--soft); font-size: 0.8125rem; }
 .status { color: var(--soft); }
 @media print {
-  .bar, progress, .note { display: none; }
+  .bar, progress, .note, .loops { display: none; }
   .stage, .stage .picture { height: auto !important; min-height: 0; }
   .stage .picture { max-height: 15cm; object-fit: contain; object-position: top left; }
   .stage canvas { display: none; }

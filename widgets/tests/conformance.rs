@@ -145,6 +145,32 @@ fn a_wrong_value_or_button_is_an_error_and_changes_no_state() {
 }
 
 #[test]
+fn a_press_of_a_button_with_nothing_to_do_changes_no_state() {
+    let (mut disabled, mut enabled) = (0, 0);
+    for make in SHELLS {
+        let mut shell = make();
+        let spec = shell.model().spec();
+        for state in pressed_states(&shell) {
+            shell.model_mut().press(state).expect("the widget has it");
+            shell.finish_work();
+            shell.take_orders();
+            let before = told(shell.model());
+            for id in shell.disabled() {
+                shell.press(id).expect("the widget has it");
+                assert_eq!(told(shell.model()), before, "{} {state} {id}", spec.id);
+                assert!(shell.take_orders().is_empty(), "{} {state} {id}", spec.id);
+                disabled += 1;
+            }
+            enabled += spec.buttons.len() - shell.disabled().len();
+            for always in ["play", "defaults"] {
+                assert!(!shell.disabled().contains(&always), "{} {state}", spec.id);
+            }
+        }
+    }
+    assert!(disabled > SPECS.len() && enabled > disabled);
+}
+
+#[test]
 fn playing_goes_on_to_the_end_and_stops_there() {
     for make in MODELS {
         let mut model = make();

@@ -15,20 +15,22 @@ pub enum Verdict {
     Removed = 2,
     /// Added by the user.
     Added = 3,
+    /// Kept by the user although the rest of the graph contradicts it.
+    Confirmed = 4,
 }
 
 impl Verdict {
     /// Whether the graph contains it.
     #[must_use]
     pub fn is_in_graph(self) -> bool {
-        matches!(self, Self::Accepted | Self::Added)
+        matches!(self, Self::Accepted | Self::Added | Self::Confirmed)
     }
 
     /// The opposite decision, by the user.
     #[must_use]
     pub fn toggled(self) -> Self {
         match self {
-            Self::Accepted | Self::Added => Self::Removed,
+            Self::Accepted | Self::Added | Self::Confirmed => Self::Removed,
             Self::Rejected | Self::Removed => Self::Added,
         }
     }

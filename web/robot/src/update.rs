@@ -7,6 +7,7 @@
 //! | `keyframes` | stamp (s), x, y (m), θ (rad), fit, σ (m) of each | |
 //! | `map` | columns, rows, least x, least y, cell (m) | a byte a cell from the least y: 0 unknown, 1 free … 255 occupied |
 //! | `loops` | ten for each, see [`links`](crate::links) | one line each: why it was rejected |
+//! | `evidence` | count of the loops to look into, then of each of the first few: index in `loops`, newer and older keyframe, χ², gate, points around the older and around the newer keyframe, x and y of each in the frame of the older, m | |
 //! | `doubts` | keyframes to check | one sentence per line |
 //! | `diagnosis` | | the doctor's report as `slam2d doctor --json` prints it |
 //! | `remarks` | | messages on the log, one sentence per line |

@@ -112,6 +112,69 @@ fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
     assert_eq!(ends(&after), ends(&told));
 }
 
+/// A loop to look into: its index, the newer and older keyframe, and the points of both scans.
+type Evidence = (usize, [usize; 2], [Vec<[f64; 2]>; 2]);
+
+/// Their count, and the first few.
+fn evidence(updates: &[Update]) -> (f64, Vec<Evidence>) {
+    let (&count, mut rest) = of(updates, "evidence").numbers.split_first().unwrap();
+    let mut found = Vec::new();
+    while let [index, new, old, chi2, gate, older, newer, more @ ..] = rest {
+        assert!(chi2 > gate, "{chi2} of {gate}");
+        let (first, more) = more.split_at(2 * *older as usize);
+        let (second, more) = more.split_at(2 * *newer as usize);
+        let points = |of: &[f64]| of.chunks(2).map(|point| [point[0], point[1]]).collect();
+        let ends = [new, old].map(|k| *k as usize);
+        found.push((*index as usize, ends, [points(first), points(second)]));
+        rest = more;
+    }
+    (count, found)
+}
+
+#[test]
+fn a_contradicting_loop_shows_both_scans_and_is_accepted_or_refused_once() {
+    let (log, _) = files();
+    let mut engine = finished(log);
+    let mut ordered = |order: &str| {
+        engine.order(order);
+        while engine.step() {}
+        engine.updates()
+    };
+    let first = ordered("look 0");
+    assert_eq!(of(&first, "evidence").numbers, [0.0], "the sample is clean");
+    // A keyframe held beside its place contradicts the loops that end there.
+    let ends = sent_loops(&first)[0].0;
+    let at = &of(&first, "keyframes").numbers[6 * ends[0]..];
+    let added = ordered(&format!(
+        "pin {} {} {} {}",
+        ends[0],
+        at[1] + 0.5,
+        at[2],
+        at[3]
+    ));
+    let (count, shown) = evidence(&added);
+    assert!(count >= 1.0 && shown.len() <= 6);
+    let (wrong, of_it, scans) = &shown[0];
+    assert_eq!(*of_it, sent_loops(&added)[*wrong].0);
+    assert!(scans.iter().all(|scan| scan.len() > 50));
+    let doubts = |updates: &[Update]| of(updates, "doubts").numbers.len();
+
+    let accepted = ordered(&format!("accept {wrong}"));
+    assert_eq!(evidence(&accepted).0, count - 1.0);
+    assert_eq!(sent_loops(&accepted)[*wrong].3, 4.0);
+    assert!(doubts(&accepted) < doubts(&added));
+
+    let refused = ordered(&format!("refuse {wrong}"));
+    assert_eq!(sent_loops(&refused)[*wrong].3, 2.0);
+    assert!(of(&refused, "answer").text.contains("was removed"));
+    let again = ordered(&format!("refuse {wrong}"));
+    assert_eq!(
+        of(&again, "answer").text,
+        format!("there is no loop {wrong} in the graph")
+    );
+    assert!(again.iter().all(|update| update.kind != "loops"));
+}
+
 #[test]
 fn a_loop_that_is_refused_leaves_the_graph_and_comes_back() {
     let (log, _) = files();

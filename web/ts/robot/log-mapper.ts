@@ -131,7 +131,7 @@ export class LogMapper {
         this.#send({ save: words.join(' ') });
         break;
       default:
-        if (['turn', 'add', 'pin', 'unpin'].includes(name)) this.#keepEdit(order);
+        if (['turn', 'accept', 'refuse', 'add', 'pin', 'unpin'].includes(name)) this.#keepEdit(order);
         this.#send({ order });
     }
   }

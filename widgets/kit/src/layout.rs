@@ -19,8 +19,8 @@ use crate::ticks::{Scale, Ticks};
 
 /// Height of a row of small text.
 pub const ROW: f32 = 17.0;
-/// Height of a name of an axis of names.
-const NAME_ROW: f32 = 12.0;
+/// Height of a name of a vertical axis.
+const NAME_ROW: f32 = 16.0;
 /// Height of a row of the title.
 const TITLE_ROW: f32 = 22.0;
 /// Length of a tick plus its distance to the label.
@@ -225,7 +225,7 @@ fn tick_label_width(axis: &Axis, measure: &mut dyn Measure) -> f32 {
         let widths = axis
             .names
             .iter()
-            .map(|name| measure.text_width(name, TextSize::Small));
+            .map(|name| measure.text_width(name, TextSize::Body));
         return widths.fold(0.0, f32::max);
     }
     // The step depends on the height, which depends on this width; so take the widest of several steps.

@@ -4,7 +4,7 @@ use crate::layers::Layer;
 use crate::outside::Delivery;
 use crate::param::{ParamError, printable};
 use crate::scene::Scene;
-use crate::spec::{ButtonSpec, Preset, WidgetSpec};
+use crate::spec::{ButtonSpec, Preset, STEP, WidgetSpec};
 use crate::values::Values;
 
 /// A widget without its drawing: tested headless, drawn by [`crate`]'s view half.
@@ -44,6 +44,12 @@ pub trait Model {
     /// # Errors
     /// [`ParamError::UnknownButton`]; the state does not change.
     fn press(&mut self, id: &str) -> Result<(), ParamError>;
+
+    /// Whether a button has anything to do now; a reader's press of one that has not does nothing.
+    fn is_enabled(&self, button: &str) -> bool {
+        let at_end = |run: Timeline| self.values().number(run.param) >= run.last;
+        button != STEP.id || !self.timeline().is_some_and(at_end)
+    }
 
     /// Advances the playback by that many seconds.
     fn advance(&mut self, elapsed_s: f64) -> Activity;
@@ -179,6 +185,8 @@ pub enum Standing {
     Good,
     /// A result to beware of.
     Bad,
+    /// A result that the reader should check.
+    Doubtful,
     /// Neither.
     Neutral,
 }

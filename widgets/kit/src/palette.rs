@@ -157,6 +157,7 @@ pub fn standing(theme: Theme, standing: Standing) -> Rgb {
     let shades = match standing {
         Standing::Good => const { shades("good") },
         Standing::Bad => const { shades("bad") },
+        Standing::Doubtful => const { shades("fair") },
         Standing::Neutral => return tone(theme, Tone::Truth),
     };
     shades[theme as usize]

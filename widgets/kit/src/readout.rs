@@ -65,6 +65,12 @@ fn sign(ui: &mut Ui, standing: Standing, ink: Rgb) {
             painter.line_segment([at(0.15, 0.15), at(0.85, 0.85)], stroke);
             painter.line_segment([at(0.15, 0.85), at(0.85, 0.15)], stroke);
         }
+        Standing::Doubtful => {
+            let corners = vec![at(0.5, 0.0), at(1.0, 0.95), at(0.0, 0.95)];
+            painter.add(egui::Shape::closed_line(corners, stroke));
+            painter.line_segment([at(0.5, 0.35), at(0.5, 0.62)], stroke);
+            painter.circle_filled(at(0.5, 0.77), 1.2, color(ink));
+        }
         Standing::Neutral => {
             painter.circle_stroke(rect.center(), 5.5, stroke);
         }

@@ -12,6 +12,7 @@ use crate::egui_surface::{Textures, color};
 use crate::hot::Hot;
 use crate::model::{Activity, Model, Motion, Outcome, Table};
 use crate::palette::{self, Theme};
+use crate::param::ParamError;
 use crate::pointer::{Pointer, TOUCH_REACH_PX};
 use crate::scene::{Scene, Tone};
 use crate::style;
@@ -127,6 +128,24 @@ impl Shell {
     pub fn model_mut(&mut self) -> &mut dyn Model {
         self.touch();
         self.model.as_mut()
+    }
+
+    /// Presses a button or a preset for the reader: nothing happens if it has nothing to do.
+    ///
+    /// # Errors
+    /// [`ParamError::UnknownButton`]; the state does not change.
+    pub fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        if self.model.is_enabled(id) {
+            self.model_mut().press(id)?;
+        }
+        Ok(())
+    }
+
+    /// The buttons that have nothing to do now, by name.
+    #[must_use]
+    pub fn disabled(&self) -> Vec<&'static str> {
+        let buttons = self.model.spec().buttons.iter().map(|button| button.id);
+        buttons.filter(|id| !self.model.is_enabled(id)).collect()
     }
 
     /// The widget's requests to its host, see [`Model::take_orders`]; the picture does not change.

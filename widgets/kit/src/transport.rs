@@ -39,7 +39,7 @@ pub fn bar(ui: &mut Ui, model: &mut dyn Model, theme: Theme, hot: &mut Hot) -> T
             if spec.id != DEFAULTS.id
                 && tab != Some(spec.id)
                 && layer.has_button(spec.id)
-                && button(ui, spec, playing, hot).clicked()
+                && button(ui, spec, model.is_enabled(spec.id), playing, hot).clicked()
             {
                 // The buttons come from the widget's own list.
                 let _ = model.press(spec.id);
@@ -78,12 +78,20 @@ pub fn bar(ui: &mut Ui, model: &mut dyn Model, theme: Theme, hot: &mut Hot) -> T
 }
 
 /// One button; "Play" becomes "Pause" while the run plays.
-pub fn button(ui: &mut Ui, spec: &'static ButtonSpec, playing: bool, hot: &mut Hot) -> Response {
+pub fn button(
+    ui: &mut Ui,
+    spec: &'static ButtonSpec,
+    is_enabled: bool,
+    playing: bool,
+    hot: &mut Hot,
+) -> Response {
     let pressed = spec.id == PLAY.id && playing;
     let label = if pressed { "Pause" } else { spec.label };
-    let response = ui.add(Button::new(label).min_size(vec2(44.0, TARGET)));
+    let response = ui.add_enabled(is_enabled, Button::new(label).min_size(vec2(44.0, TARGET)));
     hot.control(spec.id, &response);
-    response.on_hover_text(spec.help)
+    response
+        .on_hover_text(spec.help)
+        .on_disabled_hover_text(spec.help)
 }
 
 /// The position on the timeline in words.
@@ -190,10 +198,10 @@ fn paint(
     for mark in &timeline.marks {
         let x = painter.round_to_pixel_center(x_of(mark.at));
         let stroke = Stroke::new(2.0, color(palette::standing(theme, mark.standing)));
-        // Good events are above the rail, bad ones below it, in addition to their colour.
+        // Good events are above the rail, bad and doubtful ones below it, in addition to their colour.
         let (top, bottom) = match mark.standing {
             Standing::Good => (rail.top() - 9.0, rail.bottom()),
-            Standing::Bad => (rail.top(), rail.bottom() + 9.0),
+            Standing::Bad | Standing::Doubtful => (rail.top(), rail.bottom() + 9.0),
             Standing::Neutral => (rail.top() - 4.0, rail.bottom() + 4.0),
         };
         painter.line_segment([pos2(x, top), pos2(x, bottom)], stroke);

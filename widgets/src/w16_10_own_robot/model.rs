@@ -224,6 +224,10 @@ impl Model for OwnRobot {
         Ok(())
     }
 
+    fn is_enabled(&self, button: &str) -> bool {
+        self.has_work_for(button)
+    }
+
     fn advance(&mut self, elapsed_s: f64) -> Activity {
         if !self.playback.is_playing() {
             return Activity::Idle;
@@ -290,7 +294,7 @@ impl Model for OwnRobot {
         let doubts = self.doubts().into_iter().map(|keyframe| TimelineMark {
             at: keyframe as f64,
             label: format!("look into keyframe {keyframe}"),
-            standing: Standing::Bad,
+            standing: Standing::Doubtful,
         });
         // Before there is a path, the timeline has one step.
         let last = self.last().max(1) as f64;

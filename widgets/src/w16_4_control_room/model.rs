@@ -32,6 +32,9 @@ use settings::config;
 /// Ticks a second at speed 1: twice as fast as the robot.
 const TICKS_PER_S: f64 = 8.0;
 
+/// Duration of the pulses and of the repainting after a loop, s at speed 1: no more than a glance.
+const CLOSING_S: f64 = 1.5;
+
 /// The model of the widget.
 pub struct ControlRoom {
     values: Values,
@@ -48,6 +51,8 @@ pub struct ControlRoom {
     registration: Option<RegistrationView>,
     grid: GridView,
     playback: Playback,
+    /// The shown share of what follows the loop that the playback has reached.
+    closing: Option<f64>,
 }
 
 impl Default for ControlRoom {
@@ -67,6 +72,7 @@ impl Default for ControlRoom {
             grid: GridView::new(&record, 0),
             world: World::apartment(),
             playback: Playback::default(),
+            closing: None,
             values,
             laps,
             next_events: 0,
@@ -111,6 +117,9 @@ impl ControlRoom {
 
     /// Recomputes the details of the current tick that the record does not store.
     fn show(&mut self) {
+        if self.closing.take().is_some() {
+            self.grid.forget();
+        }
         let tick = self.tick();
         self.registration = self.record.registration(tick);
         self.grid.show(&self.record, tick);
@@ -201,14 +210,30 @@ impl Model for ControlRoom {
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
+        let speed = self.values.get(&SPEED);
+        if let Some(share) = self.closing {
+            let share = (share + elapsed_s * speed / CLOSING_S).min(1.0);
+            self.grid.draw(&self.record, self.tick(), share);
+            self.closing = (share < 1.0).then_some(share);
+            return Activity::Busy;
+        }
         if !self.playback.is_playing() {
             return Activity::Idle;
         }
-        let now = self.values.get(&TICK);
-        let rate = TICKS_PER_S * self.values.get(&SPEED);
-        let reached = self.playback.advance(now, self.last(), elapsed_s, rate);
+        let now = self.tick();
+        let rate = TICKS_PER_S * speed;
+        let reached = self
+            .playback
+            .advance(now as f64, self.last(), elapsed_s, rate) as usize;
+        let mut passed = self.record.lap.reports[now..reached].iter();
+        let closed = passed.find(|report| lanes::closes_loop(report));
+        let closed = closed.map(|report| report.tick);
         if reached != now {
-            self.go_to(reached);
+            self.go_to(closed.unwrap_or(reached) as f64);
+        }
+        if closed.is_some() {
+            self.closing = Some(0.0);
+            self.grid.clear(&self.record);
         }
         Activity::Busy
     }

@@ -7,7 +7,11 @@ use widgets::w16_10_own_robot::model::OwnRobot;
 use widgets::w16_10_own_robot::model::robot::Stage;
 
 pub fn tell(robot: &mut OwnRobot, kind: &str, text: &str, numbers: &[f64]) {
-    robot.receive(&Delivery {
+    deliver(robot, kind, text, numbers);
+}
+
+pub fn deliver(model: &mut dyn Model, kind: &str, text: &str, numbers: &[f64]) {
+    model.receive(&Delivery {
         kind,
         text,
         numbers,
@@ -116,7 +120,7 @@ fn a_contradicting_loop_is_reported_and_shown_first() {
     let outcome = robot.outcome();
     assert_eq!(
         (outcome.standing, outcome.verdict.as_str()),
-        (Standing::Bad, "loops contradict")
+        (Standing::Doubtful, "1 of 1 loop to look into")
     );
     assert!(outcome.sentence.contains("one loop contradicts the graph"));
     assert!(outcome.sentence.contains("nothing of it is sent anywhere"));
@@ -139,6 +143,43 @@ fn a_contradicting_loop_is_reported_and_shown_first() {
     let tables = robot.shown_tables();
     assert_eq!(tables[0].rows[0][0], "▸ 0");
     assert_eq!(tables[0].rows[1][6], "rejected");
+}
+
+#[test]
+fn a_loop_that_the_reader_accepts_or_refuses_is_no_longer_one_to_look_into() {
+    let link = |chi2: f64, verdict: f64| {
+        let nan = f64::NAN;
+        [3.0, 0.0, 0.8, 0.02, 90.0, nan, chi2, 16.3, verdict, 1.0]
+    };
+    for (loops, verdict, standing) in [
+        (
+            vec![link(20.0, 0.0), link(30.0, 0.0)],
+            "2 of 2 loops",
+            Standing::Doubtful,
+        ),
+        (
+            vec![link(20.0, 4.0), link(30.0, 0.0)],
+            "1 of 2 loops",
+            Standing::Doubtful,
+        ),
+        (
+            vec![link(20.0, 4.0), link(30.0, 2.0)],
+            "none of 1 loop",
+            Standing::Good,
+        ),
+    ] {
+        let mut robot = mapped();
+        tell(&mut robot, "doubts", "", &[]);
+        tell(&mut robot, "loops", "", loops.as_flattened());
+        let outcome = robot.outcome();
+        assert_eq!(outcome.verdict, format!("{verdict} to look into"));
+        assert_eq!(outcome.standing, standing, "{verdict}");
+        let is_accepted = loops[0][8] == 4.0;
+        assert_eq!(outcome.sentence.contains("1 accepted by you"), is_accepted);
+    }
+    let [amber, red] = [Standing::Doubtful, Standing::Bad]
+        .map(|standing| kit::palette::standing(kit::palette::Theme::Light, standing));
+    assert_ne!(amber, red);
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! The widget drawn and driven through its accessibility tree, without a GPU.
 
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use widgets::w16_10_own_robot::view::RobotView;
 
 use crate::support::drawn;
-use crate::w16_10_own_robot::model::mapped;
+use crate::w16_10_own_robot::model::{deliver, mapped};
 
 #[test]
 fn a_press_on_a_button_becomes_an_order() {
@@ -14,6 +14,30 @@ fn a_press_on_a_button_becomes_an_order() {
         harness.run_steps(2);
         assert_eq!(harness.state_mut().take_orders(), ["open"]);
     }
+}
+
+#[test]
+fn stop_is_enabled_while_a_log_is_read() {
+    let mut harness = drawn("w16.10", 390.0, |_| ());
+    let is_disabled = |harness: &egui_kittest::Harness<'_, kit::shell::Shell>| {
+        harness.get_by_label("Stop").accesskit_node().is_disabled()
+    };
+    assert!(is_disabled(&harness));
+    harness.get_by_label("Stop").click();
+    harness.run_steps(2);
+    assert!(harness.state_mut().take_orders().is_empty());
+    let reading = [1.0, 0.5, 20.0, 0.0, 0.0];
+    let model = harness.state_mut().model_mut();
+    deliver(model, "stage", "", &reading);
+    harness.run_steps(2);
+    assert!(!is_disabled(&harness));
+    harness.get_by_label("Stop").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state_mut().take_orders(), ["cancel"]);
+    let done = [5.0, 1.0, 40.0, 0.0, 0.0];
+    deliver(harness.state_mut().model_mut(), "stage", "", &done);
+    harness.run_steps(2);
+    assert!(is_disabled(&harness));
 }
 
 #[test]

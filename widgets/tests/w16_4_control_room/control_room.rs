@@ -1,6 +1,6 @@
 //! The control room without a display; reference values from `tests/reference/lap.json`.
 
-use kit::model::{Activity, Model as _, Standing};
+use kit::model::{Activity, Model as _, Motion, Standing};
 use kit::scene::{Layer, Panel, Tone};
 use widgets::w16_4_control_room::model::ControlRoom;
 use widgets::w16_4_control_room::spec::SPEC;
@@ -371,6 +371,88 @@ fn every_mark_of_every_lane_shows_its_data_when_selected() {
     let sentence = pressed.outcome().sentence;
     assert!(sentence.ends_with("Repaint: nothing to do."), "{sentence}");
     assert_eq!(rings(&pressed), 0);
+}
+
+/// The heads of the pulses of a loop.
+fn pulses(room: &ControlRoom) -> Vec<[f64; 2]> {
+    let heads = lanes(room)
+        .layers
+        .into_iter()
+        .find_map(|layer| match layer {
+            Layer::Points { points, tone, .. } if tone == Tone::Revisit => Some(points),
+            _ => None,
+        });
+    heads.unwrap_or_default()
+}
+
+/// The cells of the grid.
+fn cells(room: &ControlRoom) -> Vec<kit::scene::Cell> {
+    let layers = &room.scene().panels[0].layers;
+    let rasters = layers.iter().filter_map(|layer| match layer {
+        Layer::Raster(raster) => Some(raster.cells.to_vec()),
+        _ => None,
+    });
+    rasters.flatten().collect()
+}
+
+/// A playback that has just reached the first loop.
+fn at_the_first_loop() -> ControlRoom {
+    let mut room = ControlRoom::default();
+    set(&mut room, "t", 91.0);
+    press(&mut room, "play");
+    while room.values().number("t") < 92.0 {
+        room.advance(0.02);
+    }
+    room
+}
+
+#[test]
+fn a_loop_passes_the_lanes_one_by_one_while_the_grid_is_drawn_again() {
+    let mut still = ControlRoom::default();
+    set(&mut still, "t", 92.0);
+    assert!(pulses(&still).is_empty(), "only a playback shows it");
+    let mut room = at_the_first_loop();
+    assert_eq!(fact(&room, "occupied_cells"), 0.0, "the grid is emptied");
+    let mut frames = Vec::new();
+    while cells(&room) != cells(&still) || lanes(&room) != lanes(&still) {
+        assert_eq!(room.values().number("t"), 92.0, "the run waits");
+        assert_eq!(room.advance(0.02), Activity::Busy);
+        let seen = fact(&room, "occupied_cells") + fact(&room, "free_cells");
+        frames.push((pulses(&room), seen));
+        assert!(frames.len() < 100, "it never ends");
+    }
+    assert!(frames.len() > 50, "{} frames", frames.len());
+    // Candidate, fit, gate, optimize and repaint start one after the other and arrive at the tick.
+    let started = |count: usize| frames.iter().position(|(heads, _)| heads.len() == count);
+    let starts: Vec<_> = (1..=5)
+        .map(|count| started(count).expect("a lane"))
+        .collect();
+    assert!(starts.is_sorted() && starts[4] > starts[0]);
+    let (last, _) = &frames[frames.len() - 2];
+    assert!(last.iter().all(|head| head[0] > 80.0), "{last:?}");
+    assert!(
+        frames.is_sorted_by_key(|(_, seen)| *seen),
+        "cells come back"
+    );
+    while room.values().number("t") == 92.0 {
+        assert_eq!(room.advance(0.02), Activity::Busy);
+    }
+}
+
+#[test]
+fn what_interrupts_a_loop_shows_the_whole_grid() {
+    let mut still = ControlRoom::default();
+    set(&mut still, "t", 92.0);
+    let mut room = at_the_first_loop();
+    press(&mut room, "step");
+    press(&mut room, "play");
+    set(&mut room, "t", 92.0);
+    assert!(cells(&room) == cells(&still));
+    let mut room = at_the_first_loop();
+    room.set_motion(Motion::Reduced);
+    set(&mut still, "t", 129.0);
+    assert_eq!(fact(&room, "sure_cells"), fact(&still, "sure_cells"));
+    assert_eq!(room.advance(0.02), Activity::Idle);
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! The occupancy grid of a lap's keyframes.
 
+use core::ops::Range;
+
 use pr_grid::{Beams, GridConfig, OccupancyGrid};
 use pr_sim::Lidar;
 
@@ -18,10 +20,16 @@ pub enum GridExtent {
 
 impl LapRecord {
     /// The occupancy grid of the keyframes up to `tick`, at their poses of that tick.
-    ///
-    /// A growing grid stops growing at its size limit, and beams are cut at its border.
     #[must_use]
     pub fn occupancy_grid(&self, tick: usize) -> OccupancyGrid {
+        let mut grid = self.empty_grid();
+        self.draw_keyframes(&mut grid, tick, 0..self.lap.node_count(tick));
+        grid
+    }
+
+    /// The occupancy grid before its first keyframe.
+    #[must_use]
+    pub fn empty_grid(&self) -> OccupancyGrid {
         let drive = &self.config.drive;
         let mut config = match self.config.grid {
             GridExtent::Plan => {
@@ -37,14 +45,21 @@ impl LapRecord {
             }
         };
         config.sensor.max_range_m = drive.lidar.max_range_m;
-        let mut grid = OccupancyGrid::new(config);
-        let beams = Beams::new(Lidar::new(drive.lidar).bearings_rad());
-        for (pose, keyframe) in self.lap.poses(tick).iter().zip(&self.lap.keyframes) {
+        OccupancyGrid::new(config)
+    }
+
+    /// Draws some of the keyframes up to `tick`, at their poses of that tick.
+    ///
+    /// A growing grid stops growing at its size limit, and beams are cut at its border.
+    pub fn draw_keyframes(&self, grid: &mut OccupancyGrid, tick: usize, drawn: Range<usize>) {
+        let lidar = self.config.drive.lidar;
+        let beams = Beams::new(Lidar::new(lidar).bearings_rad());
+        let keyframes = self.lap.poses(tick).iter().zip(&self.lap.keyframes);
+        for (pose, keyframe) in keyframes.skip(drawn.start).take(drawn.len()) {
             if self.config.grid == GridExtent::Poses {
-                let _ = grid.cover(pose.position(), drive.lidar.max_range_m);
+                let _ = grid.cover(pose.position(), lidar.max_range_m);
             }
             grid.integrate(pose, &beams, &self.drive.sweep(keyframe.tick).ranges_m);
         }
-        grid
     }
 }

@@ -1,9 +1,18 @@
 //! Quality of the graph: covariances, tests of each loop against the rest, and doubts.
 
+use pr_geom::SE2;
 use robot_io::quality::{LinkQuality, Quality, edge_tests};
 
 use super::{Engine, Work};
-use crate::links::Link;
+use crate::links::{Link, Verdict};
+use crate::update::Update;
+
+/// Number of contradicting loops that are sent with their evidence.
+const SHOWN: usize = 6;
+/// Neighbours of a keyframe, before and after it, that belong to its surroundings.
+const BESIDE: usize = 4;
+/// Largest number of points of the surroundings of a keyframe.
+const MOST_POINTS: usize = 1500;
 
 impl Engine<'_> {
     pub(super) fn check(&mut self) {
@@ -23,7 +32,9 @@ impl Engine<'_> {
                 let of = residuals.iter().find(|(is, _)| *is == link.measurement);
                 link.chi2 = of.map(|(_, chi2)| *chi2).or(link.chi2);
             }
-            self.look_into = contradicting(&self.links).collect();
+            self.look_into = contradicting(&self.links)
+                .map(|(_, link)| link.new)
+                .collect();
         }
         if !self.is_ranked {
             self.rank();
@@ -31,7 +42,52 @@ impl Engine<'_> {
         self.changes.keyframes = true;
         self.changes.loops = true;
         self.changes.doubts = true;
+        let evidence = self.evidence();
+        self.waiting.push(evidence);
         self.work = Work::Idle;
+    }
+
+    /// The first loops that the rest of the graph contradicts, each with the surroundings of both ends in the frame
+    /// of the older one, as the loop lays them on each other.
+    fn evidence(&self) -> Update {
+        let mut numbers = vec![contradicting(&self.links).count() as f64];
+        for (index, link) in contradicting(&self.links).take(SHOWN) {
+            let older = self.surroundings(link.old, &SE2::identity());
+            let newer = self.surroundings(link.new, &link.measurement);
+            let [new, old] = [link.new, link.old].map(|k| k as f64);
+            let chi2 = link.chi2.unwrap_or(f64::NAN);
+            numbers.extend([index as f64, new, old, chi2, link.gate_chi2]);
+            numbers.extend([&older, &newer].map(|points| points.len() as f64));
+            numbers.extend(older.iter().chain(&newer).flatten());
+        }
+        Update::numbers("evidence", numbers)
+    }
+
+    /// The scans of a keyframe at that pose and of its neighbours: a loop is registered with them too. Empty in a
+    /// graph file.
+    fn surroundings(&self, keyframe: usize, pose: &SE2) -> Vec<[f64; 2]> {
+        let Some(slam) = self.run.slam() else {
+            return Vec::new();
+        };
+        let poses = slam.graph().poses();
+        let near = slam
+            .keyframes()
+            .iter()
+            .zip(poses)
+            .take(keyframe + BESIDE + 1);
+        let clouds = near
+            .skip(keyframe.saturating_sub(BESIDE))
+            .map(|(near, at)| {
+                let place = pose.compose(&poses[keyframe].between(at));
+                near.scan.transformed(&place)
+            });
+        let points = clouds.flat_map(|cloud| {
+            let points = cloud.iter().map(|point| [point.x, point.y]);
+            points.collect::<Vec<_>>()
+        });
+        let points: Vec<[f64; 2]> = points.collect();
+        let every = points.len().div_ceil(MOST_POINTS).max(1);
+        points.into_iter().step_by(every).collect()
     }
 
     /// Sorts the loops by doubt: those of the graph that contradict it most come first. This is
@@ -109,7 +165,8 @@ impl Engine<'_> {
         let at = |stamp_s: f64| stamps.partition_point(|&s| s <= stamp_s).saturating_sub(1);
         let poor = self.run.poor().iter().map(|poor| at(poor.stamp_s));
         let refuted = quality.refuted_paths.iter().map(|path| path.to);
-        let doubted = contradicting(&self.links).chain(refuted).chain(poor);
+        let contradicted = contradicting(&self.links).map(|(_, link)| link.new);
+        let doubted = contradicted.chain(refuted).chain(poor);
         let mut all: Vec<usize> = doubted.collect();
         all.sort_unstable();
         all.dedup();
@@ -117,10 +174,13 @@ impl Engine<'_> {
     }
 }
 
-/// The newer keyframes of loops in the graph that the rest contradicts.
-fn contradicting(links: &[Link]) -> impl Iterator<Item = usize> + '_ {
-    let is_doubted = |link: &&Link| {
-        link.verdict.is_in_graph() && link.chi2.is_some_and(|chi2| chi2 > link.gate_chi2)
+/// The loops in the graph that the rest contradicts and that the user has not accepted, each with its index.
+fn contradicting(links: &[Link]) -> impl Iterator<Item = (usize, &Link)> {
+    let is_doubted = |link: &Link| {
+        link.verdict.is_in_graph()
+            && link.verdict != Verdict::Confirmed
+            && link.chi2.is_some_and(|chi2| chi2 > link.gate_chi2)
     };
-    links.iter().filter(is_doubted).map(|link| link.new)
+    let links = links.iter().enumerate();
+    links.filter(move |(_, link)| is_doubted(link))
 }

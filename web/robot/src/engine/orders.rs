@@ -35,6 +35,8 @@ impl<'a> Engine<'a> {
             ("cancel", []) => self.cancel(),
             ("look", [keyframe]) => self.look(*keyframe as usize),
             ("turn", [link]) => self.turn(*link as usize),
+            ("accept", [link]) => self.accept(*link as usize),
+            ("refuse", [link]) => self.refuse(*link as usize),
             ("add", [a, b]) => self.add(*a as usize, *b as usize),
             ("pin", [keyframe, x, y, theta]) if x.is_finite() && y.is_finite() => {
                 self.pin(*keyframe as usize, SE2::new(*x, *y, *theta))
@@ -132,6 +134,27 @@ impl<'a> Engine<'a> {
                 self.links[link].verdict = before;
                 Err(problem)
             }
+        }
+    }
+
+    /// Keeps a loop of the graph that the rest contradicts: it is to be checked no longer.
+    fn accept(&mut self, link: usize) -> Result<String, String> {
+        self.may_edit()?;
+        let found = self.links.get_mut(link);
+        let Some(found) = found.filter(|link| link.verdict.is_in_graph()) else {
+            return Err(format!("there is no loop {link} in the graph"));
+        };
+        found.verdict = Verdict::Confirmed;
+        self.work = Work::Checking;
+        let (new, old) = (found.new, found.old);
+        Ok(format!("The loop {new} to {old} stays in the graph."))
+    }
+
+    /// Removes a loop from the graph; unlike [`Engine::turn`] it never adds one, however often it is sent.
+    fn refuse(&mut self, link: usize) -> Result<String, String> {
+        match self.links.get(link) {
+            Some(found) if found.verdict.is_in_graph() => self.turn(link),
+            _ => Err(format!("there is no loop {link} in the graph")),
         }
     }
 

@@ -103,18 +103,17 @@ fn ticks(
             ink,
         );
     }
+    let size = if panel.y.names.is_empty() {
+        TextSize::Small
+    } else {
+        TextSize::Body
+    };
     let y_axis = y_ticks(&panel.y, shown.min[1], shown.max[1], plot.height);
     for value in &y_axis.values {
         let y = surface.snap(to.to_px([0.0, *value])[1]);
         surface.line(&[[plot.left - 4.0, y], [plot.left, y]], pen);
         let at = [plot.left - TICK + 1.0, y];
-        surface.text(
-            at,
-            Align::Right,
-            &y_axis.label(*value),
-            TextSize::Small,
-            ink,
-        );
+        surface.text(at, Align::Right, &y_axis.label(*value), size, ink);
     }
 
     let at = [plot.center()[0], origin[1] + layout.x_name_y];

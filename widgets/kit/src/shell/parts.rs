@@ -96,7 +96,7 @@ impl Shell {
             .iter()
             .find(|button| button.id == DEFAULTS.id && layer.has_button(button.id));
         if let Some(spec) = defaults
-            && transport::button(ui, spec, false, &mut self.hot).clicked()
+            && transport::button(ui, spec, true, false, &mut self.hot).clicked()
         {
             // The button comes from the widget's own list.
             let _ = self.model.press(spec.id);

@@ -3,11 +3,33 @@
 use kit::spec::PLAY;
 
 use super::OwnRobot;
-use super::hands::nudge;
+use super::hands::{may_edit, nudge};
 use super::robot::{Robot, Stage};
 use crate::w16_10_own_robot::spec::{FILES, MOST_SCANS, OPTIONS};
 
 impl OwnRobot {
+    /// Whether a button has anything to do.
+    pub(super) fn has_work_for(&self, id: &str) -> bool {
+        let robot = &self.robot;
+        let (has_map, is_editable) = (!robot.keyframes.is_empty(), may_edit(self));
+        match id {
+            "cancel" => robot.is_under_way(),
+            "doubt" => !self.doubts().is_empty(),
+            "previous" | "next" => !robot.links.is_empty(),
+            "turn" => is_editable && !robot.links.is_empty(),
+            "mark" | "save" => has_map,
+            "add" => {
+                let marked = self.values.number("marked") as usize;
+                is_editable && robot.has_scans && marked != self.keyframe()
+            }
+            "west" | "east" | "north" | "south" | "unpin" => is_editable && has_map,
+            "locate" | "locate-sample" => !matches!(robot.stage, Stage::Empty | Stage::Failed),
+            "change" => self.place().is_some(),
+            "other" => self.other_offer().is_some(),
+            _ => true,
+        }
+    }
+
     /// The effect of a button; `None` if it is not one of this widget's own.
     pub(super) fn press_own(&mut self, id: &str) -> Option<()> {
         let keyframe = self.keyframe();
@@ -75,24 +97,21 @@ impl OwnRobot {
         self.playback.pause();
     }
 
-    /// Requests the next topic or frame of the recording for the selected option.
-    fn take_other(&mut self) {
+    /// The next topic or frame of the recording for the selected option.
+    fn other_offer(&self) -> Option<&str> {
         let option = OPTIONS[self.values.number("option") as usize].id;
-        let offer = self
-            .robot
-            .offers
-            .iter()
-            .find(|offer| offer.option == option);
-        let other = offer.and_then(|offer| {
-            let here = offer.names.iter().position(|name| *name == offer.taken);
-            let next = here.map_or(0, |here| (here + 1) % offer.names.len());
-            offer.names.get(next).filter(|name| **name != offer.taken)
-        });
-        match other {
-            Some(name) => self.ask(format!("option {option} {name}")),
-            None => {
-                self.robot.answer = "The recording offers nothing else to take here.".to_owned();
-            }
+        let mut offers = self.robot.offers.iter();
+        let offer = offers.find(|offer| offer.option == option)?;
+        let here = offer.names.iter().position(|name| *name == offer.taken);
+        let next = here.map_or(0, |here| (here + 1) % offer.names.len());
+        let name = offer.names.get(next)?;
+        (*name != offer.taken).then_some(name)
+    }
+
+    fn take_other(&mut self) {
+        if let Some(name) = self.other_offer() {
+            let option = OPTIONS[self.values.number("option") as usize].id;
+            self.ask(format!("option {option} {name}"));
         }
     }
 

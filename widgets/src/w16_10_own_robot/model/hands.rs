@@ -25,8 +25,8 @@ fn nearest(robot: &OwnRobot, at: [f64; 2], reach: [f64; 2]) -> Option<(usize, [f
         .min_by(|a, b| share(a.1).total_cmp(&share(b.1)))
 }
 
-/// Whether keyframes can be moved.
-fn may_move(robot: &OwnRobot) -> bool {
+/// Whether the worker takes changes of the graph.
+pub fn may_edit(robot: &OwnRobot) -> bool {
     matches!(robot.robot.stage, Stage::Done | Stage::Checking)
 }
 
@@ -50,7 +50,7 @@ pub fn grab(robot: &OwnRobot, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Opt
     let is_shown = keyframe == robot.keyframe() || spot == [shown[0], shown[1]];
     Some(Handle {
         panel: panel::MAP,
-        id: if is_shown && may_move(robot) {
+        id: if is_shown && may_edit(robot) {
             "held"
         } else {
             "keyframe"
@@ -63,7 +63,7 @@ pub fn grab(robot: &OwnRobot, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Opt
 pub fn nudge(robot: &mut OwnRobot, steps: [f64; 2]) {
     let shown = robot.robot.keyframes.get(robot.keyframe());
     if let Some(at) = shown.map(|shown| [shown.pose[0], shown.pose[1]])
-        && may_move(robot)
+        && may_edit(robot)
     {
         let handle = Handle {
             panel: panel::MAP,

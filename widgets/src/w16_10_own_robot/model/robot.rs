@@ -77,6 +77,8 @@ pub enum Verdict {
     Removed,
     /// The reader added it.
     Added,
+    /// The reader kept it although the rest of the graph contradicts it.
+    Confirmed,
 }
 
 /// A loop with its evidence; NaN for missing numbers.
@@ -108,7 +110,16 @@ impl Link {
     /// Whether it is in the graph.
     #[must_use]
     pub fn is_in_graph(&self) -> bool {
-        matches!(self.verdict, Verdict::Closed | Verdict::Added)
+        matches!(
+            self.verdict,
+            Verdict::Closed | Verdict::Added | Verdict::Confirmed
+        )
+    }
+
+    /// Whether it is in the graph, and the rest of the graph contradicts it.
+    #[must_use]
+    pub fn is_contradicted(&self) -> bool {
+        self.is_in_graph() && self.chi2 > self.gate_chi2
     }
 }
 
@@ -322,6 +333,7 @@ fn link(numbers: &[f64], reason: &str) -> Option<Link> {
         Verdict::Rejected,
         Verdict::Removed,
         Verdict::Added,
+        Verdict::Confirmed,
     ];
     Some(Link {
         new: numbers[0] as usize,

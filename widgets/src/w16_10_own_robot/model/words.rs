@@ -23,22 +23,45 @@ pub fn outcome(own: &OwnRobot) -> Outcome {
         Stage::Solving => (Standing::Neutral, "solving"),
         Stage::Checking => (Standing::Neutral, "checking"),
         _ if robot.is_under_way() => (Standing::Neutral, "looking for the robot"),
-        Stage::Done if contradicted(robot) > 0 => (Standing::Bad, "loops contradict"),
-        Stage::Done if robot.doubts.is_empty() => (Standing::Good, "mapped"),
-        Stage::Done => (Standing::Neutral, "mapped"),
+        Stage::Done => return told(own, standing(robot), verdict_on_loops(robot)),
     };
+    told(own, standing, verdict.to_owned())
+}
+
+fn told(own: &OwnRobot, standing: Standing, verdict: String) -> Outcome {
     Outcome {
         standing,
-        verdict: verdict.to_owned(),
+        verdict,
         sentence: sentence(own),
         facts: facts(own),
     }
 }
 
-/// Loops of the graph that the rest of it contradicts.
-fn contradicted(robot: &Robot) -> usize {
-    let doubted = |link: &&Link| link.is_in_graph() && link.chi2 > link.gate_chi2;
-    robot.links.iter().filter(doubted).count()
+fn standing(robot: &Robot) -> Standing {
+    match to_look_into(robot) {
+        0 if robot.doubts.is_empty() => Standing::Good,
+        0 => Standing::Neutral,
+        _ => Standing::Doubtful,
+    }
+}
+
+fn verdict_on_loops(robot: &Robot) -> String {
+    match (to_look_into(robot), in_graph(robot)) {
+        (_, 0) => "mapped".to_owned(),
+        (0, all) => format!("none of {} to look into", counted(all, "loop")),
+        (some, all) => format!("{some} of {} to look into", counted(all, "loop")),
+    }
+}
+
+fn in_graph(robot: &Robot) -> usize {
+    robot.links.iter().filter(|link| link.is_in_graph()).count()
+}
+
+/// Loops of the graph that the rest of it contradicts, and that the reader has not accepted.
+fn to_look_into(robot: &Robot) -> usize {
+    let links = robot.links.iter();
+    let open = links.filter(|link| link.is_contradicted() && link.verdict != Verdict::Confirmed);
+    open.count()
 }
 
 fn sentence(own: &OwnRobot) -> String {
@@ -128,12 +151,18 @@ fn visitor(own: &OwnRobot) -> String {
 }
 
 fn finished(robot: &Robot) -> String {
-    let closed = robot.links.iter().filter(|link| link.is_in_graph()).count();
-    let doubted = match contradicted(robot) {
+    let closed = in_graph(robot);
+    let contradicted = robot.links.iter().filter(|link| link.is_contradicted());
+    let contradicted = contradicted.count();
+    let accepted = match contradicted - to_look_into(robot) {
+        0 => String::new(),
+        some => format!(", {some} accepted by you"),
+    };
+    let doubted = match contradicted {
         0 if robot.doubts.is_empty() => "no loop contradicts the graph".to_owned(),
         0 => "no loop contradicts the graph, but the list of doubts is not empty".to_owned(),
-        1 => "one loop contradicts the graph".to_owned(),
-        many => format!("{many} loops contradict the graph"),
+        1 => format!("one loop contradicts the graph{accepted}"),
+        many => format!("{many} loops contradict the graph{accepted}"),
     };
     let source = if robot.has_scans {
         format!(
@@ -197,6 +226,7 @@ pub fn verdict(link: &Link) -> &'static str {
         Verdict::Rejected => "rejected",
         Verdict::Removed => "rejected by you",
         Verdict::Added => "closed by you",
+        Verdict::Confirmed => "accepted by you",
     }
 }
 
@@ -217,7 +247,7 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
         Fact::count("scans", "scans", robot.scans),
         Fact::count("keyframes", "keyframes", robot.keyframes.len() as f64),
         Fact::new("path_length_m", "path", path_length_m(robot), "m", 1),
-        Fact::count("loops", "loops in the graph", count(&Link::is_in_graph)),
+        Fact::count("loops", "loops in the graph", in_graph(robot) as f64),
         Fact::count(
             "loops_refused",
             "loops not in the graph",
@@ -225,8 +255,8 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
         ),
         Fact::count(
             "loops_doubted",
-            "loops that contradict",
-            contradicted(robot) as f64,
+            "loops to look into",
+            to_look_into(robot) as f64,
         ),
         Fact::metres("worst_sigma_m", "largest σ", worst_m),
         Fact::metres("error_m", "error against the reference", grade_m),

@@ -17,6 +17,8 @@ pub struct GridView {
     grid: OccupancyGrid,
     raster: Raster,
     source: Source,
+    /// Keyframes drawn since it was cleared.
+    drawn: usize,
 }
 
 /// Identifies a grid within one run.
@@ -49,6 +51,7 @@ impl GridView {
         Self {
             raster: raster(&grid, 0),
             source: Source::from_record(record, tick),
+            drawn: 0,
             grid,
         }
     }
@@ -61,6 +64,21 @@ impl GridView {
             self.grid = record.occupancy_grid(tick);
             self.raster = raster(&self.grid, self.raster.revision + 1);
         }
+    }
+
+    /// Empties it, to be drawn again by [`GridView::draw`].
+    pub fn clear(&mut self, record: &LapRecord) {
+        self.grid = record.empty_grid();
+        self.drawn = 0;
+        self.raster = raster(&self.grid, self.raster.revision + 1);
+    }
+
+    /// Draws a cleared grid up to that share of the tick's keyframes.
+    pub fn draw(&mut self, record: &LapRecord, tick: usize, share: f64) {
+        let until = (share * self.source.keyframes as f64) as usize;
+        record.draw_keyframes(&mut self.grid, tick, self.drawn..until);
+        self.drawn = until;
+        self.raster = raster(&self.grid, self.raster.revision + 1);
     }
 
     /// Invalidates the grid because the run changed.

@@ -26,7 +26,7 @@ pub fn scene(room: &ControlRoom) -> Scene {
         panels: vec![
             map(record, now, room.grid.raster(), &room.world),
             registration(record, now, room.registration.as_ref()),
-            lanes::lanes(record, now, room.lane()),
+            lanes::lanes(record, now, room.lane(), room.closing),
             plots::threshold(&room.history, now),
             plots::errors(&room.history, now),
         ],

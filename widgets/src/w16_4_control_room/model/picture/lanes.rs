@@ -112,7 +112,7 @@ static LANES: [Lane; 8] = [
     },
     Lane {
         name: "optimize",
-        done: |report| executed(closed_loop(report)),
+        done: |report| executed(closes_loop(report)),
         data: |report| {
             of_loop(report, |attempt| match &attempt.effect {
                 Some(effect) => format!(
@@ -125,7 +125,7 @@ static LANES: [Lane; 8] = [
     },
     Lane {
         name: "repaint",
-        done: |report| executed(closed_loop(report)),
+        done: |report| executed(closes_loop(report)),
         data: |report| {
             of_loop(report, |attempt| match attempt.effect {
                 Some(_) => format!(
@@ -154,7 +154,8 @@ fn executed(is_done: bool) -> Done {
     if is_done { Done::Passed } else { Done::Idle }
 }
 
-fn closed_loop(report: &TickReport) -> bool {
+/// Whether a loop is closed in the tick.
+pub fn closes_loop(report: &TickReport) -> bool {
     report
         .loop_attempt
         .as_ref()
@@ -195,8 +196,36 @@ pub fn data(report: &TickReport) -> impl Iterator<Item = (&'static str, String)>
         .map(move |lane| (lane.name, (lane.data)(report)))
 }
 
+/// The lane in which a loop begins; it goes on through those below.
+const CANDIDATE: usize = 3;
+/// Length of a pulse, as a share of the run.
+const PULSE: f64 = 0.06;
+
+/// The pulses of a loop, one after the other to the current tick, in that share of their time.
+fn pulses(now: usize, last: f64, share: f64) -> [Layer; 2] {
+    let lanes = CANDIDATE..LANES.len();
+    // A pulse takes as long as two more need to start.
+    let time = share * (lanes.len() + 1) as f64;
+    let shares = lanes.map(|lane| {
+        (
+            lane,
+            (0.5 * (time - (lane - CANDIDATE) as f64)).clamp(0.0, 1.0),
+        )
+    });
+    let heads = shares.filter(|(_, share)| *share > 0.0);
+    let heads = heads.map(|(lane, share)| [share * now as f64, height(lane)]);
+    let heads: Vec<[f64; 2]> = heads.collect();
+    let tails = heads
+        .iter()
+        .map(|head| [[head[0] - PULSE * last, head[1]], *head]);
+    [
+        Layer::segments(tails.collect(), Stroke::Solid, Tone::Revisit, 3.0),
+        Layer::points(heads, Mark::Dot, Tone::Revisit, 5.0),
+    ]
+}
+
 /// The lanes up to a tick; a ring around the mark of the selected lane at the current tick.
-pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
+pub fn lanes(record: &LapRecord, now: usize, chosen: usize, closing: Option<f64>) -> Panel {
     let last = record.ticks() as f64;
     let mut layers = vec![Layer::line(
         vec![[now as f64, 0.4], [now as f64, height(0) + 0.6]],
@@ -204,13 +233,13 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
         Tone::Faint,
         2.0,
     )];
+    let mut passed = done(record, now, Done::Passed);
+    if closing.is_some() {
+        // The pulses bring the marks of the loop.
+        passed.retain(|[tick, high]| *tick < now as f64 || *high > height(CANDIDATE));
+    }
     layers.extend([
-        Layer::points(
-            done(record, now, Done::Passed),
-            Mark::Dot,
-            Tone::Series(0),
-            2.4,
-        ),
+        Layer::points(passed, Mark::Dot, Tone::Series(0), 2.4),
         Layer::points(
             done(record, now, Done::Rejected),
             Mark::Circle,
@@ -223,6 +252,11 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
         let at = vec![[now as f64, height(chosen)]];
         layers.push(Layer::points(at, Mark::Circle, Tone::Ink, 7.0));
     }
+    layers.extend(
+        closing
+            .into_iter()
+            .flat_map(|share| pulses(now, last, share)),
+    );
     Panel {
         id: ID,
         title: "Who does what when: dots are done, rings refused".to_owned(),
