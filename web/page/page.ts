@@ -9,12 +9,14 @@ import { BuildingFigure } from './building/figure';
 import type { Building } from './building/drawing';
 import { addCopyButtons } from './copy';
 import { DecideFigure } from './decide';
+import { watchOwnFlat } from './gallery/own';
 import { type Places, leadOn } from './places';
 import { LapPlayer } from './lap/player';
 import type { Story } from './lap/story';
 import { LapsFigure } from './laps/laps';
 import type { Answer } from './match/drawing';
 import { MatchFigure } from './match/figure';
+import type { SlamWidget } from '../ts/main';
 import { SketchFigure, type SketchSchema } from './sketch';
 
 /** Set by the build: the lap that the page calls canonical, as the core has driven it. */
@@ -45,6 +47,7 @@ letReaderMatch();
 void replay('#lap', LAP_STORY_FILE, (figure, story: Story) => new LapPlayer(figure, story));
 void replay('#building', BUILDING_FILE, (figure, story: Building) => new BuildingFigure(figure, story));
 driveLaps();
+shareOwnFlat();
 whenNear(document.querySelectorAll(NEEDS_CORE), () => void useCore());
 
 function letReaderMatch(): void {
@@ -100,6 +103,13 @@ function driveLaps(): void {
     module: coreModule as () => Promise<WebAssembly.Module>,
     driver: async () => new (await (core as () => Promise<Glue>)()).Laps(),
   });
+}
+
+/** A flat that the reader has drawn gets a card of its own. */
+function shareOwnFlat(): void {
+  const lap = document.querySelector<SlamWidget>('slam-widget[name="w16.2"]');
+  const gallery = document.querySelector<HTMLElement>('.gallery');
+  if (lap !== null && gallery !== null) watchOwnFlat(lap, gallery);
 }
 
 /** How far one has read, as a thin bar, and the section as the name of the contents list. */
