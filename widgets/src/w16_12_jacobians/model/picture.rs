@@ -156,22 +156,22 @@ fn curve(widget: &WrongJacobians) -> Panel {
         2.5,
     )];
     if is_distance {
-        // Before the first step this line is what the curves have to get under.
         let same = height(SAME_END_M);
         let last = widget.last().max(1) as f64;
-        layers.extend([
-            Layer::line(
-                vec![[0.0, same], [last, same]],
-                Stroke::Dashed,
-                Tone::Ink,
-                1.25,
-            ),
-            Layer::Text {
+        layers.push(Layer::line(
+            vec![[0.0, same], [last, same]],
+            Stroke::Dashed,
+            Tone::Ink,
+            1.25,
+        ));
+        // Curves would cross the words.
+        if widget.step() == 0 {
+            layers.push(Layer::Text {
                 at: [0.5 * last, same - 0.45],
                 text: "noise of one edge: who gets under it?".to_owned(),
                 tone: Tone::Ink,
-            },
-        ]);
+            });
+        }
     }
     for (solver, mut line) in lines.into_iter().enumerate() {
         // What is to come would give the answer away.

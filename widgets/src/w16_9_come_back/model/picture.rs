@@ -206,17 +206,18 @@ fn scores(back: &ComeBack) -> Panel {
             Layer::points(best.collect(), Mark::Square, Tone::Posterior, 4.0),
         ];
     }
-    // Before the first scan this line is what its marks have to get over.
     let found = LocalizeConfig::default().found_score;
-    layers.extend([
-        Layer::line(
-            vec![[0.0, found], [last + 1.0, found]],
-            Stroke::Dashed,
-            Tone::Ink,
-            1.25,
-        ),
-        Layer::label([0.5 * last, found], "fits well enough".to_owned(), 4.0),
-    ]);
+    layers.push(Layer::line(
+        vec![[0.0, found], [last + 1.0, found]],
+        Stroke::Dashed,
+        Tone::Ink,
+        1.25,
+    ));
+    // Scores would cross the words.
+    if back.place() == 0 {
+        let words = "fits well enough".to_owned();
+        layers.push(Layer::label([0.5 * last, found], words, 4.0));
+    }
     Panel {
         id: panel::SCORES,
         title: "How well the best place fits, and the next one".to_owned(),
