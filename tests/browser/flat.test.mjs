@@ -1,11 +1,13 @@
 // A custom flat in w16.2: drawn by mouse, touch and keyboard, stored in links, history and files.
 
 import assert from 'node:assert/strict';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { describe, it } from 'node:test';
 import { native } from '../native.mjs';
+import { gzipSync } from 'node:zlib';
+import { GALLERY } from '../../web/page/gallery.mjs';
 import * as h from './harness.mjs';
 import { fingers } from './touch.mjs';
 
@@ -189,5 +191,40 @@ describe('a custom flat', () => {
         rmSync(folder, { recursive: true });
       }
     });
+  });
+});
+
+describe('laps that break', () => {
+  const LARGEST_BYTES = 6_000;
+
+  it('stand on cards with small pictures, and a press sets the lap to one', async () => {
+    for (const { id } of GALLERY) {
+      const bytes = gzipSync(readFileSync(join(h.DIST, 'pictures', `break-${id}.svg`))).length;
+      assert.ok(bytes <= LARGEST_BYTES, `${id}: ${bytes} bytes`);
+    }
+    await visit('', async (tab) => {
+      const links = tab.locator('.gallery a');
+      assert.equal(await links.count(), GALLERY.length);
+      await tab.getByRole('link', { name: 'A library' }).click();
+      await h.ready(tab, 'slam-widget[name="w16.2"]');
+      const { facts } = await tab.evaluate(() => document.querySelector('slam-widget[name="w16.2"]').outcome);
+      assert.ok(facts.graph_error_m > 8 && facts.false_loops >= 4, JSON.stringify(facts));
+    }, { path: '/index.html' });
+  });
+
+  it('give a flat of one’s own a card with a link and a picture, which another world takes away', async () => {
+    const { state } = GALLERY.find(({ id }) => id === 'library');
+    await visit('', async (tab) => {
+      const card = tab.locator('.own-card');
+      await card.getByText('The robot ends 8.5 m off').waitFor();
+      const download = tab.waitForEvent('download');
+      await card.getByRole('button', { name: 'Save picture' }).click();
+      const png = await h.bytesOf(await download);
+      assert.deepEqual([...png.subarray(1, 4)], [...Buffer.from('PNG')]);
+      await card.getByRole('button', { name: 'Copy link' }).click();
+      await card.getByText(/The link is copied|flat=/).waitFor();
+      await tab.evaluate(() => document.querySelector('slam-widget[name="w16.2"]').set('world', 'ring'));
+      await card.waitFor({ state: 'hidden' });
+    }, { path: `/index.html?w=16.2&${state}` });
   });
 });

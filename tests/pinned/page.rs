@@ -5,10 +5,12 @@
 //! word on the page fails.
 
 mod building;
+mod challenges;
 mod claims;
 pub mod document;
 mod drawings;
 mod figures;
+mod gallery;
 mod length;
 mod printed;
 mod registrations;

@@ -18,6 +18,7 @@ import { endWithOneSentence } from '../licences/allowed.mjs';
 import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
 import { colorStyle } from '../palette.mjs';
 import { frameExercises, readExercises } from './exercises.mjs';
+import { addGallery } from './gallery.mjs';
 import { addListings } from './listings.mjs';
 import { placesOf, readPages, withFrame } from './pages.mjs';
 import { slidesPage } from './slides.mjs';
@@ -56,7 +57,7 @@ await Promise.all([...pictured.map(renderPage), copyKatex()]);
 await writeNotices(metafiles).catch(endWithOneSentence);
 
 async function renderPage({ file, source, html }) {
-  const page = await addListings(addSketches(addMatch(addStills(html)), sketches, source), root);
+  const page = await addListings(addSketches(addMatch(addStills(addGallery(html))), sketches, source), root);
   await writeFile(path.join(outDir, file), withNames(page));
 }
 

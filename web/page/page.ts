@@ -8,12 +8,14 @@ import { BuildingFigure } from './building/figure';
 import type { Building } from './building/drawing';
 import { addCopyButtons } from './copy';
 import { DecideFigure } from './decide';
+import { watchOwnFlat } from './gallery/own';
 import { type Places, redirectOldAddress } from './redirects';
 import { LapPlayer } from './lap/player';
 import type { Story } from './lap/story';
 import { LapsFigure } from './laps/laps';
 import type { Answer } from './match/drawing';
 import { MatchFigure } from './match/figure';
+import type { SlamWidget } from '../ts/main';
 import { SketchFigure, type SketchSchema } from './sketch';
 
 /** Set by the build: the canonical lap. */
@@ -44,6 +46,7 @@ startMatchFigure();
 void startReplay('#lap', LAP_STORY_FILE, (figure, story: Story) => new LapPlayer(figure, story));
 void startReplay('#building', BUILDING_FILE, (figure, story: Building) => new BuildingFigure(figure, story));
 startLapsFigure();
+startOwnFlatCard();
 onceNear(document.querySelectorAll(NEEDS_CORE), () => void startCoreFigures());
 
 function startMatchFigure(): void {
@@ -96,6 +99,13 @@ function startLapsFigure(): void {
     module: coreModule as () => Promise<WebAssembly.Module>,
     runner: async () => new (await (core as () => Promise<Glue>)()).Laps(),
   });
+}
+
+/** Shows a card for a flat that the reader has drawn. */
+function startOwnFlatCard(): void {
+  const lap = document.querySelector<SlamWidget>('slam-widget[name="w16.2"]');
+  const gallery = document.querySelector<HTMLElement>('.gallery');
+  if (lap !== null && gallery !== null) watchOwnFlat(lap, gallery);
 }
 
 /** Shows the reading progress as a thin bar, and the current section in the contents list. */

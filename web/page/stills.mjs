@@ -7,6 +7,7 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 import { build } from 'esbuild';
 
 import { shades } from '../palette.mjs';
+import { GALLERY } from './gallery.mjs';
 
 const here = path.dirname(fileURLToPath(import.meta.url));
 const PKG = path.join(here, '..', 'pkg');
@@ -23,6 +24,7 @@ export async function drawStills(outDir) {
   await drawStory('lap', story, outDir);
   const building = await readFile(path.join(here, 'building/building.json'), 'utf8');
   await drawStory('building', JSON.parse(building), outDir);
+  await drawGallery(core, outDir);
   const { drawing } = await load('match/drawing.ts');
   const scene = JSON.parse(core.matcherScene());
   return {
@@ -47,6 +49,18 @@ async function drawStory(name, story, outDir) {
   const { still } = await load(`${name}/still.ts`);
   for (const theme of ['light', 'dark']) {
     await writeFile(path.join(outDir, 'pictures', `${name}-${theme}.svg`), still(story, shades(theme)));
+  }
+}
+
+/** Draws a picture of each lap of the gallery, for both themes. */
+async function drawGallery(core, outDir) {
+  const { drawing } = await load('gallery/drawing.ts');
+  for (const { id, state } of GALLERY) {
+    const widget = new core.Widget('w16.2');
+    for (const [name, text] of new URLSearchParams(state)) widget.set(name, text);
+    widget.finish();
+    const { facts } = JSON.parse(widget.outcome());
+    await writeFile(path.join(outDir, 'pictures', `break-${id}.svg`), drawing(JSON.parse(widget.tables()), facts));
   }
 }
 

@@ -265,7 +265,8 @@ fn attribute(tag: &str, name: &str) -> Option<String> {
     Some(unescape(&value[..value.find('"')?]))
 }
 
-fn unescape(text: &str) -> String {
+/// The text of an attribute.
+pub fn unescape(text: &str) -> String {
     text.replace("&lt;", "<")
         .replace("&gt;", ">")
         .replace("&amp;", "&")

@@ -92,6 +92,16 @@ impl WrongJacobians {
         self.played.place(&self.values, self.last() as f64) as usize
     }
 
+    /// Whether all four have ended.
+    fn is_over(&self) -> bool {
+        self.step() == self.last()
+    }
+
+    /// How many steps a solver has done.
+    fn steps_of(&self, solver: usize) -> usize {
+        self.step().min(self.solved.runs[solver].steps())
+    }
+
     /// The loose end of the chain, which is there to bend before the first step.
     fn loose_end(&self) -> Option<[f64; 2]> {
         let start = &self.solved.runs[0].moments[0].poses;
@@ -120,8 +130,7 @@ impl WrongJacobians {
 
     /// A solver's graph at the current step, or at its last one.
     fn shown(&self, solver: usize) -> &Moment {
-        let run = &self.solved.runs[solver];
-        &run.moments[self.step().min(run.steps())]
+        &self.solved.runs[solver].moments[self.steps_of(solver)]
     }
 }
 

@@ -164,6 +164,21 @@ fn before_the_first_step_neither_picture_nor_words_tell_the_end() {
 }
 
 #[test]
+fn on_the_way_neither_words_nor_numbers_nor_table_tell_the_end() {
+    let last = WrongJacobians::default().timeline().unwrap().last;
+    let before = with(&[("steps", last - 1.0)]);
+    assert_eq!(before.outcome().verdict, "on the way");
+    let widget = with(&[("steps", 1.0)]);
+    let end = WrongJacobians::default();
+    for id in ["exact_off_m", "jacobian_off_m", "residual_off_m"] {
+        assert!(fact(&widget, id) > fact(&end, id), "{id}");
+    }
+    assert_eq!(fact(&widget, "jacobian_steps"), 1.0);
+    assert!(!widget.summary().contains("end"), "{}", widget.summary());
+    assert_eq!(widget.tables()[0].title, "The four after 1 step");
+}
+
+#[test]
 fn the_chain_is_bent_by_its_loose_end_and_no_mark_is_ahead_of_the_step() {
     let mut widget = WrongJacobians::default();
     widget.set("steps", 0.0).unwrap();

@@ -146,6 +146,30 @@ fn playing_goes_through_the_boxes_and_the_scans_to_the_end() {
 }
 
 #[test]
+fn every_ghost_is_drawn_within_the_walls_and_the_legend_is_short() {
+    let mut back = ComeBack::default();
+    back.finish_work();
+    for moment in 0..6 {
+        back.set("moment", f64::from(moment)).unwrap();
+        let map = panel_of(&back, panel::MAP);
+        assert!(map.legend.len() <= 3, "{:?}", map.legend);
+        for layer in map.layers {
+            let Layer::Points {
+                points,
+                tone: Tone::Series(0),
+                ..
+            } = layer
+            else {
+                continue;
+            };
+            // The Apartment is 12 m by 9 m.
+            let inside = |[x, y]: &[f64; 2]| (0.0..=12.0).contains(x) && (0.0..=9.0).contains(y);
+            assert!(points.iter().all(inside), "{points:?}");
+        }
+    }
+}
+
+#[test]
 fn it_opens_before_the_search_and_the_ghosts_collapse_onto_the_right_place() {
     let mut back = ComeBack::default();
     back.finish_work();

@@ -4,6 +4,7 @@ use ch16_lab::jacobians::Moment;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::{SE2, math};
 
+use super::words::SAME_END_M;
 use super::{NAMES, WrongJacobians, panel};
 
 use crate::w16_12_jacobians::spec::{CURVE, Curve};
@@ -110,12 +111,7 @@ fn decades() -> impl Iterator<Item = String> {
 fn curve(widget: &WrongJacobians) -> Panel {
     let is_distance = widget.values.get(&CURVE) == Curve::Distance;
     let best_chi2 = widget.solved.least_chi2;
-    let of = |moment: &Moment| {
-        let value = if is_distance {
-            moment.off_m
-        } else {
-            moment.chi2 - best_chi2
-        };
+    let height = |value: f64| {
         // Zero and rounding are drawn at the lower end.
         let floor = math::exp(LOWEST_POWER * core::f64::consts::LN_10);
         let power = math::ln(math::max(value, floor)) / core::f64::consts::LN_10;
@@ -125,6 +121,13 @@ fn curve(widget: &WrongJacobians) -> Panel {
         } else {
             power
         }
+    };
+    let of = |moment: &Moment| {
+        height(if is_distance {
+            moment.off_m
+        } else {
+            moment.chi2 - best_chi2
+        })
     };
     let lines = widget.solved.runs.each_ref().map(|run| {
         let moments = run.moments.iter().enumerate();
@@ -152,6 +155,24 @@ fn curve(widget: &WrongJacobians) -> Panel {
         Tone::Faint,
         2.5,
     )];
+    if is_distance {
+        let same = height(SAME_END_M);
+        let last = widget.last().max(1) as f64;
+        layers.push(Layer::line(
+            vec![[0.0, same], [last, same]],
+            Stroke::Dashed,
+            Tone::Ink,
+            1.25,
+        ));
+        // Curves would cross the words.
+        if widget.step() == 0 {
+            layers.push(Layer::Text {
+                at: [0.5 * last, same - 0.45],
+                text: "noise of one edge: who gets under it?".to_owned(),
+                tone: Tone::Ink,
+            });
+        }
+    }
     for (solver, mut line) in lines.into_iter().enumerate() {
         // What is to come would give the answer away.
         line.truncate(widget.step() + 1);

@@ -1,5 +1,6 @@
 //! The tables: the four results beside the picture, every step for the export.
 
+use kit::counted::counted;
 use kit::model::Table;
 
 use super::{NAMES, WrongJacobians};
@@ -10,17 +11,18 @@ pub fn all(widget: &WrongJacobians) -> Vec<Table> {
 }
 
 fn ends(widget: &WrongJacobians) -> Table {
-    let rows = widget.solved.runs.iter().zip(NAMES).map(|(run, name)| {
+    let rows = NAMES.iter().enumerate().map(|(solver, name)| {
+        let shown = widget.shown(solver);
         vec![
-            name.to_owned(),
-            run.steps().to_string(),
-            format!("{:.4}", run.end().off_m),
-            format!("{:.2}", run.end().chi2),
+            (*name).to_owned(),
+            widget.steps_of(solver).to_string(),
+            format!("{:.4}", shown.off_m),
+            format!("{:.2}", shown.chi2),
         ]
     });
     Table::shown(
         "ends",
-        "The four ends",
+        format!("The four after {}", counted(widget.step(), "step")),
         &["solver", "steps", "off (m)", "χ²"],
         rows.collect(),
     )

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use ch16_lab::lap::{
-    BuiltInWorld, Choice as _, Drive, LapConfig, LapRecord, LapSummary, LoopAttempt, OwnLoop,
-    OwnLoopError, OwnLoopRequest,
+    BuiltInWorld, Choice as _, Drive, LapConfig, LapRecord, LapSummary, LoopAttempt, LoopJudgement,
+    OwnLoop, OwnLoopError, OwnLoopRequest,
 };
 use ch16_slam2d::loops::LoopConfig;
 use pr_geom::SE2;
@@ -110,6 +110,16 @@ impl Runs {
     pub fn attempts_until(&self, tick: usize) -> &[LoopAttempt] {
         let all = self.graph.attempts();
         &all[..all.partition_point(|attempt| attempt.tick <= tick)]
+    }
+
+    /// Number of closed loops after that many ticks that are wrong by the truth.
+    pub fn false_loops_until(&self, tick: usize) -> usize {
+        let lap = self.graph.lap();
+        let attempts = self.attempts_until(tick).iter();
+        let judgements = attempts.map(|attempt| lap.judge(attempt));
+        judgements
+            .filter(|judgement| *judgement == LoopJudgement::FalseAcceptance)
+            .count()
     }
 
     /// Adds a custom loop to the graph.

@@ -44,6 +44,8 @@ pub fn all(runs: &Runs, seen: usize, canonical: &[Results]) -> Vec<Table> {
         loop_attempts(runs, seen),
         over_time(runs, seen),
         keyframes(runs, seen),
+        walls(runs),
+        map(runs, seen),
     ]);
     tables
 }
@@ -249,6 +251,35 @@ fn keyframes(runs: &Runs, seen: usize) -> Table {
         format!("Keyframes after tick {seen}"),
         &head,
         poses.iter().enumerate().map(row).collect(),
+    )
+}
+
+fn walls(runs: &Runs) -> Table {
+    let row = |wall: &pr_sim::Wall| {
+        let ends = [wall.start.x, wall.start.y, wall.end.x, wall.end.y];
+        ends.map(exact).to_vec()
+    };
+    Table::exported(
+        "walls",
+        "The true walls",
+        &["from x (m)", "from y (m)", "to x (m)", "to y (m)"],
+        runs.world().walls().iter().map(row).collect(),
+    )
+}
+
+/// The points of every keyframe's scan at the keyframe's pose.
+fn map(runs: &Runs, seen: usize) -> Table {
+    let poses = runs.graph.poses_at(seen);
+    let points = poses.iter().enumerate().flat_map(|(node, pose)| {
+        let row =
+            move |[x, y]: [f64; 2]| vec![node.to_string(), format!("{x:.3}"), format!("{y:.3}")];
+        runs.sweep_at(node, *pose).map(row)
+    });
+    Table::exported(
+        "map",
+        format!("The map after tick {seen}"),
+        &["node", "x (m)", "y (m)"],
+        points.collect(),
     )
 }
 

@@ -166,6 +166,11 @@ fn moment_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
             "loops closed",
             runs.graph.accepted_until(tick) as f64,
         ),
+        Fact::count(
+            "false_loops",
+            "of these, wrong",
+            runs.false_loops_until(tick) as f64,
+        ),
         Fact::new("gate_chi2", "gate χ²", runs.gate_chi2(), "", 3),
     ]
 }

@@ -1,6 +1,7 @@
 //! The panels: the map with the localization, and the scores over the scans.
 
 use ch16_lab::laps::wardrobe_corners;
+use ch16_slam2d::localize::LocalizeConfig;
 use ch16_slam2d::search::PoseBox;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::{Point2, SE2};
@@ -68,11 +69,9 @@ fn map(back: &ComeBack) -> Panel {
         y: axis(PLAN_M[1]),
         layers,
         legend: vec![
-            LegendEntry::mark("the saved map", Tone::Ink, Mark::Dot),
             LegendEntry::mark("switched on here, to be put", Tone::Prior, Mark::Circle),
             LegendEntry::mark("it may be here", GHOST, Mark::Circle),
             LegendEntry::mark("best place, with the scan", Tone::Posterior, Mark::Square),
-            LegendEntry::mark("next place", Tone::Series(1), Mark::Triangle),
         ],
         color_bar: None,
     }
@@ -86,7 +85,13 @@ fn localization(back: &ComeBack) -> Vec<Layer> {
     let drive = run.drive();
     let truth = |tick: usize| drive.truth(tick);
     let way = (0..=moment.tick).map(|tick| [truth(tick).x(), truth(tick).y()]);
-    let mut layers = ghosts(&moment.boxes);
+    let walls = drive.config().world.bounds();
+    let inside = |seen: &&PoseBox| {
+        let [x, y] = [seen.x_m, seen.y_m].map(middle);
+        (walls.min.x..=walls.max.x).contains(&x) && (walls.min.y..=walls.max.y).contains(&y)
+    };
+    // The search window is a rectangle around the map, so its boxes reach beyond the walls.
+    let mut layers = ghosts(moment.boxes.iter().filter(inside));
     layers.extend([
         Layer::line(way.collect(), Stroke::Dashed, Tone::Truth, 1.5),
         pose(truth(moment.tick), Mark::Plus, Tone::Truth),
@@ -113,9 +118,13 @@ const GHOSTS: usize = 3;
 /// Length of the heading of the smallest ghost, m.
 const GHOST_M: f64 = 0.14;
 
+fn middle([low, high]: [f64; 2]) -> f64 {
+    0.5 * (low + high)
+}
+
 /// The middle of each box as a ghost of the robot, the larger the higher its bound.
-fn ghosts(boxes: &[PoseBox]) -> Vec<Layer> {
-    let bounds = boxes.iter().map(|seen| seen.bound);
+fn ghosts<'a>(boxes: impl Iterator<Item = &'a PoseBox> + Clone) -> Vec<Layer> {
+    let bounds = boxes.clone().map(|seen| seen.bound);
     let low = bounds.clone().fold(f64::INFINITY, f64::min);
     let high = bounds.fold(f64::NEG_INFINITY, f64::max);
     let size_of = |seen: &PoseBox| {
@@ -125,9 +134,8 @@ fn ghosts(boxes: &[PoseBox]) -> Vec<Layer> {
     let mut layers = Vec::new();
     for size in 0..GHOSTS {
         let length_m = GHOST_M * (size + 1) as f64;
-        let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
         let (mut places, mut headings) = (Vec::new(), Vec::new());
-        for seen in boxes.iter().filter(|seen| size_of(seen) == size) {
+        for seen in boxes.clone().filter(|seen| size_of(seen) == size) {
             let pose = SE2::new(middle(seen.x_m), middle(seen.y_m), middle(seen.heading_rad));
             let tip = pose.transform(Point2::new(length_m, 0.0));
             places.push([pose.x(), pose.y()]);
@@ -197,6 +205,18 @@ fn scores(back: &ComeBack) -> Panel {
             Layer::points(next.collect(), Mark::Triangle, Tone::Series(1), 4.0),
             Layer::points(best.collect(), Mark::Square, Tone::Posterior, 4.0),
         ];
+    }
+    let found = LocalizeConfig::default().found_score;
+    layers.push(Layer::line(
+        vec![[0.0, found], [last + 1.0, found]],
+        Stroke::Dashed,
+        Tone::Ink,
+        1.25,
+    ));
+    // Scores would cross the words.
+    if back.place() == 0 {
+        let words = "fits well enough".to_owned();
+        layers.push(Layer::label([0.5 * last, found], words, 4.0));
     }
     Panel {
         id: panel::SCORES,

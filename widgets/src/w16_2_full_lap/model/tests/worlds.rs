@@ -97,6 +97,16 @@ fn the_bare_corridor_is_mapped_too_short_and_its_map_is_consistent() {
 }
 
 #[test]
+fn of_the_loops_between_two_rooms_alike_some_are_counted_as_wrong() {
+    let mut model = FullLap::default();
+    press(&mut model, "twins");
+    let wrong = fact(&model, "false_loops");
+    assert!(wrong >= 1.0 && wrong < fact(&model, "loops_closed"));
+    model.set("t", 0.0).unwrap();
+    assert_eq!(fact(&model, "false_loops"), 0.0);
+}
+
+#[test]
 fn in_the_round_hall_the_robot_ends_on_the_far_side_and_the_map_is_consistent() {
     let mut model = FullLap::default();
     press(&mut model, "hall");

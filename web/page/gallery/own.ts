@@ -1,0 +1,87 @@
+// The reader's own flat as a card: shown once its lap is over, to be copied as a link or saved as a picture.
+
+import type { SlamWidget } from '../../ts/main';
+import { copyText, saveBlob } from '../../ts/export';
+import { drawing, HEIGHT, numbers, WIDTH, type Facts } from './drawing';
+
+/** Scale of a saved picture. */
+const SAVED_SCALE = 3;
+/** Side of a square of the map, which is no file to fetch. */
+const CELL_PX = 1;
+/** A robot that ends nearer than this has come home, m. */
+const HOME_M = 0.5;
+
+/** What `slam-result` tells. */
+interface Result {
+  readonly name: string;
+  readonly outcome: { readonly facts: Facts };
+}
+
+/** Shows the card before the gallery whenever a lap of a drawn flat is seen to its end. */
+export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement): void {
+  const card = document.createElement('aside');
+  card.className = 'card own-card';
+  card.setAttribute('aria-label', 'Your flat');
+  card.hidden = true;
+  gallery.before(card);
+  let asked = 0;
+  const show = async ({ facts }: Result['outcome']): Promise<void> => {
+    const { value, timeline } = widget;
+    const isOver = timeline !== null && Number(value['t']) >= timeline.last;
+    asked += 1;
+    const ask = asked;
+    const isShown = value['world'] === 'own' && value['flat'] !== '' && isOver;
+    const svg = isShown ? drawing(await widget.tables(), facts, CELL_PX) : '';
+    // Another result may have come meanwhile.
+    if (ask !== asked) return;
+    card.hidden = !isShown;
+    if (isShown) fill(card, widget, svg, sentence(facts));
+  };
+  widget.addEventListener('slam-result', (event) => void show((event as CustomEvent<Result>).detail.outcome));
+}
+
+function sentence(facts: Facts): string {
+  const { off, agrees } = numbers(facts);
+  const isHome = Math.max(facts['graph_error_m'] ?? 0, facts['keyframe_rms_m'] ?? 0) < HOME_M;
+  const lead = isHome ? 'Not broken yet: the robot' : 'The robot';
+  return `${lead} ${off.startsWith('ends') ? '' : 'is '}${off}${agrees === '' ? '' : `, and its ${agrees}`}.`;
+}
+
+function fill(card: HTMLElement, widget: SlamWidget, svg: string, words: string): void {
+  const source = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
+  const picture = document.createElement('img');
+  Object.assign(picture, { src: source, width: WIDTH, height: HEIGHT, alt: '' });
+  const title = document.createElement('p');
+  title.className = 'card-title';
+  title.textContent = 'Your flat';
+  const says = document.createElement('p');
+  says.textContent = words;
+  const status = document.createElement('p');
+  status.setAttribute('role', 'status');
+  const button = (label: string, press: () => Promise<string>): HTMLElement => {
+    const made = document.createElement('button');
+    made.type = 'button';
+    made.textContent = label;
+    made.addEventListener('click', () => {
+      press().then((said) => (status.textContent = said), (error: Error) => (status.textContent = `${label} failed: ${error.message}.`));
+    });
+    return made;
+  };
+  const buttons = document.createElement('div');
+  buttons.className = 'decide-buttons';
+  buttons.append(
+    button('Copy link', async () => ((await copyText(widget.link)) ? 'The link is copied.' : widget.link)),
+    button('Save picture', async () => {
+      saveBlob(await pngOf(picture), 'my-flat.png');
+      return 'The picture is saved.';
+    }),
+  );
+  card.replaceChildren(picture, title, says, buttons, status);
+}
+
+async function pngOf(picture: HTMLImageElement): Promise<Blob> {
+  await picture.decode();
+  const canvas = new OffscreenCanvas(SAVED_SCALE * WIDTH, SAVED_SCALE * HEIGHT);
+  canvas.getContext('2d')?.drawImage(picture, 0, 0, canvas.width, canvas.height);
+  return canvas.convertToBlob({ type: 'image/png' });
+}
