@@ -111,7 +111,7 @@ fn no_line_has_a_gap_without_missing_data() {
 }
 
 /// All results and texts; unknown facts are NaN, so the comparison uses text.
-fn told(model: &dyn Model) -> String {
+fn state_text(model: &dyn Model) -> String {
     format!(
         "{:?} {:?} {}",
         model.values(),
@@ -125,7 +125,7 @@ fn a_wrong_value_or_button_is_an_error_and_changes_no_state() {
     for make in MODELS {
         let mut model = make();
         model.finish_work();
-        let before = told(model.as_ref());
+        let before = state_text(model.as_ref());
         let spec = model.spec();
         for param in spec.params {
             let (min, max) = param.range();
@@ -140,7 +140,7 @@ fn a_wrong_value_or_button_is_an_error_and_changes_no_state() {
         for known in spec.buttons.iter().map(|button| button.id) {
             assert!(refused.contains(known), "{refused}");
         }
-        assert_eq!(told(model.as_ref()), before);
+        assert_eq!(state_text(model.as_ref()), before);
     }
 }
 
@@ -154,10 +154,10 @@ fn a_press_of_a_button_with_nothing_to_do_changes_no_state() {
             shell.model_mut().press(state).expect("the widget has it");
             shell.finish_work();
             shell.take_orders();
-            let before = told(shell.model());
+            let before = state_text(shell.model());
             for id in shell.disabled() {
                 shell.press(id).expect("the widget has it");
-                assert_eq!(told(shell.model()), before, "{} {state} {id}", spec.id);
+                assert_eq!(state_text(shell.model()), before, "{} {state} {id}", spec.id);
                 assert!(shell.take_orders().is_empty(), "{} {state} {id}", spec.id);
                 disabled += 1;
             }
@@ -187,7 +187,7 @@ fn playing_goes_on_to_the_end_and_stops_there() {
         model.press("play").unwrap();
         assert!(model.timeline().unwrap().playing, "{name}");
         let (mut before, mut frames) = (0.0, 0);
-        while model.advance(0.1).goes_on() {
+        while model.advance(0.1).is_busy() {
             let now = at(model.as_ref());
             assert!(now >= before, "{name} goes from {before} back to {now}");
             before = now;

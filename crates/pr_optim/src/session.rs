@@ -276,9 +276,9 @@ impl<'a> Session<'a> {
         });
         let trusted = attempt.is_converged() && !self.is_twisted();
         self.ended.push(attempt);
-        let goes_on =
+        let is_busy =
             self.automatic && (!trusted && self.begin_next_attempt() || self.begin_next_round());
-        self.finished = !goes_on;
+        self.finished = !is_busy;
     }
 
     /// Starts the next attempt: from the chordal relaxation, then with damped steps from there. A refinement

@@ -297,10 +297,10 @@ impl<'a> Engine<'a> {
     }
 
     fn solve(&mut self, mut solving: Box<GraphSolving>) {
-        let goes_on = solving.step();
+        let is_busy = solving.step();
         let graph = solving.graph();
         self.changes.keyframes = true;
-        if goes_on {
+        if is_busy {
             self.graph = Some(graph);
             self.work = Work::Solving(solving);
             return;

@@ -64,7 +64,7 @@ fn options_are_those_of_the_command() {
 }
 
 /// All updates of a log, in order.
-fn told(mut engine: Engine<'_>) -> Vec<Update> {
+fn updates(mut engine: Engine<'_>) -> Vec<Update> {
     let mut updates = engine.updates();
     while engine.step() {
         updates.extend(engine.updates());
@@ -79,7 +79,7 @@ fn diagnosis(updates: &[Update]) -> Value {
 
 #[test]
 fn the_doctor_s_screen_comes_before_the_first_keyframe_and_once() {
-    let updates = told(open(&files().0, "ring.log").unwrap());
+    let updates = updates(open(&files().0, "ring.log").unwrap());
     let kinds: Vec<&str> = updates.iter().map(|update| update.kind).collect();
     let at = |kind: &str| kinds.iter().position(|other| *other == kind).unwrap();
     assert!(at("diagnosis") < at("keyframes") && at("diagnosis") < at("map"));
@@ -99,7 +99,7 @@ fn a_turned_laser_is_reported_with_the_options_that_correct_it() {
     let (log, _) = files();
     let choices = Choices::read("laser 0,0,180").unwrap();
     let turned = Engine::open(given(log, "ring.log"), &choices).unwrap();
-    let told_of_turned = diagnosis(&told(turned));
+    let told_of_turned = diagnosis(&updates(turned));
     assert_eq!(told_of_turned["laser"], "0,0,180");
     let remarks = told_of_turned["remarks"].as_array().unwrap();
     let wrong = remarks
@@ -114,8 +114,8 @@ fn a_turned_laser_is_reported_with_the_options_that_correct_it() {
 fn scans_go_alone_if_the_reader_leaves_odometry_out() {
     let (log, _) = files();
     let choices = Choices::read("no-odometry").unwrap();
-    let alone = told(Engine::open(given(log, "ring.log"), &choices).unwrap());
-    let with = told(open(log, "ring.log").unwrap());
+    let alone = updates(Engine::open(given(log, "ring.log"), &choices).unwrap());
+    let with = updates(open(log, "ring.log").unwrap());
     let way = |updates: &[Update]| {
         let last = updates
             .iter()

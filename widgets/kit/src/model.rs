@@ -152,7 +152,7 @@ pub enum Activity {
 impl Activity {
     /// Whether to call again.
     #[must_use]
-    pub fn goes_on(self) -> bool {
+    pub fn is_busy(self) -> bool {
         self != Self::Idle
     }
 }
@@ -388,7 +388,7 @@ pub fn apply_preset(model: &mut dyn Model, preset: &Preset) -> Result<(), ParamE
 /// Does all the remaining [`Model::work`], as a [`Model::finish_work`] if the outcome depends on all of it.
 pub fn finish_work(model: &mut dyn Model) -> Activity {
     let first = model.work();
-    while model.work().goes_on() {}
+    while model.work().is_busy() {}
     first
 }
 

@@ -100,7 +100,7 @@ pub fn accent(theme: Theme) -> Rgb {
 }
 
 /// Largest share of white or black in the colour of a relief's slope.
-const MOST_LIGHT: f32 = 0.55;
+const MAX_LIGHT: f32 = 0.55;
 
 /// Classes differ mainly in lightness, which keeps them distinct for every kind of colour vision. All but
 /// the sixth are areas below marks: they differ from the colours of the meanings and from paper.
@@ -126,7 +126,7 @@ pub fn cell(theme: Theme, cell: Cell) -> Rgb {
         Cell::Level(level) => level_color(level),
         Cell::Relief { level, light } => {
             let lit = if light > 0.0 { [255; 3] } else { [0; 3] };
-            mix(level_color(level), lit, MOST_LIGHT * light.abs())
+            mix(level_color(level), lit, MAX_LIGHT * light.abs())
         }
         Cell::Class(class) => class_color(theme, class),
         Cell::Occupancy(share) => mix(tone(theme, Tone::Paper), tone(theme, Tone::Ink), share),

@@ -155,7 +155,7 @@ impl Shell {
 
     /// Finishes pending work, see [`Model::finish_work`]. Returns whether there was any.
     pub fn finish_work(&mut self) -> bool {
-        let settled = self.model.finish_work().goes_on();
+        let settled = self.model.finish_work().is_busy();
         if settled {
             self.touch();
         }
@@ -334,7 +334,7 @@ impl Shell {
             let activity = self.model.advance(elapsed_s);
             // The last step of a run changes the picture although it already returns idle.
             self.stale |= activity == Activity::Busy || self.moving == Moving::Yes;
-            self.moving = if activity.goes_on() {
+            self.moving = if activity.is_busy() {
                 Moving::Yes
             } else {
                 Moving::No
@@ -347,7 +347,7 @@ impl Shell {
         let start = Instant::now();
         while self.working && start.elapsed() < budget {
             let activity = self.model.work();
-            self.working = activity.goes_on();
+            self.working = activity.is_busy();
             self.stale |= activity == Activity::Busy;
         }
     }

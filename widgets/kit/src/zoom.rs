@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::scene::{Aspect, Bounds, Panel};
 
 /// Largest zoom factor.
-const MOST_ZOOM: f64 = 40.0;
+const MAX_ZOOM: f64 = 40.0;
 /// Zoom factor of a key press.
 const ZOOM_STEP: f64 = 1.5;
 /// Shift of a key press as a share of the visible part.
@@ -84,7 +84,7 @@ impl Zoom {
         }
         let full = panel.bounds();
         let shown = self.window(panel);
-        let width = (shown.size()[0] / factor).max(full.size()[0] / MOST_ZOOM);
+        let width = (shown.size()[0] / factor).max(full.size()[0] / MAX_ZOOM);
         if width >= full.size()[0] {
             self.reset(panel.id);
             return;

@@ -20,7 +20,7 @@ use kit::scene::Scene;
 use kit::spec::{DEFAULTS, WidgetSpec};
 use kit::values::{Changed, Values};
 
-use crate::w16_10_own_robot::spec::{KEYS, MOST_KEYFRAMES, MOST_SCANS, PARAMS, SPEC};
+use crate::w16_10_own_robot::spec::{KEYS, MAX_KEYFRAMES, MAX_SCANS, PARAMS, SPEC};
 use other_log::Place;
 use robot::{Robot, Stage};
 
@@ -37,7 +37,7 @@ pub mod panel {
 /// Duration of playing a whole path at normal speed, s.
 const PLAY_S: f64 = 12.0;
 /// Largest number of marks on a timeline; more would be unreadable.
-const MOST_MARKS: usize = 150;
+const MAX_MARKS: usize = 150;
 
 /// The reader's own robot.
 pub struct OwnRobot {
@@ -249,15 +249,15 @@ impl Model for OwnRobot {
         self.robot.receive(delivery);
         if delivery.kind == "opening" {
             self.playback.pause();
-            self.values.store("keyframe", MOST_KEYFRAMES);
+            self.values.store("keyframe", MAX_KEYFRAMES);
             self.values.store("loop", 0.0);
             self.values.store("marked", 0.0);
-            self.values.store("scan", MOST_SCANS);
+            self.values.store("scan", MAX_SCANS);
         }
         if delivery.kind == "dropped" {
             let order = format!("locate-dropped{}", self.start());
             self.ask(order);
-            self.values.store("scan", MOST_SCANS);
+            self.values.store("scan", MAX_SCANS);
         }
         if delivery.kind == "stage" && self.robot.stage == Stage::Done {
             self.look();
@@ -306,7 +306,7 @@ impl Model for OwnRobot {
             marks: doubts
                 .chain(loops)
                 .filter(|mark| mark.at <= last)
-                .take(MOST_MARKS)
+                .take(MAX_MARKS)
                 .collect(),
         })
     }

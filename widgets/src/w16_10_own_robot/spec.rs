@@ -6,10 +6,10 @@ use kit::playback::SPEED;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, WidgetSpec};
 
 /// An upper bound of the number of keyframes, beyond the end of every timeline.
-pub const MOST_KEYFRAMES: f64 = 999_999.0;
+pub const MAX_KEYFRAMES: f64 = 999_999.0;
 
 /// An upper bound of the number of scans.
-pub const MOST_SCANS: f64 = 99_999_999.0;
+pub const MAX_SCANS: f64 = 99_999_999.0;
 
 /// The options for recordings, with the names of the command line.
 pub const OPTIONS: &[Choice] = &[
@@ -70,9 +70,7 @@ pub const PARAMS: &[&ParamSpec] = &[
         id: "loop",
         label: "loop of the list",
         unit: "",
-        kind: ParamKind::Seed {
-            max: MOST_KEYFRAMES,
-        },
+        kind: ParamKind::Seed { max: MAX_KEYFRAMES },
         default: 0.0,
         help: "The loop whose evidence is shown; 0 is the one that fits the graph least.",
     },
@@ -80,9 +78,7 @@ pub const PARAMS: &[&ParamSpec] = &[
         id: "marked",
         label: "marked keyframe",
         unit: "",
-        kind: ParamKind::Seed {
-            max: MOST_KEYFRAMES,
-        },
+        kind: ParamKind::Seed { max: MAX_KEYFRAMES },
         default: 0.0,
         help: "One end of a loop that you add; the other is the keyframe shown.",
     },
@@ -123,8 +119,8 @@ pub const PARAMS: &[&ParamSpec] = &[
         id: "scan",
         label: "scan of the other log",
         unit: "",
-        kind: ParamKind::Seed { max: MOST_SCANS },
-        default: MOST_SCANS,
+        kind: ParamKind::Seed { max: MAX_SCANS },
+        default: MAX_SCANS,
         help: "The scan of the other log whose pose is shown; beyond the end, the last one.",
     },
     &ParamSpec {
@@ -152,10 +148,8 @@ pub const PARAMS: &[&ParamSpec] = &[
         id: "keyframe",
         label: "keyframe",
         unit: "",
-        kind: ParamKind::Timeline {
-            max: MOST_KEYFRAMES,
-        },
-        default: MOST_KEYFRAMES,
+        kind: ParamKind::Timeline { max: MAX_KEYFRAMES },
+        default: MAX_KEYFRAMES,
         help: "The keyframe whose scan is drawn over the map.",
     },
     &SPEED.spec,

@@ -7,7 +7,7 @@ use kit::playback::SPEED;
 use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Pairs of the largest scene.
-pub const MOST_PAIRS: usize = 5;
+pub const MAX_PAIRS: usize = 5;
 
 /// Largest displacement of a target point, m.
 pub const REACH_M: f64 = 3.0;
@@ -50,7 +50,7 @@ pub(super) static TURN: Param<f64> = Param::timeline("turn", "angle tried", WHOL
     .help("By how much the source is turned, after the mirror if there is one.");
 
 /// The parameters that move the points of the target along x and y.
-pub(super) static MOVED: [[Param<f64>; 2]; MOST_PAIRS] = [
+pub(super) static MOVED: [[Param<f64>; 2]; MAX_PAIRS] = [
     [
         moved("x1", "target 1: moved in x"),
         moved("y1", "target 1: moved in y"),

@@ -22,7 +22,7 @@ use kit::values::{Changed, Values};
 use pr_geom::{SE2, math};
 
 use crate::w16_12_jacobians::spec::{
-    BIAS, BIAS_STEP_DEG, CURVE, MOST_BIAS_DEG, MOST_STEPS, PARAMS, SPEC, STEPS,
+    BIAS, BIAS_STEP_DEG, CURVE, MAX_BIAS_DEG, MAX_STEPS, PARAMS, SPEC, STEPS,
 };
 
 /// Names of the panels.
@@ -62,7 +62,7 @@ impl Solved {
         let (optimum, least_chi2) = optimum(&graph);
         Self {
             runs: settings::recipes(values)
-                .map(|recipe| descend(&graph, recipe, &optimum, MOST_STEPS)),
+                .map(|recipe| descend(&graph, recipe, &optimum, MAX_STEPS)),
             optimum,
             least_chi2,
         }
@@ -110,7 +110,7 @@ impl WrongJacobians {
 
     /// Bends the chain until its loose end is as near to a spot as it gets.
     fn bend(&mut self, at: [f64; 2]) {
-        let steps = (0..=(MOST_BIAS_DEG / BIAS_STEP_DEG) as u32).map(f64::from);
+        let steps = (0..=(MAX_BIAS_DEG / BIAS_STEP_DEG) as u32).map(f64::from);
         let away = |bias_deg: &f64| {
             let config = RingConfig {
                 turn_bias_rad: bias_deg.to_radians(),

@@ -7,10 +7,10 @@ use kit::playback::SPEED;
 use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Largest number of steps.
-pub const MOST_STEPS: usize = 40;
+pub const MAX_STEPS: usize = 40;
 
 /// Largest contradiction of an edge, °.
-pub const MOST_BIAS_DEG: f64 = 10.0;
+pub const MAX_BIAS_DEG: f64 = 10.0;
 
 /// Step of the contradiction, °.
 pub const BIAS_STEP_DEG: f64 = 0.5;
@@ -27,7 +27,7 @@ pub enum Curve {
 pub(super) static BIAS: Param<f64> = Param::slider(
     "bias",
     "each edge turns too little by",
-    [0.0, MOST_BIAS_DEG],
+    [0.0, MAX_BIAS_DEG],
     BIAS_STEP_DEG,
 )
 .unit("°")
@@ -65,8 +65,8 @@ pub(super) static CURVE: OneOf<Curve> = OneOf::new(
 )
 .help("Largest distance of a pose from its optimum, or the difference of χ² from its minimum.");
 
-pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MOST_STEPS as f64)
-    .default(MOST_STEPS as f64)
+pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MAX_STEPS as f64)
+    .default(MAX_STEPS as f64)
     .help("How many steps each solver has done; beyond its last one it has converged.");
 
 /// The widget's parameters.

@@ -23,20 +23,20 @@ const CORRIDOR_TICKS: f64 = 287.0;
 const HALL_TICKS: f64 = 154.0;
 
 /// The latest tick that a link may contain: a drive is cut off there.
-pub const MOST_TICKS: f64 = 2000.0;
+pub const MAX_TICKS: f64 = 2000.0;
 
 /// Largest number of a keyframe that a link may contain.
-const MOST_NODES: f64 = 999.0;
+const MAX_NODES: f64 = 999.0;
 
 /// The initial tick: that of the canonical run's first loop.
 const FIRST_LOOP_TICK: f64 = 92.0;
 
 /// Largest number of characters of a flat in a link: four digits of base 64 for each number of the largest
 /// flat.
-const MOST_FLAT: usize = 33_000;
+const MAX_FLAT: usize = 33_000;
 
 /// Largest number of a wall, counted from 1.
-const MOST_PIECES: f64 = limits::WALLS as f64;
+const MAX_PIECES: f64 = limits::WALLS as f64;
 
 /// The kind of the selected part of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,7 +104,7 @@ pub(super) static PIECE: OneOf<Option<usize>> = OneOf::new(
 .help("The piece of the flat that the arrows move and Remove deletes. On the map, a press selects it.");
 
 pub(super) static PIECE_NUMBER: Param<usize> =
-    Param::typed("piece-number", "number of the piece", MOST_PIECES)
+    Param::typed("piece-number", "number of the piece", MAX_PIECES)
         .default(1.0)
         .help("The number of the wall or of the way point, from 1.");
 
@@ -112,7 +112,7 @@ pub(super) static FLAT: ParamSpec = ParamSpec {
     id: "flat",
     label: "your flat as text",
     unit: "",
-    kind: ParamKind::Text { most: MOST_FLAT },
+    kind: ParamKind::Text { most: MAX_FLAT },
     default: 0.0,
     help: "Walls, start and way points of your own flat to the centimetre, as in links. It makes the world your own flat.",
 };
@@ -170,7 +170,7 @@ pub(super) static PICK: OneOf<Picked> = OneOf::new(
 )
 .help("The part of the graph whose numbers are shown. On the map, a click or a tap selects it, and one beside everything selects nothing.");
 
-pub(super) static NUMBER: Param<usize> = Param::typed("number", "number", MOST_NODES)
+pub(super) static NUMBER: Param<usize> = Param::typed("number", "number", MAX_NODES)
     .help("The number of the keyframe; of the keyframe where the edge begins; of the newer keyframe of the loop.");
 
 pub(super) static OWN: OneOf<Option<Claim>> = OneOf::new(
@@ -187,14 +187,14 @@ pub(super) static OWN: OneOf<Option<Claim>> = OneOf::new(
 .help("A loop between any two keyframes. Registered: the registration of their sweeps, from their poses in the graph. The truth: what no robot knows. “The same place”: both at one position, right or wrong.");
 
 pub(super) static OWN_FROM: Param<usize> =
-    Param::typed("own-from", "your loop: from keyframe", MOST_NODES)
+    Param::typed("own-from", "your loop: from keyframe", MAX_NODES)
         .default(40.0)
         .help(
             "One end of your own loop. On the map, drag from the selected keyframe to any other.",
         );
 
 pub(super) static OWN_TO: Param<usize> =
-    Param::typed("own-to", "your loop: to keyframe", MOST_NODES)
+    Param::typed("own-to", "your loop: to keyframe", MAX_NODES)
         .default(12.0)
         .help("The other end of your own loop.");
 
@@ -215,7 +215,7 @@ pub(super) static KERNEL: OneOf<OwnKernel> = OneOf::new(
 )
 .help("The robust kernel of your own loop: plain least squares, Huber's kernel from 1.345 standard deviations on, or dynamic covariance scaling from χ² 10 on.");
 
-pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", MOST_TICKS)
+pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", MAX_TICKS)
     .default(FIRST_LOOP_TICK)
     .help("The moment shown; a tick is a quarter of a second, the marks are loops, and beyond the end means the end.");
 

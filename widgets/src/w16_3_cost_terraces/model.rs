@@ -25,7 +25,7 @@ use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
 use crate::w16_3_cost_terraces::spec::{
-    BALL_STEP, DROPS, HALF_SPAN_M, MAX_BALL_STEPS, MOST_DROPS, PARAMS, SPEC,
+    BALL_STEP, DROPS, HALF_SPAN_M, MAX_BALL_STEPS, MAX_DROPS, PARAMS, SPEC,
 };
 use picture::{Looked, Moment};
 use rests::Rests;
@@ -99,8 +99,8 @@ impl CostTerraces {
 
     /// Drops the largest number of sweeps and animates them.
     fn drop_sweeps(&mut self) {
-        self.put("drops", MOST_DROPS);
-        self.rests.fly(MOST_DROPS as usize, self.playback.motion());
+        self.put("drops", MAX_DROPS);
+        self.rests.fly(MAX_DROPS as usize, self.playback.motion());
     }
 
     /// Recomputes what depends on the values.

@@ -16,10 +16,10 @@ const CELLS_OF_A_SIDE: [f64; 2] = [49.0, 161.0];
 pub const MAX_BALL_STEPS: usize = 400;
 
 /// Largest number of sweeps that are dropped at once.
-pub const MOST_DROPS: f64 = 100.0;
+pub const MAX_DROPS: f64 = 100.0;
 
 /// Upper end of the slider of rows, which selects all rows of any sweep.
-pub const MOST_ROWS: f64 = 120.0;
+pub const MAX_ROWS: f64 = 120.0;
 
 /// Location of the sweep, and its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,11 +102,11 @@ pub(super) static PROBE_Y: Param<f64> =
         .help("Position of the cross hair and start of the balls, north of the truth.");
 
 pub(super) static DROPS: Param<usize> =
-    Param::slider("drops", "sweeps dropped", [0.0, MOST_DROPS], 1.0)
+    Param::slider("drops", "sweeps dropped", [0.0, MAX_DROPS], 1.0)
         .help("Number of sweeps with independent noise that are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m.");
 
-pub(super) static ROWS: Param<f64> = Param::slider("rows", "rows of H", [0.0, MOST_ROWS], 1.0)
-    .default(MOST_ROWS)
+pub(super) static ROWS: Param<f64> = Param::slider("rows", "rows of H", [0.0, MAX_ROWS], 1.0)
+    .default(MAX_ROWS)
     .help("Number of points, in the order of the beams, that give a row (n_x, n_y, p × n) of the point-to-plane step; at the right end, all.");
 
 pub(super) static ODOMETRY: Param<f64> =

@@ -6,13 +6,13 @@ use kit::playback::SPEED;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Poses of the largest graph.
-pub const MOST_POSES: usize = 6;
+pub const MAX_POSES: usize = 6;
 
 /// Largest displacement of a pose from odometry, m.
 pub const REACH_M: f64 = 3.0;
 
 /// Largest number of solver steps.
-pub const MOST_STEPS: usize = 20;
+pub const MAX_STEPS: usize = 20;
 
 /// By how much the loop of the chapter's three poses exceeds odometry, m.
 const CHAPTER_GAP_M: f64 = 0.6;
@@ -73,11 +73,11 @@ pub(super) static PINNED: Param<bool> = Param::switch("pinned", "pin the first p
     .on()
     .help("Measurements are relative: without a fixed pose the whole graph may be anywhere.");
 
-pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MOST_STEPS as f64)
+pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MAX_STEPS as f64)
     .help("How many steps the solver has done; 0 is the graph before the first one.");
 
 /// The parameters that move a pose: along x, along y, and its heading.
-pub(super) static MOVED: [[Param<f64>; 3]; MOST_POSES] = [
+pub(super) static MOVED: [[Param<f64>; 3]; MAX_POSES] = [
     [
         along("x1", "pose 1: moved in x"),
         along("y1", "pose 1: moved in y"),

@@ -10,7 +10,7 @@ use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 pub const OFFSET_SPAN_M: f64 = 1.5;
 
 /// An upper bound of the boxes of a search plus the iterations of ICP.
-const MOST_STEPS: f64 = 200_000.0;
+const MAX_STEPS: f64 = 200_000.0;
 
 pub(super) static HEADING: Param<f64> = Param::slider(
     "heading",
@@ -44,7 +44,7 @@ pub(super) static CELL: Param<f64> = Param::slider("cell", "cell", [0.05, 0.2], 
 pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
     .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
 
-pub(super) static PROGRESS: Param<f64> = Param::timeline("progress", "boxes taken up", MOST_STEPS)
+pub(super) static PROGRESS: Param<f64> = Param::timeline("progress", "boxes taken up", MAX_STEPS)
     .help("How many boxes the search has expanded; the iterations of ICP follow the last one.");
 
 /// The widget's parameters.

@@ -19,7 +19,7 @@ use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
 use crate::w16_7_been_here::spec::{
-    CALLED, LAST_OLD, MOST_ALIKE, MOST_KEYFRAMES, NEWEST, OLDER, PARAMS, SPEC, TURN,
+    CALLED, LAST_OLD, MAX_ALIKE, MAX_KEYFRAMES, NEWEST, OLDER, PARAMS, SPEC, TURN,
 };
 use lap::{Places, Work};
 
@@ -95,7 +95,7 @@ impl BeenHere {
     /// The end of a run: beyond every position while the lap is being computed.
     fn end(&self) -> f64 {
         match self.work {
-            Some(_) => MOST_KEYFRAMES,
+            Some(_) => MAX_KEYFRAMES,
             None => self.last() as f64,
         }
     }
@@ -111,7 +111,7 @@ impl BeenHere {
         let new = self.newest();
         let asked = self.values.get(&OLDER);
         // At each keyframe of a run the robot looks for it among all earlier ones.
-        let old = if asked == MOST_ALIKE || self.played.is_playing() {
+        let old = if asked == MAX_ALIKE || self.played.is_playing() {
             places
                 .most_alike(self.detector(), new)
                 .or_else(|| new.checked_sub(1))?

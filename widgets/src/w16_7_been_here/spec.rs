@@ -9,7 +9,7 @@ use kit::run;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// An upper bound of the keyframes of a lap.
-pub const MOST_KEYFRAMES: f64 = 400.0;
+pub const MAX_KEYFRAMES: f64 = 400.0;
 
 /// The last keyframe that can be selected for comparison: a lap of the ring has about a hundred.
 pub const LAST_OLD: f64 = 120.0;
@@ -18,7 +18,7 @@ pub const LAST_OLD: f64 = 120.0;
 pub const SECTOR_DEG: f64 = 6.0;
 
 /// The value of `old` that selects the most similar keyframe.
-pub const MOST_ALIKE: f64 = -1.0;
+pub const MAX_ALIKE: f64 = -1.0;
 
 pub(super) static CALLED: Param<f64> = Param::slider(
     "called",
@@ -59,7 +59,7 @@ pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
 pub(super) static OLDER: Param<f64> = Param::slider(
     "old",
     "older keyframe of the pair",
-    [MOST_ALIKE, LAST_OLD],
+    [MAX_ALIKE, LAST_OLD],
     1.0,
 )
 .default(18.0)
@@ -76,8 +76,8 @@ pub(super) static TURN: Param<f64> = Param::slider(
 
 pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
 
-pub(super) static NEWEST: Param<f64> = Param::timeline("new", "keyframe", MOST_KEYFRAMES)
-    .default(MOST_KEYFRAMES)
+pub(super) static NEWEST: Param<f64> = Param::timeline("new", "keyframe", MAX_KEYFRAMES)
+    .default(MAX_KEYFRAMES)
     .help("The newest keyframe so far; beyond the last one it is the whole lap.");
 
 /// The widget's parameters.
@@ -126,7 +126,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "lap",
             label: "Drive the lap",
             help: "Each new keyframe is compared with all older ones, and a column is added.",
-            set: &[OLDER.to(MOST_ALIKE), NEWEST.to(0.0)],
+            set: &[OLDER.to(MAX_ALIKE), NEWEST.to(0.0)],
             then: &["play"],
         },
         Preset {
@@ -154,7 +154,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "ring",
             label: "A ring of corridors",
             help: "Four corridors that look alike: every look-alike is a trap here.",
-            set: &[WORLD.to("ring"), OLDER.to(MOST_ALIKE)],
+            set: &[WORLD.to("ring"), OLDER.to(MAX_ALIKE)],
             then: &[],
         },
     ],

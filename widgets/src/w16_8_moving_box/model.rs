@@ -20,7 +20,7 @@ use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
 use crate::w16_8_moving_box::spec::{
-    ITERATION, METHOD, MOST_MOVED_M, MOST_SHARE, MOVED, PARAMS, SHARE, SPEC,
+    ITERATION, MAX_MOVED_M, MAX_SHARE, METHOD, MOVED, PARAMS, SHARE, SPEC,
 };
 use curves::Curves;
 
@@ -221,9 +221,9 @@ impl Model for MovingBox {
             let further_m = spot - picture::box_middle(&self.scene)[0];
             let moved_m = self.values.get(&MOVED) + further_m;
             let whole_cm = (100.0 * moved_m).round() / 100.0;
-            self.values.put(&MOVED, whole_cm.clamp(0.0, MOST_MOVED_M));
+            self.values.put(&MOVED, whole_cm.clamp(0.0, MAX_MOVED_M));
         } else {
-            self.values.put(&SHARE, spot.round().clamp(0.0, MOST_SHARE));
+            self.values.put(&SHARE, spot.round().clamp(0.0, MAX_SHARE));
         }
         self.follow();
     }

@@ -7,13 +7,13 @@ use kit::playback::SPEED;
 use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Largest share of the box, %.
-pub const MOST_SHARE: f64 = 60.0;
+pub const MAX_SHARE: f64 = 60.0;
 
 /// Largest distance by which the box is moved, m.
-pub const MOST_MOVED_M: f64 = 0.8;
+pub const MAX_MOVED_M: f64 = 0.8;
 
 /// Largest number of iterations of a registration.
-pub const MOST_ITERATIONS: f64 = 30.0;
+pub const MAX_ITERATIONS: f64 = 30.0;
 
 pub(super) static METHOD: OneOf<usize> = OneOf::new(
     "method",
@@ -28,13 +28,13 @@ pub(super) static METHOD: OneOf<usize> = OneOf::new(
 .help("Whose pairs are drawn: all of them, without the longest ones, or the long ones with less weight.");
 
 pub(super) static SHARE: Param<f64> =
-    Param::slider("share", "points on the box", [0.0, MOST_SHARE], 1.0)
+    Param::slider("share", "points on the box", [0.0, MAX_SHARE], 1.0)
         .unit("%")
         .default(20.0)
         .help("Which share of the points of both sweeps lies on the box that was moved.");
 
 pub(super) static MOVED: Param<f64> =
-    Param::slider("moved", "box moved by", [0.0, MOST_MOVED_M], 0.05)
+    Param::slider("moved", "box moved by", [0.0, MAX_MOVED_M], 0.05)
         .unit("m")
         .default(0.3)
         .help("How far the box was moved between the sweeps, away from the sensor along x.");
@@ -69,13 +69,11 @@ pub(super) static VARIANT: OneOf<IcpVariant> = OneOf::new(
 pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", 1)
     .help("Seed of the range noise of the sweeps above; the curves have their own hundred seeds.");
 
-pub(super) static ITERATION: Param<f64> = Param::timeline(
-    "iteration",
-    "iteration",
-    MOST_ITERATIONS,
-)
-.default(MOST_ITERATIONS)
-.help("Which iteration is shown of all three; beyond its last one a registration has converged.");
+pub(super) static ITERATION: Param<f64> = Param::timeline("iteration", "iteration", MAX_ITERATIONS)
+    .default(MAX_ITERATIONS)
+    .help(
+        "Which iteration is shown of all three; beyond its last one a registration has converged.",
+    );
 
 /// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[

@@ -22,7 +22,7 @@ use kit::values::{Changed, Values};
 use pr_geom::SE2;
 
 use crate::w16_9_come_back::spec::{
-    HEADING, MOMENT, MOST_MOMENTS, PARAMS, PLAN_M, SPEC, START_X, START_Y,
+    HEADING, MAX_MOMENTS, MOMENT, PARAMS, PLAN_M, SPEC, START_X, START_Y,
 };
 use known::{Known, Work};
 
@@ -109,7 +109,7 @@ impl ComeBack {
     /// The end of a run: beyond every position while it is being computed.
     fn end(&self) -> f64 {
         match self.work {
-            Some(_) => MOST_MOMENTS,
+            Some(_) => MAX_MOMENTS,
             None => self.last() as f64,
         }
     }

@@ -12,7 +12,7 @@ use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 pub const PLAN_M: [f64; 2] = [12.0, 9.0];
 
 /// An upper bound of the moments of a run.
-pub const MOST_MOMENTS: f64 = 4000.0;
+pub const MAX_MOMENTS: f64 = 4000.0;
 
 pub(super) static LAPS: Param<usize> =
     Param::slider("laps", "laps since the wardrobe moved", [0.0, 2.0], 1.0)
@@ -45,7 +45,7 @@ pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
 
 pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
 
-pub(super) static MOMENT: Param<f64> = Param::timeline("moment", "moment", MOST_MOMENTS)
+pub(super) static MOMENT: Param<f64> = Param::timeline("moment", "moment", MAX_MOMENTS)
     .help("Which moment is shown: boxes of a search, and scans.");
 
 /// The widget's parameters.

@@ -4,7 +4,7 @@ use kit::model::{Activity, Model, Standing};
 use kit::promises::assert_reports;
 use kit::scene::Layer;
 use widgets::w16_12_jacobians::model::{WrongJacobians, panel};
-use widgets::w16_12_jacobians::spec::{MOST_STEPS, SPEC};
+use widgets::w16_12_jacobians::spec::{MAX_STEPS, SPEC};
 
 use crate::support::fact;
 
@@ -111,7 +111,7 @@ fn every_preset_does_what_its_button_claims() {
     let half = after("half");
     assert!(fact(&half, "residual_off_m") < 0.6 * fact(&after("four"), "residual_off_m"));
     let last = after("four").timeline().unwrap().last;
-    assert!(last > 20.0 && last <= MOST_STEPS as f64);
+    assert!(last > 20.0 && last <= MAX_STEPS as f64);
     assert_eq!(SPEC.presets.len(), 4, "a preset without a test");
 }
 

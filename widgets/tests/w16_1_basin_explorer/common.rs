@@ -18,7 +18,7 @@ pub fn with(values: &[(&str, f64)]) -> BasinExplorer {
 pub fn fill(model: &mut BasinExplorer) -> usize {
     model.set("more", 1.0).expect("a switch");
     let mut pieces = 1;
-    while model.work().goes_on() {
+    while model.work().is_busy() {
         pieces += 1;
     }
     pieces

@@ -37,7 +37,7 @@ fn the_maps_are_covered_while_the_reader_marks_and_open_afterwards() {
         layers.filter(is_told).count()
     };
     let mut model = asked();
-    while model.work().goes_on() {}
+    while model.work().is_busy() {}
     assert_eq!(rasters(&model), 0);
     assert_eq!(model.outcome().verdict, "mark both edges");
     assert!(!model.layer().is_all() && model.layer().has_param("edge-p2l"));

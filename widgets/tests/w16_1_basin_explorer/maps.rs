@@ -9,7 +9,7 @@ use crate::w16_1_basin_explorer::common::with;
 
 /// Advances until the start has stood still for long enough.
 fn stand_still(model: &mut BasinExplorer) {
-    while model.advance(0.1).goes_on() {}
+    while model.advance(0.1).is_busy() {}
 }
 
 fn shows_maps(model: &BasinExplorer) -> bool {
@@ -110,7 +110,7 @@ fn the_maps_enter_beside_the_picture_without_a_jump_and_below_the_control_on_a_p
             for heading in starts {
                 let model = shell.model_mut();
                 model.set("heading", *heading).unwrap();
-                while model.advance(0.1).goes_on() {}
+                while model.advance(0.1).is_busy() {}
             }
         });
         let shell = harness.state();

@@ -174,7 +174,7 @@ fn a_setting_runs_in_pieces_of_a_tick_and_the_old_run_stays_until_the_new_one_is
         room.set("noise", noise).unwrap();
     }
     let mut pieces = 0;
-    while room.work().goes_on() {
+    while room.work().is_busy() {
         pieces += 1;
         if pieces < 129 {
             assert_eq!(room.outcome(), before, "piece {pieces}");

@@ -62,7 +62,7 @@ fn the_search_goes_on_in_pieces_and_its_end_does_not_depend_on_them() {
 fn the_surface_fills_in_and_ends() {
     let mut window = with(&[("cell", 0.2), ("window", 0.5)]);
     let mut pieces = 0;
-    while window.work().goes_on() {
+    while window.work().is_busy() {
         pieces += 1;
     }
     assert!(pieces > 10);

@@ -68,7 +68,7 @@ fn the_lap_is_driven_and_compared_in_pieces() {
     let mut pieces = BeenHere::default();
     assert_eq!(pieces.outcome().verdict, "driving");
     let mut count = 0;
-    while pieces.work().goes_on() {
+    while pieces.work().is_busy() {
         count += 1;
     }
     // 129 ticks of the drive and of the lap each, and the pairs.

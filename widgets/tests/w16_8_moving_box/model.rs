@@ -51,7 +51,7 @@ fn the_curves_fill_in_seed_by_seed_and_end() {
     let mut moving = MovingBox::default();
     assert!(fact(&moving, "plain_bias_m").is_nan());
     let mut pieces = 0;
-    while moving.work().goes_on() {
+    while moving.work().is_busy() {
         pieces += 1;
     }
     // Seven shares of a hundred seeds: two sweeps and three registrations each.

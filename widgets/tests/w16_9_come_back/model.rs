@@ -10,7 +10,7 @@ use widgets::w16_9_come_back::spec::SPEC;
 use crate::support::{fact, panel_of};
 
 /// The outcome as text, in which equal NaN are equal.
-fn told(back: &ComeBack) -> String {
+fn state_text(back: &ComeBack) -> String {
     format!("{:?}", back.outcome())
 }
 
@@ -77,7 +77,7 @@ fn everything_is_computed_in_pieces() {
     let mut pieces = ComeBack::default();
     assert_eq!(pieces.outcome().verdict, "a lap is driven");
     let mut count = 0;
-    while pieces.work().goes_on() {
+    while pieces.work().is_busy() {
         count += 1;
     }
     // The ticks of the lap, driven and mapped, and those of the run.
@@ -85,7 +85,7 @@ fn everything_is_computed_in_pieces() {
     assert_eq!(pieces.finish_work(), Activity::Idle);
     let mut whole = ComeBack::default();
     whole.finish_work();
-    assert_eq!(told(&pieces), told(&whole));
+    assert_eq!(state_text(&pieces), state_text(&whole));
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn the_robot_is_put_and_turned_on_the_map_and_the_map_stays() {
     back.drag(turn, [9.3, 9.0]);
     assert_eq!(back.values().number("heading"), 90.0);
     let mut pieces = 0;
-    while back.work().goes_on() {
+    while back.work().is_busy() {
         pieces += 1;
     }
     // The lap is not driven again.

@@ -22,7 +22,7 @@ const SIDES: [[f32; 2]; 8] = [
     [-1.0, 1.0],
 ];
 /// Largest displacement of a text, in lines.
-const MOST_LINES: u16 = 6;
+const MAX_LINES: u16 = 6;
 
 /// Draws the labels of a panel, in the order of the layers.
 pub fn labels(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: Theme) {
@@ -71,7 +71,7 @@ fn place(at: Px, width: f32, clear_px: f32, plot: &PxRect, taken: &[PxRect]) -> 
         })
     };
     let on_it = (clear_px == 0.0).then_some(at);
-    let around_it = (0..=MOST_LINES).flat_map(|lines| reach(f32::from(lines) * LINE));
+    let around_it = (0..=MAX_LINES).flat_map(|lines| reach(f32::from(lines) * LINE));
     on_it.into_iter().chain(around_it).find_map(|middle| {
         let place = within(around(middle, width), plot)?;
         let covers = place.contains(at) && clear_px > 0.0;

@@ -5,7 +5,7 @@ use crate::layout::PlotHeight;
 use crate::view::{Column, Placed, Row};
 
 /// Smallest share of a plot's natural height at which it is still readable.
-const LEAST_SHARE: f32 = 0.3;
+const MIN_SHARE: f32 = 0.3;
 
 /// Height of a long sentence: if more becomes free, buttons have gone, and the panels grow again.
 const A_SENTENCE: f32 = 60.0;
@@ -82,9 +82,9 @@ impl Room {
             }
             place(rows)
         };
-        let (_, lowest) = lowered(LEAST_SHARE);
-        let share = LEAST_SHARE
-            + (1.0 - LEAST_SHARE) * (room - lowest).max(0.0) / (height - lowest).max(1.0);
+        let (_, lowest) = lowered(MIN_SHARE);
+        let share =
+            MIN_SHARE + (1.0 - MIN_SHARE) * (room - lowest).max(0.0) / (height - lowest).max(1.0);
         let (placed, height) = lowered(share);
         self.panels = height;
         // A column beside a higher one grows back as far as possible.

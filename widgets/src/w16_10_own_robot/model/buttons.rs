@@ -5,7 +5,7 @@ use kit::spec::PLAY;
 use super::OwnRobot;
 use super::hands::{may_edit, nudge};
 use super::robot::{Robot, Stage};
-use crate::w16_10_own_robot::spec::{FILES, MOST_SCANS, OPTIONS};
+use crate::w16_10_own_robot::spec::{FILES, MAX_SCANS, OPTIONS};
 
 impl OwnRobot {
     /// Whether a button has anything to do.
@@ -39,7 +39,7 @@ impl OwnRobot {
             "locate" | "locate-sample" => {
                 let order = format!("{id}{}", self.start());
                 self.ask(order);
-                self.values.store("scan", MOST_SCANS);
+                self.values.store("scan", MAX_SCANS);
             }
             "change" => self.go_to_change(),
             "other" => self.take_other(),

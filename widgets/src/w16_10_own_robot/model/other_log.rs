@@ -3,7 +3,7 @@
 
 use kit::outside::Delivery;
 
-use crate::w16_10_own_robot::spec::MOST_SCANS;
+use crate::w16_10_own_robot::spec::MAX_SCANS;
 
 /// Number of values for the whole log.
 const HEAD: usize = 7;
@@ -66,7 +66,7 @@ pub struct Place {
 
 impl Place {
     fn from_numbers(numbers: &[f64]) -> Option<Self> {
-        (0.0..=MOST_SCANS).contains(&numbers[0]).then_some(Self {
+        (0.0..=MAX_SCANS).contains(&numbers[0]).then_some(Self {
             scan: numbers[0],
             stamp_s: numbers[1],
             pose: [numbers[2], numbers[3], numbers[4]],

@@ -5,10 +5,10 @@ use kit::model::Handle;
 
 use super::settings::seen;
 use super::{ProcrustesTrace, panel};
-use crate::w16_11_procrustes::spec::{MOST_PAIRS, MOVED, REACH_M, TURN, WHOLE_TURN_DEG};
+use crate::w16_11_procrustes::spec::{MAX_PAIRS, MOVED, REACH_M, TURN, WHOLE_TURN_DEG};
 
 /// Names of the draggable things: each point of the target.
-const TARGETS: [&str; MOST_PAIRS] = ["target1", "target2", "target3", "target4", "target5"];
+const TARGETS: [&str; MAX_PAIRS] = ["target1", "target2", "target3", "target4", "target5"];
 
 /// The nearest point of the target within reach, or the line at the angle.
 pub fn grab(trace: &ProcrustesTrace, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {

@@ -10,7 +10,7 @@ use super::{ProcrustesTrace, panel};
 use crate::w16_11_procrustes::spec::{TURN, WHOLE_TURN_DEG};
 
 /// Smallest half width of the view of the points, m.
-const LEAST_REACH_M: f64 = 2.4;
+const MIN_REACH_M: f64 = 2.4;
 /// Degrees between two points of a curve.
 const CURVE_STEP_DEG: u32 = 4;
 
@@ -77,7 +77,7 @@ fn points(trace: &ProcrustesTrace) -> Panel {
     let mean = problem.target_mean;
     let middle = [mean.x, mean.y].map(|value| (2.0 * value).round() / 2.0);
     let far = |at: &[f64; 2]| math::norm2(at[0] - middle[0], at[1] - middle[1]) + 0.4;
-    let reach = (target.iter().chain(&moved).map(far)).fold(LEAST_REACH_M, math::max);
+    let reach = (target.iter().chain(&moved).map(far)).fold(MIN_REACH_M, math::max);
     let reach = (2.0 * reach).ceil() / 2.0;
     let axis = |i: usize| Axis::hidden(middle[i] - reach, middle[i] + reach);
     Panel {

@@ -14,7 +14,7 @@ use super::settings::{axis, config, start};
 use crate::w16_1_basin_explorer::spec::OFFSET_SPAN_M;
 
 /// The reader's starts that stay on the maps: more would hide them.
-const MOST_TRIES: usize = 24;
+const MAX_TRIES: usize = 24;
 /// Registrations in one piece of work: some tenths of a millisecond.
 const REGISTRATIONS_PER_PIECE: usize = 3;
 /// Headings, 3° apart.
@@ -62,7 +62,7 @@ impl Basins {
     /// Adds a start of the reader. Returns how many there are.
     pub fn add(&mut self, start: BasinStart) -> usize {
         if self.tries.iter().all(|tried| tried.start != start) {
-            if self.tries.len() == MOST_TRIES {
+            if self.tries.len() == MAX_TRIES {
                 self.tries.remove(0);
             }
             self.tries.push(Try { start, ends: None });

@@ -3,7 +3,7 @@
 use core::cmp::Reverse;
 
 /// Distance in cells between a letter and the border of its area.
-const LEAST_ROOM: u16 = 3;
+const MIN_ROOM: u16 = 3;
 /// Smallest distance of equal letters in columns or rows.
 const APART: usize = 24;
 /// Smallest distance of different letters in columns or rows.
@@ -29,7 +29,7 @@ pub fn rooms<C: Copy + PartialEq>(cells: &[Option<C>], columns: usize) -> Vec<Ro
     let distances = distances(cells, columns);
     let wide = cells.iter().zip(distances).enumerate();
     let mut rooms: Vec<_> = wide
-        .filter(|(_, (_, room))| *room >= LEAST_ROOM)
+        .filter(|(_, (_, room))| *room >= MIN_ROOM)
         .filter_map(|(k, (class, room))| {
             class.map(|class| Room {
                 column: k % columns,

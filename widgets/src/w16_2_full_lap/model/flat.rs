@@ -14,7 +14,7 @@ use super::piece::Piece;
 use crate::w16_2_full_lap::spec::{EDIT, WORLD};
 
 /// Largest number of changes that can be undone.
-const MOST_UNDO: usize = 200;
+const MAX_UNDO: usize = 200;
 
 /// Length of a wall added by a button, cm.
 const NEW_WALL_CM: i32 = 100;
@@ -112,7 +112,7 @@ impl Flat {
         if self.past.last() == Some(&kept) {
             return;
         }
-        if self.past.len() == MOST_UNDO {
+        if self.past.len() == MAX_UNDO {
             self.past.remove(0);
         }
         self.past.push(kept);

@@ -14,7 +14,7 @@ type Which = (Option<Claim>, [usize; 2]);
 pub const PARAMS: [&str; 5] = ["own", "own-from", "own-to", "own-gate", "kernel"];
 
 /// Largest number of changes that can be undone.
-const MOST_UNDO: usize = 100;
+const MAX_UNDO: usize = 100;
 
 /// The custom loop at the current tick, and its history.
 #[derive(Default)]
@@ -45,7 +45,7 @@ impl Own {
         if self.before.last() == Some(&now) {
             return;
         }
-        if self.before.len() == MOST_UNDO {
+        if self.before.len() == MAX_UNDO {
             self.before.remove(0);
         }
         self.before.push(now);

@@ -3,7 +3,7 @@
 use kit::values::Values;
 
 use crate::w16_3_cost_terraces::spec::{
-    CELLS, COLOURS, Colors, HEADING, MOST_ROWS, NDT_CELL, ODOMETRY, PROBE_X, PROBE_Y, Place, ROWS,
+    CELLS, COLOURS, Colors, HEADING, MAX_ROWS, NDT_CELL, ODOMETRY, PROBE_X, PROBE_Y, Place, ROWS,
     SCENE, SEED, TAU,
 };
 
@@ -45,7 +45,7 @@ impl Settings {
             colors: values.get(&COLOURS),
             probe_m: [values.get(&PROBE_X), values.get(&PROBE_Y)],
             rows: match values.get(&ROWS) {
-                MOST_ROWS => usize::MAX,
+                MAX_ROWS => usize::MAX,
                 rows => rows as usize,
             },
             odometry_m: Some(values.get(&ODOMETRY)).filter(|&sigma_m| sigma_m > 0.0),

@@ -15,7 +15,7 @@ use crate::w16_3_cost_terraces::spec::Place;
 use crate::w16_3_cost_terraces::spec::{HALF_SPAN_M, MAX_BALL_STEPS};
 
 /// Lower limit of the information for the drawing of the ellipse, 1/m²: no axis is longer than a metre.
-const LEAST_INFORMATION_PER_M2: f64 = 1.0;
+const MIN_INFORMATION_PER_M2: f64 = 1.0;
 
 /// Size of a shift within which a pair counts as about to change, m.
 const ABOUT_M: f64 = 0.004;
@@ -371,7 +371,7 @@ impl Hold {
             .axes
             .map(|axis| axis * if axis.x < 0.0 { -1.0 } else { 1.0 });
         let half_axis_cm = |k: usize| {
-            let per_m2 = f64::max(shift.eigenvalues[k], LEAST_INFORMATION_PER_M2);
+            let per_m2 = f64::max(shift.eigenvalues[k], MIN_INFORMATION_PER_M2);
             (axes[k] * (100.0 / math::sqrt(per_m2))).into()
         };
         Self {

@@ -3,7 +3,7 @@
 use ch16_slam2d::graph::{EdgeId, EdgeView, PoseGraph};
 use pr_geom::SE2;
 
-use crate::w16_5_pose_graph_toy::spec::MOST_STEPS;
+use crate::w16_5_pose_graph_toy::spec::MAX_STEPS;
 
 /// The steps end if no pose moves by more, m and rad added.
 const REST: f64 = 1e-6;
@@ -36,7 +36,7 @@ impl Course {
         let edges: Vec<_> = graph.edges().collect();
         let mut moments = vec![moment(&graph, &edges, 0.0)];
         let mut failed = false;
-        while moments.len() <= MOST_STEPS {
+        while moments.len() <= MAX_STEPS {
             let moved = graph.optimize_once(f64::INFINITY);
             if !moved.is_finite() {
                 failed = true;

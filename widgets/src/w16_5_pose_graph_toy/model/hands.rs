@@ -4,7 +4,7 @@ use kit::model::Handle;
 use pr_geom::{Point2, SE2, Vector2, math};
 
 use super::{PoseGraphToy, panel};
-use crate::w16_5_pose_graph_toy::spec::{GAP, GRAPH, MOST_POSES, MOVED, REACH_M, STEPS, STIFFNESS};
+use crate::w16_5_pose_graph_toy::spec::{GAP, GRAPH, MAX_POSES, MOVED, REACH_M, STEPS, STIFFNESS};
 
 /// Distance of the turning handle from its pose, m.
 const TURN_ARM_M: f64 = 0.3;
@@ -17,8 +17,8 @@ const BOW_PER_DECADE_M: f64 = 0.25;
 const KNOB: &str = "knob";
 
 /// Names of the draggable things: each pose, and each heading.
-const POSES: [&str; MOST_POSES] = ["pose1", "pose2", "pose3", "pose4", "pose5", "pose6"];
-const HEADINGS: [&str; MOST_POSES] = ["turn1", "turn2", "turn3", "turn4", "turn5", "turn6"];
+const POSES: [&str; MAX_POSES] = ["pose1", "pose2", "pose3", "pose4", "pose5", "pose6"];
+const HEADINGS: [&str; MAX_POSES] = ["turn1", "turn2", "turn3", "turn4", "turn5", "turn6"];
 
 /// Position of the handle that turns a pose.
 pub fn turn_handle(pose: &SE2) -> Point2<f64> {
@@ -100,7 +100,7 @@ pub fn drag(toy: &mut PoseGraphToy, handle: Handle, at: [f64; 2]) {
         return;
     }
     let mut poses = toy.poses();
-    let of = |ids: [&str; MOST_POSES]| ids.iter().position(|id| *id == handle.id);
+    let of = |ids: [&str; MAX_POSES]| ids.iter().position(|id| *id == handle.id);
     if let Some(k) = of(POSES) {
         poses[k] = SE2::new(spot[0], spot[1], poses[k].theta());
     } else if let Some(k) = of(HEADINGS) {

@@ -15,7 +15,7 @@ use crate::w16_5_pose_graph_toy::spec::{PINNED, STIFFNESS};
 /// Margin around the poses, m.
 const MARGIN_M: f64 = 0.4;
 /// Smallest size of the map, m.
-const LEAST_SIZE_M: [f64; 2] = [3.6, 2.2];
+const MIN_SIZE_M: [f64; 2] = [3.6, 2.2];
 /// Windings of a spring.
 const WINDINGS: usize = 7;
 /// Distance of the name of the pinned pose below it, m.
@@ -212,7 +212,7 @@ pub fn axes(toy: &PoseGraphToy) -> [Axis; 2] {
     let (middle, size) = (bounds.middle(), bounds.size());
     let axis = |i: usize| {
         // In steps of half a metre, so that a changed setting seldom moves the axes.
-        let half = 0.5 * (size[i] + 2.0 * MARGIN_M).max(LEAST_SIZE_M[i]);
+        let half = 0.5 * (size[i] + 2.0 * MARGIN_M).max(MIN_SIZE_M[i]);
         let low = (2.0 * (middle[i] - half)).floor() / 2.0;
         let high = (2.0 * (middle[i] + half)).ceil() / 2.0;
         Axis::hidden(low, high)

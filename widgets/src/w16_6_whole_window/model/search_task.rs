@@ -74,8 +74,8 @@ impl SearchTask {
     /// One piece of the search, or of those at the other headings; idle once all of them are finished.
     pub fn search(&mut self, scene: &BasinScene, workspace: &mut IcpWorkspace) -> Activity {
         let Some(found) = &mut self.found else {
-            let goes_on = (0..BOXES_PER_PIECE).all(|_| self.window.step());
-            if !goes_on {
+            let is_busy = (0..BOXES_PER_PIECE).all(|_| self.window.step());
+            if !is_busy {
                 self.found = Some(self.finish(scene, workspace));
             }
             return Activity::Busy;

@@ -52,8 +52,8 @@ impl Work {
                 None => Self::Comparing(Box::new(PlaceStudy::new(&lap))),
             },
             Self::Comparing(mut study) => {
-                let goes_on = (0..PAIRS_PER_PIECE).all(|_| study.step());
-                if !goes_on {
+                let is_busy = (0..PAIRS_PER_PIECE).all(|_| study.step());
+                if !is_busy {
                     return Ok(Places::new(*study));
                 }
                 Self::Comparing(study)

@@ -4,7 +4,7 @@ use ch16_lab::moving_box::{BoxConfig, BoxErrors, BoxMethods, BoxScene};
 use ch16_slam2d::icp::IcpWorkspace;
 use kit::model::Activity;
 
-use crate::w16_8_moving_box::spec::MOST_SHARE;
+use crate::w16_8_moving_box::spec::MAX_SHARE;
 
 /// Step between the shares of the curves, %.
 const SHARE_STEP: f64 = 10.0;
@@ -24,7 +24,7 @@ pub struct Curves {
 
 /// Shares of the curves, %.
 pub fn shares() -> impl ExactSizeIterator<Item = f64> {
-    let count = (MOST_SHARE / SHARE_STEP) as usize + 1;
+    let count = (MAX_SHARE / SHARE_STEP) as usize + 1;
     (0..count).map(|k| SHARE_STEP * k as f64)
 }
 

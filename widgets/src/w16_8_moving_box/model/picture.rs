@@ -9,7 +9,7 @@ use pr_geom::{Point2, Vector2, math};
 
 use super::curves::SEEDS;
 use super::{MovingBox, panel, settings};
-use crate::w16_8_moving_box::spec::{MOST_SHARE, SHARE};
+use crate::w16_8_moving_box::spec::{MAX_SHARE, SHARE};
 
 /// Tones and marks of the methods.
 const TONES: [Tone; 3] = [Tone::Series(0), Tone::Series(1), Tone::Series(2)];
@@ -156,7 +156,7 @@ fn capital(name: &str) -> String {
 }
 
 /// The vertical axis reaches at least this far, mm: it stays while the box is dragged.
-const LEAST_TOP_MM: f64 = 140.0;
+const MIN_TOP_MM: f64 = 140.0;
 
 /// Bias in millimetres over the share of the box.
 fn bias(moving: &MovingBox) -> Panel {
@@ -173,7 +173,7 @@ fn bias(moving: &MovingBox) -> Panel {
         .iter()
         .flatten()
         .map(|at| at[1])
-        .fold(LEAST_TOP_MM, f64::max);
+        .fold(MIN_TOP_MM, f64::max);
     let y = axis_from_zero("bias of the translation (mm)", highest);
     let mut layers = vec![Layer::line(
         vec![[share, 0.0], [share, y.max]],
@@ -198,7 +198,7 @@ fn bias(moving: &MovingBox) -> Panel {
         title: format!("How far the box pulls the mean{progress}"),
         weight: Weight::Half,
         aspect: Aspect::Free,
-        x: Axis::new("points on the box (%)", 0.0, MOST_SHARE),
+        x: Axis::new("points on the box (%)", 0.0, MAX_SHARE),
         y,
         layers,
         legend: BoxMethods::NAMES

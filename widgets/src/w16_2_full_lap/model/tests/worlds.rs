@@ -4,7 +4,7 @@ use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner, Loop
 use ch16_slam2d::chapter::InformationFrame;
 
 use super::*;
-use crate::w16_2_full_lap::spec::MOST_TICKS;
+use crate::w16_2_full_lap::spec::MAX_TICKS;
 
 #[test]
 fn every_world_has_the_lap_of_the_command_line_and_its_name_in_the_texts() {
@@ -13,7 +13,7 @@ fn every_world_has_the_lap_of_the_command_line_and_its_name_in_the_texts() {
             ("world", index as f64),
             ("information", 1.0),
             ("seed", 5.0),
-            ("t", MOST_TICKS),
+            ("t", MAX_TICKS),
         ]);
         let config = LapConfig::in_world(*world, 5, 1.0).with_information(InformationFrame::Exact);
         let record = LapRunner::new().run(&config);

@@ -10,7 +10,7 @@ use crate::w16_3_cost_terraces::model::terrains::{Bell, Pairing, Terrains};
 const MARGIN_M: f64 = 0.5;
 
 /// Largest extent of the picture of the pairs along an axis, m; the long corridor is cut off.
-pub(super) const MOST_M: f64 = 6.0;
+pub(super) const MAX_M: f64 = 6.0;
 
 /// Width of the picture of the Gaussians, m; it is a close-up, because they are as thin as the walls.
 const CLOSE_M: f64 = 2.5;
@@ -52,7 +52,7 @@ pub fn pairs(terrains: &Terrains, moment: Moment) -> Panel {
     panel(
         "sweep",
         title,
-        frame(terrains, MOST_M),
+        frame(terrains, MAX_M),
         layers,
         vec![
             LegendEntry::mark("map", Tone::Measurement, Mark::Cross),
@@ -162,7 +162,7 @@ pub(super) fn panel(
 pub(super) fn frame(terrains: &Terrains, most_m: f64) -> Bounds {
     let [(left, right), (low, high)] = [0, 1].map(|axis| walls(terrains.map_points_m(), axis));
     let sensor_x = terrains.scene().world_from_sensor().x();
-    let left = if right - left > MOST_M {
+    let left = if right - left > MAX_M {
         sensor_x - 0.5 * most_m
     } else {
         left

@@ -8,7 +8,7 @@ use crate::w16_3_cost_terraces::model::terrains::Terrains;
 use kit::ticks::signed;
 
 /// Smallest range of a vertical axis, in m² or in score, so that flat ground looks flat.
-const LEAST_SPAN: f64 = 1e-3;
+const MIN_SPAN: f64 = 1e-3;
 
 /// Half width of the picture of the results, cm, the same for every location, so that the dot of the room is
 /// not drawn as large as the needle of the corridor.
@@ -61,7 +61,7 @@ pub fn slice(terrains: &Terrains, moment: Moment, measure: Measure, along: Along
         Measure::Icp => landscape.range,
         Measure::Ndt => landscape.range.map(|height| -height),
     };
-    let (low, high) = (low.min(high), low.max(high).max(LEAST_SPAN));
+    let (low, high) = (low.min(high), low.max(high).max(MIN_SPAN));
     let margin = 0.05 * (high - low);
     let (min, max) = (low - margin, high + margin);
     let upright =

@@ -2,7 +2,7 @@
 
 use kit::scene::{Layer, LegendEntry, Mark, Panel, Stroke, Tone};
 
-use super::places::{MOST_M, frame, map_points, panel as place};
+use super::places::{MAX_M, frame, map_points, panel as place};
 use crate::w16_3_cost_terraces::model::terrains::Terrains;
 use crate::w16_3_cost_terraces::model::words::row_in_words;
 
@@ -43,7 +43,7 @@ pub fn panel(terrains: &Terrains) -> Panel {
     place(
         "rows",
         &row_in_words(terrains),
-        frame(terrains, MOST_M),
+        frame(terrains, MAX_M),
         layers,
         vec![
             LegendEntry::line("normals", Tone::Ink, Stroke::Solid),
