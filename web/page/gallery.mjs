@@ -17,7 +17,7 @@ function card({ id, title, caption, state }) {
   const href = escapeHtml(`?w=16.2&${state}`);
   return `
     <li class="card">
-      <img src="pictures/break-${id}.svg" width="320" height="224" alt="" loading="lazy">
+      <img src="pictures/break-${id}.svg" width="320" height="240" alt="" loading="lazy">
       <p class="card-title"><a class="slam-link" href="${href}">${title}</a></p>
       <p>${caption}</p>
     </li>`;

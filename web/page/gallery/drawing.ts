@@ -16,9 +16,9 @@ export type Facts = Readonly<Record<string, number | null | undefined>>;
 type Point = readonly [number, number];
 
 export const WIDTH = 320;
-export const HEIGHT = 224;
+export const HEIGHT = 240;
 /** The strip under the drawing that holds the words. */
-const WORDS_PX = 30;
+const WORDS_PX = 46;
 const MARGIN_PX = 8;
 /** Side of a square of the map in a card of the build: small enough for a wall, large enough for a file of a few kB. */
 const CELL_PX = 2;
@@ -39,7 +39,7 @@ export function numbers(facts: Facts): { off: string; agrees: string } {
 }
 
 function agreement(cm: number): string {
-  return cm <= AGREES_CM ? `map agrees to ${cm} cm` : `map disagrees by ${cm} cm`;
+  return cm <= AGREES_CM ? `map agrees to ${cm} cm` : `map doubles by ${cm} cm`;
 }
 
 /** The card's picture as an SVG, its map in squares of that side. */
@@ -55,7 +55,7 @@ export function drawing(tables: readonly Csv[], facts: Facts, cellPx = CELL_PX):
   const { off, agrees } = numbers(facts);
   return [
     `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${WIDTH} ${HEIGHT}" width="${WIDTH}" height="${HEIGHT}">`,
-    `<style>${style(0)}@media(prefers-color-scheme:dark){${style(1)}}path{fill:none}text{font:600 12px system-ui,sans-serif}</style>`,
+    `<style>${style(0)}@media(prefers-color-scheme:dark){${style(1)}}path{fill:none}text{font:600 15px system-ui,sans-serif}</style>`,
     `<rect class="g" width="100%" height="100%"/>`,
     `<path class="w" stroke-width="3" d="${walls.map(([from, end]) => line([to(from), to(end)])).join('')}"/>`,
     `<path class="m" transform="scale(${cellPx})" d="${cells(map.map(to), cellPx)}"/>`,
@@ -64,8 +64,8 @@ export function drawing(tables: readonly Csv[], facts: Facts, cellPx = CELL_PX):
     isFar ? `<path class="b" stroke-width="2" stroke-dasharray="2 2" d="${line([here, believed])}"/>` : '',
     `<path class="t" stroke-width="2.5" d="M${pair([here[0] - 5, here[1]])}h10m-5-5v10"/>`,
     `<path class="p" stroke-width="7" d="M${pair([believed[0] - 3.5, believed[1]])}h7"/>`,
-    `<text class="o" x="${MARGIN_PX}" y="${HEIGHT - 10}">${off}</text>`,
-    `<text class="i" x="${WIDTH - MARGIN_PX}" y="${HEIGHT - 10}" text-anchor="end">${agrees}</text>`,
+    `<text class="o" x="${MARGIN_PX}" y="${HEIGHT - 29}">${off}</text>`,
+    `<text class="i" x="${MARGIN_PX}" y="${HEIGHT - 9}">${agrees}</text>`,
     '</svg>\n',
   ].join('');
 }
