@@ -172,7 +172,7 @@ describe('a reader’s log', () => {
   it('is zoomed by two fingers wherever they start, without a drag', async () => {
     await page(async (tab) => {
       await give(tab, 'square.g2o', SQUARE);
-      await says(tab, /mapped: square\.g2o: 4 poses/);
+      await says(tab, /to look into: square\.g2o: 4 poses/);
       await tab.evaluate(() => { document.querySelector('slam-widget').value = { keyframe: 2 }; });
       await h.moreFrames(tab, 2);
       const { touch, felt } = await fingers(tab);
@@ -653,7 +653,7 @@ describe('the doctor', () => {
       assert.match((await outcome(tab)).sentence, /^ring\.log: \d+ scans/);
       // Neither a graph nor an empty widget has a doctor's report.
       await give(tab, 'square.g2o', SQUARE);
-      await says(tab, /mapped: square\.g2o/);
+      await says(tab, /to look into: square\.g2o/);
       assert.ok(await screen.isHidden());
       await give(tab, 'ring.log', SAMPLE);
       await diagnosis(tab);

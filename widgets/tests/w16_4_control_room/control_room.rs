@@ -379,7 +379,11 @@ fn pulses(room: &ControlRoom) -> Vec<[f64; 2]> {
         .layers
         .into_iter()
         .find_map(|layer| match layer {
-            Layer::Points { points, tone, .. } if tone == Tone::Revisit => Some(points),
+            Layer::Points {
+                points,
+                tone: Tone::Revisit,
+                ..
+            } => Some(points),
             _ => None,
         });
     heads.unwrap_or_default()
