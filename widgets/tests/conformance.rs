@@ -157,7 +157,12 @@ fn a_press_of_a_button_with_nothing_to_do_changes_no_state() {
             let before = state_text(shell.model());
             for id in shell.disabled() {
                 shell.press(id).expect("the widget has it");
-                assert_eq!(state_text(shell.model()), before, "{} {state} {id}", spec.id);
+                assert_eq!(
+                    state_text(shell.model()),
+                    before,
+                    "{} {state} {id}",
+                    spec.id
+                );
                 assert!(shell.take_orders().is_empty(), "{} {state} {id}", spec.id);
                 disabled += 1;
             }

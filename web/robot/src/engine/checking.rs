@@ -12,7 +12,7 @@ const SHOWN: usize = 6;
 /// Neighbours of a keyframe, before and after it, that belong to its surroundings.
 const BESIDE: usize = 4;
 /// Largest number of points of the surroundings of a keyframe.
-const MOST_POINTS: usize = 1500;
+const MAX_POINTS: usize = 1500;
 
 impl Engine<'_> {
     pub(super) fn check(&mut self) {
@@ -86,7 +86,7 @@ impl Engine<'_> {
             points.collect::<Vec<_>>()
         });
         let points: Vec<[f64; 2]> = points.collect();
-        let every = points.len().div_ceil(MOST_POINTS).max(1);
+        let every = points.len().div_ceil(MAX_POINTS).max(1);
         points.into_iter().step_by(every).collect()
     }
 
