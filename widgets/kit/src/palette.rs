@@ -72,7 +72,7 @@ pub fn tone(theme: Theme, tone: Tone) -> Rgb {
         Tone::Measurement => const { shades("measurement") },
         Tone::Outbound => const { shades("outbound") },
         Tone::Revisit => const { shades("revisit") },
-        Tone::Strained => const { shades("fair") },
+        Tone::Strained => const { shades("strained") },
         Tone::Posterior => const { shades("posterior") },
         Tone::Truth => const { shades("truth") },
         Tone::Ink => const { shades("ink") },

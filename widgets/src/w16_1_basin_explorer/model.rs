@@ -46,7 +46,7 @@ pub mod panel {
 const START: [&str; 3] = ["heading", "dx", "dy"];
 
 /// A start counts as one of the reader's once it has not moved for so long, s: a drag is one start.
-const SETTLES_AFTER_S: f64 = 0.3;
+const SETTLES_AFTER_S: f64 = 0.7;
 
 /// The maps enter with so many starts of the reader: the picture comes first, and a map of two points asks for more.
 const STARTS_BEFORE_MAPS: usize = 2;

@@ -10,13 +10,21 @@ const BESIDE_THE_MAP: f32 = 860.0;
 /// Height of a plot over time.
 const PLOT: PlotHeight = PlotHeight::Fixed(130.0);
 
-/// Largest height of the map: on a screen of 680 pixels it stands above Play and the scrubber, with the title.
-const MAP_PX: f32 = 430.0;
+/// From this width the controls are beside the map: the screen may be too low for a widget beside its text.
+const BESIDE_CONTROLS: f32 = 640.0;
 
-const MAP: Slot = Slot {
-    panel: "map",
-    height: PlotHeight::Natural { most: MAP_PX },
-};
+/// The map. On a screen of 680 pixels it stands above Play and the scrubber, with tabs, title and legend.
+fn map(width: f32) -> Slot {
+    let most = if width >= BESIDE_CONTROLS {
+        370.0
+    } else {
+        430.0
+    };
+    Slot {
+        panel: "map",
+        height: PlotHeight::Natural { most },
+    }
+}
 
 const LOOP: Slot = Slot {
     panel: "loop",
@@ -44,13 +52,13 @@ impl View for FullLapView {
         if width >= BESIDE_THE_MAP {
             Arrangement {
                 stage: vec![Row {
-                    columns: vec![column(2.0, &[MAP]), column(1.0, &[LOOP, ERRORS])],
+                    columns: vec![column(2.0, &[map(width)]), column(1.0, &[LOOP, ERRORS])],
                 }],
                 below: vec![Row::new(&[DISAGREEMENT, GATE, STRAIN])],
             }
         } else if width >= SIDE_BY_SIDE {
             Arrangement {
-                stage: vec![Row::new(&[MAP])],
+                stage: vec![Row::new(&[map(width)])],
                 below: vec![Row {
                     columns: vec![
                         column(1.0, &[LOOP, DISAGREEMENT]),
@@ -61,7 +69,7 @@ impl View for FullLapView {
         } else {
             let below = [LOOP, ERRORS, DISAGREEMENT, GATE, STRAIN];
             Arrangement {
-                stage: vec![Row::new(&[MAP])],
+                stage: vec![Row::new(&[map(width)])],
                 below: below.iter().map(|slot| Row::new(&[*slot])).collect(),
             }
         }

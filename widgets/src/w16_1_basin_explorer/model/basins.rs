@@ -126,14 +126,17 @@ impl Basins {
         &self.maps[place(variant)]
     }
 
-    /// The reader's starts on a variant's map, with the minima that they reach.
+    /// The reader's starts on a variant's map, with the minima that they reach; none once the map is complete,
+    /// because its cells then show the same.
     pub fn tries(&self, variant: IcpVariant) -> impl Iterator<Item = ([f64; 2], Minimum)> {
         let along_y = self.map(variant).axes().axis == OffsetAxis::Dy;
         let spot = move |tried: &Try| {
             let ends = tried.ends?;
             Some((start_spot(&tried.start, along_y), ends[place(variant)]))
         };
-        self.tries.iter().filter_map(spot)
+        let is_filling = !self.map(variant).is_complete();
+        let tries = self.tries.iter().filter(move |_| is_filling);
+        tries.filter_map(spot)
     }
 
     /// The picture of a variant's map.
