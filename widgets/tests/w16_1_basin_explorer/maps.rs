@@ -80,7 +80,7 @@ fn the_readers_starts_come_first_in_the_colours_of_their_ends() {
     assert_eq!(tried(&model, panel::POINT), [0, 3, 1, 2]);
     assert_eq!(tried(&model, panel::PLANE), [0, 0, 1, 2]);
     // The picture of a complete map depends on no history.
-    while model.work().goes_on() {}
+    while model.work().is_busy() {}
     assert!(tried(&model, panel::POINT).is_empty());
     // With another τ they are computed again.
     model.set("tau", 0.1).unwrap();
