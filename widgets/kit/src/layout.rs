@@ -19,8 +19,8 @@ use crate::ticks::{Scale, Ticks};
 
 /// Height of a row of small text.
 pub const ROW: f32 = 17.0;
-/// Height of a name of a vertical axis.
-const NAME_ROW: f32 = 16.0;
+/// Smallest height of a name of a vertical axis.
+const NAME_ROW: f32 = 12.0;
 /// Height of a row of the title.
 const TITLE_ROW: f32 = 22.0;
 /// Length of a tick plus its distance to the label.

@@ -13,6 +13,9 @@ const BAR_WIDTH: f32 = 120.0;
 /// Radius of a mark in a legend.
 const MARK_RADIUS: f32 = 5.0;
 
+/// Rows of a vertical axis that are at least this high have names in the size of the text.
+const BODY_ROW_PX: f64 = 16.0;
+
 /// Background and grid.
 pub fn back(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: Theme) {
     let plot = to.plot();
@@ -103,7 +106,8 @@ fn ticks(
             ink,
         );
     }
-    let size = if panel.y.names.is_empty() {
+    let row_px = f64::from(plot.height) / (shown.max[1] - shown.min[1]);
+    let size = if panel.y.names.is_empty() || row_px < BODY_ROW_PX {
         TextSize::Small
     } else {
         TextSize::Body

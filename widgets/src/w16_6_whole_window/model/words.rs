@@ -87,7 +87,9 @@ pub fn outcome(window: &WholeWindow) -> Outcome {
             )
         }
         (Some(_), ..) => format!("{work}, and no pose of the window scores half or more."),
-        (None, ..) => "The search is under way.".to_owned(),
+        // As long as the text that follows, so that the page below does not move.
+        (None, ..) => "The search takes up the box of poses with the largest bound, splits it, and drops every box whose bound is below the best score; then ICP starts from the best pose."
+            .to_owned(),
     };
     Outcome {
         standing: standing(window),
