@@ -218,7 +218,9 @@ fn icp_races_the_search_and_stops_in_a_false_minimum_first() {
 }
 
 /// The line of true scores on the bounds, and the bar above it.
-fn looked_into(window: &WholeWindow) -> Option<(Vec<[f64; 2]>, [[f64; 2]; 2])> {
+type ScoresAndBound = (Vec<[f64; 2]>, [[f64; 2]; 2]);
+
+fn looked_into(window: &WholeWindow) -> Option<ScoresAndBound> {
     let layers = panel_of(window, panel::BOUNDS).layers;
     let line = layers.iter().find_map(|layer| match layer {
         Layer::Line {
