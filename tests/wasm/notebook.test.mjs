@@ -52,7 +52,7 @@ print(json.dumps({
     assert.match(doc, /heading: -180 to 180 °\./);
     assert.match(refused[0], /Basin has no parameter 'headin'; it has heading, /);
     assert.match(refused[1], /there is no widget 'w99'; there are w16\.1, /);
-    assert.match(refused[2], /the link is of w16\.2, and Basin is w16\.1/);
+    assert.match(refused[2], /the link is for w16\.2, and Basin is w16\.1/);
   } finally {
     rmSync(folder, { recursive: true });
   }
