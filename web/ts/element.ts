@@ -464,8 +464,8 @@ export class SlamWidget extends HTMLElement {
 
   #deliver(deliveries: readonly Delivery[]): void {
     const panels = [this.#doctor, this.#loops];
-    const isMoved = deliveries.filter((delivery) => panels.filter((panel) => panel?.receive(delivery) === true).length > 0).length > 0;
-    if (isMoved) this.#resized();
+    const resized = deliveries.flatMap((delivery) => panels.filter((panel) => panel?.receive(delivery) === true));
+    if (resized.length > 0) this.#resized();
     this.#lifecycle.ask((widget) => deliveries.forEach((delivery) => deliverTo(widget, delivery)));
     this.#announce(this.#changes());
     this.#executeOrders();

@@ -276,9 +276,9 @@ impl<'a> Session<'a> {
         });
         let trusted = attempt.is_converged() && !self.is_twisted();
         self.ended.push(attempt);
-        let is_busy =
+        let has_more =
             self.automatic && (!trusted && self.begin_next_attempt() || self.begin_next_round());
-        self.finished = !is_busy;
+        self.finished = !has_more;
     }
 
     /// Starts the next attempt: from the chordal relaxation, then with damped steps from there. A refinement

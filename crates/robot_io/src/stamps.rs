@@ -243,9 +243,9 @@ impl<'a> Work<'a> {
                 // The stamps must jump while the recording continues as before: a delayed recorder is no step.
                 let jumps = (moved_s - period_s - by_s).abs() < 0.5 * by_s.abs();
                 let off_s = (moved_s - period_s).abs();
-                let is_busy = recorded_s
+                let is_steady = recorded_s
                     .is_none_or(|(now_s, last_s)| 2.0 * (now_s - last_s - period_s).abs() < off_s);
-                jumps && is_busy && by_s.abs() >= least_s
+                jumps && is_steady && by_s.abs() >= least_s
             });
             let stamps = |of: &[usize]| of.iter().map(|&at| original[at]).collect::<Vec<_>>();
             let goes_back = lowest(&stamps(before)) > highest(&stamps(after)) + MIN_STEP_S;

@@ -297,10 +297,10 @@ impl<'a> Engine<'a> {
     }
 
     fn solve(&mut self, mut solving: Box<GraphSolving>) {
-        let is_busy = solving.step();
+        let has_more = solving.step();
         let graph = solving.graph();
         self.changes.keyframes = true;
-        if is_busy {
+        if has_more {
             self.graph = Some(graph);
             self.work = Work::Solving(solving);
             return;

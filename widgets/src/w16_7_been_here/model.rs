@@ -19,7 +19,7 @@ use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
 use crate::w16_7_been_here::spec::{
-    CALLED, LAST_OLD, MAX_ALIKE, MAX_KEYFRAMES, NEWEST, OLDER, PARAMS, SPEC, TURN,
+    CALLED, LAST_OLD, MAX_KEYFRAMES, MOST_ALIKE, NEWEST, OLDER, PARAMS, SPEC, TURN,
 };
 use lap::{Places, Work};
 
@@ -111,7 +111,7 @@ impl BeenHere {
         let new = self.newest();
         let asked = self.values.get(&OLDER);
         // At each keyframe of a run the robot looks for it among all earlier ones.
-        let old = if asked == MAX_ALIKE || self.played.is_playing() {
+        let old = if asked == MOST_ALIKE || self.played.is_playing() {
             places
                 .most_alike(self.detector(), new)
                 .or_else(|| new.checked_sub(1))?

@@ -18,7 +18,7 @@ pub const LAST_OLD: f64 = 120.0;
 pub const SECTOR_DEG: f64 = 6.0;
 
 /// The value of `old` that selects the most similar keyframe.
-pub const MAX_ALIKE: f64 = -1.0;
+pub const MOST_ALIKE: f64 = -1.0;
 
 pub(super) static CALLED: Param<f64> = Param::slider(
     "called",
@@ -59,7 +59,7 @@ pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
 pub(super) static OLDER: Param<f64> = Param::slider(
     "old",
     "older keyframe of the pair",
-    [MAX_ALIKE, LAST_OLD],
+    [MOST_ALIKE, LAST_OLD],
     1.0,
 )
 .default(18.0)
@@ -126,7 +126,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "lap",
             label: "Drive the lap",
             help: "Each new keyframe is compared with all older ones, and a column is added.",
-            set: &[OLDER.to(MAX_ALIKE), NEWEST.to(0.0)],
+            set: &[OLDER.to(MOST_ALIKE), NEWEST.to(0.0)],
             then: &["play"],
         },
         Preset {
@@ -154,7 +154,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "ring",
             label: "A ring of corridors",
             help: "Four corridors that look alike: every look-alike is a trap here.",
-            set: &[WORLD.to("ring"), OLDER.to(MAX_ALIKE)],
+            set: &[WORLD.to("ring"), OLDER.to(MOST_ALIKE)],
             then: &[],
         },
     ],

@@ -75,17 +75,12 @@ impl Engine<'_> {
             .iter()
             .zip(poses)
             .take(keyframe + BESIDE + 1);
-        let clouds = near
-            .skip(keyframe.saturating_sub(BESIDE))
-            .map(|(near, at)| {
-                let place = pose.compose(&poses[keyframe].between(at));
-                near.scan.transformed(&place)
-            });
-        let points = clouds.flat_map(|cloud| {
-            let points = cloud.iter().map(|point| [point.x, point.y]);
-            points.collect::<Vec<_>>()
-        });
-        let points: Vec<[f64; 2]> = points.collect();
+        let mut points = Vec::new();
+        for (near, at) in near.skip(keyframe.saturating_sub(BESIDE)) {
+            let place = pose.compose(&poses[keyframe].between(at));
+            let cloud = near.scan.transformed(&place);
+            points.extend(cloud.iter().map(|point| [point.x, point.y]));
+        }
         let every = points.len().div_ceil(MAX_POINTS).max(1);
         points.into_iter().step_by(every).collect()
     }

@@ -25,7 +25,7 @@ impl OwnRobot {
             "west" | "east" | "north" | "south" | "unpin" => is_editable && has_map,
             "locate" | "locate-sample" => !matches!(robot.stage, Stage::Empty | Stage::Failed),
             "change" => self.place().is_some(),
-            "other" => self.other_offer().is_some(),
+            "other" => self.other_order().is_some(),
             _ => true,
         }
     }
@@ -97,21 +97,20 @@ impl OwnRobot {
         self.playback.pause();
     }
 
-    /// The next topic or frame of the recording for the selected option.
-    fn other_offer(&self) -> Option<&str> {
+    /// The order for the next topic or frame of the recording for the selected option, if it offers another one.
+    fn other_order(&self) -> Option<String> {
         let option = OPTIONS[self.values.number("option") as usize].id;
         let mut offers = self.robot.offers.iter();
         let offer = offers.find(|offer| offer.option == option)?;
         let here = offer.names.iter().position(|name| *name == offer.taken);
         let next = here.map_or(0, |here| (here + 1) % offer.names.len());
         let name = offer.names.get(next)?;
-        (*name != offer.taken).then_some(name)
+        (*name != offer.taken).then(|| format!("option {option} {name}"))
     }
 
     fn take_other(&mut self) {
-        if let Some(name) = self.other_offer() {
-            let option = OPTIONS[self.values.number("option") as usize].id;
-            self.ask(format!("option {option} {name}"));
+        if let Some(order) = self.other_order() {
+            self.ask(order);
         }
     }
 

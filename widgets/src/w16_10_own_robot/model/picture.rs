@@ -28,7 +28,7 @@ const SHADES: usize = 24;
 /// Colour of the other log's robot.
 const OTHER: Tone = Tone::Class(2);
 /// Quantile at which values are clamped: a single outlier would hide the others.
-const MAX_OF_ALL: f64 = 0.98;
+const SCALE_QUANTILE: f64 = 0.98;
 
 /// The whole picture.
 pub fn scene(robot: &OwnRobot) -> Scene {
@@ -246,7 +246,7 @@ fn way(own: &OwnRobot) -> (Vec<Layer>, Option<ColorBar>) {
     let most = match colour {
         Colour::Time => known[known.len() - 1],
         Colour::Fit => 1.0,
-        _ => known[((known.len() - 1) as f64 * MAX_OF_ALL).round() as usize],
+        _ => known[((known.len() - 1) as f64 * SCALE_QUANTILE).round() as usize],
     };
     let least = match colour {
         Colour::Fit | Colour::Sigma | Colour::Error => 0.0,

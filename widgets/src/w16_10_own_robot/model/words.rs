@@ -23,12 +23,12 @@ pub fn outcome(own: &OwnRobot) -> Outcome {
         Stage::Solving => (Standing::Neutral, "solving"),
         Stage::Checking => (Standing::Neutral, "checking"),
         _ if robot.is_under_way() => (Standing::Neutral, "looking for the robot"),
-        Stage::Done => return told(own, standing(robot), verdict_on_loops(robot)),
+        Stage::Done => return described(own, standing(robot), verdict_on_loops(robot)),
     };
-    told(own, standing, verdict.to_owned())
+    described(own, standing, verdict.to_owned())
 }
 
-fn told(own: &OwnRobot, standing: Standing, verdict: String) -> Outcome {
+fn described(own: &OwnRobot, standing: Standing, verdict: String) -> Outcome {
     Outcome {
         standing,
         verdict,

@@ -130,8 +130,9 @@ fn facts(widget: &WrongJacobians) -> Vec<Fact> {
 /// `exact 0.000 m off, approximate 0.012 m off, …` at the current step.
 fn now(widget: &WrongJacobians) -> String {
     let each = NAMES.iter().enumerate();
-    let told = each.map(|(solver, name)| format!("{name} {:.3} m off", widget.shown(solver).off_m));
-    told.collect::<Vec<_>>().join(", ")
+    let distances =
+        each.map(|(solver, name)| format!("{name} {:.3} m off", widget.shown(solver).off_m));
+    distances.collect::<Vec<_>>().join(", ")
 }
 
 pub fn summary(widget: &WrongJacobians) -> String {

@@ -12,7 +12,7 @@ use crate::w16_2_full_lap::model::panel;
 use crate::w16_2_full_lap::model::pick::Part;
 
 /// Smallest upper end of the axis: a Gaussian residual seldom exceeds it.
-const MIN_HIGHEST: f64 = 3.0;
+const MIN_TOP: f64 = 3.0;
 
 /// Margin beyond the first and the last keyframe.
 const ROOM_NODES: f64 = 0.8;
@@ -42,7 +42,7 @@ pub fn strain(moment: &Moment) -> Panel {
         Vec::new()
     };
     let highest = now.iter().chain(&before).map(|(_, at)| at[1]);
-    let y = axis_from_zero("√χ² (σ)", highest.fold(MIN_HIGHEST, math::max));
+    let y = axis_from_zero("√χ² (σ)", highest.fold(MIN_TOP, math::max));
     let marks = |all: &[(EdgeKind, [f64; 2])], kind: EdgeKind| -> Vec<[f64; 2]> {
         let chosen = all.iter().filter(|(of, _)| *of == kind);
         chosen.map(|(_, at)| *at).collect()
