@@ -77,11 +77,11 @@ fn a_log_is_mapped_and_graded_against_relations() {
     assert_eq!(graded["n"], run["relations"]["n"]);
     for (part, figures) in graded.as_object().unwrap() {
         for (figure, value) in figures.as_object().into_iter().flatten() {
-            let [told, again] =
+            let [expected, again] =
                 [&run["relations"][part][figure], value].map(|v| v.as_f64().unwrap());
             assert!(
-                (told - again).abs() <= 1e-12 * told.abs(),
-                "{part}.{figure}: {told} {again}"
+                (expected - again).abs() <= 1e-12 * expected.abs(),
+                "{part}.{figure}: {expected} {again}"
             );
         }
     }
@@ -176,10 +176,10 @@ fn odometry_that_never_moves_is_reported() {
         assert!(output.status.success());
         String::from_utf8(output.stderr).unwrap()
     };
-    let told = said(&[]);
+    let message = said(&[]);
     assert!(
-        told.contains("odometry stands still while the scans move by 3."),
-        "{told}"
+        message.contains("odometry stands still while the scans move by 3."),
+        "{message}"
     );
     assert_eq!(said(&["--no-odometry"]), "");
 }

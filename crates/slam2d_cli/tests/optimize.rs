@@ -201,8 +201,11 @@ fn missing_parts_of_a_graph_are_added_and_reported() {
     ] {
         let graph = Graph::new(text);
         let output = slam2d(&["optimize", graph.input()]);
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.success() && told.contains(said), "{told}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            output.status.success() && message.contains(said),
+            "{message}"
+        );
     }
     let in_space = "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n";
     Graph::new(in_space).assert_refused(

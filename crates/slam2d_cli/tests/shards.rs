@@ -25,8 +25,8 @@ fn shards_put_together_print_what_one_process_prints_to_the_last_digit() {
     let folder = tempfile::tempdir().unwrap();
     let rows = ["1/2", "2/2"].map(|part| {
         let rows = folder.path().join(format!("{}.jsonl", &part[..1]));
-        let told = said(&of_shard(part, &rows));
-        assert!(told.starts_with("6 laps: "), "{told}");
+        let summary = said(&of_shard(part, &rows));
+        assert!(summary.starts_with("6 laps: "), "{summary}");
         rows
     });
     let [first, second] = rows.each_ref().map(|rows| rows.to_str().unwrap());
@@ -52,10 +52,10 @@ fn a_sweep_killed_within_a_row_resumes() {
     // The header, three rows, and a partial row.
     let kept = lines[..4].join("\n") + "\n";
     fs::write(&rows, kept.clone() + &lines[4][..30]).unwrap();
-    let told = said(&of_shard("1/1", &rows));
+    let summary = said(&of_shard("1/1", &rows));
     assert!(
-        told.starts_with("12 laps, 3 of them from an earlier run: "),
-        "{told}"
+        summary.starts_with("12 laps, 3 of them from an earlier run: "),
+        "{summary}"
     );
     let again = fs::read_to_string(&rows).unwrap();
     assert!(again.starts_with(&kept));

@@ -123,6 +123,19 @@ pub fn poses(all: &mut [Message], mut change: impl FnMut(usize, &mut f64, &mut [
         .for_each(|(number, (stamp_s, pose))| change(number, stamp_s, pose));
 }
 
+/// Shifts the stamps of all scans and odometry that were recorded after a time.
+pub fn shift_stamps(all: &mut [Message], after_s: f64, by_s: f64) {
+    for message in all {
+        if message.recorded_s > after_s {
+            match &mut message.body {
+                Body::Scan(scan) => scan.stamp_s += by_s,
+                Body::Odometry { stamp_s, .. } => *stamp_s += by_s,
+                _ => {}
+            }
+        }
+    }
+}
+
 /// Turns the laser about its axis by whole beams, counter-clockwise.
 pub fn turned(all: &mut [Message], degrees: i32) {
     scans(all, |_, scan| {

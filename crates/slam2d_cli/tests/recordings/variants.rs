@@ -6,11 +6,14 @@ use pr_geom::SE2;
 use robot_io::log::LogOptions;
 
 use super::base::{
-    START_S, as_transforms, messages, mirrored, odometry, poses, scans, transform, truth, turned,
-    without,
+    START_S, as_transforms, messages, mirrored, odometry, poses, scans, shift_stamps, transform,
+    truth, turned, without,
 };
 use super::write::{Body, Message, mcap};
 use super::{BY_SCANS_M, NEAR_M, PER_CHUNK, distance_m, path, read};
+
+/// Added to a stamp of the base to get one of simulated time, s.
+const SIMULATED_S: f64 = -1_699_999_990.0;
 
 type Change = fn(&mut Vec<Message>);
 
@@ -18,7 +21,7 @@ type Change = fn(&mut Vec<Message>);
 const VARIANTS: &[(&str, Change, f64, &str)] = &[
     ("nothing", |_| {}, NEAR_M, ""),
     (
-        "backward, untold",
+        "backward, without its transform",
         |all| {
             turned(all, 180);
             without(all, "/tf_static");
@@ -27,19 +30,19 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         "--laser 0,0,180",
     ),
     (
-        "backward, told otherwise",
+        "backward, with a transform that points ahead",
         |all| turned(all, 180),
         NEAR_M,
         "--laser 0,0,180",
     ),
     (
-        "to the left, untold",
+        "to the left, with a transform that points ahead",
         |all| turned(all, 90),
         NEAR_M,
         "--laser 0,0,90",
     ),
     (
-        "to the right, untold",
+        "to the right, with a transform that points ahead",
         |all| turned(all, -90),
         NEAR_M,
         "--laser 0,0,-90",
@@ -60,11 +63,11 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         ",flipped",
     ),
     (
-        "upside down, told",
+        "upside down, as in its transform",
         |all| {
             mirrored(all);
-            if let Body::Transforms(told) = &mut all[0].body {
-                told[0].is_upside_down = true;
+            if let Body::Transforms(transforms) = &mut all[0].body {
+                transforms[0].is_upside_down = true;
             }
         },
         NEAR_M,
@@ -74,11 +77,11 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         "static transform at the end",
         |all| {
             turned(all, 180);
-            let mut told = all.remove(0);
-            if let Body::Transforms(told) = &mut told.body {
-                told[0].pose[2] = std::f64::consts::PI;
+            let mut mounting = all.remove(0);
+            if let Body::Transforms(transforms) = &mut mounting.body {
+                transforms[0].pose[2] = std::f64::consts::PI;
             }
-            all.push(told);
+            all.push(mounting);
         },
         NEAR_M,
         "",
@@ -314,8 +317,8 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         |all| {
             as_transforms(all);
             for message in all.iter_mut() {
-                if let Body::Transforms(told) = &mut message.body {
-                    told[0].stamp_s = 0.0;
+                if let Body::Transforms(transforms) = &mut message.body {
+                    transforms[0].stamp_s = 0.0;
                 }
             }
         },
@@ -357,18 +360,8 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
     (
         "simulated time starts again",
         |all| {
-            for message in all.iter_mut() {
-                let by_s = if message.recorded_s > START_S + 16.0 {
-                    -1_699_999_990.0 - 16.0
-                } else {
-                    -1_699_999_990.0
-                };
-                match &mut message.body {
-                    Body::Scan(scan) => scan.stamp_s += by_s,
-                    Body::Odometry { stamp_s, .. } => *stamp_s += by_s,
-                    _ => {}
-                }
-            }
+            shift_stamps(all, f64::NEG_INFINITY, SIMULATED_S);
+            shift_stamps(all, START_S + 16.0, -16.0);
         },
         BY_SCANS_M,
         "steps back by",
@@ -376,18 +369,11 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
     (
         "simulated time starts again, and the recording's with it",
         |all| {
+            shift_stamps(all, f64::NEG_INFINITY, SIMULATED_S);
+            shift_stamps(all, START_S + 16.0, -16.0);
             for message in all.iter_mut() {
-                let by_s = if message.recorded_s > START_S + 16.0 {
-                    -1_699_999_990.0 - 16.0
-                } else {
-                    -1_699_999_990.0
-                };
-                message.recorded_s += by_s;
-                match &mut message.body {
-                    Body::Scan(scan) => scan.stamp_s += by_s,
-                    Body::Odometry { stamp_s, .. } => *stamp_s += by_s,
-                    _ => {}
-                }
+                let is_restarted = message.recorded_s > START_S + 16.0;
+                message.recorded_s += SIMULATED_S - if is_restarted { 16.0 } else { 0.0 };
             }
         },
         BY_SCANS_M,
@@ -395,39 +381,13 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
     ),
     (
         "a step of NTP",
-        |all| {
-            for message in all.iter_mut() {
-                let by_s = if message.recorded_s > START_S + 16.0 {
-                    -40.0
-                } else {
-                    0.0
-                };
-                match &mut message.body {
-                    Body::Scan(scan) => scan.stamp_s += by_s,
-                    Body::Odometry { stamp_s, .. } => *stamp_s += by_s,
-                    _ => {}
-                }
-            }
-        },
+        |all| shift_stamps(all, START_S + 16.0, -40.0),
         NEAR_M,
         "steps back by 40.0 s",
     ),
     (
         "a small step of NTP",
-        |all| {
-            for message in all.iter_mut() {
-                let by_s = if message.recorded_s > START_S + 16.0 {
-                    -0.4
-                } else {
-                    0.0
-                };
-                match &mut message.body {
-                    Body::Scan(scan) => scan.stamp_s += by_s,
-                    Body::Odometry { stamp_s, .. } => *stamp_s += by_s,
-                    _ => {}
-                }
-            }
-        },
+        |all| shift_stamps(all, START_S + 16.0, -0.4),
         NEAR_M,
         "steps back by 0.4 s",
     ),
@@ -665,7 +625,7 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
 #[test]
 fn every_fault_is_corrected_or_named() {
     let mut failures = Vec::new();
-    for (name, change, most_m, word) in VARIANTS {
+    for (name, change, max_m, word) in VARIANTS {
         let mut all = messages();
         change(&mut all);
         let outcome = read(&mcap(&all, PER_CHUNK), &LogOptions::default());
@@ -675,12 +635,12 @@ fn every_fault_is_corrected_or_named() {
         } else {
             f64::INFINITY
         };
-        let is_told = outcome.said.contains(word) && outcome.said.is_empty() == word.is_empty();
-        let is_still_told = is_told || word.is_empty() && *name == "no odometry";
-        if off_m > *most_m || !is_still_told {
+        let is_named = outcome.remarks.contains(word)
+            && (outcome.remarks.is_empty() == word.is_empty() || *name == "no odometry");
+        if off_m > *max_m || !is_named {
             failures.push(format!(
                 "{name}: {scans} scans, {off_m:.3} m: {}",
-                outcome.said
+                outcome.remarks
             ));
         }
     }
