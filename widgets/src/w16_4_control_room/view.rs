@@ -27,14 +27,14 @@ impl View for ControlRoomView {
                 below: rows(&[plot("tau"), plot("errors")]),
             };
         }
-        let column = |share, panel| Column {
-            share,
+        let column = |panel| Column {
+            share: 1.0,
             slots: vec![natural(panel)],
         };
         Arrangement {
             stage: vec![
                 Row {
-                    columns: vec![column(3.0, "map"), column(2.0, "registration")],
+                    columns: ["map", "registration"].map(column).to_vec(),
                 },
                 Row::new(&[lanes]),
             ],
