@@ -48,9 +48,9 @@ impl View for TerracesView {
                 Row::new(&[map("icp"), map("ndt")]),
                 Row {
                     columns: vec![
-                        column(0.37, vec![cut("icp-path")]),
-                        column(0.37, vec![cut("ndt-path")]),
-                        column(0.26, vec![matched("sweep")]),
+                        column(0.35, vec![cut("icp-path")]),
+                        column(0.35, vec![cut("ndt-path")]),
+                        column(0.30, vec![matched("sweep")]),
                     ],
                 },
             ];

@@ -46,11 +46,11 @@ fn profile(id: &'static str, name: &str, landscape: &Landscape, moment: Moment) 
     let flag = [[length_m, 0.0], [length_m, highest + 0.5 * sky]];
     let title = if !landscape.ball.is_home() && step == landscape.ball.steps() {
         format!(
-            "{name}: the ball stops {:.2} m before the truth",
+            "{name} stops {:.2} m from the truth",
             landscape.ball.rest_distance_m()
         )
     } else {
-        format!("{name}: the ground from the drop to the truth")
+        format!("{name}: the ground to the truth")
     };
     let mut layers = vec![
         Layer::segments(columns(&ground), Stroke::Solid, Tone::Faint, COLUMN_PX),
