@@ -35,12 +35,13 @@ export class ReservedHeight {
     else this.#stage.style.setProperty('--reserved-height', `${Math.min(height, this.room)}px`);
   }
 
-  /** The available height; infinite if the element has no `max-height`. */
+  /** The available height: that of `max-height` or of `--room`, else infinite. */
   get room(): number {
     const frame = this.#stage.parentElement;
     const { host } = this.#stage.getRootNode() as ShadowRoot;
-    const most = getComputedStyle(host).maxHeight;
-    if (frame === null || !most.endsWith('px')) return Infinity;
+    const style = getComputedStyle(host);
+    const most = [style.maxHeight, style.getPropertyValue('--room')].find((length) => length.endsWith('px'));
+    if (frame === null || most === undefined) return Infinity;
     return parseFloat(most) - (frame.offsetHeight - this.#stage.offsetHeight);
   }
 

@@ -103,7 +103,7 @@ impl PanelLayout {
             .into_iter()
             .map(|line| (line, row(TITLE_ROW)))
             .collect();
-        let y_name_y = row(if panel.y.is_drawn() { ROW } else { 0.0 });
+        let y_name_y = row(if panel.y.label.is_empty() { 0.0 } else { ROW });
         row(GAP);
         let plot_middle = row(plot_height);
         let plot = PxRect::new(

@@ -7,7 +7,7 @@ use crate::palette::{self, Rgb, Theme, tone};
 use crate::readout::fact_text;
 use crate::scene::{Scene, Tone};
 use crate::surface::{Align, Px, Surface, TextSize};
-use crate::view::{Arrangement, Row, View, place};
+use crate::view::{Arrangement, Row, View, keep_shown, place};
 
 /// Space around the picture.
 const MARGIN: f32 = 12.0;
@@ -50,7 +50,9 @@ pub fn picture(
     y = paragraph(surface, y, &title, TextSize::Title, ink) + 0.5 * GAP;
     let layer = model.layer();
     let arrangement = view.arrange(&scene, width).of_layer(&layer);
-    for rows in [&arrangement.stage, &arrangement.below] {
+    let mut under = view.under_control(width);
+    keep_shown(&mut under, &layer);
+    for rows in [&arrangement.stage, &under, &arrangement.below] {
         let height = panels(surface, &scene, rows, [MARGIN, y], width, theme);
         if height > 0.0 {
             y += height + GAP;

@@ -25,6 +25,8 @@ pub struct Pointer {
     /// Whether the last press was by touch.
     by_touch: bool,
     hovered: Option<(&'static str, [f64; 2])>,
+    /// The tooltip of the handle that was dragged last: it would cover the result of the drag.
+    followed: Option<&'static str>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -173,7 +175,7 @@ impl Pointer {
             }
             let moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO);
             if from.is_some() || moved {
-                touched = self.pull(ui, panel, model, at);
+                touched = self.pull(ui, panel, to, model, at);
             }
         }
         if is_down {
@@ -202,13 +204,21 @@ impl Pointer {
         };
     }
 
-    fn pull(&mut self, ui: &Ui, panel: &Panel, model: &mut dyn Model, at: [f64; 2]) -> Touched {
+    fn pull(
+        &mut self,
+        ui: &Ui,
+        panel: &Panel,
+        to: &Transform,
+        model: &mut dyn Model,
+        at: [f64; 2],
+    ) -> Touched {
         if self.panel_held() != Some(panel.id) {
             return Touched::No;
         }
         ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
         match self.held {
             Some(Held::Thing(handle)) => {
+                self.followed = handle_label(panel, to, at).or(self.followed);
                 model.drag(handle, at);
                 Touched::Yes
             }
@@ -257,7 +267,8 @@ impl Pointer {
             if model.grab(panel.id, at, reach(to, false)).is_some() {
                 ui.ctx().set_cursor_icon(CursorIcon::Grab);
             }
-            if let Some(label) = handle_label(panel, to, at) {
+            let label = handle_label(panel, to, at);
+            if let Some(label) = label.filter(|_| label != self.followed) {
                 let tooltip = Tooltip::for_widget(response)
                     .at_pointer()
                     .gap(POINTER_GAP_PX);

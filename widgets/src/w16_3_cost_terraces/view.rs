@@ -14,6 +14,10 @@ const PAIRED: f32 = 440.0;
 const MAP_PX: f32 = 350.0;
 const PHONE_MAP_PX: f32 = 322.0;
 
+/// Height of a profile and of the sweep on a phone.
+const PHONE_CUT_PX: f32 = 64.0;
+const PHONE_MATCH_PX: f32 = 110.0;
+
 /// Each relief beside the ground under its ball and the target of the match, the slices below.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TerracesView;
@@ -25,8 +29,8 @@ impl View for TerracesView {
         let most = px(MAP_PX, PHONE_MAP_PX);
         let map = |id| slot(id, PlotHeight::Natural { most });
         // Room and corridor have different shapes; fixed heights keep what is below in place.
-        let matched = |id| slot(id, PlotHeight::Fixed(px(195.0, 110.0)));
-        let cut = |id| slot(id, PlotHeight::Fixed(px(110.0, 90.0)));
+        let matched = |id| slot(id, PlotHeight::Fixed(px(195.0, PHONE_MATCH_PX)));
+        let cut = |id| slot(id, PlotHeight::Fixed(px(110.0, PHONE_CUT_PX)));
         let beside_icp = [cut("icp-path"), matched("sweep")];
         let beside_ndt = [cut("ndt-path"), matched("bells")];
         let below_each_other = |slots: &[Slot]| -> Vec<Row> {
@@ -44,9 +48,9 @@ impl View for TerracesView {
                 Row::new(&[map("icp"), map("ndt")]),
                 Row {
                     columns: vec![
-                        column(0.37, vec![cut("icp-path")]),
-                        column(0.37, vec![cut("ndt-path")]),
-                        column(0.26, vec![matched("sweep")]),
+                        column(0.35, vec![cut("icp-path")]),
+                        column(0.35, vec![cut("ndt-path")]),
+                        column(0.30, vec![matched("sweep")]),
                     ],
                 },
             ];
@@ -58,10 +62,9 @@ impl View for TerracesView {
         }
         if narrow {
             // NDT's profile and bells stand with the rest: two screens of a phone hold everything else.
-            let stage = [&[map("icp")], &beside_icp[..], &[map("ndt")]].concat();
             let below = [&beside_ndt[..], &rest, slices.as_flattened()].concat();
             return Arrangement {
-                stage: below_each_other(&stage),
+                stage: below_each_other(&[map("icp"), cut("icp-path")]),
                 below: below_each_other(&below),
             };
         }
@@ -78,6 +81,17 @@ impl View for TerracesView {
         let mut below = below_each_other(&rest);
         below.extend(slices.map(|pair| Row::new(&pair)));
         Arrangement { stage, below }
+    }
+
+    /// On a phone one screen holds ICP's relief, the ground under its ball, and the controls.
+    fn under_control(&self, width: f32) -> Vec<Row> {
+        if width >= PAIRED {
+            return Vec::new();
+        }
+        let sweep = slot("sweep", PlotHeight::Fixed(PHONE_MATCH_PX));
+        let most = PHONE_MAP_PX;
+        let ndt = slot("ndt", PlotHeight::Natural { most });
+        vec![Row::new(&[sweep]), Row::new(&[ndt])]
     }
 }
 

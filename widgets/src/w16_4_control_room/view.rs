@@ -1,4 +1,5 @@
-//! Layout of the panels: the map beside the registration, the lanes over the whole width below.
+//! Layout of the panels: the map beside the registration, or on a phone above it; the lanes over the whole width below
+//! the map.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -12,12 +13,8 @@ impl View for ControlRoomView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let lanes = Slot {
             panel: "lanes",
-            // Three panels below each other have to fit two screens of a phone.
-            height: PlotHeight::Fixed(if width < SIDE_BY_SIDE { 200.0 } else { 220.0 }),
-        };
-        let natural = |panel| Slot {
-            panel,
-            height: PlotHeight::Natural { most: 480.0 },
+            // On a phone the map, the lanes and Play fit one screen.
+            height: PlotHeight::Fixed(if width < SIDE_BY_SIDE { 150.0 } else { 220.0 }),
         };
         let plot = |panel| Slot {
             panel,
@@ -26,22 +23,36 @@ impl View for ControlRoomView {
         if width < SIDE_BY_SIDE {
             let rows = |slots: &[Slot]| slots.iter().map(|slot| Row::new(&[*slot])).collect();
             return Arrangement {
-                stage: rows(&[natural("map"), natural("registration"), lanes]),
+                stage: rows(&[natural("map"), lanes]),
                 below: rows(&[plot("tau"), plot("errors")]),
             };
         }
-        let column = |share, panel| Column {
-            share,
+        let column = |panel| Column {
+            share: 1.0,
             slots: vec![natural(panel)],
         };
         Arrangement {
             stage: vec![
                 Row {
-                    columns: vec![column(3.0, "map"), column(2.0, "registration")],
+                    columns: ["map", "registration"].map(column).to_vec(),
                 },
                 Row::new(&[lanes]),
             ],
             below: vec![Row::new(&[plot("tau"), plot("errors")])],
         }
+    }
+
+    fn under_control(&self, width: f32) -> Vec<Row> {
+        if width >= SIDE_BY_SIDE {
+            return Vec::new();
+        }
+        vec![Row::new(&[natural("registration")])]
+    }
+}
+
+fn natural(panel: &'static str) -> Slot {
+    Slot {
+        panel,
+        height: PlotHeight::Natural { most: 480.0 },
     }
 }

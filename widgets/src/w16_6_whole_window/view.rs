@@ -14,10 +14,14 @@ impl View for WindowView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
         // On a phone the sweeps, the bounds and the control fit one screen without the positions.
-        let most = if width >= SIDE_BY_SIDE { 330.0 } else { 240.0 };
+        let (most, high) = if width >= SIDE_BY_SIDE {
+            (330.0, 150.0)
+        } else {
+            (220.0, 100.0)
+        };
         let sweeps = slot(panel::SWEEPS, PlotHeight::Natural { most });
         let places = slot(panel::PLACES, PlotHeight::Natural { most });
-        let bounds = slot(panel::BOUNDS, PlotHeight::Fixed(150.0));
+        let bounds = slot(panel::BOUNDS, PlotHeight::Fixed(high));
         let gap = slot(panel::GAP, PlotHeight::Fixed(120.0));
         let stage = if width >= SIDE_BY_SIDE {
             let column = |slot| Column {

@@ -128,12 +128,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     let mut legend = vec![
         entry("target", Tone::Measurement, Some(Mark::Cross), None),
         entry("source now", Tone::Posterior, Some(Mark::Square), None),
-        entry(
-            "truth: where it belongs",
-            Tone::Truth,
-            Some(Mark::Plus),
-            Some(Stroke::Dashed),
-        ),
+        entry("truth", Tone::Truth, Some(Mark::Plus), Some(Stroke::Dashed)),
         entry("without a pair", Tone::Series(0), Some(Mark::Circle), None),
     ];
     if iteration > 0 {

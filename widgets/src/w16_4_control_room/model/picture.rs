@@ -61,8 +61,8 @@ fn map(record: &LapRecord, tick: usize, raster: &Raster, world: &World) -> Panel
         title: "Occupancy grid and pose graph".to_owned(),
         weight: Weight::Main,
         aspect: Aspect::Equal,
-        x: Axis::new("x (m)", bounds.min.x, bounds.max.x),
-        y: Axis::new("y (m)", bounds.min.y, bounds.max.y),
+        x: Axis::hidden(bounds.min.x, bounds.max.x),
+        y: Axis::hidden(bounds.min.y, bounds.max.y),
         layers,
         legend: vec![
             LegendEntry::marked_line("truth", Tone::Truth, Mark::Plus, Stroke::Dashed),
@@ -100,8 +100,8 @@ fn registration(record: &LapRecord, tick: usize, view: Option<&RegistrationView>
         title: "Registration of this sweep".to_owned(),
         weight: Weight::Half,
         aspect: Aspect::Equal,
-        x: Axis::new("x (m)", center.x() - CLOSE_UP_M, center.x() + CLOSE_UP_M),
-        y: Axis::new("y (m)", center.y() - CLOSE_UP_M, center.y() + CLOSE_UP_M),
+        x: Axis::hidden(center.x() - CLOSE_UP_M, center.x() + CLOSE_UP_M),
+        y: Axis::hidden(center.y() - CLOSE_UP_M, center.y() + CLOSE_UP_M),
         layers,
         legend: vec![
             LegendEntry::mark("local map", Tone::Prior, Mark::Circle),

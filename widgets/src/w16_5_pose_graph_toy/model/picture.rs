@@ -62,12 +62,7 @@ fn graph(toy: &PoseGraphToy) -> Panel {
             EdgeKind::Loop => bow_m(toy.values.get(&STIFFNESS)),
         };
         let points = spring([from.x(), from.y()], [to.x(), to.y()], bow_m);
-        costs.push(Layer::Label {
-            at: points[points.len() / 2],
-            text: short(*chi2),
-            tone: tone(edge),
-            clear_px: 10.0,
-        });
+        costs.push(Layer::label(points[points.len() / 2], short(*chi2), 10.0));
         layers.push(Layer::Line {
             points,
             stroke: Stroke::Solid,
@@ -273,13 +268,10 @@ fn bars(toy: &PoseGraphToy) -> Panel {
     }
 }
 
-/// A number with at most four characters.
+/// A number with at most five characters: as many decimals as the title has, if there is room.
 fn short(value: f64) -> String {
-    if value < 10.0 {
-        format!("{value:.2}")
-    } else {
-        format!("{value:.0}")
-    }
+    let decimals = if value < 10.0 { 3 } else { 1 };
+    format!("{value:.decimals$}")
 }
 
 fn steps(toy: &PoseGraphToy) -> Panel {

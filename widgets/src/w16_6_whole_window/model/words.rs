@@ -71,8 +71,8 @@ pub fn outcome(window: &WholeWindow) -> Outcome {
     );
     let work = format!(
         "The search makes {} sums over the points in place of {}",
-        counts.scored(),
-        counts.window
+        grouped(counts.scored()),
+        grouped(counts.window)
     );
     let result = window.search_task.window.result();
     let answer = match (&window.search_task.found, window.refined(), &result) {
@@ -249,6 +249,15 @@ pub fn now(window: &WholeWindow) -> String {
 pub fn heading_error_deg(window: &WholeWindow, heading_rad: f64) -> f64 {
     let turn = SE2::new(0.0, 0.0, heading_rad - window.scene.truth().theta());
     turn.theta().to_degrees()
+}
+
+/// A whole number in groups of three digits: `1,652,124`.
+pub fn grouped(number: u64) -> String {
+    let (rest, group) = (number / 1000, number % 1000);
+    if rest == 0 {
+        return group.to_string();
+    }
+    format!("{},{group:03}", grouped(rest))
 }
 
 fn ending(end: &BasinOutcome) -> String {

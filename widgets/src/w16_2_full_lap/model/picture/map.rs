@@ -75,13 +75,13 @@ fn title(moment: &Moment) -> String {
     let mut words = moment.runs.place_label().to_owned();
     words[..1].make_ascii_uppercase();
     let words = format!("{words} after tick {}", moment.tick);
-    let (moved, name) = match (moment.own, moment.attempt) {
-        (Some(own), _) => (own.attempt.effect, "your loop"),
-        (None, Some(attempt)) => (attempt.effect, "the loop"),
-        (None, None) => (None, ""),
-    };
+    let own = moment.own.map(|own| own.attempt.effect);
+    let moved = own
+        .or(moment.attempt.map(|attempt| attempt.effect))
+        .flatten();
+    // One line on a phone, so that nothing moves as a loop is closed.
     match moved {
-        Some(moved) => format!("{words}: {name} moves it by {:.2} m", moved.max_shift_m),
+        Some(moved) => format!("{words}: moved by {:.2} m", moved.max_shift_m),
         None => words,
     }
 }

@@ -12,6 +12,10 @@ const COLUMN_PX: f32 = 4.0;
 /// Part of the axis of heights above the highest ground: room for the ball and the words.
 const SKY: f64 = 0.3;
 
+/// Steps in which the axes grow: they stay during most of a drag.
+const AXIS_STEP_M: f64 = 0.65;
+const AXIS_STEP_PERCENT: f64 = 25.0;
+
 /// ICP's cost under its ball.
 pub fn icp(landscape: &Landscape, moment: Moment) -> Panel {
     profile("icp-path", "ICP", landscape, moment)
@@ -32,16 +36,21 @@ fn profile(id: &'static str, name: &str, landscape: &Landscape, moment: Moment) 
     let length_m = ground[ground.len() - 1][0];
     // A profile is as high as its ground: on a plain near 100 % the steps are low.
     let highest = ground.iter().map(|at| at[1]).fold(1.0, f64::max);
+    let [far, high] = [
+        (1.04 * length_m.max(0.05), AXIS_STEP_M),
+        (highest, AXIS_STEP_PERCENT),
+    ]
+    .map(|(end, step)| step * (end / step).ceil());
     let step = moment.step.min(landscape.ball.steps());
-    let sky = SKY * highest;
+    let sky = SKY * high;
     let flag = [[length_m, 0.0], [length_m, highest + 0.5 * sky]];
     let title = if !landscape.ball.is_home() && step == landscape.ball.steps() {
         format!(
-            "{name}: the ball stops {:.2} m before the truth",
+            "{name} stops {:.2} m from the truth",
             landscape.ball.rest_distance_m()
         )
     } else {
-        format!("{name}: the ground from the drop to the truth")
+        format!("{name}: the ground to the truth")
     };
     let mut layers = vec![
         Layer::segments(columns(&ground), Stroke::Solid, Tone::Faint, COLUMN_PX),
@@ -60,8 +69,8 @@ fn profile(id: &'static str, name: &str, landscape: &Landscape, moment: Moment) 
         title,
         weight: Weight::Side,
         aspect: Aspect::Free,
-        x: Axis::new("distance from the drop (m)", 0.0, 1.04 * length_m.max(0.05)),
-        y: Axis::new("height (% of the highest)", 0.0, highest + sky),
+        x: Axis::new("distance from the drop (m)", 0.0, far),
+        y: Axis::new("height (% of the highest)", 0.0, high + sky),
         layers,
         legend: Vec::new(),
         color_bar: None,

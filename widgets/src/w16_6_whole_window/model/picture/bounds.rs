@@ -4,7 +4,7 @@ use ch16_lab::whole_window::SeenBox;
 use ch16_slam2d::search::{BoxFate, PoseBox};
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Panel, Stroke, Tone, Weight};
 
-use super::super::words::heading_error_deg;
+use super::super::words::{grouped, heading_error_deg};
 use super::super::{LookedAt, WholeWindow, panel};
 
 /// Largest number of points of the gap's lines.
@@ -71,15 +71,6 @@ pub fn panel(window: &WholeWindow) -> Panel {
         ],
         color_bar: None,
     }
-}
-
-/// A whole number in groups of three digits: `1,652,124`.
-fn grouped(number: u64) -> String {
-    let (rest, group) = (number / 1000, number % 1000);
-    if rest == 0 {
-        return group.to_string();
-    }
-    format!("{},{group:03}", grouped(rest))
 }
 
 /// A box as a bar over its headings, at least one step wide.
