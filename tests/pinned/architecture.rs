@@ -170,7 +170,7 @@ fn data_flows_one_way() {
             let may_browse = path.starts_with("web") || path.starts_with("tests/");
             assert!(
                 !is_browser || may_browse,
-                "{path} knows the browser by {used}"
+                "{path} depends on the browser through {used}"
             );
             assert!(
                 used != "libm" || package.name == "pr_geom",
