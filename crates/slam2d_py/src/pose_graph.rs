@@ -96,11 +96,11 @@ impl PoseGraph {
     fn read(bytes: &[u8], name: &str) -> PyResult<Self> {
         let file = GraphFile::read(bytes, name);
         let file = file.map_err(|error| GraphError::new_err(error.to_string()))?;
-        Ok(Self::of_file(&file))
+        Ok(Self::from_file(&file))
     }
 
     /// The graph of a file that was read or written by the core: every end of an edge is a node.
-    pub fn of_file(file: &GraphFile) -> Self {
+    pub fn from_file(file: &GraphFile) -> Self {
         let ids: Vec<i64> = file.nodes.iter().map(|node| node.id).collect();
         let mut problem = Problem::new();
         for GraphNode { pose, fixed, .. } in &file.nodes {
@@ -184,7 +184,7 @@ fn py_error(error: pr_optim::OptimizeError) -> PyErr {
 impl PoseGraph {
     #[new]
     fn new() -> Self {
-        Self::of_file(&GraphFile::default())
+        Self::from_file(&GraphFile::default())
     }
 
     /// Reads a file of g2o, TORO or JSON; the content decides the format.

@@ -186,7 +186,7 @@ impl Pipeline {
             covariances: arrays::of_matrices(py, &found.covariances)?.unbind(),
             map: map.transpose()?,
             quality: arrays::of_serde(py, &found.quality)?.unbind(),
-            graph: Py::new(py, PoseGraph::of_file(&graph))?,
+            graph: Py::new(py, PoseGraph::from_file(&graph))?,
             remarks: found.remarks,
         })
     }
@@ -216,7 +216,7 @@ impl Pipeline {
             match reader.next_frame() {
                 Ok(Some(frame)) => {
                     if let Some(report) = run.step(frame.clone()) {
-                        recorder.take(&frame, &report);
+                        recorder.add(&frame, &report);
                     }
                 }
                 Ok(None) => break,

@@ -280,7 +280,7 @@ impl Slam {
     fn graph(&self) -> PoseGraph {
         let estimator = self.lock();
         let graph = estimator.slam().map(|slam| slam.graph());
-        PoseGraph::of_file(&graph.map(GraphFile::from_pose_graph).unwrap_or_default())
+        PoseGraph::from_file(&graph.map(GraphFile::from_pose_graph).unwrap_or_default())
     }
 
     fn __repr__(&self) -> String {

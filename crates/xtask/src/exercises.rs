@@ -287,7 +287,11 @@ fn all_tests(features: &str, lints: Lints) -> anyhow::Result<Command> {
             "exercises",
             "--no-fail-fast",
         ])
-        .args(EXCLUDED_PACKAGES.iter().flat_map(|package| ["--exclude", package]))
+        .args(
+            EXCLUDED_PACKAGES
+                .iter()
+                .flat_map(|package| ["--exclude", package]),
+        )
         .args(["--features", features])
         .env("RUST_BACKTRACE", "0");
     Ok(tests)

@@ -66,7 +66,11 @@ fn answer(mut stream: TcpStream, folder: &Path) -> io::Result<()> {
         _ => None,
     };
     let read = file.and_then(|path| {
-        let cache = if has_hash(&path) { IMMUTABLE } else { REVALIDATE };
+        let cache = if has_hash(&path) {
+            IMMUTABLE
+        } else {
+            REVALIDATE
+        };
         Some((fs::read(&path).ok()?, content_type(&path), cache))
     });
     let (status, (mut body, kind, cache)) = match read {
