@@ -2,7 +2,7 @@
 
 A pose is an array (x, y, θ) of shape (3,), in m, m, rad; poses are of shape (n, 3), points of shape (n, 2), m.
 Covariances and informations have the order x, y, θ and belong to perturbations on the right of a pose.
-`help(rustslam2d.icp)` and the like say what each argument does.
+`help(rustslam2d.icp)` and the like describe each argument.
 """
 
 from collections.abc import Callable

@@ -1,6 +1,6 @@
 //! 4. Gauss–Newton on a pose graph, with a dense matrix.
 //!
-//! **Task.** Move all nodes but the fixed one so that the sum of the weighted squared residuals is least. Use
+//! **Task.** Move all nodes except the fixed one to minimize the weighted sum of squared residuals. Use
 //! `crate::residual` and `crate::jacobians` of exercise 3.
 //!
 //! **Formula.** For n nodes H is 3n × 3n. Every edge (i, j) adds, with its Ω, its e and its Jacobians Jᵢ, Jⱼ,
@@ -10,10 +10,10 @@
 //! H[a, b] += Jₐᵀ w Ω J_b        g[a] += Jₐᵀ w Ω e        a, b ∈ {i, j}
 //! ```
 //!
-//! Rows and columns of the fixed node are zero but for a unit diagonal, and 1e-9 is added to the whole diagonal. Solve
+//! Rows and columns of the fixed node are zero except for a unit diagonal, and 1e-9 is added to the whole diagonal. Solve
 //! `H x = −g` by Cholesky, and move every node: `T ← T exp(x)`.
 //!
-//! **What the types offer.** `graph.fixed` is the held node. `graph.graph` is petgraph's:
+//! **What the types offer.** `graph.fixed` is the fixed node. `graph.graph` is petgraph's:
 //! `graph.graph.edge_references()` with `petgraph::visit::EdgeRef` has `source()`, `target()` and `weight()`, a
 //! `PoseEdge`, and `graph.graph[node]` is a pose that can be set. `nalgebra::DMatrix` has `fixed_view_mut::<3, 3>`.
 

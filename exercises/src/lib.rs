@@ -1,6 +1,6 @@
 //! The exercises in code: each module is one, with its task, its formula and a function to write.
 //!
-//! `exercises/README.md` says how to work on them.
+//! `exercises/README.md` describes how to work on them.
 
 // A stub uses none of its arguments.
 #![allow(unused_variables)]
@@ -26,7 +26,7 @@ pub use {
     verify_loop::verify_loop,
 };
 
-/// Ends the test or the lap that needs an exercise which is still to be written, with its name and file.
+/// Ends a test or lap that needs an unwritten exercise; the message has its name and file.
 ///
 /// # Panics
 /// Always.

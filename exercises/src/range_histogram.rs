@@ -1,16 +1,16 @@
-//! 7. Places by how far one sees (exercise 7 of the page).
+//! 7. Place recognition by range histograms (exercise 7 of the page).
 //!
-//! **Task.** A search around the estimated pose needs the very pose that is wrong. Propose loops by what the sweeps
-//! look like instead: a histogram of ranges does not change if the robot turns.
+//! **Task.** A search around the estimated pose fails if that pose is wrong. Propose loops by the appearance of the
+//! sweeps instead: a histogram of ranges does not change if the robot turns.
 //!
-//! **Formula.** 64 bins of equal width from 0 to `max_range`; what lies beyond counts in the last one. The histogram
+//! **Formula.** 64 bins of equal width from 0 to `max_range`; longer ranges count in the last one. The histogram
 //! holds shares: they sum to 1, or to 0 if there are no points. The χ² distance of two of them is
 //!
 //! ```text
 //! ½ Σ (aᵢ − bᵢ)² / (aᵢ + bᵢ)        over the bins in which one of them has a share
 //! ```
 //!
-//! It is 0 for equals, and 1 if no bin is shared.
+//! It is 0 for equal histograms, and 1 if they share no bin.
 
 use ch16_slam2d::listings::PointCloud;
 
@@ -29,10 +29,10 @@ pub fn chi2_distance(a: &[f64; BINS], b: &[f64; BINS]) -> f64 {
     crate::not_written("range_histogram")
 }
 
-/// The nodes that look like `node`: at least `min_gap` older, no farther than `max_distance`, the most alike first, and
-/// of equals the older first.
+/// The nodes with scans similar to that of `node`: at least `min_gap` older, no farther than `max_distance`, the most similar
+/// first, and among equals the older first.
 ///
-/// `sweeps[k]` is the sweep of node k in its own frame, `max_range` (m) what the sensor sees.
+/// `sweeps[k]` is the sweep of node k in its own frame, `max_range` (m) the range of the sensor.
 #[must_use]
 pub fn detect_by_histogram(
     sweeps: &[PointCloud],

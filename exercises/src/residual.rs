@@ -1,4 +1,4 @@
-//! 3. By how much two poses contradict a measurement, and the derivatives of that.
+//! 3. The residual of an edge, and its Jacobians.
 //!
 //! **Task.** An edge of the graph measured Z, the pose of node j in the frame of node i. Write the residual, and its
 //! Jacobians for perturbations on the right, `T ⊞ δ = T exp(δ)`, translation first.
@@ -10,7 +10,7 @@
 //! ∂e/∂δⱼ ≈ I        ∂e/∂δᵢ ≈ −Ad(Z⁻¹)
 //! ```
 //!
-//! Both leave out the inverse of the right Jacobian of e. They are exact if e is zero, and near enough otherwise: a
+//! Both leave out the inverse of the right Jacobian of e. They are exact if e is zero, and otherwise close enough: a
 //! wrong Jacobian costs iterations, a wrong residual costs correctness (exercise 3 of the page).
 
 use ch16_slam2d::listings::SE2;

@@ -1,6 +1,6 @@
 //! 6. ICP that drops the longest pairs (exercise 6 of the page).
 //!
-//! **Task.** A box that was moved between two sweeps has pairs, and all of them are wrong. Write ICP with
+//! **Task.** All pairs on a box that was moved between two sweeps are outliers. Write ICP with
 //! `cfg.trim`, the share of the pairs to drop, the longest first (Chetverikov et al. 2002). Use `crate::svd_align` and
 //! `crate::point_to_plane_step` of exercises 1 and 2.
 //!
@@ -16,8 +16,8 @@
 //!     stop if increment.step_size() < tolerance
 //! ```
 //!
-//! **Rules.** Pairs as long as the last that is kept may stay with it. `trace` holds the guess and the pose after each
-//! increment; `inliers` and `rmse` are of the last pairs. The rmse is of what the variant reduces: distances, or
+//! **Rules.** Pairs exactly as long as the last one kept may also stay. `trace` holds the guess and the pose after each
+//! increment; `inliers` and `rmse` are of the last pairs. The rmse is that of the residual that the variant minimizes: distances, or
 //! `n · (p − q)` for point to plane if the pair has a normal. Without pairs it is infinite.
 
 use ch16_slam2d::listings::{IcpConfig, IcpResult, PointCloud, SE2, VoxelMap};

@@ -1,9 +1,9 @@
-//! 5. Whether a loop is to be believed.
+//! 5. The verification of a loop candidate.
 //!
-//! **Task.** The detector says that `node` might see what `candidate` saw. Register the sweep of the one on the submap
-//! around the other, and accept the loop if both tests pass: it fits, and the odometry could have drifted so far.
+//! **Task.** A detector proposes that `node` revisits `candidate`. Register the sweep of `node` on the submap around
+//! `candidate`, and accept the loop if both tests pass: it fits, and its innovation is within the drift of the odometry.
 //!
-//! **Formula.** The registration starts at the belief of the graph, and the gate tests against it:
+//! **Formula.** The registration starts at the pose predicted by the graph, and the gate tests against that:
 //!
 //! ```text
 //! T₀ = T_candidate⁻¹ T_node        T̂ = icp(sweep, submap, T₀)
@@ -16,8 +16,8 @@
 //! The edge measures T̂. Its information is `regularize(icp_information(pairs, σ, inflate), 1.0, 2500.0)` with the
 //! pairs of `associate` at T̂ and `(σ, inflate) = cfg.trust`.
 //!
-//! **Rules.** ICP is point to point, τ = max(cfg.radius/2, 0.6), at most 30 iterations, and else the default. The
-//! listings have what is not the task: `submap`, `icp`, `associate`, `icp_information`, `regularize`.
+//! **Rules.** ICP is point to point, τ = max(cfg.radius/2, 0.6), at most 30 iterations, otherwise the default. The
+//! listings provide the rest: `submap`, `icp`, `associate`, `icp_information`, `regularize`.
 
 use ch16_slam2d::listings::{LoopConfig, PointCloud, PoseGraph, VerifiedLoop};
 use petgraph::graph::NodeIndex;

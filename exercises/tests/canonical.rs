@@ -1,4 +1,4 @@
-//! The chapter's lap, seed 0xC0FFEE, as the listings have it; and how two poses are compared.
+//! The chapter's lap, seed 0xC0FFEE, in the types of the listings, and the comparison of two poses.
 
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner};
 use ch16_slam2d::cloud;
@@ -17,7 +17,7 @@ pub fn sweeps(record: &LapRecord) -> Vec<PointCloud> {
         .collect()
 }
 
-/// A cloud of the core as the listings have it.
+/// A cloud of the core as a cloud of the listings.
 pub fn listing(cloud: &cloud::PointCloud) -> PointCloud {
     PointCloud {
         points: cloud.iter().collect(),

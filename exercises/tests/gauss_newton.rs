@@ -21,7 +21,7 @@ fn edge(z: SE2, omega: Matrix3<f64>) -> PoseEdge {
     }
 }
 
-/// The chapter's worked example: χ² falls from 0.36 to 0.12, and each edge takes a third of the contradiction.
+/// The chapter's worked example: χ² falls from 0.36 to 0.12, and each edge takes a third of the error.
 #[test]
 fn a_loop_error_spreads_evenly_around_the_cycle() {
     let mut chain = PoseGraph::new(at(0.0));
@@ -32,7 +32,10 @@ fn a_loop_error_spreads_evenly_around_the_cycle() {
     chain.add_edge(first, third, edge(at(2.6), Matrix3::identity()));
     assert!((chain.chi2() - 0.36).abs() < 1e-12);
     let steps = optimize(&mut chain, 10, 1e-6, f64::INFINITY);
-    assert_eq!(steps, 2, "it is linear: one step, and one that says so");
+    assert_eq!(
+        steps, 2,
+        "it is linear: one step, and one to confirm convergence"
+    );
     // 1e-8: 1e-9 is added to the diagonal.
     assert!((chain.chi2() - 0.12).abs() < 1e-8, "{}", chain.chi2());
     assert_same_pose(chain.pose(second), at(1.2), 1e-8);

@@ -1,4 +1,4 @@
-//! 7. Places by their looks.
+//! 7. Place recognition by range histograms.
 
 use ch16_lab::lap::{Lap, LapConfig};
 use ch16_slam2d::listings::{PointCloud, SE2};
@@ -43,7 +43,7 @@ fn a_turn_changes_nothing_and_a_return_beyond_the_last_bin_counts_in_it() {
     assert_eq!(range_histogram(&seen(&[]), 6.0), [0.0; 64]);
 }
 
-/// At the default, 0.15, no two places of the lap are alike enough.
+/// At the default, 0.15, no two places of the lap are similar enough.
 const MAX_DISTANCE: f64 = 0.3;
 
 /// The core's detector on the chapter's lap without loops.

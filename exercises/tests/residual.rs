@@ -1,4 +1,4 @@
-//! 3. What an edge says of two poses.
+//! 3. The residual of an edge and its Jacobians.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -12,7 +12,7 @@ fn random_pose(rng: &mut Rng) -> SE2 {
     SE2::new(at, rng.uniform(-3.0, 3.0))
 }
 
-/// The chapter's worked example: the poses say 2 m, the loop says 2.6 m.
+/// The chapter's worked example: 2 m by the poses, 2.6 m by the loop.
 #[test]
 fn a_loop_that_says_more_than_the_poses_has_a_negative_error() {
     let at = |x: f64| SE2::new(Vector2::new(x, 0.0), 0.0);

@@ -8,7 +8,7 @@ use pr_geom::Rng;
 
 use crate::canonical::assert_same_pose;
 
-/// Twelve random pairs: nothing fits them well.
+/// Twelve random pairs: no motion fits them well.
 fn random_pairs(seed: u32) -> [Vec<Point2<f64>>; 2] {
     let mut rng = Rng::new(seed);
     let mut point = |_| Point2::new(rng.uniform(-3.0, 3.0), rng.uniform(-3.0, 3.0));
@@ -53,7 +53,7 @@ fn no_motion_nearby_costs_less() {
     }
 }
 
-/// Mirrored points: without the sign of the determinant the answer would be read off a reflection.
+/// Mirrored points: without the sign of the determinant the result would be a reflection.
 #[test]
 fn mirrored_points_give_the_best_rotation() {
     let src = [[2.0, 0.1], [-2.0, -0.1], [0.3, 1.0], [-0.3, -1.0]].map(Point2::from);

@@ -1,4 +1,4 @@
-//! 6. ICP, and the box that moved.
+//! 6. ICP with trimming, and the box that moved.
 
 use ch16_lab::basin::BasinScene;
 use ch16_lab::moving_box::{BoxConfig, BoxMethods, BoxScene};

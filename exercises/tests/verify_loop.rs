@@ -38,7 +38,7 @@ fn the_three_loops_of_the_lap_have_the_numbers_of_the_reference() {
         let graph = nodes_before_loop(&record, attempt.tick);
         let (node, old) = (NodeIndex::new(event.from), NodeIndex::new(event.to));
         let found = verify_loop(&graph, &sweeps, node, old, &LoopConfig::default());
-        // 1e-6: a whole lap lies before it.
+        // 1e-6: rounding accumulates over a whole lap.
         assert_close("χ²", found.chi2, event.chi2, 1e-6);
         assert_close("rmse", found.rmse, event.rmse, 1e-6);
         assert_eq!(found.inliers, event.inliers);
@@ -77,7 +77,7 @@ fn a_belief_that_is_far_off_fails_the_gate_and_nothing_else() {
     let right = first.verify(&LoopConfig::default());
     first.graph.graph[first.node] = first.graph.pose(first.node) * SE2::new(Vector2::zeros(), 0.2);
     let off = first.verify(&LoopConfig::default());
-    // It fits: registration turns the sweep back.
+    // It fits: registration corrects the rotation.
     assert!(off.rmse <= 0.16 && off.inliers >= 25, "{off:?}");
     assert!(off.chi2 > 7.815 && !off.accepted, "{off:?}");
     let apart = right.edge.z.inverse() * off.edge.z;

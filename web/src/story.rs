@@ -85,26 +85,26 @@ mod tests {
 
     #[test]
     fn the_story_has_a_pose_of_each_kind_for_every_tick_and_the_loops_of_the_lap() {
-        let told = story(CANONICAL_SEED, 1.0);
+        let lap = story(CANONICAL_SEED, 1.0);
         let record = LapRunner::new().run(&LapConfig::default());
-        let ticks = told["ticks"].as_array().unwrap();
+        let ticks = lap["ticks"].as_array().unwrap();
         assert_eq!(ticks.len(), record.ticks() + 1);
         // 5.1e-5: half of the last digit, and the rounding of the decimal number itself.
-        let is_near = |told: &Value, value: f64| (told.as_f64().unwrap() - value).abs() < 5.1e-5;
+        let is_near = |lap: &Value, value: f64| (lap.as_f64().unwrap() - value).abs() < 5.1e-5;
         for (tick, report) in ticks[1..].iter().zip(&record.lap.reports) {
             assert!(is_near(&tick["wheels"][0], report.dead_reckoning.x()));
             assert!(is_near(&tick["estimate"][1], report.estimate.y()));
         }
-        let loops = told["loops"].as_array().unwrap();
+        let loops = lap["loops"].as_array().unwrap();
         assert_eq!(loops.len(), record.lap.summary.loops);
-        assert_eq!(loops.len() + 1, told["epochs"].as_array().unwrap().len());
+        assert_eq!(loops.len() + 1, lap["epochs"].as_array().unwrap().len());
         assert!(is_near(&loops[0]["shift"], 0.2389));
     }
 
     #[test]
     fn two_numbers_of_a_sweep_are_a_point() {
-        let told = story(CANONICAL_SEED, 1.0);
-        for tick in told["ticks"].as_array().unwrap() {
+        let lap = story(CANONICAL_SEED, 1.0);
+        for tick in lap["ticks"].as_array().unwrap() {
             let numbers = tick["sweep"].as_array().unwrap().len();
             assert!(numbers > 60 && numbers % 2 == 0);
         }

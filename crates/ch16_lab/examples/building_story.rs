@@ -7,6 +7,6 @@
 use ch16_lab::buildings::BuildingStory;
 
 fn main() -> Result<(), serde_json::Error> {
-    println!("{}", serde_json::to_string(&BuildingStory::of_page())?);
+    println!("{}", serde_json::to_string(&BuildingStory::for_page())?);
     Ok(())
 }

@@ -56,7 +56,7 @@ impl Column {
 
     /// The column of an incremental method.
     #[must_use]
-    pub fn of_incremental(kind: IncrementalKind) -> Self {
+    pub fn from_incremental(kind: IncrementalKind) -> Self {
         match kind {
             IncrementalKind::MaximumLikelihood => Self::MaximumLikelihood,
             IncrementalKind::WithCycles => Self::MaximumLikelihoodCycles,

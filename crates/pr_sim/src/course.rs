@@ -30,7 +30,7 @@ pub mod limits {
     /// The same in centimetres.
     pub const COORDINATE_CM: u32 = 10_000;
     /// Largest path length, m.
-    pub const WAY_M: f64 = 200.0;
+    pub const PATH_LENGTH_M: f64 = 200.0;
 }
 
 /// Least distance between the path and a wall, m.
@@ -221,10 +221,10 @@ impl Course {
             }
             length_m += math::norm2(to_point.x - from_point.x, to_point.y - from_point.y);
         }
-        if length_m > limits::WAY_M {
+        if length_m > limits::PATH_LENGTH_M {
             return Err(CourseError::TooLong {
                 length_m,
-                limit_m: limits::WAY_M,
+                limit_m: limits::PATH_LENGTH_M,
             });
         }
         Ok(())

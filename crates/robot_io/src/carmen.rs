@@ -56,7 +56,7 @@ impl LineFormat for Carmen {
     const NO_SCANS: &'static str =
         "no line starts with FLASER, ROBOTLASER1 or RAWLASER1; record the laser as well";
 
-    fn take_line(
+    fn read_line(
         &mut self,
         line: &[u8],
         frames: usize,
@@ -83,7 +83,7 @@ impl LineFormat for Carmen {
                 let mut other = FrontLaser::default();
                 let is_read = matches!(self.chosen, None | Some(Source::Flaser));
                 let front = if is_read { &mut self.front } else { &mut other };
-                front.take(&mut fields, frames)?;
+                front.add_scan(&mut fields, frames)?;
                 count();
                 self.choose(Source::Flaser);
                 Ok(None)
@@ -107,12 +107,12 @@ impl LineFormat for Carmen {
                 let scans = frames + self.raw.waiting();
                 let (stamp_s, pose) = odometry_message(&mut fields, scans)?;
                 count();
-                self.raw.take_odometry(stamp_s, pose);
+                self.raw.add_odometry(stamp_s, pose);
                 Ok(None)
             }
             "PARAM" => {
                 count();
-                self.front.take_parameter(&mut fields);
+                self.front.read_parameter(&mut fields);
                 Ok(None)
             }
             _ => {

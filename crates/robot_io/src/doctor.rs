@@ -76,9 +76,9 @@ pub struct Checkup {
 }
 
 impl Checkup {
-    /// Takes the next frame.
-    pub fn take(&mut self, frame: &LogFrame) {
-        self.info.take(frame);
+    /// Adds the next frame.
+    pub fn add(&mut self, frame: &LogFrame) {
+        self.info.add(frame);
         let scan = &frame.scan;
         self.beams += scan.ranges_m.len();
         self.valid += scan
@@ -166,11 +166,11 @@ fn file_remark(notes: &LogNotes) -> Remark {
         ended_early: notes.ended_early.clone(),
         ..LogNotes::default()
     };
-    let said = plain.sentences("the file").join("; ");
-    match (said.is_empty(), notes.ended_early.is_some()) {
+    let sentences = plain.sentences("the file").join("; ");
+    match (sentences.is_empty(), notes.ended_early.is_some()) {
         (true, _) => Remark::good(Part::File, format!("all {records} records were read")),
-        (false, false) => Remark::mended(Part::File, said),
-        (false, true) => Remark::wrong(Part::File, said),
+        (false, false) => Remark::mended(Part::File, sentences),
+        (false, true) => Remark::wrong(Part::File, sentences),
     }
 }
 
@@ -314,7 +314,7 @@ mod tests {
     fn each_part_has_a_sign_and_a_sentence_and_the_worst_stands_on_top() {
         let mut checkup = Checkup::default();
         for number in 0..3 {
-            checkup.take(&LogFrame {
+            checkup.add(&LogFrame {
                 stamp_s: f64::from(number),
                 odometry: Some(SE2::translation(f64::from(number), 0.0)),
                 scan: LaserScan {

@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     fn what_is_no_graph_is_named_with_its_line() {
-        for (text, said) in [
+        for (text, expected) in [
             (
                 "VERTEX2 1 0 0\n",
                 "x: line 1: VERTEX_SE2 needs 4 numbers, found 3",
@@ -282,7 +282,7 @@ mod tests {
             let error = GraphFile::read(text.as_bytes(), "x")
                 .unwrap_err()
                 .to_string();
-            assert!(error.starts_with(said), "{error}");
+            assert!(error.starts_with(expected), "{error}");
         }
     }
 }

@@ -42,8 +42,8 @@ pub struct LogInfo {
 }
 
 impl LogInfo {
-    /// Takes the next frame.
-    pub fn take(&mut self, frame: &LogFrame) {
+    /// Adds the next frame.
+    pub fn add(&mut self, frame: &LogFrame) {
         let beams = frame.scan.ranges_m.len();
         if self.scans == 0 {
             self.fewest_beams = beams;
@@ -105,7 +105,7 @@ mod tests {
     fn a_log_is_counted_frame_by_frame() {
         let mut info = LogInfo::default();
         for (stamp_s, x, range_m) in [(10.0, 0.0, 2.0), (11.0, 0.5, 0.0), (10.5, 1.0, 3.0)] {
-            info.take(&LogFrame {
+            info.add(&LogFrame {
                 stamp_s,
                 odometry: Some(SE2::translation(x, 0.0)),
                 scan: LaserScan {

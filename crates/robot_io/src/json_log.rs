@@ -133,7 +133,7 @@ pub struct JsonLines;
 impl LineFormat for JsonLines {
     const NO_SCANS: &'static str = "no line is a frame with ranges_m";
 
-    fn take_line(
+    fn read_line(
         &mut self,
         line: &[u8],
         _frames: usize,
@@ -208,8 +208,11 @@ mod tests {
         bytes.extend_from_slice(b"{\"stamp");
         let mut reader = JsonLogReader::new(&bytes[..], "x.jsonl");
         while reader.next_frame().unwrap().is_some() {}
-        let said = reader.notes().sentences("x.jsonl").join(" ");
-        assert!(said.contains("the first is line 1"), "{said}");
-        assert!(said.contains("the last line, 3, is incomplete"), "{said}");
+        let sentences = reader.notes().sentences("x.jsonl").join(" ");
+        assert!(sentences.contains("the first is line 1"), "{sentences}");
+        assert!(
+            sentences.contains("the last line, 3, is incomplete"),
+            "{sentences}"
+        );
     }
 }

@@ -18,7 +18,7 @@ pub trait LineFormat: Default {
     ///
     /// # Errors
     /// If the line is malformed: what was expected and what was found.
-    fn take_line(
+    fn read_line(
         &mut self,
         line: &[u8],
         frames: usize,
@@ -120,7 +120,7 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
                 Err("a line must be shorter than 4 MB".to_owned())
             } else {
                 self.format
-                    .take_line(&self.line, self.frames, &mut self.notes)
+                    .read_line(&self.line, self.frames, &mut self.notes)
             };
             match taken {
                 Ok(Some(frame)) => {

@@ -76,9 +76,9 @@ pub fn name(text: &str) -> String {
 
 /// The JSON reader's message without its own position; bounded because it may quote the text.
 pub fn json_words(problem: &serde_json::Error) -> String {
-    let said = problem.to_string();
-    let end = said.find(" at line ").unwrap_or(said.len());
-    clipped(&said[..end], 200)
+    let text = problem.to_string();
+    let end = text.find(" at line ").unwrap_or(text.len());
+    clipped(&text[..end], 200)
 }
 
 /// Joins names up to a readable length.
@@ -169,12 +169,12 @@ mod tests {
     #[test]
     fn numbers_that_are_none_are_named() {
         assert_eq!(finite(Some("1.5"), "x"), Ok(1.5));
-        for (field, said) in [
+        for (field, expected) in [
             (Some("nan"), "x must be a finite number, not ‘nan’"),
             (Some("1,5"), "x must be a finite number, not ‘1,5’"),
             (None, "x is missing"),
         ] {
-            assert_eq!(finite(field, "x").unwrap_err(), said);
+            assert_eq!(finite(field, "x").unwrap_err(), expected);
         }
     }
 }

@@ -34,9 +34,9 @@ impl LocalizeRun {
         start: StartPose,
     ) -> Result<Self, SearchError> {
         let config = LocalizeConfig::default();
-        let keyframes = session.driven.keyframes.clone();
+        let keyframes = session.snapshot.keyframes.clone();
         let map = Arc::new(KnownMap::new(keyframes, session.poses(), &config)?);
-        let slam = session.driven.config.clone();
+        let slam = session.snapshot.config.clone();
         Ok(Self {
             localizer: Localizer::new(map, slam, config, start),
             odometry_use,

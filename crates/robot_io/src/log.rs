@@ -147,7 +147,7 @@ impl LogNotes {
     /// Sentences for the user, without those about the choices.
     #[must_use]
     pub fn sentences(&self, name: &str) -> Vec<String> {
-        let mut said = Vec::new();
+        let mut sentences = Vec::new();
         if let Some(first) = &self.first_broken {
             let thing = match first.position {
                 FilePosition::Line(_) => "line",
@@ -164,13 +164,13 @@ impl LogNotes {
             } else {
                 "ends at"
             };
-            said.push(format!(
+            sentences.push(format!(
                 "{name}: {count}; the first {at} {}: {}{rest}",
                 first.position, first.problem
             ));
         }
         if let Some(last) = &self.truncated {
-            said.push(match last.position {
+            sentences.push(match last.position {
                 FilePosition::Line(line) => format!(
                     "{name}: the last line, {line}, is incomplete and was skipped: {}",
                     last.problem
@@ -182,8 +182,8 @@ impl LogNotes {
             });
         }
         let warnings = self.warnings.iter();
-        said.extend(warnings.map(|warning| format!("{name}: {}", warning.text)));
-        said
+        sentences.extend(warnings.map(|warning| format!("{name}: {}", warning.text)));
+        sentences
     }
 
     pub(crate) fn skip(&mut self, position: FilePosition, problem: String) {

@@ -239,7 +239,7 @@ mod tests {
 
     #[test]
     fn empty_and_foreign_files_are_refused_in_one_sentence() {
-        for (bytes, said) in [
+        for (bytes, expected) in [
             (&b""[..], "x.log is empty; give a recorded log"),
             (
                 b"\x1f\x8b\x08",
@@ -279,7 +279,7 @@ mod tests {
             ),
         ] {
             let opened = LogFormat::open(bytes, "x.log", &LogOptions::default());
-            assert_eq!(opened.err().unwrap().to_string(), said);
+            assert_eq!(opened.err().unwrap().to_string(), expected);
         }
     }
 }

@@ -66,7 +66,7 @@ impl Comparison {
         }
     }
 
-    fn take(&mut self, log: &LogFrame) {
+    fn add(&mut self, log: &LogFrame) {
         if log.stamp_s - self.last_s < MIN_APART_S {
             return;
         }

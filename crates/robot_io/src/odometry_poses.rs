@@ -50,7 +50,7 @@ impl OdometryPoses {
     pub fn new(mut poses: Vec<(f64, SE2)>, period_s: f64) -> (Self, Vec<f64>) {
         poses.sort_by(|a, b| a.0.total_cmp(&b.0));
         poses.dedup_by(|later, first| later.0 <= first.0);
-        let jumps = take_jumps_out(&mut poses);
+        let jumps = remove_jumps(&mut poses);
         let poses = Self {
             poses: poses.into(),
             slack_s: SLACK_S.max(1.5 * period_s),
@@ -126,7 +126,7 @@ pub fn jumps_remark(jumps: &[f64]) -> Option<Remark> {
 
 /// Shifts the poses after each jump to continue the path; returns the stamps of the jumps, s. The poses are in the
 /// order of time.
-pub fn take_jumps_out(poses: &mut [(f64, SE2)]) -> Vec<f64> {
+pub fn remove_jumps(poses: &mut [(f64, SE2)]) -> Vec<f64> {
     let step = |two: &[(f64, SE2)]| {
         let motion = two[0].1.between(&two[1].1);
         let moved = math::norm2(motion.x(), motion.y());

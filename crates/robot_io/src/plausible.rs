@@ -53,10 +53,10 @@ mod tests {
         let far = SE2::new(834_000.0, 9_328_000.0, 3.0);
         assert_eq!(plausible_pose(far), Ok(far));
         for x in [1e300, f64::INFINITY, f64::NAN] {
-            let said = plausible_pose(SE2::new(x, 0.0, 0.0)).unwrap_err();
+            let error = plausible_pose(SE2::new(x, 0.0, 0.0)).unwrap_err();
             assert!(
-                said.starts_with("a pose must lie within 41000 km"),
-                "{said}"
+                error.starts_with("a pose must lie within 41000 km"),
+                "{error}"
             );
         }
     }
@@ -67,8 +67,11 @@ mod tests {
         assert_eq!(plausible_stamp_s(1.7e9), Ok(1.7e9));
         assert_eq!(plausible_stamp_s(-1.0), Ok(-1.0));
         for stamp_s in [1.7e15, f64::NAN] {
-            let said = plausible_stamp_s(stamp_s).unwrap_err();
-            assert!(said.starts_with("a time must lie within 1e12 s"), "{said}");
+            let error = plausible_stamp_s(stamp_s).unwrap_err();
+            assert!(
+                error.starts_with("a time must lie within 1e12 s"),
+                "{error}"
+            );
         }
     }
 }

@@ -18,7 +18,7 @@ impl RunRecorder {
     /// A recorder for a run that continues a session, which has its own keyframes already.
     #[must_use]
     pub fn resume(session: &Session) -> Self {
-        let keyframes = session.driven.keyframes.iter();
+        let keyframes = session.snapshot.keyframes.iter();
         let scans = session.posed_scans().map(|(_, scan)| scan);
         let frames = keyframes.zip(scans).map(|(keyframe, scan)| LogFrame {
             stamp_s: keyframe.stamp_s,
@@ -31,8 +31,8 @@ impl RunRecorder {
         }
     }
 
-    /// Records the result of a frame.
-    pub fn take(&mut self, frame: &LogFrame, report: &SlamReport) {
+    /// Adds the result of a frame.
+    pub fn add(&mut self, frame: &LogFrame, report: &SlamReport) {
         if report.new_keyframe.is_some() {
             self.keyframes.push(frame.clone());
             self.chi2.push([report.stamp_s, report.chi2]);

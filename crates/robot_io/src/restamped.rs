@@ -8,7 +8,7 @@ use pr_geom::SE2;
 
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::log_bytes::LogBytes;
-use crate::odometry_poses::{jumps_remark, take_jumps_out};
+use crate::odometry_poses::{jumps_remark, remove_jumps};
 use crate::remark::Remark;
 use crate::stamps::MendedStamps;
 
@@ -115,7 +115,7 @@ fn without_jumps(stamps_s: &[f64], odometry: &mut [Option<SE2>]) -> Vec<f64> {
     order.sort_by(|a, b| stamps_s[a.0].total_cmp(&stamps_s[b.0]));
     let poses = order.iter().map(|&(k, pose)| (stamps_s[k], pose));
     let mut poses: Vec<(f64, SE2)> = poses.collect();
-    let jumps = take_jumps_out(&mut poses);
+    let jumps = remove_jumps(&mut poses);
     for ((k, _), (_, pose)) in order.into_iter().zip(poses) {
         odometry[k] = Some(pose);
     }

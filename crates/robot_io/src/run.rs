@@ -92,7 +92,7 @@ impl LogRun {
     /// # Errors
     /// If the session is inconsistent.
     pub fn resume(session: &Session, odometry_use: OdometryUse) -> Result<Self, SnapshotError> {
-        let slam = Slam::restore(&session.driven)?;
+        let slam = Slam::restore(&session.snapshot)?;
         Ok(Self::holding(session, slam, odometry_use))
     }
 
@@ -102,16 +102,16 @@ impl LogRun {
     /// # Errors
     /// If the session is inconsistent.
     pub fn reopen(session: &Session) -> Result<Self, SnapshotError> {
-        let mut slam = Slam::restore(&session.driven)?;
+        let mut slam = Slam::restore(&session.snapshot)?;
         *slam.graph_mut() = session.graph();
         let mut run = Self::holding(session, slam, OdometryUse::Log);
-        run.pipeline = run.pipeline.resume_finished(session.driven.clone());
+        run.pipeline = run.pipeline.resume_finished(session.snapshot.clone());
         Ok(run)
     }
 
     /// A run with the state of a session.
     fn holding(session: &Session, slam: Slam, odometry_use: OdometryUse) -> Self {
-        let keyframes = session.driven.keyframes.iter().enumerate();
+        let keyframes = session.snapshot.keyframes.iter().enumerate();
         let of_keyframes = keyframes.map(|(number, keyframe)| ScanPose {
             stamp_s: keyframe.stamp_s,
             keyframe: number,
@@ -257,7 +257,7 @@ impl LogRun {
         let slam = self.slam().filter(|_| self.pipeline.is_finished());
         let graph = slam.map(Slam::graph);
         Some(Session {
-            driven: self.pipeline.snapshot_before_finish()?,
+            snapshot: self.pipeline.snapshot_before_finish()?,
             mapped: graph.map(MappedGraph::from_graph),
             scan_poses: selected_scan_poses(self.pipeline.scans()),
             sensor: self.sensor.clone(),

@@ -42,7 +42,7 @@ const TAIL_BYTES: usize = 8;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Session {
     /// The estimator after its last frame.
-    pub driven: SlamSnapshot,
+    pub snapshot: SlamSnapshot,
     /// The map after the final pass over all keyframes, if there was one.
     pub mapped: Option<MappedGraph>,
     /// Poses of the scans, at most eight for each keyframe but the last; empty if they were not kept.
@@ -113,26 +113,26 @@ impl Session {
     pub fn poses(&self) -> Vec<SE2> {
         match &self.mapped {
             Some(mapped) => mapped.poses.clone(),
-            None => self.driven.nodes.iter().map(|node| node.pose).collect(),
+            None => self.snapshot.nodes.iter().map(|node| node.pose).collect(),
         }
     }
 
     /// The graph of the map.
     #[must_use]
     pub fn graph(&self) -> PoseGraph {
-        let jacobians = self.driven.config.jacobians;
+        let jacobians = self.snapshot.config.jacobians;
         let Some(mapped) = &self.mapped else {
-            let mut graph = PoseGraph::from_parts(&self.driven.nodes, &self.driven.edges);
-            graph.mark_optimized(self.driven.optimized_edges);
+            let mut graph = PoseGraph::from_parts(&self.snapshot.nodes, &self.snapshot.edges);
+            graph.mark_optimized(self.snapshot.optimized_edges);
             return graph.solved_with(jacobians);
         };
-        let poses = self.driven.nodes.iter().zip(&mapped.poses);
+        let poses = self.snapshot.nodes.iter().zip(&mapped.poses);
         let nodes: Vec<PoseNode> = poses
             .map(|(node, &pose)| PoseNode { pose, ..*node })
             .collect();
-        let edges = self.driven.edges.iter();
-        let driven = edges.filter(|view| view.edge.kind == EdgeKind::Odometry);
-        let mut graph = PoseGraph::from_parts(&nodes, driven.chain(&mapped.loops));
+        let edges = self.snapshot.edges.iter();
+        let odometry = edges.filter(|view| view.edge.kind == EdgeKind::Odometry);
+        let mut graph = PoseGraph::from_parts(&nodes, odometry.chain(&mapped.loops));
         // The final pass optimizes after its last loop.
         graph.mark_optimized(graph.edge_count());
         graph.solved_with(jacobians)
@@ -141,8 +141,8 @@ impl Session {
     /// The keyframes' scans with their poses, as rays from the sensor.
     pub fn posed_scans(&self) -> impl Iterator<Item = (SE2, LaserScan)> + '_ {
         let sensor = self.sensor.clone().unwrap_or_default();
-        let cell_m = self.driven.config.scan.cell_m;
-        let keyframes = self.driven.keyframes.iter().zip(self.poses());
+        let cell_m = self.snapshot.config.scan.cell_m;
+        let keyframes = self.snapshot.keyframes.iter().zip(self.poses());
         keyframes.map(move |(keyframe, pose)| (pose, rays(&keyframe.scan, &sensor, cell_m)))
     }
 
@@ -235,7 +235,9 @@ impl Session {
     }
 
     fn check(&self) -> Result<(), String> {
-        self.driven.check().map_err(|problem| problem.to_string())?;
+        self.snapshot
+            .check()
+            .map_err(|problem| problem.to_string())?;
         if let Some(sensor) = &self.sensor {
             sensor.validate().map_err(|problem| problem.to_string())?;
         }
@@ -249,7 +251,7 @@ impl Session {
             return Err("a pose is not within ±1e50".to_owned());
         }
         // The next scan must be later than all of them.
-        let (keyframes, end_s) = (&self.driven.keyframes, self.driven.last_stamp_s);
+        let (keyframes, end_s) = (&self.snapshot.keyframes, self.snapshot.last_stamp_s);
         let is_before_end = |last_s: Option<f64>| last_s.is_none_or(|last_s| last_s <= end_s);
         if !keyframes.is_sorted_by(|a, b| a.stamp_s < b.stamp_s)
             || !is_before_end(keyframes.last().map(|keyframe| keyframe.stamp_s))
@@ -269,19 +271,19 @@ impl Session {
             return Ok(());
         };
         // The map's poses and loops must satisfy the same rules.
-        if mapped.poses.len() != self.driven.nodes.len() {
+        if mapped.poses.len() != self.snapshot.nodes.len() {
             return Err(
                 "the map's number of poses differs from the number of keyframes".to_owned(),
             );
         }
-        let nodes = self.driven.nodes.iter().zip(&mapped.poses);
+        let nodes = self.snapshot.nodes.iter().zip(&mapped.poses);
         let as_driven = SlamSnapshot {
             nodes: nodes
                 .map(|(node, &pose)| PoseNode { pose, ..*node })
                 .collect(),
             edges: mapped.loops.clone(),
             optimized_edges: mapped.loops.len(),
-            ..self.driven.clone()
+            ..self.snapshot.clone()
         };
         as_driven
             .check()

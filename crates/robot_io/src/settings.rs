@@ -303,9 +303,9 @@ mod tests {
         assert!(Setting::named("radius").is_err());
         let reach = Setting::named("max_correspondence_m").unwrap();
         assert!(reach.set(&RobotConfig::default(), f64::NAN).is_err());
-        let said = reach.set(&RobotConfig::default(), -1.0).unwrap_err();
+        let error = reach.set(&RobotConfig::default(), -1.0).unwrap_err();
         assert_eq!(
-            said.to_string(),
+            error.to_string(),
             "max_correspondence_m must be a finite non-negative number, not -1"
         );
     }

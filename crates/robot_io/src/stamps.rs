@@ -71,7 +71,7 @@ impl MendedStamps {
         };
         let mut work = Work::new(stamps_s, recorded_s);
         work.find_outliers();
-        let steps = work.take_steps_out();
+        let steps = work.remove_steps();
         let unset = work.is_unset.iter().filter(|&&unset| unset).count();
         let outliers = work.is_good.iter().filter(|&&good| !good).count() - unset;
         work.fill();
@@ -91,7 +91,7 @@ impl MendedStamps {
 
     /// Shifts these stamps by the steps of another stream of the same clock, because each stream locates a step only to
     /// within its own period.
-    pub fn take_steps_of(&mut self, other: &Self) {
+    pub fn apply_steps_of(&mut self, other: &Self) {
         if self.steps.len() != other.steps.len() {
             return;
         }
@@ -216,7 +216,7 @@ impl<'a> Work<'a> {
     }
 
     /// Finds steps of the clock and shifts the stamps after them.
-    fn take_steps_out(&mut self) -> Vec<ClockStep> {
+    fn remove_steps(&mut self) -> Vec<ClockStep> {
         let good: Vec<usize> = (0..self.stamps_s.len())
             .filter(|&at| self.is_good[at])
             .collect();

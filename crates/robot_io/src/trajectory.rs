@@ -315,13 +315,13 @@ mod tests {
             assert_eq!(a.pose, b.pose);
         }
         let overflown = "2147483647,1,2,0,1,0,0,0\n2147483647,1,2,0,1,0,0,0\n";
-        let said = read(overflown).unwrap_err().to_string();
-        assert!(said.contains("overflowed 32 bits"), "{said}");
+        let message = read(overflown).unwrap_err().to_string();
+        assert!(message.contains("overflowed 32 bits"), "{message}");
     }
 
     #[test]
     fn wrong_lines_are_named() {
-        for (text, said) in [
+        for (text, expected) in [
             ("", "t.tum has no data"),
             ("# only words\n", "t.tum has no data"),
             (
@@ -337,7 +337,7 @@ mod tests {
             ),
         ] {
             let error = read(text).unwrap_err().to_string();
-            assert!(error.contains(said), "{text:?}: {error}");
+            assert!(error.contains(expected), "{text:?}: {error}");
         }
     }
 

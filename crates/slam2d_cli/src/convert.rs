@@ -227,7 +227,7 @@ fn convert_session(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
     if to != "tum" {
         return write_graph(args, &GraphFile::from_pose_graph(&session.graph()), to);
     }
-    let keyframes = session.driven.keyframes.iter().zip(session.poses());
+    let keyframes = session.snapshot.keyframes.iter().zip(session.poses());
     let poses = keyframes.map(|(keyframe, pose)| StampedPose {
         stamp_s: keyframe.stamp_s,
         pose,

@@ -29,7 +29,7 @@ pub fn run(args: &DoctorArgs) -> Result<(), FileError> {
     let (mut reader, mut progress) = open_compared(&args.log, &args.topics)?;
     let mut checkup = Checkup::default();
     while let Some(frame) = reader.next_frame()? {
-        checkup.take(&frame);
+        checkup.add(&frame);
         progress.report(checkup.scans());
     }
     progress.end();

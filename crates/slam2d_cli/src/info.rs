@@ -57,7 +57,7 @@ pub fn run(args: &InfoArgs) -> Result<(), InfoError> {
     let (mut reader, mut progress) = open_log(&args.log, &args.topics)?;
     let mut info = LogInfo::default();
     while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
-        info.take(&frame);
+        info.add(&frame);
         progress.report(info.scans);
     }
     progress.end();

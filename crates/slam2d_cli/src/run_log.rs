@@ -151,7 +151,7 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
                 let (report, ms) = timed(|| run.step(frame.clone()));
                 costs.push(ms);
                 if let Some(report) = report {
-                    recorder.take(&frame, &report);
+                    recorder.add(&frame, &report);
                 }
                 progress.report(run.scans());
             }

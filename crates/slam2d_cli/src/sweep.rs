@@ -255,7 +255,7 @@ impl SweepArgs {
             Column::WithLoops => self.has(LapEstimator::Graph),
             Column::MaximumLikelihood | Column::MaximumLikelihoodCycles => self
                 .incremental_kinds()
-                .any(|kind| Column::of_incremental(kind) == column),
+                .any(|kind| Column::from_incremental(kind) == column),
         }
     }
 

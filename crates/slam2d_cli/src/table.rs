@@ -36,7 +36,7 @@ struct ColumnJson {
 }
 
 impl ColumnJson {
-    fn of_keyframes(summary: &LapSummary) -> Self {
+    fn from_keyframes(summary: &LapSummary) -> Self {
         Self {
             end_error: summary.keyframe_end_error_m,
             rms: summary.keyframe_rms_m,
@@ -46,7 +46,7 @@ impl ColumnJson {
         }
     }
 
-    fn of_odometry(summary: &LapSummary) -> Self {
+    fn from_odometry(summary: &LapSummary) -> Self {
         Self {
             end_error: summary.odometry_end_error_m,
             rms: summary.odometry_rms_m,
@@ -63,9 +63,9 @@ pub fn run(args: &TableArgs) {
     let record = LapRunner::new().run(&config);
     let lap = &record.lap.summary;
     let columns = [
-        ColumnJson::of_odometry(lap),
-        ColumnJson::of_keyframes(&record.front_end.summary),
-        ColumnJson::of_keyframes(lap),
+        ColumnJson::from_odometry(lap),
+        ColumnJson::from_keyframes(&record.front_end.summary),
+        ColumnJson::from_keyframes(lap),
     ];
     if args.json {
         let [odometry, front_end, with_loops] = columns;

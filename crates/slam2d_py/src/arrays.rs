@@ -1,7 +1,7 @@
 //! Arrays of numpy in and out.
 //!
-//! What comes in may be anything that `numpy.asarray` takes: of any type of number, in any order, contiguous or not.
-//! An array of float64 is read where it is. What goes out keeps the memory that the core has filled.
+//! Inputs may be anything that `numpy.asarray` accepts: any numeric type, any order, contiguous or not. An array of
+//! float64 is read without a copy. Results keep the memory that the core has filled.
 
 use ch16_slam2d::cloud::PointCloud;
 use nalgebra::{Matrix3, Point2};
@@ -16,7 +16,7 @@ use pyo3::types::PyDict;
 
 use crate::errors::ArrayError;
 
-/// A Python value as an array of float64, of any shape.
+/// A Python value as an array of float64 of any shape.
 fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     let py = value.py();
     let options = PyDict::new(py);
@@ -50,7 +50,7 @@ fn all_finite<'a>(name: &str, numbers: impl IntoIterator<Item = &'a f64>) -> PyR
     )))
 }
 
-/// Reads an array of shape (n,), in which every number counts as it is.
+/// Reads an array of shape (n,) whose numbers need not be finite.
 pub fn vector(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let array = numbers(name, value)?;
     let view = array.as_array();
@@ -116,7 +116,7 @@ pub fn pose(name: &str, value: &Bound<'_, PyAny>) -> PyResult<SE2> {
     Ok(SE2::new(view[[0]], view[[1]], view[[2]]))
 }
 
-/// A pose, or another one where Python has none.
+/// A pose; the given default for Python's `None`.
 pub fn pose_or(name: &str, value: Option<&Bound<'_, PyAny>>, other: SE2) -> PyResult<SE2> {
     value.map_or(Ok(other), |value| pose(name, value))
 }
@@ -130,7 +130,7 @@ pub fn symmetric(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>>
     }
     all_finite(name, view.iter())?;
     let matrix = Matrix3::from_fn(|row, column| view[[row, column]]);
-    // As much as numpy's products round.
+    // Rounding of numpy's products.
     if (matrix - matrix.transpose()).abs().max() > 1e-9 * matrix.abs().max() {
         return Err(ArrayError::new_err(format!("{name} is not symmetric")));
     }
@@ -167,7 +167,7 @@ pub fn of_matrix<'py>(
     py: Python<'py>,
     matrix: &Matrix3<f64>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    // Columns are rows of a symmetric matrix.
+    // Symmetric: column-major order equals row-major order.
     PyArray1::from_vec(py, matrix.as_slice().to_vec()).reshape([3, 3])
 }
 
@@ -180,7 +180,7 @@ pub fn of_matrices<'py>(
     PyArray1::from_vec(py, numbers.collect()).reshape([matrices.len(), 3, 3])
 }
 
-/// A value with names as Python's dicts, lists and numbers.
+/// A serializable value as Python's dicts, lists and numbers.
 pub fn of_serde<'py>(
     py: Python<'py>,
     value: &impl serde::Serialize,

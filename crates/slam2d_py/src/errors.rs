@@ -78,15 +78,15 @@ pub fn within(argument: &str, value: f64, low: f64, high: f64, unit: &str) -> Py
     )))
 }
 
-/// The exception of Python for what the system says of a file.
+/// The `OSError` for a file error of the system.
 pub fn os_error(path: &Path, error: &io::Error) -> PyErr {
     let name = path.display().to_string();
     match error.raw_os_error() {
-        // Python makes FileNotFoundError and others of the number.
+        // Python derives FileNotFoundError and others from the number.
         Some(number) => {
-            let said = error.to_string();
-            let said = said.split(" (os error").next().unwrap_or_default();
-            PyOSError::new_err((number, said.to_owned(), name))
+            let message = error.to_string();
+            let message = message.split(" (os error").next().unwrap_or_default();
+            PyOSError::new_err((number, message.to_owned(), name))
         }
         None => PyOSError::new_err(format!("{name}: {error}")),
     }

@@ -1,4 +1,4 @@
-//! How good a trajectory is.
+//! Errors of a trajectory against the truth or against relations.
 
 use pr_geom::SE2;
 use pyo3::prelude::*;
@@ -86,7 +86,7 @@ fn trajectory(
             poses.len()
         )));
     }
-    // NaN is not after anything.
+    // False for NaN.
     let is_ascending = stamps.windows(2).all(|two| two[1] > two[0]);
     if !is_ascending || stamps.iter().any(|stamp| !stamp.is_finite()) {
         return Err(ArrayError::new_err(format!("{stamps_name} has to ascend")));

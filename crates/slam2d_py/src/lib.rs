@@ -1,11 +1,11 @@
 //! Scan matching and pose-graph SLAM for Python: the package `rustslam2d`.
 //!
-//! It holds no algorithm: arrays of numpy go to the core's functions, and what they return comes back as arrays. The
-//! interpreter's lock is released while they compute. Errors of the core are exceptions with the core's sentence, and
-//! what the core would panic at is checked here. `rustslam2d.pyi` states the same signatures to editors.
+//! It contains no algorithm: it passes arrays of numpy to the core's functions and returns their results as arrays. The
+//! interpreter's lock is released while they compute. Errors of the core become exceptions with the same sentence, and
+//! arguments that would make the core panic are checked here. `rustslam2d.pyi` has the signatures for editors.
 //!
 //! PyO3's macros write the code that the interpreter calls. They need no exception from `unsafe_code = "forbid"`: that
-//! lint leaves out what a macro of another crate expands to.
+//! lint does not apply to code that a macro of another crate generates.
 
 mod arrays;
 mod errors;

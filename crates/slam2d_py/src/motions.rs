@@ -1,4 +1,4 @@
-//! Motions of the plane: what poses are composed with, in the bits of the core.
+//! Rigid motions of the plane, with the same bits as the core.
 
 use numpy::{PyArray1, PyArray2};
 use pr_geom::Vector3;
@@ -19,9 +19,9 @@ pub fn compose<'py>(
     Ok(arrays::of_pose(py, &motion))
 }
 
-/// The motion from a to b, a⁻¹ ∘ b: where b is, seen from a.
+/// The motion from a to b, a⁻¹ ∘ b: pose of b in the frame of a.
 ///
-/// a, b: shape (3,), (x, y, θ) in m, m, rad. Two poses of wheel odometry make the motion that `Slam.step` takes.
+/// a, b: shape (3,), (x, y, θ) in m, m, rad. Of two poses of wheel odometry it is the motion that `Slam.step` takes.
 #[pyfunction]
 pub fn between<'py>(
     py: Python<'py>,
@@ -32,7 +32,7 @@ pub fn between<'py>(
     Ok(arrays::of_pose(py, &motion))
 }
 
-/// The motion that undoes a pose of shape (3,).
+/// The inverse of a pose of shape (3,).
 #[pyfunction]
 pub fn inverse<'py>(
     py: Python<'py>,

@@ -25,8 +25,8 @@ use crate::errors::{
 /// First damping of method "lm", relative to the diagonal.
 const INITIAL_DAMPING: f64 = 1e-6;
 
-/// Largest step, m and rad added, at which a graph without contradictions counts as solved: its cost is rounding
-/// noise, of which no share is ever small.
+/// Largest step, m and rad added, at which a consistent graph counts as solved: its cost is rounding noise, so a
+/// relative decrease never becomes small.
 const STEP_TOLERANCE: f64 = 1e-10;
 
 /// A pose graph: poses as nodes, measured motions between them as edges.
@@ -45,18 +45,18 @@ struct Graph {
     ids: Vec<i64>,
 }
 
-/// What `PoseGraph.optimize` did.
+/// Result of `PoseGraph.optimize`.
 #[pyclass(frozen, get_all, module = "rustslam2d")]
 pub struct OptimizeReport {
-    /// χ² at the poses as they were.
+    /// χ² at the initial poses.
     chi2_initial: f64,
     /// χ² at the end, without the kernel.
     chi2: f64,
-    /// What was lowered: χ² if there is no kernel.
+    /// The minimized cost: χ² if there is no kernel.
     cost: f64,
     /// Linear systems solved in all attempts.
     iterations: usize,
-    /// Where the attempt began that was kept: given, spanning-tree, chordal or least-squares.
+    /// Start of the attempt that was kept: given, spanning-tree, chordal or least-squares.
     start: &'static str,
     /// Whether a convergence test was met.
     converged: bool,
@@ -86,7 +86,7 @@ impl PoseGraph {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A copy of the graph, all of whose nodes hang on a fixed one.
+    /// A copy of the graph, if every node is connected to a fixed one.
     fn tied(&self) -> PyResult<Problem> {
         let problem = self.lock().problem.clone();
         check_tied(&problem)?;
@@ -96,11 +96,11 @@ impl PoseGraph {
     fn read(bytes: &[u8], name: &str) -> PyResult<Self> {
         let file = GraphFile::read(bytes, name);
         let file = file.map_err(|error| GraphError::new_err(error.to_string()))?;
-        Ok(Self::of_file(&file))
+        Ok(Self::from_file(&file))
     }
 
     /// The graph of a file that was read or written by the core: every end of an edge is a node.
-    pub fn of_file(file: &GraphFile) -> Self {
+    pub fn from_file(file: &GraphFile) -> Self {
         let ids: Vec<i64> = file.nodes.iter().map(|node| node.id).collect();
         let mut problem = Problem::new();
         for GraphNode { pose, fixed, .. } in &file.nodes {
@@ -129,7 +129,7 @@ impl PoseGraph {
 }
 
 impl Graph {
-    /// The node of that number.
+    /// The node with that number.
     fn node(&self, number: i64) -> PyResult<usize> {
         let count = self.problem.node_count();
         let node = usize::try_from(number).ok().filter(|node| *node < count);
@@ -165,7 +165,7 @@ impl Graph {
     }
 }
 
-/// The solver's ridge would hold a loose node where it is.
+/// Without this check the solver's ridge would keep a loose node at its pose.
 fn check_tied(problem: &Problem) -> PyResult<()> {
     match problem.first_loose_node() {
         None => Ok(()),
@@ -184,7 +184,7 @@ fn py_error(error: pr_optim::OptimizeError) -> PyErr {
 impl PoseGraph {
     #[new]
     fn new() -> Self {
-        Self::of_file(&GraphFile::default())
+        Self::from_file(&GraphFile::default())
     }
 
     /// Reads a file of g2o, TORO or JSON; the content decides the format.
@@ -198,7 +198,7 @@ impl PoseGraph {
         })
     }
 
-    /// Reads the text of such a file.
+    /// Parses the text of such a file.
     ///
     /// Raises GraphError with the line that is wrong.
     #[staticmethod]
@@ -221,7 +221,7 @@ impl PoseGraph {
 
     /// Adds a node at a pose world_from_body of shape (3,) and returns its number.
     ///
-    /// fixed: the solver leaves it where it is; one such node holds the gauge.
+    /// fixed: the solver does not move it; one such node fixes the gauge.
     #[pyo3(signature = (pose, *, fixed=false))]
     fn add_node(&self, pose: &Bound<'_, PyAny>, fixed: bool) -> PyResult<usize> {
         let pose = arrays::pose("pose", pose)?;
@@ -252,7 +252,7 @@ impl PoseGraph {
         let measurement = arrays::pose("measurement", measurement)?;
         let information = arrays::symmetric("information", information)?;
         let eigenvalues = information.symmetric_eigenvalues();
-        // As much as the eigenvalues are rounded.
+        // Rounding of the eigenvalues.
         if eigenvalues.min() < -1e-9 * eigenvalues.amax() {
             return Err(GraphError::new_err(
                 "the information matrix is not positive semi-definite",
@@ -274,7 +274,7 @@ impl PoseGraph {
         Ok(graph.problem.factors().len() - 1)
     }
 
-    /// Moves the poses to the minimum of χ², or of what a robust kernel makes of it.
+    /// Moves the poses to the minimum of χ², or of its robust version.
     ///
     /// method: "gn" for Gauss–Newton, "lm" for Levenberg–Marquardt.
     /// start: "given", "spanning-tree", "chordal", or "auto", which takes the best of them.

@@ -75,7 +75,7 @@ const VARIANTS: [(&str, IcpVariant); 2] = [
 
 /// Registers `source` on `target` by iterative closest point.
 ///
-/// It finds the minimum of the basin in which `init` lies. A small rmse says that pairs agree, not that they are the
+/// It finds the minimum of the basin in which `init` lies. A small rmse means that pairs agree, not that they are the
 /// right ones.
 ///
 /// source: points, shape (n, 2), m.
@@ -96,7 +96,7 @@ const VARIANTS: [(&str, IcpVariant); 2] = [
 #[pyfunction]
 #[pyo3(signature = (source, target, *, init=None, variant="point-to-plane", max_distance=0.5, max_iterations=25,
     tolerance=1e-4, min_pairs=8, trim=0.0, huber_width=f64::INFINITY, normal_radius=0.3, sigma=0.05, covariance_scale=12.0))]
-// The keywords of Python.
+// Keyword arguments of Python.
 #[expect(clippy::too_many_arguments)]
 pub fn icp(
     py: Python<'_>,
@@ -182,7 +182,7 @@ pub struct Ndt {
     map: NdtMap,
 }
 
-/// What `Ndt.align` found.
+/// Result of `Ndt.align`.
 #[pyclass(frozen, module = "rustslam2d")]
 pub struct NdtResult {
     /// Pose map_from_source, shape (3,): x and y in m, θ in rad.
@@ -194,7 +194,7 @@ pub struct NdtResult {
     /// Sum of the scores of all points, each 0 to a little more than 1.
     #[pyo3(get)]
     score: f64,
-    /// Iterations begun.
+    /// Number of iterations.
     #[pyo3(get)]
     iterations: usize,
     /// Why it ended: small-gradient, no-better-step or iteration-limit.

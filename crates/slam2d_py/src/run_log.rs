@@ -1,4 +1,4 @@
-//! A recorded log through the estimator.
+//! Maps a recorded log with the estimator.
 
 use std::fs::{self, File};
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -28,15 +28,15 @@ use crate::errors::{LogError, os_error, within};
 use crate::pose_graph::PoseGraph;
 use crate::settings::{self, Chosen};
 
-/// Scans between two looks at Ctrl-C and at the progress.
+/// Scans between two checks for Ctrl-C and two reports of progress.
 const SCANS_BETWEEN: usize = 16;
 
 /// Maps a recorded log: MCAP, bags of ROS 1 and ROS 2, CARMEN, lines of JSON.
 ///
 /// log: the file, or the folder of a recording of ROS 2.
 /// config: settings by name, as `settings()` lists them.
-/// odometry: False leaves the wheels out: scans alone.
-/// scan_topic, odom_topic, odom_frame, body_frame: which ones are meant in a recording of ROS, if there are several.
+/// odometry: False ignores the odometry and uses scans alone.
+/// scan_topic, odom_topic, odom_frame, body_frame: the one to use if a recording of ROS has several.
 ///
 /// Raises SettingError for a name or a value that the estimator does not have.
 #[pyclass(frozen, module = "rustslam2d")]
@@ -47,7 +47,7 @@ pub struct Pipeline {
     options: LogOptions,
 }
 
-/// What `Pipeline.run` made of a log.
+/// Result of `Pipeline.run`.
 #[pyclass(frozen, module = "rustslam2d")]
 pub struct LogResult {
     /// Times of the scans, s, shape (n,).
@@ -62,7 +62,7 @@ pub struct LogResult {
     /// Covariance of every keyframe against the first one, shape (k, 3, 3), order x, y, θ in the body's frame.
     #[pyo3(get)]
     covariances: Py<PyArray3<f64>>,
-    /// The occupancy grid; None if the place is too large for cells so small.
+    /// The occupancy grid; None if the area is too large for cells of this size.
     #[pyo3(get)]
     map: Option<Py<GridMap>>,
     /// Keyframes, loops with their evidence, and doubts: the dict that `slam2d run -o` writes as quality.json.
@@ -71,7 +71,7 @@ pub struct LogResult {
     /// The pose graph; node k is keyframe k.
     #[pyo3(get)]
     graph: Py<PoseGraph>,
-    /// What the owner of the log should know of its scans, a sentence each.
+    /// Remarks on the scans of the log, a sentence each.
     #[pyo3(get)]
     remarks: Vec<String>,
 }
@@ -101,7 +101,7 @@ impl GridMap {
     }
 }
 
-/// What a run found, before it becomes Python's.
+/// Result of a run, before its conversion for Python.
 struct Found {
     trajectory: Vec<(f64, SE2)>,
     keyframes: Vec<SE2>,
@@ -148,7 +148,7 @@ impl Pipeline {
     ///
     /// progress: True shows the share on standard error; a function is called with the scans so far and the share.
     /// cell: side of the map's cells, m.
-    /// free_space: in the map, mark as free what lies before the sensor's limit on beams that saw nothing (REP 117).
+    /// free_space: in the map, mark cells as free up to the sensor's limit on beams without a return (REP 117).
     ///
     /// Raises OSError if the file cannot be read, LogError if it is no log, or none of its scans can be used. Ctrl-C ends
     /// it with KeyboardInterrupt.
@@ -186,7 +186,7 @@ impl Pipeline {
             covariances: arrays::of_matrices(py, &found.covariances)?.unbind(),
             map: map.transpose()?,
             quality: arrays::of_serde(py, &found.quality)?.unbind(),
-            graph: Py::new(py, PoseGraph::of_file(&graph))?,
+            graph: Py::new(py, PoseGraph::from_file(&graph))?,
             remarks: found.remarks,
         })
     }
@@ -197,12 +197,12 @@ impl Pipeline {
 }
 
 impl Pipeline {
-    /// Runs the log without the interpreter, but for the progress.
+    /// Runs the log without the interpreter's lock, except to report progress.
     fn drive(&self, progress: &Progress, cell_m: f64, free_space: bool) -> PyResult<Found> {
         let name = self.log.display().to_string();
-        let told = |error: robot_io::log::LogError| LogError::new_err(error.to_string());
+        let to_error = |error: robot_io::log::LogError| LogError::new_err(error.to_string());
         let (parts, read) = parts(&self.log)?;
-        let reader = LogFormat::open_parts(parts, &name, &self.options).map_err(told)?;
+        let reader = LogFormat::open_parts(parts, &name, &self.options).map_err(to_error)?;
         let is_alone = self.odometry_use == OdometryUse::None;
         let mut reader = ComparedReader::new(reader, false).ignoring_odometry(is_alone);
         let mut run = LogRun::new(self.odometry_use);
@@ -216,11 +216,11 @@ impl Pipeline {
             match reader.next_frame() {
                 Ok(Some(frame)) => {
                     if let Some(report) = run.step(frame.clone()) {
-                        recorder.take(&frame, &report);
+                        recorder.add(&frame, &report);
                     }
                 }
                 Ok(None) => break,
-                Err(error) if run.scans() == 0 => return Err(told(error)),
+                Err(error) if run.scans() == 0 => return Err(to_error(error)),
                 Err(error) => {
                     broken = Some(error.to_string());
                     break;
@@ -262,7 +262,7 @@ impl Pipeline {
             trajectory: poses.map(|at| (at.stamp_s, at.pose)).collect(),
             keyframes: slam.map_or_else(Vec::new, |slam| slam.graph().poses().to_vec()),
             covariances: covariances.collect(),
-            // A place too large for cells so small has no map here.
+            // An area too large for cells of this size has no map.
             map: draw(&lines, cell_m).ok(),
             graph: slam.map(Slam::graph).map(GraphFile::from_pose_graph),
             quality,
@@ -271,10 +271,10 @@ impl Pipeline {
     }
 }
 
-/// Where the progress goes.
+/// Target of the progress reports.
 enum Progress {
     Nowhere,
-    /// `sys.stderr`, which notebooks show as well.
+    /// `sys.stderr`, which notebooks also show.
     Stderr,
     Function(Py<PyAny>),
 }
@@ -299,7 +299,7 @@ impl Progress {
         ))
     }
 
-    /// Looks for Ctrl-C, and says how far the run is.
+    /// Checks for Ctrl-C, and reports the progress.
     fn tell(&self, scans: usize, share: f64) -> PyResult<()> {
         Python::attach(|py| {
             py.check_signals()?;
@@ -330,7 +330,7 @@ fn say(py: Python<'_>, text: &str) -> PyResult<()> {
     stderr.call_method0("flush").map(drop)
 }
 
-/// The bytes of a log that were read, of all that will be.
+/// The number of bytes read so far, and of all bytes to read.
 struct BytesRead {
     read: Arc<AtomicU64>,
     all: u64,
@@ -345,7 +345,7 @@ impl BytesRead {
 
 /// The files of a log.
 fn parts(path: &Path) -> PyResult<(Vec<LogBytes<'static>>, BytesRead)> {
-    let told = |path: &Path| {
+    let unreadable = |path: &Path| {
         let path = path.to_owned();
         move |error: io::Error| os_error(&path, &error)
     };
@@ -353,7 +353,7 @@ fn parts(path: &Path) -> PyResult<(Vec<LogBytes<'static>>, BytesRead)> {
     if path.is_dir() {
         let metadata = path.join(rosbag2::METADATA);
         let listed = fs::read_to_string(&metadata).ok();
-        let entries = fs::read_dir(path).map_err(told(path))?;
+        let entries = fs::read_dir(path).map_err(unreadable(path))?;
         let names: Vec<String> = entries
             .flatten()
             .map(|entry| entry.file_name().to_string_lossy().into_owned())
@@ -376,9 +376,9 @@ fn parts(path: &Path) -> PyResult<(Vec<LogBytes<'static>>, BytesRead)> {
     let mut parts = Vec::new();
     let mut all = 0;
     for file in files {
-        let opened = File::open(&file).map_err(told(&file))?;
-        // A log is read once to see what is in it, and once for its scans.
-        all += 2 * opened.metadata().map_err(told(&file))?.len();
+        let opened = File::open(&file).map_err(unreadable(&file))?;
+        // A log is read twice: for its contents, and for its scans.
+        all += 2 * opened.metadata().map_err(unreadable(&file))?.len();
         let count = Arc::clone(&read);
         parts.push(LogBytes::new(move || {
             let source = Counted {

@@ -1,4 +1,4 @@
-//! Where the beams of a planar laser point.
+//! The geometry of a planar laser.
 
 use ch16_slam2d::scan::LaserScan;
 use numpy::PyArray1;
@@ -8,16 +8,16 @@ use pyo3::prelude::*;
 use crate::arrays;
 use crate::errors::FrameError;
 
-/// The geometry of a planar laser: where its beams point and which ranges are points.
+/// The geometry of a planar laser: bearings of its beams, limits of its ranges, mounting.
 ///
 /// first_angle_rad: bearing of the first beam in the sensor's frame, rad.
 /// angle_step_rad: bearing from one beam to the next, rad; negative for a sensor that turns clockwise.
 /// range_min_m: shorter ranges are no points, m.
 /// range_max_m: ranges at or beyond this are no points, m.
-/// body_from_sensor: where the sensor sits on the body, shape (3,), m, m, rad.
+/// body_from_sensor: mounting, the pose of the sensor on the body, shape (3,), m, m, rad.
 /// beam_interval_s: time from one beam to the next, s; 0 if the whole sweep is one moment.
 ///
-/// Raises FrameError for a number that is no geometry.
+/// Raises FrameError for an invalid number.
 #[pyclass(frozen, module = "rustslam2d")]
 pub struct Sensor {
     /// The geometry, without ranges.
@@ -99,7 +99,7 @@ impl Sensor {
         self.scan.range_max_m
     }
 
-    /// Where the sensor sits on the body, shape (3,).
+    /// Mounting: pose of the sensor on the body, shape (3,).
     #[getter]
     fn body_from_sensor<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         arrays::of_pose(py, &self.scan.body_from_sensor)
@@ -113,7 +113,7 @@ impl Sensor {
 
     /// The points of a scan in the body's frame, shape (n, 2), m: one for each range that is a point.
     ///
-    /// ranges: shape (beams,), m; 0, NaN and infinite ones saw nothing.
+    /// ranges: shape (beams,), m; 0, NaN and infinite ones are no points.
     fn points<'py>(
         &self,
         py: Python<'py>,

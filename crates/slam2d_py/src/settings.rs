@@ -1,4 +1,4 @@
-//! The settings of the estimator from a dict, by the names that a session's file and `--set` have.
+//! The settings of the estimator from a dict, by the names in a session file and in `--set`.
 
 use ch16_slam2d::slam::RobotConfig;
 use pyo3::prelude::*;
@@ -27,13 +27,13 @@ fn collect(config: &Bound<'_, PyDict>, above: &str, chosen: &mut Chosen) -> PyRe
             collect(inner, &format!("{name}."), chosen)?;
             continue;
         }
-        let told =
+        let to_error =
             |error: robot_io::settings::SettingError| SettingError::new_err(error.to_string());
-        let setting = Setting::named(&name).map_err(told)?;
+        let setting = Setting::named(&name).map_err(to_error)?;
         let value: f64 = value
             .extract()
             .map_err(|_| SettingError::new_err(format!("{name} has to be a number")))?;
-        setting.check(value).map_err(told)?;
+        setting.check(value).map_err(to_error)?;
         chosen.push((setting, value));
     }
     Ok(())

@@ -18,16 +18,16 @@ use crate::sensor::Sensor;
 #[pyclass(frozen, module = "rustslam2d")]
 pub struct Drive {
     drive: Simulated,
-    /// Where the beams of the simulated laser point.
+    /// The geometry of the simulated laser.
     #[pyo3(get)]
     sensor: Py<Sensor>,
     /// Times of the scans, s, shape (n,).
     #[pyo3(get)]
     stamps: Py<PyArray1<f64>>,
-    /// Ranges, m, shape (n, beams); those at `sensor.range_max_m` and beyond saw nothing.
+    /// Ranges, m, shape (n, beams); those at `sensor.range_max_m` and beyond are no points.
     #[pyo3(get)]
     ranges: Py<PyArray2<f64>>,
-    /// Motion of the body since the scan before, as the wheels report it, shape (n, 3): m, m, rad; zero for the first.
+    /// Motion of the body since the previous scan, by odometry, shape (n, 3): m, m, rad; zero for the first.
     #[pyo3(get)]
     odometry: Py<PyArray2<f64>>,
     /// That motion composed from the start, world frame, shape (n, 3).
@@ -41,7 +41,7 @@ pub struct Drive {
 /// Simulates the drive of the chapter's lap.
 ///
 /// seed: seed of all noise, 0 to 2³² − 1; the chapter's is 0xC0FFEE.
-/// noise: factor of the wheels' noise, 0 to 100.
+/// noise: factor of the odometry noise, 0 to 100.
 /// world: "apartment", "ring", "twins", "corridor" or "hall".
 ///
 /// Raises ChoiceError for an argument out of its range.

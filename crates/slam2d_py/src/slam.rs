@@ -21,7 +21,7 @@ use crate::settings::{self, Chosen};
 ///
 /// config: settings by name, as `settings()` lists them: {"max_correspondence_m": 0.5, "loops": {"bundle": 6}}. The others have the
 ///     values for recorded logs of robots.
-/// sensor: where the beams point.
+/// sensor: the geometry of the laser.
 /// start: pose of the first scan in the map, shape (3,).
 ///
 /// `Slam.chapter` makes the estimator of the chapter.
@@ -32,13 +32,13 @@ pub struct Slam {
     inner: Mutex<Estimator>,
 }
 
-/// The estimator takes some of its numbers from the first scan.
+/// The estimator derives some of its numbers from the first scan.
 enum Estimator {
     Waiting { chosen: Chosen, start: SE2 },
     Running(Box<ch16_slam2d::slam::Slam>),
 }
 
-/// What one scan did.
+/// Result of one scan.
 #[pyclass(frozen, module = "rustslam2d")]
 pub struct SlamStep {
     /// Estimated pose world_from_body after the scan, shape (3,): x and y in m, θ in rad.
@@ -80,16 +80,16 @@ impl SlamStep {
 /// A loop that was tried, as a dict.
 fn tried(py: Python<'_>, attempt: &LoopAttempt) -> PyResult<Py<PyDict>> {
     let found = &attempt.verification;
-    let said = PyDict::new(py);
-    said.set_item("from", found.from_node)?;
-    said.set_item("to", found.candidate.node)?;
-    said.set_item("chi2", found.gate.chi2)?;
-    said.set_item("gate_chi2", found.gate.gate_chi2)?;
-    said.set_item("rmse", found.rmse_m)?;
-    said.set_item("inliers", found.inliers)?;
-    said.set_item("accepted", attempt.accepted())?;
-    said.set_item("reason", found.rejection.map(|why| why.to_string()))?;
-    Ok(said.unbind())
+    let dict = PyDict::new(py);
+    dict.set_item("from", found.from_node)?;
+    dict.set_item("to", found.candidate.node)?;
+    dict.set_item("chi2", found.gate.chi2)?;
+    dict.set_item("gate_chi2", found.gate.gate_chi2)?;
+    dict.set_item("rmse", found.rmse_m)?;
+    dict.set_item("inliers", found.inliers)?;
+    dict.set_item("accepted", attempt.accepted())?;
+    dict.set_item("reason", found.rejection.map(|why| why.to_string()))?;
+    Ok(dict.unbind())
 }
 
 impl Slam {
@@ -142,7 +142,7 @@ impl Slam {
         })
     }
 
-    /// The estimator of the chapter, with the bits of its lap.
+    /// The estimator of the chapter, with the same bits as in its lap.
     ///
     /// loops: False for the front end alone.
     #[staticmethod]
@@ -168,9 +168,9 @@ impl Slam {
 
     /// Takes the next scan: predicts, registers, takes a keyframe and closes loops if they are due.
     ///
-    /// ranges: shape (beams,), m; 0, NaN and infinite ones saw nothing.
-    /// odometry: motion of the body since the last scan as the wheels measured it, shape (3,), m, m, rad; `between` makes
-    ///     it of two poses. Without it the velocity is expected to stay.
+    /// ranges: shape (beams,), m; 0, NaN and infinite ones are no points.
+    /// odometry: motion of the body since the last scan, shape (3,), m, m, rad; `between` computes it from two
+    ///     poses. Without it the prediction is constant velocity.
     /// stamp: time of the scan, s; without it its number.
     ///
     /// Raises FrameError for a scan that cannot be used, such as one that is not later than the last one; the estimator
@@ -213,8 +213,7 @@ impl Slam {
         })
     }
 
-    /// Says that no scan follows: closes loops that wait, links the keyframes once more, and returns the loops that were
-    /// tried.
+    /// Ends the run: closes pending loops, links the keyframes once more, and returns the loops that were tried.
     fn conclude(&self, py: Python<'_>) -> PyResult<Vec<Py<PyDict>>> {
         let attempts = py.detach(|| match &mut *self.lock() {
             Estimator::Waiting { .. } => Vec::new(),
@@ -281,7 +280,7 @@ impl Slam {
     fn graph(&self) -> PoseGraph {
         let estimator = self.lock();
         let graph = estimator.slam().map(|slam| slam.graph());
-        PoseGraph::of_file(&graph.map(GraphFile::from_pose_graph).unwrap_or_default())
+        PoseGraph::from_file(&graph.map(GraphFile::from_pose_graph).unwrap_or_default())
     }
 
     fn __repr__(&self) -> String {

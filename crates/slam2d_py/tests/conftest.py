@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[3]
 
 
 def skip(name, reason):
-    """Leaves a test out and says so, by the rules of `docs/testing.md`."""
+    """Skips a test and records that, by the rules of `docs/testing.md`."""
     if os.environ.get("SLAM_NO_SKIP", "") not in ("", "0", "false"):
         pytest.fail(f"{name}: {reason}, and SLAM_NO_SKIP lets nothing skip")
     if "SLAM_SKIPPED" in os.environ:

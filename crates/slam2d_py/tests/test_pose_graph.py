@@ -9,7 +9,7 @@ EYE = np.eye(3)
 
 @pytest.fixture
 def chain():
-    """Two edges of odometry of 1 m, and a loop that says 2.6 m."""
+    """Two edges of odometry of 1 m, and a loop of 2.6 m."""
     graph = rs.PoseGraph()
     a = graph.add_node((0, 0, 0), fixed=True)
     b, c = graph.add_node((1, 0, 0)), graph.add_node((2, 0, 0))

@@ -68,7 +68,7 @@ def test_a_scan_that_cannot_be_used_leaves_the_estimator_as_it_was(drive):
     with pytest.raises(rs.ArrayError, match=r"ranges has to have the shape \(n,\), not \(2, 60\)"):
         slam.step(drive.ranges[1].reshape(2, 60))
     assert slam.frames == 1
-    # A range that is no number saw nothing.
+    # NaN is no point.
     seen = drive.ranges[1].copy()
     seen[::7] = np.nan
     assert slam.step(seen, drive.odometry[1]).inliers > 8

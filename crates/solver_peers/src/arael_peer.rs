@@ -57,7 +57,7 @@ fn graph_of(problem: &Problem) -> Graph {
     for (pose, &is_fixed) in problem.poses().iter().zip(problem.fixed()) {
         let position = vect2d::new(pose.x(), pose.y());
         let heading = pose.theta();
-        // Held where ours is held: at the file's FIX, or at its first vertex.
+        // The same fixed node as in our solver: the file's FIX, or its first vertex.
         let (position, heading) = if is_fixed {
             (Param::fixed(position), Param::fixed(heading))
         } else {
@@ -112,7 +112,7 @@ fn config() -> LmConfig<f64> {
     }
 }
 
-/// arael with a graph, and a session that keeps what it learnt about the pattern.
+/// arael with a graph, and a session that keeps the symbolic analysis.
 pub struct Arael {
     problem: Problem,
     session: LmSession<f64, SparseFaer<f64>>,

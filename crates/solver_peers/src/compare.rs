@@ -16,10 +16,10 @@ pub const HEAD: &str = "\
 | graph | solver | warm | ratio | cold | ratio | iterations | χ² |
 |---|---|--:|--:|--:|--:|--:|--:|";
 
-/// How far apart two values of χ² at one optimum may lie, relative: solves stop at 1e-8.
+/// Largest relative difference of two values of χ² at one optimum: solves stop at 1e-8.
 const SAME_CHI2: f64 = 1e-6;
 
-/// How far above the optimum a solver with another residual may end, relative: on eight recorded
+/// Largest relative excess of χ² over the optimum for a solver with another residual: on eight recorded
 /// graphs the residuals of the peers shift it by less than a thousandth.
 const SAME_BASIN: f64 = 1e-2;
 
@@ -32,19 +32,19 @@ struct Row {
     warm_ms: Option<f64>,
 }
 
-/// Where the first run of a solver ended.
+/// Result of the first run of a solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum End {
-    /// At these poses χ² is so much, and has a minimum of so much right below.
+    /// χ² at the final poses, and χ² at the minimum that full steps reach from there.
     At { chi2: f64, minimum: f64 },
-    /// It gave up, or left the range of numbers.
+    /// It failed, or its poses are not finite.
     Failed,
 }
 
 /// Solves one file with all solvers in `rounds` interleaved rounds; returns the rows in Markdown.
 ///
 /// # Errors
-/// Where the file cannot be read, in one line.
+/// If the file cannot be read, in one line.
 pub fn compare(path: &Path, rounds: usize) -> Result<Vec<String>, String> {
     let text = std::fs::read(path).map_err(|error| error.to_string())?;
     let file = G2oFile::parse(&text).map_err(|error| error.to_string())?;
@@ -93,7 +93,7 @@ impl Row {
         }
     }
 
-    /// The row, with ratios of `ours` to it where both ended at the same optimum.
+    /// The row, with ratios of `ours` to it if both ended at the same optimum.
     fn markdown(&self, graph: &str, ours: &Self) -> String {
         let name = self.name;
         let End::At { chi2, .. } = self.end else {
@@ -118,7 +118,7 @@ impl Row {
 }
 
 impl End {
-    /// Judges somebody's poses by our χ², and by where our own steps lead from there.
+    /// Evaluates a solver's poses: our χ² there, and at the minimum that our steps reach from there.
     fn at(problem: &Problem, poses: &[SE2]) -> Self {
         let mut problem = problem.clone();
         problem.poses_mut().copy_from_slice(poses);
@@ -130,7 +130,7 @@ impl End {
         Self::At { chi2, minimum }
     }
 
-    /// Whether this end lies close above the minimum that the other lies in.
+    /// Whether this end is close above the minimum of the other one.
     fn is_at_the_optimum_of(&self, other: &Self) -> bool {
         let near = |a: f64, b: f64, share: f64| (a - b).abs() <= share * b.abs().max(1e-9);
         match (self, other) {

@@ -13,10 +13,10 @@ use pr_geom::SE2;
 
 use crate::{Peer, Solve};
 
-/// factrs with the path of a graph: it keeps nothing from one solve to the next.
+/// factrs with the path of a graph: it has no state between solves.
 pub struct Factrs {
     path: PathBuf,
-    /// Ids of the vertices in the order of the file; none where one is beyond what factrs reads.
+    /// Ids of the vertices in the order of the file; `None` if one exceeds the range of factrs.
     ids: Option<Vec<u32>>,
 }
 
@@ -57,7 +57,7 @@ impl Peer for Factrs {
         let mut optimizer = GaussNewton::new(params, graph);
         let (result, cpu_ms) = timed(|| optimizer.optimize(start));
         let poses = match result {
-            // Out of iterations it still says where it got to.
+            // At the iteration limit it returns its last poses.
             Ok(values) | Err(OptError::MaxIterations(values)) => self.poses_of(&values),
             Err(_) => None,
         };

@@ -1,10 +1,10 @@
 //! Published pose-graph solvers, timed beside ours in one run.
 //!
-//! Every solver gets the same g2o file, starts from what it reads there, and runs on one thread.
-//! Runs are interleaved, so that a busy machine slows all of them alike, and the fastest of each
-//! counts. All are judged by one χ², that of the log residual at the poses where they end. Only ours
-//! lowers just that: arael's model here has g2o's residual, and factrs 0.3 takes the log for one sign
-//! of the heading residual only. Their optima lie a little beside.
+//! Every solver reads the same g2o file, starts from its poses, and runs on one thread. Runs are
+//! interleaved, because load on the machine then affects all of them alike, and the fastest run of each
+//! counts. All are compared by one χ², that of the log residual at their final poses. Only ours
+//! minimizes exactly this: arael's model here has g2o's residual, and factrs 0.3 uses the log for one
+//! sign of the heading residual only. Their optima differ slightly.
 
 pub mod arael_peer;
 pub mod compare;
@@ -13,14 +13,14 @@ pub mod ours;
 
 use pr_geom::SE2;
 
-/// What one timed solve gave.
+/// Result of one timed solve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solve {
     /// CPU time of the thread, ms, without reading the file.
     pub cpu_ms: f64,
-    /// The poses at the end in the order of the file; none where the solver gave up.
+    /// The final poses in the order of the file; `None` if the solver failed.
     pub poses: Option<Vec<SE2>>,
-    /// Linear systems solved; none where the solver does not say.
+    /// Linear systems solved; `None` if the solver does not report it.
     pub iterations: Option<usize>,
 }
 
@@ -29,10 +29,9 @@ pub trait Peer {
     /// Name as printed.
     fn name(&self) -> &'static str;
 
-    /// A solve with nothing known about the graph: ordering and analysis included.
+    /// A cold solve, with ordering and symbolic analysis.
     fn solve_cold(&mut self) -> Solve;
 
-    /// A solve that may use what earlier ones learnt about the pattern; `None` where the solver
-    /// cannot keep it.
+    /// A warm solve, which may reuse the symbolic analysis; `None` if the solver cannot keep it.
     fn solve_warm(&mut self) -> Option<Solve>;
 }

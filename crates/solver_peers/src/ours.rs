@@ -26,7 +26,7 @@ pub struct Ours {
 }
 
 impl Ours {
-    /// Keeps the graph; solves begin at `start`.
+    /// Loads the graph; solves start at `start`.
     #[must_use]
     pub fn new(problem: Problem, start: Start) -> Self {
         Self {
@@ -55,10 +55,10 @@ fn solve(optimizer: &mut Optimizer, problem: &Problem, start: Start) -> Solve {
     }
 }
 
-/// χ² where full steps from the present poses end.
+/// χ² at the end of full steps from the present poses.
 #[must_use]
 pub fn chi2_below(mut problem: Problem) -> f64 {
-    // Where no step can be computed, the poses stay, and their χ² counts.
+    // If no step can be computed, the poses stay, and their χ² counts.
     let _ = solve_at(&mut Optimizer::new(settings()), &mut problem, Start::Given);
     problem.chi2()
 }

@@ -71,10 +71,6 @@ pub fn bench(json: Option<&Path>) -> anyhow::Result<()> {
         "Registration compared with nanoflann",
         program(&ours).arg("registration").args([&slam2d, &clouds]),
     )?;
-    table(
-        "The sweep over seeds",
-        program(&ours).arg("sweep").arg(&slam2d),
-    )?;
     for (what, script) in [
         (
             "The first frame of each widget",

@@ -1,4 +1,4 @@
-//! `cargo xtask exercises`: how far a student is, and whether our own solutions hold.
+//! `cargo xtask exercises`: a student's progress, and a check of our solutions.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -21,7 +21,7 @@ pub struct Exercises {
     /// One JSON object for a grader: docs/teaching/exercises.md has its fields.
     #[arg(long, conflicts_with = "watch")]
     json: bool,
-    /// Check that the solutions pass, and that exercises which nobody wrote fail.
+    /// Check that the solutions pass, and that unwritten exercises fail.
     #[arg(long, conflicts_with_all = ["watch", "json"])]
     solutions: bool,
 }
@@ -58,7 +58,7 @@ const EXERCISES: [(&str, &str); 7] = [
     ),
 ];
 
-/// How an exercise stands.
+/// State of an exercise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Passes,
@@ -76,7 +76,7 @@ impl fmt::Display for State {
     }
 }
 
-/// What a run of the tests printed.
+/// Results of a run of the tests.
 struct Report {
     /// Names as `exercise::test`, in the order of the run, and whether each passed.
     tests: Vec<(String, bool)>,
@@ -85,7 +85,7 @@ struct Report {
 }
 
 impl Report {
-    /// Reads what libtest prints; none if it did not come to its end.
+    /// Parses the output of libtest; `None` if it is incomplete.
     fn read(printed: &str) -> Option<Self> {
         let result = |line: &str| {
             let (name, verdict) = line.strip_prefix("test ")?.rsplit_once(" ... ")?;
@@ -93,13 +93,13 @@ impl Report {
         };
         let sections = printed.split("\n---- ").skip(1);
         let message = |section: &str| {
-            let (name, said) = section.split_once(" stdout ----")?;
-            let said = said
+            let (name, text) = section.split_once(" stdout ----")?;
+            let text = text
                 .split_once(" panicked at ")?
                 .1
                 .split("\nnote: ")
                 .next()?;
-            Some((name.to_owned(), said.trim().to_owned()))
+            Some((name.to_owned(), text.trim().to_owned()))
         };
         printed.contains("\ntest result: ").then(|| Self {
             tests: printed.lines().filter_map(result).collect(),
@@ -165,7 +165,7 @@ impl Report {
         )
     }
 
-    /// The JSON of a grader. Names of exercises and tests are those of Rust: nothing has to be escaped.
+    /// The JSON for a grader. Names are identifiers of Rust, so they need no escapes.
     fn json(report: Option<&Self>) -> String {
         let exercise = |report: &Self, name: &str| {
             let tests = report.of(name);
@@ -194,12 +194,12 @@ fn source(exercise: &str) -> PathBuf {
     root().join(format!("exercises/src/{exercise}.rs"))
 }
 
-/// Whether the file still holds what it was handed out with.
+/// Whether the file still contains the original stub.
 fn is_untouched(exercise: &str) -> bool {
     fs::read_to_string(source(exercise)).is_ok_and(|text| text.contains("not_written("))
 }
 
-/// Runs the tests over the student's functions; none if they do not compile or end the test program.
+/// Runs the tests on the student's functions; `None` if they do not compile or abort the test program.
 fn run_tests() -> anyhow::Result<Option<Report>> {
     let mut tests = cargo();
     tests
@@ -222,7 +222,7 @@ fn run_tests() -> anyhow::Result<Option<Report>> {
 /// The command.
 ///
 /// # Errors
-/// If cargo is missing, the tests do not run, or, with `--solutions`, ours do not hold.
+/// If cargo is missing, the tests do not run, or, with `--solutions`, the check fails.
 pub fn exercises(args: Exercises) -> anyhow::Result<()> {
     if args.solutions {
         return check(Lints::Allowed);
@@ -246,15 +246,15 @@ pub fn exercises(args: Exercises) -> anyhow::Result<()> {
     }
 }
 
-/// When a file of the student was last written.
+/// Time of the latest change of a student's file.
 fn last_save() -> Option<SystemTime> {
     let saved = |(exercise, _)| fs::metadata(source(exercise)).ok()?.modified().ok();
     EXERCISES.into_iter().filter_map(saved).max()
 }
 
-/// What `default-members` leaves out besides the exercises. With the same packages as the native tests every crate has
-/// the features that it has there, and is not compiled again.
-const LEFT_OUT: [&str; 7] = [
+/// Packages outside of `default-members`, except the exercises. With the same packages as in the native tests every
+/// crate has the same features, and is not compiled again.
+const EXCLUDED_PACKAGES: [&str; 7] = [
     "solver_peers",
     "slam2d_py",
     "web_bindgen",
@@ -264,16 +264,16 @@ const LEFT_OUT: [&str; 7] = [
     "slam2d_bench_module",
 ];
 
-/// Whether a lint ends the check: in the suite it does, and crates are compiled as the native tests have them.
+/// Whether lints are errors, as in the suite, in which crates are compiled as for the native tests.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Lints {
-    /// A student's code may have some.
+    /// For a student's code.
     Allowed,
-    /// Ours may not.
+    /// For ours.
     Denied,
 }
 
-/// The tests named `exercises`: those of the exercises, and those of `slam2d lap --exercises`.
+/// The command of the tests named `exercises`: those of the exercises and of `slam2d lap --exercises`.
 fn all_tests(features: &str, lints: Lints) -> anyhow::Result<Command> {
     let mut tests = cargo();
     if lints == Lints::Denied {
@@ -287,16 +287,20 @@ fn all_tests(features: &str, lints: Lints) -> anyhow::Result<Command> {
             "exercises",
             "--no-fail-fast",
         ])
-        .args(LEFT_OUT.iter().flat_map(|package| ["--exclude", package]))
+        .args(
+            EXCLUDED_PACKAGES
+                .iter()
+                .flat_map(|package| ["--exclude", package]),
+        )
         .args(["--features", features])
         .env("RUST_BACKTRACE", "0");
     Ok(tests)
 }
 
-/// Checks that the solutions pass and drive a lap, and that every test of an exercise which nobody wrote fails.
+/// Checks that the solutions pass and drive a lap, and that every test of an unwritten exercise fails.
 ///
 /// # Errors
-/// What does not hold.
+/// The first check that fails.
 pub fn check(lints: Lints) -> anyhow::Result<()> {
     let solved = "exercises/solutions,slam2d_cli/exercise_solutions";
     run(
@@ -315,10 +319,10 @@ pub fn check(lints: Lints) -> anyhow::Result<()> {
         ensure!(all > 0, "{exercise} has no test");
         ensure!(
             passed == 0,
-            "{passed} tests of {exercise} pass, and nobody wrote it"
+            "{passed} tests of {exercise} pass, but it is not written"
         );
     }
-    // Those of the command are in no module.
+    // Tests of the command are in no module.
     let of_command = report.tests.iter().filter(|(name, _)| !name.contains("::"));
     for (name, passed) in of_command {
         ensure!(*passed, "slam2d lap --exercises: {name} fails");
@@ -356,7 +360,7 @@ test result: FAILED. 2 passed; 1 failed
 ";
 
     #[test]
-    fn what_libtest_prints_is_read() {
+    fn the_output_of_libtest_is_parsed() {
         let report = Report::read(PRINTED).unwrap();
         assert_eq!(report.passed("svd_align"), (1, 2));
         assert_eq!(report.state("residual"), State::Passes);
@@ -373,7 +377,7 @@ test result: FAILED. 2 passed; 1 failed
     }
 
     #[test]
-    fn the_json_names_every_exercise_and_says_if_nothing_ran() {
+    fn the_json_names_every_exercise_and_reports_if_no_test_ran() {
         let json = Report::json(Report::read(PRINTED).as_ref());
         assert!(
             json.starts_with(r#"{"schema":1,"ran":true,"passed":1,"total":7,"#),
@@ -388,7 +392,7 @@ test result: FAILED. 2 passed; 1 failed
     }
 
     #[test]
-    fn every_exercise_has_its_file_its_tests_and_no_other_is_left_out() {
+    fn every_exercise_has_its_file_and_its_tests() {
         let main = fs::read_to_string(root().join("exercises/tests/main.rs")).unwrap();
         for (name, _) in EXERCISES {
             assert!(source(name).is_file(), "{name}");

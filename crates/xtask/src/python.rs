@@ -1,4 +1,4 @@
-//! The Python packages: an environment for their tests, and the piece of the suite that runs those.
+//! The Python packages: an environment for their tests, and the piece of the suite that runs them.
 
 use std::fs::OpenOptions;
 use std::io::Write as _;
@@ -11,24 +11,24 @@ use anyhow::{Context as _, bail};
 use crate::run::{is_set, program, root, run};
 use crate::tools::linting;
 
-/// What the tests need, one requirement of pip a line.
+/// Requirements of the tests, one per line.
 const REQUIREMENTS: &str = "crates/slam2d_py/requirements.txt";
 
-/// Said where there is no environment, because pip has no way to fill one.
+/// The reason of a skip if pip cannot install the requirements.
 const NO_REGISTRY: &str =
     "pip reaches no package registry; connect to the network, or set PIP_INDEX_URL to one";
 
-/// What the tests with other packages of Python need; none where no registry can be reached.
+/// A virtual environment with the requirements.
 #[derive(Debug)]
 pub struct Environment {
-    /// The interpreter that has them.
+    /// Its interpreter.
     python: PathBuf,
 }
 
-/// Makes an environment in `target/python`, or takes the one that is there.
+/// Creates the environment in `target/python`, or reuses it; `None` if no package registry can be reached.
 ///
 /// # Errors
-/// If there is no Python, or it has no venv, or what the tests need cannot be installed though a registry is there.
+/// If Python or its venv is missing, or a requirement cannot be installed although a registry can be reached.
 pub fn ensure_environment() -> anyhow::Result<Option<Environment>> {
     let folder = root().join("target/python/venv");
     let inside = if cfg!(windows) {
@@ -61,29 +61,29 @@ pub fn ensure_environment() -> anyhow::Result<Option<Environment>> {
         fs::write(stamp, wanted)?;
         return Ok(Some(environment));
     }
-    let said = String::from_utf8_lossy(&output.stderr);
-    if is_unreachable(&said) {
+    let errors = String::from_utf8_lossy(&output.stderr);
+    if is_unreachable(&errors) {
         println!("── {NO_REGISTRY}");
         return Ok(None);
     }
-    bail!("pip cannot install {REQUIREMENTS}:\n{said}")
+    bail!("pip cannot install {REQUIREMENTS}:\n{errors}")
 }
 
-/// Whether pip failed because it reached no registry: it says so before each new attempt.
-fn is_unreachable(said: &str) -> bool {
-    said.contains("WARNING: Retrying (")
+/// Whether pip failed because it reached no registry: it prints a warning before each new attempt.
+fn is_unreachable(errors: &str) -> bool {
+    errors.contains("WARNING: Retrying (")
 }
 
 impl Environment {
-    /// Tells a command's tests of the interpreter.
-    pub fn tell(&self, command: &mut Command) {
+    /// Passes the interpreter to the tests of a command.
+    pub fn pass_to(&self, command: &mut Command) {
         command.env("PYTHON", &self.python);
     }
 
     fn python(&self) -> Command {
         let mut python = program(&self.python);
         let folder = root().join("target/python");
-        // Notebooks leave the reader's own settings alone.
+        // Notebooks must not change the user's settings.
         python
             .env("JUPYTER_CONFIG_DIR", folder.join("jupyter"))
             .env("JUPYTER_DATA_DIR", folder.join("jupyter"))
@@ -97,7 +97,7 @@ impl Environment {
         pip
     }
 
-    /// Installs the only wheel of a folder whose name starts so.
+    /// Installs the only wheel of a folder whose name starts with `name`.
     fn install(&self, folder: &Path, name: &str) -> anyhow::Result<()> {
         let wheels = fs::read_dir(folder)?.flatten().map(|entry| entry.path());
         let wheel = wheels.filter(|path| path.extension().is_some_and(|end| end == "whl"));
@@ -118,12 +118,11 @@ impl Environment {
         run(&format!("Installing {name}"), install.arg(wheel))
     }
 
-    /// Compiles `rustslam2d` as a wheel and installs it: the core is optimized and checks its overflows, as for all
-    /// tests.
+    /// Compiles `rustslam2d` as a wheel and installs it. The core is optimized and has overflow checks, as in all tests.
     fn install_rustslam2d(&self) -> anyhow::Result<()> {
         let wheels = root().join("target/python/wheels");
         if wheels.exists() {
-            // One of another system's tag may be there.
+            // It may contain a wheel for another system.
             fs::remove_dir_all(&wheels)?;
         }
         let mut build = self.python();
@@ -148,22 +147,22 @@ impl Environment {
         self.install(&wheels, "rustslam2d")
     }
 
-    /// Installs the widgets for notebooks out of the site, if it was built.
+    /// Installs the widgets for notebooks from the site, if it was built.
     fn install_widgets(&self) -> anyhow::Result<bool> {
         if !root().join("dist/schema.json").is_file() {
             return Ok(false);
         }
         let mut pack = program("node");
         pack.args(["web/package.mjs", "dist", "target/packages"]);
-        self.tell(&mut pack);
+        self.pass_to(&mut pack);
         run("Packing the widgets for notebooks", &mut pack)?;
         self.install(&root().join("target/packages"), "slam_widgets")?;
         Ok(true)
     }
 }
 
-/// `cargo xtask test python`: the package `rustslam2d` as somebody gets it, and the notebooks that use it. The command
-/// `slam2d`, whose bits it has to have, lies in `programs`.
+/// `cargo xtask test python`: tests the installed package `rustslam2d` and the notebooks that use it. `programs` contains
+/// the command `slam2d`, with which results are compared bit by bit.
 ///
 /// # Errors
 /// The step that failed.
@@ -173,12 +172,12 @@ pub fn test(
     skipped: &Path,
 ) -> anyhow::Result<()> {
     let Some(environment) = environment else {
-        return leave_out("the Python package and its notebooks", NO_REGISTRY, skipped);
+        return skip("the Python package and its notebooks", NO_REGISTRY, skipped);
     };
     environment.install_rustslam2d()?;
     if !environment.install_widgets()? {
         let reason = "dist/ holds no site; `cargo xtask build` makes one";
-        leave_out("the widgets in the notebooks", reason, skipped)?;
+        skip("the widgets in the notebooks", reason, skipped)?;
     }
     for (what, arguments) in [
         (
@@ -198,10 +197,10 @@ pub fn test(
     Ok(())
 }
 
-/// Says that something is left out, by the rules of `docs/testing.md`.
-fn leave_out(what: &str, reason: &str, skipped: &Path) -> anyhow::Result<()> {
+/// Records a skip by the rules of `docs/testing.md`.
+fn skip(what: &str, reason: &str, skipped: &Path) -> anyhow::Result<()> {
     if is_set("SLAM_NO_SKIP") {
-        bail!("{what}: {reason}, and SLAM_NO_SKIP lets nothing skip");
+        bail!("{what}: {reason}, and SLAM_NO_SKIP forbids skips");
     }
     let mut list = OpenOptions::new().append(true).create(true).open(skipped)?;
     Ok(writeln!(list, "{what}: {reason}")?)
@@ -212,7 +211,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_registry_that_cannot_be_reached_is_told_from_a_package_that_does_not_exist() {
+    fn an_unreachable_registry_is_distinguished_from_a_missing_package() {
         let unreachable = "WARNING: Retrying (Retry(total=4)) after connection broken by \
              'NewConnectionError(': [Errno -3] Temporary failure in name resolution')': /simple/numpy/\n\
              ERROR: Could not find a version that satisfies the requirement numpy";
@@ -223,14 +222,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_is_on_the_list() {
+    fn a_skip_is_recorded() {
         let list = env::temp_dir().join(format!("slam-left-out-{}", std::process::id()));
-        let done = leave_out("a notebook", "no network", &list);
+        let done = skip("a notebook", "no network", &list);
         let written = fs::read_to_string(&list).unwrap_or_default();
-        // Where nothing may skip it is refused.
+        // An error if skips are forbidden.
         match done {
             Ok(()) => assert_eq!(written, "a notebook: no network\n"),
-            Err(error) => assert!(error.to_string().ends_with("lets nothing skip")),
+            Err(error) => assert!(error.to_string().ends_with("forbids skips")),
         }
         let _ = fs::remove_file(list);
     }

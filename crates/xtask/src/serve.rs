@@ -23,11 +23,10 @@ const HEADERS: &str = "Content-Security-Policy: default-src 'none'; script-src '
      Access-Control-Allow-Origin: *\r\nX-Content-Type-Options: nosniff\r\n\
      Vary: Accept-Encoding\r\nConnection: close\r\n";
 
-/// A file whose name holds a hash of its content never changes: a browser asks for it once. All others are asked
-/// for again.
-const FOR_EVER: &str = "public, max-age=31536000, immutable";
-const ASK_AGAIN: &str = "no-cache";
-/// Digits of a hash in a name, as the build writes them.
+/// A file with a hash of its content in its name never changes, so a browser loads it once and revalidates all others.
+const IMMUTABLE: &str = "public, max-age=31536000, immutable";
+const REVALIDATE: &str = "no-cache";
+/// Number of digits of a hash in a name, as in the build.
 const HASH_DIGITS: usize = 12;
 
 /// Builds the site and serves it until it is stopped.
@@ -59,7 +58,7 @@ fn answer(mut stream: TcpStream, folder: &Path) -> io::Result<()> {
         .map_while(Result::ok)
         .take_while(|line| !line.is_empty());
     let head: Vec<String> = head.collect();
-    let takes_gzip = head.iter().any(|line| asks_for_gzip(line));
+    let accepts_gzip = head.iter().any(|line| accepts_gzip(line));
     let mut words = request.split(' ');
     let (method, target) = (words.next(), words.next().unwrap_or_default());
     let file = match method {
@@ -67,18 +66,22 @@ fn answer(mut stream: TcpStream, folder: &Path) -> io::Result<()> {
         _ => None,
     };
     let read = file.and_then(|path| {
-        let cache = if has_hash(&path) { FOR_EVER } else { ASK_AGAIN };
+        let cache = if has_hash(&path) {
+            IMMUTABLE
+        } else {
+            REVALIDATE
+        };
         Some((fs::read(&path).ok()?, content_type(&path), cache))
     });
     let (status, (mut body, kind, cache)) = match read {
         Some(found) => ("200 OK", found),
         None => (
             "404 Not Found",
-            (b"Not found\n".to_vec(), "text/plain", ASK_AGAIN),
+            (b"Not found\n".to_vec(), "text/plain", REVALIDATE),
         ),
     };
-    // Fonts are compressed by themselves.
-    let encoding = if takes_gzip && kind != "font/woff2" {
+    // Fonts are already compressed.
+    let encoding = if accepts_gzip && kind != "font/woff2" {
         body = gzip(&body)?;
         "Content-Encoding: gzip\r\n"
     } else {
@@ -96,8 +99,8 @@ fn answer(mut stream: TcpStream, folder: &Path) -> io::Result<()> {
     stream.flush()
 }
 
-/// Whether a line of the head says that the browser can unpack gzip.
-fn asks_for_gzip(line: &str) -> bool {
+/// Whether a header line accepts gzip.
+fn accepts_gzip(line: &str) -> bool {
     line.split_once(':').is_some_and(|(name, value)| {
         name.eq_ignore_ascii_case("accept-encoding") && value.contains("gzip")
     })
@@ -183,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn a_browser_that_unpacks_gets_gzip_and_a_name_with_a_hash_is_kept_for_ever() {
+    fn gzip_is_sent_if_accepted_and_a_name_with_a_hash_is_immutable() {
         let answer = ask_bytes("GET /Cargo.toml HTTP/1.1\r\nAccept-Encoding: br, gzip\r\n\r\n");
         let end = answer
             .windows(4)
@@ -213,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn no_request_leads_out_of_the_folder_and_what_is_no_request_is_refused() {
+    fn requests_outside_of_the_folder_and_malformed_ones_are_refused() {
         for line in [
             "GET /../xtask/Cargo.toml HTTP/1.1",
             "GET /src/../Cargo.toml HTTP/1.1",

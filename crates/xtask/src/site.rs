@@ -200,7 +200,7 @@ mod tests {
                 .args(["--edges", "normal", "--prefix", "none"])
                 .args(["--no-dedupe", "--format", "{p} with {f}"]),
         );
-        let tree = tree.expect("cargo knows the workspace");
+        let tree = tree.expect("cargo tree lists the package");
         tree.lines().map(str::to_owned).collect()
     }
 

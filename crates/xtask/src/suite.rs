@@ -22,7 +22,7 @@ pub enum Piece {
     Licences,
     /// Everything native: compiled and linted in one pass, then tested
     Native,
-    /// The exercises in code: the solutions pass and drive a lap, what nobody wrote fails
+    /// The exercises in code: the solutions pass and drive a lap, unwritten ones fail
     Exercises,
     /// Lints of code for WebAssembly only
     Lints,
@@ -95,7 +95,7 @@ pub fn test(pieces: &[Piece]) -> anyhow::Result<()> {
     done
 }
 
-/// What the pieces run with.
+/// The environment of the pieces.
 struct Tools {
     chromium: Option<PathBuf>,
     python: Option<Environment>,
@@ -104,11 +104,11 @@ struct Tools {
 }
 
 fn test_piece(piece: Piece, tools: &Tools) -> anyhow::Result<()> {
-    let tell = |command: &mut Command| {
+    let prepare = |command: &mut Command| {
         // Tests append a line for each skip.
         command.env("SLAM_SKIPPED", &tools.skipped);
         if let Some(python) = &tools.python {
-            python.tell(command);
+            python.pass_to(command);
         }
     };
     match piece {
@@ -123,7 +123,7 @@ fn test_piece(piece: Piece, tools: &Tools) -> anyhow::Result<()> {
                 .args(["--tests", "--benches", "--examples"]);
             run("Compiling and linting natively", &mut compile)?;
             let mut test = cargo();
-            tell(linting(&mut test)?.args(["test", "--quiet"]));
+            prepare(linting(&mut test)?.args(["test", "--quiet"]));
             run("Native tests", &mut test)
         }
         Piece::Exercises => exercises::check(exercises::Lints::Denied),
@@ -138,7 +138,7 @@ fn test_piece(piece: Piece, tools: &Tools) -> anyhow::Result<()> {
         Piece::Counts => {
             compile_programs()?;
             let mut count = program(programs().join("slam2d_bench"));
-            tell(count.args(["--counts", "check"]));
+            prepare(count.args(["--counts", "check"]));
             run("Counting instructions", &mut count)
         }
         Piece::Site => {
@@ -152,7 +152,7 @@ fn test_piece(piece: Piece, tools: &Tools) -> anyhow::Result<()> {
             compile_programs()?;
             let mut node = program("node");
             node.arg("--test").args(test_files("tests/wasm")?);
-            tell(node.env("SLAM_NATIVE", programs()));
+            prepare(node.env("SLAM_NATIVE", programs()));
             run("Node tests", &mut node)
         }
         Piece::Python => {
@@ -162,7 +162,7 @@ fn test_piece(piece: Piece, tools: &Tools) -> anyhow::Result<()> {
         Piece::Browser => {
             let chromium = tools.chromium.as_deref();
             let mut node = browser_tests(chromium.context("no Chromium was looked for")?, &[]);
-            tell(&mut node);
+            prepare(&mut node);
             run("Browser tests", &mut node)
         }
     }

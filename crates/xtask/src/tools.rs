@@ -110,8 +110,8 @@ pub fn ensure_cargo_fuzz() -> anyhow::Result<()> {
 
 /// Installs a tool without optimization, because it runs briefly and would take minutes to compile.
 fn ensure_cargo_tool(name: &str, version: &str) -> anyhow::Result<()> {
-    let mut ask = program(name);
-    let found = output(ask.arg("--version").env("PATH", path_with_tools()));
+    let mut version_of = program(name);
+    let found = output(version_of.arg("--version").env("PATH", path_with_tools()));
     if found.is_some_and(|line| line.split_whitespace().any(|word| word == version)) {
         return Ok(());
     }
@@ -201,13 +201,13 @@ fn ensure_chromium(packages: &[&str]) -> anyhow::Result<PathBuf> {
         program("apt-get").arg("update"),
     )
     .context(HOW)?;
-    let mut asked = packages.iter().map(|package| {
+    let mut installed = packages.iter().map(|package| {
         let mut install = program("apt-get");
         install.args(["install", "--yes", "--no-install-recommends"]);
         install.args([package, "fonts-dejavu-core"]);
         run(&format!("Installing {package}"), &mut install)
     });
-    asked.find(Result::is_ok);
+    installed.find(Result::is_ok);
     find_chromium(packages).context(HOW)
 }
 

@@ -1,4 +1,4 @@
-//! A solution of every exercise in code. Four of them are listings of the chapter as they stand.
+//! A solution of every exercise in code. Four of them are unchanged listings of the chapter.
 
 mod gauss_newton;
 mod range_histogram;

@@ -23,7 +23,7 @@ pub fn chi2_distance(a: &[f64; BINS], b: &[f64; BINS]) -> f64 {
     0.5 * terms.map(|(a, b)| (a - b).powi(2) / (a + b)).sum::<f64>()
 }
 
-/// The nodes that look like `node`, the most alike first.
+/// The nodes with scans similar to that of `node`, the most similar first.
 #[must_use]
 pub fn detect_by_histogram(
     sweeps: &[PointCloud],
@@ -45,7 +45,7 @@ pub fn detect_by_histogram(
         })
         .filter(|(distance, _)| *distance <= max_distance)
         .collect();
-    // Stable: of equals the older stays first.
+    // Stable: among equal distances the older node stays first.
     alike.sort_by(|a, b| a.0.total_cmp(&b.0));
     alike.into_iter().map(|(_, old)| old).collect()
 }

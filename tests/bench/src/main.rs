@@ -8,7 +8,6 @@ mod measured;
 mod page;
 mod registration;
 mod report;
-mod sweep;
 
 use std::io::{ErrorKind, Write as _, stdin, stdout};
 use std::path::Path;
@@ -35,8 +34,6 @@ slam2d_bench registration SLAM2D FOLDER PAGE.md
                                          write the clouds, register them with the program SLAM2D and
                                          with nanoflann, where a C++ compiler finds it,
                                          print the table and write it into a page
-slam2d_bench sweep SLAM2D PAGE.md        run the sweep of 4,000 laps with the program SLAM2D,
-                                         print its distribution and write it into a page
 slam2d_bench --counts check              fail where a workload takes 10 % more instructions than recorded
 slam2d_bench --counts accept             record the instruction counts
 slam2d_bench --run                       run each workload twice; callgrind counts the second time";
@@ -57,8 +54,6 @@ fn main() -> ExitCode {
             registration::table(Path::new(slam2d), Path::new(folder))
                 .and_then(|table| publish(Path::new(page), Block::Registration, &table))
         }
-        ["sweep", slam2d, page] => sweep::block(Path::new(slam2d))
-            .and_then(|block| publish(Path::new(page), Block::Sweep, &block)),
         ["--counts", "check"] => judge_counts(counts::compare),
         ["--counts", "accept"] => judge_counts(counts::accept),
         ["--run"] => counts::run_all_twice(),

@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn an_unknown_workload_is_reported() {
-        let told = Turns::default().take("nothing", 1.0, &|| 0.0);
-        assert_eq!(told, Err("there is no workload `nothing`".to_owned()));
+        let error = Turns::default().take("nothing", 1.0, &|| 0.0);
+        assert_eq!(error, Err("there is no workload `nothing`".to_owned()));
     }
 }

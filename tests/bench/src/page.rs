@@ -11,8 +11,6 @@ pub enum Block {
     Workloads,
     /// Registration of files.
     Registration,
-    /// Distribution of the lap's errors over many seeds.
-    Sweep,
 }
 
 impl Block {
@@ -20,7 +18,6 @@ impl Block {
         match self {
             Self::Workloads => "workloads",
             Self::Registration => "registration",
-            Self::Sweep => "sweep",
         }
     }
 
@@ -49,7 +46,7 @@ mod tests {
     #[test]
     fn the_document_has_the_marks_of_every_block() {
         let page = include_str!("../../../docs/performance.md");
-        for block in [Block::Workloads, Block::Registration, Block::Sweep] {
+        for block in [Block::Workloads, Block::Registration] {
             let (start, end) = (block.start(), block.end());
             assert!(
                 page.find(&start) < page.find(&end) && page.contains(&start),

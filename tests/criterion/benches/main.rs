@@ -2,8 +2,6 @@
 //!
 //! They are one program, because each program would link all widgets, and the test suite compiles them.
 
-mod lap;
-mod registration;
 mod solve;
 mod workloads;
 
@@ -12,11 +10,6 @@ use criterion::{criterion_group, criterion_main};
 criterion_group!(
     benches,
     workloads::all,
-    registration::register,
-    registration::maps,
-    registration::corridor,
-    lap::parts,
-    lap::cold_solve,
     solve::parts_of_an_iteration,
     solve::whole_solves,
 );

@@ -1,6 +1,6 @@
 //! Times of the solver on generated graphs: a short and a long walk on a street grid.
 //!
-//! The graph of the lap is `lap_41` beside them, and the workload `solve`.
+//! The workload `solve` has the graph of the lap.
 
 use std::hint::black_box;
 

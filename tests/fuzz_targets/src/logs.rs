@@ -28,7 +28,7 @@ pub fn fuzz(bytes: &[u8]) {
         }
     }
     let mut info = LogInfo::default();
-    frames.iter().for_each(|frame| info.take(frame));
+    frames.iter().for_each(|frame| info.add(frame));
     assert!(info.duration_s.is_finite(), "{info:?}");
     assert!(
         info.odometry_path_length_m.is_none_or(f64::is_finite),
@@ -53,7 +53,7 @@ fn compare(bytes: &[u8]) {
     while let Some(frame) = reader.next_frame().expect("it was read before") {
         frame.odometry.iter().for_each(assert_finite);
         assert_finite(&frame.scan.body_from_sensor);
-        checkup.take(&frame);
+        checkup.add(&frame);
     }
     let motion = reader.motion().cloned().unwrap_or_default();
     let screen = checkup.finish(NAME, reader.notes(), &motion).text();

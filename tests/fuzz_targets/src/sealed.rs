@@ -62,7 +62,7 @@ mod tests {
         let (_, rest): (String, _) = postcard::take_from_bytes(content).unwrap();
         let completed = sealed(&with_parameters(rest));
         let mut again = Session::from_bytes(&completed, "x").unwrap();
-        again.driven.config = session.driven.config.clone();
+        again.snapshot.config = session.snapshot.config.clone();
         assert_eq!(again, session);
     }
 }

@@ -56,13 +56,13 @@ pub fn fuzz(data: &[u8]) {
 }
 
 fn is_small(session: &Session) -> bool {
-    let driven = &session.driven;
-    let scans = driven.keyframes.iter().map(|keyframe| &keyframe.scan);
-    let mut scans = scans.chain(&driven.front_end.scans);
-    let robot = driven.config.robot.unwrap_or_default();
+    let snapshot = &session.snapshot;
+    let scans = snapshot.keyframes.iter().map(|keyframe| &keyframe.scan);
+    let mut scans = scans.chain(&snapshot.front_end.scans);
+    let robot = snapshot.config.robot.unwrap_or_default();
     let mut values = SETTINGS.iter().map(|setting| setting.value(&robot));
-    driven.keyframes.len() <= MAX_KEYFRAMES
-        && driven.front_end.scans.len() <= MAX_KEYFRAMES
+    snapshot.keyframes.len() <= MAX_KEYFRAMES
+        && snapshot.front_end.scans.len() <= MAX_KEYFRAMES
         && scans.all(|scan| scan.len() <= MAX_POINTS)
         && values.all(|value| value <= MAX_SETTING)
 }
@@ -70,7 +70,7 @@ fn is_small(session: &Session) -> bool {
 /// Further scans: a round room, with odometry that moves on.
 fn frames(session: &Session) -> impl Iterator<Item = LogFrame> + '_ {
     (1..=2).map(|step| LogFrame {
-        stamp_s: session.driven.last_stamp_s + 0.25 * f64::from(step),
+        stamp_s: session.snapshot.last_stamp_s + 0.25 * f64::from(step),
         odometry: Some(SE2::new(0.5 * f64::from(step), 0.0, 0.1)),
         scan: LaserScan {
             angle_step_rad: TAU / 24.0,

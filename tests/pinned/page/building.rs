@@ -4,7 +4,7 @@ use ch16_lab::buildings::BuildingStory;
 
 #[test]
 fn the_building_of_the_page_is_what_the_estimator_computes() {
-    let computed = serde_json::to_string(&BuildingStory::of_page()).expect("plain numbers");
+    let computed = serde_json::to_string(&BuildingStory::for_page()).expect("plain numbers");
     let committed = include_str!("../../../web/page/building/building.json");
     assert_eq!(
         computed,

@@ -86,17 +86,14 @@ pub fn source(path: &str) -> String {
     fs::read_to_string(root.join(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
 }
 
-/// The sources of the pages, in the order in which they are read.
-pub const PAGES: [&str; 4] = [
-    "index.html",
-    "web/page/robots.html",
-    "web/page/own-robot.html",
-    "web/page/reference.html",
-];
-
-/// The sources of all pages.
+/// The text of all pages in reading order, by the list of the build.
 pub fn companion() -> String {
-    PAGES.map(source).concat()
+    let list = source("web/page/pages.mjs");
+    let paths = list.split("source: '").skip(1);
+    let paths = paths.filter_map(|rest| Some(rest.split_once('\'')?.0));
+    let pages: Vec<String> = paths.map(source).collect();
+    assert!(pages.len() >= 4, "web/page/pages.mjs has another form");
+    pages.concat()
 }
 
 impl Document {

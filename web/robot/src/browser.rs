@@ -86,7 +86,7 @@ impl Robot {
     ) -> Result<Self, JsError> {
         let opened = given(names, sizes, read)
             .and_then(|given| Engine::open(given, &Choices::read(chosen)?));
-        let engine = opened.map_err(|said| JsError::new(&said))?;
+        let engine = opened.map_err(|message| JsError::new(&message))?;
         Ok(Self { engine })
     }
 
@@ -109,7 +109,7 @@ impl Robot {
         };
         let begun = given(names, sizes, read)
             .and_then(|given| self.engine.locate(given, &Choices::read(chosen)?, start));
-        begun.map_err(|said| JsError::new(&said))
+        begun.map_err(|message| JsError::new(&message))
     }
 
     /// Does the next piece of work; returns false if there is none.
@@ -139,7 +139,7 @@ impl Robot {
     /// If it is not a reference; the message is one sentence.
     pub fn reference(&mut self, bytes: &[u8], name: &str) -> Result<(), JsError> {
         let taken = self.engine.take_reference(bytes, name);
-        taken.map_err(|said| JsError::new(&said))
+        taken.map_err(|message| JsError::new(&message))
     }
 
     /// The content of a file to save.
@@ -147,7 +147,9 @@ impl Robot {
     /// # Errors
     /// If there is nothing to write; the message is one sentence.
     pub fn file(&mut self, name: &str) -> Result<Vec<u8>, JsError> {
-        self.engine.file(name).map_err(|said| JsError::new(&said))
+        self.engine
+            .file(name)
+            .map_err(|message| JsError::new(&message))
     }
 }
 

@@ -146,7 +146,7 @@ impl<'a> Engine<'a> {
     /// Opens a session, which already has a map.
     fn from_session(session: &Session, name: &str, size_bytes: u64) -> Result<Self, String> {
         let run = LogRun::reopen(session).map_err(|problem| format!("{name}: {problem}"))?;
-        let keyframes = session.driven.keyframes.len();
+        let keyframes = session.snapshot.keyframes.len();
         if keyframes == 0 {
             return Err(format!(
                 "{name} is the session of a run without a scan; map a log first"
@@ -157,7 +157,7 @@ impl<'a> Engine<'a> {
             recorder: RunRecorder::resume(session),
             fits: vec![f64::NAN; keyframes],
             has_scans: true,
-            scans_before: session.driven.frames,
+            scans_before: session.snapshot.frames,
             ..Self::with_work(Work::Idle, name, size_bytes)
         };
         engine.begin_editing(loops_of(&session.graph()));
@@ -233,7 +233,7 @@ impl<'a> Engine<'a> {
                     if is_first {
                         self.send_offers(&reader.notes().offers);
                     }
-                    self.recorder.take(&frame, &report);
+                    self.recorder.add(&frame, &report);
                     if report.new_keyframe.is_some() {
                         let matched = report.registration.map(|found| found.matched);
                         let fit = matched.and_then(|matched| matched.score);
@@ -260,16 +260,16 @@ impl<'a> Engine<'a> {
         let notes = reader.notes();
         self.send_offers(&notes.offers);
         self.remarks.clone_from(&notes.about);
-        let said = notes.sentences(&self.name);
+        let sentences = notes.sentences(&self.name);
         // A map of a part of the file must not look complete.
         let is_cut = notes.truncated.is_some() || notes.ended_early.is_some();
-        let missing = problem.as_ref().or(said.first().filter(|_| is_cut));
+        let missing = problem.as_ref().or(sentences.first().filter(|_| is_cut));
         let missing = missing.map_or(String::new(), |missing| format!("{missing}."));
-        self.remarks.extend(said);
+        self.remarks.extend(sentences);
         match self.run.slam() {
             Some(_) if !self.run.has_seen() => {
-                let said = format!("{}: no scan could be used: {NOTHING_SEEN}", self.name);
-                self.work = Work::Failed(said);
+                let problem = format!("{}: no scan could be used: {NOTHING_SEEN}", self.name);
+                self.work = Work::Failed(problem);
             }
             Some(_) => {
                 self.remarks.extend(problem);

@@ -70,9 +70,10 @@ impl Reference {
                 Ok((update(1.0, report.n, numbers.as_flattened(), words), errors))
             }
             Self::Truth(truth) => {
-                let said = |problem: robot_io::evaluate::TruthProblem| format!("{name}: {problem}");
-                let report = truth_errors(trajectory, truth, Alignment::Se2).map_err(said)?;
-                let onto = onto_truth(trajectory, truth, Alignment::Se2).map_err(said)?;
+                let named =
+                    |problem: robot_io::evaluate::TruthProblem| format!("{name}: {problem}");
+                let report = truth_errors(trajectory, truth, Alignment::Se2).map_err(named)?;
+                let onto = onto_truth(trajectory, truth, Alignment::Se2).map_err(named)?;
                 let (ate, turn) = (report.ate, report.rpe.rot_deg);
                 let words = format!(
                     "{} poses: RMSE {:.3} m, at most {:.3} m off the truth",

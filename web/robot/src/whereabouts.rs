@@ -187,9 +187,9 @@ impl<'a> Whereabouts<'a> {
     }
 
     fn remarks(&self, notes: &LogNotes) -> Vec<String> {
-        let mut said = notes.sentences(&self.name);
-        said.extend(late_scans(&self.name, self.run.late()));
-        said
+        let mut sentences = notes.sentences(&self.name);
+        sentences.extend(late_scans(&self.name, self.run.late()));
+        sentences
     }
 }
 

@@ -35,8 +35,8 @@ pub fn refuse_first(engine: &mut Engine<'_>) -> Vec<Update> {
     engine.order("turn 0");
     while engine.step() {}
     let updates = engine.updates();
-    let said = &of(&updates, "answer").text;
-    assert!(said.contains("was removed from the graph"), "{said}");
+    let text = &of(&updates, "answer").text;
+    assert!(text.contains("was removed from the graph"), "{text}");
     updates
 }
 
@@ -73,9 +73,9 @@ fn the_sample_becomes_a_map_with_loops_and_its_grade() {
 fn sent_loops(updates: &[Update]) -> Vec<([usize; 2], f64, f64, f64)> {
     let loops = of(updates, "loops").numbers.chunks(10);
     loops
-        .map(|told| {
-            let ends = [told[0] as usize, told[1] as usize];
-            (ends, told[6], told[7], told[8])
+        .map(|sent| {
+            let ends = [sent[0] as usize, sent[1] as usize];
+            (ends, sent[6], sent[7], sent[8])
         })
         .collect()
 }
@@ -84,12 +84,12 @@ fn sent_loops(updates: &[Update]) -> Vec<([usize; 2], f64, f64, f64)> {
 fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
     let (log, _) = files();
     let mut engine = finished(log);
-    let told = sent_loops(&engine.updates());
-    let closed: Vec<_> = told.iter().filter(|told| told.3 == 0.0).collect();
+    let sent = sent_loops(&engine.updates());
+    let closed: Vec<_> = sent.iter().filter(|sent| sent.3 == 0.0).collect();
     assert!(closed.len() > 5);
     assert!(
         closed.windows(2).all(|two| two[0].1 >= two[1].1),
-        "{told:?}"
+        "{sent:?}"
     );
 
     // The same log through the command's reader.
@@ -102,14 +102,14 @@ fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
     let quality = run.quality();
     assert_eq!(quality.links.len(), closed.len());
     for link in &quality.links {
-        let found = closed.iter().find(|told| told.0 == [link.from, link.to]);
-        assert_eq!(found.map(|told| Some(told.1)), Some(link.chi2), "{link:?}");
+        let found = closed.iter().find(|sent| sent.0 == [link.from, link.to]);
+        assert_eq!(found.map(|sent| Some(sent.1)), Some(link.chi2), "{link:?}");
     }
     // A loop keeps its number while it is removed, even if it is no longer the most doubtful.
     let after = sent_loops(&refuse_first(&mut engine));
     let ends =
-        |told: &[([usize; 2], f64, f64, f64)]| told.iter().map(|told| told.0).collect::<Vec<_>>();
-    assert_eq!(ends(&after), ends(&told));
+        |sent: &[([usize; 2], f64, f64, f64)]| sent.iter().map(|sent| sent.0).collect::<Vec<_>>();
+    assert_eq!(ends(&after), ends(&sent));
 }
 
 /// A loop to look into: its index, the newer and older keyframe, and the points of both scans.
@@ -247,15 +247,15 @@ fn a_loop_is_added_if_two_scans_fit_and_otherwise_rejected_with_a_reason() {
     let loops = &of(&updates, "loops").numbers;
     let (new, old) = (loops[0], loops[1]);
     engine.order(&format!("add {new} {old}"));
-    let said = of(&engine.updates(), "answer").text.clone();
-    assert!(said.contains("closes a loop with"), "{said}");
+    let text = of(&engine.updates(), "answer").text.clone();
+    assert!(text.contains("closes a loop with"), "{text}");
     // Opposite sides of the ring see different corridors.
     engine.order(&format!("add 0 {}", keyframes / 4));
-    let said = of(&engine.updates(), "answer").text.clone();
-    assert!(said.contains("does not close a loop"), "{said}");
+    let text = of(&engine.updates(), "answer").text.clone();
+    assert!(text.contains("does not close a loop"), "{text}");
     engine.order("add 3 3");
-    let said = of(&engine.updates(), "answer").text.clone();
-    assert!(said.contains("two keyframes"), "{said}");
+    let text = of(&engine.updates(), "answer").text.clone();
+    assert!(text.contains("two keyframes"), "{text}");
 }
 
 #[test]
@@ -284,12 +284,12 @@ fn a_reading_that_is_stopped_keeps_what_was_read() {
     let updates = engine.updates();
     assert_eq!(engine.stage(), Stage::Done);
     assert_eq!(of(&updates, "stage").numbers[2], 60.0);
-    let said: Vec<_> = updates
+    let text: Vec<_> = updates
         .iter()
         .filter(|update| update.kind == "answer")
         .collect();
-    assert!(said[0].text.contains("once the whole log is read"));
-    assert_eq!(said[1].text, "Stopped after 60 scans.");
+    assert!(text[0].text.contains("once the whole log is read"));
+    assert_eq!(text[1].text, "Stopped after 60 scans.");
     assert!(engine.file("map.pgm").unwrap().starts_with(b"P5"));
 }
 
@@ -346,8 +346,8 @@ fn a_file_that_goes_while_it_is_read_leaves_a_map_of_a_part_and_says_so() {
     let mut engine = Engine::open(given, &Choices::default()).unwrap();
     while engine.step() {}
     assert_eq!(engine.stage(), Stage::Done);
-    let said = of(&engine.updates(), "answer").text.clone();
-    assert!(said.contains("it is gone"), "{said}");
+    let text = of(&engine.updates(), "answer").text.clone();
+    assert!(text.contains("it is gone"), "{text}");
 }
 
 #[test]
@@ -392,12 +392,12 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
     while engine.step() {}
     assert_eq!(engine.stage(), Stage::Done);
     let updates = engine.updates();
-    let said = &of(&updates, "remarks").text;
-    assert!(said.contains("incomplete"), "{said}");
-    let said = &of(&updates, "answer").text;
+    let text = &of(&updates, "remarks").text;
+    assert!(text.contains("incomplete"), "{text}");
+    let text = &of(&updates, "answer").text;
     assert!(
-        said.contains("incomplete"),
-        "it is no map of all of it: {said}"
+        text.contains("incomplete"),
+        "it is no map of all of it: {text}"
     );
 
     assert_eq!(
@@ -421,8 +421,8 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
     let mut engine = open(blind.as_bytes(), "blind.log").unwrap();
     while engine.step() {}
     assert_eq!(engine.stage(), Stage::Failed);
-    let said = of(&engine.updates(), "stage").text.clone();
-    assert!(said.contains("no beam of any keyframe"), "{said}");
+    let text = of(&engine.updates(), "stage").text.clone();
+    assert!(text.contains("no beam of any keyframe"), "{text}");
     for bytes in [
         &b"hello\nworld\n"[..],
         &[0x89, 0x50, 0x4e, 0x47, 0, 1, 2, 3],
@@ -430,8 +430,8 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
         let mut engine = open(bytes, "photo.png").unwrap();
         while engine.step() {}
         assert_eq!(engine.stage(), Stage::Failed);
-        let said = of(&engine.updates(), "stage").text.clone();
-        assert!(said.starts_with("photo.png is not a CARMEN log"), "{said}");
+        let text = of(&engine.updates(), "stage").text.clone();
+        assert!(text.starts_with("photo.png is not a CARMEN log"), "{text}");
         engine.order("turn 0");
         assert!(of(&engine.updates(), "answer").text.contains("no graph"));
         assert!(engine.file("graph.g2o").is_err());

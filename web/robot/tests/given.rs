@@ -87,9 +87,9 @@ fn the_doctor_s_screen_comes_before_the_first_keyframe_and_once() {
     let shares = updates.iter().filter(|update| update.kind == "stage");
     let shares: Vec<f64> = shares.map(|update| update.numbers[1]).collect();
     assert!(shares.windows(2).all(|two| two[0] <= two[1]), "{shares:?}");
-    let told = diagnosis(&updates);
+    let report = diagnosis(&updates);
     assert_eq!(
-        (&told["name"], &told["verdict"]),
+        (&report["name"], &report["verdict"]),
         (&"ring.log".into(), &"good".into())
     );
 }

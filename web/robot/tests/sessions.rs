@@ -122,7 +122,7 @@ fn sessions_that_are_broken_are_answered_in_one_sentence() {
     newer[8] = 9;
     let mut spoilt = session.clone();
     spoilt[session.len() / 2] ^= 1;
-    for (bytes, said) in [
+    for (bytes, expected) in [
         (&b""[..], "is empty"),
         (b"SLAM2D", "ends at byte 6"),
         (
@@ -133,10 +133,10 @@ fn sessions_that_are_broken_are_answered_in_one_sentence() {
         (&spoilt, "is damaged"),
         (b"hello", "is not a session"),
     ] {
-        let told = open(bytes, "monday.slam2d").err().unwrap();
-        assert!(told.starts_with("monday.slam2d "), "{told}");
-        assert!(told.contains(said), "{told}");
-        assert_eq!(told.lines().count(), 1);
+        let update = open(bytes, "monday.slam2d").err().unwrap();
+        assert!(update.starts_with("monday.slam2d "), "{update}");
+        assert!(update.contains(expected), "{update}");
+        assert_eq!(update.lines().count(), 1);
     }
     let huge = Engine::open(
         Given::one("x.slam2d", 1 << 30, &session[..]),
@@ -166,9 +166,9 @@ fn the_robot_of_another_day_is_found_on_the_map_and_followed() {
             .unwrap_err()
             .contains("No other log")
     );
-    let told = look(&mut engine, &day, StartPose::Anywhere);
-    assert_eq!(told.text.lines().next(), Some("tuesday.log"));
-    let (head, places) = told.numbers.split_at(HEAD);
+    let update = look(&mut engine, &day, StartPose::Anywhere);
+    assert_eq!(update.text.lines().next(), Some("tuesday.log"));
+    let (head, places) = update.numbers.split_at(HEAD);
     assert_eq!((head[0], head[1]), (1.0, 1.0));
     let scans = places.len() / PLACE;
     assert_eq!(head[2..6].iter().sum::<f64>(), scans as f64);
@@ -199,14 +199,14 @@ fn a_start_that_is_given_is_where_the_robot_is_looked_for() {
     let day = sample::another_day();
     let session = saved();
     let mut engine = opened(&session);
-    let told = look(&mut engine, &day, StartPose::Anywhere);
-    let places: Vec<&[f64]> = told.numbers[HEAD..].chunks(PLACE).collect();
+    let update = look(&mut engine, &day, StartPose::Anywhere);
+    let places: Vec<&[f64]> = update.numbers[HEAD..].chunks(PLACE).collect();
     // The best pose of the whole map at the first scan, localized or not.
     let found = places.iter().find(|place| place[2].is_finite()).unwrap();
     let at = SE2::new(found[2], found[3], found[4]);
     // A wrong initial guess by three metres does not localize the first scan; the right one does.
     let near = look(&mut engine, &day[..], StartPose::Near(at));
-    let first = |told: &Update| told.numbers[6];
+    let first = |update: &Update| update.numbers[6];
     let far = SE2::new(at.x() + 30.0, at.y() + 30.0, at.theta());
     let away = look(&mut engine, &day[..], StartPose::Near(far));
     assert!(
@@ -263,16 +263,16 @@ fn files_that_are_not_logs_are_reported_and_change_nothing() {
     let begun = engine.locate(given(b"hello\n", "x.log"), &choices, StartPose::Anywhere);
     begun.unwrap();
     while engine.step() {}
-    let told = of(&engine.updates(), "where").clone();
-    assert!(told.text.contains("x.log"), "{}", told.text);
-    assert_eq!(told.numbers.len(), HEAD);
+    let update = of(&engine.updates(), "where").clone();
+    assert!(update.text.contains("x.log"), "{}", update.text);
+    assert_eq!(update.numbers.len(), HEAD);
     assert_eq!(engine.stage(), Stage::Done);
     let (log, _) = files();
     let graph = finished(log).file("graph.g2o").unwrap();
     let mut of_graph = open(&graph, "x.g2o").unwrap();
     while of_graph.step() {}
-    let said = of_graph.locate(given(log, "x.log"), &choices, StartPose::Anywhere);
-    assert!(said.unwrap_err().contains("no scans"));
+    let reply = of_graph.locate(given(log, "x.log"), &choices, StartPose::Anywhere);
+    assert!(reply.unwrap_err().contains("no scans"));
 }
 
 #[test]
@@ -291,9 +291,9 @@ fn a_search_is_stopped_and_keeps_what_was_found() {
     }
     engine.order("cancel");
     while engine.step() {}
-    let told = of(&engine.updates(), "where").clone();
-    assert_eq!(told.numbers[1], 1.0);
-    assert_eq!((told.numbers.len() - HEAD) / PLACE, 5);
+    let update = of(&engine.updates(), "where").clone();
+    assert_eq!(update.numbers[1], 1.0);
+    assert_eq!((update.numbers.len() - HEAD) / PLACE, 5);
 }
 
 #[test]
@@ -301,16 +301,19 @@ fn a_recording_says_what_its_options_could_choose_and_takes_them() {
     let recording = include_bytes!("../../../crates/robot_io/recordings/plain.mcap");
     let mut engine = open(recording, "plain.mcap").unwrap();
     while engine.step() {}
-    let told = of(&engine.updates(), "offers").text.clone();
+    let update = of(&engine.updates(), "offers").text.clone();
     let offer = |name: &str| {
-        let line = told.lines().find(|line| line.starts_with(name)).unwrap();
+        let line = update.lines().find(|line| line.starts_with(name)).unwrap();
         line.split('\t').map(str::to_owned).collect::<Vec<_>>()
     };
     let scans = offer("scan-topic");
-    assert!(scans.len() >= 3 && scans[2..].contains(&scans[1]), "{told}");
+    assert!(
+        scans.len() >= 3 && scans[2..].contains(&scans[1]),
+        "{update}"
+    );
     let choices = Choices::read("scan-topic /nowhere").unwrap();
     let mut engine = Engine::open(given(recording, "plain.mcap"), &choices).unwrap();
     while engine.step() {}
-    let said = of(&engine.updates(), "stage").text.clone();
-    assert!(said.contains("/nowhere is not one of"), "{said}");
+    let reply = of(&engine.updates(), "stage").text.clone();
+    assert!(reply.contains("/nowhere is not one of"), "{reply}");
 }

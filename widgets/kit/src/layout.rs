@@ -185,25 +185,25 @@ pub fn wrap(text: &str, width: f32, size: TextSize, measure: &mut dyn Measure) -
 #[must_use]
 pub fn y_ticks(axis: &Axis, min: f64, max: f64, height: f32) -> Ticks {
     if !axis.is_drawn() {
-        return Ticks::of_names(&[], min, max);
+        return Ticks::from_names(&[], min, max);
     }
     if !axis.names.is_empty() {
-        return Ticks::of_names(&axis.names, min, max);
+        return Ticks::from_names(&axis.names, min, max);
     }
     let most = (height / 34.0).clamp(2.0, 10.0) as usize;
-    Ticks::new(min, max, most, Scale::of_label(&axis.label))
+    Ticks::new(min, max, most, Scale::from_label(&axis.label))
 }
 
 /// Ticks of the shown part of a horizontal axis of that width, as many as fit beside each other.
 #[must_use]
 pub fn x_ticks(axis: &Axis, min: f64, max: f64, width: f32, measure: &mut dyn Measure) -> Ticks {
     if !axis.is_drawn() {
-        return Ticks::of_names(&[], min, max);
+        return Ticks::from_names(&[], min, max);
     }
     if !axis.names.is_empty() {
-        return Ticks::of_names(&axis.names, min, max);
+        return Ticks::from_names(&axis.names, min, max);
     }
-    let scale = Scale::of_label(&axis.label);
+    let scale = Scale::from_label(&axis.label);
     let mut most = 12;
     loop {
         let ticks = Ticks::new(min, max, most, scale);
@@ -232,7 +232,7 @@ fn tick_label_width(axis: &Axis, measure: &mut dyn Measure) -> f32 {
     [3, 5, 8]
         .into_iter()
         .flat_map(|most| {
-            let ticks = Ticks::new(axis.min, axis.max, most, Scale::of_label(&axis.label));
+            let ticks = Ticks::new(axis.min, axis.max, most, Scale::from_label(&axis.label));
             let labels: Vec<_> = ticks.values.iter().map(|v| ticks.label(*v)).collect();
             labels
         })

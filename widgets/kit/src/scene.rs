@@ -320,7 +320,7 @@ impl Axis {
 
     /// An axis with these names at 1, 2, … in place of numbers.
     #[must_use]
-    pub fn of_names(label: &str, names: impl IntoIterator<Item = String>) -> Self {
+    pub fn from_names(label: &str, names: impl IntoIterator<Item = String>) -> Self {
         let names: Vec<String> = names.into_iter().collect();
         let max = names.len() as f64 + 0.6;
         Self {

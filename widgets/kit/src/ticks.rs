@@ -23,7 +23,7 @@ pub enum Scale {
 impl Scale {
     /// Degrees if the label contains the unit.
     #[must_use]
-    pub fn of_label(label: &str) -> Self {
+    pub fn from_label(label: &str) -> Self {
         if label.contains('°') {
             Scale::Degrees
         } else {
@@ -51,7 +51,7 @@ impl Ticks {
 
     /// A tick at every name that lies between `min` and `max`.
     #[must_use]
-    pub fn of_names(names: &[String], min: f64, max: f64) -> Self {
+    pub fn from_names(names: &[String], min: f64, max: f64) -> Self {
         let places = (1..=names.len()).map(|place| place as f64);
         Self {
             values: places.filter(|at| (min..=max).contains(at)).collect(),

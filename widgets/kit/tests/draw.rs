@@ -143,7 +143,7 @@ fn names_of_an_axis_do_not_lie_on_each_other_however_low_the_plot() {
         weight: Weight::Side,
         aspect: Aspect::Free,
         x: Axis::new("tick", 0.0, 129.0),
-        y: Axis::of_names("lane", names.map(str::to_owned)),
+        y: Axis::from_names("lane", names.map(str::to_owned)),
         layers: Vec::new(),
         legend: Vec::new(),
         color_bar: None,

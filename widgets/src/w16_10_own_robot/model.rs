@@ -166,8 +166,8 @@ impl OwnRobot {
         let badly = keyframes.filter(|(_, keyframe)| keyframe.fit < poor);
         let mut doubts: Vec<usize> = badly.map(|(k, _)| k).collect();
         let last = self.last();
-        let told = self.robot.look_into.iter().copied();
-        doubts.extend(told.filter(|keyframe| *keyframe <= last));
+        let look_into = self.robot.look_into.iter().copied();
+        doubts.extend(look_into.filter(|keyframe| *keyframe <= last));
         doubts.sort_unstable();
         doubts.dedup();
         doubts

@@ -304,7 +304,7 @@ impl Model for ControlRoom {
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
-        if let Some(lane) = lanes::of_name(handle.id) {
+        if let Some(lane) = lanes::from_name(handle.id) {
             self.choose_lane(lane);
         }
         let tick = dragged_to(handle, at);

@@ -42,7 +42,7 @@ const STEPS_PER_S: f64 = 1.5;
 const MOVING_PART: f64 = 0.6;
 
 /// The controls of each pose.
-const CONTROLS_OF_POSES: [&str; 3 * MAX_POSES] = [
+const POSE_CONTROLS: [&str; 3 * MAX_POSES] = [
     "x1", "y1", "turn1", "x2", "y2", "turn2", "x3", "y3", "turn3", "x4", "y4", "turn4", "x5", "y5",
     "turn5", "x6", "y6", "turn6",
 ];
@@ -191,7 +191,7 @@ impl Model for PoseGraphToy {
     fn layer(&self) -> Layer {
         let poses = self.values.get(&GRAPH).poses();
         match Layer::visible(SPEC.opening, &self.values) {
-            Layer::All if poses < MAX_POSES => Layer::AllBut(&CONTROLS_OF_POSES[3 * poses..]),
+            Layer::All if poses < MAX_POSES => Layer::AllBut(&POSE_CONTROLS[3 * poses..]),
             layer => layer,
         }
     }

@@ -143,5 +143,5 @@ fn lap(world: BuiltInWorld, seed: u32) -> Recording {
         seed,
         ..DriveConfig::default()
     };
-    Recording::of_drive(&Drive::simulate(&drive.on_course(&world.course())))
+    Recording::from_drive(&Drive::simulate(&drive.on_course(&world.course())))
 }

@@ -153,7 +153,7 @@ impl Recording {
 
     /// Converts a simulated lap into a recording: the start and every tick.
     #[must_use]
-    pub fn of_drive(drive: &Drive) -> Self {
+    pub fn from_drive(drive: &Drive) -> Self {
         let frame = |tick: usize| {
             let Frame { stamp_s, scan, .. } = drive.frame(tick);
             RecordedFrame {

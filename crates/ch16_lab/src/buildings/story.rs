@@ -38,9 +38,9 @@ pub struct BuildingStory {
 impl BuildingStory {
     /// The building of the page: corridors around a block, seed 1.
     #[must_use]
-    pub fn of_page() -> Self {
+    pub fn for_page() -> Self {
         let (recording, robot) = recorded(Kind::Ring, 1);
-        Self::of(&recording, &robot)
+        Self::new(&recording, &robot)
     }
 
     /// Maps the recording twice, without and with loops.
@@ -48,7 +48,7 @@ impl BuildingStory {
     /// # Panics
     /// If the recording has no frame.
     #[must_use]
-    pub fn of(recording: &Recording, robot: &RobotConfig) -> Self {
+    pub fn new(recording: &Recording, robot: &RobotConfig) -> Self {
         let frames = &recording.frames;
         let (slam, _) = map(recording, robot, LoopClosure::On);
         let (_, alone) = map(recording, robot, LoopClosure::Off);

@@ -25,7 +25,7 @@ const CONFIRMATION_REACH: f64 = 0.4;
 /// While the robot is lost, a search starts at least every this many frames.
 const SEARCH_EVERY: usize = 20;
 /// Largest number of further sweeps to wait for after unsuccessful searches.
-const MAX_AWAITED: usize = 4;
+const MAX_SEARCH_INTERVAL: usize = 4;
 /// Rate of the running average of the score.
 const SCORE_RATE: f64 = 0.1;
 /// Half width of the search around a given start, in standard deviations.
@@ -51,10 +51,10 @@ pub struct Localizer {
     /// The unconfirmed result of the last search, propagated by the motion since.
     candidate: Option<SE2>,
     searched_ago: usize,
-    /// Sweeps that still have to join the trail before the next search, and the last number of them: in an unmapped
-    /// area every search is slow and in vain.
-    awaited: usize,
-    patience: usize,
+    /// Sweeps that the trail needs before the next search, and the interval between searches, which doubles after
+    /// each failure: in an unmapped area every search is slow and fails.
+    scans_until_search: usize,
+    search_interval: usize,
 }
 
 impl Localizer {
@@ -81,8 +81,8 @@ impl Localizer {
             belief: None,
             candidate: None,
             searched_ago: 0,
-            awaited: 0,
-            patience: 1,
+            scans_until_search: 0,
+            search_interval: 1,
             slam,
             config,
         }
@@ -292,8 +292,10 @@ impl Localizer {
             return;
         }
         self.searched_ago += 1;
-        self.awaited = self.awaited.saturating_sub(usize::from(pending.joined));
-        let has_moved = pending.joined && self.awaited == 0;
+        self.scans_until_search = self
+            .scans_until_search
+            .saturating_sub(usize::from(pending.joined));
+        let has_moved = pending.joined && self.scans_until_search == 0;
         let is_due = has_moved || self.searched_ago >= SEARCH_EVERY || self.frames == 1;
         if !is_due || pending.scan.is_empty() {
             return;
@@ -308,11 +310,11 @@ impl Localizer {
     fn evaluate_whole_map(&mut self, result: Option<SearchResult>, pending: &mut PendingFix) {
         let Some(result) = result else {
             self.candidate = None;
-            self.patience = (2 * self.patience).min(MAX_AWAITED);
-            self.awaited = self.patience;
+            self.search_interval = (2 * self.search_interval).min(MAX_SEARCH_INTERVAL);
+            self.scans_until_search = self.search_interval;
             return;
         };
-        self.patience = 1;
+        self.search_interval = 1;
         let report = &mut pending.report;
         report.search = Some(result);
         let margin = result.margin().unwrap_or(1.0);

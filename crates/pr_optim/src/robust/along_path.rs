@@ -94,7 +94,7 @@ pub fn select_along_path(
         let end = (later_end(&problem.factors()[*first]) / stretch + 1) * stretch;
         let in_stretch = |&k: &usize| later_end(&problem.factors()[k]) < end;
         let (now, later) = rest.split_at(rest.partition_point(in_stretch));
-        selection.take(now, end.min(problem.node_count()))?;
+        selection.accept(now, end.min(problem.node_count()))?;
         rest = later;
     }
     selection.extend(problem.node_count());
@@ -137,7 +137,7 @@ struct PathSelection<'a> {
 
 impl PathSelection<'_> {
     /// Accepts those of `loops`, which end before pose `end`, that are consistent.
-    fn take(&mut self, loops: &[usize], end: usize) -> Result<(), OptimizeError> {
+    fn accept(&mut self, loops: &[usize], end: usize) -> Result<(), OptimizeError> {
         self.extend(end);
         let graph = self.so_far(end);
         let mut gate = MarginalGate::new(&mut self.optimizer, &graph)?;

@@ -15,7 +15,7 @@ use crate::settings::Settings;
 const INLIER_WEIGHT: f64 = 0.5;
 
 /// The weights have converged if none changed by more in a round of the final shape.
-const SETTLED: f64 = 0.01;
+const MAX_WEIGHT_CHANGE: f64 = 0.01;
 
 /// In the final shape of Geman–McClure a measurement of smaller weight is left out.
 const WORTH_A_BLOCK: f64 = 1e-4;
@@ -299,7 +299,7 @@ impl Gnc {
     fn stop_after(&self, round: &GncRound) -> Option<GncStop> {
         let has_full_shape = match self.settings.loss {
             GncLoss::TruncatedLeastSquares => round.mu == f64::INFINITY,
-            GncLoss::GemanMcClure => round.mu <= 1.0 && self.change <= SETTLED,
+            GncLoss::GemanMcClure => round.mu <= 1.0 && self.change <= MAX_WEIGHT_CHANGE,
         };
         if self.settings.loss == GncLoss::TruncatedLeastSquares && round.undecided == 0 {
             Some(GncStop::Decided)

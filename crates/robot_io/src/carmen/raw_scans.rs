@@ -23,7 +23,7 @@ impl RawScans {
     }
 
     /// Takes an odometry pose.
-    pub fn take_odometry(&mut self, stamp_s: f64, pose: SE2) {
+    pub fn add_odometry(&mut self, stamp_s: f64, pose: SE2) {
         self.odometry.push(stamp_s, pose);
     }
 

@@ -45,7 +45,7 @@ struct WaitingScan {
 
 impl FrontLaser {
     /// Takes a PARAM line; ignores names that do not concern the front laser.
-    pub fn take_parameter(&mut self, fields: &mut Fields<'_>) {
+    pub fn read_parameter(&mut self, fields: &mut Fields<'_>) {
         let name = fields.word();
         let value = fields
             .number(name)
@@ -71,11 +71,11 @@ impl FrontLaser {
         }
     }
 
-    /// Takes a FLASER line; its frame comes out of [`pop`](Self::pop).
+    /// Adds a FLASER line; its frame is returned by [`pop`](Self::pop).
     ///
     /// Beams start at −90° and go counter-clockwise in steps of 180°/n if n is even and 180°/(n − 1) if it is odd,
     /// unless PARAM lines state the field of view and step for this number of beams.
-    pub fn take(&mut self, fields: &mut Fields<'_>, frames: usize) -> Result<(), String> {
+    pub fn add_scan(&mut self, fields: &mut Fields<'_>, frames: usize) -> Result<(), String> {
         let ranges_m = fields.list("readings")?;
         if ranges_m.len() < 2 {
             return Err("a scan must have at least two readings".to_owned());

@@ -215,7 +215,7 @@ fn a_truncated_last_line_is_no_broken_line() {
 
 #[test]
 fn what_holds_no_scan_is_refused_in_one_sentence() {
-    for (text, said) in [
+    for (text, expected) in [
         ("", "x.clf is empty; give a recorded log"),
         (
             "Dear reader,\nthis is no log.\n",
@@ -243,7 +243,7 @@ fn what_holds_no_scan_is_refused_in_one_sentence() {
         ),
     ] {
         let error = read(text).unwrap_err().to_string();
-        assert_eq!(error, said, "{text:?}");
+        assert_eq!(error, expected, "{text:?}");
     }
     let noise: Vec<u8> = (0..100_000_u32)
         .map(|k| (k.wrapping_mul(k) % 251) as u8)

@@ -294,10 +294,10 @@ impl Motion {
             .unwrap_or_default();
         let (of_mount, mount_options) = if is_mended {
             let own = mount.option();
-            let said = format!(
+            let text = format!(
                 "it was corrected; keep the correction with {option}, or the recording's mounting with {own}"
             );
-            (said, vec![option, own])
+            (text, vec![option, own])
         } else {
             (format!("correct it with {option}"), vec![option])
         };

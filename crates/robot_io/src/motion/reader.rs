@@ -56,7 +56,7 @@ impl Late {
         Some(frame)
     }
 
-    fn take(&mut self, frame: Option<LogFrame>) {
+    fn add(&mut self, frame: Option<LogFrame>) {
         let Some(frame) = frame else {
             self.is_over = true;
             return;
@@ -147,7 +147,7 @@ impl<'a> ComparedReader<'a> {
                 break;
             }
             let comparing = comparison.get_or_insert_with(|| Comparison::new(&frame));
-            comparing.take(&frame);
+            comparing.add(&frame);
             let is_enough = comparing.is_enough();
             self.waiting.push_back(frame);
             if is_enough {
@@ -217,11 +217,11 @@ impl<'a> ComparedReader<'a> {
             return Ok(Some(self.mended(frame)));
         }
         let frame = self.inner.next_frame();
-        self.take_notes();
+        self.copy_notes();
         Ok(frame?.map(|frame| self.mended(frame)))
     }
 
-    fn take_notes(&mut self) {
+    fn copy_notes(&mut self) {
         self.notes.clone_from(self.inner.notes());
         self.notes.warnings.extend(self.remarks.iter().cloned());
         if let Some(mended) = &self.mount {
@@ -234,7 +234,7 @@ impl LogReader for ComparedReader<'_> {
     fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
         if self.motion.is_none() {
             let compared = self.compare();
-            self.take_notes();
+            self.copy_notes();
             compared?;
         }
         loop {
@@ -245,7 +245,7 @@ impl LogReader for ComparedReader<'_> {
             match &mut self.late {
                 None => return Ok(frame),
                 Some(late) if late.is_over => return Ok(None),
-                Some(late) => late.take(frame),
+                Some(late) => late.add(frame),
             }
         }
     }

@@ -93,7 +93,7 @@ impl<R: BufRead> BagFile<R> {
                 None
             }),
             // Version 2.0 stores messages in chunks; some writers do not.
-            _ => self.connections.take(&fields, data),
+            _ => self.connections.read(&fields, data),
         };
         match read {
             Err(problem) if self.is_at_record()? => Err(ContainerError::Skipped(problem)),
@@ -135,14 +135,14 @@ impl<R: BufRead> BagFile<R> {
         let header = piece(&mut rest, "a record's header inside a chunk")?;
         let data = piece(&mut rest, "a record's data inside a chunk")?;
         self.chunk_at = self.chunk.len() - rest.len();
-        self.connections.take(&Fields::parse(header)?, data)
+        self.connections.read(&Fields::parse(header)?, data)
     }
 }
 
 impl<R: BufRead> Container for BagFile<R> {
     fn next_message(&mut self) -> Result<Option<Recorded>, ContainerError> {
         if !self.is_started {
-            if self.file.take(MAGIC.len() as u64, "‘#ROSBAG V2.0’")? != MAGIC {
+            if self.file.read(MAGIC.len() as u64, "‘#ROSBAG V2.0’")? != MAGIC {
                 return Err(ContainerError::Broken(
                     "expected ‘#ROSBAG V2.0’; convert an older bag with rosbag fix".to_owned(),
                 ));

@@ -132,7 +132,7 @@ impl<'a> ScanCursor<'a> {
                 return None;
             }
             match self.container.next_message() {
-                Ok(Some(message)) => self.take(&message, notes),
+                Ok(Some(message)) => self.add(&message, notes),
                 // The survey has reported the damage already.
                 Err(error) if error.is_recoverable() => {}
                 Ok(None) | Err(_) => self.is_done = true,
@@ -140,7 +140,7 @@ impl<'a> ScanCursor<'a> {
         }
     }
 
-    fn take(&mut self, message: &Recorded, notes: &mut LogNotes) {
+    fn add(&mut self, message: &Recorded, notes: &mut LogNotes) {
         if message.topic != self.scans.topic || !SCANS.contains(&message.kind.as_str()) {
             return;
         }

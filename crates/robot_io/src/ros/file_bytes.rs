@@ -41,7 +41,7 @@ impl<R: BufRead> FileBytes<R> {
     }
 
     /// Reads `count` bytes.
-    pub fn take(&mut self, count: u64, what: &str) -> Result<Vec<u8>, ContainerError> {
+    pub fn read(&mut self, count: u64, what: &str) -> Result<Vec<u8>, ContainerError> {
         let bytes = self.up_to(count, what)?;
         if (bytes.len() as u64) < count {
             return Err(cut_off(what, count, bytes.len() as u64));

@@ -50,7 +50,7 @@ impl<R: BufRead> McapFile<R> {
     }
 
     fn magic(&mut self) -> Result<(), ContainerError> {
-        if self.file.take(MAGIC.len() as u64, "MCAP's magic")? == MAGIC {
+        if self.file.read(MAGIC.len() as u64, "MCAP's magic")? == MAGIC {
             return Ok(());
         }
         Err(ContainerError::Broken("expected MCAP's magic".to_owned()))
@@ -58,7 +58,7 @@ impl<R: BufRead> McapFile<R> {
 
     /// Reads the next record of the file; returns its message if it is a readable one.
     fn next_record(&mut self) -> Result<Option<Recorded>, ContainerError> {
-        let head_bytes = self.file.take(HEAD_BYTES as u64, "a record's head")?;
+        let head_bytes = self.file.read(HEAD_BYTES as u64, "a record's head")?;
         let (op, length) = head(&head_bytes).expect("as many bytes as were taken");
         if op == op::ATTACHMENT {
             // It may exceed memory.
@@ -94,7 +94,7 @@ impl<R: BufRead> McapFile<R> {
                 Err(ContainerError::Broken(problem)) => self.after(&body, problem),
                 Err(other) => Err(other),
             },
-            op::SCHEMA | op::CHANNEL | op::MESSAGE => match self.records.take(op, &body) {
+            op::SCHEMA | op::CHANNEL | op::MESSAGE => match self.records.read(op, &body) {
                 Err(ContainerError::Broken(problem)) => Err(ContainerError::Skipped(problem)),
                 other => other,
             },
@@ -156,7 +156,7 @@ impl<R: BufRead> McapFile<R> {
             });
         };
         self.chunk_at += HEAD_BYTES + body.len();
-        match self.records.take(op, body) {
+        match self.records.read(op, body) {
             Err(ContainerError::Broken(problem)) => Err(ContainerError::Skipped(problem)),
             other => other,
         }
@@ -221,20 +221,19 @@ mod tests {
             let bytes = file(&records, records.len() as u64);
             // Bytes after the chunk must not be read.
             let bytes = [bytes, record(15, &[0; 40])].concat();
-            let said = McapFile::new(&bytes[..]).next_message().unwrap_err();
-            let is_told =
-                matches!(&said, ContainerError::Skipped(said) if said.contains("inside a chunk"));
-            assert!(is_told, "{length}: {said:?}");
+            let error = McapFile::new(&bytes[..]).next_message().unwrap_err();
+            let is_told = matches!(&error, ContainerError::Skipped(error) if error.contains("inside a chunk"));
+            assert!(is_told, "{length}: {error:?}");
         }
         let lie = file(&whole, 1000);
-        let said = McapFile::new(&lie[..]).next_message().unwrap_err();
-        assert!(matches!(said, ContainerError::Skipped(said) if said.contains("1000 bytes")));
+        let error = McapFile::new(&lie[..]).next_message().unwrap_err();
+        assert!(matches!(error, ContainerError::Skipped(error) if error.contains("1000 bytes")));
     }
 
     #[test]
     fn an_unused_record_may_exceed_memory() {
         let bytes = [MAGIC, &[9], &(1_u64 << 40).to_le_bytes(), &[0; 100]].concat();
-        let said = McapFile::new(&bytes[..]).next_message().unwrap_err();
-        assert!(matches!(said, ContainerError::CutOff(said) if said.contains("found 100")));
+        let error = McapFile::new(&bytes[..]).next_message().unwrap_err();
+        assert!(matches!(error, ContainerError::CutOff(error) if error.contains("found 100")));
     }
 }

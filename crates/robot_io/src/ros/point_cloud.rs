@@ -180,7 +180,7 @@ fn ring(fields: &mut WireReader<'_>) -> Result<(Header, Vec<(f64, f64)>), String
         if range_m.is_finite() && range_m > 0.0 {
             points.push((math::atan2(y, x), range_m));
             if let Some(z) = z.and_then(|z| z.of(point, is_big)) {
-                cone.take(x, y, z);
+                cone.add(x, y, z);
             }
         }
     }
@@ -200,7 +200,7 @@ struct Cone {
 }
 
 impl Cone {
-    fn take(&mut self, x: f64, y: f64, z: f64) {
+    fn add(&mut self, x: f64, y: f64, z: f64) {
         if !z.is_finite() {
             return;
         }
@@ -285,7 +285,7 @@ mod tests {
                 let (sin, cos) = math::sin_cos(f64::from(beam).to_radians());
                 let range_m = math::min(3.0 / cos.abs(), 5.0 / sin.abs());
                 let (x, y) = (range_m * cos, range_m * sin);
-                cone.take(x, y, 0.4 + 0.1 * x + range_m * elevation.tan());
+                cone.add(x, y, 0.4 + 0.1 * x + range_m * elevation.tan());
             }
         }
         cone.error_m()

@@ -63,7 +63,7 @@ impl<'a> RosReader<'a> {
         loop {
             match messages.next_message() {
                 Ok(Some(message)) => {
-                    if let Err(problem) = survey.take(&message, &self.options) {
+                    if let Err(problem) = survey.add(&message, &self.options) {
                         let position = FilePosition::Byte(messages.offset());
                         self.notes.skip(position, problem);
                     }
@@ -71,7 +71,7 @@ impl<'a> RosReader<'a> {
                 Ok(None) => break,
                 Err(error) => {
                     let position = FilePosition::Byte(messages.offset());
-                    if !self.take_error(error, position)? {
+                    if !self.handle_error(error, position)? {
                         break;
                     }
                 }
@@ -122,7 +122,7 @@ impl<'a> RosReader<'a> {
 
     /// Handles an error of a container: a system error ends the reading, others become notes. Returns whether messages
     /// may follow.
-    fn take_error(
+    fn handle_error(
         &mut self,
         error: ContainerError,
         position: FilePosition,

@@ -50,10 +50,10 @@ impl ScanFields {
         if self.ranges_m.is_empty() {
             return Err("a scan must have ranges, and this one has none".to_owned());
         }
-        let mut said = Vec::new();
-        let (first_angle_rad, angle_step_rad) = self.angles(&mut said)?;
-        let beam_interval_s = self.beam_interval_s(period_s, &mut said);
-        let (range_min_m, range_max_m, scale) = self.ranges(&mut said);
+        let mut remarks = Vec::new();
+        let (first_angle_rad, angle_step_rad) = self.angles(&mut remarks)?;
+        let beam_interval_s = self.beam_interval_s(period_s, &mut remarks);
+        let (range_min_m, range_max_m, scale) = self.ranges(&mut remarks);
         let mut ranges_m = self.ranges_m;
         if scale != 1.0 {
             ranges_m.iter_mut().for_each(|range_m| *range_m *= scale);
@@ -75,11 +75,11 @@ impl ScanFields {
             ranges_m,
             ..LaserScan::default()
         };
-        Ok((scan, said))
+        Ok((scan, remarks))
     }
 
     /// First angle and step, rad.
-    fn angles(&self, said: &mut Vec<String>) -> Result<(f64, f64), String> {
+    fn angles(&self, remarks: &mut Vec<String>) -> Result<(f64, f64), String> {
         let beams = self.ranges_m.len();
         let gaps = (beams - 1).max(1) as f64;
         let (min, max, step) = (self.angle_min, self.angle_max, self.angle_increment);
@@ -101,7 +101,7 @@ impl ScanFields {
                 ));
             }
             let (from, step) = if step.abs() * gaps > FULL_TURN {
-                said.push(
+                remarks.push(
                     "its angles are in degrees; they were converted. Publish radians".to_owned(),
                 );
                 (from.to_radians(), step.to_radians())
@@ -112,7 +112,7 @@ impl ScanFields {
         }
         let of_ends = (max - min) / gaps;
         if !has_step {
-            said.push(format!(
+            remarks.push(format!(
                 "angle_increment is {step}; {:.4}° is used, from angle_min, angle_max and {beams} beams",
                 of_ends.to_degrees()
             ));
@@ -127,17 +127,18 @@ impl ScanFields {
             if (step * gaps).abs() <= FULL_TURN {
                 return Ok((min, step));
             }
-            said.push("its angles are in degrees; they were converted. Publish radians".to_owned());
+            remarks
+                .push("its angles are in degrees; they were converted. Publish radians".to_owned());
             return in_a_turn(min.to_radians(), step.to_radians(), gaps);
         }
         if agrees(max - min, step.to_radians()) && (max - min).abs() <= FULL_TURN {
-            said.push(format!(
+            remarks.push(format!(
                 "angle_increment is {step}, in degrees; angle_min and angle_max are in radians. Publish radians"
             ));
             return Ok((min, step.to_radians()));
         }
         if agrees((max - min).to_radians(), step) && (step * gaps).abs() <= FULL_TURN {
-            said.push(format!(
+            remarks.push(format!(
                 "angle_min {min} and angle_max {max} are in degrees; angle_increment is in radians. Publish radians"
             ));
             return Ok((min.to_radians(), step));
@@ -152,13 +153,13 @@ impl ScanFields {
             )
         };
         if (max - min).abs() <= FULL_TURN {
-            said.push(contradiction(
+            remarks.push(contradiction(
                 "the step from angle_min and angle_max is used",
             ));
             return Ok((min, of_ends));
         }
         if (step * gaps).abs() <= FULL_TURN {
-            said.push(contradiction(
+            remarks.push(contradiction(
                 "angle_increment is used, because angle_min and angle_max differ by more than a turn",
             ));
             return Ok((min, step));
@@ -167,7 +168,7 @@ impl ScanFields {
     }
 
     /// Time from one beam to the next, s; 0 if the stated value is implausible.
-    fn beam_interval_s(&self, period_s: f64, said: &mut Vec<String>) -> f64 {
+    fn beam_interval_s(&self, period_s: f64, remarks: &mut Vec<String>) -> f64 {
         let stated_s = self.time_increment;
         if !(stated_s.is_finite() && stated_s > 0.0) {
             return 0.0;
@@ -201,11 +202,11 @@ impl ScanFields {
         );
         match unit {
             Some((name, unit)) => {
-                said.push(format!("{stated}; it is read as {name}, which agrees with the scans' period. Publish seconds"));
+                remarks.push(format!("{stated}; it is read as {name}, which agrees with the scans' period. Publish seconds"));
                 stated_s * unit
             }
             None => {
-                said.push(format!(
+                remarks.push(format!(
                     "{stated}, but scans are {period_s:.2} s apart; each sweep is treated as instantaneous. Publish seconds"
                 ));
                 0.0
@@ -214,7 +215,7 @@ impl ScanFields {
     }
 
     /// Range limits (m), and the factor for all ranges.
-    fn ranges(&self, said: &mut Vec<String>) -> (f64, f64, f64) {
+    fn ranges(&self, remarks: &mut Vec<String>) -> (f64, f64, f64) {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         let returns = self
             .ranges_m
@@ -223,7 +224,7 @@ impl ScanFields {
             .filter(|&range| positive(range));
         let typical = median(returns.collect()).unwrap_or(0.0);
         let scale = if typical > LONGEST_M {
-            said.push(format!(
+            remarks.push(format!(
                 "its ranges are about {typical:.0}, in millimetres; they were divided by 1000. Publish metres"
             ));
             1e-3
@@ -241,7 +242,7 @@ impl ScanFields {
         let range_min_m = if positive(min) { min } else { 0.0 };
         let range_max_m = if max > 0.0 { max } else { f64::INFINITY };
         if range_max_m <= range_min_m {
-            said.push(format!(
+            remarks.push(format!(
                 "range_min is {min:.3} m and range_max {max:.3} m; the smaller one is used as the shortest range. Correct the driver"
             ));
             return (range_max_m, range_min_m, scale);

@@ -81,7 +81,7 @@ pub struct Track {
 }
 
 impl Track {
-    fn take(&mut self, stamp_s: f64, recorded_s: f64, pose: SE2) {
+    fn add(&mut self, stamp_s: f64, recorded_s: f64, pose: SE2) {
         self.every = self.every.max(1);
         self.seen += 1;
         if !(self.seen - 1).is_multiple_of(self.every) {
@@ -127,22 +127,22 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Takes a message.
+    /// Adds a message.
     ///
     /// # Errors
     /// If the message is malformed; it is skipped. Scans are checked when they are read.
-    pub fn take(&mut self, message: &Recorded, options: &LogOptions) -> Result<(), String> {
+    pub fn add(&mut self, message: &Recorded, options: &LogOptions) -> Result<(), String> {
         let key = (message.topic.clone(), message.kind.clone());
         if self.counts.len() < MAX_TOPICS || self.counts.contains_key(&key) {
             *self.counts.entry(key).or_default() += 1;
         }
         let named = |problem: String| named(message, problem);
         if let Some(kind) = SCANS.iter().position(|kind| *kind == message.kind) {
-            self.take_scan(message, kind, options);
+            self.add_scan(message, kind, options);
             return Ok(());
         }
         match message.kind.as_str() {
-            ODOMETRY => self.take_odometry(message).map_err(named),
+            ODOMETRY => self.add_odometry(message).map_err(named),
             "tf2_msgs/TFMessage" | "tf/tfMessage" => {
                 let all = reader(message)
                     .and_then(|mut fields| transforms(&mut fields).map_err(|e| e.to_string()))
@@ -151,7 +151,7 @@ impl Survey {
                     let Ok(pose) = plausible_pose(planar(&transform.transform)) else {
                         continue;
                     };
-                    self.transforms.take(transform);
+                    self.transforms.add(transform);
                     let parent = &transform.header.frame;
                     let may_be_odometry = match &options.odometry_frame {
                         Some(frame) => frame.trim_start_matches('/') == parent,
@@ -167,7 +167,7 @@ impl Survey {
                             order,
                             ..Track::default()
                         });
-                        track.take(transform.header.stamp_s, message.recorded_s, pose);
+                        track.add(transform.header.stamp_s, message.recorded_s, pose);
                     }
                 }
                 Ok(())
@@ -176,7 +176,7 @@ impl Survey {
         }
     }
 
-    fn take_scan(&mut self, message: &Recorded, kind: usize, options: &LogOptions) {
+    fn add_scan(&mut self, message: &Recorded, kind: usize, options: &LogOptions) {
         let order = self.scans.len();
         if order >= MAX_TOPICS && !self.scans.contains_key(&message.topic) {
             return;
@@ -216,7 +216,7 @@ impl Survey {
         }
     }
 
-    fn take_odometry(&mut self, message: &Recorded) -> Result<(), String> {
+    fn add_odometry(&mut self, message: &Recorded) -> Result<(), String> {
         let mut fields = reader(message)?;
         let parsed = odometry(&mut fields).map_err(|problem| problem.to_string())?;
         let pose = plausible_pose(planar(&parsed.pose))?;
@@ -237,7 +237,7 @@ impl Survey {
                 order,
                 ..Track::default()
             });
-        track.take(parsed.header.stamp_s, message.recorded_s, pose);
+        track.add(parsed.header.stamp_s, message.recorded_s, pose);
         Ok(())
     }
 }

@@ -104,9 +104,9 @@ fn a_cloud_of_one_ring_has_the_points_of_its_scan() {
             seen.map(|(beam, &range_m)| (scan.bearing_rad(beam), range_m))
                 .collect()
         };
-        let (found, told) = (points(cloud), points(expected));
-        assert_eq!(found.len(), told.len());
-        for (&(bearing, range_m), &(other, other_m)) in found.iter().zip(&told) {
+        let (found, expected) = (points(cloud), points(expected));
+        assert_eq!(found.len(), expected.len());
+        for (&(bearing, range_m), &(other, other_m)) in found.iter().zip(&expected) {
             // Coordinates are 32-bit floats.
             assert_near(bearing, other, 1e-5, "bearing");
             assert_near(range_m, other_m, 1e-5, "range");
@@ -181,10 +181,10 @@ fn without_transforms_the_laser_is_assumed_at_the_body_with_a_warning() {
     let (frames, notes) = read(&bytes, "x.mcap").unwrap();
     assert_eq!(frames.len(), 24);
     assert_eq!(frames[0].scan.body_from_sensor.to_array(), [0.0; 3]);
-    let said = notes.sentences("x.mcap").join(" ");
+    let text = notes.sentences("x.mcap").join(" ");
     assert!(
-        said.contains("there is no transform from base_link to laser"),
-        "{said}"
+        text.contains("there is no transform from base_link to laser"),
+        "{text}"
     );
 }
 
@@ -226,20 +226,20 @@ fn a_truncated_recording_yields_its_frames_and_reports_its_end() {
             match read(cut, name) {
                 Ok((frames, notes)) => {
                     counts.insert(frames.len());
-                    let said = notes.sentences(name).join(" ");
+                    let text = notes.sentences(name).join(" ");
                     // A bag that ends between two records looks complete; a database lacks pages.
                     let is_told = match name.rsplit('.').next() {
                         Some("bag") => true,
-                        Some("db3") => said.contains("skipped"),
-                        _ => said.contains("cut off at byte"),
+                        Some("db3") => text.contains("skipped"),
+                        _ => text.contains("cut off at byte"),
                     };
-                    assert!(is_told, "{name}: {said}");
+                    assert!(is_told, "{name}: {text}");
                 }
                 Err(error) => {
                     counts.insert(0);
-                    let said = error.to_string();
-                    assert!(said.starts_with(name) && !said.contains('\n'), "{said}");
-                    assert!(said.contains("expected"), "{said}");
+                    let text = error.to_string();
+                    assert!(text.starts_with(name) && !text.contains('\n'), "{text}");
+                    assert!(text.contains("expected"), "{text}");
                 }
             }
         }
@@ -258,8 +258,8 @@ fn a_wrong_byte_never_panics() {
                 Ok((_, notes)) => refused += notes.broken,
                 Err(error) => {
                     refused += 1;
-                    let said = error.to_string();
-                    assert!(said.starts_with(name) && !said.contains('\n'), "{said}");
+                    let text = error.to_string();
+                    assert!(text.starts_with(name) && !text.contains('\n'), "{text}");
                 }
             }
         }

@@ -59,8 +59,8 @@ pub struct Transforms {
 }
 
 impl Transforms {
-    /// Takes a transform.
-    pub fn take(&mut self, message: &TransformMessage) {
+    /// Adds a transform.
+    pub fn add(&mut self, message: &TransformMessage) {
         if let Some(edge) = self.above.get_mut(&message.child) {
             let moved = edge.first.inverse() * message.transform;
             let is_elsewhere =
@@ -187,8 +187,8 @@ mod tests {
     fn a_laser_hangs_on_the_body_by_a_chain_and_may_hang_upside_down() {
         let mut frames = Transforms::default();
         let quarter = [0.0, 0.0, FRAC_PI_2.sqrt(), FRAC_PI_2.sqrt()];
-        frames.take(&message("base", "mast", 1.0, quarter));
-        frames.take(&message("mast", "laser", 0.5, [1.0, 0.0, 0.0, 0.0]));
+        frames.add(&message("base", "mast", 1.0, quarter));
+        frames.add(&message("mast", "laser", 0.5, [1.0, 0.0, 0.0, 0.0]));
         let chain = frames.body_from_sensor("base", "laser", None).unwrap();
         let mount = planar_mount(&chain).unwrap();
         let [x, y, theta] = mount.body_from_sensor.to_array();
@@ -211,9 +211,9 @@ mod tests {
         let mut frames = Transforms::default();
         let straight = [0.0, 0.0, 0.0, 1.0];
         let quarter = [0.0, 0.0, FRAC_PI_2.sqrt(), FRAC_PI_2.sqrt()];
-        frames.take(&message("link", "footprint", -0.5, quarter));
-        frames.take(&message("link", "laser", 0.25, straight));
-        frames.take(&message("odom", "link", 7.0, quarter));
+        frames.add(&message("link", "footprint", -0.5, quarter));
+        frames.add(&message("link", "laser", 0.25, straight));
+        frames.add(&message("odom", "link", 7.0, quarter));
         let ground = Some("odom");
         let chain = frames
             .body_from_sensor("footprint", "laser", ground)
@@ -223,15 +223,15 @@ mod tests {
         assert!(x.abs() < 1e-12 && (y + 0.75).abs() < 1e-12, "{x} {y}");
         assert!((theta + FRAC_PI_2).abs() < 1e-12);
         // Another robot in the same odometry frame is not part of this one.
-        frames.take(&message("odom", "camera", 9.0, straight));
+        frames.add(&message("odom", "camera", 9.0, straight));
         assert_eq!(frames.body_from_sensor("footprint", "camera", ground), None);
     }
 
     #[test]
     fn a_circle_of_frames_ends() {
         let mut frames = Transforms::default();
-        frames.take(&message("a", "b", 1.0, [0.0, 0.0, 0.0, 1.0]));
-        frames.take(&message("b", "a", 1.0, [0.0, 0.0, 0.0, 1.0]));
+        frames.add(&message("a", "b", 1.0, [0.0, 0.0, 0.0, 1.0]));
+        frames.add(&message("b", "a", 1.0, [0.0, 0.0, 0.0, 1.0]));
         assert_eq!(frames.body_from_sensor("base", "a", None), None);
         assert!(frames.body_from_sensor("b", "a", None).is_some());
     }

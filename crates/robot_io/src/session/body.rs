@@ -29,14 +29,14 @@ struct Body<'a> {
 
 /// Serializes a session.
 pub fn write(session: &Session) -> Vec<u8> {
-    let driven = &session.driven;
-    let robot = driven.config.robot.unwrap_or_default();
-    let radius_m = driven.config.scan.normal_radius_m;
-    let keyframe_scans = driven.keyframes.iter().map(|keyframe| &*keyframe.scan);
-    let window_scans = driven.front_end.scans.iter();
+    let snapshot = &session.snapshot;
+    let robot = snapshot.config.robot.unwrap_or_default();
+    let radius_m = snapshot.config.scan.normal_radius_m;
+    let keyframe_scans = snapshot.keyframes.iter().map(|keyframe| &*keyframe.scan);
+    let window_scans = snapshot.front_end.scans.iter();
     let body = Body {
         robot: serde_json::to_string(&robot).expect("plain numbers").into(),
-        start: driven.config.start,
+        start: snapshot.config.start,
         session: Cow::Borrowed(session),
         keyframe_scans: scans::store_all(keyframe_scans, radius_m, SCAN_BYTES),
         window_scans: window_scans
@@ -68,17 +68,17 @@ pub fn read(bytes: &[u8]) -> Result<Session, String> {
     if let Some(sensor) = &mut session.sensor {
         sensor.ranges_m.clear();
     }
-    let driven = &mut session.driven;
-    driven.config = config;
-    if body.keyframe_scans.len() != driven.keyframes.len() {
+    let snapshot = &mut session.snapshot;
+    snapshot.config = config;
+    if body.keyframe_scans.len() != snapshot.keyframes.len() {
         return Err("it has another number of scans than of keyframes".to_owned());
     }
-    for (keyframe, scan) in driven.keyframes.iter_mut().zip(body.keyframe_scans) {
+    for (keyframe, scan) in snapshot.keyframes.iter_mut().zip(body.keyframe_scans) {
         keyframe.scan = restored(scan)?;
     }
     let window_scans = body.window_scans.into_iter();
-    driven.front_end.scans = window_scans.map(restored).collect::<Result<_, _>>()?;
-    number(&mut driven.edges);
+    snapshot.front_end.scans = window_scans.map(restored).collect::<Result<_, _>>()?;
+    number(&mut snapshot.edges);
     if let Some(mapped) = &mut session.mapped {
         number(&mut mapped.loops);
     }

@@ -66,8 +66,8 @@ fn what_is_saved_loads_to_the_same_and_is_saved_to_the_same_bytes() {
             assert!(loaded.to_bytes() == bytes, "{beams} beams");
             // Scans of more than 131 points are stored with fewer bits; everything else is exact.
             if beams > 120 {
-                let pairs = loaded.driven.keyframes.iter_mut();
-                for (a, b) in pairs.zip(&session.driven.keyframes) {
+                let pairs = loaded.snapshot.keyframes.iter_mut();
+                for (a, b) in pairs.zip(&session.snapshot.keyframes) {
                     a.scan = b.scan.clone();
                 }
             }
@@ -97,12 +97,12 @@ fn a_continued_run_equals_an_uninterrupted_one_bit_by_bit() {
 #[test]
 fn a_log_of_another_scanner_is_reported() {
     let session = run(120, 0..80).session().unwrap();
-    for (beams, told) in [(120, 0), (90, 1)] {
+    for (beams, count) in [(120, 0), (90, 1)] {
         let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
         go_on(&mut second, beams, 80..90);
         let sentences = second.sentences("log");
-        assert_eq!(sentences.len(), told, "{sentences:?}");
-        let is_said = |said: &String| said.contains("a step of 4.00°");
+        assert_eq!(sentences.len(), count, "{sentences:?}");
+        let is_said = |expected: &String| expected.contains("a step of 4.00°");
         assert!(sentences.iter().all(is_said), "{sentences:?}");
     }
 }
@@ -128,7 +128,7 @@ fn pending_loops_are_saved_and_stay_pending() {
     };
     let (half, mut whole) = (doubting(0..125), doubting(0..140));
     let session = Session::from_bytes(&saved(&half), "x").unwrap();
-    assert!(!session.driven.pending.is_empty());
+    assert!(!session.snapshot.pending.is_empty());
     assert_eq!(session, half.session().unwrap());
     let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
     go_on(&mut second, 120, 125..140);
@@ -147,22 +147,22 @@ fn a_keyframe_takes_three_kilobytes_at_most_whatever_the_sensor() {
         let mut run = run(beams, 0..200);
         run.finish();
         let session = run.session().unwrap();
-        let scans_m = session.driven.keyframes.iter().map(|k| k.scan.len());
-        let (points, keyframes) = (scans_m.max().unwrap(), session.driven.keyframes.len());
+        let scans_m = session.snapshot.keyframes.iter().map(|k| k.scan.len());
+        let (points, keyframes) = (scans_m.max().unwrap(), session.snapshot.keyframes.len());
         // The window is stored exactly, whatever the map's size.
         let mut without_window = session.clone();
-        without_window.driven.front_end.scans.clear();
+        without_window.snapshot.front_end.scans.clear();
         let fixed = without_window.to_bytes();
-        assert!(session.driven.front_end.scans.len() <= 16);
+        assert!(session.snapshot.front_end.scans.len() <= 16);
         assert!(session.scan_poses.len() <= 8 * keyframes + 40);
         let each = fixed.len() / keyframes;
         assert!(each <= 3000, "{beams} beams, {points} points: {each} bytes");
         let loaded = Session::from_bytes(&session.to_bytes(), "x").unwrap();
         for (stored, seen) in loaded
-            .driven
+            .snapshot
             .keyframes
             .iter()
-            .zip(&session.driven.keyframes)
+            .zip(&session.snapshot.keyframes)
         {
             if beams < 2880 {
                 assert_eq!(stored.scan.len(), seen.scan.len());
@@ -217,7 +217,7 @@ fn scans_of_another_make_keep_their_normals_and_crowded_ones_are_thinned() {
 #[test]
 fn a_session_with_other_parameters_is_refused_by_their_name() {
     let bytes = saved(&run(120, 0..20));
-    for (from, to, said) in [
+    for (from, to, expected) in [
         (
             "\"max_correspondence_m\"",
             "\"max_correspondence_k\"",
@@ -236,7 +236,7 @@ fn a_session_with_other_parameters_is_refused_by_their_name() {
         let error = Session::from_bytes(&signed(other), "x")
             .unwrap_err()
             .to_string();
-        assert!(error.contains(said), "{error}");
+        assert!(error.contains(expected), "{error}");
     }
 }
 
@@ -297,7 +297,7 @@ fn a_map_may_have_lost_every_loop_that_was_driven() {
     let mut session = run.session().unwrap();
     let mapped = session.mapped.as_mut().unwrap();
     mapped.loops.clear();
-    session.driven.optimized_edges = session.driven.edges.len();
+    session.snapshot.optimized_edges = session.snapshot.edges.len();
     let read = Session::from_bytes(&session.to_bytes(), "x").unwrap();
     assert_eq!(read, session);
     assert_eq!(read.graph().optimized_edges(), read.graph().edge_count());
@@ -306,24 +306,24 @@ fn a_map_may_have_lost_every_loop_that_was_driven() {
 #[test]
 fn impossible_states_are_rejected() {
     let good = run(40, 0..12).session().unwrap();
-    let refused = |change: &dyn Fn(&mut Session), said: &str| {
+    let refused = |change: &dyn Fn(&mut Session), expected: &str| {
         let mut session = good.clone();
         change(&mut session);
-        let told = Session::from_bytes(&session.to_bytes(), "x").unwrap_err();
-        assert!(told.to_string().contains(said), "{told}");
+        let error = Session::from_bytes(&session.to_bytes(), "x").unwrap_err();
+        assert!(error.to_string().contains(expected), "{error}");
     };
     let far = SE2::new(1e60, 0.0, 0.0);
-    refused(&|x| x.driven.nodes[0].pose = far, "within ±1e50");
+    refused(&|x| x.snapshot.nodes[0].pose = far, "within ±1e50");
     refused(
-        &|x| x.driven.edges[0].edge.information *= 1e60,
+        &|x| x.snapshot.edges[0].edge.information *= 1e60,
         "within ±1e50",
     );
     refused(
-        &|x| x.driven.last_stamp_s = 0.0,
+        &|x| x.snapshot.last_stamp_s = 0.0,
         "keyframes are not in order",
     );
-    refused(&|x| x.driven.keyframes[1].stamp_s = 0.0, "not in order");
-    let last_s = good.driven.last_stamp_s;
+    refused(&|x| x.snapshot.keyframes[1].stamp_s = 0.0, "not in order");
+    let last_s = good.snapshot.last_stamp_s;
     refused(
         &|x| x.scan_poses.last_mut().unwrap().stamp_s = last_s + 1.0,
         "poses of scans are not in order",
@@ -343,7 +343,7 @@ fn foreign_files_are_distinguished_from_damaged_sessions() {
     older[8] = 1;
     let mut longer = bytes.clone();
     longer.push(0);
-    for (file, said) in [
+    for (file, expected) in [
         (&b""[..], "x is empty; give a session"),
         (b"FLASER 180", "x is not a session"),
         (b"SLAM2D\r\n", "x ends at byte 8 of 20"),
@@ -358,7 +358,7 @@ fn foreign_files_are_distinguished_from_damaged_sessions() {
         (&longer, "x continues after its end at byte"),
     ] {
         let error = Session::from_bytes(file, "x").unwrap_err().to_string();
-        assert!(error.starts_with(said), "{error}");
+        assert!(error.starts_with(expected), "{error}");
     }
 }
 
@@ -370,7 +370,7 @@ fn every_parameter_is_written_and_read() {
         // Few enough points to be stored exactly.
         run.step(frame(0, 120)).unwrap();
         let session = Session::from_bytes(&saved(&run), "x").unwrap();
-        let robot = session.driven.config.robot.unwrap();
+        let robot = session.snapshot.config.robot.unwrap();
         assert_eq!(setting.value(&robot), value, "{}", setting.name);
         assert!(session == run.session().unwrap(), "{}", setting.name);
     }
@@ -427,5 +427,5 @@ fn a_session_that_is_reopened_is_saved_as_it_was_even_if_it_is_ended_again() {
     let before = reopened.session().unwrap();
     reopened.finish();
     assert_eq!(reopened.session().unwrap(), before);
-    assert_eq!(before.driven, session.driven);
+    assert_eq!(before.snapshot, session.snapshot);
 }

@@ -32,10 +32,10 @@ struct SessionJson {
 
 impl SessionJson {
     fn new(session: &Session, bytes: u64) -> Self {
-        let driven = &session.driven;
+        let snapshot = &session.snapshot;
         let graph = session.graph();
         let steps = graph.poses().windows(2);
-        let keyframes = driven.keyframes.len();
+        let keyframes = snapshot.keyframes.len();
         let loops = graph
             .edges()
             .filter(|view| view.edge.kind == EdgeKind::Loop);
@@ -43,23 +43,23 @@ impl SessionJson {
             version: VERSION,
             bytes,
             bytes_per_keyframe: (keyframes > 0).then(|| bytes as f64 / keyframes as f64),
-            scans: driven.frames,
+            scans: snapshot.frames,
             keyframes,
-            points: driven.keyframes.iter().map(|k| k.scan.len()).sum(),
+            points: snapshot.keyframes.iter().map(|k| k.scan.len()).sum(),
             edges: graph.edge_count(),
             loops: loops.count(),
             refined: session.mapped.is_some(),
             path_length_m: steps.map(|two| position_error_m(&two[0], &two[1])).sum(),
-            first_stamp_s: driven.keyframes.first().map(|keyframe| keyframe.stamp_s),
-            last_stamp_s: driven
+            first_stamp_s: snapshot.keyframes.first().map(|keyframe| keyframe.stamp_s),
+            last_stamp_s: snapshot
                 .last_stamp_s
                 .is_finite()
-                .then_some(driven.last_stamp_s),
-            last_pose: driven.front_end.estimate.to_array(),
+                .then_some(snapshot.last_stamp_s),
+            last_pose: snapshot.front_end.estimate.to_array(),
             parameters: SETTINGS
                 .iter()
                 .map(|setting| {
-                    let robot = driven.config.robot.unwrap_or_default();
+                    let robot = snapshot.config.robot.unwrap_or_default();
                     format!("{} {}", setting.name, setting.value(&robot))
                 })
                 .collect(),

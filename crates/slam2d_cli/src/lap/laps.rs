@@ -93,7 +93,7 @@ pub fn run(
         let numbers = laps.estimate(&drive);
         let ms_per_tick = 1e3 * (process::cpu_s() - before_s) / numbers.ticks as f64;
         let saved = Session {
-            driven: laps.slam().snapshot(),
+            snapshot: laps.slam().snapshot(),
             mapped: None,
             scan_poses: Vec::new(),
             sensor: Some(LaserScan {

@@ -39,7 +39,7 @@ impl<'a> Engine<'a> {
         } = examination.as_mut();
         match reader.next_frame() {
             Ok(Some(frame)) => {
-                checkup.take(&frame);
+                checkup.add(&frame);
                 self.work = Work::Examining(examination);
                 return;
             }

@@ -44,9 +44,9 @@ impl<'a> Engine<'a> {
             ("unpin", []) => self.unpin(),
             _ => Err("unknown order".to_owned()),
         };
-        let said = answered.unwrap_or_else(|problem| problem);
-        if !said.is_empty() {
-            self.waiting.push(Update::text("answer", said));
+        let reply = answered.unwrap_or_else(|problem| problem);
+        if !reply.is_empty() {
+            self.waiting.push(Update::text("answer", reply));
         }
     }
 
@@ -124,12 +124,12 @@ impl<'a> Engine<'a> {
         };
         let (before, ends) = (found.verdict, format!("{} to {}", found.new, found.old));
         found.verdict = before.toggled();
-        let said = match found.verdict {
+        let reply = match found.verdict {
             Verdict::Removed => format!("The loop {ends} was removed from the graph"),
             _ => format!("The loop {ends} was added to the graph"),
         };
         match self.resolve() {
-            Ok(moved_m) => Ok(format!("{said}; keyframes moved by up to {moved_m:.2} m.")),
+            Ok(moved_m) => Ok(format!("{reply}; keyframes moved by up to {moved_m:.2} m.")),
             Err(problem) => {
                 self.links[link].verdict = before;
                 Err(problem)

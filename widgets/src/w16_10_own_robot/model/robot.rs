@@ -256,8 +256,8 @@ impl Robot {
             "errors" => self.errors_m = numbers.to_vec(),
             "offers" => self.offers = text.lines().filter_map(offer).collect(),
             "where" => {
-                if let Some(told) = OtherLog::from_delivery(delivery) {
-                    self.other_log = Some(told);
+                if let Some(other) = OtherLog::from_delivery(delivery) {
+                    self.other_log = Some(other);
                 }
                 self.paused &= self.is_under_way();
             }

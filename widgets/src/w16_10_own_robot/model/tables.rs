@@ -28,9 +28,9 @@ pub fn shown(own: &OwnRobot) -> Vec<Table> {
     let mut tables = vec![loops(own)];
     tables.extend(sentences("doubts", "Doubts about the map", &robot.doubts));
     tables.extend(sentences("remarks", "About the log", &robot.remarks));
-    if let Some(told) = &robot.other_log {
-        let title = format!("About {}", told.name);
-        tables.extend(sentences("remarks-where", &title, &told.remarks));
+    if let Some(other) = &robot.other_log {
+        let title = format!("About {}", other.name);
+        tables.extend(sentences("remarks-where", &title, &other.remarks));
     }
     tables.extend(offers(own));
     tables
@@ -85,13 +85,13 @@ fn last_of(first: usize, count: usize) -> usize {
     (first + SHOWN_LOOPS).min(count) - 1
 }
 
-fn sentences(id: &'static str, title: &str, said: &[String]) -> Option<Table> {
-    let mut rows: Vec<Vec<String>> = said
+fn sentences(id: &'static str, title: &str, sentences_of: &[String]) -> Option<Table> {
+    let mut rows: Vec<Vec<String>> = sentences_of
         .iter()
         .take(SHOWN_SENTENCES)
         .map(|sentence| vec![sentence.clone()])
         .collect();
-    let more = said.len().saturating_sub(SHOWN_SENTENCES);
+    let more = sentences_of.len().saturating_sub(SHOWN_SENTENCES);
     if more > 0 {
         rows.push(vec![format!("and {more} more, which the report has")]);
     }
@@ -131,8 +131,8 @@ fn offers(own: &OwnRobot) -> Option<Table> {
 
 /// Every scan of the other log.
 fn places(own: &OwnRobot) -> Option<Table> {
-    let told = own.robot.other_log.as_ref()?;
-    let rows = told.places.iter().map(|place| {
+    let other = own.robot.other_log.as_ref()?;
+    let rows = other.places.iter().map(|place| {
         let [x, y, theta] = place.pose;
         vec![
             place.scan.to_string(),

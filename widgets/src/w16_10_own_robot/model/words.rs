@@ -68,7 +68,7 @@ fn sentence(own: &OwnRobot) -> String {
     let robot = &own.robot;
     let name = &robot.name;
     let done = (100.0 * robot.share).round();
-    let said = match robot.stage {
+    let progress = match robot.stage {
         Stage::Empty => "Drop a log, open one, or map the sample.".to_owned(),
         Stage::Failed if robot.answer.is_empty() => return robot.problem.clone(),
         Stage::Failed => {
@@ -96,37 +96,37 @@ fn sentence(own: &OwnRobot) -> String {
     let grade = robot.grade.as_ref();
     let grade = grade.map_or(String::new(), |grade| format!(" {}.", grade.words));
     let visitor = visitor(own);
-    format!("{said}{held}{grade}{visitor}{answer} {STAYS}")
+    format!("{progress}{held}{grade}{visitor}{answer} {STAYS}")
 }
 
 /// The state of the other log's robot: overall, and at the current scan.
 fn visitor(own: &OwnRobot) -> String {
-    let Some(told) = &own.robot.other_log else {
+    let Some(other) = &own.robot.other_log else {
         return String::new();
     };
-    let name = &told.name;
+    let name = &other.name;
     let Some((_, shown)) = own.place() else {
-        let why = told.remarks.first().map_or("", String::as_str);
-        return if told.is_over {
+        let why = other.remarks.first().map_or("", String::as_str);
+        return if other.is_over {
             format!(" {why}.")
         } else {
             format!(" {name} is being localized on the map.")
         };
     };
-    let [.., doubtful, lost] = told.counts;
-    let first = if told.first.is_finite() {
-        format!("is found at its scan {:.0}", told.first)
-    } else if told.is_over {
+    let [.., doubtful, lost] = other.counts;
+    let first = if other.first.is_finite() {
+        format!("is found at its scan {:.0}", other.first)
+    } else if other.is_over {
         "is found nowhere on this map".to_owned()
     } else {
         "is not found yet".to_owned()
     };
-    let done = if told.is_over {
+    let done = if other.is_over {
         String::new()
     } else {
-        format!(", {:.0} % done", (100.0 * told.share).floor())
+        format!(", {:.0} % done", (100.0 * other.share).floor())
     };
-    let scans = told.localized() + doubtful + lost;
+    let scans = other.localized() + doubtful + lost;
     let [x, y, theta] = shown.pose;
     let at = if x.is_finite() {
         let sigma_m = shown.ellipse[0];
@@ -144,7 +144,7 @@ fn visitor(own: &OwnRobot) -> String {
     };
     format!(
         " The robot of {name} {first}{done}: of {scans:.0} scans {:.0} are localized, {doubtful:.0} doubtful, {lost:.0} lost. At scan {:.0} it is {}{at}.",
-        told.localized(),
+        other.localized(),
         shown.scan,
         shown.state.name()
     )
@@ -263,10 +263,10 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
         Fact::new("fit", "scan shown: fits", of_shown(|k| k.fit), "", 2),
         Fact::metres("sigma_m", "keyframe shown: σ", of_shown(|k| k.sigma_m)),
     ];
-    if let Some(told) = &robot.other_log {
-        let [.., doubtful, lost] = told.counts;
+    if let Some(other) = &robot.other_log {
+        let [.., doubtful, lost] = other.counts;
         facts.extend([
-            Fact::count("where_localized", "other log: localized", told.localized()),
+            Fact::count("where_localized", "other log: localized", other.localized()),
             Fact::count("where_doubtful", "other log: doubtful", doubtful),
             Fact::count("where_lost", "other log: lost", lost),
         ]);

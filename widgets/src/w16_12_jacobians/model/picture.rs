@@ -138,7 +138,7 @@ fn curve(widget: &WrongJacobians) -> Panel {
     let y = if is_distance {
         Axis {
             max: highest.ceil().max(10.0) + 0.5,
-            ..Axis::of_names("distance, a decade a line", decades())
+            ..Axis::from_names("distance, a decade a line", decades())
         }
     } else {
         Axis::new(

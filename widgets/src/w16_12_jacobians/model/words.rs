@@ -65,7 +65,7 @@ pub fn outcome(widget: &WrongJacobians) -> Outcome {
             facts: facts(widget),
         };
     }
-    let told = widget.solved.runs.iter().zip(NAMES).map(|(run, name)| {
+    let parts = widget.solved.runs.iter().zip(NAMES).map(|(run, name)| {
         let ends = if run.rests {
             format!("{name} {:.3} m off after", run.end().off_m)
         } else {
@@ -73,14 +73,14 @@ pub fn outcome(widget: &WrongJacobians) -> Outcome {
         };
         format!("{ends} {}", counted(run.steps(), "step"))
     });
-    let told: Vec<_> = told.collect();
+    let parts: Vec<_> = parts.collect();
     let good = (0..NAMES.len()).all(|solver| ends_at_the_optimum(widget, solver));
     Outcome {
         standing: if good { Standing::Good } else { Standing::Bad },
         verdict: verdict(widget).to_owned(),
         sentence: format!(
             "from the same start the four end where χ² is least, or beside it: {}",
-            told.join(", ")
+            parts.join(", ")
         ),
         facts: facts(widget),
     }

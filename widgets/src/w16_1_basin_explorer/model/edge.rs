@@ -146,7 +146,7 @@ pub fn outcome(explorer: &BasinExplorer) -> Option<Outcome> {
 
 fn question(values: &Values) -> Outcome {
     let marks = marks(values);
-    let said = VARIANTS.iter().zip(marks).map(|(variant, mark)| {
+    let parts = VARIANTS.iter().zip(marks).map(|(variant, mark)| {
         let name = variant_name(*variant);
         if mark > 0.0 {
             format!("{name}: ±{mark:.0}°")
@@ -154,7 +154,7 @@ fn question(values: &Values) -> Outcome {
             format!("{name}: no mark yet")
         }
     });
-    let said: Vec<_> = said.collect();
+    let parts: Vec<_> = parts.collect();
     let all = marks.iter().all(|mark| *mark > 0.0);
     Outcome {
         standing: Standing::Neutral,
@@ -166,7 +166,7 @@ fn question(values: &Values) -> Outcome {
         .to_owned(),
         sentence: format!(
             "From how far may a guess at the right place be turned, to either side, and registration still comes home? {}. Then press Sweep the edge.",
-            said.join("; ")
+            parts.join("; ")
         ),
         facts: Vec::new(),
     }
@@ -184,8 +184,8 @@ fn answer(explorer: &BasinExplorer) -> Outcome {
         1 => (Standing::Neutral, "one edge is right"),
         _ => (Standing::Bad, "no edge is right"),
     };
-    let said = searches.iter().zip(VARIANTS).zip(marks);
-    let said = said.map(|((search, variant), mark)| {
+    let parts = searches.iter().zip(VARIANTS).zip(marks);
+    let parts = parts.map(|((search, variant), mark)| {
         let edge = reached(search);
         let home = format!("{} comes home from up to {edge:.0}°", variant_name(variant));
         let gap = mark - edge;
@@ -196,7 +196,7 @@ fn answer(explorer: &BasinExplorer) -> Outcome {
             _ => format!("{home}, and you marked {mark:.0}°, {:.0}° too few", -gap),
         }
     });
-    let said: Vec<_> = said.collect();
+    let parts: Vec<_> = parts.collect();
     let known = |k: usize| {
         let edge = searches[k].reached_deg().filter(|_| searches[k].is_done());
         edge.unwrap_or(f64::NAN)
@@ -204,7 +204,7 @@ fn answer(explorer: &BasinExplorer) -> Outcome {
     Outcome {
         standing,
         verdict: verdict.to_owned(),
-        sentence: format!("{}.", said.join("; ")),
+        sentence: format!("{}.", parts.join("; ")),
         facts: vec![
             Fact::new("edge_p2p_deg", "edge, point to point", known(0), "°", 0),
             Fact::new("edge_p2l_deg", "edge, point to plane", known(1), "°", 0),

@@ -250,7 +250,7 @@ fn bars(toy: &PoseGraphToy) -> Panel {
         title: "What each spring costs".to_owned(),
         weight: Weight::Half,
         aspect: Aspect::Free,
-        x: Axis::of_names(
+        x: Axis::from_names(
             "spring, from pose to pose",
             toy.course
                 .edges

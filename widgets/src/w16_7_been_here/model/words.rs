@@ -73,7 +73,7 @@ pub fn pair_title(been: &BeenHere) -> String {
     };
     let detector = been.detector();
     let is_called = pair.distances[detector] <= been.threshold(detector);
-    let said = match (is_called, pair.is_same) {
+    let judged = match (is_called, pair.is_same) {
         _ if !is_loop => "are neighbours in time, and no loop",
         (true, true) => "are called the same place, and they are",
         (true, false) => "are called the same place, and they are not",
@@ -81,7 +81,7 @@ pub fn pair_title(been: &BeenHere) -> String {
         (false, false) => "are told apart",
     };
     let [old, new] = pair.nodes;
-    format!("Keyframes {old} and {new} {said}")
+    format!("Keyframes {old} and {new} {judged}")
 }
 
 /// The selected pair, in a sentence.

@@ -41,12 +41,13 @@ fn curves(moving: &MovingBox) -> Table {
         .zip(of(1))
         .zip(of(2))
         .map(|((plain, trimmed), huber)| {
-            let told = |bias: Option<f64>| bias.map_or_else(String::new, |bias| bias.to_string());
+            let as_text =
+                |bias: Option<f64>| bias.map_or_else(String::new, |bias| bias.to_string());
             vec![
                 plain.0.to_string(),
-                told(plain.1),
-                told(trimmed.1),
-                told(huber.1),
+                as_text(plain.1),
+                as_text(trimmed.1),
+                as_text(huber.1),
             ]
         });
     Table::exported(

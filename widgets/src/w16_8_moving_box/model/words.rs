@@ -47,18 +47,18 @@ pub fn verdict(moving: &MovingBox) -> &'static str {
 
 pub fn outcome(moving: &MovingBox) -> Outcome {
     let share = moving.values.get(&SHARE);
-    let told = BoxMethods::NAMES
+    let parts = BoxMethods::NAMES
         .iter()
         .enumerate()
         .map(|(k, name)| format!("{name} {:.3} m off", error_m(moving, k)));
-    let told: Vec<_> = told.collect();
+    let parts: Vec<_> = parts.collect();
     let rmse = moving.runs[0].end.rmse_m;
     Outcome {
         standing: standing(moving),
         verdict: verdict(moving).to_owned(),
         sentence: format!(
             "With {share:.0} % of the points on the box, registration ends with {}; the rmse of plain is {rmse:.3} m.",
-            told.join(", ")
+            parts.join(", ")
         ),
         facts: facts(moving),
     }
@@ -104,10 +104,11 @@ pub fn summary(moving: &MovingBox) -> String {
     let last = moving.last();
     let curves = BoxMethods::NAMES.iter().enumerate().map(|(k, name)| {
         let points = moving.curves.bias_m(k);
-        let told = points.filter(|(share, _)| *share > 0.0 && share % 20.0 == 0.0);
-        let told = told.filter_map(|(share, bias)| Some(format!("{:.3} m at {share:.0} %", bias?)));
-        let told: Vec<_> = told.collect();
-        format!("{name} {}", told.join(", "))
+        let parts = points.filter(|(share, _)| *share > 0.0 && share % 20.0 == 0.0);
+        let parts =
+            parts.filter_map(|(share, bias)| Some(format!("{:.3} m at {share:.0} %", bias?)));
+        let parts: Vec<_> = parts.collect();
+        format!("{name} {}", parts.join(", "))
     });
     let curves: Vec<_> = curves.collect();
     format!(

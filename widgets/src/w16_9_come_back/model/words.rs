@@ -198,12 +198,12 @@ pub fn summary(back: &ComeBack) -> String {
 pub fn now(back: &ComeBack) -> String {
     let Some(moment) = back.moment() else {
         let is_saved = back.known.is_some();
-        let said = if is_saved {
+        let state = if is_saved {
             "The robot is switched on"
         } else {
             "The map is driven and saved"
         };
-        return said.to_owned();
+        return state.to_owned();
     };
     let Moment {
         tick,
@@ -213,13 +213,13 @@ pub fn now(back: &ComeBack) -> String {
     } = moment;
     match (report, counts) {
         (Some(report), _) => {
-            let said = match report.verdict {
+            let state = match report.verdict {
                 Verdict::Found => "found",
                 Verdict::Tracking => "follows its place",
                 Verdict::Doubtful => "in doubt",
                 Verdict::Lost => "lost",
             };
-            format!("Scan {}: {said}", tick + 1)
+            format!("Scan {}: {state}", tick + 1)
         }
         (None, Some(counts)) => format!(
             "Scan {}: {} boxes wait, {} sums made",

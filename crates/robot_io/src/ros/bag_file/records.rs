@@ -34,16 +34,16 @@ pub struct Connections {
 }
 
 impl Connections {
-    /// Takes a record that is not a chunk; returns its message if it is one.
-    pub fn take(&mut self, fields: &Fields<'_>, data: &[u8]) -> Result<Option<Recorded>, String> {
+    /// Reads a record that is not a chunk; returns its message if it is one.
+    pub fn read(&mut self, fields: &Fields<'_>, data: &[u8]) -> Result<Option<Recorded>, String> {
         match fields.op()? {
-            op::CONNECTION => self.take_connection(fields, data).map(|()| None),
+            op::CONNECTION => self.read_connection(fields, data).map(|()| None),
             op::MESSAGE => self.message(fields, data).map(Some),
             _ => Ok(None),
         }
     }
 
-    fn take_connection(&mut self, named: &Fields<'_>, data: &[u8]) -> Result<(), String> {
+    fn read_connection(&mut self, named: &Fields<'_>, data: &[u8]) -> Result<(), String> {
         let number = named.u32("conn")?;
         let topic = named.name("topic")?;
         let kind = Fields::parse(data)?.name("type")?;

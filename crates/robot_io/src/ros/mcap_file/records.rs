@@ -74,17 +74,17 @@ impl Records {
         ))
     }
 
-    /// Takes a record; returns its message if it is a readable one.
-    pub fn take(&mut self, op: u8, body: &[u8]) -> Result<Option<Recorded>, ContainerError> {
+    /// Reads a record; returns its message if it is a readable one.
+    pub fn read(&mut self, op: u8, body: &[u8]) -> Result<Option<Recorded>, ContainerError> {
         match op {
-            op::SCHEMA => self.take_schema(body).map(|()| None).map_err(broken),
-            op::CHANNEL => self.take_channel(body).map(|()| None).map_err(broken),
+            op::SCHEMA => self.read_schema(body).map(|()| None).map_err(broken),
+            op::CHANNEL => self.read_channel(body).map(|()| None).map_err(broken),
             op::MESSAGE => self.message(body),
             _ => Ok(None),
         }
     }
 
-    fn take_schema(&mut self, body: &[u8]) -> Result<(), WireError> {
+    fn read_schema(&mut self, body: &[u8]) -> Result<(), WireError> {
         let mut fields = WireReader::new(Wire::Ros1, body)?;
         let number = fields.u16("a schema's number")?;
         let name = fields.name("a schema's name")?;
@@ -92,7 +92,7 @@ impl Records {
         Ok(())
     }
 
-    fn take_channel(&mut self, body: &[u8]) -> Result<(), WireError> {
+    fn read_channel(&mut self, body: &[u8]) -> Result<(), WireError> {
         let mut fields = WireReader::new(Wire::Ros1, body)?;
         let number = fields.u16("a channel's number")?;
         let schema = fields.u16("a schema's number")?;

@@ -68,7 +68,7 @@ pub fn chosen<'a>(
     scored.sort_by_key(|candidate| std::cmp::Reverse(candidate.0));
     let mut scored = scored.into_iter();
     let (_, topic, track, mut clock, is_transform) = scored.next()?;
-    clock.take_steps_of(scans);
+    clock.apply_steps_of(scans);
     let others = scored
         .map(|(_, topic, track, ..)| format!("{topic} from {} to {}", track.above, track.body));
     let others = listed(others.take(5));

@@ -15,7 +15,7 @@ fn fields() -> ScanFields {
 
 #[track_caller]
 fn assert_taken(fields: ScanFields, first: f64, step: f64, words: &str) {
-    let (scan, said) = fields.checked(0.1).unwrap();
+    let (scan, remarks) = fields.checked(0.1).unwrap();
     // 1e-6: 32-bit floats.
     assert!(
         (scan.first_angle_rad - first).abs() < 1e-6,
@@ -27,9 +27,9 @@ fn assert_taken(fields: ScanFields, first: f64, step: f64, words: &str) {
         "{}",
         scan.angle_step_rad
     );
-    let said = said.join(" ");
-    assert_eq!(said.is_empty(), words.is_empty(), "{said}");
-    assert!(said.contains(words), "{said}");
+    let remarks = remarks.join(" ");
+    assert_eq!(remarks.is_empty(), words.is_empty(), "{remarks}");
+    assert!(remarks.contains(words), "{remarks}");
 }
 
 #[test]
@@ -105,8 +105,8 @@ fn inconsistent_angles_are_rejected() {
         angle_increment: 3.0,
         ..fields()
     };
-    let said = bad.checked(0.1).unwrap_err();
-    assert!(said.contains("neither gives a sweep"), "{said}");
+    let remarks = bad.checked(0.1).unwrap_err();
+    assert!(remarks.contains("neither gives a sweep"), "{remarks}");
     let bad = ScanFields {
         angle_max: f64::NAN,
         angle_increment: f64::NAN,
@@ -126,17 +126,20 @@ fn the_time_of_a_beam_is_checked_against_the_period() {
             time_increment,
             ..fields()
         };
-        let (scan, said) = fields.checked(0.1).unwrap();
-        (scan.beam_interval_s, said.join(" "))
+        let (scan, remarks) = fields.checked(0.1).unwrap();
+        (scan.beam_interval_s, remarks.join(" "))
     };
     assert_eq!(interval(0.1 / 360.0), (0.1 / 360.0, String::new()));
-    let (taken_s, said) = interval(0.1e9 / 360.0);
+    let (taken_s, remarks) = interval(0.1e9 / 360.0);
     assert!(
-        (taken_s - 0.1 / 360.0).abs() < 1e-9 && said.contains("nanoseconds"),
-        "{said}"
+        (taken_s - 0.1 / 360.0).abs() < 1e-9 && remarks.contains("nanoseconds"),
+        "{remarks}"
     );
-    let (taken_s, said) = interval(7.0);
-    assert!(taken_s == 0.0 && said.contains("instantaneous"), "{said}");
+    let (taken_s, remarks) = interval(7.0);
+    assert!(
+        taken_s == 0.0 && remarks.contains("instantaneous"),
+        "{remarks}"
+    );
 }
 
 #[test]
@@ -145,7 +148,7 @@ fn millimetres_are_divided() {
         ranges_m: vec![2000.0; 360],
         ..fields()
     };
-    let (scan, said) = fields.checked(0.1).unwrap();
+    let (scan, remarks) = fields.checked(0.1).unwrap();
     assert_eq!((scan.ranges_m[0], scan.range_max_m), (2.0, 12.0));
-    assert!(said[0].contains("millimetres"));
+    assert!(remarks[0].contains("millimetres"));
 }

@@ -57,8 +57,8 @@ fn other_databases_are_rejected_by_their_tables() {
         bytes[at] = b'M';
     }
     let mut file = SqliteFile::new(Box::new(Cursor::new(&bytes[..])));
-    let said = file.next_message().unwrap_err();
+    let error = file.next_message().unwrap_err();
     assert!(
-        matches!(said, ContainerError::Broken(said) if said.contains("expected a database with rosbag2's tables"))
+        matches!(error, ContainerError::Broken(error) if error.contains("expected a database with rosbag2's tables"))
     );
 }

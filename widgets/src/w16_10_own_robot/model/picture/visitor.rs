@@ -11,11 +11,11 @@ const SIGMAS: f64 = 3.0;
 
 /// The path of the other log's robot, and the uncertainty of its current pose.
 pub fn other_log(own: &OwnRobot) -> Vec<Layer> {
-    let Some(((_, shown), told)) = own.place().zip(own.robot.other_log.as_ref()) else {
+    let Some(((_, shown), other)) = own.place().zip(own.robot.other_log.as_ref()) else {
         return Vec::new();
     };
     let line = |is_localized: bool, stroke, width_px| {
-        let places = told.places.iter().map(|place| {
+        let places = other.places.iter().map(|place| {
             if place.state.is_localized() == is_localized {
                 [place.pose[0], place.pose[1]]
             } else {

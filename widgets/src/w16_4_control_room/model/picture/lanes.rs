@@ -168,7 +168,7 @@ pub fn name(lane: usize) -> &'static str {
 }
 
 /// The lane of that name.
-pub fn of_name(name: &str) -> Option<usize> {
+pub fn from_name(name: &str) -> Option<usize> {
     LANES.iter().position(|lane| lane.name == name)
 }
 
@@ -265,7 +265,7 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize, closing: Option<f64>
         // The rings at the first and the last one are whole.
         x: Axis::new("tick", -0.03 * last.max(1.0), 1.03 * last.max(1.0)),
         // The first one stands on top.
-        y: Axis::of_names("", LANES.iter().rev().map(|lane| lane.name.to_owned())),
+        y: Axis::from_names("", LANES.iter().rev().map(|lane| lane.name.to_owned())),
         layers,
         // The title has its words: on low screens the names need the room.
         legend: Vec::new(),

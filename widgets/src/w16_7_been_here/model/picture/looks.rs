@@ -116,7 +116,7 @@ fn contexts(been: &BeenHere, places: &Places, [old, new]: [usize; 2], empty: Pan
         y: Axis {
             min: 0.4,
             max: 4.4,
-            ..Axis::of_names("", names)
+            ..Axis::from_names("", names)
         },
         layers: vec![
             Layer::line(curve.collect(), Stroke::Solid, Tone::Ink, 1.75),
