@@ -117,11 +117,7 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
         legend.extend([way, doubted]);
     }
     if !own.doubts().is_empty() {
-        legend.push(LegendEntry::mark(
-            "look into",
-            Tone::Strained,
-            Mark::Circle,
-        ));
+        legend.push(LegendEntry::mark("look into", Tone::Strained, Mark::Circle));
     }
     legend
 }
