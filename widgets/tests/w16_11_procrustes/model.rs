@@ -162,5 +162,5 @@ fn it_opens_with_the_mirrored_flat_beside_the_right_one() {
     let trace = ProcrustesTrace::default();
     assert_eq!(trace.outcome().verdict, "a mirror image fits best");
     assert_eq!(title(&trace, panel::MAP_TURN), "By svd_align: det +1");
-    assert!(title(&trace, panel::MAP_UNCHECKED).ends_with("mirrored"));
+    assert!(title(&trace, panel::MAP_UNCHECKED).ends_with("det −1"));
 }
