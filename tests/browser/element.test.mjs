@@ -321,6 +321,7 @@ describe('exports', () => {
   it('save the view as PNG and every table as CSV', async () => {
     await on('<slam-widget name="w16.1"></slam-widget>', async (tab) => {
       await h.ready(tab);
+      await tab.getByText('Save or share').click();
       const [picture] = await Promise.all([
         tab.waitForEvent('download'),
         tab.getByRole('button', { name: 'Save picture' }).click(),
@@ -344,6 +345,7 @@ describe('exports', () => {
   it('copy a link to the same state', async () => {
     await on('<slam-widget name="w16.1" heading="60"></slam-widget>', async (tab) => {
       await h.ready(tab);
+      await tab.getByText('Save or share').click();
       await tab.getByRole('button', { name: 'Copy link' }).click();
       await tab.getByText('The link is copied.').waitFor();
       const link = await tab.evaluate(() => navigator.clipboard.readText());

@@ -626,6 +626,8 @@ describe('the doctor', () => {
       const screen = tab.getByRole('region', { name: 'What the doctor found' });
       await screen.getByText('✓ ring.log: all in order').first().waitFor();
       await isMapped(tab);
+      assert.ok(await screen.getByLabel('turned left, °').isHidden(), 'a log without a fault leaves the map where it is');
+      await screen.locator('summary').click();
 
       // By hand, and by keys: a laser that looks backwards is reported with the option that corrects it.
       await screen.getByLabel('turned left, °').fill('180');

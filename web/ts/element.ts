@@ -8,7 +8,7 @@ import { Appearance } from './appearance';
 import { boxOf, type Box } from './box';
 import { Controls, MORE } from './controls';
 import { listen, upgradeProperties } from './dom';
-import { exportBar } from './export';
+import { exportMenu } from './export';
 import type { Widget } from '../pkg/glue.js';
 import { CrashError, type CsvFile, type Outcome, type Timeline } from './instance';
 import { Lifecycle, RemovedError, type LifecycleHost } from './lifecycle';
@@ -320,7 +320,7 @@ export class SlamWidget extends HTMLElement {
     const zoom = zoomButtons((view) => this.look(view));
     zoom.hidden = true;
     this.#zoom = zoom;
-    parts.bar.append(this.#controls.element, zoom, exportBar(this, spec.id, parts.status));
+    parts.bar.append(this.#controls.element, zoom, exportMenu(this, spec.id, parts.status));
     parts.frame.setAttribute('aria-label', `Widget ${spec.id.replace(/^w/, '')}: ${spec.title}`);
     parts.summary.textContent = spec.summary;
     this.#appearance.become(spec.id);

@@ -11,9 +11,13 @@ interface Source extends HTMLElement {
   tables(): Promise<CsvFile[]>;
 }
 
-/** The export buttons; `status` is the live region for their results. */
-export function exportBar(source: Source, name: string, status: HTMLElement): HTMLElement {
-  const bar = create('div', { class: 'tools', role: 'group', 'aria-label': 'Export' });
+/** The menu of the exports; `status` is the live region for their results. */
+export function exportMenu(source: Source, name: string, status: HTMLElement): HTMLElement {
+  const tools = create('div', { class: 'tools' });
+  const menu = create('details');
+  const heading = create('summary');
+  const items = create('div');
+  heading.textContent = 'Save or share';
   const button = (label: string, press: () => Promise<void>): HTMLElement => {
     const element = create('button', { type: 'button' });
     element.textContent = label;
@@ -22,15 +26,16 @@ export function exportBar(source: Source, name: string, status: HTMLElement): HT
     });
     return element;
   };
-  bar.append(
+  items.append(
     button('Save picture', async () => savePng(await source.snapshot(), name)),
     button('Save data', async () => saveCsv(await source.tables(), name)),
     button('Copy link', async () => {
       status.textContent = (await copyText(source.link)) ? 'The link is copied.' : source.link;
     }),
-    status,
   );
-  return bar;
+  menu.append(heading, items);
+  tools.append(menu, status);
+  return tools;
 }
 
 async function savePng(picture: ImageBitmap, name: string): Promise<void> {

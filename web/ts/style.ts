@@ -45,7 +45,7 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .loops .question { font-weight: 600; color: var(--fair); }
 .loops ul { list-style: none; margin: 0.5rem 0; padding: 0; display: grid; gap: 0.75rem;
   grid-template-columns: repeat(auto-fill, minmax(9rem, 1fr)); }
-.loops li { display: flex; flex-wrap: wrap; gap: 0.35rem; align-items: center; max-width: 12rem; }
+.loops li { display: flex; flex-wrap: wrap; gap: 0.35rem; align-content: start; max-width: 12rem; }
 .loops li[aria-busy] { opacity: 0.5; }
 .loops button:has(svg) { flex: 1 0 100%; padding: 0; }
 .loops svg { display: block; width: 100%; aspect-ratio: 1; }
@@ -57,11 +57,13 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
   border-top: 1px solid var(--line); border-radius: 0 0 6px 6px; min-height: 2.75rem; }
 /* The line of the focused control stays in view at any scroll position. */
 .bar:has(.control:focus-within) { position: sticky; bottom: 0; z-index: 1; }
-.tools { display: flex; flex-wrap: wrap; gap: 0.5rem; padding: 0.4rem 0.75rem; align-items: center; }
-button, select, input[type='number'] { font: inherit; color: inherit; background: var(--paper);
+.tools, .tools :is([open], div) { display: flex; flex-wrap: wrap; gap: 0.5rem; align-items: center; }
+.tools { padding: 0.4rem 0.75rem; }
+.tools summary { list-style: none; line-height: 1.5rem; cursor: pointer; }
+button, .tools summary, select, input[type='number'] { font: inherit; color: inherit; background: var(--paper);
   border: 1px solid var(--soft); border-radius: 4px; min-height: 1.75rem; padding: 0.1rem 0.6rem; }
 button { cursor: pointer; }
-button:hover { border-color: var(--accent); }
+:is(button, .tools summary):hover { border-color: var(--accent); }
 button[aria-disabled='true'] { color: var(--soft); border-color: var(--line); cursor: default; }
 :focus-visible:not(.frame) { outline: 3px solid var(--accent); outline-offset: 2px; }
 input[type='number'] { width: 8rem; }

@@ -16,7 +16,7 @@ export interface Scene extends Answer {
 }
 
 /** The visible square, in metres; a wide picture shows more at its sides. */
-const VIEW = { left: -1.5, top: 5.2, side: 7 };
+const VIEW = { left: -1.9, top: 5.2, side: 7.2 };
 /** Radius of the ring that turns the source. */
 const RING_M = 1.3;
 /** Half the size of a cross. */

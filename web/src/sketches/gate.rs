@@ -76,10 +76,10 @@ fn picture(gap: usize, config: &LoopConfig, reach_m: f64) -> Panel {
     };
     let (within, beyond): (Vec<_>, Vec<_>) = drifts(gap, config).into_iter().partition(passes);
     let places = |drifts: &[Vector3<f64>]| drifts.iter().map(|drift| [drift.x, drift.y]).collect();
-    let (mark, tone) = if passes(found) {
-        (Mark::Square, Tone::Posterior)
+    let (told, mark, tone) = if passes(found) {
+        ("the loop, accepted", Mark::Square, Tone::Posterior)
     } else {
-        (Mark::Circle, Tone::Truth)
+        ("the loop, refused", Mark::Circle, Tone::Truth)
     };
     Panel {
         id: "gate",
@@ -105,8 +105,7 @@ fn picture(gap: usize, config: &LoopConfig, reach_m: f64) -> Panel {
             LegendEntry::mark("true drifts that pass", Tone::Prior, Mark::Dot),
             LegendEntry::mark("that do not", Tone::Prediction, Mark::Triangle),
             LegendEntry::line("gate", Tone::Ink, Stroke::Dotted),
-            LegendEntry::mark("loop accepted", Tone::Posterior, Mark::Square),
-            LegendEntry::mark("refused", Tone::Truth, Mark::Circle),
+            LegendEntry::mark(told, tone, mark),
         ],
         color_bar: None,
     }

@@ -37,6 +37,7 @@ const WORDS: Record<Verdict, string> = { good: 'in order', mended: 'repaired or 
 export class DoctorScreen {
   readonly element = create('section', { class: 'doctor', hidden: '', 'aria-label': 'What the doctor found' });
   readonly #host: DoctorHost;
+  readonly #fold = create('details');
   readonly #heading = create('summary');
   readonly #body = create('div');
   readonly #live = create('p', { class: 'hidden', role: 'status' });
@@ -45,9 +46,8 @@ export class DoctorScreen {
 
   constructor(host: DoctorHost) {
     this.#host = host;
-    const fold = create('details', { open: '' });
-    fold.append(this.#heading, this.#body);
-    this.element.append(fold, this.#live);
+    this.#fold.append(this.#heading, this.#body);
+    this.element.append(this.#fold, this.#live);
     stopKeyPropagation(this.element);
   }
 
@@ -84,6 +84,8 @@ export class DoctorScreen {
     this.#diagnosis = diagnosis;
     const summary = headingFor(diagnosis);
     this.#replace(summary, [this.#list(diagnosis.remarks), this.#choices(), this.#laser(diagnosis)]);
+    // A report without a fault would only push the map down.
+    if (this.element.hidden) this.#fold.open = diagnosis.verdict !== 'good';
     this.element.hidden = false;
     this.#live.textContent = summary;
   }

@@ -178,7 +178,7 @@ fn a_dot_is_a_pair_and_a_tap_on_it_shows_both_places() {
     assert!(
         been.outcome()
             .sentence
-            .contains("called the same place, and they are:")
+            .contains("are rightly called the same:")
     );
 }
 

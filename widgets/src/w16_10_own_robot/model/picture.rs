@@ -39,10 +39,16 @@ pub fn scene(robot: &OwnRobot) -> Scene {
 
 fn map(own: &OwnRobot) -> Panel {
     let robot = &own.robot;
+    let is_empty = robot.keyframes.is_empty();
     let bounds = bounds(robot);
+    let axis = |i: usize| {
+        // Metres mean something only on a map.
+        let label = if is_empty { "" } else { ["x (m)", "y (m)"][i] };
+        Axis::new(label, bounds.min[i], bounds.max[i])
+    };
     let mut layers: Vec<Layer> = robot.map.iter().cloned().map(Layer::Raster).collect();
     let mut color_bar = None;
-    if robot.keyframes.is_empty() {
+    if is_empty {
         layers.extend(invitation(robot));
     } else {
         layers.extend(links(own));
@@ -60,8 +66,8 @@ fn map(own: &OwnRobot) -> Panel {
         },
         weight: Weight::Main,
         aspect: Aspect::Equal,
-        x: Axis::new("x (m)", bounds.min[0], bounds.max[0]),
-        y: Axis::new("y (m)", bounds.min[1], bounds.max[1]),
+        x: axis(0),
+        y: axis(1),
         layers,
         legend: legend(own),
         color_bar,
@@ -111,11 +117,7 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
         legend.extend([way, doubted]);
     }
     if !own.doubts().is_empty() {
-        legend.push(LegendEntry::mark(
-            "look into",
-            Tone::Series(3),
-            Mark::Circle,
-        ));
+        legend.push(LegendEntry::mark("look into", Tone::Strained, Mark::Circle));
     }
     legend
 }
@@ -166,7 +168,7 @@ fn invitation(robot: &Robot) -> Vec<Layer> {
     let middle = EMPTY.middle();
     let place = |row: usize| {
         let below = row as f64 - 0.5 * (lines.len() as f64 - 1.0);
-        [middle[0], middle[1] - 1.1 * below]
+        [middle[0], middle[1] - 0.9 * below]
     };
     let words = lines.iter().enumerate().map(|(row, text)| Layer::Text {
         at: place(row),
@@ -288,7 +290,7 @@ fn here(own: &OwnRobot) -> Vec<Layer> {
     let doubts = own.doubts();
     let doubts: Vec<_> = doubts.iter().filter_map(|&k| at(robot, k)).collect();
     if !doubts.is_empty() {
-        layers.push(Layer::points(doubts, Mark::Circle, Tone::Series(3), 6.0));
+        layers.push(Layer::points(doubts, Mark::Circle, Tone::Strained, 6.0));
     }
     let pose = robot.keyframes[shown].pose;
     if let Some((of, points)) = &robot.scan

@@ -86,7 +86,8 @@ fn points(trace: &ProcrustesTrace) -> Panel {
             "At {:.0}°: trace {:.2} m²",
             trace.values.get(&TURN),
             problem.trace_m2(kind, trace.theta_rad())
-        ),
+        )
+        .replace('-', "−"),
         weight: Weight::Main,
         aspect: Aspect::Equal,
         x: axis(0),
@@ -113,11 +114,11 @@ fn curves(trace: &ProcrustesTrace) -> Panel {
     } else {
         1.0
     };
-    let level = |height: f64, tone| {
+    let level = |height: f64, stroke| {
         Layer::line(
             vec![[0.0, height], [WHOLE_TURN_DEG, height]],
-            Stroke::Dotted,
-            tone,
+            stroke,
+            Tone::Ink,
             1.5,
         )
     };
@@ -129,8 +130,8 @@ fn curves(trace: &ProcrustesTrace) -> Panel {
             Tone::Faint,
             2.5,
         ),
-        level(first + second, Tone::Ink),
-        level(first - second, Tone::Faint),
+        level(first + second, Stroke::Dotted),
+        level(first - second, Stroke::Dashed),
     ];
     for kind in Handedness::ALL {
         let at = |degrees: u32| {
@@ -178,7 +179,7 @@ fn curves(trace: &ProcrustesTrace) -> Panel {
                 Stroke::Solid,
             ),
             LegendEntry::line("s₁ + s₂", Tone::Ink, Stroke::Dotted),
-            LegendEntry::line("s₁ − s₂", Tone::Faint, Stroke::Dotted),
+            LegendEntry::line("s₁ − s₂", Tone::Ink, Stroke::Dashed),
         ],
         color_bar: None,
     }
@@ -210,7 +211,7 @@ fn map(id: &'static str, by: &str, kind: Handedness, theta_rad: f64) -> Panel {
     let half = 7.6;
     let how = match kind {
         Handedness::Turn => "det +1",
-        Handedness::Mirror => "det −1, mirrored",
+        Handedness::Mirror => "det −1",
     };
     Panel {
         id,

@@ -74,11 +74,11 @@ pub fn pair_title(been: &BeenHere) -> String {
     let detector = been.detector();
     let is_called = pair.distances[detector] <= been.threshold(detector);
     let judged = match (is_called, pair.is_same) {
-        _ if !is_loop => "are neighbours in time, and no loop",
-        (true, true) => "are called the same place, and they are",
-        (true, false) => "are called the same place, and they are not",
-        (false, true) => "are the same place, and it is not seen",
-        (false, false) => "are told apart",
+        _ if !is_loop => "are neighbours in time",
+        (true, true) => "are rightly called the same",
+        (true, false) => "are wrongly called the same",
+        (false, true) => "are the same place, but missed",
+        (false, false) => "are rightly told apart",
     };
     let [old, new] = pair.nodes;
     format!("Keyframes {old} and {new} {judged}")

@@ -195,7 +195,7 @@ fn bias(moving: &MovingBox) -> Panel {
     };
     Panel {
         id: panel::BIAS,
-        title: format!("How far the box pulls the mean{progress}"),
+        title: format!("Mean pull{progress}"),
         weight: Weight::Half,
         aspect: Aspect::Free,
         x: Axis::new("points on the box (%)", 0.0, MAX_SHARE),

@@ -111,12 +111,14 @@ pub fn summary(moving: &MovingBox) -> String {
         format!("{name} {}", parts.join(", "))
     });
     let curves: Vec<_> = curves.collect();
+    let bias = match moving.curves.seeds() {
+        0 => String::new(),
+        seeds => format!(" Bias over {seeds} seeds: {}.", curves.join("; ")),
+    };
     format!(
-        "Two sweeps of one room with a box that moved between them, registered in three ways, iteration {} of {last}. The picture shows the pull of each pair of {}, tenfold. {} Bias over {} seeds: {}.",
+        "Two sweeps of one room with a box that moved between them, registered in three ways, iteration {} of {last}. The picture shows the pull of each pair of {}, tenfold. {}{bias}",
         moving.iteration(),
         BoxMethods::NAMES[moving.method()],
         outcome(moving).sentence,
-        moving.curves.seeds(),
-        curves.join("; ")
     )
 }

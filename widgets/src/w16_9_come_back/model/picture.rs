@@ -57,7 +57,12 @@ fn map(back: &ComeBack) -> Panel {
     ]);
     if back.moment().is_none_or(|moment| moment.best.is_none()) {
         // Nobody has told the robot where it is.
-        layers.push(Layer::label([start.x(), start.y()], "?".to_owned(), 10.0));
+        layers.push(Layer::Label {
+            at: [start.x(), start.y()],
+            text: "where am I?".to_owned(),
+            tone: Tone::Prior,
+            clear_px: 10.0,
+        });
     }
     let axis = |most: f64| Axis::hidden(-0.5, most + 0.5);
     Panel {

@@ -5,7 +5,7 @@ use ch16_lab::lap::LapDetector;
 use ch16_lab::places::{GRADED, Place};
 use ch16_slam2d::places::RangeHistogram;
 use kit::chart::axis_from_zero;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone};
 use pr_geom::SE2;
 
 use super::super::lap::Places;
@@ -21,8 +21,9 @@ const LOWEST_DEG: f64 = -90.0;
 
 pub fn panel(been: &BeenHere) -> Panel {
     let empty = Panel {
-        weight: Weight::Half,
         aspect: Aspect::Free,
+        x: bearings(),
+        y: rows(),
         // Present from the start, so that the page below does not move.
         legend: vec![
             LegendEntry::mark("then", THEN, Mark::Cross),
@@ -51,6 +52,19 @@ pub fn turn_deg(been: &BeenHere) -> Option<f64> {
     let best = places.study.turned(old, new).turn_rad;
     let turn = SE2::new(0.0, 0.0, best + been.turned_away_deg().to_radians());
     Some(on_axis(turn.theta().to_degrees()))
+}
+
+fn bearings() -> Axis {
+    Axis::new("bearing (°)", LOWEST_DEG, LOWEST_DEG + 360.0)
+}
+
+fn rows() -> Axis {
+    let names = ["unlike", "", "view"].map(str::to_owned);
+    Axis {
+        min: 0.4,
+        max: 4.4,
+        ..Axis::of_names("", names)
+    }
 }
 
 /// The same bearing on the axis of the plot.
@@ -109,15 +123,8 @@ fn contexts(been: &BeenHere, places: &Places, [old, new]: [usize; 2], empty: Pan
         [at, height(differ(shift_of(at)))]
     });
     let distance = differ(shift_of(turn_deg));
-    let names = ["unlike", "", "view"].map(str::to_owned);
     Panel {
         title: format!("Turned by {turn_deg:.0}° they differ by {distance:.2}"),
-        x: Axis::new("bearing (°)", LOWEST_DEG, LOWEST_DEG + 360.0),
-        y: Axis {
-            min: 0.4,
-            max: 4.4,
-            ..Axis::from_names("", names)
-        },
         layers: vec![
             Layer::line(curve.collect(), Stroke::Solid, Tone::Ink, 1.75),
             Layer::segments(
