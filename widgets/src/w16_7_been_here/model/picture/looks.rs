@@ -63,7 +63,7 @@ fn rows() -> Axis {
     Axis {
         min: 0.4,
         max: 4.4,
-        ..Axis::of_names("", names)
+        ..Axis::from_names("", names)
     }
 }
 
