@@ -24,9 +24,9 @@ fn the_doctor_reports_each_part_of_a_recording_with_a_symbol() {
         screen.contains("odometry measures 1.10 m per metre"),
         "{screen}"
     );
-    let told = json(&["doctor", text(&log), "--json"]);
+    let report = json(&["doctor", text(&log), "--json"]);
     assert_eq!(
-        (&told["sensor"]["scans"], &told["verdict"]),
+        (&report["sensor"]["scans"], &report["verdict"]),
         (&Value::from(40), &Value::from("wrong"))
     );
     assert_refused(&["doctor", "/absent"], "/absent: ");

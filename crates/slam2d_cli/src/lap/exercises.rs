@@ -94,7 +94,7 @@ impl Matcher for TheirIcp {
     }
 }
 
-/// What the student's `verify_loop` said of a candidate: new node, old node, verdict.
+/// Result of the student's `verify_loop` for a candidate: new node, old node, verdict.
 type Verdicts = Arc<Mutex<Vec<(usize, usize, VerifiedLoop)>>>;
 
 /// Proposes what the student's `verify_loop` accepts.
@@ -228,20 +228,23 @@ pub fn drive(config: &LapConfig) -> Result<ExerciseLap, LapError> {
 
 /// Runs what may panic in the student's code; a panic becomes the error's sentence, with its place.
 fn in_one_sentence<T>(work: impl FnOnce() -> T) -> Result<T, LapError> {
-    let said = Arc::new(Mutex::new(String::new()));
-    let heard = Arc::clone(&said);
+    let panic_text = Arc::new(Mutex::new(String::new()));
+    let written = Arc::clone(&panic_text);
     panic::set_hook(Box::new(move |panic| {
         let what = panic.payload_as_str().unwrap_or("a panic");
         let what = what.replace('\n', " ");
         let place = panic
             .location()
             .map(|place| format!(" ({}:{})", place.file(), place.line()));
-        *heard.lock().unwrap_or_else(PoisonError::into_inner) = what + &place.unwrap_or_default();
+        *written.lock().unwrap_or_else(PoisonError::into_inner) = what + &place.unwrap_or_default();
     }));
     let done = panic::catch_unwind(AssertUnwindSafe(work));
     drop(panic::take_hook());
-    let said = said.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    done.map_err(|_| LapError::Exercise(said))
+    let panic_text = panic_text
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .clone();
+    done.map_err(|_| LapError::Exercise(panic_text))
 }
 
 /// χ² of the lap's graph, solved by the student from the chain of its odometry.
@@ -273,7 +276,7 @@ fn solved_again(record: &LapRecord) -> Option<f64> {
 }
 
 impl ExerciseLap {
-    /// Prints which exercises steer, and what they said.
+    /// Prints which exercises steer, and their results.
     pub fn print(&self) {
         say!("steered by your functions:");
         say!("  trimmed_icp      every scan and every loop is registered by it");

@@ -144,14 +144,14 @@ fn every_recording_of_the_field_is_mapped_and_its_fault_named() {
             outcome.path.len() >= least_scans,
             "{name}: {} scans: {}",
             outcome.path.len(),
-            outcome.said
+            outcome.notes
         );
-        assert!(outcome.said.contains(word), "{name}: {}", outcome.said);
+        assert!(outcome.notes.contains(word), "{name}: {}", outcome.notes);
         assert_eq!(
-            outcome.said.is_empty(),
+            outcome.notes.is_empty(),
             word.is_empty(),
             "{name}: {}",
-            outcome.said
+            outcome.notes
         );
         let number = |stamp_s: f64| ((stamp_s - START_S) * 2.0).round() as usize;
         let of_truth: Vec<SE2> = outcome
@@ -160,7 +160,7 @@ fn every_recording_of_the_field_is_mapped_and_its_fault_named() {
             .map(|(stamp_s, _)| truth[number(*stamp_s)])
             .collect();
         let off_m = distance_m(&path(&outcome), &of_truth);
-        assert!(off_m <= most_m, "{name}: {off_m} m: {}", outcome.said);
+        assert!(off_m <= most_m, "{name}: {off_m} m: {}", outcome.notes);
     }
 }
 
@@ -176,10 +176,14 @@ fn a_log_whose_stamps_have_six_digits_keeps_its_scans() {
     let log = bytes(&folder().join(name));
     let outcome = mapped_log(&log, name);
     assert_eq!(outcome.path.len(), truth.len());
-    assert!(outcome.said.contains("too few digits"), "{}", outcome.said);
+    assert!(
+        outcome.notes.contains("too few digits"),
+        "{}",
+        outcome.notes
+    );
     // The remaining error is due to the laser's field of view of half a turn: good stamps give the same map.
     let good = mapped_log(&with_good_stamps(&log), name);
-    assert_eq!(good.said, "");
+    assert_eq!(good.notes, "");
     let (poses, good) = (path(&outcome), path(&good));
     // 1e-6 m: the stamps have no other effect.
     assert!(distance_m(&poses, &good) < 1e-6);
@@ -197,21 +201,24 @@ fn the_other_files_of_the_field_are_read_or_refused_by_name() {
     }
     let of = |name: &str| bytes(&folder().join(name));
     let outcome = mapped_log(&of("map/hall_inf.mcap"), "hall_inf.mcap");
-    assert_eq!(outcome.path.len(), 60, "{}", outcome.said);
+    assert_eq!(outcome.path.len(), 60, "{}", outcome.notes);
     let graph = GraphFile::read(&of("g2o/edges_only.g2o"), "edges_only.g2o");
     assert!(graph.is_ok());
     let space = GraphFile::read(&of("g2o/se3.g2o"), "se3.g2o");
-    let said = space.err().unwrap().to_string();
-    assert!(said.contains("three-dimensional"), "{said}");
+    let message = space.err().unwrap().to_string();
+    assert!(message.contains("three-dimensional"), "{message}");
     let read = |name: &str| Trajectory::read_tum(&of(name)[..], name);
     let plain = read("tum/t.tum").unwrap();
     assert_eq!(read("tum/commas.tum").unwrap().poses(), plain.poses());
     assert!(read("tum/est.tum").is_ok());
     // Its nanoseconds overflowed, so its order is lost: it is neither a log nor a trajectory.
-    let said = read("tum/euroc.csv").unwrap_err().to_string();
-    assert!(said.contains("overflowed 32 bits"), "{said}");
-    let said = mapped_log(&of("tum/euroc.csv"), "euroc.csv").said;
-    assert!(said.starts_with("euroc.csv is a trajectory"), "{said}");
+    let message = read("tum/euroc.csv").unwrap_err().to_string();
+    assert!(message.contains("overflowed 32 bits"), "{message}");
+    let message = mapped_log(&of("tum/euroc.csv"), "euroc.csv").notes;
+    assert!(
+        message.starts_with("euroc.csv is a trajectory"),
+        "{message}"
+    );
 }
 
 fn mapped_log(bytes: &[u8], name: &str) -> Outcome {

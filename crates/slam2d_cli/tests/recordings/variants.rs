@@ -18,7 +18,7 @@ type Change = fn(&mut Vec<Message>);
 const VARIANTS: &[(&str, Change, f64, &str)] = &[
     ("nothing", |_| {}, NEAR_M, ""),
     (
-        "backward, untold",
+        "backward, unstated",
         |all| {
             turned(all, 180);
             without(all, "/tf_static");
@@ -27,19 +27,19 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         "--laser 0,0,180",
     ),
     (
-        "backward, told otherwise",
+        "backward, stated otherwise",
         |all| turned(all, 180),
         NEAR_M,
         "--laser 0,0,180",
     ),
     (
-        "to the left, untold",
+        "to the left, unstated",
         |all| turned(all, 90),
         NEAR_M,
         "--laser 0,0,90",
     ),
     (
-        "to the right, untold",
+        "to the right, unstated",
         |all| turned(all, -90),
         NEAR_M,
         "--laser 0,0,-90",
@@ -60,11 +60,11 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         ",flipped",
     ),
     (
-        "upside down, told",
+        "upside down, stated",
         |all| {
             mirrored(all);
-            if let Body::Transforms(told) = &mut all[0].body {
-                told[0].is_upside_down = true;
+            if let Body::Transforms(transforms) = &mut all[0].body {
+                transforms[0].is_upside_down = true;
             }
         },
         NEAR_M,
@@ -74,11 +74,11 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         "static transform at the end",
         |all| {
             turned(all, 180);
-            let mut told = all.remove(0);
-            if let Body::Transforms(told) = &mut told.body {
-                told[0].pose[2] = std::f64::consts::PI;
+            let mut message = all.remove(0);
+            if let Body::Transforms(transforms) = &mut message.body {
+                transforms[0].pose[2] = std::f64::consts::PI;
             }
-            all.push(told);
+            all.push(message);
         },
         NEAR_M,
         "",
@@ -314,8 +314,8 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         |all| {
             as_transforms(all);
             for message in all.iter_mut() {
-                if let Body::Transforms(told) = &mut message.body {
-                    told[0].stamp_s = 0.0;
+                if let Body::Transforms(transforms) = &mut message.body {
+                    transforms[0].stamp_s = 0.0;
                 }
             }
         },
@@ -675,12 +675,13 @@ fn every_fault_is_corrected_or_named() {
         } else {
             f64::INFINITY
         };
-        let is_told = outcome.said.contains(word) && outcome.said.is_empty() == word.is_empty();
-        let is_still_told = is_told || word.is_empty() && *name == "no odometry";
-        if off_m > *most_m || !is_still_told {
+        let is_reported =
+            outcome.notes.contains(word) && outcome.notes.is_empty() == word.is_empty();
+        let is_still_reported = is_reported || word.is_empty() && *name == "no odometry";
+        if off_m > *most_m || !is_still_reported {
             failures.push(format!(
                 "{name}: {scans} scans, {off_m:.3} m: {}",
-                outcome.said
+                outcome.notes
             ));
         }
     }
