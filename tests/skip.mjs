@@ -6,7 +6,7 @@ import { appendFileSync } from 'node:fs';
 /** Skips the running test `context` of node:test; the test returns after it. */
 export function skip(context, reason) {
   if (!['', '0', 'false'].includes(process.env.SLAM_NO_SKIP ?? '')) {
-    throw new Error(`${context.name}: ${reason}, and SLAM_NO_SKIP lets nothing skip`);
+    throw new Error(`${context.name}: ${reason}, and SLAM_NO_SKIP forbids skips`);
   }
   const list = process.env.SLAM_SKIPPED;
   if (list !== undefined) appendFileSync(list, `${context.name}: ${reason}\n`);

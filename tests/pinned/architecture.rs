@@ -262,7 +262,15 @@ fn no_test_is_left_out() {
 
 /// Whether every code block of the doc comments is marked as text, and so is no example.
 fn only_text_blocks(text: &str) -> bool {
-    let fences = |fence: &str| text.matches(fence).count();
+    let comments = text
+        .lines()
+        .map(|line| line.trim_start().trim_start_matches(['/', '!', ' ']));
+    let fences = |fence| {
+        comments
+            .clone()
+            .filter(|line| line.starts_with(fence))
+            .count()
+    };
     fences("```") == 2 * fences("```text")
 }
 

@@ -241,7 +241,7 @@ fn a_preset_sets_what_it_names_and_can_be_pressed_again() {
         let mut shell = make();
         let spec = shell.model().spec();
         for preset in spec.presets {
-            let mut told_first = None;
+            let mut first_outcome = None;
             for _ in 0..2 {
                 shell.model_mut().press(preset.id).unwrap();
                 shell.finish_work();
@@ -251,10 +251,10 @@ fn a_preset_sets_what_it_names_and_can_be_pressed_again() {
                 for (id, expected) in preset.set.iter().filter(|(id, _)| Some(*id) != moved) {
                     assert_eq!(values.number(id), *expected, "{} {}", spec.id, preset.id);
                 }
-                let told = format!("{:?}", shell.model().outcome());
+                let outcome = format!("{:?}", shell.model().outcome());
                 assert_eq!(
-                    *told_first.get_or_insert_with(|| told.clone()),
-                    told,
+                    *first_outcome.get_or_insert_with(|| outcome.clone()),
+                    outcome,
                     "{} {}",
                     spec.id,
                     preset.id

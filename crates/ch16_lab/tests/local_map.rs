@@ -30,10 +30,10 @@ fn the_estimator_for_logs_beats_odometry_in_both_worlds_and_closes_no_false_loop
 #[test]
 fn the_lap_with_a_window_is_the_same_lap_whether_it_is_said_or_not() {
     let config = LapConfig::default();
-    let said = config.clone().with_front_end(LapFrontEnd::Window);
-    assert_eq!(said, config);
+    let named = config.clone().with_front_end(LapFrontEnd::Window);
+    assert_eq!(named, config);
     let local_map = config.with_front_end(LapFrontEnd::LocalMap);
     let twice = [(); 2].map(|()| Lap::new(local_map.clone()).run());
     assert_eq!(twice[0], twice[1]);
-    assert_ne!(Lap::new(said).run(), twice[0]);
+    assert_ne!(Lap::new(named).run(), twice[0]);
 }

@@ -13,7 +13,7 @@ use pr_geom::{Point2, SE2};
 use pr_sim::{Bounds, Course, Wall, World};
 
 /// A course with the map that one lap of it leaves.
-struct Place {
+struct MappedWorld {
     drive: DriveConfig,
     slam: SlamConfig,
     map: Arc<KnownMap>,
@@ -21,7 +21,7 @@ struct Place {
     map_rms_m: f64,
 }
 
-impl Place {
+impl MappedWorld {
     fn new(course: &Course) -> Self {
         let LapsConfig { drive, slam, .. } = LapsConfig::new(course, 1, 1.0);
         let lap = Drive::simulate(&drive);
@@ -77,7 +77,7 @@ fn error_m(report: &LocalizeReport, truth: &SE2) -> f64 {
 
 /// Of twenty starts along the path: how many were localized within ten seconds, how many frames were
 /// localized half a metre or more off, and the median error of the right ones.
-fn switched_on(place: &Place) -> (usize, usize, f64) {
+fn switched_on(place: &MappedWorld) -> (usize, usize, f64) {
     let (mut found, mut wrong) = (0, 0);
     let mut errors_m = Vec::new();
     for seed in 1..=20 {
@@ -108,7 +108,7 @@ fn switched_on(place: &Place) -> (usize, usize, f64) {
 #[test]
 fn a_robot_that_is_switched_on_anywhere_is_found_and_never_in_the_wrong_place() {
     for course in [Course::apartment(), Course::ring()] {
-        let place = Place::new(&course);
+        let place = MappedWorld::new(&course);
         let (found, wrong, median_m) = switched_on(&place);
         println!(
             "{found} of 20 found, {wrong} frames wrong, median error {median_m:.3} m, map off by {:.3} m",
@@ -123,7 +123,7 @@ fn a_robot_that_is_switched_on_anywhere_is_found_and_never_in_the_wrong_place() 
 
 #[test]
 fn a_robot_that_is_carried_away_notices_and_is_found_again() {
-    let place = Place::new(&Course::apartment());
+    let place = MappedWorld::new(&Course::apartment());
     let drive = place.drive(5);
     let mut localizer = place.localizer(StartPose::Near(drive.truth(20) * SE2::new(0.2, 0.1, 0.1)));
     let mut stamp_s = 0.0;
@@ -205,7 +205,7 @@ fn twin_rooms() -> Course {
 
 #[test]
 fn in_one_of_two_equal_rooms_no_frame_is_localized_before_the_door() {
-    let place = Place::new(&twin_rooms());
+    let place = MappedWorld::new(&twin_rooms());
     for seed in 1..=5 {
         let drive = place.drive(seed);
         let end = drive.ticks().len();

@@ -52,6 +52,7 @@ pub struct CycleClosure {
 
 /// Report of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct IncrementalReport {
     /// Index of the frame.
     pub frame: usize,

@@ -51,9 +51,7 @@ fn record(
     list: Option<&Path>,
 ) -> Result<(), String> {
     if !matches!(no_skip, None | Some("" | "0" | "false")) {
-        return Err(format!(
-            "{name}: {reason}, and SLAM_NO_SKIP lets nothing skip"
-        ));
+        return Err(format!("{name}: {reason}, and SLAM_NO_SKIP forbids skips"));
     }
     println!("skipped {name}: {reason}");
     let Some(list) = list else { return Ok(()) };
@@ -83,7 +81,7 @@ mod tests {
     #[test]
     fn nothing_skips_where_nothing_may() {
         let message = record("one", "no data", Some("1"), None).unwrap_err();
-        assert_eq!(message, "one: no data, and SLAM_NO_SKIP lets nothing skip");
+        assert_eq!(message, "one: no data, and SLAM_NO_SKIP forbids skips");
         assert!(record("one", "no data", None, None).is_ok());
     }
 

@@ -35,6 +35,7 @@ pub struct G2oError {
 
 /// Problems of a line.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum G2oProblem {
     /// A record has too few or too many fields.
     #[error("{record} needs {expected} numbers, found {found}")]

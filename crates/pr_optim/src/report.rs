@@ -6,6 +6,7 @@ use crate::problem::Problem;
 
 /// Why a solve stopped, with the measured value and the threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum StopReason {
     /// An accepted step, corrected for damping, moved no node by as much as the tolerance.
     SmallStep {
@@ -106,6 +107,7 @@ impl core::fmt::Display for StopReason {
 
 /// Result of one iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct StepReport {
     /// χ² = Σ eᵀΩe at the poses where the step was computed, kernel not applied.
     pub chi2_before: f64,
@@ -125,6 +127,7 @@ pub struct StepReport {
 
 /// Result of a whole solve.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Report {
     /// Linear systems solved.
     pub iterations: usize,

@@ -15,6 +15,7 @@ const MIN_VALID: f64 = 0.1;
 
 /// Summary of the scans.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct SensorSummary {
     /// Number of scans.
     pub scans: usize,
@@ -34,6 +35,7 @@ pub struct SensorSummary {
 
 /// Summary of the odometry.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct OdometrySummary {
     /// Topic; `None` in a log of lines.
     pub source: Option<String>,
@@ -47,6 +49,7 @@ pub struct OdometrySummary {
 
 /// Diagnosis of a recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Diagnosis {
     /// Name of the recording.
     pub name: String,

@@ -60,6 +60,7 @@ pub struct GraphEdge {
 
 /// Why a graph cannot be read.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum GraphError {
     /// A line is malformed.
     #[error("{name}: {source}")]

@@ -7,6 +7,7 @@ use crate::log::LogFrame;
 
 /// Summary of a log.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct LogInfo {
     /// Number of scans.
     pub scans: usize,

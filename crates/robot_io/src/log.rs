@@ -196,6 +196,7 @@ impl LogNotes {
 
 /// Why a log cannot be read.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum LogError {
     /// The bytes could not be read.
     #[error("{name}: {position}: {source}")]

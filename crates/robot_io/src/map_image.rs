@@ -53,6 +53,7 @@ impl MapMode {
 
 /// Why there is no map.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum MapError {
     /// The mapped area needs too many cells.
     #[error(transparent)]

@@ -23,6 +23,7 @@ pub const GATE_CHI2: f64 = 16.266;
 
 /// Quality of a map.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Quality {
     /// The keyframes in order.
     pub keyframes: Vec<KeyframeQuality>,

@@ -20,6 +20,7 @@ pub struct Setting {
 
 /// Why a parameter was not set.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SettingError {
     /// There is no parameter with that name.
     #[error("the estimator has no parameter {0}; docs/robots-parameters.md lists them")]

@@ -28,6 +28,7 @@ pub struct StampedPose {
 
 /// Why a file of poses or relations cannot be used.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum TextError {
     /// The bytes could not be read.
     #[error("{name}: line {line}: {source}")]

@@ -134,13 +134,13 @@ pub enum LapError {
     #[error("--exercises: {0}")]
     #[cfg(feature = "exercises")]
     Exercise(String),
-    /// No exercise does what is asked for.
-    #[error("--exercises has none for that {argument}: take {instead}")]
+    /// No exercise implements the argument.
+    #[error("no exercise implements this {argument}; use {instead}")]
     #[cfg(feature = "exercises")]
     NoExercise {
         /// The argument.
         argument: &'static str,
-        /// What there is.
+        /// An implemented argument.
         instead: &'static str,
     },
     /// The wardrobe exists only in the Apartment.

@@ -55,7 +55,7 @@ pub struct Trial {
 impl TrialArgs {
     /// The first argument that affects only a pose graph and its front end.
     pub fn of_the_graph(&self) -> Option<&'static str> {
-        let said = [
+        let given = [
             (self.matcher.is_some(), "--matcher"),
             (self.front_end.is_some(), "--front-end"),
             (self.loop_matcher.is_some(), "--loop-matcher"),
@@ -63,7 +63,7 @@ impl TrialArgs {
             (self.gate.is_some(), "--gate"),
             (self.information.is_some(), "--information"),
         ];
-        said.into_iter().find(|(is, _)| *is).map(|(_, name)| name)
+        given.into_iter().find(|(is, _)| *is).map(|(_, name)| name)
     }
 
     /// Reads the world.

@@ -277,13 +277,13 @@ fn register_says_in_words_why_it_ended() {
         write("near.csv", 0.1),
         write("far.csv", 9.0),
     );
-    let said = |scan: &str| {
+    let printed = |scan: &str| {
         let output = slam2d(&["register", &map, scan]);
         assert!(output.status.success());
         String::from_utf8(output.stdout).unwrap()
     };
-    assert!(said(&near).contains("converged: the last step"));
-    let text = said(&far);
+    assert!(printed(&near).contains("converged: the last step"));
+    let text = printed(&far);
     assert!(text.contains("too few pairs within tau: 0,"), "{text}");
     assert!(!text.contains("inf") && !text.contains('{'), "{text}");
 }
@@ -299,7 +299,7 @@ fn a_bad_line_is_named_with_its_file() {
 
 #[test]
 fn wrong_arguments_end_in_one_line_and_exit_code_2() {
-    for (arguments, said) in [
+    for (arguments, expected) in [
         (&[][..], "a subcommand is required"),
         (&["bogus"], "bogus"),
         (&["lap", "--seed", "-1"], "4294967295"),
@@ -340,7 +340,7 @@ fn wrong_arguments_end_in_one_line_and_exit_code_2() {
         (&["optimize", "a.g2o", "--tolerance", "-1"], "0 to 1"),
         (&["optimize", "a.g2o", "--repeat", "0"], "0"),
     ] {
-        assert_refused(arguments, said);
+        assert_refused(arguments, expected);
     }
     assert!(!Path::new("absent.csv").exists());
 }

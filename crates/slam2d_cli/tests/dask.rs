@@ -23,6 +23,6 @@ fn a_cluster_of_two_workers_comes_to_the_same_figures_though_one_is_killed() {
         .arg(env!("CARGO_BIN_EXE_slam2d"))
         .output()
         .expect("it ran before");
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{stderr}");
 }

@@ -81,8 +81,8 @@ fn arguments_without_effect_on_an_estimator_are_rejected() {
 #[test]
 fn the_estimator_for_logs_drives_another_lap_and_is_not_of_incremental_mapping() {
     let window = json(&["lap", "--json"]);
-    let said = json(&["lap", "--front-end", "window", "--json"]);
-    assert_eq!(window["digest"], said["digest"]);
+    let named = json(&["lap", "--front-end", "window", "--json"]);
+    assert_eq!(window["digest"], named["digest"]);
     let local_map = json(&["lap", "--front-end", "local-map", "--json"]);
     assert_ne!(window["digest"], local_map["digest"]);
     let ends =

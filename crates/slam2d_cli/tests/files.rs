@@ -23,9 +23,9 @@ fn in_folder(folder: &TempDir, name: &str) -> String {
 
 fn runs(arguments: &[&str]) -> String {
     let output = slam2d(arguments);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{arguments:?}: {said}");
-    said
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{arguments:?}: {stderr}");
+    stderr
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn a_run_leaves_trajectory_graph_map_and_report() {
         "{yaml}"
     );
 
-    for (arguments, said) in [
+    for (arguments, expected) in [
         (
             vec!["map", folder.path().to_str().unwrap(), "-o", &map],
             "has no keyframes.jsonl",
@@ -115,7 +115,7 @@ fn a_run_leaves_trajectory_graph_map_and_report() {
             "not within 0.01 to 1 m",
         ),
     ] {
-        assert_refused(&arguments, said);
+        assert_refused(&arguments, expected);
     }
 }
 
@@ -197,7 +197,7 @@ fn impossible_conversions_list_the_possible_ones() {
     let empty = write("empty.mcap", b"");
     let half = write("half.bag", b"#ROSBAG V2.0\nxx");
     let out = in_folder(&folder, "out.clf");
-    for (input, output, said) in [
+    for (input, output, expected) in [
         (
             text(&graph),
             "y.clf",
@@ -220,7 +220,7 @@ fn impossible_conversions_list_the_possible_ones() {
             "half.bag has no usable scan: byte 15: expected a record's header",
         ),
     ] {
-        assert_refused(&["convert", input, output], said);
+        assert_refused(&["convert", input, output], expected);
     }
     assert!(!Path::new(&out).exists(), "no output without input");
 }
@@ -228,7 +228,7 @@ fn impossible_conversions_list_the_possible_ones() {
 #[test]
 fn a_topic_or_frame_that_is_not_there_is_named_with_those_that_are() {
     let recording = |name: &str| recording(name);
-    for (file, option, said) in [
+    for (file, option, expected) in [
         (
             "plain.mcap",
             "--odom-topic",
@@ -252,7 +252,7 @@ fn a_topic_or_frame_that_is_not_there_is_named_with_those_that_are() {
     ] {
         let file = recording(file);
         for command in ["run", "info"] {
-            assert_refused(&[command, &file, option, "/nowhere"], said);
+            assert_refused(&[command, &file, option, "/nowhere"], expected);
         }
     }
 }

@@ -171,17 +171,17 @@ fn odometry_that_never_moves_is_reported() {
         })
         .collect();
     let log = write(&folder, "still.clf", &still.join("\n"));
-    let said = |more: &[&str]| {
+    let warnings = |more: &[&str]| {
         let output = slam2d(&[&["run", text(&log)], more].concat());
         assert!(output.status.success());
         String::from_utf8(output.stderr).unwrap()
     };
-    let message = said(&[]);
+    let message = warnings(&[]);
     assert!(
         message.contains("odometry stands still while the scans move by 3."),
         "{message}"
     );
-    assert_eq!(said(&["--no-odometry"]), "");
+    assert_eq!(warnings(&["--no-odometry"]), "");
 }
 
 #[test]
@@ -207,12 +207,15 @@ fn malformed_lines_are_reported_and_the_rest_is_mapped() {
     let log = write(&folder, "broken.clf", &lines.join("\n"));
     let output = slam2d(&["run", text(&log), "--json"]);
     assert!(output.status.success());
-    let said = String::from_utf8(output.stderr).unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
     assert!(
-        said.contains("one line was skipped; the first is line 3: "),
-        "{said}"
+        stderr.contains("one line was skipped; the first is line 3: "),
+        "{stderr}"
     );
-    assert!(said.contains("the last line, 6, is incomplete"), "{said}");
+    assert!(
+        stderr.contains("the last line, 6, is incomplete"),
+        "{stderr}"
+    );
     let run: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(run["scans"], 4);
 }
@@ -228,7 +231,7 @@ fn files_that_cannot_be_used_end_in_one_line() {
     let tum = write(&folder, "t.tum", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
     let in_folder = folder.path().join("bag");
     fs::create_dir(&in_folder).unwrap();
-    for (arguments, said) in [
+    for (arguments, expected) in [
         (vec!["run", "/absent"], "/absent: "),
         (
             vec!["run", text(&in_folder)],
@@ -253,7 +256,7 @@ fn files_that_cannot_be_used_end_in_one_line() {
             "stamp must be a finite number",
         ),
     ] {
-        assert_refused(&arguments, said);
+        assert_refused(&arguments, expected);
     }
 }
 
@@ -358,8 +361,8 @@ fn a_parameter_is_run_at_half_and_at_twice_its_value_and_the_table_goes_into_a_p
             "corridor.clf",
         ),
     ];
-    for (arguments, said) in refusals {
-        assert_refused(&arguments, said);
+    for (arguments, expected) in refusals {
+        assert_refused(&arguments, expected);
     }
 }
 

@@ -151,7 +151,7 @@ fn an_unknown_exercise_or_choice_is_not_marked_and_says_which_there_are() {
 fn what_is_no_file_of_answers_is_refused_in_one_line() {
     let twice = file("", &[rank("2"), rank("2")]).to_string();
     let newer = file("", &[]).to_string().replace("answers/1", "answers/2");
-    for (content, said) in [
+    for (content, expected) in [
         (
             "{\"schema\": ",
             "line 1 column 11; give a file that the page saved",
@@ -165,7 +165,7 @@ fn what_is_no_file_of_answers_is_refused_in_one_line() {
         (&" ".repeat((1 << 20) + 1), "more than 1048576 bytes"),
     ] {
         let (_folder, path) = saved(content);
-        assert_refused(&["mark", path.to_str().unwrap()], said);
+        assert_refused(&["mark", path.to_str().unwrap()], expected);
     }
     assert_refused(&["mark", "nowhere.json"], "nowhere.json: ");
 }

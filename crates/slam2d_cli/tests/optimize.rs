@@ -49,11 +49,11 @@ impl Graph {
 
     /// Asserts that the graph is rejected in one line, and that the output is unchanged.
     #[track_caller]
-    fn assert_refused(&self, options: &[&str], said: &str) {
+    fn assert_refused(&self, options: &[&str], expected: &str) {
         let output = self.output();
         fs::write(&output, "old").unwrap();
         let to = ["optimize", self.input(), "-o", output.to_str().unwrap()];
-        assert_refused(&[&to, options].concat(), said);
+        assert_refused(&[&to, options].concat(), expected);
         assert_eq!(fs::read(&output).unwrap(), b"old");
         // No temporary file is left either.
         assert_eq!(fs::read_dir(self.folder.path()).unwrap().count(), 2);
@@ -181,7 +181,7 @@ fn missing_parts_of_a_graph_are_added_and_reported() {
         .filter(|line| line.starts_with("EDGE"))
         .map(|line| format!("{line}\n"))
         .collect();
-    for (text, said) in [
+    for (text, expected) in [
         (
             format!("{SQUARE}VERTEX_SE2 9 0 0 0\n"),
             "the graph has 2 connected components, 1 of them a single vertex",
@@ -203,7 +203,7 @@ fn missing_parts_of_a_graph_are_added_and_reported() {
         let output = slam2d(&["optimize", graph.input()]);
         let message = String::from_utf8(output.stderr).unwrap();
         assert!(
-            output.status.success() && message.contains(said),
+            output.status.success() && message.contains(expected),
             "{message}"
         );
     }
@@ -216,7 +216,7 @@ fn missing_parts_of_a_graph_are_added_and_reported() {
 
 #[test]
 fn graphs_that_cannot_be_solved_are_refused_in_one_line() {
-    for (line, said) in [
+    for (line, expected) in [
         (
             "EDGE_SE2 0 1 1 0",
             "in.g2o: line 9: EDGE_SE2 needs 11 numbers, found 4",
@@ -240,7 +240,7 @@ fn graphs_that_cannot_be_solved_are_refused_in_one_line() {
         ("FIX", "line 9: FIX names no vertex"),
         ("FIX 7", "line 9: there is no vertex 7"),
     ] {
-        Graph::new(format!("{SQUARE}{line}\n")).assert_refused(&[], said);
+        Graph::new(format!("{SQUARE}{line}\n")).assert_refused(&[], expected);
     }
     Graph::new("").assert_refused(&[], "the file has no VERTEX_SE2");
     Graph::new(b"VERTEX_SE2 0 0 0 \xFF\n").assert_refused(&[], "line 1: the line is not UTF-8");

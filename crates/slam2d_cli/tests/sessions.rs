@@ -136,7 +136,7 @@ fn sessions_that_cannot_be_used_end_in_one_line() {
     let huge = fs::File::create(lap.path("huge.slam2d")).unwrap();
     huge.set_len(1 << 31).unwrap();
     let log = lap.file("second.jsonl");
-    for (file, said) in [
+    for (file, expected) in [
         (
             write("empty.slam2d", b""),
             "empty.slam2d is empty; give a session",
@@ -155,11 +155,11 @@ fn sessions_that_cannot_be_used_end_in_one_line() {
         (lap.file("empty_folder"), "has no session.slam2d"),
         (lap.file("huge.slam2d"), "larger than 512 MB"),
     ] {
-        assert_refused(&["run", &log, "--continue", &file], said);
+        assert_refused(&["run", &log, "--continue", &file], expected);
         if !file.ends_with("folder") {
-            assert_refused(&["info", &file], said);
-            assert_refused(&["map", &file, "-o", &lap.file("m.yaml")], said);
-            assert_refused(&["convert", &file, &lap.file("x.g2o")], said);
+            assert_refused(&["info", &file], expected);
+            assert_refused(&["map", &file, "-o", &lap.file("m.yaml")], expected);
+            assert_refused(&["convert", &file, &lap.file("x.g2o")], expected);
         }
     }
 }
@@ -195,12 +195,12 @@ fn a_log_is_found_on_the_map_of_a_session() {
         assert_eq!(last["verdict"], "tracking");
         assert!(last["covariance"][0][0].as_f64().unwrap() > 0.0);
     }
-    let said = String::from_utf8(slam2d(&["localize", &folder, &log]).stdout).unwrap();
+    let stdout = String::from_utf8(slam2d(&["localize", &folder, &log]).stdout).unwrap();
     assert!(
-        said.contains("found at ") && said.contains("localized, "),
-        "{said}"
+        stdout.contains("found at ") && stdout.contains("localized, "),
+        "{stdout}"
     );
-    for (arguments, said) in [
+    for (arguments, expected) in [
         (
             vec!["localize", &folder, &log, "--init", "1,2"],
             "expected x,y,deg or anywhere",
@@ -208,7 +208,7 @@ fn a_log_is_found_on_the_map_of_a_session() {
         (vec!["localize", &log, &log], "is not a session"),
         (vec!["localize", &folder, "/absent"], "/absent: "),
     ] {
-        assert_refused(&arguments, said);
+        assert_refused(&arguments, expected);
     }
 }
 
@@ -257,7 +257,7 @@ fn repeated_laps_print_lines_and_write_a_session() {
     assert_eq!(info["keyframes"], laps[1]["nodes"]);
     assert_eq!(info["edges"], laps[1]["edges"]);
     assert_eq!(info["bytes"], laps[1]["bytes"]);
-    for (arguments, said) in [
+    for (arguments, expected) in [
         (vec!["lap", "--laps", "0"], "not within 1 to 10000"),
         (vec!["lap", "--session", "x"], "--laps"),
         (
@@ -277,6 +277,6 @@ fn repeated_laps_print_lines_and_write_a_session() {
             "cannot be used with",
         ),
     ] {
-        assert_refused(&arguments, said);
+        assert_refused(&arguments, expected);
     }
 }

@@ -13,7 +13,7 @@ fn of_shard<'a>(part: &'a str, rows: &'a Path) -> Vec<&'a str> {
     [&SWEEP[..], &["--shard", part, "--rows", rows]].concat()
 }
 
-fn said(arguments: &[&str]) -> String {
+fn printed_by(arguments: &[&str]) -> String {
     let output = slam2d(arguments);
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{arguments:?}: {errors}");
@@ -25,15 +25,21 @@ fn shards_put_together_print_what_one_process_prints_to_the_last_digit() {
     let folder = tempfile::tempdir().unwrap();
     let rows = ["1/2", "2/2"].map(|part| {
         let rows = folder.path().join(format!("{}.jsonl", &part[..1]));
-        let summary = said(&of_shard(part, &rows));
-        assert!(summary.starts_with("6 laps: "), "{summary}");
+        let text = printed_by(&of_shard(part, &rows));
+        assert!(text.starts_with("6 laps: "), "{text}");
         rows
     });
     let [first, second] = rows.each_ref().map(|rows| rows.to_str().unwrap());
-    let whole = said(&[&SWEEP[..], &["--json"]].concat());
+    let whole = printed_by(&[&SWEEP[..], &["--json"]].concat());
     // The order of the files does not matter.
-    assert_eq!(said(&["sweep", "--merge", second, first, "--json"]), whole);
-    assert_eq!(said(&["sweep", "--merge", first, second]), said(&SWEEP));
+    assert_eq!(
+        printed_by(&["sweep", "--merge", second, first, "--json"]),
+        whole
+    );
+    assert_eq!(
+        printed_by(&["sweep", "--merge", first, second]),
+        printed_by(&SWEEP)
+    );
     assert_refused(
         &["sweep", "--merge", second],
         "6 of 12 laps are missing, the first is seed 1 at noise ×0.25",
@@ -45,17 +51,17 @@ fn a_sweep_killed_within_a_row_resumes() {
     let folder = tempfile::tempdir().unwrap();
     let rows = folder.path().join("rows.jsonl");
     let kept_in = ["--rows", rows.to_str().unwrap(), "--json"];
-    let printed = said(&[&SWEEP[..], &kept_in].concat());
+    let printed = printed_by(&[&SWEEP[..], &kept_in].concat());
     let text = fs::read_to_string(&rows).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines.len(), 13);
     // The header, three rows, and a partial row.
     let kept = lines[..4].join("\n") + "\n";
     fs::write(&rows, kept.clone() + &lines[4][..30]).unwrap();
-    let summary = said(&of_shard("1/1", &rows));
+    let text = printed_by(&of_shard("1/1", &rows));
     assert!(
-        summary.starts_with("12 laps, 3 of them from an earlier run: "),
-        "{summary}"
+        text.starts_with("12 laps, 3 of them from an earlier run: "),
+        "{text}"
     );
     let again = fs::read_to_string(&rows).unwrap();
     assert!(again.starts_with(&kept));
@@ -66,7 +72,7 @@ fn a_sweep_killed_within_a_row_resumes() {
     };
     assert_eq!(sorted(&again), sorted(&text));
     assert_eq!(
-        said(&["sweep", "--merge", rows.to_str().unwrap(), "--json"]),
+        printed_by(&["sweep", "--merge", rows.to_str().unwrap(), "--json"]),
         printed
     );
 }
@@ -88,7 +94,7 @@ fn rows_that_do_not_belong_together_are_refused_in_one_sentence() {
         "--threads",
         "1",
     ];
-    said(&sweep);
+    printed_by(&sweep);
     let other = |option: &[&'static str]| [&sweep[..], option].concat();
     assert_refused(
         &other(&["--matcher", "p2l"]),

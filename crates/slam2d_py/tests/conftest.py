@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[3]
 def skip(name, reason):
     """Skips a test and records that, by the rules of `docs/testing.md`."""
     if os.environ.get("SLAM_NO_SKIP", "") not in ("", "0", "false"):
-        pytest.fail(f"{name}: {reason}, and SLAM_NO_SKIP lets nothing skip")
+        pytest.fail(f"{name}: {reason}, and SLAM_NO_SKIP forbids skips")
     if "SLAM_SKIPPED" in os.environ:
         with open(os.environ["SLAM_SKIPPED"], "a", encoding="utf-8") as skipped:
             skipped.write(f"{name}: {reason}\n")

@@ -173,8 +173,8 @@ fn count_into(file: &Path) -> Result<(), String> {
     if output.status.success() {
         return Ok(());
     }
-    let said = String::from_utf8_lossy(&output.stderr);
-    Err(format!("valgrind counted nothing:\n{said}"))
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    Err(format!("valgrind counted nothing:\n{stderr}"))
 }
 
 /// Parses callgrind's counts, by the requested dump: each part of the file begins with a trigger and ends

@@ -185,8 +185,8 @@ fn answer(mut command: Command, name: &str) -> Result<Found, String> {
         .output()
         .map_err(|error| format!("{name}: {error}"))?;
     if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr);
-        return Err(format!("{name}: {}", said.trim()));
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        return Err(format!("{name}: {}", stderr.trim()));
     }
     serde_json::from_slice(&output.stdout).map_err(|error| format!("{name}: {error}"))
 }

@@ -6,13 +6,13 @@ pub const NAME: &str = "it.file";
 const MAX_BYTES: usize = 3000;
 
 /// Asserts that an error is one line that starts with the file name.
-pub fn assert_refusal(said: &str) {
-    assert!(said.starts_with(NAME), "{said:?}");
-    assert_sentence(said);
+pub fn assert_refusal(text: &str) {
+    assert!(text.starts_with(NAME), "{text:?}");
+    assert_sentence(text);
 }
 
 /// Asserts that a message can be printed on one line.
-pub fn assert_sentence(said: &str) {
-    assert!((10..MAX_BYTES).contains(&said.len()), "{said:?}");
-    assert!(!said.contains(char::is_control), "{said:?}");
+pub fn assert_sentence(text: &str) {
+    assert!((10..MAX_BYTES).contains(&text.len()), "{text:?}");
+    assert!(!text.contains(char::is_control), "{text:?}");
 }

@@ -46,12 +46,12 @@ pub(super) const SKETCH: Sketch = Sketch {
 };
 
 /// The robot's final view: a row of posts that the map contains from the start.
-struct Place {
+struct SearchScene {
     map: LikelihoodMap,
     sweep: PointCloud,
 }
 
-impl Place {
+impl SearchScene {
     fn new() -> Self {
         let posts = |first: i32, last: i32| -> PointCloud {
             let along = (first..=last).map(|k| Point2::new(SPACING_M * f64::from(k), 1.0));
@@ -157,7 +157,7 @@ fn solve(wheels: &[SE2], end: &SE2) -> Vec<SE2> {
 }
 
 fn at(error_m: f64) -> Shown {
-    let place = Place::new();
+    let place = SearchScene::new();
     let found_m = place.search_result_m(odometry_prior(error_m));
     let paths = Paths::new(error_m, found_m);
     let [climbed, pushed, solved] =
@@ -182,7 +182,7 @@ fn line(points: Vec<[f64; 2]>, stroke: Stroke, tone: Tone) -> Layer {
     Layer::line(points, stroke, tone, 2.0)
 }
 
-fn hills(place: &Place, error_m: f64, found_m: f64) -> Panel {
+fn hills(place: &SearchScene, error_m: f64, found_m: f64) -> Panel {
     let prior = odometry_prior(error_m);
     let sweep = |along_m: f64| place.score(along_m, None);
     let both = |along_m: f64| place.score(along_m, Some(prior));
@@ -275,7 +275,7 @@ mod tests {
     use super::*;
 
     fn found_m(error_m: f64) -> f64 {
-        Place::new().search_result_m(odometry_prior(error_m))
+        SearchScene::new().search_result_m(odometry_prior(error_m))
     }
 
     /// The claim of the section: it handles small odometry errors, and no large ones.

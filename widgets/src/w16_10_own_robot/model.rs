@@ -21,7 +21,7 @@ use kit::spec::{DEFAULTS, WidgetSpec};
 use kit::values::{Changed, Values};
 
 use crate::w16_10_own_robot::spec::{KEYS, MAX_KEYFRAMES, MAX_SCANS, PARAMS, SPEC};
-use other_log::Place;
+use other_log::LocalizedScan;
 use robot::{Robot, Stage};
 
 /// Names of the panels.
@@ -122,7 +122,7 @@ impl OwnRobot {
     }
 
     /// The selected scan of the other log and its place.
-    fn place(&self) -> Option<(usize, &Place)> {
+    fn place(&self) -> Option<(usize, &LocalizedScan)> {
         let places = &self.robot.other_log.as_ref()?.places;
         let last = places.len().checked_sub(1)?;
         let scan = self.values.number("scan");

@@ -87,11 +87,11 @@ fn play_maps_the_sample_then_pauses_it_then_plays_the_path() {
 fn other_doubts_are_reported_even_if_no_loop_contradicts() {
     let mut robot = mapped();
     tell(&mut robot, "loops", "", &[]);
-    let said = |robot: &OwnRobot| robot.outcome().sentence.clone();
-    assert!(said(&robot).contains("but the list of doubts is not empty"));
+    let sentence = |robot: &OwnRobot| robot.outcome().sentence.clone();
+    assert!(sentence(&robot).contains("but the list of doubts is not empty"));
     assert_eq!(robot.outcome().standing, Standing::Neutral);
     tell(&mut robot, "doubts", "", &[]);
-    assert!(said(&robot).contains("no loop contradicts the graph."));
+    assert!(sentence(&robot).contains("no loop contradicts the graph."));
     assert_eq!(robot.outcome().standing, Standing::Good);
 }
 
@@ -107,10 +107,10 @@ fn counts_of_one_are_singular() {
     tell(&mut robot, "keyframes", "", &[0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
     tell(&mut robot, "stage", "", &[5.0, 1.0, 1.0, 0.0, 0.0]);
     tell(&mut robot, "loops", "", &[]);
-    let said = robot.outcome().sentence.clone();
+    let sentence = robot.outcome().sentence.clone();
     assert!(
-        said.contains("1 scan became 1 keyframe on a path of 0 m with 0 loops"),
-        "{said}"
+        sentence.contains("1 scan became 1 keyframe on a path of 0 m with 0 loops"),
+        "{sentence}"
     );
 }
 
@@ -252,10 +252,10 @@ fn a_press_selects_a_keyframe_and_a_drag_moves_the_selected_one() {
     let orders = robot.take_orders();
     assert_eq!(orders.len(), 1);
     assert!(orders[0].starts_with("pin 2 2 1"), "{orders:?}");
-    let said = robot.outcome().sentence;
+    let sentence = robot.outcome().sentence;
     assert!(
-        said.contains("Keyframe 2 is held at x 2.00 m, y 1.00 m."),
-        "{said}"
+        sentence.contains("Keyframe 2 is held at x 2.00 m, y 1.00 m."),
+        "{sentence}"
     );
     robot.drag(handle, [f64::NAN, 1e300]);
     assert_eq!(robot.take_orders(), Vec::<String>::new());
@@ -294,8 +294,8 @@ fn a_selected_loop_is_described_with_its_evidence() {
     assert!(robot.summary().ends_with(first), "{}", robot.summary());
     robot.press("next").unwrap();
     let second = "from keyframe 4 to 1: rejected, because 12 points fit, 30 are asked; 0.30 of the scan fits";
-    let said = robot.outcome().sentence;
-    assert!(said.contains(second), "{said}");
+    let sentence = robot.outcome().sentence;
+    assert!(sentence.contains(second), "{sentence}");
     assert_eq!(robot.summary().matches(second).count(), 1);
     // A loop of a graph from a file has no registration, and may have no χ².
     let nan = f64::NAN;
@@ -343,8 +343,8 @@ fn requests_without_a_map_are_answered() {
 fn a_path_of_one_keyframe_has_length_zero() {
     let mut robot = mapped();
     tell(&mut robot, "keyframes", "", &[0.0; 6]);
-    let said = robot.outcome().sentence;
-    assert!(said.contains("on a path of 0 m"), "{said}");
+    let sentence = robot.outcome().sentence;
+    assert!(sentence.contains("on a path of 0 m"), "{sentence}");
 }
 
 #[test]

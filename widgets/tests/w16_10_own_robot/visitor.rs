@@ -68,10 +68,10 @@ fn another_log_starts_anywhere_or_at_the_selected_keyframe() {
 #[test]
 fn its_verdicts_are_reported_and_can_be_stepped_through() {
     let mut robot = with_visitor(true);
-    let said = |robot: &OwnRobot| robot.outcome().sentence;
+    let sentence = |robot: &OwnRobot| robot.outcome().sentence;
     let whole = "The robot of tuesday.log is found at its scan 2: of 5 scans 2 are localized, 1 doubtful, 2 lost.";
-    assert!(said(&robot).contains(whole), "{}", said(&robot));
-    assert!(said(&robot).contains("At scan 4 it is lost."));
+    assert!(sentence(&robot).contains(whole), "{}", sentence(&robot));
+    assert!(sentence(&robot).contains("At scan 4 it is lost."));
     robot.press("change").unwrap();
     assert_eq!(
         robot.values().number("scan"),
@@ -81,7 +81,7 @@ fn its_verdicts_are_reported_and_can_be_stepped_through() {
     robot.press("change").unwrap();
     assert_eq!(robot.values().number("scan"), 2.0);
     assert!(
-        said(&robot)
+        sentence(&robot)
             .contains("At scan 2 it is found at x 2.0 m, y 0.2 m, turned 0°, known to 0.05 m.")
     );
     robot.press("change").unwrap();

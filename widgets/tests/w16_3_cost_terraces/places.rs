@@ -331,9 +331,9 @@ fn a_row_of_odometry_restores_the_rank_with_its_deviation() {
         assert_eq!(fact(&model, "rows_rank"), 3.0);
         // 1e-9: the inverse of a matrix whose entries reach 1e6.
         assert!((fact(&model, "rows_along_m") - sigma_m).abs() < 1e-9);
-        let said = format!("x known to {:.1} cm", 100.0 * sigma_m);
-        assert!(model.outcome().sentence.contains(&said));
-        assert!(panel(&model, "rows").title.contains(&said));
+        let expected = format!("x known to {:.1} cm", 100.0 * sigma_m);
+        assert!(model.outcome().sentence.contains(&expected));
+        assert!(panel(&model, "rows").title.contains(&expected));
         let [[from, to]] = drawn(&model, Tone::Posterior)[..] else {
             panic!("no bar");
         };
@@ -353,8 +353,8 @@ fn each_row_can_be_read_one_by_one() {
     let first = &rows[0];
     let title = panel(&model, "rows").title;
     let count = rows.len();
-    let said = format!("Row 1 of {count}: ({}, {}, ", first[1], first[2]);
-    assert!(title.starts_with(&said), "{title}");
+    let expected = format!("Row 1 of {count}: ({}, {}, ", first[1], first[2]);
+    assert!(title.starts_with(&expected), "{title}");
     assert!(title.ends_with("rank 1"), "{title}");
 }
 

@@ -301,14 +301,14 @@ fn lanes(room: &ControlRoom) -> Panel {
 #[test]
 fn the_name_of_a_lane_stands_on_the_axis() {
     let panel = lanes(&ControlRoom::default());
-    let names = SAID.iter().rev().map(|(name, _)| *name);
+    let names = SENTENCES.iter().rev().map(|(name, _)| *name);
     assert_eq!(panel.y.names, names.collect::<Vec<_>>());
     let is_text = |layer: &Layer| matches!(layer, Layer::Text { .. });
     assert!(!panel.layers.iter().any(is_text));
 }
 
 /// The marks of every lane, and a part of its data in the tick of the first loop.
-const SAID: [(&str, &str); 8] = [
+const SENTENCES: [(&str, &str); 8] = [
     ("predict", "Predict: robot at ("),
     ("register", " pairs within τ = "),
     ("keyframe", "Keyframe: node 29 and an edge to node 28."),
@@ -326,7 +326,7 @@ const SAID: [(&str, &str); 8] = [
 fn every_mark_of_every_lane_shows_its_data_when_selected() {
     let mut pressed = ControlRoom::default();
     set(&mut pressed, "t", 129.0);
-    for (lane, (name, said)) in SAID.into_iter().enumerate() {
+    for (lane, (name, expected)) in SENTENCES.into_iter().enumerate() {
         set(&mut pressed, "t", 129.0);
         let spot = [92.3, 8.0 - lane as f64];
         let handle = pressed.grab("lanes", spot, [2.0, 0.4]).expect(name);
@@ -334,7 +334,7 @@ fn every_mark_of_every_lane_shows_its_data_when_selected() {
         assert_eq!(pressed.values().number("t"), 92.0, "{name}");
         assert_eq!(pressed.values().number("lane"), lane as f64, "{name}");
         let sentence = pressed.outcome().sentence;
-        assert!(sentence.contains(said), "{name}: {sentence}");
+        assert!(sentence.contains(expected), "{name}: {sentence}");
         // By keyboard: the lane and the tick are controls.
         let mut chosen = ControlRoom::default();
         set(&mut chosen, "lane", lane as f64);

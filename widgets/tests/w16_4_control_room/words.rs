@@ -75,9 +75,9 @@ fn a_wrong_loop_that_passes_every_test_is_reported_as_wrong() {
     assert_eq!(outcome.standing, Standing::Bad);
     assert_eq!(outcome.verdict, "wrong loop accepted");
     let sentence = outcome.sentence;
-    let said = "wrong loop 29 to 7 accepted, chi-squared 4.93 below 7.815, history moved 0.32 m: \
+    let expected = "wrong loop 29 to 7 accepted, chi-squared 4.93 below 7.815, history moved 0.32 m: \
          its measurement is 0.36 m and 1.7° off the truth";
-    assert!(sentence.starts_with(said), "{sentence}");
+    assert!(sentence.starts_with(expected), "{sentence}");
     assert_promised("wrong-loop", "0.36 m off");
     let first = &room.timeline().unwrap().marks[0];
     assert_eq!(first.standing, Standing::Bad);

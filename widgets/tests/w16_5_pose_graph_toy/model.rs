@@ -35,10 +35,10 @@ fn one_step_takes_the_chapters_three_poses_from_0_36_to_0_12() {
     assert!((fact(&toy, "last_x_m") - 2.4).abs() < 1e-9);
     assert_eq!(toy.outcome().verdict, "at rest");
     assert_eq!(toy.timeline().unwrap().last, 1.0);
-    let said = toy.outcome().sentence;
+    let sentence = toy.outcome().sentence;
     assert!(
-        said.ends_with("every spring has the same part, 0.040"),
-        "{said}"
+        sentence.ends_with("every spring has the same part, 0.040"),
+        "{sentence}"
     );
 }
 

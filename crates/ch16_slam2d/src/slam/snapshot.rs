@@ -388,11 +388,11 @@ mod tests {
                 "front end 0",
             ),
         ];
-        for (spoil, said) in spoils {
+        for (spoil, expected) in spoils {
             let mut bad = good.clone();
             spoil(&mut bad);
             let error = Slam::restore(&bad).err().unwrap().to_string();
-            assert!(error.contains(said), "{error}");
+            assert!(error.contains(expected), "{error}");
         }
     }
 }

@@ -70,6 +70,7 @@ pub struct GncRound {
 
 /// Why the rounds ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum GncStop {
     /// Every measurement is either an inlier or an outlier.
     Decided,

@@ -30,6 +30,7 @@ impl fmt::Display for CoursePoint {
 
 /// Why a course cannot be driven: what is wrong, where, and what to do. Walls count from 1.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum CourseError {
     /// The text is not JSON.
     #[error(

@@ -230,12 +230,12 @@ fn what_is_wrong_is_one_sentence_that_says_what_where_and_what_to_do() {
             "from 1",
         ),
     ] {
-        let said = read(&room(replace, with)).unwrap_err().to_string();
+        let message = read(&room(replace, with)).unwrap_err().to_string();
         assert!(
-            said.starts_with(start) && said.ends_with(end),
-            "{with}: {said}"
+            message.starts_with(start) && message.ends_with(end),
+            "{with}: {message}"
         );
-        assert!(!said.contains('\n'), "{said}");
+        assert!(!message.contains('\n'), "{message}");
     }
 }
 

@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// Why the text of a link cannot be read as a floor plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum SketchError {
     /// The text was damaged or truncated.
     #[error(

@@ -27,6 +27,7 @@ pub struct RelationErrors {
 
 /// Statistics of the errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct RelationReport {
     /// Number of relations included.
     pub n: usize,

@@ -29,6 +29,7 @@ pub enum Alignment {
 
 /// Why a trajectory cannot be compared with the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum TruthProblem {
     /// Too few stamps match.
     #[error(
@@ -51,6 +52,7 @@ pub struct RelativeErrors {
 
 /// Errors against the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct TruthReport {
     /// Number of poses compared.
     pub n: usize,

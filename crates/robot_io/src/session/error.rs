@@ -8,6 +8,7 @@ use super::VERSION;
 
 /// Why a session cannot be used.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum SessionError {
     /// The bytes could not be read.
     #[error("{name}: {source}")]

@@ -1,9 +1,8 @@
-//! `slam2d lap --exercises`: the lap by the functions that a student wrote in `exercises/`.
+//! `slam2d lap --exercises`: drives the lap with a student's functions from `exercises/`.
 //!
-//! Their ICP is the matcher of the front end and of loops. Their `verify_loop` sees each candidate first, and what it
-//! turns away is not proposed; ours verifies the others again, with their ICP. Their histogram proposes loops with
-//! `--detector histogram`. Nothing in the estimator takes another optimizer, so their Gauss–Newton solves the finished
-//! graph once more, from odometry alone.
+//! Their ICP is the matcher of the front end and of loops. Only candidates that their `verify_loop` accepts are proposed;
+//! ours verifies those again, with their ICP. Their histogram proposes loops with `--detector histogram`. The optimizer of
+//! the estimator cannot be exchanged, so their Gauss–Newton solves the finished graph once more, from odometry alone.
 
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -94,13 +93,13 @@ impl Matcher for TheirIcp {
     }
 }
 
-/// What the student's `verify_loop` said of a candidate: new node, old node, verdict.
+/// Result of the student's `verify_loop` for a candidate: new node, old node, verdict.
 type Verdicts = Arc<Mutex<Vec<(usize, usize, VerifiedLoop)>>>;
 
-/// Proposes what the student's `verify_loop` accepts.
+/// Proposes the candidates that the student's `verify_loop` accepts.
 #[derive(Clone)]
 struct TheirLoops {
-    /// Who proposes: ours, or the student's histogram up to this distance, for a sensor of this range, m.
+    /// The detector: ours, or the student's histogram up to this distance, for a sensor of this range, m.
     near: Box<dyn LoopDetector>,
     histogram: Option<(f64, f64)>,
     config: loops::LoopConfig,
@@ -143,7 +142,7 @@ impl LoopDetector for TheirLoops {
     }
 }
 
-/// A cloud as the listings have it.
+/// A cloud in the type of the listings.
 fn points(cloud: &cloud::PointCloud) -> PointCloud {
     PointCloud {
         points: cloud.iter().collect(),
@@ -151,7 +150,7 @@ fn points(cloud: &cloud::PointCloud) -> PointCloud {
     }
 }
 
-/// The limits of a loop as the listings have them.
+/// The limits of a loop in the type of the listings.
 fn limits(config: &loops::LoopConfig) -> LoopConfig {
     LoopConfig {
         radius: config.radius_m,
@@ -167,20 +166,20 @@ fn limits(config: &loops::LoopConfig) -> LoopConfig {
     }
 }
 
-/// A lap by the student's functions.
+/// A lap with the student's functions.
 pub struct ExerciseLap {
-    /// What the estimator did.
+    /// The record of the estimator.
     pub record: LapRecord,
     verdicts: Vec<(usize, usize, VerifiedLoop)>,
     by_histogram: bool,
-    /// χ² of the finished graph after the student's Gauss–Newton from odometry alone; none without a loop.
+    /// χ² of the finished graph after the student's Gauss–Newton from odometry alone; `None` without a loop.
     chi2: Option<f64>,
 }
 
 /// Drives the lap with the student's functions.
 ///
 /// # Errors
-/// If an exercise that it needs is not written or panics, or there is none for what is asked.
+/// If a required exercise is not written or panics, or no exercise implements an argument.
 pub fn drive(config: &LapConfig) -> Result<ExerciseLap, LapError> {
     let chapter = &config.slam.chapter;
     let matcher = TheirIcp::new(&chapter.matcher, chapter.local_map)?;
@@ -226,22 +225,25 @@ pub fn drive(config: &LapConfig) -> Result<ExerciseLap, LapError> {
     })
 }
 
-/// Runs what may panic in the student's code; a panic becomes the error's sentence, with its place.
+/// Runs the student's code; a panic becomes an error of one sentence, with its location.
 fn in_one_sentence<T>(work: impl FnOnce() -> T) -> Result<T, LapError> {
-    let said = Arc::new(Mutex::new(String::new()));
-    let heard = Arc::clone(&said);
+    let panic_text = Arc::new(Mutex::new(String::new()));
+    let written = Arc::clone(&panic_text);
     panic::set_hook(Box::new(move |panic| {
         let what = panic.payload_as_str().unwrap_or("a panic");
         let what = what.replace('\n', " ");
         let place = panic
             .location()
             .map(|place| format!(" ({}:{})", place.file(), place.line()));
-        *heard.lock().unwrap_or_else(PoisonError::into_inner) = what + &place.unwrap_or_default();
+        *written.lock().unwrap_or_else(PoisonError::into_inner) = what + &place.unwrap_or_default();
     }));
     let done = panic::catch_unwind(AssertUnwindSafe(work));
     drop(panic::take_hook());
-    let said = said.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    done.map_err(|_| LapError::Exercise(said))
+    let panic_text = panic_text
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .clone();
+    done.map_err(|_| LapError::Exercise(panic_text))
 }
 
 /// χ² of the lap's graph, solved by the student from the chain of its odometry.
@@ -273,7 +275,7 @@ fn solved_again(record: &LapRecord) -> Option<f64> {
 }
 
 impl ExerciseLap {
-    /// Prints which exercises steer, and what they said.
+    /// Prints the exercises in use, and their results.
     pub fn print(&self) {
         say!("steered by your functions:");
         say!("  trimmed_icp      every scan and every loop is registered by it");

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! The digest is the SHA-256 of `["slam2d-answers/1","Ann",["16.5a","w16.2",…,1,"2026-…"],…]` as compact JSON. It
-//! reveals an accidental change. Who reads this source can compute it for any answers.
+//! detects accidental changes, but no forgery: the algorithm is public.
 
 use std::collections::HashSet;
 use std::fs::File;

@@ -24,7 +24,7 @@ pub struct Exercise {
     pub exercise: String,
     widget: String,
     state: String,
-    /// The fact in question; else the verdict is.
+    /// The fact in question; `None` if it is the verdict.
     fact: Option<String>,
     /// Largest error of a typed number.
     #[serde(default)]
@@ -86,7 +86,7 @@ pub struct Marked {
     pub attempts: u32,
     /// Moment of the answer, by the student's clock.
     pub time: String,
-    /// What to know about the answer.
+    /// A remark on the answer.
     pub note: Option<String>,
 }
 

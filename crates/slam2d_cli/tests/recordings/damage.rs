@@ -18,15 +18,15 @@ fn first_chunk(bytes: &[u8]) -> std::ops::Range<usize> {
 
 #[track_caller]
 fn assert_mapped(outcome: &Outcome, least_scans: usize, word: &str) {
-    let remarks = &outcome.remarks;
+    let notes = &outcome.notes;
     assert!(
         outcome.path.len() >= least_scans,
-        "{} scans: {remarks}",
+        "{} scans: {notes}",
         outcome.path.len()
     );
     assert!(
-        remarks.contains(word) && remarks.is_empty() == word.is_empty(),
-        "{remarks}"
+        notes.contains(word) && notes.is_empty() == word.is_empty(),
+        "{notes}"
     );
     let number = |stamp_s: f64| ((stamp_s - START_S) / 0.25).round() as usize;
     let truth: Vec<SE2> = outcome
@@ -35,7 +35,7 @@ fn assert_mapped(outcome: &Outcome, least_scans: usize, word: &str) {
         .map(|(stamp_s, _)| truth()[number(*stamp_s)])
         .collect();
     let off_m = distance_m(&path(outcome), &truth);
-    assert!(off_m <= BY_SCANS_M, "{off_m} m: {remarks}");
+    assert!(off_m <= BY_SCANS_M, "{off_m} m: {notes}");
 }
 
 #[test]
@@ -100,9 +100,9 @@ fn a_cloud_of_several_rings_is_cut_by_heights() {
     let bytes = mcap(&all, PER_CHUNK);
     let refused = read(&bytes, &LogOptions::default());
     assert!(
-        refused.path.is_empty() && refused.remarks.contains("--heights LOW,HIGH"),
+        refused.path.is_empty() && refused.notes.contains("--heights LOW,HIGH"),
         "{}",
-        refused.remarks
+        refused.notes
     );
     let options = LogOptions {
         heights_m: Some((0.0, 0.3)),
@@ -129,8 +129,8 @@ fn the_user_may_set_the_mounting() {
     };
     let outcome = read(&mcap(&all, PER_CHUNK), &options);
     assert!(
-        outcome.remarks.contains("correct it with --laser 0,0,"),
+        outcome.notes.contains("correct it with --laser 0,0,"),
         "{}",
-        outcome.remarks
+        outcome.notes
     );
 }

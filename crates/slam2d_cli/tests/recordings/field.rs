@@ -144,18 +144,14 @@ fn every_recording_of_the_field_is_mapped_and_its_fault_named() {
             outcome.path.len() >= least_scans,
             "{name}: {} scans: {}",
             outcome.path.len(),
-            outcome.remarks
+            outcome.notes
         );
-        assert!(
-            outcome.remarks.contains(word),
-            "{name}: {}",
-            outcome.remarks
-        );
+        assert!(outcome.notes.contains(word), "{name}: {}", outcome.notes);
         assert_eq!(
-            outcome.remarks.is_empty(),
+            outcome.notes.is_empty(),
             word.is_empty(),
             "{name}: {}",
-            outcome.remarks
+            outcome.notes
         );
         let number = |stamp_s: f64| ((stamp_s - START_S) * 2.0).round() as usize;
         let of_truth: Vec<SE2> = outcome
@@ -164,7 +160,7 @@ fn every_recording_of_the_field_is_mapped_and_its_fault_named() {
             .map(|(stamp_s, _)| truth[number(*stamp_s)])
             .collect();
         let off_m = distance_m(&path(&outcome), &of_truth);
-        assert!(off_m <= most_m, "{name}: {off_m} m: {}", outcome.remarks);
+        assert!(off_m <= most_m, "{name}: {off_m} m: {}", outcome.notes);
     }
 }
 
@@ -181,13 +177,13 @@ fn a_log_whose_stamps_have_six_digits_keeps_its_scans() {
     let outcome = mapped_log(&log, name);
     assert_eq!(outcome.path.len(), truth.len());
     assert!(
-        outcome.remarks.contains("too few digits"),
+        outcome.notes.contains("too few digits"),
         "{}",
-        outcome.remarks
+        outcome.notes
     );
     // The remaining error is due to the laser's field of view of half a turn: good stamps give the same map.
     let good = mapped_log(&with_good_stamps(&log), name);
-    assert_eq!(good.remarks, "");
+    assert_eq!(good.notes, "");
     let (poses, good) = (path(&outcome), path(&good));
     // 1e-6 m: the stamps have no other effect.
     assert!(distance_m(&poses, &good) < 1e-6);
@@ -205,23 +201,23 @@ fn the_other_files_of_the_field_are_read_or_refused_by_name() {
     }
     let of = |name: &str| bytes(&folder().join(name));
     let outcome = mapped_log(&of("map/hall_inf.mcap"), "hall_inf.mcap");
-    assert_eq!(outcome.path.len(), 60, "{}", outcome.remarks);
+    assert_eq!(outcome.path.len(), 60, "{}", outcome.notes);
     let graph = GraphFile::read(&of("g2o/edges_only.g2o"), "edges_only.g2o");
     assert!(graph.is_ok());
     let space = GraphFile::read(&of("g2o/se3.g2o"), "se3.g2o");
-    let remarks = space.err().unwrap().to_string();
-    assert!(remarks.contains("three-dimensional"), "{remarks}");
+    let message = space.err().unwrap().to_string();
+    assert!(message.contains("three-dimensional"), "{message}");
     let read = |name: &str| Trajectory::read_tum(&of(name)[..], name);
     let plain = read("tum/t.tum").unwrap();
     assert_eq!(read("tum/commas.tum").unwrap().poses(), plain.poses());
     assert!(read("tum/est.tum").is_ok());
     // Its nanoseconds overflowed, so its order is lost: it is neither a log nor a trajectory.
-    let remarks = read("tum/euroc.csv").unwrap_err().to_string();
-    assert!(remarks.contains("overflowed 32 bits"), "{remarks}");
-    let remarks = mapped_log(&of("tum/euroc.csv"), "euroc.csv").remarks;
+    let message = read("tum/euroc.csv").unwrap_err().to_string();
+    assert!(message.contains("overflowed 32 bits"), "{message}");
+    let message = mapped_log(&of("tum/euroc.csv"), "euroc.csv").notes;
     assert!(
-        remarks.starts_with("euroc.csv is a trajectory"),
-        "{remarks}"
+        message.starts_with("euroc.csv is a trajectory"),
+        "{message}"
     );
 }
 

@@ -25,15 +25,15 @@ pub struct Outcome {
     /// Stamps (s) and poses.
     pub path: Vec<(f64, SE2)>,
     /// Sentences, or the error.
-    pub remarks: String,
+    pub notes: String,
 }
 
 /// Maps a recording as `slam2d run` does.
 pub fn mapped(parts: Vec<LogBytes<'_>>, name: &str, options: &LogOptions) -> Outcome {
     let mut run = LogRun::new(OdometryUse::Log);
-    let refused = |remarks: String| Outcome {
+    let refused = |notes: String| Outcome {
         path: Vec::new(),
-        remarks,
+        notes,
     };
     let reader = match LogFormat::open_parts(parts, name, options) {
         Ok(reader) => reader,
@@ -50,8 +50,8 @@ pub fn mapped(parts: Vec<LogBytes<'_>>, name: &str, options: &LogOptions) -> Out
         }
     }
     run.finish();
-    let mut remarks = reader.notes().sentences(name);
-    remarks.extend(run.sentences(name));
+    let mut notes = reader.notes().sentences(name);
+    notes.extend(run.sentences(name));
     let path = run.trajectory();
     Outcome {
         path: path
@@ -59,7 +59,7 @@ pub fn mapped(parts: Vec<LogBytes<'_>>, name: &str, options: &LogOptions) -> Out
             .iter()
             .map(|at| (at.stamp_s, at.pose))
             .collect(),
-        remarks: remarks.join("\n"),
+        notes: notes.join("\n"),
     }
 }
 

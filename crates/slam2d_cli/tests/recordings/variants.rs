@@ -77,11 +77,11 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         "static transform at the end",
         |all| {
             turned(all, 180);
-            let mut mounting = all.remove(0);
-            if let Body::Transforms(transforms) = &mut mounting.body {
+            let mut message = all.remove(0);
+            if let Body::Transforms(transforms) = &mut message.body {
                 transforms[0].pose[2] = std::f64::consts::PI;
             }
-            all.push(mounting);
+            all.push(message);
         },
         NEAR_M,
         "",
@@ -635,12 +635,12 @@ fn every_fault_is_corrected_or_named() {
         } else {
             f64::INFINITY
         };
-        let is_named = outcome.remarks.contains(word)
-            && (outcome.remarks.is_empty() == word.is_empty() || *name == "no odometry");
-        if off_m > *max_m || !is_named {
+        let is_reported = outcome.notes.contains(word)
+            && (outcome.notes.is_empty() == word.is_empty() || *name == "no odometry");
+        if off_m > *max_m || !is_reported {
             failures.push(format!(
                 "{name}: {scans} scans, {off_m:.3} m: {}",
-                outcome.remarks
+                outcome.notes
             ));
         }
     }

@@ -20,13 +20,13 @@ pub fn json(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).expect("one JSON value")
 }
 
-/// Asserts exit code 2, empty standard output, and one line on standard error that contains `said`.
+/// Asserts exit code 2, empty standard output, and one line on standard error that contains `expected`.
 #[track_caller]
-pub fn assert_refused(arguments: &[&str], said: &str) {
+pub fn assert_refused(arguments: &[&str], expected: &str) {
     let output = slam2d(arguments);
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     assert!(output.stdout.is_empty(), "{arguments:?}");
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(message.lines().count(), 1, "{arguments:?}: {message}");
-    assert!(message.contains(said), "{arguments:?}: {message}");
+    assert!(message.contains(expected), "{arguments:?}: {message}");
 }

@@ -49,7 +49,7 @@ impl LocalizationState {
 
 /// The pose of a scan; NaN for missing numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct LocalizedScan {
     /// Number of the scan, from 0.
     pub scan: f64,
     /// Its time, s.
@@ -64,7 +64,7 @@ pub struct Place {
     pub ellipse: [f64; 3],
 }
 
-impl Place {
+impl LocalizedScan {
     fn from_numbers(numbers: &[f64]) -> Option<Self> {
         (0.0..=MAX_SCANS).contains(&numbers[0]).then_some(Self {
             scan: numbers[0],
@@ -93,7 +93,7 @@ pub struct OtherLog {
     /// Remarks for its owner, a sentence each.
     pub remarks: Vec<String>,
     /// The poses of the scans, in order.
-    pub places: Vec<Place>,
+    pub places: Vec<LocalizedScan>,
 }
 
 impl OtherLog {
@@ -112,7 +112,7 @@ impl OtherLog {
             remarks: lines.collect(),
             places: places
                 .chunks_exact(PLACE)
-                .filter_map(Place::from_numbers)
+                .filter_map(LocalizedScan::from_numbers)
                 .collect(),
         })
     }
