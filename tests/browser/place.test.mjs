@@ -107,6 +107,27 @@ const opening = ({ id }) => {
 /** Screens with the widget beside the text. */
 const WIDE = [{ width: 1440, height: 900 }, { width: 1100, height: 900 }, { width: 1280, height: 800 }];
 
+describe('a widget on a low screen', () => {
+  // The reliefs of w16.3 need more than a screen.
+  for (const { id } of h.schema.filter(({ id, buttons }) => id !== 'w16.3' && buttons.some((button) => button.id === 'play'))) {
+    it(`shows its picture and Play together: ${id}`, async () => {
+      const viewport = { width: 1280, height: 680 };
+      await chapter(`${h.pageOf(id)}?w=${id.slice(1)}`, async (tab) => {
+        await h.ready(tab, named(id));
+        await tab.evaluate((css) => document.querySelector(css).scrollIntoView(), named(id));
+        await h.quiet(tab);
+        const [top, bottom] = await tab.evaluate((css) => {
+          const element = document.querySelector(css);
+          const { top } = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
+          const [, play, , height] = element.controlBox('play');
+          return [top + element.sceneBox()[1], top + play + height];
+        }, named(id));
+        assert.ok(top >= 0 && bottom <= viewport.height, `from ${top} to ${bottom}`);
+      }, { options: { deviceScaleFactor, viewport } });
+    });
+  }
+});
+
 describe('a widget beside its text', () => {
   for (const spec of h.schema.filter((spec) => opening(spec).length > 0)) {
     it(`shows scene, control and verdict together on wide screens: ${spec.id}`, async () => {

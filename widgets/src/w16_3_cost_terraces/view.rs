@@ -14,7 +14,7 @@ const PAIRED: f32 = 440.0;
 const MAP_PX: f32 = 350.0;
 const PHONE_MAP_PX: f32 = 322.0;
 
-/// Height of a profile and of the sweep on a phone.
+/// Heights of a profile and of the sweep on a phone.
 const PHONE_CUT_PX: f32 = 64.0;
 const PHONE_MATCH_PX: f32 = 110.0;
 
@@ -26,11 +26,16 @@ impl View for TerracesView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let narrow = width < BESIDE;
         let px = |wide, phone| if narrow { phone } else { wide };
+        let cut_px = match width {
+            ..PAIRED => PHONE_CUT_PX,
+            ..BESIDE => 90.0,
+            _ => 110.0,
+        };
         let most = px(MAP_PX, PHONE_MAP_PX);
         let map = |id| slot(id, PlotHeight::Natural { most });
         // Room and corridor have different shapes; fixed heights keep what is below in place.
         let matched = |id| slot(id, PlotHeight::Fixed(px(195.0, PHONE_MATCH_PX)));
-        let cut = |id| slot(id, PlotHeight::Fixed(px(110.0, PHONE_CUT_PX)));
+        let cut = |id| slot(id, PlotHeight::Fixed(cut_px));
         let beside_icp = [cut("icp-path"), matched("sweep")];
         let beside_ndt = [cut("ndt-path"), matched("bells")];
         let below_each_other = |slots: &[Slot]| -> Vec<Row> {

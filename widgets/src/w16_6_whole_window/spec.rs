@@ -83,7 +83,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "A bar is a box of poses, as high as no pose in it can score. Point at one: the true scores of its poses lie below. Boxes are split, and their bars fall towards them.",
         "ICP races from the same start. It is over first, and it stops in whatever minimum it fell into.",
-        "Whatever falls below the best pose so far is dropped unseen, and turns black. That is why it is exact.",
+        "Whatever falls below the best pose so far is dropped unseen, and takes the ink of these words. That is why it is exact.",
         "The half turn is the runner-up. The quarter turn, which traps ICP, is far behind: the search counts the points that fit nowhere.",
         "The search is as fine as its cells. ICP does the rest, from a start that it can use.",
     ],

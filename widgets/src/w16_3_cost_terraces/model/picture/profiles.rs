@@ -46,7 +46,7 @@ fn profile(id: &'static str, name: &str, landscape: &Landscape, moment: Moment) 
     let flag = [[length_m, 0.0], [length_m, highest + 0.5 * sky]];
     let title = if !landscape.ball.is_home() && step == landscape.ball.steps() {
         format!(
-            "{name} stops {:.2} m from the truth",
+            "{name}'s ball stops {:.2} m off",
             landscape.ball.rest_distance_m()
         )
     } else {
