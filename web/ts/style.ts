@@ -59,7 +59,7 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .bar:has(.control:focus-within) { position: sticky; bottom: 0; z-index: 1; }
 .tools, .tools :is([open], div) { display: flex; flex-wrap: wrap; gap: 0.5rem; align-items: center; }
 .tools { padding: 0.4rem 0.75rem; }
-.tools summary { list-style: none; line-height: 1.5rem; cursor: pointer; }
+.tools summary { box-sizing: border-box; list-style: none; cursor: pointer; }
 button, .tools summary, select, input[type='number'] { font: inherit; color: inherit; background: var(--paper);
   border: 1px solid var(--soft); border-radius: 4px; min-height: 1.75rem; padding: 0.1rem 0.6rem; }
 button { cursor: pointer; }

@@ -7,7 +7,7 @@ use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, T
 use pr_geom::{Point2, SE2};
 
 use super::hands::turn_handle;
-use super::words::now;
+use super::words::{Ending, now, so_far};
 use super::{ComeBack, panel};
 use crate::w16_9_come_back::spec::PLAN_M;
 
@@ -55,7 +55,7 @@ fn map(back: &ComeBack) -> Panel {
         },
         pose(start, Mark::Circle, Tone::Prior),
     ]);
-    if back.moment().is_none_or(|moment| moment.best.is_none()) {
+    if !matches!(so_far(back), Ending::Found | Ending::WrongPose) {
         // Nobody has told the robot where it is.
         layers.push(Layer::Label {
             at: [start.x(), start.y()],

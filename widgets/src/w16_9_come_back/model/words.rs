@@ -21,7 +21,7 @@ pub enum Ending {
 }
 
 /// What is known at the moment on screen.
-fn so_far(back: &ComeBack) -> Ending {
+pub fn so_far(back: &ComeBack) -> Ending {
     match back.finished() {
         None => Ending::Computing,
         Some((_, run)) if back.place() < back.decided(run) => Ending::Unknown,
