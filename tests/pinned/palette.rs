@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use kit::palette::{Rgb, Theme, accent, contrast, tone};
 use kit::scene::Tone;
 
-use super::page::document::source;
+use super::page::document::{page_style, source};
 
 /// The shades of each colour, light and dark.
 fn colors() -> BTreeMap<String, [Rgb; 2]> {
@@ -60,7 +60,7 @@ fn text_is_readable_in_both_themes() {
 #[test]
 fn the_styles_declare_no_colour_of_their_own_and_use_none_that_is_missing() {
     let colors = colors();
-    let style = source("web/page/page.css");
+    let style = page_style();
     let own = style.split("--").skip(1).filter_map(|tail| {
         let (name, value) = tail.split_once(": ")?;
         value.starts_with('#').then_some(name)

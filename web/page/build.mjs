@@ -155,9 +155,14 @@ function unescapeHtml(text) {
 
 /** Writes the style with the colours, and copies the linked table. Returns the name of the style. */
 async function copyStyle() {
-  const style = await readFile(path.join(here, 'page.css'), 'utf8');
+  const bundle = await build({
+    entryPoints: [path.join(here, 'page.css')],
+    bundle: true,
+    minify: true,
+    write: false,
+  });
   await cp(path.join(here, 'thousand-laps.csv'), path.join(outDir, 'thousand-laps.csv'));
-  return writeHashed('page.css', colorStyle() + style);
+  return writeHashed('page.css', colorStyle() + bundle.outputFiles[0].text);
 }
 
 /** Copies KaTeX with woff2 fonts only: all browsers with WebAssembly support them. */

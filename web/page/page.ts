@@ -113,7 +113,7 @@ function trackReading(): void {
   const list = document.querySelector<HTMLDetailsElement>('.contents details');
   const summary = list?.querySelector('summary');
   if (list === null || list === undefined || summary === null || summary === undefined) return;
-  // The side bar stays open. page.css has the same width.
+  // The side bar stays open. style/navigation.css has the same width.
   const side = matchMedia('(width >= 1280px)');
   const fold = (): void => { list.open = side.matches; };
   side.addEventListener('change', fold);

@@ -6,7 +6,7 @@ import { themeOf, watchTheme } from '../ts/theme';
 
 /** Widths of the picture, px: with panels side by side, and stacked. */
 export const WIDTHS = { wide: 600, narrow: 360 } as const;
-/** Screens with stacked panels, as in page.css and stills.mjs. */
+/** Screens with stacked panels, as in style/sketches.css and stills.mjs. */
 export const NARROW = '(max-width: 40rem)';
 
 export interface SketchSchema {

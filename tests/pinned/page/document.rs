@@ -86,6 +86,17 @@ pub fn source(path: &str) -> String {
     fs::read_to_string(root.join(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
 }
 
+/// The style sheets of the page in their order.
+pub fn page_style() -> String {
+    let imports = source("web/page/page.css");
+    let files = imports
+        .lines()
+        .filter_map(|line| line.strip_prefix("@import \"./")?.strip_suffix("\";"));
+    files
+        .map(|file| source(&format!("web/page/{file}")))
+        .collect()
+}
+
 /// The text of all pages in reading order, by the list of the build.
 pub fn companion() -> String {
     let list = source("web/page/pages.mjs");

@@ -2,7 +2,7 @@
 
 use pr_sim::World;
 
-use super::document::source;
+use super::document::page_style;
 use super::page;
 
 #[test]
@@ -37,7 +37,7 @@ fn the_plan_shows_the_walls_of_the_apartment() {
 
 #[test]
 fn every_drawing_uses_the_mark_that_belongs_to_its_colour() {
-    let style = source("web/page/page.css");
+    let style = page_style();
     let mut marks = 0;
     // `.nodes rect { fill: var(--posterior); }`: a group of a drawing and its shape.
     for rule in style.lines().filter(|line| line.starts_with('.')) {

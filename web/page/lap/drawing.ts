@@ -2,7 +2,7 @@
 
 import type { Moment, Point, Pose, Story } from './story';
 
-/** Colours by their names in page.css. */
+/** Colours by their names in the style sheets. */
 export type Ink = 'truth' | 'prediction' | 'outbound' | 'return' | 'posterior' | 'prior' | 'measurement' | 'ink' | 'paper';
 
 /** A canvas or an SVG; positions in pixels from the upper left corner. */

@@ -14,7 +14,7 @@ const FALSE_ROW_PX = 18;
 const DOT_PX = 2.6;
 /** Margin for half a dot at both ends. */
 const EDGE_PX = 6;
-/** Colours by the number of closed loops, by their names in page.css. */
+/** Colours by the number of closed loops, by their names in the style sheets. */
 const INKS = ['--laps-none', '--laps-one', '--laps-two', '--laps-more'];
 
 export interface StripHost {
