@@ -58,10 +58,10 @@ fn a_sweep_killed_within_a_row_resumes() {
     // The header, three rows, and a partial row.
     let kept = lines[..4].join("\n") + "\n";
     fs::write(&rows, kept.clone() + &lines[4][..30]).unwrap();
-    let text = printed_by(&of_shard("1/1", &rows));
+    let resumed = printed_by(&of_shard("1/1", &rows));
     assert!(
-        text.starts_with("12 laps, 3 of them from an earlier run: "),
-        "{text}"
+        resumed.starts_with("12 laps, 3 of them from an earlier run: "),
+        "{resumed}"
     );
     let again = fs::read_to_string(&rows).unwrap();
     assert!(again.starts_with(&kept));
