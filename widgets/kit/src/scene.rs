@@ -170,15 +170,13 @@ pub enum Layer {
         /// Meaning.
         tone: Tone,
     },
-    /// Text near a point, placed where it overlaps no other text of the panel, in the order of the layers,
+    /// Text in ink near a point, placed where it overlaps no other text of the panel, in the order of the layers,
     /// and left out if there is no such position.
     Label {
         /// The labelled point.
         at: [f64; 2],
         /// The words.
         text: String,
-        /// Meaning.
-        tone: Tone,
         /// Smallest distance from the point, in pixels; 0 allows an overlap.
         clear_px: f32,
     },
@@ -223,15 +221,10 @@ impl Layer {
         }
     }
 
-    /// [`Layer::Label`] in ink.
+    /// [`Layer::Label`].
     #[must_use]
     pub fn label(at: [f64; 2], text: String, clear_px: f32) -> Self {
-        Self::Label {
-            at,
-            text,
-            tone: Tone::Ink,
-            clear_px,
-        }
+        Self::Label { at, text, clear_px }
     }
 
     /// [`Layer::Pose`].

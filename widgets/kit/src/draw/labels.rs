@@ -37,13 +37,7 @@ pub fn labels(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: T
     }
     let plot = to.plot();
     for layer in &panel.layers {
-        let Layer::Label {
-            at,
-            text,
-            tone,
-            clear_px,
-        } = layer
-        else {
+        let Layer::Label { at, text, clear_px } = layer else {
             continue;
         };
         let px = to.to_px(*at);
@@ -53,7 +47,7 @@ pub fn labels(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: T
         let width = surface.text_width(text, TextSize::Small);
         if let Some(place) = place(px, width, *clear_px, &plot, &taken) {
             surface.rect(place, palette::tone(theme, Tone::Paper));
-            words(surface, place.center(), text, *tone, theme);
+            words(surface, place.center(), text, Tone::Ink, theme);
             taken.push(place);
         }
     }

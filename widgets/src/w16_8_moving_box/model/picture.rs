@@ -63,12 +63,7 @@ fn room(moving: &MovingBox) -> Panel {
         let at = [truth.x() + LARGER * x, truth.y() + LARGER * y];
         let radius_px = if k == method { 6.0 } else { 4.0 };
         layers.push(Layer::points(vec![at], MARKS[k], TONES[k], radius_px));
-        layers.push(Layer::Label {
-            at,
-            text: name.to_owned(),
-            tone: TONES[k],
-            clear_px: 8.0,
-        });
+        layers.push(Layer::label(at, name.to_owned(), 8.0));
     }
     layers.push(Layer::Handle {
         at: box_middle(scene),

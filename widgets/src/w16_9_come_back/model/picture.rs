@@ -57,12 +57,8 @@ fn map(back: &ComeBack) -> Panel {
     ]);
     if !matches!(so_far(back), Ending::Found | Ending::WrongPose) {
         // Nobody has told the robot where it is.
-        layers.push(Layer::Label {
-            at: [start.x(), start.y()],
-            text: "where am I?".to_owned(),
-            tone: Tone::Prior,
-            clear_px: 10.0,
-        });
+        let at = [start.x(), start.y()];
+        layers.push(Layer::label(at, "where am I?".to_owned(), 10.0));
     }
     let axis = |most: f64| Axis::hidden(-0.5, most + 0.5);
     Panel {

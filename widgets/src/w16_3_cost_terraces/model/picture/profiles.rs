@@ -58,12 +58,7 @@ fn profile(id: &'static str, name: &str, landscape: &Landscape, moment: Moment) 
         Layer::line(ground.clone(), Stroke::Solid, Tone::Ink, 2.0),
     ];
     layers.extend(ball(ground[step]));
-    layers.push(Layer::Label {
-        at: flag[1],
-        text: "truth".to_owned(),
-        tone: Tone::Truth,
-        clear_px: 6.0,
-    });
+    layers.push(Layer::label(flag[1], "truth".to_owned(), 6.0));
     Panel {
         id,
         title,

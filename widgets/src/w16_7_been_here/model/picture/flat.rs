@@ -58,12 +58,7 @@ pub fn panel(been: &BeenHere) -> Panel {
                 label: "drag the robot along its path",
             },
             Layer::pose(place.truth.to_array(), mark, tone, 6.0),
-            Layer::Label {
-                at,
-                text: name.to_owned(),
-                tone,
-                clear_px: 12.0,
-            },
+            Layer::label(at, name.to_owned(), 12.0),
         ]);
         ends[k] = at;
     }

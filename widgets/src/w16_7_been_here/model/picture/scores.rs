@@ -93,12 +93,6 @@ pub fn panel(been: &BeenHere) -> Panel {
     }
     let pair = been.pair();
     let chosen = dots.iter().find(|dot| Some(dot.nodes) == pair);
-    let label = |at: [f64; 2], text: &str, tone| Layer::Label {
-        at,
-        text: text.to_owned(),
-        tone,
-        clear_px: 0.0,
-    };
     panel.layers.extend([
         Layer::segments(
             vec![[[0.0, 0.0], [1.02 * largest, 0.0]]],
@@ -123,8 +117,12 @@ pub fn panel(been: &BeenHere) -> Panel {
             tone: Tone::Ink,
             label: "drag the threshold",
         },
-        label([0.93 * largest, 0.8 * high], "the same place", SAME),
-        label([0.93 * largest, 0.8 * low], "another place", OTHER),
+        Layer::label(
+            [0.93 * largest, 0.8 * high],
+            "the same place".to_owned(),
+            0.0,
+        ),
+        Layer::label([0.93 * largest, 0.8 * low], "another place".to_owned(), 0.0),
     ]);
     panel
 }
