@@ -134,6 +134,7 @@ for (const widget of h.schema) {
 
     it('describes its picture', async () => {
       const { tab } = page;
+      await h.quiet(tab);
       const session = await tab.context().newCDPSession(tab);
       const { nodes } = await session.send('Accessibility.getFullAXTree');
       const image = nodes.find(({ role, name }) => role?.value === 'image' && name?.value === widget.title);

@@ -210,11 +210,13 @@ describe('on a narrow screen', () => {
       const css = widget('w16.3');
       await tab.locator(css).scrollIntoViewIfNeeded();
       await h.ready(tab, css);
-      // At the slider the picture is out of view.
+      await tab.evaluate((name) => (document.querySelector(name).more = true), css);
+      await h.quiet(tab);
+      // At this slider the picture is out of view.
       await tab.evaluate((name) => {
         const element = document.querySelector(name);
         const canvas = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
-        scrollBy(0, canvas.top + element.controlBox('tau')[1] - 0.7 * innerHeight);
+        scrollBy(0, canvas.top + element.controlBox('cells')[1] - 0.7 * innerHeight);
       }, css);
       const pinned = () => tab.evaluate((name) => {
         const copy = document.querySelector(name).shadowRoot.querySelector('.pinned');
@@ -228,7 +230,7 @@ describe('on a narrow screen', () => {
       const at = await tab.evaluate((name) => {
         const element = document.querySelector(name);
         const { left, top } = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
-        const [x, y, width, height] = element.controlBox('tau');
+        const [x, y, width, height] = element.controlBox('cells');
         return [left + x + 0.3 * width, top + y + height - 8];
       }, css);
       await h.quiet(tab);
