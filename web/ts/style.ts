@@ -20,7 +20,7 @@ canvas { display: block; width: 100%; touch-action: pan-y pinch-zoom; outline: n
 .frame.takes-files canvas { touch-action: pan-y; }
 .frame.dropping { border-color: var(--accent); box-shadow: 0 0 0 3px var(--accent); }
 .pinned { position: fixed; top: 0; z-index: 3; pointer-events: none; background: var(--paper);
-  border-bottom: 2px solid var(--accent); box-shadow: 0 3px 10px #0005; touch-action: auto; }
+  border-bottom: 2px solid var(--accent); border-radius: 0 0 8px 8px; box-shadow: 0 3px 10px #0005; touch-action: auto; }
 .stage.waiting canvas { position: absolute; inset: 0; visibility: hidden; }
 .stage.live .picture { display: none; }
 progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; accent-color: var(--accent); }
