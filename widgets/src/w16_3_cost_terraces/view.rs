@@ -18,6 +18,9 @@ const PHONE_MAP_PX: f32 = 322.0;
 const PHONE_CUT_PX: f32 = 64.0;
 const PHONE_MATCH_PX: f32 = 110.0;
 
+/// Height of the sweep beside the profiles: with its legend it is as high as they are.
+const LOW_MATCH_PX: f32 = 88.0;
+
 /// Each relief beside the ground under its ball and the target of the match, the slices below.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TerracesView;
@@ -55,7 +58,7 @@ impl View for TerracesView {
                     columns: vec![
                         column(0.35, vec![cut("icp-path")]),
                         column(0.35, vec![cut("ndt-path")]),
-                        column(0.30, vec![matched("sweep")]),
+                        column(0.30, vec![slot("sweep", PlotHeight::Fixed(LOW_MATCH_PX))]),
                     ],
                 },
             ];
