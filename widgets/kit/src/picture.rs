@@ -7,7 +7,7 @@ use crate::palette::{self, Rgb, Theme, tone};
 use crate::readout::fact_text;
 use crate::scene::{Scene, Tone};
 use crate::surface::{Align, Px, Surface, TextSize};
-use crate::view::{Arrangement, Row, View, keep_shown, place};
+use crate::view::{Arrangement, Row, View, place};
 
 /// Space around the picture.
 const MARGIN: f32 = 12.0;
@@ -49,11 +49,13 @@ pub fn picture(
     let title = format!("{} {}", spec.id, spec.title);
     y = paragraph(surface, y, &title, TextSize::Title, ink) + 0.5 * GAP;
     let layer = model.layer();
-    let arrangement = view.arrange(&scene, width).of_layer(&layer);
-    let mut under = view.under_control(width);
-    keep_shown(&mut under, &layer);
-    for rows in [&arrangement.stage, &under, &arrangement.below] {
-        let height = panels(surface, &scene, rows, [MARGIN, y], width, theme);
+    let Arrangement {
+        stage,
+        under_control,
+        below,
+    } = view.arrange(&scene, width).of_layer(&layer);
+    for rows in [stage, under_control, below] {
+        let height = panels(surface, &scene, &rows, [MARGIN, y], width, theme);
         if height > 0.0 {
             y += height + GAP;
         }
@@ -75,7 +77,9 @@ pub fn picture(
 /// Draws only the panels of a scene in the kit's arrangement. Returns their height.
 pub fn scene_picture(surface: &mut dyn Surface, scene: &Scene, width_px: f32, theme: Theme) -> f32 {
     let width = width_px - 2.0 * MARGIN;
-    let Arrangement { mut stage, below } = Arrangement::by_weight(scene, width);
+    let Arrangement {
+        mut stage, below, ..
+    } = Arrangement::by_weight(scene, width);
     stage.extend(below);
     panels(surface, scene, &stage, [MARGIN, 0.0], width, theme)
 }

@@ -17,16 +17,10 @@ pub trait View {
     fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
         Arrangement::by_weight(scene, width)
     }
-
-    /// Panels that stand below the opening control if everything is in one column: they may enter while the
-    /// control is held.
-    fn under_control(&self, _width: f32) -> Vec<Row> {
-        Vec::new()
-    }
 }
 
 /// Removes the panels that a layer hides.
-pub fn keep_shown(rows: &mut Vec<Row>, layer: &Layer) {
+fn keep_shown(rows: &mut Vec<Row>, layer: &Layer) {
     for row in rows.iter_mut() {
         for column in &mut row.columns {
             column.slots.retain(|slot| layer.has_panel(slot.panel));
@@ -86,6 +80,8 @@ impl Row {
 pub struct Arrangement {
     /// The pictures that the widget is about.
     pub stage: Vec<Row>,
+    /// Panels below the opening control if everything is in one column: they may enter while the control is held.
+    pub under_control: Vec<Row>,
     /// The plots below them.
     pub below: Vec<Row>,
 }
@@ -98,6 +94,7 @@ impl Arrangement {
             return self;
         }
         keep_shown(&mut self.stage, layer);
+        keep_shown(&mut self.under_control, layer);
         self.below.clear();
         self
     }
@@ -121,6 +118,7 @@ impl Arrangement {
         Self {
             stage,
             below: slots(Weight::Side, pair),
+            ..Self::default()
         }
     }
 }

@@ -455,7 +455,7 @@ fn the_audit_finds_clipped_and_overlapping_texts() {
             };
             Arrangement {
                 stage: vec![Row::new(&[slot])],
-                below: Vec::new(),
+                ..Arrangement::default()
             }
         }
     }

@@ -23,6 +23,7 @@ impl View for RobotView {
         Arrangement {
             stage: vec![Row::new(&[map])],
             below,
+            ..Arrangement::default()
         }
     }
 }

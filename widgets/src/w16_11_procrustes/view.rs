@@ -33,6 +33,7 @@ impl View for TraceView {
         Arrangement {
             stage,
             below: Vec::new(),
+            ..Arrangement::default()
         }
     }
 }

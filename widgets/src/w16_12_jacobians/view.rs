@@ -23,6 +23,7 @@ impl View for JacobiansView {
         Arrangement {
             stage,
             below: Vec::new(),
+            ..Arrangement::default()
         }
     }
 }

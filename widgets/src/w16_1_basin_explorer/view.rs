@@ -23,24 +23,21 @@ impl View for BasinView {
             share: 1.5,
             slots: vec![sweeps],
         }];
+        let mut under_control = Vec::new();
         if width >= SIDE_BY_SIDE {
             columns.push(Column {
                 share: 1.0,
                 slots: maps(BESIDE_PX).to_vec(),
             });
+        } else {
+            under_control.extend(maps(BELOW_PX).map(|map| Row::new(&[map])));
         }
         let curve = slot(panel::CURVE, PlotHeight::Fixed(120.0));
         Arrangement {
             stage: vec![Row { columns }],
+            under_control,
             below: vec![Row::new(&[curve])],
         }
-    }
-
-    fn under_control(&self, width: f32) -> Vec<Row> {
-        if width >= SIDE_BY_SIDE {
-            return Vec::new();
-        }
-        maps(BELOW_PX).map(|map| Row::new(&[map])).to_vec()
     }
 }
 

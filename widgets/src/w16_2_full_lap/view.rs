@@ -55,6 +55,7 @@ impl View for FullLapView {
                     columns: vec![column(2.0, &[map(width)]), column(1.0, &[LOOP, ERRORS])],
                 }],
                 below: vec![Row::new(&[DISAGREEMENT, GATE, STRAIN])],
+                ..Arrangement::default()
             }
         } else if width >= SIDE_BY_SIDE {
             Arrangement {
@@ -65,12 +66,14 @@ impl View for FullLapView {
                         column(1.0, &[ERRORS, GATE, STRAIN]),
                     ],
                 }],
+                ..Arrangement::default()
             }
         } else {
             let below = [LOOP, ERRORS, DISAGREEMENT, GATE, STRAIN];
             Arrangement {
                 stage: vec![Row::new(&[map(width)])],
                 below: below.iter().map(|slot| Row::new(&[*slot])).collect(),
+                ..Arrangement::default()
             }
         }
     }

@@ -16,6 +16,10 @@ impl View for ControlRoomView {
             // On a phone the map, the lanes and Play fit one screen.
             height: PlotHeight::Fixed(if width < SIDE_BY_SIDE { 150.0 } else { 220.0 }),
         };
+        let natural = |panel| Slot {
+            panel,
+            height: PlotHeight::Natural { most: 480.0 },
+        };
         let plot = |panel| Slot {
             panel,
             height: PlotHeight::Fixed(130.0),
@@ -24,6 +28,7 @@ impl View for ControlRoomView {
             let rows = |slots: &[Slot]| slots.iter().map(|slot| Row::new(&[*slot])).collect();
             return Arrangement {
                 stage: rows(&[natural("map"), lanes]),
+                under_control: rows(&[natural("registration")]),
                 below: rows(&[plot("tau"), plot("errors")]),
             };
         }
@@ -39,20 +44,7 @@ impl View for ControlRoomView {
                 Row::new(&[lanes]),
             ],
             below: vec![Row::new(&[plot("tau"), plot("errors")])],
+            ..Arrangement::default()
         }
-    }
-
-    fn under_control(&self, width: f32) -> Vec<Row> {
-        if width >= SIDE_BY_SIDE {
-            return Vec::new();
-        }
-        vec![Row::new(&[natural("registration")])]
-    }
-}
-
-fn natural(panel: &'static str) -> Slot {
-    Slot {
-        panel,
-        height: PlotHeight::Natural { most: 480.0 },
     }
 }

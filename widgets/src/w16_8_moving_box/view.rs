@@ -29,6 +29,7 @@ impl View for BoxView {
         Arrangement {
             stage,
             below: Vec::new(),
+            ..Arrangement::default()
         }
     }
 }

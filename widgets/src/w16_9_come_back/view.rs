@@ -31,6 +31,7 @@ impl View for ComeBackView {
         Arrangement {
             stage,
             below: Vec::new(),
+            ..Arrangement::default()
         }
     }
 }

@@ -35,7 +35,7 @@ impl Shell {
         width: f32,
         out: &mut Vec<Reserved>,
     ) -> f32 {
-        let Arrangement { stage, below } = self.arrange(ui, width);
+        let Arrangement { stage, below, .. } = self.arrange(ui, width);
         let y = self.block(ui, at, width, Self::tabs);
         let y = self.reserve(ui, [at[0], y], width, &stage, out);
         let y = self.block(ui, [at[0], y], width, Self::transport);
@@ -50,7 +50,11 @@ impl Shell {
         width: f32,
         out: &mut Vec<Reserved>,
     ) -> f32 {
-        let Arrangement { stage, below } = self.arrange(ui, width);
+        let Arrangement {
+            stage,
+            under_control,
+            below,
+        } = self.arrange(ui, width);
         let y = self.block(ui, at, width, Self::tabs);
         let y = self.reserve(ui, [at[0], y], width, &stage, out);
         let y = self.block(ui, [at[0], y], width, Self::transport);
@@ -64,9 +68,7 @@ impl Shell {
         let y = self.block(ui, [at[0], y], width, Self::controls);
         let y = self.block(ui, [at[0], y], width, Self::outcome);
         let y = self.block(ui, [at[0], y], width, Self::more);
-        let mut under = self.view.under_control(width);
-        view::keep_shown(&mut under, &self.model.layer());
-        let y = self.reserve(ui, [at[0], y], width, &under, out);
+        let y = self.reserve(ui, [at[0], y], width, &under_control, out);
         let y = self.reserve(ui, [at[0], y], width, &below, out);
         self.block(ui, [at[0], y], width, Self::tables)
     }

@@ -85,13 +85,13 @@ fn last_of(first: usize, count: usize) -> usize {
     (first + SHOWN_LOOPS).min(count) - 1
 }
 
-fn sentences(id: &'static str, title: &str, sentences_of: &[String]) -> Option<Table> {
-    let mut rows: Vec<Vec<String>> = sentences_of
+fn sentences(id: &'static str, title: &str, lines: &[String]) -> Option<Table> {
+    let mut rows: Vec<Vec<String>> = lines
         .iter()
         .take(SHOWN_SENTENCES)
         .map(|sentence| vec![sentence.clone()])
         .collect();
-    let more = sentences_of.len().saturating_sub(SHOWN_SENTENCES);
+    let more = lines.len().saturating_sub(SHOWN_SENTENCES);
     if more > 0 {
         rows.push(vec![format!("and {more} more, which the report has")]);
     }
