@@ -90,7 +90,8 @@ mod tests {
         let ticks = lap["ticks"].as_array().unwrap();
         assert_eq!(ticks.len(), record.ticks() + 1);
         // 5.1e-5: half of the last digit, and the rounding of the decimal number itself.
-        let is_near = |lap: &Value, value: f64| (lap.as_f64().unwrap() - value).abs() < 5.1e-5;
+        let is_near =
+            |written: &Value, value: f64| (written.as_f64().unwrap() - value).abs() < 5.1e-5;
         for (tick, report) in ticks[1..].iter().zip(&record.lap.reports) {
             assert!(is_near(&tick["wheels"][0], report.dead_reckoning.x()));
             assert!(is_near(&tick["estimate"][1], report.estimate.y()));

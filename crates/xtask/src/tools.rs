@@ -201,13 +201,13 @@ fn ensure_chromium(packages: &[&str]) -> anyhow::Result<PathBuf> {
         program("apt-get").arg("update"),
     )
     .context(HOW)?;
-    let mut installed = packages.iter().map(|package| {
+    let mut attempts = packages.iter().map(|package| {
         let mut install = program("apt-get");
         install.args(["install", "--yes", "--no-install-recommends"]);
         install.args([package, "fonts-dejavu-core"]);
         run(&format!("Installing {package}"), &mut install)
     });
-    installed.find(Result::is_ok);
+    attempts.find(Result::is_ok);
     find_chromium(packages).context(HOW)
 }
 

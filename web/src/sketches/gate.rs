@@ -76,7 +76,7 @@ fn picture(gap: usize, config: &LoopConfig, reach_m: f64) -> Panel {
     };
     let (within, beyond): (Vec<_>, Vec<_>) = drifts(gap, config).into_iter().partition(passes);
     let places = |drifts: &[Vector3<f64>]| drifts.iter().map(|drift| [drift.x, drift.y]).collect();
-    let (told, mark, tone) = if passes(found) {
+    let (label, mark, tone) = if passes(found) {
         ("the loop, accepted", Mark::Square, Tone::Posterior)
     } else {
         ("the loop, refused", Mark::Circle, Tone::Truth)
@@ -105,7 +105,7 @@ fn picture(gap: usize, config: &LoopConfig, reach_m: f64) -> Panel {
             LegendEntry::mark("true drifts that pass", Tone::Prior, Mark::Dot),
             LegendEntry::mark("that do not", Tone::Prediction, Mark::Triangle),
             LegendEntry::line("gate", Tone::Ink, Stroke::Dotted),
-            LegendEntry::mark(told, tone, mark),
+            LegendEntry::mark(label, tone, mark),
         ],
         color_bar: None,
     }

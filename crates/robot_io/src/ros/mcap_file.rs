@@ -222,8 +222,8 @@ mod tests {
             // Bytes after the chunk must not be read.
             let bytes = [bytes, record(15, &[0; 40])].concat();
             let error = McapFile::new(&bytes[..]).next_message().unwrap_err();
-            let is_told = matches!(&error, ContainerError::Skipped(error) if error.contains("inside a chunk"));
-            assert!(is_told, "{length}: {error:?}");
+            let is_named = matches!(&error, ContainerError::Skipped(error) if error.contains("inside a chunk"));
+            assert!(is_named, "{length}: {error:?}");
         }
         let lie = file(&whole, 1000);
         let error = McapFile::new(&lie[..]).next_message().unwrap_err();
