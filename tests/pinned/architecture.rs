@@ -281,3 +281,19 @@ fn an_example_is_distinguished_from_a_text_block() {
     assert!(only_text_blocks(text));
     assert!(!only_text_blocks(example) && !only_text_blocks(&[text, example].concat()));
 }
+
+#[test]
+fn everything_that_is_published_has_one_version() {
+    let version = env!("CARGO_PKG_VERSION");
+    for (file, line) in [
+        ("CITATION.cff", format!("version: {version}")),
+        ("web/package.json", format!("  \"version\": \"{version}\",")),
+        (
+            "web/python/pyproject.toml",
+            format!("version = \"{version}\""),
+        ),
+    ] {
+        let text = text(&root().join(file));
+        assert!(text.lines().any(|found| found == line), "{file}: {line}");
+    }
+}

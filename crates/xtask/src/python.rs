@@ -14,6 +14,27 @@ use crate::tools::linting;
 /// Requirements of the tests, one per line.
 const REQUIREMENTS: &str = "crates/slam2d_py/requirements.txt";
 
+/// Files for GitHub, with the schema that each has to pass.
+const SCHEMAS: [(&str, &[&str]); 3] = [
+    (
+        "vendor.github-workflows",
+        &[
+            ".github/workflows/advisories.yml",
+            ".github/workflows/checks.yml",
+            ".github/workflows/release.yml",
+            "docs/teaching/classroom-ci.yml",
+        ],
+    ),
+    (
+        "vendor.github-issue-forms",
+        &[
+            ".github/ISSUE_TEMPLATE/page.yml",
+            ".github/ISSUE_TEMPLATE/recording.yml",
+        ],
+    ),
+    ("vendor.citation-file-format", &["CITATION.cff"]),
+];
+
 /// The reason of a skip if pip cannot install the requirements.
 const NO_REGISTRY: &str =
     "pip reaches no package registry; connect to the network, or set PIP_INDEX_URL to one";
@@ -174,6 +195,14 @@ pub fn test(
     let Some(environment) = environment else {
         return skip("the Python package and its notebooks", NO_REGISTRY, skipped);
     };
+    for (schema, files) in SCHEMAS {
+        let mut check = environment.python();
+        check
+            .args(["-m", "check_jsonschema", "--quiet", "--builtin-schema"])
+            .arg(schema)
+            .args(files);
+        run(&format!("Checking {}", files.join(", ")), &mut check)?;
+    }
     environment.install_rustslam2d()?;
     if !environment.install_widgets()? {
         let reason = "dist/ holds no site; `cargo xtask build` makes one";
