@@ -17,7 +17,6 @@ import { writeParameterTables, writeTypes } from './generate.mjs';
 import { heightTable } from './heights.mjs';
 import { endWithOneSentence } from './licences/allowed.mjs';
 import { partsOfWidgets, writePackageNotices } from './licences/notices.mjs';
-import { writeGeneratedBlock } from './generated-block.mjs';
 import { brotli, withBuildId, withoutNames } from './wasm-file.mjs';
 
 const WEB = dirname(fileURLToPath(import.meta.url));
@@ -135,7 +134,7 @@ async function bundleWorker(shared) {
 }
 
 async function bundle() {
-  const shared = {
+  const shared = /** @satisfies {esbuild.BuildOptions} */ ({
     bundle: true,
     format: 'esm',
     target: 'es2022',
@@ -146,7 +145,7 @@ async function bundle() {
     metafile: true,
     legalComments: 'none',
     logLevel: 'warning',
-  };
+  });
   robotWorker = await bundleWorker(shared);
   const built = await esbuild.build({
     ...shared,
@@ -228,28 +227,9 @@ async function measure() {
   }
   await writeFile(join(PKG, 'sizes.json'), JSON.stringify({ profile, ...sizes }, null, 2));
   if (profile !== 'web') return;
-  await writeSizes(sizes);
   const total = sizes.wasm.brotli + sizes.glue.brotli;
   console.log(`wasm + glue: ${total} bytes brotli -11, budget ${BUDGET_BYTES}`);
   if (total > BUDGET_BYTES) throw new Error(`${total} bytes are over the budget`);
-}
-
-/** Writes the table of the README. */
-async function writeSizes(sizes) {
-  const rows = Object.entries(sizes).map(
-    ([name, { raw, gzip, brotli: small }]) => `| ${name} | ${raw} | ${gzip} | ${small} |`,
-  );
-  // The page's downloads come before their sum, those for a log after it.
-  const [ofPage, ofWorker] = [rows.slice(0, 2), rows.slice(2)];
-  const total = (which) => sizes.wasm[which] + sizes.glue[which];
-  const table = [
-    '| bytes | raw | gzip −9 | brotli −11 |',
-    '| --- | --- | --- | --- |',
-    ...ofPage,
-    `| both | ${total('raw')} | ${total('gzip')} | ${total('brotli')} |`,
-    ...ofWorker,
-  ];
-  await writeGeneratedBlock(join(WEB, '..', 'README.md'), 'sizes', table.join('\n'));
 }
 
 function hash(bytes) {

@@ -168,8 +168,7 @@ fn test_piece(piece: Piece, tools: &Tools) -> anyhow::Result<()> {
     }
 }
 
-/// Committed files that the build writes. The README's table of sizes is not one of them, because compressed sizes
-/// change with the version of Node and of its zlib and brotli.
+/// Committed files that the build writes.
 const GENERATED: [&str; 2] = ["web/slam-widget.d.ts", "docs/parameters.md"];
 
 /// Fails if the build has changed a generated file, on a build machine.
