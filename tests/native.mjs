@@ -11,7 +11,7 @@ const ROOT = fileURLToPath(new URL('../', import.meta.url));
  * without it cargo compiles them first.
  */
 export function native(program, ...words) {
-  const options = { cwd: ROOT, encoding: 'utf8', maxBuffer: 1 << 28 };
+  const options = { cwd: ROOT, encoding: /** @type {const} */ ('utf8'), maxBuffer: 1 << 28 };
   const compiled = process.env.SLAM_NATIVE;
   if (compiled !== undefined) return execFileSync(join(compiled, program), words, options);
   const cargo = ['run', '--quiet', '--package', program === 'states' ? 'slam_web' : 'slam2d_cli'];

@@ -11,10 +11,12 @@ if (page === undefined || named.length === 0) {
   throw new Error('usage: node web/size-table.mjs PAGE WHAT=FILE…');
 }
 
+/** @type {[string, Buffer][]} */
 const builds = named.map((pair) => {
   const end = pair.indexOf('=');
   return [pair.slice(0, end), readFileSync(pair.slice(end + 1))];
 });
+/** @type {[string, number][]} */
 const rows = builds.map(([what, module]) => [what, brotli(withoutNames(module))]);
 const published = rows[0][1];
 rows.splice(1, 0, ['with the names of its functions', brotli(builds[0][1])]);

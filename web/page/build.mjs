@@ -126,7 +126,12 @@ function addSketches(html, sketches, source) {
   });
 }
 
-/** Renders inline formulas, `<tex>…</tex>`, and display formulas, `<tex display>…</tex>`. */
+/**
+ * Renders inline formulas, `<tex>…</tex>`, and display formulas, `<tex display>…</tex>`.
+ *
+ * @param {string} html
+ * @param {katex.KatexOptions['output']} output
+ */
 function renderFormulas(html, output = 'htmlAndMathml') {
   return html.replace(/(\(?)<tex( display)?>([\s\S]*?)<\/tex>((?:&nbsp;[^\s<.,;:]+|[.,;:?!)°])*)/g, (_, before, display, escaped, after) => {
     const formula = katex.renderToString(dropFigureNames(unescapeHtml(escaped)), {
