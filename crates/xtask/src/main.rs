@@ -74,6 +74,8 @@ enum Command {
         #[arg(long)]
         json: Option<PathBuf>,
     },
+    /// Check format, lints and types of what changed before each commit.
+    Hooks,
     /// Show how far you are with the exercises in code, and what comes next.
     Exercises(exercises::Exercises),
     /// Measure the effect of each size optimization of the module.
@@ -103,6 +105,10 @@ fn main() -> ExitCode {
         Command::RecordCounts => suite::record_counts(),
         Command::Fuzz(fuzz) => fuzz::fuzz(&fuzz),
         Command::Bench { json } => bench::bench(json.as_deref()),
+        Command::Hooks => run::run(
+            "Git runs .githooks/pre-commit before each commit from now on",
+            run::program("git").args(["config", "core.hooksPath", ".githooks"]),
+        ),
         Command::Exercises(args) => exercises::exercises(args),
         Command::Sizes => site::sizes(),
     };
