@@ -13,7 +13,7 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 import { gzipSync } from 'node:zlib';
 import * as esbuild from 'esbuild';
 
-import { writeParameterTables, writeTypes } from './generate.mjs';
+import { writeModels, writeParameterTables, writeTypes } from './generate.mjs';
 import { heightTable } from './heights.mjs';
 import { endWithOneSentence } from './licences/allowed.mjs';
 import { partsOfWidgets, writePackageNotices } from './licences/notices.mjs';
@@ -55,6 +55,7 @@ await copyExamples();
 await writePackage();
 await writeFile(join(dist, 'schema.json'), JSON.stringify(schema, null, 1));
 await writeParameterTables(schema, join(WEB, '..', 'docs', 'parameters.md'));
+await writeModels(schema, join(WEB, '..', 'widgets', 'src'), join(WEB, '..', 'docs', 'model.md'));
 await measure();
 
 /** Writes the glue as a module that exports one function; its argument provides the frames. */

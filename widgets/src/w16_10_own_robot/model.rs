@@ -1,4 +1,18 @@
 //! The state of the widget: the worker's reports on a log, and the reader's view of it.
+//!
+//! # Computed
+//!
+//! A worker reads the reader's log (`robot_io`) and maps it with the estimator for recorded logs
+//! (`ch16_slam2d::pipeline`); corrections by hand change the pose graph and optimize it again.
+//!
+//! # Numbers
+//!
+//! Those of `slam2d run` with the same file: docs/robots.md.
+//!
+//! # Simplified
+//!
+//! Nothing is simplified for the page; it has no truth to compare with. The walls of the picture are the ends of the
+//! keyframes' beams, thinned for drawing.
 
 mod buttons;
 mod hands;

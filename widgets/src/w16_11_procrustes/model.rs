@@ -1,4 +1,17 @@
 //! The state: the pairs, and the orthogonal matrix that is tried on them.
+//!
+//! # Computed
+//!
+//! The trace tr(M H) of every rotation and every reflection about the centroids of the pairs, and the best of each
+//! (`ch16_lab::procrustes`).
+//!
+//! # Numbers
+//!
+//! Pairs: `model/settings.rs`.
+//!
+//! # Simplified
+//!
+//! At most five pairs, given: which point belongs to which is not estimated.
 
 mod hands;
 mod picture;

@@ -4,6 +4,21 @@
 //! truncated cost and NDT's score. Two balls descend from the cross hair, one on each landscape. Only what
 //! depends on a changed parameter is computed again: see [`terrains`]. A hundred sweeps with independent
 //! noise show the scatter of the results: see [`rests`].
+//!
+//! # Computed
+//!
+//! At every shift of the grid the truncated cost of ICP (the mean over the points of min(d², τ²)) and the score of NDT, by
+//! the core's own lookups; no value is interpolated. The balls are descended by the core as well.
+//!
+//! # Numbers
+//!
+//! Scenes, noise and cells: `crates/ch16_lab/src/terrain/scene.rs`.
+//!
+//! # Simplified
+//!
+//! The heading is fixed at the truth, so a cost of three variables is shown as one of two. ICP's cost keeps no pairs from
+//! one step to the next. Except in the long corridor the cloud is shifted over its own points, so map and sweep share
+//! their noise.
 
 mod landscape;
 mod picture;

@@ -2,6 +2,19 @@
 //!
 //! A parameter of the run requests a new one. The newest request is computed in pieces. Meanwhile the old run
 //! stays on screen, and so does the current tick.
+//!
+//! # Computed
+//!
+//! One lap by the estimator (`ch16_slam2d::slam`), with what each of its parts did at every tick, and the occupancy
+//! grid (`pr_grid`) of the keyframes' sweeps at their present poses.
+//!
+//! # Numbers
+//!
+//! As for w16.2; the grid: `pr_grid::GridConfig`.
+//!
+//! # Simplified
+//!
+//! As for w16.2. All parts run one after the other within a tick; on a robot the back end usually has a thread of its own.
 
 mod grid;
 mod history;

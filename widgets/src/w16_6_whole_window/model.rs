@@ -1,4 +1,17 @@
 //! The state of the search and its logic.
+//!
+//! # Computed
+//!
+//! Branch and bound over every heading and offset of the window (`ch16_slam2d::search`) on the two sweeps of w16.1, and ICP
+//! from the same start beside it. Each box shows its upper bound of the score.
+//!
+//! # Numbers
+//!
+//! Scene: `crates/ch16_lab/src/basin/scene.rs`; window and search: `crates/ch16_lab/src/whole_window.rs`.
+//!
+//! # Simplified
+//!
+//! As for w16.1. The search proves the best pose of its lattice, not that the pose is right.
 
 mod hands;
 mod picture;

@@ -1,4 +1,17 @@
 //! The state of the comparison and its logic.
+//!
+//! # Computed
+//!
+//! Every pair of keyframes of a lap that are far apart in time: the distance of their descriptors
+//! (`ch16_slam2d::places`), and whether the truth calls them the same place. Precision and recall count all pairs.
+//!
+//! # Numbers
+//!
+//! The radius of a place and the graded descriptors: `crates/ch16_lab/src/places.rs`.
+//!
+//! # Simplified
+//!
+//! "The same place" is a radius about the true position, walls or not. Nothing changes between two visits.
 
 mod hands;
 mod lap;

@@ -1,4 +1,18 @@
 //! The state of the three registrations and its logic.
+//!
+//! # Computed
+//!
+//! ICP on two sweeps of room A between which a box moved, with all pairs, with rejected ones and with Huber's weights; and
+//! the bias of each over the share of points on the box.
+//!
+//! # Numbers
+//!
+//! Box, sweeps and noise: `crates/ch16_lab/src/moving_box.rs`.
+//!
+//! # Simplified
+//!
+//! The box takes a chosen share of the points, by denser beams on it; a real box takes its solid angle. It jumps between
+//! the sweeps and rests during each.
 
 mod curves;
 mod picture;

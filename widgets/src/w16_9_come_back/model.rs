@@ -1,4 +1,17 @@
 //! The state of a localization run and its logic.
+//!
+//! # Computed
+//!
+//! The map is a lap of an earlier day; each frame of the robot goes to the localizer (`ch16_slam2d::localize`), whose
+//! search is shown at some of its steps.
+//!
+//! # Numbers
+//!
+//! Spots and pieces of the search: `crates/ch16_lab/src/come_back.rs`; the localizer: `LocalizeConfig`.
+//!
+//! # Simplified
+//!
+//! The map is that of a lap with its own errors. Between the days at most one wardrobe has moved.
 
 mod hands;
 mod known;
