@@ -8,9 +8,11 @@ mod error;
 mod frame;
 mod laser_scan;
 mod prepare;
+mod sweep;
 
 pub use error::FrameError;
 pub use frame::is_finite;
 pub use frame::{Frame, PreparedFrame};
 pub use laser_scan::LaserScan;
 pub use prepare::{ScanConfig, ScanPreparer};
+pub use sweep::{MovingSweep, Sweep};

@@ -144,10 +144,11 @@ impl Slam {
             self.start(frame);
             (None, Some(0))
         } else {
-            let registration = self
-                .front_end
-                .register(frame, dt_s, self.frames - 1, &self.config);
-            (Some(registration), self.take_keyframe(frame))
+            let mut frame = frame.clone();
+            let registration =
+                self.front_end
+                    .register(&mut frame, dt_s, self.frames - 1, &self.config);
+            (Some(registration), self.take_keyframe(&frame))
         };
         Ok(PendingFrame::new(frame.stamp_s, registration, new_keyframe))
     }

@@ -7,3 +7,4 @@ mod listings;
 mod listings_and_core;
 mod nearest;
 mod reasons;
+mod sweeps;

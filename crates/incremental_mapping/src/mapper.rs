@@ -9,8 +9,9 @@ use super::{
     CycleTest, CycleVerdict, CycleWatch, IncrementalConfig, IncrementalReport, LikelihoodMap,
 };
 use crate::field::{Climb, PosePrior, ScanClimb};
+use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::metrics::position_error_m;
-use ch16_slam2d::scan::{Frame, FrameError, PreparedFrame, ScanPreparer, is_finite};
+use ch16_slam2d::scan::{Frame, FrameError, MovingSweep, PreparedFrame, ScanPreparer, is_finite};
 use ch16_slam2d::slam::Keyframe;
 
 /// Incremental maximum likelihood mapping over the frames of [`Slam`](ch16_slam2d::slam::Slam).
@@ -89,11 +90,12 @@ impl IncrementalMapper {
             report.new_keyframe = Some(0);
             return Ok(report);
         }
-        let (prediction, climb) = self.climb(frame, dt_s);
+        let mut frame = frame.clone();
+        let (prediction, climb) = self.climb(&mut frame, dt_s);
         report.prediction = prediction;
         report.climb = Some(climb);
         if self.is_keyframe_due() {
-            self.take_keyframe(frame);
+            self.take_keyframe(&frame);
             report.new_keyframe = Some(self.poses.len() - 1);
             report.cycle = self.test_cycle();
         }
@@ -137,8 +139,9 @@ impl IncrementalMapper {
         self.cycles.as_ref()
     }
 
-    /// Climbs from the motion prediction; returns prediction and result.
-    fn climb(&mut self, frame: &PreparedFrame, dt_s: f64) -> (SE2, Climb) {
+    /// Climbs from the motion prediction; returns prediction and result. A scan whose beams differ in time is deskewed
+    /// with the velocity found.
+    fn climb(&mut self, frame: &mut PreparedFrame, dt_s: f64) -> (SE2, Climb) {
         let config = &self.config;
         let before = self.estimate;
         let extrapolated_s = dt_s.min(config.extrapolation * self.last_dt_s);
@@ -163,10 +166,19 @@ impl IncrementalMapper {
             information,
         };
         let field = self.map.field(config.map.sigma_m);
-        let climb =
-            ScanClimb::new(&field, &frame.cloud, prediction, Some(prior), config.climb).run();
+        let run = |cloud: &PointCloud| {
+            ScanClimb::new(&field, cloud, prediction, Some(prior), config.climb).run()
+        };
+        let mut climb = run(&frame.cloud);
+        if let Some(sweep) = frame.sweep.clone() {
+            let sweep = MovingSweep::new(&sweep, before, dt_s);
+            climb = sweep.register(&self.velocity, climb, |climb| climb.pose, run);
+            self.velocity = sweep.velocity(&climb.pose);
+            frame.cloud = Arc::new(sweep.sweep.cloud(&self.velocity));
+        } else {
+            self.velocity = before.between(&climb.pose).log() / dt_s;
+        }
         self.estimate = climb.pose;
-        self.velocity = before.between(&self.estimate).log() / dt_s;
         self.last_dt_s = dt_s;
         (prediction, climb)
     }

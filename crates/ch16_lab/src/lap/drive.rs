@@ -158,6 +158,7 @@ impl Drive {
             stamp_s: self.stamp_s(tick),
             odometry: self.odometry(tick),
             cloud: Arc::clone(&self.sweep(tick).cloud),
+            sweep: None,
         }
     }
 

@@ -226,4 +226,18 @@ impl Downsampler {
             thinned.ys.push(sum_y / count);
         }
     }
+
+    /// The mean of `values`, one for each point, in every cell of the last [`downsample_into`](Self::downsample_into),
+    /// which has to be of this cloud.
+    pub(crate) fn means(&self, cloud: &PointCloud, cell_m: f64, values: &[f64]) -> Vec<f64> {
+        let mut sums = vec![(0.0, 0.0); self.sums.len()];
+        for (point, value) in cloud.iter().zip(values) {
+            let cell = (cell_index(point.x, cell_m), cell_index(point.y, cell_m));
+            let (sum, count) = &mut sums[self.slot_of_cell[&cell] as usize];
+            *sum += value;
+            *count += 1.0;
+        }
+        let mean = |(sum, count): (f64, f64)| sum / count;
+        sums.into_iter().map(mean).collect()
+    }
 }

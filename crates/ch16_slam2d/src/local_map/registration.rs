@@ -5,6 +5,7 @@ use pr_geom::{SE2, math};
 
 use super::{LocalMap, MapFit, MotionPrior};
 use crate::cloud::{NearestMap, PointCloud, QueryCache};
+use crate::scan::MovingSweep;
 
 /// A step below this, m and rad added, ends a stage.
 const TOLERANCE: f64 = 1e-4;
@@ -105,7 +106,8 @@ impl LocalMap {
             iterations: 0,
         };
         for &max_correspondence_m in reaches_m {
-            let stage = self.minimize(scan, registered.pose, max_correspondence_m, prior, config);
+            let start = registered.pose;
+            let stage = self.minimize(scan, None, start, max_correspondence_m, prior, config);
             registered = Registered {
                 iterations: registered.iterations + stage.iterations,
                 ..stage
@@ -120,12 +122,45 @@ impl LocalMap {
         }
     }
 
+    /// Registers the sweep of `scan` from `start` by its pose and its velocity together, and scores the result.
+    ///
+    /// If the velocity of the last scan deskewed this one, the error of one would be that of the next, times the
+    /// sweep's share of the period: with sweeps that fill it, a robot at rest would seem to move. Solved together,
+    /// an error decreases for every share.
+    #[must_use]
+    pub fn register_sweep(
+        &mut self,
+        scan: &PointCloud,
+        sweep: &MovingSweep<'_>,
+        start: SE2,
+        prior: &MotionPrior,
+        config: &MapRegistrationConfig,
+    ) -> MapRegistration {
+        let reach_m = config.max_correspondence_m;
+        let far = self.minimize(scan, Some(sweep), start, reach_m, Some(prior), config);
+        let reach_m = config.inlier_distance_m;
+        let near = self.minimize(scan, Some(sweep), far.pose, reach_m, Some(prior), config);
+        let fit = self.fit(&sweep.points(&near.pose), &near.pose, config);
+        MapRegistration {
+            registered: Registered {
+                iterations: far.iterations + near.iterations,
+                ..near
+            },
+            fit,
+            cost: config.misfit_cost(scan, fit.score) + prior.cost(&near.pose),
+        }
+    }
+
     /// Gauss–Newton on the pairs within `max_correspondence_m` and the prior, reweighted at every step.
     ///
-    /// A pair's row is `J = (Rᵀn, p × Rᵀn)` with the point p in the body's frame, for right perturbations.
+    /// A pair's row is `J = (Rᵀn, p × Rᵀn)` with the point p in the body's frame, for right perturbations. A point of
+    /// a sweep t seconds after its first beam also moves with the velocity, which is the motion since the last scan
+    /// over its duration T: its row is `J (1 + t/T)`. The information remains that of J, because a velocity that
+    /// changes explains no point.
     fn minimize(
         &mut self,
         scan: &PointCloud,
+        sweep: Option<&MovingSweep<'_>>,
         start: SE2,
         max_correspondence_m: f64,
         prior: Option<&MotionPrior>,
@@ -138,7 +173,10 @@ impl LocalMap {
         loop {
             let rotation = pose.rotation();
             let (mut information, mut gradient) = (Matrix3::zeros(), Vector3::zeros());
-            for (point, cache) in scan.iter().zip(&mut cache) {
+            let mut of_velocity = Matrix3::zeros();
+            let moved = sweep.map(|sweep| sweep.points(&pose));
+            let scan = moved.as_ref().unwrap_or(scan);
+            for (index, (point, cache)) in scan.iter().zip(&mut cache).enumerate() {
                 let at = pose.transform(point);
                 let Some(nearest) = self.points.neighbor_cached(at, max_correspondence_m, cache)
                 else {
@@ -157,8 +195,13 @@ impl LocalMap {
                 } else {
                     1.0
                 };
-                information += row * row.transpose() * (robust * weight);
-                gradient += row * (robust * weight * residual_m);
+                let of_pair = row * row.transpose() * (robust * weight);
+                information += of_pair;
+                let gain = sweep.map_or(1.0, |sweep| sweep.gain(index));
+                if sweep.is_some() {
+                    of_velocity += of_pair * (gain * gain - 1.0);
+                }
+                gradient += row * (robust * weight * residual_m * gain);
             }
             let found = Registered {
                 pose,
@@ -168,7 +211,7 @@ impl LocalMap {
             if iterations == STEPS {
                 return found;
             }
-            let mut hessian = information + Matrix3::identity() * RIDGE;
+            let mut hessian = information + of_velocity + Matrix3::identity() * RIDGE;
             if let Some(prior) = prior {
                 let deviation = prior.deviation(&pose);
                 let weights = prior.weights(&deviation);

@@ -127,7 +127,9 @@ impl Localizer {
         let dt_s = frame.seconds_after(self.last_stamp_s, &here)?;
         self.last_stamp_s = frame.stamp_s;
         self.frames += 1;
-        let moved = self.trail.step(frame, dt_s, &self.config);
+        let mut frame = frame.clone();
+        let moved = self.trail.step(&mut frame, dt_s, &self.config);
+        let frame = &frame;
         let motion = moved
             .motion
             .or(frame.odometry)

@@ -48,8 +48,13 @@ impl Trail {
         self.front_end.velocity()
     }
 
-    /// Takes a frame `dt_s` seconds after the last one.
-    pub fn step(&mut self, frame: &PreparedFrame, dt_s: f64, config: &LocalizeConfig) -> TrailStep {
+    /// Takes a frame `dt_s` seconds after the last one, and deskews it with the velocity found.
+    pub fn step(
+        &mut self,
+        frame: &mut PreparedFrame,
+        dt_s: f64,
+        config: &LocalizeConfig,
+    ) -> TrailStep {
         if self.frames == 0 {
             self.begin(frame);
             return TrailStep {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pr_geom::SE2;
 
-use super::{FrameError, LaserScan};
+use super::{FrameError, LaserScan, Sweep};
 use crate::cloud::PointCloud;
 
 /// A scan and the odometry since the last one.
@@ -39,6 +39,9 @@ pub struct PreparedFrame {
     pub odometry: Option<SE2>,
     /// The scan's points in the body's frame at the stamp, thinned, with normals.
     pub cloud: Arc<PointCloud>,
+    /// The scan before deskewing if its beams differ in time and no odometry measures the motion meanwhile: the
+    /// registration finds that together with the pose.
+    pub sweep: Option<Arc<Sweep>>,
 }
 
 impl PreparedFrame {

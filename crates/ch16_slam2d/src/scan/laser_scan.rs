@@ -51,6 +51,12 @@ impl LaserScan {
         self.first_angle_rad + beam as f64 * self.angle_step_rad
     }
 
+    /// Time from the first beam to the last, s.
+    #[must_use]
+    pub fn sweep_s(&self) -> f64 {
+        self.ranges_m.len().saturating_sub(1) as f64 * self.beam_interval_s
+    }
+
     /// Whether `range_m` is a return of this scan.
     #[inline]
     #[must_use]

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use nalgebra::{Point2, Vector3};
-use pr_geom::{Rotation, SE2};
+use pr_geom::{Rotation, SE2, math};
 
-use super::{Frame, FrameError, LaserScan, PreparedFrame};
+use super::sweep::TimedPoints;
+use super::{Frame, FrameError, LaserScan, PreparedFrame, Sweep};
 use crate::cloud::{Downsampler, NormalEstimator, PointCloud};
 
 /// Settings for making a cloud from a scan; the defaults are the chapter's.
@@ -45,7 +46,7 @@ impl ScanPreparer {
     }
 
     /// A frame with its scan as a cloud, after one at `last_stamp_s`, s. The motion during the sweep is that of
-    /// the odometry or, without it, of `velocity` (m/s, m/s, rad/s).
+    /// the odometry or, without it, of `velocity` (m/s, m/s, rad/s) until it is registered.
     ///
     /// # Errors
     /// If the frame cannot be used.
@@ -59,15 +60,44 @@ impl ScanPreparer {
         frame.validate()?;
         let dt_s = frame.stamp_s - last_stamp_s;
         let velocity = match frame.odometry {
-            Some(odometry) if dt_s > 0.0 && dt_s.is_finite() => odometry.log() / dt_s,
+            Some(odometry) if dt_s > 0.0 && dt_s.is_finite() => {
+                odometry.log() / math::max(dt_s, frame.scan.sweep_s())
+            }
             Some(_) => Vector3::zeros(),
             None => velocity,
         };
+        let cloud = self.prepare(&frame.scan, &velocity, config);
+        let is_skewed = frame.scan.beam_interval_s > 0.0 && frame.odometry.is_none();
+        let sweep = is_skewed.then(|| self.sweep(&frame.scan, &cloud, &velocity, config));
         Ok(PreparedFrame {
             stamp_s: frame.stamp_s,
             odometry: frame.odometry,
-            cloud: Arc::new(self.prepare(&frame.scan, &velocity, config)),
+            cloud: Arc::new(cloud),
+            sweep: sweep.map(Arc::new),
         })
+    }
+
+    /// The sweep of `scan`, whose cloud with `velocity` was the last to be prepared.
+    fn sweep(
+        &mut self,
+        scan: &LaserScan,
+        cloud: &PointCloud,
+        velocity: &Vector3<f64>,
+        config: &ScanConfig,
+    ) -> Sweep {
+        let ranges = scan.ranges_m.iter().enumerate();
+        let seen = ranges.filter(|(_, range_m)| scan.is_return(**range_m));
+        let times_s: Vec<f64> = seen
+            .map(|(beam, _)| beam as f64 * scan.beam_interval_s)
+            .collect();
+        // The mean of the times makes a mean of points move with the velocity as they do.
+        let means_s = self
+            .downsampler
+            .means(&self.points, config.cell_m, &times_s);
+        self.project(scan, &Vector3::zeros());
+        let returns = TimedPoints::new(self.points.iter().collect(), times_s);
+        let thinned = TimedPoints::skewed(cloud, means_s, velocity);
+        Sweep::new(returns, thinned, scan.sweep_s(), *config)
     }
 
     /// The returns of `scan` in the body's frame at the first beam, thinned, with normals from

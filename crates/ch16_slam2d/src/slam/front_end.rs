@@ -7,13 +7,13 @@ use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 
 use super::config::SlamConfig;
-use super::map_matching::MapMatching;
+use super::map_matching::{FrameMotion, MapMatching};
 use super::snapshot::FrontEndSnapshot;
 use crate::chapter::WindowMatching;
 use crate::cloud::PointCloud;
 use crate::matching::{MatchSummary, Matcher};
 use crate::metrics::position_error_m;
-use crate::scan::{PreparedFrame, is_finite};
+use crate::scan::{MovingSweep, PreparedFrame, is_finite};
 
 /// Smallest time between two stamps that determines a velocity, s.
 const MIN_INTERVAL_S: f64 = 1e-6;
@@ -183,10 +183,11 @@ impl FrontEnd {
         self.scans.push(scan);
     }
 
-    /// Registers the scan of a frame `dt_s` seconds after the last one, and updates the window.
+    /// Registers the scan of a frame `dt_s` seconds after the last one, deskews it with the velocity that results,
+    /// and updates the window.
     pub(crate) fn register(
         &mut self,
-        frame: &PreparedFrame,
+        frame: &mut PreparedFrame,
         dt_s: f64,
         number: usize,
         config: &SlamConfig,
@@ -201,6 +202,9 @@ impl FrontEnd {
         };
         let prediction = before * motion;
         let tau_m = self.tau_m();
+        let sweep = frame.sweep.clone();
+        let sweep = sweep.as_deref();
+        let sweep = sweep.map(|sweep| MovingSweep::new(sweep, before, dt_s.max(MIN_INTERVAL_S)));
         let matched = match &mut self.registrar {
             Registrar::Window(matching) => {
                 matching.local_cloud.clear();
@@ -208,24 +212,37 @@ impl FrontEnd {
                     matching.local_cloud.extend_transformed(scan, &sweep.pose);
                 }
                 matching.matcher.set_target(&matching.local_cloud);
-                matching.register(&frame.cloud, &prediction, &config.chapter)
+                let found = matching.register(&frame.cloud, &prediction, &config.chapter);
+                match &sweep {
+                    Some(sweep) => sweep.register(
+                        &self.velocity,
+                        found,
+                        |found| found.pose,
+                        |scan| matching.register(scan, &prediction, &config.chapter),
+                    ),
+                    None => found,
+                }
             }
             Registrar::Map(matching) => {
-                let extrapolated = before * extrapolated;
-                matching.register(
-                    frame,
-                    &before,
-                    &motion,
-                    &extrapolated,
-                    &self.window,
-                    &self.scans,
-                )
+                let moved = FrameMotion {
+                    before,
+                    motion,
+                    extrapolated,
+                    sweep,
+                };
+                matching.register(frame, &moved, &self.window, &self.scans)
             }
         };
         let accepted = matched.inliers >= config.min_inliers && is_finite(&matched.pose);
         self.estimate = if accepted { matched.pose } else { prediction };
         self.last_dt_s = dt_s;
-        self.velocity = before.between(&self.estimate).log() / dt_s.max(MIN_INTERVAL_S);
+        self.velocity = match &sweep {
+            Some(moving) => moving.velocity(&self.estimate),
+            None => before.between(&self.estimate).log() / dt_s.max(MIN_INTERVAL_S),
+        };
+        if let Some(moving) = &sweep {
+            frame.cloud = Arc::new(moving.sweep.cloud(&self.velocity));
+        }
         if let Registrar::Window(matching) = &mut self.registrar {
             let is_measured = frame.odometry.is_some();
             matching.remember(accepted, &motion, is_measured, &config.chapter);

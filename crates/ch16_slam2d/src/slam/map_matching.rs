@@ -10,7 +10,19 @@ use super::front_end::WindowSweep;
 use crate::cloud::PointCloud;
 use crate::local_map::{LocalMap, MapRegistrationConfig, MotionPrior, PriorTail, RangeProfile};
 use crate::matching::{MatchStop, MatchSummary};
-use crate::scan::PreparedFrame;
+use crate::scan::{MovingSweep, PreparedFrame};
+
+/// The motion up to a frame, before its scan is registered.
+pub(super) struct FrameMotion<'a> {
+    /// Estimate before it.
+    pub before: SE2,
+    /// The motion by odometry, or else by constant velocity.
+    pub motion: SE2,
+    /// The motion by constant velocity.
+    pub extrapolated: SE2,
+    /// The sweep of the frame, if its beams differ in time.
+    pub sweep: Option<MovingSweep<'a>>,
+}
 
 /// Registers scans on the last few with the odometry as a prior.
 #[derive(Clone)]
@@ -78,14 +90,11 @@ impl MapMatching {
         self.scan_information + motion_covariance.try_inverse().unwrap_or_default()
     }
 
-    /// Registers the scan of a frame; `before` is the estimate before the motion, and `constant_velocity` the
-    /// pose predicted by constant velocity.
+    /// Registers the scan of a frame after a motion, and its velocity if its beams differ in time.
     pub fn register(
         &mut self,
         frame: &PreparedFrame,
-        before: &SE2,
-        motion: &SE2,
-        constant_velocity: &SE2,
+        moved: &FrameMotion<'_>,
         window: &[WindowSweep],
         scans: &[Arc<PointCloud>],
     ) -> MatchSummary {
@@ -95,11 +104,17 @@ impl MapMatching {
                 .rebuild(sweeps.map(|((sweep, scan), profile)| (sweep.pose, &**scan, profile)));
             self.is_outdated = false;
         }
+        let FrameMotion { before, motion, .. } = moved;
         let prior = self.prior(before, motion, frame.odometry.is_some());
-        let starts = [*constant_velocity];
-        let found = self
-            .map
-            .locate(&frame.cloud, &prior, &starts, &self.registration);
+        let starts = [*before * moved.extrapolated];
+        let config = &self.registration;
+        let mut found = self.map.locate(&frame.cloud, &prior, &starts, config);
+        if let Some(sweep) = &moved.sweep {
+            let start = found.registered.pose;
+            found = self
+                .map
+                .register_sweep(&frame.cloud, sweep, start, &prior, config);
+        }
         let pose = found.registered.pose;
         self.scan_information = found.information();
         let adjoint = motion.inverse().adjoint();

@@ -157,7 +157,8 @@ impl RobotConfig {
     }
 
     /// Noise of a motion that was measured by odometry, or predicted.
-    pub(crate) fn motion_noise(&self, is_measured: bool) -> &MotionNoise {
+    #[must_use]
+    pub fn motion_noise(&self, is_measured: bool) -> &MotionNoise {
         if is_measured {
             &self.odometry
         } else {
