@@ -281,6 +281,18 @@ impl Slam {
         self.mapper.keyframe_covariances()
     }
 
+    /// Covariance of keyframe `to` in the frame of `from`, scaled as those of [`Slam::keyframe_covariances`].
+    ///
+    /// # Errors
+    /// If the normal equations are not positive definite.
+    pub fn relative_covariance(
+        &mut self,
+        from: usize,
+        to: usize,
+    ) -> Result<Matrix3<f64>, OptimizeError> {
+        self.mapper.relative_covariance(from, to)
+    }
+
     /// Ratio of actual to stated variance of the graph's measurements.
     #[must_use]
     pub fn variance_factor(&self) -> f64 {

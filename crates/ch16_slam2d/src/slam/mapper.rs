@@ -207,4 +207,17 @@ impl Mapper {
         let stated = self.graph.pose_covariances()?;
         Ok(stated.into_iter().map(|stated| stated * factor).collect())
     }
+    /// Covariance of keyframe `to` relative to `from`, in the frame of `to`, scaled as
+    /// [`keyframe_covariances`](Self::keyframe_covariances).
+    ///
+    /// # Errors
+    /// If the normal equations are not positive definite.
+    pub(super) fn relative_covariance(
+        &mut self,
+        from: usize,
+        to: usize,
+    ) -> Result<Matrix3<f64>, OptimizeError> {
+        let factor = super::uncertainty::keyframe_factor(&self.graph);
+        Ok(self.graph.relative_covariance(from, to)? * factor)
+    }
 }
