@@ -1,6 +1,6 @@
 //! The chapter's rules, for its figures: registration on the last sweeps, and loops by a drift gate.
 //!
-//! `WindowMatching` registers each sweep with a [`Matcher`](crate::matching::Matcher) on the points of the
+//! `WindowRegistrar` registers each sweep with a [`Matcher`](crate::matching::Matcher) on the points of the
 //! last few, within an [`AdaptiveThreshold`]. `NearbyLoops` queries a [`LoopDetector`](crate::loops::LoopDetector)
 //! for candidates, registers the newest sweep on the keyframes around one and tests the innovation against the
 //! drift of the path ([`path_information`]). Edges get the information of their pairs, rotated as in the chapter's
@@ -15,7 +15,7 @@ mod information;
 mod nearby_loops;
 mod parts;
 mod scales;
-mod window_matching;
+mod window_registrar;
 
 pub use adaptive_threshold::AdaptiveThreshold;
 pub use config::{ChapterConfig, ThresholdConfig};
@@ -23,4 +23,4 @@ pub use drift_gate::{marginal_information, path_information};
 pub use information::{InformationFrame, chapter_information};
 pub(crate) use nearby_loops::NearbyLoops;
 pub use parts::SlamParts;
-pub(crate) use window_matching::WindowMatching;
+pub(crate) use window_registrar::WindowRegistrar;

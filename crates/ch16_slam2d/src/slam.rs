@@ -27,12 +27,14 @@ mod motion_noise;
 mod map_pruning;
 mod pending;
 mod refinement;
+mod registrar;
 mod report;
 mod robots;
 mod snapshot;
 #[cfg(test)]
 pub(crate) mod test_room;
 mod uncertainty;
+mod window;
 
 use std::sync::Arc;
 
@@ -41,16 +43,19 @@ use pr_geom::SE2;
 use pr_optim::OptimizeError;
 
 pub use config::{LoopClosure, SlamConfig};
-pub use front_end::{FrontEnd, Registration, WindowSweep};
+pub use front_end::{FrontEnd, Registration};
 pub use loop_closer::LoopCloser;
+pub(crate) use map_matching::MapMatching;
 pub use mapper::{LoopOutlierTest, Mapper};
 pub use motion_noise::MotionNoise;
 
 pub use map_pruning::{MapPruning, MapPruningConfig};
 pub use pending::PendingFrame;
+pub use registrar::{CloneRegistrar, ExpectedMotion, ScanRegistrar};
 pub use report::{Change, Conclusion, Keyframe, LoopAttempt, LoopEffect, SlamReport};
 pub use robots::{RobotConfig, SubmapLoopConfig};
-pub use snapshot::{FrontEndSnapshot, SlamSnapshot, SnapshotError, is_within_limits};
+pub use snapshot::{FrontEndSnapshot, NamedNumbers, SlamSnapshot, SnapshotError, is_within_limits};
+pub use window::{ScanWindow, WindowSweep};
 
 use crate::chapter::SlamParts;
 use crate::graph::{EdgeKind, PoseGraph};
@@ -82,7 +87,7 @@ impl Slam {
     #[must_use]
     pub fn with_parts(config: SlamConfig, parts: SlamParts) -> Self {
         Self {
-            front_end: FrontEnd::new(&config, parts.front_end.clone()),
+            front_end: FrontEnd::new(&config, parts.registrar(&config)),
             mapper: Mapper::new(&config),
             loop_closer: LoopCloser::new(&config, parts),
             preparer: ScanPreparer::new(),
@@ -232,7 +237,7 @@ impl Slam {
         self.frames
     }
 
-    /// Local map, window, threshold and estimate.
+    /// Window, local map and estimate.
     #[must_use]
     pub fn front_end(&self) -> &FrontEnd {
         &self.front_end
@@ -317,7 +322,7 @@ impl Slam {
     }
 
     fn start(&mut self, frame: &PreparedFrame) {
-        self.front_end.start(Arc::clone(&frame.cloud));
+        self.front_end.start(0, Arc::clone(&frame.cloud));
         self.mapper.graph.add_fixed_node(self.config.start);
         self.mapper.keyframes.push(Keyframe {
             node: 0,
@@ -341,7 +346,7 @@ impl Slam {
             return None;
         }
         let node = graph.add_node(estimate).index();
-        let information = self.front_end.information(last_pose.theta(), &self.config);
+        let information = self.front_end.information(last_pose.theta());
         graph.add_edge(last_node, node, relative, information, EdgeKind::Odometry);
         self.mapper.keyframes.push(Keyframe {
             node,

@@ -1,9 +1,10 @@
 //! The exchangeable parts of the estimator.
 
+use super::WindowRegistrar;
 use crate::loops::{DetectorKind, LoopDetector, NearbyDetector};
 use crate::matching::Matcher;
 use crate::places::PlaceDetector;
-use crate::slam::SlamConfig;
+use crate::slam::{MapMatching, ScanRegistrar, SlamConfig};
 
 /// The exchangeable parts of the estimator.
 #[derive(Clone)]
@@ -28,6 +29,17 @@ impl SlamParts {
                 DetectorKind::Nearby => Box::new(NearbyDetector::new(chapter.loops)),
                 DetectorKind::Place(places) => Box::new(PlaceDetector::new(places)),
             },
+        }
+    }
+
+    /// The registrar of `config`, with this matcher if it uses one.
+    pub(crate) fn registrar(&self, config: &SlamConfig) -> Box<dyn ScanRegistrar> {
+        match &config.robot {
+            Some(robot) => Box::new(MapMatching::new(*robot)),
+            None => Box::new(WindowRegistrar::new(
+                &config.chapter,
+                self.front_end.clone(),
+            )),
         }
     }
 }

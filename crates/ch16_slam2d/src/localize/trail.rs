@@ -5,10 +5,11 @@ use std::sync::Arc;
 use pr_geom::SE2;
 
 use super::LocalizeConfig;
+use crate::chapter::SlamParts;
 use crate::cloud::PointCloud;
 use crate::metrics::position_error_m;
 use crate::scan::PreparedFrame;
-use crate::slam::{FrontEnd, SlamConfig, WindowSweep};
+use crate::slam::{FrontEnd, SlamConfig};
 
 /// A sweep with a lower score on the previous ones starts a new trail, 0 to 1.
 const MIN_TRAIL_SCORE: f64 = 0.3;
@@ -34,10 +35,7 @@ pub struct Trail {
 impl Trail {
     pub fn new(config: SlamConfig) -> Self {
         Self {
-            front_end: FrontEnd::new(
-                &config,
-                config.chapter.matcher.build(&config.chapter.local_map),
-            ),
+            front_end: FrontEnd::new(&config, SlamParts::from_config(&config).registrar(&config)),
             config,
             frames: 0,
             sweeps: Vec::new(),
@@ -112,20 +110,12 @@ impl Trail {
 
     /// Drops all sweeps before this frame's; the motion estimate continues.
     pub fn restart(&mut self, frame: &PreparedFrame, number: usize) {
-        let mut alone = self.front_end.snapshot();
-        let pose = alone.estimate;
-        alone.window = vec![WindowSweep {
-            frame: number,
-            pose,
-        }];
-        alone.scans = vec![Arc::clone(&frame.cloud)];
-        self.front_end.restore(&alone);
-        self.sweeps = vec![(pose, Arc::clone(&frame.cloud))];
+        self.front_end.start(number, Arc::clone(&frame.cloud));
+        self.sweeps = vec![(self.front_end.estimate(), Arc::clone(&frame.cloud))];
     }
 
     fn begin(&mut self, frame: &PreparedFrame) {
-        self.front_end.start(Arc::clone(&frame.cloud));
+        self.restart(frame, 0);
         self.frames = 1;
-        self.sweeps = vec![(self.front_end.estimate(), Arc::clone(&frame.cloud))];
     }
 }

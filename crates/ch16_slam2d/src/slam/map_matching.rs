@@ -6,31 +6,25 @@ use nalgebra::{Matrix3, Vector2};
 use pr_geom::SE2;
 
 use super::RobotConfig;
-use super::front_end::WindowSweep;
+use super::registrar::{ExpectedMotion, ScanRegistrar};
+use super::snapshot::{NamedNumbers, SnapshotError};
+use super::window::ScanWindow;
 use crate::cloud::PointCloud;
 use crate::local_map::{LocalMap, MapRegistrationConfig, MotionPrior, PriorTail, RangeProfile};
 use crate::matching::{MatchStop, MatchSummary};
-use crate::scan::{MovingSweep, PreparedFrame};
+use crate::scan::PreparedFrame;
 
-/// The motion up to a frame, before its scan is registered.
-pub(super) struct FrameMotion<'a> {
-    /// Estimate before it.
-    pub before: SE2,
-    /// The motion by odometry, or else by constant velocity.
-    pub motion: SE2,
-    /// The motion by constant velocity.
-    pub extrapolated: SE2,
-    /// The sweep of the frame, if its beams differ in time.
-    pub sweep: Option<MovingSweep<'a>>,
-}
+/// Name of the covariance of the motions since the last keyframe in a snapshot.
+const MOTION_COVARIANCE: &str = "motion covariance";
 
 /// Registers scans on the last few with the odometry as a prior.
 #[derive(Clone)]
-pub(super) struct MapMatching {
+pub(crate) struct MapMatching {
     config: RobotConfig,
     registration: MapRegistrationConfig,
     map: LocalMap,
-    profiles: Vec<Arc<RangeProfile>>,
+    /// The scans of the map with their free space.
+    profiles: Vec<(Arc<PointCloud>, Arc<RangeProfile>)>,
     /// Whether the window has changed since the map was built.
     is_outdated: bool,
     /// Information of the last scan, body frame.
@@ -52,64 +46,57 @@ impl MapMatching {
         }
     }
 
-    /// The points of the local map, world frame.
-    pub fn cloud(&self) -> &PointCloud {
-        self.map.cloud()
-    }
-
-    /// Covariance of the motions since the last keyframe.
-    pub fn motion_covariance(&self) -> Matrix3<f64> {
-        self.motion_covariance
-    }
-
-    /// Continues with the scans of a snapshot.
-    pub fn restore(&mut self, scans: &[Arc<PointCloud>], motion_covariance: Matrix3<f64>) {
-        let profiles = scans.iter().map(|scan| Arc::new(RangeProfile::new(scan)));
+    /// Builds the map of the window, with the free space of its new scans.
+    fn rebuild(&mut self, window: &ScanWindow) {
+        let known = std::mem::take(&mut self.profiles);
+        let profiles = window.scans().iter().map(|scan| {
+            let mut known = known.iter();
+            let profile = known.find(|(of, _)| Arc::ptr_eq(of, scan)).map_or_else(
+                || Arc::new(RangeProfile::new(scan)),
+                |(_, profile)| Arc::clone(profile),
+            );
+            (Arc::clone(scan), profile)
+        });
         self.profiles = profiles.collect();
-        self.motion_covariance = motion_covariance;
-        self.is_outdated = true;
+        let posed = window.posed_scans().zip(&self.profiles);
+        self.map
+            .rebuild(posed.map(|((pose, scan), (_, profile))| (*pose, &**scan, profile)));
+        self.is_outdated = false;
     }
 
-    /// Adds a scan to the window as the newest; drops the oldest if the window is full.
-    pub fn add_scan(&mut self, scan: &PointCloud, is_full: bool) {
-        if is_full {
-            self.profiles.remove(0);
+    fn prior(&self, before: &SE2, motion: &SE2, is_measured: bool) -> MotionPrior {
+        let tail = if is_measured {
+            PriorTail::Student
+        } else {
+            PriorTail::Normal
+        };
+        let noise = self.config.motion_noise(is_measured);
+        let (sigma_m, sigma_rad) = noise.deviations(motion);
+        MotionPrior {
+            pose: *before * *motion,
+            sigma_m,
+            sigma_rad,
+            tail,
         }
-        self.profiles.push(Arc::new(RangeProfile::new(scan)));
-        self.is_outdated = true;
     }
+}
 
-    /// Marks the window as moved: the map is rebuilt before the next scan.
-    pub fn mark_moved(&mut self) {
-        self.is_outdated = true;
-    }
-
-    /// Information of the edge to a new keyframe: that of the scan plus that of the odometry since the last one.
-    pub fn take_information(&mut self) -> Matrix3<f64> {
-        let motion_covariance = std::mem::take(&mut self.motion_covariance);
-        self.scan_information + motion_covariance.try_inverse().unwrap_or_default()
-    }
-
-    /// Registers the scan of a frame after a motion, and its velocity if its beams differ in time.
-    pub fn register(
+impl ScanRegistrar for MapMatching {
+    fn register(
         &mut self,
         frame: &PreparedFrame,
-        moved: &FrameMotion<'_>,
-        window: &[WindowSweep],
-        scans: &[Arc<PointCloud>],
+        expected: &ExpectedMotion<'_>,
+        window: &ScanWindow,
     ) -> MatchSummary {
         if self.is_outdated {
-            let sweeps = window.iter().zip(scans).zip(&self.profiles);
-            self.map
-                .rebuild(sweeps.map(|((sweep, scan), profile)| (sweep.pose, &**scan, profile)));
-            self.is_outdated = false;
+            self.rebuild(window);
         }
-        let FrameMotion { before, motion, .. } = moved;
-        let prior = self.prior(before, motion, frame.odometry.is_some());
-        let starts = [*before * moved.extrapolated];
+        let (before, motion) = (&expected.before, &expected.motion);
+        let prior = self.prior(before, motion, expected.is_measured);
+        let starts = [*before * expected.extrapolated];
         let config = &self.registration;
         let mut found = self.map.locate(&frame.cloud, &prior, &starts, config);
-        if let Some(sweep) = &moved.sweep {
+        if let Some(sweep) = &expected.sweep {
             let start = found.registered.pose;
             found = self
                 .map
@@ -131,20 +118,28 @@ impl MapMatching {
         }
     }
 
-    fn prior(&self, before: &SE2, motion: &SE2, is_measured: bool) -> MotionPrior {
-        let tail = if is_measured {
-            PriorTail::Student
-        } else {
-            PriorTail::Normal
-        };
-        let noise = self.config.motion_noise(is_measured);
-        let (sigma_m, sigma_rad) = noise.deviations(motion);
-        MotionPrior {
-            pose: *before * *motion,
-            sigma_m,
-            sigma_rad,
-            tail,
-        }
+    /// The map is rebuilt before the next scan.
+    fn window_changed(&mut self) {
+        self.is_outdated = true;
+    }
+
+    /// That of the scan plus that of the odometry since the last keyframe.
+    fn edge_information(&mut self, _: &SE2, _: f64) -> Matrix3<f64> {
+        let motion_covariance = std::mem::take(&mut self.motion_covariance);
+        self.scan_information + motion_covariance.try_inverse().unwrap_or_default()
+    }
+
+    fn local_cloud(&self) -> &PointCloud {
+        self.map.cloud()
+    }
+
+    fn snapshot(&self) -> NamedNumbers {
+        NamedNumbers::default().with(MOTION_COVARIANCE, self.motion_covariance.as_slice())
+    }
+
+    fn restore(&mut self, snapshot: &NamedNumbers) -> Result<(), SnapshotError> {
+        self.motion_covariance = Matrix3::from_column_slice(&snapshot.get::<9>(MOTION_COVARIANCE)?);
+        Ok(())
     }
 }
 

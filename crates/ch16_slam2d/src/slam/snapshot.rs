@@ -4,9 +4,10 @@
 //! bit as without an interruption: only buffers that every frame refills are left out.
 //! Serialized it has neither the parameters nor the scans, which a session file stores in its own form.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -63,14 +64,36 @@ pub struct FrontEndSnapshot {
     /// Their scans, body frame.
     #[serde(skip)]
     pub scans: Vec<Arc<PointCloud>>,
-    /// Sum of the squared deviations in the threshold, m².
-    pub deviations_m2: f64,
-    /// Number of them.
-    pub deviations: usize,
-    /// Covariance of the predicted motions since the last keyframe.
-    pub motion_covariance: Matrix3<f64>,
-    /// Covariance of the motions since the last accepted registration, `None` directly after one.
-    pub unregistered: Option<Matrix3<f64>>,
+    /// State of the registrar.
+    pub registrar: NamedNumbers,
+}
+
+/// State of a strategy between two frames: its numbers by their names.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct NamedNumbers(BTreeMap<String, Vec<f64>>);
+
+impl NamedNumbers {
+    /// The same state with these numbers.
+    #[must_use]
+    pub fn with(mut self, name: &str, numbers: &[f64]) -> Self {
+        self.0.insert(name.to_owned(), numbers.to_vec());
+        self
+    }
+
+    /// Whether there are numbers of this name.
+    #[must_use]
+    pub fn has(&self, name: &str) -> bool {
+        self.0.contains_key(name)
+    }
+
+    /// The numbers of this name.
+    ///
+    /// # Errors
+    /// If there are none, or another count of them.
+    pub fn get<const N: usize>(&self, name: &'static str) -> Result<[f64; N], SnapshotError> {
+        let numbers = self.0.get(name).and_then(|found| found[..].try_into().ok());
+        numbers.ok_or(SnapshotError::Numbers(name))
+    }
 }
 
 /// Why a snapshot cannot be restored.
@@ -108,6 +131,9 @@ pub enum SnapshotError {
         /// Its index.
         number: usize,
     },
+    /// Numbers of a strategy are missing or impossible.
+    #[error("the snapshot has no valid {0}; it is of another estimator")]
+    Numbers(&'static str),
     /// A counter is inconsistent with the rest.
     #[error("the {0} is inconsistent with the rest of the snapshot")]
     Counter(&'static str),
@@ -210,11 +236,8 @@ impl FrontEndSnapshot {
                 });
             }
         }
-        let matrices = [Some(self.motion_covariance), self.unregistered];
-        let known = matrices.iter().flatten().all(is_each_number)
+        let known = self.registrar.0.values().all(is_each_number)
             && is_each_number(&self.velocity)
-            && is_number(self.deviations_m2)
-            && self.deviations_m2 >= 0.0
             && is_within_limits(&self.estimate)
             && self.last_dt_s > 0.0;
         if known {
@@ -295,7 +318,7 @@ impl Slam {
         mapper.chi2 = mapper.graph.chi2();
         slam.loop_closer
             .restore(snapshot.last_attempt_node, &snapshot.pending);
-        slam.front_end.restore(&snapshot.front_end);
+        slam.front_end.restore(&snapshot.front_end)?;
         Ok(slam)
     }
 }
@@ -366,7 +389,7 @@ mod tests {
         let good = slam.snapshot();
         assert_eq!(good.check(), Ok(()));
         type Spoil = fn(&mut SlamSnapshot);
-        let spoils: [(Spoil, &str); 8] = [
+        let spoils: [(Spoil, &str); 9] = [
             (
                 |s| drop(s.keyframes.pop()),
                 "keyframes; each node needs one",
@@ -384,8 +407,15 @@ mod tests {
             (|s| s.optimized_edges = 999, "number of optimized edges"),
             (|s| drop(s.front_end.scans.pop()), "window of sweeps"),
             (
-                |s| s.front_end.motion_covariance[(0, 0)] = f64::INFINITY,
+                |s| {
+                    let numbers = std::mem::take(&mut s.front_end.registrar);
+                    s.front_end.registrar = numbers.with("deviations", &[f64::INFINITY, 1.0]);
+                },
                 "front end 0",
+            ),
+            (
+                |s| s.front_end.registrar = NamedNumbers::default(),
+                "no valid deviations",
             ),
         ];
         for (spoil, expected) in spoils {
