@@ -48,9 +48,9 @@ pub use report::{Keyframe, LoopAttempt, LoopEffect, TickMetrics, TickReport, Win
 pub use run::LapRun;
 pub use runner::LapRunner;
 
-use ch16_slam2d::chapter::SlamParts;
+use ch16_slam2d::chapter::ChapterParts;
 use ch16_slam2d::graph::PoseGraph;
-use ch16_slam2d::slam::{PendingFrame, Slam, SlamReport};
+use ch16_slam2d::slam::{PendingFrame, Slam, SlamReport, Strategies};
 
 /// The estimator on its lap, one tick at a time.
 #[derive(Clone)]
@@ -75,20 +75,25 @@ impl Lap {
     /// The estimator gets the first sweep and the drive's true start as the origin of its map.
     #[must_use]
     pub fn on_drive(config: LapConfig, drive: Arc<Drive>) -> Self {
-        let parts = SlamParts::from_config(&config.slam);
-        Self::with_parts(config, drive, parts)
+        let strategies = Strategies::from_config(&config.slam);
+        Self::with(config, drive, strategies)
     }
 
-    /// The same with custom matchers and a custom loop detector.
+    /// The same with the chapter's estimator, custom matchers and a custom loop detector.
     #[must_use]
-    pub fn with_parts(config: LapConfig, drive: Arc<Drive>, parts: SlamParts) -> Self {
+    pub fn with_parts(config: LapConfig, drive: Arc<Drive>, parts: ChapterParts) -> Self {
+        let strategies = parts.into_strategies(&config.slam.chapter);
+        Self::with(config, drive, strategies)
+    }
+
+    fn with(config: LapConfig, drive: Arc<Drive>, strategies: Strategies) -> Self {
         debug_assert_eq!(&config.drive, drive.config());
         let slam = SlamConfig {
             start: config.drive.start,
             scan: config.drive.scan,
             ..config.slam.clone()
         };
-        let mut slam = Slam::with_parts(slam, parts);
+        let mut slam = Slam::with(slam, strategies);
         slam.step_prepared(&drive.prepared(0)).expect(USABLE);
         Self {
             judge: Judge::new(),

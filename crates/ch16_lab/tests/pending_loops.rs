@@ -1,7 +1,7 @@
 //! Long runs and faulty input: standing still, no odometry, bad frames, bad loops.
 
 use ch16_lab::lap::{Drive, DriveConfig};
-use ch16_slam2d::chapter::SlamParts;
+use ch16_slam2d::chapter::ChapterParts;
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::loops::{LoopCandidate, LoopDetector, LoopQuery, LoopRejection};
 use ch16_slam2d::matching::{Match, MatchRequest, MatchStop, MatchSummary, Matcher};
@@ -147,12 +147,12 @@ impl Matcher for Believer {
 }
 
 fn with_a_liar(config: SlamConfig, proposals: &[SE2]) -> Slam {
-    let parts = SlamParts {
+    let parts = ChapterParts {
         loops: Box::new(Believer),
         detector: Box::new(Liar {
             proposals: proposals.to_vec(),
         }),
-        ..SlamParts::from_config(&config)
+        ..ChapterParts::from_config(&config.chapter)
     };
     Slam::with_parts(config, parts)
 }

@@ -2,7 +2,7 @@
 //!
 //! `cargo run -p ch16_slam2d --example write_your_own_matcher`
 
-use ch16_slam2d::chapter::SlamParts;
+use ch16_slam2d::chapter::ChapterParts;
 use ch16_slam2d::matching::{IcpMatcher, Match, MatchRequest, Matcher};
 use ch16_slam2d::prelude::*;
 use ch16_slam2d::slam::{Slam, SlamConfig};
@@ -28,7 +28,7 @@ impl Matcher for ManyHeadings {
 
 /// The estimator with this matcher for its front end, and default parts otherwise.
 pub fn slam(config: SlamConfig, matcher: ManyHeadings) -> Slam {
-    let mut parts = SlamParts::from_config(&config);
+    let mut parts = ChapterParts::from_config(&config.chapter);
     parts.front_end = Box::new(matcher);
     Slam::with_parts(config, parts)
 }

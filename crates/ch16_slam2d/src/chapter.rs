@@ -22,5 +22,5 @@ pub use config::{ChapterConfig, ThresholdConfig};
 pub use drift_gate::{marginal_information, path_information};
 pub use information::{InformationFrame, chapter_information};
 pub(crate) use nearby_loops::NearbyLoops;
-pub use parts::SlamParts;
+pub use parts::ChapterParts;
 pub(crate) use window_registrar::WindowRegistrar;

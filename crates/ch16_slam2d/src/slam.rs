@@ -18,6 +18,7 @@
 mod agreement;
 mod bundle_loops;
 mod config;
+mod finder;
 mod front_end;
 mod loop_closer;
 mod map_matching;
@@ -31,6 +32,7 @@ mod registrar;
 mod report;
 mod robots;
 mod snapshot;
+mod strategies;
 #[cfg(test)]
 pub(crate) mod test_room;
 mod uncertainty;
@@ -43,10 +45,10 @@ use pr_geom::SE2;
 use pr_optim::OptimizeError;
 
 pub use config::{LoopClosure, SlamConfig};
+pub use finder::{CloneFinder, LoopFinder, TriedLoops};
 pub use front_end::{FrontEnd, Registration};
 pub use loop_closer::LoopCloser;
-pub(crate) use map_matching::MapMatching;
-pub use mapper::{LoopOutlierTest, Mapper};
+pub use mapper::{Consistency, LoopOutlierTest, Mapper};
 pub use motion_noise::MotionNoise;
 
 pub use map_pruning::{MapPruning, MapPruningConfig};
@@ -55,9 +57,10 @@ pub use registrar::{CloneRegistrar, ExpectedMotion, ScanRegistrar};
 pub use report::{Change, Conclusion, Keyframe, LoopAttempt, LoopEffect, SlamReport};
 pub use robots::{RobotConfig, SubmapLoopConfig};
 pub use snapshot::{FrontEndSnapshot, NamedNumbers, SlamSnapshot, SnapshotError, is_within_limits};
+pub use strategies::Strategies;
 pub use window::{ScanWindow, WindowSweep};
 
-use crate::chapter::SlamParts;
+use crate::chapter::ChapterParts;
 use crate::graph::{EdgeKind, PoseGraph};
 use crate::loops::{LoopVerification, LoopWorkspace};
 use crate::metrics::position_error_m;
@@ -76,20 +79,27 @@ pub struct Slam {
 }
 
 impl Slam {
-    /// An estimator without frames, with the parts of `config`.
+    /// An estimator without frames, with the strategies that `config` selects.
     #[must_use]
     pub fn new(config: SlamConfig) -> Self {
-        let parts = SlamParts::from_config(&config);
-        Self::with_parts(config, parts)
+        let strategies = Strategies::from_config(&config);
+        Self::with(config, strategies)
     }
 
-    /// An estimator with custom matchers and a custom loop detector; the estimator for robots ignores them.
+    /// The chapter's estimator with custom matchers and a custom loop detector.
     #[must_use]
-    pub fn with_parts(config: SlamConfig, parts: SlamParts) -> Self {
+    pub fn with_parts(config: SlamConfig, parts: ChapterParts) -> Self {
+        let strategies = parts.into_strategies(&config.chapter);
+        Self::with(config, strategies)
+    }
+
+    /// An estimator with custom strategies.
+    #[must_use]
+    pub fn with(config: SlamConfig, strategies: Strategies) -> Self {
         Self {
-            front_end: FrontEnd::new(&config, parts.registrar(&config)),
+            front_end: FrontEnd::new(&config, strategies.registrar),
             mapper: Mapper::new(&config),
-            loop_closer: LoopCloser::new(&config, parts),
+            loop_closer: LoopCloser::new(strategies.finder),
             preparer: ScanPreparer::new(),
             frames: 0,
             last_stamp_s: f64::NEG_INFINITY,
@@ -173,9 +183,7 @@ impl Slam {
         if accepted.is_empty() {
             return;
         }
-        let closed = self
-            .mapper
-            .close(&accepted, pending.consistency(), &self.config);
+        let closed = self.mapper.close(&accepted, pending.consistency());
         if let Ok(effect) = &closed {
             self.front_end.correct(&effect.correction);
         }
@@ -203,13 +211,15 @@ impl Slam {
         let tried = self.loop_closer.conclude(&mut self.mapper, &self.config);
         pending.add(self.frames.saturating_sub(1), tried);
         self.close_loop(&mut pending);
-        let correction = self.mapper.optimize_pending(&self.config);
+        let correction = self.mapper.optimize_pending();
         self.front_end.correct(&correction);
-        let is_on = self.config.loop_closure == LoopClosure::On;
-        let robot = self.config.robot.filter(|_| is_on);
+        let links = match self.config.loop_closure {
+            LoopClosure::On => self.loop_closer.finder.link_all(&mut self.mapper),
+            LoopClosure::Off => Vec::new(),
+        };
         Conclusion {
             tried: pending.loop_attempts,
-            links: robot.map_or_else(Vec::new, |robot| self.mapper.refine(&robot, &self.config)),
+            links,
         }
     }
 
@@ -266,10 +276,10 @@ impl Slam {
         &self.loop_closer
     }
 
-    /// Submap and pairs of the chapter's last attempt to close a loop; `None` for robots.
+    /// Submap and pairs of the last attempt to close a loop, if the finder keeps them.
     #[must_use]
     pub fn loop_workspace(&self) -> Option<&LoopWorkspace> {
-        self.loop_closer.workspace()
+        self.loop_closer.finder.workspace()
     }
 
     /// χ² of the graph.
@@ -317,8 +327,7 @@ impl Slam {
         old: usize,
         new: usize,
     ) -> Result<LoopVerification, OptimizeError> {
-        let robot = self.config.robot.unwrap_or_default();
-        self.mapper.link_on_request(old, new, &robot)
+        self.loop_closer.finder.verify(&mut self.mapper, old, new)
     }
 
     fn start(&mut self, frame: &PreparedFrame) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::record::LapRecord;
 use super::run::{LapRun, Stage};
 use super::{Drive, DriveSimulation, Lap, LapConfig};
-use ch16_slam2d::chapter::SlamParts;
+use ch16_slam2d::chapter::ChapterParts;
 
 /// Runs laps and keeps the simulated drive between them.
 ///
@@ -36,7 +36,7 @@ impl LapRunner {
 
     /// The lap of `config` with custom matchers and a custom loop detector, and its front end alone.
     #[must_use]
-    pub fn run_with_parts(config: &LapConfig, parts: SlamParts) -> LapRecord {
+    pub fn run_with_parts(config: &LapConfig, parts: ChapterParts) -> LapRecord {
         let drive = Arc::new(Drive::simulate(&config.drive));
         let lap = Lap::with_parts(config.clone(), drive, parts);
         let mut run = LapRun::new(config.clone(), Stage::from_lap(lap));
@@ -85,7 +85,7 @@ mod tests {
         for config in &configs {
             let fresh = LapRunner::new().run(config);
             assert_eq!(runner.run(config), fresh);
-            let parts = SlamParts::from_config(&config.slam);
+            let parts = ChapterParts::from_config(&config.slam.chapter);
             assert_eq!(LapRunner::run_with_parts(config, parts), fresh);
         }
     }

@@ -1,41 +1,72 @@
 //! The chapter's loop closure: a detector proposes, a matcher registers on nearby keyframes, the drift gate tests.
 
+use pr_optim::OptimizeError;
+
+use super::ChapterConfig;
 use super::drift_gate::gate_information;
 use crate::loops::{
     KeyframeView, LoopCandidate, LoopDetector, LoopQuery, LoopVerification, LoopWorkspace,
     verify_loop,
 };
 use crate::matching::Matcher;
-use crate::slam::{Mapper, SlamConfig};
+use crate::metrics::position_error_m;
+use crate::slam::{LoopFinder, Mapper, TriedLoops};
 
 /// Verifies candidates in order and closes the first that passes.
 #[derive(Clone)]
 pub(crate) struct NearbyLoops {
-    pub detector: Box<dyn LoopDetector>,
-    pub workspace: LoopWorkspace,
+    config: ChapterConfig,
+    detector: Box<dyn LoopDetector>,
+    workspace: LoopWorkspace,
 }
 
 impl NearbyLoops {
-    pub fn new(detector: Box<dyn LoopDetector>, matcher: Box<dyn Matcher>) -> Self {
+    pub fn new(
+        config: &ChapterConfig,
+        detector: Box<dyn LoopDetector>,
+        matcher: Box<dyn Matcher>,
+    ) -> Self {
         Self {
+            config: config.clone(),
             detector,
             workspace: LoopWorkspace::new(matcher),
         }
     }
 
-    /// Verifies the candidates of the newest keyframe, up to the first that passes.
-    pub fn find(&mut self, mapper: &mut Mapper, config: &SlamConfig) -> Vec<LoopVerification> {
+    fn test(
+        &mut self,
+        mapper: &mut Mapper,
+        node: usize,
+        candidate: LoopCandidate,
+    ) -> LoopVerification {
+        let loops = &self.config.loops;
+        let gate = gate_information(&mut mapper.graph, node, candidate.node, loops);
+        let view = KeyframeView {
+            poses: mapper.graph.poses(),
+            keyframes: &mapper.keyframes,
+        };
+        let frame = self.config.information_frame;
+        let workspace = &mut self.workspace;
+        verify_loop(view, node, candidate, gate, frame, loops, workspace)
+    }
+}
+
+impl LoopFinder for NearbyLoops {
+    fn every_keyframes(&self) -> usize {
+        self.config.loops.attempt_every_nodes
+    }
+
+    /// Tests the candidates of the newest keyframe, up to the first that passes.
+    fn find(&mut self, mapper: &mut Mapper) -> TriedLoops {
         let node = mapper.keyframes.len() - 1;
         let mut query = LoopQuery::new(&mut mapper.graph, &mapper.keyframes);
         let mut candidates = self.detector.detect(&mut query);
         candidates.retain(|candidate| candidate.node < node);
-        let mut tried = Vec::new();
-        for candidate in candidates
-            .into_iter()
-            .take(config.chapter.loops.candidates_tried)
-        {
-            let found = self.verify(mapper, node, candidate, config);
-            tried.push(found);
+        candidates.truncate(self.config.loops.candidates_tried);
+        let mut tried = TriedLoops::default();
+        for candidate in candidates {
+            let found = self.test(mapper, node, candidate);
+            tried.found.push(found);
             if found.accepted() {
                 break;
             }
@@ -46,18 +77,22 @@ impl NearbyLoops {
     fn verify(
         &mut self,
         mapper: &mut Mapper,
-        node: usize,
-        candidate: LoopCandidate,
-        config: &SlamConfig,
-    ) -> LoopVerification {
-        let loops = &config.chapter.loops;
-        let gate = gate_information(&mut mapper.graph, node, candidate.node, loops);
-        let view = KeyframeView {
-            poses: mapper.graph.poses(),
-            keyframes: &mapper.keyframes,
+        old: usize,
+        new: usize,
+    ) -> Result<LoopVerification, OptimizeError> {
+        let candidate = LoopCandidate {
+            node: old,
+            distance_m: position_error_m(&mapper.graph.pose(old), &mapper.graph.pose(new)),
+            proposal: None,
         };
-        let frame = config.chapter.information_frame;
-        let workspace = &mut self.workspace;
-        verify_loop(view, node, candidate, gate, frame, loops, workspace)
+        Ok(self.test(mapper, new, candidate))
+    }
+
+    fn remove_keyframe(&mut self, node: usize, _: &[f64]) {
+        self.detector.remove_keyframe(node);
+    }
+
+    fn workspace(&self) -> Option<&LoopWorkspace> {
+        Some(&self.workspace)
     }
 }

@@ -1,14 +1,14 @@
-//! The exchangeable parts of the estimator.
+//! The exchangeable parts of the chapter's estimator.
 
-use super::WindowRegistrar;
+use super::{ChapterConfig, NearbyLoops, WindowRegistrar};
 use crate::loops::{DetectorKind, LoopDetector, NearbyDetector};
 use crate::matching::Matcher;
 use crate::places::PlaceDetector;
-use crate::slam::{MapMatching, ScanRegistrar, SlamConfig};
+use crate::slam::Strategies;
 
-/// The exchangeable parts of the estimator.
+/// The exchangeable parts of the chapter's estimator.
 #[derive(Clone)]
-pub struct SlamParts {
+pub struct ChapterParts {
     /// Registers each scan on the local map.
     pub front_end: Box<dyn Matcher>,
     /// Registers a new keyframe on the submap of a loop candidate.
@@ -17,29 +17,26 @@ pub struct SlamParts {
     pub detector: Box<dyn LoopDetector>,
 }
 
-impl SlamParts {
+impl ChapterParts {
     /// The parts that `config` selects.
     #[must_use]
-    pub fn from_config(config: &SlamConfig) -> Self {
-        let chapter = &config.chapter;
+    pub fn from_config(config: &ChapterConfig) -> Self {
         Self {
-            front_end: chapter.matcher.build(&chapter.local_map),
-            loops: chapter.loops.matcher.build(&chapter.loops.submap),
-            detector: match chapter.loops.detector {
-                DetectorKind::Nearby => Box::new(NearbyDetector::new(chapter.loops)),
+            front_end: config.matcher.build(&config.local_map),
+            loops: config.loops.matcher.build(&config.loops.submap),
+            detector: match config.loops.detector {
+                DetectorKind::Nearby => Box::new(NearbyDetector::new(config.loops)),
                 DetectorKind::Place(places) => Box::new(PlaceDetector::new(places)),
             },
         }
     }
 
-    /// The registrar of `config`, with this matcher if it uses one.
-    pub(crate) fn registrar(&self, config: &SlamConfig) -> Box<dyn ScanRegistrar> {
-        match &config.robot {
-            Some(robot) => Box::new(MapMatching::new(*robot)),
-            None => Box::new(WindowRegistrar::new(
-                &config.chapter,
-                self.front_end.clone(),
-            )),
+    /// The chapter's strategies with these parts.
+    #[must_use]
+    pub fn into_strategies(self, config: &ChapterConfig) -> Strategies {
+        Strategies {
+            registrar: Box::new(WindowRegistrar::new(config, self.front_end)),
+            finder: Box::new(NearbyLoops::new(config, self.detector, self.loops)),
         }
     }
 }

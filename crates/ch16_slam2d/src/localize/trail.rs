@@ -5,11 +5,10 @@ use std::sync::Arc;
 use pr_geom::SE2;
 
 use super::LocalizeConfig;
-use crate::chapter::SlamParts;
 use crate::cloud::PointCloud;
 use crate::metrics::position_error_m;
 use crate::scan::PreparedFrame;
-use crate::slam::{FrontEnd, SlamConfig};
+use crate::slam::{FrontEnd, SlamConfig, Strategies};
 
 /// A sweep with a lower score on the previous ones starts a new trail, 0 to 1.
 const MIN_TRAIL_SCORE: f64 = 0.3;
@@ -35,7 +34,7 @@ pub struct Trail {
 impl Trail {
     pub fn new(config: SlamConfig) -> Self {
         Self {
-            front_end: FrontEnd::new(&config, SlamParts::from_config(&config).registrar(&config)),
+            front_end: FrontEnd::new(&config, Strategies::from_config(&config).registrar),
             config,
             frames: 0,
             sweeps: Vec::new(),

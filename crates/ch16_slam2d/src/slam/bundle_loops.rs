@@ -13,10 +13,14 @@ use std::sync::Arc;
 
 use nalgebra::Matrix3;
 use pr_geom::{SE2, math};
+use pr_optim::OptimizeError;
 
 use super::agreement::are_consistent;
+use super::finder::{LoopFinder, TriedLoops};
 use super::mapper::{Consistency, Mapper};
+use super::refinement;
 use super::robots::{RobotConfig, SubmapLoopConfig};
+use super::snapshot::SnapshotError;
 use crate::cloud::PointCloud;
 use crate::local_map::{
     LocalMap, MIN_SEARCH_SCORE, MapRegistration, MapRegistrationConfig, RangeProfile,
@@ -28,6 +32,8 @@ use crate::loops::{
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
 
+/// Loops are searched at every this many keyframes: more often costs time and closes no more.
+const EVERY_KEYFRAMES: usize = 3;
 /// Number of submaps tested at a keyframe, the nearest first.
 const SUBMAPS: usize = 2;
 /// Smallest path length between loops that confirm each other, m: their keyframes are not the same.
@@ -54,7 +60,7 @@ const PROFILES_KEPT: usize = 512;
 pub(super) struct BundleLoops {
     config: SubmapLoopConfig,
     registration: MapRegistrationConfig,
-    pub pending: Vec<PendingLoop>,
+    pending: Vec<PendingLoop>,
     map: LocalMap,
     profiles: VecDeque<(usize, Arc<RangeProfile>)>,
 }
@@ -77,62 +83,6 @@ impl BundleLoops {
             map: LocalMap::default(),
             profiles: VecDeque::new(),
         }
-    }
-
-    /// Searches for loops at the newest keyframe; returns all attempts, and whether the accepted
-    /// ones contradict the graph.
-    pub fn find(&mut self, mapper: &mut Mapper) -> (Vec<LoopVerification>, Consistency) {
-        let mut consistency = Consistency::Expected;
-        let mut tried = Vec::new();
-        let lengths_m = mapper.path_lengths_m();
-        let windows = self.windows(mapper, &lengths_m);
-        if windows.is_empty() {
-            return (tried, consistency);
-        }
-        let bundle = self.bundle(mapper);
-        for window in windows {
-            let found = self.verify(mapper, &window, &bundle, &lengths_m);
-            let is_expected = found.gate.passes();
-            if !found.accepted()
-                || (is_expected && window.half_m <= self.config.unconfirmed_gate_radius_m)
-            {
-                tried.push(found);
-                continue;
-            }
-            let agreeing = self.agreeing(mapper, &found, &lengths_m);
-            let needed = if is_expected { AGREEING.0 } else { AGREEING.1 };
-            let path_m = lengths_m[found.from_node];
-            if agreeing.len() + 1 < needed {
-                let reach_m = self.config.pending_distance_m;
-                self.pending
-                    .retain(|other| path_m - other.path_m <= reach_m);
-                self.pending.push(PendingLoop {
-                    verification: found,
-                    path_m,
-                    is_expected,
-                });
-                tried.push(LoopVerification {
-                    rejection: Some(LoopRejection::Waiting {
-                        agreeing: agreeing.len() + 1,
-                        needed,
-                    }),
-                    ..found
-                });
-                continue;
-            }
-            for index in agreeing.into_iter().rev() {
-                let waited = self.pending.remove(index);
-                if !waited.is_expected {
-                    consistency = Consistency::Contradicting;
-                }
-                tried.push(waited.verification);
-            }
-            if !is_expected {
-                consistency = Consistency::Contradicting;
-            }
-            tried.push(found);
-        }
-        (tried, consistency)
     }
 
     /// Windows around older keyframes near the newest one, the nearest first.
@@ -230,7 +180,7 @@ impl BundleLoops {
         profile
     }
 
-    fn verify(
+    fn verify_window(
         &mut self,
         mapper: &Mapper,
         window: &Window,
@@ -312,22 +262,6 @@ impl BundleLoops {
         }
     }
 
-    /// Handles the removal of a keyframe; the index of later ones decreases.
-    pub fn remove_keyframe(&mut self, node: usize, path_m: &[f64]) {
-        let moved_up = |known: usize| known - usize::from(known > node);
-        self.profiles.clear();
-        self.pending.retain(|pending| {
-            let found = &pending.verification;
-            found.from_node != node && found.candidate.node != node
-        });
-        for pending in &mut self.pending {
-            let found = &mut pending.verification;
-            found.from_node = moved_up(found.from_node);
-            found.candidate.node = moved_up(found.candidate.node);
-            pending.path_m = path_m[found.from_node];
-        }
-    }
-
     /// Indices of the pending loops that agree with this one.
     fn agreeing(
         &self,
@@ -348,6 +282,120 @@ impl BundleLoops {
             }
         }
         agreeing
+    }
+}
+
+impl LoopFinder for BundleLoops {
+    fn every_keyframes(&self) -> usize {
+        EVERY_KEYFRAMES
+    }
+
+    fn find(&mut self, mapper: &mut Mapper) -> TriedLoops {
+        let mut tried = TriedLoops::default();
+        let lengths_m = mapper.path_lengths_m();
+        let windows = self.windows(mapper, &lengths_m);
+        if windows.is_empty() {
+            return tried;
+        }
+        let bundle = self.bundle(mapper);
+        for window in windows {
+            let found = self.verify_window(mapper, &window, &bundle, &lengths_m);
+            let is_expected = found.gate.passes();
+            if !found.accepted()
+                || (is_expected && window.half_m <= self.config.unconfirmed_gate_radius_m)
+            {
+                tried.found.push(found);
+                continue;
+            }
+            let agreeing = self.agreeing(mapper, &found, &lengths_m);
+            let needed = if is_expected { AGREEING.0 } else { AGREEING.1 };
+            let path_m = lengths_m[found.from_node];
+            if agreeing.len() + 1 < needed {
+                let reach_m = self.config.pending_distance_m;
+                self.pending
+                    .retain(|other| path_m - other.path_m <= reach_m);
+                self.pending.push(PendingLoop {
+                    verification: found,
+                    path_m,
+                    is_expected,
+                });
+                tried.found.push(LoopVerification {
+                    rejection: Some(LoopRejection::Waiting {
+                        agreeing: agreeing.len() + 1,
+                        needed,
+                    }),
+                    ..found
+                });
+                continue;
+            }
+            for index in agreeing.into_iter().rev() {
+                let waited = self.pending.remove(index);
+                if !waited.is_expected {
+                    tried.consistency = Consistency::Contradicting;
+                }
+                tried.found.push(waited.verification);
+            }
+            if !is_expected {
+                tried.consistency = Consistency::Contradicting;
+            }
+            tried.found.push(found);
+        }
+        tried
+    }
+
+    /// Accepts the newest pending loop if no pending loop contradicts the graph.
+    fn conclude(&mut self, mapper: &mut Mapper, is_searched: bool) -> Option<TriedLoops> {
+        let mut tried = TriedLoops::default();
+        if !is_searched {
+            tried = self.find(mapper);
+        }
+        if tried.found.iter().any(LoopVerification::accepted) {
+            return Some(tried);
+        }
+        let pending = core::mem::take(&mut self.pending);
+        let last = pending.last().filter(|last| last.is_expected);
+        let is_alone = pending.iter().all(|other| other.is_expected);
+        if let Some(last) = last.filter(|_| is_alone) {
+            tried.found.push(last.verification);
+        }
+        Some(tried)
+    }
+
+    fn link_all(&mut self, mapper: &mut Mapper) -> Vec<LoopVerification> {
+        refinement::link_all(mapper, &self.registration)
+    }
+
+    fn verify(
+        &mut self,
+        mapper: &mut Mapper,
+        old: usize,
+        new: usize,
+    ) -> Result<LoopVerification, OptimizeError> {
+        refinement::link_on_request(mapper, old, new, &self.registration)
+    }
+
+    fn pending(&self) -> &[PendingLoop] {
+        &self.pending
+    }
+
+    fn restore(&mut self, pending: &[PendingLoop]) -> Result<(), SnapshotError> {
+        self.pending = pending.to_vec();
+        Ok(())
+    }
+
+    fn remove_keyframe(&mut self, node: usize, path_m: &[f64]) {
+        let moved_up = |known: usize| known - usize::from(known > node);
+        self.profiles.clear();
+        self.pending.retain(|pending| {
+            let found = &pending.verification;
+            found.from_node != node && found.candidate.node != node
+        });
+        for pending in &mut self.pending {
+            let found = &mut pending.verification;
+            found.from_node = moved_up(found.from_node);
+            found.candidate.node = moved_up(found.candidate.node);
+            pending.path_m = path_m[found.from_node];
+        }
     }
 }
 

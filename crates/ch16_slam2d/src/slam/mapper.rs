@@ -6,7 +6,7 @@ use pr_optim::{OptimizeError, StopReason};
 
 use super::config::SlamConfig;
 use super::report::{Change, Keyframe, LoopEffect};
-use crate::graph::{EdgeKind, InlierEdges, PoseGraph};
+use crate::graph::{EdgeKind, EdgeView, InlierEdges, PoseGraph};
 use crate::loops::{LoopRejection, LoopVerification};
 use crate::metrics::position_error_m;
 
@@ -15,10 +15,24 @@ use crate::metrics::position_error_m;
 /// A function pointer, so a program that does not use it does not link it.
 pub type LoopOutlierTest = fn(&PoseGraph) -> InlierEdges;
 
+/// How the graph is optimized.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Optimization {
+    /// A loop that would move no node farther than this only adds an edge, m + rad.
+    least_correction: f64,
+    /// Largest number of iterations.
+    iterations: usize,
+    /// The optimizer stops if no node moves farther than this, m + rad.
+    tolerance: f64,
+    /// Huber width on the Mahalanobis norm of an edge.
+    huber: f64,
+}
+
 /// Consistency of new loops with the graph.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Consistency {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Consistency {
     /// They are consistent with it.
+    #[default]
     Expected,
     /// They contradict it: the outlier test runs over all loops.
     Contradicting,
@@ -33,6 +47,7 @@ pub struct Mapper {
     pub(super) last_loop_node: usize,
     pub(super) chi2: f64,
     pub(super) outlier_test: Option<LoopOutlierTest>,
+    config: Optimization,
 }
 
 impl Mapper {
@@ -43,6 +58,12 @@ impl Mapper {
             last_loop_node: 0,
             chi2: 0.0,
             outlier_test: None,
+            config: Optimization {
+                least_correction: config.least_correction,
+                iterations: config.optimizer_iterations,
+                tolerance: config.optimizer_tolerance,
+                huber: config.huber,
+            },
         }
     }
 
@@ -78,7 +99,6 @@ impl Mapper {
         &mut self,
         loops: &[LoopVerification],
         consistency: Consistency,
-        config: &SlamConfig,
     ) -> Result<LoopEffect, LoopRejection> {
         let poses_before = self.graph.poses().to_vec();
         for found in loops {
@@ -94,8 +114,8 @@ impl Mapper {
         let chi2_before = self.graph.chi2();
         let iterations = match consistency {
             Consistency::Contradicting if self.reject_outliers() => 1,
-            Consistency::Expected if self.is_correction_small(config) => 0,
-            _ => self.optimize(loops.len(), &poses_before, config)?,
+            Consistency::Expected if self.is_correction_small() => 0,
+            _ => self.optimize(loops.len(), &poses_before)?,
         };
         self.chi2 = self.graph.chi2();
         let newest = poses_before.len() - 1;
@@ -119,26 +139,38 @@ impl Mapper {
         })
     }
 
+    /// Replaces the loops by the accepted `links` and optimizes with this width of the robust cost, in standard
+    /// deviations; returns whether that succeeded, otherwise nothing changes.
+    pub(super) fn replace_loops(&mut self, links: &[LoopVerification], huber: f64) -> bool {
+        let is_odometry = |view: &EdgeView| view.edge.kind == EdgeKind::Odometry;
+        let mut graph = self.graph.with_edges(is_odometry);
+        for link in links.iter().filter(|link| link.accepted()) {
+            let (old, new) = (link.candidate.node, link.from_node);
+            graph.add_edge(old, new, link.registered, link.information, EdgeKind::Loop);
+        }
+        let report = graph.optimize_robust(self.config.iterations, self.config.tolerance, huber);
+        if matches!(report.stop, StopReason::Failed { .. }) {
+            return false;
+        }
+        self.graph = graph;
+        self.chi2 = self.graph.chi2();
+        true
+    }
+
     /// Whether the pending correction is so small that it can wait for the next loop.
-    fn is_correction_small(&mut self, config: &SlamConfig) -> bool {
-        let least = config.least_correction;
+    fn is_correction_small(&mut self) -> bool {
+        let least = self.config.least_correction;
         let mut largest_move = || self.graph.largest_move_since();
         least > 0.0 && largest_move().is_ok_and(|largest| largest < least)
     }
 
     /// Optimizes the graph with its newest edges; returns the iterations.
-    fn optimize(
-        &mut self,
-        added: usize,
-        poses_before: &[SE2],
-        config: &SlamConfig,
-    ) -> Result<usize, LoopRejection> {
+    fn optimize(&mut self, added: usize, poses_before: &[SE2]) -> Result<usize, LoopRejection> {
         let optimized = self.graph.optimized_edges();
-        let report = self.graph.optimize_robust(
-            config.optimizer_iterations,
-            config.optimizer_tolerance,
-            config.huber,
-        );
+        let config = &self.config;
+        let report = self
+            .graph
+            .optimize_robust(config.iterations, config.tolerance, config.huber);
         let cost_before = report
             .steps
             .first()
@@ -183,14 +215,14 @@ impl Mapper {
     }
 
     /// Optimizes pending loops; returns the motion of the newest node.
-    pub(super) fn optimize_pending(&mut self, config: &SlamConfig) -> SE2 {
+    pub(super) fn optimize_pending(&mut self) -> SE2 {
         let Some(newest) = self.keyframes.len().checked_sub(1) else {
             return SE2::identity();
         };
         let before = self.graph.poses().to_vec();
         if self.graph.optimized_edges() < self.graph.edge_count() {
             // A graph that cannot be solved is unchanged.
-            let _ = self.optimize(0, &before, config);
+            let _ = self.optimize(0, &before);
             self.chi2 = self.graph.chi2();
         }
         self.graph.pose(newest) * before[newest].inverse()

@@ -2,7 +2,7 @@
 
 use pr_geom::SE2;
 
-use super::loop_closer::TriedLoops;
+use super::finder::TriedLoops;
 use super::mapper::Consistency;
 use super::{LoopAttempt, LoopEffect, Registration};
 use crate::loops::{LoopRejection, LoopVerification};

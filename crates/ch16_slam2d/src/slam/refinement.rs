@@ -8,13 +8,10 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::math;
-use pr_optim::{OptimizeError, StopReason};
+use pr_optim::OptimizeError;
 
-use super::config::SlamConfig;
 use super::mapper::Mapper;
-use super::robots::RobotConfig;
-use crate::graph::{EdgeKind, EdgeView};
-use crate::local_map::{LocalMap, RangeProfile};
+use crate::local_map::{LocalMap, MapRegistrationConfig, RangeProfile};
 use crate::loops::{
     Detection, LoopCandidate, LoopConfig, LoopRejection, LoopVerification, detect_visits,
 };
@@ -52,159 +49,147 @@ struct LinkGate {
     window: Option<(f64, f64)>,
 }
 
-impl Mapper {
-    /// Links all keyframes with the visits around them, and optimizes. Returns the links of the last pass, accepted
-    /// or not. A graph that cannot be solved is unchanged.
-    pub(super) fn refine(
-        &mut self,
-        robot: &RobotConfig,
-        config: &SlamConfig,
-    ) -> Vec<LoopVerification> {
-        let scans = self.keyframes.iter().map(|keyframe| &keyframe.scan);
-        let profiles: Vec<_> = scans
-            .map(|scan| Arc::new(RangeProfile::new(scan)))
+/// Links all keyframes with the visits around them, and optimizes. Returns the links of the last pass, accepted
+/// or not. A graph that cannot be solved is unchanged.
+pub(super) fn link_all(
+    mapper: &mut Mapper,
+    settings: &MapRegistrationConfig,
+) -> Vec<LoopVerification> {
+    let scans = mapper.keyframes.iter().map(|keyframe| &keyframe.scan);
+    let profiles: Vec<_> = scans
+        .map(|scan| Arc::new(RangeProfile::new(scan)))
+        .collect();
+    let mut map = LocalMap::default();
+    let mut last = Vec::new();
+    for _ in 0..PASSES {
+        let nodes = 0..mapper.keyframes.len();
+        let links: Vec<LoopVerification> = nodes
+            .flat_map(|node| links_of(mapper, node, &profiles, &mut map, settings))
             .collect();
-        let mut map = LocalMap::default();
-        let mut last = Vec::new();
-        for _ in 0..PASSES {
-            let nodes = 0..self.keyframes.len();
-            let links: Vec<LoopVerification> = nodes
-                .flat_map(|node| self.links(node, &profiles, &mut map, robot))
-                .collect();
-            let is_odometry = |view: &EdgeView| view.edge.kind == EdgeKind::Odometry;
-            let mut graph = self.graph.with_edges(is_odometry);
-            for link in links.iter().filter(|link| link.accepted()) {
-                let (old, new) = (link.candidate.node, link.from_node);
-                graph.add_edge(old, new, link.registered, link.information, EdgeKind::Loop);
-            }
-            let (steps, tolerance) = (config.optimizer_iterations, config.optimizer_tolerance);
-            let report = graph.optimize_robust(steps, tolerance, HUBER);
-            if matches!(report.stop, StopReason::Failed { .. }) {
-                return last;
-            }
-            self.graph = graph;
-            self.chi2 = self.graph.chi2();
-            last = links;
+        if !mapper.replace_loops(&links, HUBER) {
+            return last;
         }
-        last
+        last = links;
     }
+    last
+}
 
-    /// The registrations of a keyframe on the visits around it.
-    fn links(
-        &self,
-        node: usize,
-        profiles: &[Arc<RangeProfile>],
-        map: &mut LocalMap,
-        robot: &RobotConfig,
-    ) -> Vec<LoopVerification> {
-        let nearby = LoopConfig {
-            detection: Detection::Visits,
-            radius_m: RADIUS_M,
-            min_gap_nodes: MIN_GAP_NODES,
-            ..LoopConfig::default()
-        };
-        let visits = detect_visits(self.graph.poses(), node, &nearby);
-        let gate = LinkGate {
-            information: Matrix3::from_diagonal(&Vector3::new(
-                1.0 / (SHIFT.0 * SHIFT.0),
-                1.0 / (SHIFT.0 * SHIFT.0),
-                1.0 / (SHIFT.1 * SHIFT.1),
-            )),
-            chi2: GATE_CHI2,
-            window: None,
-        };
-        let visits = visits.into_iter().take(VISITS);
-        visits
-            .map(|visit| {
-                let profile = |near: usize| Arc::clone(&profiles[near]);
-                self.link(node, visit, gate, profile, map, robot)
-            })
-            .collect()
-    }
+/// The registrations of a keyframe on the visits around it.
+fn links_of(
+    mapper: &Mapper,
+    node: usize,
+    profiles: &[Arc<RangeProfile>],
+    map: &mut LocalMap,
+    settings: &MapRegistrationConfig,
+) -> Vec<LoopVerification> {
+    let nearby = LoopConfig {
+        detection: Detection::Visits,
+        radius_m: RADIUS_M,
+        min_gap_nodes: MIN_GAP_NODES,
+        ..LoopConfig::default()
+    };
+    let visits = detect_visits(mapper.graph.poses(), node, &nearby);
+    let gate = LinkGate {
+        information: Matrix3::from_diagonal(&Vector3::new(
+            1.0 / (SHIFT.0 * SHIFT.0),
+            1.0 / (SHIFT.0 * SHIFT.0),
+            1.0 / (SHIFT.1 * SHIFT.1),
+        )),
+        chi2: GATE_CHI2,
+        window: None,
+    };
+    let visits = visits.into_iter().take(VISITS);
+    visits
+        .map(|visit| {
+            let profile = |near: usize| Arc::clone(&profiles[near]);
+            link(mapper, node, visit, gate, profile, map, settings)
+        })
+        .collect()
+}
 
-    /// Registers keyframe `new` on the surroundings of keyframe `old`, on request of the caller.
-    ///
-    /// # Errors
-    /// If the graph has no covariance for the test.
-    pub(super) fn link_on_request(
-        &mut self,
-        old: usize,
-        new: usize,
-        robot: &RobotConfig,
-    ) -> Result<LoopVerification, OptimizeError> {
-        // The graph's covariance of the relative pose, and a floor.
-        let floor = Vector3::new(SHIFT.0, SHIFT.0, SHIFT.1).map(|sigma| sigma * sigma);
-        let covariance = self.graph.relative_covariance(old, new)? + Matrix3::from_diagonal(&floor);
-        let information = covariance
-            .try_inverse()
-            .ok_or(OptimizeError::NotPositiveDefinite { node: new })?;
-        let sigma = |variance: f64| math::sqrt(math::max(variance, 0.0));
-        let (sigmas, most_m, most_rad) = REQUESTED_WINDOW;
-        let half_m = sigmas * sigma(math::max(covariance.m11, covariance.m22));
-        let half_rad = sigmas * sigma(covariance.m33);
-        let poses = self.graph.poses();
-        let candidate = LoopCandidate {
-            node: old,
-            distance_m: position_error_m(&poses[old], &poses[new]),
-            proposal: None,
-        };
-        let gate = LinkGate {
-            information,
-            chi2: GATE_CHI2,
-            window: Some((math::min(half_m, most_m), math::min(half_rad, most_rad))),
-        };
-        let profile = |near: usize| Arc::new(RangeProfile::new(&self.keyframes[near].scan));
-        let mut map = LocalMap::default();
-        Ok(self.link(new, candidate, gate, profile, &mut map, robot))
-    }
+/// Registers keyframe `new` on the surroundings of keyframe `old`, on request of the caller.
+///
+/// # Errors
+/// If the graph has no covariance for the test.
+pub(super) fn link_on_request(
+    mapper: &mut Mapper,
+    old: usize,
+    new: usize,
+    settings: &MapRegistrationConfig,
+) -> Result<LoopVerification, OptimizeError> {
+    // The graph's covariance of the relative pose, and a floor.
+    let floor = Vector3::new(SHIFT.0, SHIFT.0, SHIFT.1).map(|sigma| sigma * sigma);
+    let covariance = mapper.graph.relative_covariance(old, new)? + Matrix3::from_diagonal(&floor);
+    let information = covariance
+        .try_inverse()
+        .ok_or(OptimizeError::NotPositiveDefinite { node: new })?;
+    let sigma = |variance: f64| math::sqrt(math::max(variance, 0.0));
+    let (sigmas, most_m, most_rad) = REQUESTED_WINDOW;
+    let half_m = sigmas * sigma(math::max(covariance.m11, covariance.m22));
+    let half_rad = sigmas * sigma(covariance.m33);
+    let poses = mapper.graph.poses();
+    let candidate = LoopCandidate {
+        node: old,
+        distance_m: position_error_m(&poses[old], &poses[new]),
+        proposal: None,
+    };
+    let gate = LinkGate {
+        information,
+        chi2: GATE_CHI2,
+        window: Some((math::min(half_m, most_m), math::min(half_rad, most_rad))),
+    };
+    let profile = |near: usize| Arc::new(RangeProfile::new(&mapper.keyframes[near].scan));
+    let mut map = LocalMap::default();
+    Ok(link(
+        mapper, new, candidate, gate, profile, &mut map, settings,
+    ))
+}
 
-    /// Registers keyframe `node` on the visit around an older one, from its pose in the graph.
-    fn link(
-        &self,
-        node: usize,
-        visit: LoopCandidate,
-        allowed: LinkGate,
-        profile: impl Fn(usize) -> Arc<RangeProfile>,
-        map: &mut LocalMap,
-        robot: &RobotConfig,
-    ) -> LoopVerification {
-        let settings = robot.registration();
-        let poses = self.graph.poses();
-        let center = visit.node;
-        let last = (center + HALF_SUBMAP).min(node - 1);
-        let first = center.saturating_sub(HALF_SUBMAP);
-        let profiles: Vec<_> = (first..=last).map(profile).collect();
-        map.rebuild((first..=last).zip(&profiles).map(|(near, profile)| {
-            let pose = poses[center].between(&poses[near]);
-            (pose, &*self.keyframes[near].scan, profile)
-        }));
-        let belief = poses[center].between(&poses[node]);
-        let stages = [settings.max_correspondence_m, settings.inlier_distance_m];
-        let scan = &self.keyframes[node].scan;
-        let mut found = map.register(scan, belief, &stages, None, &settings);
-        if let Some((half_m, half_rad)) = allowed.window
-            && found.fit.score < MIN_SCORE
-            && let window = SearchWindow::around(belief, half_m, half_rad)
-            && let Some(better) = map.search(scan, &window, 0.0)
-        {
-            found = map.register(scan, better.best.pose, &stages, None, &settings);
-        }
-        let (gate_information, gate_chi2) = (allowed.information, allowed.chi2);
-        let mut link = LoopVerification::from_registration(
-            node,
-            visit,
-            belief,
-            &found,
-            gate_information,
-            gate_chi2,
-        );
-        let score = found.fit.score;
-        link.rejection = if score < MIN_SCORE {
-            let min_score = MIN_SCORE;
-            Some(LoopRejection::LowScore { score, min_score })
-        } else {
-            (!link.gate.passes()).then_some(LoopRejection::OutsideGate(link.gate))
-        };
-        link
+/// Registers keyframe `node` on the visit around an older one, from its pose in the graph.
+fn link(
+    mapper: &Mapper,
+    node: usize,
+    visit: LoopCandidate,
+    allowed: LinkGate,
+    profile: impl Fn(usize) -> Arc<RangeProfile>,
+    map: &mut LocalMap,
+    settings: &MapRegistrationConfig,
+) -> LoopVerification {
+    let poses = mapper.graph.poses();
+    let center = visit.node;
+    let last = (center + HALF_SUBMAP).min(node - 1);
+    let first = center.saturating_sub(HALF_SUBMAP);
+    let profiles: Vec<_> = (first..=last).map(profile).collect();
+    map.rebuild((first..=last).zip(&profiles).map(|(near, profile)| {
+        let pose = poses[center].between(&poses[near]);
+        (pose, &*mapper.keyframes[near].scan, profile)
+    }));
+    let belief = poses[center].between(&poses[node]);
+    let stages = [settings.max_correspondence_m, settings.inlier_distance_m];
+    let scan = &mapper.keyframes[node].scan;
+    let mut found = map.register(scan, belief, &stages, None, settings);
+    if let Some((half_m, half_rad)) = allowed.window
+        && found.fit.score < MIN_SCORE
+        && let window = SearchWindow::around(belief, half_m, half_rad)
+        && let Some(better) = map.search(scan, &window, 0.0)
+    {
+        found = map.register(scan, better.best.pose, &stages, None, settings);
     }
+    let (gate_information, gate_chi2) = (allowed.information, allowed.chi2);
+    let mut link = LoopVerification::from_registration(
+        node,
+        visit,
+        belief,
+        &found,
+        gate_information,
+        gate_chi2,
+    );
+    let score = found.fit.score;
+    link.rejection = if score < MIN_SCORE {
+        let min_score = MIN_SCORE;
+        Some(LoopRejection::LowScore { score, min_score })
+    } else {
+        (!link.gate.passes()).then_some(LoopRejection::OutsideGate(link.gate))
+    };
+    link
 }

@@ -12,7 +12,7 @@ use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::{Keyframe, Slam, SlamConfig, SlamParts, WindowSweep};
+use super::{Keyframe, Slam, SlamConfig, Strategies, WindowSweep};
 use crate::cloud::PointCloud;
 use crate::graph::{EdgeView, PoseGraph, PoseNode};
 use crate::loops::PendingLoop;
@@ -288,25 +288,24 @@ impl Slam {
         }
     }
 
-    /// An estimator that continues from a snapshot, with the parts of its parameters.
+    /// An estimator that continues from a snapshot, with the strategies of its parameters.
     ///
     /// # Errors
     /// If the snapshot is inconsistent.
     pub fn restore(snapshot: &SlamSnapshot) -> Result<Self, SnapshotError> {
-        let parts = SlamParts::from_config(&snapshot.config);
-        Self::restore_with_parts(snapshot, parts)
+        Self::restore_with(snapshot, Strategies::from_config(&snapshot.config))
     }
 
-    /// [`Slam::restore`] with custom matchers and a custom loop detector.
+    /// [`Slam::restore`] with custom strategies.
     ///
     /// # Errors
     /// If the snapshot is inconsistent.
-    pub fn restore_with_parts(
+    pub fn restore_with(
         snapshot: &SlamSnapshot,
-        parts: SlamParts,
+        strategies: Strategies,
     ) -> Result<Self, SnapshotError> {
         snapshot.check()?;
-        let mut slam = Self::with_parts(snapshot.config.clone(), parts);
+        let mut slam = Self::with(snapshot.config.clone(), strategies);
         slam.frames = snapshot.frames;
         slam.last_stamp_s = snapshot.last_stamp_s;
         let mapper = &mut slam.mapper;
@@ -317,7 +316,7 @@ impl Slam {
         mapper.last_loop_node = snapshot.last_loop_node;
         mapper.chi2 = mapper.graph.chi2();
         slam.loop_closer
-            .restore(snapshot.last_attempt_node, &snapshot.pending);
+            .restore(snapshot.last_attempt_node, &snapshot.pending)?;
         slam.front_end.restore(&snapshot.front_end)?;
         Ok(slam)
     }

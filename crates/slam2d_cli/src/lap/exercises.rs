@@ -8,7 +8,7 @@ use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner};
-use ch16_slam2d::chapter::SlamParts;
+use ch16_slam2d::chapter::ChapterParts;
 use ch16_slam2d::cloud;
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::icp::{self, Pair};
@@ -197,8 +197,8 @@ pub fn drive(config: &LapConfig) -> Result<ExerciseLap, LapError> {
         },
     };
     let verdicts = Verdicts::default();
-    let ours = SlamParts::from_config(&config.slam);
-    let parts = SlamParts {
+    let ours = ChapterParts::from_config(&config.slam.chapter);
+    let parts = ChapterParts {
         front_end: Box::new(matcher),
         loops: Box::new(loop_matcher),
         detector: Box::new(TheirLoops {

@@ -1,0 +1,31 @@
+//! The strategies of an estimator.
+
+use super::bundle_loops::BundleLoops;
+use super::config::SlamConfig;
+use super::finder::LoopFinder;
+use super::map_matching::MapMatching;
+use super::registrar::ScanRegistrar;
+use crate::chapter::ChapterParts;
+
+/// The two strategies of an estimator, with their parameters.
+#[derive(Clone)]
+pub struct Strategies {
+    /// Registers each scan on the last few.
+    pub registrar: Box<dyn ScanRegistrar>,
+    /// Finds loops.
+    pub finder: Box<dyn LoopFinder>,
+}
+
+impl Strategies {
+    /// The strategies that `config` selects: those for recorded logs, or the chapter's.
+    #[must_use]
+    pub fn from_config(config: &SlamConfig) -> Self {
+        match &config.robot {
+            Some(robot) => Self {
+                registrar: Box::new(MapMatching::new(*robot)),
+                finder: Box::new(BundleLoops::new(robot)),
+            },
+            None => ChapterParts::from_config(&config.chapter).into_strategies(&config.chapter),
+        }
+    }
+}
