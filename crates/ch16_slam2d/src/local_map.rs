@@ -13,6 +13,7 @@ mod locate;
 mod prior;
 mod range_profile;
 mod registration;
+mod scan_profiles;
 
 use std::sync::Arc;
 
@@ -22,6 +23,7 @@ use pr_geom::{SE2, math};
 pub use prior::{MotionPrior, PriorTail};
 pub use range_profile::RangeProfile;
 pub use registration::{MapRegistration, MapRegistrationConfig, Registered};
+pub use scan_profiles::ScanProfiles;
 
 use crate::cloud::{DenseMap, NearestMap, PointCloud};
 use crate::search::{

@@ -8,7 +8,6 @@
 use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 
-use crate::graph::PoseGraph;
 use crate::scan::{Frame, FrameError, LaserScan};
 use crate::slam::{Conclusion, RobotConfig, Slam, SlamConfig, SlamReport, SlamSnapshot};
 
@@ -105,7 +104,7 @@ impl Pipeline {
         odometry_use: OdometryUse,
     ) -> Self {
         Self {
-            slam: Some(slam.with_outlier_test(PoseGraph::inlier_edges)),
+            slam: Some(slam),
             scans,
             last_odometry,
             ..Self::new(odometry_use)
@@ -134,7 +133,7 @@ impl Pipeline {
         let robot = self.robot;
         let slam = self.slam.get_or_insert_with(|| {
             let robot = robot.unwrap_or_else(|| RobotConfig::for_scan(&frame.scan));
-            Slam::new(SlamConfig::from_robot(robot)).with_outlier_test(PoseGraph::inlier_edges)
+            Slam::new(SlamConfig::from_robot(robot))
         });
         let report = slam.step(&frame)?;
         self.last_odometry = recorded.odometry;

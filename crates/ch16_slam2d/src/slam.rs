@@ -33,6 +33,7 @@ mod report;
 mod robots;
 mod snapshot;
 mod strategies;
+mod submaps;
 #[cfg(test)]
 pub(crate) mod test_room;
 mod uncertainty;
@@ -61,7 +62,7 @@ pub use strategies::Strategies;
 pub use window::{ScanWindow, WindowSweep};
 
 use crate::chapter::ChapterParts;
-use crate::graph::{EdgeKind, PoseGraph};
+use crate::graph::PoseGraph;
 use crate::loops::{LoopVerification, LoopWorkspace};
 use crate::metrics::position_error_m;
 use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer};
@@ -98,21 +99,13 @@ impl Slam {
     pub fn with(config: SlamConfig, strategies: Strategies) -> Self {
         Self {
             front_end: FrontEnd::new(&config, strategies.registrar),
-            mapper: Mapper::new(&config),
+            mapper: Mapper::new(&config, strategies.outlier_test),
             loop_closer: LoopCloser::new(strategies.finder),
             preparer: ScanPreparer::new(),
             frames: 0,
             last_stamp_s: f64::NEG_INFINITY,
             config,
         }
-    }
-
-    /// The same estimator with an outlier test over all loops, which runs once some contradict the graph; without it
-    /// they stay, and the optimizer's kernel bounds their weight.
-    #[must_use]
-    pub fn with_outlier_test(mut self, test: LoopOutlierTest) -> Self {
-        self.mapper.outlier_test = Some(test);
-        self
     }
 
     /// Takes one frame: prepares its scan, registers it, and closes loops.
@@ -155,8 +148,9 @@ impl Slam {
         let dt_s = frame.seconds_after(self.last_stamp_s, &self.front_end.estimate())?;
         self.last_stamp_s = frame.stamp_s;
         self.frames += 1;
-        let (registration, new_keyframe) = if self.mapper.keyframes.is_empty() {
-            self.start(frame);
+        let (registration, new_keyframe) = if self.mapper.newest().is_none() {
+            self.front_end.start(0, Arc::clone(&frame.cloud));
+            self.mapper.start(self.config.start, frame);
             (None, Some(0))
         } else {
             let mut frame = frame.clone();
@@ -184,7 +178,7 @@ impl Slam {
             return;
         }
         let closed = self.mapper.close(&accepted, pending.consistency());
-        if let Ok(effect) = &closed {
+        if let Some(effect) = &closed.effect {
             self.front_end.correct(&effect.correction);
         }
         pending.closed(closed);
@@ -200,7 +194,7 @@ impl Slam {
             estimate: self.front_end.estimate(),
             new_keyframe: pending.new_keyframe,
             loop_attempts: pending.loop_attempts,
-            chi2: self.mapper.chi2,
+            chi2: self.mapper.chi2(),
         }
     }
 
@@ -256,18 +250,18 @@ impl Slam {
     /// The pose graph; node k is keyframe k. It is empty before the first frame.
     #[must_use]
     pub fn graph(&self) -> &PoseGraph {
-        &self.mapper.graph
+        self.mapper.graph()
     }
 
     /// The pose graph, mutable for covariance queries, which need the solver's memory.
     pub fn graph_mut(&mut self) -> &mut PoseGraph {
-        &mut self.mapper.graph
+        self.mapper.graph_mut()
     }
 
     /// The keyframes in order.
     #[must_use]
     pub fn keyframes(&self) -> &[Keyframe] {
-        &self.mapper.keyframes
+        self.mapper.keyframes()
     }
 
     /// The loop closer, with its pending loops.
@@ -285,7 +279,7 @@ impl Slam {
     /// χ² of the graph.
     #[must_use]
     pub fn chi2(&self) -> f64 {
-        self.mapper.chi2
+        self.mapper.chi2()
     }
 
     /// Covariance of every keyframe relative to the first one: see [`Mapper::keyframe_covariances`].
@@ -311,7 +305,7 @@ impl Slam {
     /// Ratio of actual to stated variance of the graph's measurements.
     #[must_use]
     pub fn variance_factor(&self) -> f64 {
-        uncertainty::variance_factor(&self.mapper.graph)
+        uncertainty::variance_factor(self.mapper.graph())
     }
 
     /// Registers keyframe `new` on the surroundings of keyframe `old` and tests the result; the graph is
@@ -330,22 +324,9 @@ impl Slam {
         self.loop_closer.finder.verify(&mut self.mapper, old, new)
     }
 
-    fn start(&mut self, frame: &PreparedFrame) {
-        self.front_end.start(0, Arc::clone(&frame.cloud));
-        self.mapper.graph.add_fixed_node(self.config.start);
-        self.mapper.keyframes.push(Keyframe {
-            node: 0,
-            frame: 0,
-            stamp_s: frame.stamp_s,
-            scan: Arc::clone(&frame.cloud),
-        });
-    }
-
-    /// Adds a node if the estimate is far enough from the last keyframe.
+    /// Adds a keyframe if the estimate is far enough from the last one.
     fn take_keyframe(&mut self, frame: &PreparedFrame) -> Option<usize> {
-        let graph = &mut self.mapper.graph;
-        let last_node = self.mapper.keyframes.len() - 1;
-        let last_pose = graph.pose(last_node);
+        let last_pose = *self.mapper.poses().last()?;
         let estimate = self.front_end.estimate();
         let relative = last_pose.between(&estimate);
         let distance = position_error_m(&relative, &SE2::identity());
@@ -354,16 +335,11 @@ impl Slam {
         {
             return None;
         }
-        let node = graph.add_node(estimate).index();
         let information = self.front_end.information(last_pose.theta());
-        graph.add_edge(last_node, node, relative, information, EdgeKind::Odometry);
-        self.mapper.keyframes.push(Keyframe {
-            node,
-            frame: self.frames - 1,
-            stamp_s: frame.stamp_s,
-            scan: Arc::clone(&frame.cloud),
-        });
-        self.mapper.chi2 = self.mapper.graph.chi2();
-        Some(node)
+        let number = self.frames - 1;
+        Some(
+            self.mapper
+                .add_keyframe(estimate, information, number, frame),
+        )
     }
 }

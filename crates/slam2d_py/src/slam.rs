@@ -2,7 +2,6 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use ch16_slam2d::graph;
 use ch16_slam2d::scan::Frame;
 use ch16_slam2d::slam::{LoopAttempt, RobotConfig, SlamConfig};
 use numpy::{PyArray1, PyArray2, PyArray3};
@@ -114,8 +113,7 @@ impl Estimator {
                 start: *start,
                 ..SlamConfig::from_robot(robot)
             };
-            let slam = ch16_slam2d::slam::Slam::new(config)
-                .with_outlier_test(graph::PoseGraph::inlier_edges);
+            let slam = ch16_slam2d::slam::Slam::new(config);
             *self = Self::Running(Box::new(slam));
         }
         match self {

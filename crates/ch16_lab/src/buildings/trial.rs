@@ -1,7 +1,7 @@
 //! Runs the estimator on a recording and compares the result with the truth.
 
 use ch16_slam2d::chi_squared::CHAPTER_GATE;
-use ch16_slam2d::graph::{EdgeKind, PoseGraph};
+use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::slam::{LoopAttempt, RobotConfig, Slam, SlamConfig};
 use nalgebra::Matrix3;
@@ -111,7 +111,7 @@ pub(super) fn estimator(recording: &Recording, robot: RobotConfig) -> Slam {
         start: recording.frames[0].truth,
         ..SlamConfig::from_robot(robot)
     };
-    Slam::new(config).with_outlier_test(PoseGraph::inlier_edges)
+    Slam::new(config)
 }
 
 impl TrialLoops {

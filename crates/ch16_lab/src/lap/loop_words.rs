@@ -80,6 +80,9 @@ impl LapTrace {
             Some(LoopRejection::NoCovariance(error)) => {
                 format!("{head}: the graph has no covariance to test against, {error}")
             }
+            Some(LoopRejection::Outlier) => {
+                format!("{head}: {gate}, but the other loops contradict it")
+            }
             Some(LoopRejection::OptimizationFailed(stop)) => {
                 format!("{head}: {gate}, but with it the graph cannot be optimized, {stop}")
             }

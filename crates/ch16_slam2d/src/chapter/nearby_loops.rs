@@ -5,8 +5,7 @@ use pr_optim::OptimizeError;
 use super::ChapterConfig;
 use super::drift_gate::gate_information;
 use crate::loops::{
-    KeyframeView, LoopCandidate, LoopDetector, LoopQuery, LoopVerification, LoopWorkspace,
-    verify_loop,
+    KeyframeView, LoopCandidate, LoopDetector, LoopVerification, LoopWorkspace, verify_loop,
 };
 use crate::matching::Matcher;
 use crate::metrics::position_error_m;
@@ -40,10 +39,10 @@ impl NearbyLoops {
         candidate: LoopCandidate,
     ) -> LoopVerification {
         let loops = &self.config.loops;
-        let gate = gate_information(&mut mapper.graph, node, candidate.node, loops);
+        let gate = gate_information(mapper.graph_mut(), node, candidate.node, loops);
         let view = KeyframeView {
-            poses: mapper.graph.poses(),
-            keyframes: &mapper.keyframes,
+            poses: mapper.poses(),
+            keyframes: mapper.keyframes(),
         };
         let frame = self.config.information_frame;
         let workspace = &mut self.workspace;
@@ -58,8 +57,8 @@ impl LoopFinder for NearbyLoops {
 
     /// Tests the candidates of the newest keyframe, up to the first that passes.
     fn find(&mut self, mapper: &mut Mapper) -> TriedLoops {
-        let node = mapper.keyframes.len() - 1;
-        let mut query = LoopQuery::new(&mut mapper.graph, &mapper.keyframes);
+        let mut query = mapper.loop_query();
+        let node = query.node();
         let mut candidates = self.detector.detect(&mut query);
         candidates.retain(|candidate| candidate.node < node);
         candidates.truncate(self.config.loops.candidates_tried);
@@ -82,7 +81,7 @@ impl LoopFinder for NearbyLoops {
     ) -> Result<LoopVerification, OptimizeError> {
         let candidate = LoopCandidate {
             node: old,
-            distance_m: position_error_m(&mapper.graph.pose(old), &mapper.graph.pose(new)),
+            distance_m: position_error_m(&mapper.poses()[old], &mapper.poses()[new]),
             proposal: None,
         };
         Ok(self.test(mapper, new, candidate))

@@ -37,6 +37,7 @@ impl ChapterParts {
         Strategies {
             registrar: Box::new(WindowRegistrar::new(config, self.front_end)),
             finder: Box::new(NearbyLoops::new(config, self.detector, self.loops)),
+            outlier_test: None,
         }
     }
 }

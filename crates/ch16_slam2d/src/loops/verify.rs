@@ -63,6 +63,8 @@ pub enum LoopRejection {
     OutsideGate(GateTest),
     /// The graph has no covariance for the test.
     NoCovariance(OptimizeError),
+    /// It passed, but the outlier test over all loops dropped it.
+    Outlier,
     /// It passed, but the graph could not be optimized with it, so it was reverted.
     OptimizationFailed(StopReason),
     /// It passed, but the optimization raised the robust cost, so it was reverted.
@@ -115,6 +117,7 @@ impl core::fmt::Display for LoopRejection {
                 )
             }
             Self::NoCovariance(error) => write!(f, "the graph has no covariance: {error}"),
+            Self::Outlier => write!(f, "the graph and the other loops contradict it"),
             Self::OptimizationFailed(stop) => {
                 write!(f, "the graph cannot be optimized with it: {stop}")
             }

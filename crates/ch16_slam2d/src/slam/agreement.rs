@@ -14,7 +14,7 @@ pub(super) fn are_consistent(
     first: &LoopVerification,
     second: &LoopVerification,
 ) -> bool {
-    let graph = &mut mapper.graph;
+    let graph = mapper.graph_mut();
     let (Ok(between_new), Ok(between_old)) = (
         graph.relative_covariance(first.from_node, second.from_node),
         graph.relative_covariance(first.candidate.node, second.candidate.node),

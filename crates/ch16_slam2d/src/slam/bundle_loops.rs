@@ -8,9 +8,6 @@
 //! Sources: Hess et al., "Real-time loop closure in 2D LIDAR SLAM", 2016, for keyframes on submaps; Olson,
 //! "Recognizing places using spectrally clustered local matches", 2009, for loops that agree.
 
-use std::collections::VecDeque;
-use std::sync::Arc;
-
 use nalgebra::Matrix3;
 use pr_geom::{SE2, math};
 use pr_optim::OptimizeError;
@@ -21,10 +18,9 @@ use super::mapper::{Consistency, Mapper};
 use super::refinement;
 use super::robots::{RobotConfig, SubmapLoopConfig};
 use super::snapshot::SnapshotError;
+use super::submaps::Submaps;
 use crate::cloud::PointCloud;
-use crate::local_map::{
-    LocalMap, MIN_SEARCH_SCORE, MapRegistration, MapRegistrationConfig, RangeProfile,
-};
+use crate::local_map::{MIN_SEARCH_SCORE, MapRegistration};
 use crate::loops::{
     Detection, LoopCandidate, LoopConfig, LoopRejection, LoopVerification, PendingLoop,
     detect_visits,
@@ -52,17 +48,13 @@ pub(super) const GATE_CHI2: f64 = 11.345;
 const AGREEING: (usize, usize) = (2, 3);
 /// Smallest information of a loop in any direction, 1/m² and 1/rad²: a metre, a radian.
 const LOOP_FLOOR: f64 = 1.0;
-/// Number of range profiles cached between attempts.
-const PROFILES_KEPT: usize = 512;
 
 /// Finds loops, and keeps the pending ones.
 #[derive(Clone)]
 pub(super) struct BundleLoops {
     config: SubmapLoopConfig,
-    registration: MapRegistrationConfig,
     pending: Vec<PendingLoop>,
-    map: LocalMap,
-    profiles: VecDeque<(usize, Arc<RangeProfile>)>,
+    submaps: Submaps,
 }
 
 /// A submap that may show the surroundings of the newest keyframes, and the uncertainty of the relative pose.
@@ -78,10 +70,8 @@ impl BundleLoops {
     pub fn new(robot: &RobotConfig) -> Self {
         Self {
             config: robot.loops,
-            registration: robot.registration(),
             pending: Vec::new(),
-            map: LocalMap::default(),
-            profiles: VecDeque::new(),
+            submaps: Submaps::new(robot.registration()),
         }
     }
 
@@ -100,11 +90,12 @@ impl BundleLoops {
             ..LoopConfig::default()
         };
         let mut windows = Vec::new();
-        for candidate in detect_visits(mapper.graph.poses(), node, &nearby) {
+        for candidate in detect_visits(mapper.poses(), node, &nearby) {
             if windows.len() == SUBMAPS {
                 break;
             }
-            let Ok(covariance) = mapper.graph.relative_covariance(candidate.node, node) else {
+            let Ok(covariance) = mapper.graph_mut().relative_covariance(candidate.node, node)
+            else {
                 continue;
             };
             let sigma = |variance: f64| config.window_sigmas * math::sqrt(math::max(variance, 0.0));
@@ -114,7 +105,7 @@ impl BundleLoops {
             if candidate.distance_m > half_m + SUBMAP_MARGIN_M {
                 continue;
             }
-            let poses = mapper.graph.poses();
+            let poses = mapper.poses();
             windows.push(Window {
                 candidate,
                 belief: poses[candidate.node].between(&poses[node]),
@@ -128,12 +119,12 @@ impl BundleLoops {
 
     /// The newest keyframes in the frame of the last one, thinned.
     fn bundle(&self, mapper: &Mapper) -> PointCloud {
-        let node = mapper.keyframes.len() - 1;
-        let here = mapper.graph.pose(node);
+        let poses = mapper.poses();
+        let here = poses[poses.len() - 1];
         let mut points = PointCloud::default();
-        for near in (node + 1).saturating_sub(self.config.bundle)..=node {
-            let pose = here.between(&mapper.graph.pose(near));
-            points.extend_transformed(&mapper.keyframes[near].scan, &pose);
+        let first = poses.len().saturating_sub(self.config.bundle);
+        for (pose, keyframe) in poses.iter().zip(mapper.keyframes()).skip(first) {
+            points.extend_transformed(&keyframe.scan, &here.between(pose));
         }
         points.downsample(BUNDLE_CELL_M)
     }
@@ -142,7 +133,7 @@ impl BundleLoops {
     /// window.
     fn build_submap(&mut self, mapper: &Mapper, window: &Window, lengths_m: &[f64]) {
         let node = lengths_m.len() - 1;
-        let poses = mapper.graph.poses();
+        let poses = mapper.poses();
         let here = poses[node];
         let reach_m = window.half_m + SUBMAP_MARGIN_M;
         let last = old_enough(lengths_m, self.config.min_path_m) - 1;
@@ -158,26 +149,7 @@ impl BundleLoops {
         while end < last && is_near(end + 1) {
             end += 1;
         }
-        let profiles: Vec<Arc<RangeProfile>> = (first..=end)
-            .map(|near| self.profile(mapper, near))
-            .collect();
-        let scans = (first..=end).zip(&profiles).map(|(near, profile)| {
-            let pose = poses[center].between(&poses[near]);
-            (pose, &*mapper.keyframes[near].scan, profile)
-        });
-        self.map.rebuild(scans);
-    }
-
-    fn profile(&mut self, mapper: &Mapper, node: usize) -> Arc<RangeProfile> {
-        if let Some((_, known)) = self.profiles.iter().find(|(of, _)| *of == node) {
-            return Arc::clone(known);
-        }
-        if self.profiles.len() == PROFILES_KEPT {
-            self.profiles.pop_front();
-        }
-        let profile = Arc::new(RangeProfile::new(&mapper.keyframes[node].scan));
-        self.profiles.push_back((node, Arc::clone(&profile)));
-        profile
+        self.submaps.build(mapper, first..=end, center);
     }
 
     fn verify_window(
@@ -195,7 +167,7 @@ impl BundleLoops {
         } else {
             self.search(window, bundle)
         };
-        let settings = self.registration;
+        let settings = self.submaps.registration;
         let (max_correspondence_m, inlier_distance_m) =
             (settings.max_correspondence_m, settings.inlier_distance_m);
         let stages = [
@@ -206,7 +178,10 @@ impl BundleLoops {
         let stages = if is_sure { &stages[..] } else { &stages[1..] };
         let from = start.unwrap_or(window.belief);
         let stages = if start.is_some() { stages } else { &[] };
-        let found = self.map.register(bundle, from, stages, None, &settings);
+        let found = self
+            .submaps
+            .map
+            .register(bundle, from, stages, None, &settings);
         let rejection = match start {
             None => Some(LoopRejection::NoPlace {
                 half_width_m: window.half_m,
@@ -222,7 +197,7 @@ impl BundleLoops {
         let around = SearchWindow::around(window.belief, window.half_m, window.half_rad);
         // Distinct poses are searched up to twice the required margin.
         let farthest = 2.0 * self.config.min_margin;
-        match self.map.search(bundle, &around, farthest) {
+        match self.submaps.map.search(bundle, &around, farthest) {
             Some(found) => (
                 Some(found.best.pose),
                 Some(found.margin().unwrap_or(farthest)),
@@ -362,7 +337,7 @@ impl LoopFinder for BundleLoops {
     }
 
     fn link_all(&mut self, mapper: &mut Mapper) -> Vec<LoopVerification> {
-        refinement::link_all(mapper, &self.registration)
+        refinement::link_all(mapper, &mut self.submaps)
     }
 
     fn verify(
@@ -371,7 +346,7 @@ impl LoopFinder for BundleLoops {
         old: usize,
         new: usize,
     ) -> Result<LoopVerification, OptimizeError> {
-        refinement::link_on_request(mapper, old, new, &self.registration)
+        refinement::link_on_request(mapper, old, new, &mut self.submaps)
     }
 
     fn pending(&self) -> &[PendingLoop] {
@@ -385,7 +360,7 @@ impl LoopFinder for BundleLoops {
 
     fn remove_keyframe(&mut self, node: usize, path_m: &[f64]) {
         let moved_up = |known: usize| known - usize::from(known > node);
-        self.profiles.clear();
+        self.submaps.forget();
         self.pending.retain(|pending| {
             let found = &pending.verification;
             found.from_node != node && found.candidate.node != node

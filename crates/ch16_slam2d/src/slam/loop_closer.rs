@@ -24,7 +24,9 @@ impl LoopCloser {
 
     /// Searches for loops at the newest keyframe, if a search is due.
     pub(super) fn find(&mut self, mapper: &mut Mapper, config: &SlamConfig) -> TriedLoops {
-        let node = mapper.keyframes.len() - 1;
+        let Some(node) = mapper.newest() else {
+            return TriedLoops::default();
+        };
         let every = self.finder.every_keyframes();
         let is_early = |last: usize| node - last < every;
         // The first keyframe has no predecessors, and does not count as an attempt.
@@ -40,7 +42,7 @@ impl LoopCloser {
 
     /// Ends the run.
     pub(super) fn conclude(&mut self, mapper: &mut Mapper, config: &SlamConfig) -> TriedLoops {
-        let newest = mapper.keyframes.len().checked_sub(1);
+        let newest = mapper.newest();
         if config.loop_closure == LoopClosure::Off || newest.is_none_or(|newest| newest == 0) {
             return TriedLoops::default();
         }

@@ -1,7 +1,5 @@
 //! The front end for robots: one cost of scan and odometry on the last few scans.
 
-use std::sync::Arc;
-
 use nalgebra::{Matrix3, Vector2};
 use pr_geom::SE2;
 
@@ -10,7 +8,7 @@ use super::registrar::{ExpectedMotion, ScanRegistrar};
 use super::snapshot::{NamedNumbers, SnapshotError};
 use super::window::ScanWindow;
 use crate::cloud::PointCloud;
-use crate::local_map::{LocalMap, MapRegistrationConfig, MotionPrior, PriorTail, RangeProfile};
+use crate::local_map::{LocalMap, MapRegistrationConfig, MotionPrior, PriorTail, ScanProfiles};
 use crate::matching::{MatchStop, MatchSummary};
 use crate::scan::PreparedFrame;
 
@@ -23,8 +21,7 @@ pub(crate) struct MapMatching {
     config: RobotConfig,
     registration: MapRegistrationConfig,
     map: LocalMap,
-    /// The scans of the map with their free space.
-    profiles: Vec<(Arc<PointCloud>, Arc<RangeProfile>)>,
+    profiles: ScanProfiles,
     /// Whether the window has changed since the map was built.
     is_outdated: bool,
     /// Information of the last scan, body frame.
@@ -39,28 +36,23 @@ impl MapMatching {
             registration: config.registration(),
             config,
             map: LocalMap::default(),
-            profiles: Vec::new(),
+            profiles: ScanProfiles::default(),
             is_outdated: true,
             scan_information: Matrix3::zeros(),
             motion_covariance: Matrix3::zeros(),
         }
     }
 
-    /// Builds the map of the window, with the free space of its new scans.
     fn rebuild(&mut self, window: &ScanWindow) {
-        let known = std::mem::take(&mut self.profiles);
-        let profiles = window.scans().iter().map(|scan| {
-            let mut known = known.iter();
-            let profile = known.find(|(of, _)| Arc::ptr_eq(of, scan)).map_or_else(
-                || Arc::new(RangeProfile::new(scan)),
-                |(_, profile)| Arc::clone(profile),
-            );
-            (Arc::clone(scan), profile)
-        });
-        self.profiles = profiles.collect();
-        let posed = window.posed_scans().zip(&self.profiles);
+        let profiles: Vec<_> = window
+            .scans()
+            .iter()
+            .map(|scan| self.profiles.of(scan))
+            .collect();
+        let posed = window.posed_scans().zip(&profiles);
         self.map
-            .rebuild(posed.map(|((pose, scan), (_, profile))| (*pose, &**scan, profile)));
+            .rebuild(posed.map(|((pose, scan), profile)| (*pose, &**scan, profile)));
+        self.profiles.keep_only(window.scans());
         self.is_outdated = false;
     }
 

@@ -7,8 +7,6 @@
 //! lap to lap.
 
 use core::f64::consts::{PI, TAU};
-use std::sync::Arc;
-
 use pr_geom::{Point2, SE2, math, sort_pairs};
 
 use super::loop_closer::LoopCloser;
@@ -138,117 +136,103 @@ pub(super) fn prune_map(
     normal_radius_m: f64,
 ) -> MapPruning {
     let mut pruned = MapPruning::default();
-    let Some(newest) = mapper.keyframes.len().checked_sub(1) else {
+    let Some(newest) = mapper.newest() else {
         return pruned;
     };
-    if newest - mapper.last_loop_node > config.loop_ago_nodes {
+    if newest - mapper.last_loop_node() > config.loop_ago_nodes {
         return pruned;
     }
-    let here = mapper.graph.pose(newest);
+    let poses = mapper.poses();
+    let here = poses[newest];
     let near: Vec<usize> = (0..=newest)
-        .filter(|&node| position_error_m(&mapper.graph.pose(node), &here) <= config.reach_m)
+        .filter(|&node| position_error_m(&poses[node], &here) <= config.reach_m)
         .collect();
     let views: Vec<ScanView> = near
         .iter()
-        .map(|&node| ScanView::new(&mapper.keyframes[node].scan, mapper.graph.pose(node)))
+        .map(|&node| ScanView::new(mapper.scan(node), poses[node]))
         .collect();
     for (k, &node) in near.iter().enumerate() {
         let newer = &views[k + 1..];
-        pruned.points_gone += mapper.drop_removed_points(node, newer, config, normal_radius_m);
+        pruned.points_gone += drop_removed_points(mapper, node, newer, config, normal_radius_m);
     }
     let replaced: Vec<usize> = near
         .iter()
         .enumerate()
         .filter(|&(k, &node)| {
             let (older, newer) = (&views[..k], &views[k + 1..]);
-            mapper.is_replaced(node, older, newer, config)
+            is_replaced(mapper, node, older, newer, config)
         })
         .map(|(_, &node)| node)
         .collect();
     for node in replaced.into_iter().rev() {
-        if let Ok(done) = mapper.graph.marginalize(node) {
+        if let Ok(done) = mapper.marginalize(node) {
             pruned.divergence += done.divergence;
             pruned.removed.push(node);
-            mapper.remove_keyframe(node);
             loop_closer.remove_keyframe(node, &mapper.path_lengths_m());
         }
-    }
-    if !pruned.removed.is_empty() {
-        mapper.chi2 = mapper.graph.chi2();
     }
     pruned.removed.reverse();
     pruned
 }
 
-impl Mapper {
-    /// Drops the points of a keyframe that newer scans observed as free; returns their number.
-    fn drop_removed_points(
-        &mut self,
-        node: usize,
-        newer: &[ScanView],
-        config: &MapPruningConfig,
-        normal_radius_m: f64,
-    ) -> usize {
-        if newer.len() < config.looks_through {
-            return 0;
-        }
-        let (scan, pose) = (&self.keyframes[node].scan, self.graph.pose(node));
-        let is_gone = |point: Point2<f64>| {
-            let world = pose.transform(point);
-            let mut through = 0;
-            for view in newer {
-                match view.visibility(world, config) {
-                    Visibility::Seen => return false,
-                    Visibility::LookedThrough => through += 1,
-                    Visibility::Unknown => {}
-                }
+/// Drops the points of a keyframe that newer scans observed as free; returns their number.
+fn drop_removed_points(
+    mapper: &mut Mapper,
+    node: usize,
+    newer: &[ScanView],
+    config: &MapPruningConfig,
+    normal_radius_m: f64,
+) -> usize {
+    if newer.len() < config.looks_through {
+        return 0;
+    }
+    let (scan, pose) = (mapper.scan(node), mapper.poses()[node]);
+    let is_gone = |point: Point2<f64>| {
+        let world = pose.transform(point);
+        let mut through = 0;
+        for view in newer {
+            match view.visibility(world, config) {
+                Visibility::Seen => return false,
+                Visibility::LookedThrough => through += 1,
+                Visibility::Unknown => {}
             }
-            through >= config.looks_through
-        };
-        let left: Vec<Point2<f64>> = scan.iter().filter(|&point| !is_gone(point)).collect();
-        let gone = scan.len() - left.len();
-        if gone > 0 {
-            let mut scan = PointCloud::new(left, scan.stamp_s());
-            scan.estimate_normals(normal_radius_m);
-            self.keyframes[node].scan = Arc::new(scan);
         }
-        gone
+        through >= config.looks_through
+    };
+    let left: Vec<Point2<f64>> = scan.iter().filter(|&point| !is_gone(point)).collect();
+    let gone = scan.len() - left.len();
+    if gone > 0 {
+        let mut scan = PointCloud::new(left, scan.stamp_s());
+        scan.estimate_normals(normal_radius_m);
+        mapper.set_scan(node, scan);
     }
+    gone
+}
 
-    /// Whether there are enough older and newer keyframes at the location of this one, and the newer ones cover
-    /// its view.
-    fn is_replaced(
-        &self,
-        node: usize,
-        older: &[ScanView],
-        newer: &[ScanView],
-        config: &MapPruningConfig,
-    ) -> bool {
-        let pose = self.graph.pose(node);
-        let is_here =
-            |view: &&ScanView| position_error_m(&view.world_from_body, &pose) <= config.place_m;
-        let here: Vec<&ScanView> = newer.iter().filter(is_here).collect();
-        if here.len() < config.kept || older.iter().filter(is_here).count() < config.anchors {
-            return false;
-        }
-        let scan = &self.keyframes[node].scan;
-        let is_seen = |point: &Point2<f64>| {
-            let world = pose.transform(*point);
-            here.iter()
-                .any(|view| view.visibility(world, config) == Visibility::Seen)
-        };
-        let seen = scan.iter().filter(is_seen).count();
-        seen as f64 >= config.covered * scan.len() as f64
+/// Whether there are enough older and newer keyframes at the location of this one, and the newer ones cover
+/// its view.
+fn is_replaced(
+    mapper: &Mapper,
+    node: usize,
+    older: &[ScanView],
+    newer: &[ScanView],
+    config: &MapPruningConfig,
+) -> bool {
+    let pose = mapper.poses()[node];
+    let is_here =
+        |view: &&ScanView| position_error_m(&view.world_from_body, &pose) <= config.place_m;
+    let here: Vec<&ScanView> = newer.iter().filter(is_here).collect();
+    if here.len() < config.kept || older.iter().filter(is_here).count() < config.anchors {
+        return false;
     }
-
-    /// Renumbers state after the removal of a node.
-    fn remove_keyframe(&mut self, node: usize) {
-        self.keyframes.remove(node);
-        for keyframe in &mut self.keyframes[node..] {
-            keyframe.node -= 1;
-        }
-        self.last_loop_node -= usize::from(self.last_loop_node > node);
-    }
+    let scan = mapper.scan(node);
+    let is_seen = |point: &Point2<f64>| {
+        let world = pose.transform(*point);
+        here.iter()
+            .any(|view| view.visibility(world, config) == Visibility::Seen)
+    };
+    let seen = scan.iter().filter(is_seen).count();
+    seen as f64 >= config.covered * scan.len() as f64
 }
 
 #[cfg(test)]
@@ -352,8 +336,7 @@ mod tests {
         // A keyframe with successors, and then the end of a loop.
         for node in [old + 2, old] {
             let gone = slam.keyframes()[node].frame;
-            slam.mapper.graph.marginalize(node).unwrap();
-            slam.mapper.remove_keyframe(node);
+            slam.mapper.marginalize(node).unwrap();
             let lengths_m = slam.mapper.path_lengths_m();
             slam.loop_closer.remove_keyframe(node, &lengths_m);
             expected.retain(|&(new, old)| new != gone && old != gone);

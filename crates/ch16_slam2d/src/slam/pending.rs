@@ -3,9 +3,9 @@
 use pr_geom::SE2;
 
 use super::finder::TriedLoops;
-use super::mapper::Consistency;
+use super::mapper::{Closed, Consistency};
 use super::{LoopAttempt, LoopEffect, Registration};
-use crate::loops::{LoopRejection, LoopVerification};
+use crate::loops::LoopVerification;
 
 /// A registered frame whose loops are not yet decided.
 #[derive(Clone, Debug)]
@@ -15,6 +15,8 @@ pub struct PendingFrame {
     pub(super) new_keyframe: Option<usize>,
     pub(super) loop_attempts: Vec<LoopAttempt>,
     consistency: Consistency,
+    /// The effect of its loops on the graph.
+    effect: Option<LoopEffect>,
 }
 
 impl PendingFrame {
@@ -29,6 +31,7 @@ impl PendingFrame {
             new_keyframe,
             loop_attempts: Vec::new(),
             consistency: Consistency::Expected,
+            effect: None,
         }
     }
 
@@ -55,9 +58,7 @@ impl PendingFrame {
     /// Poses of all nodes before a loop was closed in this frame.
     #[must_use]
     pub fn poses_before_loop(&self) -> Option<&[SE2]> {
-        let mut effects = self.loop_attempts.iter().rev();
-        let effect = effects.find_map(|attempt| attempt.effect.as_ref())?;
-        Some(&effect.poses_before)
+        self.effect.as_ref().map(|effect| &effect.poses_before[..])
     }
 
     /// Adds the attempts at loops in frame number `frame`.
@@ -85,14 +86,16 @@ impl PendingFrame {
         self.consistency
     }
 
-    /// Records the effect of closing the accepted loops.
-    pub(super) fn closed(&mut self, outcome: Result<LoopEffect, LoopRejection>) {
+    /// Records what became of the accepted loops.
+    pub(super) fn closed(&mut self, closed: Closed) {
         let attempts = self.loop_attempts.iter_mut();
-        for attempt in attempts.filter(|attempt| attempt.verification.accepted()) {
-            match &outcome {
-                Ok(effect) => attempt.effect = Some(effect.clone()),
-                Err(rejection) => attempt.verification.rejection = Some(*rejection),
+        let accepted = attempts.filter(|attempt| attempt.verification.accepted());
+        for (attempt, rejection) in accepted.zip(closed.rejections) {
+            attempt.verification.rejection = rejection;
+            if rejection.is_none() {
+                attempt.effect.clone_from(&closed.effect);
             }
         }
+        self.effect = closed.effect;
     }
 }

@@ -4,14 +4,12 @@
 //! every earlier visit around it, from poses that are nearly correct. The links of a pass replace
 //! the earlier loops: a loop that the final map does not confirm is removed.
 
-use std::sync::Arc;
-
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::math;
 use pr_optim::OptimizeError;
 
 use super::mapper::Mapper;
-use crate::local_map::{LocalMap, MapRegistrationConfig, RangeProfile};
+use super::submaps::Submaps;
 use crate::loops::{
     Detection, LoopCandidate, LoopConfig, LoopRejection, LoopVerification, detect_visits,
 };
@@ -51,20 +49,12 @@ struct LinkGate {
 
 /// Links all keyframes with the visits around them, and optimizes. Returns the links of the last pass, accepted
 /// or not. A graph that cannot be solved is unchanged.
-pub(super) fn link_all(
-    mapper: &mut Mapper,
-    settings: &MapRegistrationConfig,
-) -> Vec<LoopVerification> {
-    let scans = mapper.keyframes.iter().map(|keyframe| &keyframe.scan);
-    let profiles: Vec<_> = scans
-        .map(|scan| Arc::new(RangeProfile::new(scan)))
-        .collect();
-    let mut map = LocalMap::default();
+pub(super) fn link_all(mapper: &mut Mapper, submaps: &mut Submaps) -> Vec<LoopVerification> {
     let mut last = Vec::new();
     for _ in 0..PASSES {
-        let nodes = 0..mapper.keyframes.len();
+        let nodes = 0..mapper.keyframes().len();
         let links: Vec<LoopVerification> = nodes
-            .flat_map(|node| links_of(mapper, node, &profiles, &mut map, settings))
+            .flat_map(|node| links_of(mapper, node, submaps))
             .collect();
         if !mapper.replace_loops(&links, HUBER) {
             return last;
@@ -75,20 +65,14 @@ pub(super) fn link_all(
 }
 
 /// The registrations of a keyframe on the visits around it.
-fn links_of(
-    mapper: &Mapper,
-    node: usize,
-    profiles: &[Arc<RangeProfile>],
-    map: &mut LocalMap,
-    settings: &MapRegistrationConfig,
-) -> Vec<LoopVerification> {
+fn links_of(mapper: &Mapper, node: usize, submaps: &mut Submaps) -> Vec<LoopVerification> {
     let nearby = LoopConfig {
         detection: Detection::Visits,
         radius_m: RADIUS_M,
         min_gap_nodes: MIN_GAP_NODES,
         ..LoopConfig::default()
     };
-    let visits = detect_visits(mapper.graph.poses(), node, &nearby);
+    let visits = detect_visits(mapper.poses(), node, &nearby);
     let gate = LinkGate {
         information: Matrix3::from_diagonal(&Vector3::new(
             1.0 / (SHIFT.0 * SHIFT.0),
@@ -100,10 +84,7 @@ fn links_of(
     };
     let visits = visits.into_iter().take(VISITS);
     visits
-        .map(|visit| {
-            let profile = |near: usize| Arc::clone(&profiles[near]);
-            link(mapper, node, visit, gate, profile, map, settings)
-        })
+        .map(|visit| link(mapper, node, visit, gate, submaps))
         .collect()
 }
 
@@ -115,11 +96,12 @@ pub(super) fn link_on_request(
     mapper: &mut Mapper,
     old: usize,
     new: usize,
-    settings: &MapRegistrationConfig,
+    submaps: &mut Submaps,
 ) -> Result<LoopVerification, OptimizeError> {
     // The graph's covariance of the relative pose, and a floor.
     let floor = Vector3::new(SHIFT.0, SHIFT.0, SHIFT.1).map(|sigma| sigma * sigma);
-    let covariance = mapper.graph.relative_covariance(old, new)? + Matrix3::from_diagonal(&floor);
+    let covariance =
+        mapper.graph_mut().relative_covariance(old, new)? + Matrix3::from_diagonal(&floor);
     let information = covariance
         .try_inverse()
         .ok_or(OptimizeError::NotPositiveDefinite { node: new })?;
@@ -127,7 +109,7 @@ pub(super) fn link_on_request(
     let (sigmas, most_m, most_rad) = REQUESTED_WINDOW;
     let half_m = sigmas * sigma(math::max(covariance.m11, covariance.m22));
     let half_rad = sigmas * sigma(covariance.m33);
-    let poses = mapper.graph.poses();
+    let poses = mapper.poses();
     let candidate = LoopCandidate {
         node: old,
         distance_m: position_error_m(&poses[old], &poses[new]),
@@ -138,11 +120,7 @@ pub(super) fn link_on_request(
         chi2: GATE_CHI2,
         window: Some((math::min(half_m, most_m), math::min(half_rad, most_rad))),
     };
-    let profile = |near: usize| Arc::new(RangeProfile::new(&mapper.keyframes[near].scan));
-    let mut map = LocalMap::default();
-    Ok(link(
-        mapper, new, candidate, gate, profile, &mut map, settings,
-    ))
+    Ok(link(mapper, new, candidate, gate, submaps))
 }
 
 /// Registers keyframe `node` on the visit around an older one, from its pose in the graph.
@@ -151,29 +129,25 @@ fn link(
     node: usize,
     visit: LoopCandidate,
     allowed: LinkGate,
-    profile: impl Fn(usize) -> Arc<RangeProfile>,
-    map: &mut LocalMap,
-    settings: &MapRegistrationConfig,
+    submaps: &mut Submaps,
 ) -> LoopVerification {
-    let poses = mapper.graph.poses();
+    let poses = mapper.poses();
     let center = visit.node;
     let last = (center + HALF_SUBMAP).min(node - 1);
-    let first = center.saturating_sub(HALF_SUBMAP);
-    let profiles: Vec<_> = (first..=last).map(profile).collect();
-    map.rebuild((first..=last).zip(&profiles).map(|(near, profile)| {
-        let pose = poses[center].between(&poses[near]);
-        (pose, &*mapper.keyframes[near].scan, profile)
-    }));
+    submaps.build(mapper, center.saturating_sub(HALF_SUBMAP)..=last, center);
+    let settings = &submaps.registration;
     let belief = poses[center].between(&poses[node]);
     let stages = [settings.max_correspondence_m, settings.inlier_distance_m];
-    let scan = &mapper.keyframes[node].scan;
-    let mut found = map.register(scan, belief, &stages, None, settings);
+    let scan = mapper.scan(node);
+    let mut found = submaps.map.register(scan, belief, &stages, None, settings);
     if let Some((half_m, half_rad)) = allowed.window
         && found.fit.score < MIN_SCORE
         && let window = SearchWindow::around(belief, half_m, half_rad)
-        && let Some(better) = map.search(scan, &window, 0.0)
+        && let Some(better) = submaps.map.search(scan, &window, 0.0)
     {
-        found = map.register(scan, better.best.pose, &stages, None, settings);
+        found = submaps
+            .map
+            .register(scan, better.best.pose, &stages, None, settings);
     }
     let (gate_information, gate_chi2) = (allowed.information, allowed.chi2);
     let mut link = LoopVerification::from_registration(

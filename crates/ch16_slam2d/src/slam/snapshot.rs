@@ -14,7 +14,7 @@ use thiserror::Error;
 
 use super::{Keyframe, Slam, SlamConfig, Strategies, WindowSweep};
 use crate::cloud::PointCloud;
-use crate::graph::{EdgeView, PoseGraph, PoseNode};
+use crate::graph::{EdgeView, PoseNode};
 use crate::loops::PendingLoop;
 
 /// Larger numbers are not measurements, and their products would overflow.
@@ -277,12 +277,12 @@ impl Slam {
             config: self.config.clone(),
             frames: self.frames,
             last_stamp_s: self.last_stamp_s,
-            nodes: self.mapper.graph.nodes().map(|(_, node)| node).collect(),
-            edges: self.mapper.graph.edges().collect(),
-            optimized_edges: self.mapper.graph.optimized_edges(),
-            keyframes: self.mapper.keyframes.clone(),
+            nodes: self.graph().nodes().map(|(_, node)| node).collect(),
+            edges: self.graph().edges().collect(),
+            optimized_edges: self.graph().optimized_edges(),
+            keyframes: self.keyframes().to_vec(),
             last_attempt_node: self.loop_closer.last_attempt_node,
-            last_loop_node: self.mapper.last_loop_node,
+            last_loop_node: self.mapper.last_loop_node(),
             pending: self.loop_closer.pending().to_vec(),
             front_end: self.front_end.snapshot(),
         }
@@ -308,13 +308,7 @@ impl Slam {
         let mut slam = Self::with(snapshot.config.clone(), strategies);
         slam.frames = snapshot.frames;
         slam.last_stamp_s = snapshot.last_stamp_s;
-        let mapper = &mut slam.mapper;
-        mapper.graph = PoseGraph::from_parts(&snapshot.nodes, &snapshot.edges)
-            .solved_with(snapshot.config.jacobians);
-        mapper.graph.mark_optimized(snapshot.optimized_edges);
-        mapper.keyframes = snapshot.keyframes.clone();
-        mapper.last_loop_node = snapshot.last_loop_node;
-        mapper.chi2 = mapper.graph.chi2();
+        slam.mapper.restore(snapshot);
         slam.loop_closer
             .restore(snapshot.last_attempt_node, &snapshot.pending)?;
         slam.front_end.restore(&snapshot.front_end)?;

@@ -4,16 +4,21 @@ use super::bundle_loops::BundleLoops;
 use super::config::SlamConfig;
 use super::finder::LoopFinder;
 use super::map_matching::MapMatching;
+use super::mapper::LoopOutlierTest;
 use super::registrar::ScanRegistrar;
 use crate::chapter::ChapterParts;
+use crate::graph::PoseGraph;
 
-/// The two strategies of an estimator, with their parameters.
+/// The two strategies of an estimator, with their parameters, and its outlier test.
 #[derive(Clone)]
 pub struct Strategies {
     /// Registers each scan on the last few.
     pub registrar: Box<dyn ScanRegistrar>,
     /// Finds loops.
     pub finder: Box<dyn LoopFinder>,
+    /// Runs over all loops once some contradict the graph; without it they stay, and the optimizer's kernel bounds
+    /// their weight.
+    pub outlier_test: Option<LoopOutlierTest>,
 }
 
 impl Strategies {
@@ -24,6 +29,7 @@ impl Strategies {
             Some(robot) => Self {
                 registrar: Box::new(MapMatching::new(*robot)),
                 finder: Box::new(BundleLoops::new(robot)),
+                outlier_test: Some(PoseGraph::inlier_edges),
             },
             None => ChapterParts::from_config(&config.chapter).into_strategies(&config.chapter),
         }

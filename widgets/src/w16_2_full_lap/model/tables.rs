@@ -189,7 +189,11 @@ fn verdict_with_reason(attempt: &LoopAttempt) -> &'static str {
         Some(LoopRejection::Waiting { .. }) => "waits for others",
         Some(LoopRejection::OutsideGate(_)) => "rejected: χ²",
         Some(LoopRejection::NoCovariance(_)) => "rejected: no covariance",
-        Some(LoopRejection::OptimizationFailed(_) | LoopRejection::CostRose { .. }) => "taken back",
+        Some(
+            LoopRejection::Outlier
+            | LoopRejection::OptimizationFailed(_)
+            | LoopRejection::CostRose { .. },
+        ) => "taken back",
     }
 }
 
