@@ -33,6 +33,82 @@ impl Default for GridConfig {
     }
 }
 
+impl GridConfig {
+    /// The cell that contains a point in metres, world frame.
+    pub(crate) fn cell_at(&self, point: Point2<f64>) -> Cell {
+        let index = |coordinate: f64, min: f64| ((coordinate - min) / self.cell_m).floor();
+        Cell {
+            column: index(point.x, self.min_m.x) as i32,
+            row: index(point.y, self.min_m.y) as i32,
+        }
+    }
+
+    /// Center of a cell in metres, world frame.
+    pub(crate) fn center(&self, cell: Cell) -> Point2<f64> {
+        let center = |k: i32, min: f64| min + (f64::from(k) + 0.5) * self.cell_m;
+        Point2::new(
+            center(cell.column, self.min_m.x),
+            center(cell.row, self.min_m.y),
+        )
+    }
+}
+
+/// Where a grid keeps its cells.
+pub(crate) trait Cells {
+    /// Log odds of a cell and the number of the scan that updated it last; `None` outside of the grid.
+    fn slot(&mut self, cell: Cell) -> Option<(&mut f64, &mut u32)>;
+}
+
+/// A scan to be added to a grid.
+pub(crate) struct Sweep<'a> {
+    /// Extent, resolution and sensor.
+    pub config: GridConfig,
+    /// Number of the scan, from 1 on.
+    pub number: u32,
+    /// Pose of the sensor.
+    pub world_from_sensor: &'a SE2,
+}
+
+impl Sweep<'_> {
+    /// Updates every cell on a ray once.
+    pub fn integrate(&self, cells: &mut impl Cells, beams: &Beams, ranges_m: &[f64]) {
+        debug_assert_eq!(beams.directions().len(), ranges_m.len());
+        let sensor = self.config.sensor;
+        let cos_half_width = math::cos(sensor.beam_width_rad / 2.0);
+        let heading = self.world_from_sensor.rotation();
+        let origin = self.world_from_sensor.position();
+        let from = self.config.cell_at(origin);
+        for (beam, (range, direction)) in ranges_m.iter().zip(beams.directions()).enumerate() {
+            let reach = math::min(
+                range + sensor.obstacle_thickness_m / 2.0,
+                sensor.max_range_m,
+            );
+            let (dx, dy) = heading.rotate(reach * direction.cos, reach * direction.sin);
+            let to = self.config.cell_at(origin + Vector2::new(dx, dy));
+            let mut nearest_beam = beam;
+            for cell in bresenham(from, to) {
+                let Some((log_odds, last_sweep)) = cells.slot(cell) else {
+                    continue;
+                };
+                if *last_sweep == self.number {
+                    continue;
+                }
+                *last_sweep = self.number;
+                let center = self.config.center(cell);
+                let (x, y) = heading.unrotate(center.x - origin.x, center.y - origin.y);
+                let distance = math::norm2(x, y);
+                nearest_beam = beams.nearest(x, y, nearest_beam);
+                if beams.along(nearest_beam, x, y) < distance * cos_half_width {
+                    continue;
+                }
+                let change = sensor.log_odds(distance, ranges_m[nearest_beam]);
+                let limit = self.config.clamp_log_odds;
+                *log_odds = (*log_odds + change).clamp(-limit, limit);
+            }
+        }
+    }
+}
+
 /// A log-odds occupancy grid. 0 is unknown, positive is occupied, negative is free.
 #[derive(Clone, Debug)]
 pub struct OccupancyGrid {
@@ -116,51 +192,19 @@ impl OccupancyGrid {
     /// Every cell on a ray is updated once, by the beam nearest to it in bearing as in Table 9.2, which
     /// is not always the beam whose ray reached it first.
     pub fn integrate(&mut self, world_from_sensor: &SE2, beams: &Beams, ranges_m: &[f64]) {
-        debug_assert_eq!(beams.directions().len(), ranges_m.len());
         self.sweeps += 1;
-        let sensor = self.config.sensor;
-        let cos_half_width = math::cos(sensor.beam_width_rad / 2.0);
-        let heading = world_from_sensor.rotation();
-        let origin = world_from_sensor.position();
-        let from = self.cell_at(origin);
-        for (beam, (range, direction)) in ranges_m.iter().zip(beams.directions()).enumerate() {
-            let reach = math::min(
-                range + sensor.obstacle_thickness_m / 2.0,
-                sensor.max_range_m,
-            );
-            let (dx, dy) = heading.rotate(reach * direction.cos, reach * direction.sin);
-            let to = self.cell_at(origin + Vector2::new(dx, dy));
-            let mut nearest_beam = beam;
-            for cell in bresenham(from, to) {
-                let Some(index) = self.index(cell) else {
-                    continue;
-                };
-                if self.last_sweep[index] == self.sweeps {
-                    continue;
-                }
-                self.last_sweep[index] = self.sweeps;
-                let center = self.center(cell);
-                let (x, y) = heading.unrotate(center.x - origin.x, center.y - origin.y);
-                let distance = math::norm2(x, y);
-                nearest_beam = beams.nearest(x, y, nearest_beam);
-                if beams.along(nearest_beam, x, y) < distance * cos_half_width {
-                    continue;
-                }
-                let change = sensor.log_odds(distance, ranges_m[nearest_beam]);
-                let limit = self.config.clamp_log_odds;
-                self.log_odds[index] = (self.log_odds[index] + change).clamp(-limit, limit);
-            }
-        }
+        let sweep = Sweep {
+            config: self.config,
+            number: self.sweeps,
+            world_from_sensor,
+        };
+        sweep.integrate(self, beams, ranges_m);
     }
 
     /// The cell that contains a point in metres, world frame; may be outside of the grid.
     #[must_use]
     pub fn cell_at(&self, point: Point2<f64>) -> Cell {
-        let index = |coordinate: f64, min: f64| ((coordinate - min) / self.config.cell_m).floor();
-        Cell {
-            column: index(point.x, self.config.min_m.x) as i32,
-            row: index(point.y, self.config.min_m.y) as i32,
-        }
+        self.config.cell_at(point)
     }
 
     /// Enlarges the grid to `size` columns and rows, of which `below` come before the present ones.
@@ -183,11 +227,7 @@ impl OccupancyGrid {
     /// Center of a cell in metres, world frame.
     #[must_use]
     pub fn center(&self, cell: Cell) -> Point2<f64> {
-        let center = |k: i32, min: f64| min + (f64::from(k) + 0.5) * self.config.cell_m;
-        Point2::new(
-            center(cell.column, self.config.min_m.x),
-            center(cell.row, self.config.min_m.y),
-        )
+        self.config.center(cell)
     }
 
     /// Index of a cell into [`OccupancyGrid::log_odds`]; `None` outside of the grid.
@@ -196,6 +236,13 @@ impl OccupancyGrid {
         let column = usize::try_from(cell.column).ok()?;
         let row = usize::try_from(cell.row).ok()?;
         (column < self.columns && row < self.rows).then(|| row * self.columns + column)
+    }
+}
+
+impl Cells for OccupancyGrid {
+    fn slot(&mut self, cell: Cell) -> Option<(&mut f64, &mut u32)> {
+        let index = self.index(cell)?;
+        Some((&mut self.log_odds[index], &mut self.last_sweep[index]))
     }
 }
 

@@ -9,10 +9,13 @@
 //! Scale needs transparency, so it is written as PNG; PGM has none.
 //! Source: Nav2, `nav2_map_server/src/map_io.cpp`, and "map_server", wiki.ros.org/map_server.
 
+use std::convert::Infallible;
 use std::io::{self, Write};
 
 use pr_geom::{Point2, SE2, math};
-use pr_grid::{Beams, GridConfig, GridTooLarge, InverseSensorModel, OccupancyGrid};
+use pr_grid::{
+    Beams, Cell, GridConfig, InverseSensorModel, MAX_TILED_CELLS, TiledGrid, TooManyCells,
+};
 use thiserror::Error;
 
 use ch16_slam2d::scan::LaserScan;
@@ -55,12 +58,51 @@ impl MapMode {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MapError {
-    /// The mapped area needs too many cells.
+    /// The seen area needs too many cells.
     #[error(transparent)]
-    TooLarge(#[from] GridTooLarge),
+    TooLarge(#[from] TooManyCells),
+    /// The rectangle around the seen area has too many pixels for an image.
+    #[error("the image would have {columns} × {rows} cells of {cell_m} m, more than {MAX_PIXELS}")]
+    TooWide {
+        /// Columns.
+        columns: u64,
+        /// Rows.
+        rows: u64,
+        /// Side of a cell, m.
+        cell_m: f64,
+    },
     /// No scan has a point.
     #[error("no scan has a point, so the map is empty")]
     Nothing,
+}
+
+impl MapError {
+    /// Whether larger cells help.
+    fn is_too_fine(self) -> bool {
+        !matches!(self, Self::Nothing)
+    }
+}
+
+/// Most pixels of an image: 2 km × 1 km at 5 cm.
+const MAX_PIXELS: u64 = 1 << 30;
+/// Coarsest cells that are tried, as a multiple of those asked for.
+const COARSEST: f64 = 1024.0;
+
+/// Builds the map with the finest cells that fit: those asked for, or twice, four times … as large.
+///
+/// # Errors
+/// If no scan has a point, or no such cells fit.
+pub fn finest_map(
+    cell_m: f64,
+    build: impl Fn(f64) -> Result<MapImage, MapError>,
+) -> Result<MapImage, MapError> {
+    let mut factor = 1.0;
+    loop {
+        match build(factor * cell_m) {
+            Err(error) if error.is_too_fine() && factor < COARSEST => factor *= 2.0,
+            other => return other,
+        }
+    }
 }
 
 /// Builds the map of scans with known poses; skips those without one.
@@ -106,13 +148,14 @@ fn reach_of(scan: &LaserScan) -> f64 {
     math::min(scan.range_max_m, FARTHEST_M)
 }
 
-/// Adds scans to an occupancy grid that grows as needed.
+/// Adds scans to an occupancy grid of tiles.
 #[derive(Clone, Debug)]
 pub struct MapBuilder {
     cell_m: f64,
     /// Whether beams without a return mark free space up to the sensor's limit.
     clears: bool,
-    grid: Option<OccupancyGrid>,
+    most: usize,
+    grid: Option<TiledGrid>,
     /// Bounds of all points and poses, m: the extent of the image.
     low: Point2<f64>,
     high: Point2<f64>,
@@ -125,6 +168,7 @@ impl MapBuilder {
         Self {
             cell_m,
             clears: false,
+            most: MAX_TILED_CELLS,
             grid: None,
             low: Point2::new(f64::INFINITY, f64::INFINITY),
             high: Point2::new(f64::NEG_INFINITY, f64::NEG_INFINITY),
@@ -138,11 +182,18 @@ impl MapBuilder {
         self
     }
 
+    /// Sets the maximum number of cells in memory.
+    #[must_use]
+    pub fn with_most_cells(mut self, most: usize) -> Self {
+        self.most = most;
+        self
+    }
+
     /// Adds the scan taken at `world_from_body`; beams without a return are ignored.
     ///
     /// # Errors
     /// If the map would have too many cells; it stays unchanged.
-    pub fn add(&mut self, world_from_body: &SE2, scan: &LaserScan) -> Result<(), GridTooLarge> {
+    pub fn add(&mut self, world_from_body: &SE2, scan: &LaserScan) -> Result<(), TooManyCells> {
         let world_from_sensor = *world_from_body * scan.body_from_sensor;
         let mut beams: Vec<(f64, f64)> = Vec::with_capacity(scan.ranges_m.len());
         for (beam, &range_m) in scan.ranges_m.iter().enumerate() {
@@ -164,8 +215,13 @@ impl MapBuilder {
         }
         let at = world_from_sensor.position();
         let config = self.config(scan, at);
-        let grid = self.grid.get_or_insert_with(|| OccupancyGrid::new(config));
-        grid.cover(at, reach_m + 2.0 * self.cell_m)?;
+        let most = self.most;
+        let grid = self
+            .grid
+            .get_or_insert_with(|| TiledGrid::new(config, most));
+        let (bearings, ranges_m): (Vec<f64>, Vec<f64>) = beams.iter().copied().unzip();
+        let directions = Beams::new(&bearings);
+        grid.integrate(&world_from_sensor, &directions, &ranges_m, reach_m)?;
         for &(bearing, range_m) in &beams {
             let (sin, cos) = math::sin_cos(bearing + world_from_sensor.theta());
             for point in [at, Point2::new(at.x + range_m * cos, at.y + range_m * sin)] {
@@ -179,8 +235,6 @@ impl MapBuilder {
                 );
             }
         }
-        let (bearings, ranges_m): (Vec<f64>, Vec<f64>) = beams.into_iter().unzip();
-        grid.integrate(&world_from_sensor, &Beams::new(&bearings), &ranges_m);
         Ok(())
     }
 
@@ -200,44 +254,55 @@ impl MapBuilder {
                 },
                 ..InverseSensorModel::default()
             },
-            ..GridConfig::growing_from(at, cell_m)
+            min_m: at,
+            cell_m,
+            ..GridConfig::default()
         }
     }
 
     /// The map, cropped to the observed area.
     ///
     /// # Errors
-    /// If there is no observation.
+    /// If there is no observation, or the image would have too many pixels.
     pub fn finish(&self) -> Result<MapImage, MapError> {
         let grid = self.grid.as_ref().ok_or(MapError::Nothing)?;
+        if self.low.x > self.high.x {
+            return Err(MapError::Nothing);
+        }
         let margin = 2;
         let [low, high] = [self.low, self.high].map(|corner| grid.cell_at(corner));
-        let clamp = |cell: i32, count: usize| cell.clamp(0, count as i32 - 1) as usize;
-        let columns = clamp(low.column - margin, grid.columns())
-            ..clamp(high.column + margin, grid.columns()) + 1;
-        let rows = clamp(low.row - margin, grid.rows())..clamp(high.row + margin, grid.rows()) + 1;
-        let min_m = grid.config().min_m;
-        let mut log_odds = Vec::with_capacity(columns.len() * rows.len());
-        for row in rows.clone().rev() {
-            let start = row * grid.columns();
-            log_odds
-                .extend_from_slice(&grid.log_odds()[start + columns.start..start + columns.end]);
+        let first = Cell {
+            column: low.column - margin,
+            row: low.row - margin,
+        };
+        let count = |from: i32, to: i32| (i64::from(to) - i64::from(from) + 1) as u64;
+        let columns = count(first.column, high.column + margin);
+        let rows = count(first.row, high.row + margin);
+        let cell_m = self.cell_m;
+        if columns.saturating_mul(rows) > MAX_PIXELS {
+            return Err(MapError::TooWide {
+                columns,
+                rows,
+                cell_m,
+            });
         }
+        let corner = grid.config().min_m;
         Ok(MapImage {
-            width: columns.len(),
-            height: rows.len(),
+            width: columns as usize,
+            height: rows as usize,
             origin_m: [
-                min_m.x + columns.start as f64 * self.cell_m,
-                min_m.y + rows.start as f64 * self.cell_m,
+                corner.x + f64::from(first.column) * cell_m,
+                corner.y + f64::from(first.row) * cell_m,
             ],
-            cell_m: self.cell_m,
-            log_odds,
+            cell_m,
+            first,
+            grid: grid.clone(),
         })
     }
 }
 
 /// An occupancy map.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct MapImage {
     /// Columns.
     pub width: usize,
@@ -247,8 +312,9 @@ pub struct MapImage {
     pub origin_m: [f64; 2],
     /// Side of a cell, m.
     pub cell_m: f64,
-    /// Log odds, row by row from the highest y; 0 if unknown.
-    pub log_odds: Vec<f64>,
+    /// Lower left cell in the grid.
+    first: Cell,
+    grid: TiledGrid,
 }
 
 impl MapImage {
@@ -265,14 +331,56 @@ impl MapImage {
         }
     }
 
+    /// What to say if the map is coarser than what was asked for.
+    #[must_use]
+    pub fn coarser_than(&self, cell_m: f64) -> Option<String> {
+        (self.cell_m > cell_m).then(|| {
+            format!(
+                "the map has cells of {} m, because the place has too many of {cell_m} m for memory or an image",
+                self.cell_m
+            )
+        })
+    }
+
+    /// Calls `take` with the log odds of each row of cells, 0 if unknown, from the highest y on.
+    ///
+    /// # Errors
+    /// Those of `take`.
+    pub fn rows<E>(&self, mut take: impl FnMut(&[f64]) -> Result<(), E>) -> Result<(), E> {
+        let mut cells = vec![0.0; self.width];
+        (0..self.height).rev().try_for_each(|row| {
+            let first = Cell {
+                row: self.first.row + row as i32,
+                ..self.first
+            };
+            self.grid.row(first, &mut cells);
+            take(&cells)
+        })
+    }
+
+    /// Log odds of all cells, row by row from the highest y.
+    #[must_use]
+    pub fn log_odds(&self) -> Vec<f64> {
+        let mut all = Vec::with_capacity(self.width * self.height);
+        let Ok(()) = self.rows(|row| {
+            all.extend_from_slice(row);
+            Ok::<(), Infallible>(())
+        });
+        all
+    }
+
     /// Writes the trinary map as PGM.
     ///
     /// # Errors
     /// If `target` fails.
     pub fn write_pgm(&self, mut target: impl Write) -> io::Result<()> {
         write!(target, "P5\n{} {}\n255\n", self.width, self.height)?;
-        let pixels: Vec<u8> = self.log_odds.iter().map(|&l| Self::trinary(l)).collect();
-        target.write_all(&pixels)
+        let mut pixels = Vec::with_capacity(self.width);
+        self.rows(|row| {
+            pixels.clear();
+            pixels.extend(row.iter().map(|&l| Self::trinary(l)));
+            target.write_all(&pixels)
+        })
     }
 
     /// Writes the map as greyscale PNG, with transparency if the mode needs it.
@@ -282,25 +390,27 @@ impl MapImage {
     pub fn write_png(&self, target: impl Write, mode: MapMode) -> io::Result<()> {
         let mut encoder = png::Encoder::new(target, self.width as u32, self.height as u32);
         encoder.set_depth(png::BitDepth::Eight);
-        let pixels: Vec<u8> = match mode {
-            MapMode::Trinary => {
-                encoder.set_color(png::ColorType::Grayscale);
-                self.log_odds.iter().map(|&l| Self::trinary(l)).collect()
-            }
-            MapMode::Scale => {
-                encoder.set_color(png::ColorType::GrayscaleAlpha);
-                let cells = self.log_odds.iter();
-                cells
-                    .flat_map(|&l| match Self::probability(l) {
+        encoder.set_color(match mode {
+            MapMode::Trinary => png::ColorType::Grayscale,
+            MapMode::Scale => png::ColorType::GrayscaleAlpha,
+        });
+        let mut writer = encoder.write_header()?;
+        let mut image = writer.stream_writer()?;
+        let mut pixels = Vec::new();
+        self.rows(|row| {
+            pixels.clear();
+            match mode {
+                MapMode::Trinary => pixels.extend(row.iter().map(|&l| Self::trinary(l))),
+                MapMode::Scale => {
+                    pixels.extend(row.iter().flat_map(|&l| match Self::probability(l) {
                         Some(p) => [(254.0 * (1.0 - p)).round() as u8, 255],
                         None => [205, 0],
-                    })
-                    .collect()
+                    }));
+                }
             }
-        };
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&pixels)?;
-        writer.finish()?;
+            image.write_all(&pixels)
+        })?;
+        image.finish()?;
         Ok(())
     }
 
@@ -320,13 +430,16 @@ impl MapImage {
     #[must_use]
     pub fn counts(&self) -> [usize; 3] {
         let mut counts = [0; 3];
-        for &log_odds in &self.log_odds {
-            counts[match Self::trinary(log_odds) {
-                0 => 0,
-                254 => 1,
-                _ => 2,
-            }] += 1;
-        }
+        let Ok(()) = self.rows(|row| {
+            for &log_odds in row {
+                counts[match Self::trinary(log_odds) {
+                    0 => 0,
+                    254 => 1,
+                    _ => 2,
+                }] += 1;
+            }
+            Ok::<(), Infallible>(())
+        });
         counts
     }
 }

@@ -1,9 +1,8 @@
 //! `slam2d localize`: localizes a log on the map of a session.
 
 use std::path::PathBuf;
+use std::process::ExitCode;
 use std::str::FromStr;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use ch16_slam2d::localize::{LocalizeReport, StartPose, Verdict};
 use ch16_slam2d::search::SearchError;
@@ -17,6 +16,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use crate::grade::{Grade, GradeError, ReferenceArgs};
+use crate::interrupt::{self, Interrupt};
 use crate::log_file::{FileError, TopicArgs, open_compared};
 use crate::optimize::{check_file, write_whole};
 use crate::output::{print_json, say};
@@ -113,6 +113,8 @@ pub enum LocalizeError {
 /// What `--json` prints.
 #[derive(Serialize)]
 struct LocalizeJson {
+    /// Whether Ctrl-C or SIGTERM ended it early.
+    interrupted: bool,
     scans: usize,
     /// Number of scans by verdict.
     found: usize,
@@ -161,7 +163,7 @@ impl PoseJson {
 ///
 /// # Errors
 /// If a file cannot be used.
-pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
+pub fn run(args: &LocalizeArgs) -> Result<ExitCode, LocalizeError> {
     let name = args.log.display().to_string();
     if let Some(path) = &args.output {
         check_file(path).map_err(|source| FileError::Io {
@@ -182,13 +184,12 @@ pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
             source,
         }
     })?;
-    let is_interrupted = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&is_interrupted);
-    // If the handler cannot be set, Ctrl-C ends the process without results.
-    let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
+    let interrupt = Interrupt::watch();
     let (mut reader, mut progress) = open_compared(&args.log, &args.topics)?;
-    while !is_interrupted.load(Ordering::Relaxed) {
+    let mut is_interrupted = true;
+    while !interrupt.came() {
         let Some(frame) = reader.next_frame().map_err(FileError::from)? else {
+            is_interrupted = false;
             break;
         };
         run.step(frame);
@@ -206,7 +207,20 @@ pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
         eprintln!("slam2d: {sentence}");
     }
     let trajectory = run.trajectory();
-    if let Some(path) = &args.output {
+    if is_interrupted {
+        let scans = run.reports().len();
+        eprintln!(
+            "slam2d: {name}: interrupted after {scans} scans; the rest of the log is missing"
+        );
+    }
+    // A part replaces no whole file.
+    let kept = args
+        .output
+        .as_ref()
+        .filter(|path| is_interrupted && path.is_file());
+    if let Some(path) = kept {
+        eprintln!("slam2d: {} keeps its poses", path.display());
+    } else if let Some(path) = &args.output {
         let mut text = Vec::new();
         let written = trajectory.write_tum(&mut text);
         let written = written.and_then(|()| write_whole(path, &text));
@@ -229,6 +243,7 @@ pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
     };
     let localized = trajectory.poses().first();
     let result = LocalizeJson {
+        interrupted: is_interrupted,
         scans: reports.len(),
         found: count(Verdict::Found),
         tracking: count(Verdict::Tracking),
@@ -246,7 +261,11 @@ pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
     } else {
         print_text(&result, reports);
     }
-    Ok(())
+    Ok(if is_interrupted {
+        interrupt::EXIT_CODE.into()
+    } else {
+        ExitCode::SUCCESS
+    })
 }
 
 /// Prints a line for each change of the verdict, and the totals.

@@ -87,6 +87,14 @@ pub enum FileError {
         /// The system's error.
         source: io::Error,
     },
+    /// A file of a result could not be written.
+    #[error("{}: {source}; nothing was replaced", path.display())]
+    Unwritten {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        source: io::Error,
+    },
     /// A folder without a recording.
     #[error("{} is a folder without a ROS 2 recording; pass a log, or a folder with .mcap or .db3 files", path.display())]
     NoRecording {

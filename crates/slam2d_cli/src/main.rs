@@ -10,6 +10,7 @@ mod doctor;
 mod evaluate;
 mod grade;
 mod info;
+mod interrupt;
 mod lap;
 mod localize;
 mod log_file;
@@ -22,6 +23,7 @@ mod output;
 mod parameters;
 mod places;
 mod register;
+mod run_folder;
 mod run_log;
 mod run_output;
 mod session_file;
@@ -32,6 +34,7 @@ mod tick_costs;
 mod trial;
 mod world;
 
+use std::fmt::Display;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
@@ -96,8 +99,8 @@ fn main() -> ExitCode {
         Command::Optimize(args) => optimize::run(args).map_err(|e| e.to_string()),
         Command::Doctor(args) => doctor::run(args).map_err(|e| e.to_string()),
         Command::Info(args) => info::run(args).map_err(|e| e.to_string()),
-        Command::Run(args) => run_log::run(args).map_err(|e| e.to_string()),
-        Command::Localize(args) => localize::run(args).map_err(|e| e.to_string()),
+        Command::Run(args) => return ended(run_log::run(args)),
+        Command::Localize(args) => return ended(localize::run(args)),
         Command::Logs(args) => logs::run(args).map_err(|e| e.to_string()),
         Command::Parameters(args) => parameters::run(args).map_err(|e| e.to_string()),
         Command::Evaluate(args) => evaluate::run(args).map_err(|e| e.to_string()),
@@ -105,8 +108,13 @@ fn main() -> ExitCode {
         Command::Map(args) => map::run(args).map_err(|e| e.to_string()),
         Command::Mark(args) => mark::run(args).map_err(|e| e.to_string()),
     };
+    ended(outcome.map(|()| ExitCode::SUCCESS))
+}
+
+/// The exit code, after an error was printed.
+fn ended(outcome: Result<ExitCode, impl Display>) -> ExitCode {
     match outcome {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         Err(message) => {
             eprintln!("slam2d: {message}");
             ExitCode::from(2)

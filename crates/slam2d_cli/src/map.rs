@@ -14,7 +14,7 @@ use crate::log_file::{FileError, open};
 use crate::numbers;
 use crate::optimize::write_whole;
 use crate::output::say;
-use crate::run_output::KEYFRAMES;
+use crate::run_folder::KEYFRAMES;
 use crate::session_file::{SessionFileError, read_session};
 
 /// Write the map of a run as an image with a YAML file, for Nav2's map_server.

@@ -1,9 +1,7 @@
 //! `slam2d run`: runs the estimator on a recorded log.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::path::PathBuf;
+use std::process::ExitCode;
 
 use ch16_slam2d::slam::SnapshotError;
 use clap::Args;
@@ -19,10 +17,13 @@ use thiserror::Error;
 
 use crate::buildings::setting;
 use crate::grade::{Grade, GradeError, ReferenceArgs};
+use crate::interrupt::{self, Interrupt};
 use crate::log_file::{FileError, TopicArgs, open_compared};
+use crate::numbers;
 use crate::optimize::check_folder;
 use crate::output::{print_json, say};
-use crate::run_output::write_folder;
+use crate::run_folder::{CUT_SHORT, folder_of_part};
+use crate::run_output::{Results, write_folder};
 use crate::session_file::{SessionFileError, read_session};
 use crate::tick_costs::{TickCosts, TickSummary};
 
@@ -33,9 +34,13 @@ pub struct RunArgs {
     log: PathBuf,
     #[command(flatten)]
     topics: TopicArgs,
-    /// Write the results to this folder.
+    /// Write the results to this folder. They replace those of an older run all together at the end; a run that is cut
+    /// short replaces no whole result and goes to the folder interrupted in it.
     #[arg(short = 'o', long, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// Side of a cell of the map, m.
+    #[arg(long, default_value = "0.05", value_parser = numbers::cell_m, allow_hyphen_values = true)]
+    resolution: f64,
     /// Ignore odometry and match scans alone.
     #[arg(long)]
     no_odometry: bool,
@@ -110,8 +115,11 @@ struct RunJson {
     peak_mb: Option<f64>,
     /// Time per scan at the start and at the end of the log; null with fewer than ten scans.
     ticks: Option<TickSummary>,
-    /// Whether Ctrl-C ended the run early.
+    /// Whether Ctrl-C, SIGTERM or an unreadable log ended the run early.
     interrupted: bool,
+    /// Folder of the results.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    folder: Option<PathBuf>,
     /// What should be checked, one sentence each.
     doubts: Vec<String>,
     /// Every keyframe with its covariance, and every loop with its evidence.
@@ -122,17 +130,14 @@ struct RunJson {
     truth: Option<Grade>,
 }
 
-/// Runs the estimator on the log and prints the result.
+/// Runs the estimator on the log and prints the result; the exit code tells whether it reached the end of the log.
 ///
 /// # Errors
 /// If a file cannot be used. What was mapped before is written.
-pub fn run(args: &RunArgs) -> Result<(), RunError> {
+pub fn run(args: &RunArgs) -> Result<ExitCode, RunError> {
     let name = args.log.display().to_string();
     let reference = args.reference.read()?;
-    let is_interrupted = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&is_interrupted);
-    // If the handler cannot be set, Ctrl-C ends the process without results.
-    let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
+    let interrupt = Interrupt::watch();
     if let Some(folder) = &args.output {
         check_folder(folder).map_err(|source| FileError::Io {
             path: folder.clone(),
@@ -145,7 +150,8 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     let mut reader = reader.ignoring_odometry(args.no_odometry);
     let mut broken = None;
     let mut costs = TickCosts::default();
-    while !is_interrupted.load(Ordering::Relaxed) {
+    let mut is_interrupted = true;
+    while !interrupt.came() {
         match reader.next_frame() {
             Ok(Some(frame)) => {
                 let (report, ms) = timed(|| run.step(frame.clone()));
@@ -155,7 +161,10 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
                 }
                 progress.report(run.scans());
             }
-            Ok(None) => break,
+            Ok(None) => {
+                is_interrupted = false;
+                break;
+            }
             Err(error) if run.scans() == 0 => return Err(FileError::from(error).into()),
             Err(error) => {
                 broken = Some(error);
@@ -192,20 +201,46 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
         .map(|reference| reference.grade(&trajectory))
         .transpose();
     let mut quality = run.quality();
-    if let Some(folder) = &args.output {
-        write_results(folder, &run, &quality)?;
+    if is_interrupted {
+        let cause = match &broken {
+            Some(_) => "the log cannot be read further",
+            None => "it was interrupted",
+        };
+        let doubt = format!(
+            "{CUT_SHORT} after {} scans: {cause}; the rest of the log is missing",
+            run.scans()
+        );
+        quality.doubts.insert(0, doubt);
+    }
+    let mut folder = args.output.clone();
+    if let Some(wanted) = folder.as_mut().filter(|_| is_interrupted) {
+        let of_part = folder_of_part(wanted);
+        if of_part != *wanted {
+            eprintln!(
+                "slam2d: {} keeps the result of a whole run; what was mapped now goes to {}",
+                wanted.display(),
+                of_part.display()
+            );
+        }
+        *wanted = of_part;
+    }
+    if let Some(folder) = &folder {
         remarks.extend(reader.notes().about.iter().cloned());
         let title = args.log.file_name().unwrap_or(args.log.as_os_str());
         let title = title.to_string_lossy();
-        write_folder(
-            folder,
-            &title,
-            &run,
-            &quality,
-            &recorder,
-            &remarks,
-            args.free_space,
-        )?;
+        let results = Results {
+            log: &title,
+            run: &run,
+            quality: &quality,
+            recorder: &recorder,
+            remarks: &remarks,
+            cell_m: args.resolution,
+            has_free_space: args.free_space,
+            is_whole: !is_interrupted,
+        };
+        if let Some(sentence) = write_folder(folder, &results)? {
+            eprintln!("slam2d: {name}: {sentence}");
+        }
     }
     // Write the results before reporting any later error.
     let grade = grade?;
@@ -222,7 +257,8 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
         cpu_s: process::cpu_s(),
         peak_mb: process::peak_mb(),
         ticks: costs.summary(),
-        interrupted: is_interrupted.load(Ordering::Relaxed),
+        interrupted: is_interrupted,
+        folder,
         doubts,
         quality,
         relations: of(true),
@@ -233,7 +269,11 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     } else {
         print_text(&result);
     }
-    Ok(())
+    Ok(if is_interrupted {
+        interrupt::EXIT_CODE.into()
+    } else {
+        ExitCode::SUCCESS
+    })
 }
 
 /// A new run, or one that continues a session, and the session's mounting of the laser.
@@ -263,60 +303,6 @@ fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder, Option<LaserMount>), Ru
         is_flipped: false,
     });
     Ok((run, RunRecorder::resume(&session), mount))
-}
-
-/// Writes trajectory, graph, quality and doubts to a folder, which is created if needed.
-fn write_results(folder: &Path, run: &LogRun, quality: &Quality) -> Result<(), FileError> {
-    let io_error = |path: &Path| {
-        let path = path.to_owned();
-        move |source| FileError::Io { path, source }
-    };
-    fs::create_dir_all(folder).map_err(io_error(folder))?;
-    let write = |name: &str, bytes: &[u8]| {
-        let path = folder.join(name);
-        fs::write(&path, bytes).map_err(io_error(&path))
-    };
-    let mut trajectory = Vec::new();
-    run.trajectory()
-        .write_tum(&mut trajectory)
-        .expect("memory takes all");
-    write("trajectory.tum", &trajectory)?;
-    let json = serde_json::to_vec(quality).expect("plain numbers, strings and lists");
-    write("quality.json", &json)?;
-    write("report.txt", report(run, quality).as_bytes())
-}
-
-/// The quality report as text.
-fn report(run: &LogRun, quality: &Quality) -> String {
-    let mut text = format!(
-        "{} scans, {} keyframes, {} loops in the graph\n\n",
-        run.scans(),
-        quality.keyframes.len(),
-        quality.links.len()
-    );
-    if quality.doubts.is_empty() {
-        text.push_str("No doubts.\n");
-    } else {
-        text.push_str("Doubts:\n");
-    }
-    for doubt in &quality.doubts {
-        text.push_str(&format!("- {doubt}\n"));
-    }
-    text.push_str("\nLoops: from, to, score, RMSE (m), inliers, chi-squared (gate)\n");
-    for link in &quality.links {
-        let number = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.3}"));
-        text.push_str(&format!(
-            "{} {} {} {} {} {} ({:.1})\n",
-            link.from,
-            link.to,
-            number(link.score),
-            number(link.rmse_m),
-            link.inliers,
-            number(link.chi2),
-            link.gate_chi2
-        ));
-    }
-    text
 }
 
 fn print_text(result: &RunJson) {

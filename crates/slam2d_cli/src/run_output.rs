@@ -2,6 +2,8 @@
 //!
 //! | file | content |
 //! |---|---|
+//! | `trajectory.tum` | the pose of every scan |
+//! | `quality.json`, `report.txt` | reliability of keyframes and loops, and doubts |
 //! | `session.slam2d` | the complete state: input of `--continue`, `slam2d localize` and `slam2d map` |
 //! | `graph.g2o` | the pose graph |
 //! | `keyframes.jsonl` | the keyframes' scans with their poses: input of `slam2d map` |
@@ -9,11 +11,13 @@
 //! | `map.pgm`, `map.yaml` | the map for Nav2's map_server |
 //! | `map.png` | the same map for viewing |
 
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::Path;
 
 use robot_io::graph_file::GraphFile;
-use robot_io::map_image::{MapMode, build_map, map_with_free_space};
+use robot_io::map_image::{
+    MapError, MapImage, MapMode, build_map, finest_map, map_with_free_space,
+};
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
 use robot_io::report::Report;
@@ -21,71 +25,127 @@ use robot_io::run::LogRun;
 use robot_io::session::FILE_NAME;
 
 use crate::log_file::FileError;
-use crate::optimize::write_whole;
+use crate::run_folder::{KEYFRAMES, QUALITY, RunFolder};
 
-/// Name of the file of keyframes.
-pub const KEYFRAMES: &str = "keyframes.jsonl";
-
-/// Cell size of the map, m: Nav2's default.
-const MAP_CELL_M: f64 = 0.05;
 /// Cell size of the report, m: finer cells are not visible in its picture.
 const REPORT_CELL_M: f64 = 0.1;
 
-/// Writes all files to an existing folder.
+/// What a run leaves.
+pub struct Results<'a> {
+    /// Name of the log.
+    pub log: &'a str,
+    /// The run after its end.
+    pub run: &'a LogRun,
+    /// Its quality.
+    pub quality: &'a Quality,
+    /// The scans of its keyframes.
+    pub recorder: &'a RunRecorder,
+    /// Sentences on the recording.
+    pub remarks: &'a [String],
+    /// Side of the map's cells, m.
+    pub cell_m: f64,
+    /// Whether beams without a return mark free space.
+    pub has_free_space: bool,
+    /// Whether the run reached the end of the log.
+    pub is_whole: bool,
+}
+
+/// Writes all files to a folder, which is created if needed; returns what is to be said about the map.
 ///
 /// # Errors
-/// If the system cannot write a file; the error contains the name.
-pub fn write_folder(
-    folder: &Path,
-    log: &str,
-    run: &LogRun,
-    quality: &Quality,
-    recorder: &RunRecorder,
-    remarks: &[String],
-    has_free_space: bool,
-) -> Result<(), FileError> {
-    let save = |name: &str, write: &dyn Fn(&mut Vec<u8>) -> io::Result<()>| {
-        let path = folder.join(name);
-        let mut bytes = Vec::new();
-        let written = write(&mut bytes).and_then(|()| write_whole(&path, &bytes));
-        written.map_err(|source| FileError::Io { path, source })
-    };
+/// If the system cannot write a file; the error contains the name, and nothing is replaced.
+pub fn write_folder(folder: &Path, results: &Results<'_>) -> Result<Option<String>, FileError> {
+    let Results {
+        run,
+        quality,
+        recorder,
+        ..
+    } = results;
+    let into = RunFolder::create(folder)?;
+    into.save("trajectory.tum", |out| run.trajectory().write_tum(out))?;
+    into.save(QUALITY, |out| Ok(serde_json::to_writer(out, quality)?))?;
+    into.save("report.txt", |out| {
+        out.write_all(report(run, quality).as_bytes())
+    })?;
     if let Some(session) = run.session() {
-        save(FILE_NAME, &|out| out.write_all(&session.to_bytes()))?;
+        into.save(FILE_NAME, |out| out.write_all(&session.to_bytes()))?;
     }
     if let Some(slam) = run.slam() {
-        save("graph.g2o", &|out| {
+        into.save("graph.g2o", |out| {
             out.write_all(GraphFile::from_pose_graph(slam.graph()).to_g2o().as_bytes())
         })?;
     }
     let lines = recorder.map_lines(run);
-    save(KEYFRAMES, &|out| {
+    into.save(KEYFRAMES, |out| {
         lines.iter().try_for_each(|line| line.write(&mut *out))
     })?;
-    let draw = if has_free_space {
-        map_with_free_space
-    } else {
-        build_map
+    let draw = |cell_m: f64| -> Result<MapImage, MapError> {
+        if results.has_free_space {
+            map_with_free_space(&lines, cell_m)
+        } else {
+            build_map(&lines, cell_m)
+        }
     };
-    // A map too large for this resolution is skipped; `slam2d map --resolution` writes a coarser one.
-    if let Ok(map) = draw(&lines, MAP_CELL_M) {
-        save("map.pgm", &|out| map.write_pgm(out))?;
-        save("map.png", &|out| map.write_png(out, MapMode::Trinary))?;
-        save("map.yaml", &|out| {
-            out.write_all(map.yaml("map.pgm", MapMode::Trinary).as_bytes())
-        })?;
-    }
-    // A map too large for this resolution leaves the report without walls.
-    let map = draw(&lines, REPORT_CELL_M).ok();
-    let report = Report {
-        name: log,
+    let said = match finest_map(results.cell_m, draw) {
+        Ok(map) => {
+            into.save("map.pgm", |out| map.write_pgm(out))?;
+            into.save("map.png", |out| map.write_png(out, MapMode::Trinary))?;
+            into.save("map.yaml", |out| {
+                out.write_all(map.yaml("map.pgm", MapMode::Trinary).as_bytes())
+            })?;
+            map.coarser_than(results.cell_m)
+        }
+        Err(problem) => Some(format!("no map was written: {problem}")),
+    };
+    let map = finest_map(REPORT_CELL_M, draw).ok();
+    let mut remarks = results.remarks.to_vec();
+    remarks.extend(said.clone());
+    let html = Report {
+        name: results.log,
         scans: run.scans(),
         quality,
         chi2_over_time: recorder.chi2_over_time(),
         map: map.as_ref(),
-        remarks,
-    };
-    save("report.html", &|out| {
-        out.write_all(report.html().as_bytes())
-    })
+        remarks: &remarks,
+    }
+    .html();
+    into.save("report.html", |out| out.write_all(html.as_bytes()))?;
+    if results.is_whole {
+        into.forget_parts();
+    }
+    into.finish()?;
+    Ok(said)
+}
+
+/// The quality report as text.
+fn report(run: &LogRun, quality: &Quality) -> String {
+    let mut text = format!(
+        "{} scans, {} keyframes, {} loops in the graph\n\n",
+        run.scans(),
+        quality.keyframes.len(),
+        quality.links.len()
+    );
+    if quality.doubts.is_empty() {
+        text.push_str("No doubts.\n");
+    } else {
+        text.push_str("Doubts:\n");
+    }
+    for doubt in &quality.doubts {
+        text.push_str(&format!("- {doubt}\n"));
+    }
+    text.push_str("\nLoops: from, to, score, RMSE (m), inliers, chi-squared (gate)\n");
+    for link in &quality.links {
+        let number = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.3}"));
+        text.push_str(&format!(
+            "{} {} {} {} {} {} ({:.1})\n",
+            link.from,
+            link.to,
+            number(link.score),
+            number(link.rmse_m),
+            link.inliers,
+            number(link.chi2),
+            link.gate_chi2
+        ));
+    }
+    text
 }

@@ -16,7 +16,7 @@ use robot_io::graph_file::GraphFile;
 use robot_io::log::{LogOptions, LogReader as _};
 use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
-use robot_io::map_image::{MapImage, build_map, map_with_free_space};
+use robot_io::map_image::{MapImage, build_map, finest_map, map_with_free_space};
 use robot_io::motion::ComparedReader;
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
@@ -166,7 +166,7 @@ impl Pipeline {
         progress.end(py)?;
         let (stamps, poses): (Vec<f64>, Vec<SE2>) = found.trajectory.into_iter().unzip();
         let map = found.map.map(|map| {
-            let log_odds = PyArray1::from_vec(py, map.log_odds);
+            let log_odds = PyArray1::from_vec(py, map.log_odds());
             let log_odds = log_odds.reshape([map.height, map.width])?.unbind();
             let [x, y] = map.origin_m;
             Py::new(
@@ -255,6 +255,9 @@ impl Pipeline {
         } else {
             build_map
         };
+        // An area too large for cells of this size has a coarser map.
+        let map = finest_map(cell_m, |cell_m| draw(&lines, cell_m)).ok();
+        remarks.extend(map.as_ref().and_then(|map| map.coarser_than(cell_m)));
         let slam = run.slam();
         let trajectory = run.trajectory();
         let poses = trajectory.poses().iter();
@@ -262,8 +265,7 @@ impl Pipeline {
             trajectory: poses.map(|at| (at.stamp_s, at.pose)).collect(),
             keyframes: slam.map_or_else(Vec::new, |slam| slam.graph().poses().to_vec()),
             covariances: covariances.collect(),
-            // An area too large for cells of this size has no map.
-            map: draw(&lines, cell_m).ok(),
+            map,
             graph: slam.map(Slam::graph).map(GraphFile::from_pose_graph),
             quality,
             remarks,

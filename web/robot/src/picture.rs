@@ -2,7 +2,7 @@
 
 use pr_geom::{SE2, math};
 use robot_io::log::LogFrame;
-use robot_io::map_image::MapBuilder;
+use robot_io::map_image::{MapBuilder, MapError};
 
 use crate::update::Update;
 
@@ -32,7 +32,7 @@ impl Default for MapPicture {
     fn default() -> Self {
         Self {
             cell_m: FINEST_M,
-            map: MapBuilder::new(FINEST_M),
+            map: builder(FINEST_M),
             painted: Vec::new(),
             is_new: false,
         }
@@ -53,7 +53,7 @@ impl MapPicture {
 
     fn begin(&mut self, cell_m: f64) {
         self.cell_m = cell_m;
-        self.map = MapBuilder::new(cell_m);
+        self.map = builder(cell_m);
         self.painted.clear();
     }
 
@@ -80,13 +80,17 @@ impl MapPicture {
         if !self.is_new || self.painted.len() < scans {
             return None;
         }
-        let map = self.map.finish().ok()?;
-        if map.width * map.height > MAX_CELLS {
-            self.begin(2.0 * self.cell_m);
-            return None;
-        }
+        let map = match self.map.finish() {
+            Ok(map) if map.width * map.height <= MAX_CELLS => map,
+            Err(MapError::Nothing) => return None,
+            _ => {
+                self.begin(2.0 * self.cell_m);
+                return None;
+            }
+        };
         self.is_new = false;
-        let rows = map.log_odds.chunks(map.width).rev();
+        let log_odds = map.log_odds();
+        let rows = log_odds.chunks(map.width).rev();
         Some(Update {
             bytes: rows.flatten().map(|&log_odds| shade(log_odds)).collect(),
             ..Update::numbers(
@@ -101,6 +105,11 @@ impl MapPicture {
             )
         })
     }
+}
+
+/// An empty map that a picture has room for.
+fn builder(cell_m: f64) -> MapBuilder {
+    MapBuilder::new(cell_m).with_most_cells(4 * MAX_CELLS)
 }
 
 /// 0 if unknown, else 1 for free to 255 for occupied.

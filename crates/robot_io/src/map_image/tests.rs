@@ -75,7 +75,7 @@ fn unknown_is_transparent_in_scale_and_every_pixel_reads_back() {
         (info.width as usize, info.height as usize),
         (map.width, map.height)
     );
-    for (pixel, &log_odds) in pixels.chunks(2).zip(&map.log_odds) {
+    for (pixel, &log_odds) in pixels.chunks(2).zip(map.log_odds()) {
         assert_eq!(pixel[1] == 0, log_odds == 0.0);
         if log_odds != 0.0 {
             // Probability that Nav2 computes from lightness: within half a step of 255.
@@ -136,4 +136,37 @@ fn beams_without_a_return_mark_free_space_by_option() {
     assert!((gained / half_disk - 1.0).abs() < 0.1, "{gained}");
     // The map extends to the limit, and no cell is occupied there.
     assert!(more > 3 * free);
+}
+
+#[test]
+fn a_place_that_is_too_large_has_the_finest_map_that_fits_and_says_so() {
+    let wall = LaserScan {
+        first_angle_rad: -1.5,
+        angle_step_rad: 0.01,
+        ranges_m: vec![10.0; 300],
+        ..LaserScan::default()
+    };
+    let build = |most: usize, far_m: f64| {
+        finest_map(0.1, |cell_m| {
+            let mut map = MapBuilder::new(cell_m).with_most_cells(most);
+            for x in [0.0, far_m] {
+                map.add(&SE2::new(x, 0.0, 0.0), &wall)?;
+            }
+            map.finish()
+        })
+    };
+    // 20 m × 20 m around either pose: 16 or 25 tiles of 64 × 64 cells of 0.1 m.
+    let whole = build(MAX_TILED_CELLS, 100.0).unwrap();
+    assert_eq!((whole.cell_m, whole.coarser_than(0.1)), (0.1, None));
+    let coarse = build(30 * 64 * 64, 100.0).unwrap();
+    assert_eq!(coarse.cell_m, 0.2);
+    let said = coarse.coarser_than(0.1).unwrap();
+    assert!(said.starts_with("the map has cells of 0.2 m"), "{said}");
+    // Two places 10,000 km apart: 2e8 × 200 cells of 0.1 m in an image.
+    let apart = build(MAX_TILED_CELLS, 1e7).unwrap();
+    assert!(apart.cell_m > 0.1 && apart.width as u64 * apart.height as u64 <= MAX_PIXELS);
+    assert_eq!(
+        build(MAX_TILED_CELLS, 1e300).unwrap_err().to_string(),
+        "the map needs more than 67108864 cells of 102.4 m"
+    );
 }

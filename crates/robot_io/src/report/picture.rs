@@ -1,5 +1,6 @@
 //! Map, path, loops and uncertainty as one SVG, in metres.
 
+use std::convert::Infallible;
 use std::fmt::Write as _;
 
 use crate::map_image::MapImage;
@@ -104,8 +105,10 @@ fn bounds(quality: &Quality, map: Option<&MapImage>) -> ([f64; 2], [f64; 2]) {
 fn walls(map: &MapImage) -> String {
     let mut path = String::new();
     let [x0, y0] = map.origin_m;
-    for (row, cells) in map.log_odds.chunks(map.width).enumerate() {
-        let y = y0 + (map.height - 1 - row) as f64 * map.cell_m;
+    let mut row = map.height;
+    let Ok(()) = map.rows(|cells| {
+        row -= 1;
+        let y = y0 + row as f64 * map.cell_m;
         let mut start = None;
         for column in 0..=map.width {
             let is_wall = cells.get(column).is_some_and(|&log_odds| log_odds > 0.6);
@@ -121,6 +124,7 @@ fn walls(map: &MapImage) -> String {
                 _ => {}
             }
         }
-    }
+        Ok::<(), Infallible>(())
+    });
     path
 }

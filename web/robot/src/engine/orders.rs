@@ -5,7 +5,7 @@ use ch16_slam2d::localize::StartPose;
 use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::metrics::position_error_m;
 use pr_geom::SE2;
-use robot_io::map_image::build_map;
+use robot_io::map_image::{build_map, finest_map};
 use robot_io::report::Report;
 use robot_io::session;
 
@@ -318,7 +318,8 @@ impl<'a> Engine<'a> {
             },
             _ => {
                 let lines = self.recorder.map_lines(&self.run);
-                let map = build_map(&lines, MAP_CELL_M).map_err(|problem| problem.to_string())?;
+                let map = finest_map(MAP_CELL_M, |cell_m| build_map(&lines, cell_m));
+                let map = map.map_err(|problem| problem.to_string())?;
                 let saved = files::MAP_IMAGES.into_iter().find(|image| *image == name);
                 self.image = saved.unwrap_or(self.image);
                 files::map_file(&map, name, self.image)
@@ -329,7 +330,7 @@ impl<'a> Engine<'a> {
     fn report(&mut self) -> String {
         let quality = self.quality();
         let lines = self.recorder.map_lines(&self.run);
-        let map = build_map(&lines, REPORT_CELL_M).ok();
+        let map = finest_map(REPORT_CELL_M, |cell_m| build_map(&lines, cell_m)).ok();
         let mut remarks = self.remarks.clone();
         remarks.extend(self.grade_updates().into_iter().map(|update| update.text));
         remarks.retain(|remark| !remark.is_empty());
