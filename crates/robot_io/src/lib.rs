@@ -6,6 +6,8 @@
 //! - [`log_format`]: detects the format of a file and opens its reader.
 //! - [`carmen`]: the text format of CARMEN, in both directions.
 //! - [`ros`]: recordings of ROS 2 (MCAP) and ROS 1 (bags).
+//! - [`course_log`]: the text format of Carnegie Mellon's course on robotics.
+//! - [`table_log`]: rows of scans or of beams: CSV, `rostopic echo -p`, RPLidar's SDK, BreezySLAM.
 //! - [`json_log`]: JSON lines, in both directions.
 //! - [`line_log`]: shared by all text formats.
 //! - [`graph_file`]: pose graphs of g2o, TORO and JSON.
@@ -28,6 +30,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 
 pub mod carmen;
+pub mod course_log;
 pub mod doctor;
 pub mod evaluate;
 pub mod evidence;
@@ -52,6 +55,7 @@ pub mod rosbag2;
 pub mod run;
 pub mod session;
 pub mod settings;
+pub mod table_log;
 pub mod trajectory;
 
 mod counted;

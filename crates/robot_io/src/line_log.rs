@@ -7,6 +7,7 @@ use std::io::BufRead;
 
 use crate::lines::{LineEnd, next_line};
 use crate::log::{BrokenRecord, FilePosition, LogError, LogFrame, LogNotes, LogReader};
+use crate::log_format::Foreign;
 
 /// Parser of a format's lines, in order.
 pub trait LineFormat: Default {
@@ -29,6 +30,9 @@ pub trait LineFormat: Default {
     fn waiting(&mut self, _is_done: bool) -> Option<LogFrame> {
         None
     }
+
+    /// Takes the end of the file.
+    fn at_end(&mut self, _notes: &mut LogNotes) {}
 
     /// Whether this many lines are enough to conclude that the file has another format.
     fn is_foreign(&self, _lines: usize) -> bool {
@@ -57,12 +61,18 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
     /// Creates a reader at the log's start; errors contain `name`.
     #[must_use]
     pub fn new(source: R, name: &str) -> Self {
+        Self::with_format(source, name, F::default())
+    }
+
+    /// Creates a reader with the state of a format before the first line.
+    #[must_use]
+    pub fn with_format(source: R, name: &str, format: F) -> Self {
         Self {
             source,
             name: name.to_owned(),
             line: Vec::new(),
             notes: LogNotes::default(),
-            format: F::default(),
+            format,
             frames: 0,
             is_done: false,
         }
@@ -73,7 +83,9 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
         if self.notes.bytes == 0 {
             return LogError::Empty { name };
         }
-        if let Some((found, advice)) = self.format.foreign() {
+        if let Some(by_content) = self.format.foreign() {
+            let by_name = Foreign::named(&name).map(|kind| (kind.found, kind.advice));
+            let (found, advice) = by_name.unwrap_or(by_content);
             return LogError::Foreign {
                 name,
                 found,
@@ -111,6 +123,7 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
                 })?;
             let Some((end, bytes)) = read else {
                 self.is_done = true;
+                self.format.at_end(&mut self.notes);
                 continue;
             };
             self.notes.lines += 1;

@@ -9,6 +9,7 @@ use thiserror::Error;
 
 use crate::laser_mount::LaserMount;
 use crate::remark::Remark;
+use crate::table_log::Layout;
 
 /// A position in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +44,8 @@ pub struct LogOptions {
     pub laser: Option<LaserMount>,
     /// Mounting of the laser if neither an option nor the recording states it: that of the session that is continued.
     pub laser_before: Option<LaserMount>,
+    /// Columns of a table; default: those of its header, or those of a known form.
+    pub columns: Option<Layout>,
     /// Height band (m, on the body) for points of a 3-D sensor; without it, only single-ring clouds are read.
     pub heights_m: Option<(f64, f64)>,
 }
@@ -258,4 +261,42 @@ pub trait LogReader {
 
     /// Counts, choices and problems so far.
     fn notes(&self) -> &LogNotes;
+}
+
+/// A reader whose notes begin with remarks on its files.
+struct RemarkedReader<'a> {
+    inner: Box<dyn LogReader + 'a>,
+    remarks: Vec<Remark>,
+    notes: LogNotes,
+}
+
+/// A reader with remarks on its files.
+#[must_use]
+pub fn with_remarks<'a>(
+    inner: Box<dyn LogReader + 'a>,
+    remarks: Vec<Remark>,
+) -> Box<dyn LogReader + 'a> {
+    if remarks.is_empty() {
+        return inner;
+    }
+    Box::new(RemarkedReader {
+        inner,
+        remarks,
+        notes: LogNotes::default(),
+    })
+}
+
+impl LogReader for RemarkedReader<'_> {
+    fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
+        let frame = self.inner.next_frame();
+        self.notes.clone_from(self.inner.notes());
+        self.notes
+            .warnings
+            .splice(0..0, self.remarks.iter().cloned());
+        frame
+    }
+
+    fn notes(&self) -> &LogNotes {
+        &self.notes
+    }
 }

@@ -10,6 +10,9 @@ use std::rc::Rc;
 use flate2::bufread::MultiGzDecoder;
 use ruzstd::decoding::StreamingDecoder;
 
+/// End of the name of a database's write-ahead log.
+pub const WRITE_AHEAD: &str = "-wal";
+
 /// Most bytes of a decompressed SQLite file: it needs random access and is kept in memory.
 const MAX_UNPACKED: u64 = 1 << 30;
 
@@ -29,6 +32,8 @@ type Open<'a> = dyn Fn() -> io::Result<Box<dyn SeekRead + 'a>> + 'a;
 #[derive(Clone)]
 pub struct LogBytes<'a> {
     open: Rc<Open<'a>>,
+    /// The write-ahead log of a database.
+    write_ahead: Option<Rc<Open<'a>>>,
 }
 
 impl<'a> LogBytes<'a> {
@@ -36,7 +41,23 @@ impl<'a> LogBytes<'a> {
     pub fn new<R: SeekRead + 'a>(open: impl Fn() -> io::Result<R> + 'a) -> Self {
         Self {
             open: Rc::new(move || Ok(Box::new(open()?) as Box<dyn SeekRead + 'a>)),
+            write_ahead: None,
         }
+    }
+
+    /// Adds the write-ahead log of a database: the file beside it whose name ends in [`WRITE_AHEAD`].
+    #[must_use]
+    pub fn with_write_ahead(mut self, log: Self) -> Self {
+        self.write_ahead = Some(log.open);
+        self
+    }
+
+    /// The write-ahead log of a database, if it was given.
+    ///
+    /// # Errors
+    /// If the system cannot read it.
+    pub fn write_ahead(&self) -> io::Result<Option<Box<dyn SeekRead + 'a>>> {
+        self.write_ahead.as_ref().map(|open| open()).transpose()
     }
 
     /// The decompressed bytes in order.

@@ -1,48 +1,39 @@
 //! Detects the format of a log and opens its reader.
 
+mod foreign;
+
 use crate::carmen::CarmenReader;
+use crate::course_log::{CourseLines, CourseReader};
 use crate::json_log::JsonLogReader;
 use crate::laser_mount::MountedReader;
 use crate::log::{FilePosition, LogError, LogOptions, LogReader};
-use crate::log_bytes::{LogBytes, packs};
+use crate::log_bytes::LogBytes;
 use crate::restamped::restamped;
 use crate::ros::RosReader;
-use crate::session::Session;
+use crate::table_log::{Layout, TableReader, TableRows};
 use std::io::{self, BufRead};
+
+pub use foreign::Foreign;
 
 /// Formats, distinguished by their first bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogFormat {
     /// Lines of text, one message each.
     Carmen,
+    /// Lines of text of Carnegie Mellon's course on probabilistic robotics.
+    Course,
+    /// Rows of a table, of scans or of beams.
+    Table,
     /// Container of ROS 2 messages.
     Mcap,
     /// Recording of ROS 1.
     RosBag,
     /// SQLite database, the older container of ROS 2.
     Sqlite,
-    /// Compressed as a whole, by gzip or zstd.
-    Packed,
-    /// Recording of ROS 1 older than version 2.0.
-    OldRosBag,
-    /// metadata.yaml of rosbag2.
-    Metadata,
-    /// Output of GMapping: particles and their scans.
-    Gfs,
-    /// A log of the canonical scan matcher, in JSON.
-    Csm,
-    /// Stamped poses: TUM or EuRoC.
-    Trajectory,
-    /// A zip or tar archive.
-    Archive,
-    /// A pose graph of g2o or TORO.
-    Graph,
     /// Lines of JSON, one frame each.
     Json,
-    /// A saved session.
-    Session,
-    /// Text in UTF-16.
-    Utf16,
+    /// No log.
+    Foreign(&'static Foreign),
 }
 
 impl LogFormat {
@@ -52,39 +43,27 @@ impl LogFormat {
         let starts = |magic: &[u8]| start.starts_with(magic);
         if starts(b"\x89MCAP0\r\n") {
             Self::Mcap
-        } else if starts(b"#ROSBAG") {
-            Self::RosBag
         } else if starts(b"SQLite format 3\0") {
             Self::Sqlite
-        } else if starts(b"#ROSRECORD") || starts(b"#ROSBAG V1") {
-            Self::OldRosBag
-        } else if starts(b"rosbag2_bagfile_information") {
-            Self::Metadata
-        } else if starts(b"PK\x03\x04") || start.get(257..262) == Some(b"ustar") {
-            Self::Archive
-        } else if is_trajectory(start) {
-            Self::Trajectory
-        } else if is_gfs(start) {
-            Self::Gfs
-        } else if starts(b"{")
-            && [&b"\"nrays\""[..], b"\"readings\""]
-                .iter()
-                .all(|key| contains(start, key))
-        {
-            Self::Csm
-        } else if packs(start) {
-            Self::Packed
-        } else if starts(b"VERTEX") || starts(b"EDGE") {
-            Self::Graph
+        } else if CourseLines::begins(start) {
+            Self::Course
+        } else if Layout::of(start).is_some() {
+            Self::Table
+        } else if let Some(kind) = Foreign::of(start) {
+            Self::Foreign(kind)
+        } else if starts(b"#ROSBAG") {
+            Self::RosBag
         } else if starts(b"{") || starts(b"\xef\xbb\xbf{") {
             Self::Json
-        } else if Session::begins(start) {
-            Self::Session
-        } else if starts(b"\xff\xfe") || starts(b"\xfe\xff") {
-            Self::Utf16
         } else {
             Self::Carmen
         }
+    }
+
+    /// Whether it is a recording of ROS, which may be split into several files.
+    #[must_use]
+    pub fn is_ros(self) -> bool {
+        matches!(self, Self::Mcap | Self::RosBag | Self::Sqlite)
     }
 
     /// Opens a log by its first bytes; errors contain `name`.
@@ -139,8 +118,14 @@ impl LogFormat {
             found,
             advice,
         };
-        let found = Self::detect(start);
-        if parts.len() > 1 && !matches!(found, Self::Mcap | Self::RosBag | Self::Sqlite) {
+        let found = match (Self::detect(start), &options.columns) {
+            (Self::Carmen | Self::Course | Self::Foreign(_), Some(_)) => Self::Table,
+            (found, _) => found,
+        };
+        if let Self::Foreign(kind) = found {
+            return Err(foreign(kind.found, kind.advice));
+        }
+        if parts.len() > 1 && !found.is_ros() {
             return Err(foreign(
                 "several files, the first of which is not a ROS recording",
                 "give one log at a time",
@@ -154,83 +139,23 @@ impl LogFormat {
             })
         };
         match found {
-            Self::Carmen => mounted(restamped(&first, |source| CarmenReader::new(source, name))),
             Self::Json => mounted(restamped(&first, |source| JsonLogReader::new(source, name))),
+            Self::Course => mounted(restamped(&first, |source| CourseReader::new(source, name))),
+            Self::Table => {
+                let columns = options.columns.clone();
+                let layout = columns.or_else(|| Layout::of(start)).unwrap_or_default();
+                mounted(restamped(&first, |source| {
+                    TableReader::with_format(source, name, TableRows::new(layout.clone()))
+                }))
+            }
             Self::Mcap | Self::RosBag | Self::Sqlite => {
                 Ok(Box::new(RosReader::new(parts, name, options)))
             }
-            Self::Packed => Err(foreign(
-                "compressed more than twice",
-                "decompress it with zstd -d or gunzip first",
-            )),
-            Self::OldRosBag => Err(foreign(
-                "a ROS 1 recording older than version 2.0",
-                "convert it with rosbag fix first",
-            )),
-            Self::Metadata => Err(foreign(
-                "the description of a ROS 2 recording, not the recording itself",
-                "pass its folder, or the files that it lists",
-            )),
-            Self::Gfs => Err(foreign(
-                "the output of GMapping, not a log of scans",
-                "pass the log that GMapping was run on",
-            )),
-            Self::Csm => Err(foreign(
-                "a log of CSM, the canonical scan matcher",
-                "convert it to CARMEN with CSM's json2carmen first",
-            )),
-            Self::Trajectory => Err(foreign(
-                "a trajectory, not a log of scans",
-                "pass a log; slam2d evaluate evaluates a trajectory",
-            )),
-            Self::Archive => Err(foreign(
-                "an archive",
-                "extract it and pass the recording in it",
-            )),
-            Self::Utf16 => Err(foreign("text in UTF-16", "save it as UTF-8 first")),
-            Self::Session => Err(foreign(
-                "a saved session, not a log of scans",
-                "pass a log; slam2d run LOG --continue continues a session",
-            )),
-            Self::Graph => Err(foreign(
-                "a pose graph, not a log of scans",
-                "optimize it with slam2d optimize",
-            )),
+            Self::Carmen | Self::Foreign(_) => {
+                mounted(restamped(&first, |source| CarmenReader::new(source, name)))
+            }
         }
     }
-}
-
-/// Whether the bytes contain `key`.
-fn contains(bytes: &[u8], key: &[u8]) -> bool {
-    bytes.windows(key.len()).any(|window| window == key)
-}
-
-/// Whether the first line that is not a comment has the eight numbers of a stamped pose, or more.
-fn is_trajectory(start: &[u8]) -> bool {
-    let mut lines = start.split(|&byte| byte == b'\n');
-    let line = lines.find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"));
-    let Some(Ok(line)) = line.map(std::str::from_utf8) else {
-        return false;
-    };
-    let separates = |c: char| c.is_ascii_whitespace() || c == ',';
-    let words: Vec<&str> = line
-        .split(separates)
-        .filter(|word| !word.is_empty())
-        .collect();
-    words.len() >= 8 && words.iter().all(|word| word.parse::<f64>().is_ok())
-}
-
-/// Whether a line starts with a keyword of GMapping.
-fn is_gfs(start: &[u8]) -> bool {
-    let words: [&[u8]; 5] = [
-        b"LASER_READING ",
-        b"ODO_UPDATE ",
-        b"SM_UPDATE ",
-        b"GFS ",
-        b"NEFF ",
-    ];
-    let mut lines = start.split(|&byte| byte == b'\n').take(20);
-    lines.any(|line| words.iter().any(|word| line.starts_with(word)))
 }
 
 #[cfg(test)]
@@ -252,6 +177,14 @@ mod tests {
             (
                 b"#ROSRECORD V1.1\n",
                 "x.log is a ROS 1 recording older than version 2.0; convert it with rosbag fix first",
+            ),
+            (
+                b"#ROSBAG V1.2\n",
+                "x.log is a ROS 1 recording older than version 2.0; convert it with rosbag fix first",
+            ),
+            (
+                b"version https://git-lfs.github.com/spec/v1\n",
+                "x.log is a Git LFS pointer, not the file itself; fetch the file with git lfs pull",
             ),
             (
                 b"# stamp\n1,0,0,0,0,0,0,1\n",

@@ -5,6 +5,9 @@ use pr_geom::SE2;
 /// Earth's circumference, m: no frame of odometry, mounting or map has its origin farther away.
 const FARTHEST_M: f64 = 4.1e7;
 
+/// More beams than any planar laser has.
+pub const MAX_BEAMS: usize = 100_000;
+
 /// Thirty thousand years, s: no robot's clock counts from so long ago.
 const LONGEST_S: f64 = 1e12;
 

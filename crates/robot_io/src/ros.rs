@@ -39,6 +39,7 @@ mod transforms;
 mod wire;
 
 pub use reader::RosReader;
+pub(crate) use scan_fields::ScanFields;
 
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,7 @@
 //! Files of a rosbag2 folder, by its `metadata.yaml`.
 
+use crate::remark::{Part, Remark};
+
 /// Name of the file that describes a recording.
 pub const METADATA: &str = "metadata.yaml";
 
@@ -37,29 +39,87 @@ pub fn is_recording(name: &str) -> bool {
     [".mcap", ".db3"].iter().any(|end| plain.ends_with(end))
 }
 
-/// Indices of the files of a recording in reading order: those that `metadata` lists, else all ROS 2 files by name.
+/// The files of a recording.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InOrder {
+    /// Indices in reading order.
+    pub files: Vec<usize>,
+    /// What differs from `metadata.yaml`.
+    pub remarks: Vec<Remark>,
+}
+
+/// The files of a recording: those that `metadata` lists, else all ROS 2 files by name. Files that are not listed take
+/// the places of as many that are missing, because they were renamed; if their number differs, all that are there are
+/// read, and what is missing is said.
 ///
 /// # Errors
-/// The name of a listed file that is missing.
-pub fn in_order(metadata: Option<&str>, names: &[String]) -> Result<Vec<usize>, String> {
+/// The name of a listed file, if none is there and no other.
+pub fn in_order(metadata: Option<&str>, names: &[String]) -> Result<InOrder, String> {
     let listed = metadata.map(listed_files).unwrap_or_default();
-    if listed.is_empty() {
-        let all = 0..names.len();
-        let mut found: Vec<usize> = all.filter(|&k| is_recording(&names[k])).collect();
+    let by_name = |files: &mut Vec<usize>| {
         // a_10.mcap follows a_9.mcap.
-        found.sort_by_key(|&k| (names[k].len(), &names[k]));
-        return Ok(found);
+        files.sort_by_key(|&k| (names[k].len(), &names[k]));
+    };
+    let all = (0..names.len()).filter(|&k| is_recording(&names[k]));
+    let mut all: Vec<usize> = all.collect();
+    by_name(&mut all);
+    if listed.is_empty() {
+        return Ok(InOrder {
+            files: all,
+            remarks: Vec::new(),
+        });
     }
-    let find = |listed: String| {
+    let find = |listed: &String| {
         // Older versions list them relative to the parent folder, and compression changes their extension.
-        let last = listed.rsplit('/').next().unwrap_or(&listed);
+        let last = listed.rsplit('/').next().unwrap_or(listed);
         let is_it = |name: &String| {
             let end = name.strip_prefix(last);
             end.is_some_and(|end| end.is_empty() || PACKED.contains(&end))
         };
-        names.iter().position(is_it).ok_or(listed)
+        names.iter().position(is_it)
     };
-    listed.into_iter().map(find).collect()
+    let found: Vec<Option<usize>> = listed.iter().map(find).collect();
+    let absent = listed
+        .iter()
+        .zip(&found)
+        .filter(|(_, found)| found.is_none());
+    let absent: Vec<String> = absent.map(|(name, _)| name.clone()).collect();
+    let mut others = all;
+    others.retain(|k| !found.contains(&Some(*k)));
+    if absent.is_empty() {
+        others.clear();
+    } else if others.is_empty() && absent.len() == listed.len() {
+        return Err(absent[0].clone());
+    }
+    let name_all = |files: &[usize]| crate::lines::listed(files.iter().map(|&k| names[k].clone()));
+    let absent_names = crate::lines::listed(absent.iter().cloned());
+    let mut remarks = Vec::new();
+    let is_renamed = !absent.is_empty() && others.len() == absent.len();
+    let files: Vec<usize> = if is_renamed {
+        remarks.push(Remark::mended(
+            Part::File,
+            format!(
+                "{METADATA} lists {absent_names}, which is not there; {} is read in its place",
+                name_all(&others)
+            ),
+        ));
+        let mut others = others.into_iter();
+        let replaced = found
+            .into_iter()
+            .map(|found| found.or_else(|| others.next()));
+        replaced.flatten().collect()
+    } else {
+        if !absent.is_empty() {
+            remarks.push(Remark::wrong(
+                Part::File,
+                format!(
+                    "a part of the recording is missing: {METADATA} lists {absent_names}, which is not there; copy it into the folder"
+                ),
+            ));
+        }
+        found.into_iter().flatten().chain(others).collect()
+    };
+    Ok(InOrder { files, remarks })
 }
 
 #[cfg(test)]
@@ -77,11 +137,31 @@ mod tests {
         ];
         let names = names.map(str::to_owned);
         let listed = "  relative_file_paths:\n    - bag/a_9.db3\n    - bag/a_2.db3\n";
-        assert_eq!(in_order(Some(listed), &names), Ok(vec![1, 3]));
-        assert_eq!(in_order(Some("version: 5"), &names), Ok(vec![1, 0, 3]));
-        assert_eq!(in_order(None, &names[2..3]), Ok(vec![]));
+        let files = |listed, names| in_order(listed, names).map(|order| order.files);
+        assert_eq!(files(Some(listed), &names), Ok(vec![1, 3]));
+        assert_eq!(files(Some("version: 5"), &names), Ok(vec![1, 0, 3]));
+        assert_eq!(files(None, &names[2..3]), Ok(vec![]));
         let absent = "  relative_file_paths:\n    - a_3.db3\n";
-        assert_eq!(in_order(Some(absent), &names), Err("a_3.db3".to_owned()));
+        assert_eq!(files(Some(absent), &names[2..3]), Err("a_3.db3".to_owned()));
+    }
+
+    #[test]
+    fn renamed_files_take_their_places_and_missing_ones_are_named() {
+        let names = ["mine.db3", "a_1.db3", "metadata.yaml"].map(str::to_owned);
+        let two = "  relative_file_paths:\n    - a_0.db3\n    - a_1.db3\n";
+        let renamed = in_order(Some(two), &names).unwrap();
+        assert_eq!(renamed.files, [0, 1]);
+        assert_eq!(
+            renamed.remarks[0].text,
+            "metadata.yaml lists a_0.db3, which is not there; mine.db3 is read in its place"
+        );
+        let missing = in_order(Some(two), &names[1..]).unwrap();
+        assert_eq!(missing.files, [0]);
+        let text = &missing.remarks[0].text;
+        assert!(
+            text.contains("lists a_0.db3, which is not there; copy it"),
+            "{text}"
+        );
     }
 
     #[test]

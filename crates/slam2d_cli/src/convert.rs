@@ -1,7 +1,7 @@
 //! `slam2d convert`: converts between formats, chosen by file name extension.
 
 use std::fs;
-use std::io;
+use std::io::{self, BufRead as _};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -18,7 +18,7 @@ use crate::session_file::{SessionFileError, is_session, read_session};
 
 /// Convert a log, a pose graph or a trajectory to another format, chosen by the file name extensions.
 ///
-/// Logs (.clf .log .mcap .bag .jsonl) become .clf, .jsonl, or .tum with the odometry. Pose graphs
+/// Logs, everything that slam2d run reads, become .clf, .jsonl, or .tum with the odometry. Pose graphs
 /// (.g2o .graph .toro .json) become .g2o, .graph, .toro or .json. Trajectories (.tum) become .json.
 /// Sessions (.slam2d) become .g2o, .graph, .toro or .json, or .tum with the keyframes.
 #[derive(Args, Clone, Debug)]
@@ -77,11 +77,26 @@ enum Kind {
 impl Kind {
     fn from_extension(extension: &str) -> Self {
         match extension {
-            "clf" | "log" | "mcap" | "bag" | "jsonl" => Self::Log,
+            "clf" | "log" | "mcap" | "bag" | "db3" | "jsonl" => Self::Log,
             "g2o" | "graph" | "toro" | "json" => Self::Graph,
             "tum" => Self::Trajectory,
             "slam2d" => Self::Session,
             _ => Self::Other,
+        }
+    }
+
+    /// The content of an existing file or folder without a known extension: a log of any name, unless it is a graph or a
+    /// session.
+    fn of(path: &Path) -> Self {
+        if is_session(path) {
+            return Self::Session;
+        }
+        let is_graph =
+            || open(path).is_ok_and(|mut file| file.fill_buf().is_ok_and(GraphFile::begins));
+        match (path.exists(), is_graph()) {
+            (true, true) => Self::Graph,
+            (true, false) => Self::Log,
+            (false, _) => Self::Other,
         }
     }
 
@@ -94,7 +109,7 @@ impl Kind {
                 "convert a session to .g2o, .graph, .toro or .json, or .tum with its keyframes"
             }
             Self::Other => {
-                "use a log (.clf .log .mcap .bag .jsonl), a pose graph (.g2o .graph .toro .json), a trajectory (.tum) or a session (.slam2d)"
+                "use a log that slam2d run reads, a pose graph (.g2o .graph .toro .json), a trajectory (.tum) or a session (.slam2d)"
             }
         }
     }
@@ -115,7 +130,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), ConvertError> {
     let [from, to] = [&args.input, &args.output].map(|path| extension(path));
     let kind = match Kind::from_extension(&from) {
         // The folder of a run stands for its session.
-        Kind::Other if args.input.is_dir() && is_session(&args.input) => Kind::Session,
+        Kind::Other => Kind::of(&args.input),
         kind => kind,
     };
     if is_same_file(&args.input, &args.output) {

@@ -8,11 +8,13 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use robot_io::laser_mount::LaserMount;
-use robot_io::log::{LogError, LogFrame, LogOptions, LogReader};
-use robot_io::log_bytes::LogBytes;
+use robot_io::log::{LogError, LogFrame, LogOptions, LogReader, with_remarks};
+use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::log_format::LogFormat;
 use robot_io::motion::ComparedReader;
+use robot_io::remark::Remark;
 use robot_io::rosbag2;
+use robot_io::table_log::Layout;
 use thiserror::Error;
 
 /// Choice of topics and frames in a ROS recording, if there are several.
@@ -37,6 +39,10 @@ pub struct TopicArgs {
     /// Use the points of a 3-D sensor between these heights above the body's origin, m.
     #[arg(long, value_name = "LOW,HIGH", value_parser = heights, allow_hyphen_values = true)]
     heights: Option<(f64, f64)>,
+    /// Columns of a table of scans or beams without a header, such as time_us,angle_deg,range_mm or
+    /// time,x,y,heading,angle_min,angle_increment,ranges; - is not read.
+    #[arg(long, value_name = "NAMES", allow_hyphen_values = true)]
+    columns: Option<Layout>,
     /// Mounting of the laser in the session that the log continues.
     #[arg(skip)]
     laser_before: Option<LaserMount>,
@@ -71,6 +77,7 @@ impl TopicArgs {
             body_frame: self.body_frame.clone(),
             laser: self.laser,
             laser_before: self.laser_before,
+            columns: self.columns.clone(),
             heights_m: self.heights,
         }
     }
@@ -101,6 +108,14 @@ pub enum FileError {
         /// The folder.
         path: PathBuf,
     },
+    /// A folder whose description lists a file that is not there.
+    #[error("{}: {} lists {absent}, which is not there, and the folder has no other recording; copy it into the folder", path.display(), rosbag2::METADATA)]
+    Absent {
+        /// The folder.
+        path: PathBuf,
+        /// The file.
+        absent: String,
+    },
     /// It is not a readable log.
     #[error(transparent)]
     Log(#[from] LogError),
@@ -130,10 +145,10 @@ pub fn open_log(
     path: &Path,
     topics: &TopicArgs,
 ) -> Result<(Box<dyn LogReader>, Progress), FileError> {
-    let (parts, progress) = parts(path)?;
+    let (parts, remarks, progress) = parts(path)?;
     let name = path.display().to_string();
     let reader = LogFormat::open_parts(parts, &name, &topics.options())?;
-    Ok((reader, progress))
+    Ok((with_remarks(reader, remarks), progress))
 }
 
 /// Reads all frames of a log.
@@ -166,17 +181,26 @@ pub fn open_compared(
     ))
 }
 
-/// The files of a log, and a progress bar.
-fn parts(path: &Path) -> Result<(Vec<LogBytes<'static>>, Progress), FileError> {
-    let files = log_files(path)?;
+/// The files of a log, remarks on them, and a progress bar.
+fn parts(path: &Path) -> Result<(Vec<LogBytes<'static>>, Vec<Remark>, Progress), FileError> {
+    let (files, remarks) = log_files(path)?;
     let sizes = files
         .iter()
         .map(|file| file.metadata().map_or(0, |about| about.len()));
     // A log is read twice: for the survey and for its scans.
     let progress = Progress::new(2 * sizes.sum::<u64>());
-    let bytes = files.into_iter().map(|file| bytes_of(file, &progress.bar));
-    let parts: Result<Vec<_>, FileError> = bytes.collect();
-    Ok((parts?, progress))
+    let mut parts = Vec::new();
+    for file in files {
+        let mut beside = file.clone().into_os_string();
+        beside.push(WRITE_AHEAD);
+        let beside = PathBuf::from(beside);
+        let mut part = bytes_of(file, &progress.bar)?;
+        if beside.is_file() {
+            part = part.with_write_ahead(bytes_of(beside, &progress.bar)?);
+        }
+        parts.push(part);
+    }
+    Ok((parts, remarks, progress))
 }
 
 /// The bytes of a file, opened again for each pass; a pipe is read into memory.
@@ -200,13 +224,13 @@ fn bytes_of(path: PathBuf, bar: &ProgressBar) -> Result<LogBytes<'static>, FileE
 }
 
 /// The files of a recording: one, or those of a rosbag2 folder.
-fn log_files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
+fn log_files(path: &Path) -> Result<(Vec<PathBuf>, Vec<Remark>), FileError> {
     let io_error = |path: &Path| {
         let path = path.to_owned();
         move |source| FileError::Io { path, source }
     };
     if !path.is_dir() {
-        return Ok(vec![path.to_owned()]);
+        return Ok((vec![path.to_owned()], Vec::new()));
     }
     let metadata = path.join(rosbag2::METADATA);
     let listed = if metadata.is_file() {
@@ -219,15 +243,19 @@ fn log_files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
         let name = entry.map_err(io_error(path))?.file_name();
         names.push(name.to_string_lossy().into_owned());
     }
-    let order = rosbag2::in_order(listed.as_deref(), &names)
-        .map_err(|absent| io_error(&path.join(absent))(io::ErrorKind::NotFound.into()))?;
-    let files: Vec<PathBuf> = order.into_iter().map(|k| path.join(&names[k])).collect();
+    let order =
+        rosbag2::in_order(listed.as_deref(), &names).map_err(|absent| FileError::Absent {
+            path: path.to_owned(),
+            absent,
+        })?;
+    let files = order.files.into_iter().map(|k| path.join(&names[k]));
+    let files: Vec<PathBuf> = files.collect();
     if files.is_empty() {
         return Err(FileError::NoRecording {
             path: path.to_owned(),
         });
     }
-    Ok(files)
+    Ok((files, order.remarks))
 }
 
 /// Progress, speed and time left: a bar in a terminal, otherwise a line every ten seconds.

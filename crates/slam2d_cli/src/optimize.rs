@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use pr_optim::g2o::{G2oError, G2oFile};
 use pr_optim::{OptimizeError, RobustKernel};
-use robot_io::graph_file::prepared;
+use robot_io::graph_file::{prepared, with_fix_last};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -147,11 +147,11 @@ fn solve_file(args: &OptimizeArgs) -> Result<(G2oFile, Summary), OptimizeFailure
     let solved = solve_repeatedly(&mut file.problem, args)
         .map_err(|error| in_words_of_the_file(path, &file, error))?;
     if let Some(output) = &args.output {
-        write_whole(output, prepared.own_lines(&file.to_bytes())).map_err(|source| {
-            OptimizeFailure::File {
-                path: output.clone(),
-                source,
-            }
+        let written = file.to_bytes();
+        let text = with_fix_last(prepared.own_lines(&written));
+        write_whole(output, &text).map_err(|source| OptimizeFailure::File {
+            path: output.clone(),
+            source,
         })?;
     }
     let report = solved.outcome.report;

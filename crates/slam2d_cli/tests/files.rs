@@ -170,9 +170,9 @@ fn a_graph_goes_through_toro_and_json_and_solves_to_the_same() {
     let g2o = folder.path().join("x.g2o");
     fs::write(
         &g2o,
-        "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1.1 0 0\nVERTEX_SE2 2 2 0.1 0.2\nFIX 0\n\
+        "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1.1 0 0\nVERTEX_SE2 2 2 0.1 0.2\n\
          EDGE_SE2 0 1 1 0 0 10 1 2 20 3 30\nEDGE_SE2 1 2 1 0 0.1 10 0 0 20 0 30\n\
-         EDGE_SE2 0 2 2 0.2 0.1 10 0 0 20 0 30\n",
+         EDGE_SE2 0 2 2 0.2 0.1 10 0 0 20 0 30\nFIX 0\n",
     )
     .unwrap();
     let [toro, json_file, back] =
@@ -208,7 +208,7 @@ fn impossible_conversions_list_the_possible_ones() {
             "y.bag",
             "convert a log to .clf, .jsonl, or .tum",
         ),
-        ("x.pdf", "y.clf", "use a log (.clf .log .mcap .bag .jsonl)"),
+        ("x.pdf", "y.clf", "use a log that slam2d run reads"),
         (
             text(&empty),
             &out,

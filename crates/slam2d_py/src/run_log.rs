@@ -13,13 +13,14 @@ use pr_geom::SE2;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
 use robot_io::graph_file::GraphFile;
-use robot_io::log::{LogOptions, LogReader as _};
-use robot_io::log_bytes::LogBytes;
+use robot_io::log::{LogOptions, LogReader as _, with_remarks};
+use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::log_format::LogFormat;
 use robot_io::map_image::{MapImage, build_map, finest_map, map_with_free_space};
 use robot_io::motion::ComparedReader;
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
+use robot_io::remark::Remark;
 use robot_io::rosbag2;
 use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
 
@@ -201,8 +202,9 @@ impl Pipeline {
     fn drive(&self, progress: &Progress, cell_m: f64, free_space: bool) -> PyResult<Found> {
         let name = self.log.display().to_string();
         let to_error = |error: robot_io::log::LogError| LogError::new_err(error.to_string());
-        let (parts, read) = parts(&self.log)?;
+        let (parts, of_files, read) = parts(&self.log)?;
         let reader = LogFormat::open_parts(parts, &name, &self.options).map_err(to_error)?;
+        let reader = with_remarks(reader, of_files);
         let is_alone = self.odometry_use == OdometryUse::None;
         let mut reader = ComparedReader::new(reader, false).ignoring_odometry(is_alone);
         let mut run = LogRun::new(self.odometry_use);
@@ -346,12 +348,13 @@ impl BytesRead {
 }
 
 /// The files of a log.
-fn parts(path: &Path) -> PyResult<(Vec<LogBytes<'static>>, BytesRead)> {
+fn parts(path: &Path) -> PyResult<(Vec<LogBytes<'static>>, Vec<Remark>, BytesRead)> {
     let unreadable = |path: &Path| {
         let path = path.to_owned();
         move |error: io::Error| os_error(&path, &error)
     };
     let mut files = vec![path.to_owned()];
+    let mut remarks = Vec::new();
     if path.is_dir() {
         let metadata = path.join(rosbag2::METADATA);
         let listed = fs::read_to_string(&metadata).ok();
@@ -366,7 +369,12 @@ fn parts(path: &Path) -> PyResult<(Vec<LogBytes<'static>>, BytesRead)> {
                 path.display()
             ))
         })?;
-        files = order.into_iter().map(|at| path.join(&names[at])).collect();
+        files = order
+            .files
+            .iter()
+            .map(|at| path.join(&names[*at]))
+            .collect();
+        remarks = order.remarks;
         if files.is_empty() {
             return Err(LogError::new_err(format!(
                 "{} is a folder without a recording of ROS 2; give a log, or a folder with files that end in .mcap or .db3",
@@ -381,16 +389,27 @@ fn parts(path: &Path) -> PyResult<(Vec<LogBytes<'static>>, BytesRead)> {
         let opened = File::open(&file).map_err(unreadable(&file))?;
         // A log is read twice: for its contents, and for its scans.
         all += 2 * opened.metadata().map_err(unreadable(&file))?.len();
-        let count = Arc::clone(&read);
-        parts.push(LogBytes::new(move || {
-            let source = Counted {
-                file: File::open(&file)?,
-                read: Arc::clone(&count),
-            };
-            Ok(BufReader::with_capacity(1 << 16, source))
-        }));
+        let mut beside = file.clone().into_os_string();
+        beside.push(WRITE_AHEAD);
+        let bytes = |file: PathBuf| {
+            let count = Arc::clone(&read);
+            LogBytes::new(move || {
+                let source = Counted {
+                    file: File::open(&file)?,
+                    read: Arc::clone(&count),
+                };
+                Ok(BufReader::with_capacity(1 << 16, source))
+            })
+        };
+        let part = bytes(file);
+        let beside = PathBuf::from(beside);
+        parts.push(if beside.is_file() {
+            part.with_write_ahead(bytes(beside))
+        } else {
+            part
+        });
     }
-    Ok((parts, BytesRead { read, all }))
+    Ok((parts, remarks, BytesRead { read, all }))
 }
 
 /// A file whose bytes are counted as they are read.

@@ -121,21 +121,20 @@ impl<'a> Engine<'a> {
         let is_graph = [".g2o", ".graph", ".toro"]
             .iter()
             .any(|end| lower.ends_with(end));
-        let work =
-            if !start.is_empty() && (is_graph || LogFormat::detect(start) == LogFormat::Graph) {
-                if size_bytes > graph_log::MAX_BYTES {
-                    return Err(format!("{name} is larger than a pose graph of 256 MB"));
-                }
-                let mut bytes = Vec::new();
-                source
-                    .read_to_end(&mut bytes)
-                    .map_err(|problem| format!("{name} cannot be read: {problem}"))?;
-                Work::Solving(Box::new(GraphSolving::read(&bytes, name)?))
-            } else {
-                drop(source);
-                let examination = Examination::begin(given.clone(), choices.clone())?;
-                Work::Examining(Box::new(examination))
-            };
+        let work = if !start.is_empty() && (is_graph || GraphFile::begins(start)) {
+            if size_bytes > graph_log::MAX_BYTES {
+                return Err(format!("{name} is larger than a pose graph of 256 MB"));
+            }
+            let mut bytes = Vec::new();
+            source
+                .read_to_end(&mut bytes)
+                .map_err(|problem| format!("{name} cannot be read: {problem}"))?;
+            Work::Solving(Box::new(GraphSolving::read(&bytes, name)?))
+        } else {
+            drop(source);
+            let examination = Examination::begin(given.clone(), choices.clone())?;
+            Work::Examining(Box::new(examination))
+        };
         let run = LogRun::new(choices.odometry);
         Ok(Self {
             run,

@@ -3,11 +3,11 @@
 use std::io::Read as _;
 
 use robot_io::laser_mount::LaserMount;
-use robot_io::log::{LogOption, LogOptions};
-use robot_io::log_bytes::LogBytes;
+use robot_io::log::{LogOption, LogOptions, with_remarks};
+use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::log_format::LogFormat;
 use robot_io::motion::ComparedReader;
-use robot_io::remark::NO_ODOMETRY;
+use robot_io::remark::{NO_ODOMETRY, Remark};
 use robot_io::rosbag2;
 use robot_io::run::OdometryUse;
 
@@ -33,6 +33,8 @@ pub struct Given<'a> {
     pub size_bytes: u64,
     /// Content of each file.
     pub parts: Vec<LogBytes<'a>>,
+    /// What differs from the description of the recording.
+    pub remarks: Vec<Remark>,
 }
 
 impl<'a> Given<'a> {
@@ -42,6 +44,7 @@ impl<'a> Given<'a> {
             name: name.to_owned(),
             size_bytes,
             parts: vec![bytes.into()],
+            remarks: Vec::new(),
         }
     }
 
@@ -62,12 +65,13 @@ impl<'a> Given<'a> {
                 .map_err(|problem| format!("{} cannot be read: {problem}", names[at]))?;
             metadata = Some(text);
         }
-        let mut order = rosbag2::in_order(metadata.as_deref(), &names).map_err(|absent| {
+        let order = rosbag2::in_order(metadata.as_deref(), &names).map_err(|absent| {
             format!(
                 "{} lists {absent}, which is missing; open all files of the folder together",
                 rosbag2::METADATA
             )
         })?;
+        let (mut order, remarks) = (order.files, order.remarks);
         if order.is_empty() {
             // Not a ROS 2 recording: the log reader decides what it is.
             order = (0..files.len()).collect();
@@ -78,11 +82,20 @@ impl<'a> Given<'a> {
             many => format!("{first} and {} more", many - 1),
         };
         let size_bytes = order.iter().map(|&k| files[k].size_bytes).sum();
-        let parts = order.iter().map(|&k| files[k].bytes.clone()).collect();
+        let part = |&k: &usize| {
+            let (file, bytes) = (&files[k], files[k].bytes.clone());
+            let beside = format!("{}{WRITE_AHEAD}", file.name);
+            match files.iter().find(|file| file.name == beside) {
+                Some(log) => bytes.with_write_ahead(log.bytes.clone()),
+                None => bytes,
+            }
+        };
+        let parts = order.iter().map(part).collect();
         Ok(Self {
             name,
             size_bytes,
             parts,
+            remarks,
         })
     }
 }
@@ -128,6 +141,7 @@ pub fn compared<'a>(given: &Given<'a>, choices: &Choices) -> Result<ComparedRead
     let parts = given.parts.clone();
     let reader = LogFormat::open_parts(parts, &given.name, &choices.log);
     let reader = reader.map_err(|problem| problem.to_string())?;
+    let reader = with_remarks(reader, given.remarks.clone());
     let ignores_odometry = choices.odometry == OdometryUse::None;
     Ok(
         ComparedReader::new(reader, choices.log.laser.is_some())

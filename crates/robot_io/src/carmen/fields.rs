@@ -5,10 +5,7 @@ use pr_geom::SE2;
 
 use crate::lines::{finite, printable};
 use crate::log::LogFrame;
-use crate::plausible::{plausible_pose, plausible_stamp_s};
-
-/// More beams than any planar laser has.
-const MAX_BEAMS: usize = 100_000;
+use crate::plausible::{MAX_BEAMS, plausible_pose, plausible_stamp_s};
 
 /// The words of a line, one after the other.
 pub struct Fields<'a> {

@@ -2,7 +2,7 @@
 //!
 //! - Records of TORO become records of g2o. Some programs write `EDGE2` with the information in g2o's order, which
 //!   would be indefinite if read in TORO's order.
-//! - A file without vertices gets them from a spanning tree of its edges.
+//! - Vertices that edges name and the file does not have are placed by a spanning tree of the edges, from those it has.
 //! - Each connected component without a fixed vertex gets its first vertex fixed.
 //! - `EDGE_PRIOR_SE2 id x y θ I…` becomes an edge from a fixed vertex at the origin.
 
@@ -43,10 +43,17 @@ struct Edge {
 /// # Errors
 /// If the file is not a planar graph; the message names what it is.
 pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
+    if bytes.starts_with(b"# Created by Octave") || bytes.starts_with(b"MATLAB") {
+        return Err(
+            "it is a data file of Octave or MATLAB; write its graph as lines VERTEX_SE2 id x y theta and EDGE_SE2 from to dx dy dtheta and the upper triangle of the information"
+                .to_owned(),
+        );
+    }
     let text = super::toro::as_g2o(bytes);
     let mut remarks: Vec<String> = text.remark.into_iter().collect();
     let text = text.text;
     let mut ids: Vec<i64> = Vec::new();
+    let mut poses: BTreeMap<i64, SE2> = BTreeMap::new();
     let mut edges: Vec<Edge> = Vec::new();
     let mut fixed: Vec<i64> = Vec::new();
     let mut priors: Vec<(i64, String)> = Vec::new();
@@ -61,12 +68,19 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
         };
         let words: Vec<&str> = words.collect();
         let id = |at: usize| words.get(at).and_then(|word| word.parse::<i64>().ok());
+        let number_at = |at: usize| finite(words.get(at).copied(), "").ok();
         match kind {
-            "VERTEX_SE2" => ids.extend(id(0)),
+            "VERTEX_SE2" => {
+                ids.extend(id(0));
+                if let (Some(id), Some(x), Some(y), Some(theta)) =
+                    (id(0), number_at(1), number_at(2), number_at(3))
+                {
+                    poses.insert(id, SE2::new(x, y, theta));
+                }
+            }
             "EDGE_SE2" => {
-                let number = |at: usize| finite(words.get(at).copied(), "").ok();
                 if let (Some(from), Some(to), Some(x), Some(y), Some(theta)) =
-                    (id(0), id(1), number(2), number(3), number(4))
+                    (id(0), id(1), number_at(2), number_at(3), number_at(4))
                 {
                     let motion = SE2::new(x, y, theta);
                     edges.push(Edge { from, to, motion });
@@ -94,11 +108,14 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
     }
     let mut lines = text.split_inclusive(|&byte| byte == b'\n').count();
     let mut added = String::new();
-    if ids.is_empty() && !edges.is_empty() {
-        let tree = spanning_tree(&edges);
+    let given: BTreeSet<i64> = ids.iter().copied().collect();
+    let mut tree = spanning_tree(&edges, poses);
+    tree.retain(|id, _| !given.contains(id));
+    if !tree.is_empty() {
         remarks.push(format!(
-            "the file has no vertices; {} computed from a spanning tree of its edges",
-            counted(tree.len(), "pose")
+            "the file has {} and lacks {} that its edges name; their poses are computed from a spanning tree of the edges",
+            counted(given.len(), "pose"),
+            tree.len()
         ));
         for (id, pose) in &tree {
             let [x, y, theta] = pose.to_array();
@@ -163,6 +180,27 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
     })
 }
 
+/// The text with its FIX records at the end: GTSAM 4.3 reads no edge after one.
+#[must_use]
+pub fn with_fix_last(text: &[u8]) -> Cow<'_, [u8]> {
+    let lines = || text.split_inclusive(|&byte| byte == b'\n');
+    let is_fix =
+        |line: &&[u8]| line.starts_with(b"FIX") && line.get(3).is_none_or(u8::is_ascii_whitespace);
+    let mut after = lines().skip_while(|line| !is_fix(line));
+    if after.all(|line| is_fix(&line)) {
+        return Cow::Borrowed(text);
+    }
+    let mut moved = Vec::with_capacity(text.len() + 1);
+    let others = lines().filter(|line| !is_fix(line));
+    for line in others.chain(lines().filter(is_fix)) {
+        moved.extend_from_slice(line);
+        if moved.last() != Some(&b'\n') {
+            moved.push(b'\n');
+        }
+    }
+    Cow::Owned(moved)
+}
+
 impl Prepared<'_> {
     /// The lines of the original graph within a text that was written from this one.
     #[must_use]
@@ -190,16 +228,16 @@ fn neighbours(edges: &[Edge]) -> BTreeMap<i64, Vec<(i64, SE2)>> {
     near
 }
 
-/// A pose for each vertex of an edge, by breadth-first search from the lowest id.
-fn spanning_tree(edges: &[Edge]) -> BTreeMap<i64, SE2> {
+/// A pose for each vertex of an edge, by breadth-first search from those with known poses, else from the lowest id.
+fn spanning_tree(edges: &[Edge], mut poses: BTreeMap<i64, SE2>) -> BTreeMap<i64, SE2> {
     let near = neighbours(edges);
-    let mut poses: BTreeMap<i64, SE2> = BTreeMap::new();
-    for &root in near.keys() {
-        if poses.contains_key(&root) {
-            continue;
+    let known: Vec<i64> = poses.keys().copied().collect();
+    let alone = near.keys().map(|&root| vec![root]);
+    for roots in std::iter::once(known).chain(alone) {
+        for root in &roots {
+            poses.entry(*root).or_default();
         }
-        poses.insert(root, SE2::identity());
-        let mut waiting = VecDeque::from([root]);
+        let mut waiting = VecDeque::from(roots);
         while let Some(id) = waiting.pop_front() {
             let pose = poses[&id];
             for &(next, motion) in near.get(&id).into_iter().flatten() {
@@ -260,7 +298,7 @@ mod tests {
         assert_eq!(file.problem.node_count(), 5);
         assert!(file.problem.chi2() < 1e-12);
         assert!(
-            remarks.contains("5 poses computed from a spanning tree")
+            remarks.contains("has 0 poses and lacks 5")
                 && remarks.contains("2 connected components"),
             "{remarks}"
         );
@@ -269,6 +307,22 @@ mod tests {
             own.ends_with("VERTEX_SE2 9 1 0 0\n") && !own.contains("FIX"),
             "{own}"
         );
+    }
+
+    #[test]
+    fn vertices_that_the_file_lacks_are_placed_from_those_it_has() {
+        let edge = |a: i64| format!("EDGE_SE2 {a} {} 1 0 0 1 0 0 1 0 1\n", a + 1);
+        let text = format!("VERTEX_SE2 1 5 5 0\n{}{}", edge(0), edge(1));
+        let (file, remarks, own) = prepare(&text);
+        assert_eq!(file.problem.node_count(), 3);
+        assert!(file.problem.chi2() < 1e-12);
+        assert!(remarks.contains("has 1 pose and lacks 2"), "{remarks}");
+        let own = String::from_utf8(own).unwrap();
+        assert!(
+            own.ends_with("VERTEX_SE2 0 4 5 0\nVERTEX_SE2 2 6 5 0\n"),
+            "{own}"
+        );
+        assert!(prepared(b"# Created by Octave 6.4.0\n").is_err());
     }
 
     #[test]
@@ -281,6 +335,16 @@ mod tests {
         assert_eq!(
             (remarks.as_str(), own.as_slice()),
             ("1 prior taken as measurements", text.as_bytes())
+        );
+    }
+
+    #[test]
+    fn fix_records_move_behind_all_others() {
+        let last: &[u8] = b"VERTEX_SE2 0 0 0 0\nFIX 0\nFIX 1\n";
+        assert_eq!(with_fix_last(last), last);
+        assert_eq!(
+            with_fix_last(b"FIX 0\nFIXED 1\nFIX 1\nEDGE_SE2").as_ref(),
+            b"FIXED 1\nEDGE_SE2\nFIX 0\nFIX 1\n"
         );
     }
 

@@ -75,7 +75,7 @@ fn unknown_is_transparent_in_scale_and_every_pixel_reads_back() {
         (info.width as usize, info.height as usize),
         (map.width, map.height)
     );
-    for (pixel, &log_odds) in pixels.chunks(2).zip(map.log_odds()) {
+    for (pixel, log_odds) in pixels.chunks(2).zip(map.log_odds()) {
         assert_eq!(pixel[1] == 0, log_odds == 0.0);
         if log_odds != 0.0 {
             // Probability that Nav2 computes from lightness: within half a step of 255.
@@ -107,7 +107,7 @@ fn the_yaml_names_what_the_map_server_needs() {
 fn an_empty_map_is_rejected() {
     let mut map = MapBuilder::new(0.05);
     map.add(&SE2::identity(), &LaserScan::default()).unwrap();
-    assert_eq!(map.finish(), Err(MapError::Nothing));
+    assert_eq!(map.finish().unwrap_err(), MapError::Nothing);
 }
 
 #[test]

@@ -5,6 +5,11 @@ use std::io::Read;
 use lz4_flex::frame::FrameDecoder;
 use ruzstd::decoding::StreamingDecoder;
 
+/// Bytes that any chunk may have, however small it is packed.
+const ROOM: usize = 1 << 24;
+/// Measurements are never packed to less than one byte in this many.
+const MOST_PACKED: usize = 1000;
+
 /// Compression of a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Packing {
@@ -26,11 +31,12 @@ impl Packing {
         }
     }
 
-    /// Decompresses `packed`, up to `most` bytes.
+    /// Decompresses `packed`, up to `most` bytes; fewer if a few bytes claim to be very many.
     ///
     /// # Errors
     /// If it is damaged or too large.
     pub fn unpack(self, packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
+        let most = most.min(ROOM.max(packed.len().saturating_mul(MOST_PACKED)));
         let mut content = Vec::new();
         let describe = |problem: &dyn std::fmt::Display| {
             format!(

@@ -99,7 +99,8 @@ impl Messages<'_> {
             LogFormat::Sqlite => {
                 drop(source);
                 let source = part.seekable().map_err(ContainerError::Io)?;
-                Box::new(SqliteFile::new(source))
+                let newer = part.write_ahead().map_err(ContainerError::Io)?;
+                Box::new(SqliteFile::new(source).with_write_ahead(newer))
             }
             LogFormat::RosBag => Box::new(match known {
                 Some(DeclaredTopics::Bag(known)) => BagFile::new(source).with_topics(known),

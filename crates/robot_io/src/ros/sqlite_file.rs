@@ -8,6 +8,7 @@
 mod pages;
 mod record;
 mod table;
+mod write_ahead;
 
 use std::collections::BTreeMap;
 
@@ -18,6 +19,7 @@ use crate::log_bytes::SeekRead;
 use pages::Pages;
 use record::{Value, columns};
 use table::Table;
+use write_ahead::WriteAhead;
 
 /// More topics than any robot has.
 const MAX_TOPICS: usize = 10_000;
@@ -41,6 +43,7 @@ struct Columns {
 /// Messages of a database, in row order.
 pub struct SqliteFile<'a> {
     source: Option<Box<dyn SeekRead + 'a>>,
+    write_ahead: Option<Box<dyn SeekRead + 'a>>,
     pages: Option<Pages<'a>>,
     topics: BTreeMap<i64, Topic>,
     messages: Table,
@@ -54,6 +57,7 @@ impl<'a> SqliteFile<'a> {
     pub fn new(source: Box<dyn SeekRead + 'a>) -> Self {
         Self {
             source: Some(source),
+            write_ahead: None,
             pages: None,
             topics: BTreeMap::new(),
             messages: Table::at(0),
@@ -67,9 +71,16 @@ impl<'a> SqliteFile<'a> {
         }
     }
 
+    /// Sets the write-ahead log beside the database.
+    pub fn with_write_ahead(mut self, log: Option<Box<dyn SeekRead + 'a>>) -> Self {
+        self.write_ahead = log;
+        self
+    }
+
     /// Reads the header, the list of tables and the topics.
     fn start(&mut self, source: Box<dyn SeekRead + 'a>) -> Result<(), ContainerError> {
-        let mut pages = Pages::new(source)?;
+        let newer = self.write_ahead.take().map(WriteAhead::new).transpose()?;
+        let mut pages = Pages::new(source, newer.flatten())?;
         let mut tables: BTreeMap<String, (u32, Vec<String>)> = BTreeMap::new();
         let mut list = Table::at(1);
         while let Some(row) = list.next_row(&mut pages)? {
@@ -191,7 +202,8 @@ impl Container for SqliteFile<'_> {
             ));
         }
         (!self.has_messages).then(|| {
-            "it has no messages; if there is a -wal file next to it, merge it with sqlite3 and PRAGMA wal_checkpoint".to_owned()
+            "it has no messages; if a file whose name ends in -wal belongs to it, give both together"
+                .to_owned()
         })
     }
 }

@@ -7,6 +7,8 @@
 
 use std::fmt;
 
+use crate::plausible::MAX_BEAMS;
+
 /// Serialization of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire {
@@ -181,9 +183,16 @@ impl<'a> WireReader<'a> {
         Ok(count)
     }
 
-    /// A list of 32-bit floats.
+    /// A list of 32-bit floats, as many as a scan may have.
     pub fn f32_list(&mut self, what: &str) -> Result<Vec<f64>, WireError> {
+        let at = self.at;
         let count = self.count(what, 4)?;
+        if count > MAX_BEAMS {
+            return Err(WireError {
+                at,
+                expected: format!("at most {MAX_BEAMS} {what}, not {count},"),
+            });
+        }
         (0..count).map(|_| self.f32(what)).collect()
     }
 

@@ -2,6 +2,7 @@
 
 use std::io::{Read, Seek, SeekFrom};
 
+use super::write_ahead::WriteAhead;
 use crate::log_bytes::SeekRead;
 use crate::ros::container::ContainerError;
 
@@ -11,6 +12,8 @@ pub const FILE_HEADER: usize = 100;
 /// The pages of a file.
 pub struct Pages<'a> {
     source: Box<dyn SeekRead + 'a>,
+    /// Newer copies of pages.
+    newer: Option<WriteAhead<'a>>,
     /// Position of the source.
     at: u64,
     size: usize,
@@ -21,7 +24,10 @@ pub struct Pages<'a> {
 
 impl<'a> Pages<'a> {
     /// Opens the pages of a file; the source must be at its start.
-    pub fn new(mut source: Box<dyn SeekRead + 'a>) -> Result<Self, ContainerError> {
+    pub fn new(
+        mut source: Box<dyn SeekRead + 'a>,
+        mut newer: Option<WriteAhead<'a>>,
+    ) -> Result<Self, ContainerError> {
         let mut header = [0; FILE_HEADER];
         source
             .read_exact(&mut header)
@@ -31,6 +37,10 @@ impl<'a> Pages<'a> {
                 }
                 _ => ContainerError::Io(error),
             })?;
+        let of_newer = newer.as_mut().map(|newer| newer.page(1)).transpose()?;
+        if let Some(first) = of_newer.flatten() {
+            header.copy_from_slice(&first[..FILE_HEADER]);
+        }
         let size = match u16::from_be_bytes([header[16], header[17]]) {
             1 => 65_536,
             size => usize::from(size),
@@ -49,6 +59,7 @@ impl<'a> Pages<'a> {
         }
         Ok(Self {
             source,
+            newer: newer.filter(|newer| newer.size == size),
             at: FILE_HEADER as u64,
             size,
             usable,
@@ -73,6 +84,12 @@ impl<'a> Pages<'a> {
                 "expected a page number, found 0".to_owned(),
             ));
         };
+        if let Some(newer) = &mut self.newer
+            && let Some(mut page) = newer.page(number)?
+        {
+            page.truncate(self.usable);
+            return Ok(page);
+        }
         let start = u64::from(index) * self.size as u64;
         let moved = match i64::try_from(i128::from(start) - i128::from(self.at)) {
             // Keeps the buffered bytes.

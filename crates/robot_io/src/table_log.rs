@@ -1,0 +1,271 @@
+//! Tables: one scan or one beam per row, the columns named by a header, by the user, or known by their form.
+//!
+//! | file | rows |
+//! |---|---|
+//! | CSV with a header | scans with `ranges0, ranges1, …` and `angle_min`, `angle_increment`; or beams with `angle` and `range` |
+//! | `rostopic echo -p`, `ros2 topic echo --csv` of a `sensor_msgs/LaserScan` | scans |
+//! | output of RPLidar's SDK, `theta: … Dist: … Q: …` | beams, clockwise |
+//! | `.dat` of BreezySLAM's examples | scans of a URG-04LX |
+//!
+//! Units are those of a name (`time_us`, `angle_deg`, `range_mm`), else those that the size of the numbers suggests.
+//! Beams become a scan when their bearing goes back.
+
+mod layout;
+mod sweep;
+
+use ch16_slam2d::scan::LaserScan;
+use pr_geom::SE2;
+
+pub use layout::{Column, Layout};
+use sweep::Sweep;
+
+use crate::line_log::{LineFormat, LineReader};
+use crate::lines::printable;
+use crate::log::{LogFrame, LogNotes};
+use crate::plausible::{MAX_BEAMS, plausible_pose, plausible_stamp_s};
+use crate::remark::{Part, Remark};
+use crate::ros::ScanFields;
+
+/// Time between scans of a table without times, s: that of most cheap scanners.
+const PERIOD_S: f64 = 0.1;
+
+/// Reads a table, row by row.
+pub type TableReader<R> = LineReader<R, TableRows>;
+
+/// State of a table that is being read.
+#[derive(Debug, Default)]
+pub struct TableRows {
+    layout: Layout,
+    sweep: Sweep,
+    done: Option<LogFrame>,
+    /// Frames completed so far: their times, if the table has none.
+    frames: usize,
+    has_rows: bool,
+}
+
+/// The numbers of a row.
+#[derive(Clone, Debug, Default)]
+struct Row {
+    time_s: Option<f64>,
+    /// x, y and heading of odometry.
+    pose: [Option<f64>; 3],
+    angle: Option<f64>,
+    range: Option<f64>,
+    is_return: bool,
+    fields: ScanFields,
+}
+
+impl TableRows {
+    /// The state before the first row.
+    #[must_use]
+    pub fn new(layout: Layout) -> Self {
+        Self {
+            layout,
+            ..Self::default()
+        }
+    }
+
+    fn row(&self, text: &str) -> Result<Row, String> {
+        let mut row = Row {
+            is_return: true,
+            ..Row::default()
+        };
+        let fields = &mut row.fields;
+        let is_sdk = text.contains("theta:");
+        let words = layout::words(text).filter(|word| !is_sdk || word.parse::<f64>().is_ok());
+        let mut time_s = None;
+        for (at, word) in words.enumerate() {
+            let Some((column, factor)) = self.layout.column(at) else {
+                break;
+            };
+            if column == Column::Other {
+                continue;
+            }
+            if word.contains("...") {
+                return Err(
+                    "its ranges are cut off; print them with ros2 topic echo --csv --full-length"
+                        .to_owned(),
+                );
+            }
+            let number: f64 = match word.parse() {
+                Ok(number) => number,
+                Err(_) if word.is_empty() => continue,
+                Err(_) => {
+                    return Err(format!(
+                        "word {} must be a number, not ‘{}’",
+                        at + 1,
+                        printable(word)
+                    ));
+                }
+            };
+            let value = factor.unwrap_or(1.0) * number;
+            match column {
+                Column::Other => {}
+                Column::Time => time_s = Some(factor.unwrap_or_else(|| second(number)) * number),
+                Column::Seconds => time_s = Some(time_s.unwrap_or(0.0) + number),
+                Column::Nanoseconds => time_s = Some(time_s.unwrap_or(0.0) + 1e-9 * number),
+                Column::Angle => row.angle = Some(value),
+                Column::Range => row.range = Some(value),
+                Column::Quality => row.is_return = number > 0.0,
+                Column::X => row.pose[0] = Some(value),
+                Column::Y => row.pose[1] = Some(value),
+                Column::Heading => row.pose[2] = Some(value),
+                Column::AngleMin => fields.angle_min = value,
+                Column::AngleMax => fields.angle_max = value,
+                Column::AngleIncrement => fields.angle_increment = value,
+                Column::TimeIncrement => fields.time_increment = value,
+                Column::ScanTime => fields.scan_time = value,
+                Column::RangeMin => fields.range_min = value,
+                Column::RangeMax => fields.range_max = value,
+                Column::Ranges if fields.ranges_m.len() < MAX_BEAMS => fields.ranges_m.push(value),
+                Column::Ranges => return Err(format!("a scan has more than {MAX_BEAMS} ranges")),
+            }
+        }
+        row.time_s = time_s.map(plausible_stamp_s).transpose()?;
+        Ok(row)
+    }
+
+    /// The frame of a scan; what was corrected goes to the notes.
+    fn frame(&mut self, row: Row, notes: &mut LogNotes) -> Result<LogFrame, String> {
+        let (scan, remarks): (LaserScan, _) = row.fields.checked(0.0)?;
+        for sentence in remarks {
+            let remark = Remark::mended(Part::Sensor, sentence);
+            if !notes.warnings.contains(&remark) && notes.warnings.len() < 10 {
+                notes.warnings.push(remark);
+            }
+        }
+        if row.time_s.is_none() && self.frames == 0 {
+            notes.warnings.push(Remark::mended(
+                Part::Clocks,
+                format!("the table has no times; its scans are taken as {PERIOD_S} s apart"),
+            ));
+        }
+        let odometry = match row.pose {
+            [Some(x), Some(y), Some(heading)] => Some(plausible_pose(SE2::new(x, y, heading))?),
+            _ => None,
+        };
+        let stamp_s = row.time_s.unwrap_or(PERIOD_S * self.frames as f64);
+        self.frames += 1;
+        *notes.records.entry("scan".to_owned()).or_default() += 1;
+        Ok(LogFrame {
+            stamp_s,
+            odometry,
+            scan,
+        })
+    }
+
+    /// Ends a sweep of beams.
+    fn end_sweep(&mut self, notes: &mut LogNotes) -> Result<Option<LogFrame>, String> {
+        let sweep = std::mem::take(&mut self.sweep);
+        let Some(fields) = sweep.fields(self.layout.is_clockwise) else {
+            return Ok(None);
+        };
+        if self.frames == 0 {
+            notes.about.push(format!(
+                "rows are beams, and a scan ends where their bearing goes back; bearings count {}",
+                if self.layout.is_clockwise {
+                    "clockwise, as RPLidar does; if the map is mirrored, pass --laser 0,0,0,flipped"
+                } else {
+                    "counter-clockwise; if the map is mirrored, pass --laser 0,0,0,flipped"
+                }
+            ));
+        }
+        let row = Row {
+            time_s: sweep.first_s(),
+            pose: sweep.pose,
+            fields,
+            ..Row::default()
+        };
+        self.frame(row, notes).map(Some)
+    }
+}
+
+impl LineFormat for TableRows {
+    const NO_SCANS: &'static str = "no row is a scan";
+
+    fn read_line(
+        &mut self,
+        line: &[u8],
+        _frames: usize,
+        notes: &mut LogNotes,
+    ) -> Result<Option<LogFrame>, String> {
+        let text = String::from_utf8_lossy(line);
+        let text = text.trim_start_matches('\u{feff}').trim();
+        let is_comment = text.starts_with(['#', '%']);
+        if text.is_empty() || is_comment {
+            return Ok(None);
+        }
+        let row = match self.row(text) {
+            // A header.
+            Err(_) if !self.has_rows && Layout::of(line).is_some() => return Ok(None),
+            other => other?,
+        };
+        self.has_rows = true;
+        if !self.layout.is_of_beams() {
+            let mut row = row;
+            self.complete(&mut row.fields)?;
+            return self.frame(row, notes).map(Some);
+        }
+        let (Some(angle), Some(range)) = (row.angle, row.range) else {
+            return Err("a beam must have an angle and a range".to_owned());
+        };
+        let ended = if self.sweep.is_before(angle) || text.starts_with("S ") {
+            self.end_sweep(notes)
+        } else {
+            Ok(None)
+        };
+        let range = if row.is_return { range } else { 0.0 };
+        self.sweep.add(angle, range, row.time_s, row.pose)?;
+        ended
+    }
+
+    fn at_end(&mut self, notes: &mut LogNotes) {
+        // The last sweep may be a part of one; a part is a scan, too.
+        self.done = self.end_sweep(notes).unwrap_or(None);
+    }
+
+    fn waiting(&mut self, is_done: bool) -> Option<LogFrame> {
+        self.done.take().filter(|_| is_done)
+    }
+}
+
+impl TableRows {
+    /// Adds what the row of a scan does not state.
+    fn complete(&self, fields: &mut ScanFields) -> Result<(), String> {
+        if let Some([first, step]) = self.layout.usual_angles_rad() {
+            (fields.angle_min, fields.angle_increment) = (first, step);
+            // The angle of the last beam follows from them.
+            fields.angle_max = f64::NAN;
+            return Ok(());
+        }
+        if fields.angle_increment == 0.0 && fields.angle_min == fields.angle_max {
+            return Err(
+                "a scan must have angle_min and angle_increment; add both columns to the table"
+                    .to_owned(),
+            );
+        }
+        if fields.angle_max == 0.0 && fields.angle_increment != 0.0 {
+            fields.angle_max = f64::NAN;
+        }
+        // `ros2 topic echo --csv` appends the intensities.
+        let beams = (fields.angle_max - fields.angle_min) / fields.angle_increment;
+        let beams = beams.round() + 1.0;
+        if beams >= 1.0 && fields.ranges_m.len() as f64 > 1.5 * beams {
+            fields.ranges_m.truncate(beams as usize);
+        }
+        Ok(())
+    }
+}
+
+/// The unit of a time by its size: s, ms, µs or ns since 1970.
+fn second(time: f64) -> f64 {
+    match time.abs() {
+        size if size > 1e17 => 1e-9,
+        size if size > 1e14 => 1e-6,
+        size if size > 1e11 => 1e-3,
+        _ => 1.0,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,263 @@
+//! What the columns of a table are: by the header of the file, by its form, or by the user.
+
+use std::str::FromStr;
+
+/// Meaning of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Column {
+    /// Nothing that is read.
+    Other,
+    /// Time of a scan or a beam.
+    Time,
+    /// Whole seconds of a time.
+    Seconds,
+    /// Nanoseconds of a time.
+    Nanoseconds,
+    /// Bearing of a beam.
+    Angle,
+    /// Range of a beam.
+    Range,
+    /// Quality of a beam; 0 is no return.
+    Quality,
+    /// Odometry: position and heading.
+    X,
+    /// Odometry.
+    Y,
+    /// Odometry.
+    Heading,
+    /// Bearing of the first beam.
+    AngleMin,
+    /// Bearing of the last beam.
+    AngleMax,
+    /// Angle between beams.
+    AngleIncrement,
+    /// Time between beams.
+    TimeIncrement,
+    /// Time between scans.
+    ScanTime,
+    /// Shorter ranges are no returns.
+    RangeMin,
+    /// Longer ranges are no returns.
+    RangeMax,
+    /// One of the ranges of a scan, or all from here on.
+    Ranges,
+}
+
+/// A column with the factor that makes its unit SI; `None` if it is to be found by the size of the numbers.
+pub type Scaled = (Column, Option<f64>);
+
+/// The columns of a table in order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Layout {
+    /// The columns; the last one counts for all further words if it is [`Column::Ranges`].
+    pub columns: Vec<Scaled>,
+    /// Whether beams turn clockwise, as RPLidar counts them.
+    pub is_clockwise: bool,
+}
+
+/// Beams of the URG-04LX in a log of BreezySLAM, and the words before them.
+const BREEZY: (usize, usize) = (682, 24);
+/// First angle and step of that sensor, degrees.
+const BREEZY_ANGLES: [f64; 2] = [-120.0, 240.0 / 681.0];
+
+impl Layout {
+    /// The layout of a file with this start.
+    #[must_use]
+    pub fn of(start: &[u8]) -> Option<Self> {
+        let mut lines = start.split(|&byte| byte == b'\n' || byte == b'\r');
+        let line = lines.find(|line| !line.trim_ascii().is_empty())?;
+        let text = std::str::from_utf8(line)
+            .ok()?
+            .trim_start_matches('\u{feff}');
+        Self::of_header(text)
+            .or_else(|| Self::of_sdk(text))
+            .or_else(|| Self::of_echo(text))
+            .or_else(|| Self::of_breezy(text))
+    }
+
+    /// By a header.
+    fn of_header(text: &str) -> Option<Self> {
+        let text = text.trim_start_matches(['#', '%', ' ']);
+        let names: Vec<&str> = words(text).collect();
+        if names.len() < 2 || names.iter().any(|name| name.parse::<f64>().is_ok()) {
+            return None;
+        }
+        let mut columns: Vec<Scaled> = names.iter().map(|name| column(name)).collect();
+        // A sentence may have the words of a header.
+        let is_prose =
+            !text.contains([',', ';', '\t']) && columns.iter().any(|c| c.0 == Column::Other);
+        if is_prose || names.iter().any(|name| name.contains(' ')) {
+            return None;
+        }
+        let of =
+            |wanted: Column, columns: &[Scaled]| columns.iter().filter(|c| c.0 == wanted).count();
+        // A bag's own stamp is better than the time of recording before it.
+        if of(Column::Time, &columns) > 1 {
+            let best = names.iter().position(|name| name.ends_with("header.stamp"));
+            let best = best.or_else(|| columns.iter().position(|c| c.0 == Column::Time));
+            for (at, column) in columns.iter_mut().enumerate() {
+                if column.0 == Column::Time && Some(at) != best {
+                    column.0 = Column::Other;
+                }
+            }
+        }
+        let is_of_beams = of(Column::Angle, &columns) == 1 && of(Column::Range, &columns) == 1;
+        let is_of_scans = of(Column::Ranges, &columns) > 0;
+        (is_of_beams != is_of_scans).then(|| Self {
+            is_clockwise: is_of_beams && of(Column::Quality, &columns) > 0,
+            columns,
+        })
+    }
+
+    /// By the words of RPLidar's SDK: `S  theta: 0.50 Dist: 00234.00 Q: 47`.
+    fn of_sdk(text: &str) -> Option<Self> {
+        let is_sdk = ["theta:", "Dist:", "Q:"]
+            .iter()
+            .all(|word| text.contains(word));
+        is_sdk.then(|| Self {
+            columns: vec![
+                (Column::Angle, Some(1.0_f64.to_radians())),
+                (Column::Range, Some(1e-3)),
+                (Column::Quality, Some(1.0)),
+            ],
+            is_clockwise: true,
+        })
+    }
+
+    /// By the row of `ros2 topic echo --csv`: two integers, the frame, and numbers.
+    fn of_echo(text: &str) -> Option<Self> {
+        let words: Vec<&str> = text.split(',').map(str::trim).collect();
+        let (head, rest) = words.split_at_checked(3)?;
+        let is_time = head[..2].iter().all(|word| word.parse::<u32>().is_ok());
+        let is_row = is_time && head[2].parse::<f64>().is_err() && rest.len() > 7;
+        let numbers = rest.iter().take(7);
+        (is_row && numbers.clone().all(|word| word.parse::<f64>().is_ok())).then(|| {
+            "sec,nanosec,frame_id,angle_min,angle_max,angle_increment,time_increment,scan_time,range_min,range_max,ranges"
+                .parse()
+                .expect("they are names of columns")
+        })
+    }
+
+    /// By the number of integers in a row of BreezySLAM's examples.
+    fn of_breezy(text: &str) -> Option<Self> {
+        let (beams, before) = BREEZY;
+        let words: Vec<&str> = text.split_ascii_whitespace().collect();
+        let is_row =
+            words.len() == beams + before && words.iter().all(|w| w.parse::<u64>().is_ok());
+        is_row.then(|| {
+            let mut columns = vec![(Column::Other, None); before];
+            columns[0] = (Column::Time, Some(1e-6));
+            columns.push((Column::Ranges, Some(1e-3)));
+            Self {
+                columns,
+                is_clockwise: false,
+            }
+        })
+    }
+
+    /// First angle and step of scans whose rows state none, rad; `None` if the layout has no such sensor.
+    #[must_use]
+    pub fn usual_angles_rad(&self) -> Option<[f64; 2]> {
+        let is_breezy = self.columns.len() == BREEZY.1 + 1;
+        is_breezy.then(|| BREEZY_ANGLES.map(f64::to_radians))
+    }
+
+    /// Whether a row is a beam, not a scan.
+    #[must_use]
+    pub fn is_of_beams(&self) -> bool {
+        self.columns.iter().any(|column| column.0 == Column::Angle)
+    }
+
+    /// The column of a word; `None` beyond the last.
+    #[must_use]
+    pub fn column(&self, at: usize) -> Option<Scaled> {
+        let last = self.columns.last().filter(|last| last.0 == Column::Ranges);
+        self.columns.get(at).or(last).copied()
+    }
+}
+
+impl FromStr for Layout {
+    type Err = String;
+
+    /// Names of columns, separated by commas; `-` is not read, and `ranges` at the end stands for all that follow.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let columns: Vec<Scaled> = text.split(',').map(|name| column(name.trim())).collect();
+        for (name, (column, _)) in text.split(',').zip(&columns) {
+            if *column == Column::Other && !matches!(name.trim(), "-" | "frame_id") {
+                return Err(format!(
+                    "there is no column {name}; use time, sec, nanosec, angle, range, quality, x, y, heading, angle_min, angle_max, angle_increment, time_increment, scan_time, range_min, range_max, ranges or -, with units such as time_us, angle_deg, range_mm"
+                ));
+            }
+        }
+        let has = |wanted: Column| columns.iter().any(|column| column.0 == wanted);
+        if has(Column::Ranges) == (has(Column::Angle) && has(Column::Range)) {
+            return Err("name either ranges, or angle and range".to_owned());
+        }
+        Ok(Self {
+            is_clockwise: false,
+            columns,
+        })
+    }
+}
+
+/// The words of a row: empty ones count between commas, not between spaces.
+pub fn words(text: &str) -> impl Iterator<Item = &str> {
+    let separator = [',', ';', '\t'].into_iter().find(|c| text.contains(*c));
+    text.split(separator.unwrap_or(' '))
+        .map(str::trim)
+        .filter(move |word| separator.is_some() || !word.is_empty())
+}
+
+/// The meaning of a name, and the factor of its unit.
+fn column(name: &str) -> Scaled {
+    let name = name.trim().trim_matches(['"', '\'']).to_ascii_lowercase();
+    let name = name.strip_prefix("field.").unwrap_or(&name);
+    let (name, bracket) = name.split_once(['[', '(']).unwrap_or((name, ""));
+    let unit = |unit: &str| match unit {
+        "s" | "m" | "rad" => Some(1.0),
+        "ms" | "mm" => Some(1e-3),
+        "us" => Some(1e-6),
+        "ns" => Some(1e-9),
+        "cm" => Some(1e-2),
+        "deg" | "degrees" => Some(1.0_f64.to_radians()),
+        _ => None,
+    };
+    let of_bracket = unit(bracket.trim_end_matches([']', ')']));
+    let (stem, factor) = match name.trim_end_matches('_').rsplit_once('_') {
+        Some((stem, suffix)) if unit(suffix).is_some() => (stem, unit(suffix)),
+        _ => (name.trim_end_matches('_'), of_bracket),
+    };
+    let without_number = stem.trim_end_matches(|c: char| c.is_ascii_digit());
+    let is_numbered =
+        without_number.len() < stem.len() || bracket.starts_with(|c: char| c.is_ascii_digit());
+    let column = match without_number.trim_end_matches('_') {
+        "range" | "ranges" | "dist" | "distance" | "r" | "d" | "scan" if is_numbered => {
+            Column::Ranges
+        }
+        _ => match stem {
+            "ranges" => Column::Ranges,
+            "time" | "stamp" | "timestamp" | "t" | "header.stamp" => Column::Time,
+            "sec" | "secs" | "seconds" | "header.stamp.sec" | "header.stamp.secs" => {
+                Column::Seconds
+            }
+            "nanosec" | "nsecs" | "nanoseconds" | "header.stamp.nanosec" | "header.stamp.nsecs" => {
+                Column::Nanoseconds
+            }
+            "angle" | "theta" | "bearing" => Column::Angle,
+            "range" | "distance" | "dist" => Column::Range,
+            "quality" | "q" => Column::Quality,
+            "x" | "odom_x" => Column::X,
+            "y" | "odom_y" => Column::Y,
+            "heading" | "yaw" | "odom_theta" | "odom_yaw" => Column::Heading,
+            "angle_min" => Column::AngleMin,
+            "angle_max" => Column::AngleMax,
+            "angle_increment" => Column::AngleIncrement,
+            "time_increment" => Column::TimeIncrement,
+            "scan_time" => Column::ScanTime,
+            "range_min" => Column::RangeMin,
+            "range_max" => Column::RangeMax,
+            _ => Column::Other,
+        },
+    };
+    (column, factor)
+}

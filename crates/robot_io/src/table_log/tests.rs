@@ -1,0 +1,148 @@
+//! Tables that people have, a few rows of each.
+
+use crate::log::{LogFrame, LogNotes, LogOptions};
+use crate::log_format::LogFormat;
+
+fn read_with(text: &str, options: &LogOptions) -> (Vec<LogFrame>, LogNotes) {
+    let mut reader = LogFormat::open(text.as_bytes(), "x.csv", options).unwrap();
+    let mut frames = Vec::new();
+    while let Some(frame) = reader.next_frame().unwrap() {
+        frames.push(frame);
+    }
+    (frames, reader.notes().clone())
+}
+
+fn read(text: &str) -> Vec<LogFrame> {
+    read_with(text, &LogOptions::default()).0
+}
+
+fn listed(numbers: impl Iterator<Item = f64>, separator: &str) -> String {
+    let words: Vec<String> = numbers.map(|number| number.to_string()).collect();
+    words.join(separator)
+}
+
+#[test]
+fn a_scan_that_ros_prints_is_that_scan() {
+    // ros_comm, rostopic: CSV of the fields; nanoseconds.
+    let names: Vec<String> = (0..5).map(|beam| format!("field.ranges{beam}")).collect();
+    let header = "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.angle_min,field.angle_max,field.angle_increment,field.time_increment,field.scan_time,field.range_min,field.range_max";
+    let text = format!(
+        "{header},{},field.intensities0\n9,0,1700000000500000000,laser,-1,1,0.5,0,0.1,0.1,12,2,3,nan,inf,4,47\n",
+        names.join(",")
+    );
+    let of_ros1 = read(&text);
+    let row = "1700000000,500000000,laser,-1.0,1.0,0.5,0.0,0.1,0.1,12.0";
+    let ranges = "2.0,3.0,nan,inf,4.0";
+    let of_ros2 = read(&format!("{row},{ranges},47,47,47,47,47\n"));
+    for frames in [of_ros1, of_ros2] {
+        let [frame] = &frames[..] else {
+            panic!("{frames:?}")
+        };
+        assert_eq!(frame.stamp_s, 1_700_000_000.5);
+        let scan = &frame.scan;
+        assert_eq!((scan.first_angle_rad, scan.angle_step_rad), (-1.0, 0.5));
+        assert_eq!((scan.range_min_m, scan.range_max_m), (0.1, 12.0));
+        assert_eq!(scan.ranges_m.len(), 5);
+        assert_eq!((scan.ranges_m[1], scan.ranges_m[4]), (3.0, 4.0));
+        assert!(scan.ranges_m[2].is_nan());
+    }
+    let cut = format!("{row},{ranges},...\n");
+    let mut reader = LogFormat::open(cut.as_bytes(), "x.csv", &LogOptions::default()).unwrap();
+    let error = reader.next_frame().unwrap_err().to_string();
+    assert!(
+        error.ends_with("print them with ros2 topic echo --csv --full-length"),
+        "{error}"
+    );
+}
+
+#[test]
+fn beams_become_a_scan_where_their_bearing_goes_back() {
+    // A third turn that is not whole.
+    let rows = (0..900).map(|k| {
+        format!(
+            "{}.{:04},{},{},{}\n",
+            1_700_000_000,
+            k,
+            k % 360,
+            2000 + k % 360,
+            u8::from(k != 5)
+        )
+    });
+    let text = format!(
+        "timestamp,angle_deg,distance_mm,quality\n{}",
+        rows.collect::<String>()
+    );
+    let (frames, notes) = read_with(&text, &LogOptions::default());
+    let beams: Vec<usize> = frames
+        .iter()
+        .map(|frame| frame.scan.ranges_m.len())
+        .collect();
+    assert_eq!(beams, [360, 360, 180]);
+    let scan = &frames[0].scan;
+    // RPLidar counts clockwise: beam 90 looks to the right.
+    assert!((scan.bearing_rad(90) + 90_f64.to_radians()).abs() < 1e-9);
+    assert!((scan.ranges_m[90] - 2.09).abs() < 1e-12 && scan.ranges_m[5] == 0.0);
+    assert!(
+        (scan.beam_interval_s - 1e-4).abs() < 1e-6,
+        "{}",
+        scan.beam_interval_s
+    );
+    assert!(notes.about[0].contains("clockwise, as RPLidar does"));
+    let sdk: String = (0..800)
+        .map(|k| {
+            let sync = if k % 400 == 0 { "S " } else { "  " };
+            format!(
+                "{sync} theta: {:.2} Dist: {:08.2} Q: 47 \n",
+                0.9 * f64::from(k % 400),
+                1500.0
+            )
+        })
+        .collect();
+    let frames = read(&sdk);
+    assert_eq!(frames.len(), 2);
+    assert_eq!(frames[1].scan.ranges_m.len(), 400);
+    assert!(
+        frames[1]
+            .scan
+            .ranges_m
+            .iter()
+            .all(|range_m| (range_m - 1.5).abs() < 1e-12)
+    );
+}
+
+#[test]
+fn a_row_of_breezyslam_is_a_scan_of_the_urg() {
+    let row = format!(
+        "212387282 14710 29221 25178 {} {}\n",
+        listed((0..20).map(|_| 0.0), " "),
+        listed((0..682).map(|beam| f64::from(1000 + beam)), " ")
+    );
+    let frames = read(&row);
+    let scan = &frames[0].scan;
+    assert_eq!(frames[0].stamp_s, 212.387_282);
+    assert!((scan.ranges_m[681] - 1.681).abs() < 1e-12);
+    assert!((scan.bearing_rad(681) - 120_f64.to_radians()).abs() < 1e-9);
+}
+
+#[test]
+fn columns_are_named_by_the_user_or_asked_for() {
+    let text = "1.5;10;20;90;0.5;2000;2100;2200\n2.5;11;20;90;0.5;2000;2100;2200\n";
+    let columns = "time,x_cm,y_cm,heading_deg,angle_increment,ranges_mm";
+    let options = LogOptions {
+        columns: Some(columns.parse().unwrap()),
+        ..LogOptions::default()
+    };
+    let (frames, _) = read_with(text, &options);
+    assert_eq!(frames.len(), 2);
+    let [x, y, heading] = frames[1].odometry.unwrap().to_array();
+    assert!((x - 0.11).abs() < 1e-12 && (y - 0.2).abs() < 1e-12);
+    assert!((heading - 90_f64.to_radians()).abs() < 1e-12);
+    assert_eq!(frames[0].scan.ranges_m, [2.0, 2.1, 2.2]);
+    for (columns, expected) in [
+        ("time,colour,ranges", "there is no column colour; use time"),
+        ("time,x", "name either ranges, or angle and range"),
+    ] {
+        let error = columns.parse::<super::Layout>().unwrap_err();
+        assert!(error.starts_with(expected), "{error}");
+    }
+}
