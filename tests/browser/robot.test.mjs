@@ -482,7 +482,7 @@ describe('a reader’s log', () => {
       for (const [name, text, said] of [
         ['empty.log', '', /no map: empty\.log is empty; give a recorded log/],
         ['packed.log', '\u001f\u008b', /no map: packed\.log/],
-        ['photo.png', '\u0089PNG\u0000\u0001', /no map: photo\.png is not a CARMEN log/],
+        ['photo.png', '\u0089PNG\u0000\u0001', /no map: photo\.png is a map or a picture, not a log of scans/],
         ['broken.g2o', 'VERTEX_SE2 0 zero\n', /no map: broken\.g2o.*line 1/],
         ['cut.mcap', '\u0089MCAP', /no map: cut\.mcap/],
         ['<b>x</b>.log', 'words', /no map: <b>x<\/b>\.log/],
@@ -624,7 +624,7 @@ describe('the doctor', () => {
       });
       assert.equal((await before.jsonValue()).verdict, 'good', 'the screen comes before the first scan');
       const screen = tab.getByRole('region', { name: 'What the doctor found' });
-      await screen.getByText('✓ ring.log: all in order').first().waitFor();
+      await screen.getByText('✓ ring.log: the recording is in order').first().waitFor();
       await isMapped(tab);
       assert.ok(await screen.getByLabel('turned left, °').isHidden(), 'a log without a fault leaves the map where it is');
       await screen.locator('summary').click();

@@ -19,6 +19,7 @@
 //! - [`settings`]: the parameters of the estimator by name.
 //! - [`localize`]: localizes a log on the map of a session.
 //! - [`evidence`]: evidence of loops and scans that a run keeps.
+//! - [`own_body`] and [`near_readings`]: remove readings of the robot's own body.
 //! - [`quality`]: reliability of each keyframe and loop, and what is doubtful.
 //! - [`trajectory`]: stamped poses, and the TUM format in both directions.
 //! - [`relations`]: reference relative poses between two times.
@@ -45,6 +46,8 @@ pub mod log_bytes;
 pub mod log_format;
 pub mod map_image;
 pub mod motion;
+pub mod near_readings;
+pub mod own_body;
 pub mod quality;
 pub mod recorder;
 pub mod relations;

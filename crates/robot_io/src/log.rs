@@ -8,6 +8,7 @@ use std::io;
 use thiserror::Error;
 
 use crate::laser_mount::LaserMount;
+use crate::near_readings::Footprint;
 use crate::remark::Remark;
 use crate::table_log::Layout;
 
@@ -44,6 +45,10 @@ pub struct LogOptions {
     pub laser: Option<LaserMount>,
     /// Mounting of the laser if neither an option nor the recording states it: that of the session that is continued.
     pub laser_before: Option<LaserMount>,
+    /// Shorter ranges are no returns, m.
+    pub min_range_m: Option<f64>,
+    /// Readings on the robot are no returns.
+    pub footprint: Option<Footprint>,
     /// Columns of a table; default: those of its header, or those of a known form.
     pub columns: Option<Layout>,
     /// Height band (m, on the body) for points of a 3-D sensor; without it, only single-ring clouds are read.

@@ -8,6 +8,7 @@ use crate::json_log::JsonLogReader;
 use crate::laser_mount::MountedReader;
 use crate::log::{FilePosition, LogError, LogOptions, LogReader};
 use crate::log_bytes::LogBytes;
+use crate::near_readings::without_near_readings;
 use crate::restamped::restamped;
 use crate::ros::RosReader;
 use crate::table_log::{Layout, TableReader, TableRows};
@@ -138,7 +139,7 @@ impl LogFormat {
                 None => reader,
             })
         };
-        match found {
+        let reader = match found {
             Self::Json => mounted(restamped(&first, |source| JsonLogReader::new(source, name))),
             Self::Course => mounted(restamped(&first, |source| CourseReader::new(source, name))),
             Self::Table => {
@@ -149,12 +150,18 @@ impl LogFormat {
                 }))
             }
             Self::Mcap | Self::RosBag | Self::Sqlite => {
-                Ok(Box::new(RosReader::new(parts, name, options)))
+                let reader: Box<dyn LogReader> = Box::new(RosReader::new(parts, name, options));
+                Ok(reader)
             }
             Self::Carmen | Self::Foreign(_) => {
                 mounted(restamped(&first, |source| CarmenReader::new(source, name)))
             }
-        }
+        };
+        Ok(without_near_readings(
+            reader?,
+            options.min_range_m,
+            options.footprint,
+        ))
     }
 }
 

@@ -7,6 +7,7 @@ use ch16_slam2d::scan::{FrameError, LaserScan};
 use ch16_slam2d::slam::{LoopAttempt, RobotConfig, Slam, SlamReport, SnapshotError};
 use pr_geom::SE2;
 
+use crate::counted::counted;
 use crate::evidence::{PoorFit, TriedLoop};
 use crate::log::LogFrame;
 use crate::quality::Quality;
@@ -36,6 +37,10 @@ pub struct LogRun {
     links: Vec<LoopVerification>,
     poor: Vec<PoorFit>,
     late: usize,
+    /// Whether the run takes odometry.
+    has_odometry: bool,
+    /// Number of scans without a return before the first one that sees something.
+    blind: usize,
     /// Number of scans with zero odometry motion; `None` once the robot moved.
     still: Option<usize>,
     refused: Option<FrameError>,
@@ -61,7 +66,10 @@ impl LogRun {
     /// An empty run.
     #[must_use]
     pub fn new(odometry_use: OdometryUse) -> Self {
-        Self::with_pipeline(Pipeline::new(odometry_use))
+        Self {
+            has_odometry: odometry_use != OdometryUse::None,
+            ..Self::with_pipeline(Pipeline::new(odometry_use))
+        }
     }
 
     fn with_pipeline(pipeline: Pipeline) -> Self {
@@ -74,6 +82,8 @@ impl LogRun {
             links: Vec::new(),
             poor: Vec::new(),
             late: 0,
+            has_odometry: true,
+            blind: 0,
             still: Some(0),
             refused: None,
             other_sensor: None,
@@ -138,6 +148,14 @@ impl LogRun {
                 robot = setting.set(&robot, *value).unwrap_or(robot);
             }
             self.pipeline = std::mem::take(&mut self.pipeline).with_config(robot);
+        }
+        // Without odometry nothing tells how the robot moved before it saw something.
+        if self.pipeline.slam().is_none()
+            && !(self.has_odometry && log.odometry.is_some())
+            && !log.scan.ranges_m.iter().any(|&m| log.scan.is_return(m))
+        {
+            self.blind += 1;
+            return None;
         }
         let motion = self.pipeline.motion(&log);
         let report = match self.pipeline.step(&log) {
@@ -288,6 +306,12 @@ impl LogRun {
         self.late
     }
 
+    /// Number of scans skipped because nothing was seen yet.
+    #[must_use]
+    pub fn blind(&self) -> usize {
+        self.blind
+    }
+
     /// The reason why the first invalid scan was rejected.
     #[must_use]
     pub fn refused(&self) -> Option<FrameError> {
@@ -317,7 +341,14 @@ impl LogRun {
             .map(|problem| format!("{name}: scans were skipped; the first because {problem}"));
         let late = late_scans(name, self.late);
         let still = self.still_odometry(name);
-        [other, late, still, refused]
+        let blind = (self.blind > 0).then(|| {
+            format!(
+                "{name}: {} without a return before the first one that sees something {} skipped, because without odometry nothing tells how the robot moved",
+                counted(self.blind, "scan"),
+                if self.blind == 1 { "was" } else { "were" }
+            )
+        });
+        [other, late, blind, still, refused]
             .into_iter()
             .flatten()
             .collect()

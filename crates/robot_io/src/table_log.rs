@@ -196,8 +196,7 @@ impl LineFormat for TableRows {
             return Ok(None);
         }
         let row = match self.row(text) {
-            // A header.
-            Err(_) if !self.has_rows && Layout::of(line).is_some() => return Ok(None),
+            Err(_) if !self.has_rows && is_header(text) => return Ok(None),
             other => other?,
         };
         self.has_rows = true;
@@ -255,6 +254,11 @@ impl TableRows {
         }
         Ok(())
     }
+}
+
+/// Whether a row names columns.
+fn is_header(text: &str) -> bool {
+    layout::words(text).all(|word| word.parse::<f64>().is_err())
 }
 
 /// The unit of a time by its size: s, ms, µs or ns since 1970.

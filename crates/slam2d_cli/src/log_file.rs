@@ -12,10 +12,13 @@ use robot_io::log::{LogError, LogFrame, LogOptions, LogReader, with_remarks};
 use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::log_format::LogFormat;
 use robot_io::motion::ComparedReader;
+use robot_io::near_readings::Footprint;
 use robot_io::remark::Remark;
 use robot_io::rosbag2;
 use robot_io::table_log::Layout;
 use thiserror::Error;
+
+use crate::numbers;
 
 /// Choice of topics and frames in a ROS recording, if there are several.
 #[derive(Args, Clone, Debug, Default)]
@@ -39,6 +42,13 @@ pub struct TopicArgs {
     /// Use the points of a 3-D sensor between these heights above the body's origin, m.
     #[arg(long, value_name = "LOW,HIGH", value_parser = heights, allow_hyphen_values = true)]
     heights: Option<(f64, f64)>,
+    /// Take shorter ranges as no returns, m.
+    #[arg(long, value_name = "METRES", value_parser = numbers::range_m, allow_hyphen_values = true)]
+    min_range: Option<f64>,
+    /// Take readings on the robot as no returns: back, right, front and left end of the rectangle that it covers, in
+    /// metres from the body's origin.
+    #[arg(long, value_name = "B,R,F,L", allow_hyphen_values = true)]
+    footprint: Option<Footprint>,
     /// Columns of a table of scans or beams without a header, such as time_us,angle_deg,range_mm or
     /// time,x,y,heading,angle_min,angle_increment,ranges; - is not read.
     #[arg(long, value_name = "NAMES", allow_hyphen_values = true)]
@@ -77,6 +87,8 @@ impl TopicArgs {
             body_frame: self.body_frame.clone(),
             laser: self.laser,
             laser_before: self.laser_before,
+            min_range_m: self.min_range,
+            footprint: self.footprint,
             columns: self.columns.clone(),
             heights_m: self.heights,
         }

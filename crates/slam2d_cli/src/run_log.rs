@@ -185,6 +185,7 @@ pub fn run(args: &RunArgs) -> Result<ExitCode, RunError> {
     if run.scans() == 0 {
         let problem = match run.refused() {
             Some(problem) => problem.to_string(),
+            None if run.blind() > 0 => NOTHING_SEEN.to_owned(),
             None => "it was interrupted before the first one".to_owned(),
         };
         return Err(RunError::NoScan { name, problem });

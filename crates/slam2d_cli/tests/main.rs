@@ -4,6 +4,7 @@ mod commands;
 mod dask;
 mod doctor;
 mod estimators;
+mod field_files;
 mod files;
 mod logs;
 mod mark;

@@ -281,6 +281,9 @@ impl<'a> Engine<'a> {
             None => {
                 let nothing = || match self.run.refused() {
                     Some(why) => format!("{}: no scan could be used: {why}", self.name),
+                    None if self.run.blind() > 0 => {
+                        format!("{}: no scan could be used: {NOTHING_SEEN}", self.name)
+                    }
                     None => format!("{} was stopped before its first scan", self.name),
                 };
                 self.work = Work::Failed(problem.unwrap_or_else(nothing));

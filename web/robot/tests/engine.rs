@@ -431,7 +431,10 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
         while engine.step() {}
         assert_eq!(engine.stage(), Stage::Failed);
         let text = of(&engine.updates(), "stage").text.clone();
-        assert!(text.starts_with("photo.png is not a CARMEN log"), "{text}");
+        assert!(
+            text.starts_with("photo.png is a map or a picture, not a log of scans"),
+            "{text}"
+        );
         engine.order("turn 0");
         assert!(of(&engine.updates(), "answer").text.contains("no graph"));
         assert!(engine.file("graph.g2o").is_err());

@@ -167,5 +167,5 @@ function headingFor({ name, verdict, remarks }: Diagnosis): string {
   const count = (of: Verdict): number => remarks.filter((remark) => remark.verdict === of).length;
   const kinds = (['wrong', 'mended'] as const).filter((of) => count(of) > 0);
   const found = kinds.map((of) => `${count(of)} ${WORDS[of]}`);
-  return `${SIGNS[verdict]} ${name}: ${found.length === 0 ? 'all in order' : found.join(', ')}`;
+  return `${SIGNS[verdict]} ${name}: ${found.length === 0 ? 'the recording is in order' : found.join(', ')}`;
 }

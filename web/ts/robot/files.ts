@@ -3,7 +3,7 @@
 import { create } from '../dom';
 
 /** File types of the dialog; the `.yaml` describes a recording of several files. */
-export const LOGS = '.yaml,.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd,.g2o,.graph,.toro,.slam2d';
+export const LOGS = '.yaml,.log,.clf,.mcap,.db3,.db3-wal,.bag,.jsonl,.csv,.txt,.dat,.gz,.zst,.zstd,.g2o,.graph,.toro,.slam2d';
 
 export interface DialogOptions {
   accept: string;

@@ -16,7 +16,7 @@ declare const SAMPLE_FILES: readonly string[];
 /** Extensions of references. */
 const REFERENCES = ['.relations', '.tum'];
 /** File types of logs to localize. */
-const SCANS = '.yaml,.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd';
+const SCANS = '.yaml,.log,.clf,.mcap,.db3,.db3-wal,.bag,.jsonl,.csv,.txt,.dat,.gz,.zst,.zstd';
 /** Extension of a session. */
 const SESSION = '.slam2d';
 /** The stage of a finished map, in deliveries. */

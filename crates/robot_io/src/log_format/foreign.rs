@@ -180,7 +180,7 @@ static KINDS: [Foreign; 29] = [
         &["pcd", "ply", "las", "laz", "xyz"],
     ),
     kind(
-        "a map, not a log of scans",
+        "a map or a picture, not a log of scans",
         FROM_ITS_RECORDING,
         &[
             b"P5\n",

@@ -8,6 +8,7 @@ use super::{Comparison, Motion};
 use crate::laser_mount::{LaserMount, flip};
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::odometry_poses::OdometryPoses;
+use crate::own_body::BodyReader;
 use crate::remark::Remark;
 
 /// Most scans that are compared, and most beams together: they are kept in memory.
@@ -92,7 +93,7 @@ impl<'a> ComparedReader<'a> {
     #[must_use]
     pub fn new(inner: Box<dyn LogReader + 'a>, is_mount_fixed: bool) -> Self {
         Self {
-            inner,
+            inner: Box::new(BodyReader::new(inner)),
             is_mount_fixed,
             ignores_odometry: false,
             waiting: VecDeque::new(),

@@ -61,7 +61,10 @@ impl Packing {
                 .map_err(|problem| describe(&problem))?,
         };
         if content.len() > most {
-            return Err(format!("a chunk decompresses to more than {most} bytes"));
+            return Err(format!(
+                "a chunk of {} bytes decompresses to more than {most} bytes; no sensor's messages do, so record it again",
+                packed.len()
+            ));
         }
         Ok(content)
     }

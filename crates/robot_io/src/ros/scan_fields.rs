@@ -17,6 +17,9 @@ const LONGEST_M: f64 = 400.0;
 /// A sweep may take this many scan periods: stamps jitter.
 const SWEEP_SLACK: f64 = 1.3;
 
+/// A sweep of more scan periods has another unit of time.
+const MOST_PERIODS: f64 = 50.0;
+
 /// Fields of `sensor_msgs/LaserScan`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScanFields {
@@ -205,9 +208,17 @@ impl ScanFields {
                 remarks.push(format!("{stated}; it is read as {name}, which agrees with the scans' period. Publish seconds"));
                 stated_s * unit
             }
+            // A unit is wrong by a thousand; a sweep of a few periods is that of a laser whose stamps come too fast.
+            None if stated_s * beams <= MOST_PERIODS * period_s => {
+                remarks.push(format!(
+                    "{stated}, {:.1} times the {period_s:.2} s between stamps; the stamps or time_increment are wrong, and the motion within a sweep is not removed. Stamp each scan when its first beam is measured",
+                    stated_s * beams / period_s
+                ));
+                0.0
+            }
             None => {
                 remarks.push(format!(
-                    "{stated}, but scans are {period_s:.2} s apart; each sweep is treated as instantaneous. Publish seconds"
+                    "{stated}, but scans are {period_s:.2} s apart; the motion within a sweep is not removed. Correct time_increment in the driver"
                 ));
                 0.0
             }

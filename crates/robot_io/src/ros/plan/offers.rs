@@ -25,9 +25,9 @@ pub fn list(
             .collect::<BTreeSet<_>>()
     };
     let frames = || survey.transforms.edges();
-    let parents: BTreeSet<String> = frames().map(|(parent, _)| parent.to_owned()).collect();
+    let parents = frames().map(|(parent, _)| parent.to_owned());
     let children = frames().map(|(_, child)| child.to_owned());
-    let bodies: BTreeSet<String> = children.chain(parents.iter().cloned()).collect();
+    let bodies: BTreeSet<String> = children.chain(parents).collect();
     let mut odometry_topics = topics(&[ODOMETRY]);
     if !survey.tracks.is_empty() {
         odometry_topics.insert(TRANSFORMS.to_owned());
@@ -43,7 +43,11 @@ pub fn list(
                 ),
                 LogOption::OdometryFrame => (
                     above.map(|odometry| odometry.track.above.clone()),
-                    parents.clone(),
+                    survey
+                        .tracks
+                        .keys()
+                        .map(|(above, _)| above.clone())
+                        .collect(),
                 ),
                 LogOption::BodyFrame => (body.map(str::to_owned), bodies.clone()),
             };
