@@ -231,7 +231,7 @@ impl LineFormat for TableRows {
 impl TableRows {
     /// Adds what the row of a scan does not state.
     fn complete(&self, fields: &mut ScanFields) -> Result<(), String> {
-        if let Some([first, step]) = self.layout.usual_angles_rad() {
+        if let Some([first, step]) = self.layout.angles_rad {
             (fields.angle_min, fields.angle_increment) = (first, step);
             // The angle of the last beam follows from them.
             fields.angle_max = f64::NAN;

@@ -87,6 +87,44 @@ fn a_start_that_sees_nothing_is_skipped_until_it_sees_something() {
 }
 
 #[test]
+fn a_run_that_is_cut_short_says_so_and_replaces_no_whole_one() {
+    let Some(log) = field("../logs/mines_exp1.clf.gz") else {
+        return;
+    };
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (part, run) = (path("part.clf.gz"), path("run"));
+    let bytes = fs::read(&log).unwrap();
+    // The log can be read up to here.
+    fs::write(&part, &bytes[..bytes.len() / 4]).unwrap();
+    let files = |folder: &str| -> Vec<Vec<u8>> {
+        let names = ["trajectory.tum", "map.pgm", "session.slam2d", "report.html"];
+        names
+            .iter()
+            .map(|name| fs::read(Path::new(folder).join(name)).unwrap())
+            .collect()
+    };
+    let first_doubt = |folder: &str| {
+        let text = fs::read_to_string(Path::new(folder).join("report.txt")).unwrap();
+        text.lines().nth(3).unwrap().to_owned()
+    };
+    // Into an empty folder.
+    assert_eq!(slam2d(&["run", &part, "-o", &run]).status.code(), Some(2));
+    let said = "- the run was cut short after ";
+    assert!(first_doubt(&run).starts_with(said), "{}", first_doubt(&run));
+    // A whole run replaces it, and stays when another one is cut short.
+    assert!(slam2d(&["run", &log, "-o", &run]).status.success());
+    assert!(!first_doubt(&run).starts_with(said));
+    let whole = files(&run);
+    assert_eq!(slam2d(&["run", &part, "-o", &run]).status.code(), Some(2));
+    assert!(files(&run) == whole, "the whole result was replaced");
+    let beside = format!("{run}/interrupted");
+    assert!(first_doubt(&beside).starts_with(said) && files(&beside) != whole);
+    assert!(slam2d(&["run", &log, "-o", &run]).status.success());
+    assert!(!Path::new(&beside).exists());
+}
+
+#[test]
 fn folders_that_were_renamed_or_whose_recording_was_killed_are_read_whole() {
     for (folder, word) in [
         ("renamed_file", "my_drive.db3 is read in its place"),

@@ -242,7 +242,7 @@ fn a_topic_or_frame_that_is_not_there_is_named_with_those_that_are() {
         (
             "tf.mcap",
             "--odom-frame",
-            "has no odom-frame /nowhere; it has ",
+            "has no odom-frame /nowhere; it has odom",
         ),
         (
             "tf.mcap",

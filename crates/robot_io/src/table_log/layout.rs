@@ -53,6 +53,8 @@ pub struct Layout {
     pub columns: Vec<Scaled>,
     /// Whether beams turn clockwise, as RPLidar counts them.
     pub is_clockwise: bool,
+    /// First angle and step of scans whose rows state none, rad.
+    pub angles_rad: Option<[f64; 2]>,
 }
 
 /// Beams of the URG-04LX in a log of BreezySLAM, and the words before them.
@@ -106,6 +108,7 @@ impl Layout {
         (is_of_beams != is_of_scans).then(|| Self {
             is_clockwise: is_of_beams && of(Column::Quality, &columns) > 0,
             columns,
+            angles_rad: None,
         })
     }
 
@@ -121,6 +124,7 @@ impl Layout {
                 (Column::Quality, Some(1.0)),
             ],
             is_clockwise: true,
+            angles_rad: None,
         })
     }
 
@@ -151,15 +155,21 @@ impl Layout {
             Self {
                 columns,
                 is_clockwise: false,
+                angles_rad: Some(BREEZY_ANGLES.map(f64::to_radians)),
             }
         })
     }
 
-    /// First angle and step of scans whose rows state none, rad; `None` if the layout has no such sensor.
-    #[must_use]
-    pub fn usual_angles_rad(&self) -> Option<[f64; 2]> {
-        let is_breezy = self.columns.len() == BREEZY.1 + 1;
-        is_breezy.then(|| BREEZY_ANGLES.map(f64::to_radians))
+    /// Whether a row has numbers where the layout has ranges.
+    fn has_numbers(&self, row: &str) -> bool {
+        let is_range =
+            |at: &usize| matches!(self.column(*at), Some((Column::Range | Column::Ranges, _)));
+        let mut ranges = words(row)
+            .enumerate()
+            .filter(|(at, _)| is_range(at))
+            .peekable();
+        ranges.peek().is_some()
+            && ranges.all(|(_, word)| word.is_empty() || word.parse::<f64>().is_ok())
     }
 
     /// Whether a row is a beam, not a scan.
@@ -194,8 +204,8 @@ impl FromStr for Layout {
             return Err("name either ranges, or angle and range".to_owned());
         }
         Ok(Self {
-            is_clockwise: false,
             columns,
+            ..Self::default()
         })
     }
 }

@@ -137,7 +137,13 @@ fn the_time_of_a_beam_is_checked_against_the_period() {
     );
     let (taken_s, remarks) = interval(7.0);
     assert!(
-        taken_s == 0.0 && remarks.contains("instantaneous"),
+        taken_s == 0.0 && remarks.ends_with("Correct time_increment in the driver"),
+        "{remarks}"
+    );
+    // Three periods in one sweep are no unit: the stamps come too fast.
+    let (taken_s, remarks) = interval(0.3 / 360.0);
+    assert!(
+        taken_s == 0.0 && remarks.contains("3.0 times the 0.10 s between stamps"),
         "{remarks}"
     );
 }
