@@ -66,12 +66,15 @@ impl Layout {
     /// The layout of a file with this start.
     #[must_use]
     pub fn of(start: &[u8]) -> Option<Self> {
-        let mut lines = start.split(|&byte| byte == b'\n' || byte == b'\r');
-        let line = lines.find(|line| !line.trim_ascii().is_empty())?;
-        let text = std::str::from_utf8(line)
-            .ok()?
-            .trim_start_matches('\u{feff}');
+        let lines = start.split(|&byte| byte == b'\n' || byte == b'\r');
+        let mut lines = lines.filter(|line| !line.trim_ascii().is_empty());
+        let text = std::str::from_utf8(lines.next()?).ok()?;
+        let text = text.trim_start_matches('\u{feff}');
+        // A comment may have the words of a header.
+        let row = lines.next().and_then(|row| std::str::from_utf8(row).ok());
+        let fits = |layout: &Self| row.is_none_or(|row| layout.has_numbers(row));
         Self::of_header(text)
+            .filter(fits)
             .or_else(|| Self::of_sdk(text))
             .or_else(|| Self::of_echo(text))
             .or_else(|| Self::of_breezy(text))
