@@ -2,6 +2,9 @@
 
 use core::f64::consts::TAU;
 
+use ch16_slam2d::scan::LaserScan;
+use pr_grid::MAX_TILED_CELLS;
+
 use super::*;
 
 /// A robot in a room of 4 m × 3 m whose lower left corner is at (1, 2), scanned five times.
