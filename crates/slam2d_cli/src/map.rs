@@ -1,18 +1,20 @@
 //! `slam2d map`: writes the map of a run for Nav2's map_server.
 
 use std::fs;
-use std::io;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use robot_io::json_log::FrameLine;
 use robot_io::log::LogError;
-use robot_io::map_image::{MapError, MapMode, build_map, build_session_map, map_with_free_space};
+use robot_io::map_image::{
+    MapError, MapImage, MapMode, build_map, build_session_map, finest_map, map_with_free_space,
+};
 use thiserror::Error;
 
 use crate::log_file::{FileError, open};
 use crate::numbers;
-use crate::optimize::write_whole;
+use crate::optimize::WholeFile;
 use crate::output::say;
 use crate::run_folder::KEYFRAMES;
 use crate::session_file::{SessionFileError, read_session};
@@ -81,6 +83,16 @@ pub enum MapFailure {
         "--mode scale marks unknown cells by transparency, which PGM does not have; use --image png"
     )]
     ScaleNeedsPng,
+    /// The cells are too small.
+    #[error("{}: {source}; --resolution {fits_m} fits", path.display())]
+    TooFine {
+        /// The session or the folder.
+        path: PathBuf,
+        /// Reason.
+        source: MapError,
+        /// Side of cells that fit, m.
+        fits_m: f64,
+    },
     /// The scans give no map.
     #[error("{}: {source}", path.display())]
     Map {
@@ -115,36 +127,37 @@ pub fn run(args: &MapArgs) -> Result<(), MapFailure> {
         } else {
             build_map
         };
-        draw(&keyframes(&args.run)?, args.resolution)
+        let lines = keyframes(&args.run)?;
+        as_fine_as_asked(args, |cell_m| draw(&lines, cell_m))?
     } else {
-        build_session_map(&read_session(&args.run)?.0, args.resolution)
+        let session = read_session(&args.run)?.0;
+        as_fine_as_asked(args, |cell_m| build_session_map(&session, cell_m))?
     };
-    let map = map.map_err(|source| MapFailure::Map {
-        path: args.run.clone(),
-        source,
-    })?;
     let picture = args.output.with_extension(match image {
         ImageArg::Pgm => "pgm",
         ImageArg::Png => "png",
     });
-    let mut bytes = Vec::new();
-    let written = match image {
-        ImageArg::Pgm => map.write_pgm(&mut bytes),
-        ImageArg::Png => map.write_png(&mut bytes, mode),
-    };
-    let save = |path: &Path, bytes: &[u8]| {
-        write_whole(path, bytes).map_err(|source| FileError::Io {
-            path: path.to_owned(),
-            source,
-        })
-    };
-    written.map_err(|source| FileError::Io {
-        path: picture.clone(),
-        source,
-    })?;
-    save(&picture, &bytes)?;
     let name = picture.file_name().unwrap_or_default().to_string_lossy();
-    save(&args.output, map.yaml(&name, mode).as_bytes())?;
+    let yaml = map.yaml(&name, mode);
+    let at = |path: &Path| {
+        let path = path.to_owned();
+        move |source| FileError::Io { path, source }
+    };
+    // Both are complete before either replaces an older one.
+    let written = |path: &Path, write: &dyn Fn(&mut WholeFile) -> io::Result<()>| {
+        let mut file = WholeFile::create(path).map_err(at(path))?;
+        write(&mut file)
+            .and_then(|()| file.flush())
+            .map_err(at(path))?;
+        Ok::<WholeFile, FileError>(file)
+    };
+    let image = written(&picture, &|out| match image {
+        ImageArg::Pgm => map.write_pgm(out),
+        ImageArg::Png => map.write_png(out, mode),
+    })?;
+    let about = written(&args.output, &|out| out.write_all(yaml.as_bytes()))?;
+    image.finish().map_err(at(&picture))?;
+    about.finish().map_err(at(&args.output))?;
     let [occupied, free, unknown] = map.counts();
     say!(
         "{} × {} cells of {} m: {occupied} occupied, {free} free, {unknown} unknown",
@@ -153,6 +166,25 @@ pub fn run(args: &MapArgs) -> Result<(), MapFailure> {
         map.cell_m
     );
     Ok(())
+}
+
+/// The map with the cells that were asked for.
+fn as_fine_as_asked(
+    args: &MapArgs,
+    draw: impl Fn(f64) -> Result<MapImage, MapError>,
+) -> Result<MapImage, MapFailure> {
+    let path = args.run.clone();
+    match draw(args.resolution) {
+        Ok(map) => Ok(map),
+        Err(source) => Err(match finest_map(args.resolution, draw) {
+            Ok(map) => MapFailure::TooFine {
+                path,
+                source,
+                fits_m: map.cell_m,
+            },
+            Err(_) => MapFailure::Map { path, source },
+        }),
+    }
 }
 
 /// The keyframes of a run with their poses.

@@ -123,6 +123,13 @@ impl Choices {
                 choices.log = choices.log.with(option, value);
             } else if name == "laser" {
                 choices.log.laser = Some(value.parse::<LaserMount>()?);
+            } else if name == "min-range" {
+                let range_m = value.parse().ok().filter(|m: &f64| *m >= 0.0);
+                choices.log.min_range_m = Some(range_m.ok_or("min-range has to be metres")?);
+            } else if name == "footprint" {
+                choices.log.footprint = Some(value.parse()?);
+            } else if name == "columns" {
+                choices.log.columns = Some(value.parse()?);
             } else if format!("--{name}") == NO_ODOMETRY {
                 choices.odometry = OdometryUse::None;
             } else {

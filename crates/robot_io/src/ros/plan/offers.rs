@@ -6,6 +6,7 @@ use super::TRANSFORMS;
 use super::odometry::SelectedOdometry;
 use crate::log::{LogOffer, LogOption, LogOptions};
 use crate::ros::survey::{ODOMETRY, SCANS, Survey};
+use crate::ros::transforms::is_ground;
 
 /// Most topics or frames listed for an option.
 const MAX_OFFERED: usize = 100;
@@ -25,6 +26,10 @@ pub fn list(
             .collect::<BTreeSet<_>>()
     };
     let frames = || survey.transforms.edges();
+    let grounds = frames()
+        .map(|(parent, _)| parent)
+        .filter(|frame| is_ground(frame));
+    let grounds: BTreeSet<String> = grounds.map(str::to_owned).collect();
     let parents = frames().map(|(parent, _)| parent.to_owned());
     let children = frames().map(|(_, child)| child.to_owned());
     let bodies: BTreeSet<String> = children.chain(parents).collect();
@@ -43,11 +48,7 @@ pub fn list(
                 ),
                 LogOption::OdometryFrame => (
                     above.map(|odometry| odometry.track.above.clone()),
-                    survey
-                        .tracks
-                        .keys()
-                        .map(|(above, _)| above.clone())
-                        .collect(),
+                    grounds.clone(),
                 ),
                 LogOption::BodyFrame => (body.map(str::to_owned), bodies.clone()),
             };
