@@ -14,8 +14,8 @@ use std::io::{self, BufRead, Read};
 
 use ch16_slam2d::graph::PoseGraph;
 use pr_geom::SE2;
+use robot_io::graph_file::GraphFile;
 use robot_io::log::LogReader;
-use robot_io::log_format::LogFormat;
 use robot_io::recorder::RunRecorder;
 use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
 use robot_io::session::{self, Session};
