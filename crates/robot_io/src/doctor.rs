@@ -209,13 +209,17 @@ fn odometry_remark(odometry: Option<&OdometrySummary>, motion: &Motion) -> Remar
     if let Some(rate_hz) = odometry.rate_hz {
         text.push_str(&format!(", {rate_hz:.1} poses per second"));
     }
-    if let (Some(scale), Some(drift)) = (motion.scale, motion.drift_m_per_m) {
+    if let (Some(scale), Some(drift), true) = (
+        motion.scale,
+        motion.drift_m_per_m,
+        motion.agrees_with_itself(),
+    ) {
         text.push_str(&format!(
             "; {scale:.2} m per metre by scans, with a drift of {:.1} cm per metre",
             100.0 * drift
         ));
     }
-    if let Some(turn) = motion.turn_scale {
+    if let Some(turn) = motion.turn_scale.filter(|_| motion.agrees_with_itself()) {
         text.push_str(&format!("; {turn:.2}° per degree by scans"));
     }
     Remark::good(Part::Odometry, text)
@@ -244,11 +248,18 @@ fn mounting_remark(notes: &LogNotes, motion: &Motion) -> Option<Remark> {
             )
         });
     Some(match (motion.direction_rad, motion.correlation) {
-        (Some(direction_rad), Some(correlation)) => Remark::good(
+        (Some(direction_rad), Some(correlation)) if motion.confirms_mounting() => Remark::good(
             Part::Mounting,
             format!(
                 "{mount} agrees with scans and odometry to {:.1}°, and their turns correlate ({correlation:.2})",
                 direction_rad.to_degrees().abs()
+            ),
+        ),
+        (Some(_), Some(correlation)) => Remark::mended(
+            Part::Mounting,
+            format!(
+                "{mount} cannot be checked: the paths of scans matched alone and of odometry differ too much (correlation of the turns {correlation:.2}, {:.0} cm per metre apart)",
+                100.0 * motion.drift_m_per_m.unwrap_or_default()
             ),
         ),
         _ => Remark::mended(
@@ -281,6 +292,12 @@ fn clocks_remark(notes: &LogNotes, info: &LogInfo) -> Option<Remark> {
 }
 
 impl Diagnosis {
+    /// Whether the recording has scans that see something.
+    #[must_use]
+    pub fn can_be_mapped(&self) -> bool {
+        self.sensor.scans > 0 && self.sensor.valid > 0.0
+    }
+
     /// The report: one line per remark, under the name of its part.
     #[must_use]
     pub fn text(&self) -> String {

@@ -64,6 +64,7 @@ pub mod trajectory;
 mod counted;
 mod lines;
 mod odometry_poses;
+mod path_lengths;
 mod plausible;
 mod restamped;
 mod stamps;

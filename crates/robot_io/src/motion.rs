@@ -10,14 +10,24 @@
 //! | ratio of the displacements | 1 | 1000: millimetres; off by a tenth: wheel size |
 //! | lag that maximizes the correlation of the turns | 0 | clock offset of less than a second |
 //!
-//! A finding needs the agreement of most segments, so scans that cannot be matched alone give no finding.
+//! This comparison only proposes: scans that cannot be matched alone agree with nothing, and a fault that is not there may
+//! seem to be. A finding needs the agreement of most segments, and then a trial: the part of the log that was compared is
+//! mapped with and without its repair ([`trial`]).
 
+mod compared;
 mod finding;
 mod lag;
+mod odometry_choice;
 mod reader;
+mod remarks;
+mod repairs;
+mod trial;
 
-pub use finding::{Finding, Motion};
+pub use compared::Motion;
+pub use finding::{Finding, Suggestion};
+pub use odometry_choice::OdometryChoice;
 pub use reader::ComparedReader;
+pub use trial::Costs;
 
 use ch16_slam2d::scan::{Frame, LaserScan};
 use ch16_slam2d::slam::{Slam, SlamConfig};
@@ -29,6 +39,10 @@ use lag::Heading;
 /// A segment ends after this motion of the sensor, m or rad.
 const STRETCH_M: f64 = 0.3;
 const STRETCH_RAD: f64 = 0.25;
+/// A scan counts in a trial after this motion of the sensor since the last one that does, m or rad: at rest, odometry
+/// that always stands still is right.
+const STEP_M: f64 = 0.05;
+const STEP_RAD: f64 = 0.05;
 /// Scans closer in time add no information, s.
 const MIN_APART_S: f64 = 0.08;
 
@@ -49,6 +63,9 @@ struct Comparison {
     began: Option<(SE2, SE2)>,
     stretches: Vec<Stretch>,
     headings: Vec<Heading>,
+    /// Stamps (s) of scans after a motion, and the pose of the last one.
+    steps_s: Vec<f64>,
+    last_step: Option<SE2>,
     moved_m: f64,
     turned_rad: f64,
 }
@@ -61,6 +78,8 @@ impl Comparison {
             began: None,
             stretches: Vec::new(),
             headings: Vec::new(),
+            steps_s: Vec::new(),
+            last_step: None,
             moved_m: 0.0,
             turned_rad: 0.0,
         }
@@ -88,6 +107,14 @@ impl Comparison {
             by_scans: report.estimate.theta(),
             by_odometry: body.theta(),
         });
+        let has_moved = self.last_step.is_none_or(|last| {
+            let [x, y, turn] = last.between(&report.estimate).to_array();
+            pr_geom::math::norm2(x, y) >= STEP_M || turn.abs() >= STEP_RAD
+        });
+        if has_moved {
+            self.last_step = Some(report.estimate);
+            self.steps_s.push(log.stamp_s);
+        }
         let now = (report.estimate, body);
         let Some(began) = self.began else {
             self.began = Some(now);

@@ -27,7 +27,7 @@ pub enum Part {
 pub enum Verdict {
     /// Correct.
     Good,
-    /// Something was wrong and was corrected, or is missing and not required.
+    /// Something was wrong and was corrected, is missing and not required, or is suspected without proof.
     Mended,
     /// Something is wrong and was not corrected.
     Wrong,

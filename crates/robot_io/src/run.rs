@@ -10,6 +10,7 @@ use pr_geom::SE2;
 use crate::counted::counted;
 use crate::evidence::{PoorFit, TriedLoop};
 use crate::log::LogFrame;
+use crate::path_lengths::PathLengths;
 use crate::quality::Quality;
 use crate::session::{MappedGraph, Session, selected_scan_poses};
 use crate::settings::Setting;
@@ -36,6 +37,7 @@ pub struct LogRun {
     loops: Vec<TriedLoop>,
     links: Vec<LoopVerification>,
     poor: Vec<PoorFit>,
+    lengths: PathLengths,
     late: usize,
     /// Whether the run takes odometry.
     has_odometry: bool,
@@ -81,6 +83,7 @@ impl LogRun {
             loops: Vec::new(),
             links: Vec::new(),
             poor: Vec::new(),
+            lengths: PathLengths::default(),
             late: 0,
             has_odometry: true,
             blind: 0,
@@ -169,6 +172,9 @@ impl LogRun {
                 return None;
             }
         };
+        if let Some(number) = report.new_keyframe {
+            self.lengths.add(number, log.odometry);
+        }
         if let Some(motion) = motion {
             let stands = motion == SE2::identity();
             self.still = self.still.filter(|_| stands).map(|scans| scans + 1);
@@ -348,7 +354,10 @@ impl LogRun {
                 if self.blind == 1 { "was" } else { "were" }
             )
         });
-        [other, late, blind, still, refused]
+        let lengths = self
+            .slam()
+            .and_then(|slam| self.lengths.sentence(name, slam));
+        [other, late, blind, still, lengths, refused]
             .into_iter()
             .flatten()
             .collect()

@@ -2,3 +2,4 @@
 
 mod evo;
 mod recorded;
+mod verdicts;

@@ -1,32 +1,39 @@
 //! `slam2d doctor`: what is wrong with a recording, and how to correct it.
 
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 use clap::Args;
 use robot_io::doctor::Checkup;
 use robot_io::log::LogReader;
+use robot_io::remark::Verdict;
 
-use crate::log_file::{FileError, TopicArgs, open_compared};
+use crate::log_file::{FileError, OdometryArgs, TopicArgs, open_compared};
 use crate::output::{print_json, say};
 
 /// Check a recording: print sensor, odometry, mounting, clocks and file, each with ✓, ! or ✗.
+///
+/// The exit code is 0 if all is right, 1 if something was repaired or needs attention, and 2 if the recording cannot be
+/// mapped.
 #[derive(Args, Clone, Debug)]
 pub struct DoctorArgs {
     /// The log, or the folder of a ROS 2 recording.
     log: PathBuf,
     #[command(flatten)]
     topics: TopicArgs,
+    #[command(flatten)]
+    odometry: OdometryArgs,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
 }
 
-/// Reads the log and prints the diagnosis.
+/// Reads the log and prints the diagnosis; returns the exit code.
 ///
 /// # Errors
 /// If the log cannot be read at all.
-pub fn run(args: &DoctorArgs) -> Result<(), FileError> {
-    let (mut reader, mut progress) = open_compared(&args.log, &args.topics)?;
+pub fn run(args: &DoctorArgs) -> Result<ExitCode, FileError> {
+    let (mut reader, mut progress) = open_compared(&args.log, &args.topics, args.odometry)?;
     let mut checkup = Checkup::default();
     while let Some(frame) = reader.next_frame()? {
         checkup.add(&frame);
@@ -41,5 +48,9 @@ pub fn run(args: &DoctorArgs) -> Result<(), FileError> {
     } else {
         say!("{}", diagnosis.text().trim_end());
     }
-    Ok(())
+    Ok(ExitCode::from(if !diagnosis.can_be_mapped() {
+        2
+    } else {
+        u8::from(diagnosis.verdict != Verdict::Good)
+    }))
 }

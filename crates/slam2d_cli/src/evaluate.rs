@@ -8,7 +8,7 @@ use robot_io::trajectory::{StampedPose, Trajectory};
 use thiserror::Error;
 
 use crate::grade::{GradeError, ReferenceArgs};
-use crate::log_file::{FileError, TopicArgs, open, open_compared};
+use crate::log_file::{FileError, OdometryArgs, TopicArgs, open, open_compared};
 use crate::output::print_json;
 
 /// Evaluate a trajectory against reference relations or the true trajectory.
@@ -69,7 +69,7 @@ pub fn run(args: &EvaluateArgs) -> Result<(), EvaluateError> {
 
 /// The odometry of a log at its scans, without those whose stamp is not later than the one before.
 fn odometry(path: &Path, topics: &TopicArgs) -> Result<Trajectory, EvaluateError> {
-    let (mut reader, mut progress) = open_compared(path, topics)?;
+    let (mut reader, mut progress) = open_compared(path, topics, OdometryArgs::default())?;
     let mut poses: Vec<StampedPose> = Vec::new();
     while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
         progress.report(poses.len());

@@ -17,7 +17,7 @@ use thiserror::Error;
 
 use crate::grade::{Grade, GradeError, ReferenceArgs};
 use crate::interrupt::{self, Interrupt};
-use crate::log_file::{FileError, TopicArgs, open_compared};
+use crate::log_file::{FileError, OdometryArgs, TopicArgs, open_compared};
 use crate::optimize::{check_file, write_whole};
 use crate::output::{print_json, say};
 use crate::session_file::{SessionFileError, read_session};
@@ -31,6 +31,8 @@ pub struct LocalizeArgs {
     log: PathBuf,
     #[command(flatten)]
     topics: TopicArgs,
+    #[command(flatten)]
+    odometry: OdometryArgs,
     /// Initial pose on the map: x,y,deg in metres and degrees, or anywhere.
     #[arg(
         long,
@@ -185,7 +187,8 @@ pub fn run(args: &LocalizeArgs) -> Result<ExitCode, LocalizeError> {
         }
     })?;
     let interrupt = Interrupt::watch();
-    let (mut reader, mut progress) = open_compared(&args.log, &args.topics)?;
+    let (reader, mut progress) = open_compared(&args.log, &args.topics, args.odometry)?;
+    let mut reader = reader.ignoring_odometry(args.no_odometry);
     let mut is_interrupted = true;
     while !interrupt.came() {
         let Some(frame) = reader.next_frame().map_err(FileError::from)? else {

@@ -11,7 +11,7 @@ use robot_io::laser_mount::LaserMount;
 use robot_io::log::{LogError, LogFrame, LogOptions, LogReader, with_remarks};
 use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::log_format::LogFormat;
-use robot_io::motion::ComparedReader;
+use robot_io::motion::{ComparedReader, OdometryChoice};
 use robot_io::near_readings::Footprint;
 use robot_io::remark::Remark;
 use robot_io::rosbag2;
@@ -56,6 +56,14 @@ pub struct TopicArgs {
     /// Mounting of the laser in the session that the log continues.
     #[arg(skip)]
     laser_before: Option<LaserMount>,
+}
+
+/// How the odometry of a log is taken.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub struct OdometryArgs {
+    /// How the odometry is taken: checked against the scans, as it is, or checked with left and right exchanged.
+    #[arg(long, value_name = "check|force|mirrored", default_value = "check")]
+    odometry: OdometryChoice,
 }
 
 /// Parses two heights, the lower one first.
@@ -177,20 +185,19 @@ pub fn read_frames(path: &Path, topics: &TopicArgs) -> Result<Vec<LogFrame>, Fil
     Ok(frames)
 }
 
-/// Opens a log as [`open_log`] does, compares its first scans with its odometry, and corrects and reports faults of the
-/// mounting or the units that are certain.
+/// Opens a log as [`open_log`] does, compares its first scans with its odometry, and corrects and reports the
+/// faults whose repair wins a trial.
 ///
 /// # Errors
 /// If it cannot be opened or is not a log.
 pub fn open_compared(
     path: &Path,
     topics: &TopicArgs,
+    odometry: OdometryArgs,
 ) -> Result<(ComparedReader<'static>, Progress), FileError> {
     let (reader, progress) = open_log(path, topics)?;
-    Ok((
-        ComparedReader::new(reader, topics.laser.is_some()),
-        progress,
-    ))
+    let reader = ComparedReader::new(reader, topics.laser.is_some());
+    Ok((reader.with_odometry(odometry.odometry), progress))
 }
 
 /// The files of a log, remarks on them, and a progress bar.

@@ -97,7 +97,10 @@ fn main() -> ExitCode {
         Command::Places(args) => places::run(args).map_err(|e| e.to_string()),
         Command::Sweep(args) => sweep::run(args).map_err(|e| e.to_string()),
         Command::Optimize(args) => optimize::run(args).map_err(|e| e.to_string()),
-        Command::Doctor(args) => doctor::run(args).map_err(|e| e.to_string()),
+        Command::Doctor(args) => match doctor::run(args) {
+            Ok(code) => return code,
+            Err(error) => Err(error.to_string()),
+        },
         Command::Info(args) => info::run(args).map_err(|e| e.to_string()),
         Command::Run(args) => return ended(run_log::run(args)),
         Command::Localize(args) => return ended(localize::run(args)),

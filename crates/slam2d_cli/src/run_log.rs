@@ -18,7 +18,7 @@ use thiserror::Error;
 use crate::buildings::setting;
 use crate::grade::{Grade, GradeError, ReferenceArgs};
 use crate::interrupt::{self, Interrupt};
-use crate::log_file::{FileError, TopicArgs, open_compared};
+use crate::log_file::{FileError, OdometryArgs, TopicArgs, open_compared};
 use crate::numbers;
 use crate::optimize::check_folder;
 use crate::output::{print_json, say};
@@ -34,6 +34,8 @@ pub struct RunArgs {
     log: PathBuf,
     #[command(flatten)]
     topics: TopicArgs,
+    #[command(flatten)]
+    odometry: OdometryArgs,
     /// Write the results to this folder. They replace those of an older run all together at the end; a run that is cut
     /// short replaces no whole result and goes to the folder interrupted in it.
     #[arg(short = 'o', long, value_name = "DIR")]
@@ -146,7 +148,7 @@ pub fn run(args: &RunArgs) -> Result<ExitCode, RunError> {
     }
     let (mut run, mut recorder, laser_before) = start(args)?;
     let topics = args.topics.resuming_with(laser_before);
-    let (reader, mut progress) = open_compared(&args.log, &topics)?;
+    let (reader, mut progress) = open_compared(&args.log, &topics, args.odometry)?;
     let mut reader = reader.ignoring_odometry(args.no_odometry);
     let mut broken = None;
     let mut costs = TickCosts::default();

@@ -6,14 +6,14 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::logs::{corridor, text};
-use crate::support::{assert_refused, json, slam2d};
+use crate::support::{assert_refused, slam2d};
 
 #[test]
 fn the_doctor_reports_each_part_of_a_recording_with_a_symbol() {
     let folder = TempDir::new().unwrap();
     let log = corridor(&folder, 40);
     let output = slam2d(&["doctor", text(&log)]);
-    assert!(output.status.success());
+    assert_eq!(output.status.code(), Some(1));
     let screen = String::from_utf8(output.stdout).unwrap();
     assert!(screen.starts_with("✗ corridor.clf\n✓ file "), "{screen}");
     for part in ["sensor", "odometry", "mounting", "clocks"] {
@@ -24,12 +24,35 @@ fn the_doctor_reports_each_part_of_a_recording_with_a_symbol() {
         screen.contains("odometry measures 1.10 m per metre"),
         "{screen}"
     );
-    let report = json(&["doctor", text(&log), "--json"]);
+    let report = slam2d(&["doctor", text(&log), "--json"]);
+    let report: Value = serde_json::from_slice(&report.stdout).unwrap();
     assert_eq!(
         (&report["sensor"]["scans"], &report["verdict"]),
         (&Value::from(40), &Value::from("wrong"))
     );
     assert_refused(&["doctor", "/absent"], "/absent: ");
+}
+
+#[test]
+fn the_doctor_s_exit_code_tells_scripts_whether_to_map() {
+    let folder = TempDir::new().unwrap();
+    let code = |words: &str| {
+        let log = folder.path().join("x.jsonl");
+        fs::write(&log, words).unwrap();
+        slam2d(&["doctor", text(&log)]).status.code()
+    };
+    let frame = |range_m: f64| {
+        format!(
+            r#"{{"stamp_s":1.0,"odometry":[0,0,0],"first_angle_rad":0.0,"angle_step_rad":0.1,"ranges_m":[{range_m},{range_m}]}}"#
+        )
+    };
+    assert_eq!(code(&frame(0.0)), Some(2), "nothing is seen");
+    assert_eq!(
+        code(&frame(2.0)),
+        Some(1),
+        "one scan does not check the mounting"
+    );
+    assert_eq!(code("no log"), Some(2));
 }
 
 #[test]

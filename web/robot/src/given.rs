@@ -6,7 +6,7 @@ use robot_io::laser_mount::LaserMount;
 use robot_io::log::{LogOption, LogOptions, with_remarks};
 use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::log_format::LogFormat;
-use robot_io::motion::ComparedReader;
+use robot_io::motion::{ComparedReader, OdometryChoice};
 use robot_io::remark::{NO_ODOMETRY, Remark};
 use robot_io::rosbag2;
 use robot_io::run::OdometryUse;
@@ -107,6 +107,8 @@ pub struct Choices {
     pub log: LogOptions,
     /// Whether odometry is used.
     pub odometry: OdometryUse,
+    /// How it is taken.
+    pub odometry_choice: OdometryChoice,
 }
 
 impl Choices {
@@ -130,6 +132,8 @@ impl Choices {
                 choices.log.footprint = Some(value.parse()?);
             } else if name == "columns" {
                 choices.log.columns = Some(value.parse()?);
+            } else if name == "odometry" {
+                choices.odometry_choice = value.parse()?;
             } else if format!("--{name}") == NO_ODOMETRY {
                 choices.odometry = OdometryUse::None;
             } else {
@@ -150,8 +154,7 @@ pub fn compared<'a>(given: &Given<'a>, choices: &Choices) -> Result<ComparedRead
     let reader = reader.map_err(|problem| problem.to_string())?;
     let reader = with_remarks(reader, given.remarks.clone());
     let ignores_odometry = choices.odometry == OdometryUse::None;
-    Ok(
-        ComparedReader::new(reader, choices.log.laser.is_some())
-            .ignoring_odometry(ignores_odometry),
-    )
+    Ok(ComparedReader::new(reader, choices.log.laser.is_some())
+        .ignoring_odometry(ignores_odometry)
+        .with_odometry(choices.odometry_choice))
 }

@@ -1,6 +1,7 @@
 //! Files that were given together, their options, and the doctor's report on them.
 
 use robot_io::log_bytes::LogBytes;
+use robot_io::motion::OdometryChoice;
 use robot_io::run::OdometryUse;
 use serde_json::Value;
 use slam_robot::engine::Engine;
@@ -52,14 +53,19 @@ fn the_files_of_a_folder_are_one_recording_in_the_order_of_its_metadata() {
 
 #[test]
 fn options_are_those_of_the_command() {
-    let choices = Choices::read("scan-topic /front\nlaser 0,0,180,flipped\nno-odometry").unwrap();
+    let choices =
+        Choices::read("scan-topic /front\nlaser 0,0,180,flipped\nno-odometry\nodometry force")
+            .unwrap();
     assert_eq!(choices.log.scan_topic.as_deref(), Some("/front"));
     assert_eq!(
         choices.log.laser.unwrap().option(),
         "--laser 0,0,180,flipped"
     );
     assert_eq!(choices.odometry, OdometryUse::None);
-    assert!(Choices::read("laser 0,0").is_err() && Choices::read("speed 3").is_err());
+    assert_eq!(choices.odometry_choice, OdometryChoice::Force);
+    for wrong in ["laser 0,0", "speed 3", "odometry maybe"] {
+        assert!(Choices::read(wrong).is_err(), "{wrong}");
+    }
     assert_eq!(Choices::read(""), Ok(Choices::default()));
 }
 

@@ -157,8 +157,7 @@ impl RobotConfig {
     }
 
     /// Noise of a motion that was measured by odometry, or predicted.
-    #[must_use]
-    pub fn motion_noise(&self, is_measured: bool) -> &MotionNoise {
+    pub(crate) fn motion_noise(&self, is_measured: bool) -> &MotionNoise {
         if is_measured {
             &self.odometry
         } else {

@@ -2,10 +2,10 @@
 
 use std::collections::VecDeque;
 
-use pr_geom::SE2;
-
-use super::{Comparison, Motion};
-use crate::laser_mount::{LaserMount, flip};
+use super::repairs::Repairs;
+use super::trial::Trial;
+use super::{Comparison, Motion, OdometryChoice};
+use crate::laser_mount::LaserMount;
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::odometry_poses::OdometryPoses;
 use crate::own_body::BodyReader;
@@ -16,16 +16,6 @@ const MAX_SCANS: usize = 2000;
 const MAX_BEAMS: usize = 1 << 21;
 /// Most scans that wait for late odometry: more than any sensor takes in a second.
 const MAX_LATE: usize = 200;
-
-/// A corrected mounting.
-struct CorrectedMount {
-    /// The stated mounting.
-    stated: SE2,
-    /// The corrected one.
-    mount: LaserMount,
-    /// Whether the order of the beams is reversed.
-    is_turned_over: bool,
-}
 
 /// Odometry with late stamps: each scan waits for the odometry of its time.
 struct Late {
@@ -69,20 +59,19 @@ impl Late {
     }
 }
 
-/// Reads a log, compares its first scans with its odometry, and corrects what is clearly wrong.
+/// Reads a log, compares its first scans with its odometry, and corrects what a trial shows to be wrong.
 pub struct ComparedReader<'a> {
     inner: Box<dyn LogReader + 'a>,
     /// Whether the mounting was set by the user and must not change.
     is_mount_fixed: bool,
     /// Whether the run ignores odometry.
     ignores_odometry: bool,
+    odometry: OdometryChoice,
     waiting: VecDeque<LogFrame>,
     /// Result of an earlier comparison.
     known: Option<Motion>,
     motion: Option<Motion>,
-    mount: Option<CorrectedMount>,
-    metres: f64,
-    is_still: bool,
+    repairs: Repairs,
     late: Option<Late>,
     notes: LogNotes,
     remarks: Vec<Remark>,
@@ -96,12 +85,11 @@ impl<'a> ComparedReader<'a> {
             inner: Box::new(BodyReader::new(inner)),
             is_mount_fixed,
             ignores_odometry: false,
+            odometry: OdometryChoice::Check,
             waiting: VecDeque::new(),
             known: None,
             motion: None,
-            mount: None,
-            metres: 1.0,
-            is_still: false,
+            repairs: Repairs::default(),
             late: None,
             notes: LogNotes::default(),
             remarks: Vec::new(),
@@ -112,6 +100,13 @@ impl<'a> ComparedReader<'a> {
     #[must_use]
     pub fn ignoring_odometry(mut self, ignores_odometry: bool) -> Self {
         self.ignores_odometry = ignores_odometry;
+        self
+    }
+
+    /// Takes the odometry as chosen.
+    #[must_use]
+    pub fn with_odometry(mut self, odometry: OdometryChoice) -> Self {
+        self.odometry = odometry;
         self
     }
 
@@ -134,7 +129,7 @@ impl<'a> ComparedReader<'a> {
         let mut beams = 0;
         let mut has_odometry = false;
         while self.waiting.len() < MAX_SCANS && beams < MAX_BEAMS {
-            let frame = match self.inner.next_frame() {
+            let frame = match self.next_recorded() {
                 Ok(Some(frame)) => frame,
                 Ok(None) => break,
                 Err(error) if self.waiting.is_empty() => return Err(error),
@@ -155,78 +150,63 @@ impl<'a> ComparedReader<'a> {
                 break;
             }
         }
-        let stated = self
-            .waiting
-            .front()
-            .map(|first| first.scan.body_from_sensor);
+        let stated = self.waiting.front().map(|first| LaserMount {
+            body_from_sensor: first.scan.body_from_sensor,
+            is_flipped: false,
+        });
+        let Some(stated) = stated else {
+            self.motion = Some(Motion::default());
+            return Ok(());
+        };
+        let recorded = self.inner.notes().laser.unwrap_or(stated);
+        let mount = LaserMount {
+            is_flipped: recorded.is_flipped,
+            ..stated
+        };
         let found = self.known.take().or_else(|| {
             let compared = comparison.filter(|_| has_odometry)?;
-            let mut motion = Motion::from_stretches(&compared.stretches, stated?);
+            let mut motion = Motion::from_stretches(&compared.stretches, stated.body_from_sensor);
             motion.compare_turns(&compared.headings);
-            if self.ignores_odometry {
+            if self.ignores_odometry || self.odometry == OdometryChoice::Force {
                 motion.keep_mounting();
+            }
+            if !motion.findings().is_empty() {
+                motion.decide(&Trial::new(&self.waiting, &compared.steps_s), mount);
             }
             Some(motion)
         });
         let motion = found.unwrap_or_default();
-        if let Some(stated) = stated {
-            let recorded = self.inner.notes().laser;
-            let mount = recorded.unwrap_or(LaserMount {
-                body_from_sensor: stated,
-                is_flipped: false,
-            });
-            self.remarks = motion.remarks(mount, !self.is_mount_fixed);
-            if !self.is_mount_fixed {
-                let mended = motion.mended_mount(mount);
-                self.mount = mended.map(|mended| CorrectedMount {
-                    stated,
-                    mount: mended,
-                    is_turned_over: mended.is_flipped != mount.is_flipped,
-                });
-            }
-            self.metres = motion.metres().unwrap_or(1.0);
-            self.is_still = motion.is_still();
-            self.late = motion.lag_s.map(Late::by);
-        }
+        self.remarks = motion.remarks(mount, self.is_mount_fixed);
+        self.repairs = motion.repairs(mount, self.is_mount_fixed);
+        self.late = self.repairs.late_s.map(Late::by);
         self.motion = Some(motion);
         Ok(())
     }
 
-    fn mended(&self, mut frame: LogFrame) -> LogFrame {
-        if let Some(mended) = &self.mount
-            && frame.scan.body_from_sensor == mended.stated
-        {
-            if mended.is_turned_over {
-                flip(&mut frame.scan);
-            }
-            frame.scan.body_from_sensor = mended.mount.body_from_sensor;
-        }
-        if self.is_still {
-            frame.odometry = None;
-        }
-        if self.metres != 1.0 {
-            frame.odometry = frame
-                .odometry
-                .map(|pose| SE2::new(pose.x() * self.metres, pose.y() * self.metres, pose.theta()));
-        }
-        frame
+    /// The next frame of the log, with its odometry as chosen.
+    fn next_recorded(&mut self) -> Result<Option<LogFrame>, LogError> {
+        let frame = self.inner.next_frame()?;
+        Ok(frame.map(|mut frame| {
+            frame.odometry = frame.odometry.map(|pose| self.odometry.pose(pose));
+            frame
+        }))
     }
 
     /// The next frame, before odometry's lag is corrected.
     fn next_mended(&mut self) -> Result<Option<LogFrame>, LogError> {
         if let Some(frame) = self.waiting.pop_front() {
-            return Ok(Some(self.mended(frame)));
+            return Ok(Some(self.repairs.apply(frame)));
         }
-        let frame = self.inner.next_frame();
+        let frame = self.next_recorded();
         self.copy_notes();
-        Ok(frame?.map(|frame| self.mended(frame)))
+        Ok(frame?.map(|frame| self.repairs.apply(frame)))
     }
 
     fn copy_notes(&mut self) {
         self.notes.clone_from(self.inner.notes());
         self.notes.warnings.extend(self.remarks.iter().cloned());
-        if let Some(mended) = &self.mount {
-            self.notes.laser = Some(mended.mount);
+        if let Some(mended) = self.repairs.mount() {
+            self.notes.laser = Some(mended);
         }
     }
 }

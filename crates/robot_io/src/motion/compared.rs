@@ -1,0 +1,349 @@
+//! What the comparison of scans and odometry shows, and the trial of its findings.
+
+use core::f64::consts::PI;
+
+use nalgebra::Complex;
+use pr_geom::{SE2, math, wrap_angle};
+use serde::Serialize;
+
+use super::Stretch;
+use super::finding::{Finding, Suggestion};
+use super::lag::{Heading, lag_s};
+use super::repairs::Repairs;
+use super::trial::{Costs, Trial};
+use crate::laser_mount::LaserMount;
+use crate::stamps::median;
+
+/// A shorter turn has no ratio, rad.
+const MIN_TURN_RAD: f64 = 0.1;
+/// One of this many segments may be wrong.
+const OUTLIERS: usize = 10;
+/// Fewer segments are not evaluated.
+const MIN_STRETCHES: usize = 8;
+/// A shorter path or less turning is not evaluated, m and rad.
+const MIN_M: f64 = 2.0;
+const MIN_RAD: f64 = 1.5;
+/// Turns with at least this absolute correlation agree, or are opposite.
+const AGREE: f64 = 0.8;
+/// Least concentration of the displacements' directions, and largest distance per metre between scans and odometry, of a
+/// comparison that agrees with itself.
+const ONE_DIRECTION: f64 = 0.85;
+const MAX_DRIFT: f64 = 0.3;
+/// A direction within this of the stated one confirms it, rad: 10°.
+const CONFIRMED_RAD: f64 = 10.0 * PI / 180.0;
+/// A laser whose direction differs by more is turned, rad: 25°.
+const ELSEWHERE_RAD: f64 = 25.0 * PI / 180.0;
+/// A scale that differs from 1 by more is reported.
+const SCALE_OFF: f64 = 0.08;
+/// Units of length, in metres, and their names.
+const UNITS: [(f64, &str); 4] = [
+    (1e-3, "millimetres"),
+    (1e-2, "centimetres"),
+    (0.3048, "feet"),
+    (0.0254, "inches"),
+];
+/// Relative tolerance of a unit.
+const UNIT_OFF: f64 = 0.12;
+/// Odometry that covers less than this share of the path by scans stands still.
+const STILL: f64 = 0.03;
+
+/// Comparison of scans and odometry.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Motion {
+    /// Number of segments compared.
+    pub stretches: usize,
+    /// Path length by scans, m.
+    pub moved_m: f64,
+    /// Sum of absolute turns by scans, rad.
+    pub turned_rad: f64,
+    /// Correlation of the turns; `None` if the robot turned too little.
+    pub correlation: Option<f64>,
+    /// Direction of the laser by scans and odometry, relative to the stated one, rad.
+    pub direction_rad: Option<f64>,
+    /// Concentration of the displacements' directions, from 0 to 1.
+    pub agreement: f64,
+    /// Length by odometry per metre by scans.
+    pub scale: Option<f64>,
+    /// Turn by odometry per turn by scans.
+    pub turn_scale: Option<f64>,
+    /// Median distance between both per metre, m.
+    pub drift_m_per_m: Option<f64>,
+    /// Lag of odometry behind the scans, s; `None` if there is none or the turns do not show it.
+    pub lag_s: Option<f64>,
+    /// Faults whose repair won its trial, each with its costs; before the trial, those that the comparison shows.
+    #[serde(skip)]
+    findings: Vec<(Finding, Option<Costs>)>,
+    #[serde(skip)]
+    suggestions: Vec<Suggestion>,
+}
+
+impl Motion {
+    /// Evaluates segments for a laser with this stated mounting.
+    pub(super) fn from_stretches(stretches: &[Stretch], mount: SE2) -> Self {
+        let mut motion = Self {
+            stretches: stretches.len(),
+            moved_m: stretches
+                .iter()
+                .map(|stretch| length(&stretch.sensor))
+                .sum(),
+            turned_rad: stretches
+                .iter()
+                .map(|stretch| stretch.sensor.theta().abs())
+                .sum(),
+            ..Self::default()
+        };
+        if stretches.len() < MIN_STRETCHES {
+            return motion;
+        }
+        if motion.moved_m >= MIN_M {
+            let by_odometry: f64 = stretches.iter().map(|stretch| length(&stretch.body)).sum();
+            let turned: f64 = stretches
+                .iter()
+                .map(|stretch| stretch.body.theta().abs())
+                .sum();
+            if by_odometry < STILL * motion.moved_m && turned < STILL * motion.turned_rad.max(1.0) {
+                motion.propose(Finding::Still {
+                    moved_m: motion.moved_m,
+                });
+                return motion;
+            }
+        }
+        if motion.turned_rad >= MIN_RAD {
+            (motion.correlation, motion.turn_scale) = compare_turns(stretches).unzip();
+        }
+        let is_mirrored = motion
+            .correlation
+            .is_some_and(|correlation| correlation <= -AGREE);
+        if let Some(correlation) = motion.correlation {
+            if is_mirrored {
+                motion.propose(Finding::Mirrored { correlation });
+            } else if correlation < 0.5 {
+                motion.propose(Finding::Unlike { correlation });
+            }
+        }
+        let mirror = if is_mirrored { -1.0 } else { 1.0 };
+        if motion.moved_m >= MIN_M {
+            motion.compare_displacements(stretches, mount, mirror);
+        }
+        motion
+    }
+
+    /// Estimates direction and scale of the displacements.
+    fn compare_displacements(&mut self, stretches: &[Stretch], mount: SE2, mirror: f64) {
+        let ratios = stretches.iter().filter_map(|stretch| {
+            let by_scans = length(&stretch.sensor);
+            (by_scans > 0.15).then(|| length(&stretch.body) / by_scans)
+        });
+        let Some(ratio) = median(ratios.collect()) else {
+            return;
+        };
+        let unit = UNITS.into_iter().find(|(metres, _)| {
+            let off = ratio * metres - 1.0;
+            off.abs() <= UNIT_OFF
+        });
+        let metres = unit.map_or(1.0, |(metres, _)| metres);
+        let pairs: Vec<(Complex<f64>, Complex<f64>)> = stretches
+            .iter()
+            .map(|stretch| {
+                // Motion of the sensor: that of the body plus the lever arm's rotation.
+                let [x, y, theta] = stretch.body.to_array();
+                let (sin, cos) = math::sin_cos(theta);
+                let (px, py) = (mount.x(), mount.y());
+                let by_body = Complex::new(
+                    x * metres + (cos - 1.0) * px - sin * py,
+                    y * metres + sin * px + (cos - 1.0) * py,
+                );
+                let by_scans = Complex::new(stretch.sensor.x(), mirror * stretch.sensor.y());
+                (by_scans, by_body)
+            })
+            .collect();
+        let Some((turn, _)) = direction(&pairs) else {
+            return;
+        };
+        let pairs = without_outliers(pairs, |(by_scans, by_body)| {
+            size(&(by_scans * turn - by_body))
+        });
+        let Some((turn, agreement)) = direction(&pairs) else {
+            return;
+        };
+        self.agreement = agreement;
+        let direction_rad = math::atan2(turn.im, turn.re);
+        let off_rad = wrap_angle(direction_rad - mount.theta());
+        self.direction_rad = Some(off_rad);
+        let longer = pairs.iter().filter(|(by_scans, _)| size(by_scans) > 0.15);
+        let longer = longer.map(|(by_scans, by_body)| size(by_body) / size(by_scans));
+        let scale = median(longer.collect()).unwrap_or(1.0);
+        self.scale = Some(scale / metres);
+        let drifts = pairs.iter().filter_map(|(by_scans, by_body)| {
+            let moved_m = size(by_scans);
+            (moved_m > 0.15).then(|| size(&(by_scans * turn - by_body)) / moved_m)
+        });
+        self.drift_m_per_m = median(drifts.collect());
+        if let Some((metres, name)) = unit {
+            self.propose(Finding::Unit { metres, name });
+        }
+        if !self.agrees_with_itself() {
+            return;
+        }
+        if off_rad.abs() >= ELSEWHERE_RAD {
+            self.propose(Finding::Turned { by_rad: off_rad });
+        }
+        if unit.is_none() && (scale - 1.0).abs() > SCALE_OFF {
+            self.propose(Finding::Scale { ratio: scale });
+        }
+    }
+
+    fn propose(&mut self, finding: Finding) {
+        self.findings.push((finding, None));
+    }
+
+    /// Whether the segments agree with each other on the direction of the laser and on the turns.
+    #[must_use]
+    pub fn agrees_with_itself(&self) -> bool {
+        self.agreement >= ONE_DIRECTION
+            && self.drift_m_per_m.is_some_and(|drift| drift <= MAX_DRIFT)
+            && (self.correlation).is_none_or(|correlation| correlation.abs() >= AGREE)
+    }
+
+    /// Whether scans and odometry confirm the stated mounting.
+    #[must_use]
+    pub fn confirms_mounting(&self) -> bool {
+        self.agrees_with_itself()
+            && self
+                .correlation
+                .is_some_and(|correlation| correlation >= AGREE)
+            && (self.direction_rad)
+                .is_some_and(|direction_rad| direction_rad.abs() <= CONFIRMED_RAD)
+    }
+
+    /// Compares the times at which both turn.
+    pub(super) fn compare_turns(&mut self, headings: &[Heading]) {
+        self.lag_s = lag_s(headings).filter(|_| !self.is_still());
+        if let Some(by_s) = self.lag_s {
+            self.propose(Finding::Late { by_s });
+        }
+    }
+
+    /// Drops the findings about odometry that is not used, or that the user trusts.
+    pub(super) fn keep_mounting(&mut self) {
+        self.findings.retain(|(finding, _)| finding.is_of_laser());
+        self.lag_s = None;
+    }
+
+    /// Keeps the findings whose repair wins against leaving it out, all others being repaired; the rest are
+    /// suggestions.
+    pub(super) fn decide(&mut self, trial: &Trial, mount: LaserMount) {
+        loop {
+            let all = self.faults();
+            let with = trial.costs(&Repairs::of(&all, mount));
+            let mut worst: Option<(usize, Costs)> = None;
+            for index in 0..all.len() {
+                let mut others = all.clone();
+                others.remove(index);
+                let without = trial.costs(&Repairs::of(&others, mount));
+                let costs = trial.compare(&with, &without);
+                self.findings[index].1 = Some(costs);
+                let gain = |costs: &Costs| costs.without - costs.with;
+                if !costs.wins && worst.is_none_or(|(_, worst)| gain(&costs) < gain(&worst)) {
+                    worst = Some((index, costs));
+                }
+            }
+            let Some((index, costs)) = worst else { break };
+            let (finding, _) = self.findings.remove(index);
+            self.suggestions.push(Suggestion { finding, costs });
+        }
+        let is_late = |(finding, _): &(Finding, _)| matches!(finding, Finding::Late { .. });
+        if !self.findings.iter().any(is_late) {
+            self.lag_s = None;
+        }
+    }
+
+    /// The faults found.
+    #[must_use]
+    pub fn faults(&self) -> Vec<Finding> {
+        let findings = self.findings.iter();
+        findings.map(|(finding, _)| finding.clone()).collect()
+    }
+
+    /// The faults found, each with the costs of its trial.
+    #[must_use]
+    pub fn findings(&self) -> &[(Finding, Option<Costs>)] {
+        &self.findings
+    }
+
+    /// What the comparison shows and the trial refuted.
+    #[must_use]
+    pub fn suggestions(&self) -> &[Suggestion] {
+        &self.suggestions
+    }
+
+    /// What corrects the frames of a laser at `mount`.
+    pub(super) fn repairs(&self, mount: LaserMount, is_mount_fixed: bool) -> Repairs {
+        let mut faults = self.faults();
+        faults.retain(|fault| !(fault.is_left() || is_mount_fixed && fault.is_of_laser()));
+        Repairs::of(&faults, mount)
+    }
+
+    /// Whether odometry stands still while the robot moves.
+    #[must_use]
+    pub fn is_still(&self) -> bool {
+        let is_still = |(finding, _): &(Finding, _)| matches!(finding, Finding::Still { .. });
+        self.findings.iter().any(is_still)
+    }
+}
+
+/// Correlation of the turns by scans and by odometry, and those by odometry per turn by scans; a mirror image is tried
+/// as well.
+fn compare_turns(stretches: &[Stretch]) -> Option<(f64, f64)> {
+    let turns = |mirror: f64| {
+        let both = stretches.iter();
+        let both = both.map(|stretch| (stretch.sensor.theta(), stretch.body.theta()));
+        let both = without_outliers(both.collect(), |(scans, body)| {
+            (scans - mirror * body).abs()
+        });
+        let sum = |of: fn(&(f64, f64)) -> f64| both.iter().map(of).sum::<f64>();
+        let product = sum(|(scans, body)| scans * body);
+        let size = math::sqrt(sum(|both| both.0 * both.0) * sum(|both| both.1 * both.1));
+        (size > 0.0).then_some(product / size)
+    };
+    let (plain, mirrored) = (turns(1.0)?, turns(-1.0)?);
+    let correlation = if mirrored.abs() > plain.abs() {
+        mirrored
+    } else {
+        plain
+    };
+    let turning = stretches
+        .iter()
+        .filter(|stretch| stretch.sensor.theta().abs() > MIN_TURN_RAD);
+    let ratios = turning.map(|stretch| stretch.body.theta() / stretch.sensor.theta());
+    Some((correlation, median(ratios.collect())?))
+}
+
+/// Direction from displacements by scans to those by odometry, as a unit number, and how concentrated it is, 0 to 1.
+fn direction(pairs: &[(Complex<f64>, Complex<f64>)]) -> Option<(Complex<f64>, f64)> {
+    let pairs = pairs.iter();
+    let sum: Complex<f64> = pairs
+        .clone()
+        .map(|(by_scans, by_body)| by_scans.conj() * by_body)
+        .sum();
+    let sizes: f64 = pairs
+        .map(|(by_scans, by_body)| size(by_scans) * size(by_body))
+        .sum();
+    let length = size(&sum);
+    (length > 0.0).then(|| (sum / length, length / sizes))
+}
+
+/// Without the tenth of largest residuals: a scan that matched a wrong place must not decide.
+fn without_outliers<T>(mut items: Vec<T>, residual: impl Fn(&T) -> f64) -> Vec<T> {
+    items.sort_by(|a, b| residual(a).total_cmp(&residual(b)));
+    items.truncate(items.len() - items.len() / OUTLIERS);
+    items
+}
+
+fn length(motion: &SE2) -> f64 {
+    math::norm2(motion.x(), motion.y())
+}
+
+fn size(displacement: &Complex<f64>) -> f64 {
+    math::norm2(displacement.re, displacement.im)
+}

@@ -1,0 +1,58 @@
+//! How the odometry of a recording is taken.
+
+use std::str::FromStr;
+
+use pr_geom::SE2;
+
+/// How the odometry of a recording is taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OdometryChoice {
+    /// Compared with the scans, and corrected or ignored if a trial shows that it is wrong.
+    #[default]
+    Check,
+    /// Taken as it is, whatever the scans say.
+    Force,
+    /// With left and right exchanged, then compared.
+    Mirrored,
+}
+
+impl OdometryChoice {
+    /// All choices.
+    pub const ALL: [Self; 3] = [Self::Check, Self::Force, Self::Mirrored];
+
+    /// Name on the command line, as in `--odometry force`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Check => "check",
+            Self::Force => "force",
+            Self::Mirrored => "mirrored",
+        }
+    }
+
+    /// The option that takes it so.
+    #[must_use]
+    pub fn option(self) -> String {
+        format!("--odometry {}", self.name())
+    }
+
+    /// A recorded pose of the body.
+    pub(super) fn pose(self, recorded: SE2) -> SE2 {
+        match self {
+            Self::Mirrored => SE2::new(recorded.x(), -recorded.y(), -recorded.theta()),
+            Self::Check | Self::Force => recorded,
+        }
+    }
+}
+
+impl FromStr for OdometryChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let named = |choice: &Self| choice.name() == text;
+        Self::ALL
+            .into_iter()
+            .find(named)
+            .ok_or_else(|| "the odometry must be check, force or mirrored".to_owned())
+    }
+}

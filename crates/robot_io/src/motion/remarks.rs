@@ -1,0 +1,175 @@
+//! The findings of the comparison, a sentence each.
+
+use core::f64::consts::PI;
+
+use super::{Costs, Finding, Motion, OdometryChoice, Suggestion};
+use crate::laser_mount::LaserMount;
+use crate::remark::{NO_ODOMETRY, Part, Remark};
+
+impl Motion {
+    /// The findings, one remark each; `mount` is the stated mounting, and `is_mount_fixed` whether the user set it, so
+    /// that it was not corrected.
+    #[must_use]
+    pub fn remarks(&self, mount: LaserMount, is_mount_fixed: bool) -> Vec<Remark> {
+        let mended = self.repairs(mount, false).mount().unwrap_or(mount);
+        let found = self.findings().iter().map(|(finding, costs)| {
+            let text = format!("{}{}", sentence(finding), by_trial(*costs));
+            let remark = match finding {
+                Finding::Mirrored { .. } | Finding::Turned { .. } => {
+                    of_mount(finding, text, mount, mended, is_mount_fixed)
+                }
+                Finding::Unit { .. } => Remark::mended(
+                    Part::Odometry,
+                    format!("{text}; it was converted. Publish metres"),
+                ),
+                Finding::Still { .. } => Remark::mended(
+                    Part::Odometry,
+                    format!("{text}; it is ignored and scans are matched alone. Check its topic"),
+                ),
+                Finding::Scale { .. } => Remark::wrong(
+                    Part::Odometry,
+                    format!("{text}; check the wheel radius, or use scans alone with {NO_ODOMETRY}"),
+                ),
+                Finding::Unlike { .. } => Remark::wrong(
+                    Part::Odometry,
+                    format!("{text}; it may not be this robot's: use scans alone with {NO_ODOMETRY}"),
+                ),
+                Finding::Late { .. } => Remark::mended(
+                    Part::Clocks,
+                    format!(
+                        "{text}; it was shifted by that. Synchronize both clocks by NTP, and stamp each message when it is measured"
+                    ),
+                ),
+            };
+            match finding {
+                Finding::Unit { .. } | Finding::Still { .. } => {
+                    remark.with_option(OdometryChoice::Force.option())
+                }
+                Finding::Scale { .. } | Finding::Unlike { .. } => remark.with_option(NO_ODOMETRY),
+                _ => remark,
+            }
+        });
+        // Scans that cannot be matched alone differ from odometry: that says nothing about it.
+        let is_said =
+            |suggestion: &&Suggestion| !matches!(suggestion.finding, Finding::Unlike { .. });
+        let suggested = self.suggestions().iter().filter(is_said);
+        let suggested = suggested.map(|suggestion| suggest(suggestion, mount));
+        found.chain(suggested).collect()
+    }
+}
+
+/// A fault of the mounting.
+fn of_mount(
+    finding: &Finding,
+    text: String,
+    mount: LaserMount,
+    mended: LaserMount,
+    is_mount_fixed: bool,
+) -> Remark {
+    let (option, own) = (mended.option(), mount.option());
+    let otherwise = OdometryChoice::Mirrored.option();
+    let is_mirrored = matches!(finding, Finding::Mirrored { .. });
+    let causes = if is_mirrored {
+        format!(
+            ": the laser is mounted upside down, or its driver lists the beams clockwise (both: {option}), or the odometry counts turns clockwise ({otherwise})"
+        )
+    } else {
+        String::new()
+    };
+    let remark = if is_mount_fixed {
+        Remark::wrong(
+            Part::Mounting,
+            format!("{text}{causes}; correct it with {option}"),
+        )
+        .with_option(option)
+    } else {
+        Remark::mended(
+            Part::Mounting,
+            format!(
+                "{text}{causes}; it was corrected; keep the correction with {option}, or the recording's mounting with {own}"
+            ),
+        )
+        .with_option(option)
+        .with_option(own)
+    };
+    if is_mirrored {
+        remark.with_option(otherwise)
+    } else {
+        remark
+    }
+}
+
+/// What the comparison shows, without what was done.
+fn sentence(finding: &Finding) -> String {
+    match finding {
+        Finding::Mirrored { correlation } => format!(
+            "the scans are mirrored: they turn opposite to odometry (correlation {correlation:.2})"
+        ),
+        Finding::Turned { by_rad } => format!(
+            "the laser faces {:.0}° away from its stated direction ({}), as the comparison of scans and odometry shows",
+            by_rad.to_degrees().abs(),
+            if by_rad.abs() > 0.8 * PI {
+                "backward"
+            } else if *by_rad > 0.0 {
+                "to the left"
+            } else {
+                "to the right"
+            },
+        ),
+        Finding::Unit { name, metres } => format!(
+            "odometry is in {name}: it moves {:.0} per metre by scans",
+            1.0 / metres
+        ),
+        Finding::Scale { ratio } => format!("odometry measures {ratio:.2} m per metre by scans"),
+        Finding::Still { moved_m } => {
+            format!("odometry stands still while the scans move by {moved_m:.1} m")
+        }
+        Finding::Unlike { correlation } => format!(
+            "the turns of scans matched alone and of odometry differ (correlation {correlation:.2})"
+        ),
+        Finding::Late { by_s } => format!(
+            "odometry is {:.2} s {} relative to the scans, by the turns of both",
+            by_s.abs(),
+            if *by_s > 0.0 { "late" } else { "early" }
+        ),
+    }
+}
+
+/// The result of a trial in brackets.
+fn by_trial(costs: Option<Costs>) -> String {
+    costs.map_or(String::new(), |costs| {
+        format!(
+            " (the first {} scans cost {:.1} nats each with the repair, {:.1} without)",
+            costs.scans, costs.with, costs.without
+        )
+    })
+}
+
+/// A finding that the trial refuted: nothing was changed.
+fn suggest(suggestion: &Suggestion, mount: LaserMount) -> Remark {
+    let Suggestion { finding, costs } = suggestion;
+    let mut mended = mount;
+    finding.mend(&mut mended);
+    let (part, option) = match finding {
+        Finding::Mirrored { .. } | Finding::Turned { .. } => {
+            (Part::Mounting, Some(mended.option()))
+        }
+        Finding::Late { .. } => (Part::Clocks, None),
+        Finding::Unit { .. } => (Part::Odometry, None),
+        Finding::Scale { .. } | Finding::Still { .. } | Finding::Unlike { .. } => {
+            (Part::Odometry, Some(NO_ODOMETRY.to_owned()))
+        }
+    };
+    let text = format!(
+        "scans matched alone suggest that {}, but a map of the first {} scans is not surely better in both halves with that repaired ({:.1} nats a scan, {:.1} without): nothing was changed",
+        sentence(finding),
+        costs.scans,
+        costs.with,
+        costs.without
+    );
+    let remark = Remark::mended(part, text);
+    match option {
+        Some(option) => remark.with_option(option),
+        None => remark,
+    }
+}

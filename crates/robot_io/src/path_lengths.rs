@@ -1,0 +1,77 @@
+//! Length of a path on the map and by odometry.
+
+use ch16_slam2d::metrics::position_error_m;
+use ch16_slam2d::slam::Slam;
+use pr_geom::SE2;
+
+use crate::remark::NO_ODOMETRY;
+
+/// Lengths that differ by more than this factor are reported, if one of them is at least this long, m.
+const DIFFERENT: f64 = 1.25;
+const MIN_M: f64 = 5.0;
+
+/// The odometry at each keyframe: between keyframes the jitter of a robot at rest adds no length.
+#[derive(Clone, Debug, Default)]
+pub struct PathLengths {
+    odometry: Vec<Option<SE2>>,
+}
+
+impl PathLengths {
+    /// Takes the odometry at keyframe `number`.
+    pub fn add(&mut self, number: usize, odometry: Option<SE2>) {
+        self.odometry.resize(number, None);
+        self.odometry.push(odometry);
+    }
+
+    /// A sentence if the lengths differ.
+    #[must_use]
+    pub fn sentence(&self, name: &str, slam: &Slam) -> Option<String> {
+        let (mut on_map_m, mut by_odometry_m) = (0.0, 0.0);
+        let poses = slam.graph().poses();
+        for (odometry, poses) in self.odometry.windows(2).zip(poses.windows(2)) {
+            if let [Some(before), Some(after)] = odometry {
+                by_odometry_m += position_error_m(before, after);
+                on_map_m += position_error_m(&poses[0], &poses[1]);
+            }
+        }
+        let (shorter_m, longer_m) = if on_map_m < by_odometry_m {
+            (on_map_m, by_odometry_m)
+        } else {
+            (by_odometry_m, on_map_m)
+        };
+        (longer_m >= MIN_M && longer_m > DIFFERENT * shorter_m).then(|| {
+            format!(
+                "{name}: the path is {on_map_m:.1} m long on the map and {by_odometry_m:.1} m by odometry; one of them is wrong: compare with a map made with {NO_ODOMETRY}"
+            )
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ch16_slam2d::slam::SlamConfig;
+
+    use super::*;
+
+    #[test]
+    fn a_path_much_longer_by_odometry_is_reported_and_one_a_tenth_longer_is_not() {
+        let mut slam = Slam::new(SlamConfig::default());
+        slam.graph_mut().add_fixed_node(SE2::identity());
+        for number in 1..10_u8 {
+            slam.graph_mut()
+                .add_node(SE2::translation(f64::from(number), 0.0));
+        }
+        let sentence = |scale: f64| {
+            let mut lengths = PathLengths::default();
+            for number in 0..10_u8 {
+                let at = SE2::translation(scale * f64::from(number), 0.0);
+                // The odometry starts at the second keyframe.
+                lengths.add(usize::from(number), (number > 0).then_some(at));
+            }
+            lengths.sentence("x", &slam)
+        };
+        assert_eq!(sentence(1.1), None);
+        let said = sentence(1.5).unwrap();
+        assert!(said.contains("8.0 m long on the map and 12.0 m"), "{said}");
+    }
+}
