@@ -142,7 +142,15 @@ impl Checkup {
             }
         });
         let mut remarks = vec![file_remark(notes), sensor_remark(&sensor)];
-        remarks.push(odometry_remark(odometry.as_ref(), motion));
+        let is_faulty = notes
+            .warnings
+            .iter()
+            .any(|remark| remark.part == Part::Odometry);
+        let compared = motion.agrees_with_itself() && !is_faulty;
+        remarks.push(odometry_remark(
+            odometry.as_ref(),
+            compared.then_some(motion),
+        ));
         remarks.extend(mounting_remark(notes, motion));
         remarks.extend(clocks_remark(notes, info));
         remarks.extend(notes.warnings.iter().cloned());
@@ -199,7 +207,8 @@ fn sensor_remark(sensor: &SensorSummary) -> Remark {
     Remark::good(Part::Sensor, text)
 }
 
-fn odometry_remark(odometry: Option<&OdometrySummary>, motion: &Motion) -> Remark {
+/// `motion` is the comparison with the scans, if that supports a figure.
+fn odometry_remark(odometry: Option<&OdometrySummary>, motion: Option<&Motion>) -> Remark {
     let Some(odometry) = odometry else {
         let text = "there is none; matching scans alone needs a high scan rate and a path without featureless corridors";
         return Remark::mended(Part::Odometry, text.to_owned());
@@ -209,17 +218,14 @@ fn odometry_remark(odometry: Option<&OdometrySummary>, motion: &Motion) -> Remar
     if let Some(rate_hz) = odometry.rate_hz {
         text.push_str(&format!(", {rate_hz:.1} poses per second"));
     }
-    if let (Some(scale), Some(drift), true) = (
-        motion.scale,
-        motion.drift_m_per_m,
-        motion.agrees_with_itself(),
-    ) {
+    if let Some((scale, drift)) = motion.and_then(|motion| motion.scale.zip(motion.drift_m_per_m)) {
         text.push_str(&format!(
             "; {scale:.2} m per metre by scans, with a drift of {:.1} cm per metre",
             100.0 * drift
         ));
     }
-    if let Some(turn) = motion.turn_scale.filter(|_| motion.agrees_with_itself()) {
+    let turn_scale = motion.and_then(|motion| motion.turn_scale);
+    if let Some(turn) = turn_scale.filter(|turn| *turn > 0.0) {
         text.push_str(&format!("; {turn:.2}° per degree by scans"));
     }
     Remark::good(Part::Odometry, text)

@@ -71,7 +71,7 @@ fn of_mount(
     let is_mirrored = matches!(finding, Finding::Mirrored { .. });
     let causes = if is_mirrored {
         format!(
-            ": the laser is mounted upside down, or its driver lists the beams clockwise (both: {option}), or the odometry counts turns clockwise ({otherwise})"
+            ". The laser is mounted upside down, or its driver lists the beams clockwise (both: {option}), or the odometry counts turns clockwise ({otherwise})"
         )
     } else {
         String::new()
@@ -135,11 +135,11 @@ fn sentence(finding: &Finding) -> String {
     }
 }
 
-/// The result of a trial in brackets.
+/// The result of a trial.
 fn by_trial(costs: Option<Costs>) -> String {
     costs.map_or(String::new(), |costs| {
         format!(
-            " (the first {} scans cost {:.1} nats each with the repair, {:.1} without)",
+            ", and the first {} scans cost {:.1} nats each with the repair, {:.1} without",
             costs.scans, costs.with, costs.without
         )
     })
