@@ -11,16 +11,16 @@
 mod adaptive_threshold;
 mod config;
 mod drift_gate;
-mod information;
 mod nearby_loops;
 mod parts;
 mod scales;
 mod window_registrar;
 
 pub use adaptive_threshold::AdaptiveThreshold;
-pub use config::{ChapterConfig, ThresholdConfig};
+pub use config::{ChapterConfig, DetectorKind, ThresholdConfig};
 pub use drift_gate::{marginal_information, path_information};
-pub use information::{InformationFrame, chapter_information};
 pub(crate) use nearby_loops::NearbyLoops;
 pub use parts::ChapterParts;
 pub(crate) use window_registrar::WindowRegistrar;
+
+pub use crate::matching::{InformationFrame, chapter_information};

@@ -14,6 +14,7 @@
 
 mod covariances;
 mod ids;
+mod keyframe;
 mod marginalize;
 
 use nalgebra::Matrix3;
@@ -23,6 +24,7 @@ use pr_optim::{Between, FactorUse, Method, OptimizeError, Optimizer, Problem, Re
 use serde::{Deserialize, Serialize};
 
 pub use ids::{EdgeId, NodeId};
+pub use keyframe::Keyframe;
 pub use marginalize::{MarginalizeError, Marginalized};
 pub use pr_optim::{JacobianModel, RobustKernel, StopReason};
 

@@ -17,7 +17,7 @@ mod pending_loop;
 mod verify;
 
 pub use candidates::{LoopCandidate, detect_loop_candidates, detect_visits};
-pub use config::{Detection, DetectorKind, GateModel, LoopConfig};
+pub use config::{GateModel, LoopConfig};
 pub use detector::{CloneDetector, LoopDetector, LoopQuery, NearbyDetector};
 pub use gate::{GateTest, chi_squared_gate};
 pub use pending_loop::PendingLoop;

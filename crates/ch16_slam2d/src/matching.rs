@@ -7,6 +7,7 @@
 
 mod icp_matcher;
 mod information;
+mod information_frame;
 mod kind;
 mod matcher;
 mod ndt_matcher;
@@ -14,6 +15,7 @@ mod search_matcher;
 
 pub use icp_matcher::IcpMatcher;
 pub use information::{TrustConfig, match_information};
+pub use information_frame::{InformationFrame, chapter_information};
 pub use kind::MatcherKind;
 pub use matcher::{
     CloneMatcher, MapConfig, Match, MatchRequest, MatchStop, MatchSummary, Matcher, RunnerUp,

@@ -55,13 +55,14 @@ pub use motion_noise::MotionNoise;
 pub use map_pruning::{MapPruning, MapPruningConfig};
 pub use pending::PendingFrame;
 pub use registrar::{CloneRegistrar, ExpectedMotion, ScanRegistrar};
-pub use report::{Change, Conclusion, Keyframe, LoopAttempt, LoopEffect, SlamReport};
+pub use report::{Change, Conclusion, LoopAttempt, LoopEffect, SlamReport};
 pub use robots::{RobotConfig, SubmapLoopConfig};
 pub use snapshot::{FrontEndSnapshot, NamedNumbers, SlamSnapshot, SnapshotError, is_within_limits};
 pub use strategies::Strategies;
 pub use window::{ScanWindow, WindowSweep};
 
 use crate::chapter::ChapterParts;
+pub use crate::graph::Keyframe;
 use crate::graph::PoseGraph;
 use crate::loops::{LoopVerification, LoopWorkspace};
 use crate::metrics::position_error_m;

@@ -2,8 +2,8 @@
 //!
 //! The command line and the widgets share these lists, so a name means the same everywhere.
 
-use ch16_slam2d::chapter::InformationFrame;
-use ch16_slam2d::loops::{DetectorKind, GateModel};
+use ch16_slam2d::chapter::{DetectorKind, InformationFrame};
+use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::matching::{MatcherKind, NdtMatcherConfig, SearchMatcherConfig};
 use ch16_slam2d::places::PlaceDetectorConfig;
 use ch16_slam2d::scan::LaserScan;
@@ -359,15 +359,14 @@ impl LapConfig {
     #[must_use]
     pub fn with_detector(mut self, detector: LapDetector) -> Self {
         let max_range_m = self.drive.lidar.max_range_m;
-        let loops = &mut self.slam.chapter.loops;
-        let gap = loops.min_gap_nodes;
+        let gap = self.slam.chapter.loops.min_gap_nodes;
         let for_sensor = |places: PlaceDetectorConfig| {
             DetectorKind::Place(PlaceDetectorConfig {
                 descriptor: places.descriptor.with_max_range_m(max_range_m),
                 ..places
             })
         };
-        loops.detector = match detector {
+        self.slam.chapter.detector = match detector {
             LapDetector::Nearby => DetectorKind::Nearby,
             LapDetector::Histogram => for_sensor(PlaceDetectorConfig::histogram(gap)),
             LapDetector::Context => for_sensor(PlaceDetectorConfig::context(gap)),

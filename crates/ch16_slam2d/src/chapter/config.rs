@@ -2,10 +2,10 @@
 
 use pr_geom::SE2;
 
-use super::InformationFrame;
 use crate::graph::JacobianModel;
 use crate::loops::LoopConfig;
-use crate::matching::{MapConfig, MatcherKind, TrustConfig};
+use crate::matching::{InformationFrame, MapConfig, MatcherKind, TrustConfig};
+use crate::places::PlaceDetectorConfig;
 use crate::scan::ScanConfig;
 use crate::slam::{LoopClosure, MotionNoise, SlamConfig};
 
@@ -27,6 +27,16 @@ pub struct ThresholdConfig {
     pub max_range_m: f64,
 }
 
+/// The source of loop candidates.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum DetectorKind {
+    /// The chapter's: keyframes that are near in the graph.
+    #[default]
+    Nearby,
+    /// Keyframes of similar appearance, wherever they are in the graph.
+    Place(PlaceDetectorConfig),
+}
+
 /// Registration, edge information and loop closure of the chapter; the default is its own lap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChapterConfig {
@@ -46,7 +56,9 @@ pub struct ChapterConfig {
     pub odometry_noise: MotionNoise,
     /// Noise of the constant-velocity prediction, if there is no odometry either.
     pub prediction_noise: MotionNoise,
-    /// Detection and verification of loops.
+    /// The source of loop candidates.
+    pub detector: DetectorKind,
+    /// Detection among near keyframes, and verification of loops.
     pub loops: LoopConfig,
 }
 
@@ -71,6 +83,7 @@ impl Default for ChapterConfig {
             },
             odometry_noise: MotionNoise::default(),
             prediction_noise: MotionNoise::without_odometry(),
+            detector: DetectorKind::Nearby,
             loops: LoopConfig::default(),
         }
     }

@@ -1,7 +1,7 @@
 //! The exchangeable parts of the chapter's estimator.
 
-use super::{ChapterConfig, NearbyLoops, WindowRegistrar};
-use crate::loops::{DetectorKind, LoopDetector, NearbyDetector};
+use super::{ChapterConfig, DetectorKind, NearbyLoops, WindowRegistrar};
+use crate::loops::{LoopDetector, NearbyDetector};
 use crate::matching::Matcher;
 use crate::places::PlaceDetector;
 use crate::slam::Strategies;
@@ -24,7 +24,7 @@ impl ChapterParts {
         Self {
             front_end: config.matcher.build(&config.local_map),
             loops: config.loops.matcher.build(&config.loops.submap),
-            detector: match config.loops.detector {
+            detector: match config.detector {
                 DetectorKind::Nearby => Box::new(NearbyDetector::new(config.loops)),
                 DetectorKind::Place(places) => Box::new(PlaceDetector::new(places)),
             },

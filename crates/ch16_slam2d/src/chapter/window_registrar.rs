@@ -3,10 +3,12 @@
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
-use super::{AdaptiveThreshold, ChapterConfig, InformationFrame, chapter_information};
+use super::{AdaptiveThreshold, ChapterConfig};
 use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
-use crate::matching::{MatchRequest, MatchSummary, Matcher, match_information};
+use crate::matching::{
+    InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information, match_information,
+};
 use crate::scan::PreparedFrame;
 use crate::slam::{ExpectedMotion, NamedNumbers, ScanRegistrar, ScanWindow, SnapshotError};
 

@@ -27,15 +27,15 @@ pub fn detect_loop_candidates(
     node: usize,
     config: &LoopConfig,
 ) -> Vec<LoopCandidate> {
-    let mut candidates = nearby(poses, node, config);
+    let mut candidates = nearby(poses, node, config.radius_m, config.min_gap_nodes);
     sort_by(&mut candidates, &|candidate| candidate.distance_m);
     candidates
 }
 
 /// [`detect_loop_candidates`] by index.
-fn nearby(poses: &[SE2], node: usize, config: &LoopConfig) -> Vec<LoopCandidate> {
+fn nearby(poses: &[SE2], node: usize, radius_m: f64, min_gap_nodes: usize) -> Vec<LoopCandidate> {
     let here = poses[node];
-    let old_enough = (node + 1).saturating_sub(config.min_gap_nodes);
+    let old_enough = (node + 1).saturating_sub(min_gap_nodes);
     poses[..old_enough.min(node)]
         .iter()
         .enumerate()
@@ -44,7 +44,7 @@ fn nearby(poses: &[SE2], node: usize, config: &LoopConfig) -> Vec<LoopCandidate>
             distance_m: math::norm2(pose.x() - here.x(), pose.y() - here.y()),
             proposal: None,
         })
-        .filter(|candidate| candidate.distance_m <= config.radius_m)
+        .filter(|candidate| candidate.distance_m <= radius_m)
         .collect()
 }
 
@@ -60,10 +60,15 @@ const METRES_PER_RADIAN: f64 = 0.5;
 
 /// The best node of every visit to the surroundings of `poses[node]`, nearest first.
 ///
-/// A visit is a run of nodes within the radius. The best of it is the nearest; a radian of heading difference
+/// A visit is a run of nodes within `radius_m` that are at least `min_gap_nodes` older. The best of it is the nearest; a radian of heading difference
 /// counts as half a metre, because scans with similar headings overlap more.
 #[must_use]
-pub fn detect_visits(poses: &[SE2], node: usize, config: &LoopConfig) -> Vec<LoopCandidate> {
+pub fn detect_visits(
+    poses: &[SE2],
+    node: usize,
+    radius_m: f64,
+    min_gap_nodes: usize,
+) -> Vec<LoopCandidate> {
     let here = poses[node];
     let cost = |candidate: &LoopCandidate| {
         let turn_rad = here.between(&poses[candidate.node]).theta().abs();
@@ -71,7 +76,7 @@ pub fn detect_visits(poses: &[SE2], node: usize, config: &LoopConfig) -> Vec<Loo
     };
     let mut visits: Vec<LoopCandidate> = Vec::new();
     let mut last_node = None;
-    for candidate in nearby(poses, node, config) {
+    for candidate in nearby(poses, node, radius_m, min_gap_nodes) {
         let is_same = last_node.is_some_and(|last| candidate.node - last <= VISIT_GAP_NODES);
         last_node = Some(candidate.node);
         match visits.last_mut() {
@@ -143,12 +148,8 @@ mod tests {
             *pose = turned(pose);
         }
         poses.extend((0..20).map(|k| SE2::translation(0.5 * f64::from(k), 0.2)));
-        let config = LoopConfig {
-            min_gap_nodes: 5,
-            ..LoopConfig::default()
-        };
         // Node 50 is at x = 5 m: node 10 was there on the way out, node 29 on the way back.
-        let visits = detect_visits(&poses, 50, &config);
+        let visits = detect_visits(&poses, 50, 2.0, 5);
         let nodes: Vec<usize> = visits.iter().map(|visit| visit.node).collect();
         assert_eq!(nodes, [10, 29]);
     }

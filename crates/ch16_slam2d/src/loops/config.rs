@@ -2,7 +2,6 @@
 
 use crate::chi_squared::CHAPTER_GATE;
 use crate::matching::{MapConfig, MatcherKind, TrustConfig};
-use crate::places::PlaceDetectorConfig;
 
 /// The drift between two nodes that the gate assumes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -17,33 +16,9 @@ pub enum GateModel {
     ExactMarginal,
 }
 
-/// Which of the near keyframes are proposed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Detection {
-    /// The chapter's: all of them, the nearest first.
-    #[default]
-    Nearest,
-    /// The nearest of every visit: of each run of near keyframes.
-    Visits,
-}
-
-/// The source of loop candidates.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub enum DetectorKind {
-    /// The chapter's: keyframes that are near in the graph.
-    #[default]
-    Nearby,
-    /// Keyframes of similar appearance, wherever they are in the graph.
-    Place(PlaceDetectorConfig),
-}
-
 /// Detection, verification and gating of loops; the defaults are the chapter's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopConfig {
-    /// The source of loop candidates; the next two fields belong to [`DetectorKind::Nearby`].
-    pub detector: DetectorKind,
-    /// Which of the near keyframes are proposed.
-    pub detection: Detection,
     /// Candidates lie within this distance of the new node in the graph, m.
     pub radius_m: f64,
     /// Candidates are at least this many nodes older.
@@ -83,8 +58,6 @@ pub struct LoopConfig {
 impl Default for LoopConfig {
     fn default() -> Self {
         Self {
-            detector: DetectorKind::Nearby,
-            detection: Detection::Nearest,
             radius_m: 2.0,
             min_gap_nodes: 22,
             attempt_every_nodes: 4,

@@ -4,10 +4,9 @@ use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::OptimizeError;
 
-use super::{Detection, LoopCandidate, LoopConfig, detect_loop_candidates, detect_visits};
+use super::{LoopCandidate, LoopConfig, detect_loop_candidates};
 use crate::cloud::PointCloud;
-use crate::graph::PoseGraph;
-use crate::slam::Keyframe;
+use crate::graph::{Keyframe, PoseGraph};
 
 /// Input of a detector.
 pub struct LoopQuery<'a> {
@@ -112,9 +111,6 @@ impl NearbyDetector {
 
 impl LoopDetector for NearbyDetector {
     fn detect(&mut self, query: &mut LoopQuery<'_>) -> Vec<LoopCandidate> {
-        match self.config.detection {
-            Detection::Nearest => detect_loop_candidates(query.poses(), query.node(), &self.config),
-            Detection::Visits => detect_visits(query.poses(), query.node(), &self.config),
-        }
+        detect_loop_candidates(query.poses(), query.node(), &self.config)
     }
 }

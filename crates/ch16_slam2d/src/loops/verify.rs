@@ -7,12 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use super::gate::{GateTest, chi_squared_gate};
 use super::{LoopCandidate, LoopConfig};
-use crate::chapter::{InformationFrame, chapter_information};
 use crate::cloud::PointCloud;
+use crate::graph::Keyframe;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
 use crate::local_map::MapRegistration;
-use crate::matching::{MatchRequest, MatchSummary, Matcher};
-use crate::slam::Keyframe;
+use crate::matching::{InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information};
 
 /// Why a loop was rejected, with the measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -39,7 +39,7 @@ mod tests {
     use nalgebra::{Point2, Vector2, Vector3};
 
     use super::*;
-    use crate::chapter::chapter_information;
+    use crate::matching::chapter_information;
 
     const TRUST: TrustConfig = TrustConfig {
         sigma_m: 0.05,

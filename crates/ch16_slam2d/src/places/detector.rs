@@ -191,8 +191,7 @@ mod tests {
     use pr_geom::Point2;
 
     use super::*;
-    use crate::graph::PoseGraph;
-    use crate::slam::Keyframe;
+    use crate::graph::{Keyframe, PoseGraph};
 
     /// A scan at location `k`, from a robot rotated by `turn_rad`.
     fn seen(k: usize, turn_rad: f64) -> PointCloud {

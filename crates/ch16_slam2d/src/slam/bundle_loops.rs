@@ -21,10 +21,7 @@ use super::snapshot::SnapshotError;
 use super::submaps::Submaps;
 use crate::cloud::PointCloud;
 use crate::local_map::{MIN_SEARCH_SCORE, MapRegistration};
-use crate::loops::{
-    Detection, LoopCandidate, LoopConfig, LoopRejection, LoopVerification, PendingLoop,
-    detect_visits,
-};
+use crate::loops::{LoopCandidate, LoopRejection, LoopVerification, PendingLoop, detect_visits};
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
 
@@ -83,14 +80,9 @@ impl BundleLoops {
         let Some(youngest) = old_enough.checked_sub(1) else {
             return Vec::new();
         };
-        let nearby = LoopConfig {
-            detection: Detection::Visits,
-            radius_m: config.max_window_m + SUBMAP_MARGIN_M,
-            min_gap_nodes: node - youngest,
-            ..LoopConfig::default()
-        };
+        let radius_m = config.max_window_m + SUBMAP_MARGIN_M;
         let mut windows = Vec::new();
-        for candidate in detect_visits(mapper.poses(), node, &nearby) {
+        for candidate in detect_visits(mapper.poses(), node, radius_m, node - youngest) {
             if windows.len() == SUBMAPS {
                 break;
             }

@@ -7,10 +7,12 @@ use pr_geom::SE2;
 use pr_optim::{OptimizeError, StopReason};
 
 use super::config::SlamConfig;
-use super::report::{Change, Keyframe, LoopEffect};
+use super::report::{Change, LoopEffect};
 use super::snapshot::SlamSnapshot;
 use crate::cloud::PointCloud;
-use crate::graph::{EdgeKind, EdgeView, InlierEdges, MarginalizeError, Marginalized, PoseGraph};
+use crate::graph::{
+    EdgeKind, EdgeView, InlierEdges, Keyframe, MarginalizeError, Marginalized, PoseGraph,
+};
 use crate::loops::{LoopQuery, LoopRejection, LoopVerification};
 use crate::metrics::position_error_m;
 use crate::scan::PreparedFrame;

@@ -10,9 +10,7 @@ use pr_optim::OptimizeError;
 
 use super::mapper::Mapper;
 use super::submaps::Submaps;
-use crate::loops::{
-    Detection, LoopCandidate, LoopConfig, LoopRejection, LoopVerification, detect_visits,
-};
+use crate::loops::{LoopCandidate, LoopRejection, LoopVerification, detect_visits};
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
 
@@ -66,13 +64,7 @@ pub(super) fn link_all(mapper: &mut Mapper, submaps: &mut Submaps) -> Vec<LoopVe
 
 /// The registrations of a keyframe on the visits around it.
 fn links_of(mapper: &Mapper, node: usize, submaps: &mut Submaps) -> Vec<LoopVerification> {
-    let nearby = LoopConfig {
-        detection: Detection::Visits,
-        radius_m: RADIUS_M,
-        min_gap_nodes: MIN_GAP_NODES,
-        ..LoopConfig::default()
-    };
-    let visits = detect_visits(mapper.poses(), node, &nearby);
+    let visits = detect_visits(mapper.poses(), node, RADIUS_M, MIN_GAP_NODES);
     let gate = LinkGate {
         information: Matrix3::from_diagonal(&Vector3::new(
             1.0 / (SHIFT.0 * SHIFT.0),

@@ -1,27 +1,9 @@
 //! Reports of the estimator.
 
-use std::sync::Arc;
-
 use pr_geom::SE2;
-use serde::{Deserialize, Serialize};
 
 use super::front_end::Registration;
-use crate::cloud::PointCloud;
 use crate::loops::LoopVerification;
-
-/// A keyframe: a node of the graph with its scan.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Keyframe {
-    /// Index of its node.
-    pub node: usize,
-    /// Index of its frame.
-    pub frame: usize,
-    /// Time of its frame, s.
-    pub stamp_s: f64,
-    /// Its thinned scan with normals, body frame. Not serialized with the rest: a session stores it compactly.
-    #[serde(skip)]
-    pub scan: Arc<PointCloud>,
-}
 
 /// Effect of closing a loop.
 #[derive(Clone, Debug, PartialEq)]

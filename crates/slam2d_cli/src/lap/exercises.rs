@@ -8,7 +8,7 @@ use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner};
-use ch16_slam2d::chapter::ChapterParts;
+use ch16_slam2d::chapter::{ChapterParts, DetectorKind};
 use ch16_slam2d::cloud;
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::icp::{self, Pair};
@@ -16,7 +16,7 @@ use ch16_slam2d::listings::{
     Correspondence, IcpConfig, IcpVariant, LoopConfig, PointCloud, PoseEdge, PoseGraph,
     VerifiedLoop, VoxelMap, associate,
 };
-use ch16_slam2d::loops::{self, DetectorKind, LoopCandidate, LoopDetector, LoopQuery};
+use ch16_slam2d::loops::{self, LoopCandidate, LoopDetector, LoopQuery};
 use ch16_slam2d::matching::{
     MapConfig, Match, MatchRequest, MatchStop, MatchSummary, Matcher, MatcherKind,
 };
@@ -184,7 +184,7 @@ pub fn drive(config: &LapConfig) -> Result<ExerciseLap, LapError> {
     let chapter = &config.slam.chapter;
     let matcher = TheirIcp::new(&chapter.matcher, chapter.local_map)?;
     let loop_matcher = TheirIcp::new(&chapter.loops.matcher, chapter.loops.submap)?;
-    let histogram = match chapter.loops.detector {
+    let histogram = match chapter.detector {
         DetectorKind::Nearby => None,
         DetectorKind::Place(places) => match places.descriptor {
             PlaceDescriptor::Histogram(bins) => Some((places.max_distance, bins.max_range_m)),

@@ -2,8 +2,8 @@
 
 use nalgebra::Matrix3;
 
+use super::TrustConfig;
 use crate::icp::{Pair, icp_information_along};
-use crate::matching::TrustConfig;
 
 /// In which frame the information of an edge is expressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
