@@ -15,6 +15,12 @@ pub const CHAPTER_QUANTILE: f64 = 0.95;
 /// The chapter's gate: the threshold of [`CHAPTER_QUANTILE`], as tables print it.
 pub const CHAPTER_GATE: f64 = 7.815;
 
+/// Threshold of the quantile 0.99, as tables print it: one true loop in a hundred is beyond it.
+pub const GATE_99: f64 = pr_optim::robust::LOOP_CHI2;
+
+/// Threshold of the quantile 0.999, as tables print it.
+pub const GATE_999: f64 = 16.266;
+
 /// Quantiles for which [`gate_threshold`] is defined: below 1, and with a threshold above 0.
 const QUANTILES: core::ops::RangeInclusive<f64> = 1e-6..=0.999_999;
 
@@ -85,6 +91,12 @@ mod tests {
         for (quantile, threshold) in TABLE {
             assert_eq!(gate_threshold(quantile), threshold, "quantile {quantile}");
         }
+    }
+
+    #[test]
+    fn named_gates_are_those_of_their_quantiles() {
+        assert_eq!(gate_threshold(0.99), GATE_99);
+        assert_eq!(gate_threshold(0.999), GATE_999);
     }
 
     #[test]

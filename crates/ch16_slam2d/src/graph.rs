@@ -23,7 +23,7 @@ use pr_optim::robust::{GncSettings, InlierSelection, select_inliers};
 use pr_optim::{Between, FactorUse, Method, OptimizeError, Optimizer, Problem, Report, Settings};
 use serde::{Deserialize, Serialize};
 
-pub use ids::{EdgeId, NodeId};
+pub use ids::{EdgeId, LoopId, NodeId};
 pub use keyframe::Keyframe;
 pub use marginalize::{MarginalizeError, Marginalized};
 pub use pr_optim::{JacobianModel, RobustKernel, StopReason};
@@ -80,6 +80,15 @@ pub struct EdgeView {
     pub to: NodeId,
     /// The measurement.
     pub edge: PoseEdge,
+}
+
+impl EdgeView {
+    /// The loop that it measures; `None` for odometry.
+    #[must_use]
+    pub fn loop_id(&self) -> Option<LoopId> {
+        let (old, new) = (self.from.index(), self.to.index());
+        (self.edge.kind == EdgeKind::Loop).then_some(LoopId { old, new })
+    }
 }
 
 /// Result of [`PoseGraph::inlier_edges`].

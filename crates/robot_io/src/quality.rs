@@ -19,7 +19,7 @@ use serde::Serialize;
 use crate::evidence::{PoorFit, TriedLoop};
 
 /// Gate of a loop's χ²: the 99.9 % quantile with three degrees of freedom.
-pub const GATE_CHI2: f64 = 16.266;
+pub const GATE_CHI2: f64 = ch16_slam2d::chi_squared::GATE_999;
 
 /// Quality of a map.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -110,11 +110,14 @@ impl Quality {
         } else {
             links.iter().filter(|link| link.accepted()).collect()
         };
+        let mut open: Vec<_> = tests.iter().collect();
         for link in evidence {
-            // Loops that were removed again are no links.
-            let mut tests = tests.iter();
-            let test = tests.find(|(view, _)| view.edge.measurement == link.registered);
-            let Some((_, chi2)) = test else { continue };
+            let is_it = |test: &&(EdgeView, _)| test.0.loop_id() == Some(link.id());
+            // Loops that were removed again are no links; of two between the same keyframes the first comes first.
+            let Some(at) = open.iter().position(is_it) else {
+                continue;
+            };
+            let (_, chi2) = open.remove(at);
             quality.links.push(LinkQuality {
                 chi2: *chi2,
                 gate_chi2: GATE_CHI2,

@@ -212,11 +212,8 @@ impl LogRun {
     /// Records the results of loops; a pending loop is updated once it is accepted.
     fn note(&mut self, attempts: &[LoopAttempt]) {
         for attempt in attempts {
-            let found = &attempt.verification;
-            let is_it = |tried: &&mut TriedLoop| {
-                let waited = &tried.verification;
-                (waited.from_node, waited.registered) == (found.from_node, found.registered)
-            };
+            let id = attempt.verification.id();
+            let is_it = |tried: &&mut TriedLoop| tried.verification.id() == id;
             match self.loops.iter_mut().rev().find(is_it) {
                 Some(tried) => *tried = TriedLoop::from(attempt),
                 None => self.loops.push(TriedLoop::from(attempt)),
@@ -227,10 +224,10 @@ impl LogRun {
     /// Whether the graph contains a loop: an accepted loop may have been removed since.
     #[must_use]
     pub fn has_loop(&self, tried: &TriedLoop) -> bool {
-        let measured = tried.verification.registered;
+        let id = Some(tried.verification.id());
         let graph = self.slam().map(Slam::graph);
         let mut edges = graph.into_iter().flat_map(|graph| graph.edges());
-        tried.accepted && edges.any(|view| view.edge.measurement == measured)
+        tried.accepted && edges.any(|view| view.loop_id() == id)
     }
 
     /// The estimator; `None` before the first scan.

@@ -37,3 +37,12 @@ impl EdgeId {
         self.0
     }
 }
+
+/// A loop by its keyframes. Two loops between the same keyframes have the same identity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct LoopId {
+    /// The older keyframe.
+    pub old: usize,
+    /// The newer keyframe.
+    pub new: usize,
+}

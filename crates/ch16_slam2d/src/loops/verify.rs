@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::gate::{GateTest, chi_squared_gate};
 use super::{LoopCandidate, LoopConfig};
 use crate::cloud::PointCloud;
-use crate::graph::Keyframe;
+use crate::graph::{Keyframe, LoopId};
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
 use crate::local_map::MapRegistration;
 use crate::matching::{InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information};
@@ -199,6 +199,15 @@ impl LoopVerification {
     #[must_use]
     pub fn accepted(&self) -> bool {
         self.rejection.is_none()
+    }
+
+    /// The loop by its keyframes.
+    #[must_use]
+    pub fn id(&self) -> LoopId {
+        LoopId {
+            old: self.candidate.node,
+            new: self.from_node,
+        }
     }
 
     /// Nodes between the two ends.

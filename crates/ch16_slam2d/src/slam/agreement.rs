@@ -3,8 +3,8 @@
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
-use super::bundle_loops::GATE_CHI2;
 use super::mapper::Mapper;
+use crate::chi_squared::GATE_99;
 use crate::loops::LoopVerification;
 
 /// Whether two loops imply the same correction of the path: `e = log((Tᵢ Z)⁻¹ Tₖ Zₖ Tⱼ⁻¹ T)` within the gate of the
@@ -42,5 +42,5 @@ pub(super) fn are_consistent(
         + moved(&first_own, &way)
         + moved(&between_old, &second.registered);
     let information = covariance.try_inverse();
-    information.is_some_and(|information| e.dot(&(information * e)) <= GATE_CHI2)
+    information.is_some_and(|information| e.dot(&(information * e)) <= GATE_99)
 }

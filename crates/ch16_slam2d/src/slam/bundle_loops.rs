@@ -19,6 +19,7 @@ use super::refinement;
 use super::robots::{RobotConfig, SubmapLoopConfig};
 use super::snapshot::SnapshotError;
 use super::submaps::Submaps;
+use crate::chi_squared::GATE_99;
 use crate::cloud::PointCloud;
 use crate::local_map::{MIN_SEARCH_SCORE, MapRegistration};
 use crate::loops::{LoopCandidate, LoopRejection, LoopVerification, PendingLoop, detect_visits};
@@ -39,8 +40,6 @@ const SUBMAP_MARGIN_M: f64 = 4.0;
 const BUNDLE_CELL_M: f64 = 0.15;
 /// Added to the half width of the window by covariance, m and rad.
 const WINDOW_FLOOR: (f64, f64) = (0.3, 0.06);
-/// The largest expected squared innovation: the 99 % quantile with three degrees of freedom.
-pub(super) const GATE_CHI2: f64 = 11.345;
 /// Number of agreeing loops needed within the gate, and for loops that contradict the graph.
 const AGREEING: (usize, usize) = (2, 3);
 /// Smallest information of a loop in any direction, 1/m² and 1/rad²: a metre, a radian.
@@ -224,7 +223,7 @@ impl BundleLoops {
                 window.belief,
                 found,
                 gate_information,
-                GATE_CHI2,
+                GATE_99,
             )
         }
     }

@@ -10,6 +10,7 @@ use pr_optim::OptimizeError;
 
 use super::mapper::Mapper;
 use super::submaps::Submaps;
+use crate::chi_squared::CHAPTER_GATE;
 use crate::loops::{LoopCandidate, LoopRejection, LoopVerification, detect_visits};
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
@@ -26,8 +27,6 @@ const VISITS: usize = 3;
 const HALF_SUBMAP: usize = 3;
 /// Expected shift of a keyframe by a registration, standard deviations for the gate: m and rad.
 const SHIFT: (f64, f64) = (0.15, 0.05);
-/// The largest squared shift: the 95 % quantile with three degrees of freedom.
-const GATE_CHI2: f64 = 7.815;
 /// Score below which a keyframe does not fit, 0 to 1.
 const MIN_SCORE: f64 = 0.7;
 /// Search window of a requested loop: number of standard deviations, and limits in m and rad.
@@ -71,7 +70,7 @@ fn links_of(mapper: &Mapper, node: usize, submaps: &mut Submaps) -> Vec<LoopVeri
             1.0 / (SHIFT.0 * SHIFT.0),
             1.0 / (SHIFT.1 * SHIFT.1),
         )),
-        chi2: GATE_CHI2,
+        chi2: CHAPTER_GATE,
         window: None,
     };
     let visits = visits.into_iter().take(VISITS);
@@ -109,7 +108,7 @@ pub(super) fn link_on_request(
     };
     let gate = LinkGate {
         information,
-        chi2: GATE_CHI2,
+        chi2: CHAPTER_GATE,
         window: Some((math::min(half_m, most_m), math::min(half_rad, most_rad))),
     };
     Ok(link(mapper, new, candidate, gate, submaps))
