@@ -21,4 +21,6 @@ pub use config::{GateModel, LoopConfig};
 pub use detector::{CloneDetector, LoopDetector, LoopQuery, NearbyDetector};
 pub use gate::{GateTest, chi_squared_gate};
 pub use pending_loop::PendingLoop;
-pub use verify::{KeyframeView, LoopRejection, LoopVerification, LoopWorkspace, verify_loop};
+pub use verify::{
+    Agreement, KeyframeView, LoopRejection, LoopVerification, LoopWorkspace, verify_loop,
+};

@@ -3,7 +3,7 @@
 use ch16_slam2d::graph::MarginalizeError;
 use ch16_slam2d::icp::StopReason;
 use ch16_slam2d::localize::Verdict;
-use ch16_slam2d::loops::{GateTest, LoopRejection};
+use ch16_slam2d::loops::{Agreement, GateTest, LoopRejection};
 use ch16_slam2d::matching::MatchStop;
 use ch16_slam2d::ndt::NdtStop;
 use ch16_slam2d::scan::FrameError;
@@ -37,7 +37,7 @@ fn every_reason_states_its_values() {
             "chi-squared 20.0 is above 7.8",
         ),
         (
-            LoopRejection::Waiting {
+            Agreement {
                 agreeing: 1,
                 needed: 2,
             }

@@ -184,7 +184,7 @@ impl LinkQuality {
             chi2: (found.gate.chi2.is_finite() && !is_nowhere).then_some(found.gate.chi2),
             gate_chi2: found.gate.gate_chi2,
             accepted,
-            reason: found.rejection.map(|rejection| rejection.to_string()),
+            reason: found.reason(),
         }
     }
 

@@ -87,7 +87,7 @@ fn tried(py: Python<'_>, attempt: &LoopAttempt) -> PyResult<Py<PyDict>> {
     dict.set_item("rmse", found.rmse_m)?;
     dict.set_item("inliers", found.inliers)?;
     dict.set_item("accepted", attempt.accepted())?;
-    dict.set_item("reason", found.rejection.map(|why| why.to_string()))?;
+    dict.set_item("reason", found.reason())?;
     Ok(dict.unbind())
 }
 

@@ -75,9 +75,7 @@ impl Link {
             found: Some(*found),
             chi2: chi2.is_finite().then_some(chi2),
             gate_chi2: found.gate.gate_chi2,
-            reason: found
-                .rejection
-                .map_or_else(String::new, |why| why.to_string()),
+            reason: found.reason().unwrap_or_default(),
             verdict: if is_in_graph {
                 Verdict::Accepted
             } else {

@@ -5,7 +5,7 @@ use core::fmt;
 use super::loop_error::LoopJudgement;
 use super::record::LapTrace;
 use super::report::LoopAttempt;
-use ch16_slam2d::loops::{GateTest, LoopRejection};
+use ch16_slam2d::loops::{Agreement, GateTest, LoopRejection};
 
 impl fmt::Display for LoopJudgement {
     /// `loop accepted`, `wrong loop accepted` or `loop rejected`.
@@ -74,9 +74,6 @@ impl LapTrace {
             Some(LoopRejection::Ambiguous { margin, min_margin }) => format!(
                 "{head}: {gate}, but another place is behind by {margin:.2} only, {min_margin:.2} is asked"
             ),
-            Some(LoopRejection::Waiting { agreeing, needed }) => {
-                format!("{head}: {gate}, but {agreeing} loops agree so far, {needed} are asked")
-            }
             Some(LoopRejection::NoCovariance(error)) => {
                 format!("{head}: the graph has no covariance to test against, {error}")
             }
@@ -89,7 +86,13 @@ impl LapTrace {
             Some(LoopRejection::CostRose { before, after }) => format!(
                 "{head}: {gate}, but the optimization raised the cost from {before:.2} to {after:.2}"
             ),
-            Some(LoopRejection::OutsideGate(_)) | None => format!("{head}: {gate}"),
+            Some(LoopRejection::OutsideGate(_)) => format!("{head}: {gate}"),
+            None => match attempt.verification.waits {
+                Some(Agreement { agreeing, needed }) => {
+                    format!("{head}: {gate}, but {agreeing} loops agree so far, {needed} are asked")
+                }
+                None => format!("{head}: {gate}"),
+            },
         }
     }
 }

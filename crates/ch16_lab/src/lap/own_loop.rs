@@ -231,6 +231,7 @@ impl Site<'_> {
             gate_information: assumed,
             gate,
             information: Matrix3::from_diagonal(&sigmas.map(|sigma| 1.0 / (sigma * sigma))),
+            waits: None,
             rejection: gate_information
                 .err()
                 .map(LoopRejection::NoCovariance)

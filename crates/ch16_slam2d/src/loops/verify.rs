@@ -51,13 +51,6 @@ pub enum LoopRejection {
         /// The smallest that is accepted.
         min_margin: f64,
     },
-    /// It waits for confirmation by other loops.
-    Waiting {
-        /// Number of loops that agree, including itself.
-        agreeing: usize,
-        /// Required number.
-        needed: usize,
-    },
     /// The innovation is larger than the drift explains.
     OutsideGate(GateTest),
     /// The graph has no covariance for the test.
@@ -105,9 +98,6 @@ impl core::fmt::Display for LoopRejection {
                 f,
                 "ambiguous: the margin over the next best pose is {margin:.2}, at least {min_margin:.2} is needed"
             ),
-            Self::Waiting { agreeing, needed } => {
-                write!(f, "pending: {agreeing} loops agree, {needed} are needed")
-            }
             Self::OutsideGate(gate) => {
                 write!(
                     f,
@@ -124,6 +114,22 @@ impl core::fmt::Display for LoopRejection {
                 write!(f, "the cost rose from {before:.1} to {after:.1}")
             }
         }
+    }
+}
+
+/// Agreement of a loop that passed its own tests with others; it waits until enough confirm it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Agreement {
+    /// Number of loops that agree, including itself.
+    pub agreeing: usize,
+    /// Required number.
+    pub needed: usize,
+}
+
+impl core::fmt::Display for Agreement {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self { agreeing, needed } = self;
+        write!(f, "pending: {agreeing} loops agree, {needed} are needed")
     }
 }
 
@@ -159,9 +165,12 @@ pub struct LoopVerification {
     pub gate: GateTest,
     /// Information of the loop edge.
     pub information: Matrix3<f64>,
-    /// Why it was rejected; `None` if it was accepted. Not serialized: a pending loop has none.
+    /// Why it was rejected. Not serialized: a pending loop has none.
     #[serde(skip)]
     pub rejection: Option<LoopRejection>,
+    /// What it waits for, if it passed its own tests and needs others to confirm it.
+    #[serde(skip)]
+    pub waits: Option<Agreement>,
 }
 
 impl LoopVerification {
@@ -192,13 +201,21 @@ impl LoopVerification {
             gate: chi_squared_gate(&innovation, &gate_information, gate_chi2),
             information: found.information(),
             rejection: None,
+            waits: None,
         }
     }
 
-    /// Whether all tests passed.
+    /// Whether all tests passed, and it waits for nothing.
     #[must_use]
     pub fn accepted(&self) -> bool {
-        self.rejection.is_none()
+        self.rejection.is_none() && self.waits.is_none()
+    }
+
+    /// Why it is not in the graph; `None` if it was accepted.
+    #[must_use]
+    pub fn reason(&self) -> Option<String> {
+        let rejected = self.rejection.map(|rejection| rejection.to_string());
+        rejected.or_else(|| self.waits.map(|agreement| agreement.to_string()))
     }
 
     /// The loop by its keyframes.
@@ -330,6 +347,7 @@ pub fn verify_loop(
         information: regularize(information, INFORMATION_RIDGE, INFORMATION_CAP),
         rejection: rejection(&found, gate, config)
             .or(gate_information.err().map(LoopRejection::NoCovariance)),
+        waits: None,
     }
 }
 

@@ -22,7 +22,9 @@ use super::submaps::Submaps;
 use crate::chi_squared::GATE_99;
 use crate::cloud::PointCloud;
 use crate::local_map::{MIN_SEARCH_SCORE, MapRegistration};
-use crate::loops::{LoopCandidate, LoopRejection, LoopVerification, PendingLoop, detect_visits};
+use crate::loops::{
+    Agreement, LoopCandidate, LoopRejection, LoopVerification, PendingLoop, detect_visits,
+};
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
 
@@ -286,7 +288,7 @@ impl LoopFinder for BundleLoops {
                     is_expected,
                 });
                 tried.found.push(LoopVerification {
-                    rejection: Some(LoopRejection::Waiting {
+                    waits: Some(Agreement {
                         agreeing: agreeing.len() + 1,
                         needed,
                     }),

@@ -258,6 +258,7 @@ impl<'a> Engine<'a> {
                 let found = in_graph.filter_map(|link| link.found);
                 let accepted = found.map(|found| LoopVerification {
                     rejection: None,
+                    waits: None,
                     ..found
                 });
                 self.run.set_links(accepted.collect());

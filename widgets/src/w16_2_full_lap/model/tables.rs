@@ -180,13 +180,13 @@ fn loop_attempts(runs: &Runs, seen: usize) -> Table {
 
 fn verdict_with_reason(attempt: &LoopAttempt) -> &'static str {
     match attempt.verification.rejection {
+        None if attempt.verification.waits.is_some() => "waits for others",
         None => "accepted",
         Some(LoopRejection::PoorFit { .. }) => "rejected: rmse",
         Some(LoopRejection::FewInliers { .. }) => "rejected: pairs",
         Some(LoopRejection::LowScore { .. }) => "rejected: score",
         Some(LoopRejection::NoPlace { .. }) => "rejected: no place",
         Some(LoopRejection::Ambiguous { .. }) => "rejected: ambiguous",
-        Some(LoopRejection::Waiting { .. }) => "waits for others",
         Some(LoopRejection::OutsideGate(_)) => "rejected: χ²",
         Some(LoopRejection::NoCovariance(_)) => "rejected: no covariance",
         Some(
