@@ -123,6 +123,22 @@ describe('the sweeps that the reader aligns', () => {
     }, { stepMs: 60 });
   });
 
+  it('follow one finger, and the page stays where it is', async () => {
+    await reading(async (tab) => {
+      await live(tab);
+      const before = await off(tab);
+      const { x, y } = await middle(tab, '.match-robot');
+      const scroll = await tab.evaluate(() => scrollY);
+      const client = await tab.context().newCDPSession(tab);
+      const touch = (type, ...touchPoints) => client.send('Input.dispatchTouchEvent', { type, touchPoints });
+      await touch('touchStart', { x, y });
+      for (let step = 1; step <= 5; step += 1) await touch('touchMove', { x: x + 8 * step, y: y + 8 * step });
+      await touch('touchEnd');
+      assert.equal(await tab.evaluate(() => scrollY), scroll);
+      assert.ok((await off(tab)).cm < before.cm - 20);
+    }, { hasTouch: true, isMobile: true, viewport: SIZES[2] });
+  });
+
   it('follow two fingers', async () => {
     await reading(async (tab) => {
       await live(tab);

@@ -186,7 +186,7 @@ async function copyKatex() {
 
 /** Bundles the scripts of the page and of its worker; returns their names and esbuild's metafiles. */
 async function bundleScripts(stories, matchAnswer) {
-  const bundle = async (source, define) => {
+  const bundle = async (source, define, format = 'esm') => {
     const { outputFiles, metafile } = await build({
       entryPoints: [path.join(here, source)],
       bundle: true,
@@ -194,7 +194,7 @@ async function bundleScripts(stories, matchAnswer) {
       define,
       write: false,
       metafile: true,
-      format: 'esm',
+      format,
       minify: true,
       target: 'es2022',
       logLevel: 'warning',
@@ -209,8 +209,13 @@ async function bundleScripts(stories, matchAnswer) {
     PLACES: JSON.stringify(places),
     LAPS_WORKER_FILE: JSON.stringify(`./${workerFile}`),
   });
-  const names = new Map([['page.js', await writeHashed('page.js', page.text)]]);
-  return { names, metafiles: [worker.metafile, page.metafile] };
+  // A classic script in the head, which the browser runs before it paints.
+  const early = await bundle('early.ts', {}, 'iife');
+  const names = new Map([
+    ['page.js', await writeHashed('page.js', page.text)],
+    ['early.js', await writeHashed('early.js', early.text)],
+  ]);
+  return { names, metafiles: [worker.metafile, page.metafile, early.metafile] };
 }
 
 /** Writes the notices of the widgets, from their build, and of the page. */

@@ -17,6 +17,7 @@ import type { Answer } from './match/drawing';
 import { MatchFigure } from './match/figure';
 import type { SlamWidget } from '../ts/main';
 import { SketchFigure, type SketchSchema } from './sketch';
+import { chosenTheme, keepTheme, showTheme, type ThemeChoice } from './theme-choice';
 
 /** Set by the build: the canonical lap. */
 declare const LAP_STORY_FILE: string;
@@ -33,10 +34,7 @@ const PREFETCH_MARGIN = '200% 0px';
 /** Set by the build: the page of each anchor and widget. */
 declare const PLACES: Places;
 
-type ThemeChoice = 'auto' | 'light' | 'dark';
-
 redirectOldAddress(PLACES);
-document.documentElement.dataset['script'] = 'on';
 trackReading();
 listenToThemeButtons();
 makeScrollableFocusable(document.querySelectorAll<HTMLElement>('.math, .scroll'));
@@ -158,25 +156,19 @@ function keepInView(list: HTMLElement | null, link: HTMLElement | undefined): vo
   if (top < room.top || bottom > room.bottom) list.scrollTop += top - room.top - room.height / 3;
 }
 
-/** The choice lasts until the page is left: the page stores nothing in the browser. */
 function listenToThemeButtons(): void {
   const buttons = document.querySelectorAll<HTMLButtonElement>('[data-theme-choice]');
+  const show = (choice: ThemeChoice): void => {
+    showTheme(choice);
+    for (const button of buttons) button.setAttribute('aria-pressed', String(button.dataset['themeChoice'] === choice));
+  };
+  show(chosenTheme());
   for (const button of buttons) {
     button.addEventListener('click', () => {
-      chooseTheme(button.dataset['themeChoice'] as ThemeChoice);
-      for (const other of buttons) {
-        other.setAttribute('aria-pressed', String(other === button));
-      }
+      const choice = button.dataset['themeChoice'] as ThemeChoice;
+      keepTheme(choice);
+      show(choice);
     });
-  }
-}
-
-/** Style and widgets follow `data-theme`, or the system without it. */
-function chooseTheme(choice: ThemeChoice): void {
-  if (choice === 'auto') {
-    delete document.documentElement.dataset['theme'];
-  } else {
-    document.documentElement.dataset['theme'] = choice;
   }
 }
 

@@ -50,6 +50,10 @@ export class MatchFigure {
   #listen(): void {
     const svg = this.#svg;
     svg.addEventListener('pointerdown', (event) => this.#grab(event));
+    // Chromium scrolls by a touch on a part of a drawing, whatever its `touch-action`.
+    svg.addEventListener('touchstart', (event) => {
+      if ((event.target as Element).closest('[data-grab]') !== null) event.preventDefault();
+    }, { passive: false });
     svg.addEventListener('pointermove', (event) => this.#drag(event));
     for (const type of ['pointerup', 'pointercancel'] as const) {
       svg.addEventListener(type, (event) => {

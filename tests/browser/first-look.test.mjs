@@ -1,0 +1,79 @@
+// What a reader sees before and at the first act: a page that does not jump, the chosen colours, targets for a finger.
+
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import * as h from './harness.mjs';
+
+const visit = h.visitor();
+const at = (path, test, options = {}) => visit('', test, { path, options });
+
+/** The sum of the layout shifts of a page so far, and what moved. */
+const shifts = (tab) => tab.evaluate(() => new Promise((told) => {
+  const seen = [];
+  const observer = new PerformanceObserver((list) => seen.push(...list.getEntries()));
+  observer.observe({ type: 'layout-shift', buffered: true });
+  requestAnimationFrame(() => requestAnimationFrame(() => {
+    seen.push(...observer.takeRecords());
+    const nodes = seen.flatMap(({ sources }) => sources.map(({ node }) => node?.className ?? ''));
+    told({ sum: seen.reduce((sum, { value }) => sum + value, 0), nodes });
+  }));
+}));
+
+describe('a page as it loads', () => {
+  for (const [width, height] of [[1440, 900], [1280, 680], [390, 844]]) {
+    for (const page of h.PAGES) {
+      it(`does not jump: ${page} at ${width}×${height}`, async () => {
+        await at(`/${page}`, async (tab) => {
+          await tab.waitForSelector('.reading', { state: 'attached' });
+          await h.quiet(tab);
+          const { sum, nodes } = await shifts(tab);
+          // A tenth is the limit of Core Web Vitals.
+          assert.ok(sum < 0.05, `${sum}: ${nodes}`);
+        }, { viewport: { width, height } });
+      });
+    }
+  }
+
+  it('has its head and its text in line on a wide screen', async () => {
+    await at('/index.html', async (tab) => {
+      const [head, text] = await tab.evaluate(() => ['.masthead h1', '.beside > section p'].map((css) =>
+        document.querySelector(css).getBoundingClientRect().left));
+      assert.ok(Math.abs(head - text) <= 1, `${head} and ${text}`);
+    }, { viewport: { width: 1440, height: 900 } });
+  });
+});
+
+describe('the colours that a reader chooses', () => {
+  it('stay on the next page and after a reload, and are forgotten with Auto', async () => {
+    await at('/index.html', async (tab, { url }) => {
+      const theme = () => tab.evaluate(() => document.documentElement.dataset.theme ?? 'auto');
+      const pressed = () => tab.locator('[data-theme-choice][aria-pressed="true"]').getAttribute('data-theme-choice');
+      await tab.click('[data-theme-choice="dark"]');
+      for (const go of [() => tab.goto(`${url}/robots.html`), () => tab.reload()]) {
+        await go();
+        assert.equal(await theme(), 'dark');
+        await tab.waitForSelector('.reading', { state: 'attached' });
+        assert.equal(await pressed(), 'dark');
+      }
+      await tab.click('[data-theme-choice="auto"]');
+      assert.equal(await tab.evaluate(() => localStorage.length), 0);
+      await tab.reload();
+      assert.equal(await theme(), 'auto');
+    });
+  });
+});
+
+describe('what can be pressed', () => {
+  for (const page of h.PAGES) {
+    it(`is at least 24 pixels large: ${page}`, async () => {
+      await at(`/${page}`, async (tab) => {
+        await tab.waitForSelector('.reading', { state: 'attached' });
+        const small = await tab.evaluate(() => [...document.querySelectorAll('a, button, input, summary')]
+          .map((one) => [one, one.getBoundingClientRect()])
+          .filter(([one, { width, height }]) => width > 0 && (width < 24 || height < 24) && !one.closest('.skip, label'))
+          .map(([one, { width, height }]) => `${one.tagName} ${one.className} “${one.textContent.slice(0, 20)}” ${width.toFixed(0)}×${height.toFixed(0)}`));
+        assert.deepEqual(small, []);
+      }, { viewport: { width: 1280, height: 900 } });
+    });
+  }
+});
