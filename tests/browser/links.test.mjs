@@ -34,6 +34,24 @@ describe('a link in the text', () => {
     }, { viewport: { width: 1100, height: 900 } });
   });
 
+  it('plays to its state if it names no moment: 75° runs its iterations', async () => {
+    await reading(async (tab) => {
+      await link(tab, '75°').scrollIntoViewIfNeeded();
+      await h.ready(tab, widget('w16.1'));
+      await link(tab, '75°').click();
+      const run = () => tab.evaluate((css) => document.querySelector(css).timeline, widget('w16.1'));
+      await tab.waitForFunction((css) => document.querySelector(css).timeline.playing, widget('w16.1'));
+      await tab.waitForFunction((css) => !document.querySelector(css).timeline.playing, widget('w16.1'));
+      assert.equal(await get(tab, 'w16.1', 'iteration'), (await run()).last);
+      assert.equal(await tab.evaluate((css) => document.querySelector(css).outcome.verdict, widget('w16.1')), 'quarter turn');
+      // One that names a moment shows that.
+      await link(tab, 'last').click();
+      await has(tab, 'w16.2', 't', 119);
+      await h.quiet(tab);
+      assert.equal(await get(tab, 'w16.2', 't'), 119);
+    });
+  });
+
   it('is a history entry: Back restores the state before it, and stays on the page', async () => {
     await reading(async (tab) => {
       const path = await tab.evaluate(() => location.pathname);

@@ -72,16 +72,23 @@ describe('scrolling', () => {
     });
   });
 
-  it('with Ctrl zooms the map, not the page', async () => {
+  it('with Ctrl zooms the map under it, and elsewhere the page', async () => {
     await on(ONE + TALL, async (tab) => {
       await h.ready(tab);
-      const prevented = await tab.evaluate(() => {
-        const { shadowRoot } = document.querySelector('slam-widget');
-        const event = new WheelEvent('wheel', { deltaY: -50, ctrlKey: true, cancelable: true, bubbles: true });
-        shadowRoot.querySelector('canvas').dispatchEvent(event);
-        return event.defaultPrevented;
-      });
-      assert.ok(prevented);
+      const at = async (x, y) => {
+        await tab.mouse.move(x, y);
+        return tab.evaluate(([clientX, clientY]) => {
+          const { shadowRoot } = document.querySelector('slam-widget');
+          const event = new WheelEvent('wheel', { deltaY: -50, ctrlKey: true, cancelable: true, bubbles: true, clientX, clientY });
+          shadowRoot.querySelector('canvas').dispatchEvent(event);
+          return event.defaultPrevented;
+        }, [x, y]);
+      };
+      assert.equal(await at(...await h.pointOf(tab, 'sweeps', 0, 0)), true);
+      const box = await canvasBox(tab);
+      const [left, top, width, height] = await tab.evaluate(() => document.querySelector('slam-widget').controlBox('play'));
+      assert.equal(await at(box.x + left + width / 2, box.y + top + height / 2), false, 'over Play');
+      assert.equal(await at(box.x + box.width / 2, box.y + 5), false, 'over the title');
       assert.equal(await scrolled(tab), 0);
     });
   });

@@ -21,6 +21,8 @@ pub struct Shared {
     pub frames: Cell<u32>,
     /// Whether the pointer was pressed on something draggable.
     pub dragging: Cell<bool>,
+    /// The position of the pointer over the canvas.
+    pub pointer: Cell<Option<Pos2>>,
     /// Whether a touch was cancelled, which egui does not report.
     pub cancelled: Cell<bool>,
     /// Whether the reader pressed on the map of a full-size map widget and the pointer is still on it.
@@ -46,6 +48,13 @@ impl Shared {
             let map = shell.scene_rect().filter(|_| shell.model().takes_files());
             map.is_some_and(|map| map.contains([pos.x, pos.y]))
         })
+    }
+
+    /// Whether a picture that zooms is under the pointer.
+    fn zooms(&self) -> bool {
+        let shell = self.shell.try_borrow();
+        let at = self.pointer.get();
+        shell.is_ok_and(|shell| at.is_some_and(|at| shell.zooms_at(at)))
     }
 
     /// Requests a frame if the widget runs.
@@ -192,24 +201,27 @@ pub fn web_options(shared: &Rc<Shared>) -> eframe::WebOptions {
 /// Whether the browser's default action for an event has to be prevented.
 fn is_ours_alone(shared: &Shared, event: &Event) -> bool {
     match event {
-        // Zooms the view, not the page.
-        Event::Zoom(_) | Event::Rotate(_) => true,
+        // Over a picture that zooms it is the picture's, elsewhere the page's.
+        Event::Zoom(_) | Event::Rotate(_) => shared.zooms(),
         Event::MouseWheel { modifiers, .. } => {
-            modifiers.ctrl || modifiers.command || shared.engaged.get()
+            shared.engaged.get() || ((modifiers.ctrl || modifiers.command) && shared.zooms())
         }
         // A touch scrolls the page unless it starts on something draggable.
         Event::PointerButton { pos, pressed, .. } => {
+            shared.pointer.set(Some(*pos));
             shared.engaged.set(shared.is_on_map(*pos));
             let was_dragging = shared.dragging.get();
             shared.dragging.set(*pressed && shared.drags_at(*pos));
             was_dragging || shared.dragging.get()
         }
         Event::PointerMoved(pos) => {
+            shared.pointer.set(Some(*pos));
             let is_on_map = shared.engaged.get() && shared.is_on_map(*pos);
             shared.engaged.set(is_on_map);
             shared.dragging.get()
         }
         Event::PointerGone => {
+            shared.pointer.set(None);
             shared.engaged.set(false);
             shared.dragging.get()
         }

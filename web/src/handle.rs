@@ -39,6 +39,7 @@ impl Widget {
             theme: Cell::new(Theme::Light),
             frames: Cell::new(0),
             dragging: Cell::new(false),
+            pointer: Cell::new(None),
             cancelled: Cell::new(false),
             engaged: Cell::new(false),
         };
@@ -129,6 +130,18 @@ impl Widget {
         self.shared.shell.borrow_mut().press(id)?;
         self.shared.request_repaint();
         Ok(())
+    }
+
+    /// Records that the reader has acted: the verdict takes the place of the question.
+    pub fn act(&self) {
+        self.shared.shell.borrow_mut().act();
+        self.shared.request_repaint();
+    }
+
+    /// Whether the reader has acted.
+    #[wasm_bindgen(js_name = hasActed)]
+    pub fn has_acted(&self) -> bool {
+        self.shared.shell.borrow().has_acted()
     }
 
     /// Passes a delivery of the host to the widget: a kind, words, numbers, bytes.

@@ -30,6 +30,9 @@ import { executeTextOrder, takeTextFile, type TextFileHost } from './text-files'
 import type { Delivery } from './robot/protocol';
 import { type ViewChange, zoomButtons } from './zoom-buttons';
 
+/** Steps of the longest run that a link in the text plays. */
+const LONGEST_RUN = 100;
+
 export class SlamWidget extends HTMLElement {
   static readonly observedAttributes: string[] = ['name', 'theme'];
 
@@ -42,6 +45,8 @@ export class SlamWidget extends HTMLElement {
   readonly #appearance: Appearance;
   #state: State | undefined;
   #isSetUp = false;
+  /** Whether the reader or a program has acted: until then a question stands in place of the verdict. */
+  #hasActed = false;
   #controls: Controls | undefined;
   #zoom: HTMLElement | undefined;
   #lastOutcome: Outcome | undefined;
@@ -163,10 +168,21 @@ export class SlamWidget extends HTMLElement {
     await this.#lifecycle.ensureInstance();
     // A button acts on the values that are set, which the picture may not show yet.
     this.#finishWork();
+    this.#hasActed = true;
     this.#lifecycle.ask((widget) => widget.press(button));
     this.#sync();
     this.#showTimeline();
     this.#lifecycle.wake();
+  }
+
+  /** Plays a short run from its start, so that the reader sees how the state comes about. */
+  async playFromStart(): Promise<void> {
+    await this.#ensureInstance();
+    const last = this.#shownTimeline()?.last ?? Infinity;
+    const canPlay = this.#lifecycle.ask((widget) => widget.shownControls().includes('play')) === true;
+    if (last > LONGEST_RUN || !canPlay) return;
+    await this.press('reset');
+    await this.press('play');
   }
 
   /** The result of the values that are set, once the widget has run with them. */
@@ -297,6 +313,7 @@ export class SlamWidget extends HTMLElement {
     parts.frame.classList.toggle('takes-files', spec?.takesFiles === true);
     parts.frame.classList.toggle('without-file', spec?.takesFiles === true);
     this.#state = spec && new State(spec);
+    this.#hasActed = false;
     this.#lastOutcome = undefined;
     this.#notes.clear();
     this.#pictures.clear(spec?.summary ?? '');
@@ -330,6 +347,8 @@ export class SlamWidget extends HTMLElement {
         if (text !== null) this.#tryToSet(param.id, text);
       }
     });
+    // Attributes are the page's start; an address is a state that somebody chose.
+    this.#hasActed = false;
     if (this.hasAttribute('linked')) {
       readAddress(this, spec, {
         set: (id, text) => this.#tryToSet(id, text),
@@ -364,6 +383,7 @@ export class SlamWidget extends HTMLElement {
         this.#controls?.show(state?.texts ?? []);
         this.#offerControls(widget);
         this.#appearance.prepare(widget);
+        if (this.#hasActed) widget.act();
         widget.setRoom(this.#reservedHeight.room);
       },
       live: (milliseconds) => {
@@ -378,6 +398,7 @@ export class SlamWidget extends HTMLElement {
       },
       rested: () => this.#notifier.rested(),
       leaving: () => {
+        this.#hasActed ||= this.#lifecycle.ask((widget) => widget.hasActed()) === true;
         this.#appearance.drawPicture();
         this.#shownOutcome();
         this.#reservedHeight.keep();
@@ -426,6 +447,8 @@ export class SlamWidget extends HTMLElement {
   }
 
   #takeFiles(files: File[], use?: FileUse): void {
+    this.#hasActed = true;
+    this.#lifecycle.ask((widget) => widget.act());
     const [first] = files;
     if (this.#state?.spec.takesFiles === true) this.#openMapper().take(files, use);
     else if (first !== undefined) void takeTextFile(first, this.#textFiles);
@@ -547,6 +570,8 @@ export class SlamWidget extends HTMLElement {
     if (state === undefined) return 'there is no such widget';
     const parsed = state.parse(id, input);
     if (!parsed.ok) return parsed.problem;
+    this.#hasActed = true;
+    this.#lifecycle.ask((running) => running.act());
     if (state.text(id) === parsed.text) return undefined;
     let problem: string | undefined;
     const kept = this.#lifecycle.ask((running) => {

@@ -29,6 +29,8 @@ export class Notifier {
   #timer: ReturnType<typeof setTimeout> | undefined;
   /** Whether a screen reader gets the next result. */
   #isAnnounced = false;
+  /** The last known result: news without a change of a value, such as those of a worker, are announced if it differs. */
+  #known: string | undefined;
   /** Whether the values being set come from attributes. */
   #isFromAttributes = false;
   /** Whether values settled before the widget had run: the result follows its first run. */
@@ -48,6 +50,7 @@ export class Notifier {
   setUp(): void {
     this.#isAnnounced = false;
     this.#isResultPending = false;
+    this.#known = undefined;
   }
 
   /** Sets values of attributes: the address still names the widget that the reader changed last. */
@@ -80,10 +83,12 @@ export class Notifier {
     // A playback changes no address: it stays with the widget that the reader changed last.
     if (changes.length > 0 && !this.#isFromAttributes) setAddressed(this.#source);
     clearTimeout(this.#timer);
-    this.#isAnnounced = true;
+    const sentence = outcome?.sentence ?? this.#known;
+    this.#isAnnounced ||= changes.length > 0 || (this.#known !== undefined && sentence !== this.#known);
+    this.#known = sentence;
     this.#isResultPending = false;
     const isLong = performance.now() - this.#announcedAt > PROGRESS_MS;
-    if (isLong && outcome !== undefined) this.#announce(outcome.sentence);
+    if (isLong && this.#isAnnounced && outcome !== undefined) this.#announce(outcome.sentence);
     this.#timer = setTimeout(() => this.#settled(), DEBOUNCE_MS);
   }
 

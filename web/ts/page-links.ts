@@ -31,6 +31,9 @@ function follow(link: HTMLAnchorElement): boolean {
   if (isLinked) updateEntry();
   setState(widget, linked);
   if (isLinked) pushEntry(widget);
+  // A link that names a position of the run shows that one.
+  const timeline = linked.widget.params.find(({ kind }) => kind === 'timeline')?.id;
+  if (!linked.values.some(([id]) => id === timeline)) void widget.playFromStart().catch(() => {});
   hideBackButton();
   if (bringIntoView(widget)) showBackButton(link, widget);
   return true;

@@ -284,6 +284,25 @@ fn no_text_overlaps_or_is_cut_off() {
     }
 }
 
+/// No verdict before a trial: a question stands there until the reader acts.
+#[test]
+fn every_widget_asks_before_it_says() {
+    for make in SHELLS {
+        let mut shell = make();
+        let spec = shell.model().spec();
+        assert!(spec.question.contains('?'), "{}", spec.id);
+        // A legend may have the same words.
+        let verdict = format!(">{}</text>", shell.model().outcome().verdict);
+        let count = |shell: &Shell| {
+            let svg = shell.picture_svg(1400.0, Theme::Light);
+            svg.matches(&verdict).count()
+        };
+        let before = count(&shell);
+        shell.act();
+        assert_eq!(count(&shell), before + 1, "{}", spec.id);
+    }
+}
+
 /// The canvas on a phone of 390 by 844 points, between the margins of the page.
 const PHONE: egui::Vec2 = vec2(356.0, 844.0);
 /// The border of the element, and its buttons below the canvas.

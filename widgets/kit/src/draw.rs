@@ -11,6 +11,7 @@ use crate::palette::Theme;
 use crate::scene::{Bounds, Panel};
 use crate::surface::{Px, Surface};
 use crate::transform::Transform;
+pub use layers::HANDLE_RADIUS;
 
 /// The transform of a panel whose top left corner is at `origin`; `window` is the visible part.
 #[must_use]

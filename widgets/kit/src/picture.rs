@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::palette::{self, Rgb, Theme, tone};
 use crate::readout::fact_text;
 use crate::scene::{Scene, Tone};
-use crate::surface::{Align, Px, Surface, TextSize};
+use crate::surface::{Align, Measure, Px, Surface, TextSize};
 use crate::view::{Arrangement, Row, View, place};
 
 /// Space around the picture.
@@ -18,11 +18,13 @@ const TITLE_LINE: f32 = 26.0;
 /// Space between blocks.
 const GAP: f32 = 12.0;
 
-/// Draws the current state of a widget. Returns the height of the picture.
+/// Draws the current state of a widget; with `asks` its question in place of the verdict. Returns the height of
+/// the picture.
 pub fn picture(
     surface: &mut dyn Surface,
     model: &dyn Model,
     view: &dyn View,
+    asks: bool,
     width_px: f32,
     theme: Theme,
 ) -> f32 {
@@ -60,6 +62,9 @@ pub fn picture(
             y += height + GAP;
         }
     }
+    if asks {
+        return paragraph(surface, y, spec.question, TextSize::Body, ink) + MARGIN;
+    }
     let verdict = palette::standing(theme, outcome.standing);
     y = paragraph(surface, y, &outcome.verdict, TextSize::Body, verdict);
     y = paragraph(surface, y, &outcome.sentence, TextSize::Body, ink);
@@ -82,6 +87,28 @@ pub fn scene_picture(surface: &mut dyn Surface, scene: &Scene, width_px: f32, th
     } = Arrangement::by_weight(scene, width);
     stage.extend(below);
     panels(surface, scene, &stage, [MARGIN, 0.0], width, theme)
+}
+
+/// Positions on the [`scene_picture`] of points, each of a named panel.
+pub fn scene_places(
+    measure: &mut dyn Measure,
+    scene: &Scene,
+    width_px: f32,
+    points: &[(&str, [f64; 2])],
+) -> Vec<Px> {
+    let width = width_px - 2.0 * MARGIN;
+    let Arrangement {
+        mut stage, below, ..
+    } = Arrangement::by_weight(scene, width);
+    stage.extend(below);
+    let (placed, _) = place(scene, &stage, width, measure);
+    let found = points.iter().filter_map(|(id, at)| {
+        let placed = placed.iter().find(|placed| placed.panel == *id)?;
+        let panel = scene.panels.iter().find(|panel| panel.id == *id)?;
+        let origin = [MARGIN + placed.origin[0], placed.origin[1]];
+        Some(draw::transform(panel, &placed.layout, origin, &panel.bounds()).to_px(*at))
+    });
+    found.collect()
 }
 
 fn panels(

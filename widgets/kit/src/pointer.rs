@@ -27,6 +27,8 @@ pub struct Pointer {
     hovered: Option<(&'static str, [f64; 2])>,
     /// The tooltip of the handle that was dragged last: it would cover the result of the drag.
     followed: Option<&'static str>,
+    /// Whether a press reached the model.
+    pressed: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +106,12 @@ pub enum Touched {
 }
 
 impl Pointer {
+    /// Whether the reader has ever pressed, dragged or tapped something on a panel.
+    #[must_use]
+    pub fn has_pressed(&self) -> bool {
+        self.pressed
+    }
+
     /// Ends every drag.
     pub fn release(&mut self, model: &mut dyn Model) {
         if let Some(Held::Thing(_)) = self.held.take() {
@@ -138,6 +146,7 @@ impl Pointer {
             self.press(ui, &response, panel, to, model)
         };
         let tapped = self.tap(&response, panel, to, model);
+        self.pressed |= [pressed, tapped].contains(&Touched::Yes);
         let hovered = self.hover(ui, &response, panel, to, model);
         if [pressed, tapped, hovered].contains(&Touched::Yes) {
             Touched::Yes
@@ -175,10 +184,14 @@ impl Pointer {
             }
             let moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO);
             if from.is_some() || moved {
-                touched = self.pull(ui, panel, to, model, at);
+                touched = self.pull(panel, to, model, at);
             }
         }
         if is_down {
+            // In each frame, also in one without a movement: egui forgets the cursor after it.
+            if self.panel_held() == Some(panel.id) {
+                ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+            }
             return touched;
         }
         self.release(model);
@@ -206,7 +219,6 @@ impl Pointer {
 
     fn pull(
         &mut self,
-        ui: &Ui,
         panel: &Panel,
         to: &Transform,
         model: &mut dyn Model,
@@ -215,7 +227,6 @@ impl Pointer {
         if self.panel_held() != Some(panel.id) {
             return Touched::No;
         }
-        ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
         match self.held {
             Some(Held::Thing(handle)) => {
                 self.followed = handle_label(panel, to, at).or(self.followed);

@@ -8,6 +8,8 @@ use crate::palette::{self, Rgb, Theme};
 use crate::surface::TextSize;
 use crate::ticks::signed;
 
+/// Size of a verdict, px.
+const VERDICT_PX: f32 = 16.0;
 /// Space between the columns of a table.
 const COLUMN_GAP: f32 = 12.0;
 /// Height of the row of a fact.
@@ -24,10 +26,20 @@ pub fn verdict(ui: &mut Ui, outcome: &Outcome, theme: Theme) {
             RichText::new(&outcome.verdict)
                 .color(color(ink))
                 .strong()
-                .size(16.0),
+                .size(VERDICT_PX),
         );
     });
     ui.label(outcome.in_full());
+}
+
+/// The question that stands in place of a verdict, as high as that, so that the first act moves nothing.
+pub fn question(ui: &mut Ui, question: &str, outcome: &Outcome) {
+    let sentence = egui::WidgetText::from(outcome.in_full());
+    let width = ui.available_width();
+    let sentence = sentence.into_galley(ui, None, width, egui::TextStyle::Body);
+    let row = ui.spacing().interact_size.y;
+    ui.set_min_height(row + ui.spacing().item_spacing.y + sentence.size().y);
+    ui.label(RichText::new(question).strong().size(VERDICT_PX));
 }
 
 /// The numbers of an outcome.

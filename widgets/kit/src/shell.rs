@@ -1,5 +1,6 @@
 //! A complete widget on egui: texts, presets, panels, transport, controls, readouts, tables.
 
+mod first_act;
 mod parts;
 mod room;
 mod stage;
@@ -14,13 +15,14 @@ use crate::model::{Activity, Model, Motion, Outcome, Table};
 use crate::palette::{self, Theme};
 use crate::param::ParamError;
 use crate::pointer::{Pointer, TOUCH_REACH_PX};
-use crate::scene::{Scene, Tone};
+use crate::scene::{Aspect, Scene, Tone};
 use crate::style;
 use crate::surface::PxRect;
 use crate::svg::picture_svg;
 use crate::transform::Transform;
 use crate::view::View;
 use crate::zoom::Look;
+use first_act::FirstAct;
 use room::Room;
 
 /// Width from which controls and readouts are beside the panels.
@@ -63,6 +65,7 @@ pub struct Shell {
     hot: Hot,
     content_height: f32,
     room: Room,
+    first: FirstAct,
 }
 
 /// Whether the model is animated.
@@ -115,6 +118,7 @@ impl Shell {
             hot: Hot::default(),
             content_height: 0.0,
             room: Room::default(),
+            first: FirstAct::default(),
         }
     }
 
@@ -136,7 +140,8 @@ impl Shell {
     /// [`ParamError::UnknownButton`]; the state does not change.
     pub fn press(&mut self, id: &str) -> Result<(), ParamError> {
         if self.model.is_enabled(id) {
-            self.model_mut().press(id)?;
+            self.act();
+            self.model.press(id)?;
         }
         Ok(())
     }
@@ -179,8 +184,26 @@ impl Shell {
         self.theme = theme;
     }
 
+    /// Records that the reader has acted: the verdict takes the place of the question.
+    pub fn act(&mut self) {
+        self.first.is_over = true;
+        self.touch();
+    }
+
+    /// Whether the reader has acted, see [`Shell::act`].
+    #[must_use]
+    pub fn has_acted(&self) -> bool {
+        self.first.is_over
+    }
+
+    /// Whether the question stands in place of the verdict.
+    fn asks(&self) -> bool {
+        !self.first.is_over && !self.model.layer().is_all()
+    }
+
     /// Sets whether animations run.
     pub fn set_motion(&mut self, motion: Motion) {
+        self.first.motion = motion;
         self.model.set_motion(motion);
         self.touch();
     }
@@ -206,6 +229,18 @@ impl Shell {
                 let reach = to.units_per_px().map(|units| TOUCH_REACH_PX * units);
                 to.plot().contains(px) && self.model.grab(panel, to.from_px(px), reach).is_some()
             })
+    }
+
+    /// Whether a picture that zooms is at that position: elsewhere ctrl and the wheel zoom the page.
+    #[must_use]
+    pub fn zooms_at(&self, pos: Pos2) -> bool {
+        let mut panels = self.panels.iter();
+        let panel = panels.find(|(_, to)| to.plot().contains([pos.x, pos.y]));
+        panel.is_some_and(|(id, _)| {
+            let scene = &self.shown.scene;
+            let shown = scene.panels.iter().find(|panel| panel.id == *id);
+            shown.is_some_and(|panel| panel.aspect == Aspect::Equal)
+        })
     }
 
     /// Screen position of a point in a panel's axes, in points.
@@ -236,7 +271,8 @@ impl Shell {
     /// The static picture of the current state.
     #[must_use]
     pub fn picture_svg(&self, width_px: f32, theme: Theme) -> String {
-        picture_svg(self.model.as_ref(), self.view.as_ref(), width_px, theme)
+        let (model, view) = (self.model.as_ref(), self.view.as_ref());
+        picture_svg(model, view, self.asks(), width_px, theme)
     }
 
     /// Faults of the texts in that picture, see [`crate::audit`].
@@ -254,7 +290,7 @@ impl Shell {
     /// Whether another frame is needed without further input.
     #[must_use]
     pub fn is_busy(&self) -> bool {
-        self.moving != Moving::No || self.working || self.stale
+        self.moving != Moving::No || self.working || self.stale || self.first.is_pulsing()
     }
 
     /// Draws everything into the available width.
@@ -297,6 +333,8 @@ impl Shell {
             WORK_AT_REST
         });
         self.paint(ui, &reserved);
+        self.first
+            .paint(ui, &self.shown.scene, &self.panels, self.theme);
         self.ring(ui);
         self.content_height = y - whole.top() + MARGIN - GAP;
         ui.allocate_rect(

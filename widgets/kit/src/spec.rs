@@ -12,6 +12,8 @@ pub struct WidgetSpec {
     pub title: &'static str,
     /// One sentence on the misconception that the widget removes.
     pub misconception: &'static str,
+    /// What the reader may find out, and how: it stands where the verdict comes, until the reader acts.
+    pub question: &'static str,
     /// "What to notice", a sentence each.
     pub notice: &'static [&'static str],
     /// The parts that are shown until the reader opens the rest.

@@ -6,16 +6,22 @@ use core::fmt::Write as _;
 
 use crate::model::Model;
 use crate::palette::{self, Rgb, Theme, tone};
-use crate::picture::{picture, scene_picture};
+use crate::picture::{self, picture, scene_picture};
 use crate::scene::{Raster, Scene, Tone};
 use crate::surface::{Align, HALO_WIDTH, Haloed, Measure, Pen, Px, PxRect, Surface, TextSize};
 use crate::view::View;
 
-/// Renders the current state of a widget: title, panels, verdict and numbers.
+/// Renders the current state of a widget: title, panels, verdict and numbers, or with `asks` its question.
 #[must_use]
-pub fn picture_svg(model: &dyn Model, view: &dyn View, width_px: f32, theme: Theme) -> String {
+pub fn picture_svg(
+    model: &dyn Model,
+    view: &dyn View,
+    asks: bool,
+    width_px: f32,
+    theme: Theme,
+) -> String {
     let mut svg = SvgSurface::new(theme);
-    let height = picture(&mut svg, model, view, width_px, theme);
+    let height = picture(&mut svg, model, view, asks, width_px, theme);
     let spec = model.spec();
     svg.finish(width_px, height, &format!("{} {}", spec.id, spec.title))
 }
@@ -28,6 +34,13 @@ pub fn scene_svg(scene: &Scene, title: &str, prefix: &str, width_px: f32, theme:
     prefix.clone_into(&mut svg.prefix);
     let height = scene_picture(&mut svg, scene, width_px, theme);
     svg.finish(width_px, height, title)
+}
+
+/// Positions on the picture of [`scene_svg`] of points, each of a named panel.
+#[must_use]
+pub fn scene_places(scene: &Scene, width_px: f32, points: &[(&str, [f64; 2])]) -> Vec<Px> {
+    let mut measure = SvgSurface::new(Theme::Light);
+    picture::scene_places(&mut measure, scene, width_px, points)
 }
 
 /// Writes SVG elements.

@@ -100,6 +100,9 @@ fn place_on(ui: &mut Ui, model: &dyn Model, timeline: Option<&Timeline>) {
         && let Some((spec, value)) = model.values().find(timeline.param)
     {
         let last = timeline.last.max(0.0);
+        if last == 0.0 {
+            return;
+        }
         // A position beyond the end means the current end.
         let value = value.min(last);
         // Not split: if it does not fit beside the buttons, it moves below them.

@@ -67,7 +67,7 @@ fn every_slider_has_its_parameters_name_and_takes_arrow_keys() {
 }
 
 #[test]
-fn a_widget_opens_with_its_scene_one_control_the_verdict_and_play() {
+fn a_widget_opens_with_its_scene_one_control_the_question_and_play() {
     for width in [390.0, 1100.0] {
         let mut harness = harness(width);
         let all = harness.state().content_height();
@@ -92,8 +92,8 @@ fn a_widget_opens_with_its_scene_one_control_the_verdict_and_play() {
         for (role, label) in rest {
             assert!(!is_shown(&harness, role, label), "{label} at {width}");
         }
-        let verdict = harness.state().model().outcome().verdict;
-        assert!(harness.query_by_label(&verdict).is_some());
+        let question = harness.state().model().spec().question;
+        assert!(harness.query_by_label(question).is_some());
         assert!(harness.state().content_height() < 0.8 * all);
         harness.get_by_role_and_label(Role::Button, "More").click();
         harness.run_steps(3);
@@ -103,6 +103,102 @@ fn a_widget_opens_with_its_scene_one_control_the_verdict_and_play() {
         assert_eq!(harness.state().content_height(), all);
         assert_eq!(value(&harness, "more"), 1.0, "links have it");
     }
+}
+
+/// No verdict before the reader acts: a look with the pointer is no act, and neither is a value of the page.
+#[test]
+fn a_question_stands_in_place_of_the_verdict_until_the_first_act_and_nothing_moves() {
+    for width in [390.0, 560.0, 1100.0] {
+        let mut harness = harness(width);
+        harness.state_mut().model_mut().set("more", 0.0).unwrap();
+        harness.run_steps(3);
+        let spec = harness.state().model().spec();
+        let verdict = |harness: &Harness<'_, Shell>| {
+            let verdict = harness.state().model().outcome().verdict;
+            harness.query_by_label(&verdict).is_some()
+        };
+        let asks = |harness: &Harness<'_, Shell>| harness.query_by_label(spec.question).is_some();
+        let [x, y] = harness
+            .state()
+            .panel_to_screen("map", [1.0, 1.0])
+            .expect("the map is shown");
+        let at = pos2(x, y);
+        harness.event(Event::PointerMoved(at));
+        harness.run_steps(2);
+        assert_eq!((asks(&harness), verdict(&harness)), (true, false));
+        assert!(!harness.state().has_acted());
+        let svg = |harness: &Harness<'_, Shell>| harness.state().picture_svg(900.0, Theme::Light);
+        assert!(svg(&harness).contains(spec.question));
+        let height = harness.state().content_height();
+        drag(&mut harness, at, at);
+        assert_eq!((asks(&harness), verdict(&harness)), (false, true));
+        assert!(harness.state().has_acted());
+        assert!(!svg(&harness).contains(spec.question));
+        assert_eq!(harness.state().content_height(), height, "at {width}");
+    }
+}
+
+#[test]
+fn a_press_of_a_host_is_an_act_and_so_is_a_control() {
+    let mut pressed = shell();
+    pressed.press("play").unwrap();
+    assert!(pressed.has_acted());
+    let mut harness = harness(1100.0);
+    harness.get_by_role_and_label(Role::Button, "Play").click();
+    harness.run_steps(2);
+    assert!(harness.state().has_acted());
+}
+
+#[test]
+fn the_ring_of_a_handle_pulses_once_and_then_needs_no_frame() {
+    let mut harness = harness(1100.0);
+    let mut frames = 0;
+    while harness.state().is_busy() {
+        harness.run_steps(1);
+        frames += 1;
+        assert!(frames < 200, "it pulses on");
+    }
+    assert!(!harness.state().has_acted());
+    let mut reduced = shell();
+    reduced.set_motion(kit::model::Motion::Reduced);
+    let mut harness = Harness::builder()
+        .with_size(vec2(1100.0, 1400.0))
+        .build_ui_state(|ui, shell: &mut Shell| shell.ui(ui), reduced);
+    harness.run_steps(20);
+    assert!(!harness.state().is_busy(), "reduced motion pulses");
+}
+
+#[test]
+fn the_cursor_stays_grabbing_while_a_handle_is_held_without_a_movement() {
+    let mut harness = harness(1100.0);
+    let [x, y] = harness
+        .state()
+        .panel_to_screen("map", [1.0, 1.0])
+        .expect("the map is shown");
+    let at = pos2(x, y);
+    let cursor = |harness: &Harness<'_, Shell>| harness.output().platform_output.cursor_icon;
+    harness.event(Event::PointerMoved(at));
+    harness.run_steps(2);
+    assert_eq!(cursor(&harness), egui::CursorIcon::Grab);
+    harness.event(button(at, true));
+    for _ in 0..5 {
+        harness.run_steps(1);
+        assert_eq!(cursor(&harness), egui::CursorIcon::Grabbing);
+    }
+    harness.event(button(at, false));
+    harness.run_steps(2);
+    assert_ne!(cursor(&harness), egui::CursorIcon::Grabbing);
+}
+
+#[test]
+fn only_a_picture_with_equal_axes_zooms() {
+    let mut harness = harness(1100.0);
+    harness.run_steps(2);
+    let shell = harness.state();
+    let [x, y] = shell.panel_to_screen("map", [1.0, 1.0]).unwrap();
+    assert!(shell.zooms_at(pos2(x, y)));
+    let play = harness.get_by_role_and_label(Role::Button, "Play").rect();
+    assert!(!shell.zooms_at(play.center()));
 }
 
 #[test]

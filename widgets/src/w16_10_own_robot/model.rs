@@ -310,8 +310,7 @@ impl Model for OwnRobot {
             label: format!("look into keyframe {keyframe}"),
             standing: Standing::Doubtful,
         });
-        // Before there is a path, the timeline has one step.
-        let last = self.last().max(1) as f64;
+        let last = self.last() as f64;
         let is_read = self.robot.is_under_way() && !self.robot.paused;
         Some(Timeline {
             param: "keyframe",

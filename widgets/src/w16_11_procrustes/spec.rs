@@ -106,6 +106,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.11",
     title: "Turn or mirror image",
     misconception: "A decomposition knows nothing of left and right: the best orthogonal matrix may be a mirror image, and no robot moves like that.",
+    question: "Can the best fit be a mirror image? Drag a corner across the middle.",
     notice: &[
         "Over a whole turn the trace is one sinusoid: it has one top, and the alignment knows its place in closed form.",
         "Mirror images have a sinusoid of their own. The higher top of the two is the sum of the singular values, and nothing passes it.",

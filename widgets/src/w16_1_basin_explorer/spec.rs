@@ -158,6 +158,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "Basin explorer",
     misconception: "A small residual proves nothing: registration ends in the minimum whose basin \
                     it starts in, and a false one can fit almost as well as the right one.",
+    question: "How far may you turn the sweep until registration settles on a false place? Drag it, then let it go.",
     notice: &[
         "The room is almost square, so a quarter turn fits too: rmse 0.13 m there, 0.03 m at the truth.",
         "Between the right basin and the quarter turn, point to point settles on a third answer.",

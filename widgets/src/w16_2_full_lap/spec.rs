@@ -460,6 +460,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.2",
     title: "The full lap",
     misconception: "Closing a loop does not put the whole path right: it makes the map agree with itself.",
+    question: "How far is a lap’s map off at its end, and what do loops mend of it? Press Play, or drag the timeline.",
     notice: &[
         "The walls seen on the way out and on the way back stand apart, and one loop brings them together: the map's disagreement falls to about a third over the lap.",
         "The typical error over the keyframes hardly changes, and the largest even grows a little: the corridor comes out almost a metre too short, and no loop sees that.",

@@ -280,6 +280,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.3",
     title: "Cost terraces",
     misconception: "False minima are in the cost: the closed form jumps over small ridges, not out of those.",
+    question: "Where does a ball roll home, and where does it stick? Drag either ball.",
     notice: &[
         "Both reliefs hold the same sweep against the same points; only the measure differs. Dark is low, the light comes from the upper left, and the balls roll into the dark.",
         "A small τ breaks ICP's bowl into terraces and hollows. A ball rests on the next one, however good the solver; the ground beside the relief shows it, with the pit that it did not reach.",

@@ -164,6 +164,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.5",
     title: "Pose-graph toy",
     misconception: "No measurement is put right and none is thrown away: each gives way by as much as it is unsure.",
+    question: "Which measurement gives way when the springs disagree? Drag a pose, and let it go.",
     notice: &[
         "Each edge is a spring at rest where its measurement holds. The dotted line shows what is missing, the number on the spring what it costs.",
         "Pull a pose and let go: every Gauss–Newton step is a beat. Draw the green spring tight, and it grows thick and stiff.",

@@ -107,6 +107,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "Have I been here?",
     misconception: "To look alike is not to be the same: a descriptor proposes, and how often it is \
                     right depends on the threshold and on the building.",
+    question: "How much may two views differ and still be called the same place? Drag the line in the plot.",
     notice: &[
         "Each dot is a pair of places. What lies left of the line is called the same place, whether it is or not.",
         "In the matrix ink is alike. The stripe that runs down to the right is the way back: places in the order in which they were left.",

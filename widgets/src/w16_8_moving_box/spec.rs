@@ -96,6 +96,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "The moving box",
     misconception: "Least squares has no majority: a few points that moved together pull the answer after \
                     them, and the rmse does not say so.",
+    question: "How far does one moved box pull the robot off? Drag the box.",
     notice: &[
         "Drag the box. Its pairs all pull the same way, and the walls give way until their many short pulls balance them.",
         "A few centimetres look like noise, and are none: they do not average out.",

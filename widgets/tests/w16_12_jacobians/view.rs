@@ -9,6 +9,9 @@ use crate::support::{drawn, press_key, value};
 fn a_slider_takes_the_contradiction() {
     let mut harness = drawn("w16.12", 390.0, |_| ());
     let verdict = "the wrong residual ends elsewhere";
+    assert!(harness.query_by_label(verdict).is_none(), "a question");
+    harness.state_mut().act();
+    harness.run_steps(2);
     assert!(harness.query_by_label(verdict).is_some());
     for _ in 0..12 {
         press_key(

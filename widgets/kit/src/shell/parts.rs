@@ -31,7 +31,7 @@ impl Shell {
                 if response.on_hover_text(preset.help).clicked() {
                     // A failing preset names an unknown parameter; the tests press all presets.
                     let _ = apply_preset(self.model.as_mut(), preset);
-                    self.touch();
+                    self.act();
                 }
             }
         });
@@ -69,7 +69,7 @@ impl Shell {
                 if response.on_hover_text(tabs.button.help).clicked() && !is_shown {
                     // The button is one of the widget's.
                     let _ = self.model.press(tabs.button.id);
-                    self.touch();
+                    self.act();
                 }
             }
         });
@@ -79,14 +79,14 @@ impl Shell {
     pub(super) fn transport(&mut self, ui: &mut Ui) {
         let touched = transport::bar(ui, self.model.as_mut(), self.theme, &mut self.hot);
         if touched == Touched::Yes {
-            self.touch();
+            self.act();
         }
     }
 
     /// The controls, with "defaults" below them.
     pub(super) fn controls(&mut self, ui: &mut Ui) {
         if controls::params(ui, self.model.as_mut(), &mut self.hot) == Touched::Yes {
-            self.touch();
+            self.act();
         }
         let layer = self.model.layer();
         let defaults = self
@@ -100,7 +100,7 @@ impl Shell {
         {
             // The button comes from the widget's own list.
             let _ = self.model.press(spec.id);
-            self.touch();
+            self.act();
         }
     }
 
@@ -109,7 +109,12 @@ impl Shell {
         self.refresh();
         Frame::group(ui.style()).inner_margin(10.0).show(ui, |ui| {
             ui.set_min_width(ui.available_width());
-            readout::verdict(ui, &self.shown.outcome, self.theme);
+            let outcome = &self.shown.outcome;
+            if self.asks() {
+                readout::question(ui, self.model.spec().question, outcome);
+                return;
+            }
+            readout::verdict(ui, outcome, self.theme);
             if self.model.layer().is_all() {
                 readout::facts(ui, &self.shown.outcome);
             }
@@ -127,7 +132,7 @@ impl Shell {
         if response.on_hover_text(spec.help).clicked() {
             // The parameter is in the list, and a switch is 0 or 1.
             let _ = self.model.set(spec.id, 1.0 - shown);
-            self.touch();
+            self.act();
         }
     }
 

@@ -109,6 +109,7 @@ impl Shell {
                 .pointer
                 .panel(ui, panel, &to, self.model.as_mut(), &mut self.hot);
             touched |= effect == Touched::Yes;
+            self.first.is_over |= self.pointer.has_pressed();
             if self.pointer.zoom.is_zoomed(panel.id) {
                 let size = vec2(96.0, style::TARGET);
                 let corner = pos2(origin[0] + placed.layout.size[0] - size.x, origin[1]);

@@ -84,6 +84,7 @@ const SPEC: WidgetSpec = WidgetSpec {
     id: "w0.0",
     title: "One of everything",
     misconception: "A test that only looks at the code does not see what the reader sees.",
+    question: "Where does it go?",
     notice: &[
         "The thing follows the pointer.",
         "The timeline plays to its end.",
