@@ -18,6 +18,11 @@ async function slider(tab, name) {
   await tab.waitForFunction((id) => document.querySelector(`[data-sketch="${id}"] input`).disabled === false, name);
   return figure(tab, name).locator('input');
 }
+/** The middle of the ring on a figure. */
+const ring = (tab, name) => figure(tab, name).locator('.sketch-handle').evaluate((at) => {
+  const { left, top, width, height } = at.getBoundingClientRect();
+  return [left + width / 2, top + height / 2];
+});
 const shown = (tab, name) => tab.evaluate((id) => {
   const at = document.querySelector(`[data-sketch="${id}"]`);
   return {
@@ -98,5 +103,47 @@ describe('a small figure', () => {
         assert.equal(await figure(tab, name).locator('input').isVisible(), false);
       }
     }, { javaScriptEnabled: false });
+  });
+});
+
+describe('the picture of a figure', () => {
+  for (const name of NAMES) {
+    it(`is dragged by its handle, which follows the pointer: ${name}`, async () => {
+      await reading(async (tab) => {
+        const input = await slider(tab, name);
+        await figure(tab, name).evaluate((at) => at.scrollIntoView({ block: 'center', behavior: 'instant' }));
+        // Where the handle is to go: its place at another value.
+        const places = [];
+        for (const share of [0.25, 0.75]) {
+          await input.evaluate((range, part) => {
+            range.value = String(Number(range.min) + part * (Number(range.max) - Number(range.min)));
+            range.dispatchEvent(new Event('input', { bubbles: true }));
+          }, share);
+          await h.quiet(tab);
+          places.push({ at: await ring(tab, name), value: Number(await input.inputValue()) });
+        }
+        const [to, from] = places;
+        await tab.mouse.move(...from.at);
+        await tab.mouse.down();
+        // Along the way in between, as a reader does.
+        const span = Number(await input.evaluate(({ min, max }) => max - min));
+        await tab.mouse.move(...to.at, { steps: 12 });
+        await h.quiet(tab);
+        const value = Number(await input.inputValue());
+        const [x, y] = await ring(tab, name);
+        await tab.mouse.up();
+        assert.notEqual(value, from.value);
+        assert.ok(Math.hypot(x - to.at[0], y - to.at[1]) < 12, `${x}, ${y} is not at the pointer, ${to.at}`);
+        assert.ok(span > 0);
+      }, { viewport: { width: 1100, height: 900 } });
+    });
+  }
+
+  it('of the gate shows the loop within it exactly if it is accepted', async () => {
+    await reading(async (tab) => {
+      await slider(tab, 'gate');
+      const says = () => figure(tab, 'gate').locator('.sketch-says').textContent();
+      assert.match(await says(), /or \d+°/, 'the heading is part of the test');
+    });
   });
 });

@@ -68,6 +68,17 @@ pub fn draw_sketch(name: &str, value: f64, width_px: f32, theme: &str) -> Result
     Ok(sketch.drawn(value, width_px, theme_of(theme)).to_string())
 }
 
+/// The way of the handle of a small figure on its picture, `[[value, x px, y px], …]`.
+///
+/// # Errors
+/// If there is no such figure.
+#[wasm_bindgen(js_name = sketchWay)]
+pub fn sketch_way(name: &str, width_px: f32) -> Result<String, JsError> {
+    let sketch = sketches::find(name)
+        .ok_or_else(|| JsError::new(&format!("there is no figure `{name}`")))?;
+    Ok(sketch.way(width_px).to_string())
+}
+
 /// Ten loop candidates for the reader to judge, a JSON array of `{"svg", "says"}`; see [`candidates`].
 #[wasm_bindgen(js_name = loopCandidates)]
 pub fn loop_candidates(width_px: f32, theme: &str) -> String {

@@ -13,7 +13,7 @@ mod slide;
 
 use kit::palette::Theme;
 use kit::scene::Scene;
-use kit::svg::scene_svg;
+use kit::svg::{scene_places, scene_svg};
 use serde_json::{Value, json};
 
 /// The slider of a figure.
@@ -54,7 +54,12 @@ pub struct Sketch {
     /// Its slider.
     pub slider: Slider,
     at: fn(f64) -> Shown,
+    /// The panel with the thing that the reader drags, and its place there.
+    handle: fn(f64) -> (&'static str, [f64; 2]),
 }
+
+/// Largest number of places on the way of a handle.
+const PLACES: f64 = 120.0;
 
 /// All figures, in the order of the page.
 pub const SKETCHES: [Sketch; 7] = [
@@ -100,6 +105,22 @@ impl Sketch {
             "name": self.name, "title": self.title, "label": label, "unit": unit, "min": min,
             "max": max, "step": step, "default": default, "decimals": decimals,
         })
+    }
+
+    /// The way of the handle on the picture, `[[value, x px, y px], …]`: a drag sets the value of the nearest place.
+    #[must_use]
+    pub fn way(&self, width_px: f32) -> Value {
+        let Slider { min, max, step, .. } = self.slider;
+        let count = ((max - min) / step).round().min(PLACES);
+        let values: Vec<f64> = (0..=count as usize)
+            .map(|k| min + (max - min) * k as f64 / count)
+            .map(|value| min + step * ((value - min) / step).round())
+            .collect();
+        let places: Vec<_> = values.iter().map(|&value| (self.handle)(value)).collect();
+        let scene = self.at(self.slider.default).scene;
+        let on_picture = scene_places(&scene, width_px, &places);
+        let way = values.iter().zip(on_picture);
+        way.map(|(value, [x, y])| json!([value, x, y])).collect()
     }
 
     /// The picture as SVG, and the sentence.
@@ -164,6 +185,27 @@ mod tests {
             for pair in shown.windows(2) {
                 assert_ne!(pair[0].scene, pair[1].scene, "{}", sketch.name);
                 assert_ne!(pair[0].sentence, pair[1].sentence, "{}", sketch.name);
+            }
+        }
+    }
+
+    #[test]
+    fn every_value_has_its_own_place_on_the_picture() {
+        for sketch in &SKETCHES {
+            for width in [360.0, 600.0] {
+                let way = sketch.way(width);
+                let way = way.as_array().unwrap();
+                assert!(way.len() > 16, "{}: {}", sketch.name, way.len());
+                assert_eq!(way[0][0], sketch.slider.min);
+                assert_eq!(way[way.len() - 1][0], sketch.slider.max);
+                for pair in way.windows(2) {
+                    assert_ne!(pair[0], pair[1]);
+                    let at = |k: usize| [1, 2].map(|axis| pair[k][axis].as_f64().unwrap());
+                    assert_ne!(at(0), at(1), "{}", sketch.name);
+                    let [x, y] = at(0);
+                    let is_inside = (0.0..=f64::from(width)).contains(&x) && y >= 0.0;
+                    assert!(is_inside, "{}: {x} {y}", sketch.name);
+                }
             }
         }
     }

@@ -30,6 +30,7 @@ pub(super) const SKETCH: Sketch = Sketch {
         decimals: 1,
     },
     at,
+    handle,
 };
 
 /// Two sweeps from one pose in room A, with independent noise.
@@ -65,7 +66,7 @@ fn at(cell_m: f64) -> Shown {
     let width = half_width_m(&map, &sweep);
     Shown {
         scene: Scene {
-            panels: vec![picture(&target, &map), curve(&map, &sweep)],
+            panels: vec![picture(cell_m, &target, &map), curve(&map, &sweep)],
         },
         sentence: format!(
             "With cells of {cell_m:.1} m the room is {bells} bells, and half the score is gone {width:.2} m beside the \
@@ -74,7 +75,15 @@ fn at(cell_m: f64) -> Shown {
     }
 }
 
-fn picture(target: &PointCloud, map: &NdtMap) -> Panel {
+/// Lower left corner of the drawn cell, m.
+const CELL_M: [f64; 2] = [-2.3, -2.0];
+
+/// The upper right corner of the drawn cell.
+fn handle(cell_m: f64) -> (&'static str, [f64; 2]) {
+    ("bells", CELL_M.map(|low| low + cell_m))
+}
+
+fn picture(cell_m: f64, target: &PointCloud, map: &NdtMap) -> Panel {
     let mut layers = vec![Layer::points(
         target.iter().map(|point| [point.x, point.y]).collect(),
         Mark::Dot,
@@ -91,6 +100,19 @@ fn picture(target: &PointCloud, map: &NdtMap) -> Panel {
             tone: Tone::Posterior,
         })
     }));
+    let [[left, low], [right, top]] = [CELL_M, handle(cell_m).1];
+    layers.push(Layer::line(
+        vec![
+            [left, low],
+            [right, low],
+            [right, top],
+            [left, top],
+            [left, low],
+        ],
+        Stroke::Dashed,
+        Tone::Ink,
+        1.5,
+    ));
     Panel {
         id: "bells",
         title: "The map: a bell a cell".to_owned(),
@@ -106,6 +128,7 @@ fn picture(target: &PointCloud, map: &NdtMap) -> Panel {
                 Tone::Posterior,
                 Stroke::Solid,
             ),
+            LegendEntry::line("a cell", Tone::Ink, Stroke::Dashed),
         ],
         color_bar: None,
     }

@@ -36,6 +36,7 @@ pub(super) const SKETCH: Sketch = Sketch {
         decimals: 1,
     },
     at,
+    handle,
 };
 
 /// The position after that many metres of the path.
@@ -50,6 +51,11 @@ fn place(mut driven_m: f64) -> [f64; 2] {
         driven_m -= length_m;
     }
     PATH_M[PATH_M.len() - 1]
+}
+
+/// The robot.
+fn handle(driven_m: f64) -> (&'static str, [f64; 2]) {
+    ("plan", place(driven_m))
 }
 
 /// The information at a position: observed points, and a root of the position's covariance, m.

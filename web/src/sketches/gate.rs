@@ -13,8 +13,9 @@ use super::{Shown, Sketch, Slider};
 
 /// Number of drawn drifts.
 const DRIFTS: usize = 200;
-/// Half the picture's side, m.
+/// The drawn part: distance from the belief, m, and turn away from it, degrees.
 const REACH_M: f64 = 1.2;
+const REACH_DEG: f64 = 20.0;
 
 pub(super) const SKETCH: Sketch = Sketch {
     name: "gate",
@@ -29,6 +30,7 @@ pub(super) const SKETCH: Sketch = Sketch {
         decimals: 0,
     },
     at,
+    handle,
 };
 
 /// The innovation of the canonical lap's first loop, m, m, rad.
@@ -56,26 +58,46 @@ fn at(nodes: f64) -> Shown {
     } else {
         "refused"
     };
-    let reach_m = math::sqrt(config.gate_chi2 / information[(0, 0)]);
+    let [reach_m, reach_deg] = reach(gap, &config);
     Shown {
         scene: Scene {
-            panels: vec![picture(gap, &config, reach_m)],
+            panels: vec![picture(gap, &config)],
         },
         sentence: format!(
-            "After {gap} nodes the gate reaches {reach_m:.2} m. The loop’s χ² is {:.2}, and {:.3} may be: {word}.",
+            "After {gap} nodes the gate reaches {reach_m:.2} m, or {reach_deg:.0}°. The loop’s χ² is {:.2}, and {:.3} may be: {word}.",
             tested.chi2, tested.gate_chi2
         ),
     }
 }
 
-fn picture(gap: usize, config: &LoopConfig, reach_m: f64) -> Panel {
+/// The largest shift without a turn that passes, m, and the largest turn without a shift, degrees.
+fn reach(gap: usize, config: &LoopConfig) -> [f64; 2] {
+    let information = path_information(gap, config);
+    let [shift_m, turn_rad] = [0, 2].map(|k| math::sqrt(config.gate_chi2 / information[(k, k)]));
+    [shift_m, turn_rad.to_degrees()]
+}
+
+/// The gate at its widest along the distance: where it is dragged.
+fn handle(nodes: f64) -> (&'static str, [f64; 2]) {
+    let config = LapConfig::default().slam.chapter.loops;
+    ("gate", [reach(nodes as usize, &config)[0], 0.0])
+}
+
+/// An innovation in the picture. The gate knows no direction: it tests how far, and by which turn.
+fn drawn(innovation: &Vector3<f64>) -> [f64; 2] {
+    let far_m = math::norm2(innovation.x, innovation.y);
+    [far_m, innovation.z.to_degrees()]
+}
+
+fn picture(gap: usize, config: &LoopConfig) -> Panel {
+    let [reach_m, reach_deg] = reach(gap, config);
     let information = path_information(gap, config);
     let found = innovation();
     let passes = |innovation: &Vector3<f64>| {
         chi_squared_gate(innovation, &information, config.gate_chi2).passes()
     };
     let (within, beyond): (Vec<_>, Vec<_>) = drifts(gap, config).into_iter().partition(passes);
-    let places = |drifts: &[Vector3<f64>]| drifts.iter().map(|drift| [drift.x, drift.y]).collect();
+    let places = |drifts: &[Vector3<f64>]| drifts.iter().map(drawn).collect();
     let (label, mark, tone) = if passes(found) {
         ("the loop, accepted", Mark::Square, Tone::Posterior)
     } else {
@@ -85,20 +107,20 @@ fn picture(gap: usize, config: &LoopConfig, reach_m: f64) -> Panel {
         id: "gate",
         title: format!("What {gap} nodes of drift may come to"),
         weight: Weight::Main,
-        aspect: Aspect::Equal,
-        x: Axis::new("off the belief along x (m)", -1.5 * REACH_M, 1.5 * REACH_M),
-        y: Axis::new("along y (m)", -REACH_M, REACH_M),
+        aspect: Aspect::Free,
+        x: Axis::new("distance from the belief (m)", 0.0, REACH_M),
+        y: Axis::new("turn away from it (°)", -REACH_DEG, REACH_DEG),
         layers: vec![
             Layer::points(places(&within), Mark::Dot, Tone::Prior, 2.0),
             Layer::points(places(&beyond), Mark::Triangle, Tone::Prediction, 3.0),
             Layer::Ellipse {
                 center: [0.0; 2],
-                half_axes: [[reach_m, 0.0], [0.0, reach_m]],
+                half_axes: [[reach_m, 0.0], [0.0, reach_deg]],
                 stroke: Stroke::Dotted,
                 tone: Tone::Ink,
             },
             Layer::points(vec![[0.0; 2]], Mark::Plus, Tone::Prior, 6.0),
-            Layer::points(vec![[found.x, found.y]], mark, tone, 7.0),
+            Layer::points(vec![drawn(found)], mark, tone, 7.0),
         ],
         legend: vec![
             LegendEntry::mark("belief", Tone::Prior, Mark::Plus),
@@ -144,6 +166,22 @@ mod tests {
             "{}",
             at(22.0).sentence
         );
+    }
+
+    /// A picture in which a refused loop lies within the gate would deny its own verdict.
+    #[test]
+    fn a_loop_lies_within_the_drawn_gate_exactly_if_it_passes() {
+        let config = LapConfig::default().slam.chapter.loops;
+        for gap in 1..=60 {
+            let [reach_m, reach_deg] = reach(gap, &config);
+            for drift in drifts(gap, &config).iter().chain([innovation()]) {
+                let [far_m, turn_deg] = drawn(drift);
+                let within = math::norm2(far_m / reach_m, turn_deg / reach_deg) <= 1.0;
+                let information = path_information(gap, &config);
+                let passes = chi_squared_gate(drift, &information, config.gate_chi2).passes();
+                assert_eq!(within, passes, "{gap}: {drift:?}");
+            }
+        }
     }
 
     #[test]

@@ -24,6 +24,9 @@ const STEPS: usize = 16;
 /// A search that ends this close to the truth has succeeded, m.
 const RIGHT_M: f64 = 0.1;
 
+/// Height of the handle at the start of the climb, below all curves.
+const START_HEIGHT: f64 = -9.8;
+
 const CLIMB: ClimbConfig = ClimbConfig {
     weight: 1.0,
     max_steps: 60,
@@ -43,6 +46,7 @@ pub(super) const SKETCH: Sketch = Sketch {
         decimals: 2,
     },
     at,
+    handle,
 };
 
 /// The robot's final view: a row of posts that the map contains from the start.
@@ -176,6 +180,11 @@ fn at(error_m: f64) -> Shown {
             panels: vec![hills(&place, error_m, found_m), map(&paths)],
         },
     }
+}
+
+/// The start of the climb, at the foot of the picture.
+fn handle(error_m: f64) -> (&'static str, [f64; 2]) {
+    ("hills", [error_m, START_HEIGHT])
 }
 
 fn line(points: Vec<[f64; 2]>, stroke: Stroke, tone: Tone) -> Layer {

@@ -35,19 +35,34 @@ pub(super) const SKETCH: Sketch = Sketch {
         decimals: 0,
     },
     at,
+    handle,
 };
 
 /// The sweeps of the canonical lap's keyframes, at their final poses in the graph.
 fn sweeps() -> &'static [PointCloud] {
-    static FOUND: OnceLock<Vec<PointCloud>> = OnceLock::new();
+    &lap().0
+}
+
+/// The sweeps, and where they were sensed.
+fn lap() -> &'static (Vec<PointCloud>, Vec<[f64; 2]>) {
+    static FOUND: OnceLock<(Vec<PointCloud>, Vec<[f64; 2]>)> = OnceLock::new();
     FOUND.get_or_init(|| {
         let record = LapRunner::new().run(&LapConfig::default());
         let poses = &record.lap.epochs.last().expect("a lap has poses").poses;
         let placed = record.lap.keyframes.iter().zip(poses);
         placed
-            .map(|(keyframe, pose)| record.drive.sweep(keyframe.tick).cloud.transformed(pose))
-            .collect()
+            .map(|(keyframe, pose)| {
+                let sweep = record.drive.sweep(keyframe.tick).cloud.transformed(pose);
+                (sweep, [pose.x(), pose.y()])
+            })
+            .unzip()
     })
+}
+
+/// Where the newest sweep was sensed.
+fn handle(sweeps: f64) -> (&'static str, [f64; 2]) {
+    let places = &lap().1;
+    ("cuts", places[(sweeps as usize).clamp(1, places.len()) - 1])
 }
 
 /// A k-d tree: each inner node splits the plane at its own point, by x and y in turn.

@@ -26,6 +26,7 @@ pub(super) const SKETCH: Sketch = Sketch {
         decimals: 0,
     },
     at,
+    handle,
 };
 
 /// The canonical lap between its first loop and its second.
@@ -128,6 +129,13 @@ fn at(percent: f64) -> Shown {
             gate.chi2
         ),
     }
+}
+
+/// The first of the next poses.
+fn handle(percent: f64) -> (&'static str, [f64; 2]) {
+    let lap = Between::get();
+    let pose = lap.left(percent / 100.0) * lap.poses()[*lap.next_keyframes().start()];
+    ("push", [pose.x(), pose.y()])
 }
 
 fn picture(lap: &Between, left: &SE2) -> Panel {

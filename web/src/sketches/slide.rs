@@ -30,6 +30,7 @@ pub(super) const SKETCH: Sketch = Sketch {
         decimals: 2,
     },
     at,
+    handle,
 };
 
 /// `count` points in a row, the middle one at x = 0.
@@ -38,6 +39,11 @@ fn row(count: i32, y_m: f64) -> PointCloud {
     (0..count)
         .map(|k| Point2::new(SPACING_M * (f64::from(k) - half), y_m))
         .collect()
+}
+
+/// The middle point of the sweep.
+fn handle(shift_m: f64) -> (&'static str, [f64; 2]) {
+    ("wall", [shift_m, -BESIDE_M])
 }
 
 struct Wall {
