@@ -1,8 +1,10 @@
-// What a reader sees before and at the first act: a page that does not jump, the chosen colours, targets for a finger.
+// What a reader sees before and at the first act: a page that does not jump, the chosen colours, targets for a finger, a
+// cursor that stays, challenges that tick themselves.
 
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import * as h from './harness.mjs';
+import { cloudSpot } from './spots.mjs';
 
 const visit = h.visitor();
 const at = (path, test, options = {}) => visit('', test, { path, options });
@@ -76,4 +78,62 @@ describe('what can be pressed', () => {
       }, { viewport: { width: 1280, height: 900 } });
     });
   }
+});
+
+describe('a handle that is held', () => {
+  it('keeps the cursor of a grab while frames go by without a movement', async () => {
+    await visit('<slam-widget name="w16.1"></slam-widget>', async (tab) => {
+      await h.ready(tab);
+      const cursor = () => tab.evaluate(() => document.querySelector('slam-widget').shadowRoot.querySelector('canvas').style.cursor);
+      await tab.mouse.move(...await cloudSpot(tab));
+      await tab.mouse.down();
+      for (let frame = 0; frame < 4; frame += 1) {
+        await h.moreFrames(tab, 2);
+        assert.equal(await cursor(), 'grabbing');
+      }
+      await tab.mouse.up();
+      await h.moreFrames(tab, 2);
+      assert.notEqual(await cursor(), 'grabbing');
+    });
+  });
+});
+
+describe('a challenge', () => {
+  const challenge = (tab, id) => tab.locator(`.challenge[data-widget="${id}"]`).first();
+  const score = (tab) => tab.locator('.score output').textContent();
+
+  it('ticks itself when it is met, counts, and is kept on request only', async () => {
+    await at('/index.html', async (tab, { url }) => {
+      const css = 'slam-widget[name="w16.5"]';
+      await tab.locator(css).scrollIntoViewIfNeeded();
+      await h.ready(tab, css);
+      assert.equal(await tab.locator('.score').isVisible(), false);
+      await tab.evaluate((name) => document.querySelector(name).set('turn3', 180), css);
+      await tab.waitForSelector('.challenge.met');
+      assert.equal(await challenge(tab, 'w16.5').locator('.challenge-says a').textContent(), 'Show it again');
+      assert.match(await score(tab), /^1 of 1[0-9]$/);
+      // It stays.
+      await tab.evaluate((name) => document.querySelector(name).press('defaults'), css);
+      await h.quiet(tab);
+      assert.equal(await tab.locator('.challenge.met').count(), 1);
+      assert.equal(await tab.evaluate(() => localStorage.length), 0, 'nothing is kept unasked');
+      await tab.locator('.score input').check();
+      await tab.goto(`${url}/robots.html`);
+      await tab.waitForSelector('.reading', { state: 'attached' });
+      assert.match(await score(tab), /^1 of/);
+      await tab.locator('.score input').uncheck();
+      assert.equal(await tab.evaluate(() => localStorage.length), 0);
+    }, { viewport: { width: 1440, height: 900 } });
+  });
+
+  it('is not met by a link that shows its state', async () => {
+    await at('/index.html', async (tab) => {
+      const css = 'slam-widget[name="w16.11"]';
+      await tab.locator(css).scrollIntoViewIfNeeded();
+      await h.ready(tab, css);
+      await tab.locator('a.slam-link', { hasText: 'a bare wall' }).first().evaluate((a) => a.click());
+      await h.quiet(tab);
+      assert.equal(await tab.locator('.challenge.met').count(), 0);
+    }, { viewport: { width: 1440, height: 900 } });
+  });
 });

@@ -11,6 +11,8 @@ interface Candidate {
 
 interface Judged extends Candidate {
   each: string[];
+  /** The number of candidates judged right. */
+  right: number;
 }
 
 export class DecideFigure {
@@ -70,6 +72,7 @@ export class DecideFigure {
   #showVerdict(): void {
     const verdict = this.#glue.judgeCandidates(this.#answers, this.#width, themeOf(this.#place));
     const judged = JSON.parse(verdict) as Judged;
+    if (judged.right === this.#candidates.length) document.dispatchEvent(new CustomEvent('slam-decided'));
     const list = document.createElement('ol');
     list.className = 'decide-each';
     list.append(...judged.each.map((sentence) => {

@@ -6,6 +6,7 @@ import { core, coreModule } from './slam-widget.js';
 import type { Glue } from '../pkg/glue.js';
 import { BuildingFigure } from './building/figure';
 import type { Building } from './building/drawing';
+import { watchChallenges } from './challenges';
 import { addCopyButtons } from './copy';
 import { DecideFigure } from './decide';
 import { watchOwnFlat } from './gallery/own';
@@ -45,6 +46,7 @@ void startReplay('#lap', LAP_STORY_FILE, (figure, story: Story) => new LapPlayer
 void startReplay('#building', BUILDING_FILE, (figure, story: Building) => new BuildingFigure(figure, story));
 startLapsFigure();
 startOwnFlatCard();
+watchChallenges();
 onceNear(document.querySelectorAll(NEEDS_CORE), () => void startCoreFigures());
 
 function startMatchFigure(): void {

@@ -36,9 +36,10 @@ export function withFrame(template, page, pages, places) {
     pages: pages.map(({ file, name }) => `<li><a href="${file}"${file === page.file ? ' aria-current="page"' : ''}>${name}</a></li>`).join('\n    '),
     body,
     steps: [step('prev', pages[at - 1]), step('next', pages[at + 1])].filter(Boolean).join('\n  '),
+    challenges: pages.flatMap(({ html }) => html.match(/<p class="challenge"/g) ?? []).length,
     contents: headings(body).map(({ id, text }) => `<li><a href="#${id}">${text}</a></li>`).join('\n      '),
   };
-  return template.replace(/\{(head|pages|body|steps|contents)\}/g, (_, name) => filled[name]);
+  return template.replace(/\{(head|pages|body|steps|contents|challenges)\}/g, (_, name) => filled[name]);
 }
 
 function step(rel, page) {

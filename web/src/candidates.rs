@@ -175,7 +175,9 @@ pub fn judged(answers: &[bool], width_px: f32, theme: Theme) -> Value {
             candidate.error, candidate.chi2
         )
     });
+    let judged_right = right + OF_EACH - wrong;
     json!({
+        "right": judged_right,
         "svg": scene_svg(&scene, "Right and false ones accepted", "candidates", width_px, theme),
         "says": format!(
             "You took {right} of {OF_EACH} right ones and {wrong} of {OF_EACH} false ones. Both tests, at their threshold \
@@ -254,6 +256,8 @@ mod tests {
             .map(|candidate| candidate.is_right)
             .collect();
         let says = |answers: &[bool]| judged(answers, 360.0, Theme::Light)["says"].to_string();
+        let right = |answers: &[bool]| judged(answers, 360.0, Theme::Light)["right"].as_u64();
+        assert_eq!(right(&truth), Some(2 * OF_EACH as u64));
         assert!(says(&truth).contains("You took 5 of 5 right ones and 0 of 5 false ones"));
         let inverse: Vec<bool> = truth.iter().map(|right| !right).collect();
         assert!(says(&inverse).contains("You took 0 of 5 right ones and 5 of 5 false ones"));
