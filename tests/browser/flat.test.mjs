@@ -64,6 +64,28 @@ describe('a custom flat', () => {
     });
   });
 
+  for (const [width, height] of [[1440, 900], [1280, 680], [390, 844]]) {
+    it(`is drawn on a large map with few tools, the rest under More, at ${width}×${height}`, async () => {
+      await visit('', async (tab) => {
+        const css = 'slam-widget[name="w16.2"]';
+        await h.ready(tab, css);
+        await h.quiet(tab);
+        const { share, shown } = await tab.evaluate((name) => {
+          const element = document.querySelector(name);
+          const { shadowRoot } = element;
+          const controls = [...shadowRoot.querySelectorAll('.control:not([hidden]) [data-control]')];
+          return {
+            share: element.sceneBox()[3] / shadowRoot.querySelector('canvas').clientHeight,
+            shown: [...new Set(controls.map(({ dataset }) => dataset.control))].sort(),
+          };
+        }, css);
+        assert.deepEqual(shown, ['edit', 'edit-flat', 'more', 'play', 't', 'take-back']);
+        // It was a sixth under 25 buttons.
+        assert.ok(share > 0.38, `the map has ${share} of the height`);
+      }, { path: '/index.html?w=16.2&edit=wall', options: { viewport: { width, height } } });
+    });
+  }
+
   it('follows a finger that draws horizontally, and the page does not scroll', async () => {
     await on(async (tab) => {
       const scrolled = () => tab.evaluate(() => scrollY);

@@ -88,8 +88,11 @@ pub struct BasinExplorer {
     /// The edge of the basin along pure rotations, for the question about it.
     edges: Edges,
     preview: Preview,
-    /// The axes of the sweeps while something is dragged.
+    /// The axes of the sweeps from the first drag on, until a value is set otherwise: a sweep stays where the reader
+    /// lets it go.
     held_frame: Option<[Axis; 2]>,
+    /// Whether something is being dragged.
+    is_held: bool,
 }
 
 /// Whether the result of the run is shown before it is played.
@@ -121,6 +124,7 @@ impl Default for BasinExplorer {
             edges: Edges::new(&values),
             preview: Preview::Hidden,
             held_frame: None,
+            is_held: false,
             settles_in_s: None,
             maps_are_open: false,
             run: Run {
@@ -215,7 +219,7 @@ impl BasinExplorer {
 
     /// Counts the start as one of the reader's once it has stood still.
     fn settle(&mut self, elapsed_s: f64) -> Activity {
-        let Some(left_s) = self.settles_in_s.filter(|_| self.held_frame.is_none()) else {
+        let Some(left_s) = self.settles_in_s.filter(|_| !self.is_held) else {
             return Activity::Idle;
         };
         if left_s > elapsed_s {
@@ -260,6 +264,9 @@ impl Model for BasinExplorer {
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         if self.values.set(SPEC.id, id, value)? == Changed::No {
             return Ok(());
+        }
+        if !["iteration", "speed", "more"].contains(&id) {
+            self.held_frame = None;
         }
         match id {
             "iteration" | "speed" | "more" | "edge" => {}
@@ -389,11 +396,20 @@ impl Model for BasinExplorer {
         if self.held_frame.is_none() {
             self.held_frame = Some(picture::frame(self));
         }
+        self.is_held = true;
         hands::drag(self, handle, at);
     }
 
     fn release(&mut self) {
-        self.held_frame = None;
+        self.is_held = false;
+        // The axes stay, and grow only if the sweep would be cut off.
+        if let Some(held) = self.held_frame.take() {
+            let fitting = picture::frame(self);
+            self.held_frame = Some([0, 1].map(|axis| {
+                let (held, fitting) = (&held[axis], &fitting[axis]);
+                Axis::hidden(held.min.min(fitting.min), held.max.max(fitting.max))
+            }));
+        }
     }
 
     fn set_motion(&mut self, motion: Motion) {

@@ -347,7 +347,11 @@ impl Model for FullLap {
     }
 
     fn scene(&self) -> Scene {
-        picture::scene(&self.moment())
+        let mut scene = picture::scene(&self.moment());
+        if self.layer() == Layer::First(EDITING) {
+            scene.panels.retain(|shown| shown.id == panel::MAP);
+        }
+        scene
     }
 
     fn outcome(&self) -> Outcome {
@@ -423,6 +427,8 @@ impl Model for FullLap {
                     self.own.keep(&self.values);
                 }
                 self.tie(ends);
+                // The words are about the loop, not about a keyframe.
+                self.look_at(None);
                 // During a drag the graph follows at once.
                 self.transition = None;
             }

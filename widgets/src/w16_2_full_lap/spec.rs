@@ -78,14 +78,14 @@ pub(super) static EDIT: OneOf<Option<Tool>> = OneOf::new(
     "tool on the map",
     &[
         Choice::new("off", "off"),
-        Choice::new("move", "move"),
-        Choice::new("wall", "draw walls"),
-        Choice::new("way", "way points"),
-        Choice::new("remove", "remove"),
+        Choice::new("move", "hand"),
+        Choice::new("wall", "pencil"),
+        Choice::new("way", "way"),
+        Choice::new("remove", "eraser"),
     ],
     &[None, Some(Tool::Move), Some(Tool::Wall), Some(Tool::Way), Some(Tool::Remove)],
 )
-.help("What a press on the map does: move a wall, an end, a way point or the start; draw a wall; place a way point after the selected one; remove something. All on a grid of 5 cm.");
+.help("What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, or remove something. All on a grid of 5 cm.");
 
 pub(super) static PIECE: OneOf<Option<usize>> = OneOf::new(
     "piece",
@@ -431,28 +431,11 @@ pub const FLAT_CONTROLS: &[&str] = &[
     "save-flat",
 ];
 
-/// The parts shown during editing.
+/// The parts shown during editing: the map as large as it gets, the tools, and a way back.
 pub const EDITING: Opening = Opening {
-    panels: &["map", "loop"],
-    params: &["edit", "piece", "piece-number"],
-    buttons: &[
-        "play",
-        "edit-flat",
-        "piece-back",
-        "piece-on",
-        "west",
-        "east",
-        "north",
-        "south",
-        "remove",
-        "add-wall",
-        "add-way-point",
-        "turn-here",
-        "take-back",
-        "do-again",
-        "open-flat",
-        "save-flat",
-    ],
+    panels: &["map"],
+    params: &["edit"],
+    buttons: &["play", "edit-flat", "take-back"],
 };
 
 /// The constant description of the widget.

@@ -7,6 +7,9 @@ use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 /// Width from which the close-up is beside the map.
 const BESIDE_THE_MAP: f32 = 860.0;
 
+/// Largest height of the map while the flat is drawn on it.
+const DRAWN: f32 = 640.0;
+
 /// Height of a plot over time.
 const PLOT: PlotHeight = PlotHeight::Fixed(130.0);
 
@@ -48,7 +51,15 @@ const fn plot(panel: &'static str) -> Slot {
 pub struct FullLapView;
 
 impl View for FullLapView {
-    fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
+    fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
+        if let [map] = &scene.panels[..] {
+            let height = PlotHeight::Natural { most: DRAWN };
+            let panel = map.id;
+            return Arrangement {
+                stage: vec![Row::new(&[Slot { panel, height }])],
+                ..Arrangement::default()
+            };
+        }
         if width >= BESIDE_THE_MAP {
             Arrangement {
                 stage: vec![Row {

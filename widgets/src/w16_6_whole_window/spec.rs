@@ -89,7 +89,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "The search is as fine as its cells. ICP does the rest, from a start that it can use.",
     ],
     opening: Opening {
-        panels: &["sweeps", "places", "bounds"],
+        panels: &["sweeps", "places"],
         params: &["heading"],
         buttons: &["play", "step", "reset"],
     },

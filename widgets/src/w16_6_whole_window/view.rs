@@ -1,4 +1,4 @@
-//! Layout of the panels: the sweeps beside the positions and the bounds, the rest below.
+//! Layout of the panels: the sweeps beside the positions, the rest below.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -13,9 +13,8 @@ pub struct WindowView;
 impl View for WindowView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
-        // On a phone the sweeps, the bounds and the control fit one screen without the positions.
         let (sweeps_px, places_px, high) = if width >= SIDE_BY_SIDE {
-            (330.0, 330.0, 150.0)
+            (420.0, 420.0, 150.0)
         } else {
             (220.0, 240.0, 100.0)
         };
@@ -24,17 +23,16 @@ impl View for WindowView {
         let places = natural(panel::PLACES, places_px);
         let bounds = slot(panel::BOUNDS, PlotHeight::Fixed(high));
         let gap = slot(panel::GAP, PlotHeight::Fixed(120.0));
+        // On a phone the sweeps and the control fit one screen without the positions.
         let (stage, under_control) = if width >= SIDE_BY_SIDE {
-            let both = Row::new(&[sweeps, places]);
-            (vec![both, Row::new(&[bounds])], Vec::new())
+            (vec![Row::new(&[sweeps, places])], Vec::new())
         } else {
-            let stage = vec![Row::new(&[sweeps]), Row::new(&[bounds])];
-            (stage, vec![Row::new(&[places])])
+            (vec![Row::new(&[sweeps])], vec![Row::new(&[places])])
         };
         Arrangement {
             stage,
             under_control,
-            below: vec![Row::new(&[gap])],
+            below: vec![Row::new(&[bounds]), Row::new(&[gap])],
         }
     }
 }

@@ -116,7 +116,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "A looser threshold finds more of the true pairs, and calls more false ones. No point of the curve is free.",
     ],
     opening: Opening {
-        panels: &["flat", "scores", "looks", "matrix"],
+        panels: &["flat", "scores", "looks"],
         params: &["called"],
         buttons: &["play", "step", "reset"],
     },

@@ -18,7 +18,7 @@ impl View for PlacesView {
         let scores = slot(panel::SCORES, PlotHeight::Fixed(120.0));
         let looks = slot(
             panel::LOOKS,
-            PlotHeight::Fixed(if is_wide { 170.0 } else { 100.0 }),
+            PlotHeight::Fixed(if is_wide { 250.0 } else { 100.0 }),
         );
         let matrix = slot(panel::MATRIX, PlotHeight::Natural { most: 290.0 });
         let curves = slot(panel::CURVES, PlotHeight::Fixed(130.0));

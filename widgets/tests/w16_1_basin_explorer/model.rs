@@ -323,6 +323,9 @@ fn the_whole_sweep_is_in_view_at_every_heading_and_after_every_drag() {
         (sweeps.x, sweeps.y)
     };
     let during = axes(&model);
+    model.release();
+    assert_eq!(axes(&model), during, "a sweep stays where it is let go");
+    let held = model.grab(panel::SWEEPS, [1.2, 0.3], [0.2, 0.2]).unwrap();
     model.drag(held, [2.0, -1.0]);
     assert_eq!(
         axes(&model),

@@ -189,16 +189,10 @@ fn icp_path(window: &WholeWindow) -> (Stroke, usize) {
 #[test]
 fn icp_races_the_search_and_stops_in_a_false_minimum_first() {
     let mut window = with(&[]);
-    let title = |window: &WholeWindow| panel_of(window, panel::PLACES).title;
     let (stroke, whole) = icp_path(&window);
     assert_eq!(stroke, Stroke::Dotted, "where it would go");
-    assert_eq!(title(&window), "ICP alone would stop in the quarter turn");
     window.press("step").unwrap();
     assert_eq!(icp_path(&window), (Stroke::Solid, 2));
-    assert_eq!(
-        title(&window),
-        format!("ICP alone: step 1 of {}", whole - 1)
-    );
     let marks = window.timeline().unwrap().marks;
     let stop = marks
         .iter()
@@ -212,9 +206,30 @@ fn icp_races_the_search_and_stops_in_a_false_minimum_first() {
         window.set("progress", at).unwrap();
         assert_eq!(icp_path(&window).1 == whole, is_over, "at {at}");
     }
-    assert_eq!(title(&window), "ICP alone stops in the quarter turn");
-    let home = with(&[("heading", 10.0), ("progress", 200_000.0)]);
-    assert_eq!(title(&home), "ICP alone stops at home");
+}
+
+/// The one counter over the positions: the work so far, and that of trying all.
+#[test]
+fn the_counter_over_the_window_grows_to_the_work_of_the_search() {
+    let title = |window: &WholeWindow| panel_of(window, panel::PLACES).title;
+    let count = |window: &WholeWindow| {
+        let title = title(window);
+        let (sums, all) = title.split_once(" sums in place of ").expect("a counter");
+        [sums, all].map(|number| number.replace(',', "").parse::<f64>().unwrap())
+    };
+    let mut window = with(&[]);
+    let [before, all] = count(&window);
+    window.set("progress", 200_000.0).unwrap();
+    window.finish_work();
+    let [after, same] = count(&window);
+    assert!(
+        before < after && after < 0.01 * all,
+        "{before} {after} {all}"
+    );
+    assert_eq!(all, same);
+    let facts = window.outcome().facts;
+    let fact = |id: &str| facts.iter().find(|fact| fact.id == id).unwrap().value;
+    assert_eq!([after, all], [fact("scored"), fact("window")]);
 }
 
 /// The line of true scores on the bounds, and the bar above it.

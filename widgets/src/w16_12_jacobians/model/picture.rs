@@ -168,7 +168,7 @@ fn curve(widget: &WrongJacobians) -> Panel {
         if widget.step() == 0 {
             layers.push(Layer::Text {
                 at: [0.5 * last, same - 0.45],
-                text: "noise of one edge: who gets under it?".to_owned(),
+                text: "noise of one edge".to_owned(),
                 tone: Tone::Ink,
             });
         }

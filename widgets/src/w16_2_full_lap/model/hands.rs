@@ -95,19 +95,24 @@ fn places(moment: &Moment, name: &str) -> Vec<(Part, [f64; 2])> {
     }
 }
 
-/// Grabs the selected keyframe, or the line between before and after.
+/// Grabs the selected keyframe, the line between before and after, or another keyframe.
 pub fn grab(moment: &Moment, name: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
     if name != panel::MAP {
         return None;
     }
-    grab_keyframe(moment, at, reach).or_else(|| {
+    let selected = moment.picked.filter(|part| find(moment, *part).is_some());
+    let line = || {
         let off = at[0] - picture::divider(moment)?;
         (off.abs() <= reach[0]).then_some(Handle {
             panel: panel::MAP,
             id: WIPE,
             offset: [off, 0.0],
         })
-    })
+    };
+    let any = || part_at(moment, name, at, reach);
+    keyframe(moment, selected, at, reach)
+        .or_else(line)
+        .or_else(|| keyframe(moment, any(), at, reach))
 }
 
 /// Where a drag puts the line between before and after, as a share of the map's width.
@@ -118,9 +123,9 @@ pub fn dragged_wipe(moment: &Moment, handle: Handle, at: [f64; 2]) -> Option<f64
     is_held.then(|| (100.0 * share.clamp(0.0, 1.0)).round() / 100.0)
 }
 
-fn grab_keyframe(moment: &Moment, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-    let Some(Part::Keyframe(node)) = moment.picked.filter(|part| find(moment, *part).is_some())
-    else {
+/// The handle of a part within reach, if it is a keyframe.
+fn keyframe(moment: &Moment, part: Option<Part>, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+    let Some(Part::Keyframe(node)) = part else {
         return None;
     };
     let [x, y] = picture::shown_nodes(moment)[node];

@@ -38,17 +38,6 @@ pub fn stop(end: &BasinOutcome) -> String {
     }
 }
 
-/// The race of ICP in a few words.
-pub fn race(window: &WholeWindow) -> String {
-    let alone = &window.search_task.alone;
-    let last = alone.path.len() - 1;
-    match window.raced() {
-        Some(k) if k < last => format!("ICP alone: step {k} of {last}"),
-        Some(_) => format!("ICP alone stops {}", stop(&alone.outcome)),
-        None => format!("ICP alone would stop {}", stop(&alone.outcome)),
-    }
-}
-
 /// The result in a few words.
 pub fn verdict(window: &WholeWindow) -> &'static str {
     match (&window.search_task.found, window.refined()) {

@@ -346,7 +346,12 @@ fn the_controls_of_the_flat_are_shown_only_during_editing() {
     press(&mut model, "edit-flat");
     assert!(model.layer().has_button("add-wall") && model.layer().has_button("next"));
     set(&mut model, "more", 0.0);
-    assert!(model.layer().has_button("add-wall") && !model.layer().has_button("next"));
+    // Few tools, and the map alone.
+    let layer = model.layer();
+    assert!(layer.has_button("take-back") && layer.has_param("edit"));
+    assert!(!layer.has_button("add-wall") && !layer.has_button("next"));
+    let panels: Vec<_> = model.scene().panels.iter().map(|shown| shown.id).collect();
+    assert_eq!(panels, ["map"]);
     press(&mut model, "edit-flat");
     assert!(!model.layer().has_button("add-wall"));
     for (_, button) in model.keys() {

@@ -67,16 +67,14 @@ fn the_presets_show_what_they_claim() {
 }
 
 #[test]
-fn a_loop_is_dragged_from_the_selected_keyframe_to_another_and_undone() {
+fn a_loop_is_dragged_from_a_keyframe_to_another_without_a_tap_before_and_undone() {
     let mut model = at(&[("t", 129.0)]);
     let [from, to, further] = [36, 3, 10].map(|node| shown_nodes(&model)[node]);
-    assert!(
-        model.grab("map", from, REACH).is_none(),
-        "only what is looked at"
-    );
     model.tap("map", from, REACH);
     let node = model.values().number("number");
-    let handle = model.grab("map", from, REACH).unwrap();
+    model.tap("map", [1e3; 2], REACH);
+    assert_eq!(model.values().number("pick"), 0.0, "nothing is selected");
+    let handle = model.grab("map", from, REACH).expect("a keyframe");
     // A press with little movement creates no loop.
     model.drag(handle, from);
     assert_eq!(ends(&model)[0], 0.0);
@@ -86,6 +84,8 @@ fn a_loop_is_dragged_from_the_selected_keyframe_to_another_and_undone() {
     model.drag(handle, to);
     let second = ends(&model);
     assert_ne!(first, second, "the loop follows the pointer");
+    // The words are about the loop, also if the keyframe was selected before.
+    assert!(model.outcome().verdict.starts_with("your loop"));
     // One drag is one change.
     press(&mut model, "undo");
     assert_eq!(ends(&model)[0], 0.0);

@@ -5,7 +5,7 @@ use kit::scene::{
     Aspect, Axis, Bounds, Cell, Layer, LegendEntry, Mark, Panel, Raster, Stroke, Tone, Weight,
 };
 
-use super::super::words::race;
+use super::super::words::grouped;
 use super::super::{WholeWindow, panel};
 use super::{icp_now, icp_path, sensor};
 
@@ -45,7 +45,11 @@ pub fn panel(window: &WholeWindow) -> Panel {
     }
     Panel {
         id: panel::PLACES,
-        title: race(window),
+        title: format!(
+            "{} sums in place of {}",
+            grouped(moment.counts.scored()),
+            grouped(moment.counts.window)
+        ),
         weight: Weight::Half,
         aspect: Aspect::Equal,
         x: Axis::hidden(low[0] - margin, high[0] + margin),
