@@ -45,7 +45,7 @@ export interface BasinExplorerState {
 export interface TheFullLapState {
   /** The world. The Apartment uses the chapter's estimator, every other world the default one. */
   world: 'apartment' | 'ring' | 'twins' | 'corridor' | 'hall' | 'own';
-  /** What a press on the map does: move a wall, an end, a way point or the start; draw a wall; place a way point after the selected one; remove something. All on a grid of 5 cm. */
+  /** What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, or remove something. All on a grid of 5 cm. */
   edit: 'off' | 'move' | 'wall' | 'way' | 'remove';
   /** The piece of the flat that the arrows move and Remove deletes. On the map, a press selects it. */
   piece: 'nothing' | 'wall' | 'first-end' | 'second-end' | 'way-point' | 'start' | 'heading';

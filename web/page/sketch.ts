@@ -9,9 +9,10 @@ export const WIDTHS = { wide: 600, narrow: 360 } as const;
 /** Screens with stacked panels, as in style/sketches.css and stills.mjs. */
 export const NARROW = '(max-width: 40rem)';
 
-/** Distance from the handle at which a press takes it, and how far the pointer has to leave one leg of its way, px. */
+/** Distance from the handle at which a press takes it, px. */
 const GRAB_PX = 26;
-const SLACK_PX = 40;
+/** A place farther along the way costs so much of the distance along it, where the way passes twice. */
+const LOYALTY = 0.15;
 
 /** A value, and the position of the handle on the picture, px. */
 type Place = [value: number, x: number, y: number];
@@ -102,9 +103,12 @@ export class SketchFigure {
     const at = this.#onPicture(event);
     const value = Number(this.#slider.value);
     const { min, max } = this.#schema;
+    const way = this.#way;
+    const length = way.reduce((sum, [, x, y], k) => sum + Math.hypot(x - (way[k - 1]?.[1] ?? x), y - (way[k - 1]?.[2] ?? y)), 0);
     // Where the way passes twice, it goes on where it is.
-    const cost = ([to, x, y]: Place): number => Math.hypot(x - at[0], y - at[1]) + (SLACK_PX * Math.abs(to - value)) / (max - min);
-    const [nearest] = [...this.#way].sort((a, b) => cost(a) - cost(b));
+    const slack = (LOYALTY * length) / (max - min);
+    const cost = ([to, x, y]: Place): number => Math.hypot(x - at[0], y - at[1]) + slack * Math.abs(to - value);
+    const [nearest] = [...way].sort((a, b) => cost(a) - cost(b));
     if (nearest === undefined || nearest[0] === value) return;
     this.#slider.value = String(nearest[0]);
     this.#slider.dispatchEvent(new Event('input', { bubbles: true }));

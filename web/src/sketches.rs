@@ -195,7 +195,7 @@ mod tests {
             for width in [360.0, 600.0] {
                 let way = sketch.way(width);
                 let way = way.as_array().unwrap();
-                assert!(way.len() > 16, "{}: {}", sketch.name, way.len());
+                assert!(way.len() > 10, "{}: {}", sketch.name, way.len());
                 assert_eq!(way[0][0], sketch.slider.min);
                 assert_eq!(way[way.len() - 1][0], sketch.slider.max);
                 for pair in way.windows(2) {

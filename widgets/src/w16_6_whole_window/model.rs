@@ -48,8 +48,6 @@ pub mod panel {
     pub const PLACES: &str = "places";
     /// Bounds of the boxes over the heading.
     pub const BOUNDS: &str = "bounds";
-    /// The largest bound and the best score over the steps.
-    pub const GAP: &str = "gap";
 }
 
 /// Duration of playing a search at normal speed, s, regardless of its length.

@@ -22,7 +22,6 @@ impl View for WindowView {
         let sweeps = natural(panel::SWEEPS, sweeps_px);
         let places = natural(panel::PLACES, places_px);
         let bounds = slot(panel::BOUNDS, PlotHeight::Fixed(high));
-        let gap = slot(panel::GAP, PlotHeight::Fixed(120.0));
         // On a phone the sweeps and the control fit one screen without the positions.
         let (stage, under_control) = if width >= SIDE_BY_SIDE {
             (vec![Row::new(&[sweeps, places])], Vec::new())
@@ -32,7 +31,7 @@ impl View for WindowView {
         Arrangement {
             stage,
             under_control,
-            below: vec![Row::new(&[bounds]), Row::new(&[gap])],
+            below: vec![Row::new(&[bounds])],
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The panels: the sweeps, the positions of the window, the bounds over the heading, the gap over time.
+//! The panels: the sweeps, the positions of the window, the bounds over the heading.
 
 mod bounds;
 mod places;
@@ -19,12 +19,7 @@ const MARGIN_M: f64 = 0.1;
 
 pub fn scene(window: &WholeWindow) -> Scene {
     Scene {
-        panels: vec![
-            sweeps(window),
-            places::panel(window),
-            bounds::panel(window),
-            bounds::gap(window),
-        ],
+        panels: vec![sweeps(window), places::panel(window), bounds::panel(window)],
     }
 }
 

@@ -1,4 +1,4 @@
-//! Boxes as bars over the heading, as high as their bounds; and the convergence of bound and best score.
+//! Boxes as bars over the heading, as high as their bounds.
 
 use ch16_lab::whole_window::SeenBox;
 use ch16_slam2d::search::{BoxFate, PoseBox};
@@ -6,9 +6,6 @@ use kit::scene::{Aspect, Axis, Layer, LegendEntry, Panel, Stroke, Tone, Weight};
 
 use super::super::words::{grouped, heading_error_deg};
 use super::super::{LookedAt, WholeWindow, panel};
-
-/// Largest number of points of the gap's lines.
-const GAP_POINTS: usize = 300;
 
 pub fn panel(window: &WholeWindow) -> Panel {
     let search = &window.search_task.window;
@@ -126,44 +123,4 @@ pub fn box_at(window: &WholeWindow, panel: &str, at: [f64; 2]) -> Option<usize> 
     };
     let near = boxes.filter_map(|(k, seen)| Some((k, distance(seen)?)));
     near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
-}
-
-/// The largest bound falls, the best score rises; the search ends where they meet.
-pub fn gap(window: &WholeWindow) -> Panel {
-    let moments = window.search_task.window.moments();
-    let every = moments.len().div_ceil(GAP_POINTS);
-    let last = moments.len() - 1;
-    let steps = (0..last).step_by(every).chain([last]);
-    let (mut bounds, mut best) = (Vec::new(), Vec::new());
-    for step in steps {
-        let moment = &moments[step];
-        let at = |score: Option<f64>| [step as f64, score.unwrap_or(f64::NAN)];
-        bounds.push(at(moment.bound));
-        best.push(at(moment.best.map(|best| best.score)));
-    }
-    let line = |points, tone| Layer::line(points, Stroke::Solid, tone, 1.75);
-    let now = window.step() as f64;
-    Panel {
-        id: panel::GAP,
-        title: "The largest bound falls, the best score rises".to_owned(),
-        weight: Weight::Side,
-        aspect: Aspect::Free,
-        x: Axis::new("boxes taken up", 0.0, last.max(1) as f64),
-        y: Axis::new("score", 0.0, 1.04),
-        layers: vec![
-            Layer::line(
-                vec![[now, 0.0], [now, 1.04]],
-                Stroke::Solid,
-                Tone::Faint,
-                2.0,
-            ),
-            line(bounds, Tone::Series(0)),
-            line(best, Tone::Posterior),
-        ],
-        legend: vec![
-            LegendEntry::line("largest bound that waits", Tone::Series(0), Stroke::Solid),
-            LegendEntry::line("best score so far", Tone::Posterior, Stroke::Solid),
-        ],
-        color_bar: None,
-    }
 }
