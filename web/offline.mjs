@@ -25,7 +25,8 @@ const all = (await readdir(dist, { recursive: true, withFileTypes: true })).filt
 const files = all.filter((name) => !EXCLUDED.test(name));
 const contents = {};
 for (const name of files) {
-  if (!FETCHED.test(name) && !name.endsWith('.js')) contents[name] = await readFile(join(dist, name));
+  // The script of the head is a classic one, and stays.
+  if (!FETCHED.test(name) && (!name.endsWith('.js') || name.startsWith('early-'))) contents[name] = await readFile(join(dist, name));
 }
 contents['offline-files.js'] = Buffer.from(await embeddedFiles());
 for (const name of files.filter((one) => one.endsWith('.html'))) await convert(name);
