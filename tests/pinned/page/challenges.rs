@@ -27,17 +27,15 @@ fn is_met(model: &dyn Model, condition: &str) -> bool {
             .or_else(parameter)
             .unwrap_or_else(number)
     };
-    let clauses = condition.split(" and ");
-    clauses
-        .map(|clause| match clause.split(' ').collect::<Vec<_>>()[..] {
-            [less, "<", more] | [more, ">", less] => value(less) < value(more),
-            [name, "=", text] => values.to_text(name) == text,
-            _ => match clause.strip_prefix("not ") {
-                Some(verdict) => outcome.verdict != verdict,
-                None => outcome.verdict == clause,
-            },
-        })
-        .all(|holds| holds)
+    let mut clauses = condition.split(" and ");
+    clauses.all(|clause| match clause.split(' ').collect::<Vec<_>>()[..] {
+        [less, "<", more] | [more, ">", less] => value(less) < value(more),
+        [name, "=", text] => values.to_text(name) == text,
+        _ => match clause.strip_prefix("not ") {
+            Some(verdict) => outcome.verdict != verdict,
+            None => outcome.verdict == clause,
+        },
+    })
 }
 
 /// The challenges that a widget can show to be met.
