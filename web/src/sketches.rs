@@ -114,7 +114,7 @@ impl Sketch {
         let count = ((max - min) / step).round().min(PLACES);
         let values: Vec<f64> = (0..=count as usize)
             .map(|k| min + (max - min) * k as f64 / count)
-            .map(|value| min + step * ((value - min) / step).round())
+            .map(|value| (min + step * ((value - min) / step).round()).min(max))
             .collect();
         let places: Vec<_> = values.iter().map(|&value| (self.handle)(value)).collect();
         let scene = self.at(self.slider.default).scene;
