@@ -70,18 +70,19 @@ describe('a custom flat', () => {
         const css = 'slam-widget[name="w16.2"]';
         await h.ready(tab, css);
         await h.quiet(tab);
-        const { share, shown } = await tab.evaluate((name) => {
+        const { wide, high, shown } = await tab.evaluate((name) => {
           const element = document.querySelector(name);
           const { shadowRoot } = element;
           const controls = [...shadowRoot.querySelectorAll('.control:not([hidden]) [data-control]')];
           return {
-            share: element.sceneBox()[3] / shadowRoot.querySelector('canvas').clientHeight,
+            wide: element.sceneBox()[2] / shadowRoot.querySelector('canvas').clientWidth,
+            high: element.sceneBox()[3] / shadowRoot.querySelector('canvas').clientHeight,
             shown: [...new Set(controls.map(({ dataset }) => dataset.control))].sort(),
           };
         }, css);
         assert.deepEqual(shown, ['edit', 'edit-flat', 'more', 'play', 't', 'take-back']);
-        // It was a sixth under 25 buttons.
-        assert.ok(share > 0.38, `the map has ${share} of the height`);
+        // As wide as the frame, or half as high beside the controls. It was a sixth of the height under 25 buttons.
+        assert.ok(wide > 0.8 || high > 0.45, `the map has ${wide} of the width, ${high} of the height`);
       }, { path: '/index.html?w=16.2&edit=wall', options: { viewport: { width, height } } });
     });
   }
