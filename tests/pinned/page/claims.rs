@@ -255,6 +255,54 @@ fn the_exact_gate_is_wider_and_discriminates_as_well_and_the_graphs_sigma_ignore
 }
 
 #[test]
+fn no_covariance_holds_a_bias_with_the_cap_or_without() {
+    assert!(of(&["lap.canonical.capped_percent"])[0] > 95.0);
+    let mut figures = Figures::default();
+    let mut at_turn = |matcher: &str, bound: &str, what: &str| {
+        let name = format!("consistency.apartment.{matcher}.{bound}.front_end.{what}");
+        figures.value(&name).unwrap_or_else(|| panic!("{name}"))
+    };
+    for bound in ["capped", "uncapped"] {
+        let [point, plane] = ["p2p", "p2l"].map(|of| at_turn(of, bound, "bias_m"));
+        assert!(point > 5.0 * plane, "{bound}: {point} {plane}");
+        let [point, plane] = ["p2p", "p2l"].map(|of| at_turn(of, bound, "sigma_m"));
+        assert!(
+            (point / plane - 1.0).abs() < 0.3,
+            "{bound}: {point} {plane}"
+        );
+    }
+    // The cap makes the covariances: without it they are less than half, of both unbiased matchers.
+    for matcher in ["p2l", "ndt"] {
+        let [capped, free] = ["capped", "uncapped"].map(|of| at_turn(matcher, of, "sigma_m"));
+        assert!(free < 0.5 * capped, "{matcher}: {capped} {free}");
+        // Neither is right: too cautious, too sure.
+        let [capped, free] = ["capped", "uncapped"].map(|of| at_turn(matcher, of, "nees"));
+        assert!(capped < 2.0 && free > 2.0, "{matcher}: {capped} {free}");
+    }
+}
+
+#[test]
+fn loops_reduce_the_scatter_on_the_ring_as_the_graph_predicts_by_point_to_plane_but_not_by_ndt() {
+    let mut figures = Figures::default();
+    let mut fall = |matcher: &str, bound: &str, what: &str| {
+        let [before, after] = ["front_end", "with_loops"].map(|estimate| {
+            let name = format!("consistency.ring.{matcher}.{bound}.{estimate}.{what}");
+            figures.value(&name).unwrap_or_else(|| panic!("{name}"))
+        });
+        1.0 - after / before
+    };
+    for bound in ["capped", "uncapped"] {
+        let [scatter, predicted] = ["scatter_m", "sigma_m"].map(|of| fall("p2l", bound, of));
+        // The scatters of a hundred laps are uncertain by 7 % each.
+        assert!(scatter > predicted - 0.1, "{bound}: {scatter} {predicted}");
+        let [scatter, predicted] = ["scatter_m", "sigma_m"].map(|of| fall("ndt", bound, of));
+        assert!(scatter < 0.7 * predicted, "{bound}: {scatter} {predicted}");
+        // A bias that was not there before.
+        assert!(fall("ndt", bound, "bias_m") < 0.0, "{bound}");
+    }
+}
+
+#[test]
 fn a_start_beyond_the_gaussians_ends_farther_off_than_it_began() {
     let far = of(&["ndt.far_start.offset_m", "ndt.far_start.error_m"]);
     assert!(far[1] > far[0], "{far:?}");

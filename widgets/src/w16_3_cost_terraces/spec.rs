@@ -241,7 +241,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "drop-room",
         label: "Drop 100 sweeps in the room",
-        help: "They rest in a round heap a few millimetres wide, about as wide as the information says.",
+        help: "They rest in a round heap with a standard deviation of a millimetre, about that of the information.",
         set: &[("tau", 0.6), ("colours", 0.0)],
         then: &["drop-100"],
     },
