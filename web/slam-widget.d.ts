@@ -17,6 +17,8 @@ export interface BasinExplorerState {
   variant: 'point-to-point' | 'point-to-plane';
   /** A point farther than this from the target has no pair. 0.1 to 1.6 m. */
   tau: number;
+  /** After this many iterations a registration stops, converged or not. */
+  limit: '30' | '200';
   /** Trimming drops this share of the pairs in each iteration, the longest first; 0 keeps all. 0 to 0.7. */
   trim: number;
   /** Longer pairs have less weight; at 1.6 m all pairs have equal weight. 0.02 to 1.6 m. */
@@ -33,7 +35,7 @@ export interface BasinExplorerState {
   'edge-p2l': number;
   /** Seed of the range noise of both sweeps; 457 is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** Which iteration is shown; 0 is the first guess, and beyond the last one is the end. 0 to 30. */
+  /** Which iteration is shown; 0 is the first guess, and beyond the last one is the end. 0 to 200. */
   iteration: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -473,6 +475,7 @@ export interface SlamWidgetProperties {
   scene: 'room' | 'fence' | 'room' | 'corridor' | 'own-corridor' | undefined;
   variant: 'point-to-point' | 'point-to-plane' | undefined;
   tau: number | undefined;
+  limit: '30' | '200' | undefined;
   trim: number | undefined;
   huber: number | undefined;
   axis: 'dx' | 'dy' | undefined;

@@ -10,8 +10,8 @@
 //! ∂e/∂δⱼ ≈ I        ∂e/∂δᵢ ≈ −Ad(Z⁻¹)
 //! ```
 //!
-//! Both leave out the inverse of the right Jacobian of e. They are exact if e is zero, and otherwise close enough: a
-//! wrong Jacobian costs iterations, a wrong residual costs correctness (exercise 3 of the page).
+//! They leave out the factors `J_r⁻¹(e)` at j and `J_l⁻¹(e)` at i, which are I if e is zero. Otherwise the optimum moves
+//! by O(e²); a residual that is wrong to first order moves it by O(e) (exercise 3 of the page).
 
 use ch16_slam2d::listings::SE2;
 use nalgebra::{Matrix3, Vector3};

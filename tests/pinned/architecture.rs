@@ -189,6 +189,38 @@ fn the_guide_names_every_package() {
     }
 }
 
+#[test]
+fn the_guide_gives_the_dependencies_of_the_core_as_the_manifests_do() {
+    const WORDS: [(&str, &str); 3] = [
+        ("pr_geom", "geometry"),
+        ("pr_optim", "solver"),
+        ("pr_grid", "grid"),
+    ];
+    let guide = source("ARCHITECTURE.md");
+    for package in packages() {
+        let row = format!("| `{}` |", package.path());
+        let row = guide.lines().find(|line| line.starts_with(&row));
+        let given = row
+            .and_then(|row| row.split('|').nth(3))
+            .unwrap_or_default();
+        let needs = |used: &str| package.uses().any(|name| name == used);
+        // A row that names a part as a whole, such as the estimator, includes what that needs.
+        let is_core =
+            ["pr_sim", "pr_grid", "pr_optim", "ch16_slam2d"].contains(&package.name.as_str());
+        for (used, word) in WORDS.into_iter().filter(|_| is_core) {
+            assert_eq!(
+                given.contains(word),
+                needs(used),
+                "{}: {word}",
+                package.name
+            );
+        }
+        if given.contains("grid") {
+            assert!(needs("pr_grid"), "{}", package.name);
+        }
+    }
+}
+
 /// A package compiles egui for its view, so the compiler cannot keep it out of the model.
 #[test]
 fn models_use_neither_egui_nor_the_browser_nor_a_clock() {

@@ -29,7 +29,7 @@ export function placesOf(pages) {
 export function withFrame(template, page, pages, places) {
   const parts = page.html.match(/^([\s\S]*?)(<header[\s\S]*<\/main>)\s*$/);
   if (parts === null) throw new Error(`${page.source} is no title, description, header and main`);
-  const body = withAnchors(withLinks(parts[2], page, places));
+  const body = withAnchors(withLinks(withTerms(parts[2], pages), page, places));
   const at = pages.indexOf(page);
   const filled = {
     head: parts[1].trim(),
@@ -44,6 +44,16 @@ export function withFrame(template, page, pages, places) {
 
 function step(rel, page) {
   return page === undefined ? '' : `<a rel="${rel}" href="${page.file}"><small>${rel === 'next' ? 'Next' : 'Before'}</small> ${page.name}</a>`;
+}
+
+/** Makes of the first use of a term a button that opens its line of the notation, which only one page holds. */
+function withTerms(html, pages) {
+  return html.replace(/<a class="term" href="#(term-[^"]+)">([^<]+)<\/a>/g, (_, id, word) => {
+    const line = pages.map((page) => page.html.match(new RegExp(`<tr id="${id}"><th[^>]*>([\\s\\S]*?)</th><td>([\\s\\S]*?)</td>`))).find(Boolean);
+    if (line === undefined) throw new Error(`no line of the notation is ${id}`);
+    return `<button type="button" class="term" popovertarget="${id}-line">${word}</button>`
+      + `<span popover id="${id}-line" class="term-line"><b>${line[1]}</b>: ${line[2]}</span>`;
+  });
 }
 
 /** Adds the page to links whose target is on another one. */

@@ -7,6 +7,7 @@
 
 mod choices;
 mod config;
+mod consistency;
 mod digest;
 mod drive;
 mod judge;
@@ -31,6 +32,7 @@ pub use choices::{
     BuiltInWorld, Choice, LapDetector, LapEstimator, LapFrontEnd, LapMatcher, LoopMatcher,
 };
 pub use config::{CANONICAL_SEED, DriveConfig, LAP_TICKS, LapConfig};
+pub use consistency::{Consistency, HalfWay};
 pub use digest::lap_digest;
 pub use drive::{Drive, DriveSimulation, DriveTick, Sweep};
 pub use judge::Judge;

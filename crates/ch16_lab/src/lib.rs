@@ -8,6 +8,7 @@
 pub mod basin;
 pub mod buildings;
 pub mod come_back;
+pub mod drift;
 pub mod incremental;
 pub mod jacobians;
 pub mod lap;

@@ -185,7 +185,7 @@ fn a_registration_says_why_it_ended() {
     let config = BasinScene::config(IcpVariant::PointToPoint, 0.7);
     let mut workspace = IcpWorkspace::new();
     let near = scene.register_from(&start(10.0), &config, &mut workspace);
-    assert_eq!(near.minimum, Minimum::Right);
+    assert_eq!(near.ending, Minimum::Right);
     assert!(matches!(near.stop, StopReason::SmallStep { step, tolerance } if step < tolerance));
     let short = IcpConfig {
         max_iterations: 3,

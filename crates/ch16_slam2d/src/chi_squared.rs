@@ -9,7 +9,7 @@ use core::f64::consts::PI;
 
 use pr_geom::math;
 
-/// The quantile of the chapter's gate: it rejects one true loop in twenty.
+/// The quantile of the chapter's gate. It rejects one true loop in twenty if the robot does not move, more after a drive.
 pub const CHAPTER_QUANTILE: f64 = 0.95;
 
 /// The chapter's gate: the threshold of [`CHAPTER_QUANTILE`], as tables print it.

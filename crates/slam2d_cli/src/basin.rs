@@ -2,7 +2,7 @@
 
 use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart};
 use ch16_slam2d::cloud::PointCloud;
-use ch16_slam2d::icp::{IcpVariant, IcpWorkspace, StopReason};
+use ch16_slam2d::icp::{IcpConfig, IcpVariant, IcpWorkspace, StopReason};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
@@ -33,6 +33,9 @@ pub struct BasinArgs {
         allow_hyphen_values = true
     )]
     heading_deg: Headings,
+    /// Largest number of iterations.
+    #[arg(long, default_value_t = BasinScene::MAX_ITERS)]
+    max_iterations: usize,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -86,7 +89,10 @@ pub fn run(args: &BasinArgs) {
         VariantName::PointToPoint => (IcpVariant::PointToPoint, "point-to-point"),
         VariantName::PointToPlane => (IcpVariant::PointToPlane, "point-to-plane"),
     };
-    let config = BasinScene::config(variant, args.tau);
+    let config = IcpConfig {
+        max_iterations: args.max_iterations,
+        ..BasinScene::config(variant, args.tau)
+    };
     let start = BasinStart {
         dx_m: args.dx,
         dy_m: args.dy,
@@ -110,7 +116,7 @@ pub fn run(args: &BasinArgs) {
             inliers: outcome.inliers,
             error_m: outcome.error_m,
             error_deg: outcome.error_deg,
-            minimum: outcome.minimum.name(),
+            minimum: outcome.ending.name(),
         };
         let target = scene.target();
         print_json(&BasinJson {
@@ -134,7 +140,7 @@ pub fn run(args: &BasinArgs) {
         say!(
             "{heading_deg:>8.2}°  {:<22} error {:.3} m, {:.1}°  rmse {:.3} m  {} pairs  \
              {} iterations{}  {}",
-            outcome.minimum.name(),
+            outcome.ending.name(),
             outcome.error_m,
             outcome.error_deg,
             outcome.rmse_m,
@@ -142,7 +148,7 @@ pub fn run(args: &BasinArgs) {
             outcome.iterations,
             match outcome.stop {
                 StopReason::SmallStep { .. } => "",
-                StopReason::IterationLimit { .. } => " (limit)",
+                StopReason::IterationLimit { .. } => " (used up)",
                 StopReason::TooFewPairs { .. } => " (too few pairs)",
                 StopReason::NotFinite => " (numeric overflow)",
             },

@@ -43,7 +43,7 @@ pub struct LapArgs {
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
     /// Let the functions that you wrote in exercises/ drive the lap: docs/teaching/exercises.md.
-    #[arg(long, conflicts_with_all = ["front_end", "loop_matcher", "gate", "information", "estimator", "laps", "json"])]
+    #[arg(long, conflicts_with_all = ["front_end", "loop_matcher", "gate", "information", "no_information_cap", "estimator", "laps", "json"])]
     exercises: bool,
     #[command(flatten)]
     laps: laps::LapsArgs,

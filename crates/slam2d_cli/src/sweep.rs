@@ -64,7 +64,7 @@ pub struct SweepArgs {
     nudge: bool,
     /// Draw the configuration of each lap from the documented ranges, including noise, and check
     /// that every figure is finite.
-    #[arg(long, conflicts_with_all = ["nudge", "noise", "world", "matcher", "front_end", "gate", "information", "estimator"])]
+    #[arg(long, conflicts_with_all = ["nudge", "noise", "world", "matcher", "front_end", "gate", "information", "no_information_cap", "estimator"])]
     random: bool,
     /// Store the result of each lap in this file, one line each. Laps that are in it are not run again.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["nudge", "random"])]
@@ -79,7 +79,7 @@ pub struct SweepArgs {
         num_args = 1..,
         conflicts_with_all = [
             "seeds", "noise", "rows", "shard", "nudge", "random", "threads", "world", "matcher",
-            "loop_matcher", "detector", "gate", "information", "estimator",
+            "loop_matcher", "detector", "gate", "information", "no_information_cap", "estimator",
         ]
     )]
     merge: Vec<PathBuf>,

@@ -1,5 +1,5 @@
 //! World and estimator of `lap` and `sweep`: `--world`, `--matcher`,
-//! `--loop-matcher`, `--detector`, `--gate`, `--information`.
+//! `--loop-matcher`, `--detector`, `--gate`, `--information`, `--no-information-cap`.
 
 use ch16_lab::lap::{
     BuiltInWorld, Choice, LapConfig, LapDetector, LapFrontEnd, LapMatcher, LoopMatcher,
@@ -38,6 +38,9 @@ pub struct TrialArgs {
     /// Apartment, the exact one elsewhere.
     #[arg(long, value_parser = choice::<InformationFrame>())]
     information: Option<InformationFrame>,
+    /// Leave the information of edges as the pairs give it: the default bounds it at a standard deviation of 2 cm.
+    #[arg(long)]
+    no_information_cap: bool,
 }
 
 /// The requested laps, which differ in seed and noise.
@@ -50,6 +53,7 @@ pub struct Trial {
     detector: LapDetector,
     gate: Option<GateModel>,
     information: Option<InformationFrame>,
+    no_information_cap: bool,
 }
 
 impl TrialArgs {
@@ -62,6 +66,7 @@ impl TrialArgs {
             (self.detector.is_some(), "--detector"),
             (self.gate.is_some(), "--gate"),
             (self.information.is_some(), "--information"),
+            (self.no_information_cap, "--no-information-cap"),
         ];
         given.into_iter().find(|(is, _)| *is).map(|(_, name)| name)
     }
@@ -89,6 +94,7 @@ impl TrialArgs {
             detector: self.detector.unwrap_or_default(),
             gate: self.gate,
             information: self.information,
+            no_information_cap: self.no_information_cap,
         })
     }
 }
@@ -114,6 +120,11 @@ impl Trial {
         let lap = match self.information {
             Some(frame) => lap.with_information(frame),
             None => lap,
+        };
+        let lap = if self.no_information_cap {
+            lap.with_information_cap(f64::INFINITY)
+        } else {
+            lap
         };
         lap.with_front_end(self.front_end)
     }

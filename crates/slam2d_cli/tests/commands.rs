@@ -55,6 +55,37 @@ fn lap_prints_the_fields_of_the_reference() {
     }
 }
 
+/// The page and the command have one definition of home: the position and the heading.
+#[test]
+fn basin_reports_used_up_iterations_as_an_outcome_of_its_own() {
+    let run = |limit: &str| {
+        let arguments = [
+            "basin",
+            "--dx",
+            "0",
+            "--dy",
+            "0",
+            "--heading-deg",
+            "35",
+            "--max-iterations",
+            limit,
+            "--json",
+        ];
+        json(&arguments)["runs"][0].clone()
+    };
+    // basin.json: 0.116 m and 25.3° off after 30 iterations.
+    let short = run("30");
+    assert_eq!(
+        (&short["minimum"], &short["converged"]),
+        (&"stopped before it converged".into(), &false.into())
+    );
+    let patient = run("200");
+    assert_eq!(
+        (&patient["minimum"], &patient["converged"]),
+        (&"right minimum".into(), &true.into())
+    );
+}
+
 #[test]
 fn basin_prints_the_runs_of_the_reference() {
     let basin: Value = reference("basin.json");

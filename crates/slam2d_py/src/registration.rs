@@ -132,6 +132,7 @@ pub fn icp(
     let trust = TrustConfig {
         sigma_m: within("sigma", sigma, 1e-6, 1e6, " m")?,
         covariance_scale: within("covariance_scale", covariance_scale, 1e-6, 1e6, "")?,
+        information_cap: f64::INFINITY,
     };
     let (found, map) = py.detach(|| {
         if config.variant == IcpVariant::PointToPlane {

@@ -6,6 +6,8 @@
 mod alignment;
 mod ball;
 pub mod basin;
+mod consistency;
+mod drift;
 mod drops;
 mod graph;
 mod jacobians;
@@ -17,6 +19,7 @@ mod places;
 mod procrustes;
 mod robots;
 mod rows;
+mod rule;
 mod search;
 mod setup;
 pub mod sweep;
@@ -36,6 +39,7 @@ pub struct Figures {
     laps: HashMap<String, LapRecord>,
     basin: OnceCell<BasinScene>,
     places: HashMap<String, places::World>,
+    consistency: consistency::Cases,
 }
 
 impl Figures {
@@ -52,6 +56,11 @@ impl Figures {
             ["example", "points", what] => alignment::value(what),
             ["example", "poses", what] => graph::value(what),
             ["basin", what @ ..] => basin::value(self.basin.get_or_init(BasinScene::new), what),
+            ["consistency", what @ ..] => self.consistency.value(what),
+            ["rule", what] => rule::value(what),
+            ["drift", "longer"] => Some(drift::LONGER_EDGES as f64),
+            ["drift", path, edges] => drift::refused_percent(path, edges),
+            ["ndt", "hessian", what] => ndt::hessian(what),
             ["ndt", start, what] => ndt::value(start, what),
             ["procrustes", what @ ..] => procrustes::value(what),
             ["jacobians", what @ ..] => jacobians::value(what),

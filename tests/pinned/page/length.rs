@@ -3,9 +3,9 @@
 use super::document::companion;
 
 /// Largest number of words, folded text included; a formula counts as one word, code as none.
-const MAX_WORDS: usize = 7_000;
+const MAX_WORDS: usize = 8_400;
 /// Largest number of words outside of folded text.
-const MAX_SEEN_WORDS: usize = 5_300;
+const MAX_SEEN_WORDS: usize = 5_800;
 
 /// The source between two positions without the elements in `dropped`, including nested ones.
 fn without(html: &str, dropped: &str) -> String {
@@ -59,4 +59,62 @@ fn the_pages_are_short_without_their_exercises() {
     assert!(seen <= MAX_SEEN_WORDS, "{seen} words unfolded");
     let counted = words("<p>A <b>bold</b> word, 0.24&nbsp;m – and <i>one</i></p><p>more.</p>");
     assert_eq!(counted, 8);
+}
+
+/// Words that a screen holds beside a widget.
+const SCREEN_WORDS: usize = 200;
+/// Largest number of figures on a screen.
+const MAX_NUMBERS: usize = 10;
+
+/// The parts of a text that are seen at once: what is unfolded in windows of a screen, and each fold.
+fn screens(html: &str) -> Vec<String> {
+    let mut screens: Vec<String> = Vec::new();
+    let folds = html.split("<details").skip(1);
+    screens.extend(folds.map(|fold| {
+        fold.split("</details>")
+            .next()
+            .unwrap_or_default()
+            .to_owned()
+    }));
+    let seen = without(html, "details");
+    let blocks: Vec<&str> = seen.split_inclusive("</p>").collect();
+    for start in 0..blocks.len() {
+        let mut screen = String::new();
+        for block in &blocks[start..] {
+            if !screen.is_empty() && words(&screen) + words(block) > SCREEN_WORDS {
+                break;
+            }
+            screen.push_str(block);
+        }
+        screens.push(screen);
+    }
+    screens
+}
+
+#[test]
+fn no_screen_of_the_limits_or_of_an_exercise_has_more_than_ten_numbers() {
+    let pages = companion();
+    let limits = pages
+        .split("<section id=\"limits\">")
+        .nth(1)
+        .expect("the section");
+    let limits = without(
+        limits.split("</section>").next().expect("its end"),
+        "article",
+    );
+    let articles = pages.split("<article class=\"exercise\"").skip(1);
+    let exercises = articles.map(|text| text.split("</article>").next().unwrap_or_default());
+    let mut crowded = Vec::new();
+    for text in exercises.chain([limits.as_str()]) {
+        for screen in screens(text) {
+            let numbers = screen.matches("data-figure=").count() + screen.matches("\\fig{").count();
+            if numbers > MAX_NUMBERS {
+                let start: String = screen.chars().take(300).collect();
+                crowded.push(format!("{numbers} numbers: {start}"));
+            }
+        }
+    }
+    assert!(crowded.is_empty(), "{}", crowded.join("\n\n"));
+    let eleven = "<p><span data-figure=\"a\">1</span></p>".repeat(11);
+    assert_eq!(screens(&eleven)[0].matches("data-figure=").count(), 11);
 }

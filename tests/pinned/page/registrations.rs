@@ -7,9 +7,13 @@ use super::figures::Figures;
 use super::widgets::Widgets;
 
 /// Names of basins in the text, and the settings of the widget.
-const BASINS: [(&str, &str); 3] = [
+const BASINS: [(&str, &str); 4] = [
     ("basin.p2p", "variant=point-to-point"),
-    ("basin.p2p.wide", "variant=point-to-point&tau=1.4"),
+    ("basin.p2p.patient", "variant=point-to-point&limit=200"),
+    (
+        "basin.p2p.patient.wide",
+        "variant=point-to-point&limit=200&tau=1.4",
+    ),
     ("basin.p2l", "variant=point-to-plane"),
 ];
 

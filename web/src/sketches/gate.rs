@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use ch16_lab::drift::{drawn_innovation, straight};
 use ch16_lab::lap::{LapConfig, LapRunner};
 use ch16_slam2d::chapter::path_information;
 use ch16_slam2d::loops::{LoopConfig, chi_squared_gate};
@@ -105,7 +106,10 @@ fn picture(gap: usize, config: &LoopConfig) -> Panel {
     };
     Panel {
         id: "gate",
-        title: format!("What {gap} nodes of drift may come to"),
+        title: format!(
+            "What {gap} nodes of drift may come to: {} of {DRIFTS} refused",
+            beyond.len()
+        ),
         weight: Weight::Main,
         aspect: Aspect::Free,
         x: Axis::new("distance from the belief (m)", 0.0, REACH_M),
@@ -133,18 +137,12 @@ fn picture(gap: usize, config: &LoopConfig) -> Panel {
     }
 }
 
-/// Sums of random steps according to the gate's model, m, m, rad; the random numbers are the same for every
-/// path.
+/// Drifts over a straight path, drawn edge by edge, m, m, rad.
 fn drifts(gap: usize, config: &LoopConfig) -> Vec<Vector3<f64>> {
+    let path = straight(gap, LapConfig::default().slam.keyframe_distance_m);
     let mut rng = Rng::new(16);
-    let steps = math::sqrt(gap as f64);
-    let sigmas = [
-        config.drift_sigma_m,
-        config.drift_sigma_m,
-        config.drift_sigma_rad,
-    ];
     (0..DRIFTS)
-        .map(|_| Vector3::from(sigmas.map(|sigma| steps * rng.normal(0.0, sigma))))
+        .map(|_| drawn_innovation(&path, config, &mut rng))
         .collect()
 }
 
@@ -190,15 +188,15 @@ mod tests {
         assert!(verdicts.windows(2).all(|pair| pair[0] <= pair[1]));
     }
 
-    /// One in twenty by design: of 200 samples 10, and 3 standard deviations of a count of 200 are 9.2.
+    /// 18 % of 40,000 draws (`drift.straight.22` of the page); 3 standard deviations of a count of 200 are 16.
     #[test]
-    fn about_one_true_drift_in_twenty_stays_outside() {
+    fn about_one_true_drift_in_six_stays_outside_after_a_straight_path() {
         let config = LapConfig::default().slam.chapter.loops;
-        let information = path_information(30, &config);
-        let outside = drifts(30, &config)
+        let information = path_information(22, &config);
+        let outside = drifts(22, &config)
             .iter()
             .filter(|drift| !chi_squared_gate(drift, &information, config.gate_chi2).passes())
             .count();
-        assert!((1..=19).contains(&outside), "{outside}");
+        assert!((19..=51).contains(&outside), "{outside}");
     }
 }

@@ -14,8 +14,9 @@ pub const OFFSET_SPAN_M: f64 = 1.5;
 /// The Huber width at which every pair has full weight: no pair is longer than the largest τ.
 pub const HUBER_OFF_M: f64 = 1.6;
 
-/// Largest number of iterations of a registration.
-pub const MAX_ITERS: f64 = BasinScene::MAX_ITERS as f64;
+/// Choices for the largest number of iterations of a registration: the chapter's, and one that no start of
+/// the basin reaches.
+pub const ITERATION_LIMITS: [usize; 2] = [BasinScene::MAX_ITERS, BasinScene::PATIENT_ITERS];
 
 /// Computes the edge and compares it with the marks.
 pub const SWEEP: ButtonSpec = ButtonSpec {
@@ -72,6 +73,14 @@ pub(super) static TAU: Param<f64> = Param::slider("tau", "pairing distance τ", 
     .default(0.7)
     .help("A point farther than this from the target has no pair.");
 
+pub(super) static LIMIT: OneOf<usize> = OneOf::new(
+    "limit",
+    "iterations at most",
+    &[Choice::new("30", "30"), Choice::new("200", "200")],
+    &ITERATION_LIMITS,
+)
+.help("After this many iterations a registration stops, converged or not.");
+
 pub(super) static TRIM: Param<f64> =
     Param::slider("trim", "share of pairs dropped", [0.0, 0.7], 0.05).help(
         "Trimming drops this share of the pairs in each iteration, the longest first; 0 keeps all.",
@@ -115,8 +124,10 @@ pub(super) static EDGES: [Param<f64>; 2] = [
 pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
     .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
 
-pub(super) static ITERATION: Param<f64> = Param::timeline("iteration", "iteration", MAX_ITERS)
-    .help("Which iteration is shown; 0 is the first guess, and beyond the last one is the end.");
+pub(super) static ITERATION: Param<f64> =
+    Param::timeline("iteration", "iteration", ITERATION_LIMITS[1] as f64).help(
+        "Which iteration is shown; 0 is the first guess, and beyond the last one is the end.",
+    );
 
 /// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
@@ -126,6 +137,7 @@ pub const PARAMS: &[&ParamSpec] = &[
     &SCENE.spec,
     &VARIANT.spec,
     &TAU.spec,
+    &LIMIT.spec,
     &TRIM.spec,
     &HUBER.spec,
     &AXIS.spec,
@@ -157,14 +169,15 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.1",
     title: "Basin explorer",
     misconception: "A small residual proves nothing: registration ends in the minimum whose basin \
-                    it starts in, and a false one can fit almost as well as the right one.",
+                    it starts in, and a false one can fit better than the right one.",
     question: "How far may you turn the sweep until registration settles on a false place? Drag it, then let it go.",
     notice: &[
-        "The room is almost square, so a quarter turn fits too: rmse 0.13 m there, 0.03 m at the truth.",
+        "The room is almost square, so a quarter turn is a minimum too: rmse 0.13 m there, 0.03 m at the truth. After half a turn point to plane fits better than at the truth.",
         "Between the right basin and the quarter turn, point to point settles on a third answer.",
         "A row of equal posts has a minimum at each spacing: bands on the map, and no residual tells them apart.",
         "Point to plane needs fewer iterations, and its right basin is wider with no offset.",
-        "The verdict uses the truth. A robot has only rmse and pairs, and both look fine when it is wrong.",
+        "The verdict uses the truth. A robot has only rmse and pairs, and a wrong pose can have the smaller rmse.",
+        "A run that has used up its iterations has not reached a minimum. With 200 the right basin is a little wider.",
     ],
     opening: Opening {
         panels: &["sweeps", "basin-point-to-point", "basin-point-to-plane"],

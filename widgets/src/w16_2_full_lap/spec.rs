@@ -450,7 +450,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "A loop moves poses that the robot left long ago. A filter that keeps only the newest pose could not.",
         "Click a keyframe, and drag from it to another: your own loop. A wrong one is paid for by every edge between its ends, each a little; a kernel gives it little weight.",
         "A small χ² is not enough: the sweep must also fit the old walls to 0.16 m, with at least 25 pairs.",
-        "The exact gate adds up the covariances of the edges, and is no closer to the truth. Over seeds 1 to 50 at four times the noise the chapter's closes 78 loops, 3 of them wrong; the exact one closes 123, 7 of them wrong. Wrong is more than 0.3 m or 5° off the truth.",
+        "The exact gate adds up the covariances of the edges, and is no closer to the truth. Over seeds 1 to 50 at four times the noise the chapter's closes 78 loops, 3 of them wrong; the exact one closes 123, 7 of them wrong: more of both. Wrong is more than 0.3 m or 5° off the truth.",
     ],
     opening: Opening {
         panels: &["map", "loop"],

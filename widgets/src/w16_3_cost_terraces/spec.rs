@@ -241,7 +241,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "drop-room",
         label: "Drop 100 sweeps in the room",
-        help: "They rest in a round heap a few millimetres wide, about as wide as the information says.",
+        help: "They rest in a round heap with a standard deviation of a millimetre, about that of the information.",
         set: &[("tau", 0.6), ("colours", 0.0)],
         then: &["drop-100"],
     },
@@ -284,8 +284,8 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "Both reliefs hold the same sweep against the same points; only the measure differs. Dark is low, the light comes from the upper left, and the balls roll into the dark.",
         "A small τ breaks ICP's bowl into terraces and hollows. A ball rests on the next one, however good the solver; the ground beside the relief shows it, with the pit that it did not reach.",
-        "Each step of the cost is a point that gets another partner, or none. Those that are about to change light up.",
-        "NDT has almost no steps: each point feels the whole bell of its cell. But thin walls make thin bells. Its valley is narrow, and the plain around it has dents of its own; wider cells help.",
+        "At each crease of the cost a point gets another partner, or none: the slope jumps, not the height. Those that are about to change light up.",
+        "NDT has no such creases: each point feels the whole bell of its cell. But thin walls make thin bells. Its valley is narrow, and the plain around it has dents of its own; wider cells help.",
         "A wide τ lets ICP reach farther than NDT. Neither measure wins everywhere.",
         "In the corridor both valleys run along x without an end. A hundred sweeps rest in a streak there and in a round heap in the room; the ellipse is what the information promises.",
     ],

@@ -14,7 +14,7 @@ const TURN_TOLERANCE_DEG: f64 = 10.0;
 /// The minimum in which a registration ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Minimum {
-    /// The right one: within 0.12 m of the truth and, if the heading counts, within 3°.
+    /// The right one: within 0.12 m of the truth and within 3°.
     Right,
     /// The room turned by a quarter, to either side.
     QuarterTurn,
@@ -26,9 +26,9 @@ pub enum Minimum {
     MorePosts,
     /// The right position, but the heading is off by more than 3°.
     WrongHeading,
-    /// Another false minimum; as [`BasinOutcome::minimum`], also a pose at which the iterations ran out.
+    /// Another false minimum.
     Other,
-    /// No minimum: the registration stopped elsewhere before it converged.
+    /// No minimum: the iterations were used up elsewhere, or the pairs were too few to go on.
     NotConverged,
 }
 
@@ -94,10 +94,7 @@ impl Minimum {
 pub struct BasinOutcome {
     /// `target_from_source` as registered.
     pub pose: SE2,
-    /// The minimum by the position alone, as the chapter counts.
-    pub minimum: Minimum,
-    /// The minimum if the heading has to be right, too, and if registration has to converge outside of the
-    /// known ones.
+    /// The minimum that it reached; a pose outside of the known ones is one only if it converged there.
     pub ending: Minimum,
     /// Length of the translation part of `log(truth⁻¹ ∘ pose)`, m.
     pub error_m: f64,
@@ -122,8 +119,7 @@ impl BasinOutcome {
         let error_deg = error.z.to_degrees();
         Self {
             pose: found.pose,
-            minimum: classify(error_m, error_deg, f64::INFINITY),
-            ending: classify(error_m, error_deg, HOME_HEADING_DEG).if_converged(&found.stop),
+            ending: classify(error_m, error_deg).if_converged(&found.stop),
             error_m,
             error_deg,
             rmse_m: found.rmse_m,
@@ -141,11 +137,10 @@ impl BasinOutcome {
         let off_m = found.pose.position() - truth.position();
         let posts = (off_m.x / FENCE_SPACING_M).round();
         let beside_m = math::norm2(off_m.x - posts * FENCE_SPACING_M, off_m.y);
-        let minimum = |home_deg: f64| {
-            let is_turned = outcome.error_deg.abs() > home_deg;
-            if beside_m >= SUCCESS_RADIUS_M || (is_turned && posts != 0.0) {
-                return Minimum::Other;
-            }
+        let is_turned = outcome.error_deg.abs() > HOME_HEADING_DEG;
+        let minimum = if beside_m >= SUCCESS_RADIUS_M || (is_turned && posts != 0.0) {
+            Minimum::Other
+        } else {
             match posts.abs() {
                 0.0 if is_turned => Minimum::WrongHeading,
                 0.0 => Minimum::Right,
@@ -154,16 +149,15 @@ impl BasinOutcome {
             }
         };
         Self {
-            minimum: minimum(f64::INFINITY),
-            ending: minimum(HOME_HEADING_DEG).if_converged(&found.stop),
+            ending: minimum.if_converged(&found.stop),
             ..outcome
         }
     }
 }
 
-fn classify(error_m: f64, error_deg: f64, home_deg: f64) -> Minimum {
+fn classify(error_m: f64, error_deg: f64) -> Minimum {
     let turned_by = |turn_deg: f64| (error_deg.abs() - turn_deg).abs() <= TURN_TOLERANCE_DEG;
-    if error_m < SUCCESS_RADIUS_M && error_deg.abs() <= home_deg {
+    if error_m < SUCCESS_RADIUS_M && error_deg.abs() <= HOME_HEADING_DEG {
         Minimum::Right
     } else if turned_by(90.0) {
         Minimum::QuarterTurn
@@ -181,26 +175,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_verdict_follows_position_first_and_heading_second() {
-        let by_place = |error_m, error_deg| classify(error_m, error_deg, f64::INFINITY);
-        assert_eq!(by_place(0.119, 2.0), Minimum::Right);
-        assert_eq!(by_place(0.119, 25.0), Minimum::Right);
-        assert_eq!(by_place(0.121, 2.0), Minimum::Other);
-        assert_eq!(by_place(0.943, 89.5), Minimum::QuarterTurn);
-        assert_eq!(by_place(0.981, -90.5), Minimum::QuarterTurn);
-        assert_eq!(by_place(1.921, -179.9), Minimum::HalfTurn);
-        assert_eq!(by_place(0.498, 48.1), Minimum::Other);
+    fn home_is_the_position_and_the_heading() {
+        assert_eq!(classify(0.119, 3.0), Minimum::Right);
+        assert_eq!(classify(0.0, -3.1), Minimum::WrongHeading);
+        assert_eq!(classify(0.11, 25.0), Minimum::WrongHeading);
+        assert_eq!(classify(0.121, 2.0), Minimum::Other);
+        assert_eq!(classify(0.0, 90.0), Minimum::QuarterTurn);
+        assert_eq!(classify(0.943, 89.5), Minimum::QuarterTurn);
+        assert_eq!(classify(0.981, -90.5), Minimum::QuarterTurn);
+        assert_eq!(classify(1.921, -179.9), Minimum::HalfTurn);
+        assert_eq!(classify(0.498, 48.1), Minimum::Other);
     }
 
-    #[test]
-    fn home_is_the_place_and_the_heading() {
-        let home = |error_m, error_deg| classify(error_m, error_deg, HOME_HEADING_DEG);
-        assert_eq!(home(0.119, 3.0), Minimum::Right);
-        assert_eq!(home(0.0, -3.1), Minimum::WrongHeading);
-        assert_eq!(home(0.11, 25.0), Minimum::WrongHeading);
-        assert_eq!(home(0.0, 90.0), Minimum::QuarterTurn);
-        assert_eq!(home(0.121, 0.0), Minimum::Other);
-    }
     #[test]
     fn a_pose_outside_of_the_known_minima_is_one_only_if_it_converged_there() {
         let limit = StopReason::IterationLimit { max_iterations: 30 };

@@ -398,6 +398,14 @@ impl LapConfig {
         self
     }
 
+    /// Bounds the information of every edge; [`f64::INFINITY`] leaves it as the pairs give it.
+    #[must_use]
+    pub fn with_information_cap(mut self, cap: f64) -> Self {
+        self.slam.chapter.odometry_trust.information_cap = cap;
+        self.slam.chapter.loops.trust.information_cap = cap;
+        self
+    }
+
     /// Replaces the frame in which edges hold their information.
     #[must_use]
     pub fn with_information(mut self, frame: InformationFrame) -> Self {

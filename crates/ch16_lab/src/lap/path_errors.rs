@@ -75,7 +75,7 @@ impl PathErrors {
 }
 
 /// Share of the path at which each keyframe was taken, ascending from 0.
-fn path_shares(drive: &Drive, ticks: &[usize]) -> Vec<f64> {
+pub(super) fn path_shares(drive: &Drive, ticks: &[usize]) -> Vec<f64> {
     let place = |tick: usize| drive.truth(tick).position();
     let mut path_length_m = vec![0.0];
     for tick in 1..=drive.ticks().len() {

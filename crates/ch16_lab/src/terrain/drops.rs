@@ -16,11 +16,12 @@ const SEED_STEP: u32 = 0x9E37_79B9;
 /// Registers many sweeps on the map of a scene, each with independent range noise.
 ///
 /// Drop k is taken at the pose of the scene's sweep, but its beams point between those of the scene, and its
-/// noise is its own. It starts at a shift drawn uniformly from ±[`DROP_SPREAD_M`], with the right heading,
-/// and is registered point to plane with the chapter's settings. The same scene and the same k give the same
+/// noise is its own. It starts at a shift drawn uniformly from ±[`DROP_SPREAD_M`] or another spread, with the
+/// right heading, and is registered point to plane with the chapter's settings. The same scene and the same k give the same
 /// bits.
 pub struct Drops {
     kind: SceneKind,
+    spread_m: f64,
     sweeper: Sweeper,
     workspace: IcpWorkspace,
 }
@@ -31,9 +32,17 @@ impl Drops {
     pub fn new(kind: SceneKind) -> Self {
         Self {
             kind,
+            spread_m: DROP_SPREAD_M,
             sweeper: Sweeper::new(kind),
             workspace: IcpWorkspace::new(),
         }
+    }
+
+    /// Draws the starts from ±`spread_m` instead; 0 starts all of them at the truth.
+    #[must_use]
+    pub fn with_spread(mut self, spread_m: f64) -> Self {
+        self.spread_m = spread_m;
+        self
     }
 
     /// The location.
@@ -47,14 +56,13 @@ impl Drops {
     ///
     /// # Panics
     /// If the scene is another location.
-    /// If the scene is another place.
     pub fn path_m(&mut self, scene: &TerrainScene, number: usize) -> Vec<Vector2<f64>> {
         assert_eq!(scene.kind(), self.kind, "the sweeps are of another place");
         let seed = (number as u32 + 1).wrapping_mul(SEED_STEP) ^ scene.seed();
         let mut rng = Rng::new(seed);
         let sensor = scene.world_from_sensor();
         let sweep = self.sweeper.fresh_sweep(&sensor, &mut rng);
-        let mut shift = || rng.uniform(-DROP_SPREAD_M, DROP_SPREAD_M);
+        let mut shift = || rng.uniform(-self.spread_m, self.spread_m);
         let start = SE2::translation(shift(), shift());
         let config = IcpConfig {
             variant: IcpVariant::PointToPlane,

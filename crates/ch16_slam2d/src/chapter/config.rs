@@ -3,6 +3,7 @@
 use pr_geom::SE2;
 
 use crate::graph::JacobianModel;
+use crate::icp::INFORMATION_CAP;
 use crate::loops::LoopConfig;
 use crate::matching::{InformationFrame, MapConfig, MatcherKind, TrustConfig};
 use crate::places::PlaceDetectorConfig;
@@ -80,6 +81,7 @@ impl Default for ChapterConfig {
             odometry_trust: TrustConfig {
                 sigma_m: 0.05,
                 covariance_scale: 12.0,
+                information_cap: INFORMATION_CAP,
             },
             odometry_noise: MotionNoise::default(),
             prediction_noise: MotionNoise::without_odometry(),

@@ -5,7 +5,7 @@ use pr_geom::SE2;
 
 use super::{AdaptiveThreshold, ChapterConfig};
 use crate::cloud::PointCloud;
-use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
+use crate::icp::{INFORMATION_RIDGE, Pair, regularize};
 use crate::matching::{
     InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information, match_information,
 };
@@ -102,7 +102,7 @@ impl ScanRegistrar for WindowRegistrar {
             (InformationFrame::Exact, None) => match_information(&self.pairs, estimate, trust),
             (InformationFrame::Chapter, _) => chapter_information(&self.pairs, source_theta, trust),
         };
-        regularize(information, INFORMATION_RIDGE, INFORMATION_CAP)
+        regularize(information, INFORMATION_RIDGE, trust.information_cap)
     }
 
     fn local_cloud(&self) -> &PointCloud {

@@ -8,7 +8,7 @@ use crate::cloud::cell_index;
 
 /// Points hashed by cell, at most `max_per_cell` in each.
 ///
-/// The bound rejects most points of moving objects, because the walls fill their cells first.
+/// The bound keeps walls from growing dense. It does not reject moving objects: their cells were empty.
 #[derive(Clone, Debug)]
 pub struct VoxelMap {
     /// Width of a cell, m.

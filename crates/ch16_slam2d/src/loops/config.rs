@@ -1,6 +1,7 @@
 //! The constants of loop closure; the defaults are the chapter's.
 
 use crate::chi_squared::CHAPTER_GATE;
+use crate::icp::INFORMATION_CAP;
 use crate::matching::{MapConfig, MatcherKind, TrustConfig};
 
 /// The drift between two nodes that the gate assumes.
@@ -76,6 +77,7 @@ impl Default for LoopConfig {
             trust: TrustConfig {
                 sigma_m: 0.05,
                 covariance_scale: 25.0,
+                information_cap: INFORMATION_CAP,
             },
             gate_model: GateModel::PathApproximation,
             drift_sigma_m: 0.045,

@@ -9,7 +9,7 @@ use super::gate::{GateTest, chi_squared_gate};
 use super::{LoopCandidate, LoopConfig};
 use crate::cloud::PointCloud;
 use crate::graph::{Keyframe, LoopId};
-use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
+use crate::icp::{INFORMATION_RIDGE, Pair, regularize};
 use crate::local_map::MapRegistration;
 use crate::matching::{InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information};
 
@@ -344,7 +344,7 @@ pub fn verify_loop(
         innovation,
         gate_information: assumed,
         gate,
-        information: regularize(information, INFORMATION_RIDGE, INFORMATION_CAP),
+        information: regularize(information, INFORMATION_RIDGE, config.trust.information_cap),
         rejection: rejection(&found, gate, config)
             .or(gate_information.err().map(LoopRejection::NoCovariance)),
         waits: None,

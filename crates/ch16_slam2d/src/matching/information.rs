@@ -5,13 +5,15 @@ use pr_geom::SE2;
 
 use crate::icp::{Pair, centroid, icp_information, move_information};
 
-/// Information of a pair: `1/(σ² · covariance_scale)`.
+/// Information of a pair, `1/(σ² · covariance_scale)`, and the bound of their sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrustConfig {
     /// Standard deviation of a point in metres.
     pub sigma_m: f64,
     /// Factor on the variance, because pairs are correlated.
     pub covariance_scale: f64,
+    /// Largest diagonal entry of an edge's information; see [`regularize`](crate::icp::regularize).
+    pub information_cap: f64,
 }
 
 /// The information of `pairs` about the pose `target_from_body`, 3×3, translation first.
@@ -44,6 +46,7 @@ mod tests {
     const TRUST: TrustConfig = TrustConfig {
         sigma_m: 0.05,
         covariance_scale: 3.0,
+        information_cap: f64::INFINITY,
     };
 
     /// Pairs with zero residual: the body sees a corner of two walls and a post.

@@ -3,7 +3,7 @@
 use ch16_lab::basin::{
     BasinOutcome, BasinScene, BasinStart, EdgeSearch, HOME_HEADING_DEG, Minimum, SUCCESS_RADIUS_M,
 };
-use ch16_slam2d::icp::{IcpVariant, IcpWorkspace, correspondences, icp_information};
+use ch16_slam2d::icp::{IcpConfig, IcpVariant, IcpWorkspace, correspondences, icp_information};
 
 /// The widget's own τ, m.
 pub const TAU_M: f64 = 0.7;
@@ -11,45 +11,73 @@ pub const TAU_M: f64 = 0.7;
 pub const WIDE_TAU_M: f64 = 1.4;
 const SHORT_TAU_M: f64 = 0.1;
 
-/// `p2l.180.rmse`, `p2p.wide.to_deg`: by variant, and by start or edge.
+/// The settings of a registration of the text.
+#[derive(Clone, Copy)]
+struct Settings {
+    tau_m: f64,
+    max_iterations: usize,
+}
+
+/// The widget's own settings.
+const OWN: Settings = Settings {
+    tau_m: TAU_M,
+    max_iterations: BasinScene::MAX_ITERS,
+};
+
+impl Settings {
+    /// Takes `patient` (no registration runs out of iterations) and `wide` from the front of a path.
+    fn taken_from<'a>(mut path: &'a [&'a str]) -> (Self, &'a [&'a str]) {
+        let mut settings = OWN;
+        while let [word, rest @ ..] = path {
+            match *word {
+                "patient" => settings.max_iterations = BasinScene::PATIENT_ITERS,
+                "wide" => settings.tau_m = WIDE_TAU_M,
+                _ => break,
+            }
+            path = rest;
+        }
+        (settings, path)
+    }
+}
+
+/// `p2l.180.rmse`, `p2p.patient.wide.to_deg`: by variant, settings, and start or edge.
 pub fn value(scene: &BasinScene, path: &[&str]) -> Option<f64> {
     match *path {
-        ["points"] => Some(scene.source().len() as f64),
-        ["success_m"] => Some(SUCCESS_RADIUS_M),
-        ["home_deg"] => Some(HOME_HEADING_DEG),
-        [name, "edge_deg"] => edge_deg(scene, name, TAU_M),
-        [name, "wide", "edge_deg"] => edge_deg(scene, name, WIDE_TAU_M),
-        [variant, "from_deg"] => basin_edge(scene, variant, TAU_M, -1),
-        [variant, "to_deg"] => basin_edge(scene, variant, TAU_M, 1),
-        [variant, "wide", "from_deg"] => basin_edge(scene, variant, WIDE_TAU_M, -1),
-        [variant, "wide", "to_deg"] => basin_edge(scene, variant, WIDE_TAU_M, 1),
-        [name, "quarter_from_deg"] => quarter_from_deg(scene, name),
-        [name, "iterations_least"] => iterations_in_basin(scene, name)?.min(),
-        [name, "iterations_most"] => iterations_in_basin(scene, name)?.max(),
-        [_, "short", "starts"] => Some(whole_degrees().count() as f64),
-        [variant, "short", "right"] => {
-            let ends_right = |degrees: &i32| {
-                register(scene, variant, SHORT_TAU_M, f64::from(*degrees))
-                    .is_some_and(|found| found.ending == Minimum::Right)
-            };
-            Some(whole_degrees().filter(ends_right).count() as f64)
-        }
-        [variant, "short", "placed"] => {
-            let ends_there = |degrees: &i32| {
-                register(scene, variant, SHORT_TAU_M, f64::from(*degrees))
-                    .is_some_and(|found| found.error_m < SUCCESS_RADIUS_M)
-            };
-            Some(whole_degrees().filter(ends_there).count() as f64)
-        }
-        [variant, heading_deg, "std_mm"] => {
-            claimed_std_mm(scene, variant, heading_deg.parse().ok()?)
-        }
-        [variant, heading_deg, "lost"] => {
-            let found = register(scene, variant, TAU_M, heading_deg.parse().ok()?)?;
+        ["points"] => return Some(scene.source().len() as f64),
+        ["success_m"] => return Some(SUCCESS_RADIUS_M),
+        ["home_deg"] => return Some(HOME_HEADING_DEG),
+        ["limit"] => return Some(BasinScene::MAX_ITERS as f64),
+        ["patient"] => return Some(BasinScene::PATIENT_ITERS as f64),
+        _ => {}
+    }
+    let (name, path) = path.split_first()?;
+    variant(name)?;
+    let (settings, path) = Settings::taken_from(path);
+    let short = Settings {
+        tau_m: SHORT_TAU_M,
+        ..settings
+    };
+    let count = |is_counted: fn(&BasinOutcome) -> bool| {
+        let found = whole_degrees().filter_map(|deg| register(scene, name, short, f64::from(deg)));
+        found.filter(is_counted).count() as f64
+    };
+    match *path {
+        ["edge_deg"] => edge_deg(scene, name, settings),
+        ["from_deg"] => basin_edge(scene, name, settings, -1),
+        ["to_deg"] => basin_edge(scene, name, settings, 1),
+        ["quarter_from_deg"] => quarter_from_deg(scene, name),
+        ["iterations_least"] => iterations_in_basin(scene, name, settings)?.min(),
+        ["iterations_most"] => iterations_in_basin(scene, name, settings)?.max(),
+        ["short", "starts"] => Some(whole_degrees().count() as f64),
+        ["short", "right"] => Some(count(|found| found.ending == Minimum::Right)),
+        ["short", "placed"] => Some(count(|found| found.error_m < SUCCESS_RADIUS_M)),
+        [heading_deg, "std_mm"] => claimed_std_mm(scene, name, heading_deg.parse().ok()?),
+        [heading_deg, "lost"] => {
+            let found = register(scene, name, settings, heading_deg.parse().ok()?)?;
             Some((scene.source().len() - found.inliers) as f64)
         }
-        [variant, heading_deg, what] => {
-            let found = register(scene, variant, TAU_M, heading_deg.parse().ok()?)?;
+        [heading_deg, what] => {
+            let found = register(scene, name, settings, heading_deg.parse().ok()?)?;
             registration(&found, what)
         }
         _ => None,
@@ -65,22 +93,34 @@ fn variant(name: &str) -> Option<IcpVariant> {
 }
 
 /// Registers from the right position with a wrong heading.
-fn register(scene: &BasinScene, name: &str, tau: f64, heading_deg: f64) -> Option<BasinOutcome> {
+fn register(
+    scene: &BasinScene,
+    name: &str,
+    settings: Settings,
+    heading_deg: f64,
+) -> Option<BasinOutcome> {
     let start = BasinStart {
         heading_deg,
         dx_m: 0.0,
         dy_m: 0.0,
     };
-    let config = BasinScene::config(variant(name)?, tau);
+    let config = config(name, settings)?;
     Some(scene.register_from(&start, &config, &mut IcpWorkspace::new()))
+}
+
+fn config(name: &str, settings: Settings) -> Option<IcpConfig> {
+    Some(IcpConfig {
+        max_iterations: settings.max_iterations,
+        ..BasinScene::config(variant(name)?, settings.tau_m)
+    })
 }
 
 /// The standard deviation of the position in its loosest direction, according to a registration.
 fn claimed_std_mm(scene: &BasinScene, name: &str, heading_deg: f64) -> Option<f64> {
     /// Range noise of the scene's sensor, m.
     const SIGMA_M: f64 = 0.012;
-    let config = BasinScene::config(variant(name)?, TAU_M);
-    let found = register(scene, name, TAU_M, heading_deg)?;
+    let config = config(name, OWN)?;
+    let found = register(scene, name, OWN, heading_deg)?;
     let pairs = correspondences(scene.source(), scene.map(), found.pose, &config);
     let information = icp_information(&pairs, SIGMA_M, 1.0);
     let position = information.fixed_view::<2, 2>(0, 0).into_owned();
@@ -105,7 +145,7 @@ fn whole_degrees() -> impl Iterator<Item = i32> {
 /// turn off.
 fn quarter_from_deg(scene: &BasinScene, name: &str) -> Option<f64> {
     let is_quarter = |degrees: &i32| {
-        register(scene, name, TAU_M, f64::from(*degrees))
+        register(scene, name, OWN, f64::from(*degrees))
             .is_some_and(|found| found.ending == Minimum::QuarterTurn)
     };
     let last_other = (0..=90).rev().find(|degrees| !is_quarter(degrees))?;
@@ -113,10 +153,10 @@ fn quarter_from_deg(scene: &BasinScene, name: &str) -> Option<f64> {
 }
 
 /// Iterations from each whole degree of the right basin, except for the truth itself.
-fn iterations_in_basin(scene: &BasinScene, name: &str) -> Option<Iterations> {
-    let [from, to] = [-1, 1].map(|side| basin_edge(scene, name, TAU_M, side));
+fn iterations_in_basin(scene: &BasinScene, name: &str, settings: Settings) -> Option<Iterations> {
+    let [from, to] = [-1, 1].map(|side| basin_edge(scene, name, settings, side));
     let degrees = (from? as i32..=to? as i32).filter(|degrees| *degrees != 0);
-    let found = degrees.filter_map(|degrees| register(scene, name, TAU_M, f64::from(degrees)));
+    let found = degrees.filter_map(|degrees| register(scene, name, settings, f64::from(degrees)));
     Some(Iterations(found.map(|found| found.iterations).collect()))
 }
 
@@ -134,19 +174,18 @@ impl Iterations {
 }
 
 /// The last whole degree, from 0 to one side, that converges to the right minimum.
-fn basin_edge(scene: &BasinScene, name: &str, tau: f64, side: i32) -> Option<f64> {
+fn basin_edge(scene: &BasinScene, name: &str, settings: Settings, side: i32) -> Option<f64> {
     let comes_home = |degrees: i32| {
-        let found = register(scene, name, tau, f64::from(side * degrees));
+        let found = register(scene, name, settings, f64::from(side * degrees));
         found.is_some_and(|found| found.ending == Minimum::Right)
     };
-    variant(name)?;
     let first_failure = (0..=180).find(|&degrees| !comes_home(degrees))?;
     Some(f64::from(side * (first_failure - 1)))
 }
 
 /// The largest heading error, on both sides, of a guess at the right position that converges to the truth.
-fn edge_deg(scene: &BasinScene, name: &str, tau: f64) -> Option<f64> {
-    let mut search = EdgeSearch::new(BasinScene::config(variant(name)?, tau));
+fn edge_deg(scene: &BasinScene, name: &str, settings: Settings) -> Option<f64> {
+    let mut search = EdgeSearch::new(config(name, settings)?);
     let mut workspace = IcpWorkspace::new();
     while !search.step(scene, &mut workspace) {}
     search.reached_deg()

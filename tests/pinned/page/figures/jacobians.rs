@@ -13,6 +13,8 @@ pub fn value(path: &[&str]) -> Option<f64> {
         ["setup", "poses"] => Some(RING_POSES as f64),
         ["setup", "bias_deg"] => Some(RingConfig::default().turn_bias_rad.to_degrees()),
         ["setup", "edge_cm"] => Some(100.0 * EDGE_STD.0),
+        // A ring of n poses has n edges for n − 1 free poses.
+        ["setup", "freedom"] => Some(3.0),
         [bias_deg, solver, what] => {
             let recipe = match solver {
                 "exact" => Recipe::Exact,

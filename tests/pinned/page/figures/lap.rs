@@ -5,7 +5,8 @@ use ch16_lab::lap::{
     LapTrace, OwnKernel, OwnLoopRequest,
 };
 use ch16_slam2d::chi_squared::gate_threshold;
-use pr_geom::Translation;
+use ch16_slam2d::icp::INFORMATION_CAP;
+use pr_geom::{SE2, Translation};
 
 use super::loops;
 
@@ -27,6 +28,7 @@ pub fn config(name: &str) -> Option<LapConfig> {
         "corridor" => LapConfig::in_world(BuiltInWorld::Corridor, CANONICAL_SEED, 1.0),
         "p2l" => LapConfig::default().with_matcher(LapMatcher::PointToPlane),
         "p2l-narrow" => narrow_normals(),
+        "p2p-wide" => wide_normals(),
         "ndt" => LapConfig::default().with_matcher(LapMatcher::Ndt),
         "quiet" => quiet(LapMatcher::PointToPoint),
         "quiet-p2l" => quiet(LapMatcher::PointToPlane),
@@ -54,6 +56,15 @@ fn narrow_normals() -> LapConfig {
         .with_scan(scan)
 }
 
+/// Point to point with the normals of the lap by point to plane.
+fn wide_normals() -> LapConfig {
+    let scan = LapConfig::default()
+        .with_matcher(LapMatcher::PointToPlane)
+        .slam
+        .scan;
+    LapConfig::default().with_scan(scan)
+}
+
 /// The canonical run with almost exact odometry.
 fn quiet(matcher: LapMatcher) -> LapConfig {
     LapConfig::with_seed_and_noise(CANONICAL_SEED, QUIET_NOISE).with_matcher(matcher)
@@ -76,6 +87,7 @@ pub fn value(record: &LapRecord, path: &[&str]) -> Option<f64> {
         }
         ["own", claim, from, to, kernel, what] => own(record, [from, to], claim, kernel, what),
         ["front_end", "turn", what] => turn(&record.front_end, what),
+        ["capped_percent"] => Some(capped_percent(&record.lap)),
         ["rms_fall_percent"] => {
             let [front_end, lap] = [&record.front_end, &record.lap];
             let left = lap.summary.keyframe_rms_m / front_end.summary.keyframe_rms_m;
@@ -85,6 +97,7 @@ pub fn value(record: &LapRecord, path: &[&str]) -> Option<f64> {
             let scan = record.config.slam.scan;
             Some(scan.normal_radius_m / scan.cell_m)
         }
+        ["front_end", "driven_percent"] => driven_percent(&record.front_end),
         ["front_end", what] => summary(&record.front_end, what),
         [what] => summary(&record.lap, what),
         _ => None,
@@ -102,7 +115,9 @@ fn own(record: &LapRecord, ends: [&str; 2], claim: &str, kernel: &str, what: &st
     };
     let attempt = record.own_loop(&request).ok()?.attempt;
     let effect = attempt.effect?;
+    let truth = |node: usize| record.lap.keyframes[node].truth.translation();
     Some(match what {
+        "apart_m" => (truth(request.nodes[0]) - truth(request.nodes[1])).norm(),
         "from" => request.nodes[0] as f64,
         "to" => request.nodes[1] as f64,
         "gate_chi2" => attempt.verification.gate.chi2,
@@ -149,4 +164,27 @@ fn turn(lap: &LapTrace, what: &str) -> Option<f64> {
         "short_m" => Some(-error.x),
         _ => None,
     }
+}
+
+/// Distance between the start and the farthest keyframe, as a share of the true one.
+fn driven_percent(lap: &LapTrace) -> Option<f64> {
+    let poses = lap.poses(lap.summary.ticks);
+    let truths = lap.keyframes.iter().map(|keyframe| keyframe.truth);
+    let reach = |pose: SE2, start: SE2| (pose.translation() - start.translation()).norm();
+    let start = lap.keyframes[0].truth;
+    let (node, far) = truths
+        .map(|truth| reach(truth, start))
+        .enumerate()
+        .max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(100.0 * reach(poses[node], poses[0]) / far)
+}
+
+/// Share of the edges whose information is that of the cap.
+fn capped_percent(lap: &LapTrace) -> f64 {
+    let graph = lap.graph(lap.summary.ticks);
+    let capped = graph.edges().filter(|edge| {
+        // 1e-9: rounding of the scaling.
+        edge.edge.information.diagonal().max() > INFORMATION_CAP * (1.0 - 1e-9)
+    });
+    100.0 * capped.count() as f64 / graph.edges().count() as f64
 }

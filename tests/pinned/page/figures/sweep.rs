@@ -100,6 +100,7 @@ fn of_laps(laps: &LapStatistics, path: &[&str], canonical: &LapOutcome) -> Optio
     Some(match *path {
         ["loops", count] => 100.0 * laps.loop_shares().get(count.parse::<usize>().ok()?)?,
         ["accepted"] => laps.accepted_loops() as f64,
+        ["false_percent"] => 100.0 * laps.false_acceptances() as f64 / laps.accepted_loops() as f64,
         ["false"] => laps.false_acceptances() as f64,
         ["false_runs_percent"] => 100.0 * laps.false_run_share(),
         ["rms_grew_percent"] => percent(|lap| grew(lap, |lap| lap.keyframe_rms_m)),
@@ -187,6 +188,7 @@ fn row_of(name: &str) -> Option<Row> {
         "last_nine_max" => Some(Row::LastKeyframesMax),
         "max_error" => Some(Row::KeyframeMax),
         "map_disagreement" => Some(Row::MapDisagreement),
+        "half_way_sigma" => Some(Row::HalfWaySigma),
         _ => None,
     }
 }

@@ -5,7 +5,7 @@ use ch16_slam2d::icp::{IcpConfig, IcpVariant};
 use kit::values::Values;
 
 use crate::w16_1_basin_explorer::spec::{
-    AXIS, DX, DY, HEADING, HUBER, HUBER_OFF_M, SCENE, SEED, TAU, TRIM, VARIANT,
+    AXIS, DX, DY, HEADING, HUBER, HUBER_OFF_M, LIMIT, SCENE, SEED, TAU, TRIM, VARIANT,
 };
 
 /// The selected sweeps.
@@ -53,6 +53,7 @@ pub fn config(values: &Values, variant: IcpVariant) -> IcpConfig {
     let huber_m = values.get(&HUBER);
     IcpConfig {
         trim: values.get(&TRIM),
+        max_iterations: values.get(&LIMIT),
         huber_width_m: if huber_m < HUBER_OFF_M {
             huber_m
         } else {

@@ -1,0 +1,64 @@
+//! Errors halfway of many laps beside the graph's covariance, with the cap on information and without.
+
+use std::collections::HashMap;
+
+use ch16_lab::lap::{
+    BuiltInWorld, Choice as _, Consistency, HalfWay, LapConfig, LapMatcher, LapRunner,
+};
+use ch16_slam2d::chapter::InformationFrame;
+
+/// Laps of each case, from seed 1 on: the standard deviation of a scatter is 5 % of it.
+const SEEDS: u32 = 100;
+
+/// The front end and the lap with loops, of laps that differ in their seed only.
+type Case = [Consistency; 2];
+
+/// The cases that were asked for.
+#[derive(Default)]
+pub struct Cases(HashMap<String, Case>);
+
+impl Cases {
+    /// `ring.ndt.uncapped.with_loops.scatter_m`: by world, matcher, bound of the information, estimate.
+    pub fn value(&mut self, path: &[&str]) -> Option<f64> {
+        let [world, matcher, bound, estimate, what] = *path else {
+            return (path == ["seeds"]).then(|| f64::from(SEEDS));
+        };
+        let name = format!("{world}.{matcher}.{bound}");
+        if !self.0.contains_key(&name) {
+            self.0.insert(name.clone(), case(world, matcher, bound)?);
+        }
+        let [front_end, with_loops] = self.0[&name];
+        let of = match estimate {
+            "front_end" => front_end,
+            "with_loops" => with_loops,
+            _ => return None,
+        };
+        Some(match what {
+            "bias_m" => of.bias_m,
+            "scatter_m" => of.scatter_m,
+            "sigma_m" => of.sigma_m,
+            "nees" => of.nees,
+            _ => return None,
+        })
+    }
+}
+
+fn case(world: &str, matcher: &str, bound: &str) -> Option<Case> {
+    let (world, matcher) = (BuiltInWorld::named(world)?, LapMatcher::named(matcher)?);
+    let mut runner = LapRunner::new();
+    let mut halves: [Vec<HalfWay>; 2] = Default::default();
+    for seed in 1..=SEEDS {
+        let config = LapConfig::in_world(world, seed, 1.0)
+            .with_matcher(matcher)
+            .with_information(InformationFrame::Exact);
+        let record = runner.run(&match bound {
+            "capped" => config,
+            "uncapped" => config.with_information_cap(f64::INFINITY),
+            _ => return None,
+        });
+        halves[0].extend(record.front_end_half_way());
+        halves[1].extend(record.half_way());
+    }
+    let [front_end, with_loops] = halves.each_ref().map(|laps| Consistency::of(laps));
+    Some([front_end?, with_loops?])
+}
