@@ -179,6 +179,7 @@ impl LogFormat {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::log::LogOption;
 
     #[test]
     fn a_topic_is_refused_where_there_are_none() {
