@@ -190,7 +190,7 @@ async function bundleScripts(stories, matchAnswer) {
     const { outputFiles, metafile } = await build({
       entryPoints: [path.join(here, source)],
       bundle: true,
-      external: ['./slam-widget.js'],
+      external: ['./slam-widget.js', './write-yourself.js'],
       define,
       write: false,
       metafile: true,
@@ -209,8 +209,11 @@ async function bundleScripts(stories, matchAnswer) {
     PLACES: JSON.stringify(places),
     LAPS_WORKER_FILE: JSON.stringify(`./${workerFile}`),
   });
+  // A stable name: the page imports it when a reader opens an editor.
+  const writing = await bundle('write/write-yourself.ts', {});
+  await writeFile(path.join(outDir, 'write-yourself.js'), writing.text);
   const names = new Map([['page.js', await writeHashed('page.js', page.text)]]);
-  return { names, metafiles: [worker.metafile, page.metafile] };
+  return { names, metafiles: [worker.metafile, page.metafile, writing.metafile] };
 }
 
 /** Writes the notices of the widgets, from their build, and of the page. */
