@@ -1,16 +1,16 @@
 //! 5. The gate, on the canonical lap.
 
 use ch16_slam2d::listings::{
-    IcpConfig, LoopConfig, PointCloud, PoseGraph, SE2, VerifiedLoop, associate, icp_information,
-    regularize, submap,
+    EdgeKind, IcpConfig, IcpResult, LoopConfig, PointCloud, PoseGraph, SE2, VerifiedLoop,
+    associate, icp, icp_information, regularize, submap,
 };
 use exercises::verify_loop;
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
 use petgraph::graph::NodeIndex;
 use serde::Deserialize;
 use slam2d_tests::{assert_close, reference};
 
-use crate::canonical::{lap, nodes_before_loop, sweeps};
+use crate::canonical::{assert_same_pose, lap, nodes_before_loop, sweeps};
 
 #[derive(Deserialize)]
 struct Lap {
@@ -69,13 +69,39 @@ impl First {
     fn verify(&self, cfg: &LoopConfig) -> VerifiedLoop {
         verify_loop(&self.graph, &self.sweeps, self.node, self.old, cfg)
     }
+
+    fn belief(&self) -> SE2 {
+        self.graph.pose(self.old).inverse() * self.graph.pose(self.node)
+    }
+
+    /// The listing's registration from the belief with this threshold and limit.
+    fn register(&self, cfg: &LoopConfig, tau: f64, max_iters: usize) -> IcpResult {
+        let map = submap(&self.graph, &self.sweeps, self.old, cfg);
+        let settings = IcpConfig {
+            tau,
+            max_iters,
+            ..IcpConfig::default()
+        };
+        icp(
+            &self.sweeps[self.node.index()],
+            &map,
+            self.belief(),
+            &settings,
+        )
+    }
+
+    /// The same with the node's belief moved.
+    fn moved(mut self, by: SE2) -> Self {
+        self.graph.graph[self.node] = self.graph.pose(self.node) * by;
+        self
+    }
 }
 
 #[test]
 fn a_belief_that_is_far_off_fails_the_gate_and_nothing_else() {
-    let mut first = First::new();
+    let first = First::new();
     let right = first.verify(&LoopConfig::default());
-    first.graph.graph[first.node] = first.graph.pose(first.node) * SE2::new(Vector2::zeros(), 0.2);
+    let first = first.moved(SE2::new(Vector2::zeros(), 0.2));
     let off = first.verify(&LoopConfig::default());
     // It fits: registration corrects the rotation.
     assert!(off.rmse <= 0.16 && off.inliers >= 25, "{off:?}");
@@ -91,10 +117,7 @@ fn a_belief_that_is_far_off_fails_the_gate_and_nothing_else() {
 fn the_drift_grows_with_the_gap() {
     let first = First::new();
     let usual = first.verify(&LoopConfig::default());
-    let innovation = {
-        let belief = first.graph.pose(first.old).inverse() * first.graph.pose(first.node);
-        (belief.inverse() * usual.edge.z).log()
-    };
+    let innovation = (first.belief().inverse() * usual.edge.z).log();
     // By hand: 22 nodes of 0.045 m and 0.012 rad each.
     let s = 22.0 * Vector3::new(0.045_f64.powi(2), 0.045_f64.powi(2), 0.012_f64.powi(2));
     let expected = innovation
@@ -137,6 +160,88 @@ fn a_poor_fit_and_few_pairs_fail_whatever_the_gate_says() {
     assert!(
         first.verify(&at_the_limits).accepted,
         "≤ and ≥, not < and >"
+    );
+}
+
+#[test]
+fn the_gate_is_the_one_that_was_asked_for() {
+    let first = First::new();
+    let usual = first.verify(&LoopConfig::default());
+    let narrow = LoopConfig {
+        gate: 0.99 * usual.chi2,
+        ..LoopConfig::default()
+    };
+    let found = first.verify(&narrow);
+    assert!(
+        !found.accepted,
+        "χ² {} is above the gate {}, and the loop was accepted",
+        found.chi2, narrow.gate
+    );
+    let off = First::new().moved(SE2::new(Vector2::zeros(), 0.2));
+    let wide = LoopConfig {
+        gate: 1e6,
+        ..LoopConfig::default()
+    };
+    let found = off.verify(&wide);
+    assert!(
+        found.accepted,
+        "χ² {} is below the gate {}, and the loop was rejected",
+        found.chi2, wide.gate
+    );
+}
+
+#[test]
+fn a_narrow_search_still_pairs_within_0_6_m_and_a_wide_one_within_half_its_radius() {
+    let first = First::new().moved(SE2::new(Vector2::new(0.3, -0.2), 0.05));
+    for (radius, half_width, tau) in [(0.4, 3, 0.6), (1.0, 1, 0.6), (3.0, 3, 1.5)] {
+        let cfg = LoopConfig {
+            radius,
+            half_width,
+            ..LoopConfig::default()
+        };
+        let (found, expected) = (first.verify(&cfg), first.register(&cfg, tau, 30));
+        assert_eq!(
+            found.inliers, expected.inliers,
+            "pairs at radius {radius} m"
+        );
+        assert_same_pose(found.edge.z, expected.pose, 1e-9);
+    }
+}
+
+/// From this belief 25 iterations, the default of a registration, end 5 cm from where 30 end.
+#[test]
+fn the_registration_may_take_30_iterations() {
+    let first = First::new().moved(SE2::new(Vector2::new(-0.2, 0.6), 0.1));
+    let cfg = LoopConfig::default();
+    let tau = cfg.radius / 2.0;
+    let [early, expected] = [25, 30].map(|limit| first.register(&cfg, tau, limit));
+    assert!((early.pose.inverse() * expected.pose).step_size() > 0.01);
+    assert_same_pose(first.verify(&cfg).edge.z, expected.pose, 1e-9);
+}
+
+#[test]
+fn the_edge_is_a_loop_and_trusts_its_points_as_it_is_told() {
+    let first = First::new();
+    let usual = first.verify(&LoopConfig::default());
+    assert_eq!(usual.edge.kind, EdgeKind::Loop);
+    let omega = |inflate| {
+        let cfg = LoopConfig {
+            trust: (0.2, inflate),
+            ..LoopConfig::default()
+        };
+        first.verify(&cfg).edge.omega
+    };
+    let (tight, loose) = (omega(50.0), omega(100.0));
+    // The cap is reached by neither. Twice the scale leaves half of what the ridge did not add.
+    assert!(tight.diagonal().max() < 2500.0, "{tight}");
+    let expected = (tight - Matrix3::identity()) / 2.0 + Matrix3::identity();
+    assert!(
+        (loose - expected).amax() < 1e-6,
+        "with twice the covariance the information is {loose}, expected {expected}"
+    );
+    assert!(
+        (usual.edge.omega - tight).amax() > 1.0,
+        "the noise of a point"
     );
 }
 

@@ -71,6 +71,9 @@ const RUNTIME = `
   const rules = {
     'cmi.core.lesson_status': /^(passed|completed|failed|incomplete|browsed)$/,
     'cmi.core.score.(raw|min|max)': /^\\d{1,3}$/,
+    'cmi.core.session_time': /^\\d{4}:[0-5]\\d:[0-5]\\d$/,
+    'cmi.core.exit': /^suspend$/,
+    'cmi.suspend_data': /^.{1,4096}$/,
     'cmi.interactions.\\\\d+.id': /^[\\w.-]{1,255}$/,
     'cmi.interactions.\\\\d+.type': /^(choice|numeric)$/,
     'cmi.interactions.\\\\d+.time': /^([01]\\d|2[0-3]):[0-5]\\d:[0-5]\\d$/,
@@ -129,7 +132,7 @@ it('the SCORM package has every file that its manifest and exercises need', asyn
     execFileSync(process.execPath, [fileURLToPath(new URL('../../web/scorm.mjs', import.meta.url)), h.DIST, target]);
     const inside = unzipSync(readFileSync(target));
     const manifest = new TextDecoder().decode(inside['imsmanifest.xml']);
-    const hrefs = [...manifest.matchAll(/href="([^"?]+)(\?exercise=([^"]+))?"/g)];
+    const hrefs = [...manifest.matchAll(/href="([^"?]+)(\?exercise=([^"&]+)[^"]*)?"/g)];
     for (const [, file] of hrefs) assert.ok(inside[file], file);
     const named = hrefs.map(([, , , exercise]) => exercise).filter(Boolean);
     assert.deepEqual(named.slice(0, 3), ['16.1', '16.2', '16.3']);

@@ -190,7 +190,7 @@ async function bundleScripts(stories, matchAnswer) {
     const { outputFiles, metafile } = await build({
       entryPoints: [path.join(here, source)],
       bundle: true,
-      external: ['./slam-widget.js'],
+      external: ['./slam-widget.js', './write-yourself.js'],
       define,
       write: false,
       metafile: true,
@@ -211,11 +211,14 @@ async function bundleScripts(stories, matchAnswer) {
   });
   // A classic script in the head, which the browser runs before it paints.
   const early = await bundle('early.ts', {}, 'iife');
+  // A stable name: the page imports it when a reader opens an editor.
+  const writing = await bundle('write/write-yourself.ts', {});
+  await writeFile(path.join(outDir, 'write-yourself.js'), writing.text);
   const names = new Map([
     ['page.js', await writeHashed('page.js', page.text)],
     ['early.js', await writeHashed('early.js', early.text)],
   ]);
-  return { names, metafiles: [worker.metafile, page.metafile, early.metafile] };
+  return { names, metafiles: [worker.metafile, page.metafile, early.metafile, writing.metafile] };
 }
 
 /** Writes the notices of the widgets, from their build, and of the page. */

@@ -10,7 +10,7 @@ const ID = /^\d+\.(\d+[a-z]?|[a-z]+(-[a-z]+)*)$/;
 export function readExercises(html) {
   const exercises = [];
   for (const [, tag, content] of html.matchAll(/<slam-predict\b([^>]*)>([\s\S]*?)<\/slam-predict>/g)) {
-    const { exercise, widget, state, fact, tolerance, unit } = attributes(tag);
+    const { exercise, widget, state, fact, tolerance, unit, varies } = attributes(tag);
     if (exercise === undefined) {
       throw new Error(`the question <slam-predict${tag}> has no id: add exercise="16.5a", its chapter, number and part`);
     }
@@ -19,7 +19,7 @@ export function readExercises(html) {
       throw new Error(`two questions have exercise="${exercise}": give each an id of its own`);
     }
     const choices = [...content.matchAll(/<li\b([^>]*\bdata-choice=[^>]*)>/g)].map(([, item]) => choiceOf(item));
-    exercises.push(withoutUndefined({ exercise, widget, state, fact, tolerance: numberOf(tolerance), unit, choices }));
+    exercises.push(withoutUndefined({ exercise, widget, state, fact, tolerance: numberOf(tolerance), unit, varies, choices }));
   }
   return exercises.sort(byId(({ exercise }) => exercise));
 }

@@ -40,6 +40,7 @@ trackReading();
 listenToThemeButtons();
 makeScrollableFocusable(document.querySelectorAll<HTMLElement>('.math, .scroll'));
 ignoreStrayDrops();
+listenToEditors();
 addCopyButtons(document.querySelectorAll<HTMLElement>('figure.listing'));
 startMatchFigure();
 void startReplay('#lap', LAP_STORY_FILE, (figure, story: Story) => new LapPlayer(figure, story));
@@ -48,6 +49,16 @@ startLapsFigure();
 startOwnFlatCard();
 watchChallenges();
 onceNear(document.querySelectorAll(NEEDS_CORE), () => void startCoreFigures());
+
+/** Loads the editor when the first place to write is opened. */
+function listenToEditors(): void {
+  for (const details of document.querySelectorAll<HTMLDetailsElement>('details[data-write]')) {
+    details.addEventListener('toggle', () => {
+      // @ts-expect-error: a separate bundle.
+      if (details.open) void import('./write-yourself.js').then(({ open }: { open(place: HTMLElement): void }) => open(details));
+    });
+  }
+}
 
 function startMatchFigure(): void {
   const figure = document.querySelector<HTMLElement>('#match');

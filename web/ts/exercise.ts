@@ -1,6 +1,6 @@
 // A single exercise of the chapter: its questions and their widgets.
 
-import { connect } from './scorm';
+import { connect, type Counts } from './scorm';
 
 /** An entry of exercises.json, which web/page/build.mjs writes. */
 interface Exercise {
@@ -25,7 +25,7 @@ export async function showExercise(main: HTMLElement, id: string): Promise<strin
   const response = await fetch(new URL('./exercises.json', import.meta.url)).catch(() => undefined);
   if (response?.ok !== true) throw new Error('The exercises could not be loaded: exercises.json is missing beside embed.html.');
   const { exercise, questions } = find((await response.json()) as Exercise[], id);
-  const reports = connect(window, questions.map((question) => question.exercise));
+  const reports = connect(window, questions.map((question) => question.exercise), countsOf(location.search));
   // @ts-expect-error: a separate bundle.
   await import('./slam-predict.js');
   const article = document.createElement('article');
@@ -51,6 +51,12 @@ export async function showExercise(main: HTMLElement, id: string): Promise<strin
     main.append(widget);
   }
   return exercise.title;
+}
+
+/** Which of several answers counts: `&counts=first`, `last`, or the best. */
+function countsOf(query: string): Counts {
+  const counts = new URLSearchParams(query).get('counts');
+  return counts === 'first' || counts === 'last' ? counts : 'best';
 }
 
 /** Finds the questions for an id, with or without chapter and part. */

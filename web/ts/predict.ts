@@ -12,7 +12,7 @@
 // `<li data-choice="smaller" data-to="0.02">`, or `data-from` inclusive and `data-to` exclusive.
 //
 // For a student (attribute `student`, or `?student=` of the page), an exercise whose widget has a seed becomes a personal
-// task.
+// task, unless `varies="no"` says that most seeds have the same answer.
 
 // @ts-expect-error: a separate bundle.
 import './slam-widget.js';
@@ -145,7 +145,7 @@ export class SlamPredict extends HTMLElement {
   async #result(widget: SlamWidget, exercise: string, person: string): Promise<Result> {
     const state = this.getAttribute('state') ?? '';
     await setState(widget, state);
-    const isFixed = widget.get('seed') === undefined || new URLSearchParams(state).has('seed');
+    const isFixed = this.#isSame() || widget.get('seed') === undefined || new URLSearchParams(state).has('seed');
     if (exercise === '' || person === '' || isFixed) return { state, outcome: outcomeOf(widget) };
     for (let attempt = 0; attempt < MAX_ATTEMPTS; attempt += 1) {
       const seed = seedOf(person, exercise, attempt);
@@ -155,6 +155,11 @@ export class SlamPredict extends HTMLElement {
     }
     await setState(widget, state);
     return { state, outcome: outcomeOf(widget) };
+  }
+
+  /** Whether everyone has the same task. */
+  #isSame(): boolean {
+    return this.getAttribute('varies') === 'no';
   }
 
   /** The right choice or number for an outcome; null if there is none. */
@@ -200,7 +205,9 @@ export class SlamPredict extends HTMLElement {
     const isPersonal = state !== (this.getAttribute('state') ?? '');
     const seed = new URLSearchParams(state).get('seed');
     const note = `This is your personal task, seed ${seed}. The numbers in the text belong to the chapter’s task.`;
-    this.#showSentences(isPersonal ? [answered, note] : [answered]);
+    const isForPerson = (this.getAttribute('student') ?? student()) !== '';
+    const same = 'Everyone has this task: another seed would hardly change its answer.';
+    this.#showSentences([answered, ...(isPersonal ? [note] : []), ...(isForPerson && this.#isSame() ? [same] : [])]);
     // The widget may be far away, so the page does not scroll by itself.
     const show = button('Show it in the widget', () => {
       widget.scrollIntoView({ block: 'start' });

@@ -102,6 +102,20 @@ impl LogOptions {
         *slot = Some(value.to_owned());
         self
     }
+
+    /// The first topic or frame that is asked for.
+    #[must_use]
+    pub fn first_asked(&self) -> Option<(LogOption, &str)> {
+        LogOption::ALL.into_iter().find_map(|option| {
+            let asked = match option {
+                LogOption::ScanTopic => &self.scan_topic,
+                LogOption::OdometryTopic => &self.odometry_topic,
+                LogOption::OdometryFrame => &self.odometry_frame,
+                LogOption::BodyFrame => &self.body_frame,
+            };
+            Some((option, asked.as_deref()?))
+        })
+    }
 }
 
 /// The choices that a recording offers for one option.

@@ -132,6 +132,17 @@ impl LogFormat {
                 "give one log at a time",
             ));
         }
+        if matches!(found, Self::Carmen | Self::Json)
+            && let Some((option, wanted)) = options.first_asked()
+        {
+            return Err(LogError::Missing {
+                name: name.to_owned(),
+                option: option.name(),
+                wanted: wanted.to_owned(),
+                advice: "only a recording of ROS has topics and frames; leave the option out"
+                    .to_owned(),
+            });
+        }
         let mounted = |reader: io::Result<Box<dyn LogReader + 'a>>| {
             let reader = reader.map_err(io)?;
             Ok(match options.laser {
@@ -168,6 +179,25 @@ impl LogFormat {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::log::LogOption;
+
+    #[test]
+    fn a_topic_is_refused_where_there_are_none() {
+        let options = LogOptions::default().with(LogOption::OdometryTopic, "/wheels");
+        for bytes in [
+            &b"FLASER 1 2 0 0 0 0 0 0 0 host 0\n"[..],
+            b"{\"stamp\": 1}\n",
+        ] {
+            let refused = LogFormat::open(bytes, "x.log", &options).err();
+            assert_eq!(
+                refused.map(|error| error.to_string()).as_deref(),
+                Some(
+                    "x.log has no odom-topic /wheels; only a recording of ROS has topics and frames; leave the option out"
+                )
+            );
+            assert!(LogFormat::open(bytes, "x.log", &LogOptions::default()).is_ok());
+        }
+    }
 
     #[test]
     fn empty_and_foreign_files_are_refused_in_one_sentence() {

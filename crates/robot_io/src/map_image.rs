@@ -163,6 +163,12 @@ impl MapImage {
         (log_odds != 0.0).then(|| 1.0 / (1.0 + math::exp(-log_odds)))
     }
 
+    /// The pixels of cells in the trinary map.
+    #[must_use]
+    pub fn pixels(log_odds: &[f64]) -> Vec<u8> {
+        log_odds.iter().map(|&l| Self::trinary(l)).collect()
+    }
+
     fn trinary(log_odds: f64) -> u8 {
         match Self::probability(log_odds) {
             Some(p) if p > OCCUPIED => 0,
@@ -257,12 +263,17 @@ impl MapImage {
     /// The YAML file that refers to `image`.
     #[must_use]
     pub fn yaml(&self, image: &str, mode: MapMode) -> String {
-        let [x, y] = self.origin_m;
+        Self::yaml_of(image, mode, self.cell_m, self.origin_m)
+    }
+
+    /// The YAML file of a map with cells of this side and this lower left corner, m.
+    #[must_use]
+    pub fn yaml_of(image: &str, mode: MapMode, cell_m: f64, [x, y]: [f64; 2]) -> String {
         format!(
             "image: {image}\nmode: {}\nresolution: {}\norigin: [{x}, {y}, 0]\nnegate: 0\n\
              occupied_thresh: {OCCUPIED}\nfree_thresh: {FREE_PIXEL}\n",
             mode.name(),
-            self.cell_m
+            cell_m
         )
     }
 

@@ -2,6 +2,7 @@
 
 mod answers;
 mod exercise;
+mod gradebook;
 
 use std::path::{Path, PathBuf};
 
@@ -13,6 +14,7 @@ use thiserror::Error;
 use crate::output::{print_json, say};
 use answers::{Answers, AnswersError};
 use exercise::{Mark, Marked};
+use gradebook::{Columns, Roster, RosterError};
 
 /// Mark the answers that students saved from the page.
 #[derive(Args, Clone, Debug)]
@@ -20,9 +22,18 @@ pub struct MarkArgs {
     /// Files that the page saved by "Save my answers".
     #[arg(required = true, value_name = "ANSWERS.json")]
     files: Vec<PathBuf>,
-    /// Print a table with a row for each answer, for a spreadsheet.
+    /// Print a gradebook: a row for each student, a column for each question, and the total.
     #[arg(long, conflicts_with = "json")]
     csv: bool,
+    /// With --csv, a row for each answer instead.
+    #[arg(long, requires = "csv", conflicts_with_all = ["roster", "columns"])]
+    long: bool,
+    /// With --csv, the students of the course: a table that Canvas or Moodle exported. Rows have its order.
+    #[arg(long, requires = "csv", value_name = "ROSTER.csv")]
+    roster: Option<PathBuf>,
+    /// With --csv, whose column names it has.
+    #[arg(long, requires = "csv", value_enum, default_value_t = Columns::Plain)]
+    columns: Columns,
     /// Print one JSON object for each file, a line each.
     #[arg(long)]
     json: bool,
@@ -34,6 +45,12 @@ pub enum MarkError {
     /// The only file.
     #[error(transparent)]
     File(#[from] AnswersError),
+    /// The roster.
+    #[error(transparent)]
+    Roster(#[from] RosterError),
+    /// The gradebook lacks answers; each problem has its line above.
+    #[error("the gradebook has {0} problems")]
+    Gradebook(usize),
     /// Some of many; each has its line above.
     #[error("{unusable} of {files} files are not marked")]
     Some {
@@ -63,22 +80,34 @@ struct Sheet {
 /// # Errors
 /// If a file cannot be read; the others are marked.
 pub fn run(args: &MarkArgs) -> Result<(), MarkError> {
+    let roster = args.roster.as_deref().map(Roster::read).transpose()?;
     let sheets: Vec<_> = args.files.par_iter().map(|path| sheet_of(path)).collect();
-    if args.csv && sheets.iter().any(Result::is_ok) {
+    if args.long && sheets.iter().any(Result::is_ok) {
         say!("{}", CSV_HEAD);
     }
     let files = sheets.len();
     let mut unusable = 0;
+    let mut graded = Vec::new();
     for sheet in sheets {
         match sheet {
             Ok(sheet) if args.json => print_json(&sheet),
-            Ok(sheet) if args.csv => sheet.print_csv(),
+            Ok(sheet) if args.long => sheet.print_csv(),
+            Ok(sheet) if args.csv => graded.push(sheet),
             Ok(sheet) => sheet.print(),
             Err(error) if files == 1 => return Err(error.into()),
             Err(error) => {
                 eprintln!("slam2d: {error}");
                 unusable += 1;
             }
+        }
+    }
+    if args.csv && !args.long {
+        let problems = gradebook::print(&graded, roster.as_ref(), args.columns);
+        for problem in &problems {
+            eprintln!("slam2d: {problem}");
+        }
+        if unusable == 0 && !problems.is_empty() {
+            return Err(MarkError::Gradebook(problems.len()));
         }
     }
     if unusable > 0 {
@@ -109,6 +138,14 @@ const CSV_HEAD: &str =
     "file,student,intact,exercise,mark,prediction,right,result,unit,attempts,time,note";
 
 impl Sheet {
+    /// The name or token; the file if there is none.
+    fn identity(&self) -> &str {
+        match self.student.trim() {
+            "" => &self.file,
+            name => name,
+        }
+    }
+
     fn print(&self) {
         let student = match self.student.as_str() {
             "" => "no name, the chapter's own tasks".to_owned(),
@@ -167,12 +204,13 @@ impl Sheet {
 }
 
 impl Mark {
+    /// As in the JSON.
     fn words(self) -> &'static str {
         match self {
             Self::Right => "right",
-            Self::WithinTolerance => "within tolerance",
+            Self::WithinTolerance => "within-tolerance",
             Self::Wrong => "wrong",
-            Self::NotMarked => "not marked",
+            Self::NotMarked => "not-marked",
         }
     }
 }

@@ -173,15 +173,152 @@ fn what_is_no_file_of_answers_is_refused_in_one_line() {
 #[test]
 fn one_bad_file_of_many_leaves_the_marks_of_the_others() {
     let (_folder, good) = saved(&file("", &[rank("=1+1")]).to_string());
-    let output = slam2d(&["mark", "nowhere.json", good.to_str().unwrap(), "--csv"]);
+    let output = slam2d(&[
+        "mark",
+        "nowhere.json",
+        good.to_str().unwrap(),
+        "--csv",
+        "--long",
+    ]);
     assert_eq!(output.status.code(), Some(2));
     let table = String::from_utf8(output.stdout).unwrap();
     let rows: Vec<&str> = table.lines().collect();
     assert_eq!(rows.len(), 2, "{table}");
     assert!(
-        rows[1].contains(",,yes,16.2,not marked,'=1+1,2,2,,1,2026-11-27T02:06:47.000Z,`=1+1`"),
+        rows[1].contains(",,yes,16.2,not-marked,'=1+1,2,2,,1,2026-11-27T02:06:47.000Z,`=1+1`"),
         "{table}"
     );
     let errors = String::from_utf8(output.stderr).unwrap();
     assert!(errors.contains("1 of 2 files are not marked"), "{errors}");
+}
+
+/// Saves a file for each student of a list in one folder.
+fn class(files: &[(&str, &str, Vec<Value>)]) -> (tempfile::TempDir, Vec<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let paths = files.iter().map(|(name, student, answers)| {
+        let path = folder.path().join(name);
+        // Some editors begin a file with a byte order mark.
+        fs::write(&path, format!("\u{feff}{}", file(student, answers))).unwrap();
+        path.display().to_string()
+    });
+    let paths = paths.collect();
+    (folder, paths)
+}
+
+fn csv(arguments: &[&str], files: &[String]) -> (Option<i32>, Vec<Vec<String>>, String) {
+    let mut all = vec!["mark", "--csv"];
+    all.extend(arguments);
+    all.extend(files.iter().map(String::as_str));
+    let output = slam2d(&all);
+    let rows = String::from_utf8(output.stdout).unwrap();
+    let rows = rows
+        .lines()
+        .map(|row| row.split(',').map(str::to_owned).collect());
+    let errors = String::from_utf8(output.stderr).unwrap();
+    (output.status.code(), rows.collect(), errors)
+}
+
+#[test]
+fn the_gradebook_has_a_row_for_each_student_and_a_column_for_each_question() {
+    let (_folder, files) = class(&[
+        (
+            "a.json",
+            "Ann",
+            vec![mirror("turn and mirror image tie"), rank("2.4")],
+        ),
+        (
+            "b.json",
+            "Bob",
+            vec![mirror("a turn fits best"), rank("two")],
+        ),
+        ("c.json", "Ann", vec![rank("2")]),
+    ]);
+    let (code, rows, errors) = csv(&[], &files);
+    assert_eq!(rows[0][..4], ["student", "16.1", "16.2", "16.3"]);
+    assert_eq!(rows[0].last().unwrap(), "total");
+    assert_eq!(rows.len(), 3, "{rows:?}");
+    assert!(rows.iter().all(|row| row.len() == 13), "{rows:?}");
+    assert_eq!(
+        (&rows[1][..4], rows[1][12].as_str()),
+        (&["Ann", "1", "1", ""].map(str::to_owned)[..], "2")
+    );
+    assert_eq!(
+        (&rows[2][..4], rows[2][12].as_str()),
+        (&["Bob", "0", "", ""].map(str::to_owned)[..], "0")
+    );
+    assert_eq!(code, Some(2));
+    assert!(
+        errors.contains("a.json and") && errors.contains("c.json are both of Ann"),
+        "{errors}"
+    );
+}
+
+#[test]
+fn a_gradebook_of_80_joins_the_roster_of_canvas_and_of_moodle_by_column_names() {
+    let names: Vec<(String, String)> = (0..80)
+        .map(|k| (format!("{k}.json"), format!("s{k:02}")))
+        .collect();
+    let students: Vec<_> = names
+        .iter()
+        .map(|(name, student)| (name.as_str(), student.as_str(), vec![rank("2")]))
+        .collect();
+    let (folder, mut files) = class(&students);
+    let write = |name: &str, text: String| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let rows = |row: fn(usize) -> String| (0..81).rev().map(row).collect::<String>();
+    let canvas = write(
+        "canvas.csv",
+        format!(
+            "\u{feff}Student,ID,SIS User ID,SIS Login ID,Section,Old (1)\n    Points Possible,,,,,10\n{}",
+            rows(|k| format!("\"Doe, N{k}\",{k},u{k},s{k:02},A,\n"))
+        ),
+    );
+    let (code, found, errors) = csv(&["--roster", &canvas, "--columns", "canvas"], &files);
+    assert_eq!((code, errors.as_str()), (Some(0), ""));
+    assert_eq!(
+        found[0][..6],
+        [
+            "Student",
+            "ID",
+            "SIS User ID",
+            "SIS Login ID",
+            "Section",
+            "Question 16.1"
+        ]
+    );
+    assert_eq!(found.len(), 82);
+    // The name holds a comma. The last of the roster has no answers.
+    assert_eq!(found[1][..6], ["\"Doe", " N80\"", "80", "u80", "s80", "A"]);
+    assert!(found[1][6..].iter().all(String::is_empty), "{:?}", found[1]);
+    assert_eq!(
+        (found[2][4].as_str(), found[2].last().unwrap().as_str()),
+        ("s79", "1")
+    );
+    let moodle = write(
+        "moodle.csv",
+        format!(
+            "First name,Email address,ID number\n{}",
+            rows(|k| format!("N{k},n{k}@x.org,s{k:02}\n"))
+        ),
+    );
+    files.push(write("zed.json", file("Zed", &[rank("2")]).to_string()));
+    let (code, found, errors) = csv(&["--roster", &moodle, "--columns", "moodle"], &files);
+    assert_eq!(
+        found[0][..3],
+        ["ID number", "Email address", "Question 16.1"]
+    );
+    assert_eq!((found.len(), found[2].last().unwrap().as_str()), (82, "1"));
+    assert_eq!(code, Some(2));
+    assert!(
+        errors.contains("zed.json: Zed is in no row of the roster"),
+        "{errors}"
+    );
+    let nameless = write("bad.csv", "Height\n1\n".to_owned());
+    assert_refused(
+        &["mark", "--csv", "--roster", &nameless, &files[0]],
+        "bad.csv has no column that identifies a student",
+    );
 }

@@ -4,7 +4,7 @@
 //! float64 is read without a copy. Results keep the memory that the core has filled.
 
 use ch16_slam2d::cloud::PointCloud;
-use nalgebra::{Matrix3, Point2};
+use nalgebra::{Matrix3, Point2, Vector2};
 use numpy::ndarray::{ArrayView1, ArrayView2, Ix1, Ix2};
 use numpy::{
     PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyReadonlyArrayDyn,
@@ -160,6 +160,16 @@ pub fn of_points<'py>(
     let numbers: Vec<f64> = points.into_iter().flat_map(|p| [p.x, p.y]).collect();
     let count = numbers.len() / 2;
     PyArray1::from_vec(py, numbers).reshape([count, 2])
+}
+
+/// An array of shape (n, 2) with unit normals; a row of NaN where there is none.
+pub fn of_normals<'py>(
+    py: Python<'py>,
+    normals: impl IntoIterator<Item = Option<Vector2<f64>>>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let none = Vector2::repeat(f64::NAN);
+    let normals = normals.into_iter().map(|normal| normal.unwrap_or(none));
+    of_points(py, normals.map(Point2::from))
 }
 
 /// An array of shape (3, 3) with a symmetric matrix.

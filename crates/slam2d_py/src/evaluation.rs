@@ -72,7 +72,8 @@ pub fn evaluate<'py>(
     }
 }
 
-fn trajectory(
+/// Reads stamped poses.
+pub fn trajectory(
     [stamps_name, poses_name]: [&str; 2],
     stamps: &Bound<'_, PyAny>,
     poses: &Bound<'_, PyAny>,

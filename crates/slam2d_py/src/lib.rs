@@ -2,22 +2,28 @@
 //!
 //! It contains no algorithm: it passes arrays of numpy to the core's functions and returns their results as arrays. The
 //! interpreter's lock is released while they compute. Errors of the core become exceptions with the same sentence, and
-//! arguments that would make the core panic are checked here. `rustslam2d.pyi` has the signatures for editors.
+//! arguments that would make the core panic are checked here. `python/rustslam2d/__init__.pyi` has the signatures for editors.
 //!
 //! PyO3's macros write the code that the interpreter calls. They need no exception from `unsafe_code = "forbid"`: that
 //! lint does not apply to code that a macro of another crate generates.
 
 mod arrays;
+mod callables;
 mod errors;
 mod evaluation;
+mod grid_map;
+mod localizer;
 mod motions;
+mod pictures;
 mod pose_graph;
 mod registration;
+mod restored;
 mod run_log;
 mod sensor;
 mod settings;
 mod simulation;
 mod slam;
+mod trajectories;
 
 use pyo3::prelude::*;
 
@@ -27,7 +33,9 @@ use pyo3::prelude::*;
 /// Covariances and informations have the order x, y, θ and belong to perturbations on the right of a pose. Every result
 /// has the same bits on every machine, and those of the command `slam2d`.
 #[pymodule]
-mod rustslam2d {
+mod _rustslam2d {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use super::errors::{
         ArrayError, ChoiceError, EvaluationError, FrameError, GraphError, LogError, OptimizeError,
@@ -36,13 +44,19 @@ mod rustslam2d {
     #[pymodule_export]
     use super::evaluation::evaluate;
     #[pymodule_export]
+    use super::grid_map::GridMap;
+    #[pymodule_export]
+    use super::localizer::{Fix, Localizer};
+    #[pymodule_export]
     use super::motions::{between, compose, exp, inverse, log, transform};
     #[pymodule_export]
     use super::pose_graph::{OptimizeReport, PoseGraph, chi2_gate};
     #[pymodule_export]
-    use super::registration::{IcpResult, Ndt, NdtResult, icp};
+    use super::registration::{IcpResult, Ndt, NdtResult, icp, normals};
     #[pymodule_export]
-    use super::run_log::{GridMap, LogResult, Pipeline};
+    use super::restored::_restored;
+    #[pymodule_export]
+    use super::run_log::{LogResult, Pipeline};
     #[pymodule_export]
     use super::sensor::Sensor;
     #[pymodule_export]
@@ -51,4 +65,12 @@ mod rustslam2d {
     use super::simulation::{Drive, simulate};
     #[pymodule_export]
     use super::slam::{Slam, SlamStep};
+    #[pymodule_export]
+    use super::trajectories::save_tum;
+
+    /// Adds the version.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
 }

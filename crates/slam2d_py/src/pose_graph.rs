@@ -15,12 +15,14 @@ use pr_optim::{
 };
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use robot_io::graph_file::{GraphEdge, GraphFile, GraphNode};
 
 use crate::arrays;
 use crate::errors::{
     ArrayError, ChoiceError, GraphError, OptimizeError, no_choice, os_error, within,
 };
+use crate::restored::{self, Reduced};
 
 /// First damping of method "lm", relative to the diagonal.
 const INITIAL_DAMPING: f64 = 1e-6;
@@ -49,23 +51,27 @@ struct Graph {
 #[pyclass(frozen, get_all, module = "rustslam2d")]
 pub struct OptimizeReport {
     /// χ² at the initial poses.
-    chi2_initial: f64,
+    pub chi2_initial: f64,
     /// χ² at the end, without the kernel.
-    chi2: f64,
+    pub chi2: f64,
     /// The minimized cost: χ² if there is no kernel.
-    cost: f64,
+    pub cost: f64,
     /// Linear systems solved in all attempts.
-    iterations: usize,
+    pub iterations: usize,
     /// Start of the attempt that was kept: given, spanning-tree, chordal or least-squares.
-    start: &'static str,
+    pub start: String,
     /// Whether a convergence test was met.
-    converged: bool,
+    pub converged: bool,
     /// Why the solve stopped, with the numbers.
-    stop: String,
+    pub stop: String,
 }
 
 #[pymethods]
 impl OptimizeReport {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        restored::by_attributes(slf.as_any())
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "OptimizeReport(chi2={:.6} from {:.6}, {} iterations, stop={:?})",
@@ -211,6 +217,12 @@ impl PoseGraph {
         py.detach(|| self.lock().file().to_g2o())
     }
 
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let keywords = PyDict::new(slf.py());
+        keywords.set_item("text", slf.get().to_g2o(slf.py()))?;
+        restored::by_keywords("PoseGraph", keywords)
+    }
+
     /// Writes the graph as a file of g2o.
     fn write_g2o(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| {
@@ -351,7 +363,8 @@ impl PoseGraph {
                     Start::SpanningTree => "spanning-tree",
                     Start::Chordal => "chordal",
                     Start::LeastSquares => "least-squares",
-                },
+                }
+                .to_owned(),
                 converged: outcome.report.stop.is_converged(),
                 stop: outcome.report.stop.to_string(),
             })

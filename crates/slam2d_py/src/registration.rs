@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 
 use crate::arrays;
 use crate::errors::{ChoiceError, no_choice, within};
+use crate::restored::{self, Reduced};
 
 /// Width of a map cell as a share of the largest distance: a query then sees a handful of cells.
 const CELL_PER_DISTANCE: f64 = 0.5;
@@ -19,42 +20,46 @@ const CELL_PER_DISTANCE: f64 = 0.5;
 pub struct IcpResult {
     /// Pose target_from_source, shape (3,): x and y in m, θ in rad.
     #[pyo3(get)]
-    pose: Py<PyArray1<f64>>,
+    pub pose: Py<PyArray1<f64>>,
     /// Covariance of the pose, shape (3, 3), of perturbations on its right in the order x, y, θ: m², m·rad, rad².
     /// None if the pairs leave a direction free.
     #[pyo3(get)]
-    covariance: Option<Py<PyArray2<f64>>>,
+    pub covariance: Option<Py<PyArray2<f64>>>,
     /// The inverse of the covariance, shape (3, 3).
     #[pyo3(get)]
-    information: Py<PyArray2<f64>>,
+    pub information: Py<PyArray2<f64>>,
     /// The initial guess and the pose after each increment, shape (iterations + 1, 3).
     #[pyo3(get)]
-    trace: Py<PyArray2<f64>>,
+    pub trace: Py<PyArray2<f64>>,
     /// Root mean square residual of the pairs at each pose of the trace, m, shape (iterations + 1,).
     #[pyo3(get)]
-    trace_rmse: Py<PyArray1<f64>>,
+    pub trace_rmse: Py<PyArray1<f64>>,
     /// The last pairs, shape (n, 2): indices into source and target.
     #[pyo3(get)]
-    pairs: Py<PyArray2<i64>>,
+    pub pairs: Py<PyArray2<i64>>,
     /// Root mean square residual of the last pairs, m; infinite without pairs.
     #[pyo3(get)]
-    rmse: f64,
+    pub rmse: f64,
     /// Number of the last pairs.
     #[pyo3(get)]
-    inliers: usize,
+    pub inliers: usize,
     /// Increments made.
     #[pyo3(get)]
-    iterations: usize,
+    pub iterations: usize,
     /// Whether the increments became small.
     #[pyo3(get)]
-    converged: bool,
+    pub converged: bool,
     /// Why it ended: small-step, iteration-limit, too-few-pairs or not-finite.
     #[pyo3(get)]
-    stop: &'static str,
+    pub stop: String,
 }
 
 #[pymethods]
 impl IcpResult {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        restored::by_attributes(slf.as_any())
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         Ok(format!(
             "IcpResult(pose={}, rmse={:.4}, inliers={}, iterations={}, stop={:?})",
@@ -167,8 +172,29 @@ pub fn icp(
             StopReason::IterationLimit { .. } => "iteration-limit",
             StopReason::TooFewPairs { .. } => "too-few-pairs",
             StopReason::NotFinite => "not-finite",
-        },
+        }
+        .to_owned(),
     })
+}
+
+/// A unit normal for each point: the direction in which its neighbours scatter least; NaN at corners and where there are
+/// few.
+///
+/// points: shape (n, 2), m.
+/// radius: neighbours lie within it, m.
+///
+/// Returns shape (n, 2). The sign of a normal is arbitrary.
+#[pyfunction]
+#[pyo3(signature = (points, *, radius=0.3))]
+pub fn normals<'py>(
+    py: Python<'py>,
+    points: &Bound<'_, PyAny>,
+    radius: f64,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let mut cloud = arrays::cloud("points", points)?;
+    let radius = within("radius", radius, 1e-6, 1e6, " m")?;
+    py.detach(|| cloud.estimate_normals(radius));
+    arrays::of_normals(py, (0..cloud.len()).map(|index| cloud.normal(index)))
 }
 
 /// Normal distributions transform: a map of Gaussians on a grid of cells (Biber & Straßer 2003).
@@ -188,23 +214,27 @@ pub struct Ndt {
 pub struct NdtResult {
     /// Pose map_from_source, shape (3,): x and y in m, θ in rad.
     #[pyo3(get)]
-    pose: Py<PyArray1<f64>>,
+    pub pose: Py<PyArray1<f64>>,
     /// The initial guess and the pose after each step, shape (k, 3).
     #[pyo3(get)]
-    trace: Py<PyArray2<f64>>,
+    pub trace: Py<PyArray2<f64>>,
     /// Sum of the scores of all points, each 0 to a little more than 1.
     #[pyo3(get)]
-    score: f64,
+    pub score: f64,
     /// Number of iterations.
     #[pyo3(get)]
-    iterations: usize,
+    pub iterations: usize,
     /// Why it ended: small-gradient, no-better-step or iteration-limit.
     #[pyo3(get)]
-    stop: &'static str,
+    pub stop: String,
 }
 
 #[pymethods]
 impl NdtResult {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        restored::by_attributes(slf.as_any())
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         Ok(format!(
             "NdtResult(pose={}, score={:.3}, iterations={}, stop={:?})",
@@ -269,7 +299,8 @@ impl Ndt {
                 NdtStop::SmallGradient { .. } => "small-gradient",
                 NdtStop::NoBetterStep { .. } => "no-better-step",
                 NdtStop::IterationLimit { .. } => "iteration-limit",
-            },
+            }
+            .to_owned(),
         })
     }
 

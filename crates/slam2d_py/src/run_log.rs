@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use ch16_slam2d::slam::Slam;
 use nalgebra::Matrix3;
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyUntypedArrayMethods as _};
+use numpy::{PyArray1, PyArray2, PyArray3, PyUntypedArrayMethods as _};
 use pr_geom::SE2;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
@@ -26,8 +26,11 @@ use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
 
 use crate::arrays;
 use crate::errors::{LogError, os_error, within};
+use crate::grid_map::GridMap;
 use crate::pose_graph::PoseGraph;
+use crate::restored::{self, Reduced};
 use crate::settings::{self, Chosen};
+use crate::{pictures, trajectories};
 
 /// Scans between two checks for Ctrl-C and two reports of progress.
 const SCANS_BETWEEN: usize = 16;
@@ -53,51 +56,68 @@ pub struct Pipeline {
 pub struct LogResult {
     /// Times of the scans, s, shape (n,).
     #[pyo3(get)]
-    stamps: Py<PyArray1<f64>>,
+    pub stamps: Py<PyArray1<f64>>,
     /// Pose world_from_body of every scan, shape (n, 3): x and y in m, θ in rad.
     #[pyo3(get)]
-    trajectory: Py<PyArray2<f64>>,
+    pub trajectory: Py<PyArray2<f64>>,
     /// Poses of the keyframes, shape (k, 3).
     #[pyo3(get)]
-    keyframes: Py<PyArray2<f64>>,
+    pub keyframes: Py<PyArray2<f64>>,
     /// Covariance of every keyframe against the first one, shape (k, 3, 3), order x, y, θ in the body's frame.
     #[pyo3(get)]
-    covariances: Py<PyArray3<f64>>,
+    pub covariances: Py<PyArray3<f64>>,
     /// The occupancy grid; None if the area is too large for cells of this size.
     #[pyo3(get)]
-    map: Option<Py<GridMap>>,
+    pub map: Option<Py<GridMap>>,
     /// Keyframes, loops with their evidence, and doubts: the dict that `slam2d run -o` writes as quality.json.
     #[pyo3(get)]
-    quality: Py<PyAny>,
+    pub quality: Py<PyAny>,
     /// The pose graph; node k is keyframe k.
     #[pyo3(get)]
-    graph: Py<PoseGraph>,
+    pub graph: Py<PoseGraph>,
     /// Remarks on the scans of the log, a sentence each.
     #[pyo3(get)]
-    remarks: Vec<String>,
-}
-
-/// An occupancy grid.
-#[pyclass(frozen, module = "rustslam2d")]
-pub struct GridMap {
-    /// Log odds of occupancy, shape (rows, columns); 0 is unknown. The first row is the one with the highest y.
-    #[pyo3(get)]
-    log_odds: Py<PyArray2<f64>>,
-    /// The lower left corner, world frame, m.
-    #[pyo3(get)]
-    origin: (f64, f64),
-    /// Side of a cell, m.
-    #[pyo3(get)]
-    cell: f64,
+    pub remarks: Vec<String>,
 }
 
 #[pymethods]
-impl GridMap {
+impl LogResult {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        restored::by_attributes(slf.as_any())
+    }
+
+    /// Writes the trajectory as lines of TUM, which evo reads.
+    fn save_tum(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        trajectories::save_tum(
+            py,
+            path,
+            self.stamps.bind(py).as_any(),
+            self.trajectory.bind(py).as_any(),
+        )
+    }
+
+    /// The trajectory as a table of pandas: x, y, theta, by the stamp.
+    fn to_pandas(slf: Bound<'_, Self>) -> PyResult<Py<PyAny>> {
+        let pictures = slf.py().import("rustslam2d._pictures")?;
+        Ok(pictures.call_method1("table", (slf,))?.unbind())
+    }
+
+    /// Draws map, trajectory and loops with matplotlib; returns the axes.
+    ///
+    /// ax: the axes to draw into; without it new ones.
+    #[pyo3(signature = (*, ax=None))]
+    fn plot(slf: Bound<'_, Self>, ax: Option<Bound<'_, PyAny>>) -> PyResult<Py<PyAny>> {
+        pictures::draw("run", slf.into_any(), ax)
+    }
+
     fn __repr__(&self, py: Python<'_>) -> String {
-        let shape = self.log_odds.bind(py).shape();
         format!(
-            "GridMap({} × {} cells of {} m)",
-            shape[0], shape[1], self.cell
+            "LogResult({} scans, {} keyframes, {})",
+            self.stamps.bind(py).len(),
+            self.keyframes.bind(py).shape()[0],
+            self.map
+                .as_ref()
+                .map_or_else(|| "no map".to_owned(), |map| map.get().__repr__())
         )
     }
 }
@@ -166,19 +186,7 @@ impl Pipeline {
         let found = py.detach(|| self.drive(&progress, cell_m, free_space))?;
         progress.end(py)?;
         let (stamps, poses): (Vec<f64>, Vec<SE2>) = found.trajectory.into_iter().unzip();
-        let map = found.map.map(|map| {
-            let log_odds = PyArray1::from_vec(py, map.log_odds());
-            let log_odds = log_odds.reshape([map.height, map.width])?.unbind();
-            let [x, y] = map.origin_m;
-            Py::new(
-                py,
-                GridMap {
-                    log_odds,
-                    origin: (x, y),
-                    cell: map.cell_m,
-                },
-            )
-        });
+        let map = found.map.map(|map| Py::new(py, GridMap::new(&map)));
         let graph = found.graph.unwrap_or_default();
         Ok(LogResult {
             stamps: PyArray1::from_vec(py, stamps).unbind(),

@@ -4,9 +4,11 @@ use ch16_slam2d::scan::LaserScan;
 use numpy::PyArray1;
 use pr_geom::SE2;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::arrays;
 use crate::errors::FrameError;
+use crate::restored::{self, Reduced};
 
 /// The geometry of a planar laser: bearings of its beams, limits of its ranges, mounting.
 ///
@@ -123,6 +125,21 @@ impl Sensor {
         let mut preparer = ch16_slam2d::scan::ScanPreparer::new();
         let points = preparer.points(&scan, &nalgebra::Vector3::zeros());
         arrays::of_points(py, points.iter())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let keywords = PyDict::new(slf.py());
+        for name in [
+            "first_angle_rad",
+            "angle_step_rad",
+            "range_min_m",
+            "range_max_m",
+            "body_from_sensor",
+            "beam_interval_s",
+        ] {
+            keywords.set_item(name, slf.getattr(name)?)?;
+        }
+        restored::by_keywords("Sensor", keywords)
     }
 
     fn __repr__(&self) -> String {

@@ -4,15 +4,21 @@ use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
-use ch16_lab::lap::{BuiltInWorld, CANONICAL_SEED, Choice as _, Drive as Simulated, LapConfig};
+use ch16_lab::lap::{
+    BuiltInWorld, CANONICAL_SEED, Choice as _, Drive as Simulated, LapConfig, SlamConfig,
+};
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
 use pr_geom::SE2;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use robot_io::json_log::FrameLine;
 
 use crate::arrays;
+use crate::callables::Callables;
 use crate::errors::{ChoiceError, no_choice, os_error, within};
+use crate::restored::{self, Reduced};
 use crate::sensor::Sensor;
+use crate::slam::{Slam, SlamStep};
 
 /// A simulated drive: what a robot would record, and the truth.
 #[pyclass(frozen, module = "rustslam2d")]
@@ -36,6 +42,13 @@ pub struct Drive {
     /// True poses world_from_body, shape (n, 3): x and y in m, θ in rad.
     #[pyo3(get)]
     truth: Py<PyArray2<f64>>,
+    /// The chapter's estimator after the drive, if a function was given; otherwise None.
+    #[pyo3(get)]
+    slam: Option<Py<Slam>>,
+    /// Its result for each scan, a SlamStep.
+    #[pyo3(get)]
+    steps: Vec<Py<SlamStep>>,
+    world: &'static str,
 }
 
 /// Simulates the drive of the chapter's lap.
@@ -43,12 +56,22 @@ pub struct Drive {
 /// seed: seed of all noise, 0 to 2³² − 1; the chapter's is 0xC0FFEE.
 /// noise: factor of the odometry noise, 0 to 100.
 /// world: "apartment", "ring", "twins", "corridor" or "hall".
+/// icp, gate: functions in place of the parts of the chapter's estimator, see `Slam.chapter`; it then takes the drive, and
+///     `slam` and `steps` of the result have its map and its steps.
 ///
-/// Raises ChoiceError for an argument out of its range.
+/// Raises ChoiceError for an argument out of its range, and what a function raises.
 #[pyfunction]
-#[pyo3(signature = (seed=CANONICAL_SEED.into(), noise=1.0, *, world="apartment"),
-    text_signature = "(seed=0xC0FFEE, noise=1.0, *, world='apartment')")]
-pub fn simulate(py: Python<'_>, seed: i64, noise: f64, world: &str) -> PyResult<Drive> {
+#[pyo3(signature = (seed=CANONICAL_SEED.into(), noise=1.0, *, world="apartment", icp=None, gate=None),
+    text_signature = "(seed=0xC0FFEE, noise=1.0, *, world='apartment', icp=None, gate=None)")]
+pub fn simulate(
+    py: Python<'_>,
+    seed: i64,
+    noise: f64,
+    world: &str,
+    icp: Option<Bound<'_, PyAny>>,
+    gate: Option<Bound<'_, PyAny>>,
+) -> PyResult<Drive> {
+    let functions = Callables::new(icp, gate)?;
     let seed = u32::try_from(seed).map_err(|_| {
         ChoiceError::new_err(format!(
             "seed has to be a whole number from 0 to {}, not {seed}",
@@ -74,8 +97,28 @@ pub fn simulate(py: Python<'_>, seed: i64, noise: f64, world: &str) -> PyResult<
     let stamps = frames.clone().map(|frame| drive.frame(frame).stamp_s);
     let motion = |frame| drive.odometry(frame).unwrap_or(SE2::identity());
     let beams = ranges.len() / count;
+    let sensor = Py::new(py, Sensor::from_scan(&first.scan))?;
+    let (slam, steps) = if functions.is_empty() {
+        (None, Vec::new())
+    } else {
+        let config = SlamConfig {
+            start: drive.truth(0),
+            ..SlamConfig::chapter()
+        };
+        let slam = Slam::with_callables(sensor.clone_ref(py), config, &functions);
+        let frames = 0..=drive.ticks().len();
+        let steps = frames.map(|frame| {
+            py.check_signals()?;
+            Py::new(py, slam.drive(py, drive.frame(frame))?)
+        });
+        let steps = steps.collect::<PyResult<_>>()?;
+        (Some(Py::new(py, slam)?), steps)
+    };
     Ok(Drive {
-        sensor: Py::new(py, Sensor::from_scan(&first.scan))?,
+        slam,
+        steps,
+        world: found.name(),
+        sensor,
         stamps: PyArray1::from_vec(py, stamps.collect()).unbind(),
         ranges: PyArray1::from_vec(py, ranges)
             .reshape([count, beams])?
@@ -98,6 +141,16 @@ impl Drive {
     /// Raises OSError if the file cannot be written.
     fn write_log(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| write_log(&self.drive, &path).map_err(|error| os_error(&path, &error)))
+    }
+
+    /// What pickles: the arguments, but not the functions and their result.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let keywords = PyDict::new(slf.py());
+        let config = slf.get().drive.config();
+        keywords.set_item("seed", config.seed)?;
+        keywords.set_item("noise", config.noise_factor)?;
+        keywords.set_item("world", slf.get().world)?;
+        restored::by_keywords("Drive", keywords)
     }
 
     /// Number of scans.

@@ -1,18 +1,24 @@
 //! The estimator, one scan at a time.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread::{self, ThreadId};
 
-use ch16_slam2d::scan::Frame;
-use ch16_slam2d::slam::{LoopAttempt, RobotConfig, SlamConfig};
+use ch16_slam2d::scan::{Frame, LaserScan};
+use ch16_slam2d::slam::{Keyframe, LoopAttempt, RobotConfig, SlamConfig, SlamReport};
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pr_geom::SE2;
 use pyo3::prelude::*;
+use pyo3::sync::MutexExt as _;
 use pyo3::types::PyDict;
 use robot_io::graph_file::GraphFile;
+use robot_io::map_image::MapBuilder;
 
 use crate::arrays;
-use crate::errors::{FrameError, OptimizeError};
+use crate::callables::{Callables, Raised};
+use crate::errors::{FrameError, OptimizeError, SlamError, within};
+use crate::grid_map::GridMap;
 use crate::pose_graph::PoseGraph;
+use crate::restored::{self, Reduced};
 use crate::sensor::Sensor;
 use crate::settings::{self, Chosen};
 
@@ -29,6 +35,12 @@ use crate::settings::{self, Chosen};
 pub struct Slam {
     sensor: Py<Sensor>,
     inner: Mutex<Estimator>,
+    /// What a reader's function has raised.
+    raised: Raised,
+    /// The thread that is in a step.
+    stepping: Mutex<Option<ThreadId>>,
+    /// The scans of the keyframes, with all their beams, for the map.
+    scans: Mutex<Vec<LaserScan>>,
 }
 
 /// The estimator derives some of its numbers from the first scan.
@@ -42,29 +54,33 @@ enum Estimator {
 pub struct SlamStep {
     /// Estimated pose world_from_body after the scan, shape (3,): x and y in m, θ in rad.
     #[pyo3(get)]
-    pose: Py<PyArray1<f64>>,
+    pub pose: Py<PyArray1<f64>>,
     /// Number of the scan, counted from 0.
     #[pyo3(get)]
-    frame: usize,
+    pub frame: usize,
     /// Number of the keyframe that it became, or None.
     #[pyo3(get)]
-    keyframe: Option<usize>,
+    pub keyframe: Option<usize>,
     /// χ² of the pose graph.
     #[pyo3(get)]
-    chi2: f64,
+    pub chi2: f64,
     /// Pairs of the registration; None for the first scan.
     #[pyo3(get)]
-    inliers: Option<usize>,
+    pub inliers: Option<usize>,
     /// Root mean square residual of the pairs, m; None for the first scan.
     #[pyo3(get)]
-    rmse: Option<f64>,
+    pub rmse: Option<f64>,
     /// Loops that were tried: dicts with from, to, chi2, gate_chi2, rmse, inliers, accepted, reason.
     #[pyo3(get)]
-    loops: Vec<Py<PyDict>>,
+    pub loops: Vec<Py<PyDict>>,
 }
 
 #[pymethods]
 impl SlamStep {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        restored::by_attributes(slf.as_any())
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         Ok(format!(
             "SlamStep(frame={}, pose={}, keyframe={}, {} loops tried)",
@@ -73,6 +89,24 @@ impl SlamStep {
             self.keyframe.map_or("None".to_owned(), |k| k.to_string()),
             self.loops.len()
         ))
+    }
+}
+
+impl SlamStep {
+    fn from_report(py: Python<'_>, report: SlamReport) -> PyResult<Self> {
+        let matched = report.registration.map(|found| found.matched);
+        let loops = report.loop_attempts.iter();
+        Ok(SlamStep {
+            pose: arrays::of_pose(py, &report.estimate).unbind(),
+            frame: report.frame,
+            keyframe: report.new_keyframe,
+            chi2: report.chi2,
+            inliers: matched.as_ref().map(|matched| matched.inliers),
+            rmse: matched.as_ref().map(|matched| matched.rmse_m),
+            loops: loops
+                .map(|attempt| tried(py, attempt))
+                .collect::<PyResult<_>>()?,
+        })
     }
 }
 
@@ -91,9 +125,102 @@ fn tried(py: Python<'_>, attempt: &LoopAttempt) -> PyResult<Py<PyDict>> {
     Ok(dict.unbind())
 }
 
+/// Marks a step, and ends the mark.
+struct Step<'a>(&'a Mutex<Option<ThreadId>>);
+
+impl Drop for Step<'_> {
+    fn drop(&mut self) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    }
+}
+
 impl Slam {
-    fn lock(&self) -> MutexGuard<'_, Estimator> {
-        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    fn with(sensor: Py<Sensor>, estimator: Estimator, raised: Raised) -> Self {
+        Self {
+            sensor,
+            inner: Mutex::new(estimator),
+            raised,
+            stepping: Mutex::default(),
+            scans: Mutex::default(),
+        }
+    }
+
+    /// The chapter's estimator with a reader's functions.
+    pub fn with_callables(sensor: Py<Sensor>, config: SlamConfig, functions: &Callables) -> Self {
+        let slam = Box::new(functions.slam(config));
+        Self::with(sensor, Estimator::Running(slam), functions.raised.clone())
+    }
+
+    /// The estimator, once no other thread is in a step.
+    fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Estimator>> {
+        if *self.stepper() == Some(thread::current().id()) {
+            return Err(SlamError::new_err(
+                "the estimator is in a step, and a function that it calls reads it; use what the function is given",
+            ));
+        }
+        let inner = self.inner.lock_py_attached(py);
+        Ok(inner.unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Keyframes, their poses, and the configuration, for localization.
+    pub fn mapped(&self, py: Python<'_>) -> PyResult<(Vec<Keyframe>, Vec<SE2>, SlamConfig)> {
+        let estimator = self.lock(py)?;
+        let slam = estimator.slam().ok_or_else(|| {
+            SlamError::new_err("the estimator has no map yet: it has taken no scan")
+        })?;
+        let poses = slam.graph().poses().to_vec();
+        Ok((slam.keyframes().to_vec(), poses, slam.config().clone()))
+    }
+
+    /// Takes a frame of a simulated drive.
+    pub fn drive(&self, py: Python<'_>, frame: Frame) -> PyResult<SlamStep> {
+        let report = self.take(py, frame.scan, frame.odometry, Some(frame.stamp_s))?;
+        SlamStep::from_report(py, report)
+    }
+
+    fn stepper(&self) -> MutexGuard<'_, Option<ThreadId>> {
+        self.stepping.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Begins a step.
+    fn begin(&self) -> PyResult<Step<'_>> {
+        let mut stepping = self.stepper();
+        if stepping.is_some() {
+            return Err(SlamError::new_err(
+                "another step of this estimator is under way; its scans have an order, so call step from one thread",
+            ));
+        }
+        *stepping = Some(thread::current().id());
+        Ok(Step(&self.stepping))
+    }
+
+    /// Takes a scan.
+    fn take(
+        &self,
+        py: Python<'_>,
+        scan: LaserScan,
+        odometry: Option<SE2>,
+        stamp: Option<f64>,
+    ) -> PyResult<SlamReport> {
+        let _step = self.begin()?;
+        let report = py.detach(|| {
+            let mut estimator = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
+            let number = estimator.slam().map_or(0, |slam| slam.frames());
+            let frame = Frame {
+                stamp_s: stamp.unwrap_or(number as f64),
+                odometry,
+                scan,
+            };
+            let report = estimator.running(&frame)?.step(&frame);
+            let report = report.map_err(|error| FrameError::new_err(error.to_string()))?;
+            if report.new_keyframe.is_some() {
+                let mut scans = self.scans.lock().unwrap_or_else(PoisonError::into_inner);
+                scans.push(frame.scan);
+            }
+            Ok::<_, PyErr>(report)
+        })?;
+        self.raised.raise()?;
+        Ok(report)
     }
 }
 
@@ -134,22 +261,31 @@ impl Slam {
     ) -> PyResult<Self> {
         let chosen = settings::chosen(config)?;
         let start = arrays::pose_or("start", start, SE2::identity())?;
-        Ok(Self {
-            sensor,
-            inner: Mutex::new(Estimator::Waiting { chosen, start }),
-        })
+        let estimator = Estimator::Waiting { chosen, start };
+        Ok(Self::with(sensor, estimator, Raised::default()))
     }
 
     /// The estimator of the chapter, with the same bits as in its lap.
     ///
     /// loops: False for the front end alone.
+    /// icp: a function in place of its registration, `icp(source, target, init, *, normals, max_distance, max_iterations)`:
+    ///     points of shape (n, 2) and (m, 2), the guess of target_from_source, and the unit normals of the target, NaN where
+    ///     there is none. It returns the pose, or an object with the attribute `pose`.
+    /// gate: a function in place of its verification of loops, `gate(poses, sweeps, node, candidate)`: the keyframes' poses,
+    ///     the list of their points, and the numbers of the new and the old keyframe. It returns whether the loop is
+    ///     accepted, or an object with the attribute `accepted`.
+    ///
+    /// What a function raises, the step raises.
     #[staticmethod]
-    #[pyo3(signature = (*, sensor, start=None, loops=true))]
+    #[pyo3(signature = (*, sensor, start=None, loops=true, icp=None, gate=None))]
     fn chapter(
         sensor: Py<Sensor>,
         start: Option<&Bound<'_, PyAny>>,
         loops: bool,
+        icp: Option<Bound<'_, PyAny>>,
+        gate: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let functions = Callables::new(icp, gate)?;
         let mut config = SlamConfig {
             start: arrays::pose_or("start", start, SE2::identity())?,
             ..SlamConfig::chapter()
@@ -157,11 +293,7 @@ impl Slam {
         if !loops {
             config = config.without_loops();
         }
-        let slam = ch16_slam2d::slam::Slam::new(config);
-        Ok(Self {
-            sensor,
-            inner: Mutex::new(Estimator::Running(Box::new(slam))),
-        })
+        Ok(Self::with_callables(sensor, config, &functions))
     }
 
     /// Takes the next scan: predicts, registers, takes a keyframe and closes loops if they are due.
@@ -172,7 +304,7 @@ impl Slam {
     /// stamp: time of the scan, s; without it its number.
     ///
     /// Raises FrameError for a scan that cannot be used, such as one that is not later than the last one; the estimator
-    /// stays as it was.
+    /// stays as it was. Raises SlamError if another thread is in a step: scans have an order.
     #[pyo3(signature = (ranges, odometry=None, stamp=None))]
     fn step(
         &self,
@@ -185,51 +317,35 @@ impl Slam {
         let odometry = odometry
             .map(|motion| arrays::pose("odometry", motion))
             .transpose()?;
-        let report = py.detach(|| {
-            let mut estimator = self.lock();
-            let number = estimator.slam().map_or(0, |slam| slam.frames());
-            let frame = Frame {
-                stamp_s: stamp.unwrap_or(number as f64),
-                odometry,
-                scan,
-            };
-            let report = estimator.running(&frame)?.step(&frame);
-            report.map_err(|error| FrameError::new_err(error.to_string()))
-        })?;
-        let matched = report.registration.map(|found| found.matched);
-        let loops = report.loop_attempts.iter();
-        Ok(SlamStep {
-            pose: arrays::of_pose(py, &report.estimate).unbind(),
-            frame: report.frame,
-            keyframe: report.new_keyframe,
-            chi2: report.chi2,
-            inliers: matched.as_ref().map(|matched| matched.inliers),
-            rmse: matched.as_ref().map(|matched| matched.rmse_m),
-            loops: loops
-                .map(|attempt| tried(py, attempt))
-                .collect::<PyResult<_>>()?,
-        })
+        let report = self.take(py, scan, odometry, stamp)?;
+        SlamStep::from_report(py, report)
     }
 
     /// Ends the run: closes pending loops, links the keyframes once more, and returns the loops that were tried.
     fn conclude(&self, py: Python<'_>) -> PyResult<Vec<Py<PyDict>>> {
-        let attempts = py.detach(|| match &mut *self.lock() {
-            Estimator::Waiting { .. } => Vec::new(),
-            Estimator::Running(slam) => slam.conclude().tried,
+        let step = self.begin()?;
+        let attempts = py.detach(|| {
+            let mut estimator = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
+            match &mut *estimator {
+                Estimator::Waiting { .. } => Vec::new(),
+                Estimator::Running(slam) => slam.conclude().tried,
+            }
         });
+        drop(step);
+        self.raised.raise()?;
         attempts.iter().map(|attempt| tried(py, attempt)).collect()
     }
 
     /// Number of scans taken.
     #[getter]
-    fn frames(&self) -> usize {
-        self.lock().slam().map_or(0, |slam| slam.frames())
+    fn frames(&self, py: Python<'_>) -> PyResult<usize> {
+        Ok(self.lock(py)?.slam().map_or(0, |slam| slam.frames()))
     }
 
     /// Poses of the keyframes as the graph has them now, shape (k, 3): x and y in m, θ in rad.
     #[getter]
     fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let estimator = self.lock();
+        let estimator = self.lock(py)?;
         let poses = estimator
             .slam()
             .map_or(&[][..], |slam| slam.graph().poses());
@@ -238,25 +354,28 @@ impl Slam {
 
     /// The scan that became each keyframe, by its number, shape (k,).
     #[getter]
-    fn keyframes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        let estimator = self.lock();
+    fn keyframes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let estimator = self.lock(py)?;
         let keyframes = estimator.slam().map_or(&[][..], |slam| slam.keyframes());
         let frames = keyframes.iter().map(|keyframe| keyframe.frame as i64);
-        PyArray1::from_vec(py, frames.collect())
+        Ok(PyArray1::from_vec(py, frames.collect()))
     }
 
     /// Points of a keyframe's thinned scan in the body's frame, shape (n, 2), m.
     ///
     /// Raises IndexError for a keyframe that does not exist.
-    fn scan<'py>(&self, py: Python<'py>, keyframe: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let estimator = self.lock();
+    fn scan<'py>(&self, py: Python<'py>, keyframe: i64) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let estimator = self.lock(py)?;
         let keyframes = estimator.slam().map_or(&[][..], |slam| slam.keyframes());
-        let found = keyframes.get(keyframe).ok_or_else(|| {
-            pyo3::exceptions::PyIndexError::new_err(format!(
-                "there is no keyframe {keyframe}: the estimator has {}",
-                keyframes.len()
-            ))
-        })?;
+        let index = usize::try_from(keyframe).ok();
+        let found = index
+            .and_then(|index| keyframes.get(index))
+            .ok_or_else(|| {
+                pyo3::exceptions::PyIndexError::new_err(format!(
+                    "there is no keyframe {keyframe}: the estimator has {}",
+                    keyframes.len()
+                ))
+            })?;
         arrays::of_points(py, found.scan.iter())
     }
 
@@ -264,28 +383,60 @@ impl Slam {
     ///
     /// Raises OptimizeError if the graph has none.
     fn covariances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let covariances = py.detach(|| match &mut *self.lock() {
-            Estimator::Waiting { .. } => Ok(Vec::new()),
-            Estimator::Running(slam) if slam.keyframes().is_empty() => Ok(Vec::new()),
-            Estimator::Running(slam) => slam.keyframe_covariances(),
-        });
+        let covariances = match &mut *self.lock(py)? {
+            Estimator::Running(slam) if !slam.keyframes().is_empty() => {
+                py.detach(|| slam.keyframe_covariances())
+            }
+            Estimator::Waiting { .. } | Estimator::Running(_) => Ok(Vec::new()),
+        };
         let covariances = covariances.map_err(|error| OptimizeError::new_err(error.to_string()))?;
         arrays::of_matrices(py, &covariances)
     }
 
     /// A copy of the pose graph; node k is keyframe k.
     #[getter]
-    fn graph(&self) -> PoseGraph {
-        let estimator = self.lock();
+    fn graph(&self, py: Python<'_>) -> PyResult<PoseGraph> {
+        let estimator = self.lock(py)?;
         let graph = estimator.slam().map(|slam| slam.graph());
-        PoseGraph::from_file(&graph.map(GraphFile::from_pose_graph).unwrap_or_default())
+        let graph = graph.map(GraphFile::from_pose_graph).unwrap_or_default();
+        Ok(PoseGraph::from_file(&graph))
     }
 
-    fn __repr__(&self) -> String {
-        let estimator = self.lock();
+    /// The occupancy grid of the keyframes at their present poses.
+    ///
+    /// resolution: side of a cell, m.
+    /// free_space: mark cells as free up to the sensor's limit on beams without a return (REP 117).
+    ///
+    /// Raises SlamError if no scan has a point yet, or the area is too large for cells of this size.
+    #[pyo3(signature = (resolution=0.05, *, free_space=false))]
+    fn map(&self, py: Python<'_>, resolution: f64, free_space: bool) -> PyResult<GridMap> {
+        let cell_m = within("resolution", resolution, 1e-3, 100.0, " m")?;
+        let estimator = self.lock(py)?;
+        let poses = estimator
+            .slam()
+            .map_or(&[][..], |slam| slam.graph().poses());
+        let scans = self.scans.lock().unwrap_or_else(PoisonError::into_inner);
+        let image = py.detach(|| {
+            let mut map = MapBuilder::new(cell_m);
+            if free_space {
+                map = map.with_free_space();
+            }
+            for (pose, scan) in poses.iter().zip(&*scans) {
+                map.add(pose, scan).map_err(|error| error.to_string())?;
+            }
+            map.finish().map_err(|error| error.to_string())
+        });
+        Ok(GridMap::new(&image.map_err(SlamError::new_err)?))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        if self.stepper().is_some() {
+            return Ok("Slam(in a step)".to_owned());
+        }
+        let estimator = self.lock(py)?;
         let (frames, keyframes) = estimator
             .slam()
             .map_or((0, 0), |slam| (slam.frames(), slam.keyframes().len()));
-        format!("Slam({frames} scans, {keyframes} keyframes)")
+        Ok(format!("Slam({frames} scans, {keyframes} keyframes)"))
     }
 }

@@ -66,13 +66,11 @@ def test_another_thread_runs_during_a_computation(computations, name):
     assert calls_before < MOST_CALLS
 
 
-def test_two_threads_share_an_estimator_and_a_graph(drive):
-    slam = rs.Slam.chapter(sensor=drive.sensor)
+def test_two_threads_share_a_graph():
     graph = rs.PoseGraph()
 
     def work():
         for _ in range(30):
-            slam.step(drive.ranges[0])
             graph.add_node((0, 0, 0), fixed=True)
             graph.optimize()
 
@@ -81,4 +79,28 @@ def test_two_threads_share_an_estimator_and_a_graph(drive):
         thread.start()
     for thread in threads:
         thread.join()
-    assert slam.frames == len(graph) == 60
+    assert len(graph) == 60
+
+
+def test_a_second_step_is_refused_and_a_reader_waits(drive):
+    inside, over = threading.Event(), threading.Event()
+
+    def icp(source, target, init, **_):
+        inside.set()
+        assert over.wait(60)
+        return init
+
+    slam = rs.Slam.chapter(sensor=drive.sensor, icp=icp)
+    slam.step(drive.ranges[0])
+    stepping = threading.Thread(target=lambda: slam.step(drive.ranges[1]))
+    stepping.start()
+    assert inside.wait(60)
+    with pytest.raises(rs.SlamError, match="another step of this estimator is under way"):
+        slam.step(drive.ranges[2])
+    frames = []
+    reading = threading.Thread(target=lambda: frames.append(slam.frames))
+    reading.start()
+    over.set()
+    stepping.join()
+    reading.join()
+    assert frames == [2] and slam.frames == 2

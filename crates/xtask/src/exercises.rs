@@ -21,9 +21,32 @@ pub struct Exercises {
     /// One JSON object for a grader: docs/teaching/exercises.md has its fields.
     #[arg(long, conflicts_with = "watch")]
     json: bool,
+    /// The order in which the next one is named.
+    #[arg(long, value_enum, default_value_t = Plan::List)]
+    plan: Plan,
     /// Check that the solutions pass, and that unwritten exercises fail.
     #[arg(long, conflicts_with_all = ["watch", "json"])]
     solutions: bool,
+}
+
+/// An order of the exercises.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+enum Plan {
+    /// As they are numbered.
+    #[default]
+    List,
+    /// As in the lab of docs/teaching/lectures.md, the two for homework at the end.
+    Lab,
+}
+
+impl Plan {
+    /// Places in [`EXERCISES`].
+    fn order(self) -> [usize; EXERCISES.len()] {
+        match self {
+            Self::List => [0, 1, 2, 3, 4, 5, 6],
+            Self::Lab => [0, 5, 2, 3, 4, 1, 6],
+        }
+    }
 }
 
 /// The exercises in their order, each with a hint.
@@ -85,6 +108,22 @@ struct Report {
 }
 
 impl Report {
+    /// The results in the log that libtest writes itself, because a student's code can print lines like its own; `None`
+    /// unless the log names each of the `expected` tests once and agrees with the end of the process.
+    fn with_log(self, log: &str, expected: &[String], is_success: bool) -> Option<Self> {
+        let result = |line: &str| {
+            let (verdict, name) = line.split_once(' ')?;
+            Some((name.to_owned(), verdict == "ok"))
+        };
+        let tests: Vec<(String, bool)> = log.lines().filter_map(result).collect();
+        let mut names: Vec<&String> = tests.iter().map(|(name, _)| name).collect();
+        let mut wanted: Vec<&String> = expected.iter().collect();
+        names.sort();
+        wanted.sort();
+        let agrees = tests.iter().all(|(_, passed)| *passed) == is_success;
+        (names == wanted && agrees).then_some(Self { tests, ..self })
+    }
+
     /// Parses the output of libtest; `None` if it is incomplete.
     fn read(printed: &str) -> Option<Self> {
         let result = |line: &str| {
@@ -125,20 +164,37 @@ impl Report {
         }
     }
 
-    /// A list, a bar, and the first exercise that does not pass, with its hint.
-    fn print(&self) {
+    /// The unwritten exercise without which this one fails, if it is written itself.
+    fn waits_for(&self, exercise: &str) -> Option<&'static str> {
+        let message = |test: &str| self.messages.get(&format!("{exercise}::{test}"));
+        let mut failed = self.of(exercise).filter(|(_, passed)| !passed).peekable();
+        failed.peek()?;
+        let texts: Option<Vec<&String>> = failed.map(|(test, _)| message(test)).collect();
+        let mut others = EXERCISES.into_iter().map(|(name, _)| name);
+        let texts = texts?;
+        others.find(|other| {
+            let missing = format!("{other} is not written yet");
+            *other != exercise && texts.iter().all(|text| text.contains(&missing))
+        })
+    }
+
+    /// A list, a bar, and the next exercise of the plan that does not pass, with its hint.
+    fn print(&self, plan: Plan) {
         for (exercise, _) in EXERCISES {
             let (passed, all) = self.passed(exercise);
-            println!(
-                "  {exercise:<20}  {passed} of {all} tests  {}",
-                self.state(exercise)
-            );
+            let state = match self.waits_for(exercise) {
+                Some(other) => format!("waits for {other}"),
+                None => self.state(exercise).to_string(),
+            };
+            println!("  {exercise:<20}  {passed} of {all} tests  {state}");
         }
         let passes = |(exercise, _): &(&str, &str)| self.state(exercise) == State::Passes;
         let done = EXERCISES.iter().filter(|exercise| passes(exercise)).count();
         let bar = "█".repeat(4 * done) + &"░".repeat(4 * (EXERCISES.len() - done));
         println!("\n{bar}  {done} of {} exercises", EXERCISES.len());
-        let Some((exercise, hint)) = EXERCISES.iter().find(|exercise| !passes(exercise)) else {
+        let mut ordered = plan.order().into_iter().map(|at| EXERCISES[at]);
+        let next = ordered.find(|one| !passes(one) && self.waits_for(one.0).is_none());
+        let Some((exercise, hint)) = next else {
             println!(
                 "\nSee them drive: cargo run -p slam2d_cli --features exercises -- lap --exercises"
             );
@@ -199,24 +255,38 @@ fn is_untouched(exercise: &str) -> bool {
     fs::read_to_string(source(exercise)).is_ok_and(|text| text.contains("not_written("))
 }
 
-/// Runs the tests on the student's functions; `None` if they do not compile or abort the test program.
-fn run_tests() -> anyhow::Result<Option<Report>> {
+/// The test program of the student's functions with these arguments.
+fn test_program(arguments: &[&str]) -> Command {
     let mut tests = cargo();
     tests
-        .args([
-            "test",
-            "--package",
-            "exercises",
-            "--test",
-            "exercises",
-            "--",
-            "--color",
-            "never",
-        ])
+        .args(["test", "--quiet", "--package", "exercises"])
+        .args(["--test", "exercises", "--"])
+        .args(arguments)
         .env("RUST_BACKTRACE", "0")
         .stderr(Stdio::inherit());
-    let output = tests.output().context("cargo cannot be started")?;
-    Ok(Report::read(&String::from_utf8_lossy(&output.stdout)))
+    tests
+}
+
+/// Runs the tests on the student's functions; `None` if they do not compile or end the test program.
+fn run_tests() -> anyhow::Result<Option<Report>> {
+    const NO_CARGO: &str = "cargo cannot be started";
+    let listed = test_program(&["--list"]).output().context(NO_CARGO)?;
+    if !listed.status.success() {
+        return Ok(None);
+    }
+    let listed = String::from_utf8_lossy(&listed.stdout).into_owned();
+    let names = listed
+        .lines()
+        .filter_map(|line| line.strip_suffix(": test"));
+    let names: Vec<String> = names.map(str::to_owned).collect();
+    let log = root().join(format!("target/exercises-{}.log", std::process::id()));
+    let log_name = log.display().to_string();
+    let mut tests = test_program(&["--color", "never", "--logfile", &log_name]);
+    let output = tests.output().context(NO_CARGO)?;
+    let written = fs::read_to_string(&log).unwrap_or_default();
+    let _ = fs::remove_file(&log);
+    let report = Report::read(&String::from_utf8_lossy(&output.stdout));
+    Ok(report.and_then(|report| report.with_log(&written, &names, output.status.success())))
 }
 
 /// The command.
@@ -232,7 +302,7 @@ pub fn exercises(args: Exercises) -> anyhow::Result<()> {
         let report = run_tests()?;
         match (&report, args.json) {
             (_, true) => println!("{}", Report::json(report.as_ref())),
-            (Some(report), false) => report.print(),
+            (Some(report), false) => report.print(args.plan),
             (None, false) if args.watch => println!("\nThe tests did not run: see above"),
             (None, false) => bail!("the tests did not run: see above"),
         }
@@ -374,6 +444,46 @@ test result: FAILED. 2 passed; 1 failed
         assert_eq!(message, "exercises/tests/svd_align.rs:3:5:\noff by 2");
         let aborted = PRINTED.split("failures:").next().unwrap();
         assert!(Report::read(aborted).is_none());
+    }
+
+    #[test]
+    fn printed_lines_earn_nothing() {
+        let names = ["residual::a", "svd_align::b", "svd_align::c"].map(str::to_owned);
+        let log = "ok residual::a\nfailed svd_align::b\nok svd_align::c\n";
+        let read = |printed: &str, log: &str, is_success| {
+            Report::read(printed)?.with_log(log, &names, is_success)
+        };
+        let forged = PRINTED.replace("svd_align::b ... FAILED", "svd_align::b ... ok");
+        let report = read(&forged, log, false).unwrap();
+        assert_eq!(report.passed("svd_align"), (1, 2));
+        for (log, is_success) in [
+            (log, true),
+            ("ok residual::a\nok svd_align::c\n", true),
+            (
+                "ok residual::a\nok svd_align::b\nok svd_align::b\nok svd_align::c\n",
+                true,
+            ),
+        ] {
+            assert!(
+                read(PRINTED, log, is_success).is_none(),
+                "{log} {is_success}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_waits_for_another_exercise_is_not_the_next_one() {
+        let printed = PRINTED.replace(
+            "off by 2",
+            "residual is not written yet: its task is elsewhere",
+        );
+        let report = Report::read(&printed).unwrap();
+        assert_eq!(report.waits_for("svd_align"), Some("residual"));
+        assert_eq!(Report::read(PRINTED).unwrap().waits_for("svd_align"), None);
+        let mut lab = Plan::Lab.order();
+        assert_eq!(EXERCISES[lab[1]].0, "trimmed_icp");
+        lab.sort_unstable();
+        assert_eq!(lab, Plan::List.order());
     }
 
     #[test]

@@ -38,7 +38,7 @@ enum Command {
     },
     /// Build the finished static site into dist/.
     Build,
-    /// Build the npm archive, the Python wheel, the SCORM package and the offline zip into target/packages/.
+    /// Build the npm archive, the Python wheels, the SCORM package and the offline zip into target/packages/.
     Package,
     /// Run every check, or some pieces of the suite.
     Test {

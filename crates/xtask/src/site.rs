@@ -107,7 +107,7 @@ fn remapping() -> Vec<String> {
     home.map_or_else(Vec::new, |home| vec!["--config".to_owned(), setting(home)])
 }
 
-/// `cargo xtask package`: makes the npm archive and the Python wheel in `target/packages`. The command line needs no
+/// `cargo xtask package`: makes the npm archive and the Python wheels in `target/packages`. The command line needs no
 /// package: `cargo install --path crates/slam2d_cli`.
 ///
 /// # Errors
@@ -124,6 +124,15 @@ pub fn package() -> anyhow::Result<()> {
         "Packing the npm archive and the Python wheel",
         program("node").args(["web/package.mjs", "dist", "target/packages"]),
     )?;
+    // One wheel for this system, from the tree as it is.
+    let mut wheel = program(&python);
+    wheel.args(["-m", "pip", "wheel", "--quiet", "--no-deps"]);
+    wheel.args(["--wheel-dir", "target/packages", "crates/slam2d_py"]);
+    run(
+        "Compiling and packing the Python package rustslam2d",
+        &mut wheel,
+    )
+    .context("it needs pip, and once the network, for maturin")?;
     run(
         "Packing the exercises for learning management systems",
         program("node").args(["web/scorm.mjs", "dist", SCORM]),

@@ -94,6 +94,11 @@ pub enum AnswersError {
     },
 }
 
+/// The bytes without the mark with which some editors begin a file in UTF-8.
+pub fn without_bom(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
 impl Answers {
     /// Reads a file of answers.
     ///
@@ -113,11 +118,12 @@ impl Answers {
         if bytes.len() as u64 > MAX_BYTES {
             return Err(AnswersError::TooLong(owned()));
         }
-        let answers: Self =
-            serde_json::from_slice(&bytes).map_err(|source| AnswersError::Malformed {
+        let answers: Self = serde_json::from_slice(without_bom(&bytes)).map_err(|source| {
+            AnswersError::Malformed {
                 path: owned(),
                 source,
-            })?;
+            }
+        })?;
         if answers.schema != SCHEMA {
             return Err(AnswersError::Schema {
                 path: owned(),

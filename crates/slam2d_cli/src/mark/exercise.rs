@@ -31,6 +31,8 @@ pub struct Exercise {
     tolerance: f64,
     #[serde(default)]
     unit: String,
+    /// "no" if everyone has the same task: the answer hardly depends on a seed.
+    varies: Option<String>,
     choices: Vec<Choice>,
 }
 
@@ -90,6 +92,11 @@ pub struct Marked {
     pub note: Option<String>,
 }
 
+/// The ids in order.
+pub fn ids() -> impl Iterator<Item = &'static str> {
+    EXERCISES.iter().map(|exercise| exercise.exercise.as_str())
+}
+
 /// Number of exercises.
 pub fn count() -> usize {
     EXERCISES.len()
@@ -128,7 +135,8 @@ impl Exercise {
         let mut model = self.model();
         let takes_seed = model.spec().params.iter().any(|param| param.id == "seed");
         let has_seed = self.state.split('&').any(|pair| pair.starts_with("seed="));
-        if !student.is_empty() && takes_seed && !has_seed {
+        let varies = self.varies.as_deref() != Some("no");
+        if varies && !student.is_empty() && takes_seed && !has_seed {
             for attempt in 0..MAX_TRIES {
                 let seed = seed_of(student, &self.exercise, attempt);
                 model
@@ -290,6 +298,30 @@ mod tests {
                     task.outcome
                 );
             }
+        }
+    }
+
+    /// The class of the tests: 80 made-up names.
+    fn class() -> impl Iterator<Item = String> {
+        (0..80).map(|number| format!("student-{number:02}"))
+    }
+
+    /// A personal task of which most of a class has the same answer would be copied.
+    #[test]
+    fn no_answer_to_a_personal_task_is_that_of_more_than_half_of_a_class() {
+        for exercise in EXERCISES.iter().filter(|one| one.varies.is_none()) {
+            let mut answers = std::collections::HashMap::new();
+            for student in class() {
+                let task = exercise.task(&student);
+                assert_ne!(task.state, exercise.state, "{}", exercise.exercise);
+                let right = match exercise.right_choice(&task.outcome) {
+                    Some(choice) => choice.choice.clone(),
+                    None => format!("{:?}", exercise.fact(&task.outcome)),
+                };
+                *answers.entry(right).or_insert(0) += 1;
+            }
+            let most = answers.values().max().copied().unwrap_or(0);
+            assert!(most <= 40, "{}: {answers:?}", exercise.exercise);
         }
     }
 

@@ -1,0 +1,62 @@
+"""The exercises in Python: solutions pass, untouched stubs fail, and printing earns nothing."""
+
+import json
+import shutil
+
+import pytest
+from conftest import ROOT
+from rustslam2d import exercises
+
+FOLDER = ROOT / "exercises/python"
+
+
+def report(capsys, *arguments):
+    exercises.main(["--folder", str(FOLDER), "--json", *arguments])
+    return json.loads(capsys.readouterr().out)
+
+
+def test_the_solutions_pass_and_untouched_stubs_fail(capsys):
+    solved = report(capsys, "--code", str(FOLDER / "solutions"))
+    assert solved["passed"] == solved["total"] == 7, [one for one in solved["exercises"] if one["state"] != "passes"]
+    untouched = report(capsys)
+    assert [one["name"] for one in untouched["exercises"]] == list(exercises.HINTS)
+    for one in untouched["exercises"]:
+        assert one["state"] == "not written" and one["tests"], one
+        assert not any(test["passed"] for test in one["tests"]), one
+        assert "is not written yet: its task is in" in one["message"], one
+
+
+@pytest.fixture
+def code(tmp_path):
+    folder = tmp_path / "code"
+    shutil.copytree(FOLDER / "solutions", folder)
+    return folder
+
+
+@pytest.mark.parametrize(
+    "added",
+    [
+        'print("test_no_pairs_give_the_identity PASSED")\nraise ValueError("no")',
+        "import os; os._exit(0)",
+        "import sys; sys.exit(0)",
+        "def (:",
+    ],
+)
+def test_what_a_file_prints_or_how_it_exits_earns_nothing(code, added):
+    file = code / "svd_align.py"
+    file.write_text(file.read_text() + "\n" + added)
+    results, message = exercises.run("svd_align", FOLDER, code)
+    assert not (results and all(results.values())) and message
+    assert exercises.state("svd_align", code, results) == "fails"
+
+
+def test_the_next_one_is_that_of_the_plan_and_what_waits_is_passed_over(capsys, code):
+    for name in ("point_to_plane_step", "range_histogram", "residual"):
+        shutil.copy(FOLDER / f"{name}.py", code)
+    found = {name: exercises.run(name, FOLDER, code) for name in ("svd_align", "residual", "trimmed_icp")}
+    assert exercises.waits("trimmed_icp", found["trimmed_icp"]) == "point_to_plane_step"
+    states = {name: exercises.state(name, code, results) for name, (results, _) in found.items()}
+    for plan, following in (("list", "residual"), ("lab", "residual")):
+        exercises.show(states, found, plan)
+        assert f"Next: {following}.py" in capsys.readouterr().out
+    assert exercises.PLANS["lab"][1] == "trimmed_icp" and set(exercises.PLANS["lab"]) == set(exercises.HINTS)

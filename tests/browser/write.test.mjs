@@ -1,0 +1,147 @@
+// "Write it yourself": an editor by the keyboard, tests as sentences, and code that can do no harm.
+
+import assert from 'node:assert/strict';
+import { it } from 'node:test';
+import { violations } from './axe.mjs';
+import * as clock from './clock.mjs';
+import * as h from './harness.mjs';
+
+const visit = h.visitor();
+
+const NAMES = ['svd_align', 'point_to_plane_step', 'keep_pairs', 'gate'];
+
+/** A page with one opened editor and nothing else. */
+async function writing(name, test, how = {}) {
+  const body = `<main><h1>Write</h1><details open data-write="${name}"><summary>Write it yourself</summary></details></main>
+    <script type="module">import { open } from './write-yourself.js'; open(document.querySelector('details'));</script>`;
+  await visit(body, async (tab) => {
+    await tab.getByRole('textbox').waitFor();
+    await test(tab);
+  }, { fresh: true, ...how, options: { stepMs: clock.SMOOTH_MS } });
+}
+
+/** Types code by the keyboard in place of what is there. */
+async function type(tab, code) {
+  await tab.getByRole('textbox').click();
+  await tab.keyboard.press('ControlOrMeta+a');
+  await tab.keyboard.insertText(code);
+}
+
+/** Presses Run, and returns the sentences. */
+async function run(tab) {
+  await tab.getByRole('button', { name: 'Run', exact: true }).click();
+  await tab.getByRole('button', { name: 'Run', exact: true, disabled: false }).waitFor();
+  return tab.getByRole('status').locator('p').allTextContents();
+}
+
+it('each exercise fails as it is handed out, and passes with the solution of the last step of help', async () => {
+  for (const name of NAMES) {
+    await writing(name, async (tab) => {
+      const [first] = await run(tab);
+      assert.match(first, /^✗ .*: .*expected /, name);
+      for (let step = 0; step < 4; step += 1) await tab.getByRole('button', { name: /^Help/ }).click();
+      const solved = await run(tab);
+      assert.match(solved[0], /^All \d tests pass: /, `${name}: ${solved.join('\n')}`);
+      await tab.getByRole('textbox').click();
+      await tab.keyboard.press('ControlOrMeta+z');
+      assert.match((await run(tab))[0], /^✗ /, `${name}: undo brings the reader's code back`);
+    });
+  }
+});
+
+it('a wrong function is told which number was expected, which came, and what it means', async () => {
+  await writing('svd_align', async (tab) => {
+    // No turn: only the means are matched.
+    await type(tab, `function svd_align(src, dst) {
+      const mean = (points, k) => points.filter((_, at) => at % 2 === k).reduce((sum, one) => sum + one, 0) / (points.length / 2);
+      return src.length === 0 ? [0, 0, 0] : [mean(dst, 0) - mean(src, 0), mean(dst, 1) - mean(src, 1), 0];
+    }`);
+    const sentences = await run(tab);
+    assert.match(sentences[0], /^✗ A known motion: expected \(2\.0000 m, 1\.0000 m, 36\.870°\), and \(2\.0000 m, 1\.0000 m, 0\.000°\) came/);
+    assert.ok(sentences.some((one) => /^✗ Mirrored points: .*the sign of the determinant/.test(one)), sentences.join('\n'));
+    assert.ok(sentences.includes('✓ A corridor: as expected.') && sentences.includes('✓ No pairs: as expected.'));
+  });
+});
+
+it('a loop without end is stopped, errors name their line, and a missing function is named', async () => {
+  await writing('gate', async (tab) => {
+    await type(tab, 'function gate() {\n  for (;;) {}\n}');
+    assert.deepEqual(await run(tab), ['✗ There was no answer for 1 s, and your code was ended. Is there a loop without end?']);
+    await type(tab, 'for (;;) {}');
+    assert.match((await run(tab))[0], /no answer for 1 s/);
+    await type(tab, 'function gate(innovation) {\n  const [x] = innovation;\n  return y;\n}');
+    assert.match((await run(tab))[0], /^✗ A known innovation: your function ended with ReferenceError: y is not defined in line 3\.$/);
+    assert.equal(await tab.locator('.cm-lintRange-error').count(), 1);
+    await type(tab, 'function gate() {\n  return 1;\n}\nlet = ;');
+    assert.match((await run(tab))[0], /^✗ Line 4: SyntaxError/);
+    await type(tab, 'const other = 1;');
+    assert.deepEqual(await run(tab), ['✗ There is no function gate. Keep its name.']);
+  });
+});
+
+it('the code has no network, no page and no storage', async () => {
+  const asked = [];
+  const answer = (path) => {
+    if (path.startsWith('/secret')) asked.push(path);
+    return false;
+  };
+  await writing('gate', async (tab) => {
+    const home = new URL(tab.url()).origin;
+    await type(tab, `
+      const found = [typeof document, typeof localStorage, self.origin];
+      let tried = 'none';
+      try { importScripts('${home}/secret.js'); tried = 'imported'; } catch (error) { tried = error.name; }
+      try { const r = new XMLHttpRequest(); r.open('GET', '${home}/secret-xhr', false); r.send(); tried += ' sent'; } catch (error) { tried += ' ' + error.name; }
+      fetch('${home}/secret-fetch').catch(() => {});
+      try { new WebSocket('${home.replace('http', 'ws')}/secret-socket'); } catch {}
+      function gate() { throw new Error([...found, tried].join(' ')); }`);
+    assert.match((await run(tab))[0], /Error: undefined undefined null NetworkError NetworkError/);
+    assert.deepEqual(asked, []);
+  }, { quiet: false, server: { answer } });
+});
+
+it('a page whose policy forbids code says so', async () => {
+  await writing('gate', async (tab) => {
+    assert.match((await run(tab))[0], /^✗ The policy of this page does not let code run here/);
+  }, { quiet: false, server: { policy: h.STRICT_POLICY.replace("script-src 'self'", "script-src 'self' 'unsafe-inline'") } });
+});
+
+it('code is kept only on wish, and deleted when the wish is withdrawn', async () => {
+  await writing('gate', async (tab) => {
+    const kept = () => tab.evaluate(() => Object.keys(localStorage).filter((key) => key.startsWith('slam2d-code')));
+    await type(tab, '// mine');
+    assert.deepEqual(await kept(), []);
+    await tab.getByLabel('Keep my code in this browser').check();
+    assert.deepEqual(await kept(), ['slam2d-code/1:gate']);
+    await tab.reload();
+    await tab.getByRole('textbox').filter({ hasText: '// mine' }).waitFor();
+    await tab.getByLabel('Keep my code in this browser').uncheck();
+    assert.deepEqual(await kept(), []);
+  });
+});
+
+it('the editor works by the keyboard and satisfies axe-core', async () => {
+  await writing('keep_pairs', async (tab) => {
+    await tab.getByRole('textbox').focus();
+    assert.equal(await tab.getByRole('textbox').getAttribute('aria-label'), 'Your keep_pairs, in JavaScript. Tab leaves the editor.');
+    await tab.keyboard.press('Tab');
+    await tab.keyboard.press('Enter');
+    await tab.getByText(/^✗ A box that moved/).waitFor();
+    assert.deepEqual(await violations(tab), []);
+  });
+});
+
+it('the page loads the editor when it is opened, and not before', async () => {
+  const loaded = [];
+  await visit('', async (tab) => {
+    tab.on('request', (request) => loaded.push(new URL(request.url()).pathname));
+    const places = tab.locator('details[data-write]');
+    assert.deepEqual(await places.evaluateAll((all) => all.map((one) => one.dataset.write)), NAMES);
+    assert.ok(!(await tab.evaluate(() => performance.getEntriesByType('resource').some(({ name }) => name.includes('write-yourself')))));
+    await places.first().evaluate((one) => {
+      for (let at = one; at !== null; at = at.parentElement?.closest('details') ?? null) at.open = true;
+    });
+    await places.first().getByRole('textbox').waitFor();
+    assert.ok(loaded.includes('/write-yourself.js'));
+  }, { path: '/index.html', fresh: true });
+});
