@@ -18,6 +18,7 @@ use thiserror::Error;
 use crate::buildings::setting;
 use crate::grade::{Grade, GradeError, ReferenceArgs};
 use crate::interrupt::{self, Interrupt};
+use crate::localize::Init;
 use crate::log_file::{FileError, OdometryArgs, TopicArgs, open_compared};
 use crate::numbers;
 use crate::optimize::check_folder;
@@ -49,10 +50,18 @@ pub struct RunArgs {
     /// Set a parameter of the estimator; docs/robots-parameters.md lists them.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
     settings: Vec<(String, f64)>,
-    /// Continue this session, or that of a run's folder: the log is the rest of its recording, and the
-    /// parameters stay the same.
+    /// Continue this session, or that of a run's folder, with its parameters. The log is the rest of its recording, or
+    /// another day: then the robot is first searched for on the session's map.
     #[arg(long = "continue", value_name = "SESSION", conflicts_with = "settings")]
     session: Option<PathBuf>,
+    /// Pose of the first scan on the session's map: x,y,deg in metres and degrees, or anywhere.
+    #[arg(
+        long,
+        value_name = "x,y,deg|anywhere",
+        requires = "session",
+        allow_hyphen_values = true
+    )]
+    init: Option<Init>,
     /// Mark free space in the map along beams without a return, up to the sensor's limit (REP 117).
     #[arg(long)]
     free_space: bool,
@@ -115,7 +124,7 @@ struct RunJson {
     cpu_s: f64,
     /// Peak memory of the process, MB; null if the system does not report it.
     peak_mb: Option<f64>,
-    /// Time per scan at the start and at the end of the log; null with fewer than ten scans.
+    /// Time per scan: median, 99 %, worst, and those of the first and the last tenth; null with fewer than ten scans.
     ticks: Option<TickSummary>,
     /// Whether Ctrl-C, SIGTERM or an unreadable log ended the run early.
     interrupted: bool,
@@ -175,6 +184,7 @@ pub fn run(args: &RunArgs) -> Result<ExitCode, RunError> {
         }
     }
     run.finish();
+    recorder.forget_left_out(&run);
     progress.end();
     if run.scans() == 0 && run.late() > 0 {
         return Err(RunError::NotLater { name });
@@ -300,7 +310,10 @@ fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder, Option<LaserMount>), Ru
         name: path.display().to_string(),
         problem,
     };
-    let run = LogRun::resume(&session, odometry_use).map_err(snapshot_error)?;
+    let mut run = LogRun::resume(&session, odometry_use).map_err(snapshot_error)?;
+    if let Some(Init(start)) = args.init {
+        run = run.starting_at(start);
+    }
     let mount = session.sensor.as_ref().map(|sensor| LaserMount {
         body_from_sensor: sensor.body_from_sensor,
         is_flipped: false,
@@ -320,11 +333,13 @@ fn print_text(result: &RunJson) {
     if let Some(peak_mb) = result.peak_mb {
         say!("memory           {peak_mb:.0} MB at most");
     }
-    if let Some(TickSummary { first, last }) = result.ticks {
+    if let Some(ticks) = result.ticks {
         say!(
-            "a scan           {:.2} ms in the first tenth, {:.2} ms in the last (medians)",
-            first.median_ms,
-            last.median_ms
+            "a scan           {:.2} ms in the first tenth, {:.2} ms in the last (medians); 99 % within {:.1} ms, worst {:.1} ms",
+            ticks.first.median_ms,
+            ticks.last.median_ms,
+            ticks.p99_ms,
+            ticks.worst_ms
         );
     }
     for doubt in &result.doubts {
