@@ -87,7 +87,7 @@ impl Roster {
         let head = rows.next().unwrap_or_default();
         let is_identifier = |name: &String| {
             let known = |known: &&str| known.eq_ignore_ascii_case(name.trim());
-            IDENTIFIERS.iter().any(|name| known(name))
+            IDENTIFIERS.iter().any(known)
         };
         let columns = head.iter().enumerate();
         let identifiers: Vec<usize> = columns
