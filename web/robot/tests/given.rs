@@ -35,11 +35,13 @@ fn the_files_of_a_folder_are_one_recording_in_the_order_of_its_metadata() {
     );
     let given = Given::new(folder("")).unwrap();
     assert_eq!(given.name, "b_0.db3 and 1 more");
-    let missing = Given::new(folder("relative_file_paths:\n  - b_2.db3\n"))
-        .err()
-        .unwrap();
+    let part = Given::new(folder("relative_file_paths:\n  - b_2.db3\n")).unwrap();
+    let said = &part.remarks[0].text;
+    assert!(said.contains("lists b_2.db3, which is not there"), "{said}");
+    let listed_only = vec![file("metadata.yaml", listed), file("notes.txt", "")];
+    let missing = Given::new(listed_only).err().unwrap();
     assert!(
-        missing.starts_with("metadata.yaml lists b_2.db3"),
+        missing.starts_with("metadata.yaml lists b_1.db3"),
         "{missing}"
     );
     // Alone, it is left to the log reader to reject it.
