@@ -3,11 +3,22 @@
 //! [`Pipeline::step`] takes one scan, [`Pipeline::finish`] ends the log, [`Pipeline::trajectory`] returns the
 //! pose of every scan. The command line, the page's worker and the examples all use it.
 //!
+//! Another day, a restart or a carried robot is one case: a scan that does not continue the run starts a piece, which is
+//! mapped on its own and joins the map once the robot is found on it. A piece is never attached where the robot was last
+//! seen.
+//!
 //! It reads no files and does not repair stamps: scans have to be in order of time.
+
+mod continuity;
+mod piece;
+
+use core::ops::Range;
 
 use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 
+use self::piece::Piece;
+use crate::localize::StartPose;
 use crate::scan::{Frame, FrameError, LaserScan};
 use crate::slam::{Conclusion, RobotConfig, Slam, SlamConfig, SlamReport, SlamSnapshot};
 
@@ -43,6 +54,43 @@ pub enum OdometryUse {
     None,
 }
 
+/// What became of a piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PieceFate {
+    /// It is still mapped on its own.
+    Alone,
+    /// The robot was found on the map at this scan of the piece, counted from 1, and all its scans are on the map.
+    Joined(usize),
+    /// Nothing connects it to the map, and it was left out.
+    LeftOut,
+    /// Nothing connects it to the map, which was left out.
+    Kept,
+}
+
+/// Scans that do not continue those before them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PieceReport {
+    /// Stamp of its first scan, s.
+    pub first_s: f64,
+    /// Time since the scan before, s.
+    pub gap_s: f64,
+    /// Number of scans before it.
+    pub scans_before: usize,
+    /// Its number of scans.
+    pub scans: usize,
+    /// What became of it.
+    pub fate: PieceFate,
+}
+
+/// Keyframes and scans that were left out, by their numbers before.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeftOut {
+    /// The keyframes; later ones have lower numbers since.
+    pub keyframes: Range<usize>,
+    /// The scans.
+    pub scans: Range<usize>,
+}
+
 /// The estimator for recorded logs, with the pose of each scan.
 ///
 /// ```
@@ -76,6 +124,14 @@ pub struct Pipeline {
     last_odometry: Option<SE2>,
     /// The estimator after the last scan, before its keyframes were linked again.
     before_finish: Option<SlamSnapshot>,
+    /// The scans since an interruption, until they are found on the map.
+    piece: Option<Box<Piece>>,
+    pieces: Vec<PieceReport>,
+    left_out: Vec<LeftOut>,
+    /// Whether the map is that of a session, without a scan of this log.
+    is_session: bool,
+    /// Where the robot is on the map at the next scan, by the user.
+    start: Option<StartPose>,
 }
 
 impl Pipeline {
@@ -107,6 +163,7 @@ impl Pipeline {
             slam: Some(slam),
             scans,
             last_odometry,
+            is_session: true,
             ..Self::new(odometry_use)
         }
     }
@@ -119,32 +176,182 @@ impl Pipeline {
         self
     }
 
+    /// The same pipeline, whose next scan does not continue the last one: the robot is searched for on the map.
+    #[must_use]
+    pub fn starting_at(mut self, start: StartPose) -> Self {
+        self.start = Some(start);
+        self
+    }
+
     /// Takes the next scan.
+    ///
+    /// The report numbers keyframes as they are once a piece has joined the map. The estimate of a piece that has not
+    /// is in its own frame.
     ///
     /// # Errors
     /// If it is not after the previous one, or if it is not a valid scan; the pipeline is unchanged.
     pub fn step(&mut self, recorded: &LogFrame) -> Result<SlamReport, FrameError> {
         let stamp_s = recorded.stamp_s;
-        let frame = Frame {
+        let mut frame = Frame {
             stamp_s,
             odometry: self.motion(recorded),
             scan: recorded.scan.clone(),
         };
-        let robot = self.robot;
-        let slam = self.slam.get_or_insert_with(|| {
-            let robot = robot.unwrap_or_else(|| RobotConfig::for_scan(&frame.scan));
-            Slam::new(SlamConfig::from_robot(robot))
-        });
-        let report = slam.step(&frame)?;
+        if let Some(gap_s) = self.interruption_s(recorded, &frame)? {
+            frame.odometry = None;
+            self.begin_piece(recorded, gap_s);
+        }
+        let report = match &mut self.piece {
+            Some(piece) => piece.step(&frame)?,
+            None => {
+                let robot = self.robot;
+                let slam = self.slam.get_or_insert_with(|| {
+                    let robot = robot.unwrap_or_else(|| RobotConfig::for_scan(&frame.scan));
+                    Slam::new(SlamConfig::from_robot(robot))
+                });
+                slam.step(&frame)?
+            }
+        };
         self.last_odometry = recorded.odometry;
         self.before_finish = None;
-        let keyframe = slam.keyframes().len() - 1;
+        let (first, slam) = match &self.piece {
+            Some(piece) => (self.map_keyframes(), Some(&piece.slam)),
+            None => (0, self.slam.as_ref()),
+        };
+        let (keyframe, pose) = slam.map_or((0, SE2::identity()), |slam| {
+            let newest = slam.keyframes().len() - 1;
+            (newest, slam.graph().pose(newest))
+        });
         self.scans.push(ScanPose {
             stamp_s,
-            keyframe,
-            keyframe_from_body: slam.graph().pose(keyframe).between(&report.estimate),
+            keyframe: first + keyframe,
+            keyframe_from_body: pose.between(&report.estimate),
         });
-        Ok(report)
+        if self.piece.is_none() {
+            self.is_session = false;
+            return Ok(report);
+        }
+        if let Some(newest) = self.pieces.last_mut() {
+            newest.scans += 1;
+        }
+        self.join(false);
+        Ok(numbered_after(first, report))
+    }
+
+    /// The time since the last scan, s, if this one does not continue it.
+    fn interruption_s(
+        &self,
+        recorded: &LogFrame,
+        frame: &Frame,
+    ) -> Result<Option<f64>, FrameError> {
+        let Some(last) = self.scans.last() else {
+            return Ok(None);
+        };
+        let gap_s = recorded.stamp_s - last.stamp_s;
+        let slam = match &self.piece {
+            Some(piece) => Some(&piece.slam),
+            None => self.slam.as_ref(),
+        };
+        let Some(slam) = slam.filter(|_| gap_s > 0.0) else {
+            return Ok(None);
+        };
+        frame.validate()?;
+        let is_placed = self.start.is_some();
+        let continues =
+            !is_placed && continuity::continues(slam, self.last_odometry, recorded, gap_s);
+        Ok((!continues).then_some(gap_s))
+    }
+
+    /// Number of keyframes of the map, without those of a piece.
+    fn map_keyframes(&self) -> usize {
+        self.slam.as_ref().map_or(0, |slam| slam.keyframes().len())
+    }
+
+    /// Starts a piece; one that has not joined the map is compared with it, and the shorter one is left out.
+    fn begin_piece(&mut self, recorded: &LogFrame, gap_s: f64) {
+        self.join(true);
+        self.leave_out_shorter();
+        let Some(slam) = &mut self.slam else { return };
+        // The map is searched as it would be saved.
+        if self.before_finish.is_none() {
+            slam.conclude();
+        }
+        let start = self.start.take().unwrap_or_default();
+        self.piece = Some(Box::new(Piece::new(slam, start)));
+        self.pieces.push(PieceReport {
+            first_s: recorded.stamp_s,
+            gap_s,
+            scans_before: self.scans.len(),
+            scans: 0,
+            fate: PieceFate::Alone,
+        });
+    }
+
+    /// Joins the piece to the map if the robot was found on it.
+    fn join(&mut self, is_end: bool) {
+        let (Some(piece), Some(slam)) = (&self.piece, &self.slam) else {
+            return;
+        };
+        let Some(found) = piece.pose(is_end) else {
+            return;
+        };
+        let joined = slam.snapshot().joined(&piece.slam.snapshot(), &found);
+        let Ok(joined) = Slam::restore(&joined) else {
+            return;
+        };
+        self.slam = Some(joined);
+        self.piece = None;
+        self.is_session = false;
+        if let Some(newest) = self.pieces.last_mut() {
+            newest.fate = PieceFate::Joined(newest.scans);
+        }
+    }
+
+    /// Leaves out the map or the piece, whichever has fewer scans; a session's map is left out in any case, because
+    /// its file still has it.
+    fn leave_out_shorter(&mut self) {
+        let Some(piece) = self.piece.take() else {
+            return;
+        };
+        let first = self.map_keyframes();
+        let Some(newest) = self.pieces.last_mut() else {
+            return;
+        };
+        let before = self.scans.partition_point(|scan| scan.keyframe < first);
+        let left_out = if self.is_session || newest.scans >= before {
+            newest.fate = PieceFate::Kept;
+            self.is_session = false;
+            self.slam = Some(piece.slam);
+            self.scans.drain(..before);
+            for scan in &mut self.scans {
+                scan.keyframe -= first;
+            }
+            LeftOut {
+                keyframes: 0..first,
+                scans: 0..before,
+            }
+        } else {
+            newest.fate = PieceFate::LeftOut;
+            let end = first + piece.slam.keyframes().len();
+            let scans = before..self.scans.len();
+            self.scans.truncate(before);
+            LeftOut {
+                keyframes: first..end,
+                scans,
+            }
+        };
+        self.left_out.push(left_out);
+    }
+
+    /// The pieces so far, in order.
+    #[must_use]
+    pub fn pieces(&self) -> &[PieceReport] {
+        &self.pieces
+    }
+
+    /// What was left out since the last call, in order.
+    pub fn take_left_out(&mut self) -> Vec<LeftOut> {
+        core::mem::take(&mut self.left_out)
     }
 
     /// The motion since the previous scan by odometry; `None` if there is none, or if it is not used.
@@ -158,7 +365,11 @@ impl Pipeline {
 
     /// Ends the log: closes pending loops if nothing contradicts them, and links keyframes again. Returns `None` if
     /// there was no scan since the last call.
+    ///
+    /// A piece that nothing connects to the map is compared with it, and the shorter one is left out.
     pub fn finish(&mut self) -> Option<Conclusion> {
+        self.join(true);
+        self.leave_out_shorter();
         let slam = self
             .slam
             .as_mut()
@@ -167,7 +378,7 @@ impl Pipeline {
         Some(slam.conclude())
     }
 
-    /// The estimator; `None` before the first scan.
+    /// The estimator of the map; `None` before the first scan.
     #[must_use]
     pub fn slam(&self) -> Option<&Slam> {
         self.slam.as_ref()
@@ -209,14 +420,26 @@ impl Pipeline {
     }
 
     /// Time (s) and pose `world_from_body` of every scan, by the present graph.
+    ///
+    /// Those of a piece that has not joined the map are in its own frame.
     pub fn trajectory(&self) -> impl Iterator<Item = (f64, SE2)> + '_ {
-        let poses = self
-            .slam
-            .as_ref()
-            .map_or(&[][..], |slam| slam.graph().poses());
+        let of =
+            |slam: Option<&'_ Slam>| slam.map_or(Vec::new(), |slam| slam.graph().poses().to_vec());
+        let mut poses = of(self.slam.as_ref());
+        poses.extend(of(self.piece.as_ref().map(|piece| &piece.slam)));
         let scans = self.scans.iter();
-        scans.map(|scan| (scan.stamp_s, poses[scan.keyframe] * scan.keyframe_from_body))
+        scans.map(move |scan| (scan.stamp_s, poses[scan.keyframe] * scan.keyframe_from_body))
     }
+}
+
+/// The report of a piece, with keyframes and frames numbered after those of the map.
+fn numbered_after(keyframes: usize, mut report: SlamReport) -> SlamReport {
+    report.new_keyframe = report.new_keyframe.map(|node| keyframes + node);
+    for attempt in &mut report.loop_attempts {
+        attempt.verification.from_node += keyframes;
+        attempt.verification.candidate.node += keyframes;
+    }
+    report
 }
 
 #[cfg(test)]

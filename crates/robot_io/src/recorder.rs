@@ -1,6 +1,6 @@
 //! Records scans for a map, and χ² over time, during a run.
 
-use ch16_slam2d::slam::SlamReport;
+use ch16_slam2d::slam::{Slam, SlamReport};
 
 use crate::json_log::FrameLine;
 use crate::log::LogFrame;
@@ -37,6 +37,20 @@ impl RunRecorder {
             self.keyframes.push(frame.clone());
             self.chi2.push([report.stamp_s, report.chi2]);
         }
+    }
+
+    /// Drops the frames of keyframes that are not on the map: those of a piece that was left out. To be called once
+    /// the run is finished.
+    pub fn forget_left_out(&mut self, run: &LogRun) {
+        let stamps_s = || run.slam().into_iter().flat_map(Slam::keyframes);
+        let stamps_s: Vec<f64> = stamps_s().map(|keyframe| keyframe.stamp_s).collect();
+        let is_mapped = |stamp_s: f64| {
+            stamps_s
+                .binary_search_by(|known| known.total_cmp(&stamp_s))
+                .is_ok()
+        };
+        self.keyframes.retain(|frame| is_mapped(frame.stamp_s));
+        self.chi2.retain(|[stamp_s, _]| is_mapped(*stamp_s));
     }
 
     /// The frames of the keyframes, in order.

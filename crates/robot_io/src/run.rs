@@ -1,8 +1,9 @@
 //! Runs the pipeline on a log and collects messages for the user.
 
+use ch16_slam2d::localize::StartPose;
 use ch16_slam2d::loops::LoopVerification;
 pub use ch16_slam2d::pipeline::OdometryUse;
-use ch16_slam2d::pipeline::{Pipeline, ScanPose};
+use ch16_slam2d::pipeline::{LeftOut, PieceFate, PieceReport, Pipeline, ScanPose};
 use ch16_slam2d::scan::{FrameError, LaserScan};
 use ch16_slam2d::slam::{LoopAttempt, RobotConfig, Slam, SlamReport, SnapshotError};
 use pr_geom::SE2;
@@ -32,9 +33,13 @@ pub struct LogRun {
     pipeline: Pipeline,
     /// Number of scans that belong to a resumed session.
     resumed: usize,
+    /// The same before any was left out.
+    session_scans: usize,
     /// Beam geometry, without ranges.
     sensor: Option<LaserScan>,
     loops: Vec<TriedLoop>,
+    /// Attempts of a piece that is not on the map.
+    held: Vec<LoopAttempt>,
     links: Vec<LoopVerification>,
     poor: Vec<PoorFit>,
     lengths: PathLengths,
@@ -48,6 +53,8 @@ pub struct LogRun {
     refused: Option<FrameError>,
     /// Beam geometry of a log that continues a session, if it differs from the session's.
     other_sensor: Option<LaserScan>,
+    /// Beam geometry of this log, without ranges.
+    own_sensor: Option<LaserScan>,
 }
 
 /// Message on scans whose stamp is not later than the one before; `None` if there are none.
@@ -78,9 +85,11 @@ impl LogRun {
         Self {
             settings: Vec::new(),
             resumed: pipeline.scans().len(),
+            session_scans: pipeline.scans().len(),
             pipeline,
             sensor: None,
             loops: Vec::new(),
+            held: Vec::new(),
             links: Vec::new(),
             poor: Vec::new(),
             lengths: PathLengths::default(),
@@ -90,7 +99,16 @@ impl LogRun {
             still: Some(0),
             refused: None,
             other_sensor: None,
+            own_sensor: None,
         }
+    }
+
+    /// The first scan does not continue the session: the robot is searched for on its map, at this pose if one is
+    /// given.
+    #[must_use]
+    pub fn starting_at(mut self, start: StartPose) -> Self {
+        self.pipeline = self.pipeline.starting_at(start);
+        self
     }
 
     /// Sets a parameter, if the value is valid.
@@ -100,7 +118,9 @@ impl LogRun {
         self
     }
 
-    /// Continues a session in the same odometry frame: the first scan is the one after the session's last.
+    /// Continues a session. If the first scan is the one after the session's last, the result is that of an
+    /// uninterrupted run; otherwise the robot is searched for on the session's map, and until it is found, its scans are
+    /// mapped on their own.
     ///
     /// # Errors
     /// If the session is inconsistent.
@@ -183,6 +203,7 @@ impl LogRun {
             ranges_m: Vec::new(),
             ..log.scan
         };
+        self.own_sensor.get_or_insert_with(|| sensor.clone());
         match &self.sensor {
             Some(known) if self.scans() == 1 && !has_same_beams(known, &sensor) => {
                 self.other_sensor = Some(sensor);
@@ -197,16 +218,64 @@ impl LogRun {
                 score,
             });
         }
-        self.note(&report.loop_attempts);
+        self.forget_left_out();
+        self.held.extend_from_slice(&report.loop_attempts);
+        if !self.is_apart() {
+            self.note_held();
+        }
         Some(report)
+    }
+
+    /// Whether the newest scans are mapped on their own and not yet on the map.
+    fn is_apart(&self) -> bool {
+        let newest = self.pieces().last();
+        newest.is_some_and(|piece| piece.fate == PieceFate::Alone)
+    }
+
+    fn note_held(&mut self) {
+        let held = std::mem::take(&mut self.held);
+        self.note(&held);
     }
 
     /// Ends the run: pending loops are accepted unless something contradicts them.
     pub fn finish(&mut self) {
-        if let Some(concluded) = self.pipeline.finish() {
+        let concluded = self.pipeline.finish();
+        self.forget_left_out();
+        self.note_held();
+        if let Some(concluded) = concluded {
             self.links = concluded.links;
             self.note(&concluded.tried);
         }
+    }
+
+    /// Removes the loops of keyframes that were left out, and renumbers the others.
+    fn forget_left_out(&mut self) {
+        for LeftOut { keyframes, scans } in self.pipeline.take_left_out() {
+            self.note_held();
+            self.resumed -= scans.end.min(self.resumed) - scans.start.min(self.resumed);
+            self.loops.retain(|tried| {
+                let found = &tried.verification;
+                !keyframes.contains(&found.from_node) && !keyframes.contains(&found.candidate.node)
+            });
+            for tried in &mut self.loops {
+                let found = &mut tried.verification;
+                for node in [&mut found.from_node, &mut found.candidate.node] {
+                    if *node >= keyframes.end {
+                        *node -= keyframes.len();
+                    }
+                }
+            }
+            if keyframes.start == 0 {
+                self.sensor.clone_from(&self.own_sensor);
+                self.other_sensor = None;
+            }
+        }
+    }
+
+    /// Scans that did not continue those before them: of another day, after a restart, or of a robot that was carried.
+    #[must_use]
+    pub fn pieces(&self) -> &[PieceReport] {
+        self.pipeline.pieces()
     }
 
     /// Records the results of loops; a pending loop is updated once it is accepted.
@@ -277,10 +346,15 @@ impl LogRun {
     pub fn session(&self) -> Option<Session> {
         let slam = self.slam().filter(|_| self.pipeline.is_finished());
         let graph = slam.map(Slam::graph);
+        let snapshot = self.pipeline.snapshot_before_finish()?;
+        // Scans that are not yet on the map come last.
+        let scans = self.pipeline.scans();
+        let keyframes = snapshot.keyframes.len();
+        let mapped_scans = scans.partition_point(|scan| scan.keyframe < keyframes);
         Some(Session {
-            snapshot: self.pipeline.snapshot_before_finish()?,
+            snapshot,
             mapped: graph.map(MappedGraph::from_graph),
-            scan_poses: selected_scan_poses(self.pipeline.scans()),
+            scan_poses: selected_scan_poses(&scans[..mapped_scans]),
             sensor: self.sensor.clone(),
             last_odometry: self.pipeline.last_odometry(),
         })
@@ -354,9 +428,12 @@ impl LogRun {
         let lengths = self
             .slam()
             .and_then(|slam| self.lengths.sentence(name, slam));
+        let pieces = self.pieces().iter();
+        let pieces = pieces.filter_map(|piece| piece_sentence(name, piece, self.session_scans));
         [other, late, blind, still, lengths, refused]
             .into_iter()
             .flatten()
+            .chain(pieces)
             .collect()
     }
 
@@ -375,6 +452,45 @@ impl LogRun {
         let poses = self.pipeline.trajectory();
         let poses = poses.map(|(stamp_s, pose)| StampedPose { stamp_s, pose });
         Trajectory::new(poses.collect())
+    }
+}
+
+/// Sentence on a piece; `session_scans` is the number of scans of the session that the log continues. `None` while it
+/// is mapped on its own.
+fn piece_sentence(name: &str, piece: &PieceReport, session_scans: usize) -> Option<String> {
+    let is_other_day = session_scans > 0 && piece.scans_before == session_scans;
+    let after = if is_other_day {
+        format!("{name}: it does not continue where the session ended")
+    } else {
+        format!(
+            "{name}: motion cannot explain the scans after a gap of {:.0} s at {:.2} s, as if the robot was carried",
+            piece.gap_s, piece.first_s
+        )
+    };
+    let map = if is_other_day {
+        "the session's map"
+    } else {
+        "the map"
+    };
+    match (piece.fate, is_other_day) {
+        (PieceFate::Alone, _) => None,
+        (PieceFate::Joined(scans), _) => Some(format!(
+            "{after}; the robot was found on {map} after {}, and all its scans are on it",
+            counted(scans, "scan")
+        )),
+        (PieceFate::Kept, true) => Some(format!(
+            "{after}, and the robot was not found on {map}: the results are those of this log alone. Give its first pose on that map with --init x,y,deg, or record a drive through a part of it"
+        )),
+        (fate, _) => {
+            let (left_out, which) = match fate {
+                PieceFate::Kept => (piece.scans_before, "before"),
+                _ => (piece.scans, "after"),
+            };
+            Some(format!(
+                "{after}, and the robot was not found on {map}: the {} {which} the gap were left out. Map both parts as two logs, or record a drive through a place of both",
+                counted(left_out, "scan")
+            ))
+        }
     }
 }
 

@@ -23,6 +23,7 @@ mod output;
 mod parameters;
 mod places;
 mod register;
+mod relocalize;
 mod run_folder;
 mod run_log;
 mod run_output;
@@ -65,6 +66,7 @@ enum Command {
     Doctor(doctor::DoctorArgs),
     Run(run_log::RunArgs),
     Localize(localize::LocalizeArgs),
+    Relocalize(relocalize::RelocalizeArgs),
     Logs(logs::LogsArgs),
     Parameters(parameters::ParametersArgs),
     Evaluate(evaluate::EvaluateArgs),
@@ -104,6 +106,7 @@ fn main() -> ExitCode {
         Command::Info(args) => info::run(args).map_err(|e| e.to_string()),
         Command::Run(args) => return ended(run_log::run(args)),
         Command::Localize(args) => return ended(localize::run(args)),
+        Command::Relocalize(args) => relocalize::run(args).map_err(|e| e.to_string()),
         Command::Logs(args) => logs::run(args).map_err(|e| e.to_string()),
         Command::Parameters(args) => parameters::run(args).map_err(|e| e.to_string()),
         Command::Evaluate(args) => evaluate::run(args).map_err(|e| e.to_string()),

@@ -18,6 +18,7 @@ use thiserror::Error;
 use crate::buildings::setting;
 use crate::grade::{Grade, GradeError, ReferenceArgs};
 use crate::interrupt::{self, Interrupt};
+use crate::localize::Init;
 use crate::log_file::{FileError, OdometryArgs, TopicArgs, open_compared};
 use crate::numbers;
 use crate::optimize::check_folder;
@@ -49,10 +50,18 @@ pub struct RunArgs {
     /// Set a parameter of the estimator; docs/robots-parameters.md lists them.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
     settings: Vec<(String, f64)>,
-    /// Continue this session, or that of a run's folder: the log is the rest of its recording, and the
-    /// parameters stay the same.
+    /// Continue this session, or that of a run's folder, with its parameters. The log is the rest of its recording, or
+    /// another day: then the robot is first searched for on the session's map.
     #[arg(long = "continue", value_name = "SESSION", conflicts_with = "settings")]
     session: Option<PathBuf>,
+    /// Pose of the first scan on the session's map: x,y,deg in metres and degrees, or anywhere.
+    #[arg(
+        long,
+        value_name = "x,y,deg|anywhere",
+        requires = "session",
+        allow_hyphen_values = true
+    )]
+    init: Option<Init>,
     /// Mark free space in the map along beams without a return, up to the sensor's limit (REP 117).
     #[arg(long)]
     free_space: bool,
@@ -175,6 +184,7 @@ pub fn run(args: &RunArgs) -> Result<ExitCode, RunError> {
         }
     }
     run.finish();
+    recorder.forget_left_out(&run);
     progress.end();
     if run.scans() == 0 && run.late() > 0 {
         return Err(RunError::NotLater { name });
@@ -300,7 +310,10 @@ fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder, Option<LaserMount>), Ru
         name: path.display().to_string(),
         problem,
     };
-    let run = LogRun::resume(&session, odometry_use).map_err(snapshot_error)?;
+    let mut run = LogRun::resume(&session, odometry_use).map_err(snapshot_error)?;
+    if let Some(Init(start)) = args.init {
+        run = run.starting_at(start);
+    }
     let mount = session.sensor.as_ref().map(|sensor| LaserMount {
         body_from_sensor: sensor.body_from_sensor,
         is_flipped: false,

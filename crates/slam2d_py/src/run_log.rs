@@ -234,6 +234,7 @@ impl Pipeline {
             }
         }
         run.finish();
+        recorder.forget_left_out(&run);
         if run.scans() == 0 || !run.has_seen() {
             let problem = match run.refused() {
                 Some(problem) if run.scans() == 0 => problem.to_string(),

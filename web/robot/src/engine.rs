@@ -295,6 +295,7 @@ impl<'a> Engine<'a> {
 
     fn close_last_loops(&mut self) {
         self.run.finish();
+        self.recorder.forget_left_out(&self.run);
         self.begin_editing(links_of(&self.run));
     }
 
