@@ -124,7 +124,7 @@ struct RunJson {
     cpu_s: f64,
     /// Peak memory of the process, MB; null if the system does not report it.
     peak_mb: Option<f64>,
-    /// Time per scan at the start and at the end of the log; null with fewer than ten scans.
+    /// Time per scan: median, 99 %, worst, and those of the first and the last tenth; null with fewer than ten scans.
     ticks: Option<TickSummary>,
     /// Whether Ctrl-C, SIGTERM or an unreadable log ended the run early.
     interrupted: bool,
@@ -333,11 +333,13 @@ fn print_text(result: &RunJson) {
     if let Some(peak_mb) = result.peak_mb {
         say!("memory           {peak_mb:.0} MB at most");
     }
-    if let Some(TickSummary { first, last }) = result.ticks {
+    if let Some(ticks) = result.ticks {
         say!(
-            "a scan           {:.2} ms in the first tenth, {:.2} ms in the last (medians)",
-            first.median_ms,
-            last.median_ms
+            "a scan           {:.2} ms in the first tenth, {:.2} ms in the last (medians); 99 % within {:.1} ms, worst {:.1} ms",
+            ticks.first.median_ms,
+            ticks.last.median_ms,
+            ticks.p99_ms,
+            ticks.worst_ms
         );
     }
     for doubt in &result.doubts {

@@ -1,4 +1,4 @@
-//! CPU time per scan at the start and at the end of a log.
+//! CPU time per scan: of a whole log, and at its start and its end.
 
 use serde::Serialize;
 
@@ -8,9 +8,15 @@ pub struct TickCosts {
     ms: Vec<f64>,
 }
 
-/// Ticks of the first and the last tenth of a run.
+/// Ticks of a run, and of its first and last tenth.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct TickSummary {
+    /// Median of all, ms.
+    pub median_ms: f64,
+    /// 99 % of the ticks take at most this, ms.
+    pub p99_ms: f64,
+    /// The worst of all, ms.
+    pub worst_ms: f64,
     /// The first tenth.
     pub first: Tenth,
     /// The last tenth.
@@ -37,7 +43,14 @@ impl TickCosts {
     /// Summarizes both tenths; `None` with fewer than ten ticks.
     pub fn summary(&self) -> Option<TickSummary> {
         let tenth = self.ms.len() / 10;
+        let mut sorted = self.ms.clone();
+        sorted.sort_by(f64::total_cmp);
+        let at =
+            |share: f64| sorted[((share * sorted.len() as f64) as usize).min(sorted.len() - 1)];
         (tenth > 0).then(|| TickSummary {
+            median_ms: at(0.5),
+            p99_ms: at(0.99),
+            worst_ms: at(1.0),
             first: Tenth::from_ticks(&self.ms[..tenth]),
             last: Tenth::from_ticks(&self.ms[self.ms.len() - tenth..]),
         })
@@ -61,12 +74,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_and_the_last_tenth_are_distinguished() {
+    fn the_first_and_the_last_tenth_and_the_worst_tick_are_distinguished() {
         let mut costs = TickCosts::default();
         (0..9).for_each(|k| costs.push(f64::from(k)));
         assert!(costs.summary().is_none());
         (9..35).for_each(|k| costs.push(f64::from(k)));
-        let TickSummary { first, last } = costs.summary().unwrap();
+        let TickSummary {
+            first,
+            last,
+            median_ms,
+            p99_ms,
+            worst_ms,
+        } = costs.summary().unwrap();
+        assert_eq!([median_ms, p99_ms, worst_ms], [17.0, 34.0, 34.0]);
         let figures = |tenth: Tenth| [tenth.median_ms, tenth.mean_ms, tenth.worst_ms];
         assert_eq!(figures(first), [1.0, 1.0, 2.0]);
         assert_eq!(figures(last), [33.0, 33.0, 34.0]);
