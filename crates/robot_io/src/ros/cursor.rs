@@ -7,7 +7,7 @@ use ch16_slam2d::scan::LaserScan;
 
 use super::binned::binned;
 use super::container::{Container, Recorded};
-use super::messages::{laser_scan, multi_echo_scan};
+use super::messages::{header, laser_scan, multi_echo_scan};
 use super::plan::PlannedScans;
 use super::point_cloud::{cloud_points, point_cloud};
 use super::survey::{SCANS, is_repeated, named, reader};
@@ -146,6 +146,13 @@ impl<'a> ScanCursor<'a> {
         }
         if is_repeated(message, &mut self.last_sum) {
             return;
+        }
+        if let Some(frame) = &self.scans.only_frame {
+            let header = reader(message)
+                .and_then(|mut fields| header(&mut fields).map_err(|problem| problem.to_string()));
+            if header.map_or(String::new(), |header| header.frame) != *frame {
+                return;
+            }
         }
         let number = self.read;
         self.read += 1;

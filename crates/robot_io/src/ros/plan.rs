@@ -30,6 +30,8 @@ pub const TRANSFORMS: &str = "/tf";
 pub struct PlannedScans {
     /// Topic.
     pub topic: String,
+    /// The frame of the messages that are read, if others use the topic.
+    pub only_frame: Option<String>,
     /// Stamp of each message, s; NaN if it is unreadable.
     pub stamps_s: Vec<f64>,
     /// Time between scans, s.
@@ -101,22 +103,24 @@ impl Plan {
             ));
         }
         plan.about.push(mounts::sentence(&found));
-        plan.scans.push(planned(topic, &clocks[0], &found));
+        plan.scans.push(planned(topic, stream, &clocks[0], &found));
+        plan.name_other_publishers(topic, stream);
         let of_mount = |text| Remark::mended(Part::Mounting, text);
         plan.warnings.extend(found.warning.clone().map(of_mount));
         for (other, stream) in &chosen[1..] {
             let other_mount = mounts::find(survey, &found.body, &stream.frame, ground, options);
             let is_asked_for = options.scan_topic.is_some();
-            if other_mount.is_known && found.is_known && stream.frame != chosen[0].1.frame
-                || is_asked_for
-            {
+            // A laser that no transform connects to the body is on another robot.
+            let is_on_body = other_mount.is_known && other_mount.body == found.body;
+            if is_on_body && found.is_known && stream.frame != chosen[0].1.frame || is_asked_for {
                 let clock = MendedStamps::new(&stream.stamps_s, &stream.recorded_s);
                 plan.about.push(format!(
                     "scans of {other}, in frame {}, are merged with them: {}",
                     stream.frame,
                     mounts::sentence(&other_mount)
                 ));
-                plan.scans.push(planned(other, &clock, &other_mount));
+                plan.scans
+                    .push(planned(other, stream, &clock, &other_mount));
                 clocks.push(clock);
             }
         }
@@ -187,6 +191,23 @@ impl Plan {
         self.odometry = Some(poses);
     }
 
+    /// Names publishers on the topic whose scans are not read.
+    fn name_other_publishers(&mut self, topic: &str, stream: &ScanStream) {
+        if stream.others.is_empty() {
+            return;
+        }
+        let others = stream.others.iter().map(|(frame, count)| {
+            let frame = if frame.is_empty() { "no frame" } else { frame };
+            format!("{frame} ({})", counted(*count, "scan"))
+        });
+        let text = format!(
+            "{topic} has scans of several publishers: those in frame {} are read, and those in {} are not; let each publish on a topic of its own",
+            stream.frame,
+            listed(others)
+        );
+        self.warnings.push(Remark::mended(Part::Sensor, text));
+    }
+
     /// Lists topics with scans that are not read.
     fn name_other_scans(&mut self, survey: &Survey, options: &LogOptions) {
         if options.scan_topic.is_some() {
@@ -246,9 +267,15 @@ impl Plan {
     }
 }
 
-fn planned(topic: &str, clock: &MendedStamps, found: &mounts::Found) -> PlannedScans {
+fn planned(
+    topic: &str,
+    stream: &ScanStream,
+    clock: &MendedStamps,
+    found: &mounts::Found,
+) -> PlannedScans {
     PlannedScans {
         topic: topic.to_owned(),
+        only_frame: stream.is_shared.then(|| stream.frame.clone()),
         stamps_s: clock.stamps_s.clone(),
         period_s: clock.period_s,
         mount: found.mount,

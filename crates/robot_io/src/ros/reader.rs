@@ -77,6 +77,7 @@ impl<'a> RosReader<'a> {
                 }
             }
         }
+        survey.end();
         Ok((survey, messages))
     }
 

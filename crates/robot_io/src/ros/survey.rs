@@ -23,6 +23,8 @@ const MAX_POSES: usize = 1 << 18;
 const MAX_TRACKS: usize = 32;
 /// Number of messages of a topic that are fully decoded to check whether they are usable.
 const TRIED: usize = 3;
+/// Most frames of a topic that are told apart.
+const MAX_FRAMES: usize = 16;
 /// Odometry within this has not moved, m and rad.
 const STILL: f64 = 1e-3;
 
@@ -56,6 +58,54 @@ pub struct ScanStream {
     pub is_usable: bool,
     /// Why the first message is unusable.
     pub problem: Option<String>,
+    /// The frames of all messages, and for each message the index of its frame.
+    frames: Vec<String>,
+    frame_of: Vec<usize>,
+    /// Whether only messages in [`frame`](Self::frame) are read, because another publisher uses the topic.
+    pub is_shared: bool,
+    /// Frames of the other publishers, with their numbers of messages.
+    pub others: Vec<(String, usize)>,
+}
+
+impl ScanStream {
+    /// Keeps the scans of one publisher, the one with the most, if several publish on the topic at the same time.
+    ///
+    /// Frames that follow one another are those of a driver that was renamed.
+    fn separate_publishers(&mut self) {
+        let span = |frame: usize| {
+            let of_frame = |index: &usize| self.frame_of[*index] == frame;
+            let mut own = (0..self.frame_of.len()).filter(of_frame);
+            let first = own.next().unwrap_or_default();
+            (first, own.next_back().unwrap_or(first))
+        };
+        let spans: Vec<(usize, usize)> = (0..self.frames.len()).map(span).collect();
+        let overlap = |a: usize, b: usize| spans[a].0 < spans[b].1 && spans[b].0 < spans[a].1;
+        let count = |frame: usize| self.frame_of.iter().filter(|of| **of == frame).count();
+        let Some(most) = (0..self.frames.len())
+            .rev()
+            .max_by_key(|frame| count(*frame))
+        else {
+            return;
+        };
+        let others: Vec<usize> = (0..self.frames.len())
+            .filter(|other| *other != most && overlap(most, *other))
+            .collect();
+        if others.is_empty() {
+            return;
+        }
+        self.others = others
+            .iter()
+            .map(|other| (self.frames[*other].clone(), count(*other)))
+            .collect();
+        self.frame.clone_from(&self.frames[most]);
+        self.is_shared = true;
+        let own = |values: &[f64]| {
+            let numbered = values.iter().zip(&self.frame_of);
+            let own = numbered.filter(|(_, frame)| **frame == most);
+            own.map(|(value, _)| *value).collect()
+        };
+        (self.stamps_s, self.recorded_s) = (own(&self.stamps_s), own(&self.recorded_s));
+    }
 }
 
 /// Poses of a body from one source.
@@ -199,6 +249,15 @@ impl Survey {
         };
         stream.stamps_s.push(stamp_s);
         stream.recorded_s.push(message.recorded_s);
+        let frame = head.map_or(String::new(), |header| header.frame);
+        let known = stream.frames.iter().position(|known| *known == frame);
+        let known = known.unwrap_or_else(|| {
+            if stream.frames.len() < MAX_FRAMES {
+                stream.frames.push(frame);
+            }
+            stream.frames.len() - 1
+        });
+        stream.frame_of.push(known);
         if is_tried {
             match scan_header(message, options) {
                 Ok(header) => {
@@ -214,6 +273,13 @@ impl Survey {
                 }
             }
         }
+    }
+
+    /// Ends the survey: separates publishers that use one topic.
+    pub fn end(&mut self) {
+        self.scans
+            .values_mut()
+            .for_each(ScanStream::separate_publishers);
     }
 
     fn add_odometry(&mut self, message: &Recorded) -> Result<(), String> {
