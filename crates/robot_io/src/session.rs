@@ -17,7 +17,7 @@ use ch16_slam2d::digest::Digest;
 use ch16_slam2d::graph::{EdgeKind, EdgeView, PoseGraph, PoseNode};
 use ch16_slam2d::pipeline::ScanPose;
 use ch16_slam2d::scan::LaserScan;
-use ch16_slam2d::slam::{SlamSnapshot, is_within_limits};
+use ch16_slam2d::slam::{Slam, SlamSnapshot, is_within_limits};
 use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 
@@ -235,9 +235,8 @@ impl Session {
     }
 
     fn check(&self) -> Result<(), String> {
-        self.snapshot
-            .check()
-            .map_err(|problem| problem.to_string())?;
+        // Only the strategies of its estimator can check their own state.
+        Slam::restore(&self.snapshot).map_err(|problem| problem.to_string())?;
         if let Some(sensor) = &self.sensor {
             sensor.validate().map_err(|problem| problem.to_string())?;
         }

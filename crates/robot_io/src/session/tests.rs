@@ -282,7 +282,8 @@ fn forged_bytes_give_an_error_or_a_usable_session() {
                 Err(error) => assert!(is_a_sentence(&error.to_string()), "{at}: {error}"),
                 Ok(session) => {
                     accepted += 1;
-                    assert!(LogRun::resume(&session, OdometryUse::Log).is_ok());
+                    let resumed = LogRun::resume(&session, OdometryUse::Log);
+                    assert!(resumed.is_ok(), "{at} {value}: {:?}", resumed.err());
                 }
             }
         }
