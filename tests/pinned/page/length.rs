@@ -14,8 +14,14 @@ fn without(html: &str, dropped: &str) -> String {
     let mut rest = html;
     while let Some(start) = rest.find(&open) {
         kept.push_str(&rest[..start]);
-        let end = rest[start..].find(&close).expect("it is closed");
-        rest = &rest[start + end + close.len()..];
+        let (mut end, mut depth) = (start + open.len(), 1);
+        while depth > 0 {
+            let closed = end + rest[end..].find(&close).expect("it is closed");
+            depth += rest[end..closed].matches(&open).count();
+            depth -= 1;
+            end = closed + close.len();
+        }
+        rest = &rest[end..];
     }
     kept + rest
 }
