@@ -1,12 +1,16 @@
 //! Files that were given together, their options, and the doctor's report on them.
 
+use std::fs;
+use std::path::Path;
+
+use measuring::skip::skip;
 use robot_io::log_bytes::LogBytes;
 use robot_io::motion::OdometryChoice;
 use robot_io::run::OdometryUse;
 use serde_json::Value;
 use slam_robot::engine::Engine;
 use slam_robot::given::{Choices, Given, GivenFile};
-use slam_robot::update::Update;
+use slam_robot::update::{Stage, Update};
 
 use crate::engine::{files, given, of, open};
 
@@ -38,7 +42,7 @@ fn the_files_of_a_folder_are_one_recording_in_the_order_of_its_metadata() {
     let part = Given::new(folder("relative_file_paths:\n  - b_2.db3\n")).unwrap();
     let said = &part.remarks[0].text;
     assert!(said.contains("lists b_2.db3, which is not there"), "{said}");
-    let listed_only = vec![file("metadata.yaml", listed), file("notes.txt", "")];
+    let listed_only = vec![file("metadata.yaml", listed), file("b_0.db3-wal", "")];
     let missing = Given::new(listed_only).err().unwrap();
     assert!(
         missing.starts_with("metadata.yaml lists b_1.db3"),
@@ -132,4 +136,74 @@ fn scans_go_alone_if_the_reader_leaves_odometry_out() {
         last.unwrap().numbers.clone()
     };
     assert_ne!(way(&alone), way(&with));
+}
+
+/// A file of `../shared/data/field` beside the repository; `None` after this was reported.
+fn field(name: &str) -> Option<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/field");
+    let bytes = fs::read(folder.join(name)).ok();
+    if bytes.is_none() {
+        skip(
+            "files that people have, in the page",
+            "they are not in ../shared/data/field, beside the repository",
+        );
+    }
+    bytes
+}
+
+#[test]
+fn files_that_people_have_are_mapped_or_named_as_by_the_command() {
+    for (name, expected) in [
+        ("formats/rostopic_echo_p.csv", ""),
+        ("formats/ros2_topic_echo_csv.txt", ""),
+        ("formats/breezyslam.dat", ""),
+        ("formats/thrun_wean.log", ""),
+        ("formats/rplidar_points.csv", ""),
+        ("starts_in_the_open/first_20_no_return_noodo.mcap", ""),
+        ("formats/git_lfs.bag", "is a Git LFS pointer"),
+        ("formats/page.bag", "is a web page"),
+        ("formats/cloud.pcd", "is a point cloud in a file"),
+        ("formats/mrpt.rawlog", "is a rawlog of MRPT"),
+        ("huge/bomb_50M_beams.mcap", "decompresses to more than"),
+    ] {
+        let Some(bytes) = field(name) else {
+            return;
+        };
+        let mut engine = match open(&bytes, name) {
+            Ok(engine) => engine,
+            Err(problem) => {
+                assert!(
+                    problem.contains(expected) && !expected.is_empty(),
+                    "{problem}"
+                );
+                continue;
+            }
+        };
+        while engine.step() {}
+        let text = of(&engine.updates(), "stage").text.clone();
+        let is_mapped = engine.stage() == Stage::Done;
+        assert_eq!(is_mapped, expected.is_empty(), "{name}: {text}");
+        assert!(text.contains(expected), "{name}: {text}");
+    }
+}
+
+#[test]
+fn a_database_and_its_write_ahead_log_are_read_together() {
+    let folder = "folders/killed_recording_wal";
+    let (Some(database), Some(log)) = (
+        field(&format!("{folder}/ok.db3")),
+        field(&format!("{folder}/ok.db3-wal")),
+    ) else {
+        return;
+    };
+    let given = |name: &str, bytes: &Vec<u8>| GivenFile {
+        name: name.to_owned(),
+        size_bytes: bytes.len() as u64,
+        bytes: LogBytes::from(bytes.clone()),
+    };
+    let files = vec![given("ok.db3", &database), given("ok.db3-wal", &log)];
+    let mut engine = Engine::open(Given::new(files).unwrap(), &Choices::default()).unwrap();
+    while engine.step() {}
+    let updates = engine.updates();
+    assert_eq!(of(&updates, "stage").numbers[2], 80.0);
 }
