@@ -3,19 +3,35 @@
 use super::document::companion;
 
 /// Largest number of words, folded text included; a formula counts as one word, code as none.
-const MAX_WORDS: usize = 8_400;
+const MAX_WORDS: usize = 9_450;
 /// Largest number of words outside of folded text.
-const MAX_SEEN_WORDS: usize = 5_800;
+const MAX_SEEN_WORDS: usize = 6_500;
 
 /// The source between two positions without the elements in `dropped`, including nested ones.
 fn without(html: &str, dropped: &str) -> String {
-    let (open, close) = (format!("<{dropped}"), format!("</{dropped}>"));
+    let close = format!("</{dropped}>");
+    // `<tex` also begins the `<text>` of a drawing.
+    let opens = |text: &str| {
+        let tags = [format!("<{dropped}>"), format!("<{dropped} ")];
+        let mut places: Vec<usize> = tags
+            .iter()
+            .flat_map(|tag| text.match_indices(tag.as_str()).map(|(at, _)| at))
+            .collect();
+        places.sort_unstable();
+        places
+    };
     let mut kept = String::new();
     let mut rest = html;
-    while let Some(start) = rest.find(&open) {
+    while let Some(&start) = opens(rest).first() {
         kept.push_str(&rest[..start]);
-        let end = rest[start..].find(&close).expect("it is closed");
-        rest = &rest[start + end + close.len()..];
+        let (mut end, mut depth) = (start + 1, 1);
+        while depth > 0 {
+            let closed = end + rest[end..].find(&close).expect("it is closed");
+            depth += opens(&rest[end..closed]).len();
+            depth -= 1;
+            end = closed + close.len();
+        }
+        rest = &rest[end..];
     }
     kept + rest
 }
