@@ -8,12 +8,12 @@ use nalgebra::{Matrix3, Vector3};
 use pr_geom::math;
 use pr_optim::OptimizeError;
 
-use super::mapper::Mapper;
 use super::submaps::Submaps;
 use crate::chi_squared::CHAPTER_GATE;
 use crate::loops::{LoopCandidate, LoopRejection, LoopVerification, detect_visits};
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
+use crate::slam::Mapper;
 
 /// Rounds of linking and optimizing.
 const PASSES: usize = 2;

@@ -12,21 +12,19 @@ use nalgebra::Matrix3;
 use pr_geom::{SE2, math};
 use pr_optim::OptimizeError;
 
-use super::agreement::are_consistent;
-use super::finder::{LoopFinder, TriedLoops};
-use super::mapper::{Consistency, Mapper};
-use super::refinement;
-use super::robots::{RobotConfig, SubmapLoopConfig};
-use super::snapshot::SnapshotError;
+use super::pairwise_consistency::are_consistent;
 use super::submaps::Submaps;
+use super::{MIN_SEARCH_SCORE, MapRegistration, linking};
 use crate::chi_squared::GATE_99;
 use crate::cloud::PointCloud;
-use crate::local_map::{MIN_SEARCH_SCORE, MapRegistration};
 use crate::loops::{
     Agreement, LoopCandidate, LoopRejection, LoopVerification, PendingLoop, detect_visits,
 };
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
+use crate::slam::{
+    Consistency, LoopFinder, Mapper, RobotConfig, SnapshotError, SubmapLoopConfig, TriedLoops,
+};
 
 /// Loops are searched at every this many keyframes: more often costs time and closes no more.
 const EVERY_KEYFRAMES: usize = 3;
@@ -49,7 +47,7 @@ const LOOP_FLOOR: f64 = 1.0;
 
 /// Finds loops, and keeps the pending ones.
 #[derive(Clone)]
-pub(super) struct BundleLoops {
+pub(crate) struct SubmapLoops {
     config: SubmapLoopConfig,
     pending: Vec<PendingLoop>,
     submaps: Submaps,
@@ -64,7 +62,7 @@ struct Window {
     half_rad: f64,
 }
 
-impl BundleLoops {
+impl SubmapLoops {
     pub fn new(robot: &RobotConfig) -> Self {
         Self {
             config: robot.loops,
@@ -253,7 +251,7 @@ impl BundleLoops {
     }
 }
 
-impl LoopFinder for BundleLoops {
+impl LoopFinder for SubmapLoops {
     fn every_keyframes(&self) -> usize {
         EVERY_KEYFRAMES
     }
@@ -330,7 +328,7 @@ impl LoopFinder for BundleLoops {
     }
 
     fn link_all(&mut self, mapper: &mut Mapper) -> Vec<LoopVerification> {
-        refinement::link_all(mapper, &mut self.submaps)
+        linking::link_all(mapper, &mut self.submaps)
     }
 
     fn verify(
@@ -339,7 +337,7 @@ impl LoopFinder for BundleLoops {
         old: usize,
         new: usize,
     ) -> Result<LoopVerification, OptimizeError> {
-        refinement::link_on_request(mapper, old, new, &mut self.submaps)
+        linking::link_on_request(mapper, old, new, &mut self.submaps)
     }
 
     fn pending(&self) -> &[PendingLoop] {
