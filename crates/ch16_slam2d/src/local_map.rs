@@ -19,6 +19,7 @@ mod registration;
 mod scan_profiles;
 mod submap_loops;
 mod submaps;
+pub(crate) mod tuning;
 
 use std::sync::Arc;
 
