@@ -9,11 +9,17 @@
 //! the map, truncated at a miss. Free space counts as well: a point behind everything that was seen costs less
 //! than one in space that a scan has observed as free.
 
+mod linking;
 mod locate;
+mod pairwise_consistency;
 mod prior;
 mod range_profile;
+mod registrar;
 mod registration;
 mod scan_profiles;
+mod submap_loops;
+mod submaps;
+pub(crate) mod tuning;
 
 use std::sync::Arc;
 
@@ -22,8 +28,10 @@ use pr_geom::{SE2, math};
 
 pub use prior::{MotionPrior, PriorTail};
 pub use range_profile::RangeProfile;
+pub(crate) use registrar::MapRegistrar;
 pub use registration::{MapRegistration, MapRegistrationConfig, Registered};
 pub use scan_profiles::ScanProfiles;
+pub(crate) use submap_loops::SubmapLoops;
 
 use crate::cloud::{DenseMap, NearestMap, PointCloud};
 use crate::search::{

@@ -15,26 +15,21 @@
 //! Limitations: drift that no loop observes, such as the bend of an outbound path before the first
 //! loop, and a location that looks like another one within the gate.
 
-mod agreement;
-mod bundle_loops;
 mod config;
 mod finder;
 mod front_end;
 mod join;
 mod loop_closer;
-mod map_matching;
 mod mapper;
 mod motion_noise;
 
 mod map_pruning;
 mod pending;
-mod refinement;
 mod registrar;
 mod report;
 mod robots;
 mod snapshot;
 mod strategies;
-mod submaps;
 #[cfg(test)]
 pub(crate) mod test_room;
 mod uncertainty;

@@ -6,8 +6,9 @@ use super::{LocalMap, MapRegistration, MapRegistrationConfig, MotionPrior};
 use crate::cloud::PointCloud;
 use crate::search::SearchWindow;
 
-/// A scan with at least this fit needs no other start, 0 to 1.
-const GOOD_SCORE: f64 = 0.9;
+/// Without odometry a scan needs at least this fit to be sure of its basin, 0 to 1; `good_score` is lower, because
+/// with odometry the prediction is evidence as well.
+const SURE_SCORE: f64 = 0.9;
 /// Other starts if the prediction is outside of the basin of convergence: offsets along the heading (m) and of the
 /// heading (rad).
 const STARTS: ([f64; 5], [f64; 9]) = (
@@ -60,7 +61,7 @@ impl LocalMap {
             );
         }
         let is_vague = 2.0 * prior.sigma_m > config.max_correspondence_m;
-        if is_vague && best.fit.score < GOOD_SCORE {
+        if is_vague && best.fit.score < SURE_SCORE {
             for turn_rad in STARTS.1 {
                 for ahead_m in STARTS.0 {
                     let start = prior.pose * SE2::new(ahead_m, 0.0, turn_rad);

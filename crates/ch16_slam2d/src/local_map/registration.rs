@@ -64,7 +64,9 @@ pub struct MapRegistration {
 }
 
 impl MapRegistration {
-    /// Information of the pairs, reduced if only part of the scan fits, because that part may fit elsewhere as well.
+    /// Information of the pairs, reduced if only part of the scan fits, because that part may fit elsewhere as well:
+    /// a score of .84 halves it, and one of .56 leaves a tenth. The fourth power is a rule of thumb; other powers were
+    /// not measured.
     #[must_use]
     pub fn information(&self) -> Matrix3<f64> {
         let score = math::max(self.fit.score, 0.0);

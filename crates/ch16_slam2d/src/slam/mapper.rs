@@ -306,7 +306,7 @@ impl Mapper {
 
     /// Replaces the loops by the accepted `links` and optimizes with this width of the robust cost, in standard
     /// deviations; returns whether that succeeded, otherwise nothing changes.
-    pub(super) fn replace_loops(&mut self, links: &[LoopVerification], huber: f64) -> bool {
+    pub(crate) fn replace_loops(&mut self, links: &[LoopVerification], huber: f64) -> bool {
         let is_odometry = |view: &EdgeView| view.edge.kind == EdgeKind::Odometry;
         let mut graph = self.graph.with_edges(is_odometry);
         for link in links.iter().filter(|link| link.accepted()) {

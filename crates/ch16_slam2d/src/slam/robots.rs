@@ -5,40 +5,15 @@ use serde::{Deserialize, Serialize};
 use super::config::SlamConfig;
 use super::motion_noise::MotionNoise;
 use crate::graph::JacobianModel;
-use crate::local_map::MapRegistrationConfig;
+use crate::local_map::{MapRegistrationConfig, tuning};
 use crate::scan::{LaserScan, ScanConfig};
-
-/// Radius of the neighbours for normals within one scan, m, per degree between beams.
-const SCAN_NORMAL_RADIUS_M: f64 = 0.5;
-
-/// A scan joins the local map at this turn from the newest one, rad. The error is the same for a tenth and for a
-/// half.
-const WINDOW_TURN_RAD: f64 = 0.1;
-/// Odometry of a common indoor robot; slip is covered by the tails of the prior.
-const ODOMETRY: MotionNoise = MotionNoise {
-    floor_m: 0.01,
-    per_metre: 0.05,
-    metre_per_rad: 0.03,
-    floor_rad: 0.005,
-    per_rad: 0.05,
-    rad_per_metre: 0.025,
-};
-
-/// Constant-velocity prediction: if scans are a metre or half a radian apart, it is hardly informative.
-const CONSTANT_VELOCITY: MotionNoise = MotionNoise {
-    floor_m: 0.1,
-    per_metre: 0.3,
-    metre_per_rad: 0.1,
-    floor_rad: 0.1,
-    per_rad: 1.0,
-    rad_per_metre: 0.1,
-};
 
 /// The parameters of the estimator for robots.
 ///
 /// One set of values for planar lasers on wheeled robots, in rooms, corridors and outdoors. Lengths are in
-/// metres. `docs/robots.md` has results on recorded logs, `docs/robots-parameters.md` the effect of each
-/// parameter.
+/// metres. An owner of a robot may know the cells of its scans, the noise of its sensor and wheels, the distance of
+/// keyframes and how far its loops reach; the defaults of the rest are in `local_map/tuning.rs`, with what chose
+/// them. `docs/robots.md` has results on recorded logs, `docs/robots-parameters.md` the effect of each parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct RobotConfig {
@@ -107,15 +82,15 @@ pub struct SubmapLoopConfig {
 impl Default for SubmapLoopConfig {
     fn default() -> Self {
         Self {
-            bundle: 8,
+            bundle: tuning::BUNDLE,
             min_path_m: 12.0,
-            window_sigmas: 3.4,
+            window_sigmas: tuning::WINDOW_SIGMAS,
             max_window_m: 20.0,
-            max_turn_rad: 0.5,
-            min_score: 0.6,
-            min_margin: 0.03,
-            unconfirmed_gate_radius_m: 1.0,
-            pending_distance_m: 20.0,
+            max_turn_rad: tuning::MAX_TURN_RAD,
+            min_score: tuning::MIN_LOOP_SCORE,
+            min_margin: tuning::MIN_MARGIN,
+            unconfirmed_gate_radius_m: tuning::UNCONFIRMED_M,
+            pending_distance_m: tuning::PENDING_DISTANCE_M,
         }
     }
 }
@@ -124,19 +99,19 @@ impl Default for RobotConfig {
     fn default() -> Self {
         Self {
             scan_cell_m: 0.065,
-            scan_normal_radius_m: SCAN_NORMAL_RADIUS_M,
-            window_sweeps: 16,
-            window_distance_m: 0.16,
-            normal_radius_m: 0.3,
-            max_correspondence_m: 0.3,
-            inlier_distance_m: 0.15,
+            scan_normal_radius_m: tuning::SCAN_NORMAL_RADIUS_M,
+            window_sweeps: tuning::WINDOW_SCANS,
+            window_distance_m: tuning::WINDOW_DISTANCE_M,
+            normal_radius_m: tuning::NORMAL_RADIUS_M,
+            max_correspondence_m: tuning::MAX_CORRESPONDENCE_M,
+            inlier_distance_m: tuning::INLIER_DISTANCE_M,
             point_sigma_m: 0.025,
-            independent_points: 28.0,
-            unseen_cost: 0.4,
-            good_score: 0.8,
-            search_m: 1.1,
-            search_rad: 1.6,
-            odometry: ODOMETRY,
+            independent_points: tuning::INDEPENDENT_POINTS,
+            unseen_cost: tuning::UNSEEN_COST,
+            good_score: tuning::GOOD_SCORE,
+            search_m: tuning::SEARCH_M,
+            search_rad: tuning::SEARCH_RAD,
+            odometry: tuning::ODOMETRY,
             keyframe_distance_m: 0.65,
             keyframe_turn_rad: 0.35,
             loops: SubmapLoopConfig::default(),
@@ -151,7 +126,7 @@ impl RobotConfig {
     pub fn for_scan(scan: &LaserScan) -> Self {
         let step_deg = scan.angle_step_rad.abs().to_degrees();
         Self {
-            scan_normal_radius_m: SCAN_NORMAL_RADIUS_M * step_deg.clamp(1.0, 1.4),
+            scan_normal_radius_m: tuning::SCAN_NORMAL_RADIUS_M * step_deg.clamp(1.0, 1.4),
             ..Self::default()
         }
     }
@@ -161,7 +136,7 @@ impl RobotConfig {
         if is_measured {
             &self.odometry
         } else {
-            &CONSTANT_VELOCITY
+            &tuning::CONSTANT_VELOCITY
         }
     }
 
@@ -201,12 +176,12 @@ impl SlamConfig {
             },
             window_sweeps: robot.window_sweeps,
             window_distance_m: robot.window_distance_m,
-            window_turn_rad: WINDOW_TURN_RAD,
+            window_turn_rad: tuning::WINDOW_TURN_RAD,
             extrapolation: 1.0,
             keyframe_distance_m: robot.keyframe_distance_m,
             keyframe_turn_rad: robot.keyframe_turn_rad,
             jacobians: JacobianModel::Exact,
-            least_correction: 0.05,
+            least_correction: tuning::LEAST_CORRECTION,
             ..default
         }
     }

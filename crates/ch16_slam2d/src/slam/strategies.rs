@@ -1,13 +1,12 @@
 //! The strategies of an estimator.
 
-use super::bundle_loops::BundleLoops;
 use super::config::SlamConfig;
 use super::finder::LoopFinder;
-use super::map_matching::MapMatching;
 use super::mapper::LoopOutlierTest;
 use super::registrar::ScanRegistrar;
 use crate::chapter::ChapterParts;
 use crate::graph::PoseGraph;
+use crate::local_map::{MapRegistrar, SubmapLoops};
 
 /// The two strategies of an estimator, with their parameters, and its outlier test.
 #[derive(Clone)]
@@ -27,8 +26,8 @@ impl Strategies {
     pub fn from_config(config: &SlamConfig) -> Self {
         match &config.robot {
             Some(robot) => Self {
-                registrar: Box::new(MapMatching::new(*robot)),
-                finder: Box::new(BundleLoops::new(robot)),
+                registrar: Box::new(MapRegistrar::new(*robot)),
+                finder: Box::new(SubmapLoops::new(robot)),
                 outlier_test: Some(PoseGraph::inlier_edges),
             },
             None => ChapterParts::from_config(&config.chapter).into_strategies(&config.chapter),

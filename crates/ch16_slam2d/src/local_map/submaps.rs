@@ -2,8 +2,8 @@
 
 use core::ops::RangeInclusive;
 
-use super::mapper::Mapper;
-use crate::local_map::{LocalMap, MapRegistrationConfig, ScanProfiles};
+use super::{LocalMap, MapRegistrationConfig, ScanProfiles};
+use crate::slam::Mapper;
 
 /// The submap of the last verification, with what the next ones reuse.
 #[derive(Clone)]

@@ -12,44 +12,27 @@ use nalgebra::Matrix3;
 use pr_geom::{SE2, math};
 use pr_optim::OptimizeError;
 
-use super::agreement::are_consistent;
-use super::finder::{LoopFinder, TriedLoops};
-use super::mapper::{Consistency, Mapper};
-use super::refinement;
-use super::robots::{RobotConfig, SubmapLoopConfig};
-use super::snapshot::SnapshotError;
+use super::pairwise_consistency::are_consistent;
 use super::submaps::Submaps;
+use super::tuning::{
+    AGREEING_CONTRADICTING, AGREEING_EXPECTED, BUNDLE_CELL_M, EVERY_KEYFRAMES, HALF_SUBMAP,
+    LOOP_FLOOR, MIN_SEPARATION_M, SUBMAP_MARGIN_M, SUBMAPS, WINDOW_FLOOR_M, WINDOW_FLOOR_RAD,
+};
+use super::{MIN_SEARCH_SCORE, MapRegistration, linking};
 use crate::chi_squared::GATE_99;
 use crate::cloud::PointCloud;
-use crate::local_map::{MIN_SEARCH_SCORE, MapRegistration};
 use crate::loops::{
     Agreement, LoopCandidate, LoopRejection, LoopVerification, PendingLoop, detect_visits,
 };
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
-
-/// Loops are searched at every this many keyframes: more often costs time and closes no more.
-const EVERY_KEYFRAMES: usize = 3;
-/// Number of submaps tested at a keyframe, the nearest first.
-const SUBMAPS: usize = 2;
-/// Smallest path length between loops that confirm each other, m: their keyframes are not the same.
-const MIN_SEPARATION_M: f64 = 5.0;
-/// Smallest number of keyframes on either side of the nearest one in a submap.
-const HALF_SUBMAP: usize = 8;
-/// Submaps hold keyframes up to this far beyond the window, m: about the size of a room.
-const SUBMAP_MARGIN_M: f64 = 4.0;
-/// Cell of the bundle's thinning, m.
-const BUNDLE_CELL_M: f64 = 0.15;
-/// Added to the half width of the window by covariance, m and rad.
-const WINDOW_FLOOR: (f64, f64) = (0.3, 0.06);
-/// Number of agreeing loops needed within the gate, and for loops that contradict the graph.
-const AGREEING: (usize, usize) = (2, 3);
-/// Smallest information of a loop in any direction, 1/m² and 1/rad²: a metre, a radian.
-const LOOP_FLOOR: f64 = 1.0;
+use crate::slam::{
+    Consistency, LoopFinder, Mapper, RobotConfig, SnapshotError, SubmapLoopConfig, TriedLoops,
+};
 
 /// Finds loops, and keeps the pending ones.
 #[derive(Clone)]
-pub(super) struct BundleLoops {
+pub(crate) struct SubmapLoops {
     config: SubmapLoopConfig,
     pending: Vec<PendingLoop>,
     submaps: Submaps,
@@ -64,7 +47,7 @@ struct Window {
     half_rad: f64,
 }
 
-impl BundleLoops {
+impl SubmapLoops {
     pub fn new(robot: &RobotConfig) -> Self {
         Self {
             config: robot.loops,
@@ -92,8 +75,8 @@ impl BundleLoops {
                 continue;
             };
             let sigma = |variance: f64| config.window_sigmas * math::sqrt(math::max(variance, 0.0));
-            let half_m = sigma(math::max(covariance.m11, covariance.m22)) + WINDOW_FLOOR.0;
-            let half_rad = sigma(covariance.m33) + WINDOW_FLOOR.1;
+            let half_m = sigma(math::max(covariance.m11, covariance.m22)) + WINDOW_FLOOR_M;
+            let half_rad = sigma(covariance.m33) + WINDOW_FLOOR_RAD;
             let half_m = math::min(half_m, config.max_window_m);
             if candidate.distance_m > half_m + SUBMAP_MARGIN_M {
                 continue;
@@ -253,7 +236,7 @@ impl BundleLoops {
     }
 }
 
-impl LoopFinder for BundleLoops {
+impl LoopFinder for SubmapLoops {
     fn every_keyframes(&self) -> usize {
         EVERY_KEYFRAMES
     }
@@ -276,7 +259,11 @@ impl LoopFinder for BundleLoops {
                 continue;
             }
             let agreeing = self.agreeing(mapper, &found, &lengths_m);
-            let needed = if is_expected { AGREEING.0 } else { AGREEING.1 };
+            let needed = if is_expected {
+                AGREEING_EXPECTED
+            } else {
+                AGREEING_CONTRADICTING
+            };
             let path_m = lengths_m[found.from_node];
             if agreeing.len() + 1 < needed {
                 let reach_m = self.config.pending_distance_m;
@@ -330,7 +317,7 @@ impl LoopFinder for BundleLoops {
     }
 
     fn link_all(&mut self, mapper: &mut Mapper) -> Vec<LoopVerification> {
-        refinement::link_all(mapper, &mut self.submaps)
+        linking::link_all(mapper, &mut self.submaps)
     }
 
     fn verify(
@@ -339,7 +326,7 @@ impl LoopFinder for BundleLoops {
         old: usize,
         new: usize,
     ) -> Result<LoopVerification, OptimizeError> {
-        refinement::link_on_request(mapper, old, new, &mut self.submaps)
+        linking::link_on_request(mapper, old, new, &mut self.submaps)
     }
 
     fn pending(&self) -> &[PendingLoop] {

@@ -8,31 +8,16 @@ use nalgebra::{Matrix3, Vector3};
 use pr_geom::math;
 use pr_optim::OptimizeError;
 
-use super::mapper::Mapper;
 use super::submaps::Submaps;
+use super::tuning::{
+    HALF_VISIT, LINK_GAP_NODES, LINK_HUBER, LINK_PASSES, LINK_RADIUS_M, LINK_SHIFT_M,
+    LINK_SHIFT_RAD, LINK_VISITS, MIN_LINK_SCORE, REQUEST_M, REQUEST_RAD, REQUEST_SIGMAS,
+};
 use crate::chi_squared::CHAPTER_GATE;
 use crate::loops::{LoopCandidate, LoopRejection, LoopVerification, detect_visits};
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
-
-/// Rounds of linking and optimizing.
-const PASSES: usize = 2;
-/// Keyframes within this distance are linked, m.
-const RADIUS_M: f64 = 4.0;
-/// Keyframes are linked if they are at least this many nodes apart.
-const MIN_GAP_NODES: usize = 10;
-/// Largest number of visits linked with a keyframe, the nearest first.
-const VISITS: usize = 3;
-/// A visit is the nearest keyframe with this many on either side.
-const HALF_SUBMAP: usize = 3;
-/// Expected shift of a keyframe by a registration, standard deviations for the gate: m and rad.
-const SHIFT: (f64, f64) = (0.15, 0.05);
-/// Score below which a keyframe does not fit, 0 to 1.
-const MIN_SCORE: f64 = 0.7;
-/// Search window of a requested loop: number of standard deviations, and limits in m and rad.
-const REQUESTED_WINDOW: (f64, f64, f64) = (3.0, 6.0, 0.5);
-/// Width of the robust cost of a pass, in standard deviations of an edge.
-const HUBER: f64 = 3.0;
+use crate::slam::Mapper;
 
 /// Gate of a link against the graph.
 #[derive(Clone, Copy)]
@@ -48,12 +33,12 @@ struct LinkGate {
 /// or not. A graph that cannot be solved is unchanged.
 pub(super) fn link_all(mapper: &mut Mapper, submaps: &mut Submaps) -> Vec<LoopVerification> {
     let mut last = Vec::new();
-    for _ in 0..PASSES {
+    for _ in 0..LINK_PASSES {
         let nodes = 0..mapper.keyframes().len();
         let links: Vec<LoopVerification> = nodes
             .flat_map(|node| links_of(mapper, node, submaps))
             .collect();
-        if !mapper.replace_loops(&links, HUBER) {
+        if !mapper.replace_loops(&links, LINK_HUBER) {
             return last;
         }
         last = links;
@@ -63,17 +48,17 @@ pub(super) fn link_all(mapper: &mut Mapper, submaps: &mut Submaps) -> Vec<LoopVe
 
 /// The registrations of a keyframe on the visits around it.
 fn links_of(mapper: &Mapper, node: usize, submaps: &mut Submaps) -> Vec<LoopVerification> {
-    let visits = detect_visits(mapper.poses(), node, RADIUS_M, MIN_GAP_NODES);
+    let visits = detect_visits(mapper.poses(), node, LINK_RADIUS_M, LINK_GAP_NODES);
     let gate = LinkGate {
         information: Matrix3::from_diagonal(&Vector3::new(
-            1.0 / (SHIFT.0 * SHIFT.0),
-            1.0 / (SHIFT.0 * SHIFT.0),
-            1.0 / (SHIFT.1 * SHIFT.1),
+            1.0 / (LINK_SHIFT_M * LINK_SHIFT_M),
+            1.0 / (LINK_SHIFT_M * LINK_SHIFT_M),
+            1.0 / (LINK_SHIFT_RAD * LINK_SHIFT_RAD),
         )),
         chi2: CHAPTER_GATE,
         window: None,
     };
-    let visits = visits.into_iter().take(VISITS);
+    let visits = visits.into_iter().take(LINK_VISITS);
     visits
         .map(|visit| link(mapper, node, visit, gate, submaps))
         .collect()
@@ -90,16 +75,15 @@ pub(super) fn link_on_request(
     submaps: &mut Submaps,
 ) -> Result<LoopVerification, OptimizeError> {
     // The graph's covariance of the relative pose, and a floor.
-    let floor = Vector3::new(SHIFT.0, SHIFT.0, SHIFT.1).map(|sigma| sigma * sigma);
+    let floor = Vector3::new(LINK_SHIFT_M, LINK_SHIFT_M, LINK_SHIFT_RAD).map(|sigma| sigma * sigma);
     let covariance =
         mapper.graph_mut().relative_covariance(old, new)? + Matrix3::from_diagonal(&floor);
     let information = covariance
         .try_inverse()
         .ok_or(OptimizeError::NotPositiveDefinite { node: new })?;
     let sigma = |variance: f64| math::sqrt(math::max(variance, 0.0));
-    let (sigmas, most_m, most_rad) = REQUESTED_WINDOW;
-    let half_m = sigmas * sigma(math::max(covariance.m11, covariance.m22));
-    let half_rad = sigmas * sigma(covariance.m33);
+    let half_m = REQUEST_SIGMAS * sigma(math::max(covariance.m11, covariance.m22));
+    let half_rad = REQUEST_SIGMAS * sigma(covariance.m33);
     let poses = mapper.poses();
     let candidate = LoopCandidate {
         node: old,
@@ -109,7 +93,10 @@ pub(super) fn link_on_request(
     let gate = LinkGate {
         information,
         chi2: CHAPTER_GATE,
-        window: Some((math::min(half_m, most_m), math::min(half_rad, most_rad))),
+        window: Some((
+            math::min(half_m, REQUEST_M),
+            math::min(half_rad, REQUEST_RAD),
+        )),
     };
     Ok(link(mapper, new, candidate, gate, submaps))
 }
@@ -124,15 +111,15 @@ fn link(
 ) -> LoopVerification {
     let poses = mapper.poses();
     let center = visit.node;
-    let last = (center + HALF_SUBMAP).min(node - 1);
-    submaps.build(mapper, center.saturating_sub(HALF_SUBMAP)..=last, center);
+    let last = (center + HALF_VISIT).min(node - 1);
+    submaps.build(mapper, center.saturating_sub(HALF_VISIT)..=last, center);
     let settings = &submaps.registration;
     let belief = poses[center].between(&poses[node]);
     let stages = [settings.max_correspondence_m, settings.inlier_distance_m];
     let scan = mapper.scan(node);
     let mut found = submaps.map.register(scan, belief, &stages, None, settings);
     if let Some((half_m, half_rad)) = allowed.window
-        && found.fit.score < MIN_SCORE
+        && found.fit.score < MIN_LINK_SCORE
         && let window = SearchWindow::around(belief, half_m, half_rad)
         && let Some(better) = submaps.map.search(scan, &window, 0.0)
     {
@@ -150,8 +137,8 @@ fn link(
         gate_chi2,
     );
     let score = found.fit.score;
-    link.rejection = if score < MIN_SCORE {
-        let min_score = MIN_SCORE;
+    link.rejection = if score < MIN_LINK_SCORE {
+        let min_score = MIN_LINK_SCORE;
         Some(LoopRejection::LowScore { score, min_score })
     } else {
         (!link.gate.passes()).then_some(LoopRejection::OutsideGate(link.gate))

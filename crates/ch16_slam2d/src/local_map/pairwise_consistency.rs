@@ -3,9 +3,9 @@
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
-use super::mapper::Mapper;
 use crate::chi_squared::GATE_99;
 use crate::loops::LoopVerification;
+use crate::slam::Mapper;
 
 /// Whether two loops imply the same correction of the path: `e = log((Tᵢ Z)⁻¹ Tₖ Zₖ Tⱼ⁻¹ T)` within the gate of the
 /// covariances of both loops and of the paths between their ends.

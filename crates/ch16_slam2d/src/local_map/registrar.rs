@@ -3,21 +3,20 @@
 use nalgebra::{Matrix3, Vector2};
 use pr_geom::SE2;
 
-use super::RobotConfig;
-use super::registrar::{ExpectedMotion, ScanRegistrar};
-use super::snapshot::{NamedNumbers, SnapshotError};
-use super::window::ScanWindow;
+use super::{LocalMap, MapRegistrationConfig, MotionPrior, PriorTail, ScanProfiles};
 use crate::cloud::PointCloud;
-use crate::local_map::{LocalMap, MapRegistrationConfig, MotionPrior, PriorTail, ScanProfiles};
 use crate::matching::{MatchStop, MatchSummary};
 use crate::scan::PreparedFrame;
+use crate::slam::{
+    ExpectedMotion, NamedNumbers, RobotConfig, ScanRegistrar, ScanWindow, SnapshotError,
+};
 
 /// Name of the covariance of the motions since the last keyframe in a snapshot.
 const MOTION_COVARIANCE: &str = "motion covariance";
 
 /// Registers scans on the last few with the odometry as a prior.
 #[derive(Clone)]
-pub(crate) struct MapMatching {
+pub(crate) struct MapRegistrar {
     config: RobotConfig,
     registration: MapRegistrationConfig,
     map: LocalMap,
@@ -30,7 +29,7 @@ pub(crate) struct MapMatching {
     motion_covariance: Matrix3<f64>,
 }
 
-impl MapMatching {
+impl MapRegistrar {
     pub fn new(config: RobotConfig) -> Self {
         Self {
             registration: config.registration(),
@@ -73,7 +72,7 @@ impl MapMatching {
     }
 }
 
-impl ScanRegistrar for MapMatching {
+impl ScanRegistrar for MapRegistrar {
     fn register(
         &mut self,
         frame: &PreparedFrame,
