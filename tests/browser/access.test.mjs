@@ -181,6 +181,8 @@ for (const widget of h.schema) {
         } else {
           await tab.keyboard.press('Home');
           assert.equal(await value(tab, param.id), param.min, `${param.id} at its start`);
+          // Before a log is open, w16.10 has no keyframe to go to.
+          if (await control.evaluate((input) => Number(input.max) === Number(input.min))) continue;
           await tab.keyboard.press('ArrowRight');
           const stepped = await value(tab, param.id);
           assert.ok(Math.abs(stepped - param.min - param.step) < 1e-9, `${param.id}: ${stepped}`);

@@ -16,7 +16,7 @@ it('gives each question of the page an id', () => {
   assert.equal(exercises.length, page.match(/<slam-predict/g).length);
   const { choices, ...rest } = exercises.find(({ exercise }) => exercise === '16.5a');
   assert.deepEqual(rest, { exercise: '16.5a', widget: 'w16.2', state: 'noise=4&t=129', fact: 'front_end_error_m', unit: ' m' });
-  assert.deepEqual(choices[1], { choice: 'twice', from: 1, to: 2 });
+  assert.deepEqual(choices[2], { choice: 'twice', from: 1, to: 2 });
 });
 
 it('slam2d mark has the questions of the page', () => {
