@@ -81,7 +81,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "Come back tomorrow",
     misconception: "A saved map does not say where the robot is. It has to be looked for everywhere, and \
                     an honest robot says when two places look alike.",
-    question: "Where does a robot that was switched off find itself again? Drag it anywhere, then press Play.",
+    question: "Where does the robot find itself again? Drag it anywhere, then press Play.",
     notice: &[
         "A ghost is a pose that is not ruled out yet, the larger the better it may fit. What is left of them is where the robot may be.",
         "Where the map was driven, one scan is enough. In a room that it never saw, or in one of two rooms alike, no pose is reported before the robot is out of the door.",
