@@ -108,6 +108,9 @@ describe('a custom flat', () => {
 
   it('is edited by keyboard alone, with announcements for a screen reader', async () => {
     await on(async (tab) => {
+      // The buttons that step from piece to piece are under More.
+      await tab.evaluate(() => document.querySelector('slam-widget').set('more', true));
+      await tab.waitForFunction(() => document.querySelector('slam-widget').shadowRoot.querySelector('[data-control="piece-on"]').checkVisibility());
       await tab.evaluate(() => document.querySelector('slam-widget').shadowRoot.querySelector('[data-control="piece-on"]').focus());
       await tab.keyboard.press('PageDown');
       await tab.waitForFunction(() => document.querySelector('slam-widget').get('piece') === 'wall');
