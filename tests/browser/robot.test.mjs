@@ -680,7 +680,8 @@ describe('the doctor', () => {
         await says(tab, /(mapped|to look into): bag_0\.db3: 24 scans/);
         const metadata = 'relative_file_paths:\n  - bag_0.db3\n  - bag_1.db3\n';
         await drop(tab, [['bag_0.db3', readFileSync(join(folder, 'bag_0.db3'))], ['metadata.yaml', metadata]]);
-        await says(tab, /no map: metadata\.yaml lists bag_1\.db3, which is missing/);
+        await tab.waitForFunction(() => JSON.stringify(document.querySelector('slam-widget').diagnosis).includes('bag_1.db3'));
+        await isMapped(tab);
         await drop(tab, [['a.log', SAMPLE], ['b.log', SAMPLE]]);
         await says(tab, /no map: a\.log and 1 more is several files.*give one log at a time/);
       });
@@ -710,11 +711,15 @@ describe('the doctor', () => {
         let told;
         try {
           told = JSON.parse(native('slam2d', 'doctor', path, '--json'));
-        } catch ({ stderr }) {
+        } catch ({ status, stdout, stderr }) {
+          // 1: something was repaired, or needs attention.
+          if (status === 1) told = JSON.parse(stdout);
           const refusal = String(stderr).trim().replace(`slam2d: ${path}`, basename(path));
-          await says(tab, /^no map: /);
-          assert.ok((await outcome(tab)).sentence.startsWith(refusal), refusal);
-          continue;
+          if (told === undefined) {
+            await says(tab, /^no map: /);
+            assert.ok((await outcome(tab)).sentence.startsWith(refusal), refusal);
+            continue;
+          }
         }
         // The same bits in the page as natively; a recording from a folder has the name of its file.
         await tab.waitForFunction((file) => document.querySelector('slam-widget').diagnosis?.name.startsWith(file),
