@@ -186,7 +186,7 @@ async function copyKatex() {
 
 /** Bundles the scripts of the page and of its worker; returns their names and esbuild's metafiles. */
 async function bundleScripts(stories, matchAnswer) {
-  const bundle = async (source, define, format = 'esm') => {
+  const bundle = async (source, define, /** @type {import('esbuild').Format} */ format = 'esm') => {
     const { outputFiles, metafile } = await build({
       entryPoints: [path.join(here, source)],
       bundle: true,
