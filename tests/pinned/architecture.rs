@@ -116,11 +116,11 @@ const CORE: [(&str, &[&str]); 12] = [
         "robot_io",
         &["pr_geom", "pr_grid", "pr_optim", "ch16_slam2d"],
     ),
-    ("measuring", &[]),
+    ("bench_support", &[]),
     (
         "solver_peers",
         &[
-            "measuring",
+            "bench_support",
             "pr_geom",
             "pr_optim",
             "ch16_slam2d",

@@ -6,7 +6,7 @@
 
 use std::path::PathBuf;
 
-use measuring::skip::{NO_RECORDED_GRAPHS, skip};
+use bench_support::skip::{NO_RECORDED_GRAPHS, skip};
 use pr_optim::g2o::G2oFile;
 use pr_optim::{JacobianModel, Optimizer, Outcome, Problem, Session, Settings, Start, StopReason};
 

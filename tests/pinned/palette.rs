@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use kit::palette::{Rgb, Theme, accent, contrast, tone};
-use kit::scene::Tone;
+use widget_kit::palette::{Rgb, Theme, accent, contrast, tone};
+use widget_kit::scene::Tone;
 
 use super::page::document::{page_style, source};
 

@@ -5,9 +5,9 @@ use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 use egui::{Event, Pos2, RawInput, Rect, TouchPhase, vec2};
-use kit::palette::{self, Theme};
-use kit::scene::Tone;
-use kit::shell::Shell;
+use widget_kit::palette::{self, Theme};
+use widget_kit::scene::Tone;
+use widget_kit::shell::Shell;
 
 /// State shared by the app and the JavaScript handle.
 pub struct Shared {

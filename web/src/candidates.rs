@@ -4,11 +4,13 @@ use std::sync::OnceLock;
 
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, LoopAttempt};
 use ch16_slam2d::loops::LoopRejection;
-use kit::palette::Theme;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
-use kit::svg::scene_svg;
 use pr_geom::Translation;
 use serde_json::{Value, json};
+use widget_kit::palette::Theme;
+use widget_kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
+use widget_kit::svg::scene_svg;
 
 /// Number of right candidates, and of wrong ones.
 const OF_EACH: usize = 5;
@@ -233,7 +235,7 @@ fn curve([right, wrong]: [usize; 2], [gate_right, gate_wrong]: [usize; 2]) -> Pa
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kit::audit::scene_text_faults;
+    use widget_kit::audit::scene_text_faults;
 
     #[test]
     fn half_of_the_candidates_are_right_and_neither_test_separates_them_all() {

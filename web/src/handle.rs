@@ -3,12 +3,12 @@
 use std::cell::{Cell, OnceCell, RefCell};
 use std::rc::Rc;
 
-use kit::model::{Motion, finish_work};
-use kit::outside::Delivery;
-use kit::palette::Theme;
-use kit::param::{ParamError, ParamSpec};
-use kit::zoom::Look;
 use wasm_bindgen::prelude::*;
+use widget_kit::host_messages::Delivery;
+use widget_kit::model::{Motion, finish_work};
+use widget_kit::palette::Theme;
+use widget_kit::param::{ParamError, ParamSpec};
+use widget_kit::zoom::Look;
 
 use crate::app::{Shared, WidgetApp, apply_theme, theme_of, web_options};
 use widgets::registry;
@@ -160,15 +160,15 @@ impl Widget {
 
     /// The widget's requests to its host since the last call.
     #[wasm_bindgen(js_name = takeOrders)]
-    pub fn take_orders(&self) -> Vec<String> {
-        self.shared.shell.borrow_mut().take_orders()
+    pub fn take_requests(&self) -> Vec<String> {
+        self.shared.shell.borrow_mut().take_requests()
     }
 
     /// The controls that are shown at present, by name.
     #[wasm_bindgen(js_name = shownControls)]
     pub fn shown_controls(&self) -> Vec<String> {
         let shell = self.shared.shell.borrow();
-        let shown = kit::controls::shown(shell.model());
+        let shown = widget_kit::controls::shown(shell.model());
         shown.into_iter().map(str::to_owned).collect()
     }
 

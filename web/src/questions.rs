@@ -1,10 +1,10 @@
 //! Functions of the module for the page besides the widgets: schemas, parsing, laps, small figures.
 
 use ch16_lab::lap::{LapConfig, LapFrontEnd, LapRunner};
-use kit::param::ParamKind;
 use pr_geom::SE2;
 use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
+use widget_kit::param::ParamKind;
 
 use crate::app::theme_of;
 use crate::matcher;

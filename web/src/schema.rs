@@ -3,9 +3,9 @@
 //! It is the source of the native controls beside the canvas, the checks of links and attributes, the types
 //! of the custom element and the tables in the docs.
 
-use kit::model::Model;
-use kit::param::{ParamKind, ParamSpec};
 use serde_json::{Value, json};
+use widget_kit::model::Model;
+use widget_kit::param::{ParamKind, ParamSpec};
 
 /// The schema of one widget; it needs a new model for the description of its initial state.
 #[must_use]
@@ -32,7 +32,7 @@ pub fn widget(model: &dyn Model) -> Value {
         "buttons": buttons.collect::<Vec<_>>(),
         "presets": presets.collect::<Vec<_>>(),
         "keys": keys.collect::<Vec<_>>(),
-        "opening": kit::controls::shown(model),
+        "opening": widget_kit::controls::shown(model),
         "summary": model.summary(),
         "takesFiles": model.takes_files(),
     })

@@ -11,10 +11,10 @@ mod nearest;
 mod push;
 mod slide;
 
-use kit::palette::Theme;
-use kit::scene::Scene;
-use kit::svg::{scene_places, scene_svg};
 use serde_json::{Value, json};
+use widget_kit::palette::Theme;
+use widget_kit::scene::Scene;
+use widget_kit::svg::{scene_places, scene_svg};
 
 /// The slider of a figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,7 +135,7 @@ impl Sketch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kit::audit::scene_text_faults;
+    use widget_kit::audit::scene_text_faults;
 
     fn places(slider: &Slider) -> Vec<f64> {
         let count = 8;

@@ -1,8 +1,8 @@
 //! The state of a widget as JSON: values, outcome, timeline, tables.
 
-use kit::model::{Model, Outcome, Standing, Table, Timeline};
-use kit::shell::Shell;
 use serde_json::{Map, Value, json};
+use widget_kit::model::{Assessment, Model, Outcome, Table, Timeline};
+use widget_kit::shell::Shell;
 
 /// Every parameter in the form of a link: `{"heading": "60", "variant": "point-to-plane"}`.
 #[must_use]
@@ -103,19 +103,19 @@ fn csv_field(field: &str) -> String {
     }
 }
 
-fn standing(standing: Standing) -> &'static str {
+fn standing(standing: Assessment) -> &'static str {
     match standing {
-        Standing::Good => "good",
-        Standing::Bad => "bad",
-        Standing::Doubtful => "doubtful",
-        Standing::Neutral => "neutral",
+        Assessment::Good => "good",
+        Assessment::Bad => "bad",
+        Assessment::Doubtful => "doubtful",
+        Assessment::Neutral => "neutral",
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kit::model::TablePlace;
+    use widget_kit::model::TablePlace;
     use widgets::registry::SHELLS;
 
     #[test]

@@ -15,6 +15,6 @@ pub mod w16_3_cost_terraces;
 pub mod w16_4_control_room;
 pub mod w16_5_pose_graph_toy;
 pub mod w16_6_whole_window;
-pub mod w16_7_been_here;
+pub mod w16_7_place_recognition;
 pub mod w16_8_moving_box;
-pub mod w16_9_come_back;
+pub mod w16_9_relocalization;

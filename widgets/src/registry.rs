@@ -1,9 +1,9 @@
 //! All widgets, in the order of the chapter.
 
-use kit::model::Model;
+use widget_kit::model::Model;
 #[cfg(feature = "view")]
-use kit::shell::Shell;
-use kit::spec::WidgetSpec;
+use widget_kit::shell::Shell;
+use widget_kit::spec::WidgetSpec;
 
 macro_rules! widgets {
     ($($module:ident: $model:ident, $view:ident;)*) => {
@@ -32,9 +32,9 @@ widgets! {
     w16_4_control_room: ControlRoom, ControlRoomView;
     w16_5_pose_graph_toy: PoseGraphToy, ToyView;
     w16_6_whole_window: WholeWindow, WindowView;
-    w16_7_been_here: BeenHere, PlacesView;
+    w16_7_place_recognition: PlaceRecognition, PlacesView;
     w16_8_moving_box: MovingBox, BoxView;
-    w16_9_come_back: ComeBack, ComeBackView;
+    w16_9_relocalization: Relocalization, ComeBackView;
     w16_10_own_robot: OwnRobot, RobotView;
     w16_11_procrustes: ProcrustesTrace, TraceView;
     w16_12_jacobians: WrongJacobians, JacobiansView;

@@ -4,14 +4,14 @@ use egui::accesskit::Role;
 use egui::{Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use kit::controls::on_transport_bar;
-use kit::model::{Activity, Model, Motion};
-use kit::palette::Theme;
-use kit::param::{MORE, ParamKind, ParamSpec};
-use kit::promises::{assert_reports, assert_values};
-use kit::scene::Layer;
-use kit::shell::Shell;
-use kit::spec::Preset;
+use widget_kit::controls::on_transport_bar;
+use widget_kit::invariants::{assert_reports, assert_values};
+use widget_kit::model::{Activity, Model, Motion};
+use widget_kit::palette::Theme;
+use widget_kit::param::{MORE, ParamKind, ParamSpec};
+use widget_kit::scene::Layer;
+use widget_kit::shell::Shell;
+use widget_kit::spec::Preset;
 use widgets::registry::{MODELS, SHELLS, SPECS, find, names};
 
 use crate::support::{HEIGHT, drawn, press_key, value};
@@ -153,7 +153,7 @@ fn a_press_of_a_button_with_nothing_to_do_changes_no_state() {
         for state in pressed_states(&shell) {
             shell.model_mut().press(state).expect("the widget has it");
             shell.finish_work();
-            shell.take_orders();
+            shell.take_requests();
             let before = state_text(shell.model());
             for id in shell.disabled() {
                 shell.press(id).expect("the widget has it");
@@ -163,7 +163,7 @@ fn a_press_of_a_button_with_nothing_to_do_changes_no_state() {
                     "{} {state} {id}",
                     spec.id
                 );
-                assert!(shell.take_orders().is_empty(), "{} {state} {id}", spec.id);
+                assert!(shell.take_requests().is_empty(), "{} {state} {id}", spec.id);
                 disabled += 1;
             }
             enabled += spec.buttons.len() - shell.disabled().len();
@@ -426,9 +426,9 @@ fn every_control_is_on_screen_under_its_name_at_every_width_and_in_both_themes()
             harness.run_steps(3);
             let height = harness.state().content_height();
             let model = harness.state().model();
-            let layer = model.layer();
-            let buttons = spec.buttons.iter().filter(|b| layer.has_button(b.id));
-            let params = spec.params.iter().filter(|p| layer.has_param(p.id));
+            let disclosure = model.disclosure();
+            let buttons = spec.buttons.iter().filter(|b| disclosure.has_button(b.id));
+            let params = spec.params.iter().filter(|p| disclosure.has_param(p.id));
             let controls = (params
                 .filter(|param| param.id != MORE.id)
                 .filter_map(|param| control(param)))
@@ -460,8 +460,8 @@ fn every_control_is_on_screen_under_its_name_at_every_width_and_in_both_themes()
 fn every_slider_takes_an_arrow_key_by_its_own_step() {
     for spec in SPECS {
         let mut harness = still(spec.id, 700.0);
-        let layer = harness.state().model().layer();
-        for param in spec.params.iter().filter(|p| layer.has_param(p.id)) {
+        let disclosure = harness.state().model().disclosure();
+        for param in spec.params.iter().filter(|p| disclosure.has_param(p.id)) {
             let ParamKind::Slider { min, max, step } = param.kind else {
                 continue;
             };
@@ -519,8 +519,8 @@ fn every_sentence_of_a_result_has_a_capital_and_a_full_stop() {
 
 #[test]
 fn a_name_of_a_file_keeps_its_letters_at_the_start_of_a_sentence() {
-    let outcome = |sentence: &str| kit::model::Outcome {
-        standing: kit::model::Standing::Neutral,
+    let outcome = |sentence: &str| widget_kit::model::Outcome {
+        standing: widget_kit::model::Assessment::Neutral,
         verdict: String::new(),
         sentence: sentence.to_owned(),
         facts: Vec::new(),
@@ -536,7 +536,7 @@ fn a_name_of_a_file_keeps_its_letters_at_the_start_of_a_sentence() {
 /// What the colours of the legend say: each of the five means one thing, whatever picture it stands in.
 #[test]
 fn the_five_colours_mean_the_same_in_every_legend() {
-    use kit::scene::Tone;
+    use widget_kit::scene::Tone;
     let meaning = |tone: Tone, words: &str| -> bool {
         let says = |known: &[&str]| known.iter().any(|known| words.contains(known));
         match tone {

@@ -11,6 +11,6 @@ mod w16_3_cost_terraces;
 mod w16_4_control_room;
 mod w16_5_pose_graph_toy;
 mod w16_6_whole_window;
-mod w16_7_been_here;
+mod w16_7_place_recognition;
 mod w16_8_moving_box;
-mod w16_9_come_back;
+mod w16_9_relocalization;

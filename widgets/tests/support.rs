@@ -4,9 +4,9 @@ use egui::accesskit::Role;
 use egui::{Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use kit::model::Model;
-use kit::scene::Panel;
-use kit::shell::Shell;
+use widget_kit::model::Model;
+use widget_kit::scene::Panel;
+use widget_kit::shell::Shell;
 
 /// Height of the screen: all widgets fit.
 pub const HEIGHT: f32 = 3000.0;

@@ -5,5 +5,5 @@ mod edge;
 mod fence;
 mod maps;
 mod model;
+mod texts;
 mod view;
-mod words;

@@ -1,5 +1,5 @@
 //! The widget from outside: its model, its texts, its view. One binary, one module for each.
 
 mod control_room;
+mod texts;
 mod view;
-mod words;

@@ -7,7 +7,6 @@
 
 pub mod basin;
 pub mod buildings;
-pub mod come_back;
 pub mod drift;
 pub mod incremental;
 pub mod jacobians;
@@ -17,6 +16,7 @@ pub mod moving_box;
 pub mod nudge;
 pub mod places;
 pub mod procrustes;
+pub mod relocalization;
 pub mod results;
 pub mod samples;
 mod scenes;

@@ -61,10 +61,10 @@ pub mod settings;
 pub mod table_log;
 pub mod trajectory;
 
-mod counted;
 mod lines;
 mod odometry_poses;
 mod path_lengths;
 mod plausible;
+mod plural;
 mod restamped;
 mod stamps;

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use pr_geom::{SE2, math, sort_numbers};
 
-use crate::counted::counted;
+use crate::plural::plural;
 use crate::remark::{Part, Remark};
 
 /// Most poses kept of a log that is read once: 20 s at 200 per second.
@@ -119,7 +119,7 @@ pub fn jumps_remark(jumps: &[f64]) -> Option<Remark> {
     let first_s = jumps.first()?;
     let text = format!(
         "odometry jumps {}, first at {first_s:.2} s, as after a restart of its driver; later poses were shifted to continue the path",
-        counted(jumps.len(), "time")
+        plural(jumps.len(), "time")
     );
     Some(Remark::mended(Part::Odometry, text))
 }

@@ -8,8 +8,8 @@ mod picture;
 
 use std::fmt::{Display, Write as _};
 
-use crate::counted::counted;
 use crate::map_image::MapImage;
+use crate::plural::plural;
 use crate::quality::{LinkQuality, Quality};
 
 /// Longer tables are cut after this many rows, with a note.
@@ -72,8 +72,8 @@ impl Report<'_> {
             format_args!(
                 "<p>{} gave {} over a path length of {:.1} m. Loops during the run: {} tested, {} accepted; \
                  in the graph at the end: {}.</p>",
-                counted(self.scans, "scan"),
-                counted(quality.keyframes.len(), "keyframe"),
+                plural(self.scans, "scan"),
+                plural(quality.keyframes.len(), "keyframe"),
                 quality.path_length_m(),
                 quality.tried.len(),
                 closed.clone().count(),

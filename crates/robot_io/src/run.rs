@@ -8,10 +8,10 @@ use ch16_slam2d::scan::{FrameError, LaserScan};
 use ch16_slam2d::slam::{LoopAttempt, RobotConfig, Slam, SlamReport, SnapshotError};
 use pr_geom::SE2;
 
-use crate::counted::counted;
 use crate::evidence::{PoorFit, TriedLoop};
 use crate::log::LogFrame;
 use crate::path_lengths::PathLengths;
+use crate::plural::plural;
 use crate::quality::Quality;
 use crate::session::{MappedGraph, Session, selected_scan_poses};
 use crate::settings::Setting;
@@ -421,7 +421,7 @@ impl LogRun {
         let blind = (self.blind > 0).then(|| {
             format!(
                 "{name}: {} without a return before the first one that sees something {} skipped, because without odometry nothing tells how the robot moved",
-                counted(self.blind, "scan"),
+                plural(self.blind, "scan"),
                 if self.blind == 1 { "was" } else { "were" }
             )
         });
@@ -476,7 +476,7 @@ fn piece_sentence(name: &str, piece: &PieceReport, session_scans: usize) -> Opti
         (PieceFate::Alone, _) => None,
         (PieceFate::Joined(scans), _) => Some(format!(
             "{after}; the robot was found on {map} after {}, and all its scans are on it",
-            counted(scans, "scan")
+            plural(scans, "scan")
         )),
         (PieceFate::Kept, true) => Some(format!(
             "{after}, and the robot was not found on {map}: the results are those of this log alone. Give its first pose on that map with --init x,y,deg, or record a drive through a part of it"
@@ -488,7 +488,7 @@ fn piece_sentence(name: &str, piece: &PieceReport, session_scans: usize) -> Opti
             };
             Some(format!(
                 "{after}, and the robot was not found on {map}: the {} {which} the gap were left out. Map both parts as two logs, or record a drive through a place of both",
-                counted(left_out, "scan")
+                plural(left_out, "scan")
             ))
         }
     }

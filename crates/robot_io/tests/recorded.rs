@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::PathBuf;
 
-use measuring::skip::{NO_RECORDED_LOGS, skip};
+use bench_support::skip::{NO_RECORDED_LOGS, skip};
 use robot_io::evaluate::relation_errors;
 use robot_io::log::LogOptions;
 use robot_io::log_bytes::LogBytes;

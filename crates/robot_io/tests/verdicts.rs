@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::fs;
 use std::path::PathBuf;
 
-use measuring::skip::{NO_RECORDED_LOGS, skip};
+use bench_support::skip::{NO_RECORDED_LOGS, skip};
 use pr_geom::SE2;
 use robot_io::log::{LogError, LogFrame, LogNotes, LogOptions, LogReader};
 use robot_io::log_bytes::LogBytes;

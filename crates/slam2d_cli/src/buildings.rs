@@ -14,9 +14,9 @@ use robot_io::settings::{Setting, SettingError};
 use serde::Serialize;
 use thiserror::Error;
 
+use crate::lap_options::choice;
 use crate::numbers::{self, Seeds};
 use crate::output::{print_json, say};
-use crate::trial::choice;
 
 /// Most buildings of one sweep: each takes a second.
 const MAX_SEEDS: u64 = 100_000;

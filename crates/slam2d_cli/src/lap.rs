@@ -17,9 +17,9 @@ use robot_io::json_log::FrameLine;
 use serde::Serialize;
 use thiserror::Error;
 
+use crate::lap_options::{TrialArgs, choice};
 use crate::numbers;
 use crate::output::{print_json, say};
-use crate::trial::{TrialArgs, choice};
 use crate::world::WorldError;
 
 /// Simulate the lap in the Apartment or another world, and estimate it.

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::str::FromStr;
 
+use bench_support::process;
 use ch16_slam2d::localize::{LocalizeReport, StartPose, Verdict};
 use ch16_slam2d::search::SearchError;
 use clap::Args;
-use measuring::process;
 use pr_geom::SE2;
 use robot_io::localize::LocalizeRun;
 use robot_io::log::LogReader;

@@ -8,8 +8,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use bench_support::{generated, timed};
 use clap::Args;
-use measuring::{generated, timed};
 use pr_geom::{Point2, math};
 use rayon::prelude::*;
 use robot_io::evaluate::{Alignment, relation_errors, truth_errors};

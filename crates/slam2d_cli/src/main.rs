@@ -12,6 +12,7 @@ mod grade;
 mod info;
 mod interrupt;
 mod lap;
+mod lap_options;
 mod localize;
 mod log_file;
 mod logs;
@@ -32,7 +33,6 @@ mod sweep;
 mod table;
 mod terrain;
 mod tick_costs;
-mod trial;
 mod world;
 
 use std::fmt::Display;

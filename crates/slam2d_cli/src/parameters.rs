@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use bench_support::{generated, timed};
 use ch16_slam2d::slam::RobotConfig;
 use clap::Args;
-use measuring::{generated, timed};
 use rayon::prelude::*;
 use robot_io::evaluate::relation_errors;
 use robot_io::log::LogFrame;

@@ -3,10 +3,10 @@
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
+use bench_support::timed;
 use ch16_slam2d::cloud::{CsvError, DenseMap, PointCloud};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace, StopReason};
 use clap::{Args, ValueEnum};
-use measuring::timed;
 use pr_geom::SE2;
 use serde::Serialize;
 use thiserror::Error;

@@ -3,10 +3,10 @@
 
 use std::path::{Path, PathBuf};
 
+use bench_support::generated;
 use ch16_slam2d::localize::StartPose;
 use ch16_slam2d::metrics::position_error_m;
 use clap::Args;
-use measuring::generated;
 use pr_geom::SE2;
 use rayon::prelude::*;
 use robot_io::localize::LocalizeRun;

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use bench_support::{process, timed};
 use ch16_slam2d::slam::SnapshotError;
 use clap::Args;
-use measuring::{process, timed};
 use robot_io::laser_mount::LaserMount;
 use robot_io::log::LogReader;
 use robot_io::quality::Quality;

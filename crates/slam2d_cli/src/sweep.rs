@@ -17,9 +17,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use thiserror::Error;
 
+use crate::lap_options::{LapOptions, TrialArgs, choice};
 use crate::numbers::{self, Seeds};
 use crate::output::{print_json, say};
-use crate::trial::{Trial, TrialArgs, choice};
 use crate::world::WorldError;
 use level::Level;
 use rows::RowsFailure;
@@ -215,7 +215,7 @@ fn print_shard(driven: &shard::ShardResult, path: &Path, json: bool) {
 }
 
 /// The runs of every seed, in order of the seeds, with one run per noise factor.
-fn all_runs(args: &SweepArgs, trial: &Trial) -> Vec<Vec<LapOutcome>> {
+fn all_runs(args: &SweepArgs, trial: &LapOptions) -> Vec<Vec<LapOutcome>> {
     let bar = progress_bar(args.seeds.count());
     let runs = (args.seeds.first..=args.seeds.last)
         .into_par_iter()
@@ -264,7 +264,13 @@ impl SweepArgs {
         all.filter(|&kind| self.has(LapEstimator::IncrementalKind(kind)))
     }
 
-    fn outcome(&self, runner: &mut LapRunner, trial: &Trial, seed: u32, noise: f64) -> LapOutcome {
+    fn outcome(
+        &self,
+        runner: &mut LapRunner,
+        trial: &LapOptions,
+        seed: u32,
+        noise: f64,
+    ) -> LapOutcome {
         let mut config = trial.lap(seed, noise);
         if !self.has(LapEstimator::Graph) {
             config = config.without_loops();

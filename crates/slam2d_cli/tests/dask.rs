@@ -11,7 +11,7 @@ fn a_cluster_of_two_workers_comes_to_the_same_figures_though_one_is_killed() {
         .output()
         .is_ok_and(|output| output.status.success());
     if !has_dask {
-        measuring::skip::skip(
+        bench_support::skip::skip(
             "the sweep on a Dask cluster",
             "python3 has no dask; pip install 'dask[distributed]', or set PYTHON to an interpreter that has it",
         );

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use measuring::skip::skip;
+use bench_support::skip::skip;
 use tempfile::TempDir;
 
 use crate::support::{assert_refused, json, slam2d};

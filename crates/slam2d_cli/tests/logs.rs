@@ -287,7 +287,7 @@ fn memory_grows_with_the_path_and_not_with_the_log() {
         (run["peak_mb"].as_f64(), bytes as f64 / 1e6)
     };
     let ((Some(small), small_mb), (Some(large), large_mb)) = (run(2), run(200)) else {
-        measuring::skip::skip(
+        bench_support::skip::skip(
             "memory of a run",
             "the system does not report the memory of a process",
         );

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::support::{assert_refused, json, slam2d};
-use measuring::skip::{NO_RECORDED_GRAPHS, skip};
+use bench_support::skip::{NO_RECORDED_GRAPHS, skip};
 use pr_optim::g2o::G2oFile;
 use serde_json::Value;
 use tempfile::TempDir;

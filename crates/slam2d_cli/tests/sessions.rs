@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use measuring::skip::skip;
+use bench_support::skip::skip;
 use pr_geom::SE2;
 use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;

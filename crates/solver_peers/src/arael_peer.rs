@@ -6,7 +6,7 @@ use arael::model::{CrossBlock, Param, SelfBlock};
 use arael::refs::{self, Ref};
 use arael::simple_lm::{LmConfig, LmSession, SparseFaer};
 use arael::vect::{vect2d, vect3d};
-use measuring::timed;
+use bench_support::timed;
 use pr_geom::SE2;
 use pr_optim::Problem;
 

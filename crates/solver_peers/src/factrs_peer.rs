@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use bench_support::timed;
 use factrs::containers::{DefaultSymbolHandler, Values};
 use factrs::core::GaussNewton;
 use factrs::optimizers::{BaseOptParams, OptError};
 use factrs::traits::Optimizer;
 use factrs::utils::load_g20;
 use factrs::variables;
-use measuring::timed;
 use pr_geom::SE2;
 
 use crate::{Peer, Solve};

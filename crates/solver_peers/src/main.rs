@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use measuring::generated;
+use bench_support::generated;
 use solver_peers::compare::{HEAD, compare};
 
 const USAGE: &str = "usage: solver_peers [--rounds N] [--write PAGE.md] FILE.g2o…";

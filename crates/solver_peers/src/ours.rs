@@ -1,6 +1,6 @@
 //! This project's solver.
 
-use measuring::timed;
+use bench_support::timed;
 use pr_optim::{
     JacobianModel, OptimizeError, Optimizer, Outcome, Problem, Session, Settings, Start,
 };

@@ -13,7 +13,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::{self, Command, Stdio};
 
-use measuring::skip::tell;
+use bench_support::skip::tell;
 use slam2d_bench::{Run, workloads};
 
 /// Allowed relative increase over the recorded count.

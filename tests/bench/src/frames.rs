@@ -4,9 +4,9 @@ use std::hint::black_box;
 
 use ch16_slam2d::digest::Digest;
 use egui::{Context, Pos2, RawInput, Rect, vec2};
-use kit::model::finish_work;
-use kit::palette::Theme;
-use kit::shell::Shell;
+use widget_kit::model::finish_work;
+use widget_kit::palette::Theme;
+use widget_kit::shell::Shell;
 
 use crate::{Limit, Run, Workload, prepared};
 

@@ -14,8 +14,8 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use bench_support::skip::{NO_VALGRIND, tell};
 use measured::Measured;
-use measuring::skip::{NO_VALGRIND, tell};
 use page::{Block, write_into};
 use serde::Serialize;
 use slam2d_bench::measure::{self, Turns};

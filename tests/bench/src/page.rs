@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use measuring::generated;
+use bench_support::generated;
 
 /// A part of `docs/performance.md` that a command writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,7 +8,7 @@ pub mod databases;
 pub mod files;
 pub mod g2o;
 pub mod graphs;
-pub mod hands;
+pub mod interaction;
 pub mod links;
 mod listener;
 pub mod logs;
@@ -36,5 +36,5 @@ pub const TARGETS: [(&str, FuzzTarget); 11] = [
     ("sessions", sessions::fuzz),
     ("graphs", graphs::fuzz),
     ("registration", registration::fuzz),
-    ("hands", hands::fuzz),
+    ("interaction", interaction::fuzz),
 ];

@@ -2,8 +2,8 @@
 //!
 //! The first byte selects the widget, the second the parameter, the rest is the text.
 
-use kit::param::{ParamKind, ParamSpec};
-use kit::values::Values;
+use widget_kit::param::{ParamKind, ParamSpec};
+use widget_kit::values::Values;
 
 use widgets::registry::SPECS;
 

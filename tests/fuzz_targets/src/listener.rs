@@ -1,10 +1,10 @@
 //! A widget model without computation.
 
-use kit::model::{Activity, Model, Outcome, Standing, Table, unknown_button};
-use kit::param::ParamError;
-use kit::scene::Scene;
-use kit::spec::WidgetSpec;
-use kit::values::Values;
+use widget_kit::model::{Activity, Assessment, Model, Outcome, Table, unknown_button};
+use widget_kit::param::ParamError;
+use widget_kit::scene::Scene;
+use widget_kit::spec::WidgetSpec;
+use widget_kit::values::Values;
 
 /// Takes values and presses by the rules of another widget, and computes nothing.
 pub struct Listener {
@@ -58,7 +58,7 @@ impl Model for Listener {
 
     fn outcome(&self) -> Outcome {
         Outcome {
-            standing: Standing::Neutral,
+            standing: Assessment::Neutral,
             verdict: String::new(),
             sentence: String::new(),
             facts: Vec::new(),

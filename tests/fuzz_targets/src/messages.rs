@@ -3,8 +3,8 @@
 //! The first byte selects the widget, the rest is the message: `{"type": "set", "values": {…}}` or
 //! `{"type": "press", "button": "…"}`. Messages that `embed.ts` rejects are rejected here as well.
 
-use kit::model::Model;
 use serde_json::Value;
+use widget_kit::model::Model;
 
 use crate::listener::Listener;
 use widgets::registry::SPECS;

@@ -1,6 +1,6 @@
 //! The challenge of each section can be met: its `data-proof` is a state that does, which `data-holds` describes.
 
-use kit::model::Model;
+use widget_kit::model::Model;
 
 use super::document::{companion, unescape};
 use super::widgets::Widgets;

@@ -1,7 +1,7 @@
 //! The page's claims about convergence agree with w16.1.
 
 use ch16_lab::basin::Minimum;
-use kit::model::Standing;
+use widget_kit::model::Assessment;
 
 use super::figures::Figures;
 use super::widgets::Widgets;
@@ -26,7 +26,7 @@ fn the_widget_converges_at_both_printed_edges_and_not_one_degree_beyond() {
         let outcome = widgets.set("w16.1", &state).outcome();
         (outcome.standing, outcome.verdict)
     };
-    let home = (Standing::Good, Minimum::Right.name().to_owned());
+    let home = (Assessment::Good, Minimum::Right.name().to_owned());
     for (basin, state) in BASINS {
         for (edge, outwards) in [("from_deg", -1.0), ("to_deg", 1.0)] {
             let name = format!("{basin}.{edge}");

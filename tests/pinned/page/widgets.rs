@@ -1,7 +1,7 @@
 //! The widgets of the page in the states of its links and questions.
 
-use kit::model::Model;
-use kit::shell::Shell;
+use widget_kit::model::Model;
+use widget_kit::shell::Shell;
 use widgets::registry::SHELLS;
 
 /// One of each widget.

@@ -7,7 +7,7 @@ mod window;
 
 use std::process::ExitCode;
 
-use kit::shell::Shell;
+use widget_kit::shell::Shell;
 use widgets::registry;
 
 fn main() -> ExitCode {

@@ -1,7 +1,7 @@
 //! A window with a widget in it.
 
-use kit::palette::Theme;
-use kit::shell::Shell;
+use widget_kit::palette::Theme;
+use widget_kit::shell::Shell;
 
 /// Opens a window with that widget and returns when it is closed.
 ///

@@ -26,9 +26,9 @@ use crate::given::{Choices, Given};
 use crate::grade::Reference;
 use crate::graph_log::{self, GraphSolving, loops_of};
 use crate::links::Link;
+use crate::localization::Localization;
 use crate::picture::MapPicture;
 use crate::update::{Stage, Update};
-use crate::whereabouts::Whereabouts;
 use examining::Examination;
 
 /// Current work.
@@ -81,7 +81,7 @@ pub struct Engine<'a> {
     /// The last saved picture of the map, to which `map.yaml` refers.
     image: &'static str,
     /// Another log on this map.
-    whereabouts: Option<Whereabouts<'a>>,
+    localization: Option<Localization<'a>>,
     has_scans: bool,
     /// Number of scans of an opened session.
     scans_before: usize,
@@ -169,7 +169,7 @@ impl<'a> Engine<'a> {
             size_bytes,
             has_scans: matches!(work, Work::Examining(_)),
             scans_before: 0,
-            whereabouts: None,
+            localization: None,
             work,
             run: LogRun::new(OdometryUse::Log),
             recorder: RunRecorder::default(),
@@ -330,8 +330,8 @@ impl<'a> Engine<'a> {
         if self.has_scans {
             self.picture.follow(poses_of(&self.run));
         }
-        if let Some(whereabouts) = &mut self.whereabouts {
-            whereabouts.moved();
+        if let Some(localization) = &mut self.localization {
+            localization.moved();
         }
         self.work = Work::Checking;
     }
@@ -344,7 +344,7 @@ impl<'a> Engine<'a> {
 
     /// Localizes the next scan of another log; returns false if there is none.
     fn localize_next(&mut self) -> bool {
-        self.whereabouts.as_mut().is_some_and(Whereabouts::step)
+        self.localization.as_mut().is_some_and(Localization::step)
     }
 
     fn graph(&self) -> Option<&PoseGraph> {

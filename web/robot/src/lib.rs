@@ -3,7 +3,7 @@
 //! The module has no egui and is fetched when a user opens a log. [`engine`] reads the file on demand, runs the
 //! estimator and executes orders; changes go to the widget as [`update`]s of numbers and text. [`given`] is the user's
 //! input. [`links`] are the loops with evidence and verdict, [`editing`] builds a graph from them, [`picture`] paints
-//! the map, [`grade`] evaluates against a reference, [`whereabouts`] localizes another log on the map, [`files`] writes
+//! the map, [`grade`] evaluates against a reference, [`localization`] localizes another log on the map, [`files`] writes
 //! what the user saves, and [`sample`] generates the sample logs of the page.
 //!
 //! All modules but the browser interface are plain Rust and tested natively.
@@ -15,10 +15,10 @@ pub mod given;
 pub mod grade;
 pub mod graph_log;
 pub mod links;
+pub mod localization;
 pub mod picture;
 pub mod sample;
 pub mod update;
-pub mod whereabouts;
 
 #[cfg(target_arch = "wasm32")]
 mod browser;

@@ -15,7 +15,7 @@
 //! | `grade` | see [`grade`](crate::grade) | as text |
 //! | `errors` | error of each keyframe, m; NaN if unknown | |
 //! | `offers` | | one option per line: name, current choice, possible choices, separated by tabs |
-//! | `where` | see [`whereabouts`](crate::whereabouts) | the other log's name, then one sentence per line |
+//! | `where` | see [`localization`](crate::localization) | the other log's name, then one sentence per line |
 //! | `answer` | | result of the last order |
 
 /// Stage of the engine.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use measuring::skip::skip;
+use bench_support::skip::skip;
 use robot_io::log_bytes::LogBytes;
 use robot_io::motion::OdometryChoice;
 use robot_io::run::OdometryUse;

@@ -9,9 +9,9 @@ use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
 use slam_robot::engine::Engine;
 use slam_robot::given::{Choices, Given};
+use slam_robot::localization::{HEAD, PLACE};
 use slam_robot::sample;
 use slam_robot::update::{Stage, Update};
-use slam_robot::whereabouts::{HEAD, PLACE};
 
 use crate::engine::{files, finished, given, of, open, refuse_first};
 

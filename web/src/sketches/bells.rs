@@ -3,8 +3,10 @@
 use ch16_lab::samples;
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::ndt::NdtMap;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::{Rng, SE2};
+use widget_kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
 
 use super::{Shown, Sketch, Slider};
 

@@ -9,8 +9,10 @@ use ch16_slam2d::icp::{
 use ch16_slam2d::matching::match_information;
 use ch16_slam2d::prelude::Point2;
 use ch16_slam2d::slam::SlamConfig;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::{Rng, SE2, math};
+use widget_kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
 
 use super::{Shown, Sketch, Slider};
 

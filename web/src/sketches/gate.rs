@@ -7,8 +7,10 @@ use ch16_lab::lap::{LapConfig, LapRunner};
 use ch16_slam2d::chapter::path_information;
 use ch16_slam2d::loops::{LoopConfig, chi_squared_gate};
 use ch16_slam2d::prelude::Vector3;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::{Rng, math};
+use widget_kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
 
 use super::{Shown, Sketch, Slider};
 

@@ -8,8 +8,10 @@ use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::prelude::{Matrix3, Point2, Vector3};
 use incremental_mapping::field::{ClimbConfig, PosePrior, ScanClimb};
 use incremental_mapping::{LikelihoodMap, LikelihoodMapConfig, push_backwards};
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::SE2;
+use widget_kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
 
 use super::{Shown, Sketch, Slider};
 

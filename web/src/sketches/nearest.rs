@@ -6,8 +6,8 @@ use std::sync::OnceLock;
 use ch16_lab::lap::{LapConfig, LapRunner};
 use ch16_slam2d::cloud::{PointCloud, VoxelMap};
 use ch16_slam2d::prelude::Point2;
-use kit::counted::counted;
-use kit::scene::{
+use widget_kit::plural::plural;
+use widget_kit::scene::{
     Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
@@ -219,7 +219,7 @@ fn at(sweeps: f64) -> Shown {
         sentence: format!(
             "{sweeps}, {points} points. The query compares with the {compared} of nine cells. In the tree it compares \
              with {asked}, but a leaf hangs {levels} levels down, where {fewest} would do.",
-            sweeps = counted(count, "sweep"),
+            sweeps = plural(count, "sweep"),
             points = grown.tree.points.len(),
             compared = compared.len(),
             levels = grown.tree.levels,

@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, LoopAttempt};
 use ch16_slam2d::loops::{GateTest, chi_squared_gate};
 use ch16_slam2d::metrics::{DisagreementConfig, MapDisagreement};
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Tone, Weight};
 use pr_geom::{Point2, SE2};
+use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Tone, Weight};
 
 use super::{Shown, Sketch, Slider};
 

@@ -3,8 +3,10 @@
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{IcpConfig, Pair, correspondences};
 use ch16_slam2d::prelude::Point2;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::SE2;
+use widget_kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
 
 use super::{Shown, Sketch, Slider};
 

@@ -15,28 +15,28 @@
 //! keyframes' beams, thinned for drawing.
 
 mod buttons;
-mod hands;
+mod interaction;
+pub mod log_state;
 pub mod other_log;
 mod picture;
-pub mod robot;
 mod settings;
 mod tables;
-mod words;
+mod texts;
 
-use kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Standing, Table, TablePlace, Timeline, TimelineMark,
-    press_preset,
+use widget_kit::host_messages::Delivery;
+use widget_kit::model::{
+    Activity, Assessment, Handle, Model, Motion, Outcome, Table, TablePlace, Timeline,
+    TimelineMark, press_preset,
 };
-use kit::outside::Delivery;
-use kit::param::ParamError;
-use kit::playback::{Playback, SPEED};
-use kit::scene::Scene;
-use kit::spec::{DEFAULTS, WidgetSpec};
-use kit::values::{Changed, Values};
+use widget_kit::param::ParamError;
+use widget_kit::playback::{Playback, SPEED};
+use widget_kit::scene::Scene;
+use widget_kit::spec::{DEFAULTS, WidgetSpec};
+use widget_kit::values::{Changed, Values};
 
 use crate::w16_10_own_robot::spec::{KEYS, MAX_KEYFRAMES, MAX_SCANS, PARAMS, SPEC};
+use log_state::{LogState, Stage};
 use other_log::LocalizedScan;
-use robot::{Robot, Stage};
 
 /// Names of the panels.
 pub mod panel {
@@ -56,7 +56,7 @@ const MAX_MARKS: usize = 150;
 /// The reader's own robot.
 pub struct OwnRobot {
     values: Values,
-    robot: Robot,
+    robot: LogState,
     playback: Playback,
     orders: Vec<String>,
 }
@@ -73,7 +73,7 @@ impl OwnRobot {
     pub fn new() -> Self {
         Self {
             values: Values::defaults(PARAMS),
-            robot: Robot::default(),
+            robot: LogState::default(),
             playback: Playback::default(),
             orders: Vec::new(),
         }
@@ -81,7 +81,7 @@ impl OwnRobot {
 
     /// The reports of the worker.
     #[must_use]
-    pub fn robot(&self) -> &Robot {
+    pub fn robot(&self) -> &LogState {
         &self.robot
     }
 
@@ -167,7 +167,7 @@ impl OwnRobot {
         let link = self.link().map(|link| &self.robot.links[link]);
         if let Some(link) = link.filter(|link| link.new < self.robot.keyframes.len()) {
             let new = link.new;
-            self.robot.answer = words::evidence(link);
+            self.robot.answer = texts::evidence(link);
             self.playback.pause();
             self.show(new);
         }
@@ -229,7 +229,7 @@ impl Model for OwnRobot {
         self.playback.pause();
         let dropped = self.values.number("drop");
         self.values.reset();
-        self.robot = Robot::default();
+        self.robot = LogState::default();
         self.orders.clear();
         self.ask("close".to_owned());
         if dropped != self.values.number("drop") {
@@ -282,7 +282,7 @@ impl Model for OwnRobot {
         KEYS
     }
 
-    fn take_orders(&mut self) -> Vec<String> {
+    fn take_requests(&mut self) -> Vec<String> {
         core::mem::take(&mut self.orders)
     }
 
@@ -291,11 +291,11 @@ impl Model for OwnRobot {
     }
 
     fn outcome(&self) -> Outcome {
-        words::outcome(self)
+        texts::outcome(self)
     }
 
     fn summary(&self) -> String {
-        words::summary(self)
+        texts::summary(self)
     }
 
     fn timeline(&self) -> Option<Timeline> {
@@ -303,12 +303,12 @@ impl Model for OwnRobot {
         let loops = closed.map(|link| TimelineMark {
             at: link.new as f64,
             label: format!("loop {} to {}", link.new, link.old),
-            standing: Standing::Good,
+            standing: Assessment::Good,
         });
         let doubts = self.doubts().into_iter().map(|keyframe| TimelineMark {
             at: keyframe as f64,
             label: format!("look into keyframe {keyframe}"),
-            standing: Standing::Doubtful,
+            standing: Assessment::Doubtful,
         });
         let last = self.last() as f64;
         let is_read = self.robot.is_under_way() && !self.robot.paused;
@@ -335,11 +335,11 @@ impl Model for OwnRobot {
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        hands::grab(self, panel, at, reach)
+        interaction::grab(self, panel, at, reach)
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
-        hands::drag(self, handle, at);
+        interaction::drag(self, handle, at);
     }
 
     fn set_motion(&mut self, motion: Motion) {

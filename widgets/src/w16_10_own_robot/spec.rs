@@ -1,9 +1,9 @@
 //! The widget's texts and its list of parameters.
 
-use kit::layers::Opening;
-use kit::param::{Choice, MORE, ParamKind, ParamSpec};
-use kit::playback::SPEED;
-use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, WidgetSpec};
+use widget_kit::disclosure::Opening;
+use widget_kit::param::{Choice, MORE, ParamKind, ParamSpec};
+use widget_kit::playback::SPEED;
+use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, WidgetSpec};
 
 /// An upper bound of the number of keyframes, beyond the end of every timeline.
 pub const MAX_KEYFRAMES: f64 = 999_999.0;

@@ -1,8 +1,8 @@
 //! Layout of the panels: the map as large as possible, the plots of the keyframes below.
 
-use kit::layout::PlotHeight;
-use kit::scene::Scene;
-use kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot, View};
+use widget_kit::layout::PlotHeight;
+use widget_kit::scene::Scene;
+use widget_kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_10_own_robot::model::panel;
 

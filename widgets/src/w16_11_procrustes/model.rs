@@ -13,23 +13,23 @@
 //!
 //! At most five pairs, given: which point belongs to which is not estimated.
 
-mod hands;
+mod interaction;
 mod picture;
 mod settings;
 mod tables;
-mod words;
+mod texts;
 
 use ch16_lab::procrustes::{Handedness, Pairs, Procrustes};
-use kit::model::{
+use widget_kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
-use kit::param::MORE;
-use kit::param::ParamError;
-use kit::playback::SPEED;
-use kit::played::{Played, Pressed};
-use kit::scene::Scene;
-use kit::spec::WidgetSpec;
-use kit::values::{Changed, Values};
+use widget_kit::param::MORE;
+use widget_kit::param::ParamError;
+use widget_kit::playback::SPEED;
+use widget_kit::playback_param::{PlaybackParam, Pressed};
+use widget_kit::scene::Scene;
+use widget_kit::spec::WidgetSpec;
+use widget_kit::values::{Changed, Values};
 
 use crate::w16_11_procrustes::spec::{PARAMS, SPEC, TRIED, TURN, WHOLE_TURN_DEG};
 
@@ -53,7 +53,7 @@ pub struct ProcrustesTrace {
     values: Values,
     pairs: Pairs,
     problem: Procrustes,
-    played: Played,
+    playback: PlaybackParam,
 }
 
 impl Default for ProcrustesTrace {
@@ -65,7 +65,7 @@ impl Default for ProcrustesTrace {
             problem: Procrustes::new(&pairs.source, &pairs.target),
             pairs,
             values,
-            played: Played::along(&TURN),
+            playback: PlaybackParam::along(&TURN),
         }
     }
 }
@@ -107,7 +107,7 @@ impl Model for ProcrustesTrace {
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
         let last = WHOLE_TURN_DEG;
-        match self.played.press(&mut self.values, id, last) {
+        match self.playback.press(&mut self.values, id, last) {
             Pressed::Transport => {}
             Pressed::Defaults => self.follow(),
             Pressed::Other => return press_preset(self, id),
@@ -117,7 +117,7 @@ impl Model for ProcrustesTrace {
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
         let last = WHOLE_TURN_DEG;
-        self.played
+        self.playback
             .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
     }
 
@@ -126,21 +126,21 @@ impl Model for ProcrustesTrace {
     }
 
     fn outcome(&self) -> Outcome {
-        words::outcome(self)
+        texts::outcome(self)
     }
 
     fn summary(&self) -> String {
-        words::summary(self)
+        texts::summary(self)
     }
 
     fn timeline(&self) -> Option<Timeline> {
         let mark = |kind: Handedness| TimelineMark {
-            at: words::whole_degrees(self.problem.best(kind).theta_rad),
-            label: format!("top of the {}", words::plural(kind)),
-            standing: words::standing_of(&self.problem, kind),
+            at: texts::whole_degrees(self.problem.best(kind).theta_rad),
+            label: format!("top of the {}", texts::plural(kind)),
+            standing: texts::standing_of(&self.problem, kind),
         };
         Some(
-            self.played
+            self.playback
                 .timeline(WHOLE_TURN_DEG, vec![mark(self.tried())]),
         )
     }
@@ -154,15 +154,15 @@ impl Model for ProcrustesTrace {
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        hands::grab(self, panel, at, reach)
+        interaction::grab(self, panel, at, reach)
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
-        hands::drag(self, handle, at);
+        interaction::drag(self, handle, at);
     }
 
     fn set_motion(&mut self, motion: Motion) {
         let last = WHOLE_TURN_DEG;
-        self.played.set_motion(&mut self.values, motion, last);
+        self.playback.set_motion(&mut self.values, motion, last);
     }
 }

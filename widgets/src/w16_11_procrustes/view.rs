@@ -1,8 +1,8 @@
 //! Layout of the panels: the two maps beside each other, the points beside the trace below them.
 
-use kit::layout::PlotHeight;
-use kit::scene::Scene;
-use kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot, View};
+use widget_kit::layout::PlotHeight;
+use widget_kit::scene::Scene;
+use widget_kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_11_procrustes::model::panel;
 

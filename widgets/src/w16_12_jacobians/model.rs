@@ -18,21 +18,21 @@
 mod picture;
 mod settings;
 mod tables;
-mod words;
+mod texts;
 
 use ch16_lab::jacobians::{Descent, Moment, RingConfig, descend, optimum, ring};
-use kit::chart::{dragged_to, grab_now};
-use kit::model::{
+use pr_geom::{SE2, math};
+use widget_kit::chart::{dragged_to, grab_now};
+use widget_kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
-use kit::param::MORE;
-use kit::param::ParamError;
-use kit::playback::SPEED;
-use kit::played::{Played, Pressed};
-use kit::scene::Scene;
-use kit::spec::WidgetSpec;
-use kit::values::{Changed, Values};
-use pr_geom::{SE2, math};
+use widget_kit::param::MORE;
+use widget_kit::param::ParamError;
+use widget_kit::playback::SPEED;
+use widget_kit::playback_param::{PlaybackParam, Pressed};
+use widget_kit::scene::Scene;
+use widget_kit::spec::WidgetSpec;
+use widget_kit::values::{Changed, Values};
 
 use crate::w16_12_jacobians::spec::{
     BIAS, BIAS_STEP_DEG, CURVE, MAX_BIAS_DEG, MAX_STEPS, PARAMS, SPEC, STEPS,
@@ -56,7 +56,7 @@ const STEPS_PER_S: f64 = 3.0;
 pub struct WrongJacobians {
     values: Values,
     solved: Solved,
-    played: Played,
+    playback: PlaybackParam,
 }
 
 /// Results for the current settings.
@@ -89,7 +89,7 @@ impl Default for WrongJacobians {
         Self {
             solved: Solved::new(&values),
             values,
-            played: Played::along(&STEPS),
+            playback: PlaybackParam::along(&STEPS),
         }
     }
 }
@@ -102,7 +102,7 @@ impl WrongJacobians {
     }
 
     fn step(&self) -> usize {
-        self.played.place(&self.values, self.last() as f64) as usize
+        self.playback.place(&self.values, self.last() as f64) as usize
     }
 
     /// Whether all four have ended.
@@ -172,7 +172,7 @@ impl Model for WrongJacobians {
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
         let last = self.last() as f64;
-        match self.played.press(&mut self.values, id, last) {
+        match self.playback.press(&mut self.values, id, last) {
             Pressed::Transport => {}
             Pressed::Defaults => self.solved = Solved::new(&self.values),
             Pressed::Other => return press_preset(self, id),
@@ -182,7 +182,7 @@ impl Model for WrongJacobians {
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
         let last = self.last() as f64;
-        self.played
+        self.playback
             .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
     }
 
@@ -191,17 +191,17 @@ impl Model for WrongJacobians {
     }
 
     fn outcome(&self) -> Outcome {
-        words::outcome(self)
+        texts::outcome(self)
     }
 
     fn summary(&self) -> String {
-        words::summary(self)
+        texts::summary(self)
     }
 
     fn timeline(&self) -> Option<Timeline> {
         let marks = self.solved.runs.iter().enumerate();
         Some(
-            self.played.timeline(
+            self.playback.timeline(
                 self.last() as f64,
                 // A mark ahead of the current step would give the answer away.
                 marks
@@ -209,7 +209,7 @@ impl Model for WrongJacobians {
                     .map(|(solver, run)| TimelineMark {
                         at: run.steps() as f64,
                         label: format!("{} ends", NAMES[solver]),
-                        standing: words::standing_of(self, solver),
+                        standing: texts::standing_of(self, solver),
                     })
                     .collect(),
             ),
@@ -241,7 +241,7 @@ impl Model for WrongJacobians {
         if handle.panel == panel::GRAPHS {
             self.bend([at[0] - handle.offset[0], at[1] - handle.offset[1]]);
         } else if at[0].is_finite() {
-            self.played.pause();
+            self.playback.pause();
             self.values
                 .put(&STEPS, dragged_to(handle, at).min(self.last() as f64));
         }
@@ -249,6 +249,6 @@ impl Model for WrongJacobians {
 
     fn set_motion(&mut self, motion: Motion) {
         let last = self.last() as f64;
-        self.played.set_motion(&mut self.values, motion, last);
+        self.playback.set_motion(&mut self.values, motion, last);
     }
 }

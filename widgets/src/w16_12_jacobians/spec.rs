@@ -1,10 +1,10 @@
 //! The widget's texts and its list of parameters.
 
 use ch16_lab::jacobians::WrongJacobian;
-use kit::layers::Opening;
-use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
-use kit::playback::SPEED;
-use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::disclosure::Opening;
+use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::playback::SPEED;
+use widget_kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Largest number of steps.
 pub const MAX_STEPS: usize = 40;

@@ -17,26 +17,27 @@
 
 mod basins;
 mod edge;
-mod hands;
+mod interaction;
 mod letters;
 mod paths;
 mod picture;
 mod settings;
 mod tables;
-mod words;
+mod texts;
 
 use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart, OffsetAxis};
 use ch16_slam2d::icp::{IcpTrace, IcpWorkspace, Pair, correspondences};
-use kit::layers::{Layer, Opening};
-use kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
+use widget_kit::disclosure::{Disclosure, Opening};
+use widget_kit::model::{
+    Activity, Assessment, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark,
+    press_preset,
 };
-use kit::param::{MORE, ParamError};
-use kit::playback::Playback;
-use kit::playback::SPEED;
-use kit::scene::{Axis, Scene};
-use kit::spec::{DEFAULTS, WidgetSpec};
-use kit::values::{Changed, Values};
+use widget_kit::param::{MORE, ParamError};
+use widget_kit::playback::Playback;
+use widget_kit::playback::SPEED;
+use widget_kit::scene::{Axis, Scene};
+use widget_kit::spec::{DEFAULTS, WidgetSpec};
+use widget_kit::values::{Changed, Values};
 
 use crate::w16_1_basin_explorer::spec::{AXIS, DX, DY, EDGE, HEADING, PATHS, Phase};
 use crate::w16_1_basin_explorer::spec::{EDGES, ITERATION, OFFSET_SPAN_M, PARAMS, SPEC, SWEEP};
@@ -224,7 +225,7 @@ impl BasinExplorer {
         };
         if left_s > elapsed_s {
             self.settles_in_s = Some(left_s - elapsed_s);
-            return Activity::Unseen;
+            return Activity::BusyUnchanged;
         }
         self.settles_in_s = None;
         let starts = self.basins.add(start(&self.values));
@@ -249,7 +250,7 @@ impl Model for BasinExplorer {
         &self.values
     }
 
-    fn layer(&self) -> Layer {
+    fn disclosure(&self) -> Disclosure {
         let opening = match self.values.get(&EDGE) {
             Phase::Off if self.shows_maps() => SPEC.opening,
             Phase::Off => Opening {
@@ -258,7 +259,7 @@ impl Model for BasinExplorer {
             },
             Phase::Marking | Phase::Swept => edge::OPENING,
         };
-        Layer::visible(opening, &self.values)
+        Disclosure::visible(opening, &self.values)
     }
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
@@ -353,17 +354,17 @@ impl Model for BasinExplorer {
     }
 
     fn outcome(&self) -> Outcome {
-        words::outcome(self)
+        texts::outcome(self)
     }
 
     fn summary(&self) -> String {
-        words::summary(self)
+        texts::summary(self)
     }
 
     fn timeline(&self) -> Option<Timeline> {
         let last = self.last() as f64;
         let minimum = self.run.outcome.ending;
-        let standing = words::standing(minimum);
+        let standing = texts::standing(minimum);
         let name = minimum.name();
         Some(Timeline {
             param: "iteration",
@@ -372,7 +373,7 @@ impl Model for BasinExplorer {
             marks: vec![TimelineMark {
                 at: last,
                 label: match standing {
-                    Standing::Good => format!("ends in the {name}"),
+                    Assessment::Good => format!("ends in the {name}"),
                     _ => format!("ends wrong: {name}"),
                 },
                 standing,
@@ -389,7 +390,7 @@ impl Model for BasinExplorer {
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        hands::grab(self, panel, at, reach)
+        interaction::grab(self, panel, at, reach)
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
@@ -397,7 +398,7 @@ impl Model for BasinExplorer {
             self.held_frame = Some(picture::frame(self));
         }
         self.is_held = true;
-        hands::drag(self, handle, at);
+        interaction::drag(self, handle, at);
     }
 
     fn release(&mut self) {

@@ -3,10 +3,10 @@
 use ch16_lab::basin::BasinScene;
 use ch16_lab::basin::{BasinPlace, OffsetAxis};
 use ch16_slam2d::icp::IcpVariant;
-use kit::layers::Opening;
-use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
-use kit::playback::SPEED;
-use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::disclosure::Opening;
+use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::playback::SPEED;
+use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Largest offset of a start, m.
 pub const OFFSET_SPAN_M: f64 = 1.5;

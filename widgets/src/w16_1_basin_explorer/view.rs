@@ -1,8 +1,8 @@
 //! Layout of the panels: the sweeps beside the two basin maps, or above them on a phone; the curve below.
 
-use kit::layout::PlotHeight;
-use kit::scene::Scene;
-use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
+use widget_kit::layout::PlotHeight;
+use widget_kit::scene::Scene;
+use widget_kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_1_basin_explorer::model::panel;
 

@@ -19,44 +19,44 @@
 //! independent normal errors in each step, and no slip. The driver follows way points and never reacts to the map.
 
 mod drawing;
-pub(super) mod flat;
+pub(super) mod floor_plan;
 mod found;
 mod gates;
 mod graph_tools;
 mod grid;
-mod hands;
+mod interaction;
 mod moment;
 mod own;
 mod panel;
 mod pick;
 mod picture;
-mod piece;
+mod plan_element;
 mod runs;
 mod settings;
 mod tables;
+mod texts;
 mod track;
 mod transition;
-mod words;
 
 use ch16_lab::lap::{LapRecord, LoopAttempt, NewestLap, NewestStep, OwnLoopError};
-use kit::chart::{dragged_to, grab_now};
-use kit::layers::Layer;
-use kit::model::{
+use pr_sim::{Course, Sketch};
+use widget_kit::chart::{dragged_to, grab_now};
+use widget_kit::disclosure::Disclosure;
+use widget_kit::host_messages::Delivery;
+use widget_kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Tabs, Timeline, TimelineMark, press_preset,
 };
-use kit::outside::Delivery;
-use kit::param::ParamError;
-use kit::playback::Playback;
-use kit::playback::SPEED;
-use kit::scene::Scene;
-use kit::spec::WidgetSpec;
-use kit::values::{Changed, Values};
-use pr_sim::{Course, Sketch};
+use widget_kit::param::ParamError;
+use widget_kit::playback::Playback;
+use widget_kit::playback::SPEED;
+use widget_kit::scene::Scene;
+use widget_kit::spec::WidgetSpec;
+use widget_kit::values::{Changed, Values};
 
 use crate::w16_2_full_lap::spec::{
     EDIT_FLAT, EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WIPE, WORLD,
 };
-use flat::{Flat, Tool};
+use floor_plan::{FloorPlan, Tool};
 use moment::Moment;
 use own::Own;
 use pick::{Part, Step};
@@ -81,7 +81,7 @@ pub struct FullLap {
     playback: Playback,
     transition: Option<Transition>,
     own: Own,
-    flat: Flat,
+    floor_plan: FloorPlan,
     hovered: Option<Part>,
 }
 
@@ -105,7 +105,7 @@ impl Default for FullLap {
             playback: Playback::default(),
             transition: None,
             own: Own::default(),
-            flat: Flat::new(Sketch::from_course(&Course::apartment())),
+            floor_plan: FloorPlan::new(Sketch::from_course(&Course::apartment())),
             hovered: None,
         }
     }
@@ -151,7 +151,7 @@ impl FullLap {
             self.world_chosen(before);
         }
         self.end_stroke();
-        self.flat.follows = false;
+        self.floor_plan.follows = false;
         self.playback.pause();
         self.transition = None;
         self.pressed.clear();
@@ -175,8 +175,8 @@ impl FullLap {
         if self.values.get(&TICK) > self.last() && !self.laps.is_running() {
             self.go_to(self.runs.ticks());
         }
-        if self.flat.follows && !self.laps.is_running() {
-            self.flat.follows = false;
+        if self.floor_plan.follows && !self.laps.is_running() {
+            self.floor_plan.follows = false;
             self.go_to(self.runs.ticks());
         }
         self.own.refresh(&self.values, &self.runs, self.tick());
@@ -242,13 +242,13 @@ impl Model for FullLap {
         &self.values
     }
 
-    fn layer(&self) -> Layer {
+    fn disclosure(&self) -> Disclosure {
         match (
-            Layer::visible(SPEC.opening, &self.values),
+            Disclosure::visible(SPEC.opening, &self.values),
             Tool::chosen(&self.values),
         ) {
-            (Layer::First(_), Some(_)) => Layer::First(EDITING),
-            (Layer::All, None) => Layer::AllBut(FLAT_CONTROLS),
+            (Disclosure::First(_), Some(_)) => Disclosure::First(EDITING),
+            (Disclosure::All, None) => Disclosure::AllBut(FLAT_CONTROLS),
             (layer, _) => layer,
         }
     }
@@ -269,7 +269,7 @@ impl Model for FullLap {
             "world" => self.world_chosen(before.get(&WORLD)),
             "edit" | "piece" | "piece-number" => {
                 self.end_stroke();
-                self.flat.note = None;
+                self.floor_plan.note = None;
             }
             _ if own::PARAMS.contains(&id) => {
                 self.own.keep(&before);
@@ -330,7 +330,7 @@ impl Model for FullLap {
     fn work(&mut self) -> Activity {
         match self.laps.step() {
             NewestStep::Idle => Activity::Idle,
-            NewestStep::Tick => Activity::Unseen,
+            NewestStep::Tick => Activity::BusyUnchanged,
             NewestStep::Finished(record) => {
                 self.show(*record);
                 Activity::Busy
@@ -348,18 +348,18 @@ impl Model for FullLap {
 
     fn scene(&self) -> Scene {
         let mut scene = picture::scene(&self.moment());
-        if self.layer() == Layer::First(EDITING) {
+        if self.disclosure() == Disclosure::First(EDITING) {
             scene.panels.retain(|shown| shown.id == panel::MAP);
         }
         scene
     }
 
     fn outcome(&self) -> Outcome {
-        words::outcome(&self.moment(), self.own_refused())
+        texts::outcome(&self.moment(), self.own_refused())
     }
 
     fn summary(&self) -> String {
-        words::summary(&self.moment(), self.own_refused())
+        texts::summary(&self.moment(), self.own_refused())
     }
 
     fn timeline(&self) -> Option<Timeline> {
@@ -367,7 +367,7 @@ impl Model for FullLap {
         let mark = |attempt: &LoopAttempt| TimelineMark {
             at: attempt.tick as f64,
             label: lap.loop_headline(attempt),
-            standing: words::standing(lap.judge(attempt)),
+            standing: texts::standing(lap.judge(attempt)),
         };
         Some(Timeline {
             param: "t",
@@ -405,7 +405,7 @@ impl Model for FullLap {
         if let Some(tool) = self.tool_on(panel) {
             return self.grab_flat(tool, at, reach);
         }
-        if let Some(handle) = hands::grab(&self.moment(), panel, at, reach) {
+        if let Some(handle) = interaction::grab(&self.moment(), panel, at, reach) {
             return Some(handle);
         }
         let panel = *picture::OVER_TIME.iter().find(|id| **id == panel)?;
@@ -416,12 +416,12 @@ impl Model for FullLap {
         if self.stroke(handle, at) {
             return;
         }
-        if let Some(share) = hands::dragged_wipe(&self.moment(), handle, at) {
+        if let Some(share) = interaction::dragged_wipe(&self.moment(), handle, at) {
             self.values.put(&WIPE, share);
             return;
         }
         if handle.panel == panel::MAP {
-            let ends = hands::dragged_ends(&self.moment(), handle, at);
+            let ends = interaction::dragged_ends(&self.moment(), handle, at);
             if let Some(ends) = ends.filter(|ends| !self.own.is_between(&self.values, *ends)) {
                 if self.own.drag_from(ends[0]) {
                     self.own.keep(&self.values);
@@ -454,7 +454,7 @@ impl Model for FullLap {
         if ![panel::MAP, panel::STRAIN, panel::GATE].contains(&panel) {
             return;
         }
-        let part = hands::part_at(&self.moment(), panel, at, reach);
+        let part = interaction::part_at(&self.moment(), panel, at, reach);
         self.look_at(part);
         if self.own.tied.is_some() && matches!(part, Some(Part::Keyframe(_))) {
             self.press_tie();
@@ -467,7 +467,7 @@ impl Model for FullLap {
             self.hovered = None;
             return;
         }
-        self.hovered = at.and_then(|at| hands::hovered(&self.moment(), panel, at));
+        self.hovered = at.and_then(|at| interaction::hovered(&self.moment(), panel, at));
     }
 
     fn receive(&mut self, delivery: &Delivery<'_>) {
@@ -480,8 +480,8 @@ impl Model for FullLap {
         FLAT_KEYS
     }
 
-    fn take_orders(&mut self) -> Vec<String> {
-        core::mem::take(&mut self.flat.orders)
+    fn take_requests(&mut self) -> Vec<String> {
+        core::mem::take(&mut self.floor_plan.orders)
     }
 
     fn set_motion(&mut self, motion: Motion) {

@@ -1,17 +1,17 @@
 //! The widget's texts and its list of parameters.
 
-use super::model::flat::Tool;
+use super::model::floor_plan::Tool;
 use ch16_lab::lap;
 use ch16_lab::lap::{BuiltInWorld, Choice as _, Claim, LapMatcher, OwnKernel};
 use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::chi_squared::CHAPTER_QUANTILE;
 use ch16_slam2d::loops::GateModel;
-use kit::layers::Opening;
-use kit::param::{Choice, MORE, OneOf, Param, ParamKind, ParamSpec};
-use kit::playback::SPEED;
-use kit::run::{LOOPS, NOISE, seed};
-use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use pr_sim::sketch::limits;
+use widget_kit::disclosure::Opening;
+use widget_kit::param::{Choice, MORE, OneOf, Param, ParamKind, ParamSpec};
+use widget_kit::playback::SPEED;
+use widget_kit::run::{LOOPS, NOISE, seed};
+use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Ticks of a lap of the Apartment.
 pub const LAP_TICKS: f64 = lap::LAP_TICKS as f64;

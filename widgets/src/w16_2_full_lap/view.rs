@@ -1,8 +1,8 @@
 //! Layout of the panels: the large map, the close-up of the loop and the errors beside or below it.
 
-use kit::layout::PlotHeight;
-use kit::scene::Scene;
-use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
+use widget_kit::layout::PlotHeight;
+use widget_kit::scene::Scene;
+use widget_kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
 /// Width from which the close-up is beside the map.
 const BESIDE_THE_MAP: f32 = 860.0;

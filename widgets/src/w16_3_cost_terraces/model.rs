@@ -26,18 +26,18 @@ mod rests;
 mod settings;
 mod tables;
 mod terrains;
-mod words;
+mod texts;
 
-use kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, finish_work,
-    press_preset,
+use widget_kit::model::{
+    Activity, Assessment, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark,
+    finish_work, press_preset,
 };
-use kit::param::ParamError;
-use kit::playback::Playback;
-use kit::playback::SPEED;
-use kit::scene::Scene;
-use kit::spec::WidgetSpec;
-use kit::values::{Changed, Values};
+use widget_kit::param::ParamError;
+use widget_kit::playback::Playback;
+use widget_kit::playback::SPEED;
+use widget_kit::scene::Scene;
+use widget_kit::spec::WidgetSpec;
+use widget_kit::values::{Changed, Values};
 
 use crate::w16_3_cost_terraces::spec::{
     BALL_STEP, DROPS, HALF_SPAN_M, MAX_BALL_STEPS, MAX_DROPS, PARAMS, SPEC,
@@ -205,18 +205,18 @@ impl Model for CostTerraces {
     }
 
     fn outcome(&self) -> Outcome {
-        words::outcome(&self.terrains, &self.rests, &self.settings())
+        texts::outcome(&self.terrains, &self.rests, &self.settings())
     }
 
     fn summary(&self) -> String {
-        words::summary(&self.terrains, &self.rests, &self.settings())
+        texts::summary(&self.terrains, &self.rests, &self.settings())
     }
 
     fn timeline(&self) -> Option<Timeline> {
         let mark = |name: &str, steps: usize| TimelineMark {
             at: steps as f64,
             label: format!("{name} ball rests"),
-            standing: Standing::Neutral,
+            standing: Assessment::Neutral,
         };
         Some(Timeline {
             param: "t",

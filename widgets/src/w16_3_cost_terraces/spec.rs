@@ -1,10 +1,10 @@
 //! The widget's texts and its list of parameters.
 
 use ch16_lab::terrain::TerrainScene;
-use kit::layers::Opening;
-use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
-use kit::playback::SPEED;
-use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::disclosure::Opening;
+use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::playback::SPEED;
+use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Largest shift of the maps from the truth in every direction, m.
 pub const HALF_SPAN_M: f64 = 1.3;

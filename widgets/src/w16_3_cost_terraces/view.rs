@@ -1,8 +1,8 @@
 //! Layout of the panels.
 
-use kit::layout::PlotHeight;
-use kit::scene::Scene;
-use kit::view::{Arrangement, Column, PANEL_GAP, Row, Slot, View};
+use widget_kit::layout::PlotHeight;
+use widget_kit::scene::Scene;
+use widget_kit::view::{Arrangement, Column, PANEL_GAP, Row, Slot, View};
 
 /// Width from which a relief leaves space beside it, also if the controls are beside the stage.
 const BESIDE: f32 = 640.0;

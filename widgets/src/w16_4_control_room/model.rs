@@ -22,18 +22,18 @@ mod log;
 mod picture;
 mod settings;
 mod tables;
-mod words;
+mod texts;
 
 use ch16_lab::lap::{LapRecord, NewestLap, NewestStep, RegistrationView, TickReport};
-use kit::chart::{dragged_to, grab_now};
-use kit::model::{Activity, Handle, Model, Motion, Outcome, Table, Timeline, press_preset};
-use kit::param::ParamError;
-use kit::playback::Playback;
-use kit::playback::SPEED;
-use kit::scene::Scene;
-use kit::spec::WidgetSpec;
-use kit::values::{Changed, Values};
 use pr_sim::World;
+use widget_kit::chart::{dragged_to, grab_now};
+use widget_kit::model::{Activity, Handle, Model, Motion, Outcome, Table, Timeline, press_preset};
+use widget_kit::param::ParamError;
+use widget_kit::playback::Playback;
+use widget_kit::playback::SPEED;
+use widget_kit::scene::Scene;
+use widget_kit::spec::WidgetSpec;
+use widget_kit::values::{Changed, Values};
 
 use crate::w16_4_control_room::spec::{LANE, SPEC, TICK};
 use grid::GridView;
@@ -255,7 +255,7 @@ impl Model for ControlRoom {
     fn work(&mut self) -> Activity {
         match self.laps.step() {
             NewestStep::Idle => Activity::Idle,
-            NewestStep::Tick => Activity::Unseen,
+            NewestStep::Tick => Activity::BusyUnchanged,
             NewestStep::Finished(record) => {
                 self.take(*record);
                 Activity::Busy
@@ -276,11 +276,11 @@ impl Model for ControlRoom {
     }
 
     fn outcome(&self) -> Outcome {
-        words::outcome(self)
+        texts::outcome(self)
     }
 
     fn summary(&self) -> String {
-        words::summary(self)
+        texts::summary(self)
     }
 
     fn timeline(&self) -> Option<Timeline> {

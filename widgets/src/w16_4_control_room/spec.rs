@@ -1,11 +1,11 @@
 //! The widget's texts and its list of parameters.
 
 use ch16_lab::lap;
-use kit::layers::Opening;
-use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
-use kit::playback::SPEED;
-use kit::run::{LOOPS, NOISE, seed};
-use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::disclosure::Opening;
+use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::playback::SPEED;
+use widget_kit::run::{LOOPS, NOISE, seed};
+use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Ticks of a lap.
 const LAP_TICKS: f64 = lap::LAP_TICKS as f64;

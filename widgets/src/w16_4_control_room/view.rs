@@ -1,9 +1,9 @@
 //! Layout of the panels: the map beside the registration, or on a phone above it; the lanes over the whole width below
 //! the map.
 
-use kit::layout::PlotHeight;
-use kit::scene::Scene;
-use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
+use widget_kit::layout::PlotHeight;
+use widget_kit::scene::Scene;
+use widget_kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
 /// The layout of [`crate::w16_4_control_room::model::ControlRoom`].
 #[derive(Clone, Copy, Debug, Default)]

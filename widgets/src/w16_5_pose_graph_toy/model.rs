@@ -17,23 +17,23 @@
 //! diagonal form of information. A real graph has hundreds of poses.
 
 mod course;
-mod hands;
+mod interaction;
 mod picture;
 mod settings;
 mod tables;
-mod words;
+mod texts;
 
-use kit::layers::Layer;
-use kit::model::{
+use widget_kit::disclosure::Disclosure;
+use widget_kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
-use kit::param::MORE;
-use kit::param::ParamError;
-use kit::playback::SPEED;
-use kit::played::{Played, Pressed};
-use kit::scene::{Axis, Scene};
-use kit::spec::{PLAY, WidgetSpec};
-use kit::values::{Changed, Values};
+use widget_kit::param::MORE;
+use widget_kit::param::ParamError;
+use widget_kit::playback::SPEED;
+use widget_kit::playback_param::{PlaybackParam, Pressed};
+use widget_kit::scene::{Axis, Scene};
+use widget_kit::spec::{PLAY, WidgetSpec};
+use widget_kit::values::{Changed, Values};
 
 use crate::w16_5_pose_graph_toy::spec::{GRAPH, MAX_POSES, PARAMS, SPEC, STEPS};
 use course::{Course, Moment};
@@ -65,7 +65,7 @@ const POSE_CONTROLS: [&str; 3 * MAX_POSES] = [
 pub struct PoseGraphToy {
     values: Values,
     course: Course,
-    played: Played,
+    playback: PlaybackParam,
     /// The axes while something is dragged, so that they stay.
     held_axes: Option<[Axis; 2]>,
 }
@@ -77,7 +77,7 @@ impl Default for PoseGraphToy {
         Self {
             course: Course::new(settings::graph(&values)),
             values,
-            played: Played::along(&STEPS),
+            playback: PlaybackParam::along(&STEPS),
             held_axes: None,
         }
     }
@@ -90,7 +90,7 @@ impl PoseGraphToy {
 
     /// The current step.
     fn step(&self) -> usize {
-        self.played.place(&self.values, self.course.last() as f64) as usize
+        self.playback.place(&self.values, self.course.last() as f64) as usize
     }
 
     fn shown(&self) -> &Moment {
@@ -103,7 +103,7 @@ impl PoseGraphToy {
         let Some(next) = self.course.moments.get(self.step() + 1) else {
             return now.clone();
         };
-        let part = (self.played.part() / MOVING_PART).min(1.0);
+        let part = (self.playback.part() / MOVING_PART).min(1.0);
         // Starts and ends at rest.
         let share = part * part * (3.0 - 2.0 * part);
         let between = |(from, to): (&SE2, &SE2)| {
@@ -137,7 +137,7 @@ impl Model for PoseGraphToy {
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
         let last = self.course.last() as f64;
-        match self.played.press(&mut self.values, id, last) {
+        match self.playback.press(&mut self.values, id, last) {
             Pressed::Transport => {}
             Pressed::Defaults => self.solve(),
             Pressed::Other => return press_preset(self, id),
@@ -147,7 +147,7 @@ impl Model for PoseGraphToy {
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
         let last = self.course.last() as f64;
-        self.played
+        self.playback
             .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
     }
 
@@ -156,16 +156,16 @@ impl Model for PoseGraphToy {
     }
 
     fn outcome(&self) -> Outcome {
-        words::outcome(self)
+        texts::outcome(self)
     }
 
     fn summary(&self) -> String {
-        words::summary(self)
+        texts::summary(self)
     }
 
     fn timeline(&self) -> Option<Timeline> {
         let last = self.course.last() as f64;
-        Some(self.played.timeline(
+        Some(self.playback.timeline(
             last,
             vec![TimelineMark {
                 at: last,
@@ -173,7 +173,7 @@ impl Model for PoseGraphToy {
                     "at rest with χ² {:.3}",
                     self.course.moments[self.course.last()].chi2
                 ),
-                standing: words::standing(self),
+                standing: texts::standing(self),
             }],
         ))
     }
@@ -183,14 +183,14 @@ impl Model for PoseGraphToy {
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        hands::grab(self, panel, at, reach)
+        interaction::grab(self, panel, at, reach)
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
         if self.held_axes.is_none() {
             self.held_axes = Some(picture::axes(self));
         }
-        hands::drag(self, handle, at);
+        interaction::drag(self, handle, at);
     }
 
     /// The springs pull the graph to rest.
@@ -198,20 +198,20 @@ impl Model for PoseGraphToy {
         self.held_axes = None;
         let last = self.course.last() as f64;
         if self.step() == 0 {
-            self.played.press(&mut self.values, PLAY.id, last);
+            self.playback.press(&mut self.values, PLAY.id, last);
         }
     }
 
-    fn layer(&self) -> Layer {
+    fn disclosure(&self) -> Disclosure {
         let poses = self.values.get(&GRAPH).poses();
-        match Layer::visible(SPEC.opening, &self.values) {
-            Layer::All if poses < MAX_POSES => Layer::AllBut(&POSE_CONTROLS[3 * poses..]),
+        match Disclosure::visible(SPEC.opening, &self.values) {
+            Disclosure::All if poses < MAX_POSES => Disclosure::AllBut(&POSE_CONTROLS[3 * poses..]),
             layer => layer,
         }
     }
 
     fn set_motion(&mut self, motion: Motion) {
         let last = self.course.last() as f64;
-        self.played.set_motion(&mut self.values, motion, last);
+        self.playback.set_motion(&mut self.values, motion, last);
     }
 }

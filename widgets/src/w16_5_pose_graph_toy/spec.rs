@@ -1,9 +1,9 @@
 //! The widget's texts and its list of parameters.
 
-use kit::layers::Opening;
-use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
-use kit::playback::SPEED;
-use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::disclosure::Opening;
+use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::playback::SPEED;
+use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Poses of the largest graph.
 pub const MAX_POSES: usize = 6;

@@ -1,8 +1,8 @@
 //! Layout of the panels: the graph beside χ² over its steps, the bars of the springs below.
 
-use kit::layout::PlotHeight;
-use kit::scene::Scene;
-use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
+use widget_kit::layout::PlotHeight;
+use widget_kit::scene::Scene;
+use widget_kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
 use crate::w16_5_pose_graph_toy::model::panel;
 

@@ -13,27 +13,28 @@
 //!
 //! As for w16.1. The search proves the best pose of its lattice, not that the pose is right.
 
-mod hands;
+mod interaction;
 mod picture;
 mod search_task;
 mod settings;
 mod tables;
-mod words;
+mod texts;
 
 use ch16_lab::basin::{BasinScene, BasinStart};
 use ch16_slam2d::icp::IcpWorkspace;
 use ch16_slam2d::search::SearchGoal;
-use kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
-};
-use kit::param::MORE;
-use kit::param::ParamError;
-use kit::playback::SPEED;
-use kit::played::{Played, Pressed};
-use kit::scene::Scene;
-use kit::spec::{PLAY, STEP, WidgetSpec};
-use kit::values::{Changed, Values};
 use pr_geom::{SE2, math};
+use widget_kit::model::{
+    Activity, Assessment, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark,
+    press_preset,
+};
+use widget_kit::param::MORE;
+use widget_kit::param::ParamError;
+use widget_kit::playback::SPEED;
+use widget_kit::playback_param::{PlaybackParam, Pressed};
+use widget_kit::scene::Scene;
+use widget_kit::spec::{PLAY, STEP, WidgetSpec};
+use widget_kit::values::{Changed, Values};
 
 use crate::w16_6_whole_window::spec::{
     DX, DY, HEADING, OFFSET_SPAN_M, PARAMS, PROGRESS, SEED, SPEC,
@@ -59,7 +60,7 @@ const REFINES_PER_S: f64 = 4.0;
 /// The model of the widget.
 pub struct WholeWindow {
     values: Values,
-    played: Played,
+    playback: PlaybackParam,
     scene: BasinScene,
     workspace: IcpWorkspace,
     search_task: SearchTask,
@@ -84,7 +85,7 @@ impl Default for WholeWindow {
         let mut workspace = IcpWorkspace::new();
         Self {
             search_task: SearchTask::new(&scene, settings::config(&values), &mut workspace),
-            played: Played::along(&PROGRESS),
+            playback: PlaybackParam::along(&PROGRESS),
             values,
             scene,
             workspace,
@@ -145,7 +146,7 @@ impl WholeWindow {
     }
 
     fn place(&self) -> usize {
-        self.played.place(&self.values, self.last() as f64) as usize
+        self.playback.place(&self.values, self.last() as f64) as usize
     }
 
     /// Number of expanded boxes at the current position.
@@ -173,7 +174,7 @@ impl WholeWindow {
         let rounded = |value: f64, per_unit: f64| (value * per_unit).round() / per_unit;
         let offset = |value: f64| rounded(value, 100.0).clamp(-OFFSET_SPAN_M, OFFSET_SPAN_M);
         let turned = SE2::new(0.0, 0.0, start.heading_deg.to_radians()).theta();
-        self.played.pause();
+        self.playback.pause();
         self.values.put(
             &HEADING,
             rounded(turned.to_degrees(), 1.0).clamp(-180.0, 180.0),
@@ -211,13 +212,13 @@ impl Model for WholeWindow {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let plays = id == PLAY.id && self.played.motion() == Motion::Full;
+        let plays = id == PLAY.id && self.playback.motion() == Motion::Full;
         if [PLAY.id, STEP.id].contains(&id) && !plays {
             // The position of the end has to be known.
             self.finish_work();
         }
         let last = self.last() as f64;
-        match self.played.press(&mut self.values, id, last) {
+        match self.playback.press(&mut self.values, id, last) {
             Pressed::Transport => self.look_at(None),
             Pressed::Defaults => {
                 self.scene = BasinScene::with_seed(self.values.get(&SEED));
@@ -229,7 +230,7 @@ impl Model for WholeWindow {
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
-        if self.played.is_playing() && self.search_task.found.is_none() {
+        if self.playback.is_playing() && self.search_task.found.is_none() {
             // The search is ahead of its playback and ends within a few frames.
             return Activity::Busy;
         }
@@ -240,12 +241,14 @@ impl Model for WholeWindow {
         } else {
             REFINES_PER_S
         };
-        let activity = self.played.advance(&mut self.values, last, elapsed_s, rate);
+        let activity = self
+            .playback
+            .advance(&mut self.values, last, elapsed_s, rate);
         // ICP has its own speed, from its first iteration on.
-        if here < searched && self.played.is_playing() && self.place() as f64 > searched {
+        if here < searched && self.playback.is_playing() && self.place() as f64 > searched {
             self.values.put(&PROGRESS, searched);
         }
-        if !self.played.is_playing() {
+        if !self.playback.is_playing() {
             self.look_at(None);
         } else if here != self.place() as f64 {
             // A curve that changes with each frame is noise.
@@ -276,11 +279,11 @@ impl Model for WholeWindow {
     }
 
     fn outcome(&self) -> Outcome {
-        words::outcome(self)
+        texts::outcome(self)
     }
 
     fn summary(&self) -> String {
-        words::summary(self)
+        texts::summary(self)
     }
 
     fn timeline(&self) -> Option<Timeline> {
@@ -296,18 +299,18 @@ impl Model for WholeWindow {
         if self.search_task.found.is_some() {
             let after = moments.iter().position(|m| m.goal == SearchGoal::RunnerUp);
             if let Some(at) = after {
-                mark(at - 1, "the best pose is certain", Standing::Neutral);
+                mark(at - 1, "the best pose is certain", Assessment::Neutral);
             }
             let alone = &self.search_task.alone;
             if self.boxes_taken() > 0 {
-                let stop = format!("ICP alone stops {}", words::stop(&alone.outcome));
-                let standing = words::standing_of(&alone.outcome);
+                let stop = format!("ICP alone stops {}", texts::stop(&alone.outcome));
+                let standing = texts::standing_of(&alone.outcome);
                 mark(self.boxes_taken().div_ceil(2), &stop, standing);
             }
-            let standing = words::standing(self);
-            mark(self.last(), words::verdict(self), standing);
+            let standing = texts::standing(self);
+            mark(self.last(), texts::verdict(self), standing);
         }
-        Some(self.played.timeline(self.last() as f64, marks))
+        Some(self.playback.timeline(self.last() as f64, marks))
     }
 
     fn tables(&self) -> Vec<Table> {
@@ -319,11 +322,11 @@ impl Model for WholeWindow {
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        hands::grab(self, panel, at, reach)
+        interaction::grab(self, panel, at, reach)
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
-        hands::drag(self, handle, at);
+        interaction::drag(self, handle, at);
     }
 
     fn tap(&mut self, panel: &str, at: [f64; 2], _reach: [f64; 2]) {
@@ -332,16 +335,16 @@ impl Model for WholeWindow {
 
     fn hover(&mut self, panel: &str, at: Option<[f64; 2]>) {
         let seen = at.and_then(|at| picture::box_at(self, panel, at));
-        if seen.is_some() || !self.played.is_playing() {
+        if seen.is_some() || !self.playback.is_playing() {
             self.look_at(seen);
         }
     }
 
     fn set_motion(&mut self, motion: Motion) {
-        if self.played.is_playing() {
+        if self.playback.is_playing() {
             self.finish_work();
         }
         let last = self.last() as f64;
-        self.played.set_motion(&mut self.values, motion, last);
+        self.playback.set_motion(&mut self.values, motion, last);
     }
 }

@@ -1,10 +1,10 @@
 //! The widget's texts and its list of parameters.
 
 use ch16_lab::basin::BasinScene;
-use kit::layers::Opening;
-use kit::param::{MORE, Param, ParamSpec};
-use kit::playback::SPEED;
-use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::disclosure::Opening;
+use widget_kit::param::{MORE, Param, ParamSpec};
+use widget_kit::playback::SPEED;
+use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Largest offset of a start, m.
 pub const OFFSET_SPAN_M: f64 = 1.5;

@@ -18,20 +18,20 @@ mod curves;
 mod picture;
 mod settings;
 mod tables;
-mod words;
+mod texts;
 
 use ch16_lab::moving_box::{BoxMethods, BoxScene};
 use ch16_slam2d::icp::{IcpSummary, IcpTrace, IcpWorkspace};
-use kit::model::{
+use widget_kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
-use kit::param::MORE;
-use kit::param::ParamError;
-use kit::playback::SPEED;
-use kit::played::{Played, Pressed};
-use kit::scene::Scene;
-use kit::spec::WidgetSpec;
-use kit::values::{Changed, Values};
+use widget_kit::param::MORE;
+use widget_kit::param::ParamError;
+use widget_kit::playback::SPEED;
+use widget_kit::playback_param::{PlaybackParam, Pressed};
+use widget_kit::scene::Scene;
+use widget_kit::spec::WidgetSpec;
+use widget_kit::values::{Changed, Values};
 
 use crate::w16_8_moving_box::spec::{
     ITERATION, MAX_MOVED_M, MAX_SHARE, METHOD, MOVED, PARAMS, SHARE, SPEC,
@@ -63,7 +63,7 @@ struct Run {
 /// The model of the widget.
 pub struct MovingBox {
     values: Values,
-    played: Played,
+    playback: PlaybackParam,
     workspace: IcpWorkspace,
     scene: BoxScene,
     runs: [Run; 3],
@@ -80,7 +80,7 @@ impl Default for MovingBox {
         Self {
             runs: register(&scene, &methods, &mut workspace),
             curves: Curves::new(methods, config.moved_m),
-            played: Played::along(&ITERATION),
+            playback: PlaybackParam::along(&ITERATION),
             values,
             workspace,
             scene,
@@ -121,7 +121,7 @@ impl MovingBox {
     }
 
     fn iteration(&self) -> usize {
-        self.played.place(&self.values, self.last() as f64) as usize
+        self.playback.place(&self.values, self.last() as f64) as usize
     }
 
     /// A run at the current iteration, or at its last one.
@@ -162,7 +162,7 @@ impl Model for MovingBox {
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
         let last = self.last() as f64;
-        match self.played.press(&mut self.values, id, last) {
+        match self.playback.press(&mut self.values, id, last) {
             Pressed::Transport => {}
             Pressed::Defaults => self.follow(),
             Pressed::Other => return press_preset(self, id),
@@ -172,7 +172,7 @@ impl Model for MovingBox {
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
         let last = self.last() as f64;
-        self.played
+        self.playback
             .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
     }
 
@@ -185,21 +185,21 @@ impl Model for MovingBox {
     }
 
     fn outcome(&self) -> Outcome {
-        words::outcome(self)
+        texts::outcome(self)
     }
 
     fn summary(&self) -> String {
-        words::summary(self)
+        texts::summary(self)
     }
 
     fn timeline(&self) -> Option<Timeline> {
         let last = self.last() as f64;
-        Some(self.played.timeline(
+        Some(self.playback.timeline(
             last,
             vec![TimelineMark {
                 at: last,
-                label: words::verdict(self).to_owned(),
-                standing: words::standing(self),
+                label: texts::verdict(self).to_owned(),
+                standing: texts::standing(self),
             }],
         ))
     }
@@ -230,7 +230,7 @@ impl Model for MovingBox {
         if !spot.is_finite() {
             return;
         }
-        self.played.pause();
+        self.playback.pause();
         if handle.id == BOX {
             let further_m = spot - picture::box_middle(&self.scene)[0];
             let moved_m = self.values.get(&MOVED) + further_m;
@@ -244,6 +244,6 @@ impl Model for MovingBox {
 
     fn set_motion(&mut self, motion: Motion) {
         let last = self.last() as f64;
-        self.played.set_motion(&mut self.values, motion, last);
+        self.playback.set_motion(&mut self.values, motion, last);
     }
 }

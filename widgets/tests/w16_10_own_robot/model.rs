@@ -1,10 +1,10 @@
 //! The widget's reaction to the worker's reports, and its orders to the worker.
 
-use kit::model::{Activity, Model, Standing};
-use kit::outside::Delivery;
-use kit::scene::Layer;
+use widget_kit::host_messages::Delivery;
+use widget_kit::model::{Activity, Assessment, Model};
+use widget_kit::scene::Layer;
 use widgets::w16_10_own_robot::model::OwnRobot;
-use widgets::w16_10_own_robot::model::robot::Stage;
+use widgets::w16_10_own_robot::model::log_state::Stage;
 
 pub fn tell(robot: &mut OwnRobot, kind: &str, text: &str, numbers: &[f64]) {
     deliver(robot, kind, text, numbers);
@@ -44,7 +44,7 @@ pub fn mapped() -> OwnRobot {
     tell(&mut robot, "loops", reasons, loops.as_flattened());
     tell(&mut robot, "doubts", "the loop contradicts", &[3.0]);
     tell(&mut robot, "stage", "", &[5.0, 1.0, 40.0, 2.0, 1.0]);
-    robot.take_orders();
+    robot.take_requests();
     robot
 }
 
@@ -52,11 +52,11 @@ pub fn mapped() -> OwnRobot {
 fn play_maps_the_sample_then_pauses_it_then_plays_the_path() {
     let mut robot = OwnRobot::new();
     robot.press("play").unwrap();
-    assert_eq!(robot.take_orders(), ["sample"]);
+    assert_eq!(robot.take_requests(), ["sample"]);
     assert_eq!(robot.robot().stage, Stage::Opening);
     assert!(robot.timeline().unwrap().playing);
     robot.press("play").unwrap();
-    assert_eq!(robot.take_orders(), ["pause"]);
+    assert_eq!(robot.take_requests(), ["pause"]);
     assert!(!robot.timeline().unwrap().playing);
     tell(&mut robot, "opening", "ring.log", &[]);
     assert!(
@@ -64,7 +64,7 @@ fn play_maps_the_sample_then_pauses_it_then_plays_the_path() {
         "it was held before it came"
     );
     robot.press("play").unwrap();
-    assert_eq!(robot.take_orders(), ["resume"]);
+    assert_eq!(robot.take_requests(), ["resume"]);
 
     let mut robot = mapped();
     assert_eq!(robot.advance(1.0), Activity::Idle);
@@ -77,7 +77,7 @@ fn play_maps_the_sample_then_pauses_it_then_plays_the_path() {
     }
     assert_eq!(robot.values().number("keyframe"), 4.0);
     assert_eq!(
-        robot.take_orders(),
+        robot.take_requests(),
         ["look 4"],
         "of orders to look the last one stands"
     );
@@ -89,10 +89,10 @@ fn other_doubts_are_reported_even_if_no_loop_contradicts() {
     tell(&mut robot, "loops", "", &[]);
     let sentence = |robot: &OwnRobot| robot.outcome().sentence.clone();
     assert!(sentence(&robot).contains("but the list of doubts is not empty"));
-    assert_eq!(robot.outcome().standing, Standing::Neutral);
+    assert_eq!(robot.outcome().standing, Assessment::Neutral);
     tell(&mut robot, "doubts", "", &[]);
     assert!(sentence(&robot).contains("no loop contradicts the graph."));
-    assert_eq!(robot.outcome().standing, Standing::Good);
+    assert_eq!(robot.outcome().standing, Assessment::Good);
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn a_contradicting_loop_is_reported_and_shown_first() {
     let outcome = robot.outcome();
     assert_eq!(
         (outcome.standing, outcome.verdict.as_str()),
-        (Standing::Doubtful, "1 of 1 loop to look into")
+        (Assessment::Doubtful, "1 of 1 loop to look into")
     );
     assert!(outcome.sentence.contains("one loop contradicts the graph"));
     assert!(outcome.sentence.contains("nothing of it is sent anywhere"));
@@ -155,17 +155,17 @@ fn a_loop_that_the_reader_accepts_or_refuses_is_no_longer_one_to_look_into() {
         (
             vec![link(20.0, 0.0), link(30.0, 0.0)],
             "2 of 2 loops",
-            Standing::Doubtful,
+            Assessment::Doubtful,
         ),
         (
             vec![link(20.0, 4.0), link(30.0, 0.0)],
             "1 of 2 loops",
-            Standing::Doubtful,
+            Assessment::Doubtful,
         ),
         (
             vec![link(20.0, 4.0), link(30.0, 2.0)],
             "none of 1 loop",
-            Standing::Good,
+            Assessment::Good,
         ),
     ] {
         let mut robot = mapped();
@@ -177,8 +177,8 @@ fn a_loop_that_the_reader_accepts_or_refuses_is_no_longer_one_to_look_into() {
         let is_accepted = loops[0][8] == 4.0;
         assert_eq!(outcome.sentence.contains("1 accepted by you"), is_accepted);
     }
-    let [amber, red] = [Standing::Doubtful, Standing::Bad]
-        .map(|standing| kit::palette::standing(kit::palette::Theme::Light, standing));
+    let [amber, red] = [Assessment::Doubtful, Assessment::Bad]
+        .map(|standing| widget_kit::palette::standing(widget_kit::palette::Theme::Light, standing));
     assert_ne!(amber, red);
 }
 
@@ -214,7 +214,7 @@ fn the_list_can_be_stepped_through_and_every_choice_becomes_an_order() {
     robot.set("file", 4.0).unwrap();
     robot.press("save").unwrap();
     robot.press("cancel").unwrap();
-    let orders = robot.take_orders();
+    let orders = robot.take_requests();
     assert_eq!(
         orders,
         [
@@ -238,18 +238,18 @@ fn a_press_selects_a_keyframe_and_a_drag_moves_the_selected_one() {
     assert_eq!(handle.id, "keyframe");
     robot.drag(handle, at);
     assert_eq!(robot.values().number("keyframe"), 2.0);
-    assert_eq!(robot.take_orders(), ["look 2"]);
+    assert_eq!(robot.take_requests(), ["look 2"]);
     let handle = robot.grab("map", at, reach).unwrap();
     assert_eq!(handle.id, "held");
     robot.drag(handle, at);
     assert_eq!(
-        robot.take_orders(),
+        robot.take_requests(),
         Vec::<String>::new(),
         "a press is no drag"
     );
     robot.drag(handle, [2.1, 0.6]);
     robot.drag(handle, [2.1, 1.1]);
-    let orders = robot.take_orders();
+    let orders = robot.take_requests();
     assert_eq!(orders.len(), 1);
     assert!(orders[0].starts_with("pin 2 2 1"), "{orders:?}");
     let sentence = robot.outcome().sentence;
@@ -258,17 +258,17 @@ fn a_press_selects_a_keyframe_and_a_drag_moves_the_selected_one() {
         "{sentence}"
     );
     robot.drag(handle, [f64::NAN, 1e300]);
-    assert_eq!(robot.take_orders(), Vec::<String>::new());
+    assert_eq!(robot.take_requests(), Vec::<String>::new());
 }
 
 #[test]
 fn arrow_keys_move_the_selected_keyframe_like_a_drag() {
     let mut robot = mapped();
     robot.set("keyframe", 2.0).unwrap();
-    robot.take_orders();
+    robot.take_requests();
     for (key, button) in robot.keys() {
         robot.press(button).unwrap();
-        let orders = robot.take_orders();
+        let orders = robot.take_requests();
         let expected = match *key {
             "ArrowLeft" => "pin 2 1.95 0 0",
             "ArrowUp" => "pin 2 2 0.05 0",
@@ -281,10 +281,10 @@ fn arrow_keys_move_the_selected_keyframe_like_a_drag() {
     tell(&mut robot, "stage", "", &[1.0, 0.5, 20.0, 2.0, 1.0]);
     robot.press("north").unwrap();
     let none = Vec::<String>::new();
-    assert_eq!(robot.take_orders(), none, "the graph is not there yet");
+    assert_eq!(robot.take_requests(), none, "the graph is not there yet");
     let mut robot = OwnRobot::new();
     robot.press("north").unwrap();
-    assert_eq!(robot.take_orders(), none);
+    assert_eq!(robot.take_requests(), none);
 }
 
 #[test]
@@ -382,7 +382,7 @@ fn the_path_is_coloured_by_the_selected_quantity() {
                 matches!(
                     layer,
                     Layer::Segments {
-                        tone: kit::scene::Tone::Level(_),
+                        tone: widget_kit::scene::Tone::Level(_),
                         ..
                     }
                 )
@@ -408,7 +408,7 @@ fn the_path_is_coloured_by_the_selected_quantity() {
 fn another_file_replaces_the_first_and_an_invalid_one_is_reported() {
     let mut robot = mapped();
     robot.press("sure").unwrap();
-    assert_eq!(robot.take_orders(), ["close", "sample"]);
+    assert_eq!(robot.take_requests(), ["close", "sample"]);
     assert_eq!(robot.robot().stage, Stage::Opening);
     let mut robot = mapped();
     robot.set("keyframe", 2.0).unwrap();
@@ -422,7 +422,7 @@ fn another_file_replaces_the_first_and_an_invalid_one_is_reported() {
         &[],
     );
     let outcome = robot.outcome();
-    assert_eq!(outcome.standing, Standing::Bad);
+    assert_eq!(outcome.standing, Assessment::Bad);
     assert_eq!(outcome.sentence, "other.bag is empty; give a recorded log");
 }
 

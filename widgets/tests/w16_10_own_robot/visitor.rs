@@ -1,8 +1,8 @@
 //! The robot of another log on the map, and recordings with several topics.
 
-use kit::model::{Model, Standing};
-use kit::outside::Delivery;
-use kit::scene::{Layer, Stroke};
+use widget_kit::host_messages::Delivery;
+use widget_kit::model::{Assessment, Model};
+use widget_kit::scene::{Layer, Stroke};
 use widgets::w16_10_own_robot::model::OwnRobot;
 use widgets::w16_10_own_robot::model::other_log::LocalizationState;
 
@@ -51,18 +51,18 @@ fn another_log_starts_anywhere_or_at_the_selected_keyframe() {
     let mut robot = mapped();
     robot.press("locate").unwrap();
     robot.press("locate-sample").unwrap();
-    assert_eq!(robot.take_orders(), ["locate", "locate-sample"]);
+    assert_eq!(robot.take_requests(), ["locate", "locate-sample"]);
     robot.set("start", 1.0).unwrap();
     robot.set("keyframe", 2.0).unwrap();
-    robot.take_orders();
+    robot.take_requests();
     robot.press("locate").unwrap();
-    assert_eq!(robot.take_orders(), ["locate 2 0 0"]);
+    assert_eq!(robot.take_requests(), ["locate 2 0 0"]);
     tell(&mut robot, "dropped", "tuesday.log", &[]);
-    assert_eq!(robot.take_orders(), ["locate-dropped 2 0 0"]);
+    assert_eq!(robot.take_requests(), ["locate-dropped 2 0 0"]);
     robot.set("drop", 1.0).unwrap();
-    assert_eq!(robot.take_orders(), ["drop where"]);
+    assert_eq!(robot.take_requests(), ["drop where"]);
     robot.press("defaults").unwrap();
-    assert_eq!(robot.take_orders(), ["close", "drop map"]);
+    assert_eq!(robot.take_requests(), ["close", "drop map"]);
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn its_path_is_drawn_over_the_map_with_doubtful_parts_dotted() {
                 stroke,
                 tone,
                 ..
-            } if *stroke == wanted && *tone == kit::scene::Tone::Class(2) => {
+            } if *stroke == wanted && *tone == widget_kit::scene::Tone::Class(2) => {
                 Some(points.iter().filter(|point| point[0].is_finite()).count())
             }
             _ => None,
@@ -144,7 +144,7 @@ fn its_path_is_drawn_over_the_map_with_doubtful_parts_dotted() {
             .any(|entry| entry.label == "the other log, localized")
     );
     let faults =
-        kit::audit::text_faults(&robot, &widgets::w16_10_own_robot::view::RobotView, 390.0);
+        widget_kit::audit::text_faults(&robot, &widgets::w16_10_own_robot::view::RobotView, 390.0);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -152,7 +152,7 @@ fn its_path_is_drawn_over_the_map_with_doubtful_parts_dotted() {
 fn localization_is_paused_and_resumed_by_play() {
     let mut robot = with_visitor(false);
     assert_eq!(robot.outcome().verdict, "looking for the robot");
-    assert_eq!(robot.outcome().standing, Standing::Neutral);
+    assert_eq!(robot.outcome().standing, Assessment::Neutral);
     assert!(
         robot
             .outcome()
@@ -160,12 +160,12 @@ fn localization_is_paused_and_resumed_by_play() {
             .contains("found at its scan 2, 40 % done")
     );
     robot.press("play").unwrap();
-    assert_eq!(robot.take_orders(), ["pause"]);
+    assert_eq!(robot.take_requests(), ["pause"]);
     tell(&mut robot, "stage", "", &[5.0, 1.0, 40.0, 2.0, 1.0]);
     assert_eq!(robot.outcome().verdict, "held");
-    robot.take_orders();
+    robot.take_requests();
     robot.press("play").unwrap();
-    assert_eq!(robot.take_orders(), ["resume"]);
+    assert_eq!(robot.take_requests(), ["resume"]);
 }
 
 #[test]
@@ -222,11 +222,11 @@ fn another_topic_is_taken_if_the_recording_has_one() {
         ]
     );
     robot.press("other").unwrap();
-    assert_eq!(robot.take_orders(), ["option scan-topic /back"]);
+    assert_eq!(robot.take_requests(), ["option scan-topic /back"]);
     robot.set("option", 3.0).unwrap();
     robot.press("other").unwrap();
-    assert_eq!(robot.take_orders(), ["option body-frame laser"]);
+    assert_eq!(robot.take_requests(), ["option body-frame laser"]);
     robot.set("option", 1.0).unwrap();
     robot.press("other").unwrap();
-    assert!(robot.take_orders().is_empty());
+    assert!(robot.take_requests().is_empty());
 }

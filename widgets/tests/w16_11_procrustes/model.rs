@@ -1,9 +1,9 @@
 //! The trace over all orthogonal matrices, without its picture.
 
 use ch16_lab::procrustes::{Pairs, Shape};
-use kit::model::{Activity, Model, Motion};
-use kit::scene::Layer;
 use pr_geom::Point2;
+use widget_kit::model::{Activity, Model, Motion};
+use widget_kit::scene::Layer;
 use widgets::w16_11_procrustes::model::{ProcrustesTrace, panel};
 use widgets::w16_11_procrustes::spec::{SPEC, WHOLE_TURN_DEG};
 
@@ -98,7 +98,7 @@ fn a_point_of_the_target_is_dragged_and_the_answer_follows() {
         .iter()
         .enumerate()
     {
-        let handle = kit::model::Handle {
+        let handle = widget_kit::model::Handle {
             panel: panel::POINTS,
             id,
             offset: [0.0; 2],

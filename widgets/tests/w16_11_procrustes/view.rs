@@ -13,7 +13,7 @@ fn a_slider_moves_a_point_and_a_button_the_shape() {
     assert!(value(&harness, "x1") > 0.0);
     let param = harness.state().model().spec().params.iter();
     let shape = param.clone().find(|param| param.id == "shape").unwrap();
-    let kit::param::ParamKind::Choice { options } = shape.kind else {
+    let widget_kit::param::ParamKind::Choice { options } = shape.kind else {
         panic!("the shape is a choice");
     };
     let two = format!("{}: {}", shape.label, options[1].label);

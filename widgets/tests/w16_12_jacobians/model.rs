@@ -1,8 +1,8 @@
 //! The four solvers without their picture.
 
-use kit::model::{Activity, Model, Standing};
-use kit::promises::assert_reports;
-use kit::scene::Layer;
+use widget_kit::invariants::assert_reports;
+use widget_kit::model::{Activity, Assessment, Model};
+use widget_kit::scene::Layer;
 use widgets::w16_12_jacobians::model::{WrongJacobians, panel};
 use widgets::w16_12_jacobians::spec::{MAX_STEPS, SPEC};
 
@@ -24,7 +24,7 @@ fn the_wrong_residual_alone_ends_elsewhere_and_the_wrong_jacobian_takes_more_ste
             widget.outcome().verdict,
             "the wrong residual ends elsewhere"
         );
-        assert_eq!(widget.outcome().standing, Standing::Bad);
+        assert_eq!(widget.outcome().standing, Assessment::Bad);
         for id in ["approximate_steps", "jacobian_steps"] {
             assert!(fact(&widget, id) > fact(&widget, "exact_steps"), "{id}");
         }
@@ -46,7 +46,7 @@ fn half_the_contradiction_halves_one_error_and_quarters_the_other() {
 fn where_measurements_agree_all_four_end_alike() {
     let widget = with(&[("bias", 0.0)]);
     assert_eq!(widget.outcome().verdict, "all four end alike");
-    assert_eq!(widget.outcome().standing, Standing::Good);
+    assert_eq!(widget.outcome().standing, Assessment::Good);
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn before_the_first_step_neither_picture_nor_words_tell_the_end() {
             matches!(
                 layer,
                 Layer::Points {
-                    tone: kit::scene::Tone::Series(_),
+                    tone: widget_kit::scene::Tone::Series(_),
                     ..
                 }
             )
@@ -189,7 +189,7 @@ fn the_chain_is_bent_by_its_loose_end_and_no_mark_is_ahead_of_the_step() {
     let end = |widget: &WrongJacobians| {
         let layers = widget.scene().panels[0].layers.clone();
         let handle = layers.iter().find_map(|layer| match layer {
-            kit::scene::Layer::Handle { at, .. } => Some(*at),
+            widget_kit::scene::Layer::Handle { at, .. } => Some(*at),
             _ => None,
         });
         handle.expect("a handle at the loose end")

@@ -1,7 +1,7 @@
 //! Helpers for the tests of the widget's model.
 
-use kit::model::Model;
-use kit::scene::{Cell, Layer};
+use widget_kit::model::Model;
+use widget_kit::scene::{Cell, Layer};
 use widgets::w16_1_basin_explorer::model::BasinExplorer;
 
 use crate::support::panel_of;

@@ -1,7 +1,7 @@
 //! The basin's edge: marked by the reader, computed, and compared in words.
 
-use kit::model::{Activity, Model, Standing};
-use kit::scene::Layer;
+use widget_kit::model::{Activity, Assessment, Model};
+use widget_kit::scene::Layer;
 use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
 
 use crate::support::{fact, panel_of};
@@ -40,8 +40,8 @@ fn the_maps_are_covered_while_the_reader_marks_and_open_afterwards() {
     while model.work().is_busy() {}
     assert_eq!(rasters(&model), 0);
     assert_eq!(model.outcome().verdict, "mark both edges");
-    assert!(!model.layer().is_all() && model.layer().has_param("edge-p2l"));
-    assert!(model.layer().has_button("sweep") && !model.layer().has_panel(panel::SWEEPS));
+    assert!(!model.disclosure().is_all() && model.disclosure().has_param("edge-p2l"));
+    assert!(model.disclosure().has_button("sweep") && !model.disclosure().has_panel(panel::SWEEPS));
     model.press("sweep").unwrap();
     assert!(rasters(&model) > 2);
 }
@@ -71,7 +71,7 @@ fn both_marks_are_compared_with_the_sweep_in_words() {
     let right = swept([point, plane + 5.0]).outcome();
     assert_eq!(
         (right.verdict.as_str(), right.standing),
-        ("both edges are right", Standing::Good)
+        ("both edges are right", Assessment::Good)
     );
     assert!(
         right.sentence.contains("as you marked; point to plane"),
@@ -85,7 +85,7 @@ fn both_marks_are_compared_with_the_sweep_in_words() {
     let none = swept([0.0, 180.0]).outcome();
     assert_eq!(
         (none.verdict.as_str(), none.standing),
-        ("no edge is right", Standing::Bad)
+        ("no edge is right", Assessment::Bad)
     );
     assert!(
         none.sentence.contains("you marked none"),

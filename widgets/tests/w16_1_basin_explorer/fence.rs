@@ -2,8 +2,8 @@
 
 use crate::support::{fact, panel_of};
 use crate::w16_1_basin_explorer::common::{class_at, fill, with};
-use kit::model::{Model, Standing};
-use kit::scene::Cell;
+use widget_kit::model::{Assessment, Model};
+use widget_kit::scene::Cell;
 use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
 
 #[test]
@@ -37,7 +37,7 @@ fn one_post_off_fits_as_well_as_the_truth() {
     let (home, off) = (at(0.1), at(0.4));
     assert_eq!(home.outcome().verdict, "right minimum");
     assert_eq!(off.outcome().verdict, "one post off");
-    assert_eq!(off.outcome().standing, Standing::Bad);
+    assert_eq!(off.outcome().standing, Assessment::Bad);
     assert!((fact(&off, "error_m") - 0.5).abs() < 0.03);
     assert!(fact(&off, "rmse_m") < 1.5 * fact(&home, "rmse_m"));
 }

@@ -1,7 +1,7 @@
 //! The basin maps enter after the reader's first starts, and begin with them.
 
-use kit::model::{Activity, Model};
-use kit::scene::{Layer, Mark, Tone};
+use widget_kit::model::{Activity, Model};
+use widget_kit::scene::{Layer, Mark, Tone};
 use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
 
 use crate::support::{drawn, panel_of};
@@ -13,7 +13,7 @@ fn stand_still(model: &mut BasinExplorer) {
 }
 
 fn shows_maps(model: &BasinExplorer) -> bool {
-    model.layer().has_panel(panel::POINT)
+    model.disclosure().has_panel(panel::POINT)
 }
 
 /// The classes of the reader's starts on a map, in their order.

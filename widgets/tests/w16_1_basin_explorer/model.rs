@@ -5,8 +5,8 @@
 
 use crate::support::{fact, panel_of};
 use crate::w16_1_basin_explorer::common::{class_at, fill, with};
-use kit::model::{Activity, Model};
-use kit::scene::{Cell, Layer};
+use widget_kit::model::{Activity, Model};
+use widget_kit::scene::{Cell, Layer};
 use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
 
 #[test]

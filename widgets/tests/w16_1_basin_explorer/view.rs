@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Event, Modifiers, PointerButton, Pos2, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use kit::shell::Shell;
+use widget_kit::shell::Shell;
 use widgets::w16_1_basin_explorer::model::panel;
 
 use crate::support::{drawn_whole, value};

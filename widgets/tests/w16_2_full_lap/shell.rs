@@ -3,8 +3,8 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use kit::model::Motion;
-use kit::shell::Shell;
+use widget_kit::model::Motion;
+use widget_kit::shell::Shell;
 
 use crate::support::{self, drawn, press_key, value};
 

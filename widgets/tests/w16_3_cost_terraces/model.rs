@@ -1,7 +1,7 @@
 //! The widget's claims, tested on its model without a picture.
 
-use kit::model::{Activity, Model, Motion, Standing, apply_preset};
-use kit::scene::{Layer, Raster, Tone};
+use widget_kit::model::{Activity, Assessment, Model, Motion, apply_preset};
+use widget_kit::scene::{Layer, Raster, Tone};
 use widgets::w16_3_cost_terraces::model::CostTerraces;
 
 use crate::support::{fact, panel_of as panel};
@@ -87,7 +87,7 @@ fn a_small_tau_stops_icps_ball_on_a_terrace_and_ndts_rolls_home() {
     assert!(fact(&model, "icp_rest_m") > 0.15, "{:?}", model.outcome());
     assert!(fact(&model, "ndt_rest_m") < 0.12, "{:?}", model.outcome());
     assert_eq!(model.outcome().verdict, "ICP sticks");
-    assert_eq!(model.outcome().standing, Standing::Bad);
+    assert_eq!(model.outcome().standing, Assessment::Bad);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The panels beside the maps: partners at a ridge, Gaussians, slices, and the results of many sweeps.
 
-use kit::model::{Activity, Model, Motion, apply_preset};
-use kit::scene::{Layer, Tone};
+use widget_kit::model::{Activity, Model, Motion, apply_preset};
+use widget_kit::scene::{Layer, Tone};
 use widgets::w16_3_cost_terraces::model::CostTerraces;
 
 use crate::support::{fact, panel_of as panel};
@@ -435,7 +435,7 @@ fn a_slope_that_faces_the_light_is_brighter_than_one_that_turns_away() {
     });
     let raster = raster.unwrap();
     let light = |column: usize, row: usize| match raster.cells[row * raster.columns + column] {
-        kit::scene::Cell::Relief { light, .. } => light,
+        widget_kit::scene::Cell::Relief { light, .. } => light,
         other => panic!("{other:?}"),
     };
     // A bowl about cell 24: its lower right wall faces the upper left.

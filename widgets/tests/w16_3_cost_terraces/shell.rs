@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use kit::shell::Shell;
+use widget_kit::shell::Shell;
 
 use crate::support::{drawn_whole, press_key, value};
 

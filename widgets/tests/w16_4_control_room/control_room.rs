@@ -1,7 +1,7 @@
 //! The control room without a display; reference values from `tests/reference/lap.json`.
 
-use kit::model::{Activity, Model as _, Motion, Standing};
-use kit::scene::{Layer, Panel, Tone};
+use widget_kit::model::{Activity, Assessment, Model as _, Motion};
+use widget_kit::scene::{Layer, Panel, Tone};
 use widgets::w16_4_control_room::model::ControlRoom;
 use widgets::w16_4_control_room::spec::SPEC;
 
@@ -66,7 +66,7 @@ fn the_end_of_every_reference_run_has_its_grid_its_loops_and_its_errors() {
         assert_eq!(marks.len(), events.len(), "one mark for each loop test");
         for (mark, event) in marks.iter().zip(events) {
             let accepted = event["accepted"] == true;
-            let is_judged = mark.standing != Standing::Neutral;
+            let is_judged = mark.standing != Assessment::Neutral;
             assert_eq!(is_judged, accepted, "{}", mark.label);
         }
         // 1e-6: a whole lap.
@@ -390,7 +390,7 @@ fn pulses(room: &ControlRoom) -> Vec<[f64; 2]> {
 }
 
 /// The cells of the grid.
-fn cells(room: &ControlRoom) -> Vec<kit::scene::Cell> {
+fn cells(room: &ControlRoom) -> Vec<widget_kit::scene::Cell> {
     let layers = &room.scene().panels[0].layers;
     let rasters = layers.iter().filter_map(|layer| match layer {
         Layer::Raster(raster) => Some(raster.cells.to_vec()),
@@ -503,8 +503,8 @@ fn plots_do_not_show_the_future() {
 
 #[test]
 fn the_grid_has_a_legend_whose_areas_are_the_colours_of_its_cells() {
-    use kit::palette::{Theme, cell, contrast, tone};
-    use kit::scene::Cell;
+    use widget_kit::palette::{Theme, cell, contrast, tone};
+    use widget_kit::scene::Cell;
     let room = ControlRoom::default();
     let scene = room.scene();
     let legend = &scene.panels[0].legend;

@@ -1,7 +1,7 @@
 //! The toy without its picture; reference values from the chapter's worked example.
 
-use kit::model::{Activity, Model, Standing};
-use kit::scene::{Layer, Tone};
+use widget_kit::model::{Activity, Assessment, Model};
+use widget_kit::scene::{Layer, Tone};
 use widgets::w16_5_pose_graph_toy::model::{PoseGraphToy, panel};
 use widgets::w16_5_pose_graph_toy::spec::SPEC;
 
@@ -108,7 +108,7 @@ fn every_preset_does_what_its_button_claims() {
         let mut toy = PoseGraphToy::default();
         toy.press(id).unwrap();
         while toy.advance(0.2) == Activity::Busy {}
-        assert_eq!(toy.outcome().standing, Standing::Good, "{id}");
+        assert_eq!(toy.outcome().standing, Assessment::Good, "{id}");
         let preset = SPEC.presets.iter().find(|preset| preset.id == id).unwrap();
         if !rest.is_empty() {
             assert_eq!(format!("{:.2}", fact(&toy, "chi2")), rest, "{id}");
@@ -197,7 +197,7 @@ fn the_loops_spring_grows_stiff_as_it_is_drawn_tight() {
 #[test]
 fn a_pose_that_does_not_exist_has_no_control() {
     let mut toy = with(&[("more", 1.0)]);
-    assert!(toy.layer().has_param("turn3") && !toy.layer().has_param("x4"));
+    assert!(toy.disclosure().has_param("turn3") && !toy.disclosure().has_param("x4"));
     toy.set("graph", 2.0).unwrap();
-    assert!(toy.layer().has_param("turn6"));
+    assert!(toy.disclosure().has_param("turn6"));
 }

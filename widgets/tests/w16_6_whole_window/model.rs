@@ -1,7 +1,7 @@
 //! The whole window without its picture; reference values from the room of the chapter's basins.
 
-use kit::model::{Activity, Model, Standing};
-use kit::scene::{Cell, Layer, Stroke, Tone};
+use widget_kit::model::{Activity, Assessment, Model};
+use widget_kit::scene::{Cell, Layer, Stroke, Tone};
 use widgets::w16_6_whole_window::model::{WholeWindow, panel};
 use widgets::w16_6_whole_window::spec::SPEC;
 
@@ -19,7 +19,7 @@ fn with(values: &[(&str, f64)]) -> WholeWindow {
 #[test]
 fn it_finds_the_truth_where_icp_ends_in_the_quarter_turn() {
     let window = with(&[]);
-    assert_eq!(window.outcome().standing, Standing::Good);
+    assert_eq!(window.outcome().standing, Assessment::Good);
     assert!(fact(&window, "error_m") < 0.12);
     // 0.943 m and 89.5°: the chapter's quarter turn.
     assert!((fact(&window, "icp_error_m") - 0.943).abs() < 5e-4);
@@ -38,7 +38,7 @@ fn it_finds_the_truth_where_icp_ends_in_the_quarter_turn() {
 fn it_finds_the_truth_from_every_heading() {
     for heading in [-180.0, -135.0, -60.0, 0.0, 45.0, 120.0, 180.0] {
         let window = with(&[("heading", heading)]);
-        assert_eq!(window.outcome().standing, Standing::Good, "{heading}");
+        assert_eq!(window.outcome().standing, Assessment::Good, "{heading}");
     }
 }
 
@@ -118,11 +118,11 @@ fn a_dragged_start_is_searched_again_at_its_new_pose() {
 #[test]
 fn every_preset_does_what_its_button_claims() {
     for (id, verdict, standing) in [
-        ("quarter-turn", "the search finds home", Standing::Good),
-        ("upside-down", "the search finds home", Standing::Good),
-        ("wide", "the search finds home", Standing::Good),
-        ("without-home", "no place fits", Standing::Bad),
-        ("coarse", "the search finds home", Standing::Good),
+        ("quarter-turn", "the search finds home", Assessment::Good),
+        ("upside-down", "the search finds home", Assessment::Good),
+        ("wide", "the search finds home", Assessment::Good),
+        ("without-home", "no place fits", Assessment::Bad),
+        ("coarse", "the search finds home", Assessment::Good),
     ] {
         let mut window = WholeWindow::default();
         window.press(id).unwrap();
@@ -200,7 +200,7 @@ fn icp_races_the_search_and_stops_in_a_false_minimum_first() {
         .unwrap();
     assert_eq!(
         (stop.label.as_str(), stop.standing),
-        ("ICP alone stops in the quarter turn", Standing::Bad)
+        ("ICP alone stops in the quarter turn", Assessment::Bad)
     );
     for (at, is_over) in [(stop.at - 50.0, false), (stop.at, true)] {
         window.set("progress", at).unwrap();

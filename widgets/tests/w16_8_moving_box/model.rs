@@ -1,7 +1,7 @@
 //! The moving box without its picture.
 
-use kit::model::{Activity, Model};
-use kit::scene::{Layer, Stroke, Tone};
+use widget_kit::model::{Activity, Model};
+use widget_kit::scene::{Layer, Stroke, Tone};
 use widgets::w16_8_moving_box::model::{MovingBox, panel};
 use widgets::w16_8_moving_box::spec::SPEC;
 

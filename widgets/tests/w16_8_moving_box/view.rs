@@ -9,7 +9,7 @@ use crate::support::{drawn_whole, fact, press_key, value};
 fn a_slider_takes_the_share_of_the_box() {
     let mut harness = drawn_whole("w16.8", 390.0);
     let off_m = |harness: &egui_kittest::Harness<'_, _>| {
-        let shell: &kit::shell::Shell = harness.state();
+        let shell: &widget_kit::shell::Shell = harness.state();
         fact(shell.model(), "plain_error_m")
     };
     let before = off_m(&harness);

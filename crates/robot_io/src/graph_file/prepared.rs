@@ -12,8 +12,8 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use pr_geom::SE2;
 
-use crate::counted::counted;
 use crate::lines::finite;
+use crate::plural::plural;
 
 /// A graph's text for the solver, with what was changed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -114,7 +114,7 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
     if !tree.is_empty() {
         remarks.push(format!(
             "the file has {} and lacks {} that its edges name; their poses are computed from a spanning tree of the edges",
-            counted(given.len(), "pose"),
+            plural(given.len(), "pose"),
             tree.len()
         ));
         for (id, pose) in &tree {
@@ -136,7 +136,7 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
         }
         remarks.push(format!(
             "{} taken as measurements",
-            counted(priors.len(), "prior")
+            plural(priors.len(), "prior")
         ));
         helper = Some(id);
     }
@@ -157,7 +157,7 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
         let single = parts.iter().filter(|part| part.len() == 1).count();
         remarks.push(format!(
             "the graph has {}, {single} of them a single vertex; each is solved separately with its first vertex fixed",
-            counted(parts.len(), "connected component")
+            plural(parts.len(), "connected component")
         ));
     }
     let text = if added.is_empty() && helpers.is_empty() {

@@ -7,11 +7,11 @@ mod offers;
 use nalgebra::Isometry3;
 
 use super::survey::{SCANS, ScanStream, Survey};
-use crate::counted::counted;
 use crate::laser_mount::LaserMount;
 use crate::lines::listed;
 use crate::log::{LogNotes, LogOffer, LogOption, LogOptions};
 use crate::odometry_poses::OdometryPoses;
+use crate::plural::plural;
 use crate::remark::{Part, Remark};
 use crate::stamps::MendedStamps;
 
@@ -127,7 +127,7 @@ impl Plan {
         if stream.repeated > 0 {
             let text = format!(
                 "{} of {topic} {} a duplicate of the one before and skipped",
-                counted(stream.repeated, "scan"),
+                plural(stream.repeated, "scan"),
                 if stream.repeated == 1 { "is" } else { "are" }
             );
             plan.warnings.push(Remark::mended(Part::File, text));
@@ -198,7 +198,7 @@ impl Plan {
         }
         let others = stream.others.iter().map(|(frame, count)| {
             let frame = if frame.is_empty() { "no frame" } else { frame };
-            format!("{frame} ({})", counted(*count, "scan"))
+            format!("{frame} ({})", plural(*count, "scan"))
         });
         let text = format!(
             "{topic} has scans of several publishers: those in frame {} are read, and those in {} are not; let each publish on a topic of its own",

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use bench_support::process;
 use ch16_lab::laps::{LapNumbers, Laps, LapsConfig};
 use ch16_slam2d::scan::LaserScan;
 use clap::Args;
-use measuring::process;
 use pr_sim::Course;
 use robot_io::session::Session;
 use serde::Serialize;

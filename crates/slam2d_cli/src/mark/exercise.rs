@@ -2,8 +2,8 @@
 
 use std::sync::LazyLock;
 
-use kit::model::{Model, Outcome};
 use serde::{Deserialize, Serialize};
+use widget_kit::model::{Model, Outcome};
 use widgets::registry::{MODELS, SPECS};
 
 use super::answers::Answer;

@@ -1,7 +1,7 @@
 //! The solve of `slam2d optimize`: settings, repetitions, times, progress.
 
+use bench_support::CpuClock;
 use indicatif::{ProgressBar, ProgressStyle};
-use measuring::CpuClock;
 use pr_optim::{
     JacobianModel, Method, OptimizeError, Optimizer, Outcome, Problem, Session, Settings, Start,
     StopReason,

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{SweepArgs, progress_bar};
+use crate::lap_options::LapOptions;
 use crate::output::{print_json, say};
-use crate::trial::Trial;
 
 /// The laps at one noise factor, each with its twin.
 #[derive(Serialize)]
@@ -24,7 +24,7 @@ struct NudgedLevel {
 }
 
 /// Runs every lap and its twin and prints how many differ.
-pub fn print(args: &SweepArgs, trial: &Trial) {
+pub fn print(args: &SweepArgs, trial: &LapOptions) {
     let levels: Vec<NudgedLevel> = args
         .noise
         .iter()
@@ -48,7 +48,7 @@ pub fn print(args: &SweepArgs, trial: &Trial) {
     }
 }
 
-fn level(args: &SweepArgs, trial: &Trial, noise: f64) -> NudgedLevel {
+fn level(args: &SweepArgs, trial: &LapOptions, noise: f64) -> NudgedLevel {
     let bar = progress_bar(args.seeds.count());
     let moved_m = (args.seeds.first..=args.seeds.last)
         .into_par_iter()

@@ -21,8 +21,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::SweepArgs;
+use crate::lap_options::LapOptions;
 use crate::numbers::Seeds;
-use crate::trial::Trial;
 
 /// Version of the format.
 const FORMAT: u32 = 1;
@@ -111,7 +111,7 @@ pub enum RowsFailure {
 
 impl Header {
     /// The header of the sweep that `args` request.
-    pub fn new(args: &SweepArgs, trial: &Trial) -> Self {
+    pub fn new(args: &SweepArgs, trial: &LapOptions) -> Self {
         let mut digest = Digest::new();
         for &noise in &args.noise {
             let words = format!("{:?}", trial.lap(args.seeds.first, noise));

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::rows::{Header, LapRow, RowsFailure, RowsFile};
 use super::{SweepArgs, progress_bar};
-use crate::trial::Trial;
+use crate::lap_options::LapOptions;
 
 /// Most shards.
 const MAX_SHARDS: u32 = 100_000;
@@ -65,7 +65,7 @@ pub struct ShardResult {
 /// If a row cannot be written; earlier rows are kept.
 pub fn drive(
     args: &SweepArgs,
-    trial: &Trial,
+    trial: &LapOptions,
     part: Shard,
     path: &Path,
 ) -> Result<ShardResult, RowsFailure> {

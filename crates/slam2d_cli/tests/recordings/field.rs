@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use measuring::skip::skip;
+use bench_support::skip::skip;
 use pr_geom::SE2;
 use robot_io::graph_file::GraphFile;
 use robot_io::log::LogOptions;

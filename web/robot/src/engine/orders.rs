@@ -15,8 +15,8 @@ use crate::files::{self, MAP_CELL_M, NAMES, REPORT_CELL_M};
 use crate::given::{Choices, Given};
 use crate::grade::Reference;
 use crate::links::{Link, Verdict};
+use crate::localization::Localization;
 use crate::update::Update;
-use crate::whereabouts::Whereabouts;
 
 /// Settings for optimizing a graph file after a change.
 const PLAIN: Solving = Solving {
@@ -72,15 +72,15 @@ impl<'a> Engine<'a> {
         let Some(session) = self.run.session() else {
             return Err("There is no map for localization.".to_owned());
         };
-        let opened = Whereabouts::open(given, choices, &session, start)?;
-        self.whereabouts = Some(opened);
+        let opened = Localization::open(given, choices, &session, start)?;
+        self.localization = Some(opened);
         Ok(())
     }
 
     /// Stops reading, and keeps what was read.
     fn cancel(&mut self) -> Result<String, String> {
-        if let Some(whereabouts) = self.whereabouts.as_mut().filter(|it| !it.is_over()) {
-            whereabouts.end();
+        if let Some(localization) = self.localization.as_mut().filter(|it| !it.is_over()) {
+            localization.end();
             return Ok("Stopped looking for the robot.".to_owned());
         }
         match core::mem::replace(&mut self.work, Work::Idle) {
@@ -303,9 +303,9 @@ impl<'a> Engine<'a> {
             "graph.g2o" => Ok(files::graph_file(graph)),
             "trajectory.tum" => files::trajectory_file(&self.trajectory()),
             "report.html" => Ok(self.report().into_bytes()),
-            "where.tum" => match &self.whereabouts {
-                Some(whereabouts) => {
-                    files::trajectory_file(&whereabouts.trajectory(super::poses_of(&self.run)))
+            "where.tum" => match &self.localization {
+                Some(localization) => {
+                    files::trajectory_file(&localization.trajectory(super::poses_of(&self.run)))
                 }
                 None => Err("No other log was localized on this map.".to_owned()),
             },

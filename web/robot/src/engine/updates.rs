@@ -40,8 +40,8 @@ impl Engine<'_> {
             let scans = self.recorder.keyframes().len();
             updates.extend(self.picture.update(scans));
         }
-        if let Some(whereabouts) = &mut self.whereabouts {
-            updates.extend(whereabouts.update(poses_of(&self.run)));
+        if let Some(localization) = &mut self.localization {
+            updates.extend(localization.update(poses_of(&self.run)));
         }
         updates.append(&mut self.waiting);
         updates

@@ -1,10 +1,10 @@
 //! The effect of each button.
 
-use kit::spec::PLAY;
+use widget_kit::spec::PLAY;
 
 use super::OwnRobot;
-use super::hands::{may_edit, nudge};
-use super::robot::{Robot, Stage};
+use super::interaction::{may_edit, nudge};
+use super::log_state::{LogState, Stage};
 use crate::w16_10_own_robot::spec::{FILES, MAX_SCANS, OPTIONS};
 
 impl OwnRobot {
@@ -93,7 +93,7 @@ impl OwnRobot {
 
     fn begin_sample(&mut self) {
         self.ask("sample".to_owned());
-        self.robot = Robot::opening("the sample");
+        self.robot = LogState::opening("the sample");
         self.playback.pause();
     }
 

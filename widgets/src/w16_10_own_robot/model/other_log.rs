@@ -1,7 +1,7 @@
 //! The worker's report on another log on this map: the pose of its robot, scan by scan.
-//! `web/robot/src/whereabouts.rs` defines the numbers.
+//! `web/robot/src/localization.rs` defines the numbers.
 
-use kit::outside::Delivery;
+use widget_kit::host_messages::Delivery;
 
 use crate::w16_10_own_robot::spec::MAX_SCANS;
 

@@ -3,12 +3,12 @@
 mod charts;
 mod visitor;
 
-use kit::scene::{
+use pr_geom::{math, sort_numbers};
+use widget_kit::scene::{
     Aspect, Axis, Bounds, ColorBar, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
-use pr_geom::{math, sort_numbers};
 
-use super::robot::{Robot, Stage};
+use super::log_state::{LogState, Stage};
 use super::settings::{Colour, shows};
 use super::{OwnRobot, panel};
 use charts::{fit, sure};
@@ -123,7 +123,7 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
 }
 
 /// The observed area, rounded to whole metres so that a growing map seldom moves the axes.
-fn bounds(robot: &Robot) -> Bounds {
+fn bounds(robot: &LogState) -> Bounds {
     let mut bounds = Bounds {
         min: [f64::INFINITY; 2],
         max: [f64::NEG_INFINITY; 2],
@@ -154,7 +154,7 @@ fn bounds(robot: &Robot) -> Bounds {
 }
 
 /// Text while there is no map.
-fn invitation(robot: &Robot) -> Vec<Layer> {
+fn invitation(robot: &LogState) -> Vec<Layer> {
     let lines: &[&str] = match robot.stage {
         Stage::Empty => &[
             "Drop a log of your robot here,",
@@ -178,7 +178,7 @@ fn invitation(robot: &Robot) -> Vec<Layer> {
     words.collect()
 }
 
-fn at(robot: &Robot, keyframe: usize) -> Option<[f64; 2]> {
+fn at(robot: &LogState, keyframe: usize) -> Option<[f64; 2]> {
     let pose = robot.keyframes.get(keyframe)?.pose;
     Some([pose[0], pose[1]])
 }

@@ -1,8 +1,8 @@
 //! Interprets the values of the parameters: the colours of the path, and which loops are shown.
 
-use kit::values::Values;
+use widget_kit::values::Values;
 
-use super::robot::{Link, Robot};
+use super::log_state::{Link, LogState};
 
 /// The quantity that colours the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +39,7 @@ impl Colour {
     }
 
     /// The value at each keyframe; NaN if it is unknown.
-    pub fn values(self, robot: &Robot) -> Vec<f64> {
+    pub fn values(self, robot: &LogState) -> Vec<f64> {
         let start_s = robot.keyframes.first().map_or(0.0, |first| first.stamp_s);
         let keyframes = robot.keyframes.iter().enumerate();
         keyframes

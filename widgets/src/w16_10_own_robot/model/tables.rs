@@ -1,11 +1,11 @@
 //! The tables: loops with their evidence and doubts beside the picture; all keyframes and all loops for the
 //! export.
 
-use kit::model::{Table, TablePlace};
+use widget_kit::model::{Table, TablePlace};
 
 use super::OwnRobot;
-use super::robot::Link;
-use super::words::verdict;
+use super::log_state::Link;
+use super::texts::verdict;
 use crate::w16_10_own_robot::spec::OPTIONS;
 
 /// Rows of loops beside the picture.

@@ -1,11 +1,13 @@
 //! The panels: the points, the trace over the angle, and a map under both results.
 
 use ch16_lab::procrustes::Handedness;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::{Point2, math};
 use pr_sim::World;
+use widget_kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
 
-use super::words::whole_degrees;
+use super::texts::whole_degrees;
 use super::{ProcrustesTrace, panel};
 use crate::w16_11_procrustes::spec::{TURN, WHOLE_TURN_DEG};
 

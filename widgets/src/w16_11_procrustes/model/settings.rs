@@ -1,7 +1,7 @@
 //! Converts the values of the parameters to the types of the core.
 
 use ch16_lab::procrustes::{Handedness, Pairs, Shape};
-use kit::values::Values;
+use widget_kit::values::Values;
 
 use crate::w16_11_procrustes::spec::{MOVED, SEED, SHAPE, TRIED};
 

@@ -1,10 +1,10 @@
 //! The tables: the best matrix of each kind beside the picture, the curves for the export.
 
 use ch16_lab::procrustes::Handedness;
-use kit::model::Table;
+use widget_kit::model::Table;
 
 use super::ProcrustesTrace;
-use super::words::plural;
+use super::texts::plural;
 use crate::w16_11_procrustes::spec::WHOLE_TURN_DEG;
 
 /// All tables, the shown one first.

@@ -1,10 +1,12 @@
 //! The panels: the graphs of all solvers, and the distance to the optimum over the steps.
 
 use ch16_lab::jacobians::Moment;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::{SE2, math};
+use widget_kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
 
-use super::words::SAME_END_M;
+use super::texts::SAME_END_M;
 use super::{NAMES, WrongJacobians, panel};
 
 use crate::w16_12_jacobians::spec::{CURVE, Curve};

@@ -1,7 +1,7 @@
 //! Converts the values of the parameters to the types of the core.
 
 use ch16_lab::jacobians::{Recipe, RingConfig};
-use kit::values::Values;
+use widget_kit::values::Values;
 
 use crate::w16_12_jacobians::spec::{BIAS, SCATTER, SEED, WRONG};
 

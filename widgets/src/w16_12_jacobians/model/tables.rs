@@ -1,7 +1,7 @@
 //! The tables: the four results beside the picture, every step for the export.
 
-use kit::counted::counted;
-use kit::model::Table;
+use widget_kit::model::Table;
+use widget_kit::plural::plural;
 
 use super::{NAMES, WrongJacobians};
 
@@ -22,7 +22,7 @@ fn ends(widget: &WrongJacobians) -> Table {
     });
     Table::shown(
         "ends",
-        format!("The four after {}", counted(widget.step(), "step")),
+        format!("The four after {}", plural(widget.step(), "step")),
         &["solver", "steps", "off (m)", "χ²"],
         rows.collect(),
     )

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use ch16_lab::basin::{BasinMap, BasinMapAxes, BasinScene, BasinStart, Minimum, OffsetAxis};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
-use kit::model::Activity;
-use kit::scene::{Bounds, Cell, Raster};
-use kit::values::Values;
+use widget_kit::model::Activity;
+use widget_kit::scene::{Bounds, Cell, Raster};
+use widget_kit::values::Values;
 
 use super::letters::{Room, rooms, spread};
 use super::settings::{axis, config, start};

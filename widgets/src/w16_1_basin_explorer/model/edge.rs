@@ -2,10 +2,10 @@
 
 use ch16_lab::basin::{BasinScene, EdgeSearch};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
-use kit::layers::Opening;
-use kit::model::{Activity, Fact, Outcome, Standing};
-use kit::scene::{Layer, LegendEntry, Mark, Stroke, Tone};
-use kit::values::Values;
+use widget_kit::disclosure::Opening;
+use widget_kit::model::{Activity, Assessment, Fact, Outcome};
+use widget_kit::scene::{Layer, LegendEntry, Mark, Stroke, Tone};
+use widget_kit::values::Values;
 
 use super::BasinExplorer;
 use super::settings::{config, variant_name};
@@ -157,7 +157,7 @@ fn question(values: &Values) -> Outcome {
     let parts: Vec<_> = parts.collect();
     let all = marks.iter().all(|mark| *mark > 0.0);
     Outcome {
-        standing: Standing::Neutral,
+        standing: Assessment::Neutral,
         verdict: if all {
             "both edges are marked"
         } else {
@@ -179,10 +179,10 @@ fn answer(explorer: &BasinExplorer) -> Outcome {
         |k: usize| marks[k] > 0.0 && (marks[k] - reached(&searches[k])).abs() <= RIGHT_DEG;
     let right = (0..2).filter(|&k| is_right(k)).count();
     let (standing, verdict) = match right {
-        _ if !explorer.edges.are_found() => (Standing::Neutral, "the edge is swept"),
-        2 => (Standing::Good, "both edges are right"),
-        1 => (Standing::Neutral, "one edge is right"),
-        _ => (Standing::Bad, "no edge is right"),
+        _ if !explorer.edges.are_found() => (Assessment::Neutral, "the edge is swept"),
+        2 => (Assessment::Good, "both edges are right"),
+        1 => (Assessment::Neutral, "one edge is right"),
+        _ => (Assessment::Bad, "no edge is right"),
     };
     let parts = searches.iter().zip(VARIANTS).zip(marks);
     let parts = parts.map(|((search, variant), mark)| {

@@ -2,8 +2,8 @@
 
 use ch16_lab::basin::{BasinScene, BasinStart, OffsetAxis};
 use ch16_slam2d::icp::{IcpConfig, IcpWorkspace};
-use kit::model::Activity;
-use kit::values::Values;
+use widget_kit::model::Activity;
+use widget_kit::values::Values;
 
 use super::basins::{start_at, start_spot};
 use super::settings::{config, variant};

@@ -3,16 +3,18 @@
 use ch16_lab::basin::{BasinPlace, Minimum, OffsetAxis};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpVariant, Pair};
-use kit::chart::{Series, TimeChart};
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::{Point2, SE2};
+use widget_kit::chart::{Series, TimeChart};
+use widget_kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
 
 use super::basins::{class, spot_of, start_spot};
 use super::edge;
-use super::hands::turn_handle;
+use super::interaction::turn_handle;
 use super::paths::split_at_half_turn;
 use super::settings::{axis, start, variant, variant_name};
-use super::words::error_m;
+use super::texts::error_m;
 use super::{BasinExplorer, panel};
 use crate::sweep_bounds::sweep_bounds;
 use crate::w16_1_basin_explorer::spec::{EDGE, OFFSET_SPAN_M, Phase};

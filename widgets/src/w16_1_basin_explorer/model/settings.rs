@@ -2,7 +2,7 @@
 
 use ch16_lab::basin::{BasinScene, BasinStart, OffsetAxis};
 use ch16_slam2d::icp::{IcpConfig, IcpVariant};
-use kit::values::Values;
+use widget_kit::values::Values;
 
 use crate::w16_1_basin_explorer::spec::{
     AXIS, DX, DY, HEADING, HUBER, HUBER_OFF_M, LIMIT, SCENE, SEED, TAU, TRIM, VARIANT,

@@ -2,13 +2,13 @@
 
 use ch16_lab::basin::{BasinOutcome, Minimum};
 use ch16_slam2d::icp::IcpVariant;
-use kit::model::Table;
-use kit::ticks::signed;
+use widget_kit::model::Table;
+use widget_kit::ticks::signed;
 
 use super::BasinExplorer;
 use super::basins::{COLUMNS, ROWS};
 use super::settings::{other_variant, variant, variant_name};
-use super::words::error_m;
+use super::texts::error_m;
 
 /// The tables beside the picture.
 pub fn shown(explorer: &BasinExplorer) -> Vec<Table> {

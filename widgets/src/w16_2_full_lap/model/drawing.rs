@@ -1,17 +1,19 @@
 //! Edits of the flat: by the pointer, by buttons, by a link and by a file.
 
 use ch16_lab::lap::BuiltInWorld;
-use kit::model::Handle;
-use kit::param::{ParamError, printable};
 use pr_sim::{Course, Sketch};
+use widget_kit::model::Handle;
+use widget_kit::param::{ParamError, printable};
 
 use super::FullLap;
-use super::flat::{Kept, Stroke, Tool, add_wall, add_way_point, is_own, new_wall, new_way_point};
+use super::floor_plan::{
+    Kept, Stroke, Tool, add_wall, add_way_point, is_own, new_wall, new_way_point,
+};
 use super::grid::snapped;
 use super::panel;
 use super::pick::Step;
 use super::picture;
-use super::piece::Piece;
+use super::plan_element::PlanElement;
 use crate::w16_2_full_lap::spec::{EDIT, FLAT, SPEC, WORLD};
 
 /// The file name of a saved flat.
@@ -24,19 +26,19 @@ const PLACE: &str = "place";
 impl FullLap {
     /// The course of the reader's own flat, if it is selected and can be driven.
     pub(super) fn own_course(&self) -> Option<&Course> {
-        let course = self.flat.course.as_ref().ok();
+        let course = self.floor_plan.course.as_ref().ok();
         course.filter(|_| is_own(&self.values))
     }
 
     /// Handles a change of the value of `world`.
     pub(super) fn world_chosen(&mut self, before: Option<BuiltInWorld>) {
-        let sketch = self.flat.sketch.clone();
-        self.flat.remember(Kept {
+        let sketch = self.floor_plan.sketch.clone();
+        self.floor_plan.remember(Kept {
             world: before,
             sketch,
         });
         match self.values.get(&WORLD) {
-            None => self.take(self.flat.sketch.clone()),
+            None => self.take(self.floor_plan.sketch.clone()),
             Some(world) => self.leave_own(world),
         }
     }
@@ -44,7 +46,8 @@ impl FullLap {
     /// Selects a built-in world.
     fn leave_own(&mut self, world: BuiltInWorld) {
         self.values.store(FLAT.id, 0.0);
-        self.flat.become_of(Sketch::from_course(&world.course()));
+        self.floor_plan
+            .become_of(Sketch::from_course(&world.course()));
         self.recompute();
     }
 
@@ -75,45 +78,45 @@ impl FullLap {
             panic!("the edited flat is invalid: {error}");
         }
         self.values.put(&WORLD, None);
-        self.flat.become_of(sketch);
+        self.floor_plan.become_of(sketch);
         self.recompute();
     }
 
     /// Replaces it by an edit of the reader, which can be undone; the lap is shown to its end.
     fn draw(&mut self, sketch: Sketch) {
-        if sketch == self.flat.sketch {
+        if sketch == self.floor_plan.sketch {
             return;
         }
-        self.flat.remember(self.kept());
+        self.floor_plan.remember(self.kept());
         self.playback.pause();
-        self.flat.follows = true;
+        self.floor_plan.follows = true;
         self.take(sketch);
     }
 
     fn kept(&self) -> Kept {
         Kept {
             world: self.values.get(&WORLD),
-            sketch: self.flat.sketch.clone(),
+            sketch: self.floor_plan.sketch.clone(),
         }
     }
 
-    fn choose(&mut self, piece: Option<Piece>) {
-        Piece::put(piece, &mut self.values);
+    fn choose(&mut self, piece: Option<PlanElement>) {
+        PlanElement::put(piece, &mut self.values);
     }
 
     /// The selected piece, if it exists in the flat.
-    pub(super) fn piece(&self) -> Option<Piece> {
-        Piece::chosen(&self.values, &self.flat.sketch)
+    pub(super) fn piece(&self) -> Option<PlanElement> {
+        PlanElement::chosen(&self.values, &self.floor_plan.sketch)
     }
 
     /// Reports why an edit was rejected.
     fn refuse(&mut self, why: impl Into<String>) {
-        self.flat.note = Some(why.into());
+        self.floor_plan.note = Some(why.into());
     }
 
     /// Handles the buttons of the flat. Returns whether the button is one of them.
     pub(super) fn press_flat(&mut self, id: &str) -> bool {
-        self.flat.note = None;
+        self.floor_plan.note = None;
         match id {
             "edit-flat" => {
                 let is_off = Tool::chosen(&self.values).is_none();
@@ -129,32 +132,32 @@ impl FullLap {
             "south" => self.nudge([0, -1]),
             "remove" => self.remove_piece(),
             "add-wall" => {
-                let wall = new_wall(&self.flat.sketch);
-                let mut sketch = self.flat.sketch.clone();
-                let added = add_wall(&mut sketch, wall).map(Piece::Wall);
+                let wall = new_wall(&self.floor_plan.sketch);
+                let mut sketch = self.floor_plan.sketch.clone();
+                let added = add_wall(&mut sketch, wall).map(PlanElement::Wall);
                 self.added(sketch, added);
             }
             "add-way-point" => {
                 let behind = self.chosen_way_point();
-                let at = new_way_point(&self.flat.sketch, behind);
-                let mut sketch = self.flat.sketch.clone();
-                let added = add_way_point(&mut sketch, behind, at).map(Piece::WayPoint);
+                let at = new_way_point(&self.floor_plan.sketch, behind);
+                let mut sketch = self.floor_plan.sketch.clone();
+                let added = add_way_point(&mut sketch, behind, at).map(PlanElement::WayPoint);
                 self.added(sketch, added);
             }
-            "turn-here" => self.turn_here(),
+            "turn-here" => self.mark_revisit_start(),
             "take-back" => {
-                let before = self.flat.back(self.kept());
+                let before = self.floor_plan.back(self.kept());
                 self.restore(before, "nothing to undo");
             }
             "do-again" => {
-                let after = self.flat.again(self.kept());
+                let after = self.floor_plan.again(self.kept());
                 self.restore(after, "nothing to redo");
             }
-            "open-flat" => self.flat.orders.push("open-text .json".to_owned()),
+            "open-flat" => self.floor_plan.orders.push("open-text .json".to_owned()),
             "save-flat" => {
-                let json = self.flat.sketch.to_json();
+                let json = self.floor_plan.sketch.to_json();
                 let order = format!("save-text {FILE_NAME}\n{json}");
-                self.flat.orders.push(order);
+                self.floor_plan.orders.push(order);
             }
             _ => return false,
         }
@@ -162,13 +165,13 @@ impl FullLap {
     }
 
     fn step_piece(&mut self, step: Step) {
-        let piece = Piece::stepped(self.piece(), step, &self.flat.sketch);
+        let piece = PlanElement::stepped(self.piece(), step, &self.floor_plan.sketch);
         self.choose(piece);
     }
 
     fn chosen_way_point(&self) -> Option<usize> {
         match self.piece() {
-            Some(Piece::WayPoint(index)) => Some(index),
+            Some(PlanElement::WayPoint(index)) => Some(index),
             _ => None,
         }
     }
@@ -178,7 +181,7 @@ impl FullLap {
             self.refuse("nothing is selected: select a wall, an end or a way point first");
             return;
         };
-        match piece.nudged(&self.flat.sketch, by) {
+        match piece.nudged(&self.floor_plan.sketch, by) {
             Some(sketch) => self.draw(sketch),
             None => self.refuse("a wall needs two different ends"),
         }
@@ -189,20 +192,24 @@ impl FullLap {
             self.refuse("nothing is selected: select a wall or a way point first");
             return;
         };
-        match piece.removed(&self.flat.sketch) {
+        match piece.removed(&self.floor_plan.sketch) {
             Ok(sketch) => {
                 self.draw(sketch);
                 // The next one of its kind takes its index.
-                let left = piece.count(&self.flat.sketch);
+                let left = piece.count(&self.floor_plan.sketch);
                 if piece.index() >= left {
-                    self.choose(Piece::stepped(None, Step::Back, &self.flat.sketch));
+                    self.choose(PlanElement::stepped(
+                        None,
+                        Step::Back,
+                        &self.floor_plan.sketch,
+                    ));
                 }
             }
             Err(why) => self.refuse(why),
         }
     }
 
-    fn added(&mut self, sketch: Sketch, added: Result<Piece, String>) {
+    fn added(&mut self, sketch: Sketch, added: Result<PlanElement, String>) {
         match added {
             Ok(piece) => {
                 self.draw(sketch);
@@ -213,14 +220,14 @@ impl FullLap {
     }
 
     /// Revisits start from the selected way point; if they do already, the mark is removed.
-    fn turn_here(&mut self) {
+    fn mark_revisit_start(&mut self) {
         let Some(index) = self.chosen_way_point() else {
             self.refuse(
                 "no way point is selected: select the one from which on known locations are seen again",
             );
             return;
         };
-        let mut sketch = self.flat.sketch.clone();
+        let mut sketch = self.floor_plan.sketch.clone();
         sketch.turn = (sketch.turn != Some(index)).then_some(index);
         self.draw(sketch);
     }
@@ -230,7 +237,7 @@ impl FullLap {
             self.refuse(otherwise);
             return;
         };
-        self.flat.follows = true;
+        self.floor_plan.follows = true;
         match world {
             None => self.take(sketch),
             Some(built_in) => {
@@ -257,12 +264,12 @@ impl FullLap {
             offset: [0.0; 2],
         };
         match tool {
-            Tool::Move => under.map(Piece::handle),
+            Tool::Move => under.map(PlanElement::handle),
             Tool::Wall => Some(new(DRAW)),
             Tool::Way => Some(match under {
-                Some(piece @ (Piece::WayPoint(_) | Piece::Start | Piece::Heading)) => {
-                    piece.handle()
-                }
+                Some(
+                    piece @ (PlanElement::WayPoint(_) | PlanElement::Start | PlanElement::Heading),
+                ) => piece.handle(),
                 _ => new(PLACE),
             }),
             Tool::Remove => None,
@@ -275,26 +282,26 @@ impl FullLap {
     }
 
     /// The piece under the pointer; the selected one first if several overlap.
-    fn piece_under(&self, at: [f64; 2], reach: [f64; 2]) -> Option<Piece> {
-        let sketch = &self.flat.sketch;
+    fn piece_under(&self, at: [f64; 2], reach: [f64; 2]) -> Option<PlanElement> {
+        let sketch = &self.floor_plan.sketch;
         let chosen = self.piece().filter(|piece| {
             let place = piece.place(sketch);
             let is_near = (0..2).all(|axis| (place[axis] - at[axis]).abs() <= reach[axis]);
-            is_near && !matches!(piece, Piece::Wall(_))
+            is_near && !matches!(piece, PlanElement::Wall(_))
         });
-        chosen.or_else(|| Piece::at(sketch, at, reach))
+        chosen.or_else(|| PlanElement::at(sketch, at, reach))
     }
 
     /// Continues or starts a stroke. Returns whether the handle is one of the flat's.
     pub(super) fn stroke(&mut self, handle: Handle, at: [f64; 2]) -> bool {
-        let held = Piece::held(handle);
+        let held = PlanElement::held(handle);
         if handle.panel != panel::MAP || (held.is_none() && ![DRAW, PLACE].contains(&handle.id)) {
             return false;
         }
-        if self.flat.stroke.as_ref().map(|stroke| stroke.handle) != Some(handle) {
+        if self.floor_plan.stroke.as_ref().map(|stroke| stroke.handle) != Some(handle) {
             self.begin_stroke(handle, at, held);
         }
-        let Some(stroke) = &self.flat.stroke else {
+        let Some(stroke) = &self.floor_plan.stroke else {
             return true;
         };
         let before = &stroke.before.sketch;
@@ -305,7 +312,7 @@ impl FullLap {
                 let added = (from != to).then(|| add_wall(&mut sketch, [from, to]));
                 match added {
                     Some(Err(why)) => return self.end_refused(&why),
-                    Some(Ok(index)) => Some((sketch, Piece::Wall(index))),
+                    Some(Ok(index)) => Some((sketch, PlanElement::Wall(index))),
                     None => None,
                 }
             }
@@ -314,7 +321,7 @@ impl FullLap {
                 let behind = self.chosen_before_stroke();
                 match add_way_point(&mut sketch, behind, snapped(at)) {
                     Err(why) => return self.end_refused(&why),
-                    Ok(index) => Some((sketch, Piece::WayPoint(index))),
+                    Ok(index) => Some((sketch, PlanElement::WayPoint(index))),
                 }
             }
             (_, Some(piece)) => piece
@@ -326,15 +333,15 @@ impl FullLap {
         true
     }
 
-    fn begin_stroke(&mut self, handle: Handle, at: [f64; 2], held: Option<Piece>) {
-        self.flat.frame = Some(picture::map_bounds(&self.moment()));
-        self.flat.note = None;
+    fn begin_stroke(&mut self, handle: Handle, at: [f64; 2], held: Option<PlanElement>) {
+        self.floor_plan.frame = Some(picture::map_bounds(&self.moment()));
+        self.floor_plan.note = None;
         // A way point is inserted after the selected one.
         let piece = match handle.id {
             PLACE => self.piece(),
             _ => held,
         };
-        self.flat.stroke = Some(Stroke {
+        self.floor_plan.stroke = Some(Stroke {
             handle,
             from: at,
             before: self.kept(),
@@ -346,8 +353,8 @@ impl FullLap {
     }
 
     fn chosen_before_stroke(&self) -> Option<usize> {
-        match self.flat.stroke.as_ref()?.piece {
-            Some(Piece::WayPoint(index)) => Some(index),
+        match self.floor_plan.stroke.as_ref()?.piece {
+            Some(PlanElement::WayPoint(index)) => Some(index),
             _ => None,
         }
     }
@@ -358,16 +365,17 @@ impl FullLap {
     }
 
     /// Shows the result of the stroke so far; one stroke is one change.
-    fn show_stroke(&mut self, after: Option<(Sketch, Piece)>) {
-        let Some((sketch, piece)) = after.filter(|(sketch, _)| *sketch != self.flat.sketch) else {
+    fn show_stroke(&mut self, after: Option<(Sketch, PlanElement)>) {
+        let Some((sketch, piece)) = after.filter(|(sketch, _)| *sketch != self.floor_plan.sketch)
+        else {
             return;
         };
-        if let Some(stroke) = &self.flat.stroke {
+        if let Some(stroke) = &self.floor_plan.stroke {
             let before = stroke.before.clone();
-            self.flat.remember(before);
+            self.floor_plan.remember(before);
         }
         self.playback.pause();
-        self.flat.follows = true;
+        self.floor_plan.follows = true;
         self.take(sketch);
         self.choose(Some(piece));
     }
@@ -380,10 +388,10 @@ impl FullLap {
             Tool::Move => self.choose(under),
             Tool::Remove => {
                 self.choose(under);
-                self.flat.note = None;
+                self.floor_plan.note = None;
                 self.remove_piece();
             }
-            Tool::Wall if self.flat.note.is_none() => {
+            Tool::Wall if self.floor_plan.note.is_none() => {
                 self.refuse("drag from one end of the wall to the other");
             }
             Tool::Wall | Tool::Way => {}
@@ -392,8 +400,8 @@ impl FullLap {
 
     /// The pointer was released.
     pub(super) fn end_stroke(&mut self) {
-        self.flat.stroke = None;
-        self.flat.frame = None;
+        self.floor_plan.stroke = None;
+        self.floor_plan.frame = None;
     }
 }
 
@@ -401,16 +409,16 @@ impl FullLap {
 pub(super) fn drawn(lap: &FullLap) -> Option<super::moment::Drawn<'_>> {
     let tool = Tool::chosen(&lap.values);
     (tool.is_some() || is_own(&lap.values)).then(|| super::moment::Drawn {
-        sketch: &lap.flat.sketch,
+        sketch: &lap.floor_plan.sketch,
         tool,
         piece: lap.piece().filter(|_| tool.is_some()),
         problem: lap
-            .flat
+            .floor_plan
             .course
             .as_ref()
             .err()
             .filter(|_| is_own(&lap.values)),
-        note: lap.flat.note.as_deref(),
-        frame: lap.flat.frame,
+        note: lap.floor_plan.note.as_deref(),
+        frame: lap.floor_plan.frame,
     })
 }

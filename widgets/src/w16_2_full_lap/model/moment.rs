@@ -1,13 +1,13 @@
 //! The state of the widget at a tick: poses of the graph, interpolated during a loop's animation.
 
 use ch16_lab::lap::{LoopAttempt, OwnLoop, RecordedEdge};
-use kit::scene::Bounds;
 use pr_geom::SE2;
 use pr_sim::{CourseError, Sketch};
+use widget_kit::scene::Bounds;
 
-use super::flat::Tool;
+use super::floor_plan::Tool;
 use super::pick::Part;
-use super::piece::Piece;
+use super::plan_element::PlanElement;
 use super::runs::Runs;
 
 /// The drawing of the reader's own flat, or of a world that is being edited.
@@ -18,7 +18,7 @@ pub struct Drawn<'a> {
     /// The selected tool.
     pub tool: Option<Tool>,
     /// The selected piece.
-    pub piece: Option<Piece>,
+    pub piece: Option<PlanElement>,
     /// Why it cannot be driven; then the laps are of another world.
     pub problem: Option<&'a CourseError>,
     /// Why the last edit was rejected.

@@ -1,7 +1,7 @@
 //! A custom loop: its settings, its result, and its undo history.
 
 use ch16_lab::lap::{Claim, GateUse, OwnLoop, OwnLoopError, OwnLoopRequest};
-use kit::values::Values;
+use widget_kit::values::Values;
 
 use super::runs::Runs;
 

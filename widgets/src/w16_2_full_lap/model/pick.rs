@@ -1,6 +1,6 @@
 //! The selected part of the graph: a keyframe, an edge between two of them, or a loop.
 
-use kit::values::Values;
+use widget_kit::values::Values;
 
 use crate::w16_2_full_lap::spec::{NUMBER, PICK, Picked};
 

@@ -1,7 +1,7 @@
 //! The panels: the map, the close-up of the loop, the plots over time, the strain of each edge.
 
 mod closeup;
-mod flat;
+mod floor_plan;
 mod loop_style;
 mod map;
 mod parts;
@@ -10,7 +10,7 @@ mod shapes;
 mod strain;
 mod wipe;
 
-use kit::scene::Scene;
+use widget_kit::scene::Scene;
 
 use super::moment::Moment;
 

@@ -4,10 +4,10 @@ use ch16_lab::lap::{BuiltInWorld, LapConfig, LapMatcher, LoopClosure};
 use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
-use kit::run::LOOPS;
-use kit::run::NOISE;
-use kit::values::Values;
 use pr_sim::Course;
+use widget_kit::run::LOOPS;
+use widget_kit::run::NOISE;
+use widget_kit::values::Values;
 
 use crate::w16_2_full_lap::spec::{GATE, GATE_MODEL, INFORMATION, MATCHER, SEED, WORLD};
 

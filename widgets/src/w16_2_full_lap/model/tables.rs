@@ -4,13 +4,13 @@
 
 use ch16_lab::lap::{LapSummary, LoopAttempt, LoopEffect, RecordedEdge, edge_strain};
 use ch16_slam2d::loops::LoopRejection;
-use kit::model::{Table, TablePlace};
+use widget_kit::model::{Table, TablePlace};
 
 use super::moment::Moment;
 use super::pick::Part;
 use super::picture::part_of;
 use super::runs::{Results, Runs};
-use super::words::{ends, model_name};
+use super::texts::{ends, model_name};
 
 /// The tables beside the picture.
 pub fn shown(runs: &Runs, seen: usize, canonical: &[Results]) -> Vec<Table> {

@@ -1,7 +1,7 @@
 //! The widget without its picture, against the reference laps and the claims of its texts.
 
 mod both_gates;
-mod flat;
+mod floor_plan;
 mod own;
 mod parts;
 mod playing;
@@ -9,8 +9,8 @@ mod reference;
 mod settings;
 mod worlds;
 
-use kit::model::{Fact, Standing};
-use kit::scene::{Layer, Mark, Stroke, Tone};
+use widget_kit::model::{Assessment, Fact};
+use widget_kit::scene::{Layer, Mark, Stroke, Tone};
 
 use super::*;
 

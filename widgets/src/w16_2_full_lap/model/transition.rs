@@ -1,6 +1,6 @@
 //! The animation from the poses before a loop to the poses after it.
 
-use kit::model::Activity;
+use widget_kit::model::Activity;
 
 /// Time for which the old poses stand still first, so that they are seen.
 const HOLD_S: f64 = 0.4;

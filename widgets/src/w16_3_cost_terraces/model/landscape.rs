@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use kit::scene::{Bounds, Cell, Raster};
 use pr_geom::sort_numbers;
+use widget_kit::scene::{Bounds, Cell, Raster};
 
 use crate::w16_3_cost_terraces::spec::Colors;
 use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;

@@ -7,7 +7,7 @@ mod plots;
 mod profiles;
 mod rows;
 
-use kit::scene::{Axis, Layer, Mark, Scene, Tone};
+use widget_kit::scene::{Axis, Layer, Mark, Scene, Tone};
 
 use super::landscape::Landscape;
 use super::rests::Rests;

@@ -1,8 +1,8 @@
 //! Sweeps dropped on the map, each with independent noise, and the animation of points to their results.
 
 use ch16_lab::terrain::Drops;
-use kit::model::{Activity, Motion};
 use pr_geom::math;
+use widget_kit::model::{Activity, Motion};
 
 use super::terrains::Terrains;
 

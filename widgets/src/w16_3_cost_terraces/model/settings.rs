@@ -1,6 +1,6 @@
 //! Converts the values of the parameters to the types of the core.
 
-use kit::values::Values;
+use widget_kit::values::Values;
 
 use crate::w16_3_cost_terraces::spec::{
     CELLS, COLOURS, Colors, HEADING, MAX_ROWS, NDT_CELL, ODOMETRY, PROBE_X, PROBE_Y, Place, ROWS,

@@ -1,7 +1,7 @@
 //! The data of every panel: shown beside the picture, or exported as CSV.
 
-use kit::model::Table;
-use kit::ticks::signed;
+use widget_kit::model::Table;
+use widget_kit::ticks::signed;
 
 use super::landscape::{Ball, Landscape, shift_m};
 use super::rests::Rests;

@@ -6,8 +6,8 @@ use ch16_lab::terrain::{
 };
 use ch16_slam2d::cloud::{NearestMap, PointCloud};
 use ch16_slam2d::ndt::NdtCell;
-use kit::scene::Bounds;
 use pr_geom::{SE2, Vector2, math};
+use widget_kit::scene::Bounds;
 
 use super::landscape::{Ball, End, Landscape};
 use super::settings::Settings;

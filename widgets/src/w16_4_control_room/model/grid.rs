@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use ch16_lab::lap::LapRecord;
 use ch16_slam2d::graph::EdgeKind;
-use kit::model::Fact;
-use kit::scene::{Bounds, Cell, Raster};
 use pr_geom::math;
 use pr_grid::OccupancyGrid;
+use widget_kit::model::Fact;
+use widget_kit::scene::{Bounds, Cell, Raster};
 
 /// Odds above which a cell counts as occupied: nine to one, a probability of 0.9.
 const SURE_ODDS: f64 = 9.0;

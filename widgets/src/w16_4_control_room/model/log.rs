@@ -1,7 +1,7 @@
 //! The event log, tick by tick, in words.
 
 use ch16_lab::lap::{LapRecord, LapTrace, LoopAttempt, LoopJudgement};
-use kit::model::{Standing, TimelineMark};
+use widget_kit::model::{Assessment, TimelineMark};
 
 /// One line of the log.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub struct Event {
     /// The event.
     pub text: String,
     /// Good or bad, for a loop.
-    pub standing: Standing,
+    pub standing: Assessment,
     /// Whether it has a mark on the timeline, as loops do.
     pub marked: bool,
     /// Its lane.
@@ -39,7 +39,7 @@ pub fn events(record: &LapRecord) -> Vec<Event> {
                 tick,
                 part,
                 text,
-                standing: Standing::Neutral,
+                standing: Assessment::Neutral,
                 marked: false,
                 lane,
             });
@@ -100,14 +100,14 @@ fn loop_events(lap: &LapTrace, attempt: &LoopAttempt) -> Vec<Event> {
     }
     let keyframes = attempt.verification.from_node + 1;
     let drawn = format!("grid drawn again from {keyframes} keyframes");
-    vec![tested, event("map", drawn, Standing::Neutral, false)]
+    vec![tested, event("map", drawn, Assessment::Neutral, false)]
 }
 
 /// Good is an accepted loop that is right, bad an accepted one that is wrong.
-fn standing(judgement: LoopJudgement) -> Standing {
+fn standing(judgement: LoopJudgement) -> Assessment {
     match judgement {
-        LoopJudgement::Right => Standing::Good,
-        LoopJudgement::FalseAcceptance => Standing::Bad,
-        LoopJudgement::Rejected => Standing::Neutral,
+        LoopJudgement::Right => Assessment::Good,
+        LoopJudgement::FalseAcceptance => Assessment::Bad,
+        LoopJudgement::Rejected => Assessment::Neutral,
     }
 }

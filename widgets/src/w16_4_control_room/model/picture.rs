@@ -6,11 +6,11 @@ mod plots;
 use ch16_lab::lap::{LapRecord, RegistrationView};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::graph::EdgeKind;
-use kit::scene::{
-    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Raster, Scene, Stroke, Tone, Weight,
-};
 use pr_geom::SE2;
 use pr_sim::World;
+use widget_kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Raster, Scene, Stroke, Tone, Weight,
+};
 
 use super::ControlRoom;
 

@@ -1,9 +1,9 @@
 //! Converts the values of the parameters to the types of the core.
 
 use ch16_lab::lap::LapConfig;
-use kit::run::LOOPS;
-use kit::run::NOISE;
-use kit::values::Values;
+use widget_kit::run::LOOPS;
+use widget_kit::run::NOISE;
+use widget_kit::values::Values;
 
 use crate::w16_4_control_room::spec::SEED;
 

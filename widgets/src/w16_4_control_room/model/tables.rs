@@ -1,6 +1,6 @@
 //! The tables: the event log, and the data of every plot.
 
-use kit::model::Table;
+use widget_kit::model::Table;
 
 use super::ControlRoom;
 use super::log::Event;

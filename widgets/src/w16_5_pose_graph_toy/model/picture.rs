@@ -1,13 +1,13 @@
 //! The panels: poses connected by springs, a bar for each spring, χ² over the steps.
 
 use ch16_slam2d::graph::{EdgeKind, EdgeView};
-use kit::chart::{Series, TimeChart, axis_from_zero};
-use kit::scene::{
+use pr_geom::{SE2, math};
+use widget_kit::chart::{Series, TimeChart, axis_from_zero};
+use widget_kit::scene::{
     Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
-use pr_geom::{SE2, math};
 
-use super::hands::{bow_m, knob, turn_handle};
+use super::interaction::{bow_m, knob, turn_handle};
 use super::{PoseGraphToy, panel};
 
 use crate::w16_5_pose_graph_toy::spec::{PINNED, STIFFNESS};

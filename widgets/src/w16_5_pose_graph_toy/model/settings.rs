@@ -1,9 +1,9 @@
 //! Converts the values of the parameters to the types of the core.
 
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
-use kit::values::Values;
 use nalgebra::Matrix3;
 use pr_geom::{SE2, math};
+use widget_kit::values::Values;
 
 use crate::w16_5_pose_graph_toy::spec::{GAP, GRAPH, MOVED, ODOMETRY, PINNED, STIFFNESS, Shape};
 

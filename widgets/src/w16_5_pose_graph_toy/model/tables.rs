@@ -1,9 +1,9 @@
 //! The tables: every spring beside the picture, and the steps for the export.
 
-use kit::model::Table;
+use widget_kit::model::Table;
 
 use super::PoseGraphToy;
-use super::words::{ends, kind};
+use super::texts::{ends, kind};
 
 /// All tables, the shown ones first.
 pub fn all(toy: &PoseGraphToy) -> Vec<Table> {

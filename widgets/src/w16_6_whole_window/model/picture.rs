@@ -6,11 +6,13 @@ mod places;
 pub use bounds::box_at;
 
 use ch16_slam2d::cloud::PointCloud;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::SE2;
+use widget_kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
 
-use super::hands::turn_handle;
-use super::words::now;
+use super::interaction::turn_handle;
+use super::texts::now;
 use super::{WholeWindow, panel};
 use crate::sweep_bounds::sweep_bounds;
 

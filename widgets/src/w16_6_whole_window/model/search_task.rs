@@ -4,8 +4,8 @@ use ch16_lab::basin::{BasinOutcome, BasinScene};
 use ch16_lab::whole_window::{ScoreSurface, WindowConfig, WindowSearch, refine};
 use ch16_slam2d::icp::IcpWorkspace;
 use ch16_slam2d::search::{ScanSearch, ScoredPose, SearchGoal};
-use kit::model::Activity;
 use pr_geom::SE2;
+use widget_kit::model::Activity;
 
 /// Boxes in one piece of work: some tenths of a millisecond.
 const BOXES_PER_PIECE: usize = 30;

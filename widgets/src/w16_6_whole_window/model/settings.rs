@@ -2,7 +2,7 @@
 
 use ch16_lab::basin::BasinStart;
 use ch16_lab::whole_window::WindowConfig;
-use kit::values::Values;
+use widget_kit::values::Values;
 
 use crate::w16_6_whole_window::spec::{CELL, DX, DY, HEADING, TURN, WINDOW};
 

@@ -1,11 +1,11 @@
 //! The tables: the headings of the room and both results beside the picture, the search for the export.
 
-use kit::model::Table;
-use kit::ticks::signed;
+use widget_kit::model::Table;
+use widget_kit::ticks::signed;
 
 use super::WholeWindow;
 use super::search_task::TURNS;
-use super::words::heading_error_deg;
+use super::texts::heading_error_deg;
 
 /// The tables beside the picture.
 pub fn shown(window: &WholeWindow) -> Vec<Table> {

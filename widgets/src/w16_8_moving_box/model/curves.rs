@@ -2,7 +2,7 @@
 
 use ch16_lab::moving_box::{BoxConfig, BoxErrors, BoxMethods, BoxScene};
 use ch16_slam2d::icp::IcpWorkspace;
-use kit::model::Activity;
+use widget_kit::model::Activity;
 
 use crate::w16_8_moving_box::spec::MAX_SHARE;
 

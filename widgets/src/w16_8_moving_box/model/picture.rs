@@ -3,9 +3,11 @@
 use ch16_lab::moving_box::{BoxMethods, BoxScene};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpVariant, huber_weight};
-use kit::chart::axis_from_zero;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::{Point2, Vector2, math};
+use widget_kit::chart::axis_from_zero;
+use widget_kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
 
 use super::curves::SEEDS;
 use super::{MovingBox, panel, settings};

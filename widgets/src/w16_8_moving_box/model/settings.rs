@@ -1,7 +1,7 @@
 //! Converts the values of the parameters to the types of the core.
 
 use ch16_lab::moving_box::{BoxConfig, BoxMethods};
-use kit::values::Values;
+use widget_kit::values::Values;
 
 use crate::w16_8_moving_box::spec::{DROPPED, HUBER, MOVED, SEED, SHARE, TAU, VARIANT};
 

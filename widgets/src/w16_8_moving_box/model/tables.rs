@@ -1,11 +1,11 @@
 //! The tables: the three registrations beside the picture, the curves for the export.
 
 use ch16_lab::moving_box::BoxMethods;
-use kit::model::Table;
-use kit::ticks::signed;
+use widget_kit::model::Table;
+use widget_kit::ticks::signed;
 
 use super::MovingBox;
-use super::words::error_m;
+use super::texts::error_m;
 
 /// All tables, the shown one first.
 pub fn all(moving: &MovingBox) -> Vec<Table> {

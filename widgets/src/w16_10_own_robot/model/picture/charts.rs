@@ -1,7 +1,7 @@
 //! Plots over the keyframes.
 
-use kit::chart::{Series, TimeChart};
-use kit::scene::{Mark, Panel, Tone};
+use widget_kit::chart::{Series, TimeChart};
+use widget_kit::scene::{Mark, Panel, Tone};
 
 use crate::w16_10_own_robot::model::{OwnRobot, panel};
 

@@ -1,7 +1,7 @@
 //! The robot of another log on the map.
 
-use kit::scene::{Layer, Mark, Stroke};
 use pr_geom::math;
+use widget_kit::scene::{Layer, Mark, Stroke};
 
 use super::OTHER;
 use crate::w16_10_own_robot::model::OwnRobot;

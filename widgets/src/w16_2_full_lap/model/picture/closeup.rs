@@ -2,14 +2,14 @@
 //! one, and the region in which each gate accepts it.
 
 use ch16_lab::lap::LoopAttempt;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::SE2;
+use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
 use crate::w16_2_full_lap::model::gates::{Gate, Gates, Region};
 use crate::w16_2_full_lap::model::moment::Moment;
 use crate::w16_2_full_lap::model::panel;
 use crate::w16_2_full_lap::model::runs::Runs;
-use crate::w16_2_full_lap::model::words::{ends, model_name};
+use crate::w16_2_full_lap::model::texts::{ends, model_name};
 
 /// Half width and half height of the view, m: the corridor is 1.2 m wide.
 const HALF_VIEW_M: [f64; 2] = [2.0, 1.3];

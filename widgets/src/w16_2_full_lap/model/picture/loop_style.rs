@@ -1,7 +1,7 @@
 //! The style of a loop, shared by all panels.
 
 use ch16_lab::lap::LoopAttempt;
-use kit::scene::{LegendEntry, Mark, Stroke, Tone};
+use widget_kit::scene::{LegendEntry, Mark, Stroke, Tone};
 
 /// The line and the mark of a loop.
 pub struct LoopStyle {

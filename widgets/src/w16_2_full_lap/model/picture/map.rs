@@ -1,14 +1,16 @@
 //! The map panel: the world, the three estimates, the graph and its map.
 
 use ch16_lab::lap::{BuiltInWorld, LoopAttempt};
-use kit::scene::{Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::{SE2, math};
 use pr_sim::{Wall, World};
+use widget_kit::scene::{
+    Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight,
+};
 
 use super::loop_style::LoopStyle;
 use super::shapes::{arc, xy};
-use super::{flat, parts, wipe};
-use crate::w16_2_full_lap::model::flat::extent;
+use super::{floor_plan, parts, wipe};
+use crate::w16_2_full_lap::model::floor_plan::extent;
 use crate::w16_2_full_lap::model::moment::{Drawn, Moment};
 use crate::w16_2_full_lap::model::panel;
 
@@ -27,7 +29,7 @@ pub fn map(moment: &Moment) -> Panel {
         layers.extend(lap(moment));
     }
     if let Some(drawn) = moment.drawn.filter(is_planned) {
-        layers.extend(flat::layers(&drawn));
+        layers.extend(floor_plan::layers(&drawn));
     }
     if moment.runs.place() == Some(BuiltInWorld::Apartment) && moment.drawn.is_none() {
         layers.extend(rooms());
@@ -70,7 +72,7 @@ fn is_planned(drawn: &Drawn) -> bool {
 /// `The Apartment after tick 92`.
 fn title(moment: &Moment) -> String {
     if let Some(drawn) = moment.drawn.filter(is_planned) {
-        return flat::title(&drawn);
+        return floor_plan::title(&drawn);
     }
     let mut words = moment.runs.place_label().to_owned();
     words[..1].make_ascii_uppercase();
@@ -126,7 +128,7 @@ fn walls(moment: &Moment) -> Layer {
     let ends = |wall: &Wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]];
     Layer::segments(
         match &moment.drawn {
-            Some(drawn) => flat::walls(drawn),
+            Some(drawn) => floor_plan::walls(drawn),
             None => moment.runs.world().walls().iter().map(ends).collect(),
         },
         Stroke::Solid,
@@ -287,7 +289,7 @@ fn legend(moment: &Moment) -> Vec<LegendEntry> {
         legend.push(LegendEntry::line(label, parts::STRAINED, Stroke::Solid));
     }
     if moment.drawn.as_ref().is_some_and(is_planned) {
-        legend.push(flat::legend());
+        legend.push(floor_plan::legend());
     }
     legend
 }

@@ -1,7 +1,7 @@
 //! The selected part of the graph and the custom loop, on the map.
 
 use ch16_lab::lap::{RecordedEdge, edge_strain};
-use kit::scene::{Layer, Mark, Stroke, Tone};
+use widget_kit::scene::{Layer, Mark, Stroke, Tone};
 
 use super::loop_style::LoopStyle;
 use super::shapes::{arc, xy};
@@ -9,7 +9,7 @@ use super::wipe::{clipped, divider, shown_nodes};
 use crate::w16_2_full_lap::model::found::{Found, find};
 use crate::w16_2_full_lap::model::moment::Moment;
 use crate::w16_2_full_lap::model::pick::Part;
-use crate::w16_2_full_lap::model::words::{ends, part_label};
+use crate::w16_2_full_lap::model::texts::{ends, part_label};
 
 /// Distance of text from its mark, in pixels.
 const CLEAR_PX: f32 = 12.0;

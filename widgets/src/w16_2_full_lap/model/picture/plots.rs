@@ -1,14 +1,14 @@
 //! The plots over time: errors, map disagreement, and the χ² of each attempt with the gate.
 
 use ch16_lab::lap::LoopAttempt;
-use kit::chart::{Series, TimeChart, axis_from_zero};
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use widget_kit::chart::{Series, TimeChart, axis_from_zero};
+use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
 use super::loop_style::LoopStyle;
 use crate::w16_2_full_lap::model::moment::Moment;
 use crate::w16_2_full_lap::model::panel;
 use crate::w16_2_full_lap::model::runs::Runs;
-use crate::w16_2_full_lap::model::words::ends;
+use crate::w16_2_full_lap::model::texts::ends;
 
 /// The panels whose horizontal axis is the time.
 pub const OVER_TIME: [&str; 3] = ["errors", "disagreement", panel::GATE];

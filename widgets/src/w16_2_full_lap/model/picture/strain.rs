@@ -2,9 +2,9 @@
 
 use ch16_lab::lap::{EdgeStrain, RecordedEdge, edge_strain};
 use ch16_slam2d::graph::EdgeKind;
-use kit::chart::axis_from_zero;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::math;
+use widget_kit::chart::axis_from_zero;
+use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
 use super::loop_style::LoopStyle;
 use crate::w16_2_full_lap::model::moment::Moment;

@@ -1,6 +1,6 @@
 //! Before and after a closed loop in one map: left of a line the old graph, right of it the new one.
 
-use kit::scene::{Layer, Mark, Stroke, Tone};
+use widget_kit::scene::{Layer, Mark, Stroke, Tone};
 
 use super::map::shown_bounds;
 use super::shapes::xy;

@@ -2,7 +2,7 @@
 
 use ch16_lab::lap::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopJudgement};
 use ch16_slam2d::loops::{GateModel, LoopVerification};
-use kit::scene::Stroke;
+use widget_kit::scene::Stroke;
 
 use super::*;
 use crate::w16_2_full_lap::model::gates::{Gate, Gates, Region};
@@ -68,7 +68,7 @@ fn the_measured_position_is_in_a_gates_region_exactly_if_that_gate_accepts() {
             for (which, gate) in [gates.path, gates.exact].iter().enumerate() {
                 let region = gate.region(loop_);
                 let inside = region.is_some_and(|region| holds(&region, loop_));
-                assert_eq!(inside, gate.test.passes(), "{}", words::ends(attempt));
+                assert_eq!(inside, gate.test.passes(), "{}", texts::ends(attempt));
                 seen[which][usize::from(inside)] += 1;
             }
         }

@@ -16,7 +16,7 @@ fn the_settings_define_the_loop_and_the_picture_shows_where_its_error_goes() {
     // The whole map after the loop.
     set(&mut model, "wipe", 0.0);
     let words = model.outcome();
-    assert_eq!(words.standing, Standing::Bad);
+    assert_eq!(words.standing, Assessment::Bad);
     assert_eq!(words.verdict, "your wrong loop accepted");
     assert!(
         words.sentence.contains("let past the gate"),
@@ -63,7 +63,7 @@ fn the_presets_show_what_they_claim() {
         fact(&model, "own_gate_chi2") > fact(&model, "gate_chi2"),
         "no gate lets it in"
     );
-    assert_eq!(model.outcome().standing, Standing::Good);
+    assert_eq!(model.outcome().standing, Assessment::Good);
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn kernels_and_claims_have_the_names_of_the_core() {
     use ch16_lab::lap::{Choice, Claim, OwnKernel};
     let labels = |id: &str| {
         let spec = SPEC.params.iter().find(|param| param.id == id).unwrap();
-        let kit::param::ParamKind::Choice { options } = spec.kind else {
+        let widget_kit::param::ParamKind::Choice { options } = spec.kind else {
             panic!("{id} is no choice");
         };
         options

@@ -3,7 +3,7 @@
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner};
 use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::loops::LoopRejection;
-use kit::param::ParamKind;
+use widget_kit::param::ParamKind;
 
 use super::*;
 use crate::w16_2_full_lap::spec::WORLD;
@@ -77,7 +77,7 @@ fn setting_a_value_starts_no_lap_and_the_old_picture_stays_until_the_new_lap_is_
                 if is_seen {
                     Activity::Busy
                 } else {
-                    Activity::Unseen
+                    Activity::BusyUnchanged
                 }
             );
             pieces += 1;
@@ -230,7 +230,7 @@ fn a_wrong_loop_is_reported_as_wrong_everywhere() {
     // In the reference laps, too: accepted by every gate, and more than 0.3 m off the truth.
     let model = at(&[("seed", 6.0), ("noise", 2.0), ("t", 92.0)]);
     let outcome = model.outcome();
-    assert_eq!(outcome.standing, Standing::Bad);
+    assert_eq!(outcome.standing, Assessment::Bad);
     assert_eq!(outcome.verdict, "wrong loop accepted");
     assert_eq!(
         outcome.sentence,
@@ -239,7 +239,7 @@ fn a_wrong_loop_is_reported_as_wrong_everywhere() {
     );
     assert!(fact(&model, "loop_error_m") > 0.3);
     let mark = &model.timeline().unwrap().marks[0];
-    assert_eq!(mark.standing, Standing::Bad);
+    assert_eq!(mark.standing, Assessment::Bad);
     assert_eq!(mark.label, "wrong loop 29 to 7 accepted");
     let Scene { panels } = model.scene();
     let named = panels[0]

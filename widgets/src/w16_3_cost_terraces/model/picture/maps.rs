@@ -1,6 +1,8 @@
 //! The two landscapes with cross hair, ball, lowest cell and truth.
 
-use kit::scene::{Aspect, Axis, ColorBar, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use widget_kit::scene::{
+    Aspect, Axis, ColorBar, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight,
+};
 
 use super::{Looked, Moment, ball, haloed};
 use crate::w16_3_cost_terraces::model::landscape::Landscape;

@@ -1,7 +1,9 @@
 //! The sweep over its target: ICP's partners, and NDT's Gaussians.
 
-use kit::scene::{Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::{math, sort_numbers};
+use widget_kit::scene::{
+    Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight,
+};
 
 use super::{Looked, Moment};
 use crate::w16_3_cost_terraces::model::terrains::{Bell, Pairing, Terrains};

@@ -1,11 +1,11 @@
 //! The slices through the cross hair, and the information at the truth over the results of many sweeps.
 
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
 use super::{Moment, shift_axis};
 use crate::w16_3_cost_terraces::model::rests::Rests;
 use crate::w16_3_cost_terraces::model::terrains::Terrains;
-use kit::ticks::signed;
+use widget_kit::ticks::signed;
 
 /// Smallest range of a vertical axis, in m² or in score, so that flat ground looks flat.
 const MIN_SPAN: f64 = 1e-3;

@@ -1,6 +1,6 @@
 //! The ground under each ball, from its drop along its path and straight on to the truth.
 
-use kit::scene::{Aspect, Axis, Layer, Panel, Stroke, Tone, Weight};
+use widget_kit::scene::{Aspect, Axis, Layer, Panel, Stroke, Tone, Weight};
 
 use super::{Moment, ball};
 use crate::w16_3_cost_terraces::model::landscape::Landscape;

@@ -1,10 +1,10 @@
 //! The rows of the point-to-plane step, and the motion that none of them constrains.
 
-use kit::scene::{Layer, LegendEntry, Mark, Panel, Stroke, Tone};
+use widget_kit::scene::{Layer, LegendEntry, Mark, Panel, Stroke, Tone};
 
 use super::places::{MAX_M, frame, map_points, panel as place};
 use crate::w16_3_cost_terraces::model::terrains::Terrains;
-use crate::w16_3_cost_terraces::model::words::row_in_words;
+use crate::w16_3_cost_terraces::model::texts::row_in_words;
 
 /// Length of a normal, and of the arrow, m.
 const NORMAL_M: f64 = 0.3;

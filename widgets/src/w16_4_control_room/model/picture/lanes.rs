@@ -2,8 +2,8 @@
 
 use ch16_lab::lap::{LapRecord, LoopAttempt, TickReport};
 use ch16_slam2d::loops::LoopRejection;
-use kit::scene::{Aspect, Axis, Layer, Mark, Panel, Stroke, Tone, Weight};
-use kit::ticks::signed;
+use widget_kit::scene::{Aspect, Axis, Layer, Mark, Panel, Stroke, Tone, Weight};
+use widget_kit::ticks::signed;
 
 /// Name of the panel.
 pub const ID: &str = "lanes";

@@ -1,7 +1,7 @@
 //! The plots over time: the correspondence threshold and the errors.
 
-use kit::chart::{Series, TimeChart};
-use kit::scene::{Layer, Mark, Panel, Tone};
+use widget_kit::chart::{Series, TimeChart};
+use widget_kit::scene::{Layer, Mark, Panel, Tone};
 
 use super::lanes;
 use crate::w16_4_control_room::model::history::History;

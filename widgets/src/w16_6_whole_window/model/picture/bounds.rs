@@ -2,9 +2,9 @@
 
 use ch16_lab::whole_window::SeenBox;
 use ch16_slam2d::search::{BoxFate, PoseBox};
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Panel, Stroke, Tone, Weight};
+use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Panel, Stroke, Tone, Weight};
 
-use super::super::words::{grouped, heading_error_deg};
+use super::super::texts::{grouped, heading_error_deg};
 use super::super::{LookedAt, WholeWindow, panel};
 
 pub fn panel(window: &WholeWindow) -> Panel {

@@ -1,11 +1,11 @@
 //! The window from above: the best score of each position, and the open boxes over it.
 
 use ch16_slam2d::search::PoseBox;
-use kit::scene::{
+use widget_kit::scene::{
     Aspect, Axis, Bounds, Cell, Layer, LegendEntry, Mark, Panel, Raster, Stroke, Tone, Weight,
 };
 
-use super::super::words::grouped;
+use super::super::texts::grouped;
 use super::super::{WholeWindow, panel};
 use super::{icp_now, icp_path, sensor};
 

@@ -1,0 +1,297 @@
+//! The result in words and numbers.
+
+use pr_geom::math;
+use widget_kit::model::{Assessment, Fact, Outcome};
+use widget_kit::plural::plural;
+
+use super::OwnRobot;
+use super::log_state::{Link, LogState, Stage, Verdict};
+
+/// The privacy statement about the reader's file.
+const STAYS: &str = "The file stays in this browser; nothing of it is sent anywhere.";
+
+/// The current result.
+pub fn outcome(own: &OwnRobot) -> Outcome {
+    let robot = &own.robot;
+    let (standing, verdict) = match robot.stage {
+        Stage::Empty => (Assessment::Neutral, "no log yet"),
+        Stage::Failed => (Assessment::Bad, "no map"),
+        _ if robot.paused => (Assessment::Neutral, "held"),
+        Stage::Opening => (Assessment::Neutral, "opening"),
+        Stage::Reading => (Assessment::Neutral, "reading"),
+        Stage::Finishing => (Assessment::Neutral, "closing the last loops"),
+        Stage::Solving => (Assessment::Neutral, "solving"),
+        Stage::Checking => (Assessment::Neutral, "checking"),
+        _ if robot.is_under_way() => (Assessment::Neutral, "looking for the robot"),
+        Stage::Done => return described(own, standing(robot), verdict_on_loops(robot)),
+    };
+    described(own, standing, verdict.to_owned())
+}
+
+fn described(own: &OwnRobot, standing: Assessment, verdict: String) -> Outcome {
+    Outcome {
+        standing,
+        verdict,
+        sentence: sentence(own),
+        facts: facts(own),
+    }
+}
+
+fn standing(robot: &LogState) -> Assessment {
+    match to_look_into(robot) {
+        0 if robot.doubts.is_empty() => Assessment::Good,
+        0 => Assessment::Neutral,
+        _ => Assessment::Doubtful,
+    }
+}
+
+fn verdict_on_loops(robot: &LogState) -> String {
+    match (to_look_into(robot), in_graph(robot)) {
+        (_, 0) => "mapped".to_owned(),
+        (0, all) => format!("none of {} to look into", plural(all, "loop")),
+        (some, all) => format!("{some} of {} to look into", plural(all, "loop")),
+    }
+}
+
+fn in_graph(robot: &LogState) -> usize {
+    robot.links.iter().filter(|link| link.is_in_graph()).count()
+}
+
+/// Loops of the graph that the rest of it contradicts, and that the reader has not accepted.
+fn to_look_into(robot: &LogState) -> usize {
+    let links = robot.links.iter();
+    let open = links.filter(|link| link.is_contradicted() && link.verdict != Verdict::Confirmed);
+    open.count()
+}
+
+fn sentence(own: &OwnRobot) -> String {
+    let robot = &own.robot;
+    let name = &robot.name;
+    let done = (100.0 * robot.share).round();
+    let progress = match robot.stage {
+        Stage::Empty => "Drop a log, open one, or map the sample.".to_owned(),
+        Stage::Failed if robot.answer.is_empty() => return robot.problem.clone(),
+        Stage::Failed => {
+            return format!("{}. {}", robot.problem.trim_end_matches('.'), robot.answer);
+        }
+        Stage::Opening => format!("{name} is opened."),
+        Stage::Reading => format!(
+            "{name}: {done:.0} % done, {}, {}, {} closed.",
+            plural(robot.scans as usize, "scan"),
+            plural(robot.keyframes.len(), "keyframe"),
+            plural(robot.tried[1] as usize, "loop")
+        ),
+        Stage::Finishing => format!("{name}: {done:.0} % done, the last loops are closed."),
+        Stage::Solving => format!(
+            "{name} is solved: {}.",
+            plural(robot.keyframes.len(), "pose")
+        ),
+        Stage::Checking | Stage::Done => finished(robot),
+    };
+    let held = if robot.paused { " It is held." } else { "" };
+    let answer = match robot.answer.as_str() {
+        "" => String::new(),
+        answer => format!(" {answer}"),
+    };
+    let grade = robot.grade.as_ref();
+    let grade = grade.map_or(String::new(), |grade| format!(" {}.", grade.words));
+    let visitor = visitor(own);
+    format!("{progress}{held}{grade}{visitor}{answer} {STAYS}")
+}
+
+/// The state of the other log's robot: overall, and at the current scan.
+fn visitor(own: &OwnRobot) -> String {
+    let Some(other) = &own.robot.other_log else {
+        return String::new();
+    };
+    let name = &other.name;
+    let Some((_, shown)) = own.place() else {
+        let why = other.remarks.first().map_or("", String::as_str);
+        return if other.is_over {
+            format!(" {why}.")
+        } else {
+            format!(" {name} is being localized on the map.")
+        };
+    };
+    let [.., doubtful, lost] = other.counts;
+    let first = if other.first.is_finite() {
+        format!("is found at its scan {:.0}", other.first)
+    } else if other.is_over {
+        "is found nowhere on this map".to_owned()
+    } else {
+        "is not found yet".to_owned()
+    };
+    let done = if other.is_over {
+        String::new()
+    } else {
+        format!(", {:.0} % done", (100.0 * other.share).floor())
+    };
+    let scans = other.localized() + doubtful + lost;
+    let [x, y, theta] = shown.pose;
+    let at = if x.is_finite() {
+        let sigma_m = shown.ellipse[0];
+        let known = if sigma_m.is_finite() {
+            format!(", known to {sigma_m:.2} m")
+        } else {
+            String::new()
+        };
+        format!(
+            " at x {x:.1} m, y {y:.1} m, turned {:.0}°{known}",
+            theta.to_degrees()
+        )
+    } else {
+        String::new()
+    };
+    format!(
+        " The robot of {name} {first}{done}: of {scans:.0} scans {:.0} are localized, {doubtful:.0} doubtful, {lost:.0} lost. At scan {:.0} it is {}{at}.",
+        other.localized(),
+        shown.scan,
+        shown.state.name()
+    )
+}
+
+fn finished(robot: &LogState) -> String {
+    let closed = in_graph(robot);
+    let contradicted = robot.links.iter().filter(|link| link.is_contradicted());
+    let contradicted = contradicted.count();
+    let accepted = match contradicted - to_look_into(robot) {
+        0 => String::new(),
+        some => format!(", {some} accepted by you"),
+    };
+    let doubted = match contradicted {
+        0 if robot.doubts.is_empty() => "no loop contradicts the graph".to_owned(),
+        0 => "no loop contradicts the graph, but the list of doubts is not empty".to_owned(),
+        1 => format!("one loop contradicts the graph{accepted}"),
+        many => format!("{many} loops contradict the graph{accepted}"),
+    };
+    let source = if robot.has_scans {
+        format!(
+            "{} became {}",
+            plural(robot.scans as usize, "scan"),
+            plural(robot.keyframes.len(), "keyframe")
+        )
+    } else {
+        plural(robot.keyframes.len(), "pose")
+    };
+    format!(
+        "{}: {source} on a path of {:.0} m with {}; {doubted}.",
+        robot.name,
+        path_length_m(robot),
+        plural(closed, "loop")
+    )
+}
+
+/// Path length over the keyframes, m.
+fn path_length_m(robot: &LogState) -> f64 {
+    let steps = robot.keyframes.windows(2);
+    let steps = steps.map(|two| {
+        let [a, b] = [two[0].pose, two[1].pose];
+        math::norm2(b[0] - a[0], b[1] - a[1])
+    });
+    // The empty sum is -0.
+    steps.fold(0.0, |sum, step| sum + step)
+}
+
+/// A loop with its evidence.
+pub fn evidence(link: &Link) -> String {
+    let why = match link.reason.as_str() {
+        "" => String::new(),
+        reason => format!(", because {reason}"),
+    };
+    let fits = if link.share.is_finite() {
+        format!(
+            "; {:.2} of the scan fits, {:.3} m off",
+            link.share, link.rmse_m
+        )
+    } else {
+        String::new()
+    };
+    let chi2 = if link.chi2.is_finite() {
+        format!("; χ² {:.1} of {:.1}", link.chi2, link.gate_chi2)
+    } else {
+        String::new()
+    };
+    format!(
+        "The loop of the list goes from keyframe {} to {}: {}{why}{fits}{chi2}.",
+        link.new,
+        link.old,
+        verdict(link)
+    )
+}
+
+/// The decision on a loop.
+pub fn verdict(link: &Link) -> &'static str {
+    match link.verdict {
+        Verdict::Closed => "closed",
+        Verdict::Rejected => "rejected",
+        Verdict::Removed => "rejected by you",
+        Verdict::Added => "closed by you",
+        Verdict::Confirmed => "accepted by you",
+    }
+}
+
+fn facts(own: &OwnRobot) -> Vec<Fact> {
+    let robot = &own.robot;
+    let count = |of: &dyn Fn(&Link) -> bool| {
+        let links = robot.links.iter().filter(|link| of(link)).count();
+        links as f64
+    };
+    let sigmas = robot.keyframes.iter().map(|keyframe| keyframe.sigma_m);
+    let worst_m = sigmas.filter(|s| s.is_finite()).fold(f64::NAN, f64::max);
+    let shown = robot.keyframes.get(own.keyframe());
+    let of_shown = |of: fn(&super::log_state::Keyframe) -> f64| shown.map_or(f64::NAN, of);
+    let grade_m = robot.grade.as_ref().map_or(f64::NAN, |grade| grade.error_m);
+    let done = 100.0 * robot.share;
+    let mut facts = vec![
+        Fact::count("done_percent", "done, %", done.floor()),
+        Fact::count("scans", "scans", robot.scans),
+        Fact::count("keyframes", "keyframes", robot.keyframes.len() as f64),
+        Fact::new("path_length_m", "path", path_length_m(robot), "m", 1),
+        Fact::count("loops", "loops in the graph", in_graph(robot) as f64),
+        Fact::count(
+            "loops_refused",
+            "loops not in the graph",
+            count(&|link| !link.is_in_graph()),
+        ),
+        Fact::count(
+            "loops_doubted",
+            "loops to look into",
+            to_look_into(robot) as f64,
+        ),
+        Fact::metres("worst_sigma_m", "largest σ", worst_m),
+        Fact::metres("error_m", "error against the reference", grade_m),
+        Fact::new("fit", "scan shown: fits", of_shown(|k| k.fit), "", 2),
+        Fact::metres("sigma_m", "keyframe shown: σ", of_shown(|k| k.sigma_m)),
+    ];
+    if let Some(other) = &robot.other_log {
+        let [.., doubtful, lost] = other.counts;
+        facts.extend([
+            Fact::count("where_localized", "other log: localized", other.localized()),
+            Fact::count("where_doubtful", "other log: doubtful", doubtful),
+            Fact::count("where_lost", "other log: lost", lost),
+        ]);
+    }
+    facts
+}
+
+/// The text alternative of the picture.
+pub fn summary(own: &OwnRobot) -> String {
+    let robot = &own.robot;
+    if robot.keyframes.is_empty() {
+        return format!(
+            "An empty map that waits for the log of a robot. {}",
+            sentence(own)
+        );
+    }
+    let shown = own.keyframe();
+    let [x, y, theta] = robot.keyframes[shown].pose;
+    let link = own.link().map(|link| evidence(&robot.links[link]));
+    // After a step to this loop the sentence already describes it.
+    let link = link.filter(|link| *link != robot.answer);
+    format!(
+        "A map with the path of the robot. {} Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°. {}",
+        sentence(own),
+        theta.to_degrees(),
+        link.unwrap_or_default()
+    )
+}

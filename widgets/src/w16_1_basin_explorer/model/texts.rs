@@ -1,0 +1,100 @@
+//! The result in words and numbers.
+
+use ch16_lab::basin::{BasinPlace, Minimum};
+use ch16_slam2d::icp::StopReason;
+use pr_geom::{SE2, math};
+use widget_kit::model::{Assessment, Fact, Outcome};
+use widget_kit::plural::plural;
+
+use super::BasinExplorer;
+use super::edge;
+use super::settings::{variant, variant_name};
+use crate::w16_1_basin_explorer::spec::{EDGE, Phase};
+
+use crate::w16_1_basin_explorer::spec::HEADING;
+
+/// The standing of the minimum that a run reached: the same that colours its cell of a basin map.
+pub fn standing(minimum: Minimum) -> Assessment {
+    match minimum {
+        Minimum::Right => Assessment::Good,
+        _ => Assessment::Bad,
+    }
+}
+
+pub fn outcome(explorer: &BasinExplorer) -> Outcome {
+    if let Some(asked) = edge::outcome(explorer) {
+        return asked;
+    }
+    let end = &explorer.run.outcome;
+    Outcome {
+        standing: standing(end.ending),
+        verdict: end.ending.name().to_owned(),
+        sentence: format!(
+            "From {:.0}° off, {} ends {:.2} m and {:.1}° from the truth: rmse {:.3} m over {} \
+             pairs; it {} {}.",
+            explorer.values.get(&HEADING),
+            variant_name(variant(&explorer.values)),
+            end.error_m,
+            end.error_deg.abs(),
+            end.rmse_m,
+            end.inliers,
+            stop_words(&end.stop),
+            plural(end.iterations, "iteration"),
+        ),
+        facts: vec![
+            Fact::new("error_m", "position error", end.error_m, "m", 3),
+            Fact::new("error_deg", "heading error", end.error_deg, "°", 1),
+            Fact::new("rmse_m", "rmse of the pairs", end.rmse_m, "m", 3),
+            Fact::new("pairs", "pairs", end.inliers as f64, "", 0),
+            Fact::new("iterations", "iterations", end.iterations as f64, "", 0),
+            Fact::yes_or_no("converged", "converged", end.stop.converged()),
+        ],
+    }
+}
+
+pub fn summary(explorer: &BasinExplorer) -> String {
+    if explorer.values.get(&EDGE) == Phase::Marking {
+        return format!(
+            "Two basin maps of headings and offsets, covered until the edge of the right basin is marked. {}",
+            outcome(explorer).sentence
+        );
+    }
+    let shown = explorer.shown();
+    let truth = explorer.scene.truth();
+    let place = match explorer.scene.place() {
+        BasinPlace::Room => "one room",
+        BasinPlace::Fence => "one row of equal posts",
+    };
+    let maps = if explorer.shows_maps() {
+        " Two basin maps show the minimum reached from every heading and offset."
+    } else {
+        ""
+    };
+    format!(
+        "Two laser sweeps of {place}, {} and {} points. At iteration {} of {} the source lies \
+         {:.2} m from where it belongs, with {} pairs and rmse {:.3} m. {}{maps}",
+        explorer.scene.target().len(),
+        explorer.scene.source().len(),
+        explorer.iteration(),
+        explorer.last(),
+        error_m(&truth, &shown.pose),
+        shown.pairs,
+        shown.rmse_m,
+        outcome(explorer).sentence,
+    )
+}
+
+/// Distance of a pose from the truth as the chapter measures it, m.
+pub fn error_m(truth: &SE2, pose: &SE2) -> f64 {
+    let error = truth.between(pose).log();
+    math::norm2(error.x, error.y)
+}
+
+fn stop_words(stop: &StopReason) -> &'static str {
+    match stop {
+        StopReason::SmallStep { .. } => "converged after",
+        StopReason::IterationLimit { .. } => "stopped at the limit of",
+        StopReason::TooFewPairs { .. } => "stopped for too few pairs after",
+        StopReason::NotFinite => "stopped at a non-finite value after",
+    }
+}

@@ -1,0 +1,294 @@
+//! The result in words and numbers.
+
+use ch16_lab::lap::{BuiltInWorld, LoopAttempt, LoopEffect, LoopJudgement, OwnLoopError};
+use ch16_slam2d::loops::GateModel;
+use widget_kit::model::{Assessment, Fact, Outcome};
+use widget_kit::plural::plural;
+
+use super::moment::Moment;
+use super::runs::Runs;
+
+pub mod floor_plan;
+pub mod parts;
+
+pub use parts::part_label;
+
+/// The main statement: an assessment, a verdict in a word or two, and a sentence.
+pub struct Statement {
+    /// Good or bad.
+    pub standing: Assessment,
+    /// One or two words.
+    pub verdict: String,
+    /// One sentence.
+    pub sentence: String,
+}
+
+/// `29 to 7`: the new node and the old one.
+pub fn ends(attempt: &LoopAttempt) -> String {
+    let loop_ = &attempt.verification;
+    format!("{} to {}", loop_.from_node, loop_.candidate.node)
+}
+
+/// `path` or `exact`.
+pub fn model_name(model: GateModel) -> &'static str {
+    match model {
+        GateModel::PathApproximation => "path",
+        GateModel::ExactMarginal => "exact",
+    }
+}
+
+/// Good is an accepted loop that is right, bad an accepted one that is wrong.
+pub fn standing(judgement: LoopJudgement) -> Assessment {
+    match judgement {
+        LoopJudgement::Right => Assessment::Good,
+        LoopJudgement::FalseAcceptance => Assessment::Bad,
+        LoopJudgement::Rejected => Assessment::Neutral,
+    }
+}
+
+/// The result at a tick: of the selected part, else of the custom loop, else of the loop tried in the tick,
+/// else of the estimates. `refused` is the reason why the custom loop is impossible.
+pub fn outcome(moment: &Moment, refused: Option<&OwnLoopError>) -> Outcome {
+    let Statement {
+        standing,
+        verdict,
+        sentence,
+    } = match &moment.drawn {
+        Some(drawn) => floor_plan::statement(drawn, statement(moment, refused)),
+        None => statement(moment, refused),
+    };
+    let (runs, tick) = (moment.runs, moment.tick);
+    let mut facts = moment_facts(runs, tick);
+    facts.extend(loop_facts(runs, tick));
+    facts.extend(parts::facts(moment));
+    Outcome {
+        standing,
+        verdict,
+        sentence,
+        facts,
+    }
+}
+
+fn statement(moment: &Moment, refused: Option<&OwnLoopError>) -> Statement {
+    let (runs, tick) = (moment.runs, moment.tick);
+    let neutral = |verdict: &str, sentence| Statement {
+        standing: Assessment::Neutral,
+        verdict: verdict.to_owned(),
+        sentence,
+    };
+    if let Some(part) = moment.picked {
+        return parts::part_statement(moment, part);
+    }
+    if let Some(own) = moment.own {
+        return parts::own_statement(moment, own);
+    }
+    if let Some(refused) = refused {
+        return neutral("no loop of your own", refused.to_string());
+    }
+    let lap = runs.graph.lap();
+    match moment.attempt {
+        Some(attempt) => {
+            let judgement = lap.judge(attempt);
+            Statement {
+                standing: standing(judgement),
+                verdict: judgement.to_string(),
+                sentence: lap.loop_sentence(attempt),
+            }
+        }
+        None if tick == runs.ticks() => neutral("lap finished", lap_sentence(runs)),
+        None => neutral("on the way", tick_sentence(runs, tick)),
+    }
+}
+
+fn tick_sentence(runs: &Runs, tick: usize) -> String {
+    format!(
+        "tick {tick} of {}: odometry is {:.2} m off, the front end alone {:.2} m, the pose graph {:.2} m",
+        runs.ticks(),
+        runs.odometry_errors_m[tick],
+        runs.front_end.errors_m[tick],
+        runs.graph.errors_m[tick],
+    )
+}
+
+fn lap_sentence(runs: &Runs) -> String {
+    let summary = runs.graph.summary();
+    format!(
+        "lap finished with {}: end error {:.2} m, rms over the keyframes {:.2} m, largest {:.2} m, map disagreement {:.2} m",
+        loops_in_words(summary.loops),
+        summary.keyframe_end_error_m,
+        summary.keyframe_rms_m,
+        summary.keyframe_max_m,
+        summary.map_disagreement_m.unwrap_or(f64::NAN),
+    )
+}
+
+fn loops_in_words(count: usize) -> String {
+    match count {
+        0 => "no loop closed".to_owned(),
+        _ => format!("{} closed", plural(count, "loop")),
+    }
+}
+
+fn moment_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
+    vec![
+        Fact::metres(
+            "odometry_error_m",
+            "odometry error now",
+            runs.odometry_errors_m[tick],
+        ),
+        Fact::metres(
+            "front_end_error_m",
+            "front end error now",
+            runs.front_end.errors_m[tick],
+        ),
+        Fact::metres(
+            "graph_error_m",
+            "pose graph error now",
+            runs.graph.errors_m[tick],
+        ),
+        Fact::metres(
+            "keyframe_rms_m",
+            "rms over keyframes",
+            runs.graph.keyframe_rms_m[tick],
+        ),
+        Fact::metres(
+            "map_disagreement_m",
+            "map disagreement",
+            runs.graph.disagreement_m[tick],
+        ),
+        Fact::count(
+            "keyframes",
+            "keyframes",
+            runs.graph.keyframes_until(tick) as f64,
+        ),
+        Fact::count(
+            "loops_closed",
+            "loops closed",
+            runs.graph.accepted_until(tick) as f64,
+        ),
+        Fact::count(
+            "false_loops",
+            "of these, wrong",
+            runs.false_loops_until(tick) as f64,
+        ),
+        Fact::new("gate_chi2", "gate χ²", runs.gate_chi2(), "", 3),
+    ]
+}
+
+/// Facts of the newest attempt; not finite before the first one, because the list of facts is fixed.
+fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
+    let attempt = runs.graph.newest_attempt(tick);
+    let of = |read: &dyn Fn(&LoopAttempt) -> f64| attempt.map_or(f64::NAN, read);
+    let of_effect = |read: &dyn Fn(&LoopEffect) -> f64| {
+        let effect = attempt.and_then(|attempt| attempt.effect.as_ref());
+        effect.map_or(f64::NAN, read)
+    };
+    let error = |attempt: &LoopAttempt| runs.graph.lap().loop_error(attempt);
+    let chi2 = of(&|attempt| attempt.verification.gate.chi2);
+    let path = of(&|attempt| runs.gates(attempt).path.test.chi2);
+    let exact = of(&|attempt| runs.gates(attempt).exact.test.chi2);
+    let pairs = of(&|attempt| attempt.verification.inliers as f64);
+    vec![
+        Fact::new("chi2", "last loop: χ²", chi2, "", 3),
+        Fact::new("chi2_path", "last loop: χ², path gate", path, "", 3),
+        Fact::new("chi2_exact", "last loop: χ², exact gate", exact, "", 3),
+        Fact::metres(
+            "loop_rmse_m",
+            "last loop: rmse",
+            of(&|attempt| attempt.verification.rmse_m),
+        ),
+        Fact::count("loop_pairs", "last loop: pairs", pairs),
+        Fact::metres(
+            "loop_error_m",
+            "last loop: off the truth",
+            of(&|attempt| error(attempt).position_m),
+        ),
+        Fact::new(
+            "loop_turn_deg",
+            "last loop: turned off the truth",
+            of(&|attempt| error(attempt).heading_deg),
+            "°",
+            1,
+        ),
+        Fact::metres(
+            "shift_m",
+            "last loop: history moved",
+            of_effect(&|effect| effect.max_shift_m),
+        ),
+        Fact::metres(
+            "rms_before_m",
+            "last loop: keyframe rms before",
+            of_effect(&|effect| effect.keyframe_rms_m.before),
+        ),
+        Fact::metres(
+            "rms_after_m",
+            "last loop: keyframe rms after",
+            of_effect(&|effect| effect.keyframe_rms_m.after),
+        ),
+    ]
+}
+
+/// The text alternative of the picture.
+pub fn summary(moment: &Moment, refused: Option<&OwnLoopError>) -> String {
+    let (runs, tick) = (moment.runs, moment.tick);
+    let truth = runs.truth(tick);
+    let way = if runs.is_way_back(tick) {
+        "where it has been before"
+    } else {
+        "on its way out"
+    };
+    let lap = runs.graph.lap();
+    let loops = moment.loops_tried();
+    let loops: Vec<_> = loops.map(|attempt| lap.loop_sentence(attempt)).collect();
+    let loops = if loops.is_empty() {
+        "No loop was tried so far".to_owned()
+    } else {
+        format!("So far: {}", loops.join("; "))
+    };
+    let mut rest = String::new();
+    if let Some(own) = moment.own {
+        rest += &format!(" Then {}.", parts::own_statement(moment, own).sentence);
+    } else if let Some(refused) = refused {
+        rest += &format!(" Your own loop: {refused}.");
+    }
+    if moment.has_moved() {
+        rest += &format!(
+            " A line at {:.0} % of the map's width: left of it the map is as before the loop, right of it as after.",
+            100.0 * moment.wipe
+        );
+    }
+    if let Some(drawn) = &moment.drawn {
+        rest += &floor_plan::summary(drawn);
+    }
+    if let Some(part) = moment.picked {
+        rest += &format!(
+            " Selected: {}.",
+            parts::part_statement(moment, part).sentence
+        );
+    }
+    format!(
+        "{}. The robot is at x {:.1} m, y {:.1} m, {way}; {}. \
+         The pose graph has {} keyframes. {loops}.{rest}",
+        place_words(runs),
+        truth.x(),
+        truth.y(),
+        tick_sentence(runs, tick),
+        runs.graph.keyframes_until(tick),
+    )
+}
+
+/// `Map of the Apartment, 12 m by 9 m, with a corridor along its middle`.
+fn place_words(runs: &Runs) -> String {
+    let bounds = runs.world().bounds();
+    let [width, height] = [bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y];
+    let looks = match runs.place() {
+        Some(BuiltInWorld::Apartment) => ", with a corridor along its middle",
+        Some(BuiltInWorld::Ring) => " around a block of rooms",
+        Some(BuiltInWorld::TwinRooms) => " on a corridor, side by side",
+        Some(BuiltInWorld::Corridor) => " without a door or a pillar",
+        Some(BuiltInWorld::Hall) => " without a corner",
+        None => "",
+    };
+    let label = runs.place_label();
+    format!("Map of {label}, {width:.1} m by {height:.1} m{looks}")
+}

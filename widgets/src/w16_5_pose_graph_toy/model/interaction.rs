@@ -1,0 +1,130 @@
+//! Draggable things: a pose, the tip of its heading, and the middle of the loop's spring.
+
+use pr_geom::{Point2, SE2, Vector2, math};
+use widget_kit::model::Handle;
+
+use super::{PoseGraphToy, panel};
+use crate::w16_5_pose_graph_toy::spec::{GAP, GRAPH, MAX_POSES, MOVED, REACH_M, STEPS, STIFFNESS};
+
+/// Distance of the turning handle from its pose, m.
+const TURN_ARM_M: f64 = 0.3;
+
+/// Bow of the loop's spring at a stiffness of 1, and what a tenfold stiffness takes from it, m.
+const BOW_M: f64 = 0.5;
+const BOW_PER_DECADE_M: f64 = 0.25;
+
+/// Name of the middle of the loop's spring.
+const KNOB: &str = "knob";
+
+/// Names of the draggable things: each pose, and each heading.
+const POSES: [&str; MAX_POSES] = ["pose1", "pose2", "pose3", "pose4", "pose5", "pose6"];
+const HEADINGS: [&str; MAX_POSES] = ["turn1", "turn2", "turn3", "turn4", "turn5", "turn6"];
+
+/// Position of the handle that turns a pose.
+pub fn turn_handle(pose: &SE2) -> Point2<f64> {
+    pose.transform(Point2::new(TURN_ARM_M, 0.0))
+}
+
+/// The middle of the loop's spring.
+pub fn knob(toy: &PoseGraphToy) -> Point2<f64> {
+    let (middle, aside) = chord(toy);
+    middle + aside * bow_m(toy.values.get(&STIFFNESS))
+}
+
+/// Distance of the middle of the loop's spring from the line between its poses, m: a stiff spring is tight.
+pub fn bow_m(stiffness: f64) -> f64 {
+    BOW_M - BOW_PER_DECADE_M * math::ln(stiffness) / core::f64::consts::LN_10
+}
+
+/// The middle between the loop's poses, and the unit vector to the side on which its spring hangs.
+fn chord(toy: &PoseGraphToy) -> (Point2<f64>, Vector2<f64>) {
+    let poses = toy.poses();
+    let (from, to) = (poses[0].position(), poses[poses.len() - 1].position());
+    let along = to - from;
+    let length = math::norm2(along.x, along.y).max(1e-9);
+    let aside = Vector2::new(along.y, -along.x) / length;
+    (from + along * 0.5, aside)
+}
+
+/// Sets the stiffness so that the spring's middle is at that distance from its line.
+fn draw_tight(toy: &mut PoseGraphToy, [x, y]: [f64; 2]) {
+    let (middle, aside) = chord(toy);
+    let away_m = (Point2::new(x, y) - middle).dot(&aside);
+    let decades = (BOW_M - away_m) / BOW_PER_DECADE_M;
+    let stiffness = math::exp(decades * core::f64::consts::LN_10);
+    let tenths = (10.0 * stiffness).round().clamp(1.0, 100.0);
+    let poses = toy.poses();
+    toy.values.put(&STIFFNESS, tenths / 10.0);
+    put(toy, &poses);
+}
+
+/// The nearest pose within reach, or the tip of a heading.
+pub fn grab(toy: &PoseGraphToy, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+    if panel != panel::GRAPH {
+        return None;
+    }
+    let poses = toy.poses();
+    let places = poses
+        .iter()
+        .zip(POSES)
+        .map(|(pose, id)| (pose.position(), id));
+    let tips = poses
+        .iter()
+        .zip(HEADINGS)
+        .map(|(pose, id)| (turn_handle(pose), id));
+    let knob = core::iter::once((knob(toy), KNOB));
+    let share = |spot: &Point2<f64>| {
+        let away = [at[0] - spot.x, at[1] - spot.y];
+        (away[0] / reach[0]).abs().max((away[1] / reach[1]).abs())
+    };
+    let (spot, id) = places
+        .chain(tips)
+        .chain(knob)
+        .filter(|(spot, _)| share(spot) <= 1.0)
+        .min_by(|(a, _), (b, _)| share(a).total_cmp(&share(b)))?;
+    Some(Handle {
+        panel: panel::GRAPH,
+        id,
+        offset: [at[0] - spot.x, at[1] - spot.y],
+    })
+}
+
+/// Moves the grabbed thing; all current poses become the start.
+pub fn drag(toy: &mut PoseGraphToy, handle: Handle, at: [f64; 2]) {
+    let spot = [at[0] - handle.offset[0], at[1] - handle.offset[1]];
+    if !spot.iter().all(|value| value.is_finite()) {
+        return;
+    }
+    if handle.id == KNOB {
+        draw_tight(toy, spot);
+        return;
+    }
+    let mut poses = toy.poses();
+    let of = |ids: [&str; MAX_POSES]| ids.iter().position(|id| *id == handle.id);
+    if let Some(k) = of(POSES) {
+        poses[k] = SE2::new(spot[0], spot[1], poses[k].theta());
+    } else if let Some(k) = of(HEADINGS) {
+        let arm = [spot[0] - poses[k].x(), spot[1] - poses[k].y()];
+        poses[k] = SE2::new(poses[k].x(), poses[k].y(), math::atan2(arm[1], arm[0]));
+    }
+    put(toy, &poses);
+}
+
+/// Sets the start, rounded, which keeps links short.
+fn put(toy: &mut PoseGraphToy, poses: &[SE2]) {
+    let rounded = |value: f64, per_unit: f64| (value * per_unit).round() / per_unit;
+    let driven = toy.values.get(&GRAPH).driven(toy.values.get(&GAP));
+    toy.playback.pause();
+    for ((pose, home), [x, y, turn]) in poses.iter().zip(&driven).zip(&MOVED) {
+        let along = |value: f64| rounded(value, 100.0).clamp(-REACH_M, REACH_M);
+        let turned = SE2::new(0.0, 0.0, pose.theta() - home.theta()).theta();
+        toy.values.put(x, along(pose.x() - home.x()));
+        toy.values.put(y, along(pose.y() - home.y()));
+        toy.values.put(
+            turn,
+            rounded(turned.to_degrees(), 10.0).clamp(-180.0, 180.0),
+        );
+    }
+    toy.values.put(&STEPS, 0.0);
+    toy.solve();
+}

@@ -1,0 +1,67 @@
+//! The tables: the detectors beside the picture, all pairs for the export.
+
+use ch16_lab::lap::Choice;
+use ch16_lab::places::GRADED;
+use widget_kit::model::Table;
+
+use super::PlaceRecognition;
+
+/// The tables beside the picture.
+pub fn shown(been: &PlaceRecognition) -> Vec<Table> {
+    vec![detectors(been)]
+}
+
+/// All tables, the shown ones first.
+pub fn all(been: &PlaceRecognition) -> Vec<Table> {
+    let mut tables = shown(been);
+    tables.push(pairs(been));
+    tables
+}
+
+fn detectors(been: &PlaceRecognition) -> Table {
+    let rows = been.places.iter().flat_map(|places| {
+        GRADED.iter().enumerate().map(|(k, detector)| {
+            let threshold = been.threshold(k);
+            let grade = places.graded_at(k, threshold);
+            let point = grade.point(threshold);
+            let share = |share: Option<f64>| share.map_or("–".to_owned(), |s| format!("{s:.2}"));
+            vec![
+                detector.label().to_owned(),
+                grade.called.to_string(),
+                grade.right.to_string(),
+                share(point.map(|point| point.precision)),
+                share(point.map(|point| point.recall)),
+                format!("{:.2}", places.curves[k].average_precision),
+            ]
+        })
+    });
+    Table::shown(
+        "detectors",
+        "The detectors at this threshold",
+        &["alike by", "called", "right", "precision", "recall", "area"],
+        rows.collect(),
+    )
+}
+
+fn pairs(been: &PlaceRecognition) -> Table {
+    let rows = been.places.iter().flat_map(|places| {
+        places.study.pairs().iter().map(|pair| {
+            let [old, new] = pair.nodes;
+            let mut row = vec![old.to_string(), new.to_string()];
+            row.extend(pair.distances.map(|distance| distance.to_string()));
+            row.push(u8::from(pair.is_same).to_string());
+            row.push(u8::from(places.study.is_loop(pair.nodes)).to_string());
+            row
+        })
+    });
+    let head = [
+        "older",
+        "newer",
+        "nearness (deviations)",
+        "ranges (χ²)",
+        "Scan Context",
+        "same place",
+        "graded",
+    ];
+    Table::exported("pairs", "Every pair of keyframes", &head, rows.collect())
+}

@@ -1,0 +1,162 @@
+//! The widget's texts and its list of parameters.
+
+use ch16_lab::lap::BuiltInWorld;
+use ch16_lab::lap::CANONICAL_SEED;
+use widget_kit::disclosure::Opening;
+use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::playback::SPEED;
+use widget_kit::run;
+use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+
+/// An upper bound of the keyframes of a lap.
+pub const MAX_KEYFRAMES: f64 = 400.0;
+
+/// The last keyframe that can be selected for comparison: a lap of the ring has about a hundred.
+pub const LAST_OLD: f64 = 120.0;
+
+/// Width of a sector of Scan Context.
+pub const SECTOR_DEG: f64 = 6.0;
+
+/// The value of `old` that selects the most similar keyframe.
+pub const MOST_ALIKE: f64 = -1.0;
+
+pub(super) static CALLED: Param<f64> = Param::slider(
+    "called",
+    "pairs called the same place",
+    [0.0, 60.0],
+    1.0,
+)
+.unit("%")
+.default(15.0)
+.help(
+    "Share of the most similar pairs that are called the same: a threshold for every detector at once.",
+);
+
+pub(super) static DETECTOR: OneOf<usize> = OneOf::new(
+    "detector",
+    "alike by",
+    &[
+        Choice::new("nearby", "nearness"),
+        Choice::new("histogram", "ranges"),
+        Choice::new("context", "Scan Context"),
+    ],
+    &[0, 1, 2],
+)
+.default("context")
+.help("By the estimated poses, by the histogram of ranges, or by rings and sectors.");
+
+pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
+    "world",
+    "world",
+    &[
+        Choice::new("apartment", "the Apartment"),
+        Choice::new("ring", "a ring of corridors"),
+    ],
+    &[BuiltInWorld::Apartment, BuiltInWorld::Ring],
+)
+.help("The world of the lap.");
+
+pub(super) static OLDER: Param<f64> = Param::slider(
+    "old",
+    "older keyframe of the pair",
+    [MOST_ALIKE, LAST_OLD],
+    1.0,
+)
+.default(18.0)
+.help("The older keyframe that is compared with the newest one; −1 is the most similar one.");
+
+pub(super) static TURN: Param<f64> = Param::slider(
+    "turn",
+    "turned away from the best fit",
+    [-180.0, 180.0],
+    SECTOR_DEG,
+)
+.unit("°")
+.help("How far the newer view is turned away from the heading at which Scan Context fits best.");
+
+pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
+
+pub(super) static NEWEST: Param<f64> = Param::timeline("new", "keyframe", MAX_KEYFRAMES)
+    .default(MAX_KEYFRAMES)
+    .help("The newest keyframe so far; beyond the last one it is the whole lap.");
+
+/// The widget's parameters.
+pub const PARAMS: &[&ParamSpec] = &[
+    &CALLED.spec,
+    &DETECTOR.spec,
+    &WORLD.spec,
+    &OLDER.spec,
+    &TURN.spec,
+    &SEED.spec,
+    &run::NOISE.spec,
+    &NEWEST.spec,
+    &SPEED.spec,
+    &MORE.spec,
+];
+
+/// The step button: one keyframe.
+const ONE_KEYFRAME: ButtonSpec = ButtonSpec {
+    label: "Next keyframe",
+    help: "Drive to the next keyframe and compare it with all older ones.",
+    ..STEP
+};
+
+/// The constant description of the widget.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.7",
+    title: "Have I been here?",
+    misconception: "To look alike is not to be the same: a descriptor proposes, and how often it is \
+                    right depends on the threshold and on the building.",
+    question: "How much may two views differ and still be called the same place? Drag the line in the plot.",
+    notice: &[
+        "Each dot is a pair of places. What lies left of the line is called the same place, whether it is or not.",
+        "In the matrix ink is alike. The stripe that runs down to the right is the way back: places in the order in which they were left.",
+        "In the corridor all histograms look alike: a beam says how far, and not in which direction.",
+        "Scan Context knows directions. Slide one view over the other: they differ least at the heading between them.",
+        "A looser threshold finds more of the true pairs, and calls more false ones. No point of the curve is free.",
+    ],
+    opening: Opening {
+        panels: &["flat", "scores", "looks"],
+        params: &["called"],
+        buttons: &["play", "step", "reset"],
+    },
+    params: PARAMS,
+    buttons: &[PLAY, ONE_KEYFRAME, RESET, DEFAULTS],
+    presets: &[
+        Preset {
+            id: "lap",
+            label: "Drive the lap",
+            help: "Each new keyframe is compared with all older ones, and a column is added.",
+            set: &[OLDER.to(MOST_ALIKE), NEWEST.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "ranges",
+            label: "By ranges alone",
+            help: "The corridor is one square of ink: the histogram cannot tell its places apart.",
+            set: &[DETECTOR.to("histogram")],
+            then: &[],
+        },
+        Preset {
+            id: "nearby",
+            label: "By the estimated pose",
+            help: "On a short lap the pose says most; it is wrong where drift is large.",
+            set: &[DETECTOR.to("nearby")],
+            then: &[],
+        },
+        Preset {
+            id: "drifted",
+            label: "Four times the noise",
+            help: "The wheels drift, and what is near in the graph is less often the same place. Looks do not drift.",
+            set: &[run::NOISE.to(4.0)],
+            then: &[],
+        },
+        Preset {
+            id: "ring",
+            label: "A ring of corridors",
+            help: "Four corridors that look alike: every look-alike is a trap here.",
+            set: &[WORLD.to("ring"), OLDER.to(MOST_ALIKE)],
+            then: &[],
+        },
+    ],
+};

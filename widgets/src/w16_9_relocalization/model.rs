@@ -1,0 +1,261 @@
+//! The state of a localization run and its logic.
+//!
+//! # Computed
+//!
+//! The map is a lap of an earlier day; each frame of the robot goes to the localizer (`ch16_slam2d::localize`), whose
+//! search is shown at some of its steps.
+//!
+//! # Numbers
+//!
+//! Spots and pieces of the search: `crates/ch16_lab/src/relocalization.rs`; the localizer: `LocalizeConfig`.
+//!
+//! # Simplified
+//!
+//! The map is that of a lap with its own errors. Between the days at most one wardrobe has moved.
+
+mod interaction;
+mod known;
+mod picture;
+mod settings;
+mod tables;
+mod texts;
+
+use ch16_lab::relocalization::{LocalizationRun, Moment};
+use pr_geom::SE2;
+use widget_kit::model::{
+    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, finish_work,
+    press_preset,
+};
+use widget_kit::param::MORE;
+use widget_kit::param::ParamError;
+use widget_kit::playback::SPEED;
+use widget_kit::playback_param::{PlaybackParam, Pressed};
+use widget_kit::scene::Scene;
+use widget_kit::spec::WidgetSpec;
+use widget_kit::values::{Changed, Values};
+
+use crate::w16_9_relocalization::spec::{
+    HEADING, MAX_MOMENTS, MOMENT, PARAMS, PLAN_M, SPEC, START_X, START_Y,
+};
+use known::{Known, Work};
+
+/// Names of the panels.
+pub mod panel {
+    /// The saved map, and the localization on it.
+    pub const MAP: &str = "map";
+    /// Scores of the best pose and of the next one, scan by scan.
+    pub const SCORES: &str = "scores";
+}
+
+/// Moments a second at normal speed.
+const MOMENTS_PER_S: f64 = 6.0;
+
+/// The model of the widget.
+pub struct Relocalization {
+    values: Values,
+    playback: PlaybackParam,
+    /// The work under way; `None` once the run is over.
+    work: Option<Work>,
+    /// The last saved map.
+    known: Option<Known>,
+    /// The last finished run.
+    run: Option<LocalizationRun>,
+}
+
+impl Default for Relocalization {
+    /// The default start, before the map is driven.
+    fn default() -> Self {
+        let values = Values::defaults(PARAMS);
+        Self {
+            work: Some(Work::map(&values)),
+            playback: PlaybackParam::along(&MOMENT),
+            known: None,
+            run: None,
+            values,
+        }
+    }
+}
+
+impl Relocalization {
+    /// Drives another map, or switches the robot on elsewhere on the known one.
+    fn follow(&mut self) {
+        let known = self
+            .known
+            .as_ref()
+            .filter(|known| known.is_of(&self.values));
+        self.work = Some(match known {
+            Some(known) => Work::run(known, &self.values),
+            None => Work::map(&self.values),
+        });
+    }
+
+    fn has_wardrobe(&self) -> bool {
+        settings::laps_config(&self.values).wardrobe.is_some()
+    }
+
+    /// The moment at which the robot is found, or the last one.
+    fn decided(&self, run: &LocalizationRun) -> usize {
+        let moments = run.moments();
+        let found = run.found();
+        found.map_or(moments.len(), |found| {
+            moments.partition_point(|moment| moment.tick <= found)
+        }) - 1
+    }
+
+    fn start(&self) -> SE2 {
+        settings::start(&self.values)
+    }
+
+    /// The finished run on screen, whose map and start are those of the values.
+    fn finished(&self) -> Option<(&Known, &LocalizationRun)> {
+        if self.work.is_some() {
+            return None;
+        }
+        self.known.as_ref().zip(self.run.as_ref())
+    }
+
+    fn last(&self) -> usize {
+        let finished = self.run.as_ref();
+        finished.map_or(0, |run| run.moments().len() - 1)
+    }
+
+    /// The end of a run: beyond every position while it is being computed.
+    fn end(&self) -> f64 {
+        match self.work {
+            Some(_) => MAX_MOMENTS,
+            None => self.last() as f64,
+        }
+    }
+
+    fn place(&self) -> usize {
+        self.playback.place(&self.values, self.last() as f64) as usize
+    }
+
+    fn moment(&self) -> Option<&Moment> {
+        let (_, run) = self.finished()?;
+        run.moments().get(self.place())
+    }
+
+    /// Moves the robot, rounded, which keeps links short.
+    fn put(&mut self, pose: SE2) {
+        let tenth = |value: f64, most: f64| ((value * 10.0).round() / 10.0).clamp(0.0, most);
+        let heading_deg = (pose.theta().to_degrees() / 5.0).round() * 5.0;
+        self.playback.pause();
+        self.values.put(&START_X, tenth(pose.x(), PLAN_M[0]));
+        self.values.put(&START_Y, tenth(pose.y(), PLAN_M[1]));
+        self.values.put(&HEADING, heading_deg.clamp(-180.0, 180.0));
+        self.follow();
+    }
+}
+
+impl Model for Relocalization {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        let is_changed = self.values.set(SPEC.id, id, value)? == Changed::Yes;
+        if is_changed && ![MOMENT.id, SPEED.id, MORE.id].contains(&id) {
+            self.follow();
+        }
+        Ok(())
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        let end = self.end();
+        match self.playback.press(&mut self.values, id, end) {
+            Pressed::Transport => {}
+            Pressed::Defaults => self.follow(),
+            Pressed::Other => return press_preset(self, id),
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        if self.playback.is_playing() && self.work.is_some() {
+            // The run is ahead of its playback and ends within a few frames.
+            return Activity::Busy;
+        }
+        let last = self.last() as f64;
+        self.playback
+            .advance(&mut self.values, last, elapsed_s, MOMENTS_PER_S)
+    }
+
+    fn work(&mut self) -> Activity {
+        let Some(work) = self.work.take() else {
+            return Activity::Idle;
+        };
+        match work.step(&self.values) {
+            known::Step::Continue(work) => {
+                self.work = Some(work);
+                return Activity::BusyUnchanged;
+            }
+            known::Step::Saved(known) => {
+                self.work = Some(Work::run(&known, &self.values));
+                self.known = Some(*known);
+                self.run = None;
+            }
+            known::Step::Over(run) => self.run = Some(*run),
+        }
+        Activity::Busy
+    }
+
+    fn finish_work(&mut self) -> Activity {
+        finish_work(self)
+    }
+
+    fn scene(&self) -> Scene {
+        picture::scene(self)
+    }
+
+    fn outcome(&self) -> Outcome {
+        texts::outcome(self)
+    }
+
+    fn summary(&self) -> String {
+        texts::summary(self)
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        let mut marks = Vec::new();
+        if let Some((_, run)) = self.finished()
+            && run.found().is_some()
+        {
+            let ending = texts::ending(run);
+            marks.push(TimelineMark {
+                at: self.decided(run) as f64,
+                label: texts::verdict(ending).to_owned(),
+                standing: texts::standing(ending),
+            });
+        }
+        Some(self.playback.timeline(self.last() as f64, marks))
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        tables::all(self)
+    }
+
+    fn shown_tables(&self) -> Vec<Table> {
+        Vec::new()
+    }
+
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        interaction::grab(self, panel, at, reach)
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        interaction::drag(self, handle, at);
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        if self.playback.is_playing() {
+            self.finish_work();
+        }
+        let end = self.end();
+        self.playback.set_motion(&mut self.values, motion, end);
+    }
+}

@@ -1,0 +1,239 @@
+//! The panels: the map with the localization, and the scores over the scans.
+
+use ch16_lab::laps::wardrobe_corners;
+use ch16_slam2d::localize::LocalizeConfig;
+use ch16_slam2d::search::PoseBox;
+use pr_geom::{Point2, SE2};
+use widget_kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
+
+use super::interaction::turn_handle;
+use super::texts::{Ending, now, so_far};
+use super::{Relocalization, panel};
+use crate::w16_9_relocalization::spec::PLAN_M;
+
+/// Tone of the poses that are not ruled out.
+const GHOST: Tone = Tone::Series(0);
+
+pub fn scene(back: &Relocalization) -> Scene {
+    Scene {
+        panels: vec![map(back), scores(back)],
+    }
+}
+
+fn map(back: &Relocalization) -> Panel {
+    let mut layers = Vec::new();
+    if let Some(known) = &back.known {
+        let walls = known.tomorrow.world.walls().iter();
+        layers.push(Layer::segments(
+            walls
+                .map(|wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]])
+                .collect(),
+            Stroke::Solid,
+            Tone::Faint,
+            3.0,
+        ));
+        let points = known.map.points().iter().map(|p| [p.x, p.y]).collect();
+        layers.push(Layer::points(points, Mark::Dot, Tone::Ink, 1.4));
+        if back.has_wardrobe() {
+            layers.extend(wardrobe());
+        }
+    }
+    layers.extend(localization(back));
+    let start = back.start();
+    let turn = turn_handle(&start);
+    layers.extend([
+        Layer::segments(
+            vec![[[start.x(), start.y()], [turn.x, turn.y]]],
+            Stroke::Solid,
+            Tone::Prior,
+            1.5,
+        ),
+        Layer::Handle {
+            at: [turn.x, turn.y],
+            tone: Tone::Prior,
+            label: "turn the robot; drag it to put it elsewhere",
+        },
+        pose(start, Mark::Circle, Tone::Prior),
+    ]);
+    if !matches!(so_far(back), Ending::Found | Ending::WrongPose) {
+        // Nobody has told the robot where it is.
+        let at = [start.x(), start.y()];
+        layers.push(Layer::label(at, "where am I?".to_owned(), 10.0));
+    }
+    let axis = |most: f64| Axis::hidden(-0.5, most + 0.5);
+    Panel {
+        id: panel::MAP,
+        title: now(back),
+        weight: Weight::Main,
+        aspect: Aspect::Equal,
+        x: axis(PLAN_M[0]),
+        y: axis(PLAN_M[1]),
+        layers,
+        legend: vec![
+            LegendEntry::mark("switched on here, to be put", Tone::Prior, Mark::Circle),
+            LegendEntry::mark("it may be here", GHOST, Mark::Circle),
+            LegendEntry::mark("best place, with the scan", Tone::Posterior, Mark::Square),
+        ],
+        color_bar: None,
+    }
+}
+
+/// The localization at the current moment.
+fn localization(back: &Relocalization) -> Vec<Layer> {
+    let Some(((_, run), moment)) = back.finished().zip(back.moment()) else {
+        return Vec::new();
+    };
+    let drive = run.drive();
+    let truth = |tick: usize| drive.truth(tick);
+    let way = (0..=moment.tick).map(|tick| [truth(tick).x(), truth(tick).y()]);
+    let walls = drive.config().world.bounds();
+    let inside = |seen: &&PoseBox| {
+        let [x, y] = [seen.x_m, seen.y_m].map(middle);
+        (walls.min.x..=walls.max.x).contains(&x) && (walls.min.y..=walls.max.y).contains(&y)
+    };
+    // The search window is a rectangle around the map, so its boxes reach beyond the walls.
+    let mut layers = ghosts(moment.boxes.iter().filter(inside));
+    layers.extend([
+        Layer::line(way.collect(), Stroke::Dashed, Tone::Truth, 1.5),
+        pose(truth(moment.tick), Mark::Plus, Tone::Truth),
+    ]);
+    if let Some(next) = moment.runner_up {
+        layers.push(pose(next.pose, Mark::Triangle, Tone::Series(1)));
+    }
+    let finished = moment.report.as_ref().and_then(|report| report.pose);
+    if let Some(best) = finished.or(moment.best.map(|best| best.pose)) {
+        let scan = drive.prepared(moment.tick).cloud.transformed(&best);
+        let points = scan.iter().map(|p| [p.x, p.y]).collect();
+        layers.push(Layer::points(points, Mark::Square, Tone::Posterior, 2.0));
+        layers.push(pose(best, Mark::Square, Tone::Posterior));
+    }
+    layers
+}
+
+fn pose(pose: SE2, mark: Mark, tone: Tone) -> Layer {
+    Layer::pose(pose.to_array(), mark, tone, 6.0)
+}
+
+/// Sizes of the ghosts.
+const GHOSTS: usize = 3;
+/// Length of the heading of the smallest ghost, m.
+const GHOST_M: f64 = 0.14;
+
+fn middle([low, high]: [f64; 2]) -> f64 {
+    0.5 * (low + high)
+}
+
+/// The middle of each box as a ghost of the robot, the larger the higher its bound.
+fn ghosts<'a>(boxes: impl Iterator<Item = &'a PoseBox> + Clone) -> Vec<Layer> {
+    let bounds = boxes.clone().map(|seen| seen.bound);
+    let low = bounds.clone().fold(f64::INFINITY, f64::min);
+    let high = bounds.fold(f64::NEG_INFINITY, f64::max);
+    let size_of = |seen: &PoseBox| {
+        let share = (seen.bound - low) / (high - low).max(f64::MIN_POSITIVE);
+        ((share * GHOSTS as f64) as usize).min(GHOSTS - 1)
+    };
+    let mut layers = Vec::new();
+    for size in 0..GHOSTS {
+        let length_m = GHOST_M * (size + 1) as f64;
+        let (mut places, mut headings) = (Vec::new(), Vec::new());
+        for seen in boxes.clone().filter(|seen| size_of(seen) == size) {
+            let pose = SE2::new(middle(seen.x_m), middle(seen.y_m), middle(seen.heading_rad));
+            let tip = pose.transform(Point2::new(length_m, 0.0));
+            places.push([pose.x(), pose.y()]);
+            headings.push([[pose.x(), pose.y()], [tip.x, tip.y]]);
+        }
+        layers.extend([
+            Layer::segments(headings, Stroke::Solid, GHOST, 0.75),
+            Layer::points(places, Mark::Circle, GHOST, 1.5 + 1.5 * size as f32),
+        ]);
+    }
+    layers
+}
+
+/// The wardrobe where the map has it, and where it stands now.
+fn wardrobe() -> Vec<Layer> {
+    let outline = |corners: [Point2<f64>; 4]| {
+        let closed = corners.iter().chain([&corners[0]]);
+        closed
+            .map(|corner| [corner.x, corner.y])
+            .collect::<Vec<_>>()
+    };
+    let [before, now] = wardrobe_corners().map(outline);
+    let label = |points: &[[f64; 2]], text: &str| {
+        Layer::label([points[0][0] + 0.35, points[2][1]], text.to_owned(), 4.0)
+    };
+    vec![
+        label(&before, "wardrobe yesterday"),
+        label(&now, "wardrobe today"),
+        Layer::line(before, Stroke::Dotted, Tone::Ink, 2.0),
+        Layer::line(now, Stroke::Solid, Tone::Ink, 2.5),
+    ]
+}
+
+fn scores(back: &Relocalization) -> Panel {
+    let mut layers = Vec::new();
+    let mut last = 40.0;
+    if let Some((_, run)) = back.finished() {
+        let reports = run.reports();
+        last = (reports.len() as f64).max(2.0);
+        // Scans of later moments are not yet taken.
+        let taken = back.moment().map_or(0, |moment| {
+            moment.tick + usize::from(moment.report.is_some())
+        });
+        let reports = &reports[..taken];
+        let at = |tick: usize, score: f64| [tick as f64 + 1.0, score];
+        let fits = reports.iter().enumerate().filter_map(|(tick, report)| {
+            let is_told = report.verdict.is_localized();
+            Some(at(tick, report.score.filter(|_| is_told)?))
+        });
+        let best = reports
+            .iter()
+            .enumerate()
+            .filter_map(|(tick, report)| Some(at(tick, report.search?.best.score)));
+        let next = reports
+            .iter()
+            .enumerate()
+            .filter_map(|(tick, report)| Some(at(tick, report.runner_up()?.score)));
+        let now = back.moment().map_or(1.0, |moment| moment.tick as f64 + 1.0);
+        layers = vec![
+            Layer::line(
+                vec![[now, 0.0], [now, 1.04]],
+                Stroke::Solid,
+                Tone::Faint,
+                2.0,
+            ),
+            Layer::line(fits.collect(), Stroke::Solid, Tone::Measurement, 1.75),
+            Layer::points(next.collect(), Mark::Triangle, Tone::Series(1), 4.0),
+            Layer::points(best.collect(), Mark::Square, Tone::Posterior, 4.0),
+        ];
+    }
+    let found = LocalizeConfig::default().found_score;
+    layers.push(Layer::line(
+        vec![[0.0, found], [last + 1.0, found]],
+        Stroke::Dashed,
+        Tone::Ink,
+        1.25,
+    ));
+    // Scores would cross the words.
+    if back.place() == 0 {
+        let words = "fits well enough".to_owned();
+        layers.push(Layer::label([0.5 * last, found], words, 4.0));
+    }
+    Panel {
+        id: panel::SCORES,
+        title: "How well the best place fits, and the next one".to_owned(),
+        weight: Weight::Half,
+        aspect: Aspect::Free,
+        x: Axis::new("scan", 0.0, last + 1.0),
+        y: Axis::new("score", 0.0, 1.04),
+        layers,
+        legend: vec![
+            LegendEntry::mark("best place of a search", Tone::Posterior, Mark::Square),
+            LegendEntry::mark("next place", Tone::Series(1), Mark::Triangle),
+            LegendEntry::line("follows its place", Tone::Measurement, Stroke::Solid),
+        ],
+        color_bar: None,
+    }
+}

@@ -1,0 +1,146 @@
+//! The widget's texts and its list of parameters.
+
+use ch16_lab::lap::BuiltInWorld;
+use ch16_lab::lap::CANONICAL_SEED;
+use widget_kit::disclosure::Opening;
+use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::playback::SPEED;
+use widget_kit::run;
+use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+
+/// Sides of the plan, m: no world is larger.
+pub const PLAN_M: [f64; 2] = [12.0, 9.0];
+
+/// An upper bound of the moments of a run.
+pub const MAX_MOMENTS: f64 = 4000.0;
+
+pub(super) static LAPS: Param<usize> =
+    Param::slider("laps", "laps since the wardrobe moved", [0.0, 2.0], 1.0)
+        .help("The map has one lap before that night, and this many after it.");
+
+pub(super) static START_X: Param<f64> = place("x", "switched on at x", PLAN_M[0], 4.4);
+
+pub(super) static START_Y: Param<f64> = place("y", "switched on at y", PLAN_M[1], 4.4);
+
+pub(super) static HEADING: Param<f64> =
+    Param::slider("heading", "heading there", [-180.0, 180.0], 5.0)
+        .unit("°")
+        .help("Heading of the robot when it is switched on. The robot does not know it.");
+
+pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
+    "world",
+    "world",
+    &[
+        Choice::new("apartment", "the Apartment"),
+        Choice::new("ring", "a ring of corridors"),
+        Choice::new("twins", "two rooms alike"),
+    ],
+    &[
+        BuiltInWorld::Apartment,
+        BuiltInWorld::Ring,
+        BuiltInWorld::TwinRooms,
+    ],
+)
+.help("The world. Only the Apartment has the wardrobe.");
+
+pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
+
+pub(super) static MOMENT: Param<f64> = Param::timeline("moment", "moment", MAX_MOMENTS)
+    .help("Which moment is shown: boxes of a search, and scans.");
+
+/// The widget's parameters.
+pub const PARAMS: &[&ParamSpec] = &[
+    &LAPS.spec,
+    &START_X.spec,
+    &START_Y.spec,
+    &HEADING.spec,
+    &WORLD.spec,
+    &SEED.spec,
+    &MOMENT.spec,
+    &SPEED.spec,
+    &MORE.spec,
+];
+
+const fn place(id: &'static str, label: &'static str, max: f64, default: f64) -> Param<f64> {
+    Param::slider(id, label, [0.0, max], 0.1)
+        .unit("m")
+        .default(default)
+        .help("Where the robot is put overnight, on the plan. The robot does not know it.")
+}
+
+/// The step button: one moment.
+const ONE_MOMENT: ButtonSpec = ButtonSpec {
+    label: "Next moment",
+    help: "Go on to more boxes of the search, or to the next scan.",
+    ..STEP
+};
+
+/// The constant description of the widget.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.9",
+    title: "Come back tomorrow",
+    misconception: "A saved map does not say where the robot is. It has to be looked for everywhere, and \
+                    an honest robot says when two places look alike.",
+    question: "Where does the robot find itself again? Drag it anywhere, then press Play.",
+    notice: &[
+        "A ghost is a pose that is not ruled out yet, the larger the better it may fit. What is left of them is where the robot may be.",
+        "Where the map was driven, one scan is enough. In a room that it never saw, or in one of two rooms alike, no pose is reported before the robot is out of the door.",
+        "Once it is found, each scan is registered on the map around it, and nothing is searched any more.",
+        "The wardrobe was moved overnight. The map still shows it where it stood; after another lap it is gone from there.",
+    ],
+    opening: Opening {
+        panels: &["map", "scores"],
+        params: &["laps"],
+        buttons: &["play", "step", "reset"],
+    },
+    params: PARAMS,
+    buttons: &[PLAY, ONE_MOMENT, RESET, DEFAULTS],
+    presets: &[
+        Preset {
+            id: "room",
+            label: "Switched on in a room",
+            help: "The lap never entered it, so the robot reports that it does not know, and drives out of the door.",
+            set: &[
+                WORLD.to("apartment"),
+                START_X.to(2.6),
+                START_Y.to(2.2),
+                HEADING.to(120.0),
+                MOMENT.to(0.0),
+            ],
+            then: &["play"],
+        },
+        Preset {
+            id: "corridor",
+            label: "Switched on in the corridor",
+            help: "Here the map was driven: one scan is enough, among millions of poses.",
+            set: &[
+                WORLD.to("apartment"),
+                START_X.to(4.4),
+                START_Y.to(4.4),
+                HEADING.to(0.0),
+                MOMENT.to(0.0),
+            ],
+            then: &["play"],
+        },
+        Preset {
+            id: "forget",
+            label: "One more lap",
+            help: "The wardrobe is gone from where it stood: newer scans have looked through it.",
+            set: &[WORLD.to("apartment"), LAPS.to(1)],
+            then: &[],
+        },
+        Preset {
+            id: "twins",
+            label: "In one of two rooms alike",
+            help: "Both rooms fit to the millimetre: no pose is reported before the robot is out of the door.",
+            set: &[
+                WORLD.to("twins"),
+                START_X.to(6.2),
+                START_Y.to(3.7),
+                HEADING.to(180.0),
+                MOMENT.to(0.0),
+            ],
+            then: &["play"],
+        },
+    ],
+};

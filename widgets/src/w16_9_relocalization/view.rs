@@ -1,0 +1,37 @@
+//! Layout of the panels: the map, and the scores below it or beside it.
+
+use widget_kit::layout::PlotHeight;
+use widget_kit::scene::Scene;
+use widget_kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
+
+use crate::w16_9_relocalization::model::panel;
+
+/// The layout of the widget.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ComeBackView;
+
+impl View for ComeBackView {
+    fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
+        let slot = |panel, height| Slot { panel, height };
+        let is_wide = width >= SIDE_BY_SIDE;
+        let most = if is_wide { 400.0 } else { 300.0 };
+        let map = slot(panel::MAP, PlotHeight::Natural { most });
+        let scores = |height| slot(panel::SCORES, PlotHeight::Fixed(height));
+        let stage = if is_wide {
+            let column = |share, slot| Column {
+                share,
+                slots: vec![slot],
+            };
+            vec![Row {
+                columns: vec![column(2.4, map), column(1.0, scores(300.0))],
+            }]
+        } else {
+            vec![Row::new(&[map]), Row::new(&[scores(110.0)])]
+        };
+        Arrangement {
+            stage,
+            below: Vec::new(),
+            ..Arrangement::default()
+        }
+    }
+}

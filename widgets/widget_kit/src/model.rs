@@ -1,0 +1,418 @@
+//! The interface of every widget's `model.rs`: actions in, scene out, no egui, no clock.
+
+use crate::disclosure::Disclosure;
+use crate::host_messages::Delivery;
+use crate::param::{ParamError, printable};
+use crate::scene::Scene;
+use crate::spec::{ButtonSpec, Preset, STEP, WidgetSpec};
+use crate::values::Values;
+
+/// A widget without its drawing: tested headless, drawn by [`crate`]'s view half.
+///
+/// Everything that a reader can change is a parameter of the list, including the position on the timeline. So
+/// links, sliders, keys and JavaScript all use [`Model::set`] and [`Model::press`].
+pub trait Model {
+    /// The constant description of the widget.
+    fn spec(&self) -> &'static WidgetSpec;
+
+    /// The current value of every parameter.
+    fn values(&self) -> &Values;
+
+    /// The visible parts of the widget.
+    fn disclosure(&self) -> Disclosure {
+        Disclosure::visible(self.spec().opening, self.values())
+    }
+
+    /// Sets one parameter and recomputes what depends on it.
+    ///
+    /// # Errors
+    /// [`ParamError`] if the name is unknown or the value is out of range; the state does not change.
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError>;
+
+    /// Sets one parameter from the text of a link, an attribute or a message.
+    ///
+    /// # Errors
+    /// [`ParamError`] if the name is unknown or the text is invalid; the state does not change.
+    fn set_text(&mut self, id: &str, text: &str) -> Result<(), ParamError> {
+        let (param, _) = self.values().find_for(self.spec().id, id)?;
+        let value = param.parse(text)?;
+        self.set(id, value)
+    }
+
+    /// Presses a button or a preset.
+    ///
+    /// # Errors
+    /// [`ParamError::UnknownButton`]; the state does not change.
+    fn press(&mut self, id: &str) -> Result<(), ParamError>;
+
+    /// Whether a button has anything to do now; a reader's press of one that has not does nothing.
+    fn is_enabled(&self, button: &str) -> bool {
+        let at_end = |run: Timeline| self.values().number(run.param) >= run.last;
+        button != STEP.id || !self.timeline().is_some_and(at_end)
+    }
+
+    /// Advances the playback by that many seconds.
+    fn advance(&mut self, elapsed_s: f64) -> Activity;
+
+    /// Does one small piece (well under a millisecond) of progressive work: busy if it did one, unseen if the
+    /// picture did not change, idle if no work was left.
+    fn work(&mut self) -> Activity {
+        Activity::Idle
+    }
+
+    /// Finishes the [`Model::work`] on which the outcome depends, so that numbers and picture match the
+    /// values; purely visual refinement continues later. Idle if there was nothing to do.
+    fn finish_work(&mut self) -> Activity {
+        Activity::Idle
+    }
+
+    /// The picture.
+    fn scene(&self) -> Scene;
+
+    /// The result in words and numbers.
+    fn outcome(&self) -> Outcome;
+
+    /// A text alternative of the picture, for screen readers.
+    fn summary(&self) -> String;
+
+    /// The timeline, if the widget has one.
+    fn timeline(&self) -> Option<Timeline> {
+        None
+    }
+
+    /// The tabs over the picture, if the widget has two views.
+    fn tabs(&self) -> Option<Tabs> {
+        None
+    }
+
+    /// The data of every plot, and the tables beside the picture.
+    fn tables(&self) -> Vec<Table>;
+
+    /// The tables beside the picture.
+    ///
+    /// Called at every change of the picture. A widget whose plots hold long series overrides it, so that
+    /// they are formatted for the export only.
+    fn shown_tables(&self) -> Vec<Table> {
+        let mut tables = self.tables();
+        tables.retain(|table| table.place == TablePlace::Shown);
+        tables
+    }
+
+    /// What a press at that point of a panel grabs, within `reach` (units of the axes).
+    fn grab(&self, _panel: &str, _at: [f64; 2], _reach: [f64; 2]) -> Option<Handle> {
+        None
+    }
+
+    /// Moves the grabbed thing so that the grabbed spot is at that point.
+    fn drag(&mut self, _handle: Handle, _at: [f64; 2]) {}
+
+    /// Ends the drag.
+    fn release(&mut self) {}
+
+    /// A click or a tap at that point of a panel; `reach` is that of [`Model::grab`].
+    fn tap(&mut self, _panel: &str, _at: [f64; 2], _reach: [f64; 2]) {}
+
+    /// The pointer moved over a panel without pressing, or left it.
+    fn hover(&mut self, _panel: &str, _at: Option<[f64; 2]>) {}
+
+    /// Whether the widget accepts a file from the reader, for example by drag and drop.
+    fn takes_files(&self) -> bool {
+        false
+    }
+
+    /// Receives a delivery of the host; unknown kinds are ignored.
+    fn receive(&mut self, _delivery: &Delivery<'_>) {}
+
+    /// Keys that press a button while one of these buttons has the focus, by the names of browsers:
+    /// `("ArrowLeft", "west")`.
+    fn keys(&self) -> &'static [(&'static str, &'static str)] {
+        &[]
+    }
+
+    /// The widget's requests to its host, each once and in order: `open`, `look 12`.
+    fn take_requests(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Sets whether animations run or jump to their end.
+    fn set_motion(&mut self, _motion: Motion) {}
+}
+
+/// Whether there is more work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Activity {
+    /// No further frame is needed.
+    Idle,
+    /// Call again.
+    Busy,
+    /// Call again; the picture did not change.
+    BusyUnchanged,
+}
+
+impl Activity {
+    /// Whether to call again.
+    #[must_use]
+    pub fn is_busy(self) -> bool {
+        self != Self::Idle
+    }
+}
+
+/// Whether animations run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Motion {
+    /// Animations run.
+    #[default]
+    Full,
+    /// The system asks for reduced motion: animations jump to their end.
+    Reduced,
+}
+
+/// Something grabbed by [`Model::grab`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Handle {
+    /// The panel in which it is.
+    pub panel: &'static str,
+    /// The thing: `source`, `turn`, `cell`.
+    pub id: &'static str,
+    /// Grabbed spot minus the thing's own position, which avoids a jump.
+    pub offset: [f64; 2],
+}
+
+/// The assessment of an outcome.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Assessment {
+    /// A desirable result.
+    Good,
+    /// A result to beware of.
+    Bad,
+    /// A result that the reader should check.
+    Doubtful,
+    /// Neither.
+    Neutral,
+}
+
+/// The result of the current state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// Good or bad.
+    pub standing: Assessment,
+    /// One or two words: `quarter turn`.
+    pub verdict: String,
+    /// One sentence for the live region, with its numbers.
+    pub sentence: String,
+    /// The numbers, for readouts and for JavaScript.
+    pub facts: Vec<Fact>,
+}
+
+impl Outcome {
+    /// The sentence as it stands alone: with a capital, unless a name such as `hall.log` comes first, and a full stop.
+    #[must_use]
+    pub fn in_full(&self) -> String {
+        let first = self.sentence.split(' ').next().unwrap_or_default();
+        let is_word = first.bytes().all(|letter| letter.is_ascii_alphabetic());
+        let mut words = self.sentence.trim_end().to_owned();
+        if is_word && let Some(letter) = words.get_mut(..1) {
+            letter.make_ascii_uppercase();
+        }
+        if !words.ends_with(['.', '?', '!', '…']) {
+            words.push('.');
+        }
+        words
+    }
+}
+
+/// One number of an outcome.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fact {
+    /// Name in JavaScript: `rmse_m`.
+    pub id: &'static str,
+    /// Name on screen: `rmse`.
+    pub label: &'static str,
+    /// The number; not finite if there is none.
+    pub value: f64,
+    /// Unit on screen.
+    pub unit: &'static str,
+    /// Digits after the point.
+    pub decimals: usize,
+}
+
+impl Fact {
+    /// The unit of a yes-no answer: 1 is shown as yes, 0 as no.
+    pub const YES_OR_NO: &str = "yes or no";
+
+    /// A number with its unit and its significant digits.
+    #[must_use]
+    pub fn new(
+        id: &'static str,
+        label: &'static str,
+        value: f64,
+        unit: &'static str,
+        decimals: usize,
+    ) -> Self {
+        Self {
+            id,
+            label,
+            value,
+            unit,
+            decimals,
+        }
+    }
+
+    /// A length, to the millimetre.
+    #[must_use]
+    pub fn metres(id: &'static str, label: &'static str, value: f64) -> Self {
+        Self::new(id, label, value, "m", 3)
+    }
+
+    /// A yes-no answer.
+    #[must_use]
+    pub fn yes_or_no(id: &'static str, label: &'static str, yes: bool) -> Self {
+        Self::new(id, label, f64::from(u8::from(yes)), Self::YES_OR_NO, 0)
+    }
+
+    /// A whole number; not finite if there is none.
+    #[must_use]
+    pub fn count(id: &'static str, label: &'static str, value: f64) -> Self {
+        Self::new(id, label, value, "", 0)
+    }
+}
+
+/// Two views of a widget, as tabs.
+#[derive(Clone, Copy, Debug)]
+pub struct Tabs {
+    /// Name of the first view.
+    pub first: &'static str,
+    /// The button that changes between both; its label is the name of the second view.
+    pub button: &'static ButtonSpec,
+    /// Whether the second view is shown.
+    pub is_second: bool,
+}
+
+/// A run that can be scrubbed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Timeline {
+    /// The parameter that holds the position; beyond the last one it means the end.
+    pub param: &'static str,
+    /// Last position; the first is 0.
+    pub last: f64,
+    /// Whether it plays.
+    pub playing: bool,
+    /// Events on the timeline.
+    pub marks: Vec<TimelineMark>,
+}
+
+/// An event on the timeline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimelineMark {
+    /// Position.
+    pub at: f64,
+    /// Label: `loop 29 to 7 accepted`.
+    pub label: String,
+    /// Good or bad.
+    pub standing: Assessment,
+}
+
+/// A table: one CSV file, one block of readouts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// File name without ending: `errors-over-time`.
+    pub id: &'static str,
+    /// Title on screen.
+    pub title: String,
+    /// Head of every column, with units.
+    pub columns: Vec<String>,
+    /// The rows; a cell is text or a number already formatted.
+    pub rows: Vec<Vec<String>>,
+    /// Shown beside the picture, or only exported as CSV.
+    pub place: TablePlace,
+}
+
+impl Table {
+    /// A table beside the picture.
+    #[must_use]
+    pub fn shown(
+        id: &'static str,
+        title: impl Into<String>,
+        columns: &[&str],
+        rows: Vec<Vec<String>>,
+    ) -> Self {
+        let columns = columns.iter().map(|&head| head.to_owned());
+        Self {
+            id,
+            title: title.into(),
+            columns: columns.collect(),
+            rows,
+            place: TablePlace::Shown,
+        }
+    }
+
+    /// A table for the export alone.
+    #[must_use]
+    pub fn exported(
+        id: &'static str,
+        title: impl Into<String>,
+        columns: &[&str],
+        rows: Vec<Vec<String>>,
+    ) -> Self {
+        Self {
+            place: TablePlace::ExportOnly,
+            ..Self::shown(id, title, columns, rows)
+        }
+    }
+}
+
+/// Where a table is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TablePlace {
+    /// Beside the picture.
+    Shown,
+    /// In the CSV export alone.
+    ExportOnly,
+}
+
+/// Sets a model to the state of a preset.
+///
+/// # Errors
+/// [`ParamError`] if the preset names an unknown parameter: a bug that tests catch.
+pub fn apply_preset(model: &mut dyn Model, preset: &Preset) -> Result<(), ParamError> {
+    model.press("defaults")?;
+    for (id, value) in preset.set {
+        model.set(id, *value)?;
+    }
+    for button in preset.then {
+        model.press(button)?;
+    }
+    Ok(())
+}
+
+/// Does all the remaining [`Model::work`], as a [`Model::finish_work`] if the outcome depends on all of it.
+pub fn finish_work(model: &mut dyn Model) -> Activity {
+    let first = model.work();
+    while model.work().is_busy() {}
+    first
+}
+
+/// Presses the preset of that name, the fallback of a [`Model::press`].
+///
+/// # Errors
+/// [`ParamError::UnknownButton`] if there is none; the state does not change.
+pub fn press_preset(model: &mut dyn Model, id: &str) -> Result<(), ParamError> {
+    let spec = model.spec();
+    match spec.presets.iter().find(|preset| preset.id == id) {
+        Some(preset) => apply_preset(model, preset),
+        None => Err(unknown_button(spec, id)),
+    }
+}
+
+/// The error for a button that a widget does not have.
+#[must_use]
+pub fn unknown_button(spec: &WidgetSpec, id: &str) -> ParamError {
+    let buttons = spec.buttons.iter().map(|button| button.id);
+    let presets = spec.presets.iter().map(|preset| preset.id);
+    let known: Vec<_> = buttons.chain(presets).collect();
+    ParamError::UnknownButton {
+        widget: spec.id,
+        id: printable(id),
+        known: known.join(", "),
+    }
+}

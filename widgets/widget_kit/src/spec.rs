@@ -1,0 +1,81 @@
+//! The description of a widget: title, texts, parameters, buttons, presets.
+
+use crate::disclosure::Opening;
+use crate::param::ParamSpec;
+
+/// The constant description of a widget.
+#[derive(Clone, Copy, Debug)]
+pub struct WidgetSpec {
+    /// Number in the chapter and name in links: `w16.1`.
+    pub id: &'static str,
+    /// Title on screen: `Basin explorer`.
+    pub title: &'static str,
+    /// One sentence on the misconception that the widget removes.
+    pub misconception: &'static str,
+    /// What the reader may find out, and how: it stands where the verdict comes, until the reader acts.
+    pub question: &'static str,
+    /// "What to notice", a sentence each.
+    pub notice: &'static [&'static str],
+    /// The parts that are shown until the reader opens the rest.
+    pub opening: Opening,
+    /// The parameters, in the order of their controls.
+    pub params: &'static [&'static ParamSpec],
+    /// The buttons, in their order: transport first.
+    pub buttons: &'static [ButtonSpec],
+    /// "What to try": buttons that set the state.
+    pub presets: &'static [Preset],
+}
+
+/// A button with a single action.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ButtonSpec {
+    /// Name in JavaScript and for [`crate::model::Model::press`]: `step`.
+    pub id: &'static str,
+    /// Name on screen.
+    pub label: &'static str,
+    /// One sentence on its effect.
+    pub help: &'static str,
+}
+
+/// "What to try": a preset state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Preset {
+    /// Name for [`crate::model::Model::press`]: `quarter-turn`.
+    pub id: &'static str,
+    /// The text on the button: `Start 60° off`.
+    pub label: &'static str,
+    /// The expected result.
+    pub help: &'static str,
+    /// Parameters to set; all others go back to their defaults.
+    pub set: &'static [(&'static str, f64)],
+    /// Buttons to press afterwards, such as `play`.
+    pub then: &'static [&'static str],
+}
+
+/// Starts and pauses the playback; drawn as pressed while it plays.
+pub const PLAY: ButtonSpec = ButtonSpec {
+    id: "play",
+    label: "Play",
+    help: "Play the run from here, or pause it.",
+};
+
+/// Advances by one step of the timeline.
+pub const STEP: ButtonSpec = ButtonSpec {
+    id: "step",
+    label: "Step",
+    help: "Go one step forward.",
+};
+
+/// Returns to the start of the timeline; the other parameters do not change.
+pub const RESET: ButtonSpec = ButtonSpec {
+    id: "reset",
+    label: "Reset",
+    help: "Go back to the start of the run; the settings stay.",
+};
+
+/// Resets every parameter to its default.
+pub const DEFAULTS: ButtonSpec = ButtonSpec {
+    id: "defaults",
+    label: "Defaults",
+    help: "Reset every setting to its default.",
+};

@@ -1,0 +1,187 @@
+//! Layout of a widget's panels: rows of columns of panels.
+
+use crate::disclosure::Disclosure;
+use crate::layout::{PanelLayout, PlotHeight};
+use crate::scene::{Aspect, Panel, Scene, Weight};
+use crate::surface::{Measure, Px};
+
+/// Space between panels.
+pub const PANEL_GAP: f32 = 16.0;
+
+/// Width from which panels are side by side.
+pub const SIDE_BY_SIDE: f32 = 520.0;
+
+/// The layout of a widget's panels. The default suits most widgets.
+pub trait View {
+    /// Arranges the panels of a scene at that width.
+    fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
+        Arrangement::by_weight(scene, width)
+    }
+}
+
+/// Removes the panels that a disclosure hides.
+fn keep_shown(rows: &mut Vec<Row>, disclosure: &Disclosure) {
+    for row in rows.iter_mut() {
+        for column in &mut row.columns {
+            column.slots.retain(|slot| disclosure.has_panel(slot.panel));
+        }
+        row.columns.retain(|column| !column.slots.is_empty());
+    }
+    rows.retain(|row| !row.columns.is_empty());
+}
+
+/// The default view.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DefaultView;
+
+impl View for DefaultView {}
+
+/// One panel in a column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slot {
+    /// The panel's name; a panel that the scene lacks leaves no gap.
+    pub panel: &'static str,
+    /// Height of its plot.
+    pub height: PlotHeight,
+}
+
+/// Panels above each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Share of the row's width, relative to the other columns.
+    pub share: f32,
+    /// The panels from the top.
+    pub slots: Vec<Slot>,
+}
+
+/// Columns side by side.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Row {
+    /// The columns from the left.
+    pub columns: Vec<Column>,
+}
+
+impl Row {
+    /// Panels of equal width side by side.
+    #[must_use]
+    pub fn new(slots: &[Slot]) -> Self {
+        let columns = slots.iter().map(|slot| Column {
+            share: 1.0,
+            slots: vec![*slot],
+        });
+        Self {
+            columns: columns.collect(),
+        }
+    }
+}
+
+/// Rows above and below the transport bar.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Arrangement {
+    /// The pictures that the widget is about.
+    pub stage: Vec<Row>,
+    /// Panels below the opening control if everything is in one column: they may enter while the control is held.
+    pub under_control: Vec<Row>,
+    /// The plots below them.
+    pub below: Vec<Row>,
+}
+
+impl Arrangement {
+    /// The visible part for a disclosure: the panels of the scene, and no plots below.
+    #[must_use]
+    pub fn of_disclosure(mut self, disclosure: &Disclosure) -> Self {
+        if disclosure.is_all() {
+            return self;
+        }
+        keep_shown(&mut self.stage, disclosure);
+        keep_shown(&mut self.under_control, disclosure);
+        self.below.clear();
+        self
+    }
+
+    /// Default arrangement: main panels over the whole width, halves in pairs, side plots in pairs below.
+    #[must_use]
+    pub fn by_weight(scene: &Scene, width: f32) -> Self {
+        let slots = |weight: Weight, columns: usize| {
+            let column_width = width / columns as f32 - PANEL_GAP;
+            let slots: Vec<Slot> = scene
+                .panels
+                .iter()
+                .filter(|panel| panel.weight == weight)
+                .map(|panel| default_slot(panel, column_width))
+                .collect();
+            slots.chunks(columns).map(Row::new).collect::<Vec<_>>()
+        };
+        let pair = if width >= SIDE_BY_SIDE { 2 } else { 1 };
+        let mut stage = slots(Weight::Main, 1);
+        stage.extend(slots(Weight::Half, pair));
+        Self {
+            stage,
+            below: slots(Weight::Side, pair),
+            ..Self::default()
+        }
+    }
+}
+
+fn default_slot(panel: &Panel, width: f32) -> Slot {
+    let height = match (panel.aspect, panel.weight) {
+        (Aspect::Equal, Weight::Side) => PlotHeight::Natural { most: 260.0 },
+        (Aspect::Equal, _) => PlotHeight::Natural { most: 560.0 },
+        (Aspect::Free, Weight::Side) => PlotHeight::Fixed(130.0),
+        (Aspect::Free, _) => PlotHeight::Fixed((0.6 * width).clamp(180.0, 420.0)),
+    };
+    Slot {
+        panel: panel.id,
+        height,
+    }
+}
+
+/// A panel with its position, relative to the top left corner of its rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placed {
+    /// The panel's name.
+    pub panel: &'static str,
+    /// Top left corner.
+    pub origin: Px,
+    /// Its parts.
+    pub layout: PanelLayout,
+}
+
+/// Lays out the panels of rows at that width. Returns them with their total height.
+#[must_use]
+pub fn place(
+    scene: &Scene,
+    rows: &[Row],
+    width: f32,
+    measure: &mut dyn Measure,
+) -> (Vec<Placed>, f32) {
+    let mut placed = Vec::with_capacity(scene.panels.len());
+    let mut top = 0.0;
+    for row in rows {
+        let shares: f32 = row.columns.iter().map(|column| column.share).sum();
+        let gaps = PANEL_GAP * (row.columns.len().max(1) - 1) as f32;
+        let mut left = 0.0;
+        let mut bottom: f32 = top;
+        for column in &row.columns {
+            let column_width = (width - gaps) * column.share / shares;
+            let mut y = top;
+            for slot in &column.slots {
+                let Some(panel) = scene.panels.iter().find(|panel| panel.id == slot.panel) else {
+                    continue;
+                };
+                let layout = PanelLayout::new(panel, column_width, slot.height, measure);
+                let height = layout.size[1];
+                placed.push(Placed {
+                    panel: panel.id,
+                    origin: [left, y],
+                    layout,
+                });
+                y += height + PANEL_GAP;
+            }
+            bottom = bottom.max(y);
+            left += column_width + PANEL_GAP;
+        }
+        top = bottom;
+    }
+    (placed, (top - PANEL_GAP).max(0.0))
+}
