@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 
+use anyhow::{bail, ensure};
 use ch16_lab::buildings::{Kind, Recording, Robot, Trial, recorded_by};
 use ch16_lab::lap::Choice;
 use clap::Args;
@@ -12,8 +13,8 @@ use robot_io::carmen::write_carmen;
 use robot_io::log::LogFrame;
 use robot_io::settings::{Setting, SettingError};
 use serde::Serialize;
-use thiserror::Error;
 
+use crate::in_file::InFile as _;
 use crate::lap_options::choice;
 use crate::numbers::{self, Seeds};
 use crate::output::{print_json, say};
@@ -45,38 +46,6 @@ pub struct BuildingsArgs {
     /// Print one JSON list with an object for each seed.
     #[arg(long)]
     json: bool,
-}
-
-/// Why no run was done.
-#[derive(Debug, Error)]
-pub enum BuildingsFailure {
-    /// Too many seeds.
-    #[error("{seeds} seeds are too many; use at most {MAX_SEEDS}")]
-    TooMany {
-        /// Number of seeds.
-        seeds: u64,
-    },
-    /// A lap has a fixed robot.
-    #[error(
-        "--robot {robot} applies to buildings, not to --kind {kind}; omit it or use another kind"
-    )]
-    OtherRobot {
-        /// The requested robot.
-        robot: &'static str,
-        /// The requested kind.
-        kind: &'static str,
-    },
-    /// A parameter cannot be set.
-    #[error(transparent)]
-    Setting(#[from] SettingError),
-    /// The log cannot be written.
-    #[error("{path}: {source}")]
-    Write {
-        /// The file.
-        path: String,
-        /// The system's error.
-        source: std::io::Error,
-    },
 }
 
 /// Result for one building.
@@ -115,23 +84,22 @@ pub fn setting(text: &str) -> Result<(String, f64), String> {
 ///
 /// # Errors
 /// If there are too many seeds, a parameter cannot be set, or the log cannot be written.
-pub fn run(args: &BuildingsArgs) -> Result<(), BuildingsFailure> {
+pub fn run(args: &BuildingsArgs) -> anyhow::Result<()> {
     let seeds = args.seeds.count();
-    if seeds > MAX_SEEDS {
-        return Err(BuildingsFailure::TooMany { seeds });
-    }
+    ensure!(
+        seeds <= MAX_SEEDS,
+        "{seeds} seeds are too many; use at most {MAX_SEEDS}"
+    );
     if args.kind.is_lap() && args.robot != Robot::Own {
-        return Err(BuildingsFailure::OtherRobot {
-            robot: args.robot.name(),
-            kind: args.kind.name(),
-        });
+        bail!(
+            "--robot {} applies to buildings, not to --kind {}; omit it or use another kind",
+            args.robot.name(),
+            args.kind.name()
+        );
     }
     if let Some(path) = &args.log {
         let (recording, _) = recorded_by(args.robot, args.kind, args.seeds.first);
-        return write(path, &recording).map_err(|source| BuildingsFailure::Write {
-            path: path.display().to_string(),
-            source,
-        });
+        return write(path, &recording).in_file(path);
     }
     for (name, value) in &args.settings {
         Setting::named(name)?.check(*value)?;

@@ -1,20 +1,21 @@
 //! `slam2d convert`: converts between formats, chosen by file name extension.
 
 use std::fs;
-use std::io::{self, BufRead as _};
+use std::io::BufRead as _;
 use std::path::{Path, PathBuf};
 
+use anyhow::bail;
 use clap::Args;
 use robot_io::carmen::write_carmen;
-use robot_io::graph_file::{GraphError, GraphFile};
+use robot_io::graph_file::GraphFile;
 use robot_io::json_log::FrameLine;
-use robot_io::trajectory::{StampedPose, TextError, Trajectory};
+use robot_io::trajectory::{StampedPose, Trajectory};
 use serde::Serialize;
-use thiserror::Error;
 
-use crate::log_file::{FileError, TopicArgs, open, open_log};
+use crate::in_file::InFile as _;
+use crate::log_file::{TopicArgs, open, open_log};
 use crate::optimize::{WholeFile, write_whole};
-use crate::session_file::{SessionFileError, is_session, read_session};
+use crate::session_file::{is_session, read_session};
 
 /// Convert a log, a pose graph or a trajectory to another format, chosen by the file name extensions.
 ///
@@ -29,39 +30,6 @@ pub struct ConvertArgs {
     output: PathBuf,
     #[command(flatten)]
     topics: TopicArgs,
-}
-
-/// Why the conversion failed.
-#[derive(Debug, Error)]
-pub enum ConvertError {
-    /// A file cannot be read or written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The graph cannot be read.
-    #[error(transparent)]
-    Graph(#[from] GraphError),
-    /// The trajectory cannot be read.
-    #[error(transparent)]
-    Text(#[from] TextError),
-    /// The session cannot be read.
-    #[error(transparent)]
-    Session(#[from] SessionFileError),
-    /// Input and output are the same file.
-    #[error("{0} is both input and output; choose another output file")]
-    Itself(String),
-    /// There is no conversion between these formats.
-    #[error("{input} cannot be converted to {output}; {advice}")]
-    NoSense {
-        /// Input file.
-        input: String,
-        /// Output file.
-        output: String,
-        /// Possible conversions.
-        advice: &'static str,
-    },
-    /// The log has no odometry.
-    #[error("{0} has no odometry, so it has no trajectory to convert")]
-    NoOdometry(String),
 }
 
 /// Content of a file, by its extension.
@@ -126,7 +94,7 @@ struct PoseJson {
 ///
 /// # Errors
 /// If a file cannot be used, or there is no such conversion.
-pub fn run(args: &ConvertArgs) -> Result<(), ConvertError> {
+pub fn run(args: &ConvertArgs) -> anyhow::Result<()> {
     let [from, to] = [&args.input, &args.output].map(|path| extension(path));
     let kind = match Kind::from_extension(&from) {
         // The folder of a run stands for its session.
@@ -134,18 +102,22 @@ pub fn run(args: &ConvertArgs) -> Result<(), ConvertError> {
         kind => kind,
     };
     if is_same_file(&args.input, &args.output) {
-        return Err(ConvertError::Itself(args.input.display().to_string()));
+        bail!(
+            "{} is both input and output; choose another output file",
+            args.input.display()
+        );
     }
     match (kind, to.as_str()) {
         (Kind::Log, "clf" | "log" | "jsonl" | "tum") => convert_log(args, &to),
         (Kind::Graph, "g2o" | "graph" | "toro" | "json") => convert_graph(args, &to),
         (Kind::Trajectory, "json") => convert_trajectory(args),
         (Kind::Session, "g2o" | "graph" | "toro" | "json" | "tum") => convert_session(args, &to),
-        _ => Err(ConvertError::NoSense {
-            input: args.input.display().to_string(),
-            output: args.output.display().to_string(),
-            advice: kind.advice(),
-        }),
+        _ => bail!(
+            "{} cannot be converted to {}; {}",
+            args.input.display(),
+            args.output.display(),
+            kind.advice()
+        ),
     }
 }
 
@@ -160,19 +132,10 @@ fn extension(path: &Path) -> String {
     extension.to_ascii_lowercase()
 }
 
-fn io_error(path: &Path) -> impl Fn(io::Error) -> FileError {
-    let path = path.to_owned();
-    move |source| FileError::Io {
-        path: path.clone(),
-        source,
-    }
-}
-
-fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
+fn convert_log(args: &ConvertArgs, to: &str) -> anyhow::Result<()> {
     let (mut reader, mut progress) = open_log(&args.input, &args.topics)?;
-    let io_error = io_error(&args.output);
     // If the log cannot be read, the output is left unchanged.
-    let mut next = reader.next_frame().map_err(FileError::from)?;
+    let mut next = reader.next_frame()?;
     let mut file: Option<WholeFile> = None;
     let mut odometry: Vec<StampedPose> = Vec::new();
     let mut count = 0;
@@ -192,52 +155,54 @@ fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
         } else {
             let file = match &mut file {
                 Some(file) => file,
-                none => none.insert(WholeFile::create(&args.output).map_err(&io_error)?),
+                none => none.insert(WholeFile::create(&args.output).in_file(&args.output)?),
             };
             match to {
-                "jsonl" => FrameLine::from(&frame).write(file).map_err(&io_error)?,
-                _ => write_carmen(&frame, file).map_err(&io_error)?,
+                "jsonl" => FrameLine::from(&frame).write(file).in_file(&args.output)?,
+                _ => write_carmen(&frame, file).in_file(&args.output)?,
             }
         }
-        next = reader.next_frame().map_err(FileError::from)?;
+        next = reader.next_frame()?;
     }
     progress.end();
     for sentence in reader.notes().sentences(&args.input.display().to_string()) {
         eprintln!("slam2d: {sentence}");
     }
     if let Some(file) = file {
-        file.finish().map_err(&io_error)?;
+        file.finish().in_file(&args.output)?;
     }
     if to == "tum" {
         if odometry.is_empty() {
-            return Err(ConvertError::NoOdometry(args.input.display().to_string()));
+            bail!(
+                "{} has no odometry, so it has no trajectory to convert",
+                args.input.display()
+            );
         }
         let mut text = Vec::new();
         let written = Trajectory::new(odometry).write_tum(&mut text);
         written
             .and_then(|()| write_whole(&args.output, &text))
-            .map_err(&io_error)?;
+            .in_file(&args.output)?;
     }
     Ok(())
 }
 
-fn convert_graph(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
-    let bytes = fs::read(&args.input).map_err(io_error(&args.input))?;
+fn convert_graph(args: &ConvertArgs, to: &str) -> anyhow::Result<()> {
+    let bytes = fs::read(&args.input).in_file(&args.input)?;
     let graph = GraphFile::read(&bytes, &args.input.display().to_string())?;
     write_graph(args, &graph, to)
 }
 
-fn write_graph(args: &ConvertArgs, graph: &GraphFile, to: &str) -> Result<(), ConvertError> {
+fn write_graph(args: &ConvertArgs, graph: &GraphFile, to: &str) -> anyhow::Result<()> {
     let text = match to {
         "g2o" => graph.to_g2o(),
         "json" => json(graph),
         _ => graph.to_toro(),
     };
-    write_whole(&args.output, text.as_bytes()).map_err(io_error(&args.output))?;
-    Ok(())
+    write_whole(&args.output, text.as_bytes()).in_file(&args.output)
 }
 
-fn convert_session(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
+fn convert_session(args: &ConvertArgs, to: &str) -> anyhow::Result<()> {
     let (session, _) = read_session(&args.input)?;
     if to != "tum" {
         return write_graph(args, &GraphFile::from_pose_graph(&session.graph()), to);
@@ -250,10 +215,10 @@ fn convert_session(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
     let mut text = Vec::new();
     let written = Trajectory::new(poses.collect()).write_tum(&mut text);
     let written = written.and_then(|()| write_whole(&args.output, &text));
-    Ok(written.map_err(io_error(&args.output))?)
+    written.in_file(&args.output)
 }
 
-fn convert_trajectory(args: &ConvertArgs) -> Result<(), ConvertError> {
+fn convert_trajectory(args: &ConvertArgs) -> anyhow::Result<()> {
     let name = args.input.display().to_string();
     let trajectory = Trajectory::read_tum(open(&args.input)?, &name)?;
     let poses: Vec<PoseJson> = trajectory
@@ -264,8 +229,7 @@ fn convert_trajectory(args: &ConvertArgs) -> Result<(), ConvertError> {
             pose: stamped.pose.to_array(),
         })
         .collect();
-    write_whole(&args.output, json(&poses).as_bytes()).map_err(io_error(&args.output))?;
-    Ok(())
+    write_whole(&args.output, json(&poses).as_bytes()).in_file(&args.output)
 }
 
 fn json(value: &impl Serialize) -> String {

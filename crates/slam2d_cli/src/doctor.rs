@@ -8,7 +8,7 @@ use robot_io::doctor::Checkup;
 use robot_io::log::LogReader;
 use robot_io::remark::Verdict;
 
-use crate::log_file::{FileError, OdometryArgs, TopicArgs, open_compared};
+use crate::log_file::{OdometryArgs, TopicArgs, open_compared};
 use crate::output::{print_json, say};
 
 /// Check a recording: print sensor, odometry, mounting, clocks and file, each with ✓, ! or ✗.
@@ -32,7 +32,7 @@ pub struct DoctorArgs {
 ///
 /// # Errors
 /// If the log cannot be read at all.
-pub fn run(args: &DoctorArgs) -> Result<ExitCode, FileError> {
+pub fn run(args: &DoctorArgs) -> anyhow::Result<ExitCode> {
     let (mut reader, mut progress) = open_compared(&args.log, &args.topics, args.odometry)?;
     let mut checkup = Checkup::default();
     while let Some(frame) = reader.next_frame()? {

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::{Context as _, ensure};
 use clap::Args;
 use robot_io::log::LogReader;
 use robot_io::trajectory::{StampedPose, Trajectory};
-use thiserror::Error;
 
-use crate::grade::{GradeError, ReferenceArgs};
-use crate::log_file::{FileError, OdometryArgs, TopicArgs, open, open_compared};
+use crate::grade::ReferenceArgs;
+use crate::log_file::{OdometryArgs, TopicArgs, open, open_compared};
 use crate::output::print_json;
 
 /// Evaluate a trajectory against reference relations or the true trajectory.
@@ -28,32 +28,16 @@ pub struct EvaluateArgs {
     json: bool,
 }
 
-/// Why the evaluation failed.
-#[derive(Debug, Error)]
-pub enum EvaluateError {
-    /// Neither relations nor a true trajectory are given.
-    #[error("no reference is given; use --relations FILE or --truth FILE")]
-    NoReference,
-    /// The log has no odometry for propagating poses.
-    #[error("{0} has no odometry to propagate poses; omit --log")]
-    NoOdometry(String),
-    /// The log cannot be read.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The comparison failed.
-    #[error(transparent)]
-    Grade(#[from] GradeError),
-}
-
 /// Reads trajectory and reference and prints the errors.
 ///
 /// # Errors
 /// If a file cannot be used, or nothing can be compared.
-pub fn run(args: &EvaluateArgs) -> Result<(), EvaluateError> {
-    let reference = args.reference.read()?.ok_or(EvaluateError::NoReference)?;
+pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
+    let reference = args.reference.read()?;
+    let reference =
+        reference.context("no reference is given; use --relations FILE or --truth FILE")?;
     let name = args.trajectory.display().to_string();
-    let mut trajectory =
-        Trajectory::read_tum(open(&args.trajectory)?, &name).map_err(GradeError::from)?;
+    let mut trajectory = Trajectory::read_tum(open(&args.trajectory)?, &name)?;
     if let Some(path) = &args.log {
         let odometry = odometry(path, &args.topics)?;
         trajectory = trajectory.carried_by(&odometry);
@@ -68,10 +52,10 @@ pub fn run(args: &EvaluateArgs) -> Result<(), EvaluateError> {
 }
 
 /// The odometry of a log at its scans, without those whose stamp is not later than the one before.
-fn odometry(path: &Path, topics: &TopicArgs) -> Result<Trajectory, EvaluateError> {
+fn odometry(path: &Path, topics: &TopicArgs) -> anyhow::Result<Trajectory> {
     let (mut reader, mut progress) = open_compared(path, topics, OdometryArgs::default())?;
     let mut poses: Vec<StampedPose> = Vec::new();
-    while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
+    while let Some(frame) = reader.next_frame()? {
         progress.report(poses.len());
         let Some(pose) = frame.odometry else { continue };
         let stamp_s = frame.stamp_s;
@@ -80,8 +64,10 @@ fn odometry(path: &Path, topics: &TopicArgs) -> Result<Trajectory, EvaluateError
         }
     }
     progress.end();
-    if poses.is_empty() {
-        return Err(EvaluateError::NoOdometry(path.display().to_string()));
-    }
+    ensure!(
+        !poses.is_empty(),
+        "{} has no odometry to propagate poses; omit --log",
+        path.display()
+    );
     Ok(Trajectory::new(poses))
 }

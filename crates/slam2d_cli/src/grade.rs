@@ -2,16 +2,14 @@
 
 use std::path::PathBuf;
 
+use anyhow::bail;
 use clap::{Args, ValueEnum};
-use robot_io::evaluate::{
-    Alignment, RelationReport, TruthProblem, TruthReport, relation_errors, truth_errors,
-};
+use robot_io::evaluate::{Alignment, RelationReport, TruthReport, relation_errors, truth_errors};
 use robot_io::relations::{Relation, read_relations};
-use robot_io::trajectory::{StampedPose, TextError, Trajectory};
+use robot_io::trajectory::{StampedPose, Trajectory};
 use serde::Serialize;
-use thiserror::Error;
 
-use crate::log_file::{FileError, open};
+use crate::log_file::open;
 use crate::output::say;
 
 /// Reference of the evaluation.
@@ -46,32 +44,6 @@ impl From<AlignArg> for Alignment {
     }
 }
 
-/// Why the evaluation failed.
-#[derive(Debug, Error)]
-pub enum GradeError {
-    /// A file cannot be opened.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// A file is malformed.
-    #[error(transparent)]
-    Text(#[from] TextError),
-    /// Too few common stamps.
-    #[error("{0}")]
-    Truth(#[from] TruthProblem),
-    /// No relation lies within the times of the trajectory.
-    #[error(
-        "none of the {count} relations lies within the times of the trajectory, {first_s} s to {last_s} s; use the same clock for both"
-    )]
-    Outside {
-        /// Number of relations in the file.
-        count: usize,
-        /// First stamp of the trajectory, s.
-        first_s: f64,
-        /// Last stamp of the trajectory, s.
-        last_s: f64,
-    },
-}
-
 /// The reference, read before the run.
 pub enum Reference {
     /// Relations between two times.
@@ -95,7 +67,7 @@ impl ReferenceArgs {
     ///
     /// # Errors
     /// If its file cannot be used.
-    pub fn read(&self) -> Result<Option<Reference>, GradeError> {
+    pub fn read(&self) -> anyhow::Result<Option<Reference>> {
         if let Some(path) = &self.relations {
             let relations = read_relations(open(path)?, &path.display().to_string())?;
             return Ok(Some(Reference::Relations(relations)));
@@ -113,7 +85,7 @@ impl Reference {
     ///
     /// # Errors
     /// If nothing can be compared.
-    pub fn grade(&self, trajectory: &Trajectory) -> Result<Grade, GradeError> {
+    pub fn grade(&self, trajectory: &Trajectory) -> anyhow::Result<Grade> {
         match self {
             Self::Relations(relations) => {
                 let errors = relation_errors(trajectory, relations);
@@ -121,11 +93,12 @@ impl Reference {
                 if report.n == 0 {
                     let stamp_s =
                         |pose: Option<&StampedPose>| pose.map_or(0.0, |pose| pose.stamp_s);
-                    return Err(GradeError::Outside {
-                        count: relations.len(),
-                        first_s: stamp_s(trajectory.poses().first()),
-                        last_s: stamp_s(trajectory.poses().last()),
-                    });
+                    bail!(
+                        "none of the {} relations lies within the times of the trajectory, {} s to {} s; use the same clock for both",
+                        relations.len(),
+                        stamp_s(trajectory.poses().first()),
+                        stamp_s(trajectory.poses().last())
+                    );
                 }
                 if errors.outside > 0 {
                     eprintln!(

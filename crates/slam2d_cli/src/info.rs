@@ -8,11 +8,10 @@ use std::path::PathBuf;
 use clap::Args;
 use robot_io::info::LogInfo;
 use serde::Serialize;
-use thiserror::Error;
 
-use crate::log_file::{FileError, TopicArgs, open_log};
+use crate::log_file::{TopicArgs, open_log};
 use crate::output::{print_json, say};
-use crate::session_file::{SessionFileError, is_session};
+use crate::session_file::is_session;
 
 /// Print a summary of a recorded log or a session: scans, beams, odometry, stamps, and unreadable records.
 #[derive(Args, Clone, Debug)]
@@ -24,17 +23,6 @@ pub struct InfoArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
-}
-
-/// Why there is no summary.
-#[derive(Debug, Error)]
-pub enum InfoError {
-    /// It is not a log.
-    #[error(transparent)]
-    Log(#[from] FileError),
-    /// It is not a session.
-    #[error(transparent)]
-    Session(#[from] SessionFileError),
 }
 
 #[derive(Serialize)]
@@ -50,13 +38,13 @@ struct InfoJson<'a> {
 ///
 /// # Errors
 /// If it cannot be read.
-pub fn run(args: &InfoArgs) -> Result<(), InfoError> {
+pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
     if is_session(&args.log) {
-        return Ok(session_info::run(&args.log, args.json)?);
+        return session_info::run(&args.log, args.json);
     }
     let (mut reader, mut progress) = open_log(&args.log, &args.topics)?;
     let mut info = LogInfo::default();
-    while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
+    while let Some(frame) = reader.next_frame()? {
         info.add(&frame);
         progress.report(info.scans);
     }

@@ -9,18 +9,18 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use anyhow::bail;
 use ch16_lab::lap::{
     Choice, Drive, LapConfig, LapEstimator, LapRecord, LapRunner, LoopAttempt, TickReport,
 };
 use clap::Args;
 use robot_io::json_log::FrameLine;
 use serde::Serialize;
-use thiserror::Error;
 
+use crate::in_file::InFile as _;
 use crate::lap_options::{TrialArgs, choice};
 use crate::numbers;
 use crate::output::{print_json, say};
-use crate::world::WorldError;
 
 /// Simulate the lap in the Apartment or another world, and estimate it.
 #[derive(Args, Clone, Debug)]
@@ -108,75 +108,11 @@ struct TickJson {
     keyframe: bool,
 }
 
-/// Why a lap was not run or not written.
-#[derive(Debug, Error)]
-pub enum LapError {
-    /// The world cannot be used.
-    #[error(transparent)]
-    World(#[from] WorldError),
-    /// The estimator ignores an argument.
-    #[error(
-        "{argument} has no effect on the estimator {estimator}; omit it or use --estimator graph"
-    )]
-    OfTheGraph {
-        /// The argument.
-        argument: &'static str,
-        /// The estimator.
-        estimator: &'static str,
-    },
-    /// The command was built without the student's functions.
-    #[error(
-        "this slam2d was built without your exercises: cargo run -p slam2d_cli --features exercises -- lap --exercises"
-    )]
-    #[cfg_attr(feature = "exercises", expect(dead_code, reason = "they are built in"))]
-    WithoutExercises,
-    /// An exercise is not written, or panics.
-    #[error("--exercises: {0}")]
-    #[cfg(feature = "exercises")]
-    Exercise(String),
-    /// No exercise implements the argument.
-    #[error("no exercise implements this {argument}; use {instead}")]
-    #[cfg(feature = "exercises")]
-    NoExercise {
-        /// The argument.
-        argument: &'static str,
-        /// An implemented argument.
-        instead: &'static str,
-    },
-    /// The wardrobe exists only in the Apartment.
-    #[error("--wardrobe applies to the Apartment only; omit --world")]
-    NotTheApartment,
-    /// The wardrobe would move after the last lap.
-    #[error("--wardrobe {lap} is beyond --laps {count}; use a lap up to {count}")]
-    NoSuchLap {
-        /// The lap.
-        lap: usize,
-        /// Number of laps.
-        count: usize,
-    },
-    /// The session cannot be written.
-    #[error("{}: {source}", path.display())]
-    Written {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        source: io::Error,
-    },
-    /// The frames cannot be written.
-    #[error("{}: {source}", path.display())]
-    Frames {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        source: io::Error,
-    },
-}
-
 /// Runs the lap and prints it.
 ///
 /// # Errors
 /// If the world file cannot be used, or the frames cannot be written.
-pub fn run(args: &LapArgs) -> Result<(), LapError> {
+pub fn run(args: &LapArgs) -> anyhow::Result<()> {
     if let Some(count) = args.laps.laps {
         let course = args.trial.course()?;
         return laps::run(&args.laps, count, &course, args.seed, args.noise, args.json);
@@ -187,17 +123,14 @@ pub fn run(args: &LapArgs) -> Result<(), LapError> {
     }
     if let Some(path) = &args.frames {
         let drive = Drive::simulate(&config.drive);
-        write_frames(path, &drive).map_err(|source| LapError::Frames {
-            path: path.clone(),
-            source,
-        })?;
+        write_frames(path, &drive).in_file(path)?;
     }
     if let LapEstimator::IncrementalKind(kind) = args.estimator {
         if let Some(argument) = args.trial.of_the_graph() {
-            return Err(LapError::OfTheGraph {
-                argument,
-                estimator: args.estimator.name(),
-            });
+            bail!(
+                "{argument} has no effect on the estimator {}; omit it or use --estimator graph",
+                args.estimator.name()
+            );
         }
         incremental::print(kind, &config, args);
         return Ok(());
@@ -215,7 +148,7 @@ pub fn run(args: &LapArgs) -> Result<(), LapError> {
 }
 
 #[cfg(feature = "exercises")]
-fn run_exercises(config: &LapConfig, args: &LapArgs) -> Result<(), LapError> {
+fn run_exercises(config: &LapConfig, args: &LapArgs) -> anyhow::Result<()> {
     let driven = exercises::drive(config)?;
     print_text(&driven.record, args);
     driven.print();
@@ -223,8 +156,10 @@ fn run_exercises(config: &LapConfig, args: &LapArgs) -> Result<(), LapError> {
 }
 
 #[cfg(not(feature = "exercises"))]
-fn run_exercises(_: &LapConfig, _: &LapArgs) -> Result<(), LapError> {
-    Err(LapError::WithoutExercises)
+fn run_exercises(_: &LapConfig, _: &LapArgs) -> anyhow::Result<()> {
+    bail!(
+        "this slam2d was built without your exercises: cargo run -p slam2d_cli --features exercises -- lap --exercises"
+    )
 }
 
 /// Writes every frame of a drive with the true pose.

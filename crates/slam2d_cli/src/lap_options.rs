@@ -11,7 +11,7 @@ use clap::builder::PossibleValue;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use pr_sim::Course;
 
-use crate::world::{WorldArg, WorldError};
+use crate::world::WorldArg;
 
 /// Arguments shared by a lap and a sweep of laps.
 #[derive(Args, Clone, Debug)]
@@ -75,7 +75,7 @@ impl TrialArgs {
     ///
     /// # Errors
     /// If the world file cannot be used.
-    pub fn course(&self) -> Result<Course, WorldError> {
+    pub fn course(&self) -> anyhow::Result<Course> {
         self.world.course()
     }
 
@@ -83,7 +83,7 @@ impl TrialArgs {
     ///
     /// # Errors
     /// If the world file cannot be used.
-    pub fn trial(&self) -> Result<LapOptions, WorldError> {
+    pub fn trial(&self) -> anyhow::Result<LapOptions> {
         let is_the_chapters = self.world == WorldArg::BuiltIn(BuiltInWorld::Apartment);
         let course = (!is_the_chapters).then(|| self.world.course());
         Ok(LapOptions {

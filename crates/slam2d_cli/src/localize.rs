@@ -4,23 +4,23 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::str::FromStr;
 
+use anyhow::bail;
 use bench_support::process;
 use ch16_slam2d::localize::{LocalizeReport, StartPose, Verdict};
-use ch16_slam2d::search::SearchError;
 use clap::Args;
 use pr_geom::SE2;
 use robot_io::localize::LocalizeRun;
 use robot_io::log::LogReader;
 use robot_io::run::{OdometryUse, late_scans};
 use serde::Serialize;
-use thiserror::Error;
 
-use crate::grade::{Grade, GradeError, ReferenceArgs};
+use crate::grade::{Grade, ReferenceArgs};
+use crate::in_file::InFile as _;
 use crate::interrupt::{self, Interrupt};
-use crate::log_file::{FileError, OdometryArgs, TopicArgs, open_compared};
+use crate::log_file::{OdometryArgs, TopicArgs, open_compared};
 use crate::optimize::{check_file, write_whole};
 use crate::output::{print_json, say};
-use crate::session_file::{SessionFileError, read_session};
+use crate::session_file::read_session;
 
 /// Localize a log on the map of a session: print poses, their uncertainty, and when the robot was lost.
 #[derive(Args, Clone, Debug)]
@@ -82,36 +82,6 @@ impl FromStr for Init {
     }
 }
 
-/// Why a log was not localized.
-#[derive(Debug, Error)]
-pub enum LocalizeError {
-    /// A file cannot be read or written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The session cannot be used.
-    #[error(transparent)]
-    Session(#[from] SessionFileError),
-    /// The session has no usable map.
-    #[error("{}: the session has no map for localization: {source}; map a log first", path.display())]
-    Map {
-        /// The session.
-        path: PathBuf,
-        /// Reason.
-        source: SearchError,
-    },
-    /// The comparison failed.
-    #[error(transparent)]
-    Grade(#[from] GradeError),
-    /// Every scan was invalid.
-    #[error("{name}: no scan could be used: {problem}")]
-    NoScan {
-        /// The log.
-        name: String,
-        /// Why the first one was invalid.
-        problem: String,
-    },
-}
-
 /// What `--json` prints.
 #[derive(Serialize)]
 struct LocalizeJson {
@@ -165,13 +135,10 @@ impl PoseJson {
 ///
 /// # Errors
 /// If a file cannot be used.
-pub fn run(args: &LocalizeArgs) -> Result<ExitCode, LocalizeError> {
+pub fn run(args: &LocalizeArgs) -> anyhow::Result<ExitCode> {
     let name = args.log.display().to_string();
     if let Some(path) = &args.output {
-        check_file(path).map_err(|source| FileError::Io {
-            path: path.clone(),
-            source,
-        })?;
+        check_file(path).in_file(path)?;
     }
     let reference = args.reference.read()?;
     let (session, _) = read_session(&args.session)?;
@@ -180,18 +147,17 @@ pub fn run(args: &LocalizeArgs) -> Result<ExitCode, LocalizeError> {
     } else {
         OdometryUse::Log
     };
-    let mut run = LocalizeRun::new(&session, odometry_use, args.init.0).map_err(|source| {
-        LocalizeError::Map {
-            path: args.session.clone(),
-            source,
-        }
-    })?;
+    let mut run = LocalizeRun::new(&session, odometry_use, args.init.0)
+        .map_err(|error| {
+            format!("the session has no map for localization: {error}; map a log first")
+        })
+        .in_file(&args.session)?;
     let interrupt = Interrupt::watch();
     let (reader, mut progress) = open_compared(&args.log, &args.topics, args.odometry)?;
     let mut reader = reader.ignoring_odometry(args.no_odometry);
     let mut is_interrupted = true;
     while !interrupt.came() {
-        let Some(frame) = reader.next_frame().map_err(FileError::from)? else {
+        let Some(frame) = reader.next_frame()? else {
             is_interrupted = false;
             break;
         };
@@ -203,7 +169,7 @@ pub fn run(args: &LocalizeArgs) -> Result<ExitCode, LocalizeError> {
         let problem = run.refused().map(|problem| problem.to_string());
         let problem =
             problem.unwrap_or_else(|| "it was interrupted before the first one".to_owned());
-        return Err(LocalizeError::NoScan { name, problem });
+        bail!("{name}: no scan could be used: {problem}");
     }
     let late = late_scans(&name, run.late());
     for sentence in reader.notes().sentences(&name).into_iter().chain(late) {
@@ -227,10 +193,7 @@ pub fn run(args: &LocalizeArgs) -> Result<ExitCode, LocalizeError> {
         let mut text = Vec::new();
         let written = trajectory.write_tum(&mut text);
         let written = written.and_then(|()| write_whole(path, &text));
-        written.map_err(|source| FileError::Io {
-            path: path.clone(),
-            source,
-        })?;
+        written.in_file(path)?;
     }
     let grade = reference
         .as_ref()

@@ -5,10 +5,11 @@ use std::io::{self, BufReader, IsTerminal, Read, Seek, SeekFrom, stderr};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use anyhow::ensure;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use robot_io::laser_mount::LaserMount;
-use robot_io::log::{LogError, LogFrame, LogOptions, LogReader, with_remarks};
+use robot_io::log::{LogFrame, LogOptions, LogReader, with_remarks};
 use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::log_format::LogFormat;
 use robot_io::motion::{ComparedReader, OdometryChoice};
@@ -16,8 +17,8 @@ use robot_io::near_readings::Footprint;
 use robot_io::remark::Remark;
 use robot_io::rosbag2;
 use robot_io::table_log::Layout;
-use thiserror::Error;
 
+use crate::in_file::InFile as _;
 use crate::numbers;
 
 /// Choice of topics and frames in a ROS recording, if there are several.
@@ -103,56 +104,14 @@ impl TopicArgs {
     }
 }
 
-/// Why a file could not be used.
-#[derive(Debug, Error)]
-pub enum FileError {
-    /// The system could not open or write it.
-    #[error("{}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        source: io::Error,
-    },
-    /// A file of a result could not be written.
-    #[error("{}: {source}; nothing was replaced", path.display())]
-    Unwritten {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        source: io::Error,
-    },
-    /// A folder without a recording.
-    #[error("{} is a folder without a ROS 2 recording; pass a log, or a folder with .mcap or .db3 files", path.display())]
-    NoRecording {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// A folder whose description lists a file that is not there.
-    #[error("{}: {} lists {absent}, which is not there, and the folder has no other recording; copy it into the folder", path.display(), rosbag2::METADATA)]
-    Absent {
-        /// The folder.
-        path: PathBuf,
-        /// The file.
-        absent: String,
-    },
-    /// It is not a readable log.
-    #[error(transparent)]
-    Log(#[from] LogError),
-}
-
 /// Opens a file; rejects a folder before it is read.
 ///
 /// # Errors
 /// If the system cannot open it; the error contains the name.
-pub fn open(path: &Path) -> Result<BufReader<File>, FileError> {
-    let io_error = |source| FileError::Io {
-        path: path.to_owned(),
-        source,
-    };
-    let file = File::open(path).map_err(io_error)?;
-    if file.metadata().map_err(io_error)?.is_dir() {
-        return Err(io_error(io::ErrorKind::IsADirectory.into()));
+pub fn open(path: &Path) -> anyhow::Result<BufReader<File>> {
+    let file = File::open(path).in_file(path)?;
+    if file.metadata().in_file(path)?.is_dir() {
+        return Err(io::Error::from(io::ErrorKind::IsADirectory)).in_file(path);
     }
     Ok(BufReader::with_capacity(1 << 16, file))
 }
@@ -161,10 +120,7 @@ pub fn open(path: &Path) -> Result<BufReader<File>, FileError> {
 ///
 /// # Errors
 /// If it cannot be opened or is not a log.
-pub fn open_log(
-    path: &Path,
-    topics: &TopicArgs,
-) -> Result<(Box<dyn LogReader>, Progress), FileError> {
+pub fn open_log(path: &Path, topics: &TopicArgs) -> anyhow::Result<(Box<dyn LogReader>, Progress)> {
     let (parts, remarks, progress) = parts(path)?;
     let name = path.display().to_string();
     let reader = LogFormat::open_parts(parts, &name, &topics.options())?;
@@ -175,7 +131,7 @@ pub fn open_log(
 ///
 /// # Errors
 /// If it cannot be read or is not a log.
-pub fn read_frames(path: &Path, topics: &TopicArgs) -> Result<Vec<LogFrame>, FileError> {
+pub fn read_frames(path: &Path, topics: &TopicArgs) -> anyhow::Result<Vec<LogFrame>> {
     let (mut reader, progress) = open_log(path, topics)?;
     let mut frames = Vec::new();
     while let Some(frame) = reader.next_frame()? {
@@ -194,14 +150,14 @@ pub fn open_compared(
     path: &Path,
     topics: &TopicArgs,
     odometry: OdometryArgs,
-) -> Result<(ComparedReader<'static>, Progress), FileError> {
+) -> anyhow::Result<(ComparedReader<'static>, Progress)> {
     let (reader, progress) = open_log(path, topics)?;
     let reader = ComparedReader::new(reader, topics.laser.is_some());
     Ok((reader.with_odometry(odometry.odometry), progress))
 }
 
 /// The files of a log, remarks on them, and a progress bar.
-fn parts(path: &Path) -> Result<(Vec<LogBytes<'static>>, Vec<Remark>, Progress), FileError> {
+fn parts(path: &Path) -> anyhow::Result<(Vec<LogBytes<'static>>, Vec<Remark>, Progress)> {
     let (files, remarks) = log_files(path)?;
     let sizes = files
         .iter()
@@ -223,13 +179,12 @@ fn parts(path: &Path) -> Result<(Vec<LogBytes<'static>>, Vec<Remark>, Progress),
 }
 
 /// The bytes of a file, opened again for each pass; a pipe is read into memory.
-fn bytes_of(path: PathBuf, bar: &ProgressBar) -> Result<LogBytes<'static>, FileError> {
+fn bytes_of(path: PathBuf, bar: &ProgressBar) -> anyhow::Result<LogBytes<'static>> {
     let mut file = open(&path)?;
     let is_file = file.get_ref().metadata().is_ok_and(|about| about.is_file());
     if !is_file {
         let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes)
-            .map_err(|source| FileError::Io { path, source })?;
+        file.read_to_end(&mut bytes).in_file(&path)?;
         return Ok(LogBytes::from(bytes));
     }
     let bar = bar.clone();
@@ -243,37 +198,34 @@ fn bytes_of(path: PathBuf, bar: &ProgressBar) -> Result<LogBytes<'static>, FileE
 }
 
 /// The files of a recording: one, or those of a rosbag2 folder.
-fn log_files(path: &Path) -> Result<(Vec<PathBuf>, Vec<Remark>), FileError> {
-    let io_error = |path: &Path| {
-        let path = path.to_owned();
-        move |source| FileError::Io { path, source }
-    };
+fn log_files(path: &Path) -> anyhow::Result<(Vec<PathBuf>, Vec<Remark>)> {
     if !path.is_dir() {
         return Ok((vec![path.to_owned()], Vec::new()));
     }
     let metadata = path.join(rosbag2::METADATA);
     let listed = if metadata.is_file() {
-        Some(fs::read_to_string(&metadata).map_err(io_error(&metadata))?)
+        Some(fs::read_to_string(&metadata).in_file(&metadata)?)
     } else {
         None
     };
     let mut names = Vec::new();
-    for entry in fs::read_dir(path).map_err(io_error(path))? {
-        let name = entry.map_err(io_error(path))?.file_name();
+    for entry in fs::read_dir(path).in_file(path)? {
+        let name = entry.in_file(path)?.file_name();
         names.push(name.to_string_lossy().into_owned());
     }
-    let order =
-        rosbag2::in_order(listed.as_deref(), &names).map_err(|absent| FileError::Absent {
-            path: path.to_owned(),
-            absent,
-        })?;
+    let order = rosbag2::in_order(listed.as_deref(), &names)
+        .map_err(|absent| format!(
+            "{} lists {absent}, which is not there, and the folder has no other recording; copy it into the folder",
+            rosbag2::METADATA
+        ))
+        .in_file(path)?;
     let files = order.files.into_iter().map(|k| path.join(&names[k]));
     let files: Vec<PathBuf> = files.collect();
-    if files.is_empty() {
-        return Err(FileError::NoRecording {
-            path: path.to_owned(),
-        });
-    }
+    ensure!(
+        !files.is_empty(),
+        "{} is a folder without a ROS 2 recording; pass a log, or a folder with .mcap or .db3 files",
+        path.display()
+    );
     Ok((files, order.remarks))
 }
 

@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use anyhow::ensure;
 use bench_support::{generated, timed};
 use clap::Args;
 use pr_geom::{Point2, math};
@@ -18,11 +19,10 @@ use robot_io::relations::{Relation, read_relations};
 use robot_io::run::{LogRun, OdometryUse};
 use robot_io::trajectory::Trajectory;
 use serde::Serialize;
-use thiserror::Error;
 
 use self::disturbance::worse_odometry;
-use crate::grade::GradeError;
-use crate::log_file::{FileError, TopicArgs, open, read_frames};
+use crate::in_file::InFile as _;
+use crate::log_file::{TopicArgs, open, read_frames};
 use crate::output::{print_json, say};
 
 /// Markers around the table on a page.
@@ -59,23 +59,6 @@ pub struct LogsArgs {
     /// Print one JSON list with an object for each log.
     #[arg(long)]
     json: bool,
-}
-
-/// Why there is no table.
-#[derive(Debug, Error)]
-pub enum LogsError {
-    /// A file cannot be used.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// A reference cannot be used.
-    #[error(transparent)]
-    Grade(#[from] GradeError),
-    /// No log has a reference.
-    #[error("{0}: no log has a reference; put NAME.tum or NAME.relations next to the log NAME")]
-    Empty(String),
-    /// The page cannot be written.
-    #[error("{0}")]
-    Page(String),
 }
 
 /// Reference of a log.
@@ -115,7 +98,7 @@ struct Row {
 ///
 /// # Errors
 /// If a file cannot be used or no log has a reference.
-pub fn run(args: &LogsArgs) -> Result<(), LogsError> {
+pub fn run(args: &LogsArgs) -> anyhow::Result<()> {
     let benches = read(&args.folder)?;
     if args.disturbed {
         let outcomes = disturbed::outcomes(&benches, args.seed);
@@ -137,9 +120,9 @@ pub fn run(args: &LogsArgs) -> Result<(), LogsError> {
 }
 
 /// Writes a table into the page, or prints it.
-fn publish(args: &LogsArgs, marks: [&str; 2], table: &str) -> Result<(), LogsError> {
+fn publish(args: &LogsArgs, marks: [&str; 2], table: &str) -> anyhow::Result<()> {
     match &args.write {
-        Some(page) => generated::write_into(page, marks, table).map_err(LogsError::Page),
+        Some(page) => generated::write_into(page, marks, table).map_err(anyhow::Error::msg),
         None => {
             say!("{table}");
             Ok(())
@@ -147,14 +130,10 @@ fn publish(args: &LogsArgs, marks: [&str; 2], table: &str) -> Result<(), LogsErr
     }
 }
 
-fn read(folder: &Path) -> Result<Vec<Bench>, LogsError> {
-    let of_folder = |source| FileError::Io {
-        path: folder.to_owned(),
-        source,
-    };
+fn read(folder: &Path) -> anyhow::Result<Vec<Bench>> {
     let mut paths = Vec::new();
-    for entry in fs::read_dir(folder).map_err(of_folder)? {
-        paths.push(entry.map_err(of_folder)?.path());
+    for entry in fs::read_dir(folder).in_file(folder)? {
+        paths.push(entry.in_file(folder)?.path());
     }
     paths.sort();
     let mut benches = Vec::new();
@@ -169,14 +148,16 @@ fn read(folder: &Path) -> Result<Vec<Bench>, LogsError> {
             reference,
         });
     }
-    if benches.is_empty() {
-        return Err(LogsError::Empty(folder.display().to_string()));
-    }
+    ensure!(
+        !benches.is_empty(),
+        "{}: no log has a reference; put NAME.tum or NAME.relations next to the log NAME",
+        folder.display()
+    );
     Ok(benches)
 }
 
 /// The reference of a log; `None` if there is none, or if the file is a reference itself.
-fn reference_of(log: &Path) -> Result<Option<Reference>, LogsError> {
+fn reference_of(log: &Path) -> anyhow::Result<Option<Reference>> {
     let [poses, relations] = ["tum", "relations"].map(|ext| log.with_extension(ext));
     let name = |path: &Path| path.display().to_string();
     if log == poses || log == relations {
@@ -184,11 +165,11 @@ fn reference_of(log: &Path) -> Result<Option<Reference>, LogsError> {
     }
     if poses.is_file() {
         let read = Trajectory::read_tum(open(&poses)?, &name(&poses));
-        return Ok(Some(Reference::Poses(read.map_err(GradeError::from)?)));
+        return Ok(Some(Reference::Poses(read?)));
     }
     if relations.is_file() {
         let read = read_relations(open(&relations)?, &name(&relations));
-        return Ok(Some(Reference::Relations(read.map_err(GradeError::from)?)));
+        return Ok(Some(Reference::Relations(read?)));
     }
     Ok(None)
 }

@@ -9,6 +9,7 @@ mod convert;
 mod doctor;
 mod evaluate;
 mod grade;
+mod in_file;
 mod info;
 mod interrupt;
 mod lap;
@@ -35,7 +36,6 @@ mod terrain;
 mod tick_costs;
 mod world;
 
-use std::fmt::Display;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
@@ -80,52 +80,39 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return refuse_arguments(&error),
     };
-    let outcome = match &cli.command {
-        Command::Lap(args) => lap::run(args).map_err(|e| e.to_string()),
-        Command::Basin(args) => {
-            basin::run(args);
-            Ok(())
-        }
-        Command::Terrain(args) => {
-            terrain::run(args);
-            Ok(())
-        }
-        Command::Table(args) => {
-            table::run(args);
-            Ok(())
-        }
-        Command::Register(args) => register::run(args).map_err(|e| e.to_string()),
-        Command::Buildings(args) => buildings::run(args).map_err(|e| e.to_string()),
-        Command::Places(args) => places::run(args).map_err(|e| e.to_string()),
-        Command::Sweep(args) => sweep::run(args).map_err(|e| e.to_string()),
-        Command::Optimize(args) => optimize::run(args).map_err(|e| e.to_string()),
-        Command::Doctor(args) => match doctor::run(args) {
-            Ok(code) => return code,
-            Err(error) => Err(error.to_string()),
-        },
-        Command::Info(args) => info::run(args).map_err(|e| e.to_string()),
-        Command::Run(args) => return ended(run_log::run(args)),
-        Command::Localize(args) => return ended(localize::run(args)),
-        Command::Relocalize(args) => relocalize::run(args).map_err(|e| e.to_string()),
-        Command::Logs(args) => logs::run(args).map_err(|e| e.to_string()),
-        Command::Parameters(args) => parameters::run(args).map_err(|e| e.to_string()),
-        Command::Evaluate(args) => evaluate::run(args).map_err(|e| e.to_string()),
-        Command::Convert(args) => convert::run(args).map_err(|e| e.to_string()),
-        Command::Map(args) => map::run(args).map_err(|e| e.to_string()),
-        Command::Mark(args) => mark::run(args).map_err(|e| e.to_string()),
-    };
-    ended(outcome.map(|()| ExitCode::SUCCESS))
-}
-
-/// The exit code, after an error was printed.
-fn ended(outcome: Result<ExitCode, impl Display>) -> ExitCode {
-    match outcome {
+    match run(&cli.command) {
         Ok(code) => code,
-        Err(message) => {
-            eprintln!("slam2d: {message}");
+        Err(error) => {
+            eprintln!("slam2d: {error}");
             ExitCode::from(2)
         }
     }
+}
+
+fn run(command: &Command) -> anyhow::Result<ExitCode> {
+    match command {
+        Command::Lap(args) => lap::run(args)?,
+        Command::Basin(args) => basin::run(args),
+        Command::Terrain(args) => terrain::run(args),
+        Command::Table(args) => table::run(args),
+        Command::Register(args) => register::run(args)?,
+        Command::Buildings(args) => buildings::run(args)?,
+        Command::Places(args) => places::run(args)?,
+        Command::Sweep(args) => sweep::run(args)?,
+        Command::Optimize(args) => optimize::run(args)?,
+        Command::Doctor(args) => return doctor::run(args),
+        Command::Info(args) => info::run(args)?,
+        Command::Run(args) => return run_log::run(args),
+        Command::Localize(args) => return localize::run(args),
+        Command::Relocalize(args) => relocalize::run(args)?,
+        Command::Logs(args) => logs::run(args)?,
+        Command::Parameters(args) => parameters::run(args)?,
+        Command::Evaluate(args) => evaluate::run(args)?,
+        Command::Convert(args) => convert::run(args)?,
+        Command::Map(args) => map::run(args)?,
+        Command::Mark(args) => mark::run(args)?,
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Prints help and version on request, and argument errors as one line.

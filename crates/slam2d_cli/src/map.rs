@@ -4,20 +4,21 @@ use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
+use anyhow::{anyhow, bail};
 use clap::{Args, ValueEnum};
 use robot_io::json_log::FrameLine;
 use robot_io::log::LogError;
 use robot_io::map_image::{
     MapError, MapImage, MapMode, build_map, build_session_map, finest_map, map_with_free_space,
 };
-use thiserror::Error;
 
-use crate::log_file::{FileError, open};
+use crate::in_file::InFile as _;
+use crate::log_file::open;
 use crate::numbers;
 use crate::optimize::WholeFile;
 use crate::output::say;
 use crate::run_folder::KEYFRAMES;
-use crate::session_file::{SessionFileError, read_session};
+use crate::session_file::read_session;
 
 /// Write the map of a run as an image with a YAML file, for Nav2's map_server.
 #[derive(Args, Clone, Debug)]
@@ -60,66 +61,28 @@ enum ImageArg {
     Png,
 }
 
-/// Why no map was written.
-#[derive(Debug, Error)]
-pub enum MapFailure {
-    /// A file cannot be read or written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The folder is not that of a run.
-    #[error("{} has no {KEYFRAMES}; pass a session, or a folder that slam2d run -o DIR wrote", .0.display())]
-    NoRun(PathBuf),
-    /// A session has no beams without a return.
-    #[error("{} stores only beams with a return, so it has no free space along the others; pass the folder of the run", .0.display())]
-    NoBeams(PathBuf),
-    /// The session cannot be used.
-    #[error(transparent)]
-    Session(#[from] SessionFileError),
-    /// The output has another extension.
-    #[error("{} must end in .yaml", .0.display())]
-    NotYaml(PathBuf),
-    /// PGM has no transparency.
-    #[error(
-        "--mode scale marks unknown cells by transparency, which PGM does not have; use --image png"
-    )]
-    ScaleNeedsPng,
-    /// The cells are too small.
-    #[error("{}: {source}; --resolution {fits_m} fits", path.display())]
-    TooFine {
-        /// The session or the folder.
-        path: PathBuf,
-        /// Reason.
-        source: MapError,
-        /// Side of cells that fit, m.
-        fits_m: f64,
-    },
-    /// The scans give no map.
-    #[error("{}: {source}", path.display())]
-    Map {
-        /// The folder.
-        path: PathBuf,
-        /// Reason.
-        source: MapError,
-    },
-}
-
 /// Writes the map and prints its cell counts.
 ///
 /// # Errors
 /// If a file cannot be used, or the map is too large.
-pub fn run(args: &MapArgs) -> Result<(), MapFailure> {
+pub fn run(args: &MapArgs) -> anyhow::Result<()> {
     let extension = args.output.extension().unwrap_or_default();
     if extension != "yaml" && extension != "yml" {
-        return Err(MapFailure::NotYaml(args.output.clone()));
+        bail!("{} must end in .yaml", args.output.display());
     }
     let (mode, image) = match (args.mode, args.image) {
-        (ModeArg::Scale, Some(ImageArg::Pgm)) => return Err(MapFailure::ScaleNeedsPng),
+        (ModeArg::Scale, Some(ImageArg::Pgm)) => bail!(
+            "--mode scale marks unknown cells by transparency, which PGM does not have; use --image png"
+        ),
         (ModeArg::Scale, _) => (MapMode::Scale, ImageArg::Png),
         (ModeArg::Trinary, image) => (MapMode::Trinary, image.unwrap_or(ImageArg::Pgm)),
     };
     // A folder's keyframes have all beams, a session has filtered scans.
     if args.free_space && !args.run.is_dir() {
-        return Err(MapFailure::NoBeams(args.run.clone()));
+        bail!(
+            "{} stores only beams with a return, so it has no free space along the others; pass the folder of the run",
+            args.run.display()
+        );
     }
     let map = if args.run.is_dir() {
         let draw = if args.free_space {
@@ -139,25 +102,19 @@ pub fn run(args: &MapArgs) -> Result<(), MapFailure> {
     });
     let name = picture.file_name().unwrap_or_default().to_string_lossy();
     let yaml = map.yaml(&name, mode);
-    let at = |path: &Path| {
-        let path = path.to_owned();
-        move |source| FileError::Io { path, source }
-    };
     // Both are complete before either replaces an older one.
     let written = |path: &Path, write: &dyn Fn(&mut WholeFile) -> io::Result<()>| {
-        let mut file = WholeFile::create(path).map_err(at(path))?;
-        write(&mut file)
-            .and_then(|()| file.flush())
-            .map_err(at(path))?;
-        Ok::<WholeFile, FileError>(file)
+        let mut file = WholeFile::create(path).in_file(path)?;
+        write(&mut file).and_then(|()| file.flush()).in_file(path)?;
+        anyhow::Ok(file)
     };
     let image = written(&picture, &|out| match image {
         ImageArg::Pgm => map.write_pgm(out),
         ImageArg::Png => map.write_png(out, mode),
     })?;
     let about = written(&args.output, &|out| out.write_all(yaml.as_bytes()))?;
-    image.finish().map_err(at(&picture))?;
-    about.finish().map_err(at(&args.output))?;
+    image.finish().in_file(&picture)?;
+    about.finish().in_file(&args.output)?;
     let [occupied, free, unknown] = map.counts();
     say!(
         "{} × {} cells of {} m: {occupied} occupied, {free} free, {unknown} unknown",
@@ -172,39 +129,32 @@ pub fn run(args: &MapArgs) -> Result<(), MapFailure> {
 fn as_fine_as_asked(
     args: &MapArgs,
     draw: impl Fn(f64) -> Result<MapImage, MapError>,
-) -> Result<MapImage, MapFailure> {
-    let path = args.run.clone();
-    match draw(args.resolution) {
-        Ok(map) => Ok(map),
-        Err(source) => Err(match finest_map(args.resolution, draw) {
-            Ok(map) => MapFailure::TooFine {
-                path,
-                source,
-                fits_m: map.cell_m,
-            },
-            Err(_) => MapFailure::Map { path, source },
-        }),
-    }
+) -> anyhow::Result<MapImage> {
+    draw(args.resolution)
+        .or_else(|error| match finest_map(args.resolution, draw) {
+            Ok(map) => Err(anyhow!("{error}; --resolution {} fits", map.cell_m)),
+            Err(_) => Err(error.into()),
+        })
+        .in_file(&args.run)
 }
 
 /// The keyframes of a run with their poses.
-fn keyframes(folder: &Path) -> Result<Vec<FrameLine>, MapFailure> {
+fn keyframes(folder: &Path) -> anyhow::Result<Vec<FrameLine>> {
     let path = folder.join(KEYFRAMES);
     if !fs::metadata(&path).is_ok_and(|about| about.is_file()) {
-        return Err(MapFailure::NoRun(folder.to_owned()));
+        bail!(
+            "{} has no {KEYFRAMES}; pass a session, or a folder that slam2d run -o DIR wrote",
+            folder.display()
+        );
     }
     let mut lines = Vec::new();
     let name = path.display().to_string();
     for (number, line) in io::BufRead::lines(open(&path)?).enumerate() {
-        let line = line.map_err(|source| FileError::Io {
-            path: path.clone(),
-            source,
-        })?;
-        let line = FrameLine::with_pose(&line).map_err(|problem| LogError::NoScans {
+        let line = FrameLine::with_pose(&line.in_file(&path)?);
+        lines.push(line.map_err(|problem| LogError::NoScans {
             name: name.clone(),
             detail: format!("line {}: {problem}", number + 1),
-        });
-        lines.push(line.map_err(FileError::from)?);
+        })?);
     }
     Ok(lines)
 }

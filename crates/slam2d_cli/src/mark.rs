@@ -6,15 +6,15 @@ mod gradebook;
 
 use std::path::{Path, PathBuf};
 
+use anyhow::{bail, ensure};
 use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
-use thiserror::Error;
 
 use crate::output::{print_json, say};
-use answers::{Answers, AnswersError};
+use answers::Answers;
 use exercise::{Mark, Marked};
-use gradebook::{Columns, Roster, RosterError};
+use gradebook::{Columns, Roster};
 
 /// Mark the answers that students saved from the page.
 #[derive(Args, Clone, Debug)]
@@ -39,28 +39,6 @@ pub struct MarkArgs {
     json: bool,
 }
 
-/// Why some files are not marked.
-#[derive(Debug, Error)]
-pub enum MarkError {
-    /// The only file.
-    #[error(transparent)]
-    File(#[from] AnswersError),
-    /// The roster.
-    #[error(transparent)]
-    Roster(#[from] RosterError),
-    /// The gradebook lacks answers; each problem has its line above.
-    #[error("the gradebook has {0} problems")]
-    Gradebook(usize),
-    /// Some of many; each has its line above.
-    #[error("{unusable} of {files} files are not marked")]
-    Some {
-        /// Number of files without marks.
-        unusable: usize,
-        /// Number of files.
-        files: usize,
-    },
-}
-
 /// The marks of one file.
 #[derive(Serialize)]
 struct Sheet {
@@ -79,7 +57,7 @@ struct Sheet {
 ///
 /// # Errors
 /// If a file cannot be read; the others are marked.
-pub fn run(args: &MarkArgs) -> Result<(), MarkError> {
+pub fn run(args: &MarkArgs) -> anyhow::Result<()> {
     let roster = args.roster.as_deref().map(Roster::read).transpose()?;
     let sheets: Vec<_> = args.files.par_iter().map(|path| sheet_of(path)).collect();
     if args.long && sheets.iter().any(Result::is_ok) {
@@ -94,7 +72,7 @@ pub fn run(args: &MarkArgs) -> Result<(), MarkError> {
             Ok(sheet) if args.long => sheet.print_csv(),
             Ok(sheet) if args.csv => graded.push(sheet),
             Ok(sheet) => sheet.print(),
-            Err(error) if files == 1 => return Err(error.into()),
+            Err(error) if files == 1 => return Err(error),
             Err(error) => {
                 eprintln!("slam2d: {error}");
                 unusable += 1;
@@ -107,16 +85,14 @@ pub fn run(args: &MarkArgs) -> Result<(), MarkError> {
             eprintln!("slam2d: {problem}");
         }
         if unusable == 0 && !problems.is_empty() {
-            return Err(MarkError::Gradebook(problems.len()));
+            bail!("the gradebook has {} problems", problems.len());
         }
     }
-    if unusable > 0 {
-        return Err(MarkError::Some { unusable, files });
-    }
+    ensure!(unusable == 0, "{unusable} of {files} files are not marked");
     Ok(())
 }
 
-fn sheet_of(path: &Path) -> Result<Sheet, AnswersError> {
+fn sheet_of(path: &Path) -> anyhow::Result<Sheet> {
     let file = Answers::read(path)?;
     let answers: Vec<Marked> = file
         .answers

@@ -6,81 +6,19 @@ mod solve;
 mod tried;
 mod whole_file;
 
-use std::path::{Path, PathBuf};
-
-use pr_optim::g2o::{G2oError, G2oFile};
+use anyhow::bail;
+use pr_optim::g2o::G2oFile;
 use pr_optim::{OptimizeError, RobustKernel};
 use robot_io::graph_file::{prepared, with_fix_last};
 use serde::Serialize;
-use thiserror::Error;
 
 pub use self::args::OptimizeArgs;
 use self::robust::InlierCounts;
 use self::solve::solve_repeatedly;
 use self::tried::{Tried, start_name};
 pub use self::whole_file::{WholeFile, check_file, check_folder, write_whole};
+use crate::in_file::InFile as _;
 use crate::output::{print_json, say};
-
-/// Why a graph was not optimized.
-#[derive(Debug, Error)]
-pub enum OptimizeFailure {
-    /// A file cannot be read or written.
-    #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        source: std::io::Error,
-    },
-    /// The file is not a planar graph.
-    #[error("{}: {problem}", path.display())]
-    Foreign {
-        /// The file.
-        path: PathBuf,
-        /// What the file is, and what to do.
-        problem: String,
-    },
-    /// The graph cannot be optimized.
-    #[error("{}: {source}", path.display())]
-    Graph {
-        /// The file.
-        path: PathBuf,
-        /// The problem and its line.
-        source: G2oError,
-    },
-    /// The residual of an edge is so large that χ² overflows.
-    #[error(
-        "{}: line {line}: eᵀΩe of this edge is too large for a number: \
-         its vertices lie too far apart, or its information is too large",
-        path.display()
-    )]
-    Overflow {
-        /// The file.
-        path: PathBuf,
-        /// Line of the edge.
-        line: usize,
-    },
-    /// A pose is not observable.
-    #[error(
-        "{}: line {line}: the measurements do not determine the pose of vertex {id}: they say \
-         nothing about a direction, or their weights differ by too many orders of magnitude",
-        path.display()
-    )]
-    Undetermined {
-        /// The file.
-        path: PathBuf,
-        /// Line of the vertex.
-        line: usize,
-        /// Its id.
-        id: i64,
-    },
-    /// The poses overflow.
-    #[error("{}: the steps overflow: try --method lm", path.display())]
-    Diverged {
-        /// The file.
-        path: PathBuf,
-    },
-}
 
 /// What `--json` prints.
 #[derive(Clone, Debug, Serialize)]
@@ -108,7 +46,7 @@ struct Summary {
 ///
 /// # Errors
 /// If the file is malformed or cannot be optimized; the output file is not written then.
-pub fn run(args: &OptimizeArgs) -> Result<(), OptimizeFailure> {
+pub fn run(args: &OptimizeArgs) -> anyhow::Result<()> {
     let (file, summary) = solve_file(args)?;
     for (record, count) in file.kept_records() {
         // Priors are part of the problem and were reported before.
@@ -120,39 +58,30 @@ pub fn run(args: &OptimizeArgs) -> Result<(), OptimizeFailure> {
     Ok(())
 }
 
-fn solve_file(args: &OptimizeArgs) -> Result<(G2oFile, Summary), OptimizeFailure> {
+fn solve_file(args: &OptimizeArgs) -> anyhow::Result<(G2oFile, Summary)> {
     let path = &args.input;
-    let text = std::fs::read(path).map_err(|source| OptimizeFailure::File {
-        path: path.clone(),
-        source,
-    })?;
-    let prepared = prepared(&text).map_err(|problem| OptimizeFailure::Foreign {
-        path: path.clone(),
-        problem,
-    })?;
-    let mut file = G2oFile::parse(&prepared.text).map_err(|source| OptimizeFailure::Graph {
-        path: path.clone(),
-        source,
-    })?;
+    let text = std::fs::read(path).in_file(path)?;
+    let prepared = prepared(&text).in_file(path)?;
+    let mut file = G2oFile::parse(&prepared.text).in_file(path)?;
     for remark in &prepared.remarks {
         eprintln!("slam2d: {}: {remark}", path.display());
     }
     let chi2_initial = file.problem.chi2();
     if !chi2_initial.is_finite() {
-        return Err(OptimizeFailure::Overflow {
-            path: path.clone(),
-            line: file.line_of_factor(worst_factor(&file)),
-        });
+        bail!(
+            "{}: line {}: eᵀΩe of this edge is too large for a number: \
+             its vertices lie too far apart, or its information is too large",
+            path.display(),
+            file.line_of_factor(worst_factor(&file))
+        );
     }
     let solved = solve_repeatedly(&mut file.problem, args)
-        .map_err(|error| in_words_of_the_file(path, &file, error))?;
+        .map_err(|error| in_words_of_the_file(&file, error))
+        .in_file(path)?;
     if let Some(output) = &args.output {
         let written = file.to_bytes();
         let text = with_fix_last(prepared.own_lines(&written));
-        write_whole(output, &text).map_err(|source| OptimizeFailure::File {
-            path: output.clone(),
-            source,
-        })?;
+        write_whole(output, &text).in_file(output)?;
     }
     let report = solved.outcome.report;
     let summary = Summary {
@@ -192,15 +121,15 @@ fn worst_factor(file: &G2oFile) -> usize {
 
 /// Converts a solver's error to vertex and line. Loose ends and indefinite matrices were rejected when the file was
 /// read and cannot occur here.
-fn in_words_of_the_file(path: &Path, file: &G2oFile, error: OptimizeError) -> OptimizeFailure {
-    let path = path.to_owned();
+fn in_words_of_the_file(file: &G2oFile, error: OptimizeError) -> String {
     match error {
-        OptimizeError::NotPositiveDefinite { node } => OptimizeFailure::Undetermined {
-            path,
-            line: file.line_of(node),
-            id: file.id_of(node),
-        },
-        OptimizeError::NotFinite => OptimizeFailure::Diverged { path },
+        OptimizeError::NotPositiveDefinite { node } => format!(
+            "line {}: the measurements do not determine the pose of vertex {}: they say \
+             nothing about a direction, or their weights differ by too many orders of magnitude",
+            file.line_of(node),
+            file.id_of(node)
+        ),
+        OptimizeError::NotFinite => "the steps overflow: try --method lm".to_owned(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use anyhow::{bail, ensure};
 use bench_support::{generated, timed};
 use ch16_slam2d::slam::RobotConfig;
 use clap::Args;
@@ -12,10 +13,8 @@ use robot_io::relations::{Relation, read_relations};
 use robot_io::run::{LogRun, OdometryUse};
 use robot_io::settings::{SETTINGS, Setting};
 use serde::Serialize;
-use thiserror::Error;
 
-use crate::grade::GradeError;
-use crate::log_file::{FileError, TopicArgs, open, read_frames};
+use crate::log_file::{TopicArgs, open, read_frames};
 use crate::output::{print_json, say};
 
 /// Markers around the table on a page.
@@ -43,36 +42,6 @@ pub struct ParametersArgs {
     /// Print one JSON list with an object for each parameter.
     #[arg(long)]
     json: bool,
-}
-
-/// Why there is no result.
-#[derive(Debug, Error)]
-pub enum ParametersFailure {
-    /// A file cannot be used.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The relations cannot be used.
-    #[error(transparent)]
-    Grade(#[from] GradeError),
-    /// The log has no scan.
-    #[error("{0} has no scan")]
-    Empty(String),
-    /// No relation lies within the log.
-    #[error(
-        "none of the {count} relations of {file} lies within the times of the log; use the same clock for both"
-    )]
-    Outside {
-        /// Number of relations in the file.
-        count: usize,
-        /// The file.
-        file: String,
-    },
-    /// No parameter is selected.
-    #[error("no parameter name starts with {0:?}; docs/robots-parameters.md lists them")]
-    Unknown(String),
-    /// The page cannot be written.
-    #[error("{0}")]
-    Page(String),
 }
 
 /// A run with one value.
@@ -137,23 +106,24 @@ impl Bench {
 ///
 /// # Errors
 /// If a file cannot be used or no parameter is selected.
-pub fn run(args: &ParametersArgs) -> Result<(), ParametersFailure> {
+pub fn run(args: &ParametersArgs) -> anyhow::Result<()> {
     let prefix = args.only.as_deref().unwrap_or_default();
     let chosen: Vec<&'static Setting> = SETTINGS
         .iter()
         .filter(|setting| setting.name.starts_with(prefix))
         .collect();
     if chosen.is_empty() {
-        return Err(ParametersFailure::Unknown(prefix.to_owned()));
+        bail!("no parameter name starts with {prefix:?}; docs/robots-parameters.md lists them");
     }
     let bench = read(args)?;
     let config = RobotConfig::for_scan(&bench.frames[0].scan);
     let default = bench.run(None);
     if default.mean_m.is_none() {
-        return Err(ParametersFailure::Outside {
-            count: bench.relations.len(),
-            file: args.relations.display().to_string(),
-        });
+        bail!(
+            "none of the {} relations of {} lies within the times of the log; use the same clock for both",
+            bench.relations.len(),
+            args.relations.display()
+        );
     }
     let rows: Vec<Row> = chosen
         .into_par_iter()
@@ -172,7 +142,7 @@ pub fn run(args: &ParametersArgs) -> Result<(), ParametersFailure> {
     }
     let table = table(default, &rows);
     match &args.write {
-        Some(page) => generated::write_into(page, MARKS, &table).map_err(ParametersFailure::Page),
+        Some(page) => generated::write_into(page, MARKS, &table).map_err(anyhow::Error::msg),
         None => {
             say!("{table}");
             Ok(())
@@ -180,13 +150,11 @@ pub fn run(args: &ParametersArgs) -> Result<(), ParametersFailure> {
     }
 }
 
-fn read(args: &ParametersArgs) -> Result<Bench, ParametersFailure> {
+fn read(args: &ParametersArgs) -> anyhow::Result<Bench> {
     let name = args.relations.display().to_string();
-    let relations = read_relations(open(&args.relations)?, &name).map_err(GradeError::from)?;
+    let relations = read_relations(open(&args.relations)?, &name)?;
     let frames = read_frames(&args.log, &args.topics)?;
-    if frames.is_empty() {
-        return Err(ParametersFailure::Empty(args.log.display().to_string()));
-    }
+    ensure!(!frames.is_empty(), "{} has no scan", args.log.display());
     Ok(Bench { frames, relations })
 }
 

@@ -1,11 +1,11 @@
 //! `slam2d places`: precision–recall curves of place recognition.
 
+use anyhow::ensure;
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher};
 use ch16_lab::places::{PlaceCurve, PlacePair, place_curves, place_pairs};
 use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
-use thiserror::Error;
 
 use crate::numbers::{self, Seeds};
 use crate::output::{print_json, say};
@@ -25,17 +25,6 @@ pub struct PlacesArgs {
     /// Print one JSON list with all curves for each world.
     #[arg(long)]
     json: bool,
-}
-
-/// Why there is no result.
-#[derive(Debug, Error)]
-pub enum PlacesFailure {
-    /// Too many seeds.
-    #[error("{seeds} seeds are too many; use at most {MAX_SEEDS}")]
-    TooMany {
-        /// Number of seeds.
-        seeds: u64,
-    },
 }
 
 #[derive(Serialize)]
@@ -84,11 +73,12 @@ impl DetectorJson {
 ///
 /// # Errors
 /// If there are too many seeds.
-pub fn run(args: &PlacesArgs) -> Result<(), PlacesFailure> {
+pub fn run(args: &PlacesArgs) -> anyhow::Result<()> {
     let seeds = args.seeds.count();
-    if seeds > MAX_SEEDS {
-        return Err(PlacesFailure::TooMany { seeds });
-    }
+    ensure!(
+        seeds <= MAX_SEEDS,
+        "{seeds} seeds are too many; use at most {MAX_SEEDS}"
+    );
     let worlds: Vec<WorldJson> = BuiltInWorld::GRADED
         .iter()
         .map(|&world| {

@@ -4,13 +4,13 @@ use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
 use bench_support::timed;
-use ch16_slam2d::cloud::{CsvError, DenseMap, PointCloud};
+use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace, StopReason};
 use clap::{Args, ValueEnum};
 use pr_geom::SE2;
 use serde::Serialize;
-use thiserror::Error;
 
+use crate::in_file::InFile as _;
 use crate::numbers;
 use crate::output::{pose, print_json, say};
 
@@ -51,27 +51,6 @@ enum MethodName {
     P2p,
 }
 
-/// Why a file cannot be used.
-#[derive(Debug, Error)]
-pub enum RegisterFailure {
-    /// It cannot be read.
-    #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        source: std::io::Error,
-    },
-    /// It is not a point cloud.
-    #[error("{}: {source}", path.display())]
-    Cloud {
-        /// The file.
-        path: PathBuf,
-        /// The problem and its line.
-        source: CsvError,
-    },
-}
-
 #[derive(Serialize)]
 struct RegisterJson {
     method: &'static str,
@@ -91,7 +70,7 @@ struct RegisterJson {
 ///
 /// # Errors
 /// If a file cannot be read or has a malformed line.
-pub fn run(args: &RegisterArgs) -> Result<(), RegisterFailure> {
+pub fn run(args: &RegisterArgs) -> anyhow::Result<()> {
     let map_points = read_points(&args.map)?;
     let scan = read_points(&args.scan)?;
     let (variant, method) = match args.method {
@@ -175,13 +154,7 @@ fn fastest_us(repeat: NonZeroU32, mut call: impl FnMut()) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-fn read_points(path: &Path) -> Result<PointCloud, RegisterFailure> {
-    let text = std::fs::read(path).map_err(|source| RegisterFailure::File {
-        path: path.to_owned(),
-        source,
-    })?;
-    PointCloud::from_csv(&text).map_err(|source| RegisterFailure::Cloud {
-        path: path.to_owned(),
-        source,
-    })
+fn read_points(path: &Path) -> anyhow::Result<PointCloud> {
+    let text = std::fs::read(path).in_file(path)?;
+    PointCloud::from_csv(&text).in_file(path)
 }

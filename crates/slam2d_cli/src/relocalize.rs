@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Context as _;
 use bench_support::generated;
 use ch16_slam2d::localize::StartPose;
 use ch16_slam2d::metrics::position_error_m;
@@ -15,9 +16,8 @@ use robot_io::run::{LogRun, OdometryUse};
 use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
 use serde::Serialize;
-use thiserror::Error;
 
-use crate::log_file::{FileError, TopicArgs, read_frames};
+use crate::log_file::{TopicArgs, read_frames};
 use crate::output::{print_json, say};
 
 /// Markers around the table on a page.
@@ -54,20 +54,6 @@ pub struct RelocalizeArgs {
     /// Print one JSON list with an object for each start.
     #[arg(long)]
     json: bool,
-}
-
-/// Why there is no table.
-#[derive(Debug, Error)]
-pub enum RelocalizeError {
-    /// A log cannot be used.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// A log is too short.
-    #[error("{0}: too few scans to map a part of them; use a longer log")]
-    TooShort(String),
-    /// The page cannot be written.
-    #[error("{0}")]
-    Page(String),
 }
 
 /// Which scans are mapped.
@@ -119,15 +105,15 @@ struct Bench {
 ///
 /// # Errors
 /// If a log cannot be used.
-pub fn run(args: &RelocalizeArgs) -> Result<(), RelocalizeError> {
-    let benches: Result<Vec<Bench>, RelocalizeError> =
+pub fn run(args: &RelocalizeArgs) -> anyhow::Result<()> {
+    let benches: anyhow::Result<Vec<Bench>> =
         args.logs.par_iter().map(|log| Bench::new(log)).collect();
     let benches = benches?;
     let trials: Vec<(usize, Split)> = (0..benches.len())
         .flat_map(|log| [Split::Alternate, Split::Half, Split::Elsewhere].map(|split| (log, split)))
         .filter(|(_, split)| *split != Split::Elsewhere || benches.len() > 1)
         .collect();
-    let starts: Result<Vec<Vec<Start>>, RelocalizeError> = trials
+    let starts: anyhow::Result<Vec<Vec<Start>>> = trials
         .par_iter()
         .map(|&(log, split)| {
             let other = &benches[(log + 1) % benches.len()];
@@ -141,7 +127,7 @@ pub fn run(args: &RelocalizeArgs) -> Result<(), RelocalizeError> {
     }
     let table = table(&starts);
     match &args.write {
-        Some(page) => generated::write_into(page, MARKS, &table).map_err(RelocalizeError::Page),
+        Some(page) => generated::write_into(page, MARKS, &table).map_err(anyhow::Error::msg),
         None => {
             say!("{table}");
             Ok(())
@@ -159,13 +145,16 @@ fn mapped<'a>(frames: impl Iterator<Item = &'a LogFrame>) -> Option<(Trajectory,
     Some((run.trajectory(), run.session()?))
 }
 
+fn too_short(name: &str) -> String {
+    format!("{name}: too few scans to map a part of them; use a longer log")
+}
+
 impl Bench {
-    fn new(path: &Path) -> Result<Self, RelocalizeError> {
+    fn new(path: &Path) -> anyhow::Result<Self> {
         let name = path.file_stem().unwrap_or(path.as_os_str());
         let name = name.to_string_lossy().into_owned();
         let frames = read_frames(path, &TopicArgs::default())?;
-        let (whole, session) =
-            mapped(frames.iter()).ok_or_else(|| RelocalizeError::TooShort(name.clone()))?;
+        let (whole, session) = mapped(frames.iter()).with_context(|| too_short(&name))?;
         Ok(Self {
             name,
             frames,
@@ -179,8 +168,7 @@ impl Bench {
         split: Split,
         elsewhere: &Session,
         args: &RelocalizeArgs,
-    ) -> Result<Vec<Start>, RelocalizeError> {
-        let too_short = || RelocalizeError::TooShort(self.name.clone());
+    ) -> anyhow::Result<Vec<Start>> {
         let half = self.frames.len() / 2;
         let is_mapped = |index: usize| match split {
             Split::Alternate => index.is_multiple_of(2),
@@ -191,7 +179,7 @@ impl Bench {
         let known = frames().filter(|(index, _)| is_mapped(*index));
         let (poses, session) = match split {
             Split::Elsewhere => (Trajectory::new(Vec::new()), elsewhere.clone()),
-            _ => mapped(known.map(|(_, frame)| frame)).ok_or_else(too_short)?,
+            _ => mapped(known.map(|(_, frame)| frame)).with_context(|| too_short(&self.name))?,
         };
         let driven: Vec<(&LogFrame, SE2)> = frames()
             .filter(|(index, _)| !is_mapped(*index))

@@ -7,9 +7,8 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use anyhow::anyhow;
 use robot_io::session::FILE_NAME;
-
-use crate::log_file::FileError;
 
 /// Name of the file of keyframes.
 pub const KEYFRAMES: &str = "keyframes.jsonl";
@@ -59,14 +58,14 @@ impl RunFolder {
     ///
     /// # Errors
     /// If the system cannot create it.
-    pub fn create(folder: &Path) -> Result<Self, FileError> {
+    pub fn create(folder: &Path) -> anyhow::Result<Self> {
         let folder = folder.to_owned();
         let part = folder.join(format!(".run-{}.part", std::process::id()));
         let is_new = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
         let made = folder.ancestors().take_while(is_new);
         let made = made.map(Path::to_owned).collect();
         let begun = Self { folder, part, made };
-        fs::create_dir_all(&begun.part).map_err(|source| begun.error("", source))?;
+        fs::create_dir_all(&begun.part).map_err(|error| begun.error("", &error))?;
         Ok(begun)
     }
 
@@ -78,7 +77,7 @@ impl RunFolder {
         &self,
         name: &str,
         write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
-    ) -> Result<(), FileError> {
+    ) -> anyhow::Result<()> {
         debug_assert!(NAMES.contains(&name), "{name} would not be replaced");
         let written = || {
             let mut file = BufWriter::with_capacity(1 << 16, File::create(self.part.join(name))?);
@@ -86,14 +85,14 @@ impl RunFolder {
             file.flush()?;
             file.get_ref().sync_all()
         };
-        written().map_err(|source| self.error(name, source))
+        written().map_err(|error| self.error(name, &error))
     }
 
     /// Replaces the files of an older run; those that this run did not write are removed.
     ///
     /// # Errors
     /// If the system cannot replace a file.
-    pub fn finish(mut self) -> Result<(), FileError> {
+    pub fn finish(mut self) -> anyhow::Result<()> {
         self.made.clear();
         for name in NAMES {
             let moved = match fs::rename(self.part.join(name), self.folder.join(name)) {
@@ -105,7 +104,7 @@ impl RunFolder {
                 }
                 other => other,
             };
-            moved.map_err(|source| self.error(name, source))?;
+            moved.map_err(|error| self.error(name, &error))?;
         }
         Ok(())
     }
@@ -120,11 +119,11 @@ impl RunFolder {
         let _ = fs::remove_dir(parts);
     }
 
-    fn error(&self, name: &str, source: io::Error) -> FileError {
-        FileError::Unwritten {
-            path: self.folder.join(name),
-            source,
-        }
+    fn error(&self, name: &str, error: &io::Error) -> anyhow::Error {
+        anyhow!(
+            "{}: {error}; nothing was replaced",
+            self.folder.join(name).display()
+        )
     }
 }
 

@@ -3,29 +3,29 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use anyhow::bail;
 use bench_support::{process, timed};
-use ch16_slam2d::slam::SnapshotError;
 use clap::Args;
 use robot_io::laser_mount::LaserMount;
 use robot_io::log::LogReader;
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
 use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
-use robot_io::settings::{Setting, SettingError};
+use robot_io::settings::Setting;
 use serde::Serialize;
-use thiserror::Error;
 
 use crate::buildings::setting;
-use crate::grade::{Grade, GradeError, ReferenceArgs};
+use crate::grade::{Grade, ReferenceArgs};
+use crate::in_file::InFile as _;
 use crate::interrupt::{self, Interrupt};
 use crate::localize::Init;
-use crate::log_file::{FileError, OdometryArgs, TopicArgs, open_compared};
+use crate::log_file::{OdometryArgs, TopicArgs, open_compared};
 use crate::numbers;
 use crate::optimize::check_folder;
 use crate::output::{print_json, say};
 use crate::run_folder::{CUT_SHORT, folder_of_part};
 use crate::run_output::{Results, write_folder};
-use crate::session_file::{SessionFileError, read_session};
+use crate::session_file::read_session;
 use crate::tick_costs::{TickCosts, TickSummary};
 
 /// Map a recorded log, and evaluate the trajectory if a reference is given.
@@ -72,47 +72,6 @@ pub struct RunArgs {
     json: bool,
 }
 
-/// Why a run was aborted.
-#[derive(Debug, Error)]
-pub enum RunError {
-    /// A file cannot be read or written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The session cannot be used.
-    #[error(transparent)]
-    Session(#[from] SessionFileError),
-    /// The session cannot be continued.
-    #[error("{name}: {problem}")]
-    Snapshot {
-        /// The session.
-        name: String,
-        /// Reason.
-        problem: SnapshotError,
-    },
-    /// The comparison failed.
-    #[error(transparent)]
-    Grade(#[from] GradeError),
-    /// A parameter cannot be set.
-    #[error(transparent)]
-    Setting(#[from] SettingError),
-    /// The log has no scan after the session.
-    #[error(
-        "{name}: no scan is later than the session's last one; pass the rest of that recording, or run the log without --continue"
-    )]
-    NotLater {
-        /// The log.
-        name: String,
-    },
-    /// Every scan was invalid.
-    #[error("{name}: no scan could be used: {problem}")]
-    NoScan {
-        /// The log.
-        name: String,
-        /// Why the first one was invalid.
-        problem: String,
-    },
-}
-
 /// What `--json` prints.
 #[derive(Serialize)]
 struct RunJson {
@@ -145,15 +104,12 @@ struct RunJson {
 ///
 /// # Errors
 /// If a file cannot be used. What was mapped before is written.
-pub fn run(args: &RunArgs) -> Result<ExitCode, RunError> {
+pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let name = args.log.display().to_string();
     let reference = args.reference.read()?;
     let interrupt = Interrupt::watch();
     if let Some(folder) = &args.output {
-        check_folder(folder).map_err(|source| FileError::Io {
-            path: folder.clone(),
-            source,
-        })?;
+        check_folder(folder).in_file(folder)?;
     }
     let (mut run, mut recorder, laser_before) = start(args)?;
     let topics = args.topics.resuming_with(laser_before);
@@ -176,7 +132,7 @@ pub fn run(args: &RunArgs) -> Result<ExitCode, RunError> {
                 is_interrupted = false;
                 break;
             }
-            Err(error) if run.scans() == 0 => return Err(FileError::from(error).into()),
+            Err(error) if run.scans() == 0 => return Err(error.into()),
             Err(error) => {
                 broken = Some(error);
                 break;
@@ -187,7 +143,9 @@ pub fn run(args: &RunArgs) -> Result<ExitCode, RunError> {
     recorder.forget_left_out(&run);
     progress.end();
     if run.scans() == 0 && run.late() > 0 {
-        return Err(RunError::NotLater { name });
+        bail!(
+            "{name}: no scan is later than the session's last one; pass the rest of that recording, or run the log without --continue"
+        );
     }
     let mut remarks = reader.notes().sentences(&name);
     remarks.extend(run.sentences(&name));
@@ -200,13 +158,10 @@ pub fn run(args: &RunArgs) -> Result<ExitCode, RunError> {
             None if run.blind() > 0 => NOTHING_SEEN.to_owned(),
             None => "it was interrupted before the first one".to_owned(),
         };
-        return Err(RunError::NoScan { name, problem });
+        bail!("{name}: no scan could be used: {problem}");
     }
     if !run.has_seen() {
-        return Err(RunError::NoScan {
-            name,
-            problem: NOTHING_SEEN.to_owned(),
-        });
+        bail!("{name}: no scan could be used: {NOTHING_SEEN}");
     }
     let trajectory = run.trajectory();
     let grade = reference
@@ -258,7 +213,7 @@ pub fn run(args: &RunArgs) -> Result<ExitCode, RunError> {
     // Write the results before reporting any later error.
     let grade = grade?;
     if let Some(error) = broken {
-        return Err(FileError::from(error).into());
+        return Err(error.into());
     }
     let of = |wanted: bool| grade.filter(|grade| wanted == matches!(grade, Grade::Relations(_)));
     let doubts = std::mem::take(&mut quality.doubts);
@@ -290,7 +245,7 @@ pub fn run(args: &RunArgs) -> Result<ExitCode, RunError> {
 }
 
 /// A new run, or one that continues a session, and the session's mounting of the laser.
-fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder, Option<LaserMount>), RunError> {
+fn start(args: &RunArgs) -> anyhow::Result<(LogRun, RunRecorder, Option<LaserMount>)> {
     let odometry_use = if args.no_odometry {
         OdometryUse::None
     } else {
@@ -306,11 +261,7 @@ fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder, Option<LaserMount>), Ru
         return Ok((run, RunRecorder::default(), None));
     };
     let (session, _) = read_session(path)?;
-    let snapshot_error = |problem| RunError::Snapshot {
-        name: path.display().to_string(),
-        problem,
-    };
-    let mut run = LogRun::resume(&session, odometry_use).map_err(snapshot_error)?;
+    let mut run = LogRun::resume(&session, odometry_use).in_file(path)?;
     if let Some(Init(start)) = args.init {
         run = run.starting_at(start);
     }

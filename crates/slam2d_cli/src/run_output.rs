@@ -24,7 +24,6 @@ use robot_io::report::Report;
 use robot_io::run::LogRun;
 use robot_io::session::FILE_NAME;
 
-use crate::log_file::FileError;
 use crate::run_folder::{KEYFRAMES, QUALITY, RunFolder};
 
 /// Cell size of the report, m: finer cells are not visible in its picture.
@@ -54,7 +53,7 @@ pub struct Results<'a> {
 ///
 /// # Errors
 /// If the system cannot write a file; the error contains the name, and nothing is replaced.
-pub fn write_folder(folder: &Path, results: &Results<'_>) -> Result<Option<String>, FileError> {
+pub fn write_folder(folder: &Path, results: &Results<'_>) -> anyhow::Result<Option<String>> {
     let Results {
         run,
         quality,

@@ -4,24 +4,10 @@ use std::fs;
 use std::io::{BufRead, Read};
 use std::path::{Path, PathBuf};
 
+use anyhow::ensure;
 use robot_io::session::{FILE_NAME, MAX_BYTES, Session, SessionError};
-use thiserror::Error;
 
-use crate::log_file::{FileError, open};
-
-/// Why a session was not read.
-#[derive(Debug, Error)]
-pub enum SessionFileError {
-    /// The system could not open it.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// It is not a usable session.
-    #[error(transparent)]
-    Session(#[from] SessionError),
-    /// The folder has no session.
-    #[error("{} has no {FILE_NAME}; pass a session, or a folder that slam2d run LOG -o DIR wrote", .0.display())]
-    NoSession(PathBuf),
-}
+use crate::log_file::open;
 
 /// The session file of a path: the file itself, or the one in the folder of a run.
 pub fn session_path(path: &Path) -> PathBuf {
@@ -45,11 +31,13 @@ pub fn is_session(path: &Path) -> bool {
 ///
 /// # Errors
 /// If it cannot be used.
-pub fn read_session(path: &Path) -> Result<(Session, u64), SessionFileError> {
+pub fn read_session(path: &Path) -> anyhow::Result<(Session, u64)> {
     let file = session_path(path);
-    if path.is_dir() && !file.is_file() {
-        return Err(SessionFileError::NoSession(path.to_owned()));
-    }
+    ensure!(
+        !path.is_dir() || file.is_file(),
+        "{} has no {FILE_NAME}; pass a session, or a folder that slam2d run LOG -o DIR wrote",
+        path.display()
+    );
     let name = file.display().to_string();
     let source = open(&file)?;
     let bytes = fs::metadata(&file).map_or(0, |about| about.len());

@@ -9,20 +9,18 @@ mod shard;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
+use anyhow::{bail, ensure};
 use ch16_lab::incremental::IncrementalKind;
 use ch16_lab::lap::{Choice, LapEstimator, LapRunner};
 use ch16_lab::results::{Column, LapOutcome, LapStatistics};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
-use thiserror::Error;
 
 use crate::lap_options::{LapOptions, TrialArgs, choice};
 use crate::numbers::{self, Seeds};
 use crate::output::{print_json, say};
-use crate::world::WorldError;
 use level::Level;
-use rows::RowsFailure;
 use shard::Shard;
 
 /// Most laps of one sweep.
@@ -88,48 +86,12 @@ pub struct SweepArgs {
     json: bool,
 }
 
-/// Why a sweep did not start.
-#[derive(Debug, Error)]
-pub enum SweepFailure {
-    /// Too many laps.
-    #[error("{laps} laps are too many; use at most {MAX_LAPS}")]
-    TooMany {
-        /// Seeds times noise factors.
-        laps: u64,
-    },
-    /// The estimators ignore an argument.
-    #[error("{argument} has no effect on {estimators}; omit it or add graph to --estimator")]
-    OfTheGraph {
-        /// The argument.
-        argument: &'static str,
-        /// The estimators.
-        estimators: String,
-    },
-    /// There is no such world.
-    #[error(transparent)]
-    World(#[from] WorldError),
-    /// Rows cannot be stored or merged.
-    #[error(transparent)]
-    Rows(#[from] RowsFailure),
-    /// A lap within the documented ranges failed.
-    #[error("the lap at the random configuration {seed} failed: {fault}")]
-    Unsound {
-        /// Its seed.
-        seed: u32,
-        /// The fault.
-        fault: String,
-    },
-    /// The threads could not be started.
-    #[error(transparent)]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-}
-
 /// Runs all laps and prints the distribution of their figures.
 ///
 /// # Errors
 /// If the sweep is too large, the world cannot be used, the threads cannot be started, rows cannot be stored or merged,
 /// or a random lap fails.
-pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
+pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     if !args.merge.is_empty() {
         let (header, rows) = rows::read_all(&args.merge)?;
         let args = SweepArgs {
@@ -142,17 +104,18 @@ pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
         return Ok(());
     }
     let laps = args.seeds.count() * args.noise.len() as u64;
-    if laps > MAX_LAPS {
-        return Err(SweepFailure::TooMany { laps });
-    }
+    ensure!(
+        laps <= MAX_LAPS,
+        "{laps} laps are too many; use at most {MAX_LAPS}"
+    );
     if !args.has_a_graph()
         && let Some(argument) = args.trial.of_the_graph()
     {
         let estimators: Vec<&str> = args.estimator.iter().map(|e| e.name()).collect();
-        return Err(SweepFailure::OfTheGraph {
-            argument,
-            estimators: estimators.join(", "),
-        });
+        bail!(
+            "{argument} has no effect on {}; omit it or add graph to --estimator",
+            estimators.join(", ")
+        );
     }
     let trial = args.trial.trial()?;
     let mut pool = rayon::ThreadPoolBuilder::new();

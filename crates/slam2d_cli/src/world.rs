@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use ch16_lab::lap::{BuiltInWorld, Choice};
-use pr_sim::{Course, CourseError};
-use thiserror::Error;
+use pr_sim::Course;
+
+use crate::in_file::InFile as _;
 
 /// A world on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,45 +34,17 @@ impl FromStr for WorldArg {
     }
 }
 
-/// Why a world cannot be used.
-#[derive(Debug, Error)]
-pub enum WorldError {
-    /// The system cannot read it.
-    #[error("{path}: {source}")]
-    Read {
-        /// The file.
-        path: String,
-        /// The system's error.
-        source: std::io::Error,
-    },
-    /// The file is not a valid course.
-    #[error("{path}: {source}")]
-    Course {
-        /// The file.
-        path: String,
-        /// The problem, its position and what to do.
-        source: CourseError,
-    },
-}
-
 impl WorldArg {
     /// The world and the path through it.
     ///
     /// # Errors
     /// If the file cannot be used.
-    pub fn course(&self) -> Result<Course, WorldError> {
+    pub fn course(&self) -> anyhow::Result<Course> {
         let file = match self {
             Self::BuiltIn(world) => return Ok(world.course()),
             Self::File(file) => file,
         };
-        let path = || file.display().to_string();
-        let text = fs::read(file).map_err(|source| WorldError::Read {
-            path: path(),
-            source,
-        })?;
-        Course::from_json(&text).map_err(|source| WorldError::Course {
-            path: path(),
-            source,
-        })
+        let text = fs::read(file).in_file(file)?;
+        Course::from_json(&text).in_file(file)
     }
 }

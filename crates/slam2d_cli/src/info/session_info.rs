@@ -9,7 +9,7 @@ use robot_io::settings::SETTINGS;
 use serde::Serialize;
 
 use crate::output::{print_json, say};
-use crate::session_file::{SessionFileError, read_session};
+use crate::session_file::read_session;
 
 #[derive(Serialize)]
 struct SessionJson {
@@ -71,7 +71,7 @@ impl SessionJson {
 ///
 /// # Errors
 /// If it cannot be used.
-pub fn run(path: &Path, as_json: bool) -> Result<(), SessionFileError> {
+pub fn run(path: &Path, as_json: bool) -> anyhow::Result<()> {
     let (session, bytes) = read_session(path)?;
     let info = SessionJson::new(&session, bytes);
     if as_json {

@@ -7,6 +7,7 @@
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use anyhow::{Context as _, anyhow, bail};
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner};
 use ch16_slam2d::chapter::{ChapterParts, DetectorKind};
 use ch16_slam2d::cloud;
@@ -23,7 +24,6 @@ use ch16_slam2d::matching::{
 use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::places::PlaceDescriptor;
 
-use super::LapError;
 use crate::output::say;
 
 /// A registration by the student.
@@ -35,11 +35,10 @@ struct TheirIcp {
 }
 
 impl TheirIcp {
-    fn new(kind: &MatcherKind, make: MapConfig) -> Result<Self, LapError> {
-        let settings = kind.icp().ok_or(LapError::NoExercise {
-            argument: "--matcher",
-            instead: "p2p or p2l",
-        })?;
+    fn new(kind: &MatcherKind, make: MapConfig) -> anyhow::Result<Self> {
+        let settings = kind
+            .icp()
+            .context("no exercise implements this --matcher; use p2p or p2l")?;
         Ok(Self {
             settings: IcpConfig {
                 variant: match settings.variant {
@@ -180,7 +179,7 @@ pub struct ExerciseLap {
 ///
 /// # Errors
 /// If a required exercise is not written or panics, or no exercise implements an argument.
-pub fn drive(config: &LapConfig) -> Result<ExerciseLap, LapError> {
+pub fn drive(config: &LapConfig) -> anyhow::Result<ExerciseLap> {
     let chapter = &config.slam.chapter;
     let matcher = TheirIcp::new(&chapter.matcher, chapter.local_map)?;
     let loop_matcher = TheirIcp::new(&chapter.loops.matcher, chapter.loops.submap)?;
@@ -189,10 +188,7 @@ pub fn drive(config: &LapConfig) -> Result<ExerciseLap, LapError> {
         DetectorKind::Place(places) => match places.descriptor {
             PlaceDescriptor::Histogram(bins) => Some((places.max_distance, bins.max_range_m)),
             PlaceDescriptor::Context(_) => {
-                return Err(LapError::NoExercise {
-                    argument: "--detector",
-                    instead: "nearby or histogram",
-                });
+                bail!("no exercise implements this --detector; use nearby or histogram");
             }
         },
     };
@@ -226,7 +222,7 @@ pub fn drive(config: &LapConfig) -> Result<ExerciseLap, LapError> {
 }
 
 /// Runs the student's code; a panic becomes an error of one sentence, with its location.
-fn in_one_sentence<T>(work: impl FnOnce() -> T) -> Result<T, LapError> {
+fn in_one_sentence<T>(work: impl FnOnce() -> T) -> anyhow::Result<T> {
     let panic_text = Arc::new(Mutex::new(String::new()));
     let written = Arc::clone(&panic_text);
     panic::set_hook(Box::new(move |panic| {
@@ -243,7 +239,7 @@ fn in_one_sentence<T>(work: impl FnOnce() -> T) -> Result<T, LapError> {
         .lock()
         .unwrap_or_else(PoisonError::into_inner)
         .clone();
-    done.map_err(|_| LapError::Exercise(panic_text))
+    done.map_err(|_| anyhow!("--exercises: {panic_text}"))
 }
 
 /// χ² of the lap's graph, solved by the student from the chain of its odometry.

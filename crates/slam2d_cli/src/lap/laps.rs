@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use anyhow::bail;
 use bench_support::process;
 use ch16_lab::laps::{LapNumbers, Laps, LapsConfig};
 use ch16_slam2d::scan::LaserScan;
@@ -10,7 +11,7 @@ use pr_sim::Course;
 use robot_io::session::Session;
 use serde::Serialize;
 
-use super::LapError;
+use crate::in_file::InFile as _;
 use crate::numbers;
 use crate::optimize::write_whole;
 use crate::output::{print_json, say};
@@ -69,12 +70,12 @@ pub fn run(
     seed: u32,
     noise: f64,
     as_json: bool,
-) -> Result<(), LapError> {
+) -> anyhow::Result<()> {
     if args.wardrobe.is_some() && *course != Course::apartment() {
-        return Err(LapError::NotTheApartment);
+        bail!("--wardrobe applies to the Apartment only; omit --world");
     }
     if let Some(lap) = args.wardrobe.filter(|&lap| lap > count) {
-        return Err(LapError::NoSuchLap { lap, count });
+        bail!("--wardrobe {lap} is beyond --laps {count}; use a lap up to {count}");
     }
     let mut config = LapsConfig::new(course, seed, noise);
     config.wardrobe = args.wardrobe;
@@ -111,10 +112,7 @@ pub fn run(
         done.push(lap);
     }
     if let (Some(path), Some(bytes)) = (&args.session, &session) {
-        write_whole(path, bytes).map_err(|source| LapError::Written {
-            path: path.clone(),
-            source,
-        })?;
+        write_whole(path, bytes).in_file(path)?;
     }
     if as_json {
         print_json(&LapsJson {

@@ -11,12 +11,14 @@
 
 use std::collections::HashSet;
 use std::fs::File;
-use std::io::{self, Read};
-use std::path::{Path, PathBuf};
+use std::io::Read;
+use std::path::Path;
 
+use anyhow::{bail, ensure};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
-use thiserror::Error;
+
+use crate::in_file::InFile as _;
 
 /// Name and version of the format.
 const SCHEMA: &str = "slam2d-answers/1";
@@ -54,46 +56,6 @@ pub struct Answer {
     pub time: String,
 }
 
-/// Why a file cannot be marked.
-#[derive(Debug, Error)]
-pub enum AnswersError {
-    /// It cannot be read.
-    #[error("{}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// The reason.
-        source: io::Error,
-    },
-    /// It is too long.
-    #[error("{} has more than {MAX_BYTES} bytes; give a file that the page saved", .0.display())]
-    TooLong(PathBuf),
-    /// It is malformed.
-    #[error("{}: {source}; give a file that the page saved by “Save my answers”", path.display())]
-    Malformed {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong, with line and column.
-        source: serde_json::Error,
-    },
-    /// Another version of the format.
-    #[error("{} has the schema `{found}`, not `{SCHEMA}`; mark it with the version of its page", path.display())]
-    Schema {
-        /// The file.
-        path: PathBuf,
-        /// Its schema.
-        found: String,
-    },
-    /// Two answers to one exercise.
-    #[error("{} answers exercise {exercise} twice; keep one of the two", path.display())]
-    Twice {
-        /// The file.
-        path: PathBuf,
-        /// The exercise.
-        exercise: String,
-    },
-}
-
 /// The bytes without the mark with which some editors begin a file in UTF-8.
 pub fn without_bom(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
@@ -104,38 +66,35 @@ impl Answers {
     ///
     /// # Errors
     /// If it is not a file of answers of this version, with at most one for each exercise.
-    pub fn read(path: &Path) -> Result<Self, AnswersError> {
-        let owned = || path.to_path_buf();
-        let io = |source| AnswersError::Io {
-            path: owned(),
-            source,
-        };
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
         let mut bytes = Vec::new();
-        let file = File::open(path).map_err(io)?;
+        let file = File::open(path).in_file(path)?;
         file.take(MAX_BYTES + 1)
             .read_to_end(&mut bytes)
-            .map_err(io)?;
-        if bytes.len() as u64 > MAX_BYTES {
-            return Err(AnswersError::TooLong(owned()));
-        }
-        let answers: Self = serde_json::from_slice(without_bom(&bytes)).map_err(|source| {
-            AnswersError::Malformed {
-                path: owned(),
-                source,
-            }
-        })?;
-        if answers.schema != SCHEMA {
-            return Err(AnswersError::Schema {
-                path: owned(),
-                found: answers.schema,
-            });
-        }
+            .in_file(path)?;
+        ensure!(
+            bytes.len() as u64 <= MAX_BYTES,
+            "{} has more than {MAX_BYTES} bytes; give a file that the page saved",
+            path.display()
+        );
+        let answers: Self = serde_json::from_slice(without_bom(&bytes))
+            .map_err(|error| {
+                format!("{error}; give a file that the page saved by “Save my answers”")
+            })
+            .in_file(path)?;
+        ensure!(
+            answers.schema == SCHEMA,
+            "{} has the schema `{}`, not `{SCHEMA}`; mark it with the version of its page",
+            path.display(),
+            answers.schema
+        );
         let mut seen = HashSet::new();
         if let Some(twice) = answers.answers.iter().find(|a| !seen.insert(&a.exercise)) {
-            return Err(AnswersError::Twice {
-                path: owned(),
-                exercise: twice.exercise.clone(),
-            });
+            bail!(
+                "{} answers exercise {} twice; keep one of the two",
+                path.display(),
+                twice.exercise
+            );
         }
         Ok(answers)
     }

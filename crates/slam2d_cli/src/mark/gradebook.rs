@@ -2,14 +2,14 @@
 
 use std::collections::HashMap;
 use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use thiserror::Error;
+use anyhow::ensure;
 
 use super::answers::without_bom;
 use super::exercise::{self, Mark};
 use super::{Sheet, csv_cell};
+use crate::in_file::InFile as _;
 use crate::output::say;
 
 /// Whose column names the gradebook has.
@@ -43,25 +43,6 @@ const IDENTIFIERS: [&str; 11] = [
     "Full name",
 ];
 
-/// Why a roster cannot be used.
-#[derive(Debug, Error)]
-pub enum RosterError {
-    /// It cannot be read.
-    #[error("{}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// The reason.
-        source: io::Error,
-    },
-    /// No column identifies a student.
-    #[error("{} has no column that identifies a student; name one of its columns {}", path.display(), IDENTIFIERS.join(", "))]
-    NoIdentifier {
-        /// The file.
-        path: PathBuf,
-    },
-}
-
 /// The students of a course.
 #[derive(Clone, Debug)]
 pub struct Roster {
@@ -76,12 +57,8 @@ impl Roster {
     ///
     /// # Errors
     /// If it cannot be read or no column identifies a student.
-    pub fn read(path: &Path) -> Result<Self, RosterError> {
-        let owned = || path.to_path_buf();
-        let bytes = fs::read(path).map_err(|source| RosterError::Io {
-            path: owned(),
-            source,
-        })?;
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
+        let bytes = fs::read(path).in_file(path)?;
         let text = String::from_utf8_lossy(without_bom(&bytes)).into_owned();
         let mut rows = table(&text).into_iter();
         let head = rows.next().unwrap_or_default();
@@ -94,9 +71,12 @@ impl Roster {
             .filter(|(_, name)| is_identifier(name))
             .map(|(column, _)| column)
             .collect();
-        if identifiers.is_empty() {
-            return Err(RosterError::NoIdentifier { path: owned() });
-        }
+        ensure!(
+            !identifiers.is_empty(),
+            "{} has no column that identifies a student; name one of its columns {}",
+            path.display(),
+            IDENTIFIERS.join(", ")
+        );
         // Canvas exports the points possible as if they were a student.
         let rows = rows.filter(|row| {
             let first = row.first().map_or("", |cell| cell.trim());

@@ -2,11 +2,12 @@
 
 use std::panic::catch_unwind;
 
+use anyhow::bail;
 use ch16_lab::lap::{LapRunner, random_config};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{SweepArgs, SweepFailure, progress_bar};
+use super::{SweepArgs, progress_bar};
 use crate::output::{print_json, say};
 
 /// Results of random laps.
@@ -33,7 +34,7 @@ struct Random {
 ///
 /// # Errors
 /// If a lap panicked or has a figure that is not finite; the first one is returned.
-pub fn print(args: &SweepArgs) -> Result<(), SweepFailure> {
+pub fn print(args: &SweepArgs) -> anyhow::Result<()> {
     let bar = progress_bar(args.seeds.count());
     let laps: Vec<Random> = (args.seeds.first..=args.seeds.last)
         .into_par_iter()
@@ -65,10 +66,10 @@ pub fn print(args: &SweepArgs) -> Result<(), SweepFailure> {
     }
     match laps.into_iter().find(|lap| lap.fault.is_some()) {
         None => Ok(()),
-        Some(Random { seed, fault, .. }) => Err(SweepFailure::Unsound {
-            seed,
-            fault: fault.unwrap_or_default(),
-        }),
+        Some(Random { seed, fault, .. }) => bail!(
+            "the lap at the random configuration {seed} failed: {}",
+            fault.unwrap_or_default()
+        ),
     }
 }
 

@@ -11,16 +11,17 @@
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
-use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use anyhow::{anyhow, bail};
 use ch16_lab::lap::{Choice, LapEstimator};
 use ch16_lab::results::LapOutcome;
 use ch16_slam2d::digest::Digest;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 use super::SweepArgs;
+use crate::in_file::InFile as _;
 use crate::lap_options::LapOptions;
 use crate::numbers::Seeds;
 
@@ -48,65 +49,6 @@ pub struct LapRow {
     pub noise: f64,
     /// Result.
     pub outcome: LapOutcome,
-}
-
-/// Why rows cannot be stored or merged.
-#[derive(Debug, Error)]
-pub enum RowsFailure {
-    /// A file cannot be read or written.
-    #[error("{}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        source: io::Error,
-    },
-    /// It is not a file of rows.
-    #[error("{}: line {line}: {problem}; give a file that slam2d sweep --rows wrote", path.display())]
-    NoRow {
-        /// The file.
-        path: PathBuf,
-        /// Number of the line, counted from 1.
-        line: usize,
-        /// The problem.
-        problem: String,
-    },
-    /// The file belongs to another sweep.
-    #[error("{} holds rows of another sweep: {difference}; give another file", path.display())]
-    OtherSweep {
-        /// The file.
-        path: PathBuf,
-        /// The difference.
-        difference: String,
-    },
-    /// Two rows of one lap differ.
-    #[error("{}: line {line}: seed {seed} at noise ×{noise} differs from an earlier row; one of the machines \
-             computes other bits", path.display())]
-    OtherBits {
-        /// The file.
-        path: PathBuf,
-        /// Number of the line, counted from 1.
-        line: usize,
-        /// The lap's seed.
-        seed: u32,
-        /// Its noise.
-        noise: f64,
-    },
-    /// Laps are missing.
-    #[error(
-        "{missing} of {laps} laps are missing, the first is seed {seed} at noise ×{noise}; drive their \
-             shard again with the same --rows file, or name its file as well"
-    )]
-    Missing {
-        /// Number of missing laps.
-        missing: u64,
-        /// Number of laps.
-        laps: u64,
-        /// Seed of the first.
-        seed: u32,
-        /// Noise of the first.
-        noise: f64,
-    },
 }
 
 impl Header {
@@ -177,18 +119,18 @@ impl Rows {
     ///
     /// # Errors
     /// If laps are missing.
-    pub fn by_seed(&self, header: &Header) -> Result<Vec<Vec<LapOutcome>>, RowsFailure> {
+    pub fn by_seed(&self, header: &Header) -> anyhow::Result<Vec<Vec<LapOutcome>>> {
         let [first, last] = header.seeds;
         let laps =
             (first..=last).flat_map(|seed| header.noise.iter().map(move |&noise| (seed, noise)));
         let is_missing = |&(seed, noise): &(u32, f64)| self.get(seed, noise).is_none();
         if let Some((seed, noise)) = laps.clone().find(is_missing) {
-            return Err(RowsFailure::Missing {
-                missing: laps.clone().filter(is_missing).count() as u64,
-                laps: laps.count() as u64,
-                seed,
-                noise,
-            });
+            bail!(
+                "{} of {} laps are missing, the first is seed {seed} at noise ×{noise}; drive their \
+                 shard again with the same --rows file, or name its file as well",
+                laps.clone().filter(is_missing).count(),
+                laps.count()
+            );
         }
         let of_seed = |seed| {
             header
@@ -206,36 +148,28 @@ impl Rows {
         file: &File,
         path: &Path,
         expected: Option<&Header>,
-    ) -> Result<(Option<Header>, u64), RowsFailure> {
-        let io = |source| RowsFailure::Io {
-            path: path.to_owned(),
-            source,
-        };
+    ) -> anyhow::Result<(Option<Header>, u64)> {
         let mut source = BufReader::new(file);
         let (mut line, mut number, mut whole_bytes) = (Vec::new(), 0, 0);
         let mut header: Option<Header> = None;
         loop {
             line.clear();
-            let bytes = source.read_until(b'\n', &mut line).map_err(io)?;
+            let bytes = source.read_until(b'\n', &mut line).in_file(path)?;
             // An incomplete last line was being written when the program ended.
             if line.last() != Some(&b'\n') {
                 return Ok((header, whole_bytes));
             }
             number += 1;
-            let no_row = |problem: String| RowsFailure::NoRow {
-                path: path.to_owned(),
-                line: number,
-                problem,
-            };
+            let no_row = |problem: String| no_row(path, number, &problem);
             match &header {
                 None => {
                     let found: Header = serde_json::from_slice(&line)
                         .map_err(|e| no_row(format!("expected the header of a sweep: {e}")))?;
                     if let Some(difference) = expected.and_then(|ours| ours.difference(&found)) {
-                        return Err(RowsFailure::OtherSweep {
-                            path: path.to_owned(),
-                            difference,
-                        });
+                        bail!(
+                            "{} holds rows of another sweep: {difference}; give another file",
+                            path.display()
+                        );
                     }
                     header = Some(found);
                 }
@@ -246,12 +180,13 @@ impl Rows {
                         .by_lap
                         .insert((row.seed, row.noise.to_bits()), row.outcome);
                     if before.is_some_and(|before| before != row.outcome) {
-                        return Err(RowsFailure::OtherBits {
-                            path: path.to_owned(),
-                            line: number,
-                            seed: row.seed,
-                            noise: row.noise,
-                        });
+                        bail!(
+                            "{}: line {number}: seed {} at noise ×{} differs from an earlier row; \
+                             one of the machines computes other bits",
+                            path.display(),
+                            row.seed,
+                            row.noise
+                        );
                     }
                 }
             }
@@ -260,24 +195,24 @@ impl Rows {
     }
 }
 
+fn no_row(path: &Path, line: usize, problem: &str) -> anyhow::Error {
+    anyhow!(
+        "{}: line {line}: {problem}; give a file that slam2d sweep --rows wrote",
+        path.display()
+    )
+}
+
 /// Reads the rows of all `paths`, which must belong to one sweep.
 ///
 /// # Errors
 /// If a file cannot be read, or the files belong to different sweeps.
-pub fn read_all(paths: &[PathBuf]) -> Result<(Header, Rows), RowsFailure> {
+pub fn read_all(paths: &[PathBuf]) -> anyhow::Result<(Header, Rows)> {
     let mut rows = Rows::default();
     let mut header: Option<Header> = None;
     for path in paths {
-        let file = File::open(path).map_err(|source| RowsFailure::Io {
-            path: path.clone(),
-            source,
-        })?;
+        let file = File::open(path).in_file(path)?;
         let (found, _) = rows.read(&file, path, header.as_ref())?;
-        let found = found.ok_or_else(|| RowsFailure::NoRow {
-            path: path.clone(),
-            line: 1,
-            problem: "the file is empty".to_owned(),
-        })?;
+        let found = found.ok_or_else(|| no_row(path, 1, "the file is empty"))?;
         header.get_or_insert(found);
     }
     Ok((header.expect("clap asks for a file"), rows))
@@ -296,29 +231,25 @@ impl RowsFile {
     ///
     /// # Errors
     /// If the file cannot be used, or belongs to another sweep.
-    pub fn open(path: &Path, header: &Header) -> Result<(Self, Rows), RowsFailure> {
-        let io = |source| RowsFailure::Io {
-            path: path.to_owned(),
-            source,
-        };
+    pub fn open(path: &Path, header: &Header) -> anyhow::Result<(Self, Rows)> {
         let mut options = OpenOptions::new();
         let file = options.read(true).write(true).create(true).truncate(false);
-        let file = file.open(path).map_err(io)?;
+        let file = file.open(path).in_file(path)?;
         if file.try_lock().is_err() {
             eprintln!(
                 "slam2d: another sweep writes {}; waiting for its end",
                 path.display()
             );
-            file.lock().map_err(io)?;
+            file.lock().in_file(path)?;
         }
         let mut rows = Rows::default();
         let (found, whole_bytes) = rows.read(&file, path, Some(header))?;
-        file.set_len(whole_bytes).map_err(io)?;
+        file.set_len(whole_bytes).in_file(path)?;
         let mut kept = Self {
             path: path.to_owned(),
             file,
         };
-        kept.file.seek(SeekFrom::Start(whole_bytes)).map_err(io)?;
+        kept.file.seek(SeekFrom::Start(whole_bytes)).in_file(path)?;
         if found.is_none() {
             kept.add(header)?;
         }
@@ -329,14 +260,9 @@ impl RowsFile {
     ///
     /// # Errors
     /// If the system cannot write it.
-    pub fn add(&mut self, line: &impl Serialize) -> Result<(), RowsFailure> {
+    pub fn add(&mut self, line: &impl Serialize) -> anyhow::Result<()> {
         let mut bytes = serde_json::to_vec(line).expect("plain numbers and lists");
         bytes.push(b'\n');
-        self.file
-            .write_all(&bytes)
-            .map_err(|source| RowsFailure::Io {
-                path: self.path.clone(),
-                source,
-            })
+        self.file.write_all(&bytes).in_file(&self.path)
     }
 }

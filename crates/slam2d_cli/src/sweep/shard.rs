@@ -7,7 +7,7 @@ use ch16_lab::lap::LapRunner;
 use ch16_lab::results::LapOutcome;
 use rayon::prelude::*;
 
-use super::rows::{Header, LapRow, RowsFailure, RowsFile};
+use super::rows::{Header, LapRow, RowsFile};
 use super::{SweepArgs, progress_bar};
 use crate::lap_options::LapOptions;
 
@@ -68,7 +68,7 @@ pub fn drive(
     trial: &LapOptions,
     part: Shard,
     path: &Path,
-) -> Result<ShardResult, RowsFailure> {
+) -> anyhow::Result<ShardResult> {
     let header = Header::new(args, trial);
     let (file, rows) = RowsFile::open(path, &header)?;
     let file = Mutex::new(file);
@@ -77,7 +77,7 @@ pub fn drive(
         .filter_map(|(index, seed)| part.contains(index).then_some(seed))
         .collect();
     let bar = progress_bar(seeds.len() as u64);
-    let by_seed: Result<Vec<Vec<(LapOutcome, bool)>>, RowsFailure> = seeds
+    let by_seed: anyhow::Result<Vec<Vec<(LapOutcome, bool)>>> = seeds
         .into_par_iter()
         .map_init(LapRunner::new, |runner, seed| {
             let mut at = |&noise: &f64| {
