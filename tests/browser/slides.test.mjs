@@ -1,4 +1,4 @@
-// slides.html: a slide for each widget, in the first state of its script.
+// slides.html: the chapter for a class, one slide at a time, with the speaker's notes in a second window.
 
 import assert from 'node:assert/strict';
 import { it } from 'node:test';
@@ -6,48 +6,105 @@ import { violations } from './axe.mjs';
 import * as h from './harness.mjs';
 
 const visit = h.visitor();
+const SLIDES = { path: '/slides.html', fresh: true };
 
-it('slides.html has a slide for each widget, with links that set it and the speaker’s script', async () => {
+/** Turns to the slide of the first element that matches. */
+const turnTo = (tab, css) => tab.evaluate((selector) => {
+  const slide = document.querySelector(selector).closest('main > section');
+  location.hash = String([...document.querySelectorAll('main > section')].indexOf(slide) + 1);
+}, css);
+const shownTitle = (tab) => tab.evaluate(() => document.querySelector('main > .shown').querySelector('h1').textContent);
+
+it('slides.html has a slide for each widget in the order of the chapter, with links that set it', async () => {
   await visit('', async (tab) => {
-    const names = await tab.evaluate(() => [...document.querySelectorAll('section > slam-widget')].map(({ name }) => name));
+    const names = await tab.evaluate(() => [...document.querySelectorAll('section.figure > slam-widget')].map(({ name }) => name));
     assert.deepEqual([...names].sort(), h.schema.map(({ id }) => id).sort());
-    const first = 'slam-widget[name="w16.1"]';
-    await tab.locator(first).scrollIntoViewIfNeeded();
+    assert.ok(names.indexOf('w16.11') < names.indexOf('w16.1') && names.indexOf('w16.5') < names.indexOf('w16.2'), names.join());
+    const first = '.figure slam-widget[name="w16.1"]';
+    await turnTo(tab, first);
     await h.ready(tab, first);
     assert.equal(await tab.evaluate((css) => document.querySelector(css).get('heading'), first), 25);
-    const slide = tab.locator('section').filter({ has: tab.locator(first) });
-    await slide.getByRole('link', { name: '75° off' }).click();
+    await tab.locator('section.shown').getByRole('link', { name: '75° off' }).click();
     assert.equal(await tab.evaluate((css) => document.querySelector(css).outcome.verdict, first), 'quarter turn');
-    await slide.getByText('Script').click();
-    await slide.getByText('Cover the verdict and ask what the robot').waitFor();
     assert.deepEqual(await violations(tab), []);
-  }, { path: '/slides.html', fresh: true });
+  }, SLIDES);
 });
 
-it('slides.html lets a class predict: the widget on the slide before has the answer', async () => {
+it('the arrow keys turn a slide, and a widget that has the focus keeps them', async () => {
   await visit('', async (tab) => {
+    const one = (await shownTitle(tab));
+    await tab.keyboard.press('ArrowRight');
+    assert.notEqual(await shownTitle(tab), one);
+    assert.equal(await tab.locator('main > section:visible').count(), 1);
+    await tab.keyboard.press('ArrowLeft');
+    assert.equal(await shownTitle(tab), one);
+    await tab.keyboard.press('End');
+    const last = await shownTitle(tab);
+    await tab.keyboard.press('PageDown');
+    assert.equal(await shownTitle(tab), last);
+    await turnTo(tab, '.figure slam-widget[name="w16.1"]');
+    await h.ready(tab, '.figure slam-widget[name="w16.1"]');
+    await tab.locator('.figure slam-widget[name="w16.1"]').getByRole('slider').first().focus();
+    await tab.keyboard.press('ArrowRight');
+    assert.equal(await shownTitle(tab), 'Basin explorer');
+    await tab.keyboard.press('PageDown');
+    assert.notEqual(await shownTitle(tab), 'Basin explorer');
+  }, SLIDES);
+});
+
+it('the speaker’s notes follow the slides in a second window, and turn them', async () => {
+  await visit('', async (tab) => {
+    const opened = tab.waitForEvent('popup');
+    await tab.keyboard.press('n');
+    const notes = await opened;
+    await notes.locator('.speaker .then').waitFor();
+    await turnTo(tab, '.figure slam-widget[name="w16.11"]');
+    await tab.keyboard.press('PageDown');
+    await tab.keyboard.press('PageUp');
+    await notes.locator('.speaker .note li', { hasText: 'A sensor upside down' }).waitFor();
+    assert.equal(await notes.locator('slam-widget:visible').count(), 0);
+    await notes.keyboard.press('ArrowRight');
+    await tab.getByText('Prove that none passes').waitFor();
+    assert.match(await shownTitle(tab), /^Exercise 1/);
+    await notes.close();
+  }, SLIDES);
+});
+
+it('sections show their formulas, and one derivation', async () => {
+  await visit('', async (tab) => {
+    const formulas = await tab.evaluate(() => Object.fromEntries([...document.querySelectorAll('section.formulas')]
+      .map((slide) => [slide.querySelector('h1').textContent, slide.querySelectorAll('.math .katex').length])));
+    assert.equal(formulas['Correspondence and alignment'], 2);
+    assert.equal(formulas['Gradient and Hessian of the score'], 1);
+    assert.ok(Object.values(formulas).every((count) => count > 0), JSON.stringify(formulas));
+  }, SLIDES);
+});
+
+it('slides.html lets a class predict: the slide of a question has its premise and the widget that answers', async () => {
+  await visit('', async (tab) => {
+    await turnTo(tab, 'slam-predict[exercise="16.4"]');
     const question = tab.locator('slam-predict[exercise="16.4"]');
-    await question.scrollIntoViewIfNeeded();
+    await tab.locator('section.shown').getByText('From how far does each error still').waitFor();
     await question.getByRole('radio').first().check();
     await question.getByRole('button', { name: 'Commit and see' }).click();
     await question.getByText(/^(As you predicted|It turns out differently)/).waitFor();
-    assert.equal(await tab.evaluate(() => document.querySelector('slam-widget[name="w16.1"]').get('tau')), 1.4);
+    assert.equal(await tab.evaluate(() => document.querySelector('.shown slam-widget').get('tau')), 1.4);
     assert.equal(await tab.locator('slam-predict').count(), 11);
-  }, { path: '/slides.html', fresh: true });
+  }, SLIDES);
 });
 
-it('slides.html fits each widget on the screen of a projector', async () => {
+it('slides.html fits each widget on the screen of a projector, in letters of 24 pixels', async () => {
   await visit('', async (tab) => {
+    assert.equal(await tab.evaluate(() => getComputedStyle(document.querySelector('.figure p')).fontSize), '24px');
     for (const { id } of h.schema) {
-      const css = `slam-widget[name="${id}"]`;
-      await tab.locator(css).scrollIntoViewIfNeeded();
+      const css = `.figure slam-widget[name="${id}"]`;
+      await turnTo(tab, css);
       await h.ready(tab, css);
       const box = await tab.locator(css).evaluate((widget) => {
-        widget.closest('section').scrollIntoView();
         const { top, bottom } = widget.getBoundingClientRect();
         return { top, bottom, height: innerHeight };
       });
       assert.ok(box.top >= 0 && box.bottom <= box.height, `${id}: ${JSON.stringify(box)}`);
     }
-  }, { path: '/slides.html', fresh: true, options: { viewport: { width: 1280, height: 720 } } });
+  }, { ...SLIDES, options: { viewport: { width: 1280, height: 720 } } });
 });

@@ -43,7 +43,6 @@ await writeFile(path.join(root, 'crates/slam2d_cli/src/mark/exercises.json'), `$
 const frames = frameExercises(source, (html) => renderFormulas(html, 'mathml'));
 await writeFile(path.join(outDir, 'exercises.json'), JSON.stringify(frames));
 const scripts = await readFile(path.join(root, 'docs/teaching/widgets.md'), 'utf8');
-await writeFile(path.join(outDir, 'slides.html'), slidesPage(scripts, frames));
 const specOf = await widgetSpecs();
 const template = await readFile(path.join(here, 'template.html'), 'utf8');
 const pictured = pages.map((page) => ({ ...page, html: addPictures(renderFormulas(withFrame(template, page, pages, places)), page.source) }));
@@ -53,6 +52,9 @@ const { names, metafiles } = await bundleScripts({
   BUILDING_FILE: await writeHashed('building.json', building),
 }, match.answer);
 names.set('page.css', await copyStyle());
+names.set('slides.css', await writeHashed('slides.css', await style('slides.css')));
+const slides = slidesPage(pages, scripts, frames, (html) => renderFormulas(html));
+await writeFile(path.join(outDir, 'slides.html'), withNames(slides));
 await Promise.all([...pictured.map(renderPage), copyKatex()]);
 await writeNotices(metafiles).catch(endWithOneSentence);
 
@@ -160,14 +162,14 @@ function unescapeHtml(text) {
 
 /** Writes the style with the colours, and copies the linked table. Returns the name of the style. */
 async function copyStyle() {
-  const bundle = await build({
-    entryPoints: [path.join(here, 'page.css')],
-    bundle: true,
-    minify: true,
-    write: false,
-  });
   await cp(path.join(here, 'thousand-laps.csv'), path.join(outDir, 'thousand-laps.csv'));
-  return writeHashed('page.css', colorStyle() + bundle.outputFiles[0].text);
+  return writeHashed('page.css', colorStyle() + (await style('page.css')));
+}
+
+/** A style sheet with those that it imports. */
+async function style(source) {
+  const { outputFiles } = await build({ entryPoints: [path.join(here, source)], bundle: true, minify: true, write: false });
+  return outputFiles[0].text;
 }
 
 /** Copies KaTeX with woff2 fonts only: all browsers with WebAssembly support them. */
@@ -211,14 +213,16 @@ async function bundleScripts(stories, matchAnswer) {
   });
   // A classic script in the head, which the browser runs before it paints.
   const early = await bundle('early.ts', {}, 'iife');
+  const slides = await bundle('slides.ts', {});
   // A stable name: the page imports it when a reader opens an editor.
   const writing = await bundle('write/write-yourself.ts', {});
   await writeFile(path.join(outDir, 'write-yourself.js'), writing.text);
   const names = new Map([
     ['page.js', await writeHashed('page.js', page.text)],
     ['early.js', await writeHashed('early.js', early.text)],
+    ['slides.js', await writeHashed('slides.js', slides.text)],
   ]);
-  return { names, metafiles: [worker.metafile, page.metafile, early.metafile, writing.metafile] };
+  return { names, metafiles: [worker.metafile, page.metafile, early.metafile, writing.metafile, slides.metafile] };
 }
 
 /** Writes the notices of the widgets, from their build, and of the page. */

@@ -1,12 +1,26 @@
-// slides.html: a slide for each widget, from the scripts of docs/teaching/widgets.md, and one for each question about it,
-// to predict before the class sees the result. The states of a script are links on its slide, and its text is folded below the
-// widget.
+// slides.html: the chapter for a class. Each section of the pages has a slide of its formulas and one of a derivation, each
+// of its widgets a slide and each question about a widget another, with the widget. The script of docs/teaching/widgets.md
+// is the speaker's note.
 
 import { escapeHtml } from '../html.mjs';
 
-/** The page of slides; `exercises` are those of `frameExercises`. */
-export function slidesPage(scripts, exercises) {
-  const slides = scripts.split(/^## /m).slice(1).flatMap((text) => [slide(text), ...questions(text.match(/^\S+/)[0], exercises)]);
+/** What the slides take from a page, in order: headings, first paragraphs, formulas, folds and widgets. */
+const PARTS = /<h[12]\b[^>]*>([\s\S]*?)<\/h[12]>|<p>([\s\S]*?)<\/p>|<tex display>[\s\S]*?<\/tex>|<slam-widget name="([^"]*)"|<(details)\b[^>]*>\s*(?:<summary>([\s\S]*?)<\/summary>)?|<\/details>/g;
+
+/**
+ * The page of slides, in the order of the pages.
+ *
+ * @param {{ html: string }[]} pages
+ * @param {string} scripts of the widgets, as Markdown
+ * @param {{ title: string, intro: string, questions: { exercise: string, widget: string, html: string }[] }[]} exercises
+ * @param {(html: string) => string} render turns formulas into HTML
+ */
+export function slidesPage(pages, scripts, exercises, render) {
+  const scriptOf = new Map(scripts.split(/^## /m).slice(1).map((text) => [text.match(/^\S+/)[0], text]));
+  const slides = pages.flatMap(({ html }) => sections(html)).flatMap((section) => [
+    ...formulas(section, render),
+    ...section.widgets.flatMap((widget) => [slide(scriptOf.get(widget)), ...questions(widget, exercises)]),
+  ]);
   return `<!doctype html>
 <html lang="en">
 <head>
@@ -14,31 +28,64 @@ export function slidesPage(scripts, exercises) {
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>SLAM in two dimensions: slides</title>
 <link rel="icon" href="data:,">
-<style>
-html { scroll-snap-type: y mandatory; color-scheme: light dark; font: 1.125rem/1.4 system-ui, sans-serif; }
-body { margin: 0; }
-section { box-sizing: border-box; min-height: 100vh; padding: 2vh 3vw; scroll-snap-align: start; }
-h1, h2 { margin: 0 0 0.5rem; }
-.title { display: grid; align-content: center; justify-items: center; text-align: center; }
-p { margin: 0 0 0.5rem; }
-nav { display: flex; flex-wrap: wrap; gap: 0.5rem; margin-bottom: 0.75rem; }
-nav a { padding: 0.25rem 0.75rem; border: 1px solid; border-radius: 6px; color: inherit; text-decoration: none; }
-slam-widget { max-height: 72vh; overflow: auto; }
-details { margin-top: 0.5rem; }
-slam-predict { max-width: 45rem; }
-</style>
+<link rel="stylesheet" href="katex/katex.css">
+<link rel="stylesheet" href="slides.css">
 <script type="module" src="slam-widget.js"></script>
 <script type="module" src="slam-predict.js"></script>
+<script type="module" src="slides.js"></script>
 </head>
 <body>
 <main>
-<section class="title"><div><h1>SLAM in two dimensions</h1>
-<p>Page Down turns a slide. The links set the widget; the script of each slide is folded below it.</p></div></section>
+<section class="title"><h1>SLAM in two dimensions</h1>
+<p>The arrow keys turn a slide, N opens the speaker’s notes in a second window.</p>
+<p><a href="index.html">The chapter</a></p></section>
 ${slides.join('\n')}
 </main>
+<nav class="turn" aria-label="Slides"><button type="button" data-turn="-1" aria-label="Slide before">←</button><output></output><button type="button" data-turn="1" aria-label="Next slide">→</button><button type="button" data-notes>Notes</button></nav>
+<aside class="speaker" hidden aria-live="polite"><p class="now"></p><div class="note"></div><p class="then"></p></aside>
 </body>
 </html>
 `;
+}
+
+/** The sections of a page with their own formulas, the first derivation in a fold, and their widgets. */
+function sections(html) {
+  const found = [];
+  /** @type {(string | undefined)[]} */
+  const folds = [];
+  for (const [text, heading, paragraph, widget, details, summary] of html.matchAll(PARTS)) {
+    const section = found.at(-1);
+    if (heading !== undefined) found.push({ title: heading, lead: '', formulas: [], derivation: undefined, widgets: [] });
+    else if (section === undefined) continue;
+    else if (widget !== undefined) section.widgets.push(widget);
+    else if (details !== undefined) folds.push(summary);
+    else if (text === '</details>') folds.pop();
+    else if (paragraph !== undefined) section.lead ||= paragraph;
+    else if (folds.length === 0) section.formulas.push(text);
+    else {
+      section.derivation ??= { title: folds.at(-1), formulas: [] };
+      if (section.derivation.title === folds.at(-1)) section.derivation.formulas.push(text);
+    }
+  }
+  return found;
+}
+
+/** The slides of a section's formulas and of its derivation, if it has them. */
+function formulas({ title, lead, formulas: own, derivation }, render) {
+  const one = (heading, words, all) => `<section class="formulas">
+<h1>${heading}</h1>
+${words}${all.map(render).join('\n')}
+</section>`;
+  return [
+    ...(own.length === 0 ? [] : [one(title, `<p>${render(firstSentence(lead))}</p>\n`, own)]),
+    ...(derivation === undefined ? [] : [one(render(derivation.title), '', derivation.formulas)]),
+  ];
+}
+
+/** The first sentence of a paragraph, without links. */
+function firstSentence(paragraph) {
+  const plain = paragraph.replace(/<(\/?)(a|span|button)\b[^>]*>/g, '');
+  return plain.match(/^[\s\S]*?[.?!](?=\s|$)/)?.[0] ?? plain;
 }
 
 /** The slide of a script: title, `w16.1 Basin explorer`, goal, misconception, numbered steps with links. */
@@ -50,22 +97,23 @@ function slide(text) {
   const steps = text.split(/^\d+\. /m).slice(1).map((step) => `<li>${inLine(step)}</li>`);
   const first = new URLSearchParams(links[0]?.[2] ?? '');
   const state = [...first].filter(([id]) => id !== 'w').map(([id, value]) => ` ${id}="${escapeHtml(value)}"`).join('');
-  return `<section>
-<h2>${escapeHtml(title)}</h2>
+  return `<section class="figure">
+<h1>${escapeHtml(title)}</h1>
 <p>${inLine(misconception)}</p>
 <nav aria-label="States of ${escapeHtml(title)}">${links.map(([, words, query]) => `<a class="slam-link" href="${escapeHtml(query)}">${inLine(words)}</a>`).join('')}</nav>
 <slam-widget name="${name}"${state}></slam-widget>
-<details><summary>Script</summary><p>${inLine(goal)}</p><ol>${steps.join('')}</ol></details>
+<template class="note"><p>${inLine(goal)}</p><ol>${steps.join('')}</ol></template>
 </section>`;
 }
 
-/** A slide for each question about a widget. The widget on the slide before shows the answer. */
+/** A slide for each question about a widget: what it assumes, the question, and the widget that answers it. */
 function questions(widget, exercises) {
   return exercises.flatMap(({ title, intro, questions: asked }) => asked.filter((question) => question.widget === widget)
-    .map(({ html }) => `<section>
-<h2>${title}</h2>
-${html}
-<details><summary>The exercise</summary>${intro}</details>
+    .map(({ html }) => `<section class="question">
+<h1>${title}</h1>
+<div>${intro.replace(/<details\b[\s\S]*?<\/details>/g, '')}
+${html}</div>
+<slam-widget name="${widget}"></slam-widget>
 </section>`));
 }
 

@@ -107,7 +107,8 @@ export class SlamPredict extends HTMLElement {
 
   async #check(prediction: string): Promise<void> {
     const name = this.getAttribute('widget') ?? '';
-    const widget = document.querySelector<SlamWidget>(`slam-widget[name="${CSS.escape(name)}"]`);
+    const css = `slam-widget[name="${CSS.escape(name)}"]`;
+    const widget = this.closest('section')?.querySelector<SlamWidget>(css) ?? document.querySelector<SlamWidget>(css);
     if (widget === null) {
       this.#showSentences([`There is no widget ${name} on this page.`]);
       return;
