@@ -235,7 +235,7 @@ describe('laps that break', () => {
       await h.ready(tab, 'slam-widget[name="w16.2"]');
       const { facts } = await tab.evaluate(() => document.querySelector('slam-widget[name="w16.2"]').outcome);
       assert.ok(facts.graph_error_m > 8 && facts.false_loops >= 4, JSON.stringify(facts));
-    }, { path: '/index.html' });
+    }, { path: '/break.html' });
   });
 
   it('give a flat of one’s own a card with a link and a picture, which another world takes away', async () => {
@@ -243,6 +243,7 @@ describe('laps that break', () => {
     await visit('', async (tab) => {
       const card = tab.locator('.own-card');
       await card.getByText('The robot ends 8.5 m off').waitFor();
+      await card.getByText(/^Score \d/).waitFor();
       const download = tab.waitForEvent('download');
       await card.getByRole('button', { name: 'Save picture' }).click();
       const png = await h.bytesOf(await download);
@@ -251,6 +252,6 @@ describe('laps that break', () => {
       await card.getByText(/The link is copied|flat=/).waitFor();
       await tab.evaluate(() => document.querySelector('slam-widget[name="w16.2"]').set('world', 'ring'));
       await card.waitFor({ state: 'hidden' });
-    }, { path: `/index.html?w=16.2&${state}` });
+    }, { path: `/break.html?w=16.2&${state}` });
   });
 });

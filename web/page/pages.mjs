@@ -8,6 +8,7 @@ export const PAGES = [
   { file: 'index.html', source: 'index.html', name: 'Matching and the graph' },
   { file: 'robots.html', source: 'web/page/robots.html', name: 'What robots run' },
   { file: 'own-robot.html', source: 'web/page/own-robot.html', name: 'Your own robot' },
+  { file: 'break.html', source: 'web/page/break.html', name: 'Break my SLAM' },
   { file: 'reference.html', source: 'web/page/reference.html', name: 'Reference' },
 ];
 
@@ -16,12 +17,13 @@ export function readPages(root) {
   return Promise.all(PAGES.map(async (page) => ({ ...page, html: await readFile(path.join(root, page.source), 'utf8') })));
 }
 
-/** The page of each anchor and widget, for redirects and for links between pages. */
+/** The first page of each anchor and widget, for redirects and for links between pages. */
 export function placesOf(pages) {
   const each = (pattern) => pages.flatMap(({ file, html }) => [...html.matchAll(pattern)].map(([, name]) => [name, file]));
+  const first = (pattern) => Object.fromEntries(each(pattern).reverse());
   return {
-    anchors: Object.fromEntries(each(/\sid="([^"]+)"/g)),
-    widgets: Object.fromEntries(each(/<slam-widget name="([^"]+)"/g)),
+    anchors: first(/\sid="([^"]+)"/g),
+    widgets: first(/<slam-widget name="([^"]+)"/g),
   };
 }
 
@@ -64,7 +66,7 @@ function withLinks(html, { file, source }, { anchors, widgets }) {
   });
   return inText.replace(/(<a\b[^>]*\bhref=")(\?w=([\d.]+)[^"]*)"/g, (whole, before, query, id) => {
     const on = widgets[`w${id}`];
-    return on === undefined || on === file ? whole : `${before}${on}${query}"`;
+    return on === undefined || on === file || html.includes(`<slam-widget name="w${id}"`) ? whole : `${before}${on}${query}"`;
   });
 }
 

@@ -17,9 +17,11 @@ const PARTS = /<h[12]\b[^>]*>([\s\S]*?)<\/h[12]>|<p>([\s\S]*?)<\/p>|<tex display
  */
 export function slidesPage(pages, scripts, exercises, render) {
   const scriptOf = new Map(scripts.split(/^## /m).slice(1).map((text) => [text.match(/^\S+/)[0], text]));
+  const shown = new Set();
+  const isFirst = (widget) => !shown.has(widget) && shown.add(widget);
   const slides = pages.flatMap(({ html }) => sections(html)).flatMap((section) => [
     ...formulas(section, render),
-    ...section.widgets.flatMap((widget) => [slide(scriptOf.get(widget)), ...questions(widget, exercises)]),
+    ...section.widgets.filter(isFirst).flatMap((widget) => [slide(scriptOf.get(widget)), ...questions(widget, exercises)]),
   ]);
   return `<!doctype html>
 <html lang="en">

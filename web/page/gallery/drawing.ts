@@ -38,6 +38,11 @@ export function numbers(facts: Facts): { off: string; agrees: string } {
   };
 }
 
+/** Whether the two passes of the map agree, so that nobody who looks at it alone would notice an error. */
+export function isUnnoticed({ map_disagreement_m: apart }: Facts): boolean {
+  return typeof apart === 'number' && Math.round(100 * apart) <= AGREES_CM;
+}
+
 function agreement(cm: number): string {
   return cm <= AGREES_CM ? `map agrees to ${cm} cm` : `map doubles by ${cm} cm`;
 }

@@ -2,7 +2,7 @@
 
 import type { SlamWidget } from '../../ts/main';
 import { copyText, saveBlob } from '../../ts/export';
-import { drawing, HEIGHT, numbers, WIDTH, type Facts } from './drawing';
+import { drawing, HEIGHT, isUnnoticed, numbers, WIDTH, type Facts } from './drawing';
 
 /** Scale of a saved picture. */
 const SAVED_SCALE = 3;
@@ -25,6 +25,7 @@ export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement): void {
   card.hidden = true;
   gallery.before(card);
   let asked = 0;
+  let record = 0;
   const show = async ({ facts }: Result['outcome']): Promise<void> => {
     const { value, timeline } = widget;
     const isOver = timeline !== null && Number(value['t']) >= timeline.last;
@@ -35,9 +36,17 @@ export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement): void {
     // Another result may have come meanwhile.
     if (ask !== asked) return;
     card.hidden = !isShown;
-    if (isShown) fill(card, widget, svg, sentence(facts));
+    if (!isShown) return;
+    const points = score(facts);
+    record = Math.max(record, points);
+    fill(card, widget, svg, `Score ${points.toFixed(1)}, best ${record.toFixed(1)}`, sentence(facts));
   };
   widget.addEventListener('slam-result', (event) => void show((event as CustomEvent<Result>).detail.outcome));
+}
+
+/** The metres that the robot is off while its map agrees with itself; nothing for an error that the map shows. */
+function score(facts: Facts): number {
+  return isUnnoticed(facts) ? Math.max(facts['graph_error_m'] ?? 0, facts['keyframe_rms_m'] ?? 0) : 0;
 }
 
 function sentence(facts: Facts): string {
@@ -47,13 +56,13 @@ function sentence(facts: Facts): string {
   return `${lead} ${off.startsWith('ends') ? '' : 'is '}${off}${agrees === '' ? '' : `, and its ${agrees}`}.`;
 }
 
-function fill(card: HTMLElement, widget: SlamWidget, svg: string, words: string): void {
+function fill(card: HTMLElement, widget: SlamWidget, svg: string, points: string, words: string): void {
   const source = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
   const picture = document.createElement('img');
   Object.assign(picture, { src: source, width: WIDTH, height: HEIGHT, alt: '' });
   const title = document.createElement('p');
   title.className = 'card-title';
-  title.textContent = 'Your flat';
+  title.textContent = points;
   const says = document.createElement('p');
   says.textContent = words;
   const status = document.createElement('p');
