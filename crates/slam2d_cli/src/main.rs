@@ -25,6 +25,7 @@ mod parameters;
 mod places;
 mod register;
 mod relocalize;
+mod robots;
 mod run_folder;
 mod run_log;
 mod run_output;
