@@ -23,6 +23,7 @@ mod optimize;
 mod output;
 mod parameters;
 mod places;
+mod recordings;
 mod register;
 mod relocalize;
 mod robots;
@@ -69,6 +70,7 @@ enum Command {
     Localize(localize::LocalizeArgs),
     Relocalize(relocalize::RelocalizeArgs),
     Logs(logs::LogsArgs),
+    Recordings(recordings::RecordingsArgs),
     Parameters(parameters::ParametersArgs),
     Evaluate(evaluate::EvaluateArgs),
     Convert(convert::ConvertArgs),
@@ -109,6 +111,7 @@ fn main() -> ExitCode {
         Command::Localize(args) => return ended(localize::run(args)),
         Command::Relocalize(args) => relocalize::run(args).map_err(|e| e.to_string()),
         Command::Logs(args) => logs::run(args).map_err(|e| e.to_string()),
+        Command::Recordings(args) => recordings::run(args).map_err(|e| e.to_string()),
         Command::Parameters(args) => parameters::run(args).map_err(|e| e.to_string()),
         Command::Evaluate(args) => evaluate::run(args).map_err(|e| e.to_string()),
         Command::Convert(args) => convert::run(args).map_err(|e| e.to_string()),
