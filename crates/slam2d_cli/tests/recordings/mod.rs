@@ -3,6 +3,7 @@
 mod base;
 mod damage;
 mod field;
+mod robots;
 mod variants;
 mod write;
 
