@@ -20,5 +20,6 @@ pub mod relocalization;
 pub mod results;
 pub mod samples;
 mod scenes;
+pub mod sweeping;
 pub mod terrain;
 pub mod whole_window;

@@ -15,6 +15,7 @@ mod pending_loops;
 mod plane_step;
 mod random_laps;
 mod ring;
+mod sweeps;
 mod terrain_rows;
 mod turned_frame;
 mod window_search;

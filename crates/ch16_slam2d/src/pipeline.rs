@@ -10,14 +10,17 @@
 //! It reads no files and does not repair stamps: scans have to be in order of time.
 
 mod continuity;
+mod joining;
 mod piece;
+mod report;
 
-use core::ops::Range;
-
-use pr_geom::SE2;
+use nalgebra::Vector3;
+use pr_geom::{SE2, math};
 use serde::{Deserialize, Serialize};
 
 use self::piece::Piece;
+use self::report::numbered_after;
+pub use self::report::{LeftOut, PieceFate, PieceReport};
 use crate::localize::StartPose;
 use crate::scan::{Frame, FrameError, LaserScan};
 use crate::slam::{Conclusion, RobotConfig, Slam, SlamConfig, SlamReport, SlamSnapshot};
@@ -33,6 +36,16 @@ pub struct LogFrame {
     pub scan: LaserScan,
 }
 
+impl LogFrame {
+    /// Velocity of the body during the sweep by the odometry up to the next scan: that since the last one would be late.
+    #[must_use]
+    pub fn velocity_until(&self, next: &Self) -> Option<Vector3<f64>> {
+        let motion = self.odometry?.between(&next.odometry?);
+        let dt_s = next.stamp_s - self.stamp_s;
+        (dt_s > 0.0).then(|| motion.log() / math::max(dt_s, self.scan.sweep_s()))
+    }
+}
+
 /// Pose of a scan in the frame of the previous keyframe, because loops move that.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScanPose {
@@ -42,53 +55,6 @@ pub struct ScanPose {
     pub keyframe: usize,
     /// Pose of the body in the keyframe's frame.
     pub keyframe_from_body: SE2,
-}
-
-/// Whether odometry predicts the motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum OdometryUse {
-    /// The odometry of the log predicts each scan.
-    #[default]
-    Log,
-    /// Scans alone: the prediction is constant velocity.
-    None,
-}
-
-/// What became of a piece.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PieceFate {
-    /// It is still mapped on its own.
-    Alone,
-    /// The robot was found on the map at this scan of the piece, counted from 1, and all its scans are on the map.
-    Joined(usize),
-    /// Nothing connects it to the map, and it was left out.
-    LeftOut,
-    /// Nothing connects it to the map, which was left out.
-    Kept,
-}
-
-/// Scans that do not continue those before them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PieceReport {
-    /// Stamp of its first scan, s.
-    pub first_s: f64,
-    /// Time since the scan before, s.
-    pub gap_s: f64,
-    /// Number of scans before it.
-    pub scans_before: usize,
-    /// Its number of scans.
-    pub scans: usize,
-    /// What became of it.
-    pub fate: PieceFate,
-}
-
-/// Keyframes and scans that were left out, by their numbers before.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LeftOut {
-    /// The keyframes; later ones have lower numbers since.
-    pub keyframes: Range<usize>,
-    /// The scans.
-    pub scans: Range<usize>,
 }
 
 /// The estimator for recorded logs, with the pose of each scan.
@@ -117,7 +83,6 @@ pub struct LeftOut {
 /// ```
 #[derive(Clone, Default)]
 pub struct Pipeline {
-    odometry_use: OdometryUse,
     robot: Option<RobotConfig>,
     slam: Option<Slam>,
     scans: Vec<ScanPose>,
@@ -135,15 +100,6 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
-    /// A pipeline without scans that derives its settings from the first scan.
-    #[must_use]
-    pub fn new(odometry_use: OdometryUse) -> Self {
-        Self {
-            odometry_use,
-            ..Self::default()
-        }
-    }
-
     /// The same pipeline with these settings.
     #[must_use]
     pub fn with_config(mut self, robot: RobotConfig) -> Self {
@@ -153,18 +109,13 @@ impl Pipeline {
 
     /// A pipeline that continues with an estimator, the poses of its scans and the last odometry.
     #[must_use]
-    pub fn resume(
-        slam: Slam,
-        scans: Vec<ScanPose>,
-        last_odometry: Option<SE2>,
-        odometry_use: OdometryUse,
-    ) -> Self {
+    pub fn resume(slam: Slam, scans: Vec<ScanPose>, last_odometry: Option<SE2>) -> Self {
         Self {
             slam: Some(slam),
             scans,
             last_odometry,
             is_session: true,
-            ..Self::new(odometry_use)
+            ..Self::default()
         }
     }
 
@@ -267,82 +218,6 @@ impl Pipeline {
         self.slam.as_ref().map_or(0, |slam| slam.keyframes().len())
     }
 
-    /// Starts a piece; one that has not joined the map is compared with it, and the shorter one is left out.
-    fn begin_piece(&mut self, recorded: &LogFrame, gap_s: f64) {
-        self.join(true);
-        self.leave_out_shorter();
-        let Some(slam) = &mut self.slam else { return };
-        // The map is searched as it would be saved.
-        if self.before_finish.is_none() {
-            slam.conclude();
-        }
-        let start = self.start.take().unwrap_or_default();
-        self.piece = Some(Box::new(Piece::new(slam, start)));
-        self.pieces.push(PieceReport {
-            first_s: recorded.stamp_s,
-            gap_s,
-            scans_before: self.scans.len(),
-            scans: 0,
-            fate: PieceFate::Alone,
-        });
-    }
-
-    /// Joins the piece to the map if the robot was found on it.
-    fn join(&mut self, is_end: bool) {
-        let (Some(piece), Some(slam)) = (&self.piece, &self.slam) else {
-            return;
-        };
-        let Some(found) = piece.pose(is_end) else {
-            return;
-        };
-        let joined = slam.snapshot().joined(&piece.slam.snapshot(), &found);
-        let Ok(joined) = Slam::restore(&joined) else {
-            return;
-        };
-        self.slam = Some(joined);
-        self.piece = None;
-        self.is_session = false;
-        if let Some(newest) = self.pieces.last_mut() {
-            newest.fate = PieceFate::Joined(newest.scans);
-        }
-    }
-
-    /// Leaves out the map or the piece, whichever has fewer scans; a session's map is left out in any case, because
-    /// its file still has it.
-    fn leave_out_shorter(&mut self) {
-        let Some(piece) = self.piece.take() else {
-            return;
-        };
-        let first = self.map_keyframes();
-        let Some(newest) = self.pieces.last_mut() else {
-            return;
-        };
-        let before = self.scans.partition_point(|scan| scan.keyframe < first);
-        let left_out = if self.is_session || newest.scans >= before {
-            newest.fate = PieceFate::Kept;
-            self.is_session = false;
-            self.slam = Some(piece.slam);
-            self.scans.drain(..before);
-            for scan in &mut self.scans {
-                scan.keyframe -= first;
-            }
-            LeftOut {
-                keyframes: 0..first,
-                scans: 0..before,
-            }
-        } else {
-            newest.fate = PieceFate::LeftOut;
-            let end = first + piece.slam.keyframes().len();
-            let scans = before..self.scans.len();
-            self.scans.truncate(before);
-            LeftOut {
-                keyframes: first..end,
-                scans,
-            }
-        };
-        self.left_out.push(left_out);
-    }
-
     /// The pieces so far, in order.
     #[must_use]
     pub fn pieces(&self) -> &[PieceReport] {
@@ -354,13 +229,11 @@ impl Pipeline {
         core::mem::take(&mut self.left_out)
     }
 
-    /// The motion since the previous scan by odometry; `None` if there is none, or if it is not used.
+    /// The motion since the previous scan by odometry; `None` if there is none.
     #[must_use]
     pub fn motion(&self, recorded: &LogFrame) -> Option<SE2> {
-        match (self.odometry_use, self.last_odometry, recorded.odometry) {
-            (OdometryUse::Log, Some(last), Some(now)) => Some(last.between(&now)),
-            _ => None,
-        }
+        let (last, now) = (self.last_odometry?, recorded.odometry?);
+        Some(last.between(&now))
     }
 
     /// Ends the log: closes pending loops if nothing contradicts them, and links keyframes again. Returns `None` if
@@ -430,16 +303,6 @@ impl Pipeline {
         let scans = self.scans.iter();
         scans.map(move |scan| (scan.stamp_s, poses[scan.keyframe] * scan.keyframe_from_body))
     }
-}
-
-/// The report of a piece, with keyframes and frames numbered after those of the map.
-fn numbered_after(keyframes: usize, mut report: SlamReport) -> SlamReport {
-    report.new_keyframe = report.new_keyframe.map(|node| keyframes + node);
-    for attempt in &mut report.loop_attempts {
-        attempt.verification.from_node += keyframes;
-        attempt.verification.candidate.node += keyframes;
-    }
-    report
 }
 
 #[cfg(test)]

@@ -7,4 +7,3 @@ mod listings;
 mod listings_and_core;
 mod nearest;
 mod reasons;
-mod sweeps;

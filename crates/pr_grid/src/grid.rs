@@ -207,23 +207,6 @@ impl OccupancyGrid {
         self.config.cell_at(point)
     }
 
-    /// Enlarges the grid to `size` columns and rows, of which `below` come before the present ones.
-    pub(crate) fn grow(&mut self, below: (usize, usize), size: (usize, usize)) {
-        let old = core::mem::replace(&mut self.log_odds, vec![0.0; size.0 * size.1]);
-        let old_sweeps = core::mem::replace(&mut self.last_sweep, vec![0; size.0 * size.1]);
-        for row in 0..self.rows {
-            let from = row * self.columns..(row + 1) * self.columns;
-            let start = (row + below.1) * size.0 + below.0;
-            let to = start..start + self.columns;
-            self.log_odds[to.clone()].copy_from_slice(&old[from.clone()]);
-            self.last_sweep[to].copy_from_slice(&old_sweeps[from]);
-        }
-        (self.columns, self.rows) = size;
-        let cell_m = self.config.cell_m;
-        self.config.min_m -= Vector2::new(below.0 as f64, below.1 as f64) * cell_m;
-        self.config.max_m = self.config.min_m + Vector2::new(size.0 as f64, size.1 as f64) * cell_m;
-    }
-
     /// Center of a cell in metres, world frame.
     #[must_use]
     pub fn center(&self, cell: Cell) -> Point2<f64> {

@@ -11,13 +11,11 @@
 pub mod beams;
 pub mod bresenham;
 pub mod grid;
-pub mod growth;
 pub mod sensor_model;
 pub mod tiles;
 
 pub use beams::Beams;
 pub use bresenham::{Cell, bresenham};
 pub use grid::{GridConfig, OccupancyGrid};
-pub use growth::{GridTooLarge, MAX_CELLS};
 pub use sensor_model::{InverseSensorModel, probability_to_log_odds};
 pub use tiles::{MAX_TILED_CELLS, TiledGrid, TooManyCells};

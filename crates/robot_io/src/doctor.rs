@@ -12,6 +12,9 @@ use crate::remark::{Part, Remark, Verdict};
 
 /// A lower share of returns suggests a covered laser or wrong range limits.
 const MIN_VALID: f64 = 0.1;
+/// A longer time between two scans is a pause, s, if it is this many times longer than usual.
+const PAUSE_S: f64 = 10.0;
+const PAUSE_PERIODS: f64 = 20.0;
 
 /// Summary of the scans.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -76,12 +79,19 @@ pub struct Checkup {
     covered: usize,
     range_min_m: f64,
     range_max_m: f64,
+    last_s: Option<f64>,
+    /// The longest time between two scans, s, and the stamp of the second one, s.
+    pause: (f64, f64),
 }
 
 impl Checkup {
     /// Adds the next frame.
     pub fn add(&mut self, frame: &LogFrame) {
         self.info.add(frame);
+        let gap_s = frame.stamp_s - self.last_s.replace(frame.stamp_s).unwrap_or(frame.stamp_s);
+        if gap_s > self.pause.0 {
+            self.pause = (gap_s, frame.stamp_s);
+        }
         let scan = &frame.scan;
         self.beams += scan.ranges_m.len();
         self.valid += scan
@@ -153,6 +163,7 @@ impl Checkup {
         ));
         remarks.extend(mounting_remark(notes, motion));
         remarks.extend(clocks_remark(notes, info));
+        remarks.extend(self.pause_remark());
         remarks.extend(notes.warnings.iter().cloned());
         remarks.sort_by_key(|remark| remark.part);
         let worst = remarks.iter().map(|remark| remark.verdict).max();
@@ -165,6 +176,20 @@ impl Checkup {
             motion: motion.clone(),
             remarks,
         }
+    }
+}
+
+impl Checkup {
+    /// The longest pause, in which the robot may have been carried.
+    fn pause_remark(&self) -> Option<Remark> {
+        let (gap_s, at_s) = self.pause;
+        let usual_s = (self.info.duration_s - gap_s) / self.info.scans.max(1) as f64;
+        (gap_s > PAUSE_S && gap_s > PAUSE_PERIODS * usual_s).then(|| {
+            let text = format!(
+                "there is no scan for {gap_s:.0} s before {at_s:.2} s; if the robot was carried meanwhile, what follows is mapped on its own until it is found on the map"
+            );
+            Remark::mended(Part::Clocks, text)
+        })
     }
 }
 

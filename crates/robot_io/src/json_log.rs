@@ -92,6 +92,7 @@ impl From<FrameLine> for LogFrame {
                 range_max_m: line.range_max_m.unwrap_or(f64::INFINITY),
                 body_from_sensor: pose(line.body_from_sensor),
                 beam_interval_s: line.beam_interval_s,
+                velocity: None,
                 ranges_m: ranges_m
                     .map(|range_m| range_m.unwrap_or(f64::NAN))
                     .collect(),

@@ -8,14 +8,12 @@ use ch16_slam2d::search::SearchError;
 use pr_geom::SE2;
 
 use crate::log::LogFrame;
-use crate::run::OdometryUse;
 use crate::session::Session;
 use crate::trajectory::{StampedPose, Trajectory};
 
 /// Localization of a log on a fixed map.
 pub struct LocalizeRun {
     localizer: Localizer,
-    odometry_use: OdometryUse,
     last_odometry: Option<SE2>,
     last_stamp_s: f64,
     reports: Vec<LocalizeReport>,
@@ -28,18 +26,13 @@ impl LocalizeRun {
     ///
     /// # Errors
     /// If the session's scans have no points, or extend beyond the largest grid.
-    pub fn new(
-        session: &Session,
-        odometry_use: OdometryUse,
-        start: StartPose,
-    ) -> Result<Self, SearchError> {
+    pub fn new(session: &Session, start: StartPose) -> Result<Self, SearchError> {
         let config = LocalizeConfig::default();
         let keyframes = session.snapshot.keyframes.clone();
         let map = Arc::new(KnownMap::new(keyframes, session.poses(), &config)?);
         let slam = session.snapshot.config.clone();
         Ok(Self {
             localizer: Localizer::new(map, slam, config, start),
-            odometry_use,
             last_odometry: None,
             last_stamp_s: f64::NEG_INFINITY,
             reports: Vec::new(),
@@ -55,10 +48,8 @@ impl LocalizeRun {
             self.late += 1;
             return None;
         }
-        let odometry = match (self.odometry_use, self.last_odometry, log.odometry) {
-            (OdometryUse::Log, Some(last), Some(now)) => Some(last.between(&now)),
-            _ => None,
-        };
+        let odometry = self.last_odometry.zip(log.odometry);
+        let odometry = odometry.map(|(last, now): (SE2, SE2)| last.between(&now));
         let frame = Frame {
             stamp_s: log.stamp_s,
             odometry,

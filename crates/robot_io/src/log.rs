@@ -51,6 +51,8 @@ pub struct LogOptions {
     pub footprint: Option<Footprint>,
     /// Columns of a table; default: those of its header, or those of a known form.
     pub columns: Option<Layout>,
+    /// Whether the scans of further robots are read after those of the first one, so that they need not be named.
+    pub all_robots: bool,
     /// Height band (m, on the body) for points of a 3-D sensor; without it, only single-ring clouds are read.
     pub heights_m: Option<(f64, f64)>,
 }
@@ -157,6 +159,8 @@ pub struct LogNotes {
     pub about: Vec<String>,
     /// Choices for options; empty in a log of lines.
     pub offers: Vec<LogOffer>,
+    /// Topics of the scans of each further robot, separated by commas.
+    pub robots: Vec<String>,
     /// Mounting of the laser, if the recording or an option states it.
     pub laser: Option<LaserMount>,
     /// What was missing and how it was repaired.

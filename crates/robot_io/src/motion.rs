@@ -17,7 +17,7 @@
 mod compared;
 mod finding;
 mod lag;
-mod odometry_choice;
+mod odometry_use;
 mod reader;
 mod remarks;
 mod repairs;
@@ -25,7 +25,7 @@ mod trial;
 
 pub use compared::Motion;
 pub use finding::{Finding, Suggestion};
-pub use odometry_choice::OdometryChoice;
+pub use odometry_use::OdometryUse;
 pub use reader::ComparedReader;
 pub use trial::Costs;
 

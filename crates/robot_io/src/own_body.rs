@@ -5,14 +5,19 @@
 //! so it has the same range at the second place; or it sees the world, so another beam there meets the same point. A beam
 //! is cut out only where the first holds and the second fails. Beside a wall that the robot drives along both hold, and
 //! nothing is cut.
+//!
+//! Without odometry, the beams that always see the same range are left out of the scans, and these are matched alone: that
+//! gives the places, and the same trial decides.
 
 use std::collections::VecDeque;
 
-use ch16_slam2d::scan::LaserScan;
+use ch16_slam2d::scan::{Frame, LaserScan};
+use ch16_slam2d::slam::{LoopClosure, Slam, SlamConfig};
 use pr_geom::{Point2, SE2, math};
 
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::remark::{Part, Remark};
+use crate::stamps::median;
 
 /// Farther readings are not the robot's, m.
 const FARTHEST_M: f64 = 1.5;
@@ -33,6 +38,7 @@ const NO_WORLD: f64 = 0.5;
 const EXPLAINED: f64 = 0.3;
 /// Most scans and beams that are kept for the decision.
 const MAX_SCANS: usize = 2000;
+const MAX_ALONE: usize = 600;
 const MAX_BEAMS: usize = 1 << 21;
 
 /// How often each beam was explained.
@@ -49,11 +55,10 @@ struct Trial {
 
 impl Trial {
     /// Compares a scan with that of the last place; false if the beams have changed.
-    fn add(&mut self, frame: &LogFrame) -> bool {
-        let Some(odometry) = frame.odometry else {
+    fn add(&mut self, body: Option<SE2>, scan: &LaserScan) -> bool {
+        let Some(odometry) = body else {
             return true;
         };
-        let scan = &frame.scan;
         let Some((before, old)) = &self.last else {
             self.beams = vec![(0, 0, 0.0); scan.ranges_m.len()];
             self.last = Some((odometry, scan.clone()));
@@ -165,22 +170,90 @@ impl<'a> BodyReader<'a> {
                 Err(_) => break,
             };
             beams += frame.scan.ranges_m.len().max(1);
-            let is_same_sensor = trial.add(&frame);
+            let is_same_sensor = trial.add(frame.odometry, &frame.scan);
             let has_odometry = frame.odometry.is_some();
+            let is_first = self.waiting.is_empty();
             self.waiting.push_back(frame);
             if !is_same_sensor {
                 return Ok(Vec::new());
+            }
+            if !has_odometry && is_first {
+                return self.find_alone();
             }
             if !has_odometry {
                 break;
             }
         }
+        Ok(self.decided(&trial))
+    }
+
+    /// The same without odometry, after the first scan was read.
+    fn find_alone(&mut self) -> Result<Vec<f64>, LogError> {
+        let mut beams = 0;
+        while self.waiting.len() < MAX_ALONE && beams < MAX_BEAMS {
+            // An error recurs once these frames are consumed.
+            let Ok(Some(frame)) = self.inner.next_frame() else {
+                break;
+            };
+            beams += frame.scan.ranges_m.len().max(1);
+            self.waiting.push_back(frame);
+        }
+        let steady = steady(&self.waiting);
+        let mut trial = Trial::default();
+        if !steady.contains(&true) {
+            return Ok(Vec::new());
+        }
+        let mut slam: Option<Slam> = None;
+        for LogFrame { stamp_s, scan, .. } in &self.waiting {
+            let mut without = scan.clone();
+            let ranges = without.ranges_m.iter_mut().zip(&steady);
+            for (range_m, _) in ranges.filter(|(_, steady)| **steady) {
+                *range_m = f64::NAN;
+            }
+            let slam = slam.get_or_insert_with(|| {
+                let mut slam = Slam::new(SlamConfig::for_robot(&without));
+                slam.set_loop_closure(LoopClosure::Off);
+                slam
+            });
+            let frame = Frame {
+                stamp_s: *stamp_s,
+                odometry: None,
+                scan: without,
+            };
+            let body = slam.step(&frame).ok().map(|report| report.estimate);
+            if trial.pairs >= ENOUGH_PAIRS || !trial.add(body, scan) {
+                break;
+            }
+        }
+        Ok(self.decided(&trial))
+    }
+
+    fn decided(&mut self, trial: &Trial) -> Vec<f64> {
         let limits_m = trial.limits_m();
         if let (Some((_, scan)), false) = (&trial.last, limits_m.is_empty()) {
             self.remark = Some(remark(scan, &limits_m));
         }
-        Ok(limits_m)
+        limits_m
     }
+}
+
+/// Beams that see the same near range in nearly all scans; empty if the beams change.
+fn steady(frames: &VecDeque<LogFrame>) -> Vec<bool> {
+    let count = frames.front().map_or(0, |first| first.scan.ranges_m.len());
+    let is_changed = |frame: &LogFrame| frame.scan.ranges_m.len() != count;
+    if frames.iter().any(is_changed) {
+        return Vec::new();
+    }
+    let is_steady = |beam: usize| {
+        let scans = || frames.iter().map(|frame| &frame.scan);
+        let seen = scans().filter(|scan| scan.is_return(scan.ranges_m[beam]));
+        let usual_m = median(seen.map(|scan| scan.ranges_m[beam]).collect());
+        usual_m.is_some_and(|usual_m| {
+            let same = scans().filter(|scan| (scan.ranges_m[beam] - usual_m).abs() < BODY_M);
+            usual_m < FARTHEST_M && same.count() as f64 >= SEES_BODY * frames.len() as f64
+        })
+    };
+    (0..count).map(is_steady).collect()
 }
 
 /// What was cut out.
@@ -234,100 +307,4 @@ impl LogReader for BodyReader<'_> {
 }
 
 #[cfg(test)]
-mod tests {
-    use core::f64::consts::{PI, TAU};
-
-    use super::*;
-
-    /// Readings in a room of 10 m × 6 m, with a post of 0.3 m over the last third of the beams if there is one.
-    struct Room {
-        frames: VecDeque<LogFrame>,
-        notes: LogNotes,
-    }
-
-    impl Room {
-        fn new(poses: impl Iterator<Item = SE2>, has_post: bool) -> Box<Self> {
-            let beams = 120;
-            let step = TAU / f64::from(beams);
-            let frame = |(number, pose): (usize, SE2)| {
-                let range_m = |beam: i32| {
-                    if has_post && beam >= 80 {
-                        return 0.3;
-                    }
-                    let (sin, cos) = math::sin_cos(pose.theta() - PI + f64::from(beam) * step);
-                    let along = if cos > 0.0 {
-                        10.0 - pose.x()
-                    } else {
-                        -pose.x()
-                    };
-                    let across = if sin > 0.0 { 6.0 - pose.y() } else { -pose.y() };
-                    (along / cos).min(across / sin)
-                };
-                LogFrame {
-                    stamp_s: number as f64,
-                    odometry: Some(pose),
-                    scan: LaserScan {
-                        first_angle_rad: -PI,
-                        angle_step_rad: step,
-                        ranges_m: (0..beams).map(range_m).collect(),
-                        ..LaserScan::default()
-                    },
-                }
-            };
-            Box::new(Self {
-                frames: poses.enumerate().map(frame).collect(),
-                notes: LogNotes::default(),
-            })
-        }
-    }
-
-    impl LogReader for Room {
-        fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
-            Ok(self.frames.pop_front())
-        }
-
-        fn notes(&self) -> &LogNotes {
-            &self.notes
-        }
-    }
-
-    /// Number of readings cut out of the last scan, and the number of remarks.
-    fn cut(room: Box<Room>) -> (usize, usize) {
-        let mut reader = BodyReader::new(room);
-        let mut last = 0;
-        while let Some(frame) = reader.next_frame().unwrap() {
-            last = frame
-                .scan
-                .ranges_m
-                .iter()
-                .filter(|range_m| range_m.is_nan())
-                .count();
-        }
-        (last, reader.notes().warnings.len())
-    }
-
-    fn along_a_wall() -> impl Iterator<Item = SE2> {
-        // 0.3 m beside a wall: its beams see the same range everywhere.
-        (0..40).map(|k| SE2::new(1.0 + 0.2 * f64::from(k), 0.3, 0.0))
-    }
-
-    fn around() -> impl Iterator<Item = SE2> {
-        (0..40).map(|k| {
-            let turn = 0.15 * f64::from(k);
-            SE2::new(5.0 + 2.0 * math::cos(turn), 3.0 + math::sin(turn), turn)
-        })
-    }
-
-    #[test]
-    fn a_body_in_view_is_cut_out_and_said() {
-        assert_eq!(cut(Room::new(around(), true)), (40, 1));
-    }
-
-    #[test]
-    fn a_wall_beside_the_way_and_a_robot_at_rest_lose_nothing() {
-        assert_eq!(cut(Room::new(around(), false)), (0, 0));
-        assert_eq!(cut(Room::new(along_a_wall(), false)), (0, 0));
-        let at_rest = || (0..300).map(|_| SE2::new(0.4, 0.4, 0.0));
-        assert_eq!(cut(Room::new(at_rest(), false)), (0, 0));
-    }
-}
+mod tests;

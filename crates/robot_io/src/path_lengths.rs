@@ -1,5 +1,7 @@
 //! Length of a path on the map and by odometry.
 
+use core::ops::Range;
+
 use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::slam::Slam;
 use pr_geom::SE2;
@@ -21,6 +23,13 @@ impl PathLengths {
     pub fn add(&mut self, number: usize, odometry: Option<SE2>) {
         self.odometry.resize(number, None);
         self.odometry.push(odometry);
+    }
+
+    /// Drops keyframes that were left out; later ones have lower numbers since.
+    pub fn forget(&mut self, keyframes: &Range<usize>) {
+        let known = self.odometry.len();
+        self.odometry
+            .drain(keyframes.start.min(known)..keyframes.end.min(known));
     }
 
     /// A sentence if the lengths differ.

@@ -1,8 +1,11 @@
 //! Runs the pipeline on a log and collects messages for the user.
 
-use ch16_slam2d::localize::StartPose;
+mod robots;
+mod sentences;
+
+pub use sentences::late_scans;
+
 use ch16_slam2d::loops::LoopVerification;
-pub use ch16_slam2d::pipeline::OdometryUse;
 use ch16_slam2d::pipeline::{LeftOut, PieceFate, PieceReport, Pipeline, ScanPose};
 use ch16_slam2d::scan::{FrameError, LaserScan};
 use ch16_slam2d::slam::{LoopAttempt, RobotConfig, Slam, SlamReport, SnapshotError};
@@ -11,7 +14,6 @@ use pr_geom::SE2;
 use crate::evidence::{PoorFit, TriedLoop};
 use crate::log::LogFrame;
 use crate::path_lengths::PathLengths;
-use crate::plural::plural;
 use crate::quality::Quality;
 use crate::session::{MappedGraph, Session, selected_scan_poses};
 use crate::settings::Setting;
@@ -20,9 +22,6 @@ use crate::trajectory::{StampedPose, Trajectory};
 /// Message for a log without any return.
 pub const NOTHING_SEEN: &str =
     "no beam of any keyframe has a range between the sensor's shortest and longest range";
-
-/// Odometry without motion in this many scans is reported: it may not have been recorded.
-const STILL_SCANS: usize = 20;
 
 /// Scans with a lower score are reported.
 const POOR_SCORE: f64 = 0.5;
@@ -44,8 +43,6 @@ pub struct LogRun {
     poor: Vec<PoorFit>,
     lengths: PathLengths,
     late: usize,
-    /// Whether the run takes odometry.
-    has_odometry: bool,
     /// Number of scans without a return before the first one that sees something.
     blind: usize,
     /// Number of scans with zero odometry motion; `None` once the robot moved.
@@ -55,32 +52,18 @@ pub struct LogRun {
     other_sensor: Option<LaserScan>,
     /// Beam geometry of this log, without ranges.
     own_sensor: Option<LaserScan>,
+    /// The robots after the first one: their names, and the stamps of their first scans, s.
+    robots: Vec<(String, f64)>,
 }
 
-/// Message on scans whose stamp is not later than the one before; `None` if there are none.
-#[must_use]
-pub fn late_scans(name: &str, late: usize) -> Option<String> {
-    match late {
-        0 => None,
-        1 => Some(format!(
-            "{name}: one scan is not later than the one before it and was skipped"
-        )),
-        _ => Some(format!(
-            "{name}: {late} scans are not later than the one before them and were skipped"
-        )),
+impl Default for LogRun {
+    /// An empty run.
+    fn default() -> Self {
+        Self::with_pipeline(Pipeline::default())
     }
 }
 
 impl LogRun {
-    /// An empty run.
-    #[must_use]
-    pub fn new(odometry_use: OdometryUse) -> Self {
-        Self {
-            has_odometry: odometry_use != OdometryUse::None,
-            ..Self::with_pipeline(Pipeline::new(odometry_use))
-        }
-    }
-
     fn with_pipeline(pipeline: Pipeline) -> Self {
         Self {
             settings: Vec::new(),
@@ -94,21 +77,13 @@ impl LogRun {
             poor: Vec::new(),
             lengths: PathLengths::default(),
             late: 0,
-            has_odometry: true,
             blind: 0,
             still: Some(0),
             refused: None,
             other_sensor: None,
             own_sensor: None,
+            robots: Vec::new(),
         }
-    }
-
-    /// The first scan does not continue the session: the robot is searched for on its map, at this pose if one is
-    /// given.
-    #[must_use]
-    pub fn starting_at(mut self, start: StartPose) -> Self {
-        self.pipeline = self.pipeline.starting_at(start);
-        self
     }
 
     /// Sets a parameter, if the value is valid.
@@ -124,9 +99,9 @@ impl LogRun {
     ///
     /// # Errors
     /// If the session is inconsistent.
-    pub fn resume(session: &Session, odometry_use: OdometryUse) -> Result<Self, SnapshotError> {
+    pub fn resume(session: &Session) -> Result<Self, SnapshotError> {
         let slam = Slam::restore(&session.snapshot)?;
-        Ok(Self::holding(session, slam, odometry_use))
+        Ok(Self::holding(session, slam))
     }
 
     /// Restores a session with its map as optimized at the end, for viewing and manual changes, not for further scans.
@@ -137,13 +112,13 @@ impl LogRun {
     pub fn reopen(session: &Session) -> Result<Self, SnapshotError> {
         let mut slam = Slam::restore(&session.snapshot)?;
         *slam.graph_mut() = session.graph();
-        let mut run = Self::holding(session, slam, OdometryUse::Log);
+        let mut run = Self::holding(session, slam);
         run.pipeline = run.pipeline.resume_finished(session.snapshot.clone());
         Ok(run)
     }
 
     /// A run with the state of a session.
-    fn holding(session: &Session, slam: Slam, odometry_use: OdometryUse) -> Self {
+    fn holding(session: &Session, slam: Slam) -> Self {
         let keyframes = session.snapshot.keyframes.iter().enumerate();
         let of_keyframes = keyframes.map(|(number, keyframe)| ScanPose {
             stamp_s: keyframe.stamp_s,
@@ -155,7 +130,7 @@ impl LogRun {
         } else {
             session.scan_poses.clone()
         };
-        let pipeline = Pipeline::resume(slam, scans, session.last_odometry, odometry_use);
+        let pipeline = Pipeline::resume(slam, scans, session.last_odometry);
         Self {
             sensor: session.sensor.clone(),
             ..Self::with_pipeline(pipeline)
@@ -174,13 +149,14 @@ impl LogRun {
         }
         // Without odometry nothing tells how the robot moved before it saw something.
         if self.pipeline.slam().is_none()
-            && !(self.has_odometry && log.odometry.is_some())
+            && log.odometry.is_none()
             && !log.scan.ranges_m.iter().any(|&m| log.scan.is_return(m))
         {
             self.blind += 1;
             return None;
         }
         let motion = self.pipeline.motion(&log);
+        let pieces = self.pieces().len();
         let report = match self.pipeline.step(&log) {
             Ok(report) => report,
             Err(FrameError::Stamp { stamp_s, .. }) if stamp_s.is_finite() => {
@@ -192,8 +168,11 @@ impl LogRun {
                 return None;
             }
         };
+        self.forget_left_out();
         if let Some(number) = report.new_keyframe {
-            self.lengths.add(number, log.odometry);
+            // The motion to the first keyframe of a piece is unknown.
+            let continues = self.pieces().len() == pieces;
+            self.lengths.add(number, log.odometry.filter(|_| continues));
         }
         if let Some(motion) = motion {
             let stands = motion == SE2::identity();
@@ -201,6 +180,7 @@ impl LogRun {
         }
         let sensor = LaserScan {
             ranges_m: Vec::new(),
+            velocity: None,
             ..log.scan
         };
         self.own_sensor.get_or_insert_with(|| sensor.clone());
@@ -218,7 +198,6 @@ impl LogRun {
                 score,
             });
         }
-        self.forget_left_out();
         self.held.extend_from_slice(&report.loop_attempts);
         if !self.is_apart() {
             self.note_held();
@@ -252,6 +231,7 @@ impl LogRun {
     fn forget_left_out(&mut self) {
         for LeftOut { keyframes, scans } in self.pipeline.take_left_out() {
             self.note_held();
+            self.lengths.forget(&keyframes);
             self.resumed -= scans.end.min(self.resumed) - scans.start.min(self.resumed);
             self.loops.retain(|tried| {
                 let found = &tried.verification;
@@ -395,102 +375,12 @@ impl LogRun {
         self.refused
     }
 
-    /// Messages for the user on the scans that were taken and those that were skipped.
-    #[must_use]
-    pub fn sentences(&self, name: &str) -> Vec<String> {
-        let other = self.sensor.as_ref().zip(self.other_sensor.as_ref());
-        let other = other.map(|(known, other)| {
-            let [known, other] = [known, other].map(|sensor| {
-                let degrees = |angle_rad: f64| angle_rad.to_degrees();
-                format!(
-                    "start at {:.1}° with a step of {:.2}°",
-                    degrees(sensor.first_angle_rad),
-                    degrees(sensor.angle_step_rad)
-                )
-            });
-            format!(
-                "{name}: its beams {other}, and those of the session {known}; the parameters remain those of the \
-                 session's scanner"
-            )
-        });
-        let refused = self
-            .refused
-            .map(|problem| format!("{name}: scans were skipped; the first because {problem}"));
-        let late = late_scans(name, self.late);
-        let still = self.still_odometry(name);
-        let blind = (self.blind > 0).then(|| {
-            format!(
-                "{name}: {} without a return before the first one that sees something {} skipped, because without odometry nothing tells how the robot moved",
-                plural(self.blind, "scan"),
-                if self.blind == 1 { "was" } else { "were" }
-            )
-        });
-        let lengths = self
-            .slam()
-            .and_then(|slam| self.lengths.sentence(name, slam));
-        let pieces = self.pieces().iter();
-        let pieces = pieces.filter_map(|piece| piece_sentence(name, piece, self.session_scans));
-        [other, late, blind, still, lengths, refused]
-            .into_iter()
-            .flatten()
-            .chain(pieces)
-            .collect()
-    }
-
-    /// Message on odometry that never moved; `None` if it did.
-    fn still_odometry(&self, name: &str) -> Option<String> {
-        let scans = self.still.filter(|&scans| scans >= STILL_SCANS)?;
-        Some(format!(
-            "{name}: its odometry stands still for all {scans} scans; if the robot moved, ignore it with \
-             slam2d run LOG --no-odometry"
-        ))
-    }
-
     /// The pose of every scan by the current graph; those of a resumed session come first.
     #[must_use]
     pub fn trajectory(&self) -> Trajectory {
         let poses = self.pipeline.trajectory();
         let poses = poses.map(|(stamp_s, pose)| StampedPose { stamp_s, pose });
         Trajectory::new(poses.collect())
-    }
-}
-
-/// Sentence on a piece; `session_scans` is the number of scans of the session that the log continues. `None` while it
-/// is mapped on its own.
-fn piece_sentence(name: &str, piece: &PieceReport, session_scans: usize) -> Option<String> {
-    let is_other_day = session_scans > 0 && piece.scans_before == session_scans;
-    let after = if is_other_day {
-        format!("{name}: it does not continue where the session ended")
-    } else {
-        format!(
-            "{name}: motion cannot explain the scans after a gap of {:.0} s at {:.2} s, as if the robot was carried",
-            piece.gap_s, piece.first_s
-        )
-    };
-    let map = if is_other_day {
-        "the session's map"
-    } else {
-        "the map"
-    };
-    match (piece.fate, is_other_day) {
-        (PieceFate::Alone, _) => None,
-        (PieceFate::Joined(scans), _) => Some(format!(
-            "{after}; the robot was found on {map} after {}, and all its scans are on it",
-            plural(scans, "scan")
-        )),
-        (PieceFate::Kept, true) => Some(format!(
-            "{after}, and the robot was not found on {map}: the results are those of this log alone. Give its first pose on that map with --init x,y,deg, or record a drive through a part of it"
-        )),
-        (fate, _) => {
-            let (left_out, which) = match fate {
-                PieceFate::Kept => (piece.scans_before, "before"),
-                _ => (piece.scans, "after"),
-            };
-            Some(format!(
-                "{after}, and the robot was not found on {map}: the {} {which} the gap were left out. Map both parts as two logs, or record a drive through a place of both",
-                plural(left_out, "scan")
-            ))
-        }
     }
 }
 

@@ -12,7 +12,7 @@ use pr_geom::SE2;
 use robot_io::log::{LogError, LogFrame, LogNotes, LogOptions, LogReader};
 use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
-use robot_io::motion::{ComparedReader, Finding, Motion, OdometryChoice};
+use robot_io::motion::{ComparedReader, Finding, Motion, OdometryUse};
 
 /// Scans that are read: more than the doctor compares.
 const MOST_SCANS: usize = 2100;
@@ -220,8 +220,8 @@ fn odometry_that_is_trusted_is_neither_dropped_nor_converted() {
         let first = reader.next_frame().unwrap().unwrap();
         (words(reader.motion().unwrap()), first.odometry)
     };
-    assert_eq!(found(OdometryChoice::Check), (vec!["still"], None));
-    assert_eq!(found(OdometryChoice::Force), (vec![], origin));
+    assert_eq!(found(OdometryUse::Check), (vec!["still"], None));
+    assert_eq!(found(OdometryUse::Force), (vec![], origin));
 }
 
 #[test]
@@ -247,11 +247,11 @@ fn mirrored_odometry_is_right_once_it_is_mirrored_back() {
         let options: Vec<String> = options.flat_map(|remark| remark.options.clone()).collect();
         (words(reader.motion().unwrap()), options)
     };
-    let (faults, options) = found(OdometryChoice::Check);
+    let (faults, options) = found(OdometryUse::Check);
     assert_eq!(faults, ["mirrored"]);
     assert!(
         options.contains(&"--odometry mirrored".to_owned()),
         "{options:?}"
     );
-    assert_eq!(found(OdometryChoice::Mirrored), (vec![], vec![]));
+    assert_eq!(found(OdometryUse::Mirrored), (vec![], vec![]));
 }

@@ -11,7 +11,7 @@ use clap::Args;
 use pr_geom::SE2;
 use robot_io::localize::LocalizeRun;
 use robot_io::log::LogReader;
-use robot_io::run::{OdometryUse, late_scans};
+use robot_io::run::late_scans;
 use serde::Serialize;
 
 use crate::grade::{Grade, ReferenceArgs};
@@ -41,9 +41,6 @@ pub struct LocalizeArgs {
         allow_hyphen_values = true
     )]
     init: Init,
-    /// Ignore odometry and match scans alone.
-    #[arg(long)]
-    no_odometry: bool,
     /// Write the localized poses to this file, in the TUM format.
     #[arg(short = 'o', long, value_name = "FILE.tum")]
     output: Option<PathBuf>,
@@ -142,19 +139,13 @@ pub fn run(args: &LocalizeArgs) -> anyhow::Result<ExitCode> {
     }
     let reference = args.reference.read()?;
     let (session, _) = read_session(&args.session)?;
-    let odometry_use = if args.no_odometry {
-        OdometryUse::None
-    } else {
-        OdometryUse::Log
-    };
-    let mut run = LocalizeRun::new(&session, odometry_use, args.init.0)
+    let mut run = LocalizeRun::new(&session, args.init.0)
         .map_err(|error| {
             format!("the session has no map for localization: {error}; map a log first")
         })
         .in_file(&args.session)?;
     let interrupt = Interrupt::watch();
-    let (reader, mut progress) = open_compared(&args.log, &args.topics, args.odometry)?;
-    let mut reader = reader.ignoring_odometry(args.no_odometry);
+    let (mut reader, mut progress) = open_compared(&args.log, &args.topics, args.odometry)?;
     let mut is_interrupted = true;
     while !interrupt.came() {
         let Some(frame) = reader.next_frame()? else {

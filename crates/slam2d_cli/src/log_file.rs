@@ -12,7 +12,7 @@ use robot_io::laser_mount::LaserMount;
 use robot_io::log::{LogFrame, LogOptions, LogReader, with_remarks};
 use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::log_format::LogFormat;
-use robot_io::motion::{ComparedReader, OdometryChoice};
+use robot_io::motion::{ComparedReader, OdometryUse};
 use robot_io::near_readings::Footprint;
 use robot_io::remark::Remark;
 use robot_io::rosbag2;
@@ -57,14 +57,25 @@ pub struct TopicArgs {
     /// Mounting of the laser in the session that the log continues.
     #[arg(skip)]
     laser_before: Option<LaserMount>,
+    /// Whether all robots of the recording are read.
+    #[arg(skip)]
+    pub all_robots: bool,
 }
 
 /// How the odometry of a log is taken.
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub struct OdometryArgs {
-    /// How the odometry is taken: checked against the scans, as it is, or checked with left and right exchanged.
-    #[arg(long, value_name = "check|force|mirrored", default_value = "check")]
-    odometry: OdometryChoice,
+    /// How the odometry is taken: checked against the scans, as it is, checked with left and right exchanged, or not at
+    /// all.
+    #[arg(
+        long,
+        value_name = "check|force|mirrored|none",
+        default_value = "check"
+    )]
+    odometry: OdometryUse,
+    /// Ignore odometry and match scans alone: the same as --odometry none.
+    #[arg(long, conflicts_with = "odometry")]
+    no_odometry: bool,
 }
 
 /// Parses two heights, the lower one first.
@@ -88,6 +99,22 @@ impl TopicArgs {
         }
     }
 
+    /// The options for reading all robots of a recording, if `takes_all`.
+    pub fn of_all_robots(self, takes_all: bool) -> Self {
+        Self {
+            all_robots: takes_all,
+            ..self
+        }
+    }
+
+    /// The options with these topics of scans.
+    pub fn of_scans(&self, topics: &str) -> Self {
+        Self {
+            scan_topic: Some(topics.to_owned()),
+            ..self.clone()
+        }
+    }
+
     fn options(&self) -> LogOptions {
         LogOptions {
             scan_topic: self.scan_topic.clone(),
@@ -99,6 +126,7 @@ impl TopicArgs {
             min_range_m: self.min_range,
             footprint: self.footprint,
             columns: self.columns.clone(),
+            all_robots: self.all_robots,
             heights_m: self.heights,
         }
     }
@@ -153,7 +181,12 @@ pub fn open_compared(
 ) -> anyhow::Result<(ComparedReader<'static>, Progress)> {
     let (reader, progress) = open_log(path, topics)?;
     let reader = ComparedReader::new(reader, topics.laser.is_some());
-    Ok((reader.with_odometry(odometry.odometry), progress))
+    let odometry = if odometry.no_odometry {
+        OdometryUse::Ignore
+    } else {
+        odometry.odometry
+    };
+    Ok((reader.with_odometry(odometry), progress))
 }
 
 /// The files of a log, remarks on them, and a progress bar.

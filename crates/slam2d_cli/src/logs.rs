@@ -16,11 +16,11 @@ use rayon::prelude::*;
 use robot_io::evaluate::{Alignment, relation_errors, truth_errors};
 use robot_io::log::LogFrame;
 use robot_io::relations::{Relation, read_relations};
-use robot_io::run::{LogRun, OdometryUse};
+use robot_io::run::LogRun;
 use robot_io::trajectory::Trajectory;
 use serde::Serialize;
 
-use self::disturbance::worse_odometry;
+use self::disturbance::{Disturbance, worse_odometry};
 use crate::in_file::InFile as _;
 use crate::log_file::{TopicArgs, open, read_frames};
 use crate::output::{print_json, say};
@@ -176,14 +176,11 @@ fn reference_of(log: &Path) -> anyhow::Result<Option<Reference>> {
 
 impl Bench {
     fn row(&self, seed: u32) -> Row {
-        let (mut run, cpu_ms) = timed(|| mapped(&self.frames, OdometryUse::Log));
+        let (mut run, cpu_ms) = timed(|| mapped(&self.frames));
         let trajectory = run.trajectory();
         let quality = run.quality();
-        let worse = mapped(
-            &worse_odometry(&self.frames, SCALE, 1.0, seed),
-            OdometryUse::Log,
-        );
-        let without = mapped(&self.frames, OdometryUse::None);
+        let worse = mapped(&worse_odometry(&self.frames, SCALE, 1.0, seed));
+        let without = mapped(&Disturbance::ScansAlone.frames(&self.frames, seed));
         let (measure, crisp) = match &self.reference {
             Reference::Poses(truth) => ("ate", self.crisp(&trajectory, truth)),
             Reference::Relations(_) => ("relations", None),
@@ -247,8 +244,8 @@ impl Bench {
     }
 }
 
-fn mapped(frames: &[LogFrame], odometry_use: OdometryUse) -> LogRun {
-    let mut run = LogRun::new(odometry_use);
+fn mapped(frames: &[LogFrame]) -> LogRun {
+    let mut run = LogRun::default();
     for frame in frames {
         run.step(frame.clone());
     }

@@ -24,8 +24,10 @@ mod optimize;
 mod output;
 mod parameters;
 mod places;
+mod recordings;
 mod register;
 mod relocalize;
+mod robots;
 mod run_folder;
 mod run_log;
 mod run_output;
@@ -68,6 +70,7 @@ enum Command {
     Localize(localize::LocalizeArgs),
     Relocalize(relocalize::RelocalizeArgs),
     Logs(logs::LogsArgs),
+    Recordings(recordings::RecordingsArgs),
     Parameters(parameters::ParametersArgs),
     Evaluate(evaluate::EvaluateArgs),
     Convert(convert::ConvertArgs),
@@ -106,6 +109,7 @@ fn run(command: &Command) -> anyhow::Result<ExitCode> {
         Command::Localize(args) => return localize::run(args),
         Command::Relocalize(args) => relocalize::run(args)?,
         Command::Logs(args) => logs::run(args)?,
+        Command::Recordings(args) => recordings::run(args)?,
         Command::Parameters(args) => parameters::run(args)?,
         Command::Evaluate(args) => evaluate::run(args)?,
         Command::Convert(args) => convert::run(args)?,

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use robot_io::evaluate::relation_errors;
 use robot_io::log::LogFrame;
 use robot_io::relations::{Relation, read_relations};
-use robot_io::run::{LogRun, OdometryUse};
+use robot_io::run::LogRun;
 use robot_io::settings::{SETTINGS, Setting};
 use serde::Serialize;
 
@@ -74,7 +74,7 @@ struct Bench {
 impl Bench {
     fn run(&self, setting: Option<(&'static Setting, f64)>) -> Run {
         let ((mean_m, value), cpu_ms) = timed(|| {
-            let mut run = LogRun::new(OdometryUse::Log);
+            let mut run = LogRun::default();
             if let Some((setting, value)) = setting {
                 run = run.with_setting(setting, value);
             }

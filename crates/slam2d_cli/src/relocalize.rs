@@ -12,7 +12,7 @@ use pr_geom::SE2;
 use rayon::prelude::*;
 use robot_io::localize::LocalizeRun;
 use robot_io::log::LogFrame;
-use robot_io::run::{LogRun, OdometryUse};
+use robot_io::run::LogRun;
 use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
 use serde::Serialize;
@@ -137,7 +137,7 @@ pub fn run(args: &RelocalizeArgs) -> anyhow::Result<()> {
 
 /// The scans mapped, with the poses of all of them, and the session.
 fn mapped<'a>(frames: impl Iterator<Item = &'a LogFrame>) -> Option<(Trajectory, Session)> {
-    let mut run = LogRun::new(OdometryUse::Log);
+    let mut run = LogRun::default();
     for frame in frames {
         run.step(frame.clone());
     }
@@ -221,7 +221,7 @@ impl Bench {
         truth: &[Option<SE2>],
         args: &RelocalizeArgs,
     ) -> Option<Start> {
-        let mut run = LocalizeRun::new(session, OdometryUse::Log, StartPose::Anywhere).ok()?;
+        let mut run = LocalizeRun::new(session, StartPose::Anywhere).ok()?;
         let mut path_m = 0.0;
         let mut start = Start {
             log: self.name.clone(),

@@ -7,10 +7,9 @@ use anyhow::bail;
 use bench_support::{process, timed};
 use clap::Args;
 use robot_io::laser_mount::LaserMount;
-use robot_io::log::LogReader;
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
-use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
+use robot_io::run::{LogRun, NOTHING_SEEN};
 use robot_io::settings::Setting;
 use serde::Serialize;
 
@@ -19,10 +18,11 @@ use crate::grade::{Grade, ReferenceArgs};
 use crate::in_file::InFile as _;
 use crate::interrupt::{self, Interrupt};
 use crate::localize::Init;
-use crate::log_file::{OdometryArgs, TopicArgs, open_compared};
+use crate::log_file::{OdometryArgs, TopicArgs};
 use crate::numbers;
 use crate::optimize::check_folder;
 use crate::output::{print_json, say};
+use crate::robots::Robots;
 use crate::run_folder::{CUT_SHORT, folder_of_part};
 use crate::run_output::{Results, write_folder};
 use crate::session_file::read_session;
@@ -44,9 +44,9 @@ pub struct RunArgs {
     /// Side of a cell of the map, m.
     #[arg(long, default_value = "0.05", value_parser = numbers::cell_m, allow_hyphen_values = true)]
     resolution: f64,
-    /// Ignore odometry and match scans alone.
-    #[arg(long)]
-    no_odometry: bool,
+    /// Map the robots of a recording into one map, one after the other, if its scans are those of several.
+    #[arg(long, conflicts_with_all = ["scan_topic", "odom_topic", "odom_frame", "body_frame"])]
+    all_robots: bool,
     /// Set a parameter of the estimator; docs/robots-parameters.md lists them.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
     settings: Vec<(String, f64)>,
@@ -113,26 +113,26 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     }
     let (mut run, mut recorder, laser_before) = start(args)?;
     let topics = args.topics.resuming_with(laser_before);
-    let (reader, mut progress) = open_compared(&args.log, &topics, args.odometry)?;
-    let mut reader = reader.ignoring_odometry(args.no_odometry);
+    let topics = topics.of_all_robots(args.all_robots);
+    let mut robots = Robots::open(&args.log, &topics, args.odometry)?;
     let mut broken = None;
     let mut costs = TickCosts::default();
     let mut is_interrupted = true;
     while !interrupt.came() {
-        match reader.next_frame() {
+        match robots.next_frame(&mut run) {
             Ok(Some(frame)) => {
                 let (report, ms) = timed(|| run.step(frame.clone()));
                 costs.push(ms);
                 if let Some(report) = report {
                     recorder.add(&frame, &report);
                 }
-                progress.report(run.scans());
+                robots.report(run.scans());
             }
             Ok(None) => {
                 is_interrupted = false;
                 break;
             }
-            Err(error) if run.scans() == 0 => return Err(error.into()),
+            Err(error) if run.scans() == 0 => return Err(error),
             Err(error) => {
                 broken = Some(error);
                 break;
@@ -141,13 +141,12 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     }
     run.finish();
     recorder.forget_left_out(&run);
-    progress.end();
+    let (mut remarks, about) = robots.end(!is_interrupted);
     if run.scans() == 0 && run.late() > 0 {
         bail!(
             "{name}: no scan is later than the session's last one; pass the rest of that recording, or run the log without --continue"
         );
     }
-    let mut remarks = reader.notes().sentences(&name);
     remarks.extend(run.sentences(&name));
     for remark in &remarks {
         eprintln!("slam2d: {remark}");
@@ -193,7 +192,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         *wanted = of_part;
     }
     if let Some(folder) = &folder {
-        remarks.extend(reader.notes().about.iter().cloned());
+        remarks.extend(about);
         let title = args.log.file_name().unwrap_or(args.log.as_os_str());
         let title = title.to_string_lossy();
         let results = Results {
@@ -213,7 +212,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     // Write the results before reporting any later error.
     let grade = grade?;
     if let Some(error) = broken {
-        return Err(error.into());
+        return Err(error);
     }
     let of = |wanted: bool| grade.filter(|grade| wanted == matches!(grade, Grade::Relations(_)));
     let doubts = std::mem::take(&mut quality.doubts);
@@ -246,13 +245,8 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 
 /// A new run, or one that continues a session, and the session's mounting of the laser.
 fn start(args: &RunArgs) -> anyhow::Result<(LogRun, RunRecorder, Option<LaserMount>)> {
-    let odometry_use = if args.no_odometry {
-        OdometryUse::None
-    } else {
-        OdometryUse::Log
-    };
     let Some(path) = &args.session else {
-        let mut run = LogRun::new(odometry_use);
+        let mut run = LogRun::default();
         for (name, value) in &args.settings {
             let setting = Setting::named(name)?;
             setting.check(*value)?;
@@ -261,7 +255,7 @@ fn start(args: &RunArgs) -> anyhow::Result<(LogRun, RunRecorder, Option<LaserMou
         return Ok((run, RunRecorder::default(), None));
     };
     let (session, _) = read_session(path)?;
-    let mut run = LogRun::resume(&session, odometry_use).in_file(path)?;
+    let mut run = LogRun::resume(&session).in_file(path)?;
     if let Some(Init(start)) = args.init {
         run = run.starting_at(start);
     }

@@ -56,6 +56,29 @@ fn the_doctor_s_exit_code_tells_scripts_whether_to_map() {
 }
 
 #[test]
+fn the_doctor_names_a_pause_but_not_a_slow_recording() {
+    let folder = TempDir::new().unwrap();
+    let screen = |stamps_s: &[u32]| {
+        let frame = |stamp_s: &u32| {
+            format!(
+                r#"{{"stamp_s":{stamp_s},"odometry":[0,0,0],"first_angle_rad":0.0,"angle_step_rad":0.1,"ranges_m":[2,2]}}"#
+            ) + "\n"
+        };
+        let log = folder.path().join("x.jsonl");
+        fs::write(&log, stamps_s.iter().map(frame).collect::<String>()).unwrap();
+        String::from_utf8(slam2d(&["doctor", text(&log)]).stdout).unwrap()
+    };
+    let paused: Vec<u32> = (0..30).chain(93..120).collect();
+    let said = screen(&paused);
+    assert!(
+        said.contains("there is no scan for 64 s before 93.00 s"),
+        "{said}"
+    );
+    let slow: Vec<u32> = (0..30).map(|number| 60 * number).collect();
+    assert!(!screen(&slow).contains("there is no scan"));
+}
+
+#[test]
 fn a_run_leaves_the_map_and_a_report_under_the_file_s_name() {
     let folder = TempDir::new().unwrap();
     let log = corridor(&folder, 40);

@@ -444,12 +444,23 @@ fn two_robots_are_not_merged_and_the_other_one_is_named() {
     // 0.1 m: the limit of a map with odometry; with the scans of both robots as one it is 11 m off.
     let (error_m, scans) = largest_error_m(Path::new(&named), &truth, &start);
     assert!(error_m < 0.1 && scans > 100, "{error_m} m, {scans}");
+    let both = slam2d(&["run", &log("namespaced.mcap"), "--all-robots", "-o", &named]);
+    let said = String::from_utf8(both.stderr).unwrap();
+    assert!(
+        said.contains("the robot of /tb3_1/scan was found on the map after 3 scans")
+            && said.contains("are 190 s later in the results")
+            && !said.contains("there are also scans"),
+        "{said}"
+    );
+    let (error_m, scans) = largest_error_m(Path::new(&named), &truth, &start);
+    assert!(error_m < 0.1 && scans > 100, "{error_m} m, {scans}");
+    assert_eq!(lines(&Path::new(&named).join("trajectory.tum")).len(), 314);
     let shared = slam2d(&["run", &log("two_drivers_one_topic.mcap"), "--json"]);
     let said = String::from_utf8(shared.stderr).unwrap();
     assert!(
         said.contains("/scan has scans of several publishers")
-            && said.contains("base_laser")
-            && said.contains("laser_frame"),
+            && said.contains("those in frame laser_frame are read")
+            && said.contains("cover 476°, more than a turn"),
         "{said}"
     );
 }

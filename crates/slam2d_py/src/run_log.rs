@@ -17,12 +17,12 @@ use robot_io::log::{LogOptions, LogReader as _, with_remarks};
 use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::log_format::LogFormat;
 use robot_io::map_image::{MapImage, build_map, finest_map, map_with_free_space};
-use robot_io::motion::ComparedReader;
+use robot_io::motion::{ComparedReader, OdometryUse};
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
 use robot_io::remark::Remark;
 use robot_io::rosbag2;
-use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
+use robot_io::run::{LogRun, NOTHING_SEEN};
 
 use crate::arrays;
 use crate::errors::{LogError, os_error, within};
@@ -47,7 +47,7 @@ const SCANS_BETWEEN: usize = 16;
 pub struct Pipeline {
     log: PathBuf,
     chosen: Chosen,
-    odometry_use: OdometryUse,
+    odometry: OdometryUse,
     options: LogOptions,
 }
 
@@ -150,10 +150,10 @@ impl Pipeline {
         Ok(Self {
             log,
             chosen: settings::chosen(config)?,
-            odometry_use: if odometry {
-                OdometryUse::Log
+            odometry: if odometry {
+                OdometryUse::Check
             } else {
-                OdometryUse::None
+                OdometryUse::Ignore
             },
             options: LogOptions {
                 scan_topic,
@@ -213,9 +213,8 @@ impl Pipeline {
         let (parts, of_files, read) = parts(&self.log)?;
         let reader = LogFormat::open_parts(parts, &name, &self.options).map_err(to_error)?;
         let reader = with_remarks(reader, of_files);
-        let is_alone = self.odometry_use == OdometryUse::None;
-        let mut reader = ComparedReader::new(reader, false).ignoring_odometry(is_alone);
-        let mut run = LogRun::new(self.odometry_use);
+        let mut reader = ComparedReader::new(reader, false).with_odometry(self.odometry);
+        let mut run = LogRun::default();
         for (setting, value) in &self.chosen {
             run = run.with_setting(setting, *value);
         }

@@ -31,6 +31,7 @@ impl Sensor {
     pub fn from_scan(scan: &LaserScan) -> Self {
         Self {
             scan: LaserScan {
+                velocity: None,
                 ranges_m: Vec::new(),
                 ..scan.clone()
             },
@@ -70,6 +71,7 @@ impl Sensor {
                 SE2::identity(),
             )?,
             beam_interval_s,
+            velocity: None,
             ranges_m: Vec::new(),
         };
         scan.validate()

@@ -20,12 +20,13 @@ mod sealed;
 mod sentences;
 pub mod sessions;
 mod solve;
+pub mod tables;
 
 /// A fuzz target: takes arbitrary bytes, and panics if the code violates an invariant.
 pub type FuzzTarget = fn(&[u8]);
 
 /// All targets by name.
-pub const TARGETS: [(&str, FuzzTarget); 11] = [
+pub const TARGETS: [(&str, FuzzTarget); 12] = [
     ("links", links::fuzz),
     ("messages", messages::fuzz),
     ("g2o", g2o::fuzz),
@@ -33,6 +34,7 @@ pub const TARGETS: [(&str, FuzzTarget); 11] = [
     ("files", files::fuzz),
     ("logs", logs::fuzz),
     ("databases", databases::fuzz),
+    ("tables", tables::fuzz),
     ("sessions", sessions::fuzz),
     ("graphs", graphs::fuzz),
     ("registration", registration::fuzz),

@@ -7,7 +7,7 @@ use robot_io::json_log::{FrameLine, JsonLogReader};
 use robot_io::log::{LogFrame, LogNotes, LogOptions, LogReader};
 use robot_io::log_format::LogFormat;
 use robot_io::motion::ComparedReader;
-use robot_io::run::{LogRun, OdometryUse};
+use robot_io::run::LogRun;
 
 use crate::runs::{assert_finite, assert_loads, drive};
 use crate::sentences::{NAME, assert_refusal, assert_sentence};
@@ -40,7 +40,7 @@ pub fn fuzz(bytes: &[u8]) {
         compare(bytes);
     }
     let small = frames.into_iter().filter(is_small).take(MAX_MAPPED);
-    let saved = drive(&mut LogRun::new(OdometryUse::Log), small);
+    let saved = drive(&mut LogRun::default(), small);
     saved.iter().for_each(|saved| assert_loads(saved));
 }
 

@@ -35,14 +35,14 @@ mod tests {
     use ch16_slam2d::scan::LaserScan;
     use pr_geom::SE2;
     use robot_io::log::LogFrame;
-    use robot_io::run::{LogRun, OdometryUse};
+    use robot_io::run::LogRun;
     use robot_io::session::Session;
 
     use super::*;
 
     #[test]
     fn a_session_without_its_parameters_and_checksum_is_completed_to_a_session() {
-        let mut run = LogRun::new(OdometryUse::Log);
+        let mut run = LogRun::default();
         for step in 0..3 {
             let along_m = 0.4 * f64::from(step);
             run.step(LogFrame {

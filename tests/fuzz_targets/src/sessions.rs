@@ -11,7 +11,7 @@ use pr_geom::SE2;
 use robot_io::localize::LocalizeRun;
 use robot_io::log::LogFrame;
 use robot_io::map_image::build_session_map;
-use robot_io::run::{LogRun, OdometryUse};
+use robot_io::run::LogRun;
 use robot_io::session::Session;
 use robot_io::settings::SETTINGS;
 
@@ -81,7 +81,7 @@ fn frames(session: &Session) -> impl Iterator<Item = LogFrame> + '_ {
 }
 
 fn continue_run(session: &Session) {
-    match LogRun::resume(session, OdometryUse::Log) {
+    match LogRun::resume(session) {
         // Numbers at the limit of what can be loaded may grow beyond it.
         Ok(mut run) => {
             let saved = drive(&mut run, frames(session)).expect("a run goes on");
@@ -96,7 +96,7 @@ fn continue_run(session: &Session) {
 fn localize(session: &Session) {
     let start = StartPose::Near(session.poses().first().copied().unwrap_or_default());
     for start in [StartPose::Anywhere, start] {
-        let mut run = match LocalizeRun::new(session, OdometryUse::Log, start) {
+        let mut run = match LocalizeRun::new(session, start) {
             Ok(run) => run,
             Err(refusal) => return assert_sentence(&refusal.to_string()),
         };

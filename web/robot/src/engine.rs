@@ -17,7 +17,7 @@ use pr_geom::SE2;
 use robot_io::graph_file::GraphFile;
 use robot_io::log::LogReader;
 use robot_io::recorder::RunRecorder;
-use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
+use robot_io::run::{LogRun, NOTHING_SEEN};
 use robot_io::session::{self, Session};
 use robot_io::trajectory::{StampedPose, Trajectory};
 
@@ -135,7 +135,7 @@ impl<'a> Engine<'a> {
             let examination = Examination::begin(given.clone(), choices.clone())?;
             Work::Examining(Box::new(examination))
         };
-        let run = LogRun::new(choices.odometry);
+        let run = LogRun::default();
         Ok(Self {
             run,
             ..Self::with_work(work, name, size_bytes)
@@ -171,7 +171,7 @@ impl<'a> Engine<'a> {
             scans_before: 0,
             localization: None,
             work,
-            run: LogRun::new(OdometryUse::Log),
+            run: LogRun::default(),
             recorder: RunRecorder::default(),
             graph: None,
             fits: Vec::new(),

@@ -6,10 +6,9 @@ use robot_io::laser_mount::LaserMount;
 use robot_io::log::{LogOption, LogOptions, with_remarks};
 use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::log_format::LogFormat;
-use robot_io::motion::{ComparedReader, OdometryChoice};
+use robot_io::motion::{ComparedReader, OdometryUse};
 use robot_io::remark::{NO_ODOMETRY, Remark};
 use robot_io::rosbag2;
-use robot_io::run::OdometryUse;
 
 /// Largest metadata file, bytes.
 const MAX_METADATA: u64 = 1 << 20;
@@ -105,10 +104,8 @@ impl<'a> Given<'a> {
 pub struct Choices {
     /// Topics, frames and mounting of the laser.
     pub log: LogOptions,
-    /// Whether odometry is used.
+    /// How the odometry is taken.
     pub odometry: OdometryUse,
-    /// How it is taken.
-    pub odometry_choice: OdometryChoice,
 }
 
 impl Choices {
@@ -133,9 +130,9 @@ impl Choices {
             } else if name == "columns" {
                 choices.log.columns = Some(value.parse()?);
             } else if name == "odometry" {
-                choices.odometry_choice = value.parse()?;
+                choices.odometry = value.parse()?;
             } else if format!("--{name}") == NO_ODOMETRY {
-                choices.odometry = OdometryUse::None;
+                choices.odometry = OdometryUse::Ignore;
             } else {
                 return Err(format!("a log has no option {name}"));
             }
@@ -153,8 +150,5 @@ pub fn compared<'a>(given: &Given<'a>, choices: &Choices) -> Result<ComparedRead
     let reader = LogFormat::open_parts(parts, &given.name, &choices.log);
     let reader = reader.map_err(|problem| problem.to_string())?;
     let reader = with_remarks(reader, given.remarks.clone());
-    let ignores_odometry = choices.odometry == OdometryUse::None;
-    Ok(ComparedReader::new(reader, choices.log.laser.is_some())
-        .ignoring_odometry(ignores_odometry)
-        .with_odometry(choices.odometry_choice))
+    Ok(ComparedReader::new(reader, choices.log.laser.is_some()).with_odometry(choices.odometry))
 }

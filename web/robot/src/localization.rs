@@ -62,7 +62,7 @@ impl<'a> Localization<'a> {
         start: StartPose,
     ) -> Result<Self, String> {
         let reader = compared(&given, choices)?;
-        let run = LocalizeRun::new(session, choices.odometry, start)
+        let run = LocalizeRun::new(session, start)
             .map_err(|problem| format!("The map cannot be searched: {problem}."))?;
         Ok(Self {
             name: given.name,

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use robot_io::log::LogOptions;
 use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
-use robot_io::run::{LogRun, OdometryUse};
+use robot_io::run::LogRun;
 use slam_robot::engine::Engine;
 use slam_robot::given::{Choices, Given};
 use slam_robot::sample;
@@ -94,7 +94,7 @@ fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
 
     // The same log through the command's reader.
     let mut reader = LogFormat::open(&log[..], "ring.log", &LogOptions::default()).unwrap();
-    let mut run = LogRun::new(OdometryUse::Log);
+    let mut run = LogRun::default();
     while let Some(frame) = reader.next_frame().unwrap() {
         run.step(frame);
     }

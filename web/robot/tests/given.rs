@@ -5,8 +5,7 @@ use std::path::Path;
 
 use bench_support::skip::skip;
 use robot_io::log_bytes::LogBytes;
-use robot_io::motion::OdometryChoice;
-use robot_io::run::OdometryUse;
+use robot_io::motion::OdometryUse;
 use serde_json::Value;
 use slam_robot::engine::Engine;
 use slam_robot::given::{Choices, Given, GivenFile};
@@ -60,15 +59,15 @@ fn the_files_of_a_folder_are_one_recording_in_the_order_of_its_metadata() {
 #[test]
 fn options_are_those_of_the_command() {
     let choices =
-        Choices::read("scan-topic /front\nlaser 0,0,180,flipped\nno-odometry\nodometry force")
-            .unwrap();
+        Choices::read("scan-topic /front\nlaser 0,0,180,flipped\nodometry force").unwrap();
     assert_eq!(choices.log.scan_topic.as_deref(), Some("/front"));
     assert_eq!(
         choices.log.laser.unwrap().option(),
         "--laser 0,0,180,flipped"
     );
-    assert_eq!(choices.odometry, OdometryUse::None);
-    assert_eq!(choices.odometry_choice, OdometryChoice::Force);
+    assert_eq!(choices.odometry, OdometryUse::Force);
+    let alone = Choices::read("no-odometry").unwrap();
+    assert_eq!(alone.odometry, OdometryUse::Ignore);
     for wrong in ["laser 0,0", "speed 3", "odometry maybe"] {
         assert!(Choices::read(wrong).is_err(), "{wrong}");
     }
@@ -160,6 +159,10 @@ fn files_that_people_have_are_mapped_or_named_as_by_the_command() {
         ("formats/thrun_wean.log", ""),
         ("formats/rplidar_points.csv", ""),
         ("starts_in_the_open/first_20_no_return_noodo.mcap", ""),
+        ("deskew/drive_no_wheels_sweep100.mcap", ""),
+        ("body/body_behind_108deg.mcap", ""),
+        ("restart/carried_3s_ahead.mcap", ""),
+        ("two_robots/namespaced.mcap", ""),
         ("formats/git_lfs.bag", "is a Git LFS pointer"),
         ("formats/page.bag", "is a web page"),
         ("formats/cloud.pcd", "is a point cloud in a file"),

@@ -4,7 +4,7 @@ use ch16_slam2d::localize::StartPose;
 use pr_geom::SE2;
 use robot_io::log::LogOptions;
 use robot_io::log_format::LogFormat;
-use robot_io::run::{LogRun, OdometryUse};
+use robot_io::run::LogRun;
 use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
 use slam_robot::engine::Engine;
@@ -35,7 +35,7 @@ fn edges(engine: &mut Engine<'_>) -> usize {
 fn a_saved_session_is_the_file_that_a_run_leaves() {
     let (log, _) = files();
     let mut reader = LogFormat::open(&log[..], "ring.log", &LogOptions::default()).unwrap();
-    let mut run = LogRun::new(OdometryUse::Log);
+    let mut run = LogRun::default();
     while let Some(frame) = reader.next_frame().unwrap() {
         run.step(frame);
     }
@@ -112,7 +112,7 @@ fn a_session_is_edited_further_and_what_was_changed_is_saved_with_it() {
     assert_eq!(of(&updates, "keyframes").numbers[121], keyframes[121] + 0.5);
     // A continued run starts from the scans, not from what was pinned.
     let session = Session::from_bytes(&pinned, "pinned").unwrap();
-    assert!(LogRun::resume(&session, OdometryUse::Log).is_ok());
+    assert!(LogRun::resume(&session).is_ok());
 }
 
 #[test]
@@ -179,9 +179,7 @@ fn the_robot_of_another_day_is_found_on_the_map_and_followed() {
 
     // The same as on the command line, which reads the session from the file.
     let session = Session::from_bytes(&session, "monday").unwrap();
-    let mut run =
-        robot_io::localize::LocalizeRun::new(&session, OdometryUse::Log, StartPose::Anywhere)
-            .unwrap();
+    let mut run = robot_io::localize::LocalizeRun::new(&session, StartPose::Anywhere).unwrap();
     let mut reader = LogFormat::open(&day[..], "day", &LogOptions::default()).unwrap();
     while let Some(frame) = reader.next_frame().unwrap() {
         run.step(frame);

@@ -246,7 +246,7 @@ impl Model for ControlRoom {
         }
         if closed.is_some() {
             self.closing = Some(0.0);
-            self.grid.clear(&self.record);
+            self.grid.clear(&self.record, self.tick());
         }
         Activity::Busy
     }

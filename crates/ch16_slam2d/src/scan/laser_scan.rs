@@ -1,5 +1,6 @@
 //! A sweep of a planar laser with its geometry.
 
+use nalgebra::Vector3;
 use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +25,10 @@ pub struct LaserScan {
     pub body_from_sensor: SE2,
     /// Time from one beam to the next, s; 0 if all beams are simultaneous.
     pub beam_interval_s: f64,
+    /// Velocity of the body during the sweep by odometry: m/s, m/s, rad/s. Without it, the motion since the last scan
+    /// stands for it, or it is found together with the pose.
+    #[serde(skip)]
+    pub velocity: Option<Vector3<f64>>,
     /// One range for each beam, m.
     pub ranges_m: Vec<f64>,
 }
@@ -38,6 +43,7 @@ impl Default for LaserScan {
             range_max_m: f64::INFINITY,
             body_from_sensor: SE2::identity(),
             beam_interval_s: 0.0,
+            velocity: None,
             ranges_m: Vec::new(),
         }
     }
@@ -81,6 +87,7 @@ impl LaserScan {
     /// The first invalid number, and what is expected.
     pub fn validate(&self) -> Result<(), FrameError> {
         let [x, y, theta] = self.body_from_sensor.to_array();
+        let velocity = self.velocity.map_or(0.0, |velocity| velocity.norm());
         let rules = [
             (
                 "first angle",
@@ -112,6 +119,7 @@ impl LaserScan {
                 self.beam_interval_s >= 0.0 && self.beam_interval_s.is_finite(),
                 "seconds, at least 0",
             ),
+            ("velocity", velocity, velocity.is_finite(), "m/s and rad/s"),
             ("mounting in x", x, x.is_finite(), "metres"),
             ("mounting in y", y, y.is_finite(), "metres"),
             ("mounting angle", theta, theta.is_finite(), "radians"),

@@ -45,8 +45,9 @@ impl ScanPreparer {
         Self::default()
     }
 
-    /// A frame with its scan as a cloud, after one at `last_stamp_s`, s. The motion during the sweep is that of
-    /// the odometry or, without it, of `velocity` (m/s, m/s, rad/s) until it is registered.
+    /// A frame with its scan as a cloud, after one at `last_stamp_s`, s. The motion during the sweep is the scan's
+    /// own velocity, else that of the odometry since the last scan, else that of `velocity` (m/s, m/s, rad/s) until it is
+    /// registered.
     ///
     /// # Errors
     /// If the frame cannot be used.
@@ -59,15 +60,17 @@ impl ScanPreparer {
     ) -> Result<PreparedFrame, FrameError> {
         frame.validate()?;
         let dt_s = frame.stamp_s - last_stamp_s;
-        let velocity = match frame.odometry {
-            Some(odometry) if dt_s > 0.0 && dt_s.is_finite() => {
+        let velocity = match (frame.scan.velocity, frame.odometry) {
+            (Some(measured), _) => measured,
+            (None, Some(odometry)) if dt_s > 0.0 && dt_s.is_finite() => {
                 odometry.log() / math::max(dt_s, frame.scan.sweep_s())
             }
-            Some(_) => Vector3::zeros(),
-            None => velocity,
+            (None, Some(_)) => Vector3::zeros(),
+            (None, None) => velocity,
         };
         let cloud = self.prepare(&frame.scan, &velocity, config);
-        let is_skewed = frame.scan.beam_interval_s > 0.0 && frame.odometry.is_none();
+        let is_measured = frame.scan.velocity.is_some() || frame.odometry.is_some();
+        let is_skewed = frame.scan.beam_interval_s > 0.0 && !is_measured;
         let sweep = is_skewed.then(|| self.sweep(&frame.scan, &cloud, &velocity, config));
         Ok(PreparedFrame {
             stamp_s: frame.stamp_s,

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::repairs::Repairs;
 use super::trial::Trial;
-use super::{Comparison, Motion, OdometryChoice};
+use super::{Comparison, Motion, OdometryUse};
 use crate::laser_mount::LaserMount;
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::odometry_poses::OdometryPoses;
@@ -64,15 +64,15 @@ pub struct ComparedReader<'a> {
     inner: Box<dyn LogReader + 'a>,
     /// Whether the mounting was set by the user and must not change.
     is_mount_fixed: bool,
-    /// Whether the run ignores odometry.
-    ignores_odometry: bool,
-    odometry: OdometryChoice,
+    odometry: OdometryUse,
     waiting: VecDeque<LogFrame>,
     /// Result of an earlier comparison.
     known: Option<Motion>,
     motion: Option<Motion>,
     repairs: Repairs,
     late: Option<Late>,
+    /// The frame after the last one, or why there is none.
+    ahead: Option<Result<LogFrame, LogError>>,
     notes: LogNotes,
     remarks: Vec<Remark>,
 }
@@ -84,28 +84,21 @@ impl<'a> ComparedReader<'a> {
         Self {
             inner: Box::new(BodyReader::new(inner)),
             is_mount_fixed,
-            ignores_odometry: false,
-            odometry: OdometryChoice::Check,
+            odometry: OdometryUse::Check,
             waiting: VecDeque::new(),
             known: None,
             motion: None,
             repairs: Repairs::default(),
             late: None,
+            ahead: None,
             notes: LogNotes::default(),
             remarks: Vec::new(),
         }
     }
 
-    /// Suppresses findings about odometry, for a run that ignores it.
-    #[must_use]
-    pub fn ignoring_odometry(mut self, ignores_odometry: bool) -> Self {
-        self.ignores_odometry = ignores_odometry;
-        self
-    }
-
     /// Takes the odometry as chosen.
     #[must_use]
-    pub fn with_odometry(mut self, odometry: OdometryChoice) -> Self {
+    pub fn with_odometry(mut self, odometry: OdometryUse) -> Self {
         self.odometry = odometry;
         self
     }
@@ -167,7 +160,7 @@ impl<'a> ComparedReader<'a> {
             let compared = comparison.filter(|_| has_odometry)?;
             let mut motion = Motion::from_stretches(&compared.stretches, stated.body_from_sensor);
             motion.compare_turns(&compared.headings);
-            if self.ignores_odometry || self.odometry == OdometryChoice::Force {
+            if matches!(self.odometry, OdometryUse::Force | OdometryUse::Ignore) {
                 motion.keep_mounting();
             }
             if !motion.findings().is_empty() {
@@ -178,6 +171,9 @@ impl<'a> ComparedReader<'a> {
         let motion = found.unwrap_or_default();
         self.remarks = motion.remarks(mount, self.is_mount_fixed);
         self.repairs = motion.repairs(mount, self.is_mount_fixed);
+        if self.odometry == OdometryUse::Ignore {
+            self.repairs.drops_odometry = true;
+        }
         self.late = self.repairs.late_s.map(Late::by);
         self.motion = Some(motion);
         Ok(())
@@ -209,10 +205,9 @@ impl<'a> ComparedReader<'a> {
             self.notes.laser = Some(mended);
         }
     }
-}
 
-impl LogReader for ComparedReader<'_> {
-    fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
+    /// The next frame, before the motion during its sweep is known.
+    fn next_compared(&mut self) -> Result<Option<LogFrame>, LogError> {
         if self.motion.is_none() {
             let compared = self.compare();
             self.copy_notes();
@@ -230,8 +225,54 @@ impl LogReader for ComparedReader<'_> {
             }
         }
     }
+}
+
+impl LogReader for ComparedReader<'_> {
+    fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
+        let next = match self.ahead.take() {
+            Some(ahead) => Some(ahead?),
+            None => self.next_compared()?,
+        };
+        let Some(mut frame) = next else {
+            return Ok(None);
+        };
+        if frame.scan.beam_interval_s > 0.0 && frame.odometry.is_some() {
+            self.ahead = self.next_compared().transpose();
+            if let Some(Ok(next)) = &self.ahead {
+                frame.scan.velocity = frame.velocity_until(next);
+            }
+        }
+        Ok(Some(frame))
+    }
 
     fn notes(&self) -> &LogNotes {
         &self.notes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::json_log::JsonLogReader;
+
+    use super::*;
+
+    #[test]
+    fn the_velocity_in_a_sweep_is_that_of_the_odometry_up_to_the_next_scan() {
+        // 0.1 m in the first interval, 0.3 m in the second; a sweep of 0.2 s.
+        let line = |stamp_s: f64, x: f64| {
+            format!(
+                r#"{{"stamp_s":{stamp_s},"odometry":[{x},0,0],"first_angle_rad":0,"angle_step_rad":1,"beam_interval_s":0.1,"ranges_m":[1,1,1]}}"#
+            ) + "\n"
+        };
+        let text = line(0.0, 0.0) + &line(0.5, 0.1) + &line(1.0, 0.4);
+        let inner = Box::new(JsonLogReader::new(text.as_bytes(), "x"));
+        let mut reader = ComparedReader::new(inner, false);
+        let mut forward = Vec::new();
+        while let Some(frame) = reader.next_frame().unwrap() {
+            forward.push(frame.scan.velocity.map(|velocity| velocity.x));
+        }
+        assert!((forward[0].unwrap() - 0.2).abs() < 1e-12, "{forward:?}");
+        assert!((forward[1].unwrap() - 0.6).abs() < 1e-12, "{forward:?}");
+        assert_eq!(forward[2], None);
     }
 }

@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use super::{Costs, Finding, Motion, OdometryChoice, Suggestion};
+use super::{Costs, Finding, Motion, OdometryUse, Suggestion};
 use crate::laser_mount::LaserMount;
 use crate::remark::{NO_ODOMETRY, Part, Remark};
 
@@ -43,7 +43,7 @@ impl Motion {
             };
             match finding {
                 Finding::Unit { .. } | Finding::Still { .. } => {
-                    remark.with_option(OdometryChoice::Force.option())
+                    remark.with_option(OdometryUse::Force.option())
                 }
                 Finding::Scale { .. } | Finding::Unlike { .. } => remark.with_option(NO_ODOMETRY),
                 _ => remark,
@@ -67,7 +67,7 @@ fn of_mount(
     is_mount_fixed: bool,
 ) -> Remark {
     let (option, own) = (mended.option(), mount.option());
-    let otherwise = OdometryChoice::Mirrored.option();
+    let otherwise = OdometryUse::Mirrored.option();
     let is_mirrored = matches!(finding, Finding::Mirrored { .. });
     let causes = if is_mirrored {
         format!(

@@ -12,7 +12,7 @@ pub(super) struct Repairs {
     mount: Option<CorrectedMount>,
     /// Factor of the odometry's lengths.
     metres: f64,
-    drops_odometry: bool,
+    pub drops_odometry: bool,
     /// Lag of the odometry, s.
     pub late_s: Option<f64>,
 }

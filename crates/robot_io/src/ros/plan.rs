@@ -3,6 +3,7 @@
 mod mounts;
 mod odometry;
 mod offers;
+mod robots;
 
 use nalgebra::Isometry3;
 
@@ -53,6 +54,8 @@ pub struct Plan {
     pub offers: Vec<LogOffer>,
     /// An option that requests a name which does not exist.
     pub missing: Option<(LogOption, String)>,
+    /// Topics of the scans of each further robot, separated by commas.
+    pub robots: Vec<String>,
     /// Choices made and what was found.
     pub about: Vec<String>,
     /// What was missing or corrected.
@@ -132,6 +135,7 @@ impl Plan {
             );
             plan.warnings.push(Remark::mended(Part::File, text));
         }
+        plan.robots = robots::others(survey, options, &plan.scans);
         plan.name_other_scans(survey, options);
         for (scans, clock) in plan.scans.iter().zip(&clocks) {
             let remarks = clock.remarks(&format!("scans of {}", scans.topic));
@@ -201,9 +205,13 @@ impl Plan {
             format!("{frame} ({})", plural(*count, "scan"))
         });
         let text = format!(
-            "{topic} has scans of several publishers: those in frame {} are read, and those in {} are not; let each publish on a topic of its own",
+            "{topic} has scans of several publishers: those in frame {} are read, and those in {} are not{}; let each publish on a topic of its own",
             stream.frame,
-            listed(others)
+            listed(others),
+            stream
+                .problem
+                .as_ref()
+                .map_or(String::new(), |problem| format!(" ({problem})"))
         );
         self.warnings.push(Remark::mended(Part::Sensor, text));
     }
@@ -214,17 +222,24 @@ impl Plan {
             return;
         }
         let is_read = |topic: &String| self.scans.iter().any(|scans| scans.topic == *topic);
+        let of_robots = || self.robots.iter().flat_map(|topics| topics.split(','));
+        let is_of_robot = |topic: &String| of_robots().any(|other| other == topic);
         let usable = survey.scans.iter().filter(|(_, stream)| stream.is_usable);
         let others: Vec<String> = usable
-            .filter(|(topic, _)| !is_read(topic))
+            .filter(|(topic, _)| !(is_read(topic) || options.all_robots && is_of_robot(topic)))
             .map(|(topic, _)| topic.clone())
             .take(MAX_NAMED)
             .collect();
         if !others.is_empty() {
             let options = others.iter().map(|topic| format!("--scan-topic {topic}"));
             let options: Vec<String> = options.collect();
+            let all = if self.robots.is_empty() {
+                ""
+            } else {
+                "; if they are those of another robot, slam2d run --all-robots maps all robots into one map"
+            };
             let text = format!(
-                "there are also scans on {}, which are not read; choose with {}",
+                "there are also scans on {}, which are not read; choose with {}{all}",
                 listed(others.into_iter()),
                 options[0]
             );
@@ -243,6 +258,7 @@ impl Plan {
         notes.about.clone_from(&self.about);
         notes.warnings.clone_from(&self.warnings);
         notes.offers.clone_from(&self.offers);
+        notes.robots.clone_from(&self.robots);
         // Merged scans have no single laser.
         notes.laser = match &self.scans[..] {
             [only] => Some(only.mount),

@@ -12,6 +12,8 @@ use crate::stamps::median;
 
 /// A sweep is at most a turn, up to the rounding of 32-bit floats and one extra beam.
 const FULL_TURN: f64 = 1.02 * TAU;
+/// No scanner sees less, degrees: smaller angles that are more than a turn in radians are not degrees either.
+const LEAST_VIEW_DEG: f64 = 20.0;
 /// Longer ranges are not in metres.
 const LONGEST_M: f64 = 400.0;
 /// A sweep may take this many scan periods: stamps jitter.
@@ -103,7 +105,7 @@ impl ScanFields {
                     "angle_increment is {step} and cannot be computed from angle_min and angle_max; set it in the driver"
                 ));
             }
-            let (from, step) = if step.abs() * gaps > FULL_TURN {
+            let (from, step) = if is_in_degrees(step * gaps) {
                 remarks.push(
                     "its angles are in degrees; they were converted. Publish radians".to_owned(),
                 );
@@ -129,6 +131,9 @@ impl ScanFields {
         if agrees(max - min, step) {
             if (step * gaps).abs() <= FULL_TURN {
                 return Ok((min, step));
+            }
+            if !is_in_degrees(step * gaps) {
+                return in_a_turn(min, step, gaps);
             }
             remarks
                 .push("its angles are in degrees; they were converted. Publish radians".to_owned());
@@ -260,6 +265,11 @@ impl ScanFields {
         }
         (range_min_m, range_max_m, scale)
     }
+}
+
+/// Whether an angle from the first beam to the last is in degrees, not in radians.
+fn is_in_degrees(view: f64) -> bool {
+    view.abs() > FULL_TURN && view.abs() >= LEAST_VIEW_DEG
 }
 
 /// Checks that the angles cover at most a turn.

@@ -23,6 +23,8 @@ const MAX_POSES: usize = 1 << 18;
 const MAX_TRACKS: usize = 32;
 /// Number of messages of a topic that are fully decoded to check whether they are usable.
 const TRIED: usize = 3;
+/// The same while none of them is.
+const MOST_TRIED: usize = 100;
 /// Most frames of a topic that are told apart.
 const MAX_FRAMES: usize = 16;
 /// Odometry within this has not moved, m and rad.
@@ -59,7 +61,7 @@ pub struct ScanStream {
     /// Why the first message is unusable.
     pub problem: Option<String>,
     /// The frames of all messages, and for each message the index of its frame.
-    frames: Vec<String>,
+    frames: Vec<PublisherFrame>,
     frame_of: Vec<usize>,
     /// Whether only messages in [`frame`](Self::frame) are read, because another publisher uses the topic.
     pub is_shared: bool,
@@ -67,8 +69,17 @@ pub struct ScanStream {
     pub others: Vec<(String, usize)>,
 }
 
+/// A frame in which scans are published on a topic.
+#[derive(Clone, Debug, Default)]
+struct PublisherFrame {
+    name: String,
+    /// Number of messages that were fully decoded, and whether any of them is usable.
+    tried: usize,
+    is_usable: bool,
+}
+
 impl ScanStream {
-    /// Keeps the scans of one publisher, the one with the most, if several publish on the topic at the same time.
+    /// Keeps the scans of one publisher, the one with the most usable ones, if several publish on the topic at the same time.
     ///
     /// Frames that follow one another are those of a driver that was renamed.
     fn separate_publishers(&mut self) {
@@ -83,7 +94,7 @@ impl ScanStream {
         let count = |frame: usize| self.frame_of.iter().filter(|of| **of == frame).count();
         let Some(most) = (0..self.frames.len())
             .rev()
-            .max_by_key(|frame| count(*frame))
+            .max_by_key(|frame| (self.frames[*frame].is_usable, count(*frame)))
         else {
             return;
         };
@@ -95,9 +106,9 @@ impl ScanStream {
         }
         self.others = others
             .iter()
-            .map(|other| (self.frames[*other].clone(), count(*other)))
+            .map(|other| (self.frames[*other].name.clone(), count(*other)))
             .collect();
-        self.frame.clone_from(&self.frames[most]);
+        self.frame.clone_from(&self.frames[most].name);
         self.is_shared = true;
         let own = |values: &[f64]| {
             let numbered = values.iter().zip(&self.frame_of);
@@ -241,8 +252,6 @@ impl Survey {
         }
         let head =
             reader(message).and_then(|mut fields| header(&mut fields).map_err(|e| e.to_string()));
-        let is_tried =
-            stream.stamps_s.len() < TRIED || !stream.is_usable && stream.stamps_s.len() < 100;
         let stamp_s = match &head {
             Ok(header) => header.stamp_s,
             Err(_) => f64::NAN,
@@ -250,21 +259,27 @@ impl Survey {
         stream.stamps_s.push(stamp_s);
         stream.recorded_s.push(message.recorded_s);
         let frame = head.map_or(String::new(), |header| header.frame);
-        let known = stream.frames.iter().position(|known| *known == frame);
+        let known = stream.frames.iter().position(|known| known.name == frame);
         let known = known.unwrap_or_else(|| {
             if stream.frames.len() < MAX_FRAMES {
-                stream.frames.push(frame);
+                stream.frames.push(PublisherFrame {
+                    name: frame,
+                    ..PublisherFrame::default()
+                });
             }
             stream.frames.len() - 1
         });
         stream.frame_of.push(known);
-        if is_tried {
+        let of_frame = &mut stream.frames[known];
+        if of_frame.tried < TRIED || !of_frame.is_usable && of_frame.tried < MOST_TRIED {
+            of_frame.tried += 1;
             match scan_header(message, options) {
                 Ok(header) => {
                     if !stream.is_usable {
                         stream.frame = header.frame;
                     }
                     stream.is_usable = true;
+                    of_frame.is_usable = true;
                 }
                 Err(problem) => {
                     stream

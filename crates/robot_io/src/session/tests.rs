@@ -9,7 +9,7 @@ use pr_geom::{Point2, SE2, Vector3, math};
 
 use super::*;
 use crate::log::LogFrame;
-use crate::run::{LogRun, OdometryUse};
+use crate::run::LogRun;
 use crate::settings::{SETTINGS, Setting};
 
 /// A room of 8 m × 6 m seen from a circle in it; odometry overestimates each turn slightly.
@@ -36,7 +36,7 @@ fn frame(step: usize, beams: usize) -> LogFrame {
 }
 
 fn run(beams: usize, steps: core::ops::Range<usize>) -> LogRun {
-    let mut run = LogRun::new(OdometryUse::Log);
+    let mut run = LogRun::default();
     go_on(&mut run, beams, steps);
     run
 }
@@ -81,7 +81,7 @@ fn a_continued_run_equals_an_uninterrupted_one_bit_by_bit() {
     let mut whole = run(120, 0..150);
     let half = saved(&run(120, 0..80));
     let session = Session::from_bytes(&half, "x").unwrap();
-    let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
+    let mut second = LogRun::resume(&session).unwrap();
     go_on(&mut second, 120, 80..150);
     assert_eq!(saved(&second), saved(&whole));
     // The same holds after both have ended, and when they continue.
@@ -89,7 +89,7 @@ fn a_continued_run_equals_an_uninterrupted_one_bit_by_bit() {
     second.finish();
     assert_eq!(saved(&second), saved(&whole));
     let session = Session::from_bytes(&saved(&whole), "x").unwrap();
-    let mut third = LogRun::resume(&session, OdometryUse::Log).unwrap();
+    let mut third = LogRun::resume(&session).unwrap();
     go_on(&mut third, 120, 150..170);
     assert_eq!(saved(&third), saved(&run(120, 0..170)));
 }
@@ -98,7 +98,7 @@ fn a_continued_run_equals_an_uninterrupted_one_bit_by_bit() {
 fn a_log_of_another_scanner_is_reported() {
     let session = run(120, 0..80).session().unwrap();
     for (beams, count) in [(120, 0), (90, 1)] {
-        let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
+        let mut second = LogRun::resume(&session).unwrap();
         go_on(&mut second, beams, 80..90);
         let sentences = second.sentences("log");
         assert_eq!(sentences.len(), count, "{sentences:?}");
@@ -118,7 +118,7 @@ fn pending_loops_are_saved_and_stay_pending() {
     ];
     let settings = settings.map(|(name, value)| (Setting::named(name).unwrap(), value));
     let doubting = |steps: core::ops::Range<usize>| {
-        let new = LogRun::new(OdometryUse::Log);
+        let new = LogRun::default();
         let settings = settings.iter();
         let mut run = settings.fold(new, |run, (setting, value)| {
             run.with_setting(setting, *value)
@@ -130,7 +130,7 @@ fn pending_loops_are_saved_and_stay_pending() {
     let session = Session::from_bytes(&saved(&half), "x").unwrap();
     assert!(!session.snapshot.pending.is_empty());
     assert_eq!(session, half.session().unwrap());
-    let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
+    let mut second = LogRun::resume(&session).unwrap();
     go_on(&mut second, 120, 125..140);
     assert_eq!(saved(&second), saved(&whole));
     // At the end, pending loops are accepted or dropped in the same way.
@@ -282,7 +282,7 @@ fn forged_bytes_give_an_error_or_a_usable_session() {
                 Err(error) => assert!(is_a_sentence(&error.to_string()), "{at}: {error}"),
                 Ok(session) => {
                     accepted += 1;
-                    let resumed = LogRun::resume(&session, OdometryUse::Log);
+                    let resumed = LogRun::resume(&session);
                     assert!(resumed.is_ok(), "{at} {value}: {:?}", resumed.err());
                 }
             }
@@ -367,7 +367,7 @@ fn foreign_files_are_distinguished_from_damaged_sessions() {
 fn every_parameter_is_written_and_read() {
     for setting in SETTINGS {
         let value = setting.value(&RobotConfig::default()) + 1.0;
-        let mut run = LogRun::new(OdometryUse::Log).with_setting(setting, value);
+        let mut run = LogRun::default().with_setting(setting, value);
         // Few enough points to be stored exactly.
         run.step(frame(0, 120)).unwrap();
         let session = Session::from_bytes(&saved(&run), "x").unwrap();

@@ -2,6 +2,8 @@
 
 use std::str::FromStr;
 
+use crate::lines::printable;
+
 /// Meaning of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Column {
@@ -198,7 +200,8 @@ impl FromStr for Layout {
         for (name, (column, _)) in text.split(',').zip(&columns) {
             if *column == Column::Other && !matches!(name.trim(), "-" | "frame_id") {
                 return Err(format!(
-                    "there is no column {name}; use time, sec, nanosec, angle, range, quality, x, y, heading, angle_min, angle_max, angle_increment, time_increment, scan_time, range_min, range_max, ranges or -, with units such as time_us, angle_deg, range_mm"
+                    "there is no column {}; use time, sec, nanosec, angle, range, quality, x, y, heading, angle_min, angle_max, angle_increment, time_increment, scan_time, range_min, range_max, ranges or -, with units such as time_us, angle_deg, range_mm",
+                    printable(name.trim())
                 ));
             }
         }

@@ -3,7 +3,6 @@
 use ch16_slam2d::scan::LaserScan;
 use pr_geom::{Rng, SE2, math};
 use robot_io::log::LogFrame;
-use robot_io::run::OdometryUse;
 use robot_io::trajectory::{StampedPose, Trajectory};
 
 /// Additional noise per metre: along each axis, m, and of the heading, rad. About as much as the odometry of the
@@ -82,15 +81,6 @@ impl Disturbance {
         matches!(self, Self::Plain | Self::Later(_))
     }
 
-    /// How the run uses the odometry.
-    pub fn odometry_use(self) -> OdometryUse {
-        if self == Self::ScansAlone {
-            OdometryUse::None
-        } else {
-            OdometryUse::Log
-        }
-    }
-
     /// The disturbed recording; the noise is that of the seed.
     pub fn frames(self, frames: &[LogFrame], seed: u32) -> Vec<LogFrame> {
         let scans = |change: &mut dyn FnMut(&mut LaserScan)| {
@@ -101,7 +91,15 @@ impl Disturbance {
             changed
         };
         match self {
-            Self::Plain | Self::ScansAlone => frames.to_vec(),
+            Self::Plain => frames.to_vec(),
+            Self::ScansAlone => frames
+                .iter()
+                .cloned()
+                .map(|frame| LogFrame {
+                    odometry: None,
+                    ..frame
+                })
+                .collect(),
             Self::Later(skipped) => frames.iter().skip(skipped).cloned().collect(),
             Self::Wheels(scale) => worse_odometry(frames, scale, 0.0, seed),
             Self::Noisy => worse_odometry(frames, 1.0, 1.0, seed),

@@ -46,7 +46,7 @@ pub(super) fn outcomes(benches: &[Bench], seed: u32) -> Vec<Vec<Outcome>> {
 impl Bench {
     fn outcome(&self, disturbance: Disturbance, seed: u32) -> Outcome {
         let frames = disturbance.frames(&self.frames, seed);
-        let mut run = mapped(&frames, disturbance.odometry_use());
+        let mut run = mapped(&frames);
         let trajectory = disturbance.as_recorded(&self.frames, &run.trajectory());
         Outcome {
             log: self.name.clone(),

@@ -3,6 +3,7 @@
 mod base;
 mod damage;
 mod field;
+mod robots;
 mod variants;
 mod write;
 
@@ -12,7 +13,7 @@ use robot_io::log::{LogOptions, LogReader};
 use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
 use robot_io::motion::ComparedReader;
-use robot_io::run::{LogRun, OdometryUse};
+use robot_io::run::LogRun;
 
 /// Messages per chunk.
 const PER_CHUNK: usize = 40;
@@ -30,7 +31,7 @@ pub struct Outcome {
 
 /// Maps a recording as `slam2d run` does.
 pub fn mapped(parts: Vec<LogBytes<'_>>, name: &str, options: &LogOptions) -> Outcome {
-    let mut run = LogRun::new(OdometryUse::Log);
+    let mut run = LogRun::default();
     let refused = |notes: String| Outcome {
         path: Vec::new(),
         notes,

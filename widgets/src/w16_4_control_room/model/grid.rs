@@ -67,8 +67,8 @@ impl GridView {
     }
 
     /// Empties it, to be drawn again by [`GridView::draw`].
-    pub fn clear(&mut self, record: &LapRecord) {
-        self.grid = record.empty_grid();
+    pub fn clear(&mut self, record: &LapRecord, tick: usize) {
+        self.grid = record.empty_grid(tick);
         self.drawn = 0;
         self.raster = raster(&self.grid, self.raster.revision + 1);
     }

@@ -107,6 +107,17 @@ fn inconsistent_angles_are_rejected() {
     };
     let remarks = bad.checked(0.1).unwrap_err();
     assert!(remarks.contains("neither gives a sweep"), "{remarks}");
+    // A turn and a third: as degrees it would be a view of 8°.
+    let bad = ScanFields {
+        angle_max: -PI + 8.38,
+        angle_increment: 8.38 / 359.0,
+        ..fields()
+    };
+    let remarks = bad.checked(0.1).unwrap_err();
+    assert!(
+        remarks.contains("cover 480°, more than a turn"),
+        "{remarks}"
+    );
     let bad = ScanFields {
         angle_max: f64::NAN,
         angle_increment: f64::NAN,

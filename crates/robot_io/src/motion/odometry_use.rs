@@ -6,7 +6,7 @@ use pr_geom::SE2;
 
 /// How the odometry of a recording is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum OdometryChoice {
+pub enum OdometryUse {
     /// Compared with the scans, and corrected or ignored if a trial shows that it is wrong.
     #[default]
     Check,
@@ -14,11 +14,13 @@ pub enum OdometryChoice {
     Force,
     /// With left and right exchanged, then compared.
     Mirrored,
+    /// Not at all: scans alone. It still shows how the laser is mounted.
+    Ignore,
 }
 
-impl OdometryChoice {
+impl OdometryUse {
     /// All choices.
-    pub const ALL: [Self; 3] = [Self::Check, Self::Force, Self::Mirrored];
+    pub const ALL: [Self; 4] = [Self::Check, Self::Force, Self::Mirrored, Self::Ignore];
 
     /// Name on the command line, as in `--odometry force`.
     #[must_use]
@@ -27,6 +29,7 @@ impl OdometryChoice {
             Self::Check => "check",
             Self::Force => "force",
             Self::Mirrored => "mirrored",
+            Self::Ignore => "none",
         }
     }
 
@@ -40,12 +43,12 @@ impl OdometryChoice {
     pub(super) fn pose(self, recorded: SE2) -> SE2 {
         match self {
             Self::Mirrored => SE2::new(recorded.x(), -recorded.y(), -recorded.theta()),
-            Self::Check | Self::Force => recorded,
+            Self::Check | Self::Force | Self::Ignore => recorded,
         }
     }
 }
 
-impl FromStr for OdometryChoice {
+impl FromStr for OdometryUse {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -53,6 +56,6 @@ impl FromStr for OdometryChoice {
         Self::ALL
             .into_iter()
             .find(named)
-            .ok_or_else(|| "the odometry must be check, force or mirrored".to_owned())
+            .ok_or_else(|| "the odometry must be check, force, mirrored or none".to_owned())
     }
 }
