@@ -76,6 +76,7 @@ export class LapsFigure {
     if (isSame) for (const lap of laps.flat()) this.#put(lap);
     else this.#finishedSeeds = 0;
     this.#showCount();
+    this.#onLaps();
   }
 
   /** The laps of a row so far. */
@@ -127,6 +128,7 @@ export class LapsFigure {
     for (const lap of laps) this.#put(lap);
     this.#finishedSeeds += 1;
     this.#showCount();
+    this.#onLaps();
   }
 
   #put(lap: Lap): void {
@@ -145,7 +147,6 @@ export class LapsFigure {
     // A screen reader announces only every hundredth.
     this.#count.ariaLive = isDone || this.#finishedSeeds % 100 === 0 ? 'polite' : 'off';
     this.#count.textContent = text;
-    this.#onLaps();
   }
 
   #describe(lap: Lap): void {

@@ -16,10 +16,10 @@ interface Quantity {
 const MATCHERS = [['p2p', 'Point to point'], ['p2l', 'Point to plane'], ['ndt', 'NDT']] as const;
 const WORLDS = [['the Apartment', ''], ['the ring', '&world=ring&information=exact']] as const;
 
-const metres = (value: number): string => `${value.toFixed(2)} m`;
+const metres = (value: number): string => `${value.toFixed(2)}\u00a0m`;
 const percent = (before: number, after: number): string => {
   const fall = Math.round(100 * (1 - after / before));
-  return fall < 0 ? `+${-fall} %` : `−${fall} %`;
+  return fall < 0 ? `+${-fall}\u00a0%` : `−${fall}\u00a0%`;
 };
 
 /** Median and tail without loops and with them. */
@@ -86,6 +86,7 @@ export class MatchersFigure {
       control.addEventListener('change', () => this.#laps.show(this.#plan()));
     }
     this.#guess.input.addEventListener('input', () => this.#laps.show(this.#plan()));
+    this.#report();
   }
 
   get #shown(): Quantity {

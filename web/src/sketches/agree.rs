@@ -146,7 +146,7 @@ fn at(false_loops: f64) -> Shown {
     let accepted = accepted(&graph(false_loops));
     let [gnc, pairs, gate] = [0, 1, 2].map(|test| counts(&accepted[test]));
     let sentence = format!(
-        "Of {TRUE_LOOPS} true and {false_loops} false loops the gate takes {} and {}, pairwise consistency {} and {}, GNC {} \
+        "Of {TRUE_LOOPS} true and {false_loops} false loops the gate accepts {} and {}, pairwise consistency {} and {}, GNC {} \
          and {}.",
         gate[0], gate[1], pairs[0], pairs[1], gnc[0], gnc[1]
     );

@@ -154,7 +154,7 @@ fn ends(gap: usize, config: &LoopConfig) -> Panel {
     let places = |drifts: &[Vector3<f64>]| drifts.iter().map(place).collect();
     Panel {
         id: "ends",
-        title: "Where they end: a banana".to_owned(),
+        title: "Where they end, and the gate".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Equal,
         x: Axis::new("along the path (m)", -REACH_M, REACH_M),

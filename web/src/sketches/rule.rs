@@ -49,7 +49,7 @@ fn at(tie: f64) -> Shown {
     ];
     let fall = |[before, after]: &[Vec<f64>; 2]| fall_percent(before[TIP], after[TIP]);
     let sentence = format!(
-        "Tied at {tie} m, the deviation at the tip is to fall by {:.0} %. Over {DRIVES} drives the error there falls by \
+        "Tied at {tie} m, the deviation at the tip should fall by {:.0} %. Over {DRIVES} drives the error there falls by \
          {:.0} %. Of a bias that all edges share, {:.0} % goes.",
         fall(&predicted),
         fall(&driven),
