@@ -112,11 +112,11 @@ describe('the laps by each matcher', () => {
       await tab.locator(`${figure} select`).first().selectOption('that error ÷ the graph’s deviation');
       const capped = await says(tab);
       assert.match(capped[2], /^NDT: root mean square \d/);
-      await tab.getByLabel('cap on the information').setChecked(false);
+      await tab.locator(figure).getByLabel('cap on the information').setChecked(false);
       await finished(tab);
       assert.notDeepEqual(await says(tab), capped);
       await tab.locator(`${figure} select`).first().selectOption('rms error');
-      await tab.getByLabel('Radius of the normals').fill('2.5');
+      await tab.locator(figure).getByLabel('Radius of the normals').fill('2.5');
       await finished(tab);
       assert.equal((await shown(tab))[2], rms('matcher=p2l&normals=2.5'));
     });
