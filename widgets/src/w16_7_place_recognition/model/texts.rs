@@ -39,7 +39,7 @@ pub fn verdict(been: &PlaceRecognition) -> &'static str {
 pub fn outcome(been: &PlaceRecognition) -> Outcome {
     let sentence = match grade(been) {
         // As long as the text that follows, so that the page below does not move.
-        None => "The lap is driven, and its keyframes are compared pair by pair: which of them show the same place, by what is near, by histograms of ranges, and by Scan Context. Then every threshold is graded by the truth."
+        None => "The lap is driven, and its keyframes are compared pair by pair: which of them show the same place, by what is near, by histograms of ranges, and by Scan Context. Then every threshold is graded by the truth, beside a guess and beside a perfect detector."
             .to_owned(),
         Some((places, grade)) => {
             let called = format!(
