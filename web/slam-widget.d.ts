@@ -61,7 +61,7 @@ export interface TheFullLapState {
   loops: boolean;
   /** Another seed is another lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** Share of right loops that the χ² gate lets pass, 3 degrees of freedom: 0.95 is χ² up to 7.815. 0.9 to 0.999. */
+  /** Quantile of χ² with 3 degrees of freedom: 0.95 is χ² up to 7.815. So many true loops pass if the robot does not move, fewer after a drive. 0.9 to 0.999. */
   gate: number;
   /** Path: the chapter's, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. An outline contains the positions that pass at the registered heading. */
   'gate-model': 'path' | 'exact';
@@ -69,6 +69,12 @@ export interface TheFullLapState {
   matcher: 'p2p' | 'p2l' | 'ndt';
   /** The frame of an edge's information. As the chapter's figures were computed, it is turned by a heading of the world; exactly, it is that of the edge's target, the newer of its ends. */
   information: 'chapter' | 'exact';
+  /** A point's normal comes from its neighbours within this radius, in cells of 12 cm. 0 is the matcher's own: 2.5, and 4.2 for point to plane. 0 to 8 cells. */
+  normals: number;
+  /** Whether the information of an edge is scaled down to 2500 at most, a deviation of 2 cm and of 0.02 rad. */
+  cap: boolean;
+  /** A beam that hits no wall reports the maximum range. Kept as points, a common mistake, these make a wall that moves with the robot. */
+  misses: boolean;
   /** The part of the graph whose numbers are shown. On the map, a click or a tap selects it, and one beside everything selects nothing. */
   pick: 'nothing' | 'keyframe' | 'edge' | 'loop';
   /** The number of the keyframe; of the keyframe where the edge begins; of the newer keyframe of the loop. 0 to 999. */
@@ -404,7 +410,7 @@ export interface WidgetStates {
 /** The buttons and presets of each widget, for `press`. */
 export interface WidgetButtons {
   'w16.1': 'play' | 'step' | 'reset' | 'sweep' | 'defaults' | 'near' | 'quarter-turn' | 'between' | 'between-plane' | 'half-turn' | 'fence' | 'mark-edge' | 'short-sighted';
-  'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'one-back' | 'one-on' | 'tie' | 'undo' | 'edit-flat' | 'piece-back' | 'piece-on' | 'west' | 'east' | 'north' | 'south' | 'remove' | 'add-wall' | 'add-way-point' | 'turn-here' | 'take-back' | 'do-again' | 'open-flat' | 'save-flat' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'wrong-loop' | 'tamed-loop' | 'true-loop' | 'ring' | 'twins' | 'corridor' | 'hall' | 'own-flat' | 'bells' | 'sliding';
+  'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'one-back' | 'one-on' | 'tie' | 'undo' | 'edit-flat' | 'piece-back' | 'piece-on' | 'west' | 'east' | 'north' | 'south' | 'remove' | 'add-wall' | 'add-way-point' | 'turn-here' | 'take-back' | 'do-again' | 'open-flat' | 'save-flat' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'wrong-loop' | 'tamed-loop' | 'true-loop' | 'ring' | 'twins' | 'corridor' | 'hall' | 'phantom-wall' | 'own-flat' | 'bells' | 'sliding';
   'w16.3': 'drop' | 'drop-100' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'bowl' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'own-corridor' | 'drop-room' | 'drop-corridor' | 'one-row' | 'wheels-row' | 'turned';
   'w16.4': 'play' | 'step' | 'reset' | 'next-event' | 'defaults' | 'watch' | 'blurred' | 'rebuilt' | 'noisy' | 'wrong-loop' | 'open';
   'w16.5': 'play' | 'step' | 'reset' | 'defaults' | 'three-poses' | 'stiff' | 'unpinned' | 'square' | 'tangled';
@@ -502,6 +508,9 @@ export interface SlamWidgetProperties {
   gateModel: 'path' | 'exact' | undefined;
   matcher: 'p2p' | 'p2l' | 'ndt' | undefined;
   information: 'chapter' | 'exact' | undefined;
+  normals: number | undefined;
+  cap: boolean | undefined;
+  misses: boolean | undefined;
   pick: 'nothing' | 'keyframe' | 'edge' | 'loop' | undefined;
   number: number | undefined;
   own: 'none' | 'registered' | 'truth' | 'same-place' | undefined;

@@ -12,8 +12,8 @@ Formula.
     Ad((x, y, θ)) = ( sin θ   cos θ  −x )
                     (   0       0     1 )
 
-Both leave out the inverse of the right Jacobian of e. They are exact if e is zero, and otherwise close enough: a wrong
-Jacobian costs iterations, a wrong residual costs correctness (exercise 3 of the page).
+Both leave out a factor, Jᵣ⁻¹(e) at j and Jₗ⁻¹(e) at i, which is I if e is zero. If e stays, the optimum moves by O(e²); a
+wrong residual moves it by O(e) (exercise 3 of the page).
 
 rustslam2d has compose, inverse and log.
 """

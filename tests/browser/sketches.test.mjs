@@ -6,7 +6,7 @@ import * as h from './harness.mjs';
 
 const visit = h.visitor();
 const reading = (test, options = {}) => visit('', test, { path: '/index.html', options });
-const NAMES = ['nearest', 'slide', 'bells', 'ellipse', 'gate', 'push', 'incremental'];
+const NAMES = ['nearest', 'slide', 'bells', 'ellipse', 'fill', 'start', 'gate', 'agree', 'push', 'incremental', 'ate', 'rule'];
 const figure = (tab, name) => tab.locator(`[data-sketch="${name}"]`);
 /** Opens the fold of a figure, if it is in one. */
 const unfold = (tab, name) => tab.evaluate(

@@ -14,6 +14,9 @@ import { type Places, redirectOldAddress } from './redirects';
 import { LapPlayer } from './lap/player';
 import type { Story } from './lap/story';
 import { LapsFigure } from './laps/laps';
+import { LEVELS_PLAN } from './laps/levels';
+import { MatchersFigure } from './laps/matchers';
+import { lightLines } from './lap/lines';
 import type { Answer } from './match/drawing';
 import { MatchFigure } from './match/figure';
 import type { SlamWidget } from '../ts/main';
@@ -28,7 +31,7 @@ declare const BUILDING_FILE: string;
 declare const MATCH_ANSWER: Answer;
 
 /** Elements that need the module of the widgets. */
-const NEEDS_CORE = 'slam-widget, [data-sketch], #decide, #laps';
+const NEEDS_CORE = 'slam-widget, [data-sketch], #decide, .laps';
 /** Distance from the viewport at which the module is prefetched. */
 const PREFETCH_MARGIN = '200% 0px';
 
@@ -45,7 +48,8 @@ addCopyButtons(document.querySelectorAll<HTMLElement>('figure.listing'));
 startMatchFigure();
 void startReplay('#lap', LAP_STORY_FILE, (figure, story: Story) => new LapPlayer(figure, story));
 void startReplay('#building', BUILDING_FILE, (figure, story: Building) => new BuildingFigure(figure, story));
-startLapsFigure();
+startLapsFigures();
+lightLines();
 startOwnFlatCard();
 watchChallenges();
 onceNear(document.querySelectorAll(NEEDS_CORE), () => void startCoreFigures());
@@ -103,13 +107,14 @@ function startDecideFigure(glue: Glue): void {
   if (figure !== null) new DecideFigure(figure, glue);
 }
 
-function startLapsFigure(): void {
-  const figure = document.querySelector<HTMLElement>('#laps');
-  if (figure === null) return;
-  new LapsFigure(figure, {
+function startLapsFigures(): void {
+  const lapCore = {
     module: coreModule as () => Promise<WebAssembly.Module>,
     runner: async () => new (await (core as () => Promise<Glue>)()).Laps(),
-  });
+  };
+  const [levels, matchers] = ['#laps', '#matcher-laps'].map((id) => document.querySelector<HTMLElement>(id));
+  if (levels) new LapsFigure(levels, lapCore, LEVELS_PLAN);
+  if (matchers) new MatchersFigure(matchers, lapCore);
 }
 
 /** Shows a card for a flat that the reader has drawn. */

@@ -134,9 +134,15 @@ impl Laps {
         Self::default()
     }
 
-    /// Results of a lap: final errors of odometry, front end and graph in metres, closed loops, false ones.
-    pub fn drive(&mut self, seed: u32, noise_factor: f64) -> Vec<f64> {
-        self.outcomes.of(seed, noise_factor).to_vec()
+    /// The numbers of a lap with the settings of a link to w16.2; see [`Outcomes::of`].
+    ///
+    /// # Errors
+    /// If the link is invalid.
+    pub fn drive(&mut self, seed: u32, link: &str) -> Result<Vec<f64>, JsError> {
+        let numbers = self.outcomes.of(seed, link);
+        numbers
+            .map(|numbers| numbers.to_vec())
+            .map_err(|problem| JsError::new(&problem))
     }
 }
 

@@ -3,13 +3,18 @@
 //! Each shows one idea in a section without a widget. The core computes it for every value of its slider, and
 //! the kit draws it like the widgets.
 
+mod agree;
+mod ate;
 mod bells;
 mod ellipse;
+mod fill;
 mod gate;
 mod incremental;
 mod nearest;
 mod push;
+mod rule;
 mod slide;
+mod start;
 
 use serde_json::{Value, json};
 use widget_kit::palette::Theme;
@@ -62,14 +67,19 @@ pub struct Sketch {
 const PLACES: f64 = 120.0;
 
 /// All figures, in the order of the page.
-pub const SKETCHES: [Sketch; 7] = [
+pub const SKETCHES: [Sketch; 12] = [
     nearest::SKETCH,
     slide::SKETCH,
     bells::SKETCH,
     ellipse::SKETCH,
+    fill::SKETCH,
+    start::SKETCH,
     gate::SKETCH,
+    agree::SKETCH,
     push::SKETCH,
     incremental::SKETCH,
+    ate::SKETCH,
+    rule::SKETCH,
 ];
 
 /// Looks up a figure by name.

@@ -1,4 +1,4 @@
-//! Widget w16.3: the cost terraces of ICP beside the smooth hills of NDT.
+//! Widget w16.3: the cost terraces of ICP beside the hills of NDT.
 //!
 //! [`model`] contains the logic, [`view`] the layout.
 

@@ -18,6 +18,7 @@ pub mod places;
 pub mod procrustes;
 pub mod relocalization;
 pub mod results;
+pub mod rule;
 pub mod samples;
 mod scenes;
 pub mod sweeping;

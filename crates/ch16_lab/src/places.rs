@@ -60,6 +60,20 @@ pub struct PlaceCurve {
     pub recall_without_errors: f64,
 }
 
+/// The recall at which detectors are compared.
+pub const FIXED_RECALL: f64 = 0.5;
+
+impl PlaceCurve {
+    /// Precision at the strictest threshold that detects [`FIXED_RECALL`] of the right pairs. Chance has the share of the
+    /// right pairs there, a perfect detector 1.
+    #[must_use]
+    pub fn precision_at_fixed_recall(&self) -> Option<f64> {
+        let mut points = self.points.iter();
+        let point = points.find(|point| point.recall >= FIXED_RECALL);
+        point.map(|point| point.precision)
+    }
+}
+
 /// The pairs of one lap that ran with the front end alone.
 ///
 /// Distances between poses are those of the front end, in standard deviations of the drift that the gate

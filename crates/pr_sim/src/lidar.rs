@@ -24,6 +24,9 @@ pub struct LidarConfig {
     pub max_range_m: f64,
     /// Standard deviation of the range noise in metres.
     pub range_sigma_m: f64,
+    /// Whether readings at the maximum range count as returns: a common mistake. Each of them becomes a point where
+    /// nothing is, and these points move with the robot.
+    pub keeps_misses: bool,
 }
 
 impl Default for LidarConfig {
@@ -33,6 +36,7 @@ impl Default for LidarConfig {
             field_of_view_rad: TAU,
             max_range_m: 6.0,
             range_sigma_m: 0.05,
+            keeps_misses: false,
         }
     }
 }
@@ -62,7 +66,11 @@ impl LidarConfig {
     /// Readings at or beyond this range are not returns, m.
     #[must_use]
     pub fn return_limit_m(&self) -> f64 {
-        RETURN_SHARE * self.max_range_m
+        if self.keeps_misses {
+            f64::INFINITY
+        } else {
+            RETURN_SHARE * self.max_range_m
+        }
     }
 
     fn is_full_circle(&self) -> bool {

@@ -217,6 +217,25 @@ fn descriptors_are_better_on_the_ring_beside_chance_and_look_worse_without_it() 
 }
 
 #[test]
+fn kept_maximum_ranges_worsen_the_error_and_improve_all_that_the_robot_could_see() {
+    let error = |what: &str| {
+        of(&[
+            &format!("lap.canonical.{what}"),
+            &format!("lap.misses.{what}"),
+        ])
+    };
+    let rms = error("rms");
+    assert!(rms[1] > 1.4 * rms[0], "{rms:?}");
+    for what in ["map_disagreement", "end_error"] {
+        let values = error(what);
+        assert!(values[1] < values[0], "{what}: {values:?}");
+    }
+    // The drive is the same.
+    let wheels = error("odometry_end_error");
+    assert_eq!(wheels[0], wheels[1]);
+}
+
+#[test]
 fn a_loop_halves_the_variance_in_the_middle_and_leaves_a_shared_bias() {
     let [revisit, cycle, bias] = of(&[
         "rule.revisit_percent",

@@ -3,7 +3,7 @@
 use super::document::companion;
 
 /// Largest number of words, folded text included; a formula counts as one word, code as none.
-const MAX_WORDS: usize = 9_450;
+const MAX_WORDS: usize = 9_700;
 /// Largest number of words outside of folded text.
 const MAX_SEEN_WORDS: usize = 6_500;
 

@@ -1,54 +1,116 @@
-// A thousand laps as dots: at four levels of odometry noise, by the front end alone and with loops. They run in the page
-// while the figure is in view.
+// A thousand laps as dots: a row for each setting, by the front end alone and with loops. They run in the page while the
+// figure is in view.
 
 import { WorkerPool, type Core } from './worker-pool';
-import { LEVELS, type Lap } from './protocol';
-import { nameOf, Strip, type Kind } from './strip';
+import type { Estimate, Lap } from './protocol';
+import { nameOf, Strip, type Axis, type Kind } from './strip';
+
+export type { Axis } from './strip';
 
 const KINDS: Kind[] = ['frontEnd', 'withLoops'];
-/** The last tick of the lap. */
-const LAST_TICK = 129;
+
+/** A row of dots. */
+export interface Row {
+  /** Beside the row. */
+  name: string;
+  /** For screen readers: `wheel noise ×4`. */
+  label: string;
+  /** Within a sentence: `at noise ×4`. */
+  at: string;
+  /** The parameters of w16.2 but for the seed: `noise=4`. */
+  state: string;
+}
+
+/** What the figure shows. */
+export interface Plan {
+  rows: readonly Row[];
+  measure(estimate: Estimate): number;
+  axis: Axis;
+  /** What the reader believes that loops take off the median, as a share; 0 is no guess. */
+  guess: number;
+  /** Where a lap is opened. */
+  lastTick: number;
+}
 
 export class LapsFigure {
   readonly #figure: HTMLElement;
-  readonly #strips: Strip[][] = [];
+  readonly #core: Core;
+  readonly #onLaps: () => void;
+  readonly #seeds: number;
   readonly #count = document.createElement('p');
   readonly #link = document.createElement('a');
   readonly #about = document.createElement('span');
-  readonly #seeds: number;
-  readonly #falseLaps: HTMLElement[] = [];
-  readonly #wrong = LEVELS.map(() => 0);
+  #plan: Plan;
+  #strips: Strip[][] = [];
+  #falseLaps: HTMLElement[] = [];
+  #laps: Lap[][] = [];
   #finishedSeeds = 0;
+  #isInView = false;
+  #pool: WorkerPool;
 
-  constructor(figure: HTMLElement, core: Core) {
+  constructor(figure: HTMLElement, core: Core, plan: Plan, onLaps: () => void = () => {}) {
     this.#figure = figure;
+    this.#core = core;
+    this.#onLaps = onLaps;
+    this.#plan = plan;
     this.#seeds = Number(figure.dataset['seeds'] ?? 0);
     this.#build();
-    const pool = new WorkerPool(core, this.#seeds, (laps) => this.#add(laps));
+    this.#pool = this.#startPool();
     new IntersectionObserver((entries) => {
-      const entry = entries.at(-1);
-      pool.setActive(entry?.isIntersecting === true);
+      this.#isInView = entries.at(-1)?.isIntersecting === true;
+      this.#pool.setActive(this.#isInView);
     }).observe(figure);
   }
 
+  /** Shows something else; other settings are driven again. */
+  show(plan: Plan): void {
+    const isSame = plan.rows.every(({ state }, row) => state === this.#plan.rows[row]?.state);
+    this.#plan = plan;
+    if (!isSame) {
+      this.#pool.close();
+      this.#pool = this.#startPool();
+      this.#pool.setActive(this.#isInView);
+    }
+    const laps = this.#laps;
+    this.#build();
+    if (isSame) for (const lap of laps.flat()) this.#put(lap);
+    else this.#finishedSeeds = 0;
+    this.#showCount();
+    this.#onLaps();
+  }
+
+  /** The laps of a row so far. */
+  lapsOf(row: number): readonly Lap[] {
+    return this.#laps[row] ?? [];
+  }
+
+  #startPool(): WorkerPool {
+    return new WorkerPool(this.#core, this.#seeds, this.#plan.rows.map(({ state }) => state), (laps) => this.#add(laps));
+  }
+
   #build(): void {
+    const { rows, axis, guess } = this.#plan;
     const grid = document.createElement('div');
     grid.className = 'laps-grid';
     grid.append(text('', 'laps-corner'), ...KINDS.map((kind) => text(capital(nameOf(kind)), 'laps-head')));
-    LEVELS.forEach((noise, level) => {
-      const strips = KINDS.map((kind) => new Strip(kind, level, {
+    this.#laps = rows.map(() => []);
+    this.#falseLaps = [];
+    this.#strips = rows.map(({ name, label }) => {
+      const strips = KINDS.map((kind) => new Strip(kind, label, axis, (lap) => this.#plan.measure(lap[kind]), {
         onPoint: (lap) => this.#describe(lap),
         onChoose: (lap) => this.#open(lap),
       }));
-      this.#strips.push(strips);
-      const name = text(`×${noise}`, 'laps-level');
+      const [alone, loops] = strips;
+      if (guess > 0 && loops !== undefined) loops.guess = () => (1 - guess) * (alone?.median ?? NaN);
+      const beside = text(name, 'laps-level');
       const wrong = text('', 'laps-false');
-      name.append(wrong);
+      beside.append(wrong);
       this.#falseLaps.push(wrong);
-      grid.append(name, ...strips.map(({ element }) => element));
+      grid.append(beside, ...strips.map(({ element }) => element));
+      return strips;
     });
     const ends = KINDS.map(() => text('', 'laps-axis'));
-    for (const axis of ends) axis.append(...['0', '1', '≥ 2 m'].map((label) => text(label)));
+    for (const end of ends) end.append(...axis.labels.map((label) => text(label)));
     grid.append(text('', 'laps-corner'), ...ends);
     this.#count.className = 'laps-count';
     this.#count.setAttribute('role', 'status');
@@ -63,15 +125,20 @@ export class LapsFigure {
   }
 
   #add(laps: Lap[]): void {
-    for (const lap of laps) {
-      for (const strip of this.#strips[lap.level] ?? []) strip.add(lap);
-      if (lap.wrong === 0) continue;
-      const wrong = (this.#wrong[lap.level] ?? 0) + 1;
-      this.#wrong[lap.level] = wrong;
-      (this.#falseLaps[lap.level] as HTMLElement).textContent = `${wrong} false`;
-    }
+    for (const lap of laps) this.#put(lap);
     this.#finishedSeeds += 1;
     this.#showCount();
+    this.#onLaps();
+  }
+
+  #put(lap: Lap): void {
+    const row = this.#laps[lap.row];
+    const [alone, loops] = this.#strips[lap.row] ?? [];
+    row?.push(lap);
+    alone?.add(lap);
+    loops?.add(lap);
+    const wrong = row?.filter((one) => one.wrong > 0).length ?? 0;
+    if (wrong > 0) (this.#falseLaps[lap.row] as HTMLElement).textContent = `${wrong} false`;
   }
 
   #showCount(): void {
@@ -83,15 +150,16 @@ export class LapsFigure {
   }
 
   #describe(lap: Lap): void {
-    const { seed, level, frontEnd, withLoops, closed, wrong } = lap;
+    const { seed, frontEnd, withLoops, closed, wrong } = lap;
+    const row = this.#plan.rows[lap.row] as Row;
     for (const strips of this.#strips) for (const strip of strips) strip.select(lap);
-    const noise = LEVELS[level];
+    const { measure, axis } = this.#plan;
     const false_ = wrong > 0 ? `, ${wrong} of them false` : '';
-    this.#about.textContent = `Seed ${seed} at noise ×${noise}: ${frontEnd.toFixed(2)} m by the front end alone, `
-      + `${withLoops.toFixed(2)} m with ${closed} loop${closed === 1 ? '' : 's'}${false_}.`;
+    this.#about.textContent = `Seed ${seed} ${row.at}: ${measure(frontEnd).toFixed(2)}${axis.unit} by the front end alone, `
+      + `${measure(withLoops).toFixed(2)}${axis.unit} with ${closed} loop${closed === 1 ? '' : 's'}${false_}.`;
     this.#link.hidden = false;
     this.#link.textContent = 'Drive it';
-    this.#link.href = `?w=16.2&seed=${seed}&noise=${noise}&t=${LAST_TICK}`;
+    this.#link.href = `?w=16.2&seed=${seed}&${row.state}&t=${this.#plan.lastTick}`;
   }
 
   #open(lap: Lap): void {

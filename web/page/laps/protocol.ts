@@ -1,29 +1,43 @@
 // Messages between the page and a worker that runs laps.
 
-/** Levels of odometry noise, as factors of the variances. */
-export const LEVELS = [0.25, 1, 2, 4] as const;
+/** One estimate of a lap, m. */
+export interface Estimate {
+  /** Position error of the last keyframe. */
+  end: number;
+  /** Root mean square error of all keyframes. */
+  rms: number;
+  /** Position error in the middle of the path, and the graph's standard deviation of it. */
+  middle: number;
+  sigma: number;
+}
 
-/** The result of a lap; fields in the order of the module's `Laps.drive`. */
+/** The result of a lap. */
 export interface Lap {
   seed: number;
-  level: number;
-  /** Position errors of the last keyframe, m. */
-  frontEnd: number;
-  withLoops: number;
+  /** Its row in the figure. */
+  row: number;
+  frontEnd: Estimate;
+  withLoops: Estimate;
   closed: number;
   wrong: number;
 }
 
-/** To a worker: first the module, then seeds. */
-export type Order = { module: WebAssembly.Module } | { seed: number };
+/** To a worker: first the module, then seeds with the state of w16.2 in each row: `noise=4&matcher=p2l`. */
+export type Order = { module: WebAssembly.Module } | { seed: number; states: readonly string[] };
 
 /** The module's `Laps`. */
 export interface LapRunner {
-  drive(seed: number, noise: number): ArrayLike<number>;
+  drive(seed: number, state: string): ArrayLike<number>;
 }
 
-/** Runs the lap of a seed at one level. */
-export function runLap(runner: LapRunner, seed: number, level: number): Lap {
-  const [, frontEnd = NaN, withLoops = NaN, closed = 0, wrong = 0] = Array.from(runner.drive(seed, LEVELS[level] ?? 1));
-  return { seed, level, frontEnd, withLoops, closed, wrong };
+/** Runs the lap of a seed in a row. */
+export function runLap(runner: LapRunner, seed: number, row: number, state: string): Lap {
+  // The order of the module's `Laps.drive`.
+  const numbers = Array.from(runner.drive(seed, state));
+  const estimate = (from: number): Estimate => {
+    const [end = NaN, rms = NaN, middle = NaN, sigma = NaN] = numbers.slice(from, from + 4);
+    return { end, rms, middle, sigma };
+  };
+  const [closed = 0, wrong = 0] = numbers.slice(8);
+  return { seed, row, frontEnd: estimate(0), withLoops: estimate(4), closed, wrong };
 }

@@ -1,13 +1,23 @@
-// A strip plot of laps by their final position error.
+// A strip plot of laps by one of their errors.
 
-import { LEVELS, type Lap } from './protocol';
+import type { Lap } from './protocol';
 import { spreadOf } from './spread';
 
 /** The estimate of a strip: by the front end alone, or with loops. */
 export type Kind = 'frontEnd' | 'withLoops';
 
-/** End of the axis; larger errors are clamped to it. */
-export const AXIS_END_M = 2;
+/** The axis of a strip. */
+export interface Axis {
+  /** Its end; larger values are clamped to it. */
+  end: number;
+  /** After a value, with a leading space. */
+  unit: string;
+  /** At its start, middle and end. */
+  labels: readonly string[];
+}
+
+/** Intervals between the lines of a strip. */
+const INTERVALS = 4;
 const HEIGHT_PX = 76;
 /** Height of the bottom row for laps with false loops; the front end has no loops. */
 const FALSE_ROW_PX = 18;
@@ -27,20 +37,26 @@ export interface StripHost {
 export class Strip {
   readonly element = document.createElement('canvas');
   readonly #kind: Kind;
+  readonly #axis: Axis;
+  readonly #measure: (lap: Lap) => number;
   readonly #host: StripHost;
   /** Sorted by error if `#isSorted`. */
   #laps: Lap[] = [];
   #isSorted = true;
   #selected: Lap | undefined;
+  /** The reader's guess of the median. */
+  guess: () => number | undefined = () => undefined;
   #frame = 0;
 
-  constructor(kind: Kind, level: number, host: StripHost) {
+  constructor(kind: Kind, label: string, axis: Axis, measure: (lap: Lap) => number, host: StripHost) {
     this.#kind = kind;
+    this.#axis = axis;
+    this.#measure = measure;
     this.#host = host;
     const { element } = this;
     element.tabIndex = 0;
     element.setAttribute('role', 'slider');
-    element.setAttribute('aria-label', `Laps at wheel noise ×${LEVELS[level]}, ${nameOf(kind)}`);
+    element.setAttribute('aria-label', `Laps at ${label}, ${nameOf(kind)}`);
     for (const [name, value] of [['min', '0'], ['now', '0'], ['text', 'no lap is chosen']]) {
       element.setAttribute(`aria-value${name}`, value ?? '');
     }
@@ -59,6 +75,11 @@ export class Strip {
     this.draw();
   }
 
+  /** The median of the laps so far. */
+  get median(): number | undefined {
+    return spreadOf(this.#laps.map(this.#measure))?.median;
+  }
+
   /** Highlights the lap of a seed. */
   select(lap: Lap): void {
     this.#selected = this.#laps.find(({ seed }) => seed === lap.seed);
@@ -66,8 +87,8 @@ export class Strip {
     const rank = this.#selected === undefined ? 0 : sorted.indexOf(this.#selected) + 1;
     this.element.setAttribute('aria-valuemax', String(sorted.length));
     this.element.setAttribute('aria-valuenow', String(rank));
-    const errorM = this.#selected?.[this.#kind].toFixed(2);
-    this.element.setAttribute('aria-valuetext', errorM === undefined ? 'no lap is chosen' : `seed ${lap.seed}: ${errorM} m`);
+    const value = this.#selected && this.#measure(this.#selected).toFixed(2);
+    this.element.setAttribute('aria-valuetext', value === undefined ? 'no lap is chosen' : `seed ${lap.seed}: ${value}${this.#axis.unit}`);
     this.draw();
   }
 
@@ -96,7 +117,7 @@ export class Strip {
     const ink = (name: string): string => style.getPropertyValue(name).trim();
     const colors = INKS.map(ink);
     context.strokeStyle = ink('--faint');
-    for (let at = 0; at <= AXIS_END_M; at += 0.5) line(context, this.#x(at, width), 0, HEIGHT_PX, 1);
+    for (let at = 0; at <= INTERVALS; at += 1) line(context, this.#x((at / INTERVALS) * this.#axis.end, width), 0, HEIGHT_PX, 1);
     const isFalse = (lap: Lap): boolean => this.#hasFalseLoop(lap);
     if (this.#kind === 'withLoops') {
       context.beginPath();
@@ -114,6 +135,13 @@ export class Strip {
     for (const lap of wrong) cross(context, this.#place(lap, width));
     element.dataset['false'] = String(wrong.length);
     this.#paintSpread(context, width, ink('--ink'));
+    const guess = this.guess();
+    if (guess !== undefined) {
+      context.strokeStyle = ink('--focus');
+      context.setLineDash([4, 4]);
+      line(context, this.#x(guess, width), 0, HEIGHT_PX, 2);
+      context.setLineDash([]);
+    }
     if (this.#selected === undefined) return;
     const [x, y] = this.#place(this.#selected, width);
     context.strokeStyle = ink('--focus');
@@ -125,7 +153,7 @@ export class Strip {
 
   /** The median as a long line, the 5 % and 95 % quantiles as short ones. */
   #paintSpread(context: CanvasRenderingContext2D, width: number, ink: string): void {
-    const spread = spreadOf(this.#laps.map((lap) => lap[this.#kind]));
+    const spread = spreadOf(this.#laps.map(this.#measure));
     if (spread === undefined) return;
     context.strokeStyle = ink;
     line(context, this.#x(spread.median, width), 0, HEIGHT_PX, 2.5);
@@ -137,14 +165,14 @@ export class Strip {
     this.element.dataset['laps'] = String(this.#laps.length);
   }
 
-  #x(errorM: number, width: number): number {
-    return EDGE_PX + (Math.min(errorM, AXIS_END_M) / AXIS_END_M) * (width - 2 * EDGE_PX);
+  #x(value: number, width: number): number {
+    return EDGE_PX + (Math.min(value, this.#axis.end) / this.#axis.end) * (width - 2 * EDGE_PX);
   }
 
   /** The golden ratio spreads consecutive seeds evenly over the height. */
   #place(lap: Lap, width: number): [number, number] {
     const share = (lap.seed * 0.6180339887) % 1;
-    const x = this.#x(lap[this.#kind], width);
+    const x = this.#x(this.#measure(lap), width);
     const row = HEIGHT_PX - FALSE_ROW_PX;
     return this.#hasFalseLoop(lap) ? [x, row + 5 + share * (FALSE_ROW_PX - 10)] : [x, EDGE_PX + share * (row - 2 * EDGE_PX)];
   }
@@ -181,7 +209,7 @@ export class Strip {
   }
 
   #sorted(): Lap[] {
-    if (!this.#isSorted) this.#laps.sort((a, b) => a[this.#kind] - b[this.#kind]);
+    if (!this.#isSorted) this.#laps.sort((a, b) => this.#measure(a) - this.#measure(b));
     this.#isSorted = true;
     return this.#laps;
   }

@@ -1,6 +1,6 @@
 // A pool of workers that run laps. Without workers it runs one lap at a time between frames on the main thread.
 
-import { runLap, LEVELS, type LapRunner, type Lap } from './protocol';
+import { runLap, type LapRunner, type Lap } from './protocol';
 
 /** More workers heat the machine and save little time. */
 const MAX_WORKERS = 4;
@@ -16,6 +16,7 @@ export interface Core {
 export class WorkerPool {
   readonly #core: Core;
   readonly #lastSeed: number;
+  readonly #states: readonly string[];
   readonly #onLaps: (laps: Lap[]) => void;
   #nextSeed = 1;
   #isActive = false;
@@ -27,18 +28,20 @@ export class WorkerPool {
   /** Seeds of workers that failed. */
   #retries: number[] = [];
   #mainThread: Promise<void> | undefined;
+  #isClosed = false;
 
-  /** Runs the seeds from 1 to `lastSeed` at every level once active; `onLaps` gets the laps of each seed. */
-  constructor(core: Core, lastSeed: number, onLaps: (laps: Lap[]) => void) {
+  /** Runs the seeds from 1 to `lastSeed` in every state of w16.2 once active; `onLaps` gets the laps of each seed. */
+  constructor(core: Core, lastSeed: number, states: readonly string[], onLaps: (laps: Lap[]) => void) {
     this.#core = core;
     this.#lastSeed = lastSeed;
+    this.#states = states;
     this.#onLaps = onLaps;
   }
 
   /** Resumes or pauses; running laps are finished. */
   setActive(isActive: boolean): void {
-    this.#isActive = isActive;
-    if (!isActive) return;
+    this.#isActive = isActive && !this.#isClosed;
+    if (!this.#isActive) return;
     if (!this.#hasStarted) void this.#start();
     else this.#schedule();
   }
@@ -46,6 +49,7 @@ export class WorkerPool {
   async #start(): Promise<void> {
     this.#hasStarted = true;
     const module = await this.#core.module();
+    if (this.#isClosed) return;
     const count = Math.min(Math.max((navigator.hardwareConcurrency ?? 2) - 1, 1), MAX_WORKERS);
     try {
       for (let started = 0; started < count; started += 1) this.#addWorker(module);
@@ -89,11 +93,11 @@ export class WorkerPool {
     for (let worker = this.#idle.pop(); worker !== undefined; worker = this.#idle.pop()) {
       const seed = this.#takeSeed();
       if (seed === undefined) {
-        if (this.#assigned.size === 0) this.#close();
+        if (this.#assigned.size === 0) this.close();
         return;
       }
       this.#assigned.set(worker, seed);
-      worker.postMessage({ seed });
+      worker.postMessage({ seed, states: this.#states });
     }
   }
 
@@ -105,8 +109,9 @@ export class WorkerPool {
     return this.#nextSeed - 1;
   }
 
-  /** Frees the memory after the last seed. */
-  #close(): void {
+  /** Frees the memory after the last seed, or if its laps are not needed any more. */
+  close(): void {
+    this.#isClosed = true;
     for (const worker of this.#workers) worker.terminate();
     this.#isActive = false;
   }
@@ -117,11 +122,12 @@ export class WorkerPool {
       const seed = this.#takeSeed();
       if (seed === undefined) return;
       const laps: Lap[] = [];
-      for (let level = 0; level < LEVELS.length; level += 1) {
+      for (const [row, state] of this.#states.entries()) {
         // A timer started in an animation frame fires after the frame was painted.
         await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
-        laps.push(runLap(runner, seed, level));
+        laps.push(runLap(runner, seed, row, state));
       }
+      if (this.#isClosed) return;
       this.#onLaps(laps);
     }
   }

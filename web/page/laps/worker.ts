@@ -1,13 +1,13 @@
 // A worker that runs laps: it gets the module first, then one seed at a time.
 
 import { createGlue } from '../../pkg/glue.js';
-import { runLap, LEVELS, type LapRunner, type Order } from './protocol';
+import { runLap, type LapRunner, type Order } from './protocol';
 
 let runner: Promise<LapRunner> | undefined;
 
 self.addEventListener('message', ({ data }: MessageEvent<Order>) => {
   if ('module' in data) runner = start(data.module);
-  else void runSeed(data.seed);
+  else void runSeed(data.seed, data.states);
 });
 
 async function start(module: WebAssembly.Module): Promise<LapRunner> {
@@ -16,8 +16,8 @@ async function start(module: WebAssembly.Module): Promise<LapRunner> {
   return new glue.Laps();
 }
 
-async function runSeed(seed: number): Promise<void> {
+async function runSeed(seed: number, states: readonly string[]): Promise<void> {
   const laps = await runner;
   if (laps === undefined) throw new Error('a seed came before the module');
-  self.postMessage(LEVELS.map((_, level) => runLap(laps, seed, level)));
+  self.postMessage(states.map((state, row) => runLap(laps, seed, row, state)));
 }

@@ -7,7 +7,7 @@ use ch16_lab::lap::{LapConfig, LapRunner};
 use ch16_slam2d::chapter::path_information;
 use ch16_slam2d::loops::{LoopConfig, chi_squared_gate};
 use ch16_slam2d::prelude::Vector3;
-use pr_geom::{Rng, math};
+use pr_geom::{Rng, SE2, math};
 use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
@@ -22,7 +22,7 @@ const REACH_DEG: f64 = 20.0;
 
 pub(super) const SKETCH: Sketch = Sketch {
     name: "gate",
-    title: "A gate that grows with the way",
+    title: "A gate that grows with the path",
     slider: Slider {
         label: "nodes since the place was seen",
         unit: "",
@@ -64,7 +64,7 @@ fn at(nodes: f64) -> Shown {
     let [reach_m, reach_deg] = reach(gap, &config);
     Shown {
         scene: Scene {
-            panels: vec![picture(gap, &config)],
+            panels: vec![picture(gap, &config), ends(gap, &config)],
         },
         sentence: format!(
             "After {gap} nodes the gate reaches {reach_m:.2} m, or {reach_deg:.0}°. The loop’s χ² is {:.2}, and {:.3} may be: {word}.",
@@ -135,6 +135,41 @@ fn picture(gap: usize, config: &LoopConfig) -> Panel {
             LegendEntry::line("gate", Tone::Ink, Stroke::Dotted),
             LegendEntry::mark(label, tone, mark),
         ],
+        color_bar: None,
+    }
+}
+
+/// Where the drifts end, in the plane: a bent cloud, and the circle of the positions that pass without a turn.
+fn ends(gap: usize, config: &LoopConfig) -> Panel {
+    let [reach_m, _] = reach(gap, config);
+    let information = path_information(gap, config);
+    let passes = |innovation: &Vector3<f64>| {
+        chi_squared_gate(innovation, &information, config.gate_chi2).passes()
+    };
+    let place = |innovation: &Vector3<f64>| {
+        let end = SE2::exp(innovation);
+        [end.x(), end.y()]
+    };
+    let (within, beyond): (Vec<_>, Vec<_>) = drifts(gap, config).into_iter().partition(passes);
+    let places = |drifts: &[Vector3<f64>]| drifts.iter().map(place).collect();
+    Panel {
+        id: "ends",
+        title: "Where they end, and the gate".to_owned(),
+        weight: Weight::Side,
+        aspect: Aspect::Equal,
+        x: Axis::new("along the path (m)", -REACH_M, REACH_M),
+        y: Axis::new("across (m)", -2.0 * REACH_M, 2.0 * REACH_M),
+        layers: vec![
+            Layer::points(places(&within), Mark::Dot, Tone::Prior, 2.0),
+            Layer::points(places(&beyond), Mark::Triangle, Tone::Prediction, 3.0),
+            Layer::Ellipse {
+                center: [0.0; 2],
+                half_axes: [[reach_m, 0.0], [0.0, reach_m]],
+                stroke: Stroke::Dotted,
+                tone: Tone::Ink,
+            },
+        ],
+        legend: Vec::new(),
         color_bar: None,
     }
 }

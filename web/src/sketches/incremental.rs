@@ -171,7 +171,7 @@ fn at(error_m: f64) -> Shown {
     let ending = if found_m.abs() <= RIGHT_M {
         format!("{:.2} m off, at the right hill", found_m.abs())
     } else {
-        format!("{found_m:.2} m off, at the next hill, and nothing says so")
+        format!("{found_m:.2} m off, at the next hill, and no mapper reports it")
     };
     Shown {
         sentence: format!(

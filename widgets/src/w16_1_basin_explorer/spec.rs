@@ -100,7 +100,7 @@ pub(super) static AXIS: OneOf<OffsetAxis> = OneOf::new(
 )
 .help("The vertical axis of the basin maps; the other offset comes from its slider.");
 
-pub(super) static PATHS: Param<bool> = Param::switch("paths", "ways of other starts")
+pub(super) static PATHS: Param<bool> = Param::switch("paths", "paths of other starts")
     .help("Draws over the basin map the paths from starts all over it, iteration by iteration.");
 
 pub(super) static EDGE: OneOf<Phase> = OneOf::new(

@@ -64,6 +64,8 @@ use runs::{Results, Runs};
 use settings::LapSettings;
 use transition::Transition;
 
+pub use settings::lap_of_link;
+
 /// Ticks a second at speed 1: twice as fast as the robot.
 const TICKS_PER_S: f64 = 8.0;
 

@@ -121,7 +121,7 @@ pub(super) static SEED: Param<u32> = seed(lap::CANONICAL_SEED);
 
 pub(super) static GATE: Param<f64> = Param::slider("gate", "gate quantile", [0.90, 0.999], 0.001)
     .default(CHAPTER_QUANTILE)
-    .help("Share of right loops that the χ² gate lets pass, 3 degrees of freedom: 0.95 is χ² up to 7.815.");
+    .help("Quantile of χ² with 3 degrees of freedom: 0.95 is χ² up to 7.815. So many true loops pass if the robot does not move, fewer after a drive.");
 
 pub(super) static GATE_MODEL: OneOf<GateModel> = OneOf::new(
     "gate-model",
@@ -156,6 +156,17 @@ pub(super) static INFORMATION: OneOf<InformationFrame> = OneOf::new(
     InformationFrame::ALL,
 )
 .help("The frame of an edge's information. As the chapter's figures were computed, it is turned by a heading of the world; exactly, it is that of the edge's target, the newer of its ends.");
+
+pub(super) static NORMALS: Param<f64> = Param::slider("normals", "radius of the normals", [0.0, 8.0], 0.1)
+    .unit("cells")
+    .help("A point's normal comes from its neighbours within this radius, in cells of 12 cm. 0 is the matcher's own: 2.5, and 4.2 for point to plane.");
+
+pub(super) static CAP: Param<bool> = Param::switch("cap", "cap on the information")
+    .on()
+    .help("Whether the information of an edge is scaled down to 2500 at most, a deviation of 2 cm and of 0.02 rad.");
+
+pub(super) static MISSES: Param<bool> = Param::switch("misses", "keep beams that hit no wall")
+    .help("A beam that hits no wall reports the maximum range. Kept as points, a common mistake, these make a wall that moves with the robot.");
 
 pub(super) static PICK: OneOf<Picked> = OneOf::new(
     "pick",
@@ -240,6 +251,9 @@ pub const PARAMS: &[&ParamSpec] = &[
     &GATE_MODEL.spec,
     &MATCHER.spec,
     &INFORMATION.spec,
+    &NORMALS.spec,
+    &CAP.spec,
+    &MISSES.spec,
     &PICK.spec,
     &NUMBER.spec,
     &OWN.spec,
@@ -443,7 +457,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.2",
     title: "The full lap",
     misconception: "Closing a loop does not put the whole path right: it makes the map agree with itself.",
-    question: "How far is a lap’s map off at its end, and what do loops mend of it? Press Play, or drag the timeline.",
+    question: "How far is a lap’s map off at its end, and what do loops correct? Press Play, or drag the timeline.",
     notice: &[
         "The walls seen on the way out and on the way back stand apart, and one loop brings them together: the map's disagreement falls to about a third over the lap.",
         "The typical error over the keyframes hardly changes, and the largest even grows a little: the corridor comes out almost a metre too short, and no loop sees that.",
@@ -497,7 +511,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         },
         Preset {
             id: "rejected",
-            label: "Seed 6: a loop is turned away",
+            label: "Seed 6: a loop is refused",
             help: "The χ² is below the gate, but the sweep fits the old walls badly; four keyframes later a better match passes.",
             set: &[SEED.to(6), TICK.to(90.0)],
             then: &[],
@@ -519,21 +533,21 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "tight-gate",
             label: "A tight gate on a noisy lap",
-            help: "At the 0.90 quantile the gate turns away a loop that the chapter's gate accepts.",
+            help: "At the 0.90 quantile the gate refuses a loop that the chapter's gate accepts.",
             set: &[NOISE.to(4.0), GATE.to(0.90), TICK.to(116.0)],
             then: &[],
         },
         Preset {
             id: "locked-out",
             label: "Right loops, locked out",
-            help: "Seed 2 at three times the noise drifts more than the gate allows for: it turns away three right loops, and the drift goes on.",
+            help: "Seed 2 at three times the noise drifts more than the gate allows for: it refuses three right loops, and the drift goes on.",
             set: &[SEED.to(2), NOISE.to(3.0), TICK.to(LAP_TICKS)],
             then: &[],
         },
         Preset {
             id: "let-in",
             label: "The same lap, exact gate",
-            help: "The chapter's gate turns the first loop away by its heading alone. The edges are less sure of the heading: the exact gate lets all three loops in, and the lap ends more than a metre closer.",
+            help: "The chapter's gate refuses the first loop for its heading alone. The edges are less sure of the heading: the exact gate lets all three loops in, and the lap ends more than a metre closer.",
             set: &[
                 SEED.to(2),
                 NOISE.to(3.0),
@@ -559,7 +573,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "tamed-loop",
             label: "The same lie, tamed",
-            help: "Dynamic covariance scaling gives a loop that is far off next to no weight: nothing moves.",
+            help: "Dynamic covariance scaling gives a loop that is far off next to no weight: no pose moves.",
             set: &[
                 OWN.to("same-place"),
                 OWN_FROM.to(40),
@@ -598,7 +612,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "twins",
             label: "Two rooms alike",
-            help: "The second room looks like the first, and after so long a way the gate is wide enough: the robot closes a wrong loop, and the two rooms become one.",
+            help: "The second room looks like the first, and after such a long path the gate is wide enough: the robot closes a wrong loop, and the two rooms become one.",
             set: &[
                 WORLD.to("twins"),
                 INFORMATION.to("exact"),
@@ -609,7 +623,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "corridor",
             label: "A bare corridor",
-            help: "Nothing is seen along it, so registration says that the robot hardly moves. The map agrees with itself, and the corridor is a fraction of its length.",
+            help: "Along it the laser measures nothing, and point to point holds each sweep back: the map agrees with itself, and the corridor is a fraction of its length.",
             set: &[
                 WORLD.to("corridor"),
                 INFORMATION.to("exact"),
@@ -620,13 +634,20 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "hall",
             label: "A round hall",
-            help: "The wall tells where the middle is, and nothing of the heading: by point to plane the robot is on the far side of the hall at the end, and the map agrees with itself to three centimetres.",
+            help: "The wall fixes the position and leaves the heading open: by point to plane the robot is on the far side of the hall at the end, and the map agrees with itself to three centimetres.",
             set: &[
                 WORLD.to("hall"),
                 MATCHER.to("p2l"),
                 INFORMATION.to("exact"),
                 TICK.to(HALL_TICKS),
             ],
+            then: &[],
+        },
+        Preset {
+            id: "phantom-wall",
+            label: "Keep beams that hit no wall",
+            help: "The most common mistake: readings at the maximum range become points, and these travel with the robot and hold it back. The typical error over the keyframes grows from 0.59 m to 0.89 m; the lap ends nearer, and the map agrees with itself.",
+            set: &[MISSES.to(true), TICK.to(LAP_TICKS)],
             then: &[],
         },
         Preset {

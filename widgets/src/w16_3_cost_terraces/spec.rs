@@ -158,7 +158,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "terraces",
         label: "Shrink τ to 0.15 m",
-        help: "ICP's bowl breaks into steps, and its ball stops on one. NDT's ball rolls home.",
+        help: "ICP's bowl shrinks, creases cross the plain around it, and its ball stops in one. NDT's ball rolls home.",
         set: &[
             ("tau", 0.15),
             ("colours", 1.0),

@@ -70,7 +70,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "The back end works only at keyframes, and its big moment is a loop: then old poses move.",
         "The grid stores no poses. After an accepted loop it is thrown away and drawn again from every keyframe's sweep.",
         "A cell takes the ink of these words where it is likely occupied, and the colour of the paper where it is likely free, on light paper as on dark. Of the tinted rest nothing was seen.",
-        "Each lane is one thing that the system does. The upper two run at every tick, the rest waits for a keyframe. A press on a mark goes there and says its data.",
+        "Each lane is one thing that the system does. The upper two run at every tick, the rest waits for a keyframe. A press on a mark goes there and shows its data.",
         "Walls blur where two passes disagree. At the first loop they sharpen: the cells that are more than 90 % likely to be occupied go from 110 to 156.",
     ],
     opening: Opening {
@@ -112,7 +112,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "wrong-loop",
             label: "A wrong loop gets in",
-            help: "Seed 6 at twice the noise: the first loop passes every test, and is 0.36 m off. Only the truth tells, and no robot knows it.",
+            help: "Seed 6 at twice the noise: the first loop passes every test, and is 0.36 m off. Only the truth shows it, and no robot has that.",
             set: &[SEED.to(6), NOISE.to(2.0), TICK.to(92.0)],
             then: &[],
         },

@@ -163,7 +163,7 @@ const ONE_STEP: ButtonSpec = ButtonSpec {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.5",
     title: "Pose-graph toy",
-    misconception: "No measurement is put right and none is thrown away: each gives way by as much as it is unsure.",
+    misconception: "No measurement is corrected, and none is thrown away: each yields in proportion to its uncertainty.",
     question: "Which measurement gives way when the springs disagree? Drag a pose, and let it go.",
     notice: &[
         "Each edge is a spring at rest where its measurement holds. The dotted line shows what is missing, the number on the spring what it costs.",
@@ -190,7 +190,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "stiff",
             label: "A loop that is sure",
-            help: "Ten times as stiff, the loop keeps almost all of its word, and odometry gives way.",
+            help: "Ten times as stiff, the loop keeps almost its whole length, and odometry gives way.",
             set: &[GRAPH.to("line"), STIFFNESS.to(10.0)],
             then: &["step"],
         },

@@ -120,7 +120,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "without-home",
             label: "A window without home",
-            help: "Only ±60° around a start 75° off: home is not in it, and the search says that no place fits.",
+            help: "Only ±60° around a start 75° off: home is not in it, and the search reports that no place fits.",
             set: &[TURN.to(60.0), PROGRESS.to(0.0)],
             then: &["play"],
         },

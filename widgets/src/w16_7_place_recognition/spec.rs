@@ -111,7 +111,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "Each dot is a pair of places. What lies left of the line is called the same place, whether it is or not.",
         "In the matrix ink is alike. The stripe that runs down to the right is the way back: places in the order in which they were left.",
-        "In the corridor all histograms look alike: a beam says how far, and not in which direction.",
+        "In the corridor all histograms look alike: a range has no direction.",
         "Scan Context knows directions. Slide one view over the other: they differ least at the heading between them.",
         "A looser threshold finds more of the true pairs, and calls more false ones. No point of the curve is free.",
     ],
@@ -140,7 +140,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "nearby",
             label: "By the estimated pose",
-            help: "On a short lap the pose says most; it is wrong where drift is large.",
+            help: "On a short lap the pose is the best detector; it is wrong where drift is large.",
             set: &[DETECTOR.to("nearby")],
             then: &[],
         },

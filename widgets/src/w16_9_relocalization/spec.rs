@@ -80,7 +80,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.9",
     title: "Come back tomorrow",
     misconception: "A saved map does not say where the robot is. It has to be looked for everywhere, and \
-                    an honest robot says when two places look alike.",
+                    an honest robot reports when two places look alike.",
     question: "Where does the robot find itself again? Drag it anywhere, then press Play.",
     notice: &[
         "A ghost is a pose that is not ruled out yet, the larger the better it may fit. What is left of them is where the robot may be.",

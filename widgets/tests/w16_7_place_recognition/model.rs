@@ -35,6 +35,30 @@ fn its_curves_are_those_of_the_command_line() {
     }
 }
 
+/// A precision says nothing without its base rate: in the ring it is lower for the perfect detector, too.
+#[test]
+fn a_precision_stands_beside_that_of_a_guess_and_of_a_perfect_detector() {
+    for world in [0.0, 1.0] {
+        let been = with(&[("world", world), ("called", 30.0), ("detector", 1.0)]);
+        let [guess, found, perfect] = [
+            "chance_precision",
+            "histogram_precision",
+            "perfect_precision",
+        ]
+        .map(|name| fact(&been, name));
+        assert_eq!(guess, fact(&been, "same") / fact(&been, "graded"));
+        assert!(
+            guess < found && found < perfect && perfect < 1.0,
+            "{guess} {found} {perfect}"
+        );
+        let sentence = been.outcome().sentence;
+        assert!(
+            sentence.contains(&format!("a guess has {guess:.2}")),
+            "{sentence}"
+        );
+    }
+}
+
 #[test]
 fn the_options_are_the_detectors_of_the_core_in_their_order() {
     let detector = SPEC.params.iter().find(|param| param.id == "detector");

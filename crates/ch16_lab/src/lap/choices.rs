@@ -6,7 +6,7 @@ use ch16_slam2d::chapter::{DetectorKind, InformationFrame};
 use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::matching::{MatcherKind, NdtMatcherConfig, SearchMatcherConfig};
 use ch16_slam2d::places::PlaceDetectorConfig;
-use ch16_slam2d::scan::LaserScan;
+use ch16_slam2d::scan::{LaserScan, ScanConfig};
 use ch16_slam2d::slam::SlamConfig;
 use pr_sim::Course;
 
@@ -346,6 +346,16 @@ impl LapConfig {
             LapMatcher::PointToPlane => self.with_scan(SlamConfig::default().scan),
             LapMatcher::PointToPoint | LapMatcher::Ndt => self,
         }
+    }
+
+    /// Replaces the radius of the neighbours for a point's normal, in cells.
+    #[must_use]
+    pub fn with_normals(self, cells: f64) -> Self {
+        let scan = self.slam.scan;
+        self.with_scan(ScanConfig {
+            normal_radius_m: cells * scan.cell_m,
+            ..scan
+        })
     }
 
     /// Replaces the matcher of the loops.

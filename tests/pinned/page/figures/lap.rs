@@ -29,6 +29,7 @@ pub fn config(name: &str) -> Option<LapConfig> {
         "p2l" => LapConfig::default().with_matcher(LapMatcher::PointToPlane),
         "p2l-narrow" => narrow_normals(),
         "p2p-wide" => wide_normals(),
+        "misses" => misses(),
         "ndt" => LapConfig::default().with_matcher(LapMatcher::Ndt),
         "quiet" => quiet(LapMatcher::PointToPoint),
         "quiet-p2l" => quiet(LapMatcher::PointToPlane),
@@ -63,6 +64,13 @@ fn wide_normals() -> LapConfig {
         .slam
         .scan;
     LapConfig::default().with_scan(scan)
+}
+
+/// The canonical run with readings at the maximum range kept as points.
+fn misses() -> LapConfig {
+    let mut config = LapConfig::default();
+    config.drive.lidar.keeps_misses = true;
+    config
 }
 
 /// The canonical run with almost exact odometry.

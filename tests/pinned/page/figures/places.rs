@@ -43,13 +43,6 @@ impl World {
         (CALLED * self.pairs.len() as f64) as usize
     }
 
-    /// Precision of a detector that finds half of the same places.
-    fn precision_at_half(curve: &PlaceCurve) -> Option<f64> {
-        let points = curve.points.iter();
-        let at = points.filter(|point| point.recall >= 0.5);
-        Some(at.min_by(|a, b| a.recall.total_cmp(&b.recall))?.precision)
-    }
-
     /// Precision if the most alike `CALLED` of the pairs are called the same.
     fn precision_called(&self, curve: &PlaceCurve) -> Option<f64> {
         let index = GRADED.iter().position(|graded| *graded == curve.detector)?;
@@ -71,7 +64,7 @@ impl World {
             ["chance_percent"] => Some(100.0 * self.chance()),
             ["perfect", "called"] => Some((self.same() as f64 / self.called() as f64).min(1.0)),
             [name, "called"] => self.precision_called(detector(name)?),
-            [name, "half"] => Self::precision_at_half(detector(name)?),
+            [name, "half"] => detector(name)?.precision_at_fixed_recall(),
             [name, "over_chance"] => Some(detector(name)?.average_precision / self.chance()),
             [name, "area"] => Some(detector(name)?.average_precision),
             [name, "clean_recall"] => Some(detector(name)?.recall_without_errors),

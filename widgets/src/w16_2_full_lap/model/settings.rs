@@ -5,11 +5,14 @@ use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
 use pr_sim::Course;
+use widget_kit::param::ParamError;
 use widget_kit::run::LOOPS;
 use widget_kit::run::NOISE;
 use widget_kit::values::Values;
 
-use crate::w16_2_full_lap::spec::{GATE, GATE_MODEL, INFORMATION, MATCHER, SEED, WORLD};
+use crate::w16_2_full_lap::spec::{
+    CAP, GATE, GATE_MODEL, INFORMATION, MATCHER, MISSES, NORMALS, PARAMS, SEED, SPEC, WORLD,
+};
 
 /// The settings on which a lap depends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +33,12 @@ pub struct LapSettings {
     pub matcher: LapMatcher,
     /// The frame in which an edge holds its information.
     pub information_frame: InformationFrame,
+    /// Radius of the neighbours for a normal, in cells; `None` is the matcher's own.
+    pub normals_cells: Option<f64>,
+    /// Whether the information of edges is bounded.
+    pub is_capped: bool,
+    /// Whether readings at the maximum range count as returns.
+    pub keeps_misses: bool,
 }
 
 impl LapSettings {
@@ -48,6 +57,9 @@ impl LapSettings {
             gate_model: values.get(&GATE_MODEL),
             matcher: values.get(&MATCHER),
             information_frame: values.get(&INFORMATION),
+            normals_cells: Some(values.get(&NORMALS)).filter(|cells| *cells > 0.0),
+            is_capped: values.get(&CAP),
+            keeps_misses: values.get(&MISSES),
         }
     }
 
@@ -60,7 +72,27 @@ impl LapSettings {
         config.slam.loop_closure = self.loop_closure;
         config.slam.chapter.loops.gate_chi2 = self.gate_chi2;
         config.slam.chapter.loops.gate_model = self.gate_model;
-        let config = config.with_matcher(self.matcher);
+        config.drive.lidar.keeps_misses = self.keeps_misses;
+        let mut config = config.with_matcher(self.matcher);
+        if let Some(cells) = self.normals_cells {
+            config = config.with_normals(cells);
+        }
+        if !self.is_capped {
+            config = config.with_information_cap(f64::INFINITY);
+        }
         Some(config.with_information(self.information_frame))
     }
+}
+
+/// The lap of a link to the widget: `seed=6&matcher=p2l`, in a built-in world.
+///
+/// # Errors
+/// If a parameter does not exist or its value is invalid; `None` for the reader's own flat.
+pub fn lap_of_link(link: &str) -> Result<Option<LapConfig>, ParamError> {
+    let mut values = Values::defaults(PARAMS);
+    for (id, text) in link.split('&').filter_map(|pair| pair.split_once('=')) {
+        let (param, _) = values.find_for(SPEC.id, id)?;
+        values.set(SPEC.id, id, param.parse(text)?)?;
+    }
+    Ok(LapSettings::read(&values).config(None))
 }

@@ -172,7 +172,26 @@ fn moment_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
             runs.false_loops_until(tick) as f64,
         ),
         Fact::new("gate_chi2", "gate χ²", runs.gate_chi2(), "", 3),
+        Fact::count(
+            "line",
+            "last line of the loop that ran",
+            last_line(runs, tick),
+        ),
     ]
+}
+
+/// The last line of the algorithm on the page that ran in a tick, from 1: predict and register, the test for a keyframe,
+/// a node and its edge, a candidate verified, its edge and the optimum, the push. 0 at the start.
+fn last_line(runs: &Runs, tick: usize) -> f64 {
+    let report = runs.graph.lap().report(tick);
+    report.map_or(0.0, |report| {
+        match (report.new_keyframe, &report.loop_attempt) {
+            (None, _) => 2.0,
+            (Some(_), None) => 3.0,
+            (Some(_), Some(attempt)) if attempt.accepted() => 6.0,
+            (Some(_), Some(_)) => 4.0,
+        }
+    })
 }
 
 /// Facts of the newest attempt; not finite before the first one, because the list of facts is fixed.

@@ -79,6 +79,16 @@ impl Places {
         }
     }
 
+    /// Share of the pairs that are the same place: the precision of a guess, at every recall.
+    pub fn chance(&self) -> f64 {
+        self.same as f64 / self.study.graded().count().max(1) as f64
+    }
+
+    /// The precision of a perfect detector that calls as many pairs.
+    pub fn perfect(&self, called: usize) -> f64 {
+        (self.same as f64 / called.max(1) as f64).min(1.0)
+    }
+
     /// Last keyframe.
     pub fn last(&self) -> usize {
         self.study.places().len() - 1

@@ -20,27 +20,55 @@ pub fn all(been: &PlaceRecognition) -> Vec<Table> {
 
 fn detectors(been: &PlaceRecognition) -> Table {
     let rows = been.places.iter().flat_map(|places| {
-        GRADED.iter().enumerate().map(|(k, detector)| {
+        let detectors = GRADED.iter().enumerate().map(|(k, detector)| {
             let threshold = been.threshold(k);
             let grade = places.graded_at(k, threshold);
             let point = grade.point(threshold);
-            let share = |share: Option<f64>| share.map_or("–".to_owned(), |s| format!("{s:.2}"));
             vec![
                 detector.label().to_owned(),
                 grade.called.to_string(),
                 grade.right.to_string(),
                 share(point.map(|point| point.precision)),
                 share(point.map(|point| point.recall)),
-                format!("{:.2}", places.curves[k].average_precision),
+                share(places.curves[k].precision_at_fixed_recall()),
             ]
-        })
+        });
+        let bound = |name: &str, called: f64, half: f64| {
+            let none = || "–".to_owned();
+            let called = share(Some(called));
+            vec![
+                name.to_owned(),
+                none(),
+                none(),
+                called,
+                none(),
+                share(Some(half)),
+            ]
+        };
+        let called = places.graded_at(been.detector(), been.threshold(been.detector()));
+        let chance = places.chance();
+        detectors.chain([
+            bound("a guess", chance, chance),
+            bound("a perfect detector", places.perfect(called.called), 1.0),
+        ])
     });
     Table::shown(
         "detectors",
         "The detectors at this threshold",
-        &["alike by", "called", "right", "precision", "recall", "area"],
+        &[
+            "alike by",
+            "called",
+            "right",
+            "precision",
+            "recall",
+            "precision at recall 0.5",
+        ],
         rows.collect(),
     )
+}
+
+fn share(share: Option<f64>) -> String {
+    share.map_or("–".to_owned(), |share| format!("{share:.2}"))
 }
 
 fn pairs(been: &PlaceRecognition) -> Table {

@@ -39,9 +39,9 @@ pub fn verdict(been: &PlaceRecognition) -> &'static str {
 pub fn outcome(been: &PlaceRecognition) -> Outcome {
     let sentence = match grade(been) {
         // As long as the text that follows, so that the page below does not move.
-        None => "The lap is driven, and its keyframes are compared pair by pair: which of them show the same place, by what is near, by histograms of ranges, and by Scan Context. Then every threshold is graded by the truth."
+        None => "The lap is driven, and its keyframes are compared pair by pair: which of them show the same place, by what is near, by histograms of ranges, and by Scan Context. Then every threshold is graded by the truth, beside a guess and beside a perfect detector."
             .to_owned(),
-        Some((_, grade)) => {
+        Some((places, grade)) => {
             let called = format!(
                 "By {}, {} pairs are called the same place, and {} of them are; {} are not found.",
                 GRADED[been.detector()].label(),
@@ -49,7 +49,16 @@ pub fn outcome(been: &PlaceRecognition) -> Outcome {
                 grade.right,
                 grade.same - grade.right
             );
-            format!("{called} {}", pair_words(been))
+            let beside = match grade.point(0.0) {
+                Some(point) => format!(
+                    " That is a precision of {:.2}, where a guess has {:.2} and a perfect detector {:.2}.",
+                    point.precision,
+                    places.chance(),
+                    places.perfect(grade.called)
+                ),
+                None => String::new(),
+            };
+            format!("{called}{beside} {}", pair_words(been))
         }
     };
     Outcome {
@@ -167,6 +176,20 @@ fn facts(been: &PlaceRecognition) -> Vec<Fact> {
             number(turn.map(f64::to_degrees)),
             "°",
             0,
+        ),
+        Fact::new(
+            "chance_precision",
+            "a guess: precision",
+            number(graded.map(|(places, _)| places.chance())),
+            "",
+            2,
+        ),
+        Fact::new(
+            "perfect_precision",
+            "a perfect detector: precision",
+            number(graded.map(|(places, grade)| places.perfect(grade.called))),
+            "",
+            2,
         ),
         Fact::count("graded", "pairs graded", {
             number(graded.map(|(places, _)| places.study.graded().count() as f64))

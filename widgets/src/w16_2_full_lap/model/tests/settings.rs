@@ -6,7 +6,7 @@ use ch16_slam2d::loops::LoopRejection;
 use widget_kit::param::ParamKind;
 
 use super::*;
-use crate::w16_2_full_lap::spec::WORLD;
+use crate::w16_2_full_lap::spec::{LAP_TICKS, WORLD};
 
 /// The help of a preset makes this claim.
 fn assert_promised(preset: &str, words: &str) {
@@ -27,7 +27,7 @@ fn the_start_is_the_first_loop_of_the_canonical_run() {
 /// Settings of another lap, noisy enough that the two models of the gate disagree.
 const NOISY: [(&str, f64); 3] = [("seed", 2.0), ("noise", 3.0), ("t", 110.0)];
 
-const OTHER_LAPS: [(&str, f64); 8] = [
+const OTHER_LAPS: [(&str, f64); 11] = [
     ("noise", 2.0),
     ("seed", 3.0),
     ("loops", 0.0),
@@ -36,6 +36,9 @@ const OTHER_LAPS: [(&str, f64); 8] = [
     ("matcher", 1.0),
     ("matcher", 2.0),
     ("information", 1.0),
+    ("normals", 4.2),
+    ("cap", 0.0),
+    ("misses", 1.0),
 ];
 
 fn shown(model: &FullLap) -> (Vec<Vec<String>>, Vec<Vec<String>>, f64) {
@@ -343,4 +346,63 @@ fn the_corners_of_the_settings_have_a_picture_at_every_tick() {
             }
         }
     }
+}
+
+/// The points that move with the robot are the cause: point to plane finds no normals there, and is not held back.
+#[test]
+fn beams_that_hit_no_wall_hold_point_to_point_back_and_no_number_of_the_robot_shows_it() {
+    assert_promised("phantom-wall", "from 0.59 m to 0.89 m");
+    let errors = |matcher: f64, misses: f64| {
+        let model = at(&[("matcher", matcher), ("misses", misses), ("t", LAP_TICKS)]);
+        ["keyframe_rms_m", "map_disagreement_m", "graph_error_m"].map(|name| fact(&model, name))
+    };
+    let ([rms, map, end], [kept_rms, kept_map, kept_end]) = (errors(0.0, 0.0), errors(0.0, 1.0));
+    // 5e-3: the two decimals of the help.
+    assert!((rms - 0.59).abs() < 5e-3 && (kept_rms - 0.89).abs() < 5e-3);
+    assert!(
+        kept_map < map && kept_end < end,
+        "{map} {kept_map} {end} {kept_end}"
+    );
+    let [plane, kept_plane] = [0.0, 1.0].map(|misses| errors(1.0, misses)[0]);
+    assert!(kept_plane < 1.1 * plane, "{plane} {kept_plane}");
+    let mut model = at(&[("t", LAP_TICKS)]);
+    press(&mut model, "phantom-wall");
+    assert_eq!(fact(&model, "keyframe_rms_m"), kept_rms);
+}
+
+#[test]
+fn the_radius_of_zero_is_the_matchers_own() {
+    for (matcher, own_cells) in [(0.0, 2.5), (1.0, 4.2)] {
+        let ends = [0.0, own_cells].map(|cells| {
+            let model = at(&[("matcher", matcher), ("normals", cells), ("t", LAP_TICKS)]);
+            fact(&model, "keyframe_rms_m")
+        });
+        assert_eq!(ends[0], ends[1]);
+    }
+}
+
+#[test]
+fn a_link_gives_the_lap_that_the_widget_drives() {
+    let model = at(&[
+        ("matcher", 1.0),
+        ("normals", 2.5),
+        ("cap", 0.0),
+        ("noise", 2.0),
+    ]);
+    let link = "matcher=p2l&normals=2.5&cap=off&noise=2";
+    let config = LapSettings::read(&model.values).config(None);
+    assert_eq!(lap_of_link(link).unwrap(), config);
+    assert!(lap_of_link("matcher=none").is_err());
+}
+
+#[test]
+fn the_lit_line_is_the_last_that_ran() {
+    // A tick between keyframes, one with a keyframe, and those of a loop refused and accepted.
+    let line = |seed: f64, tick: f64| fact(&at(&[("seed", seed), ("t", tick)]), "line");
+    assert_eq!(line(6.0, 0.0), 0.0);
+    assert_eq!(line(6.0, 90.0), 4.0);
+    let canonical = |tick: f64| fact(&at(&[("t", tick)]), "line");
+    assert_eq!(canonical(92.0), 6.0);
+    assert_eq!(canonical(1.0), 2.0);
+    assert!((2..90).any(|tick| canonical(f64::from(tick)) == 3.0));
 }
