@@ -80,14 +80,14 @@ describe('scrolling', () => {
         return tab.evaluate(([clientX, clientY]) => {
           const { shadowRoot } = document.querySelector('slam-widget');
           const event = new WheelEvent('wheel', { deltaY: -50, ctrlKey: true, cancelable: true, bubbles: true, clientX, clientY });
-          shadowRoot.querySelector('canvas').dispatchEvent(event);
+          shadowRoot.elementFromPoint(clientX, clientY).dispatchEvent(event);
           return event.defaultPrevented;
         }, [x, y]);
       };
       assert.equal(await at(...await h.pointOf(tab, 'sweeps', 0, 0)), true);
       const box = await canvasBox(tab);
-      const [left, top, width, height] = await tab.evaluate(() => document.querySelector('slam-widget').controlBox('play'));
-      assert.equal(await at(box.x + left + width / 2, box.y + top + height / 2), false, 'over Play');
+      const { x, y, width, height } = await tab.locator('slam-widget button[data-control="play"]').boundingBox();
+      assert.equal(await at(x + width / 2, y + height / 2), false, 'over Play');
       assert.equal(await at(box.x + box.width / 2, box.y + 5), false, 'over the title');
       assert.equal(await scrolled(tab), 0);
     });

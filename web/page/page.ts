@@ -48,6 +48,7 @@ void startReplay('#building', BUILDING_FILE, (figure, story: Building) => new Bu
 startLapsFigure();
 startOwnFlatCard();
 watchChallenges();
+letOpenWidgetsScroll();
 onceNear(document.querySelectorAll(NEEDS_CORE), () => void startCoreFigures());
 
 /** Loads the editor when the first place to write is opened. */
@@ -110,6 +111,23 @@ function startLapsFigure(): void {
     module: coreModule as () => Promise<WebAssembly.Module>,
     runner: async () => new (await (core as () => Promise<Glue>)()).Laps(),
   });
+}
+
+/** A widget beside its text stays in view. With More it is higher than the screen, and scrolls with the page. */
+function letOpenWidgetsScroll(): void {
+  const show = (widget: SlamWidget): void => {
+    const { top } = widget.getBoundingClientRect();
+    widget.style.removeProperty('--moved');
+    widget.classList.toggle('open', widget.get('more') === true);
+    const moved = top - widget.getBoundingClientRect().top;
+    if (widget.classList.contains('open')) widget.style.setProperty('--moved', `${Math.max(moved, 0)}px`);
+  };
+  for (const widget of document.querySelectorAll<SlamWidget>('.beside > slam-widget')) {
+    if (widget.get('more') === true) show(widget);
+    widget.addEventListener('slam-change', (event) => {
+      if ((event as CustomEvent<{ parameter: string }>).detail.parameter === 'more') show(widget);
+    });
+  }
 }
 
 /** Shows a card for a flat that the reader has drawn. */

@@ -15,15 +15,17 @@ export function slidesPage(scripts, exercises) {
 <title>SLAM in two dimensions: slides</title>
 <link rel="icon" href="data:,">
 <style>
-html { scroll-snap-type: y mandatory; color-scheme: light dark; font: 1.125rem/1.4 system-ui, sans-serif; }
+html { scroll-snap-type: y mandatory; color-scheme: light dark; font: 1.375rem/1.35 system-ui, sans-serif; }
 body { margin: 0; }
-section { box-sizing: border-box; min-height: 100vh; padding: 2vh 3vw; scroll-snap-align: start; }
+section { box-sizing: border-box; min-height: 100vh; padding: 1.5vh 2vw; scroll-snap-align: start; }
+header { display: flex; flex-wrap: wrap; gap: 0.5rem 1.5rem; align-items: center; margin-bottom: 0.5rem; }
+header h2 { margin: 0; }
 h1, h2 { margin: 0 0 0.5rem; }
 .title { display: grid; align-content: center; justify-items: center; text-align: center; }
 p { margin: 0 0 0.5rem; }
-nav { display: flex; flex-wrap: wrap; gap: 0.5rem; margin-bottom: 0.75rem; }
+nav { display: flex; flex-wrap: wrap; gap: 0.25rem 0.5rem; font-size: 1rem; }
 nav a { padding: 0.25rem 0.75rem; border: 1px solid; border-radius: 6px; color: inherit; text-decoration: none; }
-slam-widget { max-height: 72vh; overflow: auto; }
+slam-widget { max-height: calc(97vh - 3.5rem); }
 details { margin-top: 0.5rem; }
 slam-predict { max-width: 45rem; }
 </style>
@@ -51,11 +53,10 @@ function slide(text) {
   const first = new URLSearchParams(links[0]?.[2] ?? '');
   const state = [...first].filter(([id]) => id !== 'w').map(([id, value]) => ` ${id}="${escapeHtml(value)}"`).join('');
   return `<section>
-<h2>${escapeHtml(title)}</h2>
-<p>${inLine(misconception)}</p>
-<nav aria-label="States of ${escapeHtml(title)}">${links.map(([, words, query]) => `<a class="slam-link" href="${escapeHtml(query)}">${inLine(words)}</a>`).join('')}</nav>
+<header><h2>${escapeHtml(title)}</h2>
+<nav aria-label="States of ${escapeHtml(title)}">${links.map(([, words, query]) => `<a class="slam-link" href="${escapeHtml(query)}">${inLine(words)}</a>`).join('')}</nav></header>
 <slam-widget name="${name}"${state}></slam-widget>
-<details><summary>Script</summary><p>${inLine(goal)}</p><ol>${steps.join('')}</ol></details>
+<details><summary>Script</summary><p>${inLine(goal)}</p><p>${inLine(misconception)}</p><ol>${steps.join('')}</ol></details>
 </section>`;
 }
 

@@ -33,7 +33,7 @@ export class PinnedPicture {
     this.#stage = stage;
     this.#bar = bar;
     this.#host = host;
-    stage.addEventListener('pointerdown', (event) => this.#press(event), { capture: true, passive: true });
+    bar.addEventListener('pointerdown', () => this.#set(true), { passive: true });
     bar.addEventListener('focusin', () => this.#set(this.#holdsControl()));
     bar.addEventListener('focusout', () => this.#set(false));
   }
@@ -60,13 +60,6 @@ export class PinnedPicture {
       return;
     }
     this.#show(canvas, box);
-  }
-
-  /** A press below the scene is on a control. */
-  #press({ clientY, target }: PointerEvent): void {
-    const box = this.#host.sceneBox();
-    if (box === undefined || !(target instanceof HTMLCanvasElement)) return;
-    this.#set(clientY - target.getBoundingClientRect().top > box[1] + box[3]);
   }
 
   #set(isMoved: boolean): void {

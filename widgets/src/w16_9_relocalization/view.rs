@@ -26,12 +26,11 @@ impl View for ComeBackView {
                 columns: vec![column(2.4, map), column(1.0, scores(300.0))],
             }]
         } else {
-            vec![Row::new(&[map]), Row::new(&[scores(110.0)])]
+            vec![Row::new(&[map]), Row::new(&[scores(150.0)])]
         };
         Arrangement {
             stage,
             below: Vec::new(),
-            ..Arrangement::default()
         }
     }
 }
