@@ -121,11 +121,16 @@ describe('touch', () => {
     await on(ONE + toItsEnd, async (tab) => {
       await h.ready(tab);
       const before = await tab.evaluate(() => document.querySelector('slam-widget').query);
-      const rail = await sliderRail(tab, 'heading');
-      for (const [x, y] of [await draggingSpot(tab), [rail.x + rail.width / 2, rail.y]]) {
+      const onRail = async () => {
+        const { x, y, width } = await sliderRail(tab, 'heading');
+        return [x + width / 2, y];
+      };
+      for (const spot of [() => draggingSpot(tab), onRail]) {
         await tab.evaluate(() => scrollTo(0, 0));
+        const [x, y] = await spot();
+        const from = await scrolled(tab);
         await swipe(tab, [x, y], [x + 20, y - 250]);
-        await tab.waitForFunction(() => window.scrollY > 100);
+        await tab.waitForFunction((old) => window.scrollY > old + 100, from);
         await h.moreFrames(tab, 2);
         assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').query), before);
       }

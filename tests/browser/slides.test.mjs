@@ -51,3 +51,22 @@ it('slides.html fits each widget on the screen of a projector', async () => {
     }
   }, { path: '/slides.html', fresh: true, options: { viewport: { width: 1280, height: 720 } } });
 });
+
+it('slides.html turns by arrow keys, and the speaker’s view in a second window follows and leads', async () => {
+  await visit('', async (tab, { url }) => {
+    const notes = await tab.context().newPage();
+    await notes.goto(`${url}/slides.html?notes`);
+    const present = () => tab.evaluate(() => [...document.querySelectorAll('main > section')]
+      .findIndex((slide) => Math.abs(slide.getBoundingClientRect().top) < 2));
+    const titled = (title) => notes.getByRole('heading', { name: title }).waitFor();
+    assert.equal(await notes.locator('slam-widget:visible').count(), 0);
+    await tab.keyboard.press('ArrowRight');
+    assert.equal(await present(), 1);
+    await titled('Basin explorer');
+    await notes.getByText('Cover the verdict and ask what').waitFor();
+    await notes.keyboard.press('ArrowLeft');
+    await titled('SLAM in two dimensions');
+    await tab.waitForFunction(() => Math.abs(document.querySelector('main > section').getBoundingClientRect().top) < 2);
+    await notes.close();
+  }, { path: '/slides.html', fresh: true });
+});

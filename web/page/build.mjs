@@ -214,11 +214,13 @@ async function bundleScripts(stories, matchAnswer) {
   // A stable name: the page imports it when a reader opens an editor.
   const writing = await bundle('write/write-yourself.ts', {});
   await writeFile(path.join(outDir, 'write-yourself.js'), writing.text);
+  const slides = await bundle('slides.ts', {});
+  await writeFile(path.join(outDir, 'slides.js'), slides.text);
   const names = new Map([
     ['page.js', await writeHashed('page.js', page.text)],
     ['early.js', await writeHashed('early.js', early.text)],
   ]);
-  return { names, metafiles: [worker.metafile, page.metafile, early.metafile, writing.metafile] };
+  return { names, metafiles: [worker.metafile, page.metafile, early.metafile, writing.metafile, slides.metafile] };
 }
 
 /** Writes the notices of the widgets, from their build, and of the page. */

@@ -17,25 +17,28 @@ export function slidesPage(scripts, exercises) {
 <style>
 html { scroll-snap-type: y mandatory; color-scheme: light dark; font: 1.375rem/1.35 system-ui, sans-serif; }
 body { margin: 0; }
-section { box-sizing: border-box; min-height: 100vh; padding: 1.5vh 2vw; scroll-snap-align: start; }
-header { display: flex; flex-wrap: wrap; gap: 0.5rem 1.5rem; align-items: center; margin-bottom: 0.5rem; }
-header h2 { margin: 0; }
-h1, h2 { margin: 0 0 0.5rem; }
+section { box-sizing: border-box; min-height: 100vh; padding: 1vh 2vw; scroll-snap-align: start; }
+h1, h2 { margin: 0 0 0.5rem; font-size: 1.25rem; }
+header { display: flex; flex-wrap: wrap; gap: 0.25rem 1rem; align-items: center; margin-bottom: 0.3rem; }
+header h2 { margin: 0; font-size: 1rem; }
 .title { display: grid; align-content: center; justify-items: center; text-align: center; }
 p { margin: 0 0 0.5rem; }
-nav { display: flex; flex-wrap: wrap; gap: 0.25rem 0.5rem; font-size: 1rem; }
-nav a { padding: 0.25rem 0.75rem; border: 1px solid; border-radius: 6px; color: inherit; text-decoration: none; }
-slam-widget { max-height: calc(97vh - 3.5rem); }
+nav { display: flex; flex-wrap: wrap; gap: 0.25rem 0.4rem; font-size: 0.75rem; }
+nav a { padding: 0.1rem 0.6rem; border: 1px solid; border-radius: 6px; color: inherit; text-decoration: none; }
+slam-widget { max-height: calc(98vh - 2.2rem); overflow: auto; }
 details { margin-top: 0.5rem; }
 slam-predict { max-width: 45rem; }
+.notes :is(slam-widget, slam-predict, nav, summary) { display: none; }
 </style>
 <script type="module" src="slam-widget.js"></script>
 <script type="module" src="slam-predict.js"></script>
+<script type="module" src="slides.js"></script>
 </head>
 <body>
 <main>
 <section class="title"><div><h1>SLAM in two dimensions</h1>
-<p>Page Down turns a slide. The links set the widget; the script of each slide is folded below it.</p></div></section>
+<p>Arrow keys turn the slides. The links set the widget; the script of each slide is folded below it, and stands in the
+<a href="?notes" target="_blank">speaker’s view</a>, which follows.</p></div></section>
 ${slides.join('\n')}
 </main>
 </body>

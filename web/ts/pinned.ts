@@ -34,7 +34,7 @@ export class PinnedPicture {
     this.#bar = bar;
     this.#host = host;
     bar.addEventListener('pointerdown', () => this.#set(true), { passive: true });
-    bar.addEventListener('focusin', () => this.#set(this.#holdsControl()));
+    bar.addEventListener('focusin', () => { if (this.#holdsControl()) this.#set(true); });
     bar.addEventListener('focusout', () => this.#set(false));
   }
 
@@ -74,8 +74,9 @@ export class PinnedPicture {
     this.#copy = undefined;
   }
 
+  /** Whether the keyboard is on a control; a press leaves the focus there, but ends with the release. */
   #holdsControl(): boolean {
-    return this.#bar.querySelector('.control:focus-within') !== null;
+    return this.#bar.querySelector('.control :focus-visible') !== null;
   }
 
   #isSeen(canvas: HTMLCanvasElement, [, top, , height]: Box): boolean {

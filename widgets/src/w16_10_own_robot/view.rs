@@ -16,7 +16,7 @@ impl View for RobotView {
         let map = slot(
             panel::MAP,
             if width < SIDE_BY_SIDE {
-                PlotHeight::Fixed(500.0)
+                PlotHeight::Fixed(520.0)
             } else {
                 PlotHeight::Natural { most: 620.0 }
             },

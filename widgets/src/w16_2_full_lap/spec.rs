@@ -442,7 +442,7 @@ pub const EDITING: Opening = Opening {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.2",
     title: "The full lap",
-    misconception: "A closed loop does not right every pose.",
+    misconception: "A loop does not right every pose.",
     question: "How far is a lap’s map off at its end, and what do loops mend of it? Press Play, or drag the timeline.",
     notice: &[
         "The walls seen on the way out and on the way back stand apart, and one loop brings them together: the map's disagreement falls to about a third over the lap.",

@@ -18,7 +18,7 @@ fn map(width: f32) -> Slot {
     let height = if width >= SIDE_BY_SIDE {
         PlotHeight::Natural { most: 450.0 }
     } else {
-        PlotHeight::Fixed(380.0)
+        PlotHeight::Fixed(420.0)
     };
     Slot {
         panel: "map",
