@@ -46,6 +46,21 @@ describe('the picture', () => {
   }
 });
 
+describe('a frame of 800 × 600', () => {
+  // The reliefs of w16.3 need more.
+  for (const { id } of h.schema.filter(({ id }) => id !== 'w16.3')) {
+    it(`shows picture, Play and verdict: ${id}`, async () => {
+      await visit('', async (tab) => {
+        await h.ready(tab);
+        await h.quiet(tab);
+        const bottom = await tab.evaluate(() =>
+          document.querySelector('slam-widget').shadowRoot.querySelector('.verdict').getBoundingClientRect().bottom);
+        assert.ok(bottom <= 600, `${bottom} px`);
+      }, { path: `/embed.html?w=${id.slice(1)}`, options: { viewport: { width: 800, height: 600 }, deviceScaleFactor: 1 } });
+    });
+  }
+});
+
 describe('the controls', () => {
   for (const spec of h.schema) {
     it(`are native, each of them once, and stand below the picture: ${spec.id}`, async () => {

@@ -206,7 +206,10 @@ export class Controls {
     }
     const unit = create('span', { class: 'unit' });
     unit.textContent = spec.unit;
-    row.append(name, ...inputs.map((input) => (input === this.#ranges.get(spec.id) ? onRail(input, spec) : input)), unit, help);
+    const value = create('span', { class: 'value' });
+    const range = this.#ranges.get(spec.id);
+    value.append(...inputs.filter((input) => input !== range), unit);
+    row.append(name, ...(range === undefined ? [] : [onRail(range, spec)]), value, help);
     this.#params.set(spec.id, { spec, show });
     return row;
   }

@@ -95,12 +95,14 @@ button[aria-disabled='true'] { color: var(--soft); border-color: var(--line); cu
 .status { color: var(--soft); overflow-wrap: anywhere; }
 .status:empty { display: none; }
 .control { position: relative; display: flex; flex-wrap: wrap; gap: 0 0.5rem; align-items: center; min-width: 0; }
-.name { margin-right: auto; line-height: 1.2; }
+.name { flex: 1 1 5rem; line-height: 1.2; }
+.value { display: flex; flex: 0 1 auto; gap: 0.1rem; align-items: center; min-width: 0; }
+.text .value { flex: 1 1 8rem; }
 .slider .rail { order: 1; flex: 1 0 100%; }
 .rail { position: relative; display: flex; flex: 1 1 6rem; }
-.unit { white-space: nowrap; margin-left: -0.25rem; }
+.unit { white-space: nowrap; }
 .timeline { flex: 1 1 13rem; flex-wrap: nowrap; }
-.timeline > :not(.rail) { order: 1; margin: 0; }
+.timeline > :not(.rail) { flex: none; order: 1; }
 .timeline .name { color: var(--soft); }
 .timeline input[type='number'] { width: 3em; }
 .empty :is(.unit, input[type='number']) { visibility: hidden; }
@@ -114,7 +116,7 @@ input[type='number'] { width: 3.5em; min-height: 1.5rem; padding: 0 0.3rem; bord
   appearance: textfield; font-variant-numeric: tabular-nums; }
 :is(.seed, .settings) input[type='number'] { width: 5em; border-color: var(--line); }
 .seed input[type='number'] { width: 7em; }
-input[type='text'] { flex: 1 1 8rem; min-width: 0; border-radius: 4px; }
+input[type='text'] { width: 100%; min-width: 0; border-radius: 4px; }
 select { min-width: 0; max-width: 100%; }
 input[type='checkbox'] { width: 1.5rem; height: 1.5rem; margin: 0.1rem 0; accent-color: var(--accent); }
 .rest { display: grid; gap: 0.9rem; padding: 0.6rem 0.75rem 0.75rem; border-top: 1px solid var(--line); }
