@@ -616,8 +616,6 @@ export declare class SlamWidget extends HTMLElement {
   readonly state: 'running' | 'resting';
   readonly frames: number;
   dragsAt(x: number, y: number): boolean;
-  /** The rectangle of a control on the canvas: left, top, width, height; null while it rests. */
-  controlBox(control: string): readonly [number, number, number, number] | null;
   /** The rectangle of the picture on the canvas: left, top, width, height; null while it rests. */
   sceneBox(): readonly [number, number, number, number] | null;
   /** Position of a panel's point on the canvas, in CSS pixels; null if it is not visible. */

@@ -18,7 +18,8 @@ for (const name of names) {
       for (const theme of ['light', 'dark']) {
         await tab.evaluate((wanted) => document.querySelector('slam-widget').setAttribute('theme', wanted), theme);
         const { share, colors, paper } = await h.painted(tab);
-        assert.ok(share > 0.03, `${theme}: ${share} of the pixels differ`);
+        // Without a log the picture of w16.10 is a frame and four lines of text.
+        assert.ok(share > (name === 'w16.10' ? 0.01 : 0.03), `${theme}: ${share} of the pixels differ`);
         assert.ok(colors > 20, `${theme}: ${colors} colours`);
         papers.push(paper);
       }
@@ -238,7 +239,7 @@ describe('a name that is not a string', () => {
               outcomes.push(message);
             }
           }
-          outcomes.push(String([widget.get(wrong), widget.controlBox(wrong), widget.panelToScreen(wrong, 0, 0)]));
+          outcomes.push(String([widget.get(wrong), widget.panelToScreen(wrong, 0, 0)]));
         }
         return outcomes;
       });
@@ -246,7 +247,7 @@ describe('a name that is not a string', () => {
         assert.match(said[at], /^w16\.1 has no button `.*`; it has /);
         assert.match(said[at + 1], /^w16\.1 has no parameter `.*`; it has heading/);
         assert.match(said[at + 2], /^one looks in, out, .*, not `/);
-        assert.equal(said[at + 3], ',,');
+        assert.equal(said[at + 3], ',');
       }
       assert.ok(said.every((sentence) => sentence.length < 400), 'a long name is cut short');
       await h.moreFrames(tab, 2);
@@ -321,7 +322,7 @@ describe('exports', () => {
   it('save the view as PNG and every table as CSV', async () => {
     await on('<slam-widget name="w16.1"></slam-widget>', async (tab) => {
       await h.ready(tab);
-      await tab.getByText('Save or share').click();
+      await tab.getByText('Share', { exact: true }).click();
       const [picture] = await Promise.all([
         tab.waitForEvent('download'),
         tab.getByRole('button', { name: 'Save picture' }).click(),
@@ -345,7 +346,7 @@ describe('exports', () => {
   it('copy a link to the same state', async () => {
     await on('<slam-widget name="w16.1" heading="60"></slam-widget>', async (tab) => {
       await h.ready(tab);
-      await tab.getByText('Save or share').click();
+      await tab.getByText('Share', { exact: true }).click();
       await tab.getByRole('button', { name: 'Copy link' }).click();
       await tab.getByText('The link is copied.').waitFor();
       const link = await tab.evaluate(() => navigator.clipboard.readText());

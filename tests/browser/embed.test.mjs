@@ -59,7 +59,7 @@ describe('a frame', () => {
   it('saves the picture from a sandbox that allows downloads', async () => {
     await framed('?w=16.1', async ({ tab, frame, hear }) => {
       await hear('ready');
-      await frame.getByText('Save or share').click();
+      await frame.getByText('Share', { exact: true }).click();
       const [download] = await Promise.all([
         tab.waitForEvent('download'),
         frame.getByRole('button', { name: 'Save picture' }).click(),

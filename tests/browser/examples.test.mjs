@@ -271,7 +271,7 @@ it('the npm package, packed and installed, works in a bundle, and links to its o
       await h.ready(tab);
       assert.deepEqual(await tab.evaluate(() => names), h.schema.map((widget) => widget.id));
       assert.ok(await tab.evaluate(() => customElements.get('slam-predict') !== undefined));
-      await tab.getByText('Save or share').click();
+      await tab.getByText('Share', { exact: true }).click();
       await tab.getByRole('button', { name: 'Copy link' }).click();
       await tab.getByText('The link is copied.').waitFor();
       const link = await tab.evaluate(() => navigator.clipboard.readText());

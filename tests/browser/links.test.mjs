@@ -235,8 +235,7 @@ describe('on a narrow screen', () => {
       // At this slider the picture is out of view.
       await tab.evaluate((name) => {
         const element = document.querySelector(name);
-        const canvas = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
-        scrollBy(0, canvas.top + element.controlBox('cells')[1] - 0.7 * innerHeight);
+        scrollBy(0, element.shadowRoot.querySelector('#control-cells').getBoundingClientRect().top - 0.7 * innerHeight);
       }, css);
       const pinned = () => tab.evaluate((name) => {
         const copy = document.querySelector(name).shadowRoot.querySelector('.pinned');
@@ -249,9 +248,8 @@ describe('on a narrow screen', () => {
         ([name, is]) => (document.querySelector(name).shadowRoot.querySelector('.pinned') !== null) === is, [css, wanted]);
       const at = await tab.evaluate((name) => {
         const element = document.querySelector(name);
-        const { left, top } = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
-        const [x, y, width, height] = element.controlBox('cells');
-        return [left + x + 0.3 * width, top + y + height - 8];
+        const { left, top, width, height } = element.shadowRoot.querySelector('#control-cells').getBoundingClientRect();
+        return [left + 0.3 * width, top + height / 2];
       }, css);
       await h.quiet(tab);
       assert.equal(await pinned(), null);

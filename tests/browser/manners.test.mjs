@@ -80,14 +80,14 @@ describe('scrolling', () => {
         return tab.evaluate(([clientX, clientY]) => {
           const { shadowRoot } = document.querySelector('slam-widget');
           const event = new WheelEvent('wheel', { deltaY: -50, ctrlKey: true, cancelable: true, bubbles: true, clientX, clientY });
-          shadowRoot.querySelector('canvas').dispatchEvent(event);
+          shadowRoot.elementFromPoint(clientX, clientY).dispatchEvent(event);
           return event.defaultPrevented;
         }, [x, y]);
       };
       assert.equal(await at(...await h.pointOf(tab, 'sweeps', 0, 0)), true);
       const box = await canvasBox(tab);
-      const [left, top, width, height] = await tab.evaluate(() => document.querySelector('slam-widget').controlBox('play'));
-      assert.equal(await at(box.x + left + width / 2, box.y + top + height / 2), false, 'over Play');
+      const { x, y, width, height } = await tab.locator('slam-widget button[data-control="play"]').boundingBox();
+      assert.equal(await at(x + width / 2, y + height / 2), false, 'over Play');
       assert.equal(await at(box.x + box.width / 2, box.y + 5), false, 'over the title');
       assert.equal(await scrolled(tab), 0);
     });
@@ -121,11 +121,16 @@ describe('touch', () => {
     await on(ONE + toItsEnd, async (tab) => {
       await h.ready(tab);
       const before = await tab.evaluate(() => document.querySelector('slam-widget').query);
-      const rail = await sliderRail(tab, 'heading');
-      for (const [x, y] of [await draggingSpot(tab), [rail.x + rail.width / 2, rail.y]]) {
+      const onRail = async () => {
+        const { x, y, width } = await sliderRail(tab, 'heading');
+        return [x + width / 2, y];
+      };
+      for (const spot of [() => draggingSpot(tab), onRail]) {
         await tab.evaluate(() => scrollTo(0, 0));
+        const [x, y] = await spot();
+        const from = await scrolled(tab);
         await swipe(tab, [x, y], [x + 20, y - 250]);
-        await tab.waitForFunction(() => window.scrollY > 100);
+        await tab.waitForFunction((old) => window.scrollY > old + 100, from);
         await h.moreFrames(tab, 2);
         assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').query), before);
       }

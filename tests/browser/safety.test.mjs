@@ -39,7 +39,7 @@ it('a widget paints, predicts, and saves picture and data under the strict polic
     await tab.getByLabel('at the truth').check();
     await tab.getByRole('button', { name: 'Commit and see' }).click();
     await tab.getByText('The room is almost square.').waitFor();
-    await tab.getByText('Save or share').click();
+    await tab.getByText('Share', { exact: true }).click();
     for (const [name, start] of [['Save picture', '\x89PNG'], ['Save data', '']]) {
       const [download] = await Promise.all([
         tab.waitForEvent('download'),

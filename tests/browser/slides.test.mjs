@@ -95,7 +95,7 @@ it('slides.html lets a class predict: the slide of a question has its premise an
 
 it('slides.html fits each widget on the screen of a projector, in letters of 24 pixels', async () => {
   await visit('', async (tab) => {
-    assert.equal(await tab.evaluate(() => getComputedStyle(document.querySelector('.figure p')).fontSize), '24px');
+    assert.equal(await tab.evaluate(() => getComputedStyle(document.body).fontSize), '24px');
     for (const { id } of h.schema) {
       const css = `.figure slam-widget[name="${id}"]`;
       await turnTo(tab, css);

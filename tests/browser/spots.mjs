@@ -35,20 +35,15 @@ async function spot(tab, css, drags) {
   return at;
 }
 
-/** A point on the rail of a parameter's slider on the canvas. */
+/** Half the width of the thumb of a slider, px. */
+const THUMB_PX = 8;
+
+/** The range of the middle of a slider's thumb on the screen. */
 export async function sliderRail(tab, parameter, css = 'slam-widget') {
-  const found = await tab.evaluate(([name, id]) => {
-    const widget = document.querySelector(name);
-    const canvas = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
-    const [left, top, width, height] = widget.controlBox(id);
-    for (let y = top; y < top + height; y += 2) {
-      const along = [0.1, 0.3, 0.5].map((share) => widget.dragsAt(left + share * width, y));
-      if (along.every(Boolean)) return { x: canvas.left + left, y: canvas.top + y + 4, width };
-    }
-    return null;
-  }, [css, parameter]);
-  assert.ok(found !== null, `no slider for ${parameter}`);
-  return found;
+  const slider = tab.locator(`${css} #control-${parameter}`);
+  await slider.scrollIntoViewIfNeeded();
+  const { x, y, width, height } = await slider.boundingBox();
+  return { x: x + THUMB_PX, y: y + height / 2, width: width - 2 * THUMB_PX };
 }
 
 /** A point of the picture of w16.1 at which the mouse can grab the cloud. */

@@ -52,6 +52,7 @@ startLapsFigures();
 lightLines();
 startOwnFlatCard();
 watchChallenges();
+letOpenWidgetsScroll();
 onceNear(document.querySelectorAll(NEEDS_CORE), () => void startCoreFigures());
 
 /** Loads the editor when the first place to write is opened. */
@@ -115,6 +116,23 @@ function startLapsFigures(): void {
   const [levels, matchers] = ['#laps', '#matcher-laps'].map((id) => document.querySelector<HTMLElement>(id));
   if (levels) new LapsFigure(levels, lapCore, LEVELS_PLAN);
   if (matchers) new MatchersFigure(matchers, lapCore);
+}
+
+/** A widget beside its text stays in view. With More it is higher than the screen, and scrolls with the page. */
+function letOpenWidgetsScroll(): void {
+  const show = (widget: SlamWidget): void => {
+    const { top } = widget.getBoundingClientRect();
+    widget.style.removeProperty('--moved');
+    widget.classList.toggle('open', widget.get('more') === true);
+    const moved = top - widget.getBoundingClientRect().top;
+    if (widget.classList.contains('open')) widget.style.setProperty('--moved', `${Math.max(moved, 0)}px`);
+  };
+  for (const widget of document.querySelectorAll<SlamWidget>('.beside > slam-widget')) {
+    if (widget.get('more') === true) show(widget);
+    widget.addEventListener('slam-change', (event) => {
+      if ((event as CustomEvent<{ parameter: string }>).detail.parameter === 'more') show(widget);
+    });
+  }
 }
 
 /** Shows a card for a flat that the reader has drawn. */

@@ -100,11 +100,10 @@ function slide(text) {
   const first = new URLSearchParams(links[0]?.[2] ?? '');
   const state = [...first].filter(([id]) => id !== 'w').map(([id, value]) => ` ${id}="${escapeHtml(value)}"`).join('');
   return `<section class="figure">
-<h1>${escapeHtml(title)}</h1>
-<p>${inLine(misconception)}</p>
-<nav aria-label="States of ${escapeHtml(title)}">${links.map(([, words, query]) => `<a class="slam-link" href="${escapeHtml(query)}">${inLine(words)}</a>`).join('')}</nav>
+<header><h1>${escapeHtml(title)}</h1>
+<nav aria-label="States of ${escapeHtml(title)}">${links.map(([, words, query]) => `<a class="slam-link" href="${escapeHtml(query)}">${inLine(words)}</a>`).join('')}</nav></header>
 <slam-widget name="${name}"${state}></slam-widget>
-<template class="note"><p>${inLine(goal)}</p><ol>${steps.join('')}</ol></template>
+<template class="note"><p>${inLine(misconception)}</p><p>${inLine(goal)}</p><ol>${steps.join('')}</ol></template>
 </section>`;
 }
 

@@ -17,6 +17,8 @@ pub struct Shared {
     pub ctx: RefCell<Option<egui::Context>>,
     /// Light or dark.
     pub theme: Cell<Theme>,
+    /// CSS pixels per point: how much larger than usual the page's text is.
+    pub scale: Cell<f32>,
     /// Number of laid out frames since the start.
     pub frames: Cell<u32>,
     /// Whether the pointer was pressed on something draggable.
@@ -57,6 +59,11 @@ impl Shared {
         shell.is_ok_and(|shell| at.is_some_and(|at| shell.zooms_at(at)))
     }
 
+    /// Points in CSS pixels.
+    pub fn to_css<const N: usize>(&self, points: [f32; N]) -> [f32; N] {
+        points.map(|point| self.scale.get() * point)
+    }
+
     /// Requests a frame if the widget runs.
     pub fn request_repaint(&self) {
         if let Some(ctx) = &*self.ctx.borrow() {
@@ -77,6 +84,7 @@ impl WidgetApp {
         // egui must not follow the system's theme, because the page sets it.
         apply_theme(ctx, shared.theme.get());
         shared.shell.borrow_mut().set_theme(shared.theme.get());
+        ctx.set_zoom_factor(shared.scale.get());
         *shared.ctx.borrow_mut() = Some(ctx.clone());
         Self { shared }
     }
@@ -114,6 +122,7 @@ pub fn height_at(ctx: &egui::Context, shell: &mut Shell, width: f32) -> f32 {
 impl eframe::App for WidgetApp {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         self.shared.frames.set(self.shared.frames.get() + 1);
+        ui.ctx().set_zoom_factor(self.shared.scale.get());
         self.shared.shell.borrow_mut().ui(ui);
     }
 
@@ -137,7 +146,6 @@ impl eframe::App for WidgetApp {
             )
         });
         if touch_cancelled || self.shared.cancelled.take() {
-            // First, because a slider would follow the pointer to the release.
             ctx.stop_dragging();
             release_pointer(input);
             self.shared.dragging.set(false);
@@ -226,11 +234,6 @@ fn is_ours_alone(shared: &Shared, event: &Event) -> bool {
             shared.dragging.get()
         }
         Event::Touch { .. } => shared.dragging.get(),
-        Event::Text(_) | Event::Paste(_) | Event::Copy | Event::Cut => {
-            let ctx = shared.ctx.borrow();
-            ctx.as_ref()
-                .is_some_and(egui::Context::egui_wants_keyboard_input)
-        }
         _ => false,
     }
 }

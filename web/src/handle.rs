@@ -37,6 +37,7 @@ impl Widget {
             shell: RefCell::new(shell),
             ctx: RefCell::new(None),
             theme: Cell::new(Theme::Light),
+            scale: Cell::new(1.0),
             frames: Cell::new(0),
             dragging: Cell::new(false),
             pointer: Cell::new(None),
@@ -172,11 +173,15 @@ impl Widget {
         shown.into_iter().map(str::to_owned).collect()
     }
 
-    /// The buttons that have nothing to do at present, by name.
-    #[wasm_bindgen(js_name = disabledButtons)]
-    pub fn disabled_buttons(&self) -> Vec<String> {
-        let disabled = self.shared.shell.borrow().disabled();
-        disabled.into_iter().map(str::to_owned).collect()
+    /// The buttons that have nothing to do at present, and those shown as pressed, as JSON.
+    #[wasm_bindgen(js_name = buttonStates)]
+    pub fn button_states(&self) -> String {
+        state::buttons(&self.shared.shell.borrow()).to_string()
+    }
+
+    /// The facts and tables that are shown, as JSON.
+    pub fn details(&self) -> String {
+        state::details(self.shared.shell.borrow().model()).to_string()
     }
 
     /// Every value as JSON, in the form of a link.
@@ -226,11 +231,17 @@ impl Widget {
         });
     }
 
-    /// Draws the focus ring around that control, or none.
-    #[wasm_bindgen(js_name = setFocus)]
-    pub fn set_focus(&self, id: Option<String>) {
-        self.shared.shell.borrow_mut().set_focus(id.as_deref());
+    /// Sets how much larger than usual the page's text is: that of the picture follows.
+    #[wasm_bindgen(js_name = setTypeScale)]
+    pub fn set_type_scale(&self, scale: f32) {
+        self.shared.scale.set(scale);
         self.shared.request_repaint();
+    }
+
+    /// Whether a map is zoomed.
+    #[wasm_bindgen(js_name = isZoomed)]
+    pub fn is_zoomed(&self) -> bool {
+        self.shared.shell.borrow().is_zoomed()
     }
 
     /// Zooms every map or moves its zoomed part: `in`, `out`, `left`, `right`, `up`, `down`, `whole`.
@@ -249,28 +260,24 @@ impl Widget {
     /// Whether something draggable is at that point of the canvas (CSS pixels).
     #[wasm_bindgen(js_name = dragsAt)]
     pub fn drags_at(&self, x: f32, y: f32) -> bool {
-        self.shared.drags_at(egui::pos2(x, y))
-    }
-
-    /// The rectangle of a control on the canvas: left, top, width, height in CSS pixels.
-    #[wasm_bindgen(js_name = controlBox)]
-    pub fn control_box(&self, id: &str) -> Option<Vec<f32>> {
-        let rect = self.shared.shell.borrow().control_rect(id)?;
-        Some(vec![rect.left(), rect.top(), rect.width(), rect.height()])
+        let scale = self.shared.scale.get();
+        self.shared.drags_at(egui::pos2(x / scale, y / scale))
     }
 
     /// Position of a panel's point (units of its axes) on the canvas (CSS pixels).
     #[wasm_bindgen(js_name = panelToScreen)]
     pub fn panel_to_screen(&self, panel: &str, x: f64, y: f64) -> Option<Vec<f32>> {
         let shell = self.shared.shell.borrow();
-        Some(shell.panel_to_screen(panel, [x, y])?.to_vec())
+        let at = shell.panel_to_screen(panel, [x, y])?;
+        Some(self.shared.to_css(at).to_vec())
     }
 
     /// The rectangle of the picture on the canvas: left, top, width, height in CSS pixels.
     #[wasm_bindgen(js_name = sceneBox)]
     pub fn scene_box(&self) -> Option<Vec<f32>> {
         let rect = self.shared.shell.borrow().scene_rect()?;
-        Some(vec![rect.left, rect.top, rect.width, rect.height])
+        let box_points = [rect.left, rect.top, rect.width, rect.height];
+        Some(self.shared.to_css(box_points).to_vec())
     }
 
     /// Ends every drag after a cancelled touch.
@@ -280,28 +287,22 @@ impl Widget {
         self.shared.request_repaint();
     }
 
-    /// Whether a text field of the widget has the keyboard focus.
-    #[wasm_bindgen(js_name = wantsKeyboard)]
-    pub fn wants_keyboard(&self) -> bool {
-        let ctx = self.shared.ctx.borrow();
-        ctx.as_ref()
-            .is_some_and(egui::Context::egui_wants_keyboard_input)
-    }
-
-    /// Height of the widget at the width of its last frame, CSS pixels.
+    /// Height of the picture at the width of its last frame, CSS pixels.
     #[wasm_bindgen(js_name = contentHeight)]
     pub fn content_height(&self) -> f32 {
-        self.shared.shell.borrow().content_height()
+        let height = self.shared.shell.borrow().content_height();
+        self.shared.to_css([height])[0]
     }
 
-    /// Sets the available height for the whole widget, in CSS pixels.
+    /// Sets the available height for the picture, in CSS pixels.
     #[wasm_bindgen(js_name = setRoom)]
     pub fn set_room(&self, height_px: f32) {
-        self.shared.shell.borrow_mut().set_room(height_px);
+        let height = height_px / self.shared.scale.get();
+        self.shared.shell.borrow_mut().set_room(height);
         self.shared.request_repaint();
     }
 
-    /// The height of the widget at that width, both in CSS pixels, laid out without a canvas.
+    /// The height of the picture at that width, both in CSS pixels, laid out without a canvas.
     #[wasm_bindgen(js_name = heightAt)]
     pub fn height_at(&self, width_px: f32) -> f32 {
         let ctx = self.measuring.get_or_init(|| {

@@ -27,6 +27,7 @@ pub fn widget(model: &dyn Model) -> Value {
         "id": spec.id,
         "title": spec.title,
         "misconception": spec.misconception,
+        "question": spec.question,
         "notice": spec.notice,
         "params": spec.params.iter().map(|spec| param(spec)).collect::<Vec<_>>(),
         "buttons": buttons.collect::<Vec<_>>(),

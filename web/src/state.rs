@@ -56,6 +56,28 @@ pub fn outcome(outcome: &Outcome) -> Value {
     })
 }
 
+/// The buttons that have nothing to do, and those shown as pressed.
+#[must_use]
+pub fn buttons(shell: &Shell) -> Value {
+    let model = shell.model();
+    let buttons = model.spec().buttons.iter().map(|button| button.id);
+    let pressed: Vec<_> = buttons.filter(|id| model.is_pressed(id)).collect();
+    json!({ "disabled": shell.disabled(), "pressed": pressed })
+}
+
+/// The facts and tables that stand under More, as they are shown.
+#[must_use]
+pub fn details(model: &dyn Model) -> Value {
+    let outcome = model.outcome();
+    let facts = outcome.facts.iter();
+    let facts = facts.map(|fact| json!({ "label": fact.label, "text": fact.text() }));
+    let tables = model.shown_tables();
+    let tables = tables
+        .iter()
+        .map(|table| json!({ "title": table.title, "columns": table.columns, "rows": table.rows }));
+    json!({ "facts": facts.collect::<Vec<_>>(), "tables": tables.collect::<Vec<_>>() })
+}
+
 /// The timeline, or null.
 #[must_use]
 pub fn timeline(timeline: Option<&Timeline>) -> Value {

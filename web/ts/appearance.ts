@@ -1,13 +1,14 @@
-// How a widget follows its page: theme, reduced motion, focus ring, print.
+// How a widget follows its page: theme, size of the text, reduced motion, print.
 
 import type { Widget } from '../pkg/glue.js';
 import type { Box } from './box';
-import { listen, reveal } from './dom';
+import { listen } from './dom';
 import type { Lifecycle } from './lifecycle';
 import type { Parts } from './parts';
 import { PinnedPicture } from './pinned';
 import type { Pictures } from './pictures';
 import { themeOf, watchTheme, type Theme } from './theme';
+import { typeScale } from './type-scale';
 
 const reducedMotion = globalThis.matchMedia?.('(prefers-reduced-motion: reduce)');
 /** Minimum width of a picture. */
@@ -15,7 +16,6 @@ const MIN_WIDTH_PX = 320;
 
 export interface AppearanceHost extends HTMLElement {
   readonly summary: string;
-  controlBox(id: string): Box | null;
   sceneBox(): Box | null;
 }
 
@@ -63,6 +63,7 @@ export class Appearance {
   /** Sets the appearance in a new instance. */
   prepare(widget: Widget): void {
     widget.setTheme(themeOf(this.#host));
+    widget.setTypeScale(typeScale());
     showMotion(widget);
   }
 
@@ -72,15 +73,6 @@ export class Appearance {
     this.#lifecycle.ask((widget) => widget.setTheme(theme));
     this.#lifecycle.wake();
     if (!this.#lifecycle.hasInstance && this.#widget !== undefined) this.#pictures.showStart(this.#widget, theme);
-  }
-
-  showFocus(id: string | undefined): void {
-    this.#lifecycle.ask((widget) => widget.setFocus(id));
-    this.#lifecycle.wake();
-    const box = id === undefined ? null : this.#host.controlBox(id);
-    const { stage, bar } = this.#parts;
-    // The focused element is elsewhere: the browser does not scroll to the ring on the canvas.
-    if (box !== null) reveal(stage, box, bar.offsetHeight);
   }
 
   /** Handles a frame that was just drawn. */

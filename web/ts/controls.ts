@@ -1,14 +1,17 @@
-// Native controls that mirror those on the canvas, with name, value, unit and help. They have the keyboard focus, and the
-// canvas shows the focus ring. A control is visible under the picture while it has the focus; a screen reader always has
-// it. Controls that the canvas does not show, such as those under "More", are no tab stops.
+// The controls of a widget: native ones, made from its list of presets, parameters and buttons. Play and its slider stand
+// below the picture, then the opening control, then More, which opens the rest.
 
 import { create } from './dom';
-import type { Timeline } from './instance';
+import type { ButtonStates, Timeline } from './instance';
+import { REST } from './parts';
+import { rangeOf } from './ranges';
 import type { ButtonSpec, ParamSpec, WidgetSpec } from './schema';
 import { toLabel } from './values';
 
 /** The switch that shows all controls. */
 export const MORE = 'more';
+/** The button that plays the run. */
+const PLAY = 'play';
 
 export interface ControlHost {
   /** Sets a value; returns the error, if there is one. */
@@ -18,7 +21,16 @@ export interface ControlHost {
   press(id: string): void;
   /** Finishes the computation on which the length of the run depends, and shows it. */
   finishRun(): void;
-  focus(id: string | undefined): void;
+}
+
+/** Where controls stand. */
+export interface Places {
+  transport: HTMLElement;
+  first: HTMLElement;
+  tools: HTMLElement;
+  presets: HTMLElement;
+  settings: HTMLElement;
+  actions: HTMLElement;
 }
 
 interface ParamControl {
@@ -27,7 +39,8 @@ interface ParamControl {
 }
 
 export class Controls {
-  readonly element: HTMLElement;
+  readonly #places: Places;
+  readonly #widget: WidgetSpec;
   readonly #rows = new Map<string, HTMLElement>();
   readonly #params = new Map<string, ParamControl>();
   readonly #ranges = new Map<string, HTMLInputElement>();
@@ -36,26 +49,21 @@ export class Controls {
   /** The button for each key. Keys work while one of these buttons has the focus. */
   readonly #keys: ReadonlyMap<string, string>;
   readonly #keyed: ReadonlySet<string>;
+  /** The controls that are shown while More is closed. */
+  #opening: readonly string[];
 
-  constructor(widget: WidgetSpec, host: ControlHost) {
+  constructor(widget: WidgetSpec, places: Places, host: ControlHost) {
     this.#host = host;
+    this.#widget = widget;
+    this.#places = places;
+    this.#opening = widget.opening;
     this.#keys = new Map(widget.keys.map(({ key, button }) => [key, button]));
     this.#keyed = new Set(this.#keys.values());
-    this.element = create('div', { class: 'controls', role: 'group' });
-    this.element.setAttribute('aria-label', `${widget.title}: controls`);
     for (const button of widget.presets) this.#rows.set(button.id, this.#button(button, 'try'));
-    for (const param of widget.params) this.#rows.set(param.id, this.#param(param));
+    for (const param of widget.params) this.#rows.set(param.id, param.id === MORE ? this.#more(param) : this.#param(param));
     for (const button of widget.buttons) this.#rows.set(button.id, this.#button(button, 'do'));
-    for (const id of inOrder(widget, [...this.#rows.keys()])) this.element.append(this.#rows.get(id) ?? '');
-    this.offer(widget.opening);
-    this.element.addEventListener('keydown', (event) => this.#keyDown(event));
-    this.element.addEventListener('focusin', (event) => {
-      host.focus((event.target as HTMLElement).dataset['control']);
-    });
-    this.element.addEventListener('focusout', (event) => {
-      const next = event.relatedTarget;
-      if (!(next instanceof Node) || !this.element.contains(next)) host.focus(undefined);
-    });
+    for (const row of this.#rows.values()) row.addEventListener('keydown', (event) => this.#keyDown(event));
+    this.offer(widget.opening, false);
   }
 
   /** Presses the button of a key, which need not be the focused one. */
@@ -70,19 +78,64 @@ export class Controls {
     this.#host.press(button);
   }
 
-  /** Hides the controls that the canvas does not show from keyboard and screen reader. */
-  offer(shown: readonly string[]): void {
+  /** Shows those controls, each in its place, and hides the others. */
+  offer(shown: readonly string[], isOpen: boolean): void {
+    if (!isOpen) this.#opening = shown;
     for (const [id, row] of this.#rows) {
       const isShown = shown.includes(id);
       // A hidden control must not keep the focus: "More" gets it.
-      if (!isShown && row.matches(':focus-within')) this.#rows.get(MORE)?.querySelector('input')?.focus();
+      if (!isShown && row.matches(':focus-within')) this.#rows.get(MORE)?.querySelector('button')?.focus();
       row.hidden = !isShown;
+      const place = this.#placeOf(id);
+      if (row.parentElement !== place) place.append(row);
+    }
+    for (const place of Object.values(this.#places) as HTMLElement[]) this.#sort(place);
+  }
+
+  /** Puts the rows of a place in order; those that are in order already do not move, and keep the focus. */
+  #sort(place: HTMLElement): void {
+    let next: Element | null = place.firstElementChild;
+    for (const row of this.#inOrder().map((id) => this.#rows.get(id))) {
+      if (row?.parentElement !== place) continue;
+      if (row === next) next = row.nextElementSibling;
+      else place.insertBefore(row, next);
     }
   }
 
+  /** Play comes first, and its slider after the buttons. */
+  #inOrder(): string[] {
+    const rank = (id: string): number => {
+      if (id === PLAY) return 0;
+      return this.#isTimeline(id) ? 2 : 1;
+    };
+    return [...this.#rows.keys()].sort((a, b) => rank(a) - rank(b));
+  }
+
+  #placeOf(id: string): HTMLElement {
+    const { transport, first, tools, presets, settings, actions } = this.#places;
+    if (id === MORE) return tools;
+    const isButton = this.#buttons.has(id);
+    if (this.#opening.includes(id)) return isButton || this.#isTimeline(id) ? transport : first;
+    if (!isButton) return settings;
+    return this.#widget.presets.some((preset) => preset.id === id) ? presets : actions;
+  }
+
+  #isTimeline(id: string): boolean {
+    return this.#params.get(id)?.spec.kind === 'timeline';
+  }
+
   /** Dims the buttons that have nothing to do. They keep the focus: a press on one may be what ended its work. */
-  disable(disabled: readonly string[]): void {
-    for (const [id, button] of this.#buttons) button.setAttribute('aria-disabled', String(disabled.includes(id)));
+  showButtons({ disabled, pressed }: ButtonStates): void {
+    for (const [id, button] of this.#buttons) {
+      button.setAttribute('aria-disabled', String(disabled.includes(id)));
+      const isPressed = pressed.includes(id);
+      if (id === PLAY) button.textContent = isPressed ? 'Pause' : this.#labelOf(id);
+      else if (isPressed || button.hasAttribute('aria-pressed')) button.setAttribute('aria-pressed', String(isPressed));
+    }
+  }
+
+  #labelOf(id: string): string {
+    return this.#widget.buttons.find((button) => button.id === id)?.label ?? '';
   }
 
   /** Shows values that changed elsewhere. */
@@ -90,26 +143,57 @@ export class Controls {
     for (const [id, text] of values) this.#params.get(id)?.show(text);
   }
 
-  /** Shows the length of the run and whether it plays. */
+  /** Shows the length of the run and its events. */
   showTimeline(timeline: Timeline | null): void {
-    const play = this.#buttons.get('play');
     if (timeline === null) return;
-    play?.setAttribute('aria-pressed', String(timeline.playing));
-    const range = this.#ranges.get(timeline.param);
-    if (range === undefined) return;
-    range.max = String(timeline.last);
+    const { param, last, marks } = timeline;
+    const range = this.#ranges.get(param);
+    const row = this.#rows.get(param);
+    if (range === undefined || row === undefined) return;
+    range.max = String(last);
+    row.classList.toggle('empty', last === 0);
+    showText(row.querySelector('.unit'), `of ${last}`);
     // A run can be shorter than the requested time: the control shows its end.
-    const asked = Number(this.#host.text(timeline.param));
-    this.#params.get(timeline.param)?.show(String(Math.min(asked, timeline.last)));
+    const asked = Number(this.#host.text(param));
+    this.#params.get(param)?.show(String(Math.min(asked, last)));
+    const rail = row.querySelector<HTMLElement>('.marks');
+    const drawn = JSON.stringify([last, marks]);
+    if (rail === null || rail.dataset['drawn'] === drawn) return;
+    rail.dataset['drawn'] = drawn;
+    rail.replaceChildren(...marks.map(({ at, standing }) => {
+      const mark = create('i', { class: standing });
+      mark.style.setProperty('--at', String(at / Math.max(last, 1)));
+      return mark;
+    }));
+    range.onpointermove = ({ offsetX }) => {
+      const at = (offsetX / range.clientWidth) * last;
+      const near = marks.filter((mark) => Math.abs(mark.at - at) <= 0.015 * last);
+      range.title = near.map(({ label }) => label).join('; ');
+    };
+  }
+
+  #more(spec: ParamSpec): HTMLElement {
+    const row = create('span', { class: 'control' });
+    const button = create('button', { type: 'button', 'aria-expanded': 'false', 'aria-controls': REST, title: spec.help });
+    button.dataset['control'] = spec.id;
+    button.id = `control-${spec.id}`;
+    button.addEventListener('click', () => this.#host.set(spec.id, this.#host.text(spec.id) === 'on' ? 'off' : 'on'));
+    const show = (text: string): void => {
+      button.textContent = text === 'on' ? 'Less' : 'More';
+      button.setAttribute('aria-expanded', String(text === 'on'));
+    };
+    show('off');
+    this.#params.set(spec.id, { spec, show });
+    row.append(button);
+    return row;
   }
 
   #param(spec: ParamSpec): HTMLElement {
-    const row = create('div', { class: 'control' });
+    const row = create('div', { class: `control ${spec.kind}`, title: spec.help });
     const name = create('label', { class: 'name' });
     name.textContent = spec.label;
-    const help = create('span', { class: 'help' });
+    const help = create('span', { class: 'hidden', id: `help-${spec.id}` });
     help.textContent = spec.help;
-    help.id = `help-${spec.id}`;
     const [inputs, show] = this.#inputs(spec);
     const [first] = inputs;
     if (first !== undefined) {
@@ -120,9 +204,12 @@ export class Controls {
       input.dataset['control'] = spec.id;
       input.setAttribute('aria-describedby', help.id);
     }
-    const line = create('span', { class: 'line' });
-    line.append(name, ...inputs, unitOf(spec));
-    row.append(line, help);
+    const unit = create('span', { class: 'unit' });
+    unit.textContent = spec.unit;
+    const value = create('span', { class: 'value' });
+    const range = this.#ranges.get(spec.id);
+    value.append(...inputs.filter((input) => input !== range), unit);
+    row.append(name, ...(range === undefined ? [] : [onRail(range, spec)]), value, help);
     this.#params.set(spec.id, { spec, show });
     return row;
   }
@@ -157,7 +244,12 @@ export class Controls {
         return [[field], this.#typed(field, spec)];
       }
       default: {
-        const range = this.#range(spec);
+        const range = rangeOf(spec, {
+          set: (text) => this.#host.set(spec.id, text),
+          // The end of the run is unknown while it is being computed.
+          beforeKey: () => { if (spec.kind === 'timeline') this.#host.finishRun(); },
+        });
+        this.#ranges.set(spec.id, range);
         const field = this.#numberField(spec);
         field.setAttribute('aria-label', `${spec.label}, number`);
         const showTyped = this.#typed(field, spec);
@@ -169,29 +261,6 @@ export class Controls {
         return [[range, field], show];
       }
     }
-  }
-
-  #range(spec: ParamSpec): HTMLInputElement {
-    const { min, max } = spec;
-    // `any`: values between the steps are valid, such as those of fine steps.
-    const range = create('input', { type: 'range', min: `${min}`, max: `${max}`, step: 'any' });
-    range.addEventListener('input', () => {
-      const steps = Math.round((Number(range.value) - min) / spec.step);
-      this.#host.set(spec.id, tidy(min + steps * spec.step));
-    });
-    range.addEventListener('keydown', (event) => {
-      // The end of the run is unknown while it is being computed.
-      if (spec.kind === 'timeline') this.#host.finishRun();
-      const now = Number(range.value);
-      const last = Number(range.max);
-      const step = event.shiftKey && spec.kind === 'slider' ? spec.step / 10 : spec.step;
-      const next = afterKey(event.key, now, { min, max: last, step });
-      if (next === undefined) return;
-      event.preventDefault();
-      this.#host.set(spec.id, tidy(next));
-    });
-    this.#ranges.set(spec.id, range);
-    return range;
   }
 
   #numberField(spec: ParamSpec): HTMLInputElement {
@@ -206,9 +275,10 @@ export class Controls {
   }
 
   /** Shows a value in a field, unless the reader is typing another one. */
-  #typed(field: HTMLInputElement, { id }: ParamSpec): (text: string) => void {
+  #typed(field: HTMLInputElement, spec: ParamSpec): (text: string) => void {
     let isBegun = false;
-    const show = (text: string): void => {
+    const show = (value: string): void => {
+      const text = shortened(spec, value);
       const isSame = field.value === text || (field.type === 'number' && Number(field.value) === Number(text));
       if (isBegun || (isSame && hasFocus(field))) return;
       field.value = text;
@@ -220,21 +290,19 @@ export class Controls {
     field.addEventListener('blur', () => {
       if (!isBegun) return;
       isBegun = false;
-      show(this.#host.text(id));
+      show(this.#host.text(spec.id));
     });
     return show;
   }
 
   #button(spec: ButtonSpec, kind: 'try' | 'do'): HTMLElement {
-    const row = create('div', { class: 'control' });
-    const button = create('button', { type: 'button' });
-    button.textContent = kind === 'try' ? `Try: ${spec.label}` : spec.label;
+    const row = create('span', { class: `control ${kind}` });
+    const button = create('button', { type: 'button', title: spec.help });
+    button.textContent = spec.label;
     button.dataset['control'] = spec.id;
-    const help = create('span', { class: 'help' });
-    help.id = `help-${kind}-${spec.id}`;
+    const help = create('span', { class: 'hidden', id: `help-${kind}-${spec.id}` });
     help.textContent = spec.help;
     button.setAttribute('aria-describedby', help.id);
-    if (spec.id === 'play') button.setAttribute('aria-pressed', 'false');
     const keys = [...this.#keys].filter(([, id]) => id === spec.id).map(([key]) => key);
     if (keys.length > 0) button.setAttribute('aria-keyshortcuts', keys.join(' '));
     button.addEventListener('click', () => this.#host.press(spec.id));
@@ -244,54 +312,23 @@ export class Controls {
   }
 }
 
-/** Play, the first controls of the widget, "More", and then the rest. */
-function inOrder({ opening }: WidgetSpec, ids: readonly string[]): string[] {
-  const rank = (id: string): number => {
-    if (id === 'play') return 0;
-    if (id === MORE) return 2;
-    return opening.includes(id) ? 1 : 3;
-  };
-  return [...ids].sort((a, b) => rank(a) - rank(b));
+/** A slider on a rail, with the events of a run. */
+function onRail(range: HTMLElement, { kind }: ParamSpec): HTMLElement {
+  const rail = create('span', { class: 'rail' });
+  rail.append(range);
+  if (kind === 'timeline') rail.append(create('span', { class: 'marks', 'aria-hidden': 'true' }));
+  return rail;
 }
 
-/** The value after a key press; undefined for keys that change no value. */
-function afterKey(
-  key: string,
-  now: number,
-  { min, max, step }: { min: number; max: number; step: number },
-): number | undefined {
-  const clamp = (value: number): number => Math.min(Math.max(value, min), max);
-  switch (key) {
-    case 'ArrowRight':
-    case 'ArrowUp':
-      return clamp(now + step);
-    case 'ArrowLeft':
-    case 'ArrowDown':
-      return clamp(now - step);
-    case 'PageUp':
-      return clamp(now + 10 * step);
-    case 'PageDown':
-      return clamp(now - 10 * step);
-    case 'Home':
-      return min;
-    case 'End':
-      return max;
-    default:
-      return undefined;
-  }
-}
-
-/** Rounds to ten digits: 0.1 + 0.2 becomes 0.3. */
-function tidy(value: number): string {
-  return String(Number(value.toPrecision(10)));
+/** A number with at most one digit more than its steps have: those of fine steps. */
+function shortened({ kind, decimals }: ParamSpec, text: string): string {
+  return kind === 'slider' ? String(Number(Number(text).toFixed(decimals + 1))) : text;
 }
 
 function hasFocus(field: HTMLInputElement): boolean {
   return (field.getRootNode() as ShadowRoot | Document).activeElement === field;
 }
 
-function unitOf(spec: ParamSpec): HTMLElement {
-  const unit = create('span', { class: 'unit' });
-  unit.textContent = spec.unit;
-  return unit;
+function showText(element: Element | null, text: string): void {
+  if (element !== null && element.textContent !== text) element.textContent = text;
 }

@@ -34,24 +34,6 @@ export function stopKeyPropagation(element: HTMLElement): void {
   });
 }
 
-/** Scrolls a box (left, top, width, height) inside an element into view, above a bar at the bottom. */
-export function reveal(
-  inside: HTMLElement,
-  [left, top, width, height]: readonly [number, number, number, number],
-  barHeight: number,
-): void {
-  const at = inside.getBoundingClientRect().top + top;
-  if (at >= 0 && at + height <= window.innerHeight - barHeight) return;
-  const marker = create('span');
-  marker.style.position = 'absolute';
-  for (const [side, value] of Object.entries({ left, top, width, height })) {
-    marker.style.setProperty(side, `${value}px`);
-  }
-  inside.append(marker);
-  marker.scrollIntoView({ block: 'center', inline: 'nearest' });
-  marker.remove();
-}
-
 /** Sets properties again that were set before the element was defined, and hide those of its class. */
 export function upgradeProperties(element: HTMLElement): void {
   const early = element as unknown as Record<string, unknown>;

@@ -7,7 +7,7 @@ import { linkTo, readAddress } from './address';
 import { Appearance } from './appearance';
 import { boxOf, type Box } from './box';
 import { Controls, MORE } from './controls';
-import { listen, upgradeProperties } from './dom';
+import { create, listen, upgradeProperties } from './dom';
 import { exportMenu } from './export';
 import type { Widget } from '../pkg/glue.js';
 import { CrashError, type CsvFile, type Outcome, type Timeline } from './instance';
@@ -16,6 +16,7 @@ import { LoadError } from './module';
 import { Notifier } from './notifier';
 import { Notes } from './notes';
 import { build, type Parts } from './parts';
+import { DetailList, VerdictLine } from './readouts';
 import { Pictures } from './pictures';
 import { ReservedHeight } from './reserved-height';
 import { findParam, findWidget, widgets } from './schema';
@@ -43,12 +44,13 @@ export class SlamWidget extends HTMLElement {
   readonly #reservedHeight: ReservedHeight;
   readonly #lifecycle: Lifecycle;
   readonly #appearance: Appearance;
+  readonly #verdict: VerdictLine;
   #state: State | undefined;
   #isSetUp = false;
   /** Whether the reader or a program has acted: until then a question stands in place of the verdict. */
   #hasActed = false;
   #controls: Controls | undefined;
-  #zoom: HTMLElement | undefined;
+  #details: DetailList | undefined;
   #lastOutcome: Outcome | undefined;
   #unwatch: (() => void)[] = [];
   readonly #textFiles: TextFileHost;
@@ -69,7 +71,9 @@ export class SlamWidget extends HTMLElement {
     const shownSummary = (): string => this.#shownSummary();
     this.#notifier = new Notifier(this, this.#parts, this.#notes, () => this.#showTimeline(), shownSummary);
     this.#pictures = new Pictures(this.#parts.picture);
-    this.#reservedHeight = new ReservedHeight(this.#parts.stage);
+    this.#reservedHeight = new ReservedHeight(this.#parts);
+    this.#verdict = new VerdictLine(this.#parts.verdict);
+    this.#parts.whole.addEventListener('click', () => this.look('whole'));
     this.#lifecycle = new Lifecycle(this.#parts, this.#lifecycleHost());
     this.#appearance = new Appearance(this, this.#parts, this.#lifecycle, this.#pictures);
   }
@@ -243,11 +247,6 @@ export class SlamWidget extends HTMLElement {
     return this.#lifecycle.ask((widget) => widget.dragsAt(x, y)) ?? false;
   }
 
-  /** The rectangle of a control on the canvas: left, top, width, height; null while it rests. */
-  controlBox(id: string): Box | null {
-    return boxOf(this.#lifecycle.ask((widget) => widget.controlBox(String(id))));
-  }
-
   /** The rectangle of the picture on the canvas: left, top, width, height; null while it rests. */
   sceneBox(): Box | null {
     return boxOf(this.#lifecycle.ask((widget) => widget.sceneBox()));
@@ -318,13 +317,16 @@ export class SlamWidget extends HTMLElement {
     this.#notes.clear();
     this.#pictures.clear(spec?.summary ?? '');
     this.#reservedHeight.reserve(spec?.heights ?? []);
-    parts.bar.replaceChildren();
+    for (const place of Object.values(parts.places) as HTMLElement[]) place.replaceChildren();
+    this.#details?.element.remove();
+    parts.rest.querySelector('.zoom')?.remove();
+    parts.bar.hidden = spec === undefined;
     if (spec === undefined) {
       const known = widgets.map((widget) => widget.id).join(', ');
       this.#notifier.invalid('name', `There is no widget \`${this.name.slice(0, 60)}\`; there are ${known}.`);
       return;
     }
-    this.#controls = new Controls(spec, {
+    this.#controls = new Controls(spec, parts.places, {
       set: (id, text) => this.#tryToSet(id, text),
       text: (id) => this.#state?.text(id) ?? '',
       press: (id) => void this.press(id).catch((error: unknown) => this.#pressFailed(error)),
@@ -332,12 +334,14 @@ export class SlamWidget extends HTMLElement {
         this.#finishWork();
         this.#showTimeline();
       },
-      focus: (id) => this.#appearance.showFocus(id),
     });
-    const zoom = zoomButtons((view) => this.look(view));
-    zoom.hidden = true;
-    this.#zoom = zoom;
-    parts.bar.append(this.#controls.element, zoom, exportMenu(this, spec.id, parts.status));
+    this.#details = new DetailList(spec);
+    parts.rest.append(zoomButtons((view) => this.look(view)), this.#details.element);
+    parts.places.tools.append(exportMenu(this, spec.id, parts.status));
+    const number = create('span');
+    number.textContent = `${spec.id.replace(/^w/, '')} `;
+    parts.claim.replaceChildren(number, spec.misconception);
+    parts.bar.setAttribute('aria-label', `${spec.title}: controls`);
     parts.frame.setAttribute('aria-label', `Widget ${spec.id.replace(/^w/, '')}: ${spec.title}`);
     parts.summary.textContent = spec.summary;
     this.#appearance.become(spec.id);
@@ -357,6 +361,7 @@ export class SlamWidget extends HTMLElement {
     }
     this.#controls.show(this.#state?.texts ?? []);
     this.#offerControls();
+    this.#showReadouts();
     this.#notifier.setUp();
   }
 
@@ -388,19 +393,19 @@ export class SlamWidget extends HTMLElement {
       },
       live: (milliseconds) => {
         this.#showTimeline();
-        this.#shownOutcome();
+        this.#showReadouts();
         this.#notifier.ready(milliseconds);
       },
       drew: (canvas) => {
         this.#pictures.resolveSnapshots(canvas);
         this.#appearance.drew(canvas);
         this.#sync();
+        this.#showReadouts();
       },
       rested: () => this.#notifier.rested(),
       leaving: () => {
-        this.#hasActed ||= this.#lifecycle.ask((widget) => widget.hasActed()) === true;
+        this.#showReadouts();
         this.#appearance.drawPicture();
-        this.#shownOutcome();
         this.#reservedHeight.keep();
       },
       failed: (error) => {
@@ -515,20 +520,37 @@ export class SlamWidget extends HTMLElement {
     this.#controls?.show(changes);
     if (changes.length > 0) this.#offerControls();
     this.#showTimeline();
+    this.#showReadouts();
     this.#notifier.changed(changes, this.#shownOutcome());
   }
 
-  /** Makes the controls that the canvas shows focusable. Without an instance these are its first ones, or all. */
+  /** Shows the controls of the present state. Without an instance these are its first ones, or all. */
   #offerControls(running?: Widget): void {
     const state = this.#state;
     if (state === undefined) return;
     const { spec } = state;
-    const hasMore = spec.params.some(({ id }) => id === MORE);
-    const isOpen = !hasMore || state.text(MORE) === 'on';
+    const isOpen = this.#isOpen;
     const all = (): string[] => [...spec.presets, ...spec.params, ...spec.buttons].map(({ id }) => id);
     const shown = running?.shownControls() ?? this.#lifecycle.ask((widget) => widget.shownControls());
-    this.#controls?.offer(shown ?? (isOpen ? all() : spec.opening));
-    if (this.#zoom !== undefined) this.#zoom.hidden = !isOpen;
+    this.#controls?.offer(shown ?? (isOpen ? all() : spec.opening), isOpen);
+    this.#parts.rest.hidden = !isOpen;
+  }
+
+  /** Whether everything is shown. */
+  get #isOpen(): boolean {
+    return this.#state?.texts.get(MORE) !== 'off';
+  }
+
+  /** Shows the question until the reader acts, and then the verdict of the picture as drawn; under More its details. */
+  #showReadouts(): void {
+    const outcome = this.#shownOutcome();
+    this.#hasActed ||= this.#lifecycle.ask((widget) => widget.hasActed()) === true;
+    this.#parts.whole.hidden = this.#lifecycle.ask((widget) => widget.isZoomed()) !== true;
+    const asks = !this.#hasActed && !this.#isOpen;
+    if (asks) this.#verdict.ask(this.#state?.spec.question ?? '');
+    else if (outcome !== undefined) this.#verdict.show(outcome);
+    const details = this.#isOpen ? this.#lifecycle.ask((widget) => widget.details()) : undefined;
+    if (details !== undefined) this.#details?.show(details);
   }
 
   /** Finishes pending work before results are read: they belong to the values that are set. */
@@ -551,11 +573,13 @@ export class SlamWidget extends HTMLElement {
   }
 
   #showTimeline(): void {
-    this.#controls?.disable(this.#lifecycle.ask((widget) => widget.disabledButtons()) ?? []);
+    const buttons = this.#lifecycle.ask((_, instance) => instance.buttons());
+    if (buttons !== undefined) this.#controls?.showButtons(buttons);
     this.#controls?.showTimeline(this.#shownTimeline());
   }
 
   #resized(): void {
+    this.#verdict.resized();
     this.#reservedHeight.fit();
     this.#lifecycle.ask((widget) => widget.setRoom(this.#reservedHeight.room));
     this.#lifecycle.wake();

@@ -13,11 +13,18 @@ interface Source extends HTMLElement {
 
 /** The menu of the exports; `status` is the live region for their results. */
 export function exportMenu(source: Source, name: string, status: HTMLElement): HTMLElement {
-  const tools = create('div', { class: 'tools' });
-  const menu = create('details');
+  const menu = create('details', { class: 'menu' });
   const heading = create('summary');
   const items = create('div');
-  heading.textContent = 'Save or share';
+  heading.textContent = 'Share';
+  menu.addEventListener('focusout', ({ relatedTarget }) => {
+    if (relatedTarget instanceof Node && !menu.contains(relatedTarget)) menu.open = false;
+  });
+  menu.addEventListener('keydown', ({ key }) => {
+    if (key !== 'Escape' || !menu.open) return;
+    menu.open = false;
+    heading.focus();
+  });
   const button = (label: string, press: () => Promise<void>): HTMLElement => {
     const element = create('button', { type: 'button' });
     element.textContent = label;
@@ -33,9 +40,9 @@ export function exportMenu(source: Source, name: string, status: HTMLElement): H
       status.textContent = (await copyText(source.link)) ? 'The link is copied.' : source.link;
     }),
   );
+  items.append(status);
   menu.append(heading, items);
-  tools.append(menu, status);
-  return tools;
+  return menu;
 }
 
 async function savePng(picture: ImageBitmap, name: string): Promise<void> {

@@ -26,6 +26,12 @@ export interface Timeline {
   marks: TimelineMark[];
 }
 
+/** The buttons that have nothing to do, and those shown as pressed. */
+export interface ButtonStates {
+  disabled: string[];
+  pressed: string[];
+}
+
 export interface CsvFile {
   id: string;
   title: string;
@@ -105,6 +111,10 @@ export class Instance {
 
   timeline(): Timeline | null {
     return JSON.parse(this.use((widget) => widget.timeline())) as Timeline | null;
+  }
+
+  buttons(): ButtonStates {
+    return JSON.parse(this.use((widget) => widget.buttonStates())) as ButtonStates;
   }
 
   tables(): CsvFile[] {

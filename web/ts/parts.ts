@@ -1,5 +1,6 @@
-// The element's shadow tree: picture and canvas above, notes, controls and tools below.
+// The element's shadow tree: the claim, the picture, Play, the opening control, the verdict, and what More opens.
 
+import type { Places } from './controls';
 import { create, stopKeyPropagation } from './dom';
 import { copyText } from './export';
 import { CrashError } from './instance';
@@ -8,15 +9,23 @@ import { STYLE } from './style';
 
 /** Id of the text alternative. */
 export const SUMMARY = 'summary';
+/** Id of what More opens. */
+export const REST = 'rest';
 
 /** The elements of the shadow tree. */
 export interface Parts {
   frame: HTMLElement;
+  claim: HTMLElement;
   stage: HTMLElement;
+  /** Shows a zoomed map completely again. */
+  whole: HTMLButtonElement;
   picture: HTMLImageElement;
   progress: HTMLProgressElement;
   note: HTMLElement;
   bar: HTMLElement;
+  places: Places;
+  verdict: HTMLElement;
+  rest: HTMLElement;
   summary: HTMLElement;
   live: HTMLElement;
   status: HTMLElement;
@@ -31,7 +40,16 @@ export function build(shadow: ShadowRoot): Parts {
   const picture = create('img', { class: 'picture', alt: '', loading: 'lazy' });
   const progress = create('progress', { max: '1', hidden: '', 'aria-label': 'Loading the widget' });
   const note = create('div', { class: 'note-box', role: 'status' });
-  const bar = create('div', { class: 'bar' });
+  const claim = create('p', { class: 'claim' });
+  const view = create('div', { class: 'view' });
+  const whole = create('button', { type: 'button', class: 'whole', hidden: '' });
+  whole.textContent = 'Whole map';
+  const bar = create('div', { class: 'bar', role: 'group' });
+  const part = (name: string): HTMLElement => create('div', { class: name });
+  const [transport, first, tools, verdict] = [part('transport'), part('first'), part('tools'), part('verdict')];
+  const rest = create('div', { class: 'rest', id: REST, hidden: '' });
+  const presets = create('div', { class: 'presets', role: 'group', 'aria-label': 'What to try' });
+  const [settings, actions] = [part('settings'), part('actions')];
   // Describes the canvas; a still picture has the same text as `alt`.
   const summary = create('p', { class: 'summary', id: SUMMARY, hidden: '' });
   const live = create('p', { class: 'hidden', role: 'status', 'aria-live': 'polite' });
@@ -39,9 +57,15 @@ export function build(shadow: ShadowRoot): Parts {
   note.classList.add('note');
   stopKeyPropagation(bar);
   stage.append(picture, progress);
-  frame.append(stage, note, summary, bar, live);
+  view.append(stage, whole);
+  rest.append(presets, settings, actions);
+  const controls = part('controls');
+  controls.append(transport, first, tools, verdict);
+  bar.append(controls, rest);
+  frame.append(claim, view, note, summary, bar, live);
   shadow.append(style, frame);
-  return { frame, stage, picture, progress, note, bar, summary, live, status };
+  const places = { transport, first, tools, presets, settings, actions };
+  return { frame, claim, stage, whole, picture, progress, note, bar, places, verdict, rest, summary, live, status };
 }
 
 /** The error in one sentence, and a button that restarts or reloads. */

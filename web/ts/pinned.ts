@@ -33,8 +33,8 @@ export class PinnedPicture {
     this.#stage = stage;
     this.#bar = bar;
     this.#host = host;
-    stage.addEventListener('pointerdown', (event) => this.#press(event), { capture: true, passive: true });
-    bar.addEventListener('focusin', () => this.#set(this.#holdsControl()));
+    bar.addEventListener('pointerdown', () => this.#set(true), { passive: true });
+    bar.addEventListener('focusin', () => { if (this.#holdsControl()) this.#set(true); });
     bar.addEventListener('focusout', () => this.#set(false));
   }
 
@@ -62,13 +62,6 @@ export class PinnedPicture {
     this.#show(canvas, box);
   }
 
-  /** A press below the scene is on a control. */
-  #press({ clientY, target }: PointerEvent): void {
-    const box = this.#host.sceneBox();
-    if (box === undefined || !(target instanceof HTMLCanvasElement)) return;
-    this.#set(clientY - target.getBoundingClientRect().top > box[1] + box[3]);
-  }
-
   #set(isMoved: boolean): void {
     if (this.#isMoved === isMoved) return;
     this.#isMoved = isMoved;
@@ -81,8 +74,9 @@ export class PinnedPicture {
     this.#copy = undefined;
   }
 
+  /** Whether the keyboard is on a control; a press leaves the focus there, but ends with the release. */
   #holdsControl(): boolean {
-    return this.#bar.querySelector('.control:focus-within') !== null;
+    return this.#bar.querySelector('.control :focus-visible') !== null;
   }
 
   #isSeen(canvas: HTMLCanvasElement, [, top, , height]: Box): boolean {

@@ -1,15 +1,20 @@
-// Avoids layout shifts: reserves the height of a widget before its first frame and while its canvas is gone.
+// Avoids layout shifts: reserves the height of a picture before its first frame and while its canvas is gone.
 
-/** The widget's height at each width, in CSS pixels, by ascending width. */
+import type { Parts } from './parts';
+import { typeScale } from './type-scale';
+
+/** The picture's height at each width, in CSS pixels, by ascending width. */
 export type Heights = readonly (readonly [width: number, height: number])[];
 
 export class ReservedHeight {
+  readonly #parts: Parts;
   readonly #stage: HTMLElement;
   #heights: Heights = [];
   #kept: { width: number; height: number } | undefined;
 
-  constructor(stage: HTMLElement) {
-    this.#stage = stage;
+  constructor(parts: Parts) {
+    this.#parts = parts;
+    this.#stage = parts.stage;
   }
 
   /** Reserves the height at the default values. */
@@ -30,19 +35,21 @@ export class ReservedHeight {
   fit(): void {
     const width = this.#stage.clientWidth;
     if (width === 0) return;
-    const height = this.#kept?.width === width ? this.#kept.height : heightAt(this.#heights, width);
+    const scale = typeScale();
+    const natural = heightAt(this.#heights, width / scale);
+    const height = this.#kept?.width === width ? this.#kept.height : natural && scale * natural;
     if (height === undefined) this.free();
     else this.#stage.style.setProperty('--reserved-height', `${Math.min(height, this.room)}px`);
   }
 
-  /** The available height: that of `max-height` or of `--room`, else infinite. */
+  /** The height available to the picture: that of `max-height` or of `--room` without what is around it, else infinite. */
   get room(): number {
-    const frame = this.#stage.parentElement;
+    const { frame, rest } = this.#parts;
     const { host } = this.#stage.getRootNode() as ShadowRoot;
     const style = getComputedStyle(host);
     const most = [style.maxHeight, style.getPropertyValue('--room')].find((length) => length.endsWith('px'));
-    if (frame === null || most === undefined) return Infinity;
-    return parseFloat(most) - (frame.offsetHeight - this.#stage.offsetHeight);
+    if (most === undefined) return Infinity;
+    return parseFloat(most) - (frame.offsetHeight - this.#stage.offsetHeight - rest.offsetHeight);
   }
 
   /** Removes the reservation: the picture gets its natural height. */

@@ -39,6 +39,7 @@ export interface WidgetSpec {
   id: string;
   title: string;
   misconception: string;
+  question: string;
   notice: string[];
   params: ParamSpec[];
   buttons: ButtonSpec[];

@@ -107,13 +107,8 @@ export class Stage {
     this.#instance.frames.wake();
   }
 
-  /** egui gets keys while the reader types into one of its fields; Tab and all others belong to the page. */
+  /** All keys belong to the page: egui would take them. */
   #key(event: KeyboardEvent): void {
-    this.#instance.frames.wake();
-    const typing =
-      this.#instance.crash() === undefined &&
-      this.#instance.use((widget) => widget.wantsKeyboard());
-    if (event.key !== 'Tab' && typing) return;
     event.stopImmediatePropagation();
     // Shortcuts of the page still work: next slide, search.
     const { host } = this.#element.getRootNode() as ShadowRoot;

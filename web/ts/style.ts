@@ -7,12 +7,16 @@ export const STYLE = `
 :host([hidden]) { display: none; }
 .frame { --paper: ${paper[0]}; --ink: ${ink[0]}; --soft: ${soft[0]}; --line: ${faint[0]}; --accent: ${accent[0]};
   --good: ${good[0]}; --fair: ${fair[0]}; --bad: ${bad[0]}; --older: ${prior[0]}; --newer: ${measurement[0]};
-  background: var(--paper); color: var(--ink); font: 0.875rem/1.4 system-ui, sans-serif;
+  background: var(--paper); color: var(--ink); font: 0.9375rem/1.4 var(--label-font, system-ui), sans-serif;
   border: 1px solid var(--line); border-radius: 6px; outline: none; }
 .frame.dark { --paper: ${paper[1]}; --ink: ${ink[1]}; --soft: ${soft[1]}; --line: ${faint[1]}; --accent: ${accent[1]};
   --good: ${good[1]}; --fair: ${fair[1]}; --bad: ${bad[1]}; --older: ${prior[1]}; --newer: ${measurement[1]};
   color-scheme: dark; }
-.stage { position: relative; overflow: hidden; border-radius: 6px 6px 0 0; min-height: 12rem; height: var(--reserved-height); }
+.claim { margin: 0; padding: 0.5rem 0.75rem 0; font-weight: 600; line-height: 1.3; }
+.claim span { color: var(--soft); font-weight: 400; }
+.view { position: relative; }
+.whole { position: absolute; top: 0.5rem; right: 0.75rem; }
+.stage { position: relative; overflow: hidden; min-height: 12rem; height: var(--reserved-height); }
 .stage.live { min-height: 0; height: auto; }
 .picture { display: block; width: 100%; height: auto; }
 .stage[style*='--reserved-height'] .picture { height: 100%; object-fit: contain; object-position: top; }
@@ -53,37 +57,86 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .loops .older { stroke: var(--older); }
 .loops .newer { stroke: var(--newer); }
 .loops span { flex: 1 0 100%; color: var(--soft); font-size: 0.8125rem; }
-.bar { position: relative; background: var(--paper);
-  border-top: 1px solid var(--line); border-radius: 0 0 6px 6px; min-height: 2.75rem; }
-/* The line of the focused control stays in view at any scroll position. */
-.bar:has(.control:focus-within) { position: sticky; bottom: 0; z-index: 1; }
-.tools, .tools :is([open], div) { display: flex; flex-wrap: wrap; gap: 0.5rem; align-items: center; }
-.tools { padding: 0.4rem 0.75rem; }
-.tools summary { box-sizing: border-box; list-style: none; cursor: pointer; }
-button, .tools summary, select, input[type='number'] { font: inherit; color: inherit; background: var(--paper);
-  border: 1px solid var(--soft); border-radius: 4px; min-height: 1.75rem; padding: 0.1rem 0.6rem; }
-button { cursor: pointer; }
-:is(button, .tools summary):hover { border-color: var(--accent); }
+.bar { container-type: inline-size; border-top: 1px solid var(--line); }
+.controls { display: grid; grid-template: "transport transport" "first tools" "verdict verdict" / minmax(0, 1fr) auto;
+  gap: 0.25rem 0.75rem; padding: 0.3rem 0.75rem 0.4rem; }
+.transport { grid-area: transport; }
+.first { grid-area: first; }
+.tools { grid-area: tools; }
+.verdict { grid-area: verdict; min-height: 4.2em; }
+@container (width >= 30rem) {
+  .controls { grid-template: "transport transport transport" "first verdict tools" / 35% minmax(0, 1fr) auto; }
+  .verdict { min-height: 5.6em; }
+}
+@container (width >= 50rem) { .verdict { min-height: 4.2em; } }
+@container (width < 30rem) {
+  .transport .name { position: absolute; clip-path: inset(50%); }
+}
+@media (width < 30rem) { .claim span { display: none; } }
+.transport, .presets, .actions, .zoom { display: flex; flex-wrap: wrap; gap: 0.25rem 0.5rem; align-items: center; }
+.tools { display: flex; flex-direction: column; gap: 0.25rem; }
+.tools .control button, .menu summary { width: 100%; }
+.verdict p { margin: 0; text-wrap: pretty; }
+.question { font-weight: 600; }
+.good { color: var(--good); }
+.doubtful { color: var(--fair); }
+.bad { color: var(--bad); }
+button, .menu summary, select, input[type='number'], input[type='text'] { box-sizing: border-box; font: inherit; color: inherit;
+  background: var(--paper); border: 1px solid var(--soft); border-radius: 999px; min-height: 1.875rem; padding: 0.1rem 0.75rem; }
+button, .menu summary { cursor: pointer; text-align: center; }
+button[aria-pressed='true'] { background: var(--ink); color: var(--paper); }
+:is(button, .menu summary, select, input):hover { border-color: var(--accent); }
 button[aria-disabled='true'] { color: var(--soft); border-color: var(--line); cursor: default; }
 :focus-visible:not(.frame) { outline: 3px solid var(--accent); outline-offset: 2px; }
-input[type='number'] { width: 8rem; }
-input[type='range'] { flex: 1 1 8rem; min-width: 3rem; min-height: 1.75rem; accent-color: var(--accent); }
-input[type='checkbox'] { width: 1.5rem; height: 1.5rem; accent-color: var(--accent); }
-.control:not(:focus-within), .hidden { position: absolute; width: 1px; height: 1px; margin: -1px;
-  overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
-/* Covers the tools to avoid a layout shift under the reader's finger. */
-.control:focus-within { position: absolute; inset: 0; z-index: 1; display: flex; flex-direction: column;
-  justify-content: center; line-height: 1.15; padding: 0 0.75rem; background: var(--paper); border-radius: 0 0 6px 6px; }
+.menu { position: relative; }
+.menu summary { list-style: none; padding-block: 0.2rem; }
+.menu > div { position: absolute; right: 0; bottom: calc(100% + 0.4rem); z-index: 2; display: grid; gap: 0.4rem; width: max-content;
+  max-width: 16rem; padding: 0.6rem; background: var(--paper); border: 1px solid var(--line); border-radius: 8px; box-shadow: 0 3px 10px #0004; }
+.status { color: var(--soft); overflow-wrap: anywhere; }
+.status:empty { display: none; }
+.control { position: relative; display: flex; flex-wrap: wrap; gap: 0 0.5rem; align-items: center; min-width: 0; }
+.name { flex: 1 1 5rem; line-height: 1.2; }
+.value { display: flex; flex: 0 1 auto; gap: 0.1rem; align-items: center; min-width: 0; }
+.text .value { flex: 1 1 8rem; }
+.slider .rail { order: 1; flex: 1 0 100%; }
+.rail { position: relative; display: flex; flex: 1 1 6rem; }
+.unit { white-space: nowrap; }
+.timeline { flex: 1 1 13rem; flex-wrap: nowrap; }
+.timeline > :not(.rail) { flex: none; order: 1; }
+.timeline .name { color: var(--soft); }
+.timeline input[type='number'] { width: 3em; }
+.empty :is(.unit, input[type='number']) { visibility: hidden; }
+input[type='range'] { flex: 1; min-width: 3rem; min-height: 1.625rem; margin: 0; accent-color: var(--accent); }
+.marks { position: absolute; inset: 0 8px; pointer-events: none; }
+.marks i { position: absolute; left: calc(var(--at) * 100%); width: 2px; height: 0.5rem; top: calc(50% - 0.25rem); background: var(--soft); }
+.marks .good { top: 0; background: var(--good); }
+.marks :is(.bad, .doubtful) { top: auto; bottom: 0; background: var(--bad); }
+.marks .doubtful { background: var(--fair); }
+input[type='number'] { width: 3.5em; min-height: 1.5rem; padding: 0 0.3rem; border-color: transparent; border-radius: 4px; text-align: right;
+  appearance: textfield; font-variant-numeric: tabular-nums; }
+:is(.seed, .settings) input[type='number'] { width: 5em; border-color: var(--line); }
+.seed input[type='number'] { width: 7em; }
+input[type='text'] { width: 100%; min-width: 0; border-radius: 4px; }
+select { min-width: 0; max-width: 100%; }
+input[type='checkbox'] { width: 1.5rem; height: 1.5rem; margin: 0.1rem 0; accent-color: var(--accent); }
+.rest { display: grid; gap: 0.9rem; padding: 0.6rem 0.75rem 0.75rem; border-top: 1px solid var(--line); }
+.rest > :not(.details):not(:has(:not([hidden]))) { display: none; }
+.presets::before { content: attr(aria-label); flex: 1 0 100%; font-weight: 600; }
+.settings, .facts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(15rem, 100%), 1fr)); gap: 0.4rem 2rem; align-items: start; }
+.details > * { margin: 0 0 0.6rem; }
+.facts div { display: flex; justify-content: space-between; gap: 0.5rem; }
+.facts dt { color: var(--soft); }
+.facts dd { margin: 0; font-variant-numeric: tabular-nums; }
+.details ul { padding-left: 1.2rem; }
+.head { font-weight: 600; }
+table { width: 100%; border-collapse: collapse; margin-top: 0.6rem; font-size: 0.875em; font-variant-numeric: tabular-nums; }
+caption { text-align: left; font-weight: 600; }
+:is(th, td) { padding: 0.15rem 0.75rem 0.15rem 0; text-align: left; font-weight: 400; vertical-align: top; overflow-wrap: anywhere; }
+th { border-bottom: 1px solid var(--line); }
+.hidden { position: absolute; width: 1px; height: 1px; margin: -1px; overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
 [hidden] { display: none !important; }
-.line { display: flex; gap: 0.5rem; align-items: center; min-width: 0; }
-.name, .help { overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
-.name { flex: 0 1 auto; min-width: 4rem; font-weight: 600; }
-.line select, .line input[type='text'] { min-width: 4rem; flex: 0 1 16rem; }
-.line input[type='number'] { width: 7rem; min-width: 4.5rem; flex: 0 1 7rem; }
-.help { color: var(--soft); font-size: 0.8125rem; }
-.status { color: var(--soft); }
 @media print {
-  .bar, progress, .note, .loops { display: none; }
+  .transport, .first, .tools, .rest, .whole, progress, .note, .loops { display: none; }
   .stage, .stage .picture { height: auto !important; min-height: 0; }
   .stage .picture { max-height: 15cm; object-fit: contain; object-position: top left; }
   .stage canvas { display: none; }

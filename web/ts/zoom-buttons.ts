@@ -16,19 +16,18 @@ const ARROWS: Record<string, ViewChange> = {
   ArrowDown: 'down',
 };
 
-/** Three buttons that are visible while one has the focus; arrow keys pan. */
+/** Three buttons; arrow keys pan. */
 export function zoomButtons(change: (view: ViewChange) => void): HTMLElement {
-  const bar = create('div', { class: 'control', role: 'group', 'aria-label': 'Zoom' });
-  const line = create('span', { class: 'line' });
-  const help = create('span', { class: 'help', id: 'help-zoom' });
+  const bar = create('div', { class: 'zoom', role: 'group', 'aria-label': 'Zoom' });
+  const help = create('span', { class: 'hidden', id: 'help-zoom' });
   help.textContent = 'Acts on every map of the widget; the arrow keys move a zoomed map.';
   for (const [view, label] of BUTTONS) {
     const button = create('button', { type: 'button', 'aria-describedby': help.id });
     button.textContent = label;
     button.addEventListener('click', () => change(view));
-    line.append(button);
+    bar.append(button);
   }
-  bar.append(line, help);
+  bar.append(help);
   bar.addEventListener('keydown', (event) => {
     const view = ARROWS[event.key];
     if (view === undefined) return;

@@ -1,15 +1,13 @@
 //! Helpers for tests of several widgets, and a shell on a screen without a GPU.
 
-use egui::accesskit::Role;
-use egui::{Key, vec2};
+use egui::vec2;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
 use widget_kit::model::Model;
 use widget_kit::scene::Panel;
 use widget_kit::shell::Shell;
 
 /// Height of the screen: all widgets fit.
-pub const HEIGHT: f32 = 3000.0;
+const HEIGHT: f32 = 3000.0;
 
 /// A number of the outcome.
 pub fn fact(model: &dyn Model, id: &str) -> f64 {
@@ -46,12 +44,4 @@ pub fn drawn_whole(name: &str, width: f32) -> Harness<'static, Shell> {
 /// The value of a parameter.
 pub fn value(harness: &Harness<'_, Shell>, id: &str) -> f64 {
     harness.state().model().values().number(id)
-}
-
-/// Presses a key while a slider has the focus.
-pub fn press_key(harness: &mut Harness<'_, Shell>, slider: &str, key: Key) {
-    harness.get_by_role_and_label(Role::Slider, slider).focus();
-    harness.run_steps(2);
-    harness.key_press(key);
-    harness.run_steps(2);
 }

@@ -2,4 +2,3 @@
 
 mod control_room;
 mod texts;
-mod view;

@@ -1,4 +1,3 @@
 //! Tests of the toy's model and view.
 
 mod model;
-mod view;

@@ -1,4 +1,3 @@
 //! Tests of the search's model and view.
 
 mod model;
-mod view;

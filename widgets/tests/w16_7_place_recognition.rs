@@ -1,4 +1,3 @@
 //! Tests of the comparison's model and view.
 
 mod model;
-mod view;

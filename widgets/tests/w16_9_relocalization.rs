@@ -1,4 +1,3 @@
 //! Tests of the localization's model and view.
 
 mod model;
-mod view;

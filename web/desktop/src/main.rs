@@ -3,6 +3,7 @@
 //! This program replaces the page as host, so features that need a browser are missing: w16.10 reads no log
 //! here.
 
+mod panel;
 mod window;
 
 use std::process::ExitCode;

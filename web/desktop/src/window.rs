@@ -1,7 +1,12 @@
-//! A window with a widget in it.
+//! A window with a widget in it: its picture, and its controls in a panel beside it.
 
 use widget_kit::palette::Theme;
 use widget_kit::shell::Shell;
+
+use crate::panel::panel;
+
+/// Width of the side panel, points.
+const PANEL: f32 = 340.0;
 
 /// Opens a window with that widget and returns when it is closed.
 ///
@@ -12,7 +17,7 @@ pub fn run(shell: Shell) -> eframe::Result {
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_inner_size([1180.0, 860.0])
-            .with_min_inner_size([360.0, 480.0])
+            .with_min_inner_size([700.0, 480.0])
             .with_title(title),
         ..Default::default()
     };
@@ -29,6 +34,11 @@ impl eframe::App for Window {
             egui::Theme::Light => Theme::Light,
             egui::Theme::Dark => Theme::Dark,
         });
+        egui::Panel::right("controls")
+            .exact_size(PANEL)
+            .show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| panel(ui, &mut self.shell));
+            });
         egui::ScrollArea::vertical()
             .auto_shrink(false)
             .show(ui, |ui| self.shell.ui(ui));

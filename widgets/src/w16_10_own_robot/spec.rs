@@ -172,7 +172,7 @@ pub const KEYS: &[(&str, &str)] = &[
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.10",
     title: "Your own robot",
-    misconception: "A map that looks right is not yet right: ask every loop for its evidence.",
+    misconception: "A map that looks right may be wrong.",
     question: "Is your map right, and which of its loops has no evidence? Open a log, or try the sample.",
     notice: &[
         "The log stays in your browser. It is read there, and nothing of it is sent anywhere.",

@@ -13,7 +13,14 @@ pub struct RobotView;
 impl View for RobotView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
-        let map = slot(panel::MAP, PlotHeight::Natural { most: 620.0 });
+        let map = slot(
+            panel::MAP,
+            if width < SIDE_BY_SIDE {
+                PlotHeight::Fixed(520.0)
+            } else {
+                PlotHeight::Natural { most: 620.0 }
+            },
+        );
         let plots = [panel::FIT, panel::SURE].map(|id| slot(id, PlotHeight::Fixed(130.0)));
         let below = if width < SIDE_BY_SIDE {
             plots.iter().map(|plot| Row::new(&[*plot])).collect()
@@ -23,7 +30,6 @@ impl View for RobotView {
         Arrangement {
             stage: vec![Row::new(&[map])],
             below,
-            ..Arrangement::default()
         }
     }
 }

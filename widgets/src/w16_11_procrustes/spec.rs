@@ -105,7 +105,7 @@ const fn moved(id: &'static str, label: &'static str) -> Param<f64> {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.11",
     title: "Turn or mirror image",
-    misconception: "A decomposition knows nothing of left and right: the best orthogonal matrix may be a mirror image, and no robot moves like that.",
+    misconception: "The best fit may be a mirror image.",
     question: "Can the best fit be a mirror image? Drag a corner across the middle.",
     notice: &[
         "Over a whole turn the trace is one sinusoid: it has one top, and the alignment knows its place in closed form.",

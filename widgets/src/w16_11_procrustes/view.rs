@@ -33,7 +33,6 @@ impl View for TraceView {
         Arrangement {
             stage,
             below: Vec::new(),
-            ..Arrangement::default()
         }
     }
 }

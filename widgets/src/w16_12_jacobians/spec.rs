@@ -85,7 +85,7 @@ pub const PARAMS: &[&ParamSpec] = &[
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.12",
     title: "One graph, solved in four ways",
-    misconception: "That a solver converges does not mean that it ends where χ² is least: bend the chain by its loose end, and see which of the four do.",
+    misconception: "To converge is not to reach the minimum.",
     question: "A solver came to rest: is it where χ² is least? Drag the loose end, then press Play.",
     notice: &[
         "With the exact Jacobian each step takes the distance down by some two powers of ten, until only rounding is left.",

@@ -13,8 +13,11 @@ pub struct JacobiansView;
 impl View for JacobiansView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
-        let graphs = slot(panel::GRAPHS, PlotHeight::Natural { most: 340.0 });
-        let curve = slot(panel::CURVE, PlotHeight::Fixed(290.0));
+        let graphs = slot(panel::GRAPHS, PlotHeight::Natural { most: 420.0 });
+        let curve = slot(
+            panel::CURVE,
+            PlotHeight::Fixed(if width >= SIDE_BY_SIDE { 380.0 } else { 290.0 }),
+        );
         let stage = if width >= SIDE_BY_SIDE {
             vec![Row::new(&[graphs, curve])]
         } else {
@@ -23,7 +26,6 @@ impl View for JacobiansView {
         Arrangement {
             stage,
             below: Vec::new(),
-            ..Arrangement::default()
         }
     }
 }

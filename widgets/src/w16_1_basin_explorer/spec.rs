@@ -168,8 +168,7 @@ const fn offset(id: &'static str, label: &'static str, default: f64) -> Param<f6
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.1",
     title: "Basin explorer",
-    misconception: "A small residual proves nothing: registration ends in the minimum whose basin \
-                    it starts in, and a false one can fit better than the right one.",
+    misconception: "A small residual proves nothing.",
     question: "How far may you turn the sweep until registration settles on a false place? Drag it, then let it go.",
     notice: &[
         "The room is almost square, so a quarter turn is a minimum too: rmse 0.13 m there, 0.03 m at the truth. After half a turn point to plane fits better than at the truth.",

@@ -9,7 +9,9 @@ use crate::w16_1_basin_explorer::model::panel;
 /// Height of a map beside the sweeps: both maps together are as high as the sweeps alone, so nothing jumps as they
 /// enter.
 const BESIDE_PX: f32 = 126.0;
-/// Height of a map below the control of a phone.
+/// Height of the sweeps on a phone.
+const PHONE_PX: f32 = 390.0;
+/// Height of a map below the sweeps of a phone.
 const BELOW_PX: f32 = 150.0;
 
 /// The layout of the widget.
@@ -18,24 +20,27 @@ pub struct BasinView;
 
 impl View for BasinView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
-        let sweeps = slot(panel::SWEEPS, PlotHeight::Natural { most: 470.0 });
+        let sweeps = if width >= SIDE_BY_SIDE {
+            slot(panel::SWEEPS, PlotHeight::Natural { most: 470.0 })
+        } else {
+            slot(panel::SWEEPS, PlotHeight::Fixed(PHONE_PX))
+        };
         let mut columns = vec![Column {
             share: 1.5,
             slots: vec![sweeps],
         }];
-        let mut under_control = Vec::new();
+        let mut rows = Vec::new();
         if width >= SIDE_BY_SIDE {
             columns.push(Column {
                 share: 1.0,
                 slots: maps(BESIDE_PX).to_vec(),
             });
         } else {
-            under_control.extend(maps(BELOW_PX).map(|map| Row::new(&[map])));
+            rows.extend(maps(BELOW_PX).map(|map| Row::new(&[map])));
         }
         let curve = slot(panel::CURVE, PlotHeight::Fixed(120.0));
         Arrangement {
-            stage: vec![Row { columns }],
-            under_control,
+            stage: [vec![Row { columns }], rows].concat(),
             below: vec![Row::new(&[curve])],
         }
     }

@@ -44,12 +44,13 @@ use widget_kit::chart::{dragged_to, grab_now};
 use widget_kit::disclosure::Disclosure;
 use widget_kit::host_messages::Delivery;
 use widget_kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Table, Tabs, Timeline, TimelineMark, press_preset,
+    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
 use widget_kit::param::ParamError;
 use widget_kit::playback::Playback;
 use widget_kit::playback::SPEED;
 use widget_kit::scene::Scene;
+use widget_kit::spec::PLAY;
 use widget_kit::spec::WidgetSpec;
 use widget_kit::values::{Changed, Values};
 
@@ -384,12 +385,9 @@ impl Model for FullLap {
         })
     }
 
-    fn tabs(&self) -> Option<Tabs> {
-        Some(Tabs {
-            first: "Lap",
-            button: &EDIT_FLAT,
-            is_second: Tool::chosen(&self.values).is_some(),
-        })
+    fn is_pressed(&self, button: &str) -> bool {
+        let is_editing = Tool::chosen(&self.values).is_some();
+        (button == EDIT_FLAT.id && is_editing) || (button == PLAY.id && self.playback.is_playing())
     }
 
     fn tables(&self) -> Vec<Table> {

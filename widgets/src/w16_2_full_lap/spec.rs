@@ -456,7 +456,7 @@ pub const EDITING: Opening = Opening {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.2",
     title: "The full lap",
-    misconception: "Closing a loop does not put the whole path right: it makes the map agree with itself.",
+    misconception: "A loop does not right every pose.",
     question: "How far is a lap’s map off at its end, and what do loops correct? Press Play, or drag the timeline.",
     notice: &[
         "The walls seen on the way out and on the way back stand apart, and one loop brings them together: the map's disagreement falls to about a third over the lap.",

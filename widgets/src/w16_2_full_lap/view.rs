@@ -13,19 +13,16 @@ const DRAWN: f32 = 640.0;
 /// Height of a plot over time.
 const PLOT: PlotHeight = PlotHeight::Fixed(130.0);
 
-/// From this width the controls are beside the map: the screen may be too low for a widget beside its text.
-const BESIDE_CONTROLS: f32 = 640.0;
-
-/// The map. On a screen of 680 pixels it stands above Play and the scrubber, with tabs, title and legend.
+/// The map, on a phone higher than wide.
 fn map(width: f32) -> Slot {
-    let most = if width >= BESIDE_CONTROLS {
-        370.0
+    let height = if width >= SIDE_BY_SIDE {
+        PlotHeight::Natural { most: 450.0 }
     } else {
-        430.0
+        PlotHeight::Fixed(420.0)
     };
     Slot {
         panel: "map",
-        height: PlotHeight::Natural { most },
+        height,
     }
 }
 
@@ -66,7 +63,6 @@ impl View for FullLapView {
                     columns: vec![column(2.0, &[map(width)]), column(1.0, &[LOOP, ERRORS])],
                 }],
                 below: vec![Row::new(&[DISAGREEMENT, GATE, STRAIN])],
-                ..Arrangement::default()
             }
         } else if width >= SIDE_BY_SIDE {
             Arrangement {
@@ -77,14 +73,12 @@ impl View for FullLapView {
                         column(1.0, &[ERRORS, GATE, STRAIN]),
                     ],
                 }],
-                ..Arrangement::default()
             }
         } else {
             let below = [LOOP, ERRORS, DISAGREEMENT, GATE, STRAIN];
             Arrangement {
                 stage: vec![Row::new(&[map(width)])],
                 below: below.iter().map(|slot| Row::new(&[*slot])).collect(),
-                ..Arrangement::default()
             }
         }
     }

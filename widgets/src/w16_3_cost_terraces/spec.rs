@@ -279,7 +279,7 @@ const PRESETS: &[Preset] = &[
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.3",
     title: "Cost terraces",
-    misconception: "False minima are in the cost: the closed form jumps over small ridges, not out of those.",
+    misconception: "False minima are in the cost.",
     question: "Where does a ball roll home, and where does it stick? Drag either ball.",
     notice: &[
         "Both reliefs hold the same sweep against the same points; only the measure differs. Dark is low, the light comes from the upper left, and the balls roll into the dark.",

@@ -66,16 +66,18 @@ impl View for TerracesView {
             return Arrangement {
                 stage,
                 below: below_each_other(&below),
-                ..Arrangement::default()
             };
         }
         if narrow {
             // NDT's profile and bells stand with the rest: two screens of a phone hold everything else.
             let below = [&beside_ndt[..], &rest, slices.as_flattened()].concat();
-            // On a phone one screen holds ICP's relief, the ground under its ball, and the controls.
             return Arrangement {
-                stage: below_each_other(&[map("icp"), cut("icp-path")]),
-                under_control: below_each_other(&[matched("sweep"), map("ndt")]),
+                stage: below_each_other(&[
+                    map("icp"),
+                    cut("icp-path"),
+                    matched("sweep"),
+                    map("ndt"),
+                ]),
                 below: below_each_other(&below),
             };
         }
@@ -91,11 +93,7 @@ impl View for TerracesView {
         ];
         let mut below = below_each_other(&rest);
         below.extend(slices.map(|pair| Row::new(&pair)));
-        Arrangement {
-            stage,
-            below,
-            ..Arrangement::default()
-        }
+        Arrangement { stage, below }
     }
 }
 

@@ -63,7 +63,7 @@ const NEXT_EVENT: ButtonSpec = ButtonSpec {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.4",
     title: "Control room",
-    misconception: "A SLAM system is not one algorithm that runs: a fast front end and a slow back end pass poses and constraints to each other, and the map is only drawn from them.",
+    misconception: "A fast front end, a slow back end.",
     question: "Which part works when, and what happens at a loop? Press Play, or press a mark on a lane.",
     notice: &[
         "The front end works at every tick: it predicts by odometry and corrects by one registration. The threshold τ follows how wrong the predictions were.",

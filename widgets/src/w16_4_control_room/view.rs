@@ -27,8 +27,7 @@ impl View for ControlRoomView {
         if width < SIDE_BY_SIDE {
             let rows = |slots: &[Slot]| slots.iter().map(|slot| Row::new(&[*slot])).collect();
             return Arrangement {
-                stage: rows(&[natural("map"), lanes]),
-                under_control: rows(&[natural("registration")]),
+                stage: rows(&[natural("map"), lanes, natural("registration")]),
                 below: rows(&[plot("tau"), plot("errors")]),
             };
         }
@@ -44,7 +43,6 @@ impl View for ControlRoomView {
                 Row::new(&[lanes]),
             ],
             below: vec![Row::new(&[plot("tau"), plot("errors")])],
-            ..Arrangement::default()
         }
     }
 }

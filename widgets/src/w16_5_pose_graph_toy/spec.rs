@@ -163,7 +163,7 @@ const ONE_STEP: ButtonSpec = ButtonSpec {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.5",
     title: "Pose-graph toy",
-    misconception: "No measurement is corrected, and none is thrown away: each yields in proportion to its uncertainty.",
+    misconception: "Each measurement gives way a little.",
     question: "Which measurement gives way when the springs disagree? Drag a pose, and let it go.",
     notice: &[
         "Each edge is a spring at rest where its measurement holds. The dotted line shows what is missing, the number on the spring what it costs.",

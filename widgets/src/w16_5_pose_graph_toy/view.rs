@@ -13,10 +13,12 @@ pub struct ToyView;
 impl View for ToyView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
-        let graph = slot(panel::GRAPH, PlotHeight::Natural { most: 420.0 });
+        let is_wide = width >= SIDE_BY_SIDE;
+        let most = if is_wide { 420.0 } else { 330.0 };
+        let graph = slot(panel::GRAPH, PlotHeight::Natural { most });
         let bars = slot(panel::BARS, PlotHeight::Fixed(150.0));
-        let steps = slot(panel::STEPS, PlotHeight::Fixed(120.0));
-        let (stage, under_control) = if width >= SIDE_BY_SIDE {
+        let steps = slot(panel::STEPS, PlotHeight::Fixed(150.0));
+        let stage = if is_wide {
             let column = |share, slot| Column {
                 share,
                 slots: vec![slot],
@@ -24,13 +26,12 @@ impl View for ToyView {
             let row = Row {
                 columns: vec![column(1.8, graph), column(1.0, steps)],
             };
-            (vec![row], Vec::new())
+            vec![row]
         } else {
-            (vec![Row::new(&[graph])], vec![Row::new(&[steps])])
+            vec![Row::new(&[graph]), Row::new(&[steps])]
         };
         Arrangement {
             stage,
-            under_control,
             below: vec![Row::new(&[bars])],
         }
     }

@@ -78,8 +78,7 @@ const ONE_BOX: ButtonSpec = ButtonSpec {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.6",
     title: "The whole window",
-    misconception: "Searching everything does not mean scoring everything: a bound on a box of poses \
-                    can rule out all of them at once, and the answer is still the best one there is.",
+    misconception: "Searching all is not scoring all.",
     question: "Can every pose be searched without scoring every pose? Turn the sweep, then press Play.",
     notice: &[
         "A bar is a box of poses, as high as no pose in it can score. Point at one: the true scores of its poses lie below. Boxes are split, and their bars fall towards them.",

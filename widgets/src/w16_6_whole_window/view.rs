@@ -16,21 +16,19 @@ impl View for WindowView {
         let (sweeps_px, places_px, high) = if width >= SIDE_BY_SIDE {
             (420.0, 420.0, 150.0)
         } else {
-            (220.0, 240.0, 100.0)
+            (260.0, 260.0, 100.0)
         };
         let natural = |panel, most| slot(panel, PlotHeight::Natural { most });
         let sweeps = natural(panel::SWEEPS, sweeps_px);
         let places = natural(panel::PLACES, places_px);
         let bounds = slot(panel::BOUNDS, PlotHeight::Fixed(high));
-        // On a phone the sweeps and the control fit one screen without the positions.
-        let (stage, under_control) = if width >= SIDE_BY_SIDE {
-            (vec![Row::new(&[sweeps, places])], Vec::new())
+        let stage = if width >= SIDE_BY_SIDE {
+            vec![Row::new(&[sweeps, places])]
         } else {
-            (vec![Row::new(&[sweeps])], vec![Row::new(&[places])])
+            vec![Row::new(&[sweeps]), Row::new(&[places])]
         };
         Arrangement {
             stage,
-            under_control,
             below: vec![Row::new(&[bounds])],
         }
     }

@@ -105,8 +105,7 @@ const ONE_KEYFRAME: ButtonSpec = ButtonSpec {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.7",
     title: "Have I been here?",
-    misconception: "To look alike is not to be the same: a descriptor proposes, and how often it is \
-                    right depends on the threshold and on the building.",
+    misconception: "To look alike is not to be the same.",
     question: "How much may two views differ and still be called the same place? Drag the line in the plot.",
     notice: &[
         "Each dot is a pair of places. What lies left of the line is called the same place, whether it is or not.",

@@ -32,7 +32,6 @@ impl View for PlacesView {
                     ],
                 }],
                 below: vec![Row::new(&[curves])],
-                ..Arrangement::default()
             };
         }
         // On a phone the flat, the threshold and the control fit one screen without the matrix.
@@ -40,7 +39,6 @@ impl View for PlacesView {
         Arrangement {
             stage: rows(&[flat, scores, looks]),
             below: rows(&[matrix, curves]),
-            ..Arrangement::default()
         }
     }
 }

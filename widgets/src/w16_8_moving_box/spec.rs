@@ -94,8 +94,7 @@ pub const PARAMS: &[&ParamSpec] = &[
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.8",
     title: "The moving box",
-    misconception: "Least squares has no majority: a few points that moved together pull the answer after \
-                    them, and the rmse does not show it.",
+    misconception: "Least squares has no majority.",
     question: "How far does one moved box pull the robot off? Drag the box.",
     notice: &[
         "Drag the box. Its pairs all pull the same way, and the walls give way until their many short pulls balance them.",

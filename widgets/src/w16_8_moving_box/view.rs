@@ -29,7 +29,6 @@ impl View for BoxView {
         Arrangement {
             stage,
             below: Vec::new(),
-            ..Arrangement::default()
         }
     }
 }

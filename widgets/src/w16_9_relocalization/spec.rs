@@ -79,8 +79,7 @@ const ONE_MOMENT: ButtonSpec = ButtonSpec {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.9",
     title: "Come back tomorrow",
-    misconception: "A saved map does not say where the robot is. It has to be looked for everywhere, and \
-                    an honest robot reports when two places look alike.",
+    misconception: "A map does not say where the robot is.",
     question: "Where does the robot find itself again? Drag it anywhere, then press Play.",
     notice: &[
         "A ghost is a pose that is not ruled out yet, the larger the better it may fit. What is left of them is where the robot may be.",

@@ -1,12 +1,10 @@
-//! The widget through egui's accessibility tree and its pointer.
+//! The widget through its pointer.
 
-use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2};
+use egui::{Event, Modifiers, PointerButton, Pos2, pos2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
 use widget_kit::shell::Shell;
 
-use crate::support::{drawn_whole, press_key, value};
+use crate::support::{drawn_whole, value};
 
 fn verdict(harness: &Harness<'_, Shell>) -> String {
     harness.state().model().outcome().verdict
@@ -26,12 +24,10 @@ fn click_at(harness: &mut Harness<'_, Shell>, pos: Pos2) {
 }
 
 #[test]
-fn the_scene_is_chosen_by_its_button() {
+fn the_scene_is_chosen_by_its_name() {
     let mut harness = drawn_whole("w16.3", 1100.0);
-    harness
-        .get_by_role_and_label(Role::RadioButton, "scene: corridor")
-        .click();
-    harness.run_steps(2);
+    let model = harness.state_mut().model_mut();
+    model.set_text("scene", "corridor").unwrap();
     assert_eq!(value(&harness, "scene"), 1.0);
 }
 
@@ -50,7 +46,11 @@ fn a_click_on_either_map_moves_both_cross_hairs() {
 #[test]
 fn a_preset_drops_the_balls_and_the_widget_comes_to_rest() {
     let mut harness = drawn_whole("w16.3", 1100.0);
-    harness.get_by_label("Shrink τ to 0.15 m").click();
+    let presets = harness.state().model().spec().presets;
+    let shrink = presets
+        .iter()
+        .find(|preset| preset.label == "Shrink τ to 0.15 m");
+    harness.state_mut().press(shrink.unwrap().id).unwrap();
     harness.run_steps(2);
     assert!(harness.state().is_busy());
     let frames = 60 * 120;
@@ -72,10 +72,11 @@ fn a_preset_drops_the_balls_and_the_widget_comes_to_rest() {
 #[test]
 fn defaults_put_the_cross_hair_back() {
     let mut harness = drawn_whole("w16.3", 700.0);
-    press_key(&mut harness, "drop at Δx", Key::ArrowRight);
     harness
-        .get_by_role_and_label(Role::Button, "Defaults")
-        .click();
-    harness.run_steps(2);
+        .state_mut()
+        .model_mut()
+        .set("probe-x", 0.45)
+        .unwrap();
+    harness.state_mut().press("defaults").unwrap();
     assert_eq!(value(&harness, "probe-x"), 0.4);
 }

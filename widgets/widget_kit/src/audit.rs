@@ -20,7 +20,7 @@ const SLACK: f32 = 1.0;
 #[must_use]
 pub fn text_faults(model: &dyn Model, view: &dyn View, width_px: f32) -> Vec<String> {
     let mut recorder = Recorder::new();
-    let height = picture(&mut recorder, model, view, false, width_px, Theme::Light);
+    let height = picture(&mut recorder, model, view, width_px, Theme::Light);
     recorder.faults(width_px, height)
 }
 
@@ -36,7 +36,7 @@ pub fn scene_text_faults(scene: &Scene, width_px: f32) -> Vec<String> {
 #[must_use]
 pub fn label_faults(model: &dyn Model, view: &dyn View, width_px: f32) -> Vec<String> {
     let mut recorder = Recorder::new();
-    picture(&mut recorder, model, view, false, width_px, Theme::Light);
+    picture(&mut recorder, model, view, width_px, Theme::Light);
     let mut faults = Vec::new();
     for (index, (text, rect)) in recorder.labels.iter().enumerate() {
         let others = recorder.labels[index + 1..].iter();

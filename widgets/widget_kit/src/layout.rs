@@ -159,8 +159,7 @@ fn least_height(axis: &Axis) -> f32 {
 }
 
 /// Breaks a text at its spaces into lines of that width; a longer word gets its own line.
-#[must_use]
-pub fn wrap(text: &str, width: f32, size: TextSize, measure: &mut dyn Measure) -> Vec<String> {
+fn wrap(text: &str, width: f32, size: TextSize, measure: &mut dyn Measure) -> Vec<String> {
     let mut lines = Vec::new();
     let mut line = String::new();
     for word in text.split_whitespace() {

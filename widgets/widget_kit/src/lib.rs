@@ -1,14 +1,15 @@
 //! The infrastructure that the widgets share.
 //!
 //! The half without egui is for a widget's `model.rs`: [`param`], [`values`], [`spec`], [`model`], [`scene`],
-//! [`chart`], [`plural`], [`disclosure`], [`host_messages`], [`playback`], [`playback_param`], [`invariants`], [`run`],
-//! [`ticks`], [`palette`]. It must not use the other half, because the models are tested headless.
+//! [`chart`], [`controls`], [`plural`], [`disclosure`], [`host_messages`], [`playback`], [`playback_param`], [`invariants`],
+//! [`run`], [`ticks`], [`palette`]. It must not use the other half, because the models are tested headless.
 //!
 //! The other half draws, with the feature `view`. [`draw`] renders a scene on any [`surface::Surface`]:
-//! [`egui_surface`] for the live picture, [`svg`] for the static one. [`shell`] adds the texts, the
-//! [`controls`], the [`transport`] bar and the [`readout`], and handles the [`pointer`].
+//! [`egui_surface`] for the live picture, [`svg`] for the static one. [`shell`] handles the [`pointer`]. Texts and controls
+//! are the host's.
 
 pub mod chart;
+pub mod controls;
 pub mod disclosure;
 pub mod host_messages;
 pub mod invariants;
@@ -44,18 +45,10 @@ pub mod view;
 pub mod zoom;
 
 #[cfg(feature = "view")]
-pub mod controls;
-#[cfg(feature = "view")]
 pub mod egui_surface;
 #[cfg(feature = "view")]
-pub mod hit_areas;
-#[cfg(feature = "view")]
 pub mod pointer;
-#[cfg(feature = "view")]
-pub mod readout;
 #[cfg(feature = "view")]
 pub mod shell;
 #[cfg(feature = "view")]
 pub mod style;
-#[cfg(feature = "view")]
-pub mod transport;

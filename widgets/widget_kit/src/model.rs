@@ -4,7 +4,8 @@ use crate::disclosure::Disclosure;
 use crate::host_messages::Delivery;
 use crate::param::{ParamError, printable};
 use crate::scene::Scene;
-use crate::spec::{ButtonSpec, Preset, STEP, WidgetSpec};
+use crate::spec::{PLAY, Preset, STEP, WidgetSpec};
+use crate::ticks::signed;
 use crate::values::Values;
 
 /// A widget without its drawing: tested headless, drawn by [`crate`]'s view half.
@@ -80,9 +81,9 @@ pub trait Model {
         None
     }
 
-    /// The tabs over the picture, if the widget has two views.
-    fn tabs(&self) -> Option<Tabs> {
-        None
+    /// Whether a button is shown as pressed: Play while the run plays.
+    fn is_pressed(&self, button: &str) -> bool {
+        button == PLAY.id && self.timeline().is_some_and(|run| run.playing)
     }
 
     /// The data of every plot, and the tables beside the picture.
@@ -270,22 +271,26 @@ impl Fact {
         Self::new(id, label, f64::from(u8::from(yes)), Self::YES_OR_NO, 0)
     }
 
+    /// The value with its unit; a dash if there is none.
+    #[must_use]
+    pub fn text(&self) -> String {
+        if !self.value.is_finite() {
+            return "–".to_owned();
+        }
+        let number = signed(self.value, self.decimals);
+        match self.unit {
+            Self::YES_OR_NO if self.value == 0.0 => "no".to_owned(),
+            Self::YES_OR_NO => "yes".to_owned(),
+            "" | "°" | "%" => format!("{number}{}", self.unit),
+            unit => format!("{number}\u{202f}{unit}"),
+        }
+    }
+
     /// A whole number; not finite if there is none.
     #[must_use]
     pub fn count(id: &'static str, label: &'static str, value: f64) -> Self {
         Self::new(id, label, value, "", 0)
     }
-}
-
-/// Two views of a widget, as tabs.
-#[derive(Clone, Copy, Debug)]
-pub struct Tabs {
-    /// Name of the first view.
-    pub first: &'static str,
-    /// The button that changes between both; its label is the name of the second view.
-    pub button: &'static ButtonSpec,
-    /// Whether the second view is shown.
-    pub is_second: bool,
 }
 
 /// A run that can be scrubbed.

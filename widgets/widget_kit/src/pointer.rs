@@ -2,7 +2,6 @@
 
 use egui::{CursorIcon, Event, MultiTouchInfo, PointerButton, Pos2, Response, Sense, Tooltip, Ui};
 
-use crate::hit_areas::HitAreas;
 use crate::model::{Handle, Model};
 use crate::scene::{Layer, Panel};
 use crate::transform::Transform;
@@ -43,17 +42,17 @@ enum Held {
 
 /// The events of the primary button within a frame.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PrimaryButton {
+struct PrimaryButton {
     /// Where it was pressed.
-    pub pressed_at: Option<Pos2>,
+    pressed_at: Option<Pos2>,
     /// Where it was released after that.
-    pub released_at: Option<Pos2>,
+    released_at: Option<Pos2>,
     /// Whether it is a touch.
-    pub is_touch: bool,
+    is_touch: bool,
 }
 
 impl PrimaryButton {
-    pub fn in_this_frame(ui: &Ui) -> Self {
+    fn in_this_frame(ui: &Ui) -> Self {
         ui.input(|input| {
             let mut button = Self {
                 is_touch: input.any_touches(),
@@ -85,7 +84,7 @@ impl PrimaryButton {
 
     /// Whether a complete drag from `response` happened within the frame, which egui reports neither as a
     /// press nor as a click.
-    pub fn is_flick_on(&self, ui: &Ui, response: &Response) -> bool {
+    fn is_flick_on(&self, ui: &Ui, response: &Response) -> bool {
         let (Some(from), Some(_)) = (self.pressed_at, self.released_at) else {
             return false;
         };
@@ -126,7 +125,6 @@ impl Pointer {
         panel: &Panel,
         to: &Transform,
         model: &mut dyn Model,
-        hot: &mut HitAreas,
     ) -> Touched {
         let plot = to.plot();
         let rect = egui::Rect::from_min_size(
@@ -134,9 +132,6 @@ impl Pointer {
             egui::vec2(plot.width, plot.height),
         );
         let response = ui.interact(rect, ui.scope_id().with(panel.id), Sense::click_and_drag());
-        if self.zoom.is_zoomed(panel.id) {
-            hot.drag(&response);
-        }
         let pinch = ui.input(egui::InputState::multi_touch);
         let pressed = if let Some(pinch) = pinch {
             self.pinch(&pinch, panel, to);

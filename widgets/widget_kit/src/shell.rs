@@ -1,17 +1,16 @@
-//! A complete widget on egui: texts, presets, panels, transport, controls, readouts, tables.
+//! The picture of a widget on egui: its panels, their handles and the pointer. The controls, the verdict and all other
+//! text are the host's, drawn from [`crate::spec::WidgetSpec`] and [`crate::controls::shown`].
 
 mod first_act;
-mod parts;
 mod room;
 mod stage;
 
-use egui::{Pos2, Rect, Ui, UiBuilder, pos2, vec2};
+use egui::{Pos2, Rect, Ui, vec2};
 use web_time::{Duration, Instant};
 
 use crate::audit::{label_faults, text_faults};
 use crate::egui_surface::{Textures, color};
-use crate::hit_areas::HitAreas;
-use crate::model::{Activity, Model, Motion, Outcome, Table};
+use crate::model::{Activity, Model, Motion};
 use crate::palette::{self, Theme};
 use crate::param::ParamError;
 use crate::pointer::{Pointer, TOUCH_REACH_PX};
@@ -20,19 +19,10 @@ use crate::style;
 use crate::surface::PxRect;
 use crate::svg::picture_svg;
 use crate::transform::Transform;
-use crate::view::View;
+use crate::view::{MARGIN, View};
 use crate::zoom::Look;
 use first_act::FirstAct;
-use room::Room;
 
-/// Width from which controls and readouts are beside the panels.
-const WIDE: f32 = 820.0;
-/// Width of the controls beside the panels.
-const SIDE_WIDTH: f32 = 300.0;
-/// Space around everything.
-const MARGIN: f32 = 12.0;
-/// Space between blocks.
-const GAP: f32 = 14.0;
 /// Time budget of [`Model::work`] per frame during a drag or a series of external changes, which keeps the
 /// picture responsive.
 const WORK_WHILE_CHANGING: Duration = Duration::from_millis(4);
@@ -48,9 +38,9 @@ pub struct Shell {
     model: Box<dyn Model>,
     view: Box<dyn View>,
     theme: Theme,
-    focus: Option<String>,
-    shown: Shown,
-    /// Number of changes of `shown`.
+    /// The model's picture at its last change.
+    scene: Scene,
+    /// Number of changes of `scene`.
     revision: u64,
     stale: bool,
     moving: Moving,
@@ -62,9 +52,9 @@ pub struct Shell {
     pointer: Pointer,
     panels: Vec<(&'static str, Transform)>,
     textures: Textures,
-    hot: HitAreas,
     content_height: f32,
-    room: Room,
+    /// Available height for the picture, in points.
+    room: f32,
     first: FirstAct,
 }
 
@@ -79,33 +69,15 @@ enum Moving {
     Yes,
 }
 
-/// The model's output at its last change.
-struct Shown {
-    scene: Scene,
-    outcome: Outcome,
-    tables: Vec<Table>,
-}
-
-impl Shown {
-    fn new(model: &dyn Model) -> Self {
-        Self {
-            scene: model.scene(),
-            outcome: model.outcome(),
-            tables: model.shown_tables(),
-        }
-    }
-}
-
 impl Shell {
     /// Creates a widget from its two halves.
     #[must_use]
     pub fn new(model: Box<dyn Model>, view: Box<dyn View>) -> Self {
         Self {
-            shown: Shown::new(model.as_ref()),
+            scene: model.scene(),
             model,
             view,
             theme: Theme::default(),
-            focus: None,
             revision: 0,
             stale: false,
             moving: Moving::Perhaps,
@@ -115,9 +87,8 @@ impl Shell {
             pointer: Pointer::default(),
             panels: Vec::new(),
             textures: Textures::default(),
-            hot: HitAreas::default(),
             content_height: 0.0,
-            room: Room::default(),
+            room: f32::INFINITY,
             first: FirstAct::default(),
         }
     }
@@ -173,10 +144,9 @@ impl Shell {
         self.content_height
     }
 
-    /// Sets the available height in points; until the reader opens more, the plots of the scene shrink to
-    /// fit.
+    /// Sets the available height in points; the plots of the stage shrink to fit.
     pub fn set_room(&mut self, height: f32) {
-        self.room = Room::from_height(height);
+        self.room = height;
     }
 
     /// Sets light or dark.
@@ -196,11 +166,6 @@ impl Shell {
         self.first.is_over
     }
 
-    /// Whether the question stands in place of the verdict.
-    fn asks(&self) -> bool {
-        !self.first.is_over && !self.model.disclosure().is_all()
-    }
-
     /// Sets whether animations run.
     pub fn set_motion(&mut self, motion: Motion) {
         self.first.motion = motion;
@@ -208,14 +173,9 @@ impl Shell {
         self.touch();
     }
 
-    /// Draws a focus ring around the control that has the focus outside of egui.
-    pub fn set_focus(&mut self, id: Option<&str>) {
-        self.focus = id.map(str::to_owned);
-    }
-
     /// Zooms or moves every map, like ctrl and the wheel, without a pointer.
     pub fn look(&mut self, look: Look) {
-        for panel in &self.shown.scene.panels {
+        for panel in &self.scene.panels {
             self.pointer.zoom.look(panel, look);
         }
     }
@@ -223,12 +183,12 @@ impl Shell {
     /// Whether something draggable is at that position: a touch that starts elsewhere scrolls the page.
     #[must_use]
     pub fn drags_at(&self, pos: Pos2) -> bool {
-        self.hot.drags_at(pos)
-            || self.panels.iter().any(|(panel, to)| {
-                let px = [pos.x, pos.y];
-                let reach = to.units_per_px().map(|units| TOUCH_REACH_PX * units);
-                to.plot().contains(px) && self.model.grab(panel, to.from_px(px), reach).is_some()
-            })
+        self.panels.iter().any(|(panel, to)| {
+            let px = [pos.x, pos.y];
+            let reach = to.units_per_px().map(|units| TOUCH_REACH_PX * units);
+            let is_grabbed = || self.model.grab(panel, to.from_px(px), reach).is_some();
+            to.plot().contains(px) && (self.pointer.zoom.is_zoomed(panel) || is_grabbed())
+        })
     }
 
     /// Whether a picture that zooms is at that position: elsewhere ctrl and the wheel zoom the page.
@@ -237,7 +197,7 @@ impl Shell {
         let mut panels = self.panels.iter();
         let panel = panels.find(|(_, to)| to.plot().contains([pos.x, pos.y]));
         panel.is_some_and(|(id, _)| {
-            let scene = &self.shown.scene;
+            let scene = &self.scene;
             let shown = scene.panels.iter().find(|panel| panel.id == *id);
             shown.is_some_and(|panel| panel.aspect == Aspect::Equal)
         })
@@ -250,10 +210,13 @@ impl Shell {
         Some(to.to_px(at))
     }
 
-    /// The rectangle of a control in the last frame, so that a host can scroll to it.
+    /// Whether a map is zoomed.
     #[must_use]
-    pub fn control_rect(&self, id: &str) -> Option<Rect> {
-        self.hot.rect(id)
+    pub fn is_zoomed(&self) -> bool {
+        self.scene
+            .panels
+            .iter()
+            .any(|panel| self.pointer.zoom.is_zoomed(panel.id))
     }
 
     /// The rectangle of the first panel in the last frame, which a host keeps in view while a control moves.
@@ -271,8 +234,7 @@ impl Shell {
     /// The static picture of the current state.
     #[must_use]
     pub fn picture_svg(&self, width_px: f32, theme: Theme) -> String {
-        let (model, view) = (self.model.as_ref(), self.view.as_ref());
-        picture_svg(model, view, self.asks(), width_px, theme)
+        picture_svg(self.model.as_ref(), self.view.as_ref(), width_px, theme)
     }
 
     /// Faults of the texts in that picture, see [`crate::audit`].
@@ -293,35 +255,17 @@ impl Shell {
         self.moving != Moving::No || self.working || self.stale || self.first.is_pulsing()
     }
 
-    /// Draws everything into the available width.
+    /// Draws the picture into the available width.
     pub fn ui(&mut self, ui: &mut Ui) {
         ui.set_style(style::style(self.theme));
         let paper = color(palette::tone(self.theme, Tone::Paper));
         ui.painter().rect_filled(ui.clip_rect(), 0.0, paper);
         self.advance(ui);
-        self.hot = HitAreas::default();
         self.panels.clear();
-
         let whole = ui.available_rect_before_wrap();
-        let left = whole.left() + MARGIN;
         let width = (whole.width() - 2.0 * MARGIN).max(200.0);
-        let mut y = self.block(ui, [left, whole.top() + MARGIN], width, Self::header);
-        let mut reserved = Vec::new();
-        let column = if width >= WIDE {
-            let stage_width = width - SIDE_WIDTH - 2.0 * GAP;
-            let side_left = left + width - SIDE_WIDTH;
-            // Controls come first, so that their changes show in this frame.
-            let side = self.block(ui, [side_left, y], SIDE_WIDTH, Self::side);
-            let stage = self.stage(ui, [left, y], stage_width, &mut reserved);
-            let notice = self.block(ui, [left, stage], stage_width, Self::notice);
-            y = side.max(notice);
-            notice
-        } else {
-            y = self.stage_narrow(ui, [left, y], width, &mut reserved);
-            y = self.block(ui, [left, y], width, Self::notice);
-            y
-        };
-        self.room.learn(width, column - whole.top() + MARGIN - GAP);
+        let at = [whole.left() + MARGIN, whole.top() + MARGIN];
+        let (reserved, height) = self.reserve(ui, at, width);
 
         let (now_s, pressed) = ui.input(|input| (input.time, input.pointer.any_down()));
         if core::mem::take(&mut self.changed) || pressed {
@@ -333,36 +277,12 @@ impl Shell {
             WORK_AT_REST
         });
         self.paint(ui, &reserved);
-        self.first
-            .paint(ui, &self.shown.scene, &self.panels, self.theme);
-        self.ring(ui);
-        self.content_height = y - whole.top() + MARGIN - GAP;
-        ui.allocate_rect(
-            Rect::from_min_size(whole.min, vec2(whole.width(), self.content_height)),
-            egui::Sense::hover(),
-        );
+        self.first.paint(ui, &self.scene, &self.panels, self.theme);
+        self.content_height = height + 2.0 * MARGIN;
+        let size = vec2(whole.width(), self.content_height);
+        ui.allocate_rect(Rect::from_min_size(whole.min, size), egui::Sense::hover());
         if self.is_busy() {
             ui.ctx().request_repaint();
-        }
-    }
-
-    /// Draws one block of egui widgets below `at`. Returns the vertical start of the next block.
-    fn block(
-        &mut self,
-        ui: &mut Ui,
-        at: [f32; 2],
-        width: f32,
-        contents: fn(&mut Self, &mut Ui),
-    ) -> f32 {
-        let room = Rect::from_min_size(pos2(at[0], at[1]), vec2(width, f32::INFINITY));
-        let mut child = ui.new_child(UiBuilder::new().max_rect(room));
-        child.set_max_width(width);
-        contents(self, &mut child);
-        let height = child.min_rect().height();
-        if height > 0.0 {
-            at[1] + height + GAP
-        } else {
-            at[1]
         }
     }
 
@@ -393,7 +313,7 @@ impl Shell {
     /// Queries the model again if something changed.
     fn refresh(&mut self) {
         if self.stale {
-            self.shown = Shown::new(self.model.as_ref());
+            self.scene = self.model.scene();
             self.stale = false;
             self.revision += 1;
         }
@@ -406,18 +326,6 @@ impl Shell {
         self.changed = true;
         if self.moving == Moving::No {
             self.moving = Moving::Perhaps;
-        }
-    }
-
-    fn ring(&self, ui: &Ui) {
-        let rect = self.focus.as_deref().and_then(|id| self.hot.rect(id));
-        if let Some(rect) = rect {
-            ui.painter().rect_stroke(
-                rect.expand(3.0),
-                6.0,
-                egui::Stroke::new(3.0, style::focus_color(self.theme)),
-                egui::StrokeKind::Outside,
-            );
         }
     }
 }

@@ -90,8 +90,6 @@ pub enum TextSize {
     Small,
     /// Titles of panels.
     Body,
-    /// Titles of widgets.
-    Title,
 }
 
 impl TextSize {
@@ -101,7 +99,6 @@ impl TextSize {
         match self {
             TextSize::Small => 12.0,
             TextSize::Body => 14.0,
-            TextSize::Title => 20.0,
         }
     }
 }

@@ -11,17 +11,11 @@ use crate::scene::{Raster, Scene, Tone};
 use crate::surface::{Align, HALO_WIDTH, Haloed, Measure, Pen, Px, PxRect, Surface, TextSize};
 use crate::view::View;
 
-/// Renders the current state of a widget: title, panels, verdict and numbers, or with `asks` its question.
+/// Renders the picture of a widget's current state.
 #[must_use]
-pub fn picture_svg(
-    model: &dyn Model,
-    view: &dyn View,
-    asks: bool,
-    width_px: f32,
-    theme: Theme,
-) -> String {
+pub fn picture_svg(model: &dyn Model, view: &dyn View, width_px: f32, theme: Theme) -> String {
     let mut svg = SvgSurface::new(theme);
-    let height = picture(&mut svg, model, view, asks, width_px, theme);
+    let height = picture(&mut svg, model, view, width_px, theme);
     let spec = model.spec();
     svg.finish(width_px, height, &format!("{} {}", spec.id, spec.title))
 }

@@ -5,6 +5,8 @@ use crate::layout::{PanelLayout, PlotHeight};
 use crate::scene::{Aspect, Panel, Scene, Weight};
 use crate::surface::{Measure, Px};
 
+/// Space around the picture.
+pub const MARGIN: f32 = 12.0;
 /// Space between panels.
 pub const PANEL_GAP: f32 = 16.0;
 
@@ -75,13 +77,11 @@ impl Row {
     }
 }
 
-/// Rows above and below the transport bar.
+/// The rows of the picture.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Arrangement {
-    /// The pictures that the widget is about.
+    /// The pictures that the widget is about; they shrink to the height that the host leaves for them.
     pub stage: Vec<Row>,
-    /// Panels below the opening control if everything is in one column: they may enter while the control is held.
-    pub under_control: Vec<Row>,
     /// The plots below them.
     pub below: Vec<Row>,
 }
@@ -94,9 +94,19 @@ impl Arrangement {
             return self;
         }
         keep_shown(&mut self.stage, disclosure);
-        keep_shown(&mut self.under_control, disclosure);
         self.below.clear();
         self
+    }
+
+    /// Lays out all panels at that width. Returns them with their total height.
+    #[must_use]
+    pub fn place(
+        &self,
+        scene: &Scene,
+        width: f32,
+        measure: &mut dyn Measure,
+    ) -> (Vec<Placed>, f32) {
+        place(scene, self.stage.iter().chain(&self.below), width, measure)
     }
 
     /// Default arrangement: main panels over the whole width, halves in pairs, side plots in pairs below.
@@ -118,7 +128,6 @@ impl Arrangement {
         Self {
             stage,
             below: slots(Weight::Side, pair),
-            ..Self::default()
         }
     }
 }
@@ -149,9 +158,9 @@ pub struct Placed {
 
 /// Lays out the panels of rows at that width. Returns them with their total height.
 #[must_use]
-pub fn place(
+pub fn place<'a>(
     scene: &Scene,
-    rows: &[Row],
+    rows: impl IntoIterator<Item = &'a Row>,
     width: f32,
     measure: &mut dyn Measure,
 ) -> (Vec<Placed>, f32) {

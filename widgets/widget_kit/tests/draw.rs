@@ -171,3 +171,22 @@ fn names_of_an_axis_do_not_lie_on_each_other_however_low_the_plot() {
     // They stand left of the plot, and what is drawn in it right of them.
     assert!(layout.plot.left > 50.0);
 }
+
+/// Names of points that lie on each other: one stands beside its point, the last ones have to move away.
+#[test]
+fn a_name_that_moved_away_has_a_line_to_its_point() {
+    let lines = |names: &[&str]| {
+        let layers = names
+            .iter()
+            .map(|name| Layer::label([2.0, 1.5], (*name).to_owned(), 8.0));
+        let svg = svg_of(layers.collect(), Vec::new(), Theme::Light);
+        // Border, ticks and grid are drawn in any case.
+        svg.matches('L').count()
+    };
+    let without = lines(&[]);
+    assert_eq!(lines(&["plain"]), without);
+    let many = [
+        "plain", "trimmed", "Huber", "a", "b", "c", "d", "e", "f", "g",
+    ];
+    assert!(lines(&many) > without);
+}

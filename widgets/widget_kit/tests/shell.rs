@@ -1,13 +1,15 @@
-//! Drives the shell like a reader, through egui's accessibility tree and its pointer.
+//! Drives the shell like a reader, through its pointer.
 
 use crate::fake::Fake;
 use egui::accesskit::Role;
 use egui::{Event, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use widget_kit::controls::shown;
 use widget_kit::palette::Theme;
 use widget_kit::shell::Shell;
 use widget_kit::view::DefaultView;
+use widget_kit::zoom::Look;
 
 fn shell() -> Shell {
     Shell::new(Box::new(Fake::new()), Box::new(DefaultView))
@@ -24,10 +26,6 @@ fn harness(width: f32) -> Harness<'static, Shell> {
 
 fn value(harness: &Harness<'_, Shell>, id: &str) -> f64 {
     harness.state().model().values().number(id)
-}
-
-fn is_shown(harness: &Harness<'_, Shell>, role: Role, label: &str) -> bool {
-    harness.query_by_role_and_label(role, label).is_some()
 }
 
 /// A press or release of the primary button.
@@ -52,101 +50,80 @@ fn drag(harness: &mut Harness<'_, Shell>, from: Pos2, to: Pos2) {
 }
 
 #[test]
-fn every_slider_has_its_parameters_name_and_takes_arrow_keys() {
-    let mut harness = harness(1100.0);
-    let slider = harness.get_by_role_and_label(Role::Slider, "place along x");
-    slider.focus();
-    harness.run_steps(2);
-    harness.key_press(egui::Key::ArrowRight);
-    harness.run_steps(2);
-    assert!(
-        (value(&harness, "x") - 1.1).abs() < 1e-9,
-        "{}",
-        value(&harness, "x")
-    );
-}
-
-#[test]
-fn a_widget_opens_with_its_scene_one_control_the_question_and_play() {
+fn a_widget_opens_with_its_scene_one_control_and_play_and_more_adds_the_rest_below() {
     for width in [390.0, 1100.0] {
         let mut harness = harness(width);
         let all = harness.state().content_height();
+        let place =
+            |harness: &Harness<'_, Shell>| harness.state().panel_to_screen("map", [1.0, 1.0]);
+        let at = place(&harness);
         harness.state_mut().model_mut().set("more", 0.0).unwrap();
         harness.run_steps(3);
-        let rest = [
-            (Role::RadioButton, "kind: two"),
-            (Role::CheckBox, "show the ghost"),
-            (Role::Button, "Step"),
-            (Role::Button, "Defaults"),
-            (Role::Button, "Far away"),
-            (Role::RadioButton, "speed: ×4"),
-        ];
-        for (role, label) in [
-            (Role::Slider, "place along x"),
-            (Role::Slider, "tick"),
-            (Role::Button, "Play"),
-            (Role::Button, "More"),
-        ] {
-            assert!(is_shown(&harness, role, label), "{label} at {width}");
-        }
-        for (role, label) in rest {
-            assert!(!is_shown(&harness, role, label), "{label} at {width}");
-        }
-        let question = harness.state().model().spec().question;
-        assert!(harness.query_by_label(question).is_some());
+        assert_eq!(
+            shown(harness.state().model()),
+            ["x", "time", "more", "play"]
+        );
         assert!(harness.state().content_height() < 0.8 * all);
-        harness.get_by_role_and_label(Role::Button, "More").click();
+        assert_eq!(place(&harness), at, "the picture stays");
+        harness.state_mut().model_mut().set("more", 1.0).unwrap();
         harness.run_steps(3);
-        for (role, label) in rest {
-            assert!(is_shown(&harness, role, label), "{label} at {width}");
-        }
+        let spec = harness.state().model().spec();
+        let controls = spec.presets.len() + spec.params.len() + spec.buttons.len();
+        assert_eq!(shown(harness.state().model()).len(), controls);
         assert_eq!(harness.state().content_height(), all);
-        assert_eq!(value(&harness, "more"), 1.0, "links have it");
     }
 }
 
-/// No verdict before the reader acts: a look with the pointer is no act, and neither is a value of the page.
+/// Controls are the host's: native ones in a browser, egui's in a window.
 #[test]
-fn a_question_stands_in_place_of_the_verdict_until_the_first_act_and_nothing_moves() {
+fn the_picture_holds_no_control() {
+    for width in [390.0, 1100.0] {
+        let harness = harness(width);
+        for role in [
+            Role::Button,
+            Role::CheckBox,
+            Role::ComboBox,
+            Role::RadioButton,
+            Role::Slider,
+            Role::SpinButton,
+            Role::TextInput,
+        ] {
+            assert_eq!(
+                harness.query_all_by_role(role).count(),
+                0,
+                "{role:?} at {width}"
+            );
+        }
+    }
+}
+
+/// A look with the pointer is no act, and neither is a value of the page.
+#[test]
+fn a_press_on_the_picture_is_an_act_and_a_look_is_none() {
     for width in [390.0, 560.0, 1100.0] {
         let mut harness = harness(width);
-        harness.state_mut().model_mut().set("more", 0.0).unwrap();
+        harness.state_mut().model_mut().set("x", 1.5).unwrap();
         harness.run_steps(3);
-        let spec = harness.state().model().spec();
-        let verdict = |harness: &Harness<'_, Shell>| {
-            let verdict = harness.state().model().outcome().verdict;
-            harness.query_by_label(&verdict).is_some()
-        };
-        let asks = |harness: &Harness<'_, Shell>| harness.query_by_label(spec.question).is_some();
         let [x, y] = harness
             .state()
-            .panel_to_screen("map", [1.0, 1.0])
+            .panel_to_screen("map", [1.5, 1.0])
             .expect("the map is shown");
         let at = pos2(x, y);
         harness.event(Event::PointerMoved(at));
         harness.run_steps(2);
-        assert_eq!((asks(&harness), verdict(&harness)), (true, false));
         assert!(!harness.state().has_acted());
-        let svg = |harness: &Harness<'_, Shell>| harness.state().picture_svg(900.0, Theme::Light);
-        assert!(svg(&harness).contains(spec.question));
         let height = harness.state().content_height();
         drag(&mut harness, at, at);
-        assert_eq!((asks(&harness), verdict(&harness)), (false, true));
         assert!(harness.state().has_acted());
-        assert!(!svg(&harness).contains(spec.question));
         assert_eq!(harness.state().content_height(), height, "at {width}");
     }
 }
 
 #[test]
-fn a_press_of_a_host_is_an_act_and_so_is_a_control() {
+fn a_press_of_a_host_is_an_act() {
     let mut pressed = shell();
     pressed.press("play").unwrap();
     assert!(pressed.has_acted());
-    let mut harness = harness(1100.0);
-    harness.get_by_role_and_label(Role::Button, "Play").click();
-    harness.run_steps(2);
-    assert!(harness.state().has_acted());
 }
 
 #[test]
@@ -192,29 +169,23 @@ fn the_cursor_stays_grabbing_while_a_handle_is_held_without_a_movement() {
 
 #[test]
 fn only_a_picture_with_equal_axes_zooms() {
-    let mut harness = harness(1100.0);
-    harness.run_steps(2);
+    let harness = harness(1100.0);
     let shell = harness.state();
-    let [x, y] = shell.panel_to_screen("map", [1.0, 1.0]).unwrap();
-    assert!(shell.zooms_at(pos2(x, y)));
-    let play = harness.get_by_role_and_label(Role::Button, "Play").rect();
-    assert!(!shell.zooms_at(play.center()));
+    let at = |panel, point| Pos2::from(shell.panel_to_screen(panel, point).unwrap());
+    assert!(shell.zooms_at(at("map", [1.0, 1.0])));
+    assert!(!shell.zooms_at(at("plot", [10.0, 0.1])));
+    assert!(!shell.zooms_at(pos2(2.0, 2.0)));
 }
 
 #[test]
 fn an_opened_layer_stays_open_after_presets_and_defaults() {
     let mut harness = harness(1100.0);
-    for label in ["Far away", "Defaults"] {
-        harness.get_by_role_and_label(Role::Button, label).click();
-        harness.run_steps(2);
-        assert_eq!(value(&harness, "more"), 1.0, "{label}");
+    for id in ["far", "defaults"] {
+        harness.state_mut().press(id).unwrap();
+        assert_eq!(value(&harness, "more"), 1.0, "{id}");
     }
     harness.state_mut().model_mut().set("more", 0.0).unwrap();
-    let model = harness.state_mut().model_mut();
-    let [far] = model.spec().presets else {
-        panic!("one preset");
-    };
-    widget_kit::model::apply_preset(model, far).unwrap();
+    harness.state_mut().press("far").unwrap();
     assert_eq!(
         value(&harness, "more"),
         0.0,
@@ -224,24 +195,9 @@ fn an_opened_layer_stays_open_after_presets_and_defaults() {
 
 #[test]
 fn a_preset_sets_the_state_that_it_names() {
-    let mut harness = harness(1100.0);
-    harness.get_by_label("Far away").click();
-    harness.run_steps(2);
-    assert_eq!(value(&harness, "x"), 3.5);
-}
-
-#[test]
-fn a_choice_is_a_radio_group_and_a_switch_a_checkbox() {
-    let mut harness = harness(700.0);
-    harness
-        .get_by_role_and_label(Role::RadioButton, "kind: two")
-        .click();
-    harness
-        .get_by_role_and_label(Role::CheckBox, "show the ghost")
-        .click();
-    harness.run_steps(2);
-    assert_eq!(value(&harness, "kind"), 1.0);
-    assert_eq!(value(&harness, "ghost"), 0.0);
+    let mut pressed = shell();
+    pressed.press("far").unwrap();
+    assert_eq!(pressed.model().values().number("x"), 3.5);
 }
 
 #[test]
@@ -277,54 +233,18 @@ fn only_draggable_parts_keep_a_touch_from_scrolling_the_page() {
     };
     assert!(harness.state().drags_at(screen([1.0, 1.0])));
     assert!(!harness.state().drags_at(screen([3.5, 2.5])));
-    let slider = harness
-        .get_by_role_and_label(Role::Slider, "place along x")
-        .rect();
-    assert!(harness.state().drags_at(slider.center()));
     assert!(!harness.state().drags_at(pos2(5.0, 5.0)));
 }
 
 #[test]
-fn parts_not_listed_as_draggable_do_not_follow_a_pointer() {
-    let mut harness = harness(390.0);
-    let slider = harness
-        .get_by_role_and_label(Role::Slider, "place along x")
-        .rect();
-    let before = value(&harness, "x");
-    let mut beside = 0;
-    for off in 0..12 {
-        // Above it, because the next control is below.
-        let from = slider.center_top() - vec2(0.0, off as f32);
-        if harness.state().drags_at(from) {
-            continue;
-        }
-        drag(&mut harness, from, from + vec2(40.0, 0.0));
-        assert_eq!(
-            value(&harness, "x"),
-            before,
-            "{off} points above the slider"
-        );
-        beside += 1;
-    }
-    assert!(beside > 3, "{beside}");
-}
-
-#[test]
-fn a_press_on_the_timeline_goes_there_and_play_runs_to_the_end() {
+fn play_runs_to_the_end_and_is_shown_as_pressed_meanwhile() {
     let mut harness = harness(1100.0);
-    let rail = harness.get_by_role_and_label(Role::Slider, "tick").rect();
-    drag(&mut harness, rail.center(), rail.center());
-    assert_eq!(value(&harness, "time"), 10.0);
-    harness.get_by_role_and_label(Role::Button, "Play").click();
+    harness.state_mut().press("play").unwrap();
     harness.run_steps(2);
-    assert!(harness.state().is_busy());
-    assert!(
-        harness
-            .query_by_role_and_label(Role::Button, "Pause")
-            .is_some()
-    );
+    assert!(harness.state().is_busy() && harness.state().model().is_pressed("play"));
     harness.run_steps(400);
     assert_eq!(value(&harness, "time"), 20.0);
+    assert!(!harness.state().model().is_pressed("play"));
     assert!(
         !harness.state().is_busy(),
         "an idle widget asks for no frame"
@@ -332,59 +252,30 @@ fn a_press_on_the_timeline_goes_there_and_play_runs_to_the_end() {
 }
 
 #[test]
-fn the_opening_layer_fits_the_available_height_and_texts_keep_theirs() {
+fn the_stage_fits_the_available_height_and_keeps_it_as_more_opens() {
     for width in [560.0, 1100.0] {
         let mut harness = harness(width);
         harness.state_mut().model_mut().set("more", 0.0).unwrap();
         harness.run_steps(3);
-        let slider = |harness: &Harness<'_, Shell>| {
-            harness.get_by_role_and_label(Role::Slider, "tick").rect()
-        };
-        let (natural, at) = (harness.state().content_height(), slider(&harness));
+        let natural = harness.state().content_height();
         let room = natural - 60.0;
         harness.state_mut().set_room(room);
         harness.run_steps(3);
         let height = harness.state().content_height();
         assert!(height <= room && height > room - 20.0, "{height} of {room}");
-        assert_eq!(slider(&harness).size(), at.size());
+        let map = harness.state().scene_rect();
+        harness.state_mut().model_mut().set("more", 1.0).unwrap();
+        harness.run_steps(3);
+        assert!(harness.state().content_height() > room);
+        assert_eq!(harness.state().scene_rect(), map);
+        harness.state_mut().model_mut().set("more", 0.0).unwrap();
         // Plots cannot shrink to zero; then the host has to scroll.
         harness.state_mut().set_room(10.0);
         harness.run_steps(3);
-        assert!(harness.state().content_height() > 200.0);
-        // With everything open, the plots have their natural height.
-        harness.state_mut().model_mut().set("more", 1.0).unwrap();
-        harness.run_steps(3);
-        assert!(harness.state().content_height() > natural);
-        harness.state_mut().model_mut().set("more", 0.0).unwrap();
+        assert!(harness.state().content_height() > 100.0);
         harness.state_mut().set_room(f32::INFINITY);
         harness.run_steps(3);
         assert_eq!(harness.state().content_height(), natural);
-    }
-}
-
-#[test]
-fn nothing_is_cut_off_at_any_width() {
-    for width in [340.0, 390.0, 560.0, 700.0, 820.0, 900.0, 1100.0, 1400.0] {
-        let harness = harness(width);
-        let height = harness.state().content_height();
-        for (role, label) in [
-            (Role::Slider, "place along x"),
-            (Role::Slider, "tick"),
-            (Role::Button, "Defaults"),
-            (Role::Button, "Far away"),
-            (Role::RadioButton, "speed: ×4"),
-        ] {
-            let rect = harness.get_by_role_and_label(role, label).rect();
-            assert!(
-                rect.left() >= 0.0 && rect.right() <= width && rect.bottom() <= height,
-                "{label} at {rect} leaves {width} × {height}"
-            );
-            assert!(
-                rect.height() >= 24.0 || role == Role::Slider,
-                "{label} is {}",
-                rect.height()
-            );
-        }
     }
 }
 
@@ -411,10 +302,10 @@ fn the_wheel_scrolls_the_page_and_with_ctrl_zooms_the_map() {
     assert_eq!(harness.state().panel_to_screen("map", [1.0, 1.0]), before);
     wheel(&mut harness, Modifiers::COMMAND);
     assert_ne!(harness.state().panel_to_screen("map", [1.0, 1.0]), before);
-    harness
-        .get_by_role_and_label(Role::Button, "Reset zoom")
-        .click();
+    assert!(harness.state().is_zoomed());
+    harness.state_mut().look(Look::Whole);
     harness.run_steps(3);
+    assert!(!harness.state().is_zoomed());
     assert_eq!(harness.state().panel_to_screen("map", [1.0, 1.0]), before);
 }
 
@@ -568,22 +459,6 @@ fn the_audit_finds_clipped_and_overlapping_texts() {
     );
 }
 
-#[test]
-fn a_typed_number_is_set_and_clamped_to_the_range() {
-    let mut harness = harness(1100.0);
-    for (typed, expected) in [("2.75", 2.75), ("99", 4.0), ("nonsense", 4.0)] {
-        let field = harness.get_by_role_and_label(Role::SpinButton, "place along x as a number");
-        field.focus();
-        harness.run_steps(2);
-        harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::A);
-        harness.event(Event::Text(typed.to_owned()));
-        harness.run_steps(2);
-        harness.key_press(egui::Key::Enter);
-        harness.run_steps(2);
-        assert_eq!(value(&harness, "x"), expected, "{typed}");
-    }
-}
-
 /// A slow page and a fast finger: the complete gesture arrives within one frame.
 #[test]
 fn a_press_grabs_at_its_own_position_even_if_the_pointer_moved_in_the_same_frame() {
@@ -626,13 +501,6 @@ fn a_drag_within_one_frame_ends_at_the_release() {
         harness.event(Event::PointerMoved(ends[0]));
         harness.run_steps(2);
         assert_eq!(value(&harness, "x"), x);
-
-        let rail = harness.get_by_role_and_label(Role::Slider, "tick").rect();
-        drag(
-            &mut harness,
-            [rail.left_center() + vec2(20.0, 0.0), rail.center()],
-        );
-        assert_eq!(value(&harness, "time"), 10.0);
     }
 }
 
@@ -650,23 +518,6 @@ fn a_cancelled_touch_ends_its_drag() {
     harness.event(Event::PointerMoved(pos2(x + 80.0, y)));
     harness.run_steps(2);
     assert_eq!(value(&harness, "x"), 1.0, "it must not follow any more");
-}
-
-#[test]
-fn the_control_with_the_pages_focus_has_a_ring() {
-    let shapes = |focus: Option<&str>| {
-        let mut harness = harness(1100.0);
-        harness.state_mut().set_focus(focus);
-        harness.run_steps(1);
-        harness.output().shapes.len()
-    };
-    let without = shapes(None);
-    for id in [
-        "x", "kind", "ghost", "seed", "time", "speed", "play", "defaults", "far",
-    ] {
-        assert_eq!(shapes(Some(id)), without + 1, "{id}");
-    }
-    assert_eq!(shapes(Some("nothing of ours")), without);
 }
 
 #[test]

@@ -146,10 +146,10 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     Panel {
         id: panel::SWEEPS,
         title: format!(
-            "Iteration {iteration} of {}: {} pairs, rmse {:.3} m",
+            "Iteration {iteration} of {}: {} pairs, rmse {:.1} cm",
             explorer.last(),
             shown.pairs,
-            shown.rmse_m
+            100.0 * shown.rmse_m
         ),
         weight: Weight::Main,
         aspect: Aspect::Equal,

@@ -110,7 +110,7 @@ fn graph(toy: &PoseGraphToy) -> Panel {
     Panel {
         id: panel::GRAPH,
         title: format!(
-            "Step {} of {}: χ² {:.3}",
+            "Step {} of {}: χ² {:.2}",
             toy.step(),
             toy.course.last(),
             toy.shown().chi2
@@ -270,7 +270,7 @@ fn bars(toy: &PoseGraphToy) -> Panel {
 
 /// A number with at most five characters: as many decimals as the title has, if there is room.
 fn short(value: f64) -> String {
-    let decimals = if value < 10.0 { 3 } else { 1 };
+    let decimals = if value < 10.0 { 2 } else { 1 };
     format!("{value:.decimals$}")
 }
 

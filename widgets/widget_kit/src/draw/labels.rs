@@ -3,7 +3,7 @@
 use super::layers::{is_finite, words};
 use crate::palette::{self, Theme};
 use crate::scene::{Layer, Panel, Tone};
-use crate::surface::{Px, PxRect, Surface, TextSize};
+use crate::surface::{Pen, Px, PxRect, Surface, TextSize};
 use crate::transform::Transform;
 
 /// Height of a line of small text with its margin.
@@ -46,10 +46,24 @@ pub fn labels(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: T
         }
         let width = surface.text_width(text, TextSize::Small);
         if let Some(place) = place(px, width, *clear_px, &plot, &taken) {
+            leader(surface, px, &place, *clear_px, theme);
             surface.rect(place, palette::tone(theme, Tone::Paper));
             words(surface, place.center(), text, Tone::Ink, theme);
             taken.push(place);
         }
+    }
+}
+
+/// A line from the point to a text that had to move away from it.
+fn leader(surface: &mut dyn Surface, at: Px, place: &PxRect, clear_px: f32, theme: Theme) {
+    let near = [
+        at[0].clamp(place.left, place.right()),
+        at[1].clamp(place.top, place.bottom()),
+    ];
+    let [x, y] = [near[0] - at[0], near[1] - at[1]];
+    if (x * x + y * y).sqrt() > clear_px + LINE {
+        let pen = Pen::solid(palette::tone(theme, Tone::Ink), 1.0);
+        surface.line(&[at, near], pen);
     }
 }
 

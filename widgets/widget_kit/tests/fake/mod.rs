@@ -3,7 +3,7 @@
 use widget_kit::disclosure::Opening;
 use widget_kit::model::{
     Activity, Assessment, Fact, Handle, Model, Outcome, Table, TablePlace, Timeline, TimelineMark,
-    unknown_button,
+    press_preset,
 };
 use widget_kit::param::{Choice, MORE, ParamError, ParamKind, ParamSpec};
 use widget_kit::playback::{Playback, SPEED};
@@ -153,7 +153,7 @@ impl Model for Fake {
                 self.filled = 0;
                 Ok(())
             }
-            _ => Err(unknown_button(&SPEC, id)),
+            _ => press_preset(self, id),
         }
     }
 

@@ -362,10 +362,10 @@ fn the_controls_of_the_flat_are_shown_only_during_editing() {
 }
 
 #[test]
-fn the_flat_is_edited_on_a_tab_over_the_map() {
+fn the_button_that_edits_is_pressed_while_the_flat_is_edited() {
     let mut model = at(&[]);
-    let tabs = |model: &FullLap| model.tabs().map(|tabs| (tabs.button.id, tabs.is_second));
-    assert_eq!(tabs(&model), Some(("edit-flat", false)));
-    press(&mut model, "edit-flat");
-    assert_eq!(tabs(&model), Some(("edit-flat", true)));
+    for is_pressed in [false, true, false] {
+        assert_eq!(model.is_pressed("edit-flat"), is_pressed);
+        press(&mut model, "edit-flat");
+    }
 }
