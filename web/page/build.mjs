@@ -186,7 +186,7 @@ async function copyKatex() {
 
 /** Bundles the scripts of the page and of its worker; returns their names and esbuild's metafiles. */
 async function bundleScripts(stories, matchAnswer) {
-  const bundle = async (source, define, /** @type {import('esbuild').Format} */ format = 'esm') => {
+  const bundle = async (source, define, /** @type {import('esbuild').Format} */ format = 'esm', globalName = undefined) => {
     const { outputFiles, metafile } = await build({
       entryPoints: [path.join(here, source)],
       bundle: true,
@@ -195,6 +195,7 @@ async function bundleScripts(stories, matchAnswer) {
       write: false,
       metafile: true,
       format,
+      globalName,
       minify: true,
       target: 'es2022',
       logLevel: 'warning',
@@ -212,13 +213,16 @@ async function bundleScripts(stories, matchAnswer) {
   // A classic script in the head, which the browser runs before it paints.
   const early = await bundle('early.ts', {}, 'iife');
   // A stable name: the page imports it when a reader opens an editor.
-  const writing = await bundle('write/write-yourself.ts', {});
+  const core = await bundle('write/core-worker.ts', {}, 'iife', '__slamCore');
+  const writing = await bundle('write/write-yourself.ts', {
+    WRITE_WORKER_FILE: JSON.stringify(`./${await writeHashed('write-worker.js', core.text)}`),
+  });
   await writeFile(path.join(outDir, 'write-yourself.js'), writing.text);
   const names = new Map([
     ['page.js', await writeHashed('page.js', page.text)],
     ['early.js', await writeHashed('early.js', early.text)],
   ]);
-  return { names, metafiles: [worker.metafile, page.metafile, early.metafile, writing.metafile] };
+  return { names, metafiles: [worker.metafile, page.metafile, early.metafile, core.metafile, writing.metafile] };
 }
 
 /** Writes the notices of the widgets, from their build, and of the page. */

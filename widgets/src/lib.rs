@@ -18,3 +18,4 @@ pub mod w16_6_whole_window;
 pub mod w16_7_place_recognition;
 pub mod w16_8_moving_box;
 pub mod w16_9_relocalization;
+pub mod your_code;

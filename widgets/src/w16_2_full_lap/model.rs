@@ -37,6 +37,7 @@ mod tables;
 mod texts;
 mod track;
 mod transition;
+mod your_code;
 
 use ch16_lab::lap::{LapRecord, LoopAttempt, NewestLap, NewestStep, OwnLoopError};
 use pr_sim::{Course, Sketch};
@@ -56,6 +57,7 @@ use widget_kit::values::{Changed, Values};
 use crate::w16_2_full_lap::spec::{
     EDIT_FLAT, EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WIPE, WORLD,
 };
+use crate::your_code::Orders;
 use floor_plan::{FloorPlan, Tool};
 use moment::Moment;
 use own::Own;
@@ -63,6 +65,8 @@ use pick::{Part, Step};
 use runs::{Results, Runs};
 use settings::LapSettings;
 use transition::Transition;
+
+pub use your_code::your_lap;
 
 /// Ticks a second at speed 1: twice as fast as the robot.
 const TICKS_PER_S: f64 = 8.0;
@@ -83,6 +87,8 @@ pub struct FullLap {
     own: Own,
     floor_plan: FloorPlan,
     hovered: Option<Part>,
+    /// Orders to the reader's function, if it drives.
+    yours: Option<Orders>,
 }
 
 impl Default for FullLap {
@@ -107,6 +113,7 @@ impl Default for FullLap {
             own: Own::default(),
             floor_plan: FloorPlan::new(Sketch::from_course(&Course::apartment())),
             hovered: None,
+            yours: None,
         }
     }
 }
@@ -163,14 +170,19 @@ impl FullLap {
     /// Requests the lap of the settings, unless it is on screen; a custom flat that cannot be driven requests
     /// none.
     fn recompute(&mut self) {
-        if let Some(config) = LapSettings::read(&self.values).config(self.own_course()) {
-            self.laps.ask(config);
+        let Some(config) = LapSettings::read(&self.values).config(self.own_course()) else {
+            return;
+        };
+        match &mut self.yours {
+            Some(orders) => orders.want("lap", &self.values),
+            None => self.laps.ask(config),
         }
     }
 
     /// Shows a finished lap and executes what waited for it.
     fn show(&mut self, record: LapRecord) {
         self.runs = Runs::new(record);
+        self.runs.driver = self.yours.as_ref().map(|orders| orders.function.name());
         self.hovered = None;
         if self.values.get(&TICK) > self.last() && !self.laps.is_running() {
             self.go_to(self.runs.ticks());
@@ -473,6 +485,8 @@ impl Model for FullLap {
     fn receive(&mut self, delivery: &Delivery<'_>) {
         if delivery.kind == "text-file" {
             self.open_flat(delivery.text, delivery.bytes);
+        } else {
+            self.take_from_worker(delivery);
         }
     }
 
@@ -481,7 +495,9 @@ impl Model for FullLap {
     }
 
     fn take_requests(&mut self) -> Vec<String> {
-        core::mem::take(&mut self.floor_plan.orders)
+        let mut orders = core::mem::take(&mut self.floor_plan.orders);
+        orders.extend(self.yours.iter_mut().flat_map(Orders::take));
+        orders
     }
 
     fn set_motion(&mut self, motion: Motion) {
