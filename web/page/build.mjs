@@ -186,7 +186,7 @@ async function copyKatex() {
 
 /** Bundles the scripts of the page and of its worker; returns their names and esbuild's metafiles. */
 async function bundleScripts(stories, matchAnswer) {
-  const bundle = async (source, define, /** @type {import('esbuild').Format} */ format = 'esm', globalName = undefined) => {
+  const bundle = async (source, define, /** @type {import('esbuild').Format} */ format = 'esm', globalName = undefined, minify = true) => {
     const { outputFiles, metafile } = await build({
       entryPoints: [path.join(here, source)],
       bundle: true,
@@ -196,7 +196,7 @@ async function bundleScripts(stories, matchAnswer) {
       metafile: true,
       format,
       globalName,
-      minify: true,
+      minify,
       target: 'es2022',
       logLevel: 'warning',
     });
@@ -213,7 +213,10 @@ async function bundleScripts(stories, matchAnswer) {
   // A classic script in the head, which the browser runs before it paints.
   const early = await bundle('early.ts', {}, 'iife');
   // A stable name: the page imports it when a reader opens an editor.
-  const core = await bundle('write/core-worker.ts', {}, 'iife', '__slamCore');
+  // `slam2d mark` runs the same tests. Readable, because it is committed.
+  const marking = await bundle('write/marking.ts', {}, 'iife', undefined, false);
+  await writeFile(path.join(root, 'crates/slam2d_cli/src/mark/written.js'), marking.text);
+  const core = await bundle('write/core-worker.ts', { 'import.meta.url': '""' }, 'iife', '__slamCore');
   const writing = await bundle('write/write-yourself.ts', {
     WRITE_WORKER_FILE: JSON.stringify(`./${await writeHashed('write-worker.js', core.text)}`),
   });

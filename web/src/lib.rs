@@ -21,5 +21,3 @@ mod fonts;
 mod handle;
 #[cfg(target_arch = "wasm32")]
 mod questions;
-#[cfg(target_arch = "wasm32")]
-mod your_code;

@@ -1,8 +1,22 @@
 // A function of the reader in place of a part of the estimator: the widget orders, the driver runs, the widget shows.
 
 import type { Widget } from '../pkg/glue.js';
+import { fetchAsset } from './assets';
 import { deliverTo } from './robot/log-mapper';
 import { textDelivery, type Delivery } from './robot/protocol';
+
+/** Set by the build: the module without egui. */
+declare const ROBOT_WASM_FILE: string;
+
+/** Longest time to fetch it, ms. */
+const FETCH_TIMEOUT_MS = 60_000;
+
+/** The bytes of the core: a sandboxed frame cannot be given a compiled module. */
+export async function coreBytes(): Promise<ArrayBuffer> {
+  const response = await fetchAsset(ROBOT_WASM_FILE, false, AbortSignal.timeout(FETCH_TIMEOUT_MS));
+  if (!response.ok) throw new Error(`the program could not be fetched (${response.status})`);
+  return response.arrayBuffer();
+}
 
 /** Runs a reader's function on what a widget orders. */
 export interface Driver {

@@ -123,13 +123,6 @@ export function loadModule(progress: Listener): Promise<WebAssembly.Module> {
   return widgets.load(progress);
 }
 
-/** The bytes of that module: a sandboxed frame cannot be given a compiled one. */
-export async function moduleBytes(): Promise<ArrayBuffer> {
-  const response = await fetchAsset(WASM_FILE, false, AbortSignal.timeout(STALL_TIMEOUT_MS));
-  if (!response.ok) throw new LoadError(`the program could not be fetched (${response.status})`);
-  return response.arrayBuffer();
-}
-
 /** Makes the next attempt bypass the HTTP cache. */
 export function forgetModule(): void {
   widgets.forget();

@@ -3,6 +3,7 @@
 //! Each module has the same parts: `spec` contains the texts and the parameters, `model` the logic, `view`
 //! the layout.
 
+mod reader_orders;
 pub mod registry;
 mod sweep_bounds;
 
@@ -18,4 +19,3 @@ pub mod w16_6_whole_window;
 pub mod w16_7_place_recognition;
 pub mod w16_8_moving_box;
 pub mod w16_9_relocalization;
-pub mod your_code;

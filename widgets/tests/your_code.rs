@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use ch16_lab::reader_code::{ANSWERS, Callable, Executor, SEAT};
 use ch16_slam2d::chapter::path_information;
 use ch16_slam2d::icp::{Increment, Pair, svd_align};
 use ch16_slam2d::loops::{InnovationGate, LoopConfig, chi_squared_gate};
@@ -12,7 +13,6 @@ use widget_kit::model::{Activity, Model};
 use widget_kit::scene::Layer;
 use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
 use widgets::w16_2_full_lap::model::FullLap;
-use widgets::your_code::{ANSWERS, Callable, Executor, SEAT};
 
 use crate::support::{fact, panel_of};
 
@@ -232,20 +232,31 @@ fn a_wrong_gate_or_increment_changes_the_lap() {
 #[test]
 fn what_is_no_order_is_refused() {
     let function: Arc<dyn Callable> = Arc::new(Ours);
+    let mut model = BasinExplorer::default();
+    deliver(&mut model, SEAT, "svd_align", &[]);
+    let order = model.take_requests().remove(0);
+    assert!(Executor::default().begin(&order, &function).is_ok());
+    let as_cells = order.replace("registration", "cells");
+    assert!(
+        Executor::default()
+            .begin(&format!("{as_cells} 0 8"), &function)
+            .is_ok()
+    );
     for order in [
-        "",
-        "open",
-        "your-code",
-        "your-code main registration ",
-        "your-code gate registration ",
-        "your-code svd_align registration heading=x",
-        "your-code svd_align registration heading",
-        "your-code svd_align cells=0.99 ",
-        "your-code svd_align cells= ",
-        "your-code svd_align lap world=own&flat=nonsense",
+        String::new(),
+        "open".to_owned(),
+        SEAT.to_owned(),
+        order.replace("svd_align", "main"),
+        order.replace("svd_align", "gate"),
+        order.replace("room", "moon"),
+        order.replace(" 0.7 ", " wide "),
+        format!("{as_cells} 0 99"),
+        format!("{as_cells} 0"),
+        format!("{SEAT} gate lap own 1 1 on 7.8 path p2p chapter nonsense"),
+        format!("{SEAT} gate lap moon 1 1 on 7.8 path p2p chapter "),
     ] {
         assert!(
-            Executor::default().begin(order, &function).is_err(),
+            Executor::default().begin(&order, &function).is_err(),
             "{order}"
         );
     }

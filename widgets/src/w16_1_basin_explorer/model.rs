@@ -46,11 +46,8 @@ use crate::w16_1_basin_explorer::spec::{EDGES, ITERATION, OFFSET_SPAN_M, PARAMS,
 use basins::Basins;
 use edge::Edges;
 use paths::Paths;
-use settings::{other_variant, variant};
+use settings::{config, other_variant, start, variant};
 use your_code::YourCode;
-
-pub use basins::{COLUMNS, ROWS, map_axes};
-pub use settings::{config, scene as scene_of, start};
 
 /// Names of the panels.
 pub mod panel {

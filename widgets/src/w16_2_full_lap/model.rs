@@ -54,19 +54,16 @@ use widget_kit::scene::Scene;
 use widget_kit::spec::WidgetSpec;
 use widget_kit::values::{Changed, Values};
 
+use crate::reader_orders::Orders;
 use crate::w16_2_full_lap::spec::{
     EDIT_FLAT, EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WIPE, WORLD,
 };
-use crate::your_code::Orders;
 use floor_plan::{FloorPlan, Tool};
 use moment::Moment;
 use own::Own;
 use pick::{Part, Step};
 use runs::{Results, Runs};
-use settings::LapSettings;
 use transition::Transition;
-
-pub use your_code::your_lap;
 
 /// Ticks a second at speed 1: twice as fast as the robot.
 const TICKS_PER_S: f64 = 8.0;
@@ -99,7 +96,7 @@ impl Default for FullLap {
     fn default() -> Self {
         let values = Values::defaults(SPEC.params);
         let mut laps = NewestLap::new();
-        let config = LapSettings::read(&values).config(None);
+        let config = settings::read(&values).config(None);
         laps.ask(config.expect("the Apartment can be driven"));
         let runs = Runs::new(*laps.finish().expect("a lap was asked for"));
         Self {
@@ -170,11 +167,12 @@ impl FullLap {
     /// Requests the lap of the settings, unless it is on screen; a custom flat that cannot be driven requests
     /// none.
     fn recompute(&mut self) {
-        let Some(config) = LapSettings::read(&self.values).config(self.own_course()) else {
+        let Some(config) = settings::read(&self.values).config(self.own_course()) else {
             return;
         };
+        let task = self.task();
         match &mut self.yours {
-            Some(orders) => orders.want("lap", &self.values),
+            Some(orders) => orders.want(task),
             None => self.laps.ask(config),
         }
     }

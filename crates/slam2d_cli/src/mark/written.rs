@@ -54,13 +54,24 @@ pub fn mark(written: &Written) -> Marked {
     };
     if !ids().any(|id| id == marked.exercise) {
         let known: Vec<&str> = ids().collect();
-        marked.note = Some(format!("there is no such function; there are {}", known.join(", ")));
+        marked.note = Some(format!(
+            "there is no such function; there are {}",
+            known.join(", ")
+        ));
         return marked;
     }
     let run = Engine::new().and_then(|engine| engine.run(&written.function, &written.code));
     match run {
-        Ok(Run { passed, tests, fault }) => {
-            marked.mark = if passed == tests { Mark::Right } else { Mark::Wrong };
+        Ok(Run {
+            passed,
+            tests,
+            fault,
+        }) => {
+            marked.mark = if passed == tests {
+                Mark::Right
+            } else {
+                Mark::Wrong
+            };
             marked.right = Some(format!("{tests} tests"));
             marked.result = Some(format!("{passed} tests"));
             marked.note = fault;
@@ -112,10 +123,15 @@ impl Engine {
             runtime.set_max_stack_size(STACK_BYTES);
             let deadline = Arc::new(Mutex::new(Instant::now()));
             let until = Arc::clone(&deadline);
-            let is_over = move || Instant::now() > *until.lock().unwrap_or_else(PoisonError::into_inner);
+            let is_over =
+                move || Instant::now() > *until.lock().unwrap_or_else(PoisonError::into_inner);
             runtime.set_interrupt_handler(Some(Box::new(is_over)));
             let [tests, code] = [Context::full(&runtime)?, Context::full(&runtime)?];
-            Ok(Self { deadline, tests, code })
+            Ok(Self {
+                deadline,
+                tests,
+                code,
+            })
         };
         start().map_err(|problem: rquickjs::Error| problem.to_string())
     }
@@ -135,7 +151,10 @@ impl Engine {
                     ctx.eval::<(), _>(TESTS)?;
                 }
                 let marking = ctx.globals().get("marking")?;
-                call(&Tests { ctx: ctx.clone(), marking })
+                call(&Tests {
+                    ctx: ctx.clone(),
+                    marking,
+                })
             };
             called().catch(&ctx).map_err(|problem| problem.to_string())
         })
@@ -145,10 +164,15 @@ impl Engine {
     fn evaluate(&self, text: &str) -> Result<String, String> {
         self.wind();
         self.code.with(|ctx| {
-            let value = ctx.eval::<Value<'_>, _>(text).and_then(|value| source(&value, 2));
+            let value = ctx
+                .eval::<Value<'_>, _>(text)
+                .and_then(|value| source(&value, 2));
             value.catch(&ctx).map_err(|problem| {
                 if Instant::now() > *self.deadline.lock().unwrap_or_else(PoisonError::into_inner) {
-                    return format!("there was no answer for {} s: is there a loop without end?", PATIENCE.as_secs());
+                    return format!(
+                        "there was no answer for {} s: is there a loop without end?",
+                        PATIENCE.as_secs()
+                    );
                 }
                 let problem = problem.to_string();
                 let first = problem.lines().next().unwrap_or_default();
@@ -241,9 +265,18 @@ mod tests {
         assert_eq!(right.result.as_deref(), Some("7 tests"));
         let wrong = marked("gate", &GATE.replace("<= limit", "<= 7.815"));
         assert_eq!(wrong.mark, Mark::Wrong);
-        assert!(wrong.note.unwrap().starts_with("Another limit: expected χ² 9.000"), "the constant is caught");
+        assert!(
+            wrong
+                .note
+                .unwrap()
+                .starts_with("Another limit: expected χ² 9.000"),
+            "the constant is caught"
+        );
         for function in ["svd_align", "point_to_plane_step", "keep_pairs", "gate"] {
-            let stub = marked(function, &format!("function {function}() {{ return [0, 0, 0]; }}"));
+            let stub = marked(
+                function,
+                &format!("function {function}() {{ return [0, 0, 0]; }}"),
+            );
             assert_eq!(stub.mark, Mark::Wrong, "{function}");
             assert!(stub.note.unwrap().contains("expected"), "{function}");
         }
@@ -273,9 +306,21 @@ mod tests {
 
     #[test]
     fn the_engine_has_neither_files_nor_network() {
-        let names = ["require", "process", "fetch", "XMLHttpRequest", "Worker", "std", "os", "setTimeout"];
+        let names = [
+            "require",
+            "process",
+            "fetch",
+            "XMLHttpRequest",
+            "Worker",
+            "std",
+            "os",
+            "setTimeout",
+        ];
         for name in names {
-            let found = marked("gate", &format!("if (typeof {name} !== 'undefined') throw 1;\n{GATE}"));
+            let found = marked(
+                "gate",
+                &format!("if (typeof {name} !== 'undefined') throw 1;\n{GATE}"),
+            );
             assert_eq!(found.mark, Mark::Right, "{name}");
         }
         let found = marked("gate", &format!("import('fs').then(() => {{}});\n{GATE}"));
@@ -286,6 +331,11 @@ mod tests {
     fn an_unknown_function_is_not_marked() {
         let found = marked("main", "function main() {}");
         assert_eq!(found.mark, Mark::NotMarked);
-        assert!(found.note.unwrap().contains("code.svd_align, code.point_to_plane_step, code.keep_pairs, code.gate"));
+        assert!(
+            found
+                .note
+                .unwrap()
+                .contains("code.svd_align, code.point_to_plane_step, code.keep_pairs, code.gate")
+        );
     }
 }

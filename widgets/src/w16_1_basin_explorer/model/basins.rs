@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 use std::sync::Arc;
 
 use ch16_lab::basin::{BasinMap, BasinMapAxes, BasinScene, BasinStart, Minimum, OffsetAxis};
-use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
+use ch16_slam2d::icp::{IcpConfig, IcpVariant, IcpWorkspace};
 use widget_kit::model::Activity;
 use widget_kit::scene::{Bounds, Cell, Raster};
 use widget_kit::values::Values;
@@ -27,8 +27,6 @@ pub struct Basins {
     maps: [BasinMap; 2],
     /// The variant whose map is filled from outside, by the reader's function.
     given: Option<IcpVariant>,
-    /// How often the maps were emptied.
-    pub emptied: usize,
     tries: Vec<Try>,
     revision: u64,
     drawn: [Drawn; 2],
@@ -53,7 +51,6 @@ impl Basins {
         Self {
             maps: empty_maps(values),
             given: None,
-            emptied: 0,
             tries: Vec::new(),
             revision: 0,
             drawn: Default::default(),
@@ -75,6 +72,12 @@ impl Basins {
     pub fn ahead(&self, count: usize) -> Vec<[usize; 2]> {
         let map = self.given.map(|variant| self.map(variant));
         map.map_or_else(Vec::new, |map| map.ahead(count))
+    }
+
+    /// Whether that map has these axes and settings.
+    pub fn is_of(&self, axes: &BasinMapAxes, config: &IcpConfig) -> bool {
+        let map = self.given.map(|variant| self.map(variant));
+        map.is_some_and(|map| map.axes() == axes && map.config() == config)
     }
 
     /// Fills the next cells of that map, each with the letter of its minimum.
@@ -115,7 +118,6 @@ impl Basins {
 
     fn empty(&mut self, maps: [BasinMap; 2]) {
         self.maps = maps;
-        self.emptied += 1;
         for tried in &mut self.tries {
             tried.ends = None;
         }

@@ -1,14 +1,16 @@
 //! The reader's function in place of the increment, beside ours.
 
 use ch16_lab::basin::BasinOutcome;
+use ch16_lab::reader_code::{ANSWERS, Answers, BasinTask, Function, SEAT, Task};
 use ch16_slam2d::icp::{IcpConfig, IcpVariant};
 use widget_kit::host_messages::Delivery;
 use widget_kit::model::Activity;
 
+use super::basins::map_axes;
 use super::settings::{config, start, variant};
 use super::{BasinExplorer, Preview, Run};
-use crate::w16_1_basin_explorer::spec::VARIANT;
-use crate::your_code::{ANSWERS, Answers, Function, Orders, SEAT};
+use crate::reader_orders::Orders;
+use crate::w16_1_basin_explorer::spec::{SCENE, SEED, VARIANT};
 
 /// Cells of the basin map in one order.
 const CELLS_PER_ORDER: usize = 64;
@@ -22,8 +24,6 @@ pub struct YourCode {
     pub ours: BasinOutcome,
     /// Whether the run on screen is that of the function.
     is_shown: bool,
-    /// How often the maps had been emptied as cells were ordered.
-    emptied: usize,
 }
 
 impl BasinExplorer {
@@ -55,7 +55,6 @@ impl BasinExplorer {
                 variant: function.variant()?,
                 ours,
                 is_shown: false,
-                emptied: 0,
             })
         };
         self.yours = function.and_then(seated);
@@ -70,23 +69,37 @@ impl BasinExplorer {
         self.basins.give(variant, &self.values);
     }
 
+    fn task(&self, variant: IcpVariant) -> BasinTask {
+        let values = &self.values;
+        BasinTask {
+            place: values.get(&SCENE),
+            seed: values.get(&SEED),
+            start: start(values),
+            config: config(values, variant),
+            axes: map_axes(values),
+        }
+    }
+
     /// Orders the registration from the current start. Until it is here, the source stands at its start.
     pub(super) fn order_registration(&mut self) {
-        let Some(yours) = &mut self.yours else {
+        let Some(variant_of_yours) = self.yours.as_ref().map(|yours| yours.variant) else {
             return;
         };
-        yours.is_shown = false;
-        if yours.variant != variant(&self.values) {
-            return;
+        let task = self.task(variant_of_yours);
+        let ours = self.run.outcome;
+        if let Some(yours) = &mut self.yours {
+            yours.is_shown = false;
+            if yours.variant != variant(&self.values) {
+                return;
+            }
+            yours.ours = ours;
+            yours.orders.want(Task::Registration(task.clone()));
         }
-        yours.ours = self.run.outcome;
-        yours.orders.want("registration", &self.values);
         let unmoved = IcpConfig {
             max_iterations: 0,
-            ..config(&self.values, yours.variant)
+            ..task.config
         };
-        let start = start(&self.values);
-        let outcome = (self.scene).register_from(&start, &unmoved, &mut self.workspace);
+        let outcome = (self.scene).register_from(&task.start, &unmoved, &mut self.workspace);
         self.run = Run {
             trace: self.workspace.trace().to_vec(),
             outcome,
@@ -95,17 +108,18 @@ impl BasinExplorer {
 
     /// Orders the next cells of the basin map.
     pub(super) fn order_cells(&mut self) -> Activity {
-        let Some(yours) = self.yours.as_mut().filter(|yours| yours.orders.is_idle()) else {
+        let idle = self.yours.as_ref().filter(|yours| yours.orders.is_idle());
+        let Some(variant) = idle.map(|yours| yours.variant) else {
             return Activity::Idle;
         };
         let cells = self.basins.ahead(CELLS_PER_ORDER);
         if cells.is_empty() {
             return Activity::Idle;
         }
-        let cells: Vec<String> = cells.iter().map(|[c, r]| format!("{c}.{r}")).collect();
-        yours.emptied = self.basins.emptied;
-        let what = format!("cells={}", cells.join(","));
-        yours.orders.want(&what, &self.values);
+        let task = self.task(variant);
+        if let Some(yours) = &mut self.yours {
+            yours.orders.want(Task::Cells(task, cells));
+        }
         Activity::Busy
     }
 
@@ -113,26 +127,22 @@ impl BasinExplorer {
         let Some(yours) = &mut self.yours else {
             return;
         };
-        if !yours.orders.answered(order) {
-            return;
-        }
-        if order.contains(" cells=") {
-            if yours.emptied == self.basins.emptied {
+        match yours.orders.answered(order) {
+            Some(Task::Cells(task, _)) if self.basins.is_of(&task.axes, &task.config) => {
                 self.basins.put(numbers);
             }
-            return;
+            Some(Task::Registration(task)) if yours.variant == variant(&self.values) => {
+                let answers = Answers::new(numbers);
+                let workspace = &mut self.workspace;
+                let outcome =
+                    (self.scene).register_with(&task.start, &task.config, &answers, workspace);
+                self.run = Run {
+                    trace: workspace.trace().to_vec(),
+                    outcome,
+                };
+                yours.is_shown = true;
+            }
+            _ => {}
         }
-        if yours.variant != variant(&self.values) {
-            return;
-        }
-        let config = config(&self.values, yours.variant);
-        let (start, answers) = (start(&self.values), Answers::new(numbers));
-        let workspace = &mut self.workspace;
-        let outcome = (self.scene).register_with(&start, &config, &answers, workspace);
-        self.run = Run {
-            trace: workspace.trace().to_vec(),
-            outcome,
-        };
-        yours.is_shown = true;
     }
 }

@@ -1,66 +1,27 @@
 //! Converts the values of the parameters to the types of the core.
 
-use ch16_lab::lap::{BuiltInWorld, LapConfig, LapMatcher, LoopClosure};
-use ch16_slam2d::chapter::InformationFrame;
+use ch16_lab::lap::{LapSettings, LoopClosure};
 use ch16_slam2d::chi_squared::gate_threshold;
-use ch16_slam2d::loops::GateModel;
-use pr_sim::Course;
 use widget_kit::run::LOOPS;
 use widget_kit::run::NOISE;
 use widget_kit::values::Values;
 
 use crate::w16_2_full_lap::spec::{GATE, GATE_MODEL, INFORMATION, MATCHER, SEED, WORLD};
 
-/// The settings on which a lap depends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LapSettings {
-    /// The world; `None` is the reader's own.
-    pub world: Option<BuiltInWorld>,
-    /// Seed of all noise.
-    pub seed: u32,
-    /// Multiplies the variances of the odometry.
-    pub noise_factor: f64,
-    /// Whether loops are closed.
-    pub loop_closure: LoopClosure,
-    /// Threshold of the squared innovation.
-    pub gate_chi2: f64,
-    /// Drift model of the gate.
-    pub gate_model: GateModel,
-    /// Matcher of the front end and of the loops.
-    pub matcher: LapMatcher,
-    /// The frame in which an edge holds its information.
-    pub information_frame: InformationFrame,
-}
-
-impl LapSettings {
-    /// Reads the values.
-    pub fn read(values: &Values) -> Self {
-        Self {
-            world: values.get(&WORLD),
-            seed: values.get(&SEED),
-            noise_factor: values.get(&NOISE),
-            loop_closure: if values.get(&LOOPS) {
-                LoopClosure::On
-            } else {
-                LoopClosure::Off
-            },
-            gate_chi2: gate_threshold(values.get(&GATE)),
-            gate_model: values.get(&GATE_MODEL),
-            matcher: values.get(&MATCHER),
-            information_frame: values.get(&INFORMATION),
-        }
-    }
-
-    /// The configuration for the core; `own` is the reader's own course. `None` if that cannot be driven.
-    pub fn config(&self, own: Option<&Course>) -> Option<LapConfig> {
-        let mut config = match self.world {
-            Some(world) => LapConfig::in_world(world, self.seed, self.noise_factor),
-            None => LapConfig::with_seed_and_noise(self.seed, self.noise_factor).elsewhere(own?),
-        };
-        config.slam.loop_closure = self.loop_closure;
-        config.slam.chapter.loops.gate_chi2 = self.gate_chi2;
-        config.slam.chapter.loops.gate_model = self.gate_model;
-        let config = config.with_matcher(self.matcher);
-        Some(config.with_information(self.information_frame))
+/// Reads the values.
+pub fn read(values: &Values) -> LapSettings {
+    LapSettings {
+        world: values.get(&WORLD),
+        seed: values.get(&SEED),
+        noise_factor: values.get(&NOISE),
+        loop_closure: if values.get(&LOOPS) {
+            LoopClosure::On
+        } else {
+            LoopClosure::Off
+        },
+        gate_chi2: gate_threshold(values.get(&GATE)),
+        gate_model: values.get(&GATE_MODEL),
+        matcher: values.get(&MATCHER),
+        information_frame: values.get(&INFORMATION),
     }
 }

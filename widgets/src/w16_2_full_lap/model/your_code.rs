@@ -2,57 +2,13 @@
 
 use std::sync::Arc;
 
-use ch16_lab::lap::{LapConfig, LapMatcher, NewestLap};
-use ch16_slam2d::chapter::ChapterParts;
-use ch16_slam2d::icp::IcpVariant;
-use ch16_slam2d::matching::IcpMatcher;
-use pr_sim::{Course, Sketch};
+use ch16_lab::lap::NewestLap;
+use ch16_lab::reader_code::{ANSWERS, Answers, Function, LapTask, SEAT, Task};
 use widget_kit::host_messages::Delivery;
-use widget_kit::values::Values;
 
 use super::FullLap;
-use super::settings::LapSettings;
-use crate::your_code::{ANSWERS, Answers, Callable, Function, Orders, SEAT};
-
-/// The lap of these values with a function in its seam, on the course of the values.
-///
-/// # Errors
-/// If the course cannot be driven; the message is one sentence.
-pub fn your_lap(
-    values: &Values,
-    function: Function,
-    callable: Arc<impl Callable + 'static>,
-) -> Result<(LapConfig, ChapterParts), String> {
-    let text = values.to_text("flat");
-    let own = if text.is_empty() {
-        Ok(Course::apartment())
-    } else {
-        let sketch = Sketch::from_text(&text).map_err(|problem| problem.to_string())?;
-        sketch.course().map_err(|problem| problem.to_string())
-    };
-    let config = LapSettings::read(values).config(own.as_ref().ok());
-    let mut config = config.ok_or("this flat cannot be driven")?;
-    if let Some(variant) = function.variant() {
-        config = config.with_matcher(match variant {
-            IcpVariant::PointToPoint => LapMatcher::PointToPoint,
-            IcpVariant::PointToPlane => LapMatcher::PointToPlane,
-        });
-    }
-    let chapter = &config.slam.chapter;
-    let mut parts = ChapterParts::from_config(chapter);
-    match function.variant() {
-        Some(variant) => {
-            let matcher = |map| {
-                let ours = IcpMatcher::with_variant(variant, map);
-                Box::new(ours.with_increment(callable.clone()))
-            };
-            parts.front_end = matcher(&chapter.local_map);
-            parts.loops = matcher(&chapter.loops.submap);
-        }
-        None => parts.gate = Some(callable),
-    }
-    Ok((config, parts))
-}
+use super::settings;
+use crate::reader_orders::Orders;
 
 impl FullLap {
     /// Seats a function, or takes its answers.
@@ -69,15 +25,23 @@ impl FullLap {
         }
     }
 
+    /// The task of the settings.
+    pub(super) fn task(&self) -> Task {
+        Task::Lap(LapTask {
+            settings: settings::read(&self.values),
+            course: self.values.to_text("flat"),
+        })
+    }
+
     fn take_answers(&mut self, order: &str, numbers: &[f64]) {
         let Some(orders) = self.yours.as_mut() else {
             return;
         };
-        if !orders.answered(order) {
+        let Some(Task::Lap(task)) = orders.answered(order) else {
             return;
-        }
+        };
         let answers = Arc::new(Answers::new(numbers));
-        if let Ok((config, parts)) = your_lap(&self.values, orders.function, answers) {
+        if let Ok((config, parts)) = task.lap(orders.function, answers) {
             self.laps.ask_with_parts(config, parts);
         }
     }

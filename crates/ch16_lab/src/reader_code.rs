@@ -1,12 +1,11 @@
 //! A reader's function in place of a part of the estimator.
 //!
-//! The function is in another language and runs in a worker, which holds the same core. A widget orders a computation
-//! ([`Orders`]); the worker executes it ([`Executor`]) and returns what the function answered; the widget computes the
-//! same with these [`Answers`]. Its picture therefore has everything that it has of ours. An order is one line:
-//! `your-code svd_align registration heading=60&dx=0.2`.
+//! The function is in another language and runs in a worker, which holds the same core. A widget sends an [`Order`] as
+//! text; the worker executes it ([`Executor`]) and returns what the function answered; the widget computes the same with
+//! these [`Answers`]. Its picture therefore has everything that it has of ours.
 
 mod execute;
-mod orders;
+mod order;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -15,11 +14,9 @@ use ch16_slam2d::icp::{IcpVariant, Increment, Pair};
 use ch16_slam2d::loops::{InnovationGate, LoopConfig};
 use nalgebra::Vector3;
 use pr_geom::SE2;
-use widget_kit::spec::WidgetSpec;
-use widget_kit::values::Values;
 
 pub use execute::{Executor, Job};
-pub use orders::Orders;
+pub use order::{BasinTask, LapTask, Order, Task};
 
 /// The kind of a delivery that names the function which drives from now on; without text ours does.
 pub const SEAT: &str = "your-code";
@@ -144,31 +141,4 @@ impl InnovationGate for Recorder {
         self.record(&[found]);
         found
     }
-}
-
-/// The values that are not at their defaults, as in a link.
-fn query(values: &Values) -> String {
-    let pairs = values
-        .specs()
-        .iter()
-        .map(|spec| (spec, values.to_text(spec.id)));
-    let defaults = Values::defaults(values.specs());
-    let changed = pairs.filter(|(spec, text)| *text != defaults.to_text(spec.id));
-    let changed: Vec<String> = changed
-        .map(|(spec, text)| format!("{}={text}", spec.id))
-        .collect();
-    changed.join("&")
-}
-
-/// The values of a query.
-fn values_of(spec: &WidgetSpec, query: &str) -> Result<Values, String> {
-    let mut values = Values::defaults(spec.params);
-    for pair in query.split('&').filter(|pair| !pair.is_empty()) {
-        let (id, text) = pair
-            .split_once('=')
-            .ok_or_else(|| format!("`{pair}` sets nothing"))?;
-        let set = values.set_text(spec.id, id, text);
-        set.map_err(|problem| problem.to_string())?;
-    }
-    Ok(values)
 }

@@ -3,12 +3,13 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
+use ch16_lab::reader_code::{Callable, Executor, Function, Job};
 use ch16_slam2d::icp::{Increment, Pair};
 use ch16_slam2d::loops::{InnovationGate, LoopConfig};
 use js_sys::{Array, Float64Array, Function as JsFunction, Reflect};
+use nalgebra::Vector3;
 use pr_geom::SE2;
 use wasm_bindgen::prelude::*;
-use widgets::your_code::{Callable, Executor, Function, Job};
 
 thread_local! {
     /// The function of this worker, and the first error that it has thrown. The seams of the core are for all threads,
@@ -98,7 +99,7 @@ impl Increment for Called {
 }
 
 impl InnovationGate for Called {
-    fn chi2(&self, innovation: &nalgebra::Vector3<f64>, gap: usize, config: &LoopConfig) -> f64 {
+    fn chi2(&self, innovation: &Vector3<f64>, gap: usize, config: &LoopConfig) -> f64 {
         let arguments = Array::of4(
             &Float64Array::from(innovation.as_slice()),
             &JsValue::from_f64(gap as f64),
