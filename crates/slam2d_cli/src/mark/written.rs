@@ -142,6 +142,11 @@ impl Engine {
         *deadline = Instant::now() + PATIENCE;
     }
 
+    /// Whether that is over.
+    fn is_over(&self) -> bool {
+        Instant::now() > *self.deadline.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Calls something of the tests.
     fn tests<R>(&self, call: impl FnOnce(&Tests<'_>) -> rquickjs::Result<R>) -> Result<R, String> {
         self.wind();
@@ -168,7 +173,7 @@ impl Engine {
                 .eval::<Value<'_>, _>(text)
                 .and_then(|value| source(&value, 2));
             value.catch(&ctx).map_err(|problem| {
-                if Instant::now() > *self.deadline.lock().unwrap_or_else(PoisonError::into_inner) {
+                if self.is_over() {
                     return format!(
                         "there was no answer for {} s: is there a loop without end?",
                         PATIENCE.as_secs()
@@ -199,6 +204,8 @@ impl Engine {
                     let result: Value<'_> = tests.ctx.eval(format!("({result})"))?;
                     tests.call::<_, String>("fault", (function, test, result))
                 })?,
+                // The next call would take as long.
+                Err(problem) if self.is_over() => return Err(problem),
                 Err(problem) => problem,
             };
             if fault.is_empty() {
