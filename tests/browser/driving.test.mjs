@@ -77,28 +77,23 @@ it('a step typed by the keyboard drives w16.1 beside ours and maps its basin, an
     assertNear(theirs, ours, ['error_m', 'error_deg', 'rmse_m', 'pairs', 'iterations']);
     assert.match(theirs.sentence, /Ours ends 0\.01 m/);
     // It follows what the reader changes.
-    await tab.evaluate((at) => document.querySelector(at).set('heading', 60), W1);
-    const turned = await said(tab, W1, 'From 60° off, your svd_align ends');
+    await tab.evaluate((at) => (document.querySelector(at).value = { heading: 65, dx: 0, dy: 0 }), W1);
+    const turned = await said(tab, W1, 'From 65° off, your svd_align ends');
     assert.equal(turned.verdict, 'quarter turn');
     // Its basin map, cell by cell.
-    const cells = () => tab.evaluate(async (at) => {
+    const cells = () => tab.evaluate(async (at) => (await document.querySelector(at).tables()).find(({ id }) => id === 'basins').csv, W1);
+    const isFull = () => tab.waitForFunction(async (at) => {
       const tables = await document.querySelector(at).tables();
-      return tables.find(({ id }) => id.startsWith('basin')).csv;
-    }, W1);
+      return !/,[,\r]/.test(tables.find(({ id }) => id === 'basins').csv);
+    }, W1, { polling: 500 });
     await tab.locator(W1).scrollIntoViewIfNeeded();
     await tab.evaluate((at) => document.querySelector(at).set('more', true), W1);
-    await tab.waitForFunction(async (at) => {
-      const tables = await document.querySelector(at).tables();
-      return !/,(,|\n|$)/.test(tables.find(({ id }) => id.startsWith('basin')).csv);
-    }, W1, { polling: 500 });
+    await isFull();
     const theirMap = await cells();
     await press(tab, 'Let ours drive the registration of w16.1 again');
-    await said(tab, W1, 'From 60° off, point to point ends');
+    await said(tab, W1, 'From 65° off, point to point ends');
     await tab.locator(W1).scrollIntoViewIfNeeded();
-    await tab.waitForFunction(async (at) => {
-      const tables = await document.querySelector(at).tables();
-      return !/,(,|\n|$)/.test(tables.find(({ id }) => id.startsWith('basin')).csv);
-    }, W1, { polling: 500 });
+    await isFull();
     const [a, b] = [theirMap, await cells()].map((csv) => csv.split('\n'));
     const differing = a.filter((line, k) => line !== b[k]).length;
     // A start on the edge of two basins may fall to the other side by the last bit.
@@ -114,14 +109,14 @@ it('a step and a gate typed by the keyboard drive the lap of w16.2', async () =>
     const ours = await outcome(tab, W2);
     await type(tab, ALIGN);
     await press(tab, 'Drive the lap of w16.2 with it');
-    const theirs = await said(tab, W2, 'by your svd_align, ');
+    const theirs = await said(tab, W2, 'By your svd_align, ');
     // 1 cm: a point on the edge of a cell falls to the other side by the last bit, and the lap differs in its millimetres.
     assertNear(theirs, ours, ['keyframe_rms_m', 'graph_error_m'], 0.01);
     assertNear(theirs, ours, ['loops_closed', 'false_loops', 'keyframes'], 0);
     await type(tab, SHIFT);
     await press(tab, 'Let ours drive the lap of w16.2 again');
     await press(tab, 'Drive the lap of w16.2 with it');
-    await tab.waitForFunction(([at, rms]) => document.querySelector(at).outcome?.facts.keyframe_rms_m > 2 * rms, [W2, ours.facts.keyframe_rms_m]);
+    await tab.waitForFunction(([at, rms]) => document.querySelector(at).outcome?.facts.keyframe_rms_m > 1.5 * rms, [W2, ours.facts.keyframe_rms_m]);
   });
   await beside('gate', async (tab) => {
     await tab.locator(W2).scrollIntoViewIfNeeded();
@@ -130,12 +125,12 @@ it('a step and a gate typed by the keyboard drive the lap of w16.2', async () =>
     assert.ok((await outcome(tab, W2)).facts.loops_closed > 0);
     await type(tab, 'function gate(innovation, gap, drift, limit) {\n  return { chi2: Infinity, accepted: false };\n}');
     await press(tab, 'Drive the loops of w16.2 with it');
-    assert.equal((await said(tab, W2, 'by your gate, ')).facts.loops_closed, 0);
+    assert.equal((await said(tab, W2, 'By your gate, ')).facts.loops_closed, 0);
     await type(tab, 'function gate(innovation, gap, drift, limit) {\n  return { chi2: 1, accepted: false };\n}');
     await press(tab, 'Let ours drive the loops of w16.2 again');
     await press(tab, 'Drive the loops of w16.2 with it');
     await says(tab, 'gate rejects a loop of χ² 1.000 at the limit 7.815: accepted has to be χ² ≤ limit');
-    await said(tab, W2, 'lap finished');
+    await said(tab, W2, 'Lap finished');
   });
 });
 

@@ -301,7 +301,7 @@ export class SlamWidget extends HTMLElement {
   }
 
   /** Puts a function of the reader in place of a part of the estimator; without one, ours drives again. */
-  async drive(driver: Driver | undefined): Promise<void> {
+  async drive(driver?: Driver): Promise<void> {
     this.#driver = driver;
     this.dispatchEvent(new CustomEvent('slam-driver'));
     await this.#act((widget) => seat(widget, driver));

@@ -13,7 +13,7 @@ use crate::reader_orders::Orders;
 use crate::w16_1_basin_explorer::spec::{SCENE, SEED, VARIANT};
 
 /// Cells of the basin map in one order.
-const CELLS_PER_ORDER: usize = 64;
+const CELLS_PER_ORDER: usize = 128;
 
 /// The function that drives.
 pub struct YourCode {
