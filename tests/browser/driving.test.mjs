@@ -29,11 +29,12 @@ const W1 = 'slam-widget[name="w16.1"]';
 const W2 = 'slam-widget[name="w16.2"]';
 
 /** An editor beside the widgets. */
-async function beside(name, test, how = {}) {
-  const body = `<main><h1>Drive</h1><details open data-write="${name}"><summary>Write it yourself</summary></details>
+const page = (name) => `<main><h1>Drive</h1><details open data-write="${name}"><summary>Write it yourself</summary></details>
     <slam-widget name="w16.1"></slam-widget><slam-widget name="w16.2"></slam-widget></main>
     <script type="module">import { open } from './write-yourself.js'; open(document.querySelector('details'));</script>`;
-  await visit(body, async (tab) => {
+
+async function beside(name, test, how = {}) {
+  await visit(page(name), async (tab) => {
     await tab.getByRole('textbox').first().waitFor();
     await test(tab);
   }, { fresh: true, ...how, options: { stepMs: clock.SMOOTH_MS } });
@@ -82,10 +83,9 @@ it('a step typed by the keyboard drives w16.1 beside ours and maps its basin, an
     assert.equal(turned.verdict, 'quarter turn');
     // Its basin map, cell by cell.
     const cells = () => tab.evaluate(async (at) => (await document.querySelector(at).tables()).find(({ id }) => id === 'basins').csv, W1);
-    const isFull = () => tab.waitForFunction(async (at) => {
-      const tables = await document.querySelector(at).tables();
-      return !/,[,\r]/.test(tables.find(({ id }) => id === 'basins').csv);
-    }, W1, { polling: 500 });
+    const isFull = async () => {
+      while (/,[,\r]/.test(await cells())) await h.moreFrames(tab, 3, W1);
+    };
     await tab.locator(W1).scrollIntoViewIfNeeded();
     await tab.evaluate((at) => document.querySelector(at).set('more', true), W1);
     await isFull();
@@ -172,7 +172,26 @@ it('a link carries no code, and a new instance of the widget is driven by the sa
     const link = await tab.evaluate((at) => document.querySelector(at).link, W1);
     assert.ok(!/svd_align|function/.test(decodeURIComponent(link)), link);
     await tab.evaluate((at) => document.querySelector(at).suspend(), W1);
-    await tab.evaluate((at) => document.querySelector(at).tables(), W1);
+    await tab.locator(W1).scrollIntoViewIfNeeded();
+    await h.ready(tab, W1);
     await said(tab, W1, 'your svd_align ends');
   });
+});
+
+it('in a frame without an origin the editor runs, and its function drives', async () => {
+  const outer = '<!doctype html><html lang="en"><title>Frame</title><iframe sandbox="allow-scripts" width="900" height="800" src="/t.html"></iframe>';
+  await visit(page('svd_align'), async (tab) => {
+    const inner = tab.frameLocator('iframe');
+    await inner.locator('.cm-content').click();
+    await tab.keyboard.press('ControlOrMeta+a');
+    await tab.keyboard.insertText(ALIGN);
+    await inner.getByRole('button', { name: 'Run', exact: true }).click();
+    await inner.getByText('All 5 tests pass').waitFor();
+    await inner.getByRole('button', { name: 'Drive the registration of w16.1 with it' }).click();
+    await inner.getByText('drives the registration of w16.1').waitFor();
+    const frame = tab.frames().find((one) => one.url().endsWith('/t.html'));
+    await frame.waitForFunction((at) => document.querySelector(at).outcome?.sentence.includes('your svd_align ends'), W1);
+    await inner.getByLabel('Keep my code in this browser').click();
+    await inner.getByText('This browser does not let the page store anything.').waitFor();
+  }, { fresh: true, path: '/outer.html', server: { pages: { '/outer.html': outer } }, options: { stepMs: clock.SMOOTH_MS } });
 });

@@ -402,6 +402,7 @@ export class SlamWidget extends HTMLElement {
         widget.setRoom(this.#reservedHeight.room);
       },
       live: (milliseconds) => {
+        this.#executeOrders();
         this.#showTimeline();
         this.#shownOutcome();
         this.#notifier.ready(milliseconds);
