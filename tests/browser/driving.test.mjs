@@ -179,7 +179,7 @@ it('a link carries no code, and a new instance of the widget is driven by the sa
 });
 
 it('in a frame without an origin the editor runs, and its function drives', async () => {
-  const outer = '<!doctype html><html lang="en"><title>Frame</title><iframe sandbox="allow-scripts" width="900" height="800" src="/t.html"></iframe>';
+  const outer = '<!doctype html><html lang="en"><title>Frame</title><link rel="icon" href="data:,"><iframe sandbox="allow-scripts" width="900" height="800" src="/t.html"></iframe>';
   await visit(page('svd_align'), async (tab) => {
     const inner = tab.frameLocator('iframe');
     await inner.locator('.cm-content').click();
