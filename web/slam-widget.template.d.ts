@@ -108,6 +108,13 @@ export declare class SlamWidget extends HTMLElement {
   get diagnosis(): Record<string, unknown> | null;
   /** The bytes of a file that w16.10 saves, such as `session.slam2d`; rejects with a sentence if there is none. */
   savedFile(name: string): Promise<File>;
+  /**
+   * Puts a function of the reader in place of a part of the estimator; without one, ours drives again. `run` gets an order
+   * of the widget, and returns what the function answered in the worker that executed it.
+   */
+  drive(driver?: { readonly name: string; run(order: string): Promise<Float64Array | undefined> }): Promise<void>;
+  /** The function that drives, if there is one. */
+  readonly driver: { readonly name: string } | undefined;
   addEventListener<K extends keyof SlamWidgetEvents>(
     type: K,
     listener: (this: SlamWidget, event: SlamWidgetEvents[K]) => void,

@@ -64,6 +64,20 @@ it('a page from the disk runs a widget, replays the lap, and runs laps in worker
   });
 });
 
+it('a page from the disk runs a written function, which drives w16.1', async () => {
+  await opened('index.html', async (tab) => {
+    await tab.locator('details[data-write="svd_align"]').evaluate((one) => {
+      for (let at = one; at !== null; at = at.parentElement?.closest('details') ?? null) at.open = true;
+    });
+    for (let step = 0; step < 4; step += 1) await tab.getByRole('button', { name: /^Help/ }).click();
+    await tab.getByRole('button', { name: 'Run', exact: true }).click();
+    await tab.getByText('All 5 tests pass').waitFor();
+    await tab.getByRole('button', { name: 'Drive the registration of w16.1 with it' }).click();
+    const driven = () => document.querySelector('slam-widget[name="w16.1"]').outcome?.sentence.includes('your svd_align ends');
+    await tab.waitForFunction(driven);
+  });
+});
+
 it('a page from the disk maps the sample log', async () => {
   await opened('own-robot.html', async (tab) => {
     const robot = 'slam-widget[name="w16.10"]';

@@ -188,7 +188,7 @@ async function copyKatex() {
 
 /** Bundles the scripts of the page and of its worker; returns their names and esbuild's metafiles. */
 async function bundleScripts(stories, matchAnswer) {
-  const bundle = async (source, define, /** @type {import('esbuild').Format} */ format = 'esm') => {
+  const bundle = async (source, define, /** @type {import('esbuild').Format} */ format = 'esm', globalName = undefined, minify = true) => {
     const { outputFiles, metafile } = await build({
       entryPoints: [path.join(here, source)],
       bundle: true,
@@ -197,7 +197,8 @@ async function bundleScripts(stories, matchAnswer) {
       write: false,
       metafile: true,
       format,
-      minify: true,
+      globalName,
+      minify,
       target: 'es2022',
       logLevel: 'warning',
     });
@@ -215,14 +216,20 @@ async function bundleScripts(stories, matchAnswer) {
   const early = await bundle('early.ts', {}, 'iife');
   const slides = await bundle('slides.ts', {});
   // A stable name: the page imports it when a reader opens an editor.
-  const writing = await bundle('write/write-yourself.ts', {});
+  // `slam2d mark` runs the same tests. Readable, because it is committed.
+  const marking = await bundle('write/marking.ts', {}, 'iife', undefined, false);
+  await writeFile(path.join(root, 'crates/slam2d_cli/src/mark/written.js'), marking.text);
+  const core = await bundle('write/core-worker.ts', { 'import.meta.url': '""' }, 'iife', '__slamCore');
+  const writing = await bundle('write/write-yourself.ts', {
+    WRITE_WORKER_FILE: JSON.stringify(`./${await writeHashed('write-worker.js', core.text)}`),
+  });
   await writeFile(path.join(outDir, 'write-yourself.js'), writing.text);
   const names = new Map([
     ['page.js', await writeHashed('page.js', page.text)],
     ['early.js', await writeHashed('early.js', early.text)],
     ['slides.js', await writeHashed('slides.js', slides.text)],
   ]);
-  return { names, metafiles: [worker.metafile, page.metafile, early.metafile, writing.metafile, slides.metafile] };
+  return { names, metafiles: [worker.metafile, page.metafile, early.metafile, core.metafile, writing.metafile, slides.metafile] };
 }
 
 /** Writes the notices of the widgets, from their build, and of the page. */

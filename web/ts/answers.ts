@@ -18,14 +18,25 @@ interface Answer {
   time: string;
 }
 
+/** A function of the page's editors, as it was run last. */
+interface Written {
+  function: string;
+  code: string;
+  attempts: number;
+  time: string;
+}
+
 /** The stored value. */
 interface Stored {
   student: string;
   answers: Record<string, Answer[]>;
+  code?: Record<string, Written[]>;
 }
 
 /** Answers by student and exercise. */
 const collected = new Map<string, Map<string, Answer>>();
+/** Functions by student and name. */
+const written = new Map<string, Map<string, Written>>();
 let current = new URLSearchParams(location.search).get('student')?.trim() ?? '';
 let isStored = false;
 /** Dispatches `change` when a student or an answer changes. */
@@ -36,6 +47,14 @@ document.addEventListener('slam-predict', ({ detail }: CustomEvent<Prediction>) 
   const { exercise, student, widget, state, prediction, result, attempts, time } = detail;
   if (exercise === null) return;
   answersOf(student).set(exercise, { exercise, widget, state, prediction, result, attempts, time });
+  changed();
+});
+
+document.addEventListener('slam-code', (event) => {
+  const { name, code } = (event as CustomEvent<{ name: string; code: string }>).detail;
+  const functions = functionsOf(current);
+  const attempts = (functions.get(name)?.attempts ?? 0) + 1;
+  functions.set(name, { function: name, code, attempts, time: new Date().toISOString() });
   changed();
 });
 
@@ -59,6 +78,11 @@ export function answered(): number {
   return collected.get(current)?.size ?? 0;
 }
 
+/** Number of functions that the current student has run. */
+export function functions(): number {
+  return written.get(current)?.size ?? 0;
+}
+
 export function keepsAnswers(): boolean {
   return isStored;
 }
@@ -73,17 +97,19 @@ export function keepAnswers(isOn: boolean): void {
 /** The current student's answers as a file. */
 export async function answerFile(): Promise<{ name: string; text: string }> {
   const answers = [...answersOf(current).values()];
-  const digest = await sha256(canonical(current, answers));
+  const code = [...functionsOf(current).values()];
+  const digest = await sha256(canonical(current, answers, code));
   const name = current.replaceAll(/[^\p{L}\p{N}_-]+/gu, '-');
-  const text = JSON.stringify({ schema: SCHEMA, student: current, answers, digest }, null, 1);
+  const text = JSON.stringify({ schema: SCHEMA, student: current, answers, ...(code.length === 0 ? {} : { code }), digest }, null, 1);
   return { name: name === '' ? 'answers.json' : `answers-${name}.json`, text: `${text}\n` };
 }
 
 /** The text that the digest covers: only arrays, strings and integers, whose JSON is the same everywhere. */
-function canonical(name: string, answers: Answer[]): string {
+function canonical(name: string, answers: Answer[], functions: Written[]): string {
   const rows = answers.map(({ exercise, widget, state, prediction, result, attempts, time }) =>
     [exercise, widget, state, prediction, result, attempts, time]);
-  return JSON.stringify([SCHEMA, name, ...rows]);
+  const codes = functions.map((one) => [one.function, one.code, one.attempts, one.time]);
+  return JSON.stringify([SCHEMA, name, ...rows, ...codes]);
 }
 
 async function sha256(text: string): Promise<string> {
@@ -99,14 +125,21 @@ function answersOf(name: string): Map<string, Answer> {
   return answers;
 }
 
+function functionsOf(name: string): Map<string, Written> {
+  const functions = written.get(name) ?? new Map<string, Written>();
+  written.set(name, functions);
+  return functions;
+}
+
 function changed(): void {
   if (isStored) localStorage.setItem(STORAGE_KEY, storedText());
   changes.dispatchEvent(new Event('change'));
 }
 
 function storedText(): string {
-  const answers = Object.fromEntries([...collected].map(([name, of]) => [name, [...of.values()]]));
-  return JSON.stringify({ student: current, answers } satisfies Stored);
+  const lists = <T>(all: Map<string, Map<string, T>>): Record<string, T[]> =>
+    Object.fromEntries([...all].map(([name, of]) => [name, [...of.values()]]));
+  return JSON.stringify({ student: current, answers: lists(collected), code: lists(written) } satisfies Stored);
 }
 
 /** Reads the answers of an earlier visit. Access throws in a sandboxed frame; unreadable answers are ignored. */
@@ -114,13 +147,17 @@ function readStored(): void {
   try {
     const text = localStorage.getItem(STORAGE_KEY);
     if (text === null) return;
-    const { student: name, answers } = JSON.parse(text) as Stored;
+    const { student: name, answers, code = {} } = JSON.parse(text) as Stored;
     for (const [of, list] of Object.entries(answers)) {
       for (const answer of list) answersOf(of).set(answer.exercise, answer);
+    }
+    for (const [of, list] of Object.entries(code)) {
+      for (const one of list) functionsOf(of).set(one.function, one);
     }
     if (current === '') current = name;
     isStored = true;
   } catch {
     collected.clear();
+    written.clear();
   }
 }

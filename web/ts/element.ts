@@ -23,6 +23,7 @@ import { findParam, findWidget, widgets } from './schema';
 import { State } from './state';
 import { defaultText, shorten, type Value } from './values';
 import { unwatchVisibility, watchVisibility } from './visibility';
+import { answersTo, type Driver, isForDriver, seat } from './driver';
 import { LogMapper, deliverTo, type FileUse } from './robot/log-mapper';
 import { DoctorScreen, type Diagnosis } from './robot/doctor';
 import { acceptDrops, chooseFiles } from './robot/files';
@@ -56,6 +57,7 @@ export class SlamWidget extends HTMLElement {
   readonly #textFiles: TextFileHost;
   /** Maps a reader's log, once a file was opened. */
   #mapper: LogMapper | undefined;
+  #driver: Driver | undefined;
   #doctor: DoctorScreen | undefined;
   #loops: LoopsToLookInto | undefined;
 
@@ -292,6 +294,18 @@ export class SlamWidget extends HTMLElement {
     return this.#mapper?.file(String(name)) ?? Promise.reject(new Error('Open a log first.'));
   }
 
+  /** The reader's function that drives, if there is one. */
+  get driver(): Driver | undefined {
+    return this.#driver;
+  }
+
+  /** Puts a function of the reader in place of a part of the estimator; without one, ours drives again. */
+  async drive(driver?: Driver): Promise<void> {
+    this.#driver = driver;
+    this.dispatchEvent(new CustomEvent('slam-driver'));
+    await this.#act((widget) => seat(widget, driver));
+  }
+
   /** Releases context and memory; the values stay, and the picture shows them. */
   suspend(): void {
     this.#lifecycle.suspend();
@@ -385,6 +399,7 @@ export class SlamWidget extends HTMLElement {
         }
         // The model may clamp a value: a time to the end of the run.
         for (const id of state?.texts.keys() ?? []) state?.keep(id, widget.text(id));
+        if (this.#driver !== undefined) seat(widget, this.#driver);
         this.#controls?.show(state?.texts ?? []);
         this.#offerControls(widget);
         this.#appearance.prepare(widget);
@@ -392,6 +407,7 @@ export class SlamWidget extends HTMLElement {
         widget.setRoom(this.#reservedHeight.room);
       },
       live: (milliseconds) => {
+        this.#executeOrders();
         this.#showTimeline();
         this.#showReadouts();
         this.#notifier.ready(milliseconds);
@@ -441,7 +457,8 @@ export class SlamWidget extends HTMLElement {
   #executeOrders(): void {
     const orders = this.#lifecycle.ask((widget) => widget.takeOrders()) ?? [];
     for (const order of orders) {
-      if (!executeTextOrder(order, this.#textFiles)) this.#openMapper().order(order);
+      if (isForDriver(order)) void answersTo(order, this.#driver).then((answers) => this.#deliver(answers));
+      else if (!executeTextOrder(order, this.#textFiles)) this.#openMapper().order(order);
     }
   }
 

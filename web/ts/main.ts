@@ -9,6 +9,7 @@ export type { Value } from './values';
 export { SlamWidget };
 export { widgets } from './schema';
 export { core, coreModule } from './core';
+export { coreBytes, type Driver } from './driver';
 
 if (customElements.get('slam-widget') === undefined) {
   customElements.define('slam-widget', SlamWidget);

@@ -258,6 +258,8 @@ export class SlamPredict extends HTMLElement {
 
 /** Sets a state; the other parameters get their defaults. */
 async function setState(widget: SlamWidget, state: string): Promise<void> {
+  // The task is about our estimator.
+  if (widget.driver !== undefined) await widget.drive(undefined);
   await widget.press('defaults');
   for (const [id, text] of new URLSearchParams(state)) widget.set(id, text);
 }

@@ -1,6 +1,6 @@
 // <slam-answers>: the reader's name for personal tasks, and the file of answers.
 
-import { answered, answerFile, changes, keepAnswers, keepsAnswers, setStudent, student } from './answers';
+import { answered, answerFile, changes, functions, keepAnswers, keepsAnswers, setStudent, student } from './answers';
 import { create, stopKeyPropagation } from './dom';
 import { saveBlob } from './export';
 
@@ -81,7 +81,9 @@ export class SlamAnswers extends HTMLElement {
   #showCount(): void {
     if (this.#name !== undefined) this.#name.value = student();
     const count = answered();
-    this.#showStatus(`${count} ${count === 1 ? 'exercise' : 'exercises'} answered. Nothing leaves this browser unless you save the file.`);
+    const written = functions();
+    const code = written === 0 ? '' : `, ${written} ${written === 1 ? 'function' : 'functions'} written`;
+    this.#showStatus(`${count} ${count === 1 ? 'exercise' : 'exercises'} answered${code}. Nothing leaves this browser unless you save the file.`);
   }
 
   #showStatus(sentence: string): void {

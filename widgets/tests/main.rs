@@ -14,3 +14,4 @@ mod w16_6_whole_window;
 mod w16_7_place_recognition;
 mod w16_8_moving_box;
 mod w16_9_relocalization;
+mod your_code;

@@ -23,6 +23,7 @@ mod replay;
 mod report;
 mod run;
 mod runner;
+mod settings;
 mod soundness;
 
 use std::sync::Arc;
@@ -49,6 +50,7 @@ pub use replay::RegistrationView;
 pub use report::{Keyframe, LoopAttempt, LoopEffect, TickMetrics, TickReport, WindowSweep};
 pub use run::LapRun;
 pub use runner::LapRunner;
+pub use settings::LapSettings;
 
 use ch16_slam2d::chapter::ChapterParts;
 use ch16_slam2d::graph::PoseGraph;

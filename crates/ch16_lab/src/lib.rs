@@ -16,6 +16,7 @@ pub mod moving_box;
 pub mod nudge;
 pub mod places;
 pub mod procrustes;
+pub mod reader_code;
 pub mod relocalization;
 pub mod results;
 pub mod rule;

@@ -26,4 +26,4 @@ pub use information::{
 };
 pub use pairing::{IcpWorkspace, Pair, correspondences};
 pub use rejection::{MaxDistance, PairRejection, Trimmed};
-pub use stepper::{Icp, IcpResult, IcpStep, IcpSummary, IcpTrace, StopReason, icp};
+pub use stepper::{Icp, IcpResult, IcpStep, IcpSummary, IcpTrace, Increment, StopReason, icp};

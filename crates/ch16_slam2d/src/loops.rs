@@ -19,7 +19,7 @@ mod verify;
 pub use candidates::{LoopCandidate, detect_loop_candidates, detect_visits};
 pub use config::{GateModel, LoopConfig};
 pub use detector::{CloneDetector, LoopDetector, LoopQuery, NearbyDetector};
-pub use gate::{GateTest, chi_squared_gate};
+pub use gate::{GateTest, InnovationGate, chi_squared_gate};
 pub use pending_loop::PendingLoop;
 pub use verify::{
     Agreement, KeyframeView, LoopRejection, LoopVerification, LoopWorkspace, verify_loop,

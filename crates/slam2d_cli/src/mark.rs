@@ -3,6 +3,7 @@
 mod answers;
 mod exercise;
 mod gradebook;
+mod written;
 
 use std::path::{Path, PathBuf};
 
@@ -46,9 +47,9 @@ struct Sheet {
     student: String,
     /// Whether the file is as the page saved it.
     intact: bool,
-    /// Number of exercises in the chapter.
+    /// Number of exercises in the chapter, and of functions that the file has.
     exercises: usize,
-    /// Number of answers that are right or within tolerance.
+    /// Number of answers that are right or within tolerance, and of functions that pass their tests.
     right: usize,
     answers: Vec<Marked>,
 }
@@ -98,12 +99,13 @@ fn sheet_of(path: &Path) -> anyhow::Result<Sheet> {
         .answers
         .iter()
         .map(|answer| exercise::mark(answer, &file.student))
+        .chain(file.code.iter().map(written::mark))
         .collect();
     let is_right = |answer: &&Marked| matches!(answer.mark, Mark::Right | Mark::WithinTolerance);
     Ok(Sheet {
         file: path.display().to_string(),
         intact: file.is_intact(),
-        exercises: exercise::count(),
+        exercises: exercise::count() + file.code.len(),
         right: answers.iter().filter(is_right).count(),
         answers,
         student: file.student,

@@ -322,3 +322,47 @@ fn a_gradebook_of_80_joins_the_roster_of_canvas_and_of_moodle_by_column_names() 
         "bad.csv has no column that identifies a student",
     );
 }
+
+#[test]
+fn a_written_function_is_marked_by_the_tests_of_the_page() {
+    let gate = "function gate([x, y, t], gap, [a, b], limit) {\n  const chi2 = (x * x + y * y) / (gap * a * a) + t * t / (gap * b * b);\n  return {chi2, accepted: chi2 <= limit};\n}\n";
+    let written = |code: &str| {
+        let (function, time) = ("gate", "2026-11-27T02:06:47.000Z");
+        let mut file = file("Ann", &[]);
+        let digest = Sha256::digest(
+            json!(["slam2d-answers/1", "Ann", [function, code, 2, time]]).to_string(),
+        );
+        let digest: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+        file["code"] = json!([{"function": function, "code": code, "attempts": 2, "time": time}]);
+        file["digest"] = json!(digest);
+        file
+    };
+    let sheet = marks(&written(gate));
+    assert_eq!(sheet["intact"], true);
+    assert_eq!(
+        (&sheet["right"], &sheet["exercises"]),
+        (&json!(1), &json!(12))
+    );
+    let marked = &sheet["answers"][0];
+    assert_eq!(
+        (&marked["exercise"], &marked["mark"]),
+        (&json!("code.gate"), &json!("right"))
+    );
+    let wrong = written(&gate.replace("<= limit", "< limit"));
+    let marked = &marks(&wrong)["answers"][0];
+    assert_eq!(marked["mark"], "wrong");
+    assert_eq!(marked["result"], "6 tests");
+    let note = marked["note"].as_str().unwrap();
+    assert!(
+        note.starts_with("At the limit: expected χ² 4.000 and accepted true"),
+        "{note}"
+    );
+    // The gradebook has a column for each function then.
+    let (_folder, path) = saved(&wrong.to_string());
+    let output = slam2d(&["mark", path.to_str().unwrap(), "--csv"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let (head, row) = (lines.next().unwrap(), lines.next().unwrap());
+    let column = head.iter().position(|name| *name == "code.gate").unwrap();
+    assert_eq!((row[column], row[row.len() - 1]), ("0", "0"));
+}

@@ -18,6 +18,11 @@ use crate::errors::ArrayError;
 
 /// A Python value as an array of float64 of any shape.
 fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    if value.hasattr("mask")? && value.hasattr("filled")? {
+        return Err(ArrayError::new_err(format!(
+            "{name} has a mask, which would be lost: pass {name}.filled(numpy.nan) for ranges, and points without the masked rows"
+        )));
+    }
     let py = value.py();
     let options = PyDict::new(py);
     options.set_item("dtype", "float64")?;

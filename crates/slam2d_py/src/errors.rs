@@ -78,6 +78,20 @@ pub fn within(argument: &str, value: f64, low: f64, high: f64, unit: &str) -> Py
     )))
 }
 
+/// The largest count that an argument may be.
+const MOST: f64 = 1e9;
+
+/// A whole number that is not negative, or `ChoiceError`. It comes as a float, because an integer of Python that has no place
+/// in one of Rust raises `OverflowError`, which is no `SlamError`.
+pub fn count(argument: &str, value: f64) -> PyResult<usize> {
+    if value.fract() == 0.0 && (0.0..=MOST).contains(&value) {
+        return Ok(value as usize);
+    }
+    Err(ChoiceError::new_err(format!(
+        "{argument} has to be a whole number from 0 to {MOST}, not {value}"
+    )))
+}
+
 /// The `OSError` for a file error of the system.
 pub fn os_error(path: &Path, error: &io::Error) -> PyErr {
     let name = path.display().to_string();

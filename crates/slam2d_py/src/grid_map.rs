@@ -42,7 +42,7 @@ impl GridMap {
 #[pymethods]
 impl GridMap {
     #[new]
-    #[pyo3(signature = (log_odds, *, origin=(0.0, 0.0), cell))]
+    #[pyo3(signature = (log_odds, *, origin=(0.0, 0.0), cell), text_signature = "(log_odds, *, origin=(0.0, 0.0), cell)")]
     fn from_parts(
         log_odds: PyReadonlyArray2<'_, f64>,
         origin: (f64, f64),

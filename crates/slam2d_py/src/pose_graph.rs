@@ -20,7 +20,7 @@ use robot_io::graph_file::{GraphEdge, GraphFile, GraphNode};
 
 use crate::arrays;
 use crate::errors::{
-    ArrayError, ChoiceError, GraphError, OptimizeError, no_choice, os_error, within,
+    ArrayError, ChoiceError, GraphError, OptimizeError, count, no_choice, os_error, within,
 };
 use crate::restored::{self, Reduced};
 
@@ -295,7 +295,8 @@ impl PoseGraph {
     /// tolerance: it stops if less than this share of χ² is estimated to be left to win.
     ///
     /// Raises OptimizeError if the equations cannot be solved; the poses stay.
-    #[pyo3(signature = (*, method="gn", start="auto", huber=None, dcs=None, max_iterations=100, tolerance=1e-8))]
+    #[pyo3(signature = (*, method="gn", start="auto", huber=None, dcs=None, max_iterations=100.0, tolerance=1e-8),
+        text_signature = "($self, *, method='gn', start='auto', huber=None, dcs=None, max_iterations=100, tolerance=1e-8)")]
     // The keywords of Python.
     #[expect(clippy::too_many_arguments)]
     fn optimize(
@@ -305,7 +306,7 @@ impl PoseGraph {
         start: &str,
         huber: Option<f64>,
         dcs: Option<f64>,
-        max_iterations: usize,
+        max_iterations: f64,
         tolerance: f64,
     ) -> PyResult<OptimizeReport> {
         let found = STARTS.iter().find(|(name, _)| *name == start);
@@ -332,7 +333,7 @@ impl PoseGraph {
             },
             jacobians: JacobianModel::Exact,
             kernel,
-            max_iterations,
+            max_iterations: count("max_iterations", max_iterations)?,
             step_tolerance: STEP_TOLERANCE,
             decrease_tolerance: within("tolerance", tolerance, 0.0, 1.0, "")?,
             ..Settings::default()

@@ -1,7 +1,9 @@
 //! Scan registration: ICP and NDT.
 
+use std::time::{Duration, Instant};
+
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
-use ch16_slam2d::icp::{IcpConfig, IcpVariant, StopReason};
+use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace, StopReason};
 use ch16_slam2d::matching::{NdtMatcherConfig, TrustConfig, match_information};
 use ch16_slam2d::ndt::{NdtConfig, NdtMap, NdtStop, ndt_align};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
@@ -9,7 +11,7 @@ use pr_geom::SE2;
 use pyo3::prelude::*;
 
 use crate::arrays;
-use crate::errors::{ChoiceError, no_choice, within};
+use crate::errors::{ChoiceError, count, no_choice, within};
 use crate::restored::{self, Reduced};
 
 /// Width of a map cell as a share of the largest distance: a query then sees a handful of cells.
@@ -72,6 +74,9 @@ impl IcpResult {
     }
 }
 
+/// Longest time without listening to Ctrl-C.
+const LISTEN_EVERY: Duration = Duration::from_millis(50);
+
 /// The variants of ICP by their names.
 const VARIANTS: [(&str, IcpVariant); 2] = [
     ("point-to-plane", IcpVariant::PointToPlane),
@@ -99,8 +104,10 @@ const VARIANTS: [(&str, IcpVariant); 2] = [
 ///
 /// Raises ArrayError for a wrong shape or a number that is not finite, ChoiceError for an argument out of its range.
 #[pyfunction]
-#[pyo3(signature = (source, target, *, init=None, variant="point-to-plane", max_distance=0.5, max_iterations=25,
-    tolerance=1e-4, min_pairs=8, trim=0.0, huber_width=f64::INFINITY, normal_radius=0.3, sigma=0.05, covariance_scale=12.0))]
+#[pyo3(signature = (source, target, *, init=None, variant="point-to-plane", max_distance=0.5, max_iterations=25.0,
+    tolerance=1e-4, min_pairs=8.0, trim=0.0, huber_width=f64::INFINITY, normal_radius=0.3, sigma=0.05, covariance_scale=12.0),
+    text_signature = "(source, target, *, init=None, variant='point-to-plane', max_distance=0.5, max_iterations=25, \
+        tolerance=1e-4, min_pairs=8, trim=0.0, huber_width=1e999, normal_radius=0.3, sigma=0.05, covariance_scale=12.0)")]
 // Keyword arguments of Python.
 #[expect(clippy::too_many_arguments)]
 pub fn icp(
@@ -110,9 +117,9 @@ pub fn icp(
     init: Option<&Bound<'_, PyAny>>,
     variant: &str,
     max_distance: f64,
-    max_iterations: usize,
+    max_iterations: f64,
     tolerance: f64,
-    min_pairs: usize,
+    min_pairs: f64,
     trim: f64,
     huber_width: f64,
     normal_radius: f64,
@@ -126,10 +133,10 @@ pub fn icp(
     let variant = found.ok_or_else(|| no_choice("variant", variant, &VARIANTS.map(|v| v.0)))?;
     let config = IcpConfig {
         variant: variant.1,
-        max_iterations,
+        max_iterations: count("max_iterations", max_iterations)?,
         tau_m: within("max_distance", max_distance, 1e-6, 1e6, " m")?,
         tolerance: within("tolerance", tolerance, 0.0, 1e6, "")?,
-        min_pairs,
+        min_pairs: count("min_pairs", min_pairs)?,
         trim: within("trim", trim, 0.0, 1.0, "")?,
         huber_width_m: within("huber_width", huber_width, 1e-9, f64::INFINITY, " m")?,
     };
@@ -144,8 +151,9 @@ pub fn icp(
             target.estimate_normals(normal_radius);
         }
         let map = DenseMap::from_cloud(&target, CELL_PER_DISTANCE * config.tau_m, usize::MAX);
-        (ch16_slam2d::icp::icp(&source, &map, init, &config), map)
-    });
+        let found = interruptible(&source, &map, init, &config)?;
+        Ok::<_, PyErr>((found, map))
+    })?;
     let information = match_information(&found.pairs, &found.pose, &trust);
     let covariance = information.try_inverse();
     let pairs = found.pairs.iter().flat_map(|pair| {
@@ -174,6 +182,36 @@ pub fn icp(
             StopReason::NotFinite => "not-finite",
         }
         .to_owned(),
+    })
+}
+
+/// Runs ICP, and hears Ctrl-C meanwhile.
+fn interruptible(
+    source: &PointCloud,
+    map: &DenseMap,
+    init: SE2,
+    config: &IcpConfig,
+) -> PyResult<ch16_slam2d::icp::IcpResult> {
+    let mut workspace = IcpWorkspace::new();
+    let mut icp = Icp::new(source, map, init, config, &mut workspace);
+    let mut listened = Instant::now();
+    let (last, stop) = loop {
+        let step = icp.step();
+        if let Some(stop) = step.stop {
+            break (step.trace, stop);
+        }
+        if listened.elapsed() > LISTEN_EVERY {
+            Python::attach(|py| py.check_signals())?;
+            listened = Instant::now();
+        }
+    };
+    Ok(ch16_slam2d::icp::IcpResult {
+        pose: last.pose,
+        rmse_m: last.rmse_m,
+        inliers: last.pairs,
+        trace: workspace.trace().to_vec(),
+        pairs: workspace.pairs(map).collect(),
+        stop,
     })
 }
 
@@ -250,14 +288,15 @@ impl NdtResult {
 impl Ndt {
     #[new]
     #[pyo3(signature = (points, *, cell=NdtMatcherConfig::default().cell_m,
-        min_points=NdtMatcherConfig::default().min_points),
+        min_points=NdtMatcherConfig::default().min_points as f64),
         text_signature = "(points, *, cell=0.6, min_points=4)")]
     fn new(
         py: Python<'_>,
         points: &Bound<'_, PyAny>,
         cell: f64,
-        min_points: usize,
+        min_points: f64,
     ) -> PyResult<Self> {
+        let min_points = count("min_points", min_points)?;
         let points = arrays::cloud("points", points)?;
         let cell_m = within("cell", cell, 1e-6, 1e6, " m")?;
         if min_points < 2 {
@@ -274,19 +313,19 @@ impl Ndt {
     ///
     /// source: points, shape (n, 2), m.
     /// init: initial guess of map_from_source, shape (3,); the identity without it.
-    #[pyo3(signature = (source, *, init=None, max_iterations=NdtConfig::default().max_iterations),
+    #[pyo3(signature = (source, *, init=None, max_iterations=NdtConfig::default().max_iterations as f64),
         text_signature = "($self, source, *, init=None, max_iterations=25)")]
     fn align(
         &self,
         py: Python<'_>,
         source: &Bound<'_, PyAny>,
         init: Option<&Bound<'_, PyAny>>,
-        max_iterations: usize,
+        max_iterations: f64,
     ) -> PyResult<NdtResult> {
         let source = arrays::cloud("source", source)?;
         let init = arrays::pose_or("init", init, SE2::identity())?;
         let config = NdtConfig {
-            max_iterations,
+            max_iterations: count("max_iterations", max_iterations)?,
             ..NdtConfig::default()
         };
         let found = py.detach(|| ndt_align(&source, &self.map, init, &config));

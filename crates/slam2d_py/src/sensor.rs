@@ -51,7 +51,9 @@ impl Sensor {
 impl Sensor {
     #[new]
     #[pyo3(signature = (*, first_angle_rad, angle_step_rad, range_min_m=0.0, range_max_m=f64::INFINITY,
-        body_from_sensor=None, beam_interval_s=0.0))]
+        body_from_sensor=None, beam_interval_s=0.0),
+        text_signature = "(*, first_angle_rad, angle_step_rad, range_min_m=0.0, range_max_m=1e999, body_from_sensor=None, \
+            beam_interval_s=0.0)")]
     fn new(
         first_angle_rad: f64,
         angle_step_rad: f64,

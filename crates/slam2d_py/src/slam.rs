@@ -298,7 +298,8 @@ impl Slam {
 
     /// Takes the next scan: predicts, registers, takes a keyframe and closes loops if they are due.
     ///
-    /// ranges: shape (beams,), m; 0, NaN and infinite ones are no points.
+    /// ranges: shape (beams,), m; 0, NaN and infinite ones are no points. Their number may change, and without a point
+    ///     odometry or velocity alone moves the pose.
     /// odometry: motion of the body since the last scan, shape (3,), m, m, rad; `between` computes it from two
     ///     poses. Without it the prediction is constant velocity.
     /// stamp: time of the scan, s; without it its number.

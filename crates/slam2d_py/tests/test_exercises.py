@@ -1,6 +1,7 @@
 """The exercises in Python: solutions pass, untouched stubs fail, and printing earns nothing."""
 
 import json
+import re
 import shutil
 
 import pytest
@@ -60,3 +61,15 @@ def test_the_next_one_is_that_of_the_plan_and_what_waits_is_passed_over(capsys, 
         exercises.show(states, found, plan)
         assert f"Next: {following}.py" in capsys.readouterr().out
     assert exercises.PLANS["lab"][1] == "trimmed_icp" and set(exercises.PLANS["lab"]) == set(exercises.HINTS)
+
+
+@pytest.mark.parametrize("workflow", ["classroom-ci.yml", "classroom-python-ci.yml"])
+def test_the_workflows_give_a_point_for_each_exercise(workflow):
+    text = (ROOT / "docs/teaching" / workflow).read_text("utf-8")
+    names = list(exercises.HINTS)
+    assert sorted(re.findall(r"- id: (\w+)", text)) == sorted(names)
+    assert sorted(re.search(r"runners: (.*)", text)[1].split(",")) == sorted(names)
+    for name in names:
+        command = rf'.name == "{name}") | .state == "passes"'
+        assert command in text, name
+        assert f"{name.upper()}_RESULTS: ${{{{ steps.{name}.outputs.result }}}}" in text, name

@@ -23,6 +23,7 @@ const SCHEMAS: [(&str, &[&str]); 3] = [
             ".github/workflows/checks.yml",
             ".github/workflows/release.yml",
             "docs/teaching/classroom-ci.yml",
+            "docs/teaching/classroom-python-ci.yml",
         ],
     ),
     (

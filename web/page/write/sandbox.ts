@@ -6,7 +6,7 @@
 /** The result of one call, or its error; `line` is that of the reader's code. */
 export type Called = { result: unknown } | { error: string; line: number | undefined };
 
-/** Why nothing ran. */
+/** Why nothing ran, or why the code was ended. */
 export class NotRun extends Error {
   constructor(message: string, readonly line?: number) {
     super(message);
@@ -15,45 +15,54 @@ export class NotRun extends Error {
 
 /** Longest time without an answer, ms. */
 const PATIENCE_MS = 1000;
-/** Longest time until the frame has started, ms: a strict policy of the page stops its script. */
+/** Longest time until the frame or the program has started, ms: a strict policy of the page stops its script. */
 const START_MS = 5000;
-const POLICY = "default-src 'none'; script-src 'unsafe-inline' blob:; worker-src blob:";
+const POLICY = "default-src 'none'; script-src 'unsafe-inline' blob: 'wasm-unsafe-eval'; worker-src blob:";
 
 /** Lines before the reader's first line in the text of the worker. */
 const LINES_BEFORE = 1;
 
+/** To the worker: calls of the function, the program of the widgets, or an order for it. */
+export type Request = { calls: unknown[][] } | { program: ArrayBuffer } | { order: string };
+
 /** The text of the worker. It takes its messages before the reader's code runs, which may replace globals. */
-function workerText(code: string, name: string): string {
+function workerText(code: string, name: string, core: string): string {
   const before = `'use strict'; const __slam = ((post, on) => ({ post, on }))(self.postMessage.bind(self), self.addEventListener.bind(self));`;
   const after = `
-;__slam.on('message', ({ data }) => {
+;${core}
+;(() => {
   const name = ${JSON.stringify(name)};
   const written = typeof ${name} === 'function' ? ${name} : undefined;
-  if (written === undefined) { __slam.post({ missing: name }); return; }
-  for (const given of data) {
-    try { __slam.post({ result: written(...given) }); }
+  const attempt = (run) => {
+    try { __slam.post({ result: run() }); }
     catch (error) { __slam.post({ error: String(error), stack: String(error && error.stack) }); }
-  }
-});
-__slam.post({ ready: true });`;
+  };
+  let execute;
+  __slam.on('message', async ({ data }) => {
+    if (written === undefined) { __slam.post({ missing: name }); return; }
+    for (const given of data.calls ?? []) attempt(() => written(...given));
+    if (data.program !== undefined) execute = await __slamCore.start(data.program, name, written);
+    if (data.order !== undefined) attempt(() => execute(data.order, () => __slam.post({ working: true })));
+    __slam.post({ done: true });
+  });
+  __slam.post({ ready: true });
+})();`;
   return `${before}\n${code}\n${after}`;
 }
 
 /** The page of the frame: it starts the worker and passes messages on. Without the frame the worker ends. */
 const FRAME = `<!doctype html><meta http-equiv="Content-Security-Policy" content="${POLICY}"><script>
 const tell = (message) => parent.postMessage(message, '*');
-addEventListener('message', ({ data: { text, calls } }) => {
-  let worker;
+let worker;
+addEventListener('message', ({ data: { text, request } }) => {
+  if (text === undefined) { worker.postMessage(request); return; }
   try { worker = new Worker(URL.createObjectURL(new Blob([text], { type: 'text/javascript' }))); }
   catch { tell({ refused: true }); return; }
   worker.onerror = (event) => {
     event.preventDefault();
     tell(event.message ? { broken: event.message, line: event.lineno } : { refused: true });
   };
-  worker.onmessage = ({ data }) => {
-    if (data.ready) worker.postMessage(calls);
-    tell(data);
-  };
+  worker.onmessage = ({ data }) => tell(data);
 });
 tell({ started: true });
 </script>`;
@@ -62,6 +71,8 @@ interface Told {
   started?: boolean;
   refused?: boolean;
   ready?: boolean;
+  working?: boolean;
+  done?: boolean;
   missing?: string;
   broken?: string;
   line?: number;
@@ -70,54 +81,127 @@ interface Told {
   stack?: string;
 }
 
+/** A request under way. */
+interface Pending {
+  answers: Called[];
+  patience_ms: number;
+  resolve(answers: Called[]): void;
+  reject(why: NotRun): void;
+}
+
+/** A reader's function in its worker. */
+export class Sandbox {
+  readonly #frame = document.createElement('iframe');
+  readonly #code: string;
+  #pending: Pending | undefined;
+  #timer: ReturnType<typeof setTimeout> | undefined;
+  readonly #hear = ({ source, data }: MessageEvent<Told>): void => {
+    if (source === this.#frame.contentWindow) this.#heard(data);
+  };
+
+  private constructor(code: string) {
+    this.#code = code;
+  }
+
+  /**
+   * Starts the worker; with the script of the core it takes a program and orders, too.
+   * @throws {NotRun} with a sentence, if it cannot be compiled, gives no answer in time, or may not run here.
+   */
+  static async start(code: string, name: string, core = ''): Promise<Sandbox> {
+    const sandbox = new Sandbox(code);
+    const frame = sandbox.#frame;
+    frame.hidden = true;
+    frame.title = 'Your code runs in this frame';
+    frame.setAttribute('sandbox', 'allow-scripts');
+    frame.srcdoc = FRAME;
+    addEventListener('message', sandbox.#hear);
+    const started = sandbox.#wait(START_MS);
+    document.body.append(frame);
+    await started;
+    const ready = sandbox.#wait(PATIENCE_MS);
+    frame.contentWindow?.postMessage({ text: workerText(code, name, core) }, '*');
+    await ready;
+    return sandbox;
+  }
+
+  /**
+   * The answers to a request; one after the other, never two at a time.
+   * @throws {NotRun} with a sentence; the worker is then ended.
+   */
+  ask(request: Request): Promise<Called[]> {
+    const answered = this.#wait('program' in request ? START_MS : PATIENCE_MS);
+    this.#frame.contentWindow?.postMessage({ request }, '*');
+    return answered;
+  }
+
+  /** Ends the worker. */
+  end(): void {
+    clearTimeout(this.#timer);
+    removeEventListener('message', this.#hear);
+    this.#frame.remove();
+    this.#pending?.reject(new NotRun('Your code was ended.'));
+    this.#pending = undefined;
+  }
+
+  #wait(patience_ms: number): Promise<Called[]> {
+    return new Promise((resolve, reject) => {
+      this.#pending = { answers: [], patience_ms, resolve, reject };
+      this.#wind();
+    });
+  }
+
+  /** Ends the worker if nothing is heard for too long. */
+  #wind(): void {
+    const { patience_ms = PATIENCE_MS } = this.#pending ?? {};
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => this.#fail(patience_ms === START_MS ? refused() : slow()), patience_ms);
+  }
+
+  #fail(why: NotRun): void {
+    this.#pending?.reject(why);
+    this.#pending = undefined;
+    this.end();
+  }
+
+  #heard(told: Told): void {
+    const pending = this.#pending;
+    if (pending === undefined) return;
+    this.#wind();
+    if (told.refused === true) {
+      this.#fail(refused());
+    } else if (told.missing !== undefined) {
+      this.#fail(new NotRun(`There is no function ${told.missing}. Keep its name.`));
+    } else if (told.broken !== undefined) {
+      this.#fail(new NotRun(told.broken.replace(/^Uncaught /, ''), lineOf(told.line, this.#code)));
+    } else if (told.done === true || told.ready === true || told.started === true) {
+      clearTimeout(this.#timer);
+      this.#pending = undefined;
+      pending.resolve(pending.answers);
+    } else if (told.working !== true) {
+      pending.answers.push(told.error === undefined ? { result: told.result } : { error: told.error, line: lineIn(told.stack ?? '', this.#code) });
+    }
+  }
+}
+
 /**
  * Calls the function `name` of the code once with each list of arguments.
- * @throws {NotRun} with a sentence, if it cannot be compiled, gives no answer in time, or may not run here.
+ * @throws {NotRun} as {@link Sandbox}.
  */
 export async function call(code: string, name: string, calls: unknown[][]): Promise<Called[]> {
-  const frame = document.createElement('iframe');
-  frame.hidden = true;
-  frame.title = 'Your code runs in this frame';
-  frame.setAttribute('sandbox', 'allow-scripts');
-  frame.srcdoc = FRAME;
-  const answers: Called[] = [];
-  let timer: ReturnType<typeof setTimeout> | undefined;
-  let hear: ((event: MessageEvent<Told>) => void) | undefined;
+  const sandbox = await Sandbox.start(code, name);
   try {
-    await new Promise<void>((resolve, reject) => {
-      const refused = new NotRun('The policy of this page does not let code run here. Open the chapter’s own page.');
-      const slow = new NotRun(`There was no answer for ${PATIENCE_MS / 1000} s, and your code was ended. Is there a loop without end?`);
-      const wait = (time_ms: number, why: NotRun): void => {
-        clearTimeout(timer);
-        timer = setTimeout(() => reject(why), time_ms);
-      };
-      hear = ({ source, data }) => {
-        if (source !== frame.contentWindow) return;
-        wait(PATIENCE_MS, slow);
-        if (data.started === true) {
-          frame.contentWindow?.postMessage({ text: workerText(code, name), calls }, '*');
-        } else if (data.refused === true) {
-          reject(refused);
-        } else if (data.missing !== undefined) {
-          reject(new NotRun(`There is no function ${data.missing}. Keep its name.`));
-        } else if (data.broken !== undefined) {
-          reject(new NotRun(data.broken.replace(/^Uncaught /, ''), lineOf(data.line, code)));
-        } else if (data.ready !== true) {
-          answers.push(data.error === undefined ? { result: data.result } : { error: data.error, line: lineIn(data.stack ?? '', code) });
-          if (answers.length === calls.length) resolve();
-        }
-      };
-      addEventListener('message', hear);
-      wait(START_MS, refused);
-      document.body.append(frame);
-    });
+    return await sandbox.ask({ calls });
   } finally {
-    clearTimeout(timer);
-    if (hear !== undefined) removeEventListener('message', hear);
-    // It ends the worker, too.
-    frame.remove();
+    sandbox.end();
   }
-  return answers;
+}
+
+function refused(): NotRun {
+  return new NotRun('The policy of this page does not let code run here. Open the chapter’s own page.');
+}
+
+function slow(): NotRun {
+  return new NotRun(`There was no answer for ${PATIENCE_MS / 1000} s, and your code was ended. Is there a loop without end?`);
 }
 
 /** A line of the worker's text as a line of the code. */
@@ -128,6 +212,11 @@ function lineOf(line: number | undefined, code: string): number | undefined {
 
 /** The first place of a stack in the code. */
 function lineIn(stack: string, code: string): number | undefined {
-  const place = /blob:[^\s)]*?:(\d+):\d+/.exec(stack)?.[1];
-  return place === undefined ? undefined : lineOf(Number(place), code);
+  const lines = code.split('\n').length;
+  for (const [, line] of stack.matchAll(/blob:[^\s)]*?:(\d+):\d+/g)) {
+    const own = Number(line) - LINES_BEFORE;
+    // After the reader's code stands the core.
+    if (own >= 1 && own <= lines) return own;
+  }
+  return undefined;
 }

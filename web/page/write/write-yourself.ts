@@ -1,11 +1,15 @@
 // "Write it yourself" under a listing: an editor, its tests, and help. Loaded when it is opened.
 //
-// No address carries code: the reader types it, and presses Run. It is kept in the browser only while the box is on.
+// No address carries code: the reader types it, and presses Run. It is kept in the browser only while the box is on. The
+// document hears of each run by the event `slam-code`, for the file of answers.
 
-import { edit } from './editor';
+import { edit, type Editor } from './editor';
+import { Driving, type Seat, seatsOf } from './driving';
 import { EXERCISES, type Exercise } from './exercises';
 import { call, NotRun } from './sandbox';
 
+/** What the reader has to know first. */
+const WHERE = 'In JavaScript, with tests. Your code runs in this browser only, without access to the page or the network.';
 /** Start of the keys in the browser's storage. */
 const STORAGE = 'slam2d-code/1:';
 
@@ -14,6 +18,7 @@ export function open(details: HTMLElement): void {
   const exercise = EXERCISES.get(details.dataset['write'] ?? '');
   if (exercise === undefined || details.querySelector('.write-editor') !== null) return;
   const kept = stored(exercise);
+  const where = sentence(WHERE);
   const place = element('div', 'write-editor');
   const controls = element('p', 'write-controls');
   const results = element('div', 'write-results');
@@ -23,7 +28,8 @@ export function open(details: HTMLElement): void {
   box.checked = kept !== undefined;
   const label = element('label');
   label.append(box, ' Keep my code in this browser');
-  details.append(place, controls, results);
+  const driving = element('p', 'write-controls');
+  details.append(where, place, controls, driving, results);
   const keep = (text: string): void => {
     if (box.checked && !store(exercise, text)) {
       box.checked = false;
@@ -39,6 +45,7 @@ export function open(details: HTMLElement): void {
     run.disabled = true;
     editor.mark();
     results.replaceChildren(sentence('Your function is being called …'));
+    document.dispatchEvent(new CustomEvent('slam-code', { detail: { name: exercise.name, code: editor.text() } }));
     void test(editor.text(), exercise).then(({ sentences, line }) => {
       results.replaceChildren(...sentences);
       if (line !== undefined) editor.mark(line.number, line.message);
@@ -58,6 +65,58 @@ export function open(details: HTMLElement): void {
     help.textContent = shownHelp < exercise.help.length ? `Help (${shownHelp + 1} of 4)` : 'Help (4 of 4): the solution';
   });
   controls.append(run, ' ', help, ' ', label);
+  for (const seat of seatsOf(exercise.name)) driving.append(driveButton(seat, exercise, editor, results), ' ');
+}
+
+/** A button that lets the code drive a widget, and gives the widget back to ours. */
+function driveButton(seat: Seat, exercise: Exercise, editor: Editor, results: HTMLElement): HTMLButtonElement {
+  let driving: Driving | undefined;
+  const idle = `Drive ${seat.what} with it`;
+  const show = (text: string, ...more: (Node | string)[]): void => {
+    const said = sentence(text);
+    said.append(...more);
+    results.replaceChildren(said);
+  };
+  const ended = (): void => {
+    driving = undefined;
+    made.textContent = idle;
+  };
+  const failed = (why: NotRun): void => {
+    ended();
+    if (why.line !== undefined) editor.mark(why.line, why.message);
+    show(`✗ ${why.line === undefined ? '' : `Line ${why.line}: `}${why.message} Ours drives again.`);
+  };
+  const start = async (): Promise<void> => {
+    editor.mark();
+    show('Your function takes its seat …');
+    driving = await Driving.start(editor.text(), exercise.name, seat, (why) => failed(why));
+    made.textContent = `Let ours drive ${seat.what} again`;
+    const look = button('Show it', () => {
+      seat.widget.scrollIntoView({ block: 'center' });
+      seat.widget.focus({ preventScroll: true });
+    });
+    show(`Your ${exercise.name}, as it is now, drives ${seat.what}: each change there calls it again. `, look);
+  };
+  const made = button(idle, () => {
+    if (driving !== undefined) {
+      driving.end();
+      ended();
+      show('Ours drives again.');
+      return;
+    }
+    made.disabled = true;
+    start().catch((why: unknown) => {
+      if (!(why instanceof NotRun)) throw why;
+      failed(why);
+    }).finally(() => (made.disabled = false));
+  });
+  // Another function took the seat.
+  seat.widget.addEventListener('slam-driver', () => {
+    if (driving === undefined || seat.widget.driver === driving) return;
+    driving.end();
+    ended();
+  });
+  return made;
 }
 
 interface Tested {

@@ -1,6 +1,7 @@
-//! The worker of w16.10, which maps a robot's log piece by piece in the background of the page.
+//! The worker of w16.10, which maps a robot's log piece by piece in the background of the page, and the core in the worker
+//! of a reader's function.
 //!
-//! The module has no egui and is fetched when a user opens a log. [`engine`] reads the file on demand, runs the
+//! The module has no egui and is fetched when a user opens a log, or lets a function drive a widget. [`engine`] reads the file on demand, runs the
 //! estimator and executes orders; changes go to the widget as [`update`]s of numbers and text. [`given`] is the user's
 //! input. [`links`] are the loops with evidence and verdict, [`editing`] builds a graph from them, [`picture`] paints
 //! the map, [`grade`] evaluates against a reference, [`localization`] localizes another log on the map, [`files`] writes
@@ -22,3 +23,5 @@ pub mod update;
 
 #[cfg(target_arch = "wasm32")]
 mod browser;
+#[cfg(target_arch = "wasm32")]
+mod reader_code;

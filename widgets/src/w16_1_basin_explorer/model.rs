@@ -24,10 +24,12 @@ mod picture;
 mod settings;
 mod tables;
 mod texts;
+mod your_code;
 
 use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart, OffsetAxis};
 use ch16_slam2d::icp::{IcpTrace, IcpWorkspace, Pair, correspondences};
 use widget_kit::disclosure::{Disclosure, Opening};
+use widget_kit::host_messages::Delivery;
 use widget_kit::model::{
     Activity, Assessment, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark,
     press_preset,
@@ -45,6 +47,7 @@ use basins::Basins;
 use edge::Edges;
 use paths::Paths;
 use settings::{config, other_variant, start, variant};
+use your_code::YourCode;
 
 /// Names of the panels.
 pub mod panel {
@@ -89,6 +92,8 @@ pub struct BasinExplorer {
     /// The edge of the basin along pure rotations, for the question about it.
     edges: Edges,
     preview: Preview,
+    /// The reader's function, if it drives.
+    yours: Option<YourCode>,
     /// The axes of the sweeps from the first drag on, until a value is set otherwise: a sweep stays where the reader
     /// lets it go.
     held_frame: Option<[Axis; 2]>,
@@ -124,6 +129,7 @@ impl Default for BasinExplorer {
             paths: Paths::new(&values),
             edges: Edges::new(&values),
             preview: Preview::Hidden,
+            yours: None,
             held_frame: None,
             is_held: false,
             settles_in_s: None,
@@ -158,6 +164,7 @@ impl BasinExplorer {
         self.run.outcome = run(variant);
         self.run.trace.clear();
         self.run.trace.extend_from_slice(self.workspace.trace());
+        self.order_registration();
     }
 
     /// Last iteration of the run.
@@ -336,7 +343,10 @@ impl Model for BasinExplorer {
         if !self.shows_maps() {
             return Activity::Idle;
         }
-        self.basins.work(&self.scene, &mut self.workspace)
+        match self.basins.work(&self.scene, &mut self.workspace) {
+            Activity::Idle => self.order_cells(),
+            busy => busy,
+        }
     }
 
     fn finish_work(&mut self) -> Activity {
@@ -387,6 +397,15 @@ impl Model for BasinExplorer {
 
     fn shown_tables(&self) -> Vec<Table> {
         tables::shown(self)
+    }
+
+    fn receive(&mut self, delivery: &Delivery<'_>) {
+        self.take_delivery(delivery);
+    }
+
+    fn take_requests(&mut self) -> Vec<String> {
+        let orders = self.yours.as_mut().map(|yours| yours.orders.take());
+        orders.unwrap_or_default()
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {

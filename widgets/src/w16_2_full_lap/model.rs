@@ -37,6 +37,7 @@ mod tables;
 mod texts;
 mod track;
 mod transition;
+mod your_code;
 
 use ch16_lab::lap::{LapRecord, LoopAttempt, NewestLap, NewestStep, OwnLoopError};
 use pr_sim::{Course, Sketch};
@@ -54,6 +55,7 @@ use widget_kit::spec::PLAY;
 use widget_kit::spec::WidgetSpec;
 use widget_kit::values::{Changed, Values};
 
+use crate::reader_orders::Orders;
 use crate::w16_2_full_lap::spec::{
     EDIT_FLAT, EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WIPE, WORLD,
 };
@@ -62,7 +64,6 @@ use moment::Moment;
 use own::Own;
 use pick::{Part, Step};
 use runs::{Results, Runs};
-use settings::LapSettings;
 use transition::Transition;
 
 pub use settings::lap_of_link;
@@ -86,6 +87,8 @@ pub struct FullLap {
     own: Own,
     floor_plan: FloorPlan,
     hovered: Option<Part>,
+    /// Orders to the reader's function, if it drives.
+    yours: Option<Orders>,
 }
 
 impl Default for FullLap {
@@ -96,7 +99,7 @@ impl Default for FullLap {
     fn default() -> Self {
         let values = Values::defaults(SPEC.params);
         let mut laps = NewestLap::new();
-        let config = LapSettings::read(&values).config(None);
+        let config = settings::read(&values).config(None);
         laps.ask(config.expect("the Apartment can be driven"));
         let runs = Runs::new(*laps.finish().expect("a lap was asked for"));
         Self {
@@ -110,6 +113,7 @@ impl Default for FullLap {
             own: Own::default(),
             floor_plan: FloorPlan::new(Sketch::from_course(&Course::apartment())),
             hovered: None,
+            yours: None,
         }
     }
 }
@@ -166,14 +170,20 @@ impl FullLap {
     /// Requests the lap of the settings, unless it is on screen; a custom flat that cannot be driven requests
     /// none.
     fn recompute(&mut self) {
-        if let Some(config) = LapSettings::read(&self.values).config(self.own_course()) {
-            self.laps.ask(config);
+        let Some(config) = settings::read(&self.values).config(self.own_course()) else {
+            return;
+        };
+        let task = self.task();
+        match &mut self.yours {
+            Some(orders) => orders.want(task),
+            None => self.laps.ask(config),
         }
     }
 
     /// Shows a finished lap and executes what waited for it.
     fn show(&mut self, record: LapRecord) {
         self.runs = Runs::new(record);
+        self.runs.driver = self.yours.as_ref().map(|orders| orders.function.name());
         self.hovered = None;
         if self.values.get(&TICK) > self.last() && !self.laps.is_running() {
             self.go_to(self.runs.ticks());
@@ -473,6 +483,8 @@ impl Model for FullLap {
     fn receive(&mut self, delivery: &Delivery<'_>) {
         if delivery.kind == "text-file" {
             self.open_flat(delivery.text, delivery.bytes);
+        } else {
+            self.take_from_worker(delivery);
         }
     }
 
@@ -481,7 +493,9 @@ impl Model for FullLap {
     }
 
     fn take_requests(&mut self) -> Vec<String> {
-        core::mem::take(&mut self.floor_plan.orders)
+        let mut orders = core::mem::take(&mut self.floor_plan.orders);
+        orders.extend(self.yours.iter_mut().flat_map(Orders::take));
+        orders
     }
 
     fn set_motion(&mut self, motion: Motion) {

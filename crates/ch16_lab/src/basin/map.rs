@@ -169,6 +169,24 @@ impl BasinMap {
         self.is_complete()
     }
 
+    /// The next cells in the order of filling, up to `count`, by column and row; they stay empty.
+    #[must_use]
+    pub fn ahead(&self, count: usize) -> Vec<[usize; 2]> {
+        let mut map = self.clone();
+        let next = |_| {
+            let (column, row) = map.next_cell()?;
+            map.put([column, row], Minimum::Other);
+            Some([column, row])
+        };
+        (0..count).map_while(next).collect()
+    }
+
+    /// Fills a cell with a minimum that was computed elsewhere.
+    pub fn put(&mut self, [column, row]: [usize; 2], minimum: Minimum) {
+        self.cells[row * self.axes.columns + column] = Some(minimum);
+        self.skip_filled();
+    }
+
     /// The minimum that a cell's start reaches, `None` before it is computed; [`Minimum::Right`] requires the
     /// right heading, too.
     #[must_use]

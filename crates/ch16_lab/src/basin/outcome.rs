@@ -48,6 +48,15 @@ impl Minimum {
         }
     }
 
+    /// The minimum of that letter.
+    #[must_use]
+    pub fn from_letter(letter: char) -> Option<Self> {
+        let mut all = [BasinPlace::Room, BasinPlace::Fence]
+            .into_iter()
+            .flat_map(Self::at_place);
+        all.find(|minimum| minimum.letter() == letter)
+    }
+
     /// The label for readers.
     #[must_use]
     pub fn name(self) -> &'static str {

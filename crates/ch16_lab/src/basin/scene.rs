@@ -6,7 +6,7 @@ use pr_sim::{Lidar, LidarConfig, Rng, World};
 use super::{BasinOutcome, fence};
 use crate::scenes::{self, MAP_POINTS_PER_CELL, NORMAL_RADIUS_M};
 use ch16_slam2d::cloud::{DenseMap, NearestTable, PointCloud};
-use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace};
+use ch16_slam2d::icp::{Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace, Increment};
 
 /// A registration counts as right if it is closer to the truth than this, m.
 pub const SUCCESS_RADIUS_M: f64 = 0.12;
@@ -229,9 +229,27 @@ impl BasinScene {
     ) -> BasinOutcome {
         let guess = self.guess(start);
         let found = Icp::new(&self.source, &self.map, guess, config, workspace).run();
+        self.judge(&found)
+    }
+
+    /// The same with custom increments.
+    pub fn register_with(
+        &self,
+        start: &BasinStart,
+        config: &IcpConfig,
+        rule: &dyn Increment,
+        workspace: &mut IcpWorkspace,
+    ) -> BasinOutcome {
+        let guess = self.guess(start);
+        let icp = Icp::new(&self.source, &self.map, guess, config, workspace);
+        let found = icp.with_increment(rule).run();
+        self.judge(&found)
+    }
+
+    fn judge(&self, found: &IcpSummary) -> BasinOutcome {
         match self.place {
-            BasinPlace::Room => BasinOutcome::judge(&self.truth, &found),
-            BasinPlace::Fence => BasinOutcome::judge_at_fence(&self.truth, &found),
+            BasinPlace::Room => BasinOutcome::judge(&self.truth, found),
+            BasinPlace::Fence => BasinOutcome::judge_at_fence(&self.truth, found),
         }
     }
 

@@ -3,6 +3,7 @@
 use super::record::LapRecord;
 use super::run::LapRun;
 use super::{LapConfig, LapRunner};
+use ch16_slam2d::chapter::ChapterParts;
 
 /// Runs at most one lap, and keeps at most one request that waits for it: the newest.
 ///
@@ -12,8 +13,23 @@ use super::{LapConfig, LapRunner};
 pub struct NewestLap {
     runner: LapRunner,
     under_way: Option<LapRun>,
-    waiting: Option<LapConfig>,
+    waiting: Option<Request>,
     steps: usize,
+}
+
+/// A requested lap.
+struct Request {
+    config: LapConfig,
+    parts: Option<ChapterParts>,
+}
+
+impl Request {
+    fn start(self, runner: &LapRunner) -> LapRun {
+        match self.parts {
+            Some(parts) => runner.start_with_parts(self.config, parts),
+            None => runner.start(self.config),
+        }
+    }
 }
 
 /// What [`NewestLap::step`] did.
@@ -36,16 +52,32 @@ impl NewestLap {
 
     /// Requests a lap; an earlier request that has not started is dropped.
     pub fn ask(&mut self, config: LapConfig) {
-        let begun = self.under_way.take().filter(|run| run.steps() > 0);
-        self.waiting = match &begun {
-            Some(run) if *run.config() == config => None,
-            Some(_) => Some(config),
-            None => {
-                self.under_way = Some(self.runner.start(config));
-                return;
-            }
-        };
-        self.under_way = begun;
+        let is_same = |run: &LapRun| run.steps() > 0 && *run.config() == config;
+        if self.under_way.as_ref().is_some_and(is_same) {
+            self.waiting = None;
+        } else {
+            self.request(Request {
+                config,
+                parts: None,
+            });
+        }
+    }
+
+    /// Requests a lap with custom parts. All requests of one `NewestLap` have them, or none has.
+    pub fn ask_with_parts(&mut self, config: LapConfig, parts: ChapterParts) {
+        self.request(Request {
+            config,
+            parts: Some(parts),
+        });
+    }
+
+    fn request(&mut self, request: Request) {
+        if self.under_way.as_ref().is_some_and(|run| run.steps() > 0) {
+            self.waiting = Some(request);
+        } else {
+            self.waiting = None;
+            self.under_way = Some(request.start(&self.runner));
+        }
     }
 
     /// Whether a lap is under way.
@@ -70,14 +102,15 @@ impl NewestLap {
             return NewestStep::Tick;
         };
         self.runner.keep(&record);
-        self.under_way = self.waiting.take().map(|config| self.runner.start(config));
+        let next = self.waiting.take();
+        self.under_way = next.map(|request| request.start(&self.runner));
         NewestStep::Finished(Box::new(record))
     }
 
     /// Runs the newest requested lap to its end; `None` if no lap is under way.
     pub fn finish(&mut self) -> Option<Box<LapRecord>> {
-        if let Some(config) = self.waiting.take() {
-            self.under_way = Some(self.runner.start(config));
+        if let Some(request) = self.waiting.take() {
+            self.under_way = Some(request.start(&self.runner));
         }
         loop {
             match self.step() {

@@ -4,11 +4,14 @@ use std::sync::Arc;
 
 use super::record::{LapRecord, LapTrace, Recorder};
 use super::{Drive, DriveSimulation, Lap, LapConfig};
+use ch16_slam2d::chapter::ChapterParts;
 
 /// A lap under way, from [`LapRunner::start`](super::LapRunner::start).
 pub struct LapRun {
     config: LapConfig,
     stage: Option<Stage>,
+    /// Custom parts for the lap that follows the simulation.
+    parts: Option<ChapterParts>,
     steps: usize,
 }
 
@@ -31,13 +34,12 @@ pub(super) enum Stage {
 }
 
 impl Stage {
-    /// The lap of `config` on a simulated drive.
-    pub(super) fn on(config: &LapConfig, drive: Arc<Drive>) -> Self {
-        Self::from_lap(Lap::on_drive(config.clone(), drive))
-    }
-
-    /// A lap that stands at its start.
-    pub(super) fn from_lap(lap: Lap) -> Self {
+    /// The lap of `config` on a simulated drive, with custom parts if there are any.
+    pub(super) fn on(config: &LapConfig, drive: Arc<Drive>, parts: Option<ChapterParts>) -> Self {
+        let lap = match parts {
+            Some(parts) => Lap::with_parts(config.clone(), drive, parts),
+            None => Lap::on_drive(config.clone(), drive),
+        };
         let drive = Arc::clone(lap.drive());
         Self::Lap {
             drive,
@@ -48,10 +50,11 @@ impl Stage {
 }
 
 impl LapRun {
-    pub(super) fn new(config: LapConfig, stage: Stage) -> Self {
+    pub(super) fn new(config: LapConfig, stage: Stage, parts: Option<ChapterParts>) -> Self {
         Self {
             config,
             stage: Some(stage),
+            parts,
             steps: 0,
         }
     }
@@ -79,7 +82,7 @@ impl LapRun {
         let next = match stage {
             Stage::Driving(mut simulation) => match simulation.step() {
                 None => Stage::Driving(simulation),
-                Some(drive) => Stage::on(&self.config, Arc::new(drive)),
+                Some(drive) => Stage::on(&self.config, Arc::new(drive), self.parts.take()),
             },
             Stage::Lap {
                 drive,

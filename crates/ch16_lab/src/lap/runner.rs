@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::record::LapRecord;
 use super::run::{LapRun, Stage};
-use super::{Drive, DriveSimulation, Lap, LapConfig};
+use super::{Drive, DriveSimulation, LapConfig};
 use ch16_slam2d::chapter::ChapterParts;
 
 /// Runs laps and keeps the simulated drive between them.
@@ -37,9 +37,7 @@ impl LapRunner {
     /// The lap of `config` with custom matchers and a custom loop detector, and its front end alone.
     #[must_use]
     pub fn run_with_parts(config: &LapConfig, parts: ChapterParts) -> LapRecord {
-        let drive = Arc::new(Drive::simulate(&config.drive));
-        let lap = Lap::with_parts(config.clone(), drive, parts);
-        let mut run = LapRun::new(config.clone(), Stage::from_lap(lap));
+        let mut run = Self::new().start_with_parts(config.clone(), parts);
         loop {
             if let Some(record) = run.step() {
                 return record;
@@ -50,17 +48,27 @@ impl LapRunner {
     /// Starts the same run in pieces; it reuses what is still valid of the last drive.
     #[must_use]
     pub fn start(&self, config: LapConfig) -> LapRun {
+        self.begin(config, None)
+    }
+
+    /// Starts a run with custom parts in pieces.
+    #[must_use]
+    pub fn start_with_parts(&self, config: LapConfig, parts: ChapterParts) -> LapRun {
+        self.begin(config, Some(parts))
+    }
+
+    fn begin(&self, config: LapConfig, parts: Option<ChapterParts>) -> LapRun {
         let same = |drive: &&Arc<Drive>| drive.config().differs_only_in_noise_from(&config.drive);
         let Some(drive) = self.drive.as_ref().filter(same) else {
             let simulation = DriveSimulation::new(config.drive.clone());
-            return LapRun::new(config, Stage::Driving(Box::new(simulation)));
+            return LapRun::new(config, Stage::Driving(Box::new(simulation)), parts);
         };
         let mut drive = Arc::clone(drive);
         if drive.config().noise_factor != config.drive.noise_factor {
             Arc::make_mut(&mut drive).set_noise_factor(config.drive.noise_factor);
         }
-        let stage = Stage::on(&config, drive);
-        LapRun::new(config, stage)
+        let stage = Stage::on(&config, drive, parts);
+        LapRun::new(config, stage, None)
     }
 
     /// Keeps the drive of a finished run for the next one.

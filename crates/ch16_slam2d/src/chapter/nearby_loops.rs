@@ -1,11 +1,14 @@
 //! The chapter's loop closure: a detector proposes, a matcher registers on nearby keyframes, the drift gate tests.
 
+use std::sync::Arc;
+
 use pr_optim::OptimizeError;
 
 use super::ChapterConfig;
 use super::drift_gate::gate_information;
 use crate::loops::{
-    KeyframeView, LoopCandidate, LoopDetector, LoopVerification, LoopWorkspace, verify_loop,
+    InnovationGate, KeyframeView, LoopCandidate, LoopDetector, LoopVerification, LoopWorkspace,
+    verify_loop,
 };
 use crate::matching::Matcher;
 use crate::metrics::position_error_m;
@@ -17,6 +20,7 @@ pub(crate) struct NearbyLoops {
     config: ChapterConfig,
     detector: Box<dyn LoopDetector>,
     workspace: LoopWorkspace,
+    gate: Option<Arc<dyn InnovationGate>>,
 }
 
 impl NearbyLoops {
@@ -24,11 +28,13 @@ impl NearbyLoops {
         config: &ChapterConfig,
         detector: Box<dyn LoopDetector>,
         matcher: Box<dyn Matcher>,
+        gate: Option<Arc<dyn InnovationGate>>,
     ) -> Self {
         Self {
             config: config.clone(),
             detector,
             workspace: LoopWorkspace::new(matcher),
+            gate,
         }
     }
 
@@ -46,7 +52,11 @@ impl NearbyLoops {
         };
         let frame = self.config.information_frame;
         let workspace = &mut self.workspace;
-        verify_loop(view, node, candidate, gate, frame, loops, workspace)
+        let found = verify_loop(view, node, candidate, gate, frame, loops, workspace);
+        match &self.gate {
+            Some(gate) => found.with_gate_chi2(gate.chi2(&found.innovation, found.gap(), loops)),
+            None => found,
+        }
     }
 }
 

@@ -1,7 +1,9 @@
 //! The exchangeable parts of the chapter's estimator.
 
+use std::sync::Arc;
+
 use super::{ChapterConfig, DetectorKind, NearbyLoops, WindowRegistrar};
-use crate::loops::{LoopDetector, NearbyDetector};
+use crate::loops::{InnovationGate, LoopDetector, NearbyDetector};
 use crate::matching::Matcher;
 use crate::places::PlaceDetector;
 use crate::slam::Strategies;
@@ -15,6 +17,8 @@ pub struct ChapterParts {
     pub loops: Box<dyn Matcher>,
     /// Proposes loops.
     pub detector: Box<dyn LoopDetector>,
+    /// Tests the innovation of a loop in place of the drift gate.
+    pub gate: Option<Arc<dyn InnovationGate>>,
 }
 
 impl ChapterParts {
@@ -28,6 +32,7 @@ impl ChapterParts {
                 DetectorKind::Nearby => Box::new(NearbyDetector::new(config.loops)),
                 DetectorKind::Place(places) => Box::new(PlaceDetector::new(places)),
             },
+            gate: None,
         }
     }
 
@@ -36,7 +41,12 @@ impl ChapterParts {
     pub fn into_strategies(self, config: &ChapterConfig) -> Strategies {
         Strategies {
             registrar: Box::new(WindowRegistrar::new(config, self.front_end)),
-            finder: Box::new(NearbyLoops::new(config, self.detector, self.loops)),
+            finder: Box::new(NearbyLoops::new(
+                config,
+                self.detector,
+                self.loops,
+                self.gate,
+            )),
             outlier_test: None,
         }
     }

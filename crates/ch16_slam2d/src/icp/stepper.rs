@@ -146,6 +146,13 @@ pub fn icp<M: NearestMap>(cloud: &PointCloud, map: &M, init: SE2, config: &IcpCo
     }
 }
 
+/// A custom increment: the motion that fits the pairs of one iteration best.
+pub trait Increment: Send + Sync {
+    /// The motion `increment` of `T ← increment ∘ T`; `pairs` has the moved points. One that is not finite ends the
+    /// registration.
+    fn increment(&self, pairs: &[Pair]) -> SE2;
+}
+
 /// A running registration.
 pub struct Icp<'a, M> {
     cloud: &'a PointCloud,
@@ -153,6 +160,7 @@ pub struct Icp<'a, M> {
     config: IcpConfig,
     workspace: &'a mut IcpWorkspace,
     rejection: Option<&'a dyn PairRejection>,
+    increment: Option<&'a dyn Increment>,
     current: IcpTrace,
     stop: Option<StopReason>,
 }
@@ -181,6 +189,7 @@ impl<'a, M: NearestMap> Icp<'a, M> {
             config: *config,
             workspace,
             rejection: None,
+            increment: None,
             current,
             stop: None,
         };
@@ -194,6 +203,13 @@ impl<'a, M: NearestMap> Icp<'a, M> {
         self.rejection = Some(rule);
         self.workspace.trace.clear();
         self.associate_at(self.current.pose);
+        self
+    }
+
+    /// The same registration with custom increments.
+    #[must_use]
+    pub fn with_increment(mut self, rule: &'a dyn Increment) -> Self {
+        self.increment = Some(rule);
         self
     }
 
@@ -242,7 +258,10 @@ impl<'a, M: NearestMap> Icp<'a, M> {
         if pairs < min_pairs {
             return Some(StopReason::TooFewPairs { pairs, min_pairs });
         }
-        let increment = self.workspace.increment(&self.config);
+        let increment = match self.increment {
+            Some(rule) => rule.increment(&self.pairs().collect::<Vec<_>>()),
+            None => self.workspace.increment(&self.config),
+        };
         let next = increment * self.current.pose;
         if !next.to_array().iter().all(|number| number.is_finite()) {
             return Some(StopReason::NotFinite);

@@ -3,6 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
+use super::LoopConfig;
+
 /// Result of the χ² gate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GateTest {
@@ -18,6 +20,13 @@ impl GateTest {
     pub fn passes(&self) -> bool {
         self.chi2 <= self.gate_chi2
     }
+}
+
+/// A custom test of the innovation of a loop.
+pub trait InnovationGate: Send + Sync {
+    /// The squared norm of `innovation` (m, m, rad) over a path of `gap` nodes, which may be at most
+    /// [`LoopConfig::gate_chi2`]; NaN rejects the loop.
+    fn chi2(&self, innovation: &Vector3<f64>, gap: usize, config: &LoopConfig) -> f64;
 }
 
 /// Compares the squared Mahalanobis norm of `innovation` (m, m, rad) with `gate_chi2`.

@@ -205,6 +205,18 @@ impl LoopVerification {
         }
     }
 
+    /// The same loop, with `chi2` of another gate in place of that of its own.
+    pub(crate) fn with_gate_chi2(mut self, chi2: f64) -> Self {
+        self.gate.chi2 = chi2;
+        if matches!(
+            self.rejection,
+            None | Some(LoopRejection::OutsideGate(_) | LoopRejection::NoCovariance(_))
+        ) {
+            self.rejection = (!self.gate.passes()).then_some(LoopRejection::OutsideGate(self.gate));
+        }
+        self
+    }
+
     /// Whether all tests passed, and it waits for nothing.
     #[must_use]
     pub fn accepted(&self) -> bool {

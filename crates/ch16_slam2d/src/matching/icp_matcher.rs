@@ -1,10 +1,12 @@
 //! ICP as a matcher: a dense map of the target and a workspace, reused between calls.
 
+use std::sync::Arc;
+
 use pr_geom::SE2;
 
 use super::{MapConfig, Match, MatchRequest, MatchStop, MatchSummary, Matcher};
 use crate::cloud::{DenseMap, PointCloud};
-use crate::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace};
+use crate::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace, Increment};
 
 /// ICP on a [`DenseMap`], point to point or point to plane.
 #[derive(Clone)]
@@ -12,6 +14,7 @@ pub struct IcpMatcher {
     config: IcpConfig,
     map: DenseMap,
     workspace: IcpWorkspace,
+    increment: Option<Arc<dyn Increment>>,
 }
 
 impl IcpMatcher {
@@ -23,6 +26,7 @@ impl IcpMatcher {
             config,
             map: DenseMap::new(map.cell_m, map.max_per_cell),
             workspace: IcpWorkspace::new(),
+            increment: None,
         }
     }
 
@@ -34,6 +38,13 @@ impl IcpMatcher {
             ..IcpConfig::default()
         };
         Self::new(config, map)
+    }
+
+    /// The same matcher with custom increments.
+    #[must_use]
+    pub fn with_increment(mut self, rule: Arc<dyn Increment>) -> Self {
+        self.increment = Some(rule);
+        self
     }
 
     /// The settings for the registration of `request`.
@@ -65,8 +76,17 @@ impl Matcher for IcpMatcher {
 
     fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> Match {
         let settings = self.settings(request);
-        let Self { map, workspace, .. } = self;
-        let found = Icp::new(source, map, request.guess, &settings, workspace).run();
+        let Self {
+            map,
+            workspace,
+            increment,
+            ..
+        } = self;
+        let mut icp = Icp::new(source, map, request.guess, &settings, workspace);
+        if let Some(rule) = increment {
+            icp = icp.with_increment(&**rule);
+        }
+        let found = icp.run();
         Match {
             summary: MatchSummary {
                 pose: found.pose,

@@ -203,6 +203,7 @@ pub fn drive(config: &LapConfig) -> anyhow::Result<ExerciseLap> {
             config: chapter.loops,
             verdicts: Arc::clone(&verdicts),
         }),
+        gate: None,
     };
     let (record, chi2) = in_one_sentence(|| {
         let record = LapRunner::run_with_parts(config, parts);

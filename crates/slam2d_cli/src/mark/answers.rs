@@ -6,8 +6,11 @@
 //!  "attempts": 1, "time": "2026-11-27T02:06:47.000Z"}]}
 //! ```
 //!
-//! The digest is the SHA-256 of `["slam2d-answers/1","Ann",["16.5a","w16.2",…,1,"2026-…"],…]` as compact JSON. It
-//! detects accidental changes, but no forgery: the algorithm is public.
+//! Functions that the reader wrote may follow: `"code": [{"function": "gate", "code": "function gate…", "attempts": 3,
+//! "time": "…"}]`.
+//!
+//! The digest is the SHA-256 of `["slam2d-answers/1","Ann",["16.5a","w16.2",…,1,"2026-…"],…]` as compact JSON, with
+//! `["gate","function gate…",3,"2026-…"]` for a function. It detects accidental changes, but no forgery: the algorithm is public.
 
 use std::collections::HashSet;
 use std::fs::File;
@@ -34,7 +37,24 @@ pub struct Answers {
     pub student: String,
     /// One for each exercise, in the order in which they were first given.
     pub answers: Vec<Answer>,
+    /// The functions that the student wrote, as they were run last.
+    #[serde(default)]
+    pub code: Vec<Written>,
     digest: String,
+}
+
+/// A function that the student wrote.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Written {
+    /// Its name: `svd_align`.
+    pub function: String,
+    /// The text of the editor.
+    pub code: String,
+    /// Number of runs.
+    pub attempts: u32,
+    /// Moment of the last one, by the student's clock.
+    pub time: String,
 }
 
 /// The last answer to one exercise.
@@ -89,11 +109,12 @@ impl Answers {
             answers.schema
         );
         let mut seen = HashSet::new();
-        if let Some(twice) = answers.answers.iter().find(|a| !seen.insert(&a.exercise)) {
+        let exercises = answers.answers.iter().map(|answer| &answer.exercise);
+        let functions = answers.code.iter().map(|written| &written.function);
+        if let Some(twice) = exercises.chain(functions).find(|id| !seen.insert(*id)) {
             bail!(
-                "{} answers exercise {} twice; keep one of the two",
-                path.display(),
-                twice.exercise
+                "{} answers {twice} twice; keep one of the two",
+                path.display()
             );
         }
         Ok(answers)
@@ -117,6 +138,14 @@ impl Answers {
                 answer.result,
                 answer.attempts,
                 answer.time,
+            ])
+        }));
+        rows.extend(self.code.iter().map(|written| {
+            serde_json::json!([
+                written.function,
+                written.code,
+                written.attempts,
+                written.time,
             ])
         }));
         serde_json::Value::Array(rows).to_string()

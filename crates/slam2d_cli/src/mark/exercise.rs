@@ -306,10 +306,9 @@ mod tests {
         (0..80).map(|number| format!("student-{number:02}"))
     }
 
-    /// A personal task of which nearly all of a class have the same answer would be copied. The answers follow from laps,
-    /// so they are not equally frequent.
+    /// A personal task of which most of a class have the same answer would be copied.
     #[test]
-    fn no_answer_to_a_personal_task_is_that_of_more_than_three_quarters_of_a_class() {
+    fn no_answer_to_a_personal_task_is_that_of_more_than_half_of_a_class() {
         for exercise in EXERCISES.iter().filter(|one| one.varies.is_none()) {
             let mut answers = std::collections::HashMap::new();
             for student in class() {
@@ -322,7 +321,7 @@ mod tests {
                 *answers.entry(right).or_insert(0) += 1;
             }
             let most = answers.values().max().copied().unwrap_or(0);
-            assert!(most <= 60, "{}: {answers:?}", exercise.exercise);
+            assert!(most <= 40, "{}: {answers:?}", exercise.exercise);
         }
     }
 

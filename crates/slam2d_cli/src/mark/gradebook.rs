@@ -8,7 +8,7 @@ use anyhow::ensure;
 
 use super::answers::without_bom;
 use super::exercise::{self, Mark};
-use super::{Sheet, csv_cell};
+use super::{Sheet, csv_cell, written};
 use crate::in_file::InFile as _;
 use crate::output::say;
 
@@ -141,8 +141,9 @@ pub fn print(sheets: &[Sheet], roster: Option<&Roster>, columns: Columns) -> Vec
         Columns::Plain => question.to_owned(),
         Columns::Canvas | Columns::Moodle => format!("Question {question}"),
     };
+    let ids = ids(sheets);
     let mut head = identity.clone();
-    head.extend(exercise::ids().map(title));
+    head.extend(ids.iter().map(|id| title(id)));
     head.push(match columns {
         Columns::Plain => "total".to_owned(),
         Columns::Canvas | Columns::Moodle => "Questions total".to_owned(),
@@ -171,7 +172,7 @@ pub fn print(sheets: &[Sheet], roster: Option<&Roster>, columns: Columns) -> Vec
             for row in 0..roster.rows.len() {
                 let cells = identity.iter().map(|name| roster.cell(row, name.trim()));
                 let mut cells: Vec<String> = cells.map(str::to_owned).collect();
-                cells.extend(points(answered.get(&row).copied()));
+                cells.extend(points(&ids, answered.get(&row).copied()));
                 line(&cells);
             }
         }
@@ -183,7 +184,7 @@ pub fn print(sheets: &[Sheet], roster: Option<&Roster>, columns: Columns) -> Vec
                     cells[0] = student.to_owned();
                     cells[3] = student.to_owned();
                 }
-                cells.extend(points(of_student.get(student).copied()));
+                cells.extend(points(&ids, of_student.get(student).copied()));
                 line(&cells);
             }
         }
@@ -191,8 +192,16 @@ pub fn print(sheets: &[Sheet], roster: Option<&Roster>, columns: Columns) -> Vec
     problems
 }
 
+/// The questions, and the functions if a student wrote one.
+fn ids(sheets: &[Sheet]) -> Vec<&'static str> {
+    let mut answers = sheets.iter().flat_map(|sheet| &sheet.answers);
+    let has_code = answers.any(|answer| written::ids().any(|id| id == answer.exercise));
+    let functions = written::ids().filter(|_| has_code);
+    exercise::ids().chain(functions).collect()
+}
+
 /// A point for each question that is right or within tolerance, nothing for one without a mark, and the total.
-fn points(sheet: Option<&Sheet>) -> Vec<String> {
+fn points(ids: &[&str], sheet: Option<&Sheet>) -> Vec<String> {
     let mark = |id: &str| {
         let answers = sheet.map_or(&[][..], |sheet| &sheet.answers);
         answers
@@ -205,7 +214,7 @@ fn points(sheet: Option<&Sheet>) -> Vec<String> {
         Some(Mark::Wrong) => "0",
         Some(Mark::NotMarked) | None => "",
     };
-    let mut cells: Vec<String> = exercise::ids().map(|id| cell(id).to_owned()).collect();
+    let mut cells: Vec<String> = ids.iter().map(|id| cell(id).to_owned()).collect();
     cells.push(sheet.map_or_else(String::new, |sheet| sheet.right.to_string()));
     cells
 }

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 use std::sync::Arc;
 
 use ch16_lab::basin::{BasinMap, BasinMapAxes, BasinScene, BasinStart, Minimum, OffsetAxis};
-use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
+use ch16_slam2d::icp::{IcpConfig, IcpVariant, IcpWorkspace};
 use widget_kit::model::Activity;
 use widget_kit::scene::{Bounds, Cell, Raster};
 use widget_kit::values::Values;
@@ -25,6 +25,8 @@ pub const ROWS: usize = 41;
 /// Both basin maps for the current settings: point-to-point, then point-to-plane.
 pub struct Basins {
     maps: [BasinMap; 2],
+    /// The variant whose map is filled from outside, by the reader's function.
+    given: Option<IcpVariant>,
     tries: Vec<Try>,
     revision: u64,
     drawn: [Drawn; 2],
@@ -48,6 +50,7 @@ impl Basins {
     pub fn new(values: &Values) -> Self {
         Self {
             maps: empty_maps(values),
+            given: None,
             tries: Vec::new(),
             revision: 0,
             drawn: Default::default(),
@@ -57,6 +60,37 @@ impl Basins {
     /// Empties the maps, because the sweeps changed.
     pub fn restart(&mut self, values: &Values) {
         self.empty(empty_maps(values));
+    }
+
+    /// Empties the maps; that of a variant is filled by [`Basins::put`] from now on.
+    pub fn give(&mut self, given: Option<IcpVariant>, values: &Values) {
+        self.given = given;
+        self.empty(empty_maps(values));
+    }
+
+    /// The next cells of the map that is filled from outside.
+    pub fn ahead(&self, count: usize) -> Vec<[usize; 2]> {
+        let map = self.given.map(|variant| self.map(variant));
+        map.map_or_else(Vec::new, |map| map.ahead(count))
+    }
+
+    /// Whether that map has these axes and settings.
+    pub fn is_of(&self, axes: &BasinMapAxes, config: &IcpConfig) -> bool {
+        let map = self.given.map(|variant| self.map(variant));
+        map.is_some_and(|map| map.axes() == axes && map.config() == config)
+    }
+
+    /// Fills the next cells of that map, each with the letter of its minimum.
+    pub fn put(&mut self, letters: &[f64]) {
+        let Some(variant) = self.given else {
+            return;
+        };
+        let cells = self.ahead(letters.len());
+        for (cell, letter) in cells.into_iter().zip(letters) {
+            let letter = char::from_u32(*letter as u32).and_then(Minimum::from_letter);
+            self.maps[place(variant)].put(cell, letter.unwrap_or(Minimum::NotConverged));
+        }
+        self.changed();
     }
 
     /// Adds a start of the reader. Returns how many there are.
@@ -102,10 +136,11 @@ impl Basins {
             return Activity::Busy;
         }
         let [point, plane] = &mut self.maps;
-        let behind = if plane.progress() < point.progress() {
-            plane
-        } else {
-            point
+        let behind = match self.given {
+            Some(IcpVariant::PointToPoint) => plane,
+            Some(IcpVariant::PointToPlane) => point,
+            None if plane.progress() < point.progress() => plane,
+            None => point,
         };
         if behind.is_complete() {
             return Activity::Idle;
@@ -134,7 +169,7 @@ impl Basins {
             let ends = tried.ends?;
             Some((start_spot(&tried.start, along_y), ends[place(variant)]))
         };
-        let is_filling = !self.map(variant).is_complete();
+        let is_filling = !self.map(variant).is_complete() && self.given != Some(variant);
         let tries = self.tries.iter().filter(move |_| is_filling);
         tries.filter_map(spot)
     }
@@ -242,10 +277,11 @@ fn offset(axis: OffsetAxis, start: &BasinStart) -> f64 {
     }
 }
 
-fn empty_maps(values: &Values) -> [BasinMap; 2] {
+/// What the axes of the maps show.
+pub fn map_axes(values: &Values) -> BasinMapAxes {
     let axis = axis(values);
     let other = start(values);
-    let axes = BasinMapAxes {
+    BasinMapAxes {
         columns: COLUMNS,
         rows: ROWS,
         offset_span_m: OFFSET_SPAN_M,
@@ -254,7 +290,11 @@ fn empty_maps(values: &Values) -> [BasinMap; 2] {
             OffsetAxis::Dx => other.dy_m,
             OffsetAxis::Dy => other.dx_m,
         },
-    };
+    }
+}
+
+fn empty_maps(values: &Values) -> [BasinMap; 2] {
+    let axes = map_axes(values);
     [IcpVariant::PointToPoint, IcpVariant::PointToPlane]
         .map(|variant| BasinMap::new(axes, config(values, variant)))
 }

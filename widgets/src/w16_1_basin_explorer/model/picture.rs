@@ -80,6 +80,11 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     if explorer.previews_end() {
         layers.extend(preview(explorer));
     }
+    let ours = explorer.driver().map(|yours| yours.ours.pose);
+    layers.extend(ours.map(|end| {
+        let ended = scene.source().transformed(&end);
+        points(&ended, Mark::Dot, Tone::Series(1), 1.6)
+    }));
     layers.extend([
         points(&source, Mark::Square, Tone::Posterior, 2.6),
         // Above the points, because a pair may be shorter than a mark is wide.
@@ -143,10 +148,18 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
             Some(Stroke::Dotted),
         ));
     }
+    if ours.is_some() {
+        let ours = entry("where ours ends", Tone::Series(1), Some(Mark::Dot), None);
+        legend.push(ours);
+    }
+    let by = match explorer.driver() {
+        Some(yours) => format!("Your {}: iteration", yours.orders.function.name()),
+        None => "Iteration".to_owned(),
+    };
     Panel {
         id: panel::SWEEPS,
         title: format!(
-            "Iteration {iteration} of {}: {} pairs, rmse {:.1} cm",
+            "{by} {iteration} of {}: {} pairs, rmse {:.1} cm",
             explorer.last(),
             shown.pairs,
             100.0 * shown.rmse_m
@@ -289,7 +302,10 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
     let title = if covered {
         format!("Where is the edge, {}?", variant_name(of))
     } else {
-        format!("Where it ends, {}", variant_name(of))
+        match explorer.mapped_by(of) {
+            Some(yours) => format!("Where it ends by your {yours}"),
+            None => format!("Where it ends, {}", variant_name(of)),
+        }
     };
     Panel {
         id,
@@ -343,7 +359,8 @@ fn paths(explorer: &BasinExplorer) -> Vec<Layer> {
     let line =
         |points: Vec<[f64; 2]>, tone, width_px| Layer::line(points, Stroke::Solid, tone, width_px);
     let mut layers = Vec::new();
-    for path in explorer.paths.done() {
+    let is_yours = explorer.mapped_by(variant(&explorer.values)).is_some();
+    for path in explorer.paths.done().iter().filter(|_| !is_yours) {
         let end = path.spots.last().copied().into_iter().collect();
         layers.push(line(path.spots.clone(), Tone::Ink, 1.0));
         layers.push(Layer::points(end, Mark::Dot, Tone::Ink, 2.5));

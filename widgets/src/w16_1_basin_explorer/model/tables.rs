@@ -25,9 +25,12 @@ pub fn all(explorer: &BasinExplorer) -> Vec<Table> {
 /// The results of both variants from the same start.
 fn variants(explorer: &BasinExplorer) -> Table {
     let chosen = variant(&explorer.values);
+    let driver = explorer.driver();
     let row = |variant: IcpVariant, end: &BasinOutcome| {
+        let yours = driver.filter(|_| variant == chosen);
+        let name = yours.map(|yours| format!("your {}", yours.orders.function.name()));
         vec![
-            variant_name(variant).to_owned(),
+            name.unwrap_or_else(|| variant_name(variant).to_owned()),
             end.ending.name().to_owned(),
             format!("{:.3}", end.error_m),
             signed(end.error_deg, 1),

@@ -26,14 +26,27 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
         return asked;
     }
     let end = &explorer.run.outcome;
+    let (by, beside) = match explorer.driver() {
+        Some(yours) => (
+            format!("your {}", yours.orders.function.name()),
+            format!(
+                ". Ours ends {:.2} m and {:.1}° from the truth",
+                yours.ours.error_m,
+                yours.ours.error_deg.abs()
+            ),
+        ),
+        None => {
+            let variant = variant(&explorer.values);
+            (variant_name(variant).to_owned(), String::new())
+        }
+    };
     Outcome {
         standing: standing(end.ending),
         verdict: end.ending.name().to_owned(),
         sentence: format!(
-            "From {:.0}° off, {} ends {:.2} m and {:.1}° from the truth: rmse {:.3} m over {} \
-             pairs; it {} {}.",
+            "From {:.0}° off, {by} ends {:.2} m and {:.1}° from the truth: rmse {:.3} m over {} \
+             pairs; it {} {}{beside}.",
             explorer.values.get(&HEADING),
-            variant_name(variant(&explorer.values)),
             end.error_m,
             end.error_deg.abs(),
             end.rmse_m,

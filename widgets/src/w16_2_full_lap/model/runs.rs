@@ -17,6 +17,8 @@ use super::track::Track;
 pub struct Runs {
     config: LapConfig,
     place: Option<BuiltInWorld>,
+    /// The name of the reader's function that drove; `None` is ours.
+    pub driver: Option<&'static str>,
     drive: Arc<Drive>,
     /// Of each attempt in `graph`, in order.
     gates: Vec<Gates>,
@@ -61,6 +63,7 @@ impl Runs {
             graph: Track::new(lap, start),
             gates,
             place: place(&config),
+            driver: None,
             config,
             drive,
         }

@@ -58,6 +58,10 @@ pub fn outcome(moment: &Moment, refused: Option<&OwnLoopError>) -> Outcome {
         None => statement(moment, refused),
     };
     let (runs, tick) = (moment.runs, moment.tick);
+    let sentence = match runs.driver {
+        Some(yours) => format!("by your {yours}, {sentence}"),
+        None => sentence,
+    };
     let mut facts = moment_facts(runs, tick);
     facts.extend(loop_facts(runs, tick));
     facts.extend(parts::facts(moment));

@@ -74,7 +74,10 @@ fn title(moment: &Moment) -> String {
     if let Some(drawn) = moment.drawn.filter(is_planned) {
         return floor_plan::title(&drawn);
     }
-    let mut words = moment.runs.place_label().to_owned();
+    let mut words = match moment.runs.driver {
+        Some(yours) => format!("your {yours}"),
+        None => moment.runs.place_label().to_owned(),
+    };
     words[..1].make_ascii_uppercase();
     let words = format!("{words} after tick {}", moment.tick);
     let own = moment.own.map(|own| own.attempt.effect);

@@ -1,0 +1,144 @@
+//! A reader's function in place of a part of the estimator.
+//!
+//! The function is in another language and runs in a worker, which holds the same core. A widget sends an [`Order`] as
+//! text; the worker executes it ([`Executor`]) and returns what the function answered; the widget computes the same with
+//! these [`Answers`]. Its picture therefore has everything that it has of ours.
+
+mod execute;
+mod order;
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use ch16_slam2d::icp::{IcpVariant, Increment, Pair};
+use ch16_slam2d::loops::{InnovationGate, LoopConfig};
+use nalgebra::Vector3;
+use pr_geom::SE2;
+
+pub use execute::{Executor, Job};
+pub use order::{BasinTask, LapTask, Order, Task};
+
+/// The kind of a delivery that names the function which drives from now on; without text ours does.
+pub const SEAT: &str = "your-code";
+/// The kind of a delivery with the answers to the order that is its text.
+pub const ANSWERS: &str = "your-answers";
+
+/// A function of the page's exercises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Function {
+    /// The increment of point to point.
+    SvdAlign,
+    /// The increment of point to plane.
+    PointToPlaneStep,
+    /// The test of a loop's innovation.
+    Gate,
+}
+
+impl Function {
+    const ALL: [Self; 3] = [Self::SvdAlign, Self::PointToPlaneStep, Self::Gate];
+
+    /// The function of that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL
+            .into_iter()
+            .find(|function| function.name() == name)
+    }
+
+    /// Its name in the reader's code.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SvdAlign => "svd_align",
+            Self::PointToPlaneStep => "point_to_plane_step",
+            Self::Gate => "gate",
+        }
+    }
+
+    /// The error that it reduces, if it is the increment of a registration.
+    #[must_use]
+    pub fn variant(self) -> Option<IcpVariant> {
+        match self {
+            Self::SvdAlign => Some(IcpVariant::PointToPoint),
+            Self::PointToPlaneStep => Some(IcpVariant::PointToPlane),
+            Self::Gate => None,
+        }
+    }
+}
+
+/// What can stand in each seam; a [`Function`] is called in one of them.
+pub trait Callable: Increment + InnovationGate {}
+
+impl<F: Increment + InnovationGate> Callable for F {}
+
+/// Answers of a function, in the order of its calls: three numbers for an increment, one for a gate.
+#[derive(Debug, Default)]
+pub struct Answers {
+    numbers: Vec<f64>,
+    next: AtomicUsize,
+}
+
+impl Answers {
+    /// Answers to be replayed. After the last one come NaN.
+    #[must_use]
+    pub fn new(numbers: &[f64]) -> Self {
+        Self {
+            numbers: numbers.to_vec(),
+            next: AtomicUsize::new(0),
+        }
+    }
+
+    fn next(&self) -> f64 {
+        let index = self.next.fetch_add(1, Ordering::Relaxed);
+        self.numbers.get(index).copied().unwrap_or(f64::NAN)
+    }
+}
+
+impl Increment for Answers {
+    fn increment(&self, _: &[Pair]) -> SE2 {
+        let [x, y, theta] = [(); 3].map(|()| self.next());
+        SE2::new(x, y, theta)
+    }
+}
+
+impl InnovationGate for Answers {
+    fn chi2(&self, _: &Vector3<f64>, _: usize, _: &LoopConfig) -> f64 {
+        self.next()
+    }
+}
+
+/// A function whose answers are recorded.
+struct Recorder {
+    function: Arc<dyn Callable>,
+    numbers: Mutex<Vec<f64>>,
+}
+
+impl Recorder {
+    fn record(&self, numbers: &[f64]) {
+        let kept = self.numbers.lock();
+        kept.unwrap_or_else(PoisonError::into_inner)
+            .extend_from_slice(numbers);
+    }
+
+    /// The answers so far, which are then forgotten.
+    fn take(&self) -> Vec<f64> {
+        let kept = self.numbers.lock();
+        core::mem::take(&mut *kept.unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Increment for Recorder {
+    fn increment(&self, pairs: &[Pair]) -> SE2 {
+        let found = self.function.increment(pairs);
+        self.record(&found.to_array());
+        found
+    }
+}
+
+impl InnovationGate for Recorder {
+    fn chi2(&self, innovation: &Vector3<f64>, gap: usize, config: &LoopConfig) -> f64 {
+        let found = self.function.chi2(innovation, gap, config);
+        self.record(&[found]);
+        found
+    }
+}

@@ -1,0 +1,263 @@
+//! A reader's function in the seams of the estimator: what the worker answers, the widget shows.
+
+use std::sync::Arc;
+
+use ch16_lab::reader_code::{ANSWERS, Callable, Executor, SEAT};
+use ch16_slam2d::chapter::path_information;
+use ch16_slam2d::icp::{Increment, Pair, svd_align};
+use ch16_slam2d::loops::{InnovationGate, LoopConfig, chi_squared_gate};
+use nalgebra::Vector3;
+use pr_geom::{Point2, SE2};
+use widget_kit::host_messages::Delivery;
+use widget_kit::model::{Activity, Model};
+use widget_kit::scene::Layer;
+use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
+use widgets::w16_2_full_lap::model::FullLap;
+
+use crate::support::{fact, panel_of};
+
+/// Our functions, as a reader would write them.
+struct Ours;
+
+impl Increment for Ours {
+    fn increment(&self, pairs: &[Pair]) -> SE2 {
+        let points = |of: fn(&Pair) -> Point2<f64>| pairs.iter().map(of).collect::<Vec<_>>();
+        svd_align(&points(|pair| pair.source), &points(|pair| pair.target))
+    }
+}
+
+impl InnovationGate for Ours {
+    fn chi2(&self, innovation: &Vector3<f64>, gap: usize, config: &LoopConfig) -> f64 {
+        chi_squared_gate(innovation, &path_information(gap, config), config.gate_chi2).chi2
+    }
+}
+
+/// A step without its turn, and a gate that rejects everything.
+struct Wrong;
+
+impl Increment for Wrong {
+    fn increment(&self, pairs: &[Pair]) -> SE2 {
+        let step = Ours.increment(pairs);
+        SE2::new(step.x(), step.y(), 0.0)
+    }
+}
+
+impl InnovationGate for Wrong {
+    fn chi2(&self, _: &Vector3<f64>, _: usize, _: &LoopConfig) -> f64 {
+        f64::INFINITY
+    }
+}
+
+fn deliver(model: &mut dyn Model, kind: &str, text: &str, numbers: &[f64]) {
+    model.receive(&Delivery {
+        kind,
+        text,
+        numbers,
+        bytes: &[],
+    });
+}
+
+/// Executes every order of the widget, and lets it work, until there is none. Returns the number of orders.
+fn serve(model: &mut dyn Model, function: &Arc<dyn Callable>) -> usize {
+    let mut executor = Executor::default();
+    let mut count = 0;
+    loop {
+        model.finish_work();
+        let mut orders = model.take_requests();
+        while orders.is_empty() && model.work() == Activity::Busy {
+            orders = model.take_requests();
+        }
+        if orders.is_empty() {
+            return count;
+        }
+        for order in orders {
+            count += 1;
+            let mut job = executor.begin(&order, function).unwrap();
+            let answers = loop {
+                if let Some(answers) = job.step() {
+                    break answers;
+                }
+            };
+            deliver(model, ANSWERS, &order, &answers);
+        }
+    }
+}
+
+fn facts(model: &dyn Model) -> Vec<u64> {
+    let facts = model.outcome().facts;
+    facts.iter().map(|fact| fact.value.to_bits()).collect()
+}
+
+#[test]
+fn the_registration_by_the_readers_function_has_the_bits_of_ours() {
+    let function: Arc<dyn Callable> = Arc::new(Ours);
+    let mut model = BasinExplorer::default();
+    let ours = facts(&model);
+    deliver(&mut model, SEAT, "svd_align", &[]);
+    assert_ne!(
+        facts(&model),
+        ours,
+        "until the answers are here, the source stands"
+    );
+    assert_eq!(serve(&mut model, &function), 1);
+    assert_eq!(facts(&model), ours);
+    let title = panel_of(&model, panel::SWEEPS).title;
+    assert!(
+        title.starts_with("Your svd_align: iteration 0 of"),
+        "{title}"
+    );
+    let sentence = model.outcome().sentence;
+    assert!(
+        sentence.contains("your svd_align ends") && sentence.contains("Ours ends"),
+        "{sentence}"
+    );
+    model.set("heading", 60.0).unwrap();
+    serve(&mut model, &function);
+    let turned = facts(&model);
+    deliver(&mut model, SEAT, "", &[]);
+    assert_eq!(facts(&model), turned);
+    assert!(
+        !model.outcome().sentence.contains("your"),
+        "ours drives again"
+    );
+}
+
+#[test]
+fn a_wrong_function_is_shown_beside_ours() {
+    let mut model = BasinExplorer::default();
+    let right = fact(&model, "error_deg").abs();
+    deliver(&mut model, SEAT, "svd_align", &[]);
+    serve(&mut model, &(Arc::new(Wrong) as Arc<dyn Callable>));
+    // It never turns, so the 25° of the start remain.
+    assert!(right < 1.0 && (fact(&model, "error_deg") - 25.0).abs() < 1e-6);
+    let legend = panel_of(&model, panel::SWEEPS).legend;
+    assert!(legend.iter().any(|entry| entry.label == "where ours ends"));
+}
+
+#[test]
+fn of_many_changes_only_the_newest_is_registered() {
+    let function: Arc<dyn Callable> = Arc::new(Ours);
+    let mut model = BasinExplorer::default();
+    deliver(&mut model, SEAT, "svd_align", &[]);
+    for heading in 0..50 {
+        model.set("heading", f64::from(heading)).unwrap();
+    }
+    assert_eq!(serve(&mut model, &function), 2, "the first, and the newest");
+    let mut ours = BasinExplorer::default();
+    ours.set("heading", 49.0).unwrap();
+    assert_eq!(facts(&model), facts(&ours));
+}
+
+#[test]
+fn the_other_variant_is_driven_by_ours() {
+    let function: Arc<dyn Callable> = Arc::new(Wrong);
+    let mut model = BasinExplorer::default();
+    deliver(&mut model, SEAT, "svd_align", &[]);
+    // The answers to the first order come after the change.
+    model.set("variant", 1.0).unwrap();
+    serve(&mut model, &function);
+    let mut ours = BasinExplorer::default();
+    ours.set("variant", 1.0).unwrap();
+    assert_eq!(facts(&model), facts(&ours));
+}
+
+#[test]
+fn the_basin_map_by_the_readers_function_has_the_cells_of_ours() {
+    let raster = |model: &BasinExplorer| {
+        let layers = panel_of(model, panel::POINT).layers;
+        let raster = layers.into_iter().find_map(|layer| match layer {
+            Layer::Raster(raster) => Some(raster.cells),
+            _ => None,
+        });
+        raster.expect("the map is shown")
+    };
+    let mut ours = BasinExplorer::default();
+    ours.set("more", 1.0).unwrap();
+    widget_kit::model::finish_work(&mut ours);
+    let mut yours = BasinExplorer::default();
+    yours.set("more", 1.0).unwrap();
+    deliver(&mut yours, SEAT, "svd_align", &[]);
+    assert!(serve(&mut yours, &(Arc::new(Ours) as Arc<dyn Callable>)) > 10);
+    assert_eq!(raster(&yours), raster(&ours));
+    assert_eq!(
+        panel_of(&yours, panel::POINT).title,
+        "Where it ends by your svd_align"
+    );
+    // Other settings empty it, and it is filled again.
+    yours.set("tau", 1.4).unwrap();
+    assert_ne!(raster(&yours), raster(&ours));
+    serve(&mut yours, &(Arc::new(Wrong) as Arc<dyn Callable>));
+    assert_ne!(raster(&yours), raster(&ours));
+}
+
+#[test]
+fn the_lap_by_the_readers_functions_has_the_bits_of_ours() {
+    let mut model = FullLap::default();
+    model.set("t", 129.0).unwrap();
+    let ours = facts(&model);
+    for name in ["svd_align", "gate"] {
+        deliver(&mut model, SEAT, name, &[]);
+        assert_eq!(serve(&mut model, &(Arc::new(Ours) as Arc<dyn Callable>)), 1);
+        assert_eq!(facts(&model), ours, "{name}");
+        let title = panel_of(&model, "map").title;
+        assert!(
+            title.starts_with(&format!("Your {name} after tick 129")),
+            "{title}"
+        );
+        let sentence = model.outcome().sentence;
+        assert!(
+            sentence.starts_with(&format!("by your {name}, ")),
+            "{sentence}"
+        );
+    }
+    deliver(&mut model, SEAT, "", &[]);
+    model.finish_work();
+    assert_eq!(facts(&model), ours);
+    assert!(!model.outcome().sentence.contains("your"));
+}
+
+#[test]
+fn a_wrong_gate_or_increment_changes_the_lap() {
+    let mut model = FullLap::default();
+    model.set("t", 129.0).unwrap();
+    let (loops, rms) = (fact(&model, "loops_closed"), fact(&model, "keyframe_rms_m"));
+    deliver(&mut model, SEAT, "gate", &[]);
+    serve(&mut model, &(Arc::new(Wrong) as Arc<dyn Callable>));
+    assert!(loops > 0.0 && fact(&model, "loops_closed") == 0.0);
+    deliver(&mut model, SEAT, "svd_align", &[]);
+    serve(&mut model, &(Arc::new(Wrong) as Arc<dyn Callable>));
+    assert!(fact(&model, "keyframe_rms_m") > 2.0 * rms);
+}
+
+#[test]
+fn what_is_no_order_is_refused() {
+    let function: Arc<dyn Callable> = Arc::new(Ours);
+    let mut model = BasinExplorer::default();
+    deliver(&mut model, SEAT, "svd_align", &[]);
+    let order = model.take_requests().remove(0);
+    assert!(Executor::default().begin(&order, &function).is_ok());
+    let as_cells = order.replace("registration", "cells");
+    assert!(
+        Executor::default()
+            .begin(&format!("{as_cells} 0 8"), &function)
+            .is_ok()
+    );
+    for order in [
+        String::new(),
+        "open".to_owned(),
+        SEAT.to_owned(),
+        order.replace("svd_align", "main"),
+        order.replace("svd_align", "gate"),
+        order.replace("room", "moon"),
+        order.replace(" 0.7 ", " wide "),
+        format!("{as_cells} 0 99"),
+        format!("{as_cells} 0"),
+        format!("{SEAT} gate lap own 1 1 on 7.8 path p2p chapter nonsense"),
+        format!("{SEAT} gate lap moon 1 1 on 7.8 path p2p chapter "),
+    ] {
+        assert!(
+            Executor::default().begin(&order, &function).is_err(),
+            "{order}"
+        );
+    }
+}
