@@ -113,7 +113,7 @@ impl Answers {
         let functions = answers.code.iter().map(|written| &written.function);
         if let Some(twice) = exercises.chain(functions).find(|id| !seen.insert(*id)) {
             bail!(
-                "{} answers {twice} twice; keep one of the two",
+                "{} answers exercise {twice} twice; keep one of the two",
                 path.display()
             );
         }
