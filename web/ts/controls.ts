@@ -245,6 +245,7 @@ export class Controls {
       }
       default: {
         const range = rangeOf(spec, {
+          text: () => this.#host.text(spec.id),
           set: (text) => this.#host.set(spec.id, text),
           // The end of the run is unknown while it is being computed.
           beforeKey: () => { if (spec.kind === 'timeline') this.#host.finishRun(); },

@@ -4,6 +4,8 @@ import { create } from './dom';
 import type { ParamSpec } from './schema';
 
 export interface RangeHost {
+  /** The present value. */
+  text(): string;
   set(text: string): void;
   /** Called before a key changes the value. */
   beforeKey(): void;
@@ -14,6 +16,7 @@ export function rangeOf(spec: ParamSpec, host: RangeHost): HTMLInputElement {
   const { min, max } = spec;
   // `any`: values between the steps are valid, such as those of fine steps.
   const range = create('input', { type: 'range', min: `${min}`, max: `${max}`, step: 'any' });
+  undoSwipes(range, host);
   range.addEventListener('input', () => {
     const steps = Math.round((Number(range.value) - min) / spec.step);
     host.set(tidy(min + steps * spec.step));
@@ -27,6 +30,22 @@ export function rangeOf(spec: ParamSpec, host: RangeHost): HTMLInputElement {
     host.set(tidy(next));
   });
   return range;
+}
+
+/** A touch moves the thumb at once. If it then scrolls the page, the value returns. */
+function undoSwipes(range: HTMLInputElement, host: RangeHost): void {
+  let touch: { text: string; moves: number } | undefined;
+  range.addEventListener('pointerdown', ({ pointerType }) => {
+    touch = pointerType === 'touch' ? { text: host.text(), moves: 0 } : undefined;
+  });
+  range.addEventListener('input', () => {
+    if (touch !== undefined) touch.moves += 1;
+  });
+  range.addEventListener('pointerup', () => (touch = undefined));
+  range.addEventListener('pointercancel', () => {
+    if (touch?.moves === 1) host.set(touch.text);
+    touch = undefined;
+  });
 }
 
 /** The value after a key press; undefined for keys that change no value. */
