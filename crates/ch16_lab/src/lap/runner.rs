@@ -79,6 +79,7 @@ impl LapRunner {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Lap;
     use super::*;
 
     #[test]

@@ -390,7 +390,7 @@ fn a_link_gives_the_lap_that_the_widget_drives() {
         ("noise", 2.0),
     ]);
     let link = "matcher=p2l&normals=2.5&cap=off&noise=2";
-    let config = settings::read(&model.values).config(None);
+    let config = crate::w16_2_full_lap::model::settings::read(&model.values).config(None);
     assert_eq!(lap_of_link(link).unwrap(), config);
     assert!(lap_of_link("matcher=none").is_err());
 }
