@@ -79,7 +79,7 @@ pub const SETTINGS: &[Setting] = &[
     setting(
         "independent_points",
         "",
-        "largest number of independent points of a scan",
+        "effective number of independent points of a scan",
     ),
     setting(
         "unseen_cost",

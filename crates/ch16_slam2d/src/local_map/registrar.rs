@@ -3,11 +3,7 @@
 use nalgebra::{Matrix3, Vector2};
 use pr_geom::SE2;
 
-use super::recording_statistics::RecordingStatistics;
-use super::tuning::BASIN;
-use super::{
-    LocalMap, MapRegistration, MapRegistrationConfig, MotionPrior, PriorTail, ScanProfiles,
-};
+use super::{LocalMap, MapRegistrationConfig, MotionPrior, PriorTail, ScanProfiles};
 use crate::cloud::PointCloud;
 use crate::matching::{MatchStop, MatchSummary};
 use crate::scan::PreparedFrame;
@@ -17,10 +13,6 @@ use crate::slam::{
 
 /// Name of the covariance of the motions since the last keyframe in a snapshot.
 const MOTION_COVARIANCE: &str = "motion covariance";
-/// Name of the scatter of the other poses since the last keyframe.
-const SPREAD: &str = "spread of the poses";
-/// Name of what the recording has shown about its scans and its odometry.
-const STATISTICS: &str = "recording statistics";
 
 /// Registers scans on the last few with the odometry as a prior.
 #[derive(Clone)]
@@ -35,9 +27,6 @@ pub(crate) struct MapRegistrar {
     scan_information: Matrix3<f64>,
     /// Covariance of the motions since the last keyframe, by odometry.
     motion_covariance: Matrix3<f64>,
-    statistics: RecordingStatistics,
-    /// Scatter of the other poses of the scans since the last keyframe.
-    spread: Matrix3<f64>,
 }
 
 impl MapRegistrar {
@@ -50,8 +39,6 @@ impl MapRegistrar {
             is_outdated: true,
             scan_information: Matrix3::zeros(),
             motion_covariance: Matrix3::zeros(),
-            statistics: RecordingStatistics::default(),
-            spread: Matrix3::zeros(),
         }
     }
 
@@ -81,37 +68,6 @@ impl MapRegistrar {
             sigma_m,
             sigma_rad,
             tail,
-            slip: is_measured.then(|| self.statistics.slip(motion, (sigma_m, sigma_rad))),
-        }
-    }
-
-    /// Registers the scan again from the chosen pose, with the stated number of points: the misfit of the recording
-    /// decides which basin is right, and the walls how precisely the pose is known in it. A registration that leaves
-    /// the basin is no refinement.
-    fn refine(
-        &mut self,
-        chosen: &MapRegistration,
-        frame: &PreparedFrame,
-        expected: &ExpectedMotion<'_>,
-        prior: &MotionPrior,
-        is_reweighted: bool,
-    ) -> MapRegistration {
-        let (start, config) = (chosen.registered.pose, &self.registration);
-        if let Some(sweep) = &expected.sweep {
-            let map = &mut self.map;
-            return map.register_sweep(&frame.cloud, sweep, start, prior, config);
-        }
-        if !is_reweighted {
-            return *chosen;
-        }
-        let stages = [config.inlier_distance_m];
-        let refined = self
-            .map
-            .register(&frame.cloud, start, &stages, Some(prior), config);
-        if start.between(&refined.registered.pose).step_size() < BASIN {
-            refined
-        } else {
-            *chosen
         }
     }
 }
@@ -127,43 +83,21 @@ impl ScanRegistrar for MapRegistrar {
             self.rebuild(window);
         }
         let (before, motion) = (&expected.before, &expected.motion);
-        let is_measured = expected.is_measured;
-        let prior = self.prior(before, motion, is_measured);
+        let prior = self.prior(before, motion, expected.is_measured);
         let starts = [*before * expected.extrapolated];
-        let stated = self.registration.independent_points;
-        // A constant velocity is no measurement that a scan could outweigh.
-        let independent_points = if is_measured {
-            self.statistics.independent_points(stated)
-        } else {
-            stated
-        };
-        let config = MapRegistrationConfig {
-            independent_points,
-            ..self.registration
-        };
-        let chosen = self.map.locate(&frame.cloud, &prior, &starts, &config);
-        let found = self.refine(
-            &chosen,
-            frame,
-            expected,
-            &prior,
-            independent_points < stated,
-        );
+        let config = &self.registration;
+        let mut found = self.map.locate(&frame.cloud, &prior, &starts, config);
+        if let Some(sweep) = &expected.sweep {
+            let start = found.registered.pose;
+            found = self
+                .map
+                .register_sweep(&frame.cloud, sweep, start, &prior, config);
+        }
         let pose = found.registered.pose;
-        let slipped = is_measured.then(|| prior.slip_probability(&prior.deviation(&pose)));
-        // An empty scan neither fits nor misfits.
-        let misfit = (!frame.cloud.is_empty()).then_some(1.0 - found.fit.score);
-        self.statistics.count(misfit, slipped);
         self.scan_information = found.information();
         let adjoint = motion.inverse().adjoint();
-        let moved = |covariance: &Matrix3<f64>| adjoint * covariance * adjoint.transpose();
-        self.motion_covariance =
-            moved(&self.motion_covariance) + motion_covariance(motion, &prior, &pose);
-        self.spread = moved(&self.spread);
-        // Without odometry most starts end elsewhere along a corridor, which the information of the scan covers.
-        if is_measured {
-            self.spread += chosen.spread;
-        }
+        self.motion_covariance = adjoint * self.motion_covariance * adjoint.transpose()
+            + motion_covariance(motion, &prior, &pose);
         MatchSummary {
             pose,
             rmse_m: found.fit.rmse_m,
@@ -180,19 +114,10 @@ impl ScanRegistrar for MapRegistrar {
         self.is_outdated = true;
     }
 
-    /// That of the scan plus that of the odometry since the last keyframe, reduced by the scatter of the other poses that
-    /// the scans since then may have.
+    /// That of the scan plus that of the odometry since the last keyframe.
     fn edge_information(&mut self, _: &SE2, _: f64) -> Matrix3<f64> {
         let motion_covariance = std::mem::take(&mut self.motion_covariance);
-        let information =
-            self.scan_information + motion_covariance.try_inverse().unwrap_or_default();
-        let spread = std::mem::take(&mut self.spread);
-        // (Ω⁻¹ + S)⁻¹ without the inverse of S, which may be zero.
-        (Matrix3::identity() + information * spread)
-            .try_inverse()
-            .map_or(information, |shrinking| {
-                symmetric(&(shrinking * information))
-            })
+        self.scan_information + motion_covariance.try_inverse().unwrap_or_default()
     }
 
     fn local_cloud(&self) -> &PointCloud {
@@ -200,24 +125,13 @@ impl ScanRegistrar for MapRegistrar {
     }
 
     fn snapshot(&self) -> NamedNumbers {
-        NamedNumbers::default()
-            .with(MOTION_COVARIANCE, self.motion_covariance.as_slice())
-            .with(SPREAD, self.spread.as_slice())
-            .with(STATISTICS, &self.statistics.to_array())
+        NamedNumbers::default().with(MOTION_COVARIANCE, self.motion_covariance.as_slice())
     }
 
     fn restore(&mut self, snapshot: &NamedNumbers) -> Result<(), SnapshotError> {
-        let statistics = RecordingStatistics::from_array(snapshot.get(STATISTICS)?);
-        self.statistics = statistics.ok_or(SnapshotError::Numbers(STATISTICS))?;
         self.motion_covariance = Matrix3::from_column_slice(&snapshot.get::<9>(MOTION_COVARIANCE)?);
-        self.spread = Matrix3::from_column_slice(&snapshot.get::<9>(SPREAD)?);
         Ok(())
     }
-}
-
-/// Without the rounding of its upper and lower triangle.
-fn symmetric(matrix: &Matrix3<f64>) -> Matrix3<f64> {
-    (matrix + matrix.transpose()) * 0.5
 }
 
 /// Covariance of a motion in the frame at its end. A heading error that accumulates evenly along the motion also moves its

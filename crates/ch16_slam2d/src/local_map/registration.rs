@@ -15,8 +15,6 @@ const STEPS: usize = 10;
 const HUBER_M: f64 = 0.05;
 /// Smallest information of any direction, 1/m² and 1/rad²: makes the normal equations solvable.
 const RIDGE: f64 = 1e-6;
-/// Cost of a miss, nats: as unlikely as a distance of `inlier_distance_m` with a standard deviation of a third of that.
-pub(crate) const MISS_COST: f64 = 4.5;
 
 /// Settings for registering and scoring scans.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,9 +61,6 @@ pub struct MapRegistration {
     pub fit: MapFit,
     /// Negative logarithm of the posterior density, up to a constant: misfit and prior.
     pub cost: f64,
-    /// Scatter of the other poses that the scan may have about this one, body frame, translation first: m², rad². Zero
-    /// unless [`LocalMap::locate`] compared some.
-    pub spread: Matrix3<f64>,
 }
 
 impl MapRegistration {
@@ -87,10 +82,12 @@ impl MapRegistrationConfig {
     }
 
     /// Cost of the misfit of a scan, as a negative log-likelihood.
+    ///
+    /// A miss is as unlikely as a distance of `inlier_distance_m` with a standard deviation of a third of that.
     #[must_use]
     pub fn misfit_cost(&self, scan: &PointCloud, score: f64) -> f64 {
         let points = math::min(self.independent_points, scan.len() as f64);
-        MISS_COST * points * (1.0 - score)
+        4.5 * points * (1.0 - score)
     }
 }
 
@@ -124,7 +121,6 @@ impl LocalMap {
             registered,
             fit,
             cost: config.misfit_cost(scan, fit.score) + prior,
-            spread: Matrix3::zeros(),
         }
     }
 
@@ -154,7 +150,6 @@ impl LocalMap {
             },
             fit,
             cost: config.misfit_cost(scan, fit.score) + prior.cost(&near.pose),
-            spread: Matrix3::zeros(),
         }
     }
 

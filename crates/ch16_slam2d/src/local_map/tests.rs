@@ -47,7 +47,6 @@ fn odometry(pose: SE2) -> MotionPrior {
         sigma_m: 0.05,
         sigma_rad: 0.02,
         tail: PriorTail::Student,
-        slip: None,
     }
 }
 

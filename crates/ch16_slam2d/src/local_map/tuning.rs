@@ -39,22 +39,9 @@ pub(crate) const NORMAL_RADIUS_M: f64 = 0.3;
 pub(crate) const MAX_CORRESPONDENCE_M: f64 = 0.3;
 /// Largest distance of a pair in the last stage, and of an inlier, m. No effect.
 pub(crate) const INLIER_DISTANCE_M: f64 = 0.15;
-/// Largest number of independent points of a scan. No effect on Intel; on other logs no constant is right: 10 mends some
-/// with repeated structure and ruins fr079. `RecordingStatistics` learns it.
+/// Number of independent points of a scan. No effect on Intel; on other logs no constant is right: 10 mends some with
+/// repeated structure and ruins fr079.
 pub(crate) const INDEPENDENT_POINTS: f64 = 28.0;
-/// Surfaces of a scan that fit or misfit independently of each other: a scan at its right pose costs as many nats on
-/// average. With 6 mit-csail is lost, with 12 aces in reverse.
-pub(crate) const SURFACES: f64 = 8.0;
-/// Number of scans that the stated number of independent points counts as. Not measured.
-pub(crate) const STATED_SCANS: f64 = 30.0;
-/// One slip in this many motions is assumed before any was seen. Not measured.
-pub(crate) const STATED_MOTIONS: f64 = 50.0;
-/// Standard deviations of a slip: constant part, m and rad, and share of the motion. Without slips mit-csail in reverse
-/// ends 1.73 m off in place of 0.17.
-pub(crate) const SLIP: ((f64, f64), f64) = ((0.3, 0.5), 0.5);
-/// Poses nearer than this are in one basin of convergence, m + rad. With 0.03 for refinement aces with 90° of view ends
-/// 0.39 m off in place of 0.10.
-pub(crate) const BASIN: f64 = 0.1;
 /// Cost of a point in unseen space, as a share of a miss. No effect.
 pub(crate) const UNSEEN_COST: f64 = 0.4;
 /// Score below which other starts and the window are searched. No effect.

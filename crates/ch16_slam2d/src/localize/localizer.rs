@@ -201,7 +201,6 @@ impl Localizer {
             sigma_m: math::sqrt(math::max(covariance.m11, covariance.m22)),
             sigma_rad: math::sqrt(covariance.m33),
             tail: PriorTail::Student,
-            slip: None,
         };
         self.rebuild_local_map(&prediction);
         let found = self

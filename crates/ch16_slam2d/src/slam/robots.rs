@@ -33,7 +33,7 @@ pub struct RobotConfig {
     pub inlier_distance_m: f64,
     /// Standard deviation of a point across its wall, m.
     pub point_sigma_m: f64,
-    /// Largest number of independent points of a scan; fewer if the recording's scans misfit at their poses.
+    /// Number of independent points of a scan.
     pub independent_points: f64,
     /// Cost of a point in unseen space, as a share of a miss.
     pub unseen_cost: f64,

@@ -170,7 +170,6 @@ impl PosedScan {
             sigma_m,
             sigma_rad,
             tail: PriorTail::Student,
-            slip: None,
         };
         let spread = 2.0 * math::ln(sigma_m) + math::ln(sigma_rad);
         self.misfit + prior.cost(&self.estimate) + spread
