@@ -92,7 +92,8 @@ function tableOf({ title, columns, rows }: Details['tables'][number]): HTMLEleme
   caption.textContent = title;
   const row = (cells: string[], tag: 'th' | 'td'): HTMLElement => {
     const line = create('tr');
-    line.append(...cells.map((text) => Object.assign(create(tag), { textContent: text })));
+    // A head without words is none for a screen reader.
+    line.append(...cells.map((text) => Object.assign(create(text === '' ? 'td' : tag), { textContent: text })));
     return line;
   };
   const head = create('thead');

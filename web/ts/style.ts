@@ -132,7 +132,7 @@ input[type='checkbox'] { width: 1.5rem; height: 1.5rem; margin: 0.1rem 0; accent
 table { width: 100%; border-collapse: collapse; margin-top: 0.6rem; font-size: 0.875em; font-variant-numeric: tabular-nums; }
 caption { text-align: left; font-weight: 600; }
 :is(th, td) { padding: 0.15rem 0.75rem 0.15rem 0; text-align: left; font-weight: 400; vertical-align: top; overflow-wrap: anywhere; }
-th { border-bottom: 1px solid var(--line); }
+thead tr { border-bottom: 1px solid var(--line); }
 .hidden { position: absolute; width: 1px; height: 1px; margin: -1px; overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
 [hidden] { display: none !important; }
 @media print {
