@@ -80,6 +80,7 @@ impl LapRunner {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lap::Lap;
 
     #[test]
     fn a_lap_does_not_depend_on_what_ran_before() {
