@@ -102,10 +102,7 @@ fn the_registration_by_the_readers_function_has_the_bits_of_ours() {
     assert_eq!(serve(&mut model, &function), 1);
     assert_eq!(facts(&model), ours);
     let title = panel_of(&model, panel::SWEEPS).title;
-    assert!(
-        title.starts_with("Your svd_align: iteration 0 of"),
-        "{title}"
-    );
+    assert!(title.starts_with("Your svd_align, 0 of "), "{title}");
     let sentence = model.outcome().sentence;
     assert!(
         sentence.contains("your svd_align ends") && sentence.contains("Ours ends"),

@@ -343,8 +343,10 @@ impl Model for BasinExplorer {
         if !self.shows_maps() {
             return Activity::Idle;
         }
+        // Ours is filled while the worker fills the other one.
+        let ordered = self.order_cells();
         match self.basins.work(&self.scene, &mut self.workspace) {
-            Activity::Idle => self.order_cells(),
+            Activity::Idle => ordered,
             busy => busy,
         }
     }

@@ -79,8 +79,8 @@ impl LapRunner {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Lap;
     use super::*;
+    use crate::lap::Lap;
 
     #[test]
     fn a_lap_does_not_depend_on_what_ran_before() {

@@ -152,18 +152,22 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
         let ours = entry("where ours ends", Tone::Series(1), Some(Mark::Dot), None);
         legend.push(ours);
     }
-    let by = match explorer.driver() {
-        Some(yours) => format!("Your {}: iteration", yours.orders.function.name()),
-        None => "Iteration".to_owned(),
-    };
+    let progress = format!("{iteration} of {}", explorer.last());
     Panel {
         id: panel::SWEEPS,
-        title: format!(
-            "{by} {iteration} of {}: {} pairs, rmse {:.1} cm",
-            explorer.last(),
-            shown.pairs,
-            100.0 * shown.rmse_m
-        ),
+        title: match explorer.driver() {
+            // One line, so that nothing moves as a function takes its seat.
+            Some(yours) => format!(
+                "Your {}, {progress}: rmse {:.1} cm",
+                yours.orders.function.name(),
+                100.0 * shown.rmse_m
+            ),
+            None => format!(
+                "Iteration {progress}: {} pairs, rmse {:.1} cm",
+                shown.pairs,
+                100.0 * shown.rmse_m
+            ),
+        },
         weight: Weight::Main,
         aspect: Aspect::Equal,
         x,
