@@ -131,9 +131,9 @@ fn as_fine_as_asked(
     draw: impl Fn(f64) -> Result<MapImage, MapError>,
 ) -> anyhow::Result<MapImage> {
     draw(args.resolution)
-        .or_else(|error| match finest_map(args.resolution, draw) {
-            Ok(map) => Err(anyhow!("{error}; --resolution {} fits", map.cell_m)),
-            Err(_) => Err(error.into()),
+        .map_err(|error| match finest_map(args.resolution, draw) {
+            Ok(map) => anyhow!("{error}; --resolution {} fits", map.cell_m),
+            Err(_) => error.into(),
         })
         .in_file(&args.run)
 }
