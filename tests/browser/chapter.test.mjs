@@ -13,8 +13,9 @@ import { cloudSpot, restingSpot, sliderRail } from './spots.mjs';
 
 /** The chapter's addition to the element's policy: its own fonts. */
 const POLICY = `${h.STRICT_POLICY}; font-src 'self'`;
-/** Each widget is on exactly one page. */
-assert.deepEqual(h.PAGES.flatMap(h.widgetsOf).sort(), h.schema.map(({ id }) => id).sort());
+/** Each widget is on exactly one page of the chapter; break.html is a game with one of them. */
+const CHAPTER = h.PAGES.filter((page) => page !== 'break.html');
+assert.deepEqual(CHAPTER.flatMap(h.widgetsOf).sort(), h.schema.map(({ id }) => id).sort());
 
 const PHONE = { width: 390, height: 844 };
 
@@ -291,11 +292,11 @@ describe('the chapter', () => {
       const question = tab.locator('#exercise-5 slam-predict[fact="map_disagreement_m"]');
       await question.scrollIntoViewIfNeeded();
       await tab.waitForFunction(() => customElements.get('slam-predict') !== undefined);
-      await question.getByRole('radio', { name: /^a smaller share/ }).check();
+      await question.getByRole('radio', { name: /^less than half/ }).check();
       await question.locator('button').first().click();
       await question.locator('[data-why]').waitFor({ state: 'visible' });
       const answer = (at) => at.evaluate((element) => element.shadowRoot.querySelector('.answer p').textContent);
-      assert.match(await answer(question), /^As you predicted\. You said: a smaller share than of the error\. It is 0\.090 m\.$/);
+      assert.match(await answer(question), /^As you predicted\. You said: less than half of it\. It is 0\.090 m\.$/);
 
       const rank = tab.locator('#exercise-2 slam-predict');
       await rank.scrollIntoViewIfNeeded();

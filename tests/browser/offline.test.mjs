@@ -60,7 +60,7 @@ it('a page from the disk runs a widget, replays the lap, and runs laps in worker
     assert.equal(verdict, 'quarter turn');
     const [worker] = await Promise.all([tab.waitForEvent('worker'), tab.locator('#laps').scrollIntoViewIfNeeded()]);
     assert.match(worker.url(), /^data:text\/javascript,/);
-    await tab.waitForFunction(() => /^[1-9]\d* of \d+ seeds/.test(document.querySelector('.laps-count')?.textContent ?? ''));
+    await tab.waitForFunction(() => /^[1-9]\d* of \d+ seeds/.test(document.querySelector('#laps .laps-count')?.textContent ?? ''));
   });
 });
 
