@@ -38,6 +38,9 @@ it('the arrow keys turn a slide, and a widget that has the focus keeps them', as
     assert.equal(await tab.locator('main > section:visible').count(), 1);
     await tab.keyboard.press('ArrowLeft');
     assert.equal(await shownTitle(tab), one);
+    await tab.evaluate(() => { location.hash = 'nowhere'; });
+    await tab.waitForFunction(() => location.hash === '#1');
+    assert.equal(await shownTitle(tab), one);
     await tab.keyboard.press('End');
     const last = await shownTitle(tab);
     await tab.keyboard.press('PageDown');

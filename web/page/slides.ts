@@ -13,7 +13,8 @@ function titleOf(slide: HTMLElement | undefined): string {
 }
 
 function show(number: number): void {
-  at = Math.max(0, Math.min(number, slides.length - 1));
+  // An address may hold anything.
+  at = Math.max(0, Math.min(Math.trunc(number) || 0, slides.length - 1));
   for (const [k, slide] of slides.entries()) slide.classList.toggle('shown', k === at);
   if (count !== null) count.textContent = `${at + 1} of ${slides.length}`;
   history.replaceState(null, '', `${location.search}#${at + 1}`);
@@ -82,6 +83,7 @@ for (const button of document.querySelectorAll<HTMLElement>('[data-turn]')) {
 document.querySelector('[data-notes]')?.addEventListener('click', openNotes);
 // Before the widgets: a presenter's remote control sends Page Down, wherever the focus is.
 addEventListener('keydown', press, { capture: true });
-addEventListener('hashchange', () => show(Number(location.hash.slice(1)) - 1));
+const showAddress = (): void => show(Number(location.hash.slice(1)) - 1);
+addEventListener('hashchange', showAddress);
 channel.addEventListener('message', ({ data }) => show(Number(data)));
-show((Number(location.hash.slice(1)) || 1) - 1);
+showAddress();

@@ -27,11 +27,16 @@ const AGREES_CM = 15;
 /** The two ends are joined by a line from this distance on. */
 const FAR_PX = 8;
 
+/** How far the robot is off at its end, or on the way if that is more, m. */
+export function metresOff({ graph_error_m: end, keyframe_rms_m: way }: Facts): number {
+  return Math.max(way ?? 0, end ?? 0);
+}
+
 /** How far off the robot ends, or is on the way if that is more, and how well the map agrees with itself. */
 export function numbers(facts: Facts): { off: string; agrees: string } {
   const { graph_error_m: end, keyframe_rms_m: way, map_disagreement_m: apart } = facts;
   const isWay = (way ?? 0) > (end ?? 0);
-  const off = Math.max(way ?? 0, end ?? 0);
+  const off = metresOff(facts);
   return {
     off: `${isWay ? '' : 'ends '}${off.toFixed(off < 1 ? 2 : 1)} m off${isWay ? ' on the way' : ''}`,
     agrees: typeof apart === 'number' ? agreement(Math.round(100 * apart)) : '',
@@ -40,11 +45,15 @@ export function numbers(facts: Facts): { off: string; agrees: string } {
 
 /** Whether the two passes of the map agree, so that nobody who looks at it alone would notice an error. */
 export function isUnnoticed({ map_disagreement_m: apart }: Facts): boolean {
-  return typeof apart === 'number' && Math.round(100 * apart) <= AGREES_CM;
+  return typeof apart === 'number' && agrees(Math.round(100 * apart));
+}
+
+function agrees(cm: number): boolean {
+  return cm <= AGREES_CM;
 }
 
 function agreement(cm: number): string {
-  return cm <= AGREES_CM ? `map agrees to ${cm} cm` : `map doubles by ${cm} cm`;
+  return agrees(cm) ? `map agrees to ${cm} cm` : `map doubles by ${cm} cm`;
 }
 
 /** The card's picture as an SVG, its map in squares of that side. */

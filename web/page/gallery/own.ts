@@ -2,7 +2,7 @@
 
 import type { SlamWidget } from '../../ts/main';
 import { copyText, saveBlob } from '../../ts/export';
-import { drawing, HEIGHT, isUnnoticed, numbers, WIDTH, type Facts } from './drawing';
+import { drawing, HEIGHT, isUnnoticed, metresOff, numbers, WIDTH, type Facts } from './drawing';
 
 /** Scale of a saved picture. */
 const SAVED_SCALE = 3;
@@ -46,12 +46,12 @@ export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement): void {
 
 /** The metres that the robot is off while its map agrees with itself; nothing for an error that the map shows. */
 function score(facts: Facts): number {
-  return isUnnoticed(facts) ? Math.max(facts['graph_error_m'] ?? 0, facts['keyframe_rms_m'] ?? 0) : 0;
+  return isUnnoticed(facts) ? metresOff(facts) : 0;
 }
 
 function sentence(facts: Facts): string {
   const { off, agrees } = numbers(facts);
-  const isHome = Math.max(facts['graph_error_m'] ?? 0, facts['keyframe_rms_m'] ?? 0) < HOME_M;
+  const isHome = metresOff(facts) < HOME_M;
   const lead = isHome ? 'Not broken yet: the robot' : 'The robot';
   return `${lead} ${off.startsWith('ends') ? '' : 'is '}${off}${agrees === '' ? '' : `, and its ${agrees}`}.`;
 }
