@@ -41,7 +41,7 @@ async function openSlowly(tab, url) {
 }
 
 describe('a page as it loads', () => {
-  for (const [width, height] of [[1440, 900], [1280, 680], [390, 844]]) {
+  for (const [width, height] of [[1440, 900], [1280, 680], [768, 1024], [390, 844]]) {
     for (const page of h.PAGES) {
       it(`does not jump: ${page} at ${width}×${height}`, async () => {
         await visit('', async (tab, { url }) => {

@@ -4,7 +4,7 @@
 //     node web/page/build.mjs <out-dir>
 
 import { createHash } from 'node:crypto';
-import { existsSync } from 'node:fs';
+import { existsSync, readFileSync } from 'node:fs';
 import { cp, mkdir, readFile, writeFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import path from 'node:path';
@@ -97,11 +97,16 @@ function addPictures(html, source) {
     return `${open}
     <picture>
       <source media="(prefers-color-scheme: dark)" srcset="pictures/${id}-dark.svg">
-      <img src="pictures/${id}-light.svg" alt="${escapeHtml(spec.summary)}" loading="lazy">
+      <img src="pictures/${id}-light.svg" ${sizeOf(`${id}-light.svg`)} alt="${escapeHtml(spec.summary)}" loading="lazy">
     </picture>
     <p>This is a still picture of “${escapeHtml(spec.title)}”: the widget needs JavaScript and WebAssembly.</p>
   ${close}`;
   });
+}
+
+/** The attributes by which a page reserves the place of a picture that has not arrived. */
+function sizeOf(picture) {
+  return readFileSync(path.join(outDir, 'pictures', picture), 'utf8').match(/width="[0-9.]+" height="[0-9.]+"/)[0];
 }
 
 /** Adds the still pictures of figures, shown until their scripts start: `<img data-still="lap" alt="…">`. */
