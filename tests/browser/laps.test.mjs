@@ -97,11 +97,30 @@ describe('the laps by each matcher', () => {
     document.querySelector(`${id} .laps-count`)?.textContent ?? ''), figure);
   const shown = (tab) => tab.locator(`${figure} canvas`).evaluateAll((strips) => strips.map(({ dataset }) => dataset.median));
   const says = (tab) => tab.locator(`${figure} .laps-says li`).allTextContents();
+  const guess = async (tab) => {
+    await tab.locator(figure).getByLabel('Your guess').press('ArrowRight');
+    await tab.waitForFunction((id) => document.querySelectorAll(`${id} canvas[data-median]`).length === 6, figure);
+  };
+
+  it('hide what loops do until the reader has guessed', async () => {
+    await reading(async (tab) => {
+      await lookAt(tab, figure);
+      await finished(tab);
+      const [alone, hidden] = await shown(tab);
+      assert.match(alone, /^0\.\d\d$/);
+      assert.equal(hidden, undefined);
+      assert.match((await says(tab)).join(), /^By how much .* Set your guess\.$/);
+      await guess(tab);
+      assert.match((await shown(tab))[1], /^0\.\d\d$/);
+      assert.match((await says(tab))[0], /^Point to point: median /);
+    });
+  });
 
   it('are driven again with another radius, without the cap and in the ring, and shown by another measure at once', async () => {
     await reading(async (tab) => {
       await lookAt(tab, figure);
       await finished(tab);
+      await guess(tab);
       const rms = (state) => {
         const of = Array.from({ length: SEEDS }, (_, at) => laps.drive(at + 1, state)[1]).sort((a, b) => a - b);
         return of[(SEEDS - 1) / 2].toFixed(2);

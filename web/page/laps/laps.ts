@@ -26,8 +26,8 @@ export interface Plan {
   rows: readonly Row[];
   measure(estimate: Estimate): number;
   axis: Axis;
-  /** What the reader believes that loops take off the median, as a share; 0 is no guess. */
-  guess: number;
+  /** What the reader believes that loops take off the median, as a share; the laps with loops are hidden while it is asked for. */
+  guess?: number | 'asked';
   /** Where a lap is opened. */
   lastTick: number;
 }
@@ -92,7 +92,8 @@ export class LapsFigure {
     const { rows, axis, guess } = this.#plan;
     const grid = document.createElement('div');
     grid.className = 'laps-grid';
-    grid.append(text('', 'laps-corner'), ...KINDS.map((kind) => text(capital(nameOf(kind)), 'laps-head')));
+    const head = (kind: Kind): string => capital(nameOf(kind)) + (this.#isHidden(kind) ? ': your guess first' : '');
+    grid.append(text('', 'laps-corner'), ...KINDS.map((kind) => text(head(kind), 'laps-head')));
     this.#laps = rows.map(() => []);
     this.#falseLaps = [];
     this.#strips = rows.map(({ name, label }) => {
@@ -101,7 +102,7 @@ export class LapsFigure {
         onChoose: (lap) => this.#open(lap),
       }));
       const [alone, loops] = strips;
-      if (guess > 0 && loops !== undefined) loops.guess = () => (1 - guess) * (alone?.median ?? NaN);
+      if (typeof guess === 'number' && loops !== undefined) loops.guess = () => (1 - guess) * (alone?.median ?? NaN);
       const beside = text(name, 'laps-level');
       const wrong = text('', 'laps-false');
       beside.append(wrong);
@@ -136,9 +137,14 @@ export class LapsFigure {
     const [alone, loops] = this.#strips[lap.row] ?? [];
     row?.push(lap);
     alone?.add(lap);
+    if (this.#isHidden('withLoops')) return;
     loops?.add(lap);
     const wrong = row?.filter((one) => one.wrong > 0).length ?? 0;
     if (wrong > 0) (this.#falseLaps[lap.row] as HTMLElement).textContent = `${wrong} false`;
+  }
+
+  #isHidden(kind: Kind): boolean {
+    return kind === 'withLoops' && this.#plan.guess === 'asked';
   }
 
   #showCount(): void {
@@ -155,8 +161,9 @@ export class LapsFigure {
     for (const strips of this.#strips) for (const strip of strips) strip.select(lap);
     const { measure, axis } = this.#plan;
     const false_ = wrong > 0 ? `, ${wrong} of them false` : '';
-    this.#about.textContent = `Seed ${seed} ${row.at}: ${measure(frontEnd).toFixed(2)}${axis.unit} by the front end alone, `
-      + `${measure(withLoops).toFixed(2)}${axis.unit} with ${closed} loop${closed === 1 ? '' : 's'}${false_}.`;
+    const loops = `, ${measure(withLoops).toFixed(2)}${axis.unit} with ${closed} loop${closed === 1 ? '' : 's'}${false_}`;
+    this.#about.textContent = `Seed ${seed} ${row.at}: ${measure(frontEnd).toFixed(2)}${axis.unit} by the front end alone`
+      + `${this.#isHidden('withLoops') ? '' : loops}.`;
     this.#link.hidden = false;
     this.#link.textContent = 'Drive it';
     this.#link.href = `?w=16.2&seed=${seed}&${row.state}&t=${this.#plan.lastTick}`;

@@ -9,6 +9,5 @@ export const LEVELS_PLAN: Plan = {
   rows: LEVELS.map((noise) => ({ name: `×${noise}`, label: `wheel noise ×${noise}`, at: `at noise ×${noise}`, state: `noise=${noise}` })),
   measure: ({ end }) => end,
   axis: { end: 2, unit: ' m', labels: ['0', '1', '≥ 2 m'] },
-  guess: 0,
   lastTick: 129,
 };

@@ -67,6 +67,8 @@ export class MatchersFigure {
   readonly #world = choice('in', WORLDS.map(([name]) => name));
   readonly #radius = slider('Radius of the normals', { min: 1.5, max: 6, step: 0.1, value: 4.2 }, (cells) => `${cells.toFixed(1)} cells`);
   readonly #guess = slider('Your guess: loops take off', { min: 0, max: 80, step: 1, value: 0 }, (share) => (share === 0 ? 'none yet' : `${share} %`));
+  /** The guess of the reader, once the slider is released. */
+  #guessed: number | 'asked' = 'asked';
   readonly #cap = document.createElement('input');
   readonly #says = document.createElement('ul');
 
@@ -85,7 +87,12 @@ export class MatchersFigure {
     for (const control of [this.#quantity.select, this.#world.select, this.#radius.input, this.#cap]) {
       control.addEventListener('change', () => this.#laps.show(this.#plan()));
     }
-    this.#guess.input.addEventListener('input', () => this.#laps.show(this.#plan()));
+    const guess = (): void => {
+      this.#guessed = this.#guess.input.valueAsNumber / 100 || 'asked';
+      this.#laps.show(this.#plan());
+    };
+    this.#guess.input.addEventListener('change', guess);
+    this.#guess.input.addEventListener('input', () => { if (this.#guessed !== 'asked') guess(); });
     this.#report();
   }
 
@@ -98,11 +105,17 @@ export class MatchersFigure {
     const { measure, axis } = this.#shown;
     const shared = `normals=${this.#radius.input.value}&cap=${this.#cap.checked ? 'on' : 'off'}${world}`;
     const rows = MATCHERS.map(([matcher, name]) => ({ name, label: name, at: `by ${name}`, state: `matcher=${matcher}&${shared}` }));
-    return { rows, measure, axis, guess: this.#guess.input.valueAsNumber / 100, lastTick: world === '' ? 129 : 2000 };
+    return { rows, measure, axis, guess: this.#guessed, lastTick: world === '' ? 129 : 2000 };
   }
 
-  /** The rows in words. */
+  /** The rows in words, once they are guessed. */
   #report(): void {
+    if (this.#guessed === 'asked') {
+      const question = document.createElement('li');
+      question.textContent = 'By how much do loops lower the median of each matcher? Set your guess.';
+      this.#says.replaceChildren(question);
+      return;
+    }
     this.#says.replaceChildren(...MATCHERS.map(([, name], row) => {
       const line = document.createElement('li');
       const laps = this.#laps.lapsOf(row);
