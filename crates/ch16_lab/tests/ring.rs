@@ -113,7 +113,7 @@ fn point_to_plane_closes_on_the_ring_more_often_by_normals_of_the_defaults_radiu
 
 #[test]
 fn every_matcher_beats_odometry_on_the_lap() {
-    for &matcher in LapMatcher::ALL {
+    for matcher in LapMatcher::all() {
         let mut lap = Lap::new(LapConfig::default().with_matcher(matcher));
         let end = lap.run().last().unwrap().metrics;
         assert!(

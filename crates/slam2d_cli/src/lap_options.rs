@@ -132,9 +132,9 @@ impl LapOptions {
 
 /// Parses the short names of a list, and shows its labels in the help.
 pub fn choice<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = C> {
-    let values = C::ALL
+    let values = C::NAMED
         .iter()
-        .map(|choice| PossibleValue::new(choice.name()).help(choice.label()));
+        .map(|(_, name, label)| PossibleValue::new(*name).help(*label));
     PossibleValuesParser::new(values)
         .map(|name| C::named(&name).expect("the parser lets only names of the list pass"))
 }

@@ -26,7 +26,7 @@ impl FromStr for WorldArg {
             Some(world) => Ok(Self::BuiltIn(world)),
             None if text.ends_with(".json") => Ok(Self::File(text.into())),
             None => {
-                let known = BuiltInWorld::ALL.iter().map(|world| world.name());
+                let known = BuiltInWorld::all().map(|world| world.name());
                 let known = known.collect::<Vec<_>>().join(", ");
                 Err(format!("expected {known} or a .json file"))
             }

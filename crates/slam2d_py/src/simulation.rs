@@ -79,7 +79,7 @@ pub fn simulate(
         ))
     })?;
     let noise = within("noise", noise, 0.0, 100.0, "")?;
-    let names = || BuiltInWorld::ALL.iter().map(|world| world.name());
+    let names = || BuiltInWorld::all().map(|world| world.name());
     let found = BuiltInWorld::named(world)
         .ok_or_else(|| no_choice("world", world, &names().collect::<Vec<_>>()))?;
     let mut config = LapConfig::with_seed_and_noise(seed, noise);

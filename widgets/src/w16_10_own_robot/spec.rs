@@ -13,27 +13,23 @@ pub const MAX_SCANS: f64 = 99_999_999.0;
 
 /// The options for recordings, with the names of the command line.
 pub const OPTIONS: &[Choice] = &[
-    choice("scan-topic", "scan topic"),
-    choice("odom-topic", "odometry topic"),
-    choice("odom-frame", "odometry frame"),
-    choice("body-frame", "body frame"),
+    Choice::new("scan-topic", "scan topic"),
+    Choice::new("odom-topic", "odometry topic"),
+    Choice::new("odom-frame", "odometry frame"),
+    Choice::new("body-frame", "body frame"),
 ];
 
 /// The files that can be saved, by the index of `save`.
 pub const FILES: &[Choice] = &[
-    choice("map-pgm", "map.pgm"),
-    choice("map-yaml", "map.yaml"),
-    choice("map-png", "map.png"),
-    choice("trajectory", "trajectory.tum"),
-    choice("graph", "graph.g2o"),
-    choice("report", "report.html"),
-    choice("session", "session.slam2d"),
-    choice("where", "where.tum"),
+    Choice::new("map-pgm", "map.pgm"),
+    Choice::new("map-yaml", "map.yaml"),
+    Choice::new("map-png", "map.png"),
+    Choice::new("trajectory", "trajectory.tum"),
+    Choice::new("graph", "graph.g2o"),
+    Choice::new("report", "report.html"),
+    Choice::new("session", "session.slam2d"),
+    Choice::new("where", "where.tum"),
 ];
-
-const fn choice(id: &'static str, label: &'static str) -> Choice {
-    Choice { id, label }
-}
 
 /// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
@@ -43,10 +39,10 @@ pub const PARAMS: &[&ParamSpec] = &[
         unit: "",
         kind: ParamKind::Choice {
             options: &[
-                choice("time", "time"),
-                choice("fit", "fit"),
-                choice("sigma", "σ"),
-                choice("error", "error"),
+                Choice::new("time", "time"),
+                Choice::new("fit", "fit"),
+                Choice::new("sigma", "σ"),
+                Choice::new("error", "error"),
             ],
         },
         default: 0.0,
@@ -58,9 +54,9 @@ pub const PARAMS: &[&ParamSpec] = &[
         unit: "",
         kind: ParamKind::Choice {
             options: &[
-                choice("none", "none"),
-                choice("closed", "closed"),
-                choice("all", "all"),
+                Choice::new("none", "none"),
+                Choice::new("closed", "closed"),
+                Choice::new("all", "all"),
             ],
         },
         default: 1.0,
@@ -108,8 +104,8 @@ pub const PARAMS: &[&ParamSpec] = &[
         unit: "",
         kind: ParamKind::Choice {
             options: &[
-                choice("anywhere", "anywhere"),
-                choice("here", "at the keyframe shown"),
+                Choice::new("anywhere", "anywhere"),
+                Choice::new("here", "at the keyframe shown"),
             ],
         },
         default: 0.0,
@@ -129,8 +125,8 @@ pub const PARAMS: &[&ParamSpec] = &[
         unit: "",
         kind: ParamKind::Choice {
             options: &[
-                choice("map", "becomes the map"),
-                choice("where", "is looked for on it"),
+                Choice::new("map", "becomes the map"),
+                Choice::new("where", "is looked for on it"),
             ],
         },
         default: 0.0,
@@ -155,10 +151,6 @@ pub const PARAMS: &[&ParamSpec] = &[
     &SPEED.spec,
     &MORE.spec,
 ];
-
-const fn button(id: &'static str, label: &'static str, help: &'static str) -> ButtonSpec {
-    ButtonSpec { id, label, help }
-}
 
 /// Keys of the buttons that move a keyframe.
 pub const KEYS: &[(&str, &str)] = &[
@@ -187,7 +179,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     },
     params: PARAMS,
     buttons: &[
-        button(
+        ButtonSpec::new(
             "open",
             "Open a log…",
             "Opens a log of CARMEN, ROS 1 or ROS 2, a saved session, or a pose graph; you can drop it on the picture as well. It stays in this browser.",
@@ -196,85 +188,85 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             help: "Maps the sample if no log is open, pauses or resumes a log that is being read, and plays the path of one that is mapped.",
             ..PLAY
         },
-        button(
+        ButtonSpec::new(
             "sample",
             "The sample",
             "Maps a log of the simulator's ring of corridors, and grades it against the truth.",
         ),
-        button("cancel", "Stop", "Stops reading, and keeps what was read."),
-        button(
+        ButtonSpec::new("cancel", "Stop", "Stops reading, and keeps what was read."),
+        ButtonSpec::new(
             "doubt",
             "Next doubt",
             "Goes to the next keyframe whose registration or loop should be checked.",
         ),
-        button(
+        ButtonSpec::new(
             "previous",
             "Previous loop",
             "Shows the previous loop in the list.",
         ),
-        button("next", "Next loop", "Shows the next loop of the list."),
-        button(
+        ButtonSpec::new("next", "Next loop", "Shows the next loop of the list."),
+        ButtonSpec::new(
             "turn",
             "Reject or close",
             "Removes the loop shown from the graph, or adds it; the graph is solved at once.",
         ),
-        button(
+        ButtonSpec::new(
             "mark",
             "Mark",
             "Marks the keyframe shown as one end of a loop.",
         ),
-        button(
+        ButtonSpec::new(
             "add",
             "Close with mark",
             "Registers the keyframe shown on the surroundings of the marked one, and closes the loop if it passes its tests.",
         ),
-        button(
+        ButtonSpec::new(
             "west",
             "Left",
             "Moves the keyframe shown 5 cm to the left; also the arrow key.",
         ),
-        button(
+        ButtonSpec::new(
             "east",
             "Right",
             "Moves the keyframe shown 5 cm to the right; also the arrow key.",
         ),
-        button(
+        ButtonSpec::new(
             "north",
             "Up",
             "Moves the keyframe shown 5 cm up; also the arrow key.",
         ),
-        button(
+        ButtonSpec::new(
             "south",
             "Down",
             "Moves the keyframe shown 5 cm down; also the arrow key.",
         ),
-        button("unpin", "Let go", "Releases the keyframes that you moved."),
-        button(
+        ButtonSpec::new("unpin", "Let go", "Releases the keyframes that you moved."),
+        ButtonSpec::new(
             "reference",
             "Grade…",
             "Opens a file of relations or of true poses, and compares the path with it.",
         ),
-        button(
+        ButtonSpec::new(
             "locate",
             "Where am I?…",
             "Opens another log of the same location, and localizes its robot on this map.",
         ),
-        button(
+        ButtonSpec::new(
             "locate-sample",
             "Another day",
             "Localizes the robot of the sample’s other day on this map: it is switched on halfway round.",
         ),
-        button(
+        ButtonSpec::new(
             "change",
             "Next verdict",
             "Goes to the next scan of the other log at which the robot is found or lost.",
         ),
-        button(
+        ButtonSpec::new(
             "other",
             "Take another",
             "Maps the recording again with its next topic or frame.",
         ),
-        button("save", "Save", "Saves the selected file."),
+        ButtonSpec::new("save", "Save", "Saves the selected file."),
         ButtonSpec {
             label: "Start over",
             help: "Closes the log, and resets every setting to its default.",

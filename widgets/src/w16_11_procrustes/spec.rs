@@ -2,9 +2,10 @@
 
 use ch16_lab::procrustes::{Handedness, Shape};
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::{one_of, params};
 
 /// Pairs of the largest scene.
 pub const MAX_PAIRS: usize = 5;
@@ -14,40 +15,6 @@ pub const REACH_M: f64 = 3.0;
 
 /// A whole turn, °.
 pub const WHOLE_TURN_DEG: f64 = 360.0;
-
-pub(super) static SHAPE: OneOf<Shape> = OneOf::new(
-    "shape",
-    "what is seen twice",
-    &[
-        Choice::new("corners", "four corners"),
-        Choice::new("two", "two points"),
-        Choice::new("wall", "a bare wall"),
-        Choice::new("upside-down", "corners, upside down"),
-    ],
-    &[Shape::Corners, Shape::Two, Shape::Wall, Shape::UpsideDown],
-)
-.default("upside-down")
-.help(
-    "Points of two sweeps in pairs; for the last one the sensor hangs upside down the second time.",
-);
-
-pub(super) static TRIED: OneOf<Handedness> = OneOf::new(
-    "tried",
-    "matrices tried",
-    &[
-        Choice::new("turns", "turns"),
-        Choice::new("mirrors", "mirror images"),
-    ],
-    &[Handedness::Turn, Handedness::Mirror],
-)
-.help("The source is rotated, or first mirrored and then rotated: together these are all orthogonal matrices.");
-
-pub(super) static SEED: Param<u32> = Param::seed("seed of the noise", 1)
-    .help("Seed of the range noise of both sweeps, 12 mm along each axis.");
-
-pub(super) static TURN: Param<f64> = Param::timeline("turn", "angle tried", WHOLE_TURN_DEG)
-    .unit("°")
-    .help("By how much the source is turned, after the mirror if there is one.");
 
 /// The parameters that move the points of the target along x and y.
 pub(super) static MOVED: [[Param<f64>; 2]; MAX_PAIRS] = [
@@ -73,32 +40,62 @@ pub(super) static MOVED: [[Param<f64>; 2]; MAX_PAIRS] = [
     ],
 ];
 
-/// The widget's parameters.
-pub const PARAMS: &[&ParamSpec] = &[
-    &SHAPE.spec,
-    &TRIED.spec,
-    &SEED.spec,
-    &MOVED[0][0].spec,
-    &MOVED[0][1].spec,
-    &MOVED[1][0].spec,
-    &MOVED[1][1].spec,
-    &MOVED[2][0].spec,
-    &MOVED[2][1].spec,
-    &MOVED[3][0].spec,
-    &MOVED[3][1].spec,
-    &MOVED[4][0].spec,
-    &MOVED[4][1].spec,
-    &TURN.spec,
-    &SPEED.spec,
-    &MORE.spec,
-];
-
 const fn moved(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
         .unit("m")
         .help(
             "How far the point is dragged from its observed position; only points of the scene count.",
         )
+}
+
+params! {
+    pub(super) static SHAPE: OneOf<Shape> = one_of!(
+        Shape,
+        "shape",
+        "what is seen twice",
+        &[
+            (Shape::Corners, "corners", "four corners"),
+            (Shape::Two, "two", "two points"),
+            (Shape::Wall, "wall", "a bare wall"),
+            (Shape::UpsideDown, "upside-down", "corners, upside down"),
+        ],
+    )
+    .default("upside-down")
+    .help(
+        "Points of two sweeps in pairs; for the last one the sensor hangs upside down the second time.",
+    );
+
+    pub(super) static TRIED: OneOf<Handedness> = one_of!(
+        Handedness,
+        "tried",
+        "matrices tried",
+        &[
+            (Handedness::Turn, "turns", "turns"),
+            (Handedness::Mirror, "mirrors", "mirror images"),
+        ],
+    )
+    .help("The source is rotated, or first mirrored and then rotated: together these are all orthogonal matrices.");
+
+    pub(super) static SEED: Param<u32> = Param::seed("seed of the noise", 1)
+        .help("Seed of the range noise of both sweeps, 12 mm along each axis.");
+
+    use MOVED[0][0];
+    use MOVED[0][1];
+    use MOVED[1][0];
+    use MOVED[1][1];
+    use MOVED[2][0];
+    use MOVED[2][1];
+    use MOVED[3][0];
+    use MOVED[3][1];
+    use MOVED[4][0];
+    use MOVED[4][1];
+
+    pub(super) static TURN: Param<f64> = Param::timeline("turn", "angle tried", WHOLE_TURN_DEG)
+        .unit("°")
+        .help("By how much the source is turned, after the mirror if there is one.");
+
+    use SPEED;
+    use MORE;
 }
 
 /// The constant description of the widget.

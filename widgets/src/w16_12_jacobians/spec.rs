@@ -2,9 +2,10 @@
 
 use ch16_lab::jacobians::WrongJacobian;
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::{one_of, params};
 
 /// Largest number of steps.
 pub const MAX_STEPS: usize = 40;
@@ -24,62 +25,55 @@ pub enum Curve {
     Chi2,
 }
 
-pub(super) static BIAS: Param<f64> = Param::slider(
-    "bias",
-    "each edge turns too little by",
-    [0.0, MAX_BIAS_DEG],
-    BIAS_STEP_DEG,
-)
-.unit("°")
-.default(6.0)
-.help("How much odometry contradicts the loop: at 0 all measurements agree.");
+params! {
+    pub(super) static BIAS: Param<f64> = Param::slider(
+        "bias",
+        "each edge turns too little by",
+        [0.0, MAX_BIAS_DEG],
+        BIAS_STEP_DEG,
+    )
+    .unit("°")
+    .default(6.0)
+    .help("How much odometry contradicts the loop: at 0 all measurements agree.");
 
-pub(super) static WRONG: OneOf<WrongJacobian> = OneOf::new(
-    "wrong",
-    "the wrong Jacobian is",
-    &[
-        Choice::new("twice", "twice too long"),
-        Choice::new("left", "left for right"),
-    ],
-    &[WrongJacobian::TwiceTooLong, WrongJacobian::LeftForRight],
-)
-.help("Twice the exact one, or that of a perturbation on the other side of the pose.");
+    pub(super) static WRONG: OneOf<WrongJacobian> = one_of!(
+        WrongJacobian,
+        "wrong",
+        "the wrong Jacobian is",
+        &[
+            (WrongJacobian::TwiceTooLong, "twice", "twice too long"),
+            (WrongJacobian::LeftForRight, "left", "left for right"),
+        ],
+    )
+    .help("Twice the exact one, or that of a perturbation on the other side of the pose.");
 
-pub(super) static SCATTER: Param<f64> =
-    Param::slider("scatter", "start thrown off by", [0.0, 0.3], 0.05)
-        .unit("m, rad")
-        .default(0.2)
-        .help("Standard deviation of the noise that is added to each pose before the first step.");
+    pub(super) static SCATTER: Param<f64> =
+        Param::slider("scatter", "start thrown off by", [0.0, 0.3], 0.05)
+            .unit("m, rad")
+            .default(0.2)
+            .help("Standard deviation of the noise that is added to each pose before the first step.");
 
-pub(super) static SEED: Param<u32> =
-    Param::seed("seed of the throw", 1).help("Seed of that noise.");
+    pub(super) static SEED: Param<u32> =
+        Param::seed("seed of the throw", 1).help("Seed of that noise.");
 
-pub(super) static CURVE: OneOf<Curve> = OneOf::new(
-    "curve",
-    "curves show",
-    &[
-        Choice::new("distance", "distance to the optimum"),
-        Choice::new("chi2", "χ² above the optimum"),
-    ],
-    &[Curve::Distance, Curve::Chi2],
-)
-.help("Largest distance of a pose from its optimum, or the difference of χ² from its minimum.");
+    pub(super) static CURVE: OneOf<Curve> = one_of!(
+        Curve,
+        "curve",
+        "curves show",
+        &[
+            (Curve::Distance, "distance", "distance to the optimum"),
+            (Curve::Chi2, "chi2", "χ² above the optimum"),
+        ],
+    )
+    .help("Largest distance of a pose from its optimum, or the difference of χ² from its minimum.");
 
-pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MAX_STEPS as f64)
-    .default(MAX_STEPS as f64)
-    .help("How many steps each solver has done; beyond its last one it has converged.");
+    pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MAX_STEPS as f64)
+        .default(MAX_STEPS as f64)
+        .help("How many steps each solver has done; beyond its last one it has converged.");
 
-/// The widget's parameters.
-pub const PARAMS: &[&ParamSpec] = &[
-    &BIAS.spec,
-    &WRONG.spec,
-    &SCATTER.spec,
-    &SEED.spec,
-    &CURVE.spec,
-    &STEPS.spec,
-    &SPEED.spec,
-    &MORE.spec,
-];
+    use SPEED;
+    use MORE;
+}
 
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {

@@ -4,9 +4,10 @@ use ch16_lab::basin::BasinScene;
 use ch16_lab::basin::{BasinPlace, OffsetAxis};
 use ch16_slam2d::icp::IcpVariant;
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::{one_of, params};
 
 /// Largest offset of a start, m.
 pub const OFFSET_SPAN_M: f64 = 1.5;
@@ -36,119 +37,10 @@ pub enum Phase {
     Swept,
 }
 
-pub(super) static HEADING: Param<f64> =
-    Param::slider("heading", "heading error", [-180.0, 180.0], 1.0)
-        .unit("°")
-        .default(25.0)
-        .help("How far the first guess is turned away from the truth.");
-
-pub(super) static DX: Param<f64> = offset("dx", "Δx of the guess", 0.55);
-
-pub(super) static DY: Param<f64> = offset("dy", "Δy of the guess", 0.45);
-
-pub(super) static SCENE: OneOf<BasinPlace> = OneOf::new(
-    "scene",
-    "scene",
-    &[
-        Choice::new("room", "room"),
-        Choice::new("fence", "picket fence"),
-    ],
-    &[BasinPlace::Room, BasinPlace::Fence],
-)
-.help("What the two sweeps see: room A, almost a square, or a row of equal posts 0.5 m apart.");
-
-pub(super) static VARIANT: OneOf<IcpVariant> = OneOf::new(
-    "variant",
-    "error that ICP reduces",
-    &[
-        Choice::new("point-to-point", "point to point"),
-        Choice::new("point-to-plane", "point to plane"),
-    ],
-    &[IcpVariant::PointToPoint, IcpVariant::PointToPlane],
-)
-.help("Distance between paired points, or distance along the wall's normal.");
-
-pub(super) static TAU: Param<f64> = Param::slider("tau", "pairing distance τ", [0.1, 1.6], 0.05)
-    .unit("m")
-    .default(0.7)
-    .help("A point farther than this from the target has no pair.");
-
-pub(super) static LIMIT: OneOf<usize> = OneOf::new(
-    "limit",
-    "iterations at most",
-    &[Choice::new("30", "30"), Choice::new("200", "200")],
-    &ITERATION_LIMITS,
-)
-.help("After this many iterations a registration stops, converged or not.");
-
-pub(super) static TRIM: Param<f64> =
-    Param::slider("trim", "share of pairs dropped", [0.0, 0.7], 0.05).help(
-        "Trimming drops this share of the pairs in each iteration, the longest first; 0 keeps all.",
-    );
-
-pub(super) static HUBER: Param<f64> =
-    Param::slider("huber", "Huber width", [0.02, HUBER_OFF_M], 0.02)
-        .unit("m")
-        .default(HUBER_OFF_M)
-        .help("Longer pairs have less weight; at 1.6 m all pairs have equal weight.");
-
-pub(super) static AXIS: OneOf<OffsetAxis> = OneOf::new(
-    "axis",
-    "basin map shows heading and",
-    &[Choice::new("dx", "Δx"), Choice::new("dy", "Δy")],
-    &[OffsetAxis::Dx, OffsetAxis::Dy],
-)
-.help("The vertical axis of the basin maps; the other offset comes from its slider.");
-
-pub(super) static PATHS: Param<bool> = Param::switch("paths", "paths of other starts")
-    .help("Draws over the basin map the paths from starts all over it, iteration by iteration.");
-
-pub(super) static EDGE: OneOf<Phase> = OneOf::new(
-    "edge",
-    "the basin's edge",
-    &[
-        Choice::new("off", "is not asked for"),
-        Choice::new("mark", "is for you to mark"),
-        Choice::new("swept", "is swept"),
-    ],
-    &[Phase::Off, Phase::Marking, Phase::Swept],
-)
-.help("Asks how far a guess at the right position may be turned and still converge to the truth; while you mark it, the maps are covered.");
-
 /// The reader's marks of the edge of the basin, for both errors.
 pub(super) static EDGES: [Param<f64>; 2] = [
     edge("edge-p2p", "your edge, point to point"),
     edge("edge-p2l", "your edge, point to plane"),
-];
-
-pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
-    .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
-
-pub(super) static ITERATION: Param<f64> =
-    Param::timeline("iteration", "iteration", ITERATION_LIMITS[1] as f64).help(
-        "Which iteration is shown; 0 is the first guess, and beyond the last one is the end.",
-    );
-
-/// The widget's parameters.
-pub const PARAMS: &[&ParamSpec] = &[
-    &HEADING.spec,
-    &DX.spec,
-    &DY.spec,
-    &SCENE.spec,
-    &VARIANT.spec,
-    &TAU.spec,
-    &LIMIT.spec,
-    &TRIM.spec,
-    &HUBER.spec,
-    &AXIS.spec,
-    &PATHS.spec,
-    &EDGE.spec,
-    &EDGES[0].spec,
-    &EDGES[1].spec,
-    &SEED.spec,
-    &ITERATION.spec,
-    &SPEED.spec,
-    &MORE.spec,
 ];
 
 const fn edge(id: &'static str, label: &'static str) -> Param<f64> {
@@ -162,6 +54,107 @@ const fn offset(id: &'static str, label: &'static str, default: f64) -> Param<f6
         .unit("m")
         .default(default)
         .help("How far the first guess is moved away from the truth.")
+}
+
+params! {
+    pub(super) static HEADING: Param<f64> =
+        Param::slider("heading", "heading error", [-180.0, 180.0], 1.0)
+            .unit("°")
+            .default(25.0)
+            .help("How far the first guess is turned away from the truth.");
+
+    pub(super) static DX: Param<f64> = offset("dx", "Δx of the guess", 0.55);
+
+    pub(super) static DY: Param<f64> = offset("dy", "Δy of the guess", 0.45);
+
+    pub(super) static SCENE: OneOf<BasinPlace> = one_of!(
+        BasinPlace,
+        "scene",
+        "scene",
+        &[
+            (BasinPlace::Room, "room", "room"),
+            (BasinPlace::Fence, "fence", "picket fence"),
+        ],
+    )
+    .help("What the two sweeps see: room A, almost a square, or a row of equal posts 0.5 m apart.");
+
+    pub(super) static VARIANT: OneOf<IcpVariant> = one_of!(
+        IcpVariant,
+        "variant",
+        "error that ICP reduces",
+        &[
+            (IcpVariant::PointToPoint, "point-to-point", "point to point"),
+            (IcpVariant::PointToPlane, "point-to-plane", "point to plane"),
+        ],
+    )
+    .help("Distance between paired points, or distance along the wall's normal.");
+
+    pub(super) static TAU: Param<f64> = Param::slider("tau", "pairing distance τ", [0.1, 1.6], 0.05)
+        .unit("m")
+        .default(0.7)
+        .help("A point farther than this from the target has no pair.");
+
+    pub(super) static LIMIT: OneOf<usize> = one_of!(
+        usize,
+        "limit",
+        "iterations at most",
+        &[
+            (ITERATION_LIMITS[0], "30", "30"),
+            (ITERATION_LIMITS[1], "200", "200"),
+        ],
+    )
+    .help("After this many iterations a registration stops, converged or not.");
+
+    pub(super) static TRIM: Param<f64> =
+        Param::slider("trim", "share of pairs dropped", [0.0, 0.7], 0.05).help(
+            "Trimming drops this share of the pairs in each iteration, the longest first; 0 keeps all.",
+        );
+
+    pub(super) static HUBER: Param<f64> =
+        Param::slider("huber", "Huber width", [0.02, HUBER_OFF_M], 0.02)
+            .unit("m")
+            .default(HUBER_OFF_M)
+            .help("Longer pairs have less weight; at 1.6 m all pairs have equal weight.");
+
+    pub(super) static AXIS: OneOf<OffsetAxis> = one_of!(
+        OffsetAxis,
+        "axis",
+        "basin map shows heading and",
+        &[
+            (OffsetAxis::Dx, "dx", "Δx"),
+            (OffsetAxis::Dy, "dy", "Δy"),
+        ],
+    )
+    .help("The vertical axis of the basin maps; the other offset comes from its slider.");
+
+    pub(super) static PATHS: Param<bool> = Param::switch("paths", "paths of other starts")
+        .help("Draws over the basin map the paths from starts all over it, iteration by iteration.");
+
+    pub(super) static EDGE: OneOf<Phase> = one_of!(
+        Phase,
+        "edge",
+        "the basin's edge",
+        &[
+            (Phase::Off, "off", "is not asked for"),
+            (Phase::Marking, "mark", "is for you to mark"),
+            (Phase::Swept, "swept", "is swept"),
+        ],
+    )
+    .help("Asks how far a guess at the right position may be turned and still converge to the truth; while you mark it, the maps are covered.");
+
+    use EDGES[0];
+    use EDGES[1];
+
+    pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
+        .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
+
+    pub(super) static ITERATION: Param<f64> =
+        Param::timeline("iteration", "iteration", ITERATION_LIMITS[1] as f64).help(
+            "Which iteration is shown; 0 is the first guess, and beyond the last one is the end.",
+        );
+
+    use SPEED;
+    use MORE;
 }
 
 /// The constant description of the widget.

@@ -261,7 +261,7 @@ impl Model for FullLap {
             Tool::chosen(&self.values),
         ) {
             (Disclosure::First(_), Some(_)) => Disclosure::First(EDITING),
-            (Disclosure::All, None) => Disclosure::AllBut(FLAT_CONTROLS),
+            (Disclosure::All, None) => Disclosure::AllBut(&FLAT_CONTROLS),
             (layer, _) => layer,
         }
     }

@@ -8,10 +8,11 @@ use ch16_slam2d::chi_squared::CHAPTER_QUANTILE;
 use ch16_slam2d::loops::GateModel;
 use pr_sim::sketch::limits;
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{Choice, MORE, OneOf, Param, ParamKind, ParamSpec};
+use widget_kit::param::{MORE, OneOf, Param, optional};
 use widget_kit::playback::SPEED;
 use widget_kit::run::{LOOPS, NOISE, seed};
-use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec, buttons};
+use widget_kit::{one_of, params};
 
 /// Ticks of a lap of the Apartment.
 pub const LAP_TICKS: f64 = lap::LAP_TICKS as f64;
@@ -51,361 +52,125 @@ pub enum Picked {
     Loop,
 }
 
-pub(super) static WORLD: OneOf<Option<BuiltInWorld>> = OneOf::new(
-    "world",
-    "world",
-    &[
-        Choice::new("apartment", "the Apartment"),
-        Choice::new("ring", "a ring of corridors"),
-        Choice::new("twins", "two rooms alike"),
-        Choice::new("corridor", "a bare corridor"),
-        Choice::new("hall", "a round hall"),
-        Choice::new("own", "your own flat"),
-    ],
-    &[
-        Some(BuiltInWorld::Apartment),
-        Some(BuiltInWorld::Ring),
-        Some(BuiltInWorld::TwinRooms),
-        Some(BuiltInWorld::Corridor),
-        Some(BuiltInWorld::Hall),
-        None,
-    ],
-)
-.help("The world. The Apartment uses the chapter's estimator, every other world the default one.");
-
-pub(super) static EDIT: OneOf<Option<Tool>> = OneOf::new(
-    "edit",
-    "tool on the map",
-    &[
-        Choice::new("off", "off"),
-        Choice::new("move", "hand"),
-        Choice::new("wall", "pencil"),
-        Choice::new("way", "way"),
-        Choice::new("remove", "eraser"),
-    ],
-    &[None, Some(Tool::Move), Some(Tool::Wall), Some(Tool::Way), Some(Tool::Remove)],
-)
-.help("What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, or remove something. All on a grid of 5 cm.");
-
-pub(super) static PIECE: OneOf<Option<usize>> = OneOf::new(
-    "piece",
-    "piece of the flat",
-    &[
-        Choice::new("nothing", "nothing"),
-        Choice::new("wall", "a wall"),
-        Choice::new("first-end", "its first end"),
-        Choice::new("second-end", "its second end"),
-        Choice::new("way-point", "a way point"),
-        Choice::new("start", "the start"),
-        Choice::new("heading", "its heading"),
-    ],
-    &[None, Some(0), Some(1), Some(2), Some(3), Some(4), Some(5)],
-)
-.help("The piece of the flat that the arrows move and Remove deletes. On the map, a press selects it.");
-
-pub(super) static PIECE_NUMBER: Param<usize> =
-    Param::typed("piece-number", "number of the piece", MAX_PIECES)
-        .default(1.0)
-        .help("The number of the wall or of the way point, from 1.");
-
-pub(super) static FLAT: ParamSpec = ParamSpec {
-    id: "flat",
-    label: "your flat as text",
-    unit: "",
-    kind: ParamKind::Text { most: MAX_FLAT },
-    default: 0.0,
-    help: "Walls, start and way points of your own flat to the centimetre, as in links. It makes the world your own flat.",
-};
-
-pub(super) static SEED: Param<u32> = seed(lap::CANONICAL_SEED);
-
-pub(super) static GATE: Param<f64> = Param::slider("gate", "gate quantile", [0.90, 0.999], 0.001)
-    .default(CHAPTER_QUANTILE)
-    .help("Quantile of χ² with 3 degrees of freedom: 0.95 is χ² up to 7.815. So many true loops pass if the robot does not move, fewer after a drive.");
-
-pub(super) static GATE_MODEL: OneOf<GateModel> = OneOf::new(
-    "gate-model",
-    "drift in the gate",
-    &[
-        Choice::new("path", "path"),
-        Choice::new("exact", "exact"),
-    ],
-    &[GateModel::PathApproximation, GateModel::ExactMarginal],
-)
-.help("Path: the chapter's, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. An outline contains the positions that pass at the registered heading.");
-
-pub(super) static MATCHER: OneOf<LapMatcher> = OneOf::new(
-    "matcher",
-    "matcher",
-    &[
-        Choice::new("p2p", "point to point"),
-        Choice::new("p2l", "point to plane"),
-        Choice::new("ndt", "NDT"),
-    ],
-    LapMatcher::ALL,
-)
-.help("What registers each sweep, in the front end and for loops: the chapter's ICP, point to point, or point to plane, or the normal distributions transform.");
-
-pub(super) static INFORMATION: OneOf<InformationFrame> = OneOf::new(
-    "information",
-    "information",
-    &[
-        Choice::new("chapter", "as the chapter's figures"),
-        Choice::new("exact", "at the edge's target"),
-    ],
-    InformationFrame::ALL,
-)
-.help("The frame of an edge's information. As the chapter's figures were computed, it is turned by a heading of the world; exactly, it is that of the edge's target, the newer of its ends.");
-
-pub(super) static NORMALS: Param<f64> = Param::slider("normals", "radius of the normals", [0.0, 8.0], 0.1)
-    .unit("cells")
-    .help("A point's normal comes from its neighbours within this radius, in cells of 12 cm. 0 is the matcher's own: 2.5, and 4.2 for point to plane.");
-
-pub(super) static CAP: Param<bool> = Param::switch("cap", "cap on the information")
-    .on()
-    .help("Whether the information of an edge is scaled down to 2500 at most, a deviation of 2 cm and of 0.02 rad.");
-
-pub(super) static MISSES: Param<bool> = Param::switch("misses", "keep beams that hit no wall")
-    .help("A beam that hits no wall reports the maximum range. Kept as points, a common mistake, these make a wall that moves with the robot.");
-
-pub(super) static PICK: OneOf<Picked> = OneOf::new(
-    "pick",
-    "look at",
-    &[
-        Choice::new("nothing", "nothing"),
-        Choice::new("keyframe", "a keyframe"),
-        Choice::new("edge", "an edge"),
-        Choice::new("loop", "a loop"),
-    ],
-    &[Picked::Nothing, Picked::Keyframe, Picked::Edge, Picked::Loop],
-)
-.help("The part of the graph whose numbers are shown. On the map, a click or a tap selects it, and one beside everything selects nothing.");
-
-pub(super) static NUMBER: Param<usize> = Param::typed("number", "number", MAX_NODES)
-    .help("The number of the keyframe; of the keyframe where the edge begins; of the newer keyframe of the loop.");
-
-pub(super) static OWN: OneOf<Option<Claim>> = OneOf::new(
-    "own",
-    "your own loop",
-    &[
-        Choice::new("none", "none"),
-        Choice::new("registered", "registered"),
-        Choice::new("truth", "the truth"),
-        Choice::new("same-place", "“the same place”"),
-    ],
-    &[None, Some(Claim::Registered), Some(Claim::Truth), Some(Claim::SamePlace)],
-)
-.help("A loop between any two keyframes. Registered: the registration of their sweeps, from their poses in the graph. The truth: what no robot knows. “The same place”: both at one position, right or wrong.");
-
-pub(super) static OWN_FROM: Param<usize> =
-    Param::typed("own-from", "your loop: from keyframe", MAX_NODES)
-        .default(40.0)
-        .help(
-            "One end of your own loop. On the map, drag from the selected keyframe to any other.",
-        );
-
-pub(super) static OWN_TO: Param<usize> =
-    Param::typed("own-to", "your loop: to keyframe", MAX_NODES)
-        .default(12.0)
-        .help("The other end of your own loop.");
-
-pub(super) static OWN_GATE: Param<bool> =
-    Param::switch("own-gate", "your loop has to pass the gate")
-        .on()
-        .help("Whether the tests may reject your own loop: fit, pairs and gate if it is registered, the gate if it is asserted.");
-
-pub(super) static KERNEL: OneOf<OwnKernel> = OneOf::new(
-    "kernel",
-    "kernel of your loop",
-    &[
-        Choice::new("quadratic", "quadratic"),
-        Choice::new("huber", "Huber"),
-        Choice::new("dcs", "DCS"),
-    ],
-    OwnKernel::ALL,
-)
-.help("The robust kernel of your own loop: plain least squares, Huber's kernel from 1.345 standard deviations on, or dynamic covariance scaling from χ² 10 on.");
-
-pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", MAX_TICKS)
-    .default(FIRST_LOOP_TICK)
-    .help("The moment shown; a tick is a quarter of a second, the marks are loops, and beyond the end means the end.");
-
-pub(super) static WIPE: Param<f64> = Param::slider("wipe", "before and after", [0.0, 1.0], 0.01)
-    .default(0.45)
-    .help("At a closed loop: left of the line the map before it, right of it the map after it. The line's place, as a share of the map's width.");
-
-pub(super) static FUTURE: Param<bool> = Param::switch("future", "show what is to come")
-    .help("Draws the whole lap into the plots, including what comes after the moment shown.");
-
-/// The widget's parameters.
-pub const PARAMS: &[&ParamSpec] = &[
-    &WORLD.spec,
-    &EDIT.spec,
-    &PIECE.spec,
-    &PIECE_NUMBER.spec,
-    &FLAT,
-    &NOISE.spec,
-    &LOOPS.spec,
-    &SEED.spec,
-    &GATE.spec,
-    &GATE_MODEL.spec,
-    &MATCHER.spec,
-    &INFORMATION.spec,
-    &NORMALS.spec,
-    &CAP.spec,
-    &MISSES.spec,
-    &PICK.spec,
-    &NUMBER.spec,
-    &OWN.spec,
-    &OWN_FROM.spec,
-    &OWN_TO.spec,
-    &OWN_GATE.spec,
-    &KERNEL.spec,
-    &WIPE.spec,
-    &TICK.spec,
-    &FUTURE.spec,
-    &SPEED.spec,
-    &MORE.spec,
+/// The buttons that go from loop to loop.
+pub const LOOP_BUTTONS: &[ButtonSpec] = &[
+    ButtonSpec::new(
+        "before",
+        "Before the loop",
+        "One tick before the loop is tried.",
+    ),
+    ButtonSpec::new(
+        "at",
+        "At the loop",
+        "The tick of the loop: watch the history move.",
+    ),
+    ButtonSpec::new(
+        "after",
+        "After the loop",
+        "One tick after the loop was tried.",
+    ),
+    ButtonSpec::new(
+        "next",
+        "Next loop",
+        "Go to the next loop; after the last one, to the first.",
+    ),
 ];
 
-/// Goes to the tick before the loop.
-const BEFORE: ButtonSpec = ButtonSpec {
-    id: "before",
-    label: "Before the loop",
-    help: "One tick before the loop is tried.",
-};
-
-/// Goes to the tick of the loop, with its animation.
-const AT: ButtonSpec = ButtonSpec {
-    id: "at",
-    label: "At the loop",
-    help: "The tick of the loop: watch the history move.",
-};
-
-/// Goes to the tick after the loop.
-const AFTER: ButtonSpec = ButtonSpec {
-    id: "after",
-    label: "After the loop",
-    help: "One tick after the loop was tried.",
-};
-
-/// Goes to the next loop.
-const NEXT: ButtonSpec = ButtonSpec {
-    id: "next",
-    label: "Next loop",
-    help: "Go to the next loop; after the last one, to the first.",
-};
-
-/// The buttons that go from loop to loop.
-pub const LOOP_BUTTONS: [ButtonSpec; 4] = [BEFORE, AT, AFTER, NEXT];
-
-/// Selects the previous keyframe, edge or loop.
-const ONE_BACK: ButtonSpec = ButtonSpec {
-    id: "one-back",
-    label: "Previous",
-    help: "Selects the previous keyframe, edge or loop; without a selection, the newest keyframe.",
-};
-
-/// Selects the next one.
-const ONE_ON: ButtonSpec = ButtonSpec {
-    id: "one-on",
-    label: "Next",
-    help: "Selects the next keyframe, edge or loop; without a selection, the first keyframe.",
-};
-
-/// Sets one end of a custom loop, then the other.
-const TIE: ButtonSpec = ButtonSpec {
-    id: "tie",
-    label: "Tie",
-    help: "Starts your own loop at the selected keyframe; select another one and press it again.",
-};
-
-/// Undoes the last change of the custom loop.
-const UNDO: ButtonSpec = ButtonSpec {
-    id: "undo",
-    label: "Undo",
-    help: "Undoes the last change of your own loop.",
-};
-
-const fn flat_button(id: &'static str, label: &'static str, help: &'static str) -> ButtonSpec {
-    ButtonSpec { id, label, help }
-}
+/// The buttons that select a part of the graph and tie two keyframes.
+const GRAPH_BUTTONS: &[ButtonSpec] = &[
+    ButtonSpec::new(
+        "one-back",
+        "Previous",
+        "Selects the previous keyframe, edge or loop; without a selection, the newest keyframe.",
+    ),
+    ButtonSpec::new(
+        "one-on",
+        "Next",
+        "Selects the next keyframe, edge or loop; without a selection, the first keyframe.",
+    ),
+    ButtonSpec::new(
+        "tie",
+        "Tie",
+        "Starts your own loop at the selected keyframe; select another one and press it again.",
+    ),
+    ButtonSpec::new("undo", "Undo", "Undoes the last change of your own loop."),
+];
 
 /// Starts and ends the editing of the flat.
-pub const EDIT_FLAT: ButtonSpec = flat_button(
+pub const EDIT_FLAT: ButtonSpec = ButtonSpec::new(
     "edit-flat",
     "Edit the flat",
     "Starts or ends editing: a drag on the map draws a wall.",
 );
 
-/// The buttons that edit the flat.
-const FLAT_BUTTONS: [ButtonSpec; 14] = [
-    flat_button(
+/// The buttons that edit the flat, which are shown only during editing.
+const FLAT_BUTTONS: &[ButtonSpec] = &[
+    ButtonSpec::new(
         "piece-back",
         "Previous piece",
         "Selects the previous wall, end or way point; also Page Up.",
     ),
-    flat_button(
+    ButtonSpec::new(
         "piece-on",
         "Next piece",
         "Selects the next wall, end or way point; also Page Down.",
     ),
-    flat_button(
+    ButtonSpec::new(
         "west",
         "Left",
         "Moves the selection 5 cm to the left, or turns the start back; also the arrow key.",
     ),
-    flat_button(
+    ButtonSpec::new(
         "east",
         "Right",
         "Moves the selection 5 cm to the right, or turns the start on; also the arrow key.",
     ),
-    flat_button(
+    ButtonSpec::new(
         "north",
         "Up",
         "Moves the selection 5 cm up, or turns the start on; also the arrow key.",
     ),
-    flat_button(
+    ButtonSpec::new(
         "south",
         "Down",
         "Moves the selection 5 cm down, or turns the start back; also the arrow key.",
     ),
-    flat_button(
+    ButtonSpec::new(
         "remove",
         "Remove",
         "Removes the selected wall or way point; also Delete.",
     ),
-    flat_button(
+    ButtonSpec::new(
         "add-wall",
         "Add a wall",
         "Adds a wall of one metre in the middle and selects it.",
     ),
-    flat_button(
+    ButtonSpec::new(
         "add-way-point",
         "Add a way point",
         "Adds a way point after the selected one, or at the end, and selects it.",
     ),
-    flat_button(
+    ButtonSpec::new(
         "turn-here",
         "Seen again from here",
         "From the selected way point on, known locations are seen again: the map from there is compared with the one before.",
     ),
-    flat_button(
+    ButtonSpec::new(
         "take-back",
         "Undo edit",
         "Undoes the last change of the flat; also Ctrl+Z.",
     ),
-    flat_button(
+    ButtonSpec::new(
         "do-again",
         "Redo edit",
         "Repeats the change that was undone last; also Ctrl+Y.",
     ),
-    flat_button(
+    ButtonSpec::new(
         "open-flat",
         "Open a flat",
         "Opens a world from a JSON file, as slam2d --world reads it.",
     ),
-    flat_button(
+    ButtonSpec::new(
         "save-flat",
         "Save the flat",
         "Saves the world as a JSON file that slam2d --world reads.",
@@ -426,24 +191,16 @@ pub const FLAT_KEYS: &[(&str, &str)] = &[
 ];
 
 /// Controls that are shown only during editing.
-pub const FLAT_CONTROLS: &[&str] = &[
-    "piece",
-    "piece-number",
-    "piece-back",
-    "piece-on",
-    "west",
-    "east",
-    "north",
-    "south",
-    "remove",
-    "add-wall",
-    "add-way-point",
-    "turn-here",
-    "take-back",
-    "do-again",
-    "open-flat",
-    "save-flat",
-];
+pub const FLAT_CONTROLS: [&str; FLAT_BUTTONS.len() + 2] = {
+    let mut ids = [PIECE.spec.id; FLAT_BUTTONS.len() + 2];
+    ids[1] = PIECE_NUMBER.spec.id;
+    let mut index = 0;
+    while index < FLAT_BUTTONS.len() {
+        ids[index + 2] = FLAT_BUTTONS[index].id;
+        index += 1;
+    }
+    ids
+};
 
 /// The parts shown during editing: the map as large as it gets, the tools, and a way back.
 pub const EDITING: Opening = Opening {
@@ -451,6 +208,164 @@ pub const EDITING: Opening = Opening {
     params: &["edit"],
     buttons: &["play", "edit-flat", "take-back"],
 };
+
+params! {
+    pub(super) static WORLD: OneOf<Option<BuiltInWorld>> = one_of!(
+        Option<BuiltInWorld>,
+        "world",
+        "world",
+        &optional::<_, 6>(BuiltInWorld::NAMED, 5, ["own", "your own flat"]),
+    )
+    .help("The world. The Apartment uses the chapter's estimator, every other world the default one.");
+
+    pub(super) static EDIT: OneOf<Option<Tool>> = one_of!(
+        Option<Tool>,
+        "edit",
+        "tool on the map",
+        &[
+            (None, "off", "off"),
+            (Some(Tool::Move), "move", "hand"),
+            (Some(Tool::Wall), "wall", "pencil"),
+            (Some(Tool::Way), "way", "way"),
+            (Some(Tool::Remove), "remove", "eraser"),
+        ],
+    )
+    .help("What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, or remove something. All on a grid of 5 cm.");
+
+    pub(super) static PIECE: OneOf<Option<usize>> = one_of!(
+        Option<usize>,
+        "piece",
+        "piece of the flat",
+        &[
+            (None, "nothing", "nothing"),
+            (Some(0), "wall", "a wall"),
+            (Some(1), "first-end", "its first end"),
+            (Some(2), "second-end", "its second end"),
+            (Some(3), "way-point", "a way point"),
+            (Some(4), "start", "the start"),
+            (Some(5), "heading", "its heading"),
+        ],
+    )
+    .help("The piece of the flat that the arrows move and Remove deletes. On the map, a press selects it.");
+
+    pub(super) static PIECE_NUMBER: Param<usize> =
+        Param::typed("piece-number", "number of the piece", MAX_PIECES)
+            .default(1.0)
+            .help("The number of the wall or of the way point, from 1.");
+
+    pub(super) static FLAT: Param<String> = Param::text("flat", "your flat as text", MAX_FLAT)
+        .help("Walls, start and way points of your own flat to the centimetre, as in links. It makes the world your own flat.");
+
+    use NOISE;
+    use LOOPS;
+
+    pub(super) static SEED: Param<u32> = seed(lap::CANONICAL_SEED);
+
+    pub(super) static GATE: Param<f64> = Param::slider("gate", "gate quantile", [0.90, 0.999], 0.001)
+        .default(CHAPTER_QUANTILE)
+        .help("Quantile of χ² with 3 degrees of freedom: 0.95 is χ² up to 7.815. So many true loops pass if the robot does not move, fewer after a drive.");
+
+    pub(super) static GATE_MODEL: OneOf<GateModel> = one_of!(
+        GateModel,
+        "gate-model",
+        "drift in the gate",
+        &[
+            (GateModel::PathApproximation, "path", "path"),
+            (GateModel::ExactMarginal, "exact", "exact"),
+        ],
+    )
+    .help("Path: the chapter's, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. An outline contains the positions that pass at the registered heading.");
+
+    pub(super) static MATCHER: OneOf<LapMatcher> = one_of!(
+        LapMatcher,
+        "matcher",
+        "matcher",
+        LapMatcher::NAMED,
+    )
+    .help("What registers each sweep, in the front end and for loops: the chapter's ICP, point to point, or point to plane, or the normal distributions transform.");
+
+    pub(super) static INFORMATION: OneOf<InformationFrame> = one_of!(
+        InformationFrame,
+        "information",
+        "information",
+        InformationFrame::NAMED,
+    )
+    .help("The frame of an edge's information. As the chapter's figures were computed, it is turned by a heading of the world; exactly, it is that of the edge's target, the newer of its ends.");
+
+    pub(super) static NORMALS: Param<f64> = Param::slider("normals", "radius of the normals", [0.0, 8.0], 0.1)
+        .unit("cells")
+        .help("A point's normal comes from its neighbours within this radius, in cells of 12 cm. 0 is the matcher's own: 2.5, and 4.2 for point to plane.");
+
+    pub(super) static CAP: Param<bool> = Param::switch("cap", "cap on the information")
+        .on()
+        .help("Whether the information of an edge is scaled down to 2500 at most, a deviation of 2 cm and of 0.02 rad.");
+
+    pub(super) static MISSES: Param<bool> = Param::switch("misses", "keep beams that hit no wall")
+        .help("A beam that hits no wall reports the maximum range. Kept as points, a common mistake, these make a wall that moves with the robot.");
+
+    pub(super) static PICK: OneOf<Picked> = one_of!(
+        Picked,
+        "pick",
+        "look at",
+        &[
+            (Picked::Nothing, "nothing", "nothing"),
+            (Picked::Keyframe, "keyframe", "a keyframe"),
+            (Picked::Edge, "edge", "an edge"),
+            (Picked::Loop, "loop", "a loop"),
+        ],
+    )
+    .help("The part of the graph whose numbers are shown. On the map, a click or a tap selects it, and one beside everything selects nothing.");
+
+    pub(super) static NUMBER: Param<usize> = Param::typed("number", "number", MAX_NODES)
+        .help("The number of the keyframe; of the keyframe where the edge begins; of the newer keyframe of the loop.");
+
+    pub(super) static OWN: OneOf<Option<Claim>> = one_of!(
+        Option<Claim>,
+        "own",
+        "your own loop",
+        &optional::<_, 4>(Claim::NAMED, 0, ["none", "none"]),
+    )
+    .help("A loop between any two keyframes. Registered: the registration of their sweeps, from their poses in the graph. The truth: what no robot knows. “The same place”: both at one position, right or wrong.");
+
+    pub(super) static OWN_FROM: Param<usize> =
+        Param::typed("own-from", "your loop: from keyframe", MAX_NODES)
+            .default(40.0)
+            .help(
+                "One end of your own loop. On the map, drag from the selected keyframe to any other.",
+            );
+
+    pub(super) static OWN_TO: Param<usize> =
+        Param::typed("own-to", "your loop: to keyframe", MAX_NODES)
+            .default(12.0)
+            .help("The other end of your own loop.");
+
+    pub(super) static OWN_GATE: Param<bool> =
+        Param::switch("own-gate", "your loop has to pass the gate")
+            .on()
+            .help("Whether the tests may reject your own loop: fit, pairs and gate if it is registered, the gate if it is asserted.");
+
+    pub(super) static KERNEL: OneOf<OwnKernel> = one_of!(
+        OwnKernel,
+        "kernel",
+        "kernel of your loop",
+        OwnKernel::NAMED,
+    )
+    .help("The robust kernel of your own loop: plain least squares, Huber's kernel from 1.345 standard deviations on, or dynamic covariance scaling from χ² 10 on.");
+
+    pub(super) static WIPE: Param<f64> = Param::slider("wipe", "before and after", [0.0, 1.0], 0.01)
+        .default(0.45)
+        .help("At a closed loop: left of the line the map before it, right of it the map after it. The line's place, as a share of the map's width.");
+
+    pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", MAX_TICKS)
+        .default(FIRST_LOOP_TICK)
+        .help("The moment shown; a tick is a quarter of a second, the marks are loops, and beyond the end means the end.");
+
+    pub(super) static FUTURE: Param<bool> = Param::switch("future", "show what is to come")
+        .help("Draws the whole lap into the plots, including what comes after the moment shown.");
+
+    use SPEED;
+    use MORE;
+}
 
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
@@ -472,35 +387,14 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         buttons: &["play", "edit-flat"],
     },
     params: PARAMS,
-    buttons: &[
-        PLAY,
-        STEP,
-        RESET,
-        BEFORE,
-        AT,
-        AFTER,
-        NEXT,
-        ONE_BACK,
-        ONE_ON,
-        TIE,
-        UNDO,
-        EDIT_FLAT,
-        FLAT_BUTTONS[0],
-        FLAT_BUTTONS[1],
-        FLAT_BUTTONS[2],
-        FLAT_BUTTONS[3],
-        FLAT_BUTTONS[4],
-        FLAT_BUTTONS[5],
-        FLAT_BUTTONS[6],
-        FLAT_BUTTONS[7],
-        FLAT_BUTTONS[8],
-        FLAT_BUTTONS[9],
-        FLAT_BUTTONS[10],
-        FLAT_BUTTONS[11],
-        FLAT_BUTTONS[12],
-        FLAT_BUTTONS[13],
-        DEFAULTS,
-    ],
+    buttons: &buttons::<27>(&[
+        &[PLAY, STEP, RESET],
+        LOOP_BUTTONS,
+        GRAPH_BUTTONS,
+        &[EDIT_FLAT],
+        FLAT_BUTTONS,
+        &[DEFAULTS],
+    ]),
     presets: &[
         Preset {
             id: "first-loop",

@@ -2,9 +2,10 @@
 
 use ch16_lab::terrain::TerrainScene;
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::{one_of, params};
 
 /// Largest shift of the maps from the truth in every direction, m.
 pub const HALF_SPAN_M: f64 = 1.3;
@@ -40,104 +41,6 @@ pub enum Colors {
     /// The share of cells that lie lower.
     ByRank,
 }
-
-pub(super) static SCENE: OneOf<Place> = OneOf::new(
-    "scene",
-    "scene",
-    &[
-        Choice::new("room", "room"),
-        Choice::new("corridor", "corridor"),
-        Choice::new("own-corridor", "corridor on itself"),
-    ],
-    &[Place::Room, Place::Corridor, Place::OwnCorridor],
-)
-.help("Room A on its own points; a corridor without doors on a map with independent noise; the Apartment's corridor, with its doors, on its own points.");
-
-pub(super) static TAU: Param<f64> = Param::slider("tau", "pair limit τ", [0.1, 1.6], 0.05)
-    .unit("m")
-    .default(0.15)
-    .help(
-        "ICP pairs a point with the nearest map point within τ; a point without a pair costs τ².",
-    );
-
-pub(super) static NDT_CELL: Param<f64> = Param::slider("ndt-cell", "NDT cell", [0.3, 1.2], 0.05)
-    .unit("m")
-    .default(TerrainScene::DEFAULT_NDT_CELL_M)
-    .help("NDT fits one Gaussian to the map points of each cell of this width.");
-
-pub(super) static HEADING: Param<f64> =
-    Param::slider("heading", "heading offset", [-180.0, 180.0], 1.0)
-        .unit("°")
-        .help("The sweep is turned by this much about the sensor before it is shifted.");
-
-pub(super) static CELLS: Param<f64> = Param::slider("cells", "cells a side", CELLS_OF_A_SIDE, 8.0)
-    .default(49.0)
-    .help("Both maps are sampled at this many shifts along each axis.");
-
-pub(super) static COLOURS: OneOf<Colors> = OneOf::new(
-    "colours",
-    "colours",
-    &[
-        Choice::new("value", "by value"),
-        Choice::new("rank", "by rank"),
-    ],
-    &[Colors::ByHeight, Colors::ByRank],
-)
-.default("rank")
-.help("By rank, every colour covers equally many cells, which shows low steps on high ground.");
-
-pub(super) static SEED: Param<u32> = Param::seed("seed of the sweep", TerrainScene::SEED)
-    .help("Seed of the range noise of the sweep; 1472 is the chapter's.");
-
-pub(super) static PROBE_X: Param<f64> =
-    Param::slider("probe-x", "drop at Δx", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
-        .unit("m")
-        .default(0.4)
-        .help("Position of the cross hair and start of the balls, east of the truth.");
-
-pub(super) static PROBE_Y: Param<f64> =
-    Param::slider("probe-y", "drop at Δy", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
-        .unit("m")
-        .default(0.1)
-        .help("Position of the cross hair and start of the balls, north of the truth.");
-
-pub(super) static DROPS: Param<usize> =
-    Param::slider("drops", "sweeps dropped", [0.0, MAX_DROPS], 1.0)
-        .help("Number of sweeps with independent noise that are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m.");
-
-pub(super) static ROWS: Param<f64> = Param::slider("rows", "rows of H", [0.0, MAX_ROWS], 1.0)
-    .default(MAX_ROWS)
-    .help("Number of points, in the order of the beams, that give a row (n_x, n_y, p × n) of the point-to-plane step; at the right end, all.");
-
-pub(super) static ODOMETRY: Param<f64> =
-    Param::slider("odometry", "σ of a row of odometry", [0.0, 0.5], 0.01)
-        .unit("m")
-        .help("Adds the row (1, 0, 0) with the weight 1/σ²; 0 adds none.");
-
-// A position beyond the last step means the end of both balls.
-pub(super) static BALL_STEP: Param<f64> =
-    Param::timeline("t", "step of the balls", MAX_BALL_STEPS as f64)
-        .default(MAX_BALL_STEPS as f64)
-        .help("How many gradient steps both balls have taken.");
-
-/// The widget's parameters.
-pub const PARAMS: &[&ParamSpec] = &[
-    &SCENE.spec,
-    &TAU.spec,
-    &NDT_CELL.spec,
-    &HEADING.spec,
-    &CELLS.spec,
-    &COLOURS.spec,
-    &SEED.spec,
-    &PROBE_X.spec,
-    &PROBE_Y.spec,
-    &DROPS.spec,
-    &ROWS.spec,
-    &ODOMETRY.spec,
-    &BALL_STEP.spec,
-    &SPEED.spec,
-    &MORE.spec,
-];
 
 /// Drops both balls from the cross hair.
 const DROP: ButtonSpec = ButtonSpec {
@@ -274,6 +177,90 @@ const PRESETS: &[Preset] = &[
         then: &["drop"],
     },
 ];
+
+params! {
+    pub(super) static SCENE: OneOf<Place> = one_of!(
+        Place,
+        "scene",
+        "scene",
+        &[
+            (Place::Room, "room", "room"),
+            (Place::Corridor, "corridor", "corridor"),
+            (Place::OwnCorridor, "own-corridor", "corridor on itself"),
+        ],
+    )
+    .help("Room A on its own points; a corridor without doors on a map with independent noise; the Apartment's corridor, with its doors, on its own points.");
+
+    pub(super) static TAU: Param<f64> = Param::slider("tau", "pair limit τ", [0.1, 1.6], 0.05)
+        .unit("m")
+        .default(0.15)
+        .help(
+            "ICP pairs a point with the nearest map point within τ; a point without a pair costs τ².",
+        );
+
+    pub(super) static NDT_CELL: Param<f64> = Param::slider("ndt-cell", "NDT cell", [0.3, 1.2], 0.05)
+        .unit("m")
+        .default(TerrainScene::DEFAULT_NDT_CELL_M)
+        .help("NDT fits one Gaussian to the map points of each cell of this width.");
+
+    pub(super) static HEADING: Param<f64> =
+        Param::slider("heading", "heading offset", [-180.0, 180.0], 1.0)
+            .unit("°")
+            .help("The sweep is turned by this much about the sensor before it is shifted.");
+
+    pub(super) static CELLS: Param<f64> = Param::slider("cells", "cells a side", CELLS_OF_A_SIDE, 8.0)
+        .default(49.0)
+        .help("Both maps are sampled at this many shifts along each axis.");
+
+    pub(super) static COLOURS: OneOf<Colors> = one_of!(
+        Colors,
+        "colours",
+        "colours",
+        &[
+            (Colors::ByHeight, "value", "by value"),
+            (Colors::ByRank, "rank", "by rank"),
+        ],
+    )
+    .default("rank")
+    .help("By rank, every colour covers equally many cells, which shows low steps on high ground.");
+
+    pub(super) static SEED: Param<u32> = Param::seed("seed of the sweep", TerrainScene::SEED)
+        .help("Seed of the range noise of the sweep; 1472 is the chapter's.");
+
+    pub(super) static PROBE_X: Param<f64> =
+        Param::slider("probe-x", "drop at Δx", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
+            .unit("m")
+            .default(0.4)
+            .help("Position of the cross hair and start of the balls, east of the truth.");
+
+    pub(super) static PROBE_Y: Param<f64> =
+        Param::slider("probe-y", "drop at Δy", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
+            .unit("m")
+            .default(0.1)
+            .help("Position of the cross hair and start of the balls, north of the truth.");
+
+    pub(super) static DROPS: Param<usize> =
+        Param::slider("drops", "sweeps dropped", [0.0, MAX_DROPS], 1.0)
+            .help("Number of sweeps with independent noise that are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m.");
+
+    pub(super) static ROWS: Param<f64> = Param::slider("rows", "rows of H", [0.0, MAX_ROWS], 1.0)
+        .default(MAX_ROWS)
+        .help("Number of points, in the order of the beams, that give a row (n_x, n_y, p × n) of the point-to-plane step; at the right end, all.");
+
+    pub(super) static ODOMETRY: Param<f64> =
+        Param::slider("odometry", "σ of a row of odometry", [0.0, 0.5], 0.01)
+            .unit("m")
+            .help("Adds the row (1, 0, 0) with the weight 1/σ²; 0 adds none.");
+
+    // A position beyond the last step means the end of both balls.
+    pub(super) static BALL_STEP: Param<f64> =
+        Param::timeline("t", "step of the balls", MAX_BALL_STEPS as f64)
+            .default(MAX_BALL_STEPS as f64)
+            .help("How many gradient steps both balls have taken.");
+
+    use SPEED;
+    use MORE;
+}
 
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {

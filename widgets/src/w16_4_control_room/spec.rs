@@ -2,55 +2,14 @@
 
 use ch16_lab::lap;
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::run::{LOOPS, NOISE, seed};
 use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::{one_of, params};
 
 /// Ticks of a lap.
 const LAP_TICKS: f64 = lap::LAP_TICKS as f64;
-
-pub(super) static SEED: Param<u32> = seed(lap::CANONICAL_SEED);
-
-pub(super) static LANE: OneOf<usize> = OneOf::new(
-    "lane",
-    "lane",
-    &[
-        lane("predict"),
-        lane("register"),
-        lane("keyframe"),
-        lane("candidate"),
-        lane("fit"),
-        lane("gate"),
-        lane("optimize"),
-        lane("repaint"),
-    ],
-    &[0, 1, 2, 3, 4, 5, 6, 7],
-)
-.default("register")
-.help("The operation whose data of this tick are described; a press on a mark of the lanes selects it.");
-
-pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", LAP_TICKS)
-    .default(60.0)
-    .help("The moment shown; a tick is a quarter of a second, and the marks are loops.");
-
-/// The widget's parameters.
-pub const PARAMS: &[&ParamSpec] = &[
-    &NOISE.spec,
-    &LOOPS.spec,
-    &SEED.spec,
-    &LANE.spec,
-    &TICK.spec,
-    &SPEED.spec,
-    &MORE.spec,
-];
-
-const fn lane(name: &'static str) -> Choice {
-    Choice {
-        id: name,
-        label: name,
-    }
-}
 
 /// Goes to the next event of the log.
 const NEXT_EVENT: ButtonSpec = ButtonSpec {
@@ -58,6 +17,38 @@ const NEXT_EVENT: ButtonSpec = ButtonSpec {
     label: "Next event",
     help: "Go to the next keyframe, loop test or way point; after the last one, to the first.",
 };
+
+params! {
+    use NOISE;
+    use LOOPS;
+
+    pub(super) static SEED: Param<u32> = seed(lap::CANONICAL_SEED);
+
+    pub(super) static LANE: OneOf<usize> = one_of!(
+        usize,
+        "lane",
+        "lane",
+        &[
+            (0, "predict", "predict"),
+            (1, "register", "register"),
+            (2, "keyframe", "keyframe"),
+            (3, "candidate", "candidate"),
+            (4, "fit", "fit"),
+            (5, "gate", "gate"),
+            (6, "optimize", "optimize"),
+            (7, "repaint", "repaint"),
+        ],
+    )
+    .default("register")
+    .help("The operation whose data of this tick are described; a press on a mark of the lanes selects it.");
+
+    pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", LAP_TICKS)
+        .default(60.0)
+        .help("The moment shown; a tick is a quarter of a second, and the marks are loops.");
+
+    use SPEED;
+    use MORE;
+}
 
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {

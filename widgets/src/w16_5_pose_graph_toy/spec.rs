@@ -1,9 +1,10 @@
 //! The widget's texts and its list of parameters.
 
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::{one_of, params};
 
 /// Poses of the largest graph.
 pub const MAX_POSES: usize = 6;
@@ -27,54 +28,6 @@ pub enum Shape {
     /// Six poses around a ring.
     Ring,
 }
-
-pub(super) static STIFFNESS: Param<f64> = Param::slider(
-    "stiffness",
-    "stiffness of the loop",
-    [0.1, 10.0],
-    0.1,
-)
-.unit("×")
-.default(1.0)
-.help(
-    "Information of the loop, relative to each edge of odometry: a stiffer spring gives way less.",
-);
-
-pub(super) static GRAPH: OneOf<Shape> = OneOf::new(
-    "graph",
-    "graph",
-    &[
-        Choice::new("line", "three poses"),
-        Choice::new("square", "a square"),
-        Choice::new("ring", "a ring of six"),
-    ],
-    &[Shape::Line, Shape::Square, Shape::Ring],
-)
-.default("ring")
-.help("The chapter's three poses on a line, four around a square, or a ring of six whose ends do not meet.");
-
-pub(super) static GAP: Param<f64> = Param::slider(
-    "gap",
-    "the loop disagrees by",
-    [-1.5, 1.5],
-    0.05,
-)
-.unit("m")
-.default(CHAPTER_GAP_M)
-.help("How much farther ahead of the first pose the loop sees the last one than odometry does.");
-
-pub(super) static ODOMETRY: Param<f64> =
-    Param::slider("odometry", "stiffness of odometry", [0.1, 10.0], 0.1)
-        .unit("×")
-        .default(1.0)
-        .help("Information of each edge of odometry.");
-
-pub(super) static PINNED: Param<bool> = Param::switch("pinned", "pin the first pose")
-    .on()
-    .help("Measurements are relative: without a fixed pose the whole graph may be anywhere.");
-
-pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MAX_STEPS as f64)
-    .help("How many steps the solver has done; 0 is the graph before the first one.");
 
 /// The parameters that move a pose: along x, along y, and its heading.
 pub(super) static MOVED: [[Param<f64>; 3]; MAX_POSES] = [
@@ -110,36 +63,6 @@ pub(super) static MOVED: [[Param<f64>; 3]; MAX_POSES] = [
     ],
 ];
 
-/// The widget's parameters.
-pub const PARAMS: &[&ParamSpec] = &[
-    &STIFFNESS.spec,
-    &GRAPH.spec,
-    &GAP.spec,
-    &ODOMETRY.spec,
-    &PINNED.spec,
-    &MOVED[0][0].spec,
-    &MOVED[0][1].spec,
-    &MOVED[0][2].spec,
-    &MOVED[1][0].spec,
-    &MOVED[1][1].spec,
-    &MOVED[1][2].spec,
-    &MOVED[2][0].spec,
-    &MOVED[2][1].spec,
-    &MOVED[2][2].spec,
-    &MOVED[3][0].spec,
-    &MOVED[3][1].spec,
-    &MOVED[3][2].spec,
-    &MOVED[4][0].spec,
-    &MOVED[4][1].spec,
-    &MOVED[4][2].spec,
-    &MOVED[5][0].spec,
-    &MOVED[5][1].spec,
-    &MOVED[5][2].spec,
-    &STEPS.spec,
-    &SPEED.spec,
-    &MORE.spec,
-];
-
 const fn along(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
         .unit("m")
@@ -158,6 +81,78 @@ const ONE_STEP: ButtonSpec = ButtonSpec {
     help: "One Gauss–Newton step: every pose moves at once.",
     ..STEP
 };
+
+params! {
+    pub(super) static STIFFNESS: Param<f64> = Param::slider(
+        "stiffness",
+        "stiffness of the loop",
+        [0.1, 10.0],
+        0.1,
+    )
+    .unit("×")
+    .default(1.0)
+    .help(
+        "Information of the loop, relative to each edge of odometry: a stiffer spring gives way less.",
+    );
+
+    pub(super) static GRAPH: OneOf<Shape> = one_of!(
+        Shape,
+        "graph",
+        "graph",
+        &[
+            (Shape::Line, "line", "three poses"),
+            (Shape::Square, "square", "a square"),
+            (Shape::Ring, "ring", "a ring of six"),
+        ],
+    )
+    .default("ring")
+    .help("The chapter's three poses on a line, four around a square, or a ring of six whose ends do not meet.");
+
+    pub(super) static GAP: Param<f64> = Param::slider(
+        "gap",
+        "the loop disagrees by",
+        [-1.5, 1.5],
+        0.05,
+    )
+    .unit("m")
+    .default(CHAPTER_GAP_M)
+    .help("How much farther ahead of the first pose the loop sees the last one than odometry does.");
+
+    pub(super) static ODOMETRY: Param<f64> =
+        Param::slider("odometry", "stiffness of odometry", [0.1, 10.0], 0.1)
+            .unit("×")
+            .default(1.0)
+            .help("Information of each edge of odometry.");
+
+    pub(super) static PINNED: Param<bool> = Param::switch("pinned", "pin the first pose")
+        .on()
+        .help("Measurements are relative: without a fixed pose the whole graph may be anywhere.");
+
+    use MOVED[0][0];
+    use MOVED[0][1];
+    use MOVED[0][2];
+    use MOVED[1][0];
+    use MOVED[1][1];
+    use MOVED[1][2];
+    use MOVED[2][0];
+    use MOVED[2][1];
+    use MOVED[2][2];
+    use MOVED[3][0];
+    use MOVED[3][1];
+    use MOVED[3][2];
+    use MOVED[4][0];
+    use MOVED[4][1];
+    use MOVED[4][2];
+    use MOVED[5][0];
+    use MOVED[5][1];
+    use MOVED[5][2];
+
+    pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MAX_STEPS as f64)
+        .help("How many steps the solver has done; 0 is the graph before the first one.");
+
+    use SPEED;
+    use MORE;
+}
 
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {

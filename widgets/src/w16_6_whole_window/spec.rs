@@ -2,7 +2,8 @@
 
 use ch16_lab::basin::BasinScene;
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{MORE, Param, ParamSpec};
+use widget_kit::param::{MORE, Param};
+use widget_kit::params;
 use widget_kit::playback::SPEED;
 use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
@@ -11,55 +12,6 @@ pub const OFFSET_SPAN_M: f64 = 1.5;
 
 /// An upper bound of the boxes of a search plus the iterations of ICP.
 const MAX_STEPS: f64 = 200_000.0;
-
-pub(super) static HEADING: Param<f64> = Param::slider(
-    "heading",
-    "heading error of the start",
-    [-180.0, 180.0],
-    1.0,
-)
-.unit("°")
-.default(75.0)
-.help("How far the start is turned away from the truth: ICP depends on it, the search does not.");
-
-pub(super) static DX: Param<f64> = offset("dx", "Δx of the start");
-
-pub(super) static DY: Param<f64> = offset("dy", "Δy of the start");
-
-pub(super) static WINDOW: Param<f64> = Param::slider("window", "window ±", [0.5, 3.0], 0.25)
-    .unit("m")
-    .default(1.5)
-    .help("How far from the start the search looks, along x and along y.");
-
-pub(super) static TURN: Param<f64> = Param::slider("turn", "headings ±", [30.0, 180.0], 15.0)
-    .unit("°")
-    .default(180.0)
-    .help("How far from the start's heading the search looks; 180 is the whole turn.");
-
-pub(super) static CELL: Param<f64> = Param::slider("cell", "cell", [0.05, 0.2], 0.01)
-    .unit("m")
-    .default(0.05)
-    .help("The resolution of the search; the map is blurred accordingly.");
-
-pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
-    .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
-
-pub(super) static PROGRESS: Param<f64> = Param::timeline("progress", "boxes taken up", MAX_STEPS)
-    .help("How many boxes the search has expanded; the iterations of ICP follow the last one.");
-
-/// The widget's parameters.
-pub const PARAMS: &[&ParamSpec] = &[
-    &HEADING.spec,
-    &DX.spec,
-    &DY.spec,
-    &WINDOW.spec,
-    &TURN.spec,
-    &CELL.spec,
-    &SEED.spec,
-    &PROGRESS.spec,
-    &SPEED.spec,
-    &MORE.spec,
-];
 
 const fn offset(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-OFFSET_SPAN_M, OFFSET_SPAN_M], 0.05)
@@ -73,6 +25,46 @@ const ONE_BOX: ButtonSpec = ButtonSpec {
     help: "Expand the most promising box: split it, or drop it.",
     ..STEP
 };
+
+params! {
+    pub(super) static HEADING: Param<f64> = Param::slider(
+        "heading",
+        "heading error of the start",
+        [-180.0, 180.0],
+        1.0,
+    )
+    .unit("°")
+    .default(75.0)
+    .help("How far the start is turned away from the truth: ICP depends on it, the search does not.");
+
+    pub(super) static DX: Param<f64> = offset("dx", "Δx of the start");
+
+    pub(super) static DY: Param<f64> = offset("dy", "Δy of the start");
+
+    pub(super) static WINDOW: Param<f64> = Param::slider("window", "window ±", [0.5, 3.0], 0.25)
+        .unit("m")
+        .default(1.5)
+        .help("How far from the start the search looks, along x and along y.");
+
+    pub(super) static TURN: Param<f64> = Param::slider("turn", "headings ±", [30.0, 180.0], 15.0)
+        .unit("°")
+        .default(180.0)
+        .help("How far from the start's heading the search looks; 180 is the whole turn.");
+
+    pub(super) static CELL: Param<f64> = Param::slider("cell", "cell", [0.05, 0.2], 0.01)
+        .unit("m")
+        .default(0.05)
+        .help("The resolution of the search; the map is blurred accordingly.");
+
+    pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
+        .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
+
+    pub(super) static PROGRESS: Param<f64> = Param::timeline("progress", "boxes taken up", MAX_STEPS)
+        .help("How many boxes the search has expanded; the iterations of ICP follow the last one.");
+
+    use SPEED;
+    use MORE;
+}
 
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {

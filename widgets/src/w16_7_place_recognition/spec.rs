@@ -3,10 +3,11 @@
 use ch16_lab::lap::BuiltInWorld;
 use ch16_lab::lap::CANONICAL_SEED;
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::run;
 use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::{one_of, params};
 
 /// An upper bound of the keyframes of a lap.
 pub const MAX_KEYFRAMES: f64 = 400.0;
@@ -20,86 +21,79 @@ pub const SECTOR_DEG: f64 = 6.0;
 /// The value of `old` that selects the most similar keyframe.
 pub const MOST_ALIKE: f64 = -1.0;
 
-pub(super) static CALLED: Param<f64> = Param::slider(
-    "called",
-    "pairs called the same place",
-    [0.0, 60.0],
-    1.0,
-)
-.unit("%")
-.default(15.0)
-.help(
-    "Share of the most similar pairs that are called the same: a threshold for every detector at once.",
-);
-
-pub(super) static DETECTOR: OneOf<usize> = OneOf::new(
-    "detector",
-    "alike by",
-    &[
-        Choice::new("nearby", "nearness"),
-        Choice::new("histogram", "ranges"),
-        Choice::new("context", "Scan Context"),
-    ],
-    &[0, 1, 2],
-)
-.default("context")
-.help("By the estimated poses, by the histogram of ranges, or by rings and sectors.");
-
-pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
-    "world",
-    "world",
-    &[
-        Choice::new("apartment", "the Apartment"),
-        Choice::new("ring", "a ring of corridors"),
-    ],
-    &[BuiltInWorld::Apartment, BuiltInWorld::Ring],
-)
-.help("The world of the lap.");
-
-pub(super) static OLDER: Param<f64> = Param::slider(
-    "old",
-    "older keyframe of the pair",
-    [MOST_ALIKE, LAST_OLD],
-    1.0,
-)
-.default(18.0)
-.help("The older keyframe that is compared with the newest one; −1 is the most similar one.");
-
-pub(super) static TURN: Param<f64> = Param::slider(
-    "turn",
-    "turned away from the best fit",
-    [-180.0, 180.0],
-    SECTOR_DEG,
-)
-.unit("°")
-.help("How far the newer view is turned away from the heading at which Scan Context fits best.");
-
-pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
-
-pub(super) static NEWEST: Param<f64> = Param::timeline("new", "keyframe", MAX_KEYFRAMES)
-    .default(MAX_KEYFRAMES)
-    .help("The newest keyframe so far; beyond the last one it is the whole lap.");
-
-/// The widget's parameters.
-pub const PARAMS: &[&ParamSpec] = &[
-    &CALLED.spec,
-    &DETECTOR.spec,
-    &WORLD.spec,
-    &OLDER.spec,
-    &TURN.spec,
-    &SEED.spec,
-    &run::NOISE.spec,
-    &NEWEST.spec,
-    &SPEED.spec,
-    &MORE.spec,
-];
-
 /// The step button: one keyframe.
 const ONE_KEYFRAME: ButtonSpec = ButtonSpec {
     label: "Next keyframe",
     help: "Drive to the next keyframe and compare it with all older ones.",
     ..STEP
 };
+
+params! {
+    pub(super) static CALLED: Param<f64> = Param::slider(
+        "called",
+        "pairs called the same place",
+        [0.0, 60.0],
+        1.0,
+    )
+    .unit("%")
+    .default(15.0)
+    .help(
+        "Share of the most similar pairs that are called the same: a threshold for every detector at once.",
+    );
+
+    pub(super) static DETECTOR: OneOf<usize> = one_of!(
+        usize,
+        "detector",
+        "alike by",
+        &[
+            (0, "nearby", "nearness"),
+            (1, "histogram", "ranges"),
+            (2, "context", "Scan Context"),
+        ],
+    )
+    .default("context")
+    .help("By the estimated poses, by the histogram of ranges, or by rings and sectors.");
+
+    pub(super) static WORLD: OneOf<BuiltInWorld> = one_of!(
+        BuiltInWorld,
+        "world",
+        "world",
+        &[
+            (BuiltInWorld::Apartment, "apartment", "the Apartment"),
+            (BuiltInWorld::Ring, "ring", "a ring of corridors"),
+        ],
+    )
+    .help("The world of the lap.");
+
+    pub(super) static OLDER: Param<f64> = Param::slider(
+        "old",
+        "older keyframe of the pair",
+        [MOST_ALIKE, LAST_OLD],
+        1.0,
+    )
+    .default(18.0)
+    .help("The older keyframe that is compared with the newest one; −1 is the most similar one.");
+
+    pub(super) static TURN: Param<f64> = Param::slider(
+        "turn",
+        "turned away from the best fit",
+        [-180.0, 180.0],
+        SECTOR_DEG,
+    )
+    .unit("°")
+    .help("How far the newer view is turned away from the heading at which Scan Context fits best.");
+
+    pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
+
+    use run::NOISE;
+
+    pub(super) static NEWEST: Param<f64> = Param::timeline("new", "keyframe", MAX_KEYFRAMES)
+        .default(MAX_KEYFRAMES)
+        .help("The newest keyframe so far; beyond the last one it is the whole lap.");
+
+    use SPEED;
+    use MORE;
+}
 
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {

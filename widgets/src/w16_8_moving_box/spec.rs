@@ -2,9 +2,10 @@
 
 use ch16_slam2d::icp::IcpVariant;
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::{one_of, params};
 
 /// Largest share of the box, %.
 pub const MAX_SHARE: f64 = 60.0;
@@ -15,80 +16,70 @@ pub const MAX_MOVED_M: f64 = 0.8;
 /// Largest number of iterations of a registration.
 pub const MAX_ITERATIONS: f64 = 30.0;
 
-pub(super) static METHOD: OneOf<usize> = OneOf::new(
-    "method",
-    "registered",
-    &[
-        Choice::new("plain", "plain"),
-        Choice::new("trimmed", "trimmed"),
-        Choice::new("huber", "with Huber"),
-    ],
-    &[0, 1, 2],
-)
-.help("Whose pairs are drawn: all of them, without the longest ones, or the long ones with less weight.");
+params! {
+    pub(super) static METHOD: OneOf<usize> = one_of!(
+        usize,
+        "method",
+        "registered",
+        &[
+            (0, "plain", "plain"),
+            (1, "trimmed", "trimmed"),
+            (2, "huber", "with Huber"),
+        ],
+    )
+    .help("Whose pairs are drawn: all of them, without the longest ones, or the long ones with less weight.");
 
-pub(super) static SHARE: Param<f64> =
-    Param::slider("share", "points on the box", [0.0, MAX_SHARE], 1.0)
-        .unit("%")
-        .default(20.0)
-        .help("Which share of the points of both sweeps lies on the box that was moved.");
+    pub(super) static SHARE: Param<f64> =
+        Param::slider("share", "points on the box", [0.0, MAX_SHARE], 1.0)
+            .unit("%")
+            .default(20.0)
+            .help("Which share of the points of both sweeps lies on the box that was moved.");
 
-pub(super) static MOVED: Param<f64> =
-    Param::slider("moved", "box moved by", [0.0, MAX_MOVED_M], 0.05)
+    pub(super) static MOVED: Param<f64> =
+        Param::slider("moved", "box moved by", [0.0, MAX_MOVED_M], 0.05)
+            .unit("m")
+            .default(0.3)
+            .help("How far the box was moved between the sweeps, away from the sensor along x.");
+
+    pub(super) static DROPPED: Param<f64> =
+        Param::slider("dropped", "trimmed: pairs dropped", [0.0, 70.0], 5.0)
+            .unit("%")
+            .default(25.0)
+            .help("Which share of the pairs trimming drops in each iteration, the longest first.");
+
+    pub(super) static HUBER: Param<f64> = Param::slider("huber", "Huber width", [0.01, 0.3], 0.01)
         .unit("m")
-        .default(0.3)
-        .help("How far the box was moved between the sweeps, away from the sensor along x.");
+        .default(0.05)
+        .help("Pairs longer than this pull with the same force, however long they are.");
 
-pub(super) static DROPPED: Param<f64> =
-    Param::slider("dropped", "trimmed: pairs dropped", [0.0, 70.0], 5.0)
-        .unit("%")
-        .default(25.0)
-        .help("Which share of the pairs trimming drops in each iteration, the longest first.");
+    pub(super) static TAU: Param<f64> = Param::slider("tau", "pairing distance τ", [0.1, 1.6], 0.05)
+        .unit("m")
+        .default(0.7)
+        .help("A point farther than this from the target has no pair: a gate is a kernel, too.");
 
-pub(super) static HUBER: Param<f64> = Param::slider("huber", "Huber width", [0.01, 0.3], 0.01)
-    .unit("m")
-    .default(0.05)
-    .help("Pairs longer than this pull with the same force, however long they are.");
+    pub(super) static VARIANT: OneOf<IcpVariant> = one_of!(
+        IcpVariant,
+        "variant",
+        "error that ICP reduces",
+        &[
+            (IcpVariant::PointToPoint, "point-to-point", "point to point"),
+            (IcpVariant::PointToPlane, "point-to-plane", "point to plane"),
+        ],
+    )
+    .help("Distance between paired points, or distance along the wall's normal.");
 
-pub(super) static TAU: Param<f64> = Param::slider("tau", "pairing distance τ", [0.1, 1.6], 0.05)
-    .unit("m")
-    .default(0.7)
-    .help("A point farther than this from the target has no pair: a gate is a kernel, too.");
+    pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", 1)
+        .help("Seed of the range noise of the sweeps above; the curves have their own hundred seeds.");
 
-pub(super) static VARIANT: OneOf<IcpVariant> = OneOf::new(
-    "variant",
-    "error that ICP reduces",
-    &[
-        Choice::new("point-to-point", "point to point"),
-        Choice::new("point-to-plane", "point to plane"),
-    ],
-    &[IcpVariant::PointToPoint, IcpVariant::PointToPlane],
-)
-.help("Distance between paired points, or distance along the wall's normal.");
+    pub(super) static ITERATION: Param<f64> = Param::timeline("iteration", "iteration", MAX_ITERATIONS)
+        .default(MAX_ITERATIONS)
+        .help(
+            "Which iteration is shown of all three; beyond its last one a registration has converged.",
+        );
 
-pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", 1)
-    .help("Seed of the range noise of the sweeps above; the curves have their own hundred seeds.");
-
-pub(super) static ITERATION: Param<f64> = Param::timeline("iteration", "iteration", MAX_ITERATIONS)
-    .default(MAX_ITERATIONS)
-    .help(
-        "Which iteration is shown of all three; beyond its last one a registration has converged.",
-    );
-
-/// The widget's parameters.
-pub const PARAMS: &[&ParamSpec] = &[
-    &METHOD.spec,
-    &SHARE.spec,
-    &MOVED.spec,
-    &DROPPED.spec,
-    &HUBER.spec,
-    &TAU.spec,
-    &VARIANT.spec,
-    &SEED.spec,
-    &ITERATION.spec,
-    &SPEED.spec,
-    &MORE.spec,
-];
+    use SPEED;
+    use MORE;
+}
 
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {

@@ -3,63 +3,17 @@
 use ch16_lab::lap::BuiltInWorld;
 use ch16_lab::lap::CANONICAL_SEED;
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::run;
 use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::{one_of, params};
 
 /// Sides of the plan, m: no world is larger.
 pub const PLAN_M: [f64; 2] = [12.0, 9.0];
 
 /// An upper bound of the moments of a run.
 pub const MAX_MOMENTS: f64 = 4000.0;
-
-pub(super) static LAPS: Param<usize> =
-    Param::slider("laps", "laps since the wardrobe moved", [0.0, 2.0], 1.0)
-        .help("The map has one lap before that night, and this many after it.");
-
-pub(super) static START_X: Param<f64> = place("x", "switched on at x", PLAN_M[0], 4.4);
-
-pub(super) static START_Y: Param<f64> = place("y", "switched on at y", PLAN_M[1], 4.4);
-
-pub(super) static HEADING: Param<f64> =
-    Param::slider("heading", "heading there", [-180.0, 180.0], 5.0)
-        .unit("°")
-        .help("Heading of the robot when it is switched on. The robot does not know it.");
-
-pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
-    "world",
-    "world",
-    &[
-        Choice::new("apartment", "the Apartment"),
-        Choice::new("ring", "a ring of corridors"),
-        Choice::new("twins", "two rooms alike"),
-    ],
-    &[
-        BuiltInWorld::Apartment,
-        BuiltInWorld::Ring,
-        BuiltInWorld::TwinRooms,
-    ],
-)
-.help("The world. Only the Apartment has the wardrobe.");
-
-pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
-
-pub(super) static MOMENT: Param<f64> = Param::timeline("moment", "moment", MAX_MOMENTS)
-    .help("Which moment is shown: boxes of a search, and scans.");
-
-/// The widget's parameters.
-pub const PARAMS: &[&ParamSpec] = &[
-    &LAPS.spec,
-    &START_X.spec,
-    &START_Y.spec,
-    &HEADING.spec,
-    &WORLD.spec,
-    &SEED.spec,
-    &MOMENT.spec,
-    &SPEED.spec,
-    &MORE.spec,
-];
 
 const fn place(id: &'static str, label: &'static str, max: f64, default: f64) -> Param<f64> {
     Param::slider(id, label, [0.0, max], 0.1)
@@ -74,6 +28,41 @@ const ONE_MOMENT: ButtonSpec = ButtonSpec {
     help: "Go on to more boxes of the search, or to the next scan.",
     ..STEP
 };
+
+params! {
+    pub(super) static LAPS: Param<usize> =
+        Param::slider("laps", "laps since the wardrobe moved", [0.0, 2.0], 1.0)
+            .help("The map has one lap before that night, and this many after it.");
+
+    pub(super) static START_X: Param<f64> = place("x", "switched on at x", PLAN_M[0], 4.4);
+
+    pub(super) static START_Y: Param<f64> = place("y", "switched on at y", PLAN_M[1], 4.4);
+
+    pub(super) static HEADING: Param<f64> =
+        Param::slider("heading", "heading there", [-180.0, 180.0], 5.0)
+            .unit("°")
+            .help("Heading of the robot when it is switched on. The robot does not know it.");
+
+    pub(super) static WORLD: OneOf<BuiltInWorld> = one_of!(
+        BuiltInWorld,
+        "world",
+        "world",
+        &[
+            (BuiltInWorld::Apartment, "apartment", "the Apartment"),
+            (BuiltInWorld::Ring, "ring", "a ring of corridors"),
+            (BuiltInWorld::TwinRooms, "twins", "two rooms alike"),
+        ],
+    )
+    .help("The world. Only the Apartment has the wardrobe.");
+
+    pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
+
+    pub(super) static MOMENT: Param<f64> = Param::timeline("moment", "moment", MAX_MOMENTS)
+        .help("Which moment is shown: boxes of a search, and scans.");
+
+    use SPEED;
+    use MORE;
+}
 
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {

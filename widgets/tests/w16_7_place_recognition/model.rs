@@ -65,7 +65,7 @@ fn the_options_are_the_detectors_of_the_core_in_their_order() {
     let ParamKind::Choice { options } = detector.unwrap().kind else {
         panic!("a choice");
     };
-    let names = LapDetector::ALL.iter().map(|detector| detector.name());
+    let names = LapDetector::all().map(|detector| detector.name());
     assert!(options.iter().map(|option| option.id).eq(names));
 }
 

@@ -67,7 +67,7 @@ fn the_options_are_worlds_of_the_core_in_their_order() {
     let ParamKind::Choice { options } = world.unwrap().kind else {
         panic!("a choice");
     };
-    for (option, world) in options.iter().zip(BuiltInWorld::ALL) {
+    for (option, world) in options.iter().zip(BuiltInWorld::all()) {
         assert_eq!((option.id, option.label), (world.name(), world.label()));
     }
 }

@@ -12,7 +12,45 @@ mod typed;
 
 pub use error::{ParamError, printable};
 pub use spec::{Choice, ParamKind, ParamSpec};
-pub use typed::{Number, OneOf, Param, Typed};
+pub use typed::{Named, Number, OneOf, Param, Typed, optional, options};
+
+/// Declares a choice: the type of its values, its name in links and on screen, and a table of [`Named`] values.
+#[macro_export]
+macro_rules! one_of {
+    ($type:ty, $id:expr, $label:expr, $values:expr $(,)?) => {{
+        const VALUES: &[$crate::param::Named<$type>] = $values;
+        const OPTIONS: [$crate::param::Choice; VALUES.len()] = $crate::param::options(VALUES);
+        $crate::param::OneOf::new($id, $label, &OPTIONS, VALUES)
+    }};
+}
+
+/// Declares the parameters of a widget, each once: a static for each, and their list `PARAMS` in the order of their
+/// controls. `use` lists one that is declared elsewhere.
+///
+/// ```text
+/// params! {
+///     pub(super) static BIAS: Param<f64> = Param::slider("bias", "turns too little by", [0.0, 10.0], 0.5);
+///     use SPEED;
+///     use MORE;
+/// }
+/// ```
+#[macro_export]
+macro_rules! params {
+    (@list [$($list:expr),*]) => {
+        /// The widget's parameters, in the order of their controls.
+        pub const PARAMS: &[&$crate::param::ParamSpec] = &[$($list),*];
+    };
+    (@list [$($list:expr),*] use $shared:expr; $($rest:tt)*) => {
+        $crate::params!(@list [$($list,)* &$shared.spec] $($rest)*);
+    };
+    (@list [$($list:expr),*] $vis:vis static $name:ident: $type:ty = $value:expr; $($rest:tt)*) => {
+        $vis static $name: $type = $value;
+        $crate::params!(@list [$($list,)* &$name.spec] $($rest)*);
+    };
+    ($($all:tt)*) => {
+        $crate::params!(@list [] $($all)*);
+    };
+}
 
 /// Whether everything is shown. A widget with layers lists it as its last parameter.
 pub static MORE: Param<bool> =

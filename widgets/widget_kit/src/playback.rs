@@ -3,21 +3,22 @@
 //! Reduced motion is handled only here: with it a run never plays and its end is shown at once.
 
 use crate::model::Motion;
-use crate::param::{Choice, OneOf};
+use crate::one_of;
+use crate::param::OneOf;
 use crate::spec::{PLAY, RESET, STEP};
 
 /// The speed factor of the playback: a parameter that every widget with a timeline lists.
-pub static SPEED: OneOf<f64> = OneOf::new(
+pub static SPEED: OneOf<f64> = one_of!(
+    f64,
     "speed",
     "speed",
     &[
-        Choice::new("quarter", "×¼"),
-        Choice::new("half", "×½"),
-        Choice::new("normal", "×1"),
-        Choice::new("double", "×2"),
-        Choice::new("fourfold", "×4"),
+        (0.25, "quarter", "×¼"),
+        (0.5, "half", "×½"),
+        (1.0, "normal", "×1"),
+        (2.0, "double", "×2"),
+        (4.0, "fourfold", "×4"),
     ],
-    &[0.25, 0.5, 1.0, 2.0, 4.0],
 )
 .default("normal")
 .help("How fast the run plays.");

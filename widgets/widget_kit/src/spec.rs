@@ -37,6 +37,35 @@ pub struct ButtonSpec {
     pub help: &'static str,
 }
 
+impl ButtonSpec {
+    /// A button from its name, its name on screen and its effect.
+    #[must_use]
+    pub const fn new(id: &'static str, label: &'static str, help: &'static str) -> Self {
+        Self { id, label, help }
+    }
+}
+
+/// The buttons of several groups in one list.
+///
+/// # Panics
+/// If they are not `N`: in a constant at compile time.
+#[must_use]
+pub const fn buttons<const N: usize>(groups: &[&[ButtonSpec]]) -> [ButtonSpec; N] {
+    let mut all = [PLAY; N];
+    let (mut group, mut next) = (0, 0);
+    while group < groups.len() {
+        let mut index = 0;
+        while index < groups[group].len() {
+            all[next] = groups[group][index];
+            next += 1;
+            index += 1;
+        }
+        group += 1;
+    }
+    assert!(next == N, "another number of buttons");
+    all
+}
+
 /// "What to try": a preset state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preset {

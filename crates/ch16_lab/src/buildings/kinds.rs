@@ -35,36 +35,38 @@ impl Kind {
 }
 
 impl Choice for Kind {
-    const ALL: &'static [Self] = &[
-        Self::Ring,
-        Self::Hallway,
-        Self::Circle,
-        Self::Alike,
-        Self::Lap,
-        Self::RingLap,
+    const NAMED: &'static [(Self, &'static str, &'static str)] = &[
+        (
+            Self::Ring,
+            "ring",
+            "corridors around a block, 361 beams over half a circle, 80 m",
+        ),
+        (
+            Self::Hallway,
+            "hallway",
+            "a corridor and its rooms, 360 beams over half a circle, 80 m",
+        ),
+        (
+            Self::Circle,
+            "circle",
+            "corridors around a block, 360 beams over the full circle, 30 m",
+        ),
+        (
+            Self::Alike,
+            "alike",
+            "corridors around rooms that are all alike, 181 beams, 8 m",
+        ),
+        (
+            Self::Lap,
+            "lap",
+            "the chapter's lap of the Apartment, 120 beams over the full circle, 6 m",
+        ),
+        (
+            Self::RingLap,
+            "ring-lap",
+            "the lap of the ring world, 120 beams over the full circle, 6 m",
+        ),
     ];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Ring => "ring",
-            Self::Hallway => "hallway",
-            Self::Circle => "circle",
-            Self::Alike => "alike",
-            Self::Lap => "lap",
-            Self::RingLap => "ring-lap",
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Ring => "corridors around a block, 361 beams over half a circle, 80 m",
-            Self::Hallway => "a corridor and its rooms, 360 beams over half a circle, 80 m",
-            Self::Circle => "corridors around a block, 360 beams over the full circle, 30 m",
-            Self::Alike => "corridors around rooms that are all alike, 181 beams, 8 m",
-            Self::Lap => "the chapter's lap of the Apartment, 120 beams over the full circle, 6 m",
-            Self::RingLap => "the lap of the ring world, 120 beams over the full circle, 6 m",
-        }
-    }
 }
 
 /// Records a drive of the kind's robot through the building of a seed. Returns the defaults for its

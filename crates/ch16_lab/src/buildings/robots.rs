@@ -55,78 +55,72 @@ pub enum Robot {
 }
 
 impl Choice for Robot {
-    const ALL: &'static [Self] = &[
-        Self::Own,
-        Self::Degree,
-        Self::Short,
-        Self::Coarse,
-        Self::Small,
-        Self::Spinning,
-        Self::Hand,
-        Self::Fine,
-        Self::Often,
-        Self::Seldom,
-        Self::Slippery,
-        Self::Jumpy,
-        Self::Veering,
-        Self::Oversized,
-        Self::Ahead,
-        Self::UnknownMounting,
-        Self::Stray,
-        Self::Dropping,
-        Self::Resting,
-        Self::Crowded,
+    const NAMED: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Own, "own", "the robot of the kind"),
+        (Self::Degree, "degree", "181 beams over half a circle, 80 m"),
+        (Self::Short, "short", "181 beams over half a circle, 8 m"),
+        (Self::Coarse, "coarse", "91 beams over half a circle, 30 m"),
+        (
+            Self::Small,
+            "small",
+            "360 beams over the full circle, 3.5 m, off by 3 cm",
+        ),
+        (
+            Self::Spinning,
+            "spinning",
+            "360 beams over the full circle, 12 m, off by 3 cm",
+        ),
+        (Self::Hand, "hand", "682 beams over 240°, 5.6 m"),
+        (Self::Fine, "fine", "1081 beams over 270°, 30 m"),
+        (Self::Often, "often", "a scan every 3 to 8 cm"),
+        (Self::Seldom, "seldom", "a scan every 0.6 to 1 m"),
+        (
+            Self::Slippery,
+            "slippery",
+            "three times the slip and drift of the odometry",
+        ),
+        (
+            Self::Jumpy,
+            "jumpy",
+            "odometry that jumps three times as often",
+        ),
+        (
+            Self::Veering,
+            "veering",
+            "odometry that drifts by 2° a metre, without other errors",
+        ),
+        (
+            Self::Oversized,
+            "oversized",
+            "odometry that measures 10 % too much",
+        ),
+        (
+            Self::Ahead,
+            "ahead",
+            "a sensor 0.3 m ahead of the axle that looks back",
+        ),
+        (
+            Self::UnknownMounting,
+            "untold",
+            "a sensor 0.2 m ahead whose pose the log lacks",
+        ),
+        (
+            Self::Stray,
+            "stray",
+            "one beam in twenty with a random range in front of the wall",
+        ),
+        (
+            Self::Dropping,
+            "dropping",
+            "one beam in five with 0, NaN or infinity for its range",
+        ),
+        (
+            Self::Resting,
+            "resting",
+            "fifty scans on each spot where the path bends",
+        ),
+        (Self::Crowded, "crowded", "ten people who walk along"),
     ];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Own => "own",
-            Self::Degree => "degree",
-            Self::Short => "short",
-            Self::Coarse => "coarse",
-            Self::Small => "small",
-            Self::Spinning => "spinning",
-            Self::Hand => "hand",
-            Self::Fine => "fine",
-            Self::Often => "often",
-            Self::Seldom => "seldom",
-            Self::Slippery => "slippery",
-            Self::Jumpy => "jumpy",
-            Self::Veering => "veering",
-            Self::Oversized => "oversized",
-            Self::Ahead => "ahead",
-            Self::UnknownMounting => "untold",
-            Self::Stray => "stray",
-            Self::Dropping => "dropping",
-            Self::Resting => "resting",
-            Self::Crowded => "crowded",
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Own => "the robot of the kind",
-            Self::Degree => "181 beams over half a circle, 80 m",
-            Self::Short => "181 beams over half a circle, 8 m",
-            Self::Coarse => "91 beams over half a circle, 30 m",
-            Self::Small => "360 beams over the full circle, 3.5 m, off by 3 cm",
-            Self::Spinning => "360 beams over the full circle, 12 m, off by 3 cm",
-            Self::Hand => "682 beams over 240°, 5.6 m",
-            Self::Fine => "1081 beams over 270°, 30 m",
-            Self::Often => "a scan every 3 to 8 cm",
-            Self::Seldom => "a scan every 0.6 to 1 m",
-            Self::Slippery => "three times the slip and drift of the odometry",
-            Self::Jumpy => "odometry that jumps three times as often",
-            Self::Veering => "odometry that drifts by 2° a metre, without other errors",
-            Self::Oversized => "odometry that measures 10 % too much",
-            Self::Ahead => "a sensor 0.3 m ahead of the axle that looks back",
-            Self::UnknownMounting => "a sensor 0.2 m ahead whose pose the log lacks",
-            Self::Stray => "one beam in twenty with a random range in front of the wall",
-            Self::Dropping => "one beam in five with 0, NaN or infinity for its range",
-            Self::Resting => "fifty scans on each spot where the path bends",
-            Self::Crowded => "ten people who walk along",
-        }
-    }
 }
 
 impl Robot {
@@ -208,17 +202,10 @@ mod tests {
     #[test]
     fn each_robot_differs_from_the_kinds_own_and_from_all_others() {
         let own = Recorder::default();
-        let recorders: Vec<Recorder> = Robot::ALL
-            .iter()
-            .map(|robot| robot.instead_of(own))
-            .collect();
+        let recorders: Vec<Recorder> = Robot::all().map(|robot| robot.instead_of(own)).collect();
         assert_eq!(recorders[0], own);
         for (k, recorder) in recorders.iter().enumerate() {
-            assert!(
-                !recorders[..k].contains(recorder),
-                "{}",
-                Robot::ALL[k].name()
-            );
+            assert!(!recorders[..k].contains(recorder), "{}", Robot::NAMED[k].1);
         }
     }
 

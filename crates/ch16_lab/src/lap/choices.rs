@@ -15,22 +15,41 @@ use crate::incremental::IncrementalKind;
 
 /// A named choice from a short list.
 pub trait Choice: Copy + PartialEq + Sized + 'static {
-    /// All choices, the chapter's first.
-    const ALL: &'static [Self];
+    /// Each choice with its short name, for commands and links, and its label, for readers; the chapter's first.
+    const NAMED: &'static [(Self, &'static str, &'static str)];
 
-    /// The short name, for commands and links.
-    fn name(self) -> &'static str;
+    /// All choices.
+    fn all() -> impl Iterator<Item = Self> {
+        Self::NAMED.iter().map(|(choice, ..)| *choice)
+    }
 
-    /// The label for readers.
-    fn label(self) -> &'static str;
+    /// The short name.
+    #[must_use]
+    fn name(self) -> &'static str {
+        self.texts().0
+    }
+
+    /// The label.
+    #[must_use]
+    fn label(self) -> &'static str {
+        self.texts().1
+    }
+
+    /// Name and label.
+    ///
+    /// # Panics
+    /// If the list lacks the choice: a bug.
+    #[must_use]
+    fn texts(self) -> (&'static str, &'static str) {
+        let row = Self::NAMED.iter().find(|(choice, ..)| *choice == self);
+        let (_, name, label) = row.expect("every choice is in the list");
+        (name, label)
+    }
 
     /// Looks up a choice by its short name.
     #[must_use]
     fn named(name: &str) -> Option<Self> {
-        Self::ALL
-            .iter()
-            .copied()
-            .find(|choice| choice.name() == name)
+        Self::all().find(|choice| choice.name() == name)
     }
 }
 
@@ -68,33 +87,13 @@ impl BuiltInWorld {
 }
 
 impl Choice for BuiltInWorld {
-    const ALL: &'static [Self] = &[
-        Self::Apartment,
-        Self::Ring,
-        Self::TwinRooms,
-        Self::Corridor,
-        Self::Hall,
+    const NAMED: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Apartment, "apartment", "the Apartment"),
+        (Self::Ring, "ring", "a ring of corridors"),
+        (Self::TwinRooms, "twins", "two rooms alike"),
+        (Self::Corridor, "corridor", "a bare corridor"),
+        (Self::Hall, "hall", "a round hall"),
     ];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Apartment => "apartment",
-            Self::Ring => "ring",
-            Self::TwinRooms => "twins",
-            Self::Corridor => "corridor",
-            Self::Hall => "hall",
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Apartment => "the Apartment",
-            Self::Ring => "a ring of corridors",
-            Self::TwinRooms => "two rooms alike",
-            Self::Corridor => "a bare corridor",
-            Self::Hall => "a round hall",
-        }
-    }
 }
 
 /// Matchers for a lap's front end and loops.
@@ -122,23 +121,11 @@ impl LapMatcher {
 }
 
 impl Choice for LapMatcher {
-    const ALL: &'static [Self] = &[Self::PointToPoint, Self::PointToPlane, Self::Ndt];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::PointToPoint => "p2p",
-            Self::PointToPlane => "p2l",
-            Self::Ndt => "ndt",
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::PointToPoint => "point to point",
-            Self::PointToPlane => "point to plane",
-            Self::Ndt => "NDT",
-        }
-    }
+    const NAMED: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::PointToPoint, "p2p", "point to point"),
+        (Self::PointToPlane, "p2l", "point to plane"),
+        (Self::Ndt, "ndt", "NDT"),
+    ];
 }
 
 /// Matchers that verify loops.
@@ -162,26 +149,24 @@ impl LoopMatcher {
 }
 
 impl Choice for LoopMatcher {
-    const ALL: &'static [Self] = &[
-        Self::Local(LapMatcher::PointToPoint),
-        Self::Local(LapMatcher::PointToPlane),
-        Self::Local(LapMatcher::Ndt),
-        Self::Search,
+    const NAMED: &'static [(Self, &'static str, &'static str)] = &[
+        (
+            Self::Local(LapMatcher::PointToPoint),
+            LapMatcher::NAMED[0].1,
+            LapMatcher::NAMED[0].2,
+        ),
+        (
+            Self::Local(LapMatcher::PointToPlane),
+            LapMatcher::NAMED[1].1,
+            LapMatcher::NAMED[1].2,
+        ),
+        (
+            Self::Local(LapMatcher::Ndt),
+            LapMatcher::NAMED[2].1,
+            LapMatcher::NAMED[2].2,
+        ),
+        (Self::Search, "search", "search of a window"),
     ];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Local(matcher) => matcher.name(),
-            Self::Search => "search",
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Local(matcher) => matcher.label(),
-            Self::Search => "search of a window",
-        }
-    }
 }
 
 /// Detectors of loop candidates.
@@ -197,23 +182,11 @@ pub enum LapDetector {
 }
 
 impl Choice for LapDetector {
-    const ALL: &'static [Self] = &[Self::Nearby, Self::Histogram, Self::Context];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Nearby => "nearby",
-            Self::Histogram => "histogram",
-            Self::Context => "context",
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Nearby => "near in the graph",
-            Self::Histogram => "histogram of ranges",
-            Self::Context => "Scan Context",
-        }
-    }
+    const NAMED: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Nearby, "nearby", "near in the graph"),
+        (Self::Histogram, "histogram", "histogram of ranges"),
+        (Self::Context, "context", "Scan Context"),
+    ];
 }
 
 /// Estimators of the lap.
@@ -229,34 +202,20 @@ pub enum LapEstimator {
 }
 
 impl Choice for LapEstimator {
-    const ALL: &'static [Self] = &[
-        Self::Graph,
-        Self::FrontEnd,
-        Self::IncrementalKind(IncrementalKind::MaximumLikelihood),
-        Self::IncrementalKind(IncrementalKind::WithCycles),
+    const NAMED: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Graph, "graph", "pose graph with loops"),
+        (Self::FrontEnd, "front-end", "scan matching alone"),
+        (
+            Self::IncrementalKind(IncrementalKind::MaximumLikelihood),
+            "ml",
+            "incremental maximum likelihood",
+        ),
+        (
+            Self::IncrementalKind(IncrementalKind::WithCycles),
+            "ml-cycles",
+            "incremental maximum likelihood with particles for cycles",
+        ),
     ];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Graph => "graph",
-            Self::FrontEnd => "front-end",
-            Self::IncrementalKind(IncrementalKind::MaximumLikelihood) => "ml",
-            Self::IncrementalKind(IncrementalKind::WithCycles) => "ml-cycles",
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Graph => "pose graph with loops",
-            Self::FrontEnd => "scan matching alone",
-            Self::IncrementalKind(IncrementalKind::MaximumLikelihood) => {
-                "incremental maximum likelihood"
-            }
-            Self::IncrementalKind(IncrementalKind::WithCycles) => {
-                "incremental maximum likelihood with particles for cycles"
-            }
-        }
-    }
 }
 
 /// Front ends of a lap: how it registers scans and finds loops.
@@ -270,57 +229,32 @@ pub enum LapFrontEnd {
 }
 
 impl Choice for LapFrontEnd {
-    const ALL: &'static [Self] = &[Self::Window, Self::LocalMap];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Window => "window",
-            Self::LocalMap => "local-map",
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Window => "the points of the last sweeps",
-            Self::LocalMap => "a local map and the odometry, the estimator for recorded logs",
-        }
-    }
+    const NAMED: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Window, "window", "the points of the last sweeps"),
+        (
+            Self::LocalMap,
+            "local-map",
+            "a local map and the odometry, the estimator for recorded logs",
+        ),
+    ];
 }
 
 impl Choice for InformationFrame {
-    const ALL: &'static [Self] = &[Self::Chapter, Self::Exact];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Chapter => "chapter",
-            Self::Exact => "exact",
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Chapter => "as the chapter's figures",
-            Self::Exact => "at the edge's target",
-        }
-    }
+    const NAMED: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Chapter, "chapter", "as the chapter's figures"),
+        (Self::Exact, "exact", "at the edge's target"),
+    ];
 }
 
 impl Choice for GateModel {
-    const ALL: &'static [Self] = &[Self::PathApproximation, Self::ExactMarginal];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::PathApproximation => "path",
-            Self::ExactMarginal => "exact",
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::PathApproximation => "a drift that grows with the path",
-            Self::ExactMarginal => "the graph's own covariance",
-        }
-    }
+    const NAMED: &'static [(Self, &'static str, &'static str)] = &[
+        (
+            Self::PathApproximation,
+            "path",
+            "a drift that grows with the path",
+        ),
+        (Self::ExactMarginal, "exact", "the graph's own covariance"),
+    ];
 }
 
 impl LapConfig {
@@ -429,12 +363,12 @@ mod tests {
     use super::*;
 
     fn check<C: Choice + core::fmt::Debug>() {
-        for (k, &choice) in C::ALL.iter().enumerate() {
+        for (k, choice) in C::all().enumerate() {
             assert_eq!(C::named(choice.name()), Some(choice));
             assert!(!choice.label().is_empty());
             assert!(
-                C::ALL[..k]
-                    .iter()
+                C::all()
+                    .take(k)
                     .all(|other| other.label() != choice.label())
             );
         }
@@ -455,10 +389,11 @@ mod tests {
 
     #[test]
     fn the_first_of_each_list_is_the_chapters_lap() {
-        let first = LapConfig::in_world(BuiltInWorld::ALL[0], super::super::CANONICAL_SEED, 1.0)
-            .with_matcher(LapMatcher::ALL[0])
-            .with_gate(GateModel::ALL[0])
-            .with_information(InformationFrame::ALL[0]);
+        let first =
+            LapConfig::in_world(BuiltInWorld::NAMED[0].0, super::super::CANONICAL_SEED, 1.0)
+                .with_matcher(LapMatcher::NAMED[0].0)
+                .with_gate(GateModel::NAMED[0].0)
+                .with_information(InformationFrame::NAMED[0].0);
         assert_eq!(first, LapConfig::default());
     }
 }

@@ -187,6 +187,6 @@ impl Runs {
 
 /// The built-in world with these walls.
 fn place(config: &LapConfig) -> Option<BuiltInWorld> {
-    let mut all = BuiltInWorld::ALL.iter().copied();
+    let mut all = BuiltInWorld::all();
     all.find(|place| place.course().world() == &*config.drive.world)
 }

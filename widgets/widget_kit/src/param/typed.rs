@@ -168,6 +168,14 @@ impl Param<f64> {
     }
 }
 
+impl Param<String> {
+    /// Letters, digits, `-` and `_`, up to that many.
+    #[must_use]
+    pub const fn text(id: &'static str, label: &'static str, most: usize) -> Self {
+        Self::new(id, label, ParamKind::Text { most })
+    }
+}
+
 impl Param<bool> {
     /// A switch that is off.
     #[must_use]
@@ -212,27 +220,27 @@ impl<T> Deref for Param<T> {
     }
 }
 
+/// A value, its name in links and its name on screen.
+pub type Named<T> = (T, &'static str, &'static str);
+
 /// A parameter with a few named values.
 #[derive(Clone, Copy, Debug)]
 pub struct OneOf<T: 'static> {
     /// The untyped declaration.
     pub spec: ParamSpec,
-    values: &'static [T],
+    values: &'static [Named<T>],
 }
 
 impl<T> OneOf<T> {
-    /// A choice between options for these values, in the same order; the first one is the default.
-    ///
-    /// # Panics
-    /// If the numbers of options and values differ: in a `static` at compile time.
+    /// A choice between these values; the first one is the default. Declared by [`one_of!`](crate::one_of), which
+    /// derives the options.
     #[must_use]
     pub const fn new(
         id: &'static str,
         label: &'static str,
         options: &'static [Choice],
-        values: &'static [T],
+        values: &'static [Named<T>],
     ) -> Self {
-        assert!(options.len() == values.len(), "an option without a value");
         let spec = Param::<T>::new(id, label, ParamKind::Choice { options }).spec;
         Self { spec, values }
     }
@@ -271,6 +279,39 @@ impl<T> OneOf<T> {
     }
 }
 
+/// A table of named values with one more row, without a value, at that index.
+///
+/// # Panics
+/// If `N` is not their number and one: in a constant at compile time.
+#[must_use]
+pub const fn optional<T: Copy, const N: usize>(
+    values: &[Named<T>],
+    none_at: usize,
+    [name, label]: [&'static str; 2],
+) -> [Named<Option<T>>; N] {
+    assert!(values.len() + 1 == N, "another number of values");
+    let mut all = [(None, name, label); N];
+    let mut index = 0;
+    while index < values.len() {
+        let (value, name, label) = values[index];
+        all[index + (index >= none_at) as usize] = (Some(value), name, label);
+        index += 1;
+    }
+    all
+}
+
+/// The options of a table of named values.
+#[must_use]
+pub const fn options<T, const N: usize>(values: &[Named<T>]) -> [Choice; N] {
+    let mut options = [Choice::new("", ""); N];
+    let mut index = 0;
+    while index < N {
+        options[index] = Choice::new(values[index].1, values[index].2);
+        index += 1;
+    }
+    options
+}
+
 /// `a == b`, for constants.
 const fn is_same(a: &[u8], b: &[u8]) -> bool {
     let mut index = 0;
@@ -288,11 +329,11 @@ impl<T: Copy + PartialEq> Typed for OneOf<T> {
     }
 
     fn read(&self, number: f64) -> T {
-        self.values[number as usize]
+        self.values[number as usize].0
     }
 
     fn number(&self, value: T) -> f64 {
-        let index = self.values.iter().position(|known| *known == value);
+        let index = self.values.iter().position(|(known, ..)| *known == value);
         index.expect("the value is one of the options") as f64
     }
 }

@@ -25,23 +25,11 @@ pub enum Claim {
 }
 
 impl Choice for Claim {
-    const ALL: &'static [Self] = &[Self::Registered, Self::Truth, Self::SamePlace];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Registered => "registered",
-            Self::Truth => "truth",
-            Self::SamePlace => "same-place",
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Registered => "registered",
-            Self::Truth => "the truth",
-            Self::SamePlace => "“the same place”",
-        }
-    }
+    const NAMED: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Registered, "registered", "registered"),
+        (Self::Truth, "truth", "the truth"),
+        (Self::SamePlace, "same-place", "“the same place”"),
+    ];
 }
 
 /// Whether the loop has to pass the acceptance tests.
@@ -78,23 +66,11 @@ impl OwnKernel {
 }
 
 impl Choice for OwnKernel {
-    const ALL: &'static [Self] = &[Self::Quadratic, Self::Huber, Self::Dcs];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Quadratic => "quadratic",
-            Self::Huber => "huber",
-            Self::Dcs => "dcs",
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Quadratic => "quadratic",
-            Self::Huber => "Huber",
-            Self::Dcs => "DCS",
-        }
-    }
+    const NAMED: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Quadratic, "quadratic", "quadratic"),
+        (Self::Huber, "huber", "Huber"),
+        (Self::Dcs, "dcs", "DCS"),
+    ];
 }
 
 /// The request for a custom loop.

@@ -163,26 +163,3 @@ fn an_own_loop_exists_from_the_tick_of_its_newer_keyframe_on() {
     while model.advance(0.25) == Activity::Busy {}
     assert_ne!(shown_nodes(&model), rest);
 }
-
-#[test]
-fn kernels_and_claims_have_the_names_of_the_core() {
-    use ch16_lab::lap::{Choice, Claim, OwnKernel};
-    let labels = |id: &str| {
-        let spec = SPEC.params.iter().find(|param| param.id == id).unwrap();
-        let widget_kit::param::ParamKind::Choice { options } = spec.kind else {
-            panic!("{id} is no choice");
-        };
-        options
-            .iter()
-            .map(|it| (it.id, it.label))
-            .collect::<Vec<_>>()
-    };
-    let claims = Claim::ALL.iter().map(|it| (it.name(), it.label()));
-    let claims: Vec<_> = [("none", "none")].into_iter().chain(claims).collect();
-    assert_eq!(labels("own"), claims);
-    let kernels: Vec<_> = OwnKernel::ALL
-        .iter()
-        .map(|it| (it.name(), it.label()))
-        .collect();
-    assert_eq!(labels("kernel"), kernels);
-}

@@ -1,12 +1,11 @@
 //! Effects of settings and presets on the lap.
 
-use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner};
+use ch16_lab::lap::{Choice, LapConfig, LapMatcher, LapRunner};
 use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::loops::LoopRejection;
-use widget_kit::param::ParamKind;
 
 use super::*;
-use crate::w16_2_full_lap::spec::{LAP_TICKS, WORLD};
+use crate::w16_2_full_lap::spec::LAP_TICKS;
 
 /// The help of a preset makes this claim.
 fn assert_promised(preset: &str, words: &str) {
@@ -185,35 +184,16 @@ fn every_matcher_has_the_end_error_that_its_preset_claims() {
     }
 }
 
-/// The names and the labels of a choice of the widget.
-fn options(id: &str) -> Vec<(&'static str, &'static str)> {
-    let spec = SPEC.params.iter().find(|param| param.id == id).unwrap();
-    let ParamKind::Choice { options } = spec.kind else {
-        panic!("{id} is no choice");
-    };
-    options.iter().map(|it| (it.id, it.label)).collect()
-}
-
-fn named<T: Choice>() -> Vec<(&'static str, &'static str)> {
-    T::ALL.iter().map(|it| (it.name(), it.label())).collect()
-}
-
 #[test]
-fn matchers_and_frames_have_the_names_and_laps_of_the_command_line() {
-    let mut worlds = named::<BuiltInWorld>();
-    assert_eq!(WORLD.to("own").1, worlds.len() as f64);
-    worlds.push(("own", "your own flat"));
-    assert_eq!(options("world"), worlds);
-    assert_eq!(options("matcher"), named::<LapMatcher>());
-    assert_eq!(options("information"), named::<InformationFrame>());
+fn matchers_and_frames_drive_the_laps_of_the_command_line() {
     let mut model = at(&[("seed", 7.0), ("noise", 2.0)]);
-    for (matcher, kind) in LapMatcher::ALL.iter().enumerate() {
-        for (information, frame) in InformationFrame::ALL.iter().enumerate() {
+    for (matcher, kind) in LapMatcher::all().enumerate() {
+        for (information, frame) in InformationFrame::all().enumerate() {
             set(&mut model, "matcher", matcher as f64);
             set(&mut model, "information", information as f64);
             let config = LapConfig::with_seed_and_noise(7, 2.0)
-                .with_matcher(*kind)
-                .with_information(*frame);
+                .with_matcher(kind)
+                .with_information(frame);
             let record = LapRunner::new().run(&config);
             assert_eq!(results(&model).graph, record.lap.summary);
         }

@@ -8,18 +8,18 @@ use crate::w16_2_full_lap::spec::MAX_TICKS;
 
 #[test]
 fn every_world_has_the_lap_of_the_command_line_and_its_name_in_the_texts() {
-    for (index, world) in BuiltInWorld::ALL.iter().enumerate() {
+    for (index, world) in BuiltInWorld::all().enumerate() {
         let model = at(&[
             ("world", index as f64),
             ("information", 1.0),
             ("seed", 5.0),
             ("t", MAX_TICKS),
         ]);
-        let config = LapConfig::in_world(*world, 5, 1.0).with_information(InformationFrame::Exact);
+        let config = LapConfig::in_world(world, 5, 1.0).with_information(InformationFrame::Exact);
         let record = LapRunner::new().run(&config);
         assert_eq!(results(&model).graph, record.lap.summary, "{world:?}");
         assert_eq!(model.tick(), record.ticks());
-        assert_eq!(model.runs.place(), Some(*world));
+        assert_eq!(model.runs.place(), Some(world));
         assert!(
             model
                 .summary()
@@ -31,7 +31,7 @@ fn every_world_has_the_lap_of_the_command_line_and_its_name_in_the_texts() {
             .any(|layer| matches!(layer, Layer::Label { text, .. } if text == "A"));
         assert_eq!(
             names,
-            *world == BuiltInWorld::Apartment,
+            world == BuiltInWorld::Apartment,
             "rooms are the Apartment's"
         );
     }
@@ -65,7 +65,7 @@ fn in_the_twin_rooms_a_wrong_loop_passes_every_test_by_each_matcher() {
     for matcher in [LapMatcher::PointToPoint, LapMatcher::PointToPlane] {
         let mut model = FullLap::default();
         press(&mut model, "twins");
-        let index = LapMatcher::ALL.iter().position(|it| *it == matcher);
+        let index = LapMatcher::all().position(|it| it == matcher);
         set(&mut model, "matcher", index.unwrap() as f64);
         let lap = model.runs.graph.lap();
         let wrong = lap
