@@ -165,17 +165,17 @@ impl Checkup {
         remarks.extend(clocks_remark(notes, info));
         remarks.extend(self.pause_remark());
         remarks.extend(notes.warnings.iter().cloned());
-        remarks.sort_by_key(|remark| remark.part);
-        let worst = remarks.iter().map(|remark| remark.verdict).max();
-        Diagnosis {
+        let mut diagnosis = Diagnosis {
             name: name.to_owned(),
-            verdict: worst.unwrap_or(Verdict::Good),
+            verdict: Verdict::Good,
             sensor,
             odometry,
             laser: notes.laser.map(|mount| mount.value()),
             motion: motion.clone(),
-            remarks,
-        }
+            remarks: Vec::new(),
+        };
+        diagnosis.extend(remarks);
+        diagnosis
     }
 }
 
@@ -323,6 +323,14 @@ fn clocks_remark(notes: &LogNotes, info: &LogInfo) -> Option<Remark> {
 }
 
 impl Diagnosis {
+    /// Adds remarks, such as those on the map of the recording.
+    pub fn extend(&mut self, remarks: impl IntoIterator<Item = Remark>) {
+        self.remarks.extend(remarks);
+        self.remarks.sort_by_key(|remark| remark.part);
+        let worst = self.remarks.iter().map(|remark| remark.verdict).max();
+        self.verdict = worst.unwrap_or(Verdict::Good);
+    }
+
     /// Whether the recording has scans that see something.
     #[must_use]
     pub fn can_be_mapped(&self) -> bool {

@@ -6,7 +6,7 @@ use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::slam::Slam;
 use pr_geom::SE2;
 
-use crate::remark::NO_ODOMETRY;
+use crate::remark::{NO_ODOMETRY, Part, Remark};
 
 /// Lengths that differ by more than this factor are reported, if one of them is at least this long, m.
 const DIFFERENT: f64 = 1.25;
@@ -32,9 +32,9 @@ impl PathLengths {
             .drain(keyframes.start.min(known)..keyframes.end.min(known));
     }
 
-    /// A sentence if the lengths differ.
+    /// A remark if the lengths differ.
     #[must_use]
-    pub fn sentence(&self, name: &str, slam: &Slam) -> Option<String> {
+    pub fn remark(&self, slam: &Slam) -> Option<Remark> {
         let (mut on_map_m, mut by_odometry_m) = (0.0, 0.0);
         let poses = slam.graph().poses();
         for (odometry, poses) in self.odometry.windows(2).zip(poses.windows(2)) {
@@ -49,9 +49,10 @@ impl PathLengths {
             (by_odometry_m, on_map_m)
         };
         (longer_m >= MIN_M && longer_m > DIFFERENT * shorter_m).then(|| {
-            format!(
-                "{name}: the path is {on_map_m:.1} m long on the map and {by_odometry_m:.1} m by odometry; one of them is wrong: compare with a map made with {NO_ODOMETRY}"
-            )
+            let text = format!(
+                "the path is {on_map_m:.1} m long on the map and {by_odometry_m:.1} m by odometry; one of them is wrong: compare with a map made with {NO_ODOMETRY}"
+            );
+            Remark::wrong(Part::Odometry, text).with_option(NO_ODOMETRY)
         })
     }
 }
@@ -77,7 +78,7 @@ mod tests {
                 // The odometry starts at the second keyframe.
                 lengths.add(usize::from(number), (number > 0).then_some(at));
             }
-            lengths.sentence("x", &slam)
+            lengths.remark(&slam).map(|remark| remark.text)
         };
         assert_eq!(sentence(1.1), None);
         let said = sentence(1.5).unwrap();

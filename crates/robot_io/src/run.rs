@@ -19,10 +19,6 @@ use crate::session::{MappedGraph, Session, selected_scan_poses};
 use crate::settings::Setting;
 use crate::trajectory::{StampedPose, Trajectory};
 
-/// Message for a log without any return.
-pub const NOTHING_SEEN: &str =
-    "no beam of any keyframe has a range between the sensor's shortest and longest range";
-
 /// Scans with a lower score are reported.
 const POOR_SCORE: f64 = 0.5;
 
@@ -361,18 +357,6 @@ impl LogRun {
     #[must_use]
     pub fn late(&self) -> usize {
         self.late
-    }
-
-    /// Number of scans skipped because nothing was seen yet.
-    #[must_use]
-    pub fn blind(&self) -> usize {
-        self.blind
-    }
-
-    /// The reason why the first invalid scan was rejected.
-    #[must_use]
-    pub fn refused(&self) -> Option<FrameError> {
-        self.refused
     }
 
     /// The pose of every scan by the current graph; those of a resumed session come first.

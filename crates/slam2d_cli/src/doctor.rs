@@ -7,6 +7,7 @@ use clap::Args;
 use robot_io::doctor::Checkup;
 use robot_io::log::LogReader;
 use robot_io::remark::Verdict;
+use robot_io::run::LogRun;
 
 use crate::log_file::{OdometryArgs, TopicArgs, open_compared};
 use crate::output::{print_json, say};
@@ -28,21 +29,25 @@ pub struct DoctorArgs {
     json: bool,
 }
 
-/// Reads the log and prints the diagnosis; returns the exit code.
+/// Reads and maps the log and prints the diagnosis; returns the exit code.
 ///
 /// # Errors
 /// If the log cannot be read at all.
 pub fn run(args: &DoctorArgs) -> anyhow::Result<ExitCode> {
     let (mut reader, mut progress) = open_compared(&args.log, &args.topics, args.odometry)?;
     let mut checkup = Checkup::default();
+    let mut run = LogRun::default();
     while let Some(frame) = reader.next_frame()? {
         checkup.add(&frame);
         progress.report(checkup.scans());
+        run.step(frame);
     }
+    run.finish();
     progress.end();
     let name = args.log.file_name().unwrap_or(args.log.as_os_str());
     let motion = reader.motion().cloned().unwrap_or_default();
-    let diagnosis = checkup.finish(&name.to_string_lossy(), reader.notes(), &motion);
+    let mut diagnosis = checkup.finish(&name.to_string_lossy(), reader.notes(), &motion);
+    diagnosis.extend(run.path_remark());
     if args.json {
         print_json(&diagnosis);
     } else {

@@ -9,7 +9,7 @@ use clap::Args;
 use robot_io::laser_mount::LaserMount;
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
-use robot_io::run::{LogRun, NOTHING_SEEN};
+use robot_io::run::LogRun;
 use robot_io::settings::Setting;
 use serde::Serialize;
 
@@ -151,16 +151,11 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     for remark in &remarks {
         eprintln!("slam2d: {remark}");
     }
-    if run.scans() == 0 {
-        let problem = match run.refused() {
-            Some(problem) => problem.to_string(),
-            None if run.blind() > 0 => NOTHING_SEEN.to_owned(),
-            None => "it was interrupted before the first one".to_owned(),
-        };
+    if let Some(problem) = run.no_map() {
         bail!("{name}: no scan could be used: {problem}");
     }
-    if !run.has_seen() {
-        bail!("{name}: no scan could be used: {NOTHING_SEEN}");
+    if run.scans() == 0 {
+        bail!("{name}: it was interrupted before its first scan");
     }
     let trajectory = run.trajectory();
     let grade = reference

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::logs::{corridor, text};
+use crate::logs::{corridor, corridor_with, text};
 use crate::support::{assert_refused, slam2d};
 
 #[test]
@@ -76,6 +76,29 @@ fn the_doctor_names_a_pause_but_not_a_slow_recording() {
     );
     let slow: Vec<u32> = (0..30).map(|number| 60 * number).collect();
     assert!(!screen(&slow).contains("there is no scan"));
+}
+
+#[test]
+fn the_doctor_names_a_path_that_is_longer_by_odometry_than_on_the_map() {
+    let folder = TempDir::new().unwrap();
+    let remarks = |scale: f64| {
+        let log = corridor_with(&folder, 70, scale);
+        let report = slam2d(&["doctor", text(&log), "--odometry", "force", "--json"]);
+        let report: Value = serde_json::from_slice(&report.stdout).unwrap();
+        report["remarks"].as_array().unwrap().clone()
+    };
+    let said = |remark: &Value| remark["text"].as_str().unwrap().contains("on the map and");
+    let found = remarks(1.6);
+    let found = found.iter().find(|remark| said(remark)).unwrap();
+    assert_eq!(
+        (&found["part"], &found["verdict"], &found["options"][0]),
+        (
+            &Value::from("odometry"),
+            &Value::from("wrong"),
+            &Value::from("--no-odometry")
+        )
+    );
+    assert!(!remarks(1.0).iter().any(said));
 }
 
 #[test]

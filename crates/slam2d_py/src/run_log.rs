@@ -22,7 +22,7 @@ use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
 use robot_io::remark::Remark;
 use robot_io::rosbag2;
-use robot_io::run::{LogRun, NOTHING_SEEN};
+use robot_io::run::LogRun;
 
 use crate::arrays;
 use crate::errors::{LogError, os_error, within};
@@ -242,11 +242,7 @@ impl Pipeline {
         }
         run.finish();
         recorder.forget_left_out(&run);
-        if run.scans() == 0 || !run.has_seen() {
-            let problem = match run.refused() {
-                Some(problem) if run.scans() == 0 => problem.to_string(),
-                _ => NOTHING_SEEN.to_owned(),
-            };
+        if let Some(problem) = run.no_map() {
             return Err(LogError::new_err(format!(
                 "{name}: no scan could be used: {problem}"
             )));

@@ -14,10 +14,11 @@ use std::io::{self, BufRead, Read};
 
 use ch16_slam2d::graph::PoseGraph;
 use pr_geom::SE2;
+use robot_io::doctor::Diagnosis;
 use robot_io::graph_file::GraphFile;
 use robot_io::log::LogReader;
 use robot_io::recorder::RunRecorder;
-use robot_io::run::{LogRun, NOTHING_SEEN};
+use robot_io::run::LogRun;
 use robot_io::session::{self, Session};
 use robot_io::trajectory::{StampedPose, Trajectory};
 
@@ -74,6 +75,7 @@ pub struct Engine<'a> {
     is_ranked: bool,
     pins: BTreeMap<usize, SE2>,
     picture: MapPicture,
+    diagnosis: Option<Diagnosis>,
     remarks: Vec<String>,
     doubts: Vec<String>,
     look_into: Vec<usize>,
@@ -181,6 +183,7 @@ impl<'a> Engine<'a> {
             is_ranked: false,
             pins: BTreeMap::new(),
             picture: MapPicture::default(),
+            diagnosis: None,
             remarks: Vec::new(),
             doubts: Vec::new(),
             look_into: Vec::new(),
@@ -265,12 +268,11 @@ impl<'a> Engine<'a> {
         let missing = problem.as_ref().or(sentences.first().filter(|_| is_cut));
         let missing = missing.map_or(String::new(), |missing| format!("{missing}."));
         self.remarks.extend(sentences);
-        match self.run.slam() {
-            Some(_) if !self.run.has_seen() => {
-                let problem = format!("{}: no scan could be used: {NOTHING_SEEN}", self.name);
-                self.work = Work::Failed(problem);
-            }
-            Some(_) => {
+        let unused = self.run.no_map();
+        let unused = unused.map(|why| format!("{}: no scan could be used: {why}", self.name));
+        match (self.run.slam(), unused) {
+            (Some(_), Some(why)) => self.work = Work::Failed(why),
+            (Some(_), None) => {
                 self.remarks.extend(problem);
                 self.remarks.extend(self.run.sentences(&self.name));
                 if !missing.is_empty() {
@@ -278,15 +280,9 @@ impl<'a> Engine<'a> {
                 }
                 self.work = Work::Finishing;
             }
-            None => {
-                let nothing = || match self.run.refused() {
-                    Some(why) => format!("{}: no scan could be used: {why}", self.name),
-                    None if self.run.blind() > 0 => {
-                        format!("{}: no scan could be used: {NOTHING_SEEN}", self.name)
-                    }
-                    None => format!("{} was stopped before its first scan", self.name),
-                };
-                self.work = Work::Failed(problem.unwrap_or_else(nothing));
+            (None, unused) => {
+                let stopped = || format!("{} was stopped before its first scan", self.name);
+                self.work = Work::Failed(problem.or(unused).unwrap_or_else(stopped));
             }
         }
         let remarks = self.remarks.join("\n");
@@ -296,6 +292,7 @@ impl<'a> Engine<'a> {
     fn close_last_loops(&mut self) {
         self.run.finish();
         self.recorder.forget_left_out(&self.run);
+        self.diagnose_map();
         self.begin_editing(links_of(&self.run));
     }
 

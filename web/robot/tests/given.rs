@@ -106,6 +106,28 @@ fn the_doctor_s_screen_comes_before_the_first_keyframe_and_once() {
 }
 
 #[test]
+fn a_path_of_another_length_by_odometry_joins_the_doctor_s_screen_after_the_map() {
+    let log = String::from_utf8(files().0.clone()).unwrap();
+    let lengthened = log.lines().map(|line| {
+        let mut words: Vec<String> = line.split(' ').map(str::to_owned).collect();
+        // The poses of laser and body, before eight other fields.
+        let poses = words.len() - 14;
+        for index in [poses, poses + 1, poses + 3, poses + 4] {
+            words[index] = (2.0 * words[index].parse::<f64>().unwrap()).to_string();
+        }
+        words.join(" ") + "\n"
+    });
+    let log: Vec<u8> = lengthened.collect::<String>().into_bytes();
+    let choices = Choices::read("odometry force").unwrap();
+    let updates = updates(Engine::open(given(&log, "long.log"), &choices).unwrap());
+    let screens = updates.iter().filter(|update| update.kind == "diagnosis");
+    let screens: Vec<bool> = screens
+        .map(|screen| screen.text.contains("m long on the map and"))
+        .collect();
+    assert_eq!(screens, [false, true]);
+}
+
+#[test]
 fn a_turned_laser_is_reported_with_the_options_that_correct_it() {
     let (log, _) = files();
     let choices = Choices::read("laser 0,0,180").unwrap();

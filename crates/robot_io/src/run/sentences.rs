@@ -5,6 +5,10 @@ use ch16_slam2d::pipeline::{PieceFate, PieceReport};
 use super::LogRun;
 use super::robots::robot_sentence;
 use crate::plural::plural;
+use crate::remark::Remark;
+
+/// Reason why a log without any return has no map.
+const NOTHING_SEEN: &str = "no beam of any keyframe has a range between the sensor's shortest and longest range; check range_min and range_max in the driver, and whether something covers the laser";
 
 /// Odometry without motion in this many scans is reported: it may not have been recorded.
 const STILL_SCANS: usize = 20;
@@ -54,9 +58,8 @@ impl LogRun {
                 if self.blind == 1 { "was" } else { "were" }
             )
         });
-        let lengths = self
-            .slam()
-            .and_then(|slam| self.lengths.sentence(name, slam));
+        let lengths = self.path_remark();
+        let lengths = lengths.map(|remark| format!("{name}: {}", remark.text));
         let pieces = self.pieces().iter();
         let pieces = pieces.filter_map(|piece| match self.robot_of(piece) {
             Some(robot) => robot_sentence(name, robot, piece),
@@ -67,6 +70,23 @@ impl LogRun {
             .flatten()
             .chain(pieces)
             .collect()
+    }
+
+    /// Why there is no map; `None` if there is one, or if no scan was given.
+    #[must_use]
+    pub fn no_map(&self) -> Option<String> {
+        if self.scans() > 0 {
+            return (!self.has_seen()).then(|| NOTHING_SEEN.to_owned());
+        }
+        let is_blind = self.blind > 0;
+        let refused = self.refused.map(|problem| problem.to_string());
+        refused.or_else(|| is_blind.then(|| NOTHING_SEEN.to_owned()))
+    }
+
+    /// A remark if the path on the map and that of the odometry have different lengths.
+    #[must_use]
+    pub fn path_remark(&self) -> Option<Remark> {
+        self.slam().and_then(|slam| self.lengths.remark(slam))
     }
 
     /// Message on odometry that never moved; `None` if it did.

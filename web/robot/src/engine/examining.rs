@@ -1,6 +1,6 @@
 //! The doctor's pass over a log, before it is mapped.
 
-use robot_io::doctor::Checkup;
+use robot_io::doctor::{Checkup, Diagnosis};
 use robot_io::log::LogReader as _;
 use robot_io::motion::ComparedReader;
 
@@ -70,7 +70,21 @@ impl<'a> Engine<'a> {
         } = examination;
         let motion = reader.motion().cloned().unwrap_or_default();
         let diagnosis = checkup.finish(&self.name, reader.notes(), &motion);
+        self.send(diagnosis);
+    }
+
+    /// Adds to the diagnosis what the map shows about the recording.
+    pub(super) fn diagnose_map(&mut self) {
+        let found = self.run.path_remark();
+        if let Some((mut diagnosis, remark)) = self.diagnosis.take().zip(found) {
+            diagnosis.extend([remark]);
+            self.send(diagnosis);
+        }
+    }
+
+    fn send(&mut self, diagnosis: Diagnosis) {
         let json = serde_json::to_string(&diagnosis).expect("plain numbers, strings and lists");
         self.waiting.push(Update::text("diagnosis", json));
+        self.diagnosis = Some(diagnosis);
     }
 }
