@@ -134,6 +134,49 @@ it('a step and a gate typed by the keyboard drive the lap of w16.2', async () =>
   });
 });
 
+/** A reader's own rejection: ranks instead of a sorted limit. */
+const KEEP = `function keep_pairs(lengths, trim) {
+  const order = [...lengths.keys()].sort((a, b) => lengths[a] - lengths[b] || a - b);
+  return order.slice(0, Math.max(1, Math.ceil((1 - trim) * lengths.length))).sort((a, b) => a - b);
+}`;
+
+it('a rejection of pairs typed by the keyboard drives w16.1 beside ours, and the lap', async () => {
+  await beside('keep_pairs', async (tab) => {
+    await tab.locator(W1).scrollIntoViewIfNeeded();
+    await h.ready(tab, W1);
+    await tab.evaluate((at) => document.querySelector(at).set('trim', 0.4), W1);
+    const ours = await outcome(tab, W1);
+    await type(tab, KEEP);
+    await press(tab, 'Drive the registration of w16.1 with it');
+    const theirs = await said(tab, W1, 'your keep_pairs ends');
+    assertNear(theirs, ours, ['error_m', 'error_deg', 'rmse_m', 'pairs', 'iterations']);
+    await press(tab, 'Let ours drive the registration of w16.1 again');
+    await said(tab, W1, 'point to point ends');
+    // The longest instead of the shortest.
+    await type(tab, KEEP.replace('lengths[a] - lengths[b]', 'lengths[b] - lengths[a]'));
+    await press(tab, 'Drive the registration of w16.1 with it');
+    const longest = await said(tab, W1, 'your keep_pairs ends');
+    assert.ok(Math.abs(longest.facts.error_deg - ours.facts.error_deg) > 1, longest.sentence);
+    await press(tab, 'Let ours drive the registration of w16.1 again');
+    for (const [code, sentence] of [
+      ['function keep_pairs(lengths) {\n  return [lengths.length];\n}', /keep_pairs keeps pair (\d+) of \1; they are numbered from 0\. Ours drives again\./],
+      ['function keep_pairs() {\n  return 3;\n}', 'keep_pairs has to return an array of the numbers of the pairs that it keeps. Ours drives again.'],
+    ]) {
+      await type(tab, code);
+      await press(tab, 'Drive the registration of w16.1 with it');
+      await says(tab, sentence);
+    }
+    await tab.locator(W2).scrollIntoViewIfNeeded();
+    await h.ready(tab, W2);
+    await tab.evaluate((at) => document.querySelector(at).set('t', 129), W2);
+    const lap = await outcome(tab, W2);
+    // The shorter half, whatever it is asked for.
+    await type(tab, KEEP.replace('(1 - trim)', '0.5'));
+    await press(tab, 'Drive the lap of w16.2 with it');
+    assert.notEqual((await said(tab, W2, 'By your keep_pairs, ')).facts.keyframe_rms_m, lap.facts.keyframe_rms_m);
+  });
+});
+
 it('a wrong function is told its fault and may drive, an error names its line, and a loop without end is stopped', async () => {
   await beside('svd_align', async (tab) => {
     await tab.locator(W1).scrollIntoViewIfNeeded();

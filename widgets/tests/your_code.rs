@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ch16_lab::reader_code::{ANSWERS, Callable, Executor, SEAT};
+use ch16_lab::reader_code::{ANSWERS, Callable, Executor, KeepPairs, SEAT};
 use ch16_slam2d::chapter::path_information;
 use ch16_slam2d::icp::{Increment, Pair, svd_align};
 use ch16_slam2d::loops::{InnovationGate, LoopConfig, chi_squared_gate};
@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use pr_geom::{Point2, SE2};
 use widget_kit::host_messages::Delivery;
 use widget_kit::model::{Activity, Model};
-use widget_kit::scene::Layer;
+use widget_kit::scene::{Cell, Layer};
 use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
 use widgets::w16_2_full_lap::model::FullLap;
 
@@ -32,8 +32,29 @@ impl InnovationGate for Ours {
     }
 }
 
-/// A step without its turn, and a gate that rejects everything.
+impl KeepPairs for Ours {
+    fn dropped(&self, lengths_m: &[f64], trim: f64) -> Vec<usize> {
+        let mut sorted = lengths_m.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let kept = ((1.0 - trim) * sorted.len() as f64).ceil().max(1.0);
+        let longest_m = sorted[kept as usize - 1];
+        let pairs = (0..lengths_m.len()).filter(|&index| lengths_m[index] > longest_m);
+        pairs.collect()
+    }
+}
+
+/// A step without its turn, a gate that rejects everything, and a rejection that drops the shortest pairs.
 struct Wrong;
+
+impl KeepPairs for Wrong {
+    fn dropped(&self, lengths_m: &[f64], _: f64) -> Vec<usize> {
+        let mut by_length: Vec<usize> = (0..lengths_m.len()).collect();
+        by_length.sort_by(|&a, &b| lengths_m[a].total_cmp(&lengths_m[b]));
+        by_length.truncate(lengths_m.len() / 2);
+        by_length.sort_unstable();
+        by_length
+    }
+}
 
 impl Increment for Wrong {
     fn increment(&self, pairs: &[Pair]) -> SE2 {
@@ -158,16 +179,27 @@ fn the_other_variant_is_driven_by_ours() {
     assert_eq!(facts(&model), facts(&ours));
 }
 
+fn raster(model: &BasinExplorer, panel: &str) -> Arc<[Cell]> {
+    let layers = panel_of(model, panel).layers;
+    let raster = layers.into_iter().find_map(|layer| match layer {
+        Layer::Raster(raster) => Some(raster.cells),
+        _ => None,
+    });
+    raster.expect("the map is shown")
+}
+
+/// The first segments of the sweeps: from each point to its partner.
+fn pair_lines(model: &BasinExplorer) -> Vec<[[f64; 2]; 2]> {
+    let layers = panel_of(model, panel::SWEEPS).layers;
+    let lines = layers.into_iter().find_map(|layer| match layer {
+        Layer::Segments { segments, .. } => Some(segments),
+        _ => None,
+    });
+    lines.expect("the pairs are drawn")
+}
+
 #[test]
 fn the_basin_map_by_the_readers_function_has_the_cells_of_ours() {
-    let raster = |model: &BasinExplorer| {
-        let layers = panel_of(model, panel::POINT).layers;
-        let raster = layers.into_iter().find_map(|layer| match layer {
-            Layer::Raster(raster) => Some(raster.cells),
-            _ => None,
-        });
-        raster.expect("the map is shown")
-    };
     let mut ours = BasinExplorer::default();
     ours.set("more", 1.0).unwrap();
     widget_kit::model::finish_work(&mut ours);
@@ -175,16 +207,58 @@ fn the_basin_map_by_the_readers_function_has_the_cells_of_ours() {
     yours.set("more", 1.0).unwrap();
     deliver(&mut yours, SEAT, "svd_align", &[]);
     assert!(serve(&mut yours, &(Arc::new(Ours) as Arc<dyn Callable>)) > 10);
-    assert_eq!(raster(&yours), raster(&ours));
+    assert_eq!(raster(&yours, panel::POINT), raster(&ours, panel::POINT));
     assert_eq!(
         panel_of(&yours, panel::POINT).title,
         "Where it ends by your svd_align"
     );
     // Other settings empty it, and it is filled again.
     yours.set("tau", 1.4).unwrap();
-    assert_ne!(raster(&yours), raster(&ours));
+    assert_ne!(raster(&yours, panel::POINT), raster(&ours, panel::POINT));
     serve(&mut yours, &(Arc::new(Wrong) as Arc<dyn Callable>));
-    assert_ne!(raster(&yours), raster(&ours));
+    assert_ne!(raster(&yours, panel::POINT), raster(&ours, panel::POINT));
+}
+
+/// Of each variant: a rejection drives the one that is selected, and its map.
+#[test]
+fn the_registration_by_the_readers_rejection_has_the_bits_of_ours() {
+    let function: Arc<dyn Callable> = Arc::new(Ours);
+    for variant in [0.0, 1.0] {
+        let mut ours = BasinExplorer::default();
+        let mut yours = BasinExplorer::default();
+        deliver(&mut yours, SEAT, "keep_pairs", &[]);
+        yours.set("variant", variant).unwrap();
+        serve(&mut yours, &function);
+        for (name, value) in [("variant", variant), ("trim", 0.25), ("more", 1.0)] {
+            ours.set(name, value).unwrap();
+        }
+        assert_eq!(facts(&yours), facts(&ours));
+        let sentence = yours.outcome().sentence;
+        assert!(sentence.contains("your keep_pairs ends"), "{sentence}");
+        yours.set("more", 1.0).unwrap();
+        serve(&mut yours, &function);
+        widget_kit::model::finish_work(&mut ours);
+        let map = [panel::POINT, panel::PLANE][variant as usize];
+        assert_eq!(raster(&yours, map), raster(&ours, map));
+        for iteration in 0..4 {
+            for model in [&mut ours, &mut yours] {
+                model.set("iteration", f64::from(iteration)).unwrap();
+            }
+            assert_eq!(pair_lines(&yours), pair_lines(&ours), "the pairs drawn");
+        }
+    }
+}
+
+#[test]
+fn a_wrong_rejection_is_shown_with_the_pairs_that_it_keeps() {
+    let mut model = BasinExplorer::default();
+    model.set("trim", 0.5).unwrap();
+    let right = (facts(&model), pair_lines(&model));
+    deliver(&mut model, SEAT, "keep_pairs", &[]);
+    assert_eq!(model.values().number("trim"), 0.5);
+    serve(&mut model, &(Arc::new(Wrong) as Arc<dyn Callable>));
+    let wrong = (facts(&model), pair_lines(&model));
+    assert!(right.0 != wrong.0 && right.1 != wrong.1);
 }
 
 #[test]
@@ -192,7 +266,7 @@ fn the_lap_by_the_readers_functions_has_the_bits_of_ours() {
     let mut model = FullLap::default();
     model.set("t", 129.0).unwrap();
     let ours = facts(&model);
-    for name in ["svd_align", "gate"] {
+    for name in ["svd_align", "keep_pairs", "gate"] {
         deliver(&mut model, SEAT, name, &[]);
         assert_eq!(serve(&mut model, &(Arc::new(Ours) as Arc<dyn Callable>)), 1);
         assert_eq!(facts(&model), ours, "{name}");
@@ -224,6 +298,9 @@ fn a_wrong_gate_or_increment_changes_the_lap() {
     deliver(&mut model, SEAT, "svd_align", &[]);
     serve(&mut model, &(Arc::new(Wrong) as Arc<dyn Callable>));
     assert!(fact(&model, "keyframe_rms_m") > 2.0 * rms);
+    deliver(&mut model, SEAT, "keep_pairs", &[]);
+    serve(&mut model, &(Arc::new(Wrong) as Arc<dyn Callable>));
+    assert!(fact(&model, "keyframe_rms_m") != rms);
 }
 
 #[test]
@@ -245,6 +322,8 @@ fn what_is_no_order_is_refused() {
         SEAT.to_owned(),
         order.replace("svd_align", "main"),
         order.replace("svd_align", "gate"),
+        order.replace("p2p", "p2l"),
+        order.replace("p2p", "p2x"),
         order.replace("room", "moon"),
         order.replace(" 0.7 ", " wide "),
         format!("{as_cells} 0 99"),

@@ -25,5 +25,5 @@ pub use information::{
     move_information, regularize,
 };
 pub use pairing::{IcpWorkspace, Pair, correspondences};
-pub use rejection::{MaxDistance, PairRejection, Trimmed};
+pub use rejection::{Accepted, MaxDistance, PairRejection, Trimmed};
 pub use stepper::{Icp, IcpResult, IcpStep, IcpSummary, IcpTrace, Increment, StopReason, icp};

@@ -12,6 +12,7 @@ declare const WRITE_WORKER_FILE: string;
 const DRIVES: Record<string, readonly [string, string][]> = {
   svd_align: [['w16.1', 'the registration of w16.1'], ['w16.2', 'the lap of w16.2']],
   point_to_plane_step: [['w16.1', 'the registration of w16.1'], ['w16.2', 'the lap of w16.2']],
+  keep_pairs: [['w16.1', 'the registration of w16.1'], ['w16.2', 'the lap of w16.2']],
   gate: [['w16.2', 'the loops of w16.2']],
 };
 

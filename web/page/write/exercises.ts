@@ -226,7 +226,7 @@ function kept(expected: number[], meaning: string): (result: unknown) => string 
 const REJECT: Exercise = {
   name: 'keep_pairs',
   stub: `// The numbers of the pairs that ICP keeps: of n pairs the max(1, ⌈(1 − trim) n⌉) shortest, in their order.
-// lengths: Float64Array, m. trim: the share to drop, 0 to 1.
+// lengths: Float64Array, m. trim: the share to drop, 0 to 1; 0 in the lap of w16.2.
 function keep_pairs(lengths, trim) {
   return [];
 }

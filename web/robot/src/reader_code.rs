@@ -3,10 +3,10 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use ch16_lab::reader_code::{Callable, Executor, Function, Job};
+use ch16_lab::reader_code::{Callable, Executor, Function, Job, KeepPairs};
 use ch16_slam2d::icp::{Increment, Pair};
 use ch16_slam2d::loops::{InnovationGate, LoopConfig};
-use js_sys::{Array, Float64Array, Function as JsFunction, Reflect};
+use js_sys::{Array, ArrayBuffer, Float64Array, Function as JsFunction, Reflect};
 use nalgebra::Vector3;
 use pr_geom::SE2;
 use wasm_bindgen::prelude::*;
@@ -26,21 +26,18 @@ struct Written {
 /// The function of this worker in the seams of the core.
 struct Called;
 
-/// Calls the function; an error is kept, and the answer is NaN.
-fn call(arguments: &Array, read: impl FnOnce(&JsValue) -> Result<[f64; 3], String>) -> [f64; 3] {
+/// Calls the function; an error is kept, and there is no answer.
+fn call<T>(arguments: &Array, read: impl FnOnce(&JsValue) -> Result<T, String>) -> Option<T> {
     WRITTEN.with_borrow_mut(|written| {
-        let Some(written) = written.as_mut().filter(|written| written.thrown.is_none()) else {
-            return [f64::NAN; 3];
-        };
+        let written = written
+            .as_mut()
+            .filter(|written| written.thrown.is_none())?;
         let called = written.function.apply(&JsValue::UNDEFINED, arguments);
         let name = written.name.name();
         let answer = called.and_then(|value| {
             read(&value).map_err(|problem| js_sys::Error::new(&format!("{name} {problem}")).into())
         });
-        answer.unwrap_or_else(|thrown| {
-            written.thrown = Some(thrown);
-            [f64::NAN; 3]
-        })
+        answer.map_err(|thrown| written.thrown = Some(thrown)).ok()
     })
 }
 
@@ -49,23 +46,39 @@ fn flat(points: impl Iterator<Item = [f64; 2]>) -> JsValue {
     Float64Array::from(numbers.as_slice()).into()
 }
 
-/// A motion `[x, y, θ]`, as an array or a typed array.
+/// The numbers of an array or a typed array; an item that is none is NaN.
+fn numbers(value: &JsValue) -> Option<Vec<f64>> {
+    let number = |item: JsValue| item.as_f64().unwrap_or(f64::NAN);
+    let is_list = Array::is_array(value) || ArrayBuffer::is_view(value);
+    is_list.then(|| Array::from(value).iter().map(number).collect())
+}
+
+/// A motion `[x, y, θ]`.
 fn motion(value: &JsValue) -> Result<[f64; 3], String> {
-    let numbers: Vec<f64> = if value.is_object() {
-        Array::from(value)
-            .iter()
-            .filter_map(|one| one.as_f64())
-            .collect()
-    } else {
-        Vec::new()
-    };
-    numbers
-        .try_into()
-        .map_err(|_| "has to return three numbers, [x, y, θ]".to_owned())
+    let motion = numbers(value).and_then(|numbers| numbers.try_into().ok());
+    motion.ok_or_else(|| "has to return three numbers, [x, y, θ]".to_owned())
+}
+
+/// The pairs, of `count`, that are not among the kept ones.
+fn dropped(value: &JsValue, count: usize) -> Result<Vec<usize>, String> {
+    let kept = numbers(value).ok_or_else(|| {
+        "has to return an array of the numbers of the pairs that it keeps".to_owned()
+    })?;
+    let mut is_kept = vec![false; count];
+    for number in kept {
+        let index = Some(number as usize).filter(|index| *index as f64 == number);
+        let pair = index.and_then(|index| is_kept.get_mut(index));
+        *pair
+            .ok_or_else(|| format!("keeps pair {number} of {count}; they are numbered from 0"))? =
+            true;
+    }
+    let pairs = is_kept.iter().enumerate();
+    let dropped = pairs.filter(|(_, is_kept)| !**is_kept);
+    Ok(dropped.map(|(index, _)| index).collect())
 }
 
 /// The χ² of `{chi2, accepted}`, whose verdict has to be that of χ² ≤ limit.
-fn chi2(value: &JsValue, limit: f64) -> Result<[f64; 3], String> {
+fn chi2(value: &JsValue, limit: f64) -> Result<f64, String> {
     let field = |name: &str| Reflect::get(value, &JsValue::from_str(name)).ok();
     let chi2 = field("chi2").and_then(|found| found.as_f64());
     let accepted = field("accepted").and_then(|found| found.as_bool());
@@ -73,7 +86,7 @@ fn chi2(value: &JsValue, limit: f64) -> Result<[f64; 3], String> {
         return Err("has to return an object {chi2, accepted}".to_owned());
     };
     if accepted == (chi2 <= limit) {
-        return Ok([chi2, 0.0, 0.0]);
+        return Ok(chi2);
     }
     let relation = if accepted { "accepts" } else { "rejects" };
     Err(format!(
@@ -93,8 +106,17 @@ impl Increment for Called {
                     .map(|pair| pair.normal.map_or(none, |normal| [normal.x, normal.y])),
             ),
         );
-        let [x, y, theta] = call(&arguments, motion);
+        let [x, y, theta] = call(&arguments, motion).unwrap_or([f64::NAN; 3]);
         SE2::new(x, y, theta)
+    }
+}
+
+impl KeepPairs for Called {
+    fn dropped(&self, lengths_m: &[f64], trim: f64) -> Vec<usize> {
+        let arguments = Array::of2(&Float64Array::from(lengths_m).into(), &trim.into());
+        call(&arguments, |value| dropped(value, lengths_m.len()))
+            // Without a pair the registration ends.
+            .unwrap_or_else(|| (0..lengths_m.len()).collect())
     }
 }
 
@@ -106,8 +128,7 @@ impl InnovationGate for Called {
             &Array::of2(&config.drift_sigma_m.into(), &config.drift_sigma_rad.into()),
             &config.gate_chi2.into(),
         );
-        let [found, ..] = call(&arguments, |value| chi2(value, config.gate_chi2));
-        found
+        call(&arguments, |value| chi2(value, config.gate_chi2)).unwrap_or(f64::NAN)
     }
 }
 

@@ -189,13 +189,17 @@ impl BasinExplorer {
 
     /// The pairs at the current iteration.
     fn pairs(&self) -> Vec<Pair> {
-        let config = config(&self.values, variant(&self.values));
-        correspondences(
-            self.scene.source(),
-            self.scene.map(),
-            self.shown().pose,
-            &config,
-        )
+        let mut config = config(&self.values, variant(&self.values));
+        let dropped = self.dropped_at(self.iteration());
+        if dropped.is_some() {
+            config.trim = 0.0;
+        }
+        let (source, map) = (self.scene.source(), self.scene.map());
+        let pairs = correspondences(source, map, self.shown().pose, &config);
+        let pairs = pairs.into_iter().enumerate();
+        let kept = |index: &usize| !dropped.is_some_and(|dropped| dropped.contains(index));
+        let pairs = pairs.filter(|(index, _)| kept(index));
+        pairs.map(|(_, pair)| pair).collect()
     }
 
     /// Sets and shows a new start, rounded, which keeps links short.

@@ -6,7 +6,9 @@ use pr_sim::{Lidar, LidarConfig, Rng, World};
 use super::{BasinOutcome, fence};
 use crate::scenes::{self, MAP_POINTS_PER_CELL, NORMAL_RADIUS_M};
 use ch16_slam2d::cloud::{DenseMap, NearestTable, PointCloud};
-use ch16_slam2d::icp::{Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace, Increment};
+use ch16_slam2d::icp::{
+    Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace, Increment, PairRejection,
+};
 
 /// A registration counts as right if it is closer to the truth than this, m.
 pub const SUCCESS_RADIUS_M: f64 = 0.12;
@@ -232,18 +234,23 @@ impl BasinScene {
         self.judge(&found)
     }
 
-    /// The same with custom increments.
+    /// The same with a custom increment or rejection.
     pub fn register_with(
         &self,
         start: &BasinStart,
         config: &IcpConfig,
-        rule: &dyn Increment,
+        (increment, rejection): (Option<&dyn Increment>, Option<&dyn PairRejection>),
         workspace: &mut IcpWorkspace,
     ) -> BasinOutcome {
         let guess = self.guess(start);
-        let icp = Icp::new(&self.source, &self.map, guess, config, workspace);
-        let found = icp.with_increment(rule).run();
-        self.judge(&found)
+        let mut icp = Icp::new(&self.source, &self.map, guess, config, workspace);
+        if let Some(rule) = increment {
+            icp = icp.with_increment(rule);
+        }
+        if let Some(rule) = rejection {
+            icp = icp.with_rejection(rule);
+        }
+        self.judge(&icp.run())
     }
 
     fn judge(&self, found: &IcpSummary) -> BasinOutcome {

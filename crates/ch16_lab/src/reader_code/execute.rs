@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use ch16_slam2d::icp::IcpWorkspace;
 
-use super::{BasinTask, Callable, Order, Recorder, Task};
+use super::{BasinTask, Callable, Function, Order, Recorder, Task};
 use crate::basin::{BasinPlace, BasinScene, BasinStart};
 use crate::lap::{LapRun, LapRunner};
 
@@ -18,6 +18,7 @@ pub struct Executor {
 
 /// An order under way.
 pub struct Job {
+    named: Function,
     function: Arc<Recorder>,
     work: Work,
 }
@@ -60,7 +61,11 @@ impl Executor {
                 Work::Lap(Box::new(self.runner.start_with_parts(config, parts)))
             }
         };
-        Ok(Job { function, work })
+        Ok(Job {
+            named,
+            function,
+            work,
+        })
     }
 
     fn basin(&mut self, task: BasinTask, left: Option<Vec<BasinStart>>) -> Work {
@@ -96,9 +101,9 @@ impl Job {
             } => {
                 let next = left.as_mut().map_or(Some(task.start), Vec::pop);
                 let workspace = &mut IcpWorkspace::new();
-                let config = &task.config;
-                let end = next
-                    .map(|start| scene.register_with(&start, config, &*self.function, workspace));
+                let (named, function) = (self.named, &*self.function);
+                let end =
+                    next.map(|start| task.register(scene, &start, named, function, workspace));
                 let Some(left) = left else {
                     return Some(self.function.take());
                 };

@@ -5,13 +5,13 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use ch16_slam2d::chapter::{ChapterParts, InformationFrame};
-use ch16_slam2d::icp::{IcpConfig, IcpVariant};
+use ch16_slam2d::icp::{IcpConfig, IcpVariant, IcpWorkspace, Increment};
 use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::matching::IcpMatcher;
 use pr_sim::{Course, Sketch};
 
-use super::{Callable, Function, SEAT};
-use crate::basin::{BasinMapAxes, BasinPlace, BasinScene, BasinStart, OffsetAxis};
+use super::{Callable, Function, Rejection, SEAT};
+use crate::basin::{BasinMapAxes, BasinOutcome, BasinPlace, BasinScene, BasinStart, OffsetAxis};
 use crate::lap::{BuiltInWorld, Choice as _, LapConfig, LapMatcher, LapSettings, LoopClosure};
 
 /// A computation with a reader's function.
@@ -43,10 +43,36 @@ pub struct BasinTask {
     pub seed: u32,
     /// The initial guess.
     pub start: BasinStart,
-    /// The settings; the function decides on the variant.
+    /// The settings, with the variant of the function if it is an increment.
     pub config: IcpConfig,
     /// The axes of the basin map.
     pub axes: BasinMapAxes,
+}
+
+impl BasinTask {
+    /// Registers from `start` with a function in its seam.
+    pub fn register(
+        &self,
+        scene: &BasinScene,
+        start: &BasinStart,
+        function: Function,
+        callable: &impl Callable,
+        workspace: &mut IcpWorkspace,
+    ) -> BasinOutcome {
+        if function != Function::KeepPairs {
+            let rules = (Some(callable as &dyn Increment), None);
+            return scene.register_with(start, &self.config, rules, workspace);
+        }
+        let rule = Rejection {
+            function: callable,
+            trim: self.config.trim,
+        };
+        let untrimmed = IcpConfig {
+            trim: 0.0,
+            ..self.config
+        };
+        scene.register_with(start, &untrimmed, (None, Some(&rule)), workspace)
+    }
 }
 
 /// A lap.
@@ -76,11 +102,17 @@ impl LapTask {
         };
         let config = self.settings.config(Some(&own));
         let mut config = config.ok_or("this course cannot be driven")?;
-        let Some(variant) = function.variant() else {
+        if !function.registers() {
             let mut parts = ChapterParts::from_config(&config.slam.chapter);
             parts.gate = Some(callable);
             return Ok((config, parts));
-        };
+        }
+        let is_plane = self.settings.matcher == LapMatcher::PointToPlane;
+        let variant = function.variant().unwrap_or(if is_plane {
+            IcpVariant::PointToPlane
+        } else {
+            IcpVariant::PointToPoint
+        });
         config = config.with_matcher(match variant {
             IcpVariant::PointToPoint => LapMatcher::PointToPoint,
             IcpVariant::PointToPlane => LapMatcher::PointToPlane,
@@ -89,7 +121,15 @@ impl LapTask {
         let mut parts = ChapterParts::from_config(chapter);
         let matcher = |map| {
             let ours = IcpMatcher::with_variant(variant, map);
-            Box::new(ours.with_increment(callable.clone()))
+            Box::new(if function == Function::KeepPairs {
+                // The chapter's lap trims nothing.
+                ours.with_rejection(Arc::new(Rejection {
+                    function: callable.clone(),
+                    trim: 0.0,
+                }))
+            } else {
+                ours.with_increment(callable.clone())
+            })
         };
         parts.front_end = matcher(&chapter.local_map);
         parts.loops = matcher(&chapter.loops.submap);
@@ -97,6 +137,10 @@ impl LapTask {
     }
 }
 
+const VARIANTS: [(IcpVariant, &str); 2] = [
+    (IcpVariant::PointToPoint, "p2p"),
+    (IcpVariant::PointToPlane, "p2l"),
+];
 const PLACES: [(BasinPlace, &str); 2] = [(BasinPlace::Room, "room"), (BasinPlace::Fence, "fence")];
 const AXES: [(OffsetAxis, &str); 2] = [(OffsetAxis::Dx, "dx"), (OffsetAxis::Dy, "dy")];
 const LOOPS: [(LoopClosure, &str); 2] = [(LoopClosure::On, "on"), (LoopClosure::Off, "off")];
@@ -142,7 +186,8 @@ impl Display for BasinTask {
         } = self;
         write!(
             f,
-            "{} {seed} {} {} {} {} {} {} {} {} {} {} {} {}",
+            "{} {} {seed} {} {} {} {} {} {} {} {} {} {} {} {}",
+            word(&VARIANTS, &config.variant),
             word(&PLACES, place),
             start.heading_deg,
             start.dx_m,
@@ -210,20 +255,22 @@ impl Words<'_> {
         }
         let function = Function::named(self.0.next()?)?;
         let what = self.0.next()?;
-        let task = match (what, function.variant()) {
-            ("registration", Some(variant)) => Task::Registration(self.basin(variant)?),
-            ("cells", Some(variant)) => {
-                let task = self.basin(variant)?;
+        let task = match what {
+            "registration" => Task::Registration(self.basin(function)?),
+            "cells" => {
+                let task = self.basin(function)?;
                 let cells = self.cells(&task.axes)?;
                 Task::Cells(task, cells)
             }
-            ("lap", _) => Task::Lap(self.lap()?),
+            "lap" => Task::Lap(self.lap()?),
             _ => return None,
         };
         Some(Order { function, task })
     }
 
-    fn basin(&mut self, variant: IcpVariant) -> Option<BasinTask> {
+    fn basin(&mut self, function: Function) -> Option<BasinTask> {
+        let variant = self.one_of(&VARIANTS)?;
+        function.fits(variant).then_some(())?;
         Some(BasinTask {
             place: self.one_of(&PLACES)?,
             seed: self.next()?,

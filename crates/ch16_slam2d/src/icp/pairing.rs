@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector2};
 use pr_geom::{SE2, math};
 
 use super::align::{PlanePair, PointPair, point_to_plane, point_to_point};
-use super::{IcpConfig, IcpTrace, IcpVariant, PairRejection, Trimmed, huber_weight};
+use super::{Accepted, IcpConfig, IcpTrace, IcpVariant, PairRejection, Trimmed, huber_weight};
 use crate::cloud::{NearestMap, PointCloud, QueryCache};
 
 /// A moved cloud point and the map point nearest to it.
@@ -201,9 +201,17 @@ impl IcpWorkspace {
         self.distances.clear();
         self.distances
             .extend(self.pairs.iter().map(|pair| pair.distance_squared_m2));
-        let limit_m2 = rule.largest_m2(&mut self.distances);
-        self.pairs
-            .retain(|pair| pair.distance_squared_m2 <= limit_m2);
+        match rule.accepted(&mut self.distances) {
+            Accepted::UpTo(limit_m2) => {
+                self.pairs
+                    .retain(|pair| pair.distance_squared_m2 <= limit_m2);
+            }
+            Accepted::AllBut(rejected) => {
+                let (mut indices, mut rejected) = (0.., rejected.into_iter().peekable());
+                self.pairs
+                    .retain(|_| rejected.next_if_eq(&indices.next().unwrap_or(0)).is_none());
+            }
+        }
         self.sum_of_squares_m2 = self.pairs.iter().map(RawPair::square_m2).sum();
     }
 

@@ -1,10 +1,18 @@
 //! Outlier rejection of pairs before each increment.
 
 /// A rule that rejects pairs by their distance.
-pub trait PairRejection {
-    /// The largest squared distance of an accepted pair, m²; `squared_m2` holds those of all pairs, in any order
-    /// and at least one, and may be reordered.
-    fn largest_m2(&self, squared_m2: &mut [f64]) -> f64;
+pub trait PairRejection: Send + Sync {
+    /// The accepted pairs; `squared_m2` holds the squared distances of all pairs, m², at least one, and may be reordered.
+    fn accepted(&self, squared_m2: &mut [f64]) -> Accepted;
+}
+
+/// The pairs that a rule accepts.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Accepted {
+    /// Those up to this squared distance, m².
+    UpTo(f64),
+    /// All but those at these indices, which ascend.
+    AllBut(Vec<usize>),
 }
 
 /// Accepts pairs up to a distance.
@@ -15,8 +23,8 @@ pub struct MaxDistance {
 }
 
 impl PairRejection for MaxDistance {
-    fn largest_m2(&self, _: &mut [f64]) -> f64 {
-        self.tau_m * self.tau_m
+    fn accepted(&self, _: &mut [f64]) -> Accepted {
+        Accepted::UpTo(self.tau_m * self.tau_m)
     }
 }
 
@@ -28,10 +36,10 @@ pub struct Trimmed {
 }
 
 impl PairRejection for Trimmed {
-    fn largest_m2(&self, squared_m2: &mut [f64]) -> f64 {
+    fn accepted(&self, squared_m2: &mut [f64]) -> Accepted {
         let kept = ((1.0 - self.share) * squared_m2.len() as f64).ceil();
         let last = (kept as usize).clamp(1, squared_m2.len()) - 1;
-        *squared_m2.select_nth_unstable_by(last, f64::total_cmp).1
+        Accepted::UpTo(*squared_m2.select_nth_unstable_by(last, f64::total_cmp).1)
     }
 }
 
@@ -47,9 +55,25 @@ mod tests {
     struct TimesMedian(f64);
 
     impl PairRejection for TimesMedian {
-        fn largest_m2(&self, squared_m2: &mut [f64]) -> f64 {
+        fn accepted(&self, squared_m2: &mut [f64]) -> Accepted {
             let middle = squared_m2.len() / 2;
-            self.0 * self.0 * *squared_m2.select_nth_unstable_by(middle, f64::total_cmp).1
+            let median_m2 = *squared_m2.select_nth_unstable_by(middle, f64::total_cmp).1;
+            Accepted::UpTo(self.0 * self.0 * median_m2)
+        }
+    }
+
+    /// The same rule, which names the pairs.
+    struct ByIndex(f64);
+
+    impl PairRejection for ByIndex {
+        fn accepted(&self, squared_m2: &mut [f64]) -> Accepted {
+            let Accepted::UpTo(limit_m2) = TimesMedian(self.0).accepted(&mut squared_m2.to_vec())
+            else {
+                unreachable!("the rule has a limit")
+            };
+            let far = squared_m2.iter().enumerate();
+            let far = far.filter(|(_, squared_m2)| **squared_m2 > limit_m2);
+            Accepted::AllBut(far.map(|(index, _)| index).collect())
         }
     }
 
@@ -74,6 +98,7 @@ mod tests {
         let (pulled, held) = (off(None), off(Some(&TimesMedian(3.0))));
         assert!(pulled > 0.01, "{pulled}");
         assert!(held < 1e-6, "{held}");
+        assert_eq!(off(Some(&ByIndex(3.0))).to_bits(), held.to_bits());
         assert!(off(Some(&Trimmed { share: 0.2 })) < 1e-6);
         // The box's points at 0.3 m, and walls within a tenth of a metre of each other.
         assert!(off(Some(&MaxDistance { tau_m: 0.1 })) < 0.5 * pulled);

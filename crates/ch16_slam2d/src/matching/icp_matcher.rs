@@ -6,7 +6,7 @@ use pr_geom::SE2;
 
 use super::{MapConfig, Match, MatchRequest, MatchStop, MatchSummary, Matcher};
 use crate::cloud::{DenseMap, PointCloud};
-use crate::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace, Increment};
+use crate::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace, Increment, PairRejection};
 
 /// ICP on a [`DenseMap`], point to point or point to plane.
 #[derive(Clone)]
@@ -15,6 +15,7 @@ pub struct IcpMatcher {
     map: DenseMap,
     workspace: IcpWorkspace,
     increment: Option<Arc<dyn Increment>>,
+    rejection: Option<Arc<dyn PairRejection>>,
 }
 
 impl IcpMatcher {
@@ -27,6 +28,7 @@ impl IcpMatcher {
             map: DenseMap::new(map.cell_m, map.max_per_cell),
             workspace: IcpWorkspace::new(),
             increment: None,
+            rejection: None,
         }
     }
 
@@ -44,6 +46,13 @@ impl IcpMatcher {
     #[must_use]
     pub fn with_increment(mut self, rule: Arc<dyn Increment>) -> Self {
         self.increment = Some(rule);
+        self
+    }
+
+    /// The same matcher with only the pairs that a rule accepts.
+    #[must_use]
+    pub fn with_rejection(mut self, rule: Arc<dyn PairRejection>) -> Self {
+        self.rejection = Some(rule);
         self
     }
 
@@ -80,11 +89,15 @@ impl Matcher for IcpMatcher {
             map,
             workspace,
             increment,
+            rejection,
             ..
         } = self;
         let mut icp = Icp::new(source, map, request.guess, &settings, workspace);
         if let Some(rule) = increment {
             icp = icp.with_increment(&**rule);
+        }
+        if let Some(rule) = rejection {
+            icp = icp.with_rejection(&**rule);
         }
         let found = icp.run();
         Match {

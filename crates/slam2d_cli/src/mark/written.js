@@ -217,7 +217,7 @@ function point_to_plane_step(src, dst, normals) {
   var REJECT = {
     name: "keep_pairs",
     stub: `// The numbers of the pairs that ICP keeps: of n pairs the max(1, \u2308(1 \u2212 trim) n\u2309) shortest, in their order.
-// lengths: Float64Array, m. trim: the share to drop, 0 to 1.
+// lengths: Float64Array, m. trim: the share to drop, 0 to 1; 0 in the lap of w16.2.
 function keep_pairs(lengths, trim) {
   return [];
 }

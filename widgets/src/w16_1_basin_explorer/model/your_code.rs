@@ -10,16 +10,21 @@ use super::basins::map_axes;
 use super::settings::{config, start, variant};
 use super::{BasinExplorer, Preview, Run};
 use crate::reader_orders::Orders;
-use crate::w16_1_basin_explorer::spec::{SCENE, SEED, VARIANT};
+use crate::w16_1_basin_explorer::spec::{SCENE, SEED, TRIM, VARIANT};
 
 /// Cells of the basin map in one order.
 const CELLS_PER_ORDER: usize = 128;
 
+/// The share of pairs to drop as a rejection takes its seat.
+const SHARE_TO_DROP: f64 = 0.25;
+
 /// The function that drives.
 pub struct YourCode {
     pub orders: Orders,
-    /// The error that its increment reduces: it drives while this variant is selected.
+    /// An increment drives while the variant of its error is selected, a rejection of pairs any.
     variant: IcpVariant,
+    /// The pairs that it drops at each iteration, if it rejects pairs.
+    dropped: Vec<Vec<usize>>,
     /// Our result from the same start.
     pub ours: BasinOutcome,
     /// Whether the run on screen is that of the function.
@@ -30,6 +35,12 @@ impl BasinExplorer {
     /// The function whose run is on screen.
     pub(super) fn driver(&self) -> Option<&YourCode> {
         self.yours.as_ref().filter(|yours| yours.is_shown)
+    }
+
+    /// The pairs that the function drops at an iteration, if it rejects pairs.
+    pub(super) fn dropped_at(&self, iteration: usize) -> Option<&[usize]> {
+        let dropped = self.driver()?.dropped.get(iteration)?;
+        Some(dropped)
     }
 
     /// The name of the function whose basin map a variant has.
@@ -48,21 +59,24 @@ impl BasinExplorer {
     }
 
     fn seat(&mut self, function: Option<Function>) {
-        let ours = self.run.outcome;
-        let seated = |function: Function| {
-            Some(YourCode {
-                orders: Orders::new(function),
-                variant: function.variant()?,
-                ours,
-                is_shown: false,
-            })
-        };
-        self.yours = function.and_then(seated);
+        let (ours, selected) = (self.run.outcome, variant(&self.values));
+        let function = function.filter(|function| function.registers());
+        self.yours = function.map(|function| YourCode {
+            orders: Orders::new(function),
+            variant: function.variant().unwrap_or(selected),
+            dropped: Vec::new(),
+            ours,
+            is_shown: false,
+        });
         let variant = self.yours.as_ref().map(|yours| yours.variant);
         if let Some(variant) = variant {
             self.playback.pause();
             self.values.put(&VARIANT, variant);
             self.preview = Preview::Shown;
+        }
+        if function == Some(Function::KeepPairs) && self.values.get(&TRIM) == 0.0 {
+            // With nothing to drop, the right function keeps all pairs.
+            self.values.put(&TRIM, SHARE_TO_DROP);
         }
         self.register();
         self.follow();
@@ -82,14 +96,20 @@ impl BasinExplorer {
 
     /// Orders the registration from the current start. Until it is here, the source stands at its start.
     pub(super) fn order_registration(&mut self) {
-        let Some(variant_of_yours) = self.yours.as_ref().map(|yours| yours.variant) else {
+        let selected = variant(&self.values);
+        let Some(yours) = &mut self.yours else {
             return;
         };
+        if yours.variant != selected && yours.orders.function.fits(selected) {
+            yours.variant = selected;
+            self.basins.give(Some(selected), &self.values);
+        }
+        let variant_of_yours = yours.variant;
         let task = self.task(variant_of_yours);
         let ours = self.run.outcome;
         if let Some(yours) = &mut self.yours {
             yours.is_shown = false;
-            if yours.variant != variant(&self.values) {
+            if yours.variant != selected {
                 return;
             }
             yours.ours = ours;
@@ -132,10 +152,13 @@ impl BasinExplorer {
                 self.basins.put(numbers);
             }
             Some(Task::Registration(task)) if yours.variant == variant(&self.values) => {
-                let answers = Answers::new(numbers);
+                let (function, answers) = (yours.orders.function, Answers::new(numbers));
                 let workspace = &mut self.workspace;
                 let outcome =
-                    (self.scene).register_with(&task.start, &task.config, &answers, workspace);
+                    task.register(&self.scene, &task.start, function, &answers, workspace);
+                if function == Function::KeepPairs {
+                    yours.dropped = Answers::each_dropped(numbers);
+                }
                 self.run = Run {
                     trace: workspace.trace().to_vec(),
                     outcome,
