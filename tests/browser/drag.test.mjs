@@ -48,7 +48,7 @@ function difference(tab, one, other) {
   }, [one, other]);
 }
 
-for (const [name, parameter] of [['w16.2', 'noise'], ['w16.3', 'tau'], ['w16.1', 'heading']]) {
+for (const [name, parameter] of [['w16.2', 'noise'], ['w16.8', 'share'], ['w16.1', 'heading']]) {
   describe(`${name} while ${parameter} is dragged`, () => {
     it('has the result of the last value after every move', async () => {
       await on(name, async (tab) => {

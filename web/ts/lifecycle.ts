@@ -166,6 +166,9 @@ export class Lifecycle implements Visibility, Drawer {
       stage.classList.add('waiting');
       const instance = await this.ensureInstance();
       await nextTask();
+      // The first frame shows data: the still picture stands until then.
+      this.ask((ready) => ready.finishWork());
+      await nextTask();
       if (generation !== this.#generation) return;
       this.#stage = new Stage(stage, instance, widget.title, () => this.fail(new ContextLostError()));
       await this.#stage.start();

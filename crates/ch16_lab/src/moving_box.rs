@@ -8,7 +8,7 @@ use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{
     Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace, Pair, correspondences,
 };
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 use pr_geom::{SE2, math, sort_numbers};
 use pr_sim::{Rng, Wall, World};
 
@@ -39,8 +39,8 @@ pub struct BoxConfig {
     pub seed: u32,
     /// Share of the points that lie on the box, 0 to 1.
     pub share: f64,
-    /// Displacement of the box along x, m.
-    pub moved_m: f64,
+    /// Displacement of the box in the world, m.
+    pub moved_m: [f64; 2],
 }
 
 impl Default for BoxConfig {
@@ -48,7 +48,7 @@ impl Default for BoxConfig {
         Self {
             seed: 1,
             share: 0.2,
-            moved_m: 0.3,
+            moved_m: [0.3, 0.0],
         }
     }
 }
@@ -121,7 +121,7 @@ impl BoxScene {
         let world_from_source = world_from_target * Self::truth();
         let mut rng = Rng::new(config.seed);
         let before = Point2::new(world_from_target.x() + 0.8, world_from_target.y() + 0.7);
-        let after = Point2::new(before.x + config.moved_m, before.y);
+        let after = before + Vector2::from(config.moved_m);
         let mut sweep = |middle: Point2<f64>, from: &SE2| {
             let mut cloud = sweep(&with_box(middle), from, config.share, &mut rng);
             cloud.estimate_normals(NORMAL_RADIUS_M);

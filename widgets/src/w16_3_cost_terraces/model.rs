@@ -1,7 +1,8 @@
 //! State and logic of the widget; no egui.
 //!
 //! A sweep is shifted over the map for which it was taken, with fixed heading. Every shift has ICP's
-//! truncated cost and NDT's score. Two balls descend from the cross hair, one on each landscape. Only what
+//! truncated cost and NDT's score. A ball descends from the cross hair on each landscape. The
+//! relief shows one of the two, and morphs if the reader switches. Only what
 //! depends on a changed parameter is computed again: see [`terrains`]. A hundred sweeps with independent
 //! noise show the scatter of the results: see [`rests`].
 //!
@@ -21,6 +22,7 @@
 //! their noise.
 
 mod landscape;
+mod morph;
 mod picture;
 mod rests;
 mod settings;
@@ -29,8 +31,7 @@ mod terrains;
 mod texts;
 
 use widget_kit::model::{
-    Activity, Assessment, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark,
-    finish_work, press_preset,
+    Activity, Handle, Model, Motion, Outcome, Table, Timeline, finish_work, press_preset,
 };
 use widget_kit::param::ParamError;
 use widget_kit::playback::Playback;
@@ -40,23 +41,27 @@ use widget_kit::spec::WidgetSpec;
 use widget_kit::values::{Changed, Values};
 
 use crate::w16_3_cost_terraces::spec::{
-    BALL_STEP, DROPS, HALF_SPAN_M, MAX_BALL_STEPS, MAX_DROPS, PARAMS, SPEC,
+    DROPS, END_PERCENT, HALF_SPAN_M, MAX_DROPS, MEASURE, Measure, PARAMS, ROLLED, SPEC,
 };
+use morph::Morph;
 use picture::{Looked, Moment};
 use rests::Rests;
 use settings::Settings;
 use terrains::Terrains;
 
-/// Steps of the balls in a second at speed ×1.
-const STEPS_PER_S: f64 = 24.0;
+/// Share of the path that the ball rolls in a second at speed ×1.
+const PERCENT_PER_S: f64 = 40.0;
 
 /// The model of the widget.
 pub struct CostTerraces {
     values: Values,
     terrains: Terrains,
     rests: Rests,
+    morph: Morph,
     playback: Playback,
     hover_m: Option<[f64; 2]>,
+    /// Whether the ball is held: it waits at the drop, and rolls when it is let go.
+    held: bool,
 }
 
 impl Default for CostTerraces {
@@ -66,10 +71,12 @@ impl Default for CostTerraces {
         let terrains = Terrains::new(Settings::read(&values));
         Self {
             rests: Rests::new(&terrains),
+            morph: Morph::new(&terrains),
             terrains,
             values,
             playback: Playback::default(),
             hover_m: None,
+            held: false,
         }
     }
 }
@@ -79,24 +86,16 @@ impl CostTerraces {
         Settings::read(&self.values)
     }
 
-    /// Position on the timeline; beyond the last step it means the end.
-    fn step(&self) -> usize {
-        (self.values.get(&BALL_STEP) as usize).min(self.last_step())
+    fn measure(&self) -> Measure {
+        self.values.get(&MEASURE)
     }
 
-    /// Steps until both balls stop.
-    fn last_step(&self) -> usize {
-        self.terrains
-            .icp
-            .ball
-            .steps()
-            .max(self.terrains.ndt.ball.steps())
+    fn rolled(&self) -> f64 {
+        self.values.get(&ROLLED)
     }
 
-    /// Goes to a step; the end remains the end even if the next balls stop elsewhere.
-    fn go_to(&mut self, step: f64) {
-        let at_end = step >= self.last_step() as f64;
-        self.put("t", if at_end { MAX_BALL_STEPS as f64 } else { step });
+    fn go_to(&mut self, rolled: f64) {
+        self.put("t", rolled);
     }
 
     /// Sets a parameter of the widget to a valid value.
@@ -104,12 +103,6 @@ impl CostTerraces {
         if let Err(error) = self.values.set(SPEC.id, id, value) {
             unreachable!("the widget's own value was refused: {error}");
         }
-    }
-
-    fn drop_balls(&mut self) {
-        self.playback.pause();
-        let start = self.playback.toggle(0.0, self.last_step() as f64);
-        self.go_to(start);
     }
 
     /// Drops the largest number of sweeps and animates them.
@@ -123,19 +116,24 @@ impl CostTerraces {
         self.terrains.update(self.settings());
         let drops = self.values.get(&DROPS);
         self.rests.follow(&self.terrains, drops);
+        self.morph
+            .turn_to(self.measure(), self.playback.motion(), &self.terrains);
     }
 
     fn moment(&self) -> Moment {
-        let (ball, step) = (&self.terrains.icp.ball, self.step());
+        let measure = self.measure();
+        let ball = &self.terrains.of(measure).ball;
+        let share = self.rolled() / END_PERCENT;
+        let step = (share * ball.steps() as f64).round() as usize;
         let rolls = 0 < step && step < ball.steps();
         Moment {
+            measure,
             probe_m: self.settings().probe_m,
             looked: match self.hover_m {
                 Some(at) => Looked::Pointer(at),
                 None if rolls => Looked::Ball,
                 None => Looked::CrossHair,
             },
-            ball_m: ball.at_step(step),
             step,
             colors: self.settings().colors,
         }
@@ -159,13 +157,11 @@ impl Model for CostTerraces {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let (here, last) = (self.step() as f64, self.last_step() as f64);
-        if let Some(position) = self.playback.press(id, here, last) {
+        if let Some(position) = self.playback.press(id, self.rolled(), END_PERCENT) {
             self.go_to(position);
             return Ok(());
         }
         match id {
-            "drop" => self.drop_balls(),
             "drop-100" => self.drop_sweeps(),
             "defaults" => {
                 self.playback.pause();
@@ -179,14 +175,13 @@ impl Model for CostTerraces {
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
         let flying = self.rests.advance(elapsed_s);
+        let morphing = self.morph.advance(elapsed_s, &self.terrains);
         if !self.playback.is_playing() {
-            return flying;
+            return if morphing.is_busy() { morphing } else { flying };
         }
-        let rate = STEPS_PER_S * self.values.get(&SPEED);
-        let last = self.last_step() as f64;
-        let next = self
-            .playback
-            .advance(self.step() as f64, last, elapsed_s, rate);
+        let rate = PERCENT_PER_S * self.values.get(&SPEED);
+        let here = self.rolled();
+        let next = self.playback.advance(here, END_PERCENT, elapsed_s, rate);
         self.go_to(next);
         Activity::Busy
     }
@@ -201,7 +196,7 @@ impl Model for CostTerraces {
     }
 
     fn scene(&self) -> Scene {
-        picture::scene(&self.terrains, &self.rests, self.moment())
+        picture::scene(&self.terrains, &self.rests, &self.morph, self.moment())
     }
 
     fn outcome(&self) -> Outcome {
@@ -213,19 +208,11 @@ impl Model for CostTerraces {
     }
 
     fn timeline(&self) -> Option<Timeline> {
-        let mark = |name: &str, steps: usize| TimelineMark {
-            at: steps as f64,
-            label: format!("{name} ball rests"),
-            standing: Assessment::Neutral,
-        };
         Some(Timeline {
             param: "t",
-            last: self.last_step() as f64,
+            last: END_PERCENT,
             playing: self.playback.is_playing(),
-            marks: vec![
-                mark("ICP", self.terrains.icp.ball.steps()),
-                mark("NDT", self.terrains.ndt.ball.steps()),
-            ],
+            marks: Vec::new(),
         })
     }
 
@@ -238,10 +225,9 @@ impl Model for CostTerraces {
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], _reach: [f64; 2]) -> Option<Handle> {
-        let panel = map_id(panel)?;
         // The whole map is the target: a press anywhere moves the cross hair there.
-        is_on_map(at).then_some(Handle {
-            panel,
+        is_on_map(panel, at).then_some(Handle {
+            panel: picture::RELIEF,
             id: "cell",
             offset: [0.0, 0.0],
         })
@@ -254,28 +240,35 @@ impl Model for CostTerraces {
         if probe.iter().all(|value| value.is_finite()) {
             self.put("probe-x", probe[0]);
             self.put("probe-y", probe[1]);
+            self.playback.pause();
+            self.go_to(0.0);
+            self.held = true;
             self.follow();
         }
     }
 
+    fn release(&mut self) {
+        if core::mem::take(&mut self.held) {
+            let start = self.playback.toggle(0.0, END_PERCENT);
+            self.go_to(start);
+        }
+    }
+
     fn hover(&mut self, panel: &str, at: Option<[f64; 2]>) {
-        self.hover_m = at.filter(|at| map_id(panel).is_some() && is_on_map(*at));
+        self.hover_m = at.filter(|at| is_on_map(panel, *at));
     }
 
     fn set_motion(&mut self, motion: Motion) {
-        if let Some(end) = self.playback.set_motion(motion, self.last_step() as f64) {
+        if let Some(end) = self.playback.set_motion(motion, END_PERCENT) {
             self.go_to(end);
         }
         if motion == Motion::Reduced {
             self.rests.land();
+            self.morph.end(&self.terrains);
         }
     }
 }
 
-fn map_id(panel: &str) -> Option<&'static str> {
-    ["icp", "ndt"].into_iter().find(|id| *id == panel)
-}
-
-fn is_on_map(at: [f64; 2]) -> bool {
-    at.iter().all(|value| value.abs() <= HALF_SPAN_M)
+fn is_on_map(panel: &str, at: [f64; 2]) -> bool {
+    panel == picture::RELIEF && at.iter().all(|value| value.abs() <= HALF_SPAN_M)
 }

@@ -13,7 +13,7 @@ pub const HALF_SPAN_M: f64 = 1.3;
 /// Smallest and largest number of cells on a side; both odd, so that one cell is at the truth.
 const CELLS_OF_A_SIDE: [f64; 2] = [49.0, 161.0];
 
-/// Largest number of steps of a ball, and largest length of the timeline.
+/// Largest number of steps of a ball.
 pub const MAX_BALL_STEPS: usize = 400;
 
 /// Largest number of sweeps that are dropped at once.
@@ -33,6 +33,15 @@ pub enum Place {
     OwnCorridor,
 }
 
+/// The measure that the relief shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// ICP's truncated cost.
+    Icp,
+    /// NDT's score.
+    Ndt,
+}
+
 /// What determines a cell's colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colors {
@@ -42,12 +51,8 @@ pub enum Colors {
     ByRank,
 }
 
-/// Drops both balls from the cross hair.
-const DROP: ButtonSpec = ButtonSpec {
-    id: "drop",
-    label: "Drop a ball",
-    help: "Start both balls at the cross hair and let them descend.",
-};
+/// The end of the timeline: a part of the path, because the balls need different numbers of steps.
+pub const END_PERCENT: f64 = 100.0;
 
 /// Drops many sweeps, each with independent noise.
 const DROP_100: ButtonSpec = ButtonSpec {
@@ -68,14 +73,14 @@ const PRESETS: &[Preset] = &[
             ("probe-x", 0.3),
             ("probe-y", -0.3),
         ],
-        then: &["drop"],
+        then: &["play"],
     },
     Preset {
         id: "bowl",
         label: "Widen τ to 0.6 m",
         help: "The steps melt into one bowl, and both balls come home. Beyond 0.6 m the plain goes on.",
         set: &[("tau", 0.6), ("colours", 0.0)],
-        then: &["drop"],
+        then: &["play"],
     },
     Preset {
         id: "wide-hill",
@@ -88,7 +93,7 @@ const PRESETS: &[Preset] = &[
             ("probe-x", -0.7),
             ("probe-y", 0.7),
         ],
-        then: &["drop"],
+        then: &["play"],
     },
     Preset {
         id: "wide-tau",
@@ -100,7 +105,7 @@ const PRESETS: &[Preset] = &[
             ("probe-x", 0.7),
             ("probe-y", 0.7),
         ],
-        then: &["drop"],
+        then: &["play"],
     },
     Preset {
         id: "corridor",
@@ -113,7 +118,7 @@ const PRESETS: &[Preset] = &[
             ("probe-x", 0.6),
             ("probe-y", 0.05),
         ],
-        then: &["drop"],
+        then: &["play"],
     },
     Preset {
         id: "wrong-wall",
@@ -126,7 +131,7 @@ const PRESETS: &[Preset] = &[
             ("probe-x", 0.2),
             ("probe-y", 1.1),
         ],
-        then: &["drop"],
+        then: &["play"],
     },
     Preset {
         id: "own-corridor",
@@ -139,7 +144,7 @@ const PRESETS: &[Preset] = &[
             ("probe-x", 0.6),
             ("probe-y", 0.0),
         ],
-        then: &["drop"],
+        then: &["play"],
     },
     Preset {
         id: "drop-room",
@@ -174,11 +179,22 @@ const PRESETS: &[Preset] = &[
         label: "Turn the sweep by 20°",
         help: "No shift undoes a turn. The lowest cost rises, and NDT's lowest cell leaves the truth.",
         set: &[("tau", 0.6), ("colours", 0.0), ("heading", 20.0)],
-        then: &["drop"],
+        then: &["play"],
     },
 ];
 
 params! {
+    pub(super) static MEASURE: OneOf<Measure> = one_of!(
+        Measure,
+        "measure",
+        "relief of",
+        &[
+            (Measure::Icp, "icp", "ICP"),
+            (Measure::Ndt, "ndt", "NDT"),
+        ],
+    )
+    .help("ICP's cost or NDT's score of the same sweep on the same points; the relief morphs from one to the other.");
+
     pub(super) static SCENE: OneOf<Place> = one_of!(
         Place,
         "scene",
@@ -210,7 +226,7 @@ params! {
 
     pub(super) static CELLS: Param<f64> = Param::slider("cells", "cells a side", CELLS_OF_A_SIDE, 8.0)
         .default(49.0)
-        .help("Both maps are sampled at this many shifts along each axis.");
+        .help("The relief is sampled at this many shifts along each axis.");
 
     pub(super) static COLOURS: OneOf<Colors> = one_of!(
         Colors,
@@ -231,13 +247,13 @@ params! {
         Param::slider("probe-x", "drop at Δx", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
             .unit("m")
             .default(0.4)
-            .help("Position of the cross hair and start of the balls, east of the truth.");
+            .help("Position of the cross hair and start of the ball, east of the truth.");
 
     pub(super) static PROBE_Y: Param<f64> =
         Param::slider("probe-y", "drop at Δy", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
             .unit("m")
             .default(0.1)
-            .help("Position of the cross hair and start of the balls, north of the truth.");
+            .help("Position of the cross hair and start of the ball, north of the truth.");
 
     pub(super) static DROPS: Param<usize> =
         Param::slider("drops", "sweeps dropped", [0.0, MAX_DROPS], 1.0)
@@ -252,11 +268,8 @@ params! {
             .unit("m")
             .help("Adds the row (1, 0, 0) with the weight 1/σ²; 0 adds none.");
 
-    // A position beyond the last step means the end of both balls.
-    pub(super) static BALL_STEP: Param<f64> =
-        Param::timeline("t", "step of the balls", MAX_BALL_STEPS as f64)
-            .default(MAX_BALL_STEPS as f64)
-            .help("How many gradient steps both balls have taken.");
+    pub(super) static ROLLED: Param<f64> = Param::timeline("t", "% rolled", END_PERCENT)
+        .help("How much of its path the ball has rolled, in steps of its descent.");
 
     use SPEED;
     use MORE;
@@ -267,9 +280,9 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.3",
     title: "Cost terraces",
     misconception: "False minima are in the cost.",
-    question: "Where does a ball roll home, and where does it stick? Drag either ball.",
+    question: "Where does the ball roll home, and where does it stick? Drag it, and let go.",
     notice: &[
-        "Both reliefs hold the same sweep against the same points; only the measure differs. Dark is low, the light comes from the upper left, and the balls roll into the dark.",
+        "Both reliefs hold the same sweep against the same points; only the measure differs. Dark is low, the light comes from the upper left, and the ball rolls into the dark.",
         "A small τ breaks ICP's bowl into terraces and hollows. A ball rests on the next one, however good the solver; the ground beside the relief shows it, with the pit that it did not reach.",
         "At each crease of the cost a point gets another partner, or none: the slope jumps, not the height. Those that are about to change light up.",
         "NDT has no such creases: each point feels the whole bell of its cell. But thin walls make thin bells. Its valley is narrow, and the plain around it has dents of its own; wider cells help.",
@@ -277,11 +290,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "In the corridor both valleys run along x without an end. A hundred sweeps rest in a streak there and in a round heap in the room; the ellipse is what the information promises.",
     ],
     opening: Opening {
-        panels: &["icp", "icp-path", "sweep", "ndt", "ndt-path", "bells"],
-        params: &["tau"],
+        panels: &["relief", "path"],
+        params: &["measure"],
         buttons: &["play"],
     },
     params: PARAMS,
-    buttons: &[DROP, DROP_100, PLAY, STEP, RESET, DEFAULTS],
+    buttons: &[DROP_100, PLAY, STEP, RESET, DEFAULTS],
     presets: PRESETS,
 };

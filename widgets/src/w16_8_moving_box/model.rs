@@ -34,7 +34,7 @@ use widget_kit::spec::WidgetSpec;
 use widget_kit::values::{Changed, Values};
 
 use crate::w16_8_moving_box::spec::{
-    ITERATION, MAX_MOVED_M, MAX_SHARE, METHOD, MOVED, PARAMS, SHARE, SPEC,
+    ITERATION, MAX_SHARE, METHOD, MOVED, MOVED_M, MOVED_Y, PARAMS, SHARE, SPEC,
 };
 use curves::Curves;
 
@@ -226,18 +226,23 @@ impl Model for MovingBox {
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
-        let spot = at[0] - handle.offset[0];
-        if !spot.is_finite() {
+        let spot = [0, 1].map(|axis| at[axis] - handle.offset[axis]);
+        if spot.iter().any(|at| !at.is_finite()) {
             return;
         }
         self.playback.pause();
         if handle.id == BOX {
-            let further_m = spot - picture::box_middle(&self.scene)[0];
-            let moved_m = self.values.get(&MOVED) + further_m;
-            let whole_cm = (100.0 * moved_m).round() / 100.0;
-            self.values.put(&MOVED, whole_cm.clamp(0.0, MAX_MOVED_M));
+            let middle = picture::box_middle(&self.scene);
+            // The shift in the target's frame, whose axes are the world's.
+            for (axis, moved) in [&MOVED, &MOVED_Y].into_iter().enumerate() {
+                let [least, most] = MOVED_M[axis];
+                let moved_m = self.values.get(moved) + spot[axis] - middle[axis];
+                let whole_cm = (100.0 * moved_m).round() / 100.0;
+                self.values.put(moved, whole_cm.clamp(least, most));
+            }
         } else {
-            self.values.put(&SHARE, spot.round().clamp(0.0, MAX_SHARE));
+            self.values
+                .put(&SHARE, spot[0].round().clamp(0.0, MAX_SHARE));
         }
         self.follow();
     }

@@ -10,8 +10,8 @@ use widget_kit::{one_of, params};
 /// Largest share of the box, %.
 pub const MAX_SHARE: f64 = 60.0;
 
-/// Largest distance by which the box is moved, m.
-pub const MAX_MOVED_M: f64 = 0.8;
+/// Range of the displacement of the box along x and y, m: it stays off the walls and the sensor.
+pub const MOVED_M: [[f64; 2]; 2] = [[0.0, 0.8], [-1.2, 0.5]];
 
 /// Largest number of iterations of a registration.
 pub const MAX_ITERATIONS: f64 = 30.0;
@@ -35,11 +35,15 @@ params! {
             .default(20.0)
             .help("Which share of the points of both sweeps lies on the box that was moved.");
 
-    pub(super) static MOVED: Param<f64> =
-        Param::slider("moved", "box moved by", [0.0, MAX_MOVED_M], 0.05)
+    pub(super) static MOVED: Param<f64> = Param::slider("moved", "box moved along x", MOVED_M[0], 0.05)
+        .unit("m")
+        .default(0.3)
+        .help("How far the box was moved between the sweeps, away from the sensor along x.");
+
+    pub(super) static MOVED_Y: Param<f64> =
+        Param::slider("moved-y", "box moved along y", MOVED_M[1], 0.05)
             .unit("m")
-            .default(0.3)
-            .help("How far the box was moved between the sweeps, away from the sensor along x.");
+            .help("How far the box was moved between the sweeps along y.");
 
     pub(super) static DROPPED: Param<f64> =
         Param::slider("dropped", "trimmed: pairs dropped", [0.0, 70.0], 5.0)

@@ -151,6 +151,10 @@ fn before_the_first_step_neither_picture_nor_words_tell_the_end() {
             )
         };
         let points: Vec<_> = panel.layers.iter().filter(of_solvers).collect();
+        if panel.id == "graphs" {
+            assert!(points.is_empty(), "one start, not four over each other");
+            continue;
+        }
         let Layer::Points { points: first, .. } = points[0] else {
             unreachable!("only points were kept")
         };

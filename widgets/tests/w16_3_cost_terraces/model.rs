@@ -36,8 +36,8 @@ fn segments(model: &dyn Model, id: &str, tone: Tone, width_px: f32) -> usize {
     found.sum()
 }
 
-fn raster(model: &dyn Model, id: &str) -> Raster {
-    let panel = panel(model, id);
+fn raster(model: &dyn Model) -> Raster {
+    let panel = panel(model, "relief");
     let raster = panel.layers.iter().find_map(|layer| match layer {
         Layer::Raster(raster) => Some(raster.clone()),
         _ => None,
@@ -144,16 +144,16 @@ fn with_the_widest_tau_no_point_is_without_a_pair() {
 #[test]
 fn a_slices_title_names_the_row_that_it_shows() {
     // 49 samples over 2.6 m lie 5.4 cm apart: none lies at 0.3 m.
-    let model = with(&[("probe-x", 0.3), ("probe-y", -0.3)]);
-    let panels = model.scene().panels;
+    let mut model = with(&[("probe-x", 0.3), ("probe-y", -0.3)]);
     let tables = model.tables();
     let maps = tables.iter().find(|table| table.id == "maps").unwrap();
-    for (id, title, fixed, value) in [
-        ("icp-x", "Along x at Δy = −0.325 m", 1, 2),
-        ("icp-y", "Along y at Δx = 0.325 m", 0, 2),
-        ("ndt-x", "Along x at Δy = −0.325 m", 1, 3),
+    for (measure, id, title, fixed, value) in [
+        (0.0, "slice-x", "Along x at Δy = −0.325 m", 1, 2),
+        (0.0, "slice-y", "Along y at Δx = 0.325 m", 0, 2),
+        (1.0, "slice-x", "Along x at Δy = −0.325 m", 1, 3),
     ] {
-        let panel = panels.iter().find(|panel| panel.id == id).unwrap();
+        model.set("measure", measure).unwrap();
+        let panel = panel(&model, id);
         assert_eq!(panel.title, title);
         let shift = if fixed == 1 { "-0.3250" } else { "0.3250" };
         let line = maps.rows.iter().filter(|row| row[fixed] == shift);
@@ -194,7 +194,6 @@ fn raster_low(model: &dyn Model) -> f64 {
 
 #[test]
 fn a_parameter_recomputes_only_what_depends_on_it() {
-    let revisions = |model: &dyn Model| ["icp", "ndt"].map(|id| raster(model, id).revision);
     for (id, value, changes) in [
         ("probe-x", -0.3, [false, false]),
         ("probe-y", 0.9, [false, false]),
@@ -209,15 +208,15 @@ fn a_parameter_recomputes_only_what_depends_on_it() {
         ("scene", 1.0, [true, true]),
         ("seed", 7.0, [true, true]),
     ] {
-        let mut model = CostTerraces::default();
-        let before = revisions(&model);
-        model.set(id, value).unwrap();
-        let after = revisions(&model);
-        assert_eq!(
-            [before[0] != after[0], before[1] != after[1]],
-            changes,
-            "{id}"
-        );
+        let repaints = [0.0, 1.0].map(|measure| {
+            let mut model = CostTerraces::default();
+            model.set_motion(Motion::Reduced);
+            model.set("measure", measure).unwrap();
+            let before = raster(&model).revision;
+            model.set(id, value).unwrap();
+            raster(&model).revision != before
+        });
+        assert_eq!(repaints, changes, "{id}");
     }
 }
 
@@ -252,32 +251,83 @@ fn defaults_bring_back_the_first_picture() {
     }
 }
 
-#[test]
-fn a_dropped_ball_plays_to_its_rest_and_stops() {
-    let mut model = CostTerraces::default();
-    model.press("drop").unwrap();
-    assert!(model.timeline().unwrap().playing);
+/// Seconds until nothing moves.
+fn seconds(model: &mut CostTerraces) -> f64 {
     let mut frames = 0;
     while model.advance(1.0 / 60.0) == Activity::Busy {
         frames += 1;
-        assert!(frames < 60 * 120, "two minutes and no rest");
+        assert!(frames < 60 * 10, "ten seconds and no rest");
     }
-    let timeline = model.timeline().unwrap();
-    assert!(!timeline.playing);
-    // A position beyond the last step means the end, here and after the next drag of the cross hair.
-    assert!(model.values().number("t") >= timeline.last);
-    model.press("reset").unwrap();
-    model.press("step").unwrap();
-    assert_eq!(model.values().number("t"), 1.0);
+    f64::from(frames) / 60.0
 }
 
 #[test]
-fn with_reduced_motion_the_balls_are_at_rest_at_once() {
+fn the_ball_waits_while_it_is_held_and_rolls_to_its_rest_when_it_is_let_go() {
+    let mut model = CostTerraces::default();
+    let handle = model.grab("relief", [0.4, 0.1], [0.1, 0.1]).unwrap();
+    model.drag(handle, [-0.5, 0.25]);
+    assert_eq!(model.advance(1.0), Activity::Idle);
+    assert_eq!(model.values().number("t"), 0.0);
+    model.release();
+    let rolled_s = seconds(&mut model);
+    assert!((2.0..4.0).contains(&rolled_s), "{rolled_s} s");
+    let timeline = model.timeline().unwrap();
+    assert!(!timeline.playing);
+    // The address says where the timeline ends.
+    assert_eq!(model.values().number("t"), timeline.last);
+    // A release without a drag starts nothing.
+    model.press("reset").unwrap();
+    model.release();
+    assert!(!model.timeline().unwrap().playing);
+}
+
+#[test]
+fn with_reduced_motion_the_ball_is_at_rest_at_once() {
     let mut model = CostTerraces::default();
     model.set_motion(Motion::Reduced);
-    model.press("drop").unwrap();
+    model.press("play").unwrap();
     assert_eq!(model.advance(1.0), Activity::Idle);
-    assert!(model.values().number("t") >= model.timeline().unwrap().last);
+    assert_eq!(model.values().number("t"), model.timeline().unwrap().last);
+}
+
+#[test]
+fn the_switch_morphs_one_relief_into_the_other_with_its_ball() {
+    let ball = |model: &CostTerraces| {
+        let layers = panel(model, "relief").layers;
+        let balls = layers.into_iter().filter_map(|layer| match layer {
+            Layer::Points {
+                points,
+                tone: Tone::Posterior,
+                radius_px,
+                ..
+            } if radius_px > 5.0 => Some(points[0]),
+            _ => None,
+        });
+        balls.last().unwrap()
+    };
+    let of = |measure, motion| {
+        let mut model = with(&[("t", 100.0)]);
+        model.set_motion(motion);
+        model.set("measure", measure).unwrap();
+        model
+    };
+    let [icp, ndt] = [0.0, 1.0].map(|measure| of(measure, Motion::Reduced));
+    let mut morphing = of(1.0, Motion::Full);
+    assert_eq!(
+        (raster(&morphing).cells, ball(&morphing)),
+        (raster(&icp).cells, ball(&icp))
+    );
+    morphing.advance(0.4);
+    let between = (raster(&morphing).cells, ball(&morphing));
+    let morphs_s = 0.4 + seconds(&mut morphing);
+    assert_eq!(
+        (raster(&morphing).cells, ball(&morphing)),
+        (raster(&ndt).cells, ball(&ndt))
+    );
+    assert!((0.5..1.5).contains(&morphs_s), "{morphs_s} s");
+    for end in [icp, ndt] {
+        assert_ne!(between, (raster(&end).cells, ball(&end)));
+    }
 }
 
 #[test]
@@ -301,10 +351,11 @@ fn a_ball_never_climbs() {
 }
 
 #[test]
-fn a_press_on_either_map_puts_the_cross_hair_there() {
+fn a_press_on_the_relief_puts_the_cross_hair_there() {
     let mut model = CostTerraces::default();
-    for panel in ["icp", "ndt"] {
-        let handle = model.grab(panel, [-0.5, 0.25], [0.1, 0.1]).unwrap();
+    for measure in [0.0, 1.0] {
+        model.set("measure", measure).unwrap();
+        let handle = model.grab("relief", [-0.5, 0.25], [0.1, 0.1]).unwrap();
         model.drag(handle, [-0.5, 0.25]);
         assert_eq!(model.values().number("probe-x"), -0.5);
         assert_eq!(model.values().number("probe-y"), 0.25);
@@ -329,10 +380,7 @@ fn the_extremes_of_every_parameter_have_every_figure_and_a_cell_on_the_truth() {
             for fact in &outcome.facts {
                 assert!(fact.value.is_finite(), "{} at {value}: {fact:?}", spec.id);
             }
-            for id in ["icp", "ndt"] {
-                let raster = raster(&model, id);
-                assert_eq!(raster.columns % 2, 1, "a cell on the truth");
-            }
+            assert_eq!(raster(&model).columns % 2, 1, "a cell on the truth");
         }
     }
 }
@@ -341,37 +389,21 @@ fn the_extremes_of_every_parameter_have_every_figure_and_a_cell_on_the_truth() {
 fn every_value_of_cells_keeps_a_cell_on_the_truth() {
     for cells in 49..=161 {
         let model = with(&[("cells", f64::from(cells))]);
-        let raster = raster(&model, "icp");
+        let raster = raster(&model);
         assert_eq!(raster.columns % 2, 1);
         assert!((49..=161).contains(&raster.columns));
     }
 }
 
 #[test]
-fn the_pointer_over_one_map_reads_both() {
+fn the_pointer_over_the_relief_reads_both_measures() {
     let mut model = CostTerraces::default();
-    let titles = |model: &CostTerraces| {
-        let panels = model.scene().panels;
-        ["icp", "ndt"].map(|id| {
-            let panel = panels.iter().find(|panel| panel.id == id);
-            panel.unwrap().title.clone()
-        })
-    };
-    let resting = titles(&model);
-    assert!(
-        resting
-            .iter()
-            .all(|title| title.ends_with("at the cross hair"))
-    );
-    model.hover("icp", Some([0.0, 0.0]));
+    let title = |model: &CostTerraces| panel(model, "relief").title;
+    let resting = title(&model);
+    assert!(!resting.contains('.'), "no number at rest: {resting}");
+    model.hover("relief", Some([0.0, 0.0]));
     // The sweep is on its own points: zero cost; the score is the peak of the reference grid.
-    assert_eq!(
-        titles(&model),
-        [
-            "ICP cost 0.0000 m² under the pointer",
-            "NDT score 0.5922 under the pointer"
-        ]
-    );
-    model.hover("icp", None);
-    assert_eq!(titles(&model), resting);
+    assert_eq!(title(&model), "Here ICP costs 0.0000 m², NDT scores 0.59");
+    model.hover("relief", None);
+    assert_eq!(title(&model), resting);
 }

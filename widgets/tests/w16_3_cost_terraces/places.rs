@@ -1,7 +1,7 @@
 //! The panels beside the maps: partners at a ridge, Gaussians, slices, and the results of many sweeps.
 
 use widget_kit::model::{Activity, Model, Motion, apply_preset};
-use widget_kit::scene::{Layer, Tone};
+use widget_kit::scene::{Layer, Panel, Tone};
 use widgets::w16_3_cost_terraces::model::CostTerraces;
 
 use crate::support::{fact, panel_of as panel};
@@ -42,10 +42,16 @@ fn hollows(model: &dyn Model) -> usize {
     inner.filter(is_hollow).count()
 }
 
+/// The picture of the bells.
+fn bells(mut model: CostTerraces) -> Panel {
+    model.set("measure", 1.0).unwrap();
+    panel(&model, "bells")
+}
+
 #[test]
 fn the_picture_of_the_bells_shows_bells_in_every_preset() {
     for spec in CostTerraces::default().spec().presets {
-        let bells = panel(&preset(spec.id), "bells");
+        let bells = bells(preset(spec.id));
         let is_inside = |[x, y]: [f64; 2]| {
             (bells.x.min..bells.x.max).contains(&x) && (bells.y.min..bells.y.max).contains(&y)
         };
@@ -68,8 +74,6 @@ fn it_opens_on_terraces_where_icps_ball_sticks() {
         opening > 20 && bowl < 5,
         "{opening} hollows, the bowl {bowl}"
     );
-    let panels = model.spec().opening.panels;
-    assert!(panels.contains(&"sweep") && panels.contains(&"bells"));
 }
 
 /// Lines from a point to its next partner, and the highlighted points.
@@ -115,14 +119,13 @@ fn the_pointer_over_a_map_moves_the_sweep_that_is_paired() {
     let mut model = with(&[("tau", 0.6)]);
     assert_eq!(panel(&model, "sweep").title, "Partners at the cross hair");
     assert_ne!(lit(&model), (0, 0));
-    model.hover("icp", Some([0.0, 0.0]));
+    model.hover("relief", Some([0.0, 0.0]));
     assert_eq!(panel(&model, "sweep").title, "Partners under the pointer");
     assert_eq!(lit(&model), (0, 0));
-    model.hover("icp", None);
+    model.hover("relief", None);
     // While the ball rolls, its partners are shown.
-    model.press("drop").unwrap();
-    model.press("step").unwrap();
-    assert_eq!(panel(&model, "sweep").title, "Partners at ICP's ball");
+    model.set("t", 50.0).unwrap();
+    assert_eq!(panel(&model, "sweep").title, "Partners at the ball");
 }
 
 /// Longer half axes of the ellipses of one standard deviation, m.
@@ -142,7 +145,7 @@ fn bells_m(model: &dyn Model) -> Vec<f64> {
 
 #[test]
 fn the_bells_follow_the_cell_slider() {
-    let mut model = CostTerraces::default();
+    let mut model = with(&[("measure", 1.0)]);
     let median = |mut lengths: Vec<f64>| {
         lengths.sort_by(f64::total_cmp);
         lengths[lengths.len() / 2]
@@ -214,7 +217,7 @@ fn a_hundred_sweeps_rest_round_in_the_room_and_in_a_streak_in_the_corridor() {
 
 /// Positions of the dropped sweeps on the map.
 fn flying(model: &dyn Model) -> Vec<[f64; 2]> {
-    let layers = panel(model, "icp").layers;
+    let layers = panel(model, "relief").layers;
     let dots = layers.iter().rev().find_map(|layer| match layer {
         Layer::Points {
             points,
@@ -290,9 +293,11 @@ fn slices_of_a_landscape_share_an_axis_and_the_ellipse_keeps_its_scale() {
     };
     let usual = ellipse(&CostTerraces::default());
     for spec in CostTerraces::default().spec().presets {
-        let model = preset(spec.id);
-        for [x, y] in [["icp-x", "icp-y"], ["ndt-x", "ndt-y"]] {
-            assert_eq!(panel(&model, x).y, panel(&model, y).y, "{}", spec.id);
+        let mut model = preset(spec.id);
+        for measure in [0.0, 1.0] {
+            model.set("measure", measure).unwrap();
+            let [x, y] = ["slice-x", "slice-y"].map(|id| panel(&model, id).y);
+            assert_eq!(x, y, "{}", spec.id);
         }
         assert_eq!(ellipse(&model), usual, "{}", spec.id);
     }
@@ -369,8 +374,8 @@ fn drawn(model: &dyn Model, wanted: Tone) -> Vec<[[f64; 2]; 2]> {
 }
 
 /// The ball on its profile, and the ground: distance from the drop (m), height (% of the highest).
-fn ball_and_ground(model: &dyn Model, id: &str) -> ([f64; 2], Vec<[f64; 2]>) {
-    let layers = panel(model, id).layers;
+fn ball_and_ground(model: &dyn Model) -> ([f64; 2], Vec<[f64; 2]>) {
+    let layers = panel(model, "path").layers;
     let ball = layers.iter().find_map(|layer| match layer {
         Layer::Points {
             points,
@@ -388,8 +393,8 @@ fn ball_and_ground(model: &dyn Model, id: &str) -> ([f64; 2], Vec<[f64; 2]>) {
 
 #[test]
 fn icps_ball_stops_on_a_step_with_the_pit_ahead_and_ndts_in_the_pit() {
-    let model = CostTerraces::default();
-    let (ball, ground) = ball_and_ground(&model, "icp-path");
+    let mut model = with(&[("t", 100.0)]);
+    let (ball, ground) = ball_and_ground(&model);
     let [end_m, end] = ground[ground.len() - 1];
     assert!(ball[1] > 50.0 && end < 1.0, "{ball:?} of {end}");
     assert!((end_m - ball[0] - fact(&model, "icp_rest_m")).abs() < 1e-9);
@@ -400,26 +405,32 @@ fn icps_ball_stops_on_a_step_with_the_pit_ahead_and_ndts_in_the_pit() {
     assert!(ahead.count() >= 10);
     let step = ground.iter().find(|at| at[0] > ball[0] + 0.1).unwrap();
     assert!((step[1] - ball[1]).abs() < 2.0, "{step:?} after {ball:?}");
-    let (ball, ground) = ball_and_ground(&model, "ndt-path");
+    model.set("measure", 1.0).unwrap();
+    let (ball, ground) = ball_and_ground(&model);
     assert!(ball[1] < 5.0, "{ball:?} on {ground:?}");
 }
 
 #[test]
-fn the_ball_rolls_along_its_ground_from_the_drop() {
+fn the_ball_waits_at_the_drop_and_rolls_along_its_ground() {
     let mut model = CostTerraces::default();
-    for step in [0.0, 3.0, 9.0] {
-        model.set("t", step).unwrap();
-        let (ball, ground) = ball_and_ground(&model, "icp-path");
+    let steps = |model: &CostTerraces| {
+        let tables = model.tables();
+        let way = tables.iter().find(|table| table.id == "icp-ball").unwrap();
+        way.rows.len() - 1
+    };
+    assert_eq!(ball_and_ground(&model).0[0], 0.0, "before any gesture");
+    for percent in [10.0, 50.0, 100.0] {
+        model.set("t", percent).unwrap();
+        let (ball, ground) = ball_and_ground(&model);
+        let step = (0.01 * percent * steps(&model) as f64).round();
         assert_eq!(ball, ground[step as usize]);
     }
-    model.set("t", 0.0).unwrap();
-    assert_eq!(ball_and_ground(&model, "icp-path").0[0], 0.0);
 }
 
 #[test]
 fn ndts_colour_bar_runs_from_the_highest_score_which_is_dark_to_none() {
     let bar = |colours| {
-        let panel = panel(&with(&[("colours", colours)]), "ndt");
+        let panel = panel(&with(&[("measure", 1.0), ("colours", colours)]), "relief");
         panel.color_bar.unwrap()
     };
     assert!(bar(0.0).min > 0.5 && bar(0.0).max == 0.0, "{:?}", bar(0.0));
@@ -428,7 +439,7 @@ fn ndts_colour_bar_runs_from_the_highest_score_which_is_dark_to_none() {
 
 #[test]
 fn a_slope_that_faces_the_light_is_brighter_than_one_that_turns_away() {
-    let panel = panel(&with(&[("tau", 0.6), ("colours", 0.0)]), "icp");
+    let panel = panel(&with(&[("tau", 0.6), ("colours", 0.0)]), "relief");
     let raster = panel.layers.iter().find_map(|layer| match layer {
         Layer::Raster(raster) => Some(raster.clone()),
         _ => None,

@@ -32,10 +32,10 @@ fn the_scene_is_chosen_by_its_name() {
 }
 
 #[test]
-fn a_click_on_either_map_moves_both_cross_hairs() {
+fn a_click_on_the_relief_moves_the_cross_hair() {
     let mut harness = drawn_whole("w16.3", 1100.0);
-    for (panel, at) in [("icp", [0.5, -0.5]), ("ndt", [-0.75, 0.25])] {
-        let [x, y] = harness.state().panel_to_screen(panel, at).unwrap();
+    for at in [[0.5, -0.5], [-0.75, 0.25]] {
+        let [x, y] = harness.state().panel_to_screen("relief", at).unwrap();
         click_at(&mut harness, pos2(x, y));
         // A pixel is 8 mm here.
         assert!((value(&harness, "probe-x") - at[0]).abs() < 0.01);
@@ -44,7 +44,7 @@ fn a_click_on_either_map_moves_both_cross_hairs() {
 }
 
 #[test]
-fn a_preset_drops_the_balls_and_the_widget_comes_to_rest() {
+fn a_preset_drops_the_ball_and_the_widget_comes_to_rest() {
     let mut harness = drawn_whole("w16.3", 1100.0);
     let presets = harness.state().model().spec().presets;
     let shrink = presets

@@ -114,13 +114,15 @@ fn the_box_is_dragged_in_the_room() {
     let held = moving
         .grab(panel::ROOM, [x + 0.05, y], [0.05, 0.05])
         .unwrap();
-    moving.drag(held, [x + 0.25, y + 0.3]);
-    assert!((moving.values().number("moved") - 0.5).abs() < 1e-9);
+    let moved = |moving: &MovingBox| ["moved", "moved-y"].map(|id| moving.values().number(id));
+    moving.drag(held, [x + 0.25, y - 0.3]);
+    let [along, across] = moved(&moving);
+    assert!((along - 0.5).abs() < 1e-9 && (across + 0.3).abs() < 1e-9);
     moving.drag(held, [f64::NAN, y]);
-    moving.drag(held, [x + 9.0, y]);
-    assert_eq!(moving.values().number("moved"), 0.8);
-    moving.drag(held, [x - 9.0, y]);
-    assert_eq!(moving.values().number("moved"), 0.0);
+    moving.drag(held, [x + 9.0, y - 9.0]);
+    assert_eq!(moved(&moving), [0.8, -1.2]);
+    moving.drag(held, [x - 9.0, y + 9.0]);
+    assert_eq!(moved(&moving), [0.0, 0.5]);
     let far = moving.grab(panel::ROOM, [-2.0, -2.0], [0.05, 0.05]);
     assert!(far.is_none());
 }
@@ -155,12 +157,41 @@ fn each_method_weighs_the_pulls_of_the_box_in_its_own_way() {
     // 180 points; the walls between them have pairs within τ.
     assert!(pulls(&plain).concat().len() > 150);
     assert!(pulls(&trimmed)[0].len() < pulls(&plain)[0].len());
-    assert!(longest(&plain) > 1.0, "{}", longest(&plain));
-    // Huber's width of 0.05 m, tenfold.
-    assert!((longest(&huber) - 0.5).abs() < 1e-9, "{}", longest(&huber));
-    let title = panel_of(&huber, panel::ROOM).title;
-    assert!(
-        title.starts_with("Huber: ") && title.contains("tenfold"),
-        "{title}"
-    );
+    let larger = |moving: &MovingBox| {
+        let title = panel_of(moving, panel::ROOM).title;
+        let (_, from) = title.split_once("pulls ×").unwrap();
+        from[..1].parse::<f64>().unwrap()
+    };
+    // 1e-9: Huber's width of 0.05 m.
+    assert!((longest(&huber) - 0.05 * larger(&huber)).abs() < 1e-9);
+    // The box moved by three decimetres; the nearest point of its old outline is a decimetre away.
+    assert!(longest(&plain) > 0.1 * larger(&plain));
+}
+
+#[test]
+fn no_pull_leaves_the_picture_wherever_the_box_is() {
+    for moved in [0.0, 0.3, 0.8] {
+        for moved_y in [-1.2, -0.4, 0.5] {
+            for tau in [0.7, 1.6] {
+                let moving = with(&[("moved", moved), ("moved-y", moved_y), ("tau", tau)]);
+                let room = panel_of(&moving, panel::ROOM);
+                for layer in &room.layers {
+                    let Layer::Line {
+                        points,
+                        tone: Tone::Series(_),
+                        ..
+                    } = layer
+                    else {
+                        continue;
+                    };
+                    let is_inside = |at: &[f64; 2]| {
+                        at[0].is_nan()
+                            || ((room.x.min..=room.x.max).contains(&at[0])
+                                && (room.y.min..=room.y.max).contains(&at[1]))
+                    };
+                    assert!(points.iter().all(is_inside), "{moved}, {moved_y}, τ {tau}");
+                }
+            }
+        }
+    }
 }

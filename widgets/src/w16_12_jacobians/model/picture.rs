@@ -66,12 +66,22 @@ fn graphs(widget: &WrongJacobians) -> Panel {
     let line =
         |points: Vec<[f64; 2]>, stroke, tone, width_px| Layer::line(points, stroke, tone, width_px);
     let best = places(&widget.solved.optimum);
+    let far = best[best.len() / 2];
     let mut layers = vec![line(best, Stroke::Dotted, Tone::Ink, 2.0)];
-    for (solver, (tone, mark)) in TONES.into_iter().zip(MARKS).enumerate() {
+    let mut chain = |solver: usize, tone, mark| {
         let now = places(&widget.shown(solver).poses);
         layers.push(line(now.clone(), Stroke::Solid, tone, 1.75));
         layers.push(Layer::points(now, mark, tone, 4.0));
+    };
+    if widget.step() == 0 {
+        // One start, not four graphs over each other.
+        chain(0, Tone::Ink, Mark::Square);
+    } else {
+        for (solver, (tone, mark)) in TONES.into_iter().zip(MARKS).enumerate() {
+            chain(solver, tone, mark);
+        }
     }
+    layers.push(Layer::label(far, "optimum".to_owned(), 10.0));
     if let Some(at) = widget.loose_end() {
         layers.push(Layer::Handle {
             at,
@@ -81,13 +91,12 @@ fn graphs(widget: &WrongJacobians) -> Panel {
         layers.push(Layer::label(at, "bend".to_owned(), 14.0));
     }
     let title = match widget.step() {
-        0 => "All four start here; play to see them end".to_owned(),
+        0 => "All four solvers start here".to_owned(),
         step => format!("Step {step} of {}", widget.last()),
     };
-    let mut legend: Vec<_> = (0..NAMES.len())
+    let legend = (0..NAMES.len())
         .map(|k| LegendEntry::marked_line(NAMES[k], TONES[k], MARKS[k], Stroke::Solid))
         .collect();
-    legend.push(LegendEntry::line("optimum", Tone::Ink, Stroke::Dotted));
     Panel {
         id: panel::GRAPHS,
         title,
@@ -168,11 +177,16 @@ fn curve(widget: &WrongJacobians) -> Panel {
         ));
         // Curves would cross the words.
         if widget.step() == 0 {
-            layers.push(Layer::Text {
-                at: [0.5 * last, same - 0.45],
-                text: "noise of one edge".to_owned(),
-                tone: Tone::Ink,
-            });
+            for (at, text) in [
+                ([0.5 * last, same - 0.45], "noise of one edge"),
+                ([0.5 * last, 0.5 * (low + same)], "play: who ends where?"),
+            ] {
+                layers.push(Layer::Text {
+                    at,
+                    text: text.to_owned(),
+                    tone: Tone::Ink,
+                });
+            }
         }
     }
     for (solver, mut line) in lines.into_iter().enumerate() {

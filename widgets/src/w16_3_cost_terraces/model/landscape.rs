@@ -1,9 +1,6 @@
 //! One measure over all shifts, ready to draw, with the ball that was dropped on it.
 
-use std::sync::Arc;
-
 use pr_geom::sort_numbers;
-use widget_kit::scene::{Bounds, Cell, Raster};
 
 use crate::w16_3_cost_terraces::spec::Colors;
 use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;
@@ -11,14 +8,11 @@ use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;
 /// A ball that stops this close to the truth counts as a success, m: the limit of the chapter's basin runs.
 const HOME_M: f64 = 0.12;
 
-/// Light on a slope that rises from the lowest to the highest colour within a metre.
-const LIGHT_PER_SLOPE_M: f32 = 0.2;
-
 /// Heights on a square grid over ±1.3 m, row by row from the smallest Δy; low is good.
 #[derive(Clone, Debug)]
 pub struct Landscape {
-    /// The picture.
-    pub raster: Raster,
+    /// The level of each cell's colour, from dark to bright: [`Landscape::color`].
+    pub levels: Vec<f32>,
     /// Lowest and highest height, zero included.
     pub range: [f64; 2],
     /// Shift of the lowest cell, m.
@@ -28,6 +22,7 @@ pub struct Landscape {
     /// Heights from its end straight on to the truth, as `[distance from the end (m), height]`.
     pub ahead: Vec<[f64; 2]>,
     heights: Vec<f64>,
+    cells: usize,
 }
 
 /// The path of a ball.
@@ -101,27 +96,18 @@ impl Ball {
 impl Landscape {
     /// A landscape without heights.
     pub fn flat() -> Self {
-        let edge = [HALF_SPAN_M, HALF_SPAN_M];
         Self {
-            raster: Raster {
-                bounds: Bounds {
-                    min: edge.map(|v| -v),
-                    max: edge,
-                },
-                columns: 0,
-                rows: 0,
-                cells: Arc::new([]),
-                revision: 0,
-            },
+            levels: Vec::new(),
             range: [0.0, 1.0],
             lowest_m: [0.0, 0.0],
             ball: Ball::at([0.0, 0.0], 0.0),
             ahead: Vec::new(),
             heights: Vec::new(),
+            cells: 0,
         }
     }
 
-    /// Sets new heights, `cells` on a side; [`Landscape::color`] updates the picture.
+    /// Sets new heights, `cells` on a side; [`Landscape::color`] updates the levels.
     ///
     /// # Panics
     /// If there are not `cells × cells` heights.
@@ -145,13 +131,7 @@ impl Landscape {
             }
         }
         self.lowest_m = [best % cells, best / cells].map(|k| shift_m(cells, k));
-        // Half a cell beyond the outermost samples: a sample is the center of its cell.
-        let edge = HALF_SPAN_M + 0.5 * spacing_m(cells);
-        self.raster.bounds = Bounds {
-            min: [-edge, -edge],
-            max: [edge, edge],
-        };
-        (self.raster.columns, self.raster.rows) = (cells, cells);
+        self.cells = cells;
     }
 
     /// A height as a share of the whole range: the same scale for every measure.
@@ -176,10 +156,10 @@ impl Landscape {
             .collect()
     }
 
-    /// Colours the heights: dark is low, and slopes are lit from the upper left.
+    /// Colours the heights: dark is low.
     pub fn color(&mut self, colors: Colors) {
         let heights = self.heights.iter();
-        let levels: Vec<f32> = match colors {
+        self.levels = match colors {
             Colors::ByHeight => heights.map(|height| self.share(*height) as f32).collect(),
             Colors::ByRank => {
                 let mut sorted = self.heights.clone();
@@ -190,31 +170,11 @@ impl Landscape {
                 heights.map(|h| below(h) as f32 * scale).collect()
             }
         };
-        self.raster.cells = self.lit(&levels);
-        self.raster.revision += 1;
-    }
-
-    /// The relief: each cell with the slope to its neighbours.
-    fn lit(&self, levels: &[f32]) -> Arc<[Cell]> {
-        let cells = self.cells();
-        let gain = LIGHT_PER_SLOPE_M / (2.0 * spacing_m(cells)) as f32;
-        let rise = |along: usize, stride: usize, index: usize| {
-            let (before, after) = (along.min(1), (cells - 1 - along).min(1));
-            levels[index + after * stride] - levels[index - before * stride]
-        };
-        let cell = |(index, level): (usize, &f32)| {
-            let up_right = rise(index % cells, 1, index) - rise(index / cells, cells, index);
-            Cell::Relief {
-                level: *level,
-                light: (gain * up_right).clamp(-1.0, 1.0),
-            }
-        };
-        levels.iter().enumerate().map(cell).collect()
     }
 
     /// Number of cells on a side.
     pub fn cells(&self) -> usize {
-        self.raster.columns
+        self.cells
     }
 
     /// Height exactly under the cross hair, not of its cell.
@@ -258,7 +218,8 @@ impl Landscape {
     }
 }
 
-fn spacing_m(cells: usize) -> f64 {
+/// Distance of two samples, m.
+pub fn spacing_m(cells: usize) -> f64 {
     2.0 * HALF_SPAN_M / (cells - 1) as f64
 }
 

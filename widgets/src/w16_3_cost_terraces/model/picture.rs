@@ -1,31 +1,33 @@
-//! The panels: both landscapes, the ground along their balls' paths, the sweep on the map and on the Gaussians, the slices, the results of many
-//! sweeps.
+//! The panels: the relief, the ground along the ball's path, the sweep on the map or on the Gaussians, the slices, the
+//! results of many sweeps.
 
-mod maps;
 mod places;
 mod plots;
-mod profiles;
+mod profile;
+mod relief;
 mod rows;
 
 use widget_kit::scene::{Axis, Layer, Mark, Scene, Tone};
 
-use super::landscape::Landscape;
+use super::morph::Morph;
 use super::rests::Rests;
 use super::terrains::Terrains;
-use crate::w16_3_cost_terraces::spec::Colors;
-use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;
-use plots::{Along, Measure};
+use crate::w16_3_cost_terraces::spec::{Colors, HALF_SPAN_M, Measure};
+use plots::Along;
+
+/// Name of the panel with the relief.
+pub const RELIEF: &str = "relief";
 
 /// The state that the picture shows besides the landscapes.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
+    /// The measure that the relief shows.
+    pub measure: Measure,
     /// Shift under the cross hair, m.
     pub probe_m: [f64; 2],
     /// The shift at which the sweep is shown.
     pub looked: Looked,
-    /// Where ICP's ball is, m.
-    pub ball_m: [f64; 2],
-    /// Steps of the balls so far.
+    /// Steps of the ball so far.
     pub step: usize,
     /// What determines a cell's colour.
     pub colors: Colors,
@@ -36,45 +38,51 @@ pub struct Moment {
 pub enum Looked {
     /// The cross hair's.
     CrossHair,
-    /// That of ICP's ball while it rolls.
+    /// That of the ball while it rolls.
     Ball,
     /// That of the pointer over a map, m.
     Pointer([f64; 2]),
 }
 
 impl Moment {
-    /// The shift, m.
-    pub fn looked_m(&self) -> [f64; 2] {
+    /// The shift at which the sweep is shown, m.
+    pub fn looked_m(&self, terrains: &Terrains) -> [f64; 2] {
         match self.looked {
             Looked::CrossHair => self.probe_m,
-            Looked::Ball => self.ball_m,
+            Looked::Ball => self.ball_m(terrains),
             Looked::Pointer(at) => at,
         }
     }
 
-    /// Position of a landscape's ball, m.
-    pub fn ball_of(&self, landscape: &Landscape) -> [f64; 2] {
-        landscape.ball.at_step(self.step)
+    /// Where the ball is, m.
+    pub fn ball_m(&self, terrains: &Terrains) -> [f64; 2] {
+        terrains.of(self.measure).ball.at_step(self.step)
     }
 }
 
 /// The whole picture.
-pub fn scene(terrains: &Terrains, rests: &Rests, moment: Moment) -> Scene {
+pub fn scene(terrains: &Terrains, rests: &Rests, morph: &Morph, moment: Moment) -> Scene {
     Scene {
         panels: vec![
-            maps::icp(&terrains.icp, moment, &rests.now_m()),
-            places::pairs(terrains, moment),
-            profiles::icp(&terrains.icp, moment),
-            maps::ndt(&terrains.ndt, moment),
-            profiles::ndt(&terrains.ndt, moment),
-            places::bells(terrains, moment),
-            plots::slice(terrains, moment, Measure::Icp, Along::X),
-            plots::slice(terrains, moment, Measure::Icp, Along::Y),
-            plots::slice(terrains, moment, Measure::Ndt, Along::X),
-            plots::slice(terrains, moment, Measure::Ndt, Along::Y),
+            relief::panel(terrains, &rests.now_m(), morph, moment),
+            profile::panel(terrains.of(moment.measure), moment),
+            match moment.measure {
+                Measure::Icp => places::pairs(terrains, moment),
+                Measure::Ndt => places::bells(terrains, moment),
+            },
+            plots::slice(terrains, moment, Along::X),
+            plots::slice(terrains, moment, Along::Y),
             plots::information(terrains, rests),
             rows::panel(terrains),
         ],
+    }
+}
+
+/// The name of a measure.
+fn name(measure: Measure) -> &'static str {
+    match measure {
+        Measure::Icp => "ICP",
+        Measure::Ndt => "NDT",
     }
 }
 

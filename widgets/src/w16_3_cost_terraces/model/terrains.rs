@@ -11,8 +11,7 @@ use widget_kit::scene::Bounds;
 
 use super::landscape::{Ball, End, Landscape};
 use super::settings::Settings;
-use crate::w16_3_cost_terraces::spec::Place;
-use crate::w16_3_cost_terraces::spec::{HALF_SPAN_M, MAX_BALL_STEPS};
+use crate::w16_3_cost_terraces::spec::{HALF_SPAN_M, MAX_BALL_STEPS, Measure, Place};
 
 /// Lower limit of the information for the drawing of the ellipse, 1/m²: no axis is longer than a metre.
 const MIN_INFORMATION_PER_M2: f64 = 1.0;
@@ -196,6 +195,14 @@ impl Terrains {
                 self.ndt.ball = roll(&probe, Objective::NdtScore, probe_m);
                 self.ndt.ahead = ahead(self.ndt.ball.end_m(), |at| -probe.ndt_score(at));
             }
+        }
+    }
+
+    /// The landscape of a measure.
+    pub fn of(&self, measure: Measure) -> &Landscape {
+        match measure {
+            Measure::Icp => &self.icp,
+            Measure::Ndt => &self.ndt,
         }
     }
 

@@ -14,7 +14,7 @@ pub const SEEDS: usize = 100;
 /// The curves; all shares have equally many seeds, except during a pass.
 pub struct Curves {
     /// Their settings.
-    key: (BoxMethods, f64),
+    key: (BoxMethods, [f64; 2]),
     errors: Vec<BoxErrors>,
     /// The scene under way, and how many methods have registered it.
     under_way: Option<(BoxScene, usize)>,
@@ -30,7 +30,7 @@ pub fn shares() -> impl ExactSizeIterator<Item = f64> {
 
 impl Curves {
     /// Curves without seeds.
-    pub fn new(methods: BoxMethods, moved_m: f64) -> Self {
+    pub fn new(methods: BoxMethods, moved_m: [f64; 2]) -> Self {
         Self {
             key: (methods, moved_m),
             errors: vec![BoxErrors::default(); shares().len()],
@@ -40,7 +40,7 @@ impl Curves {
     }
 
     /// Starts over if the settings changed.
-    pub fn follow(&mut self, methods: BoxMethods, moved_m: f64) {
+    pub fn follow(&mut self, methods: BoxMethods, moved_m: [f64; 2]) {
         if self.key != (methods, moved_m) {
             *self = Self::new(methods, moved_m);
         }

@@ -23,8 +23,12 @@ pub fn scene(moving: &MovingBox) -> Scene {
     }
 }
 
-/// Pulls and errors are drawn so many times as long.
-const LARGER: f64 = 10.0;
+/// Errors are drawn so many times as long.
+const ERRORS_LARGER: f64 = 10.0;
+/// Pulls too, the largest of these with which no arrow leaves the picture.
+const PULLS_LARGER: [f64; 5] = [5.0, 4.0, 3.0, 2.0, 1.0];
+/// Half the width and height of the room's picture, m.
+const HALF_M: [f64; 2] = [2.3, 2.2];
 /// Tone of the pairs on the box.
 const ON_BOX: Tone = Tone::Series(3);
 /// Length of an arrow's barbs as a share of the arrow, and at most, m.
@@ -54,15 +58,19 @@ fn room(moving: &MovingBox) -> Panel {
             Tone::Posterior,
         ),
     ];
-    let (on_box, on_wall): (Vec<Pull>, Vec<Pull>) = pulls(moving).partition(|pull| pull.on_box);
-    for (pulls, tone) in [(on_wall, TONES[method]), (on_box, ON_BOX)] {
-        let arrows = pulls.iter().flat_map(|pull| arrow(pull.from, pull.by_m));
-        layers.push(Layer::line(arrows.collect(), Stroke::Solid, tone, 1.25));
+    // A beam that leaves through the door ends outside.
+    let pulls = pulls(moving).filter(|pull| is_in_picture(pull.from));
+    let pulls: Vec<Pull> = pulls.collect();
+    let larger = largest(&pulls);
+    for (on_box, tone) in [(false, TONES[method]), (true, ON_BOX)] {
+        let pulls = pulls.iter().filter(|pull| pull.on_box == on_box);
+        let arrows = pulls.flat_map(|pull| arrow(pull.from, pull.by_m * larger));
+        layers.push(Layer::line(arrows.collect(), Stroke::Solid, tone, 0.75));
     }
     layers.push(Layer::pose(truth.to_array(), Mark::Plus, Tone::Truth, 6.0));
     for (k, name) in BoxMethods::NAMES.into_iter().enumerate() {
         let [x, y] = BoxScene::error_m(&moving.shown(k).pose);
-        let at = [truth.x() + LARGER * x, truth.y() + LARGER * y];
+        let at = [truth.x() + ERRORS_LARGER * x, truth.y() + ERRORS_LARGER * y];
         let radius_px = if k == method { 6.0 } else { 4.0 };
         layers.push(Layer::points(vec![at], MARKS[k], TONES[k], radius_px));
         layers.push(Layer::label(at, name.to_owned(), 8.0));
@@ -72,18 +80,13 @@ fn room(moving: &MovingBox) -> Panel {
         tone: Tone::Ink,
         label: "drag the box",
     });
-    let [x, y] = BoxScene::error_m(&pose);
     Panel {
         id: panel::ROOM,
-        title: format!(
-            "{}: {:.0} mm off. Pulls and errors are drawn tenfold",
-            capital(BoxMethods::NAMES[method]),
-            1e3 * math::norm2(x, y)
-        ),
+        title: format!("Each pair pulls: pulls ×{larger}, errors ×{ERRORS_LARGER}"),
         weight: Weight::Main,
         aspect: Aspect::Equal,
-        x: Axis::hidden(-2.3, 2.3),
-        y: Axis::hidden(-2.2, 2.2),
+        x: Axis::hidden(-HALF_M[0], HALF_M[0]),
+        y: Axis::hidden(-HALF_M[1], HALF_M[1]),
         layers,
         legend: vec![
             LegendEntry::line("pull of a pair on the box", ON_BOX, Stroke::Solid),
@@ -119,9 +122,24 @@ fn pulls(moving: &MovingBox) -> impl Iterator<Item = Pull> {
     })
 }
 
+fn is_in_picture(at: Point2<f64>) -> bool {
+    at.x.abs() < HALF_M[0] - BARB_M && at.y.abs() < HALF_M[1] - BARB_M
+}
+
+/// How many times as long the pulls are drawn.
+fn largest(pulls: &[Pull]) -> f64 {
+    let stays = |larger: &f64| {
+        pulls
+            .iter()
+            .all(|pull| is_in_picture(pull.from + pull.by_m * *larger))
+    };
+    let last = PULLS_LARGER.len() - 1;
+    let found = PULLS_LARGER.iter().position(stays).unwrap_or(last);
+    PULLS_LARGER[found]
+}
+
 /// An arrow with two barbs, as an open line that ends in a gap.
-fn arrow(from: Point2<f64>, by_m: Vector2<f64>) -> [[f64; 2]; 7] {
-    let along = by_m * LARGER;
+fn arrow(from: Point2<f64>, along: Vector2<f64>) -> [[f64; 2]; 7] {
     let tip = from + along;
     let length_m = math::norm2(along.x, along.y).max(f64::MIN_POSITIVE);
     let back = along * ((BARB_SHARE * length_m).min(BARB_M) / length_m);
@@ -144,12 +162,6 @@ pub fn box_middle(scene: &BoxScene) -> [f64; 2] {
     let [_, after] = scene.boxes();
     let sum = |of: fn(&Point2<f64>) -> f64| after.iter().map(of).sum::<f64>();
     [0.25 * sum(|corner| corner.x), 0.25 * sum(|corner| corner.y)]
-}
-
-fn capital(name: &str) -> String {
-    let mut letters = name.chars();
-    let first = letters.next().into_iter().flat_map(char::to_uppercase);
-    first.chain(letters).collect()
 }
 
 /// The vertical axis reaches at least this far, mm: it stays while the box is dragged.

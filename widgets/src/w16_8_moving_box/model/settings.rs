@@ -3,14 +3,14 @@
 use ch16_lab::moving_box::{BoxConfig, BoxMethods};
 use widget_kit::values::Values;
 
-use crate::w16_8_moving_box::spec::{DROPPED, HUBER, MOVED, SEED, SHARE, TAU, VARIANT};
+use crate::w16_8_moving_box::spec::{DROPPED, HUBER, MOVED, MOVED_Y, SEED, SHARE, TAU, VARIANT};
 
 /// The sweeps above the curves.
 pub fn config(values: &Values) -> BoxConfig {
     BoxConfig {
         seed: values.get(&SEED),
         share: values.get(&SHARE) / 100.0,
-        moved_m: values.get(&MOVED),
+        moved_m: [&MOVED, &MOVED_Y].map(|moved| values.get(moved)),
     }
 }
 

@@ -116,7 +116,7 @@ pub fn summary(moving: &MovingBox) -> String {
         seeds => format!(" Bias over {seeds} seeds: {}.", curves.join("; ")),
     };
     format!(
-        "Two sweeps of one room with a box that moved between them, registered in three ways, iteration {} of {last}. The picture shows the pull of each pair of {}, tenfold. {}{bias}",
+        "Two sweeps of one room with a box that moved between them, registered in three ways, iteration {} of {last}. The picture shows the pull of each pair of {}, enlarged. {}{bias}",
         moving.iteration(),
         BoxMethods::NAMES[moving.method()],
         outcome(moving).sentence,

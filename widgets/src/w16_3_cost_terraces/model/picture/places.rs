@@ -20,7 +20,7 @@ const CLOSE_M: f64 = 2.5;
 /// Share of the points, at either end of an axis, outside of the frame: a beam may leave through a door.
 const STRAY_SHARE: f64 = 0.02;
 
-/// The sweep at the current shift with its partners; those that are about to change are highlighted. If ICP's
+/// The sweep at the current shift with its partners; those that are about to change are highlighted. If the
 /// ball is elsewhere, the sweep is drawn there, too.
 pub fn pairs(terrains: &Terrains, moment: Moment) -> Panel {
     let Pairing {
@@ -28,7 +28,7 @@ pub fn pairs(terrains: &Terrains, moment: Moment) -> Panel {
         changing,
         next,
         points,
-    } = terrains.pairing_at(moment.looked_m());
+    } = terrains.pairing_at(moment.looked_m(terrains));
     let segments =
         |segments, stroke, tone, width_px| Layer::segments(segments, stroke, tone, width_px);
     let mut layers = vec![
@@ -36,8 +36,8 @@ pub fn pairs(terrains: &Terrains, moment: Moment) -> Panel {
         map_points(terrains),
         sweep(terrains, moment),
     ];
-    let ball_m = moment.ball_of(&terrains.icp);
-    if moment.step > 0 && ball_m != moment.looked_m() {
+    let ball_m = moment.ball_m(terrains);
+    if moment.step > 0 && ball_m != moment.looked_m(terrains) {
         let sweep = terrains.sweep_at(ball_m);
         layers.push(Layer::points(sweep, Mark::Square, Tone::Posterior, 2.0));
     }
@@ -48,7 +48,7 @@ pub fn pairs(terrains: &Terrains, moment: Moment) -> Panel {
     ]);
     let title = match moment.looked {
         Looked::CrossHair => "Partners at the cross hair",
-        Looked::Ball => "Partners at ICP's ball",
+        Looked::Ball => "Partners at the ball",
         Looked::Pointer(_) => "Partners under the pointer",
     };
     panel(
@@ -125,7 +125,7 @@ pub(super) fn map_points(terrains: &Terrains) -> Layer {
 }
 
 fn sweep(terrains: &Terrains, moment: Moment) -> Layer {
-    let points = terrains.sweep_at(moment.looked_m());
+    let points = terrains.sweep_at(moment.looked_m(terrains));
     match moment.looked {
         Looked::Ball => Layer::points(points, Mark::Square, Tone::Posterior, 2.0),
         Looked::CrossHair | Looked::Pointer(_) => {

@@ -5,6 +5,7 @@ use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, T
 use super::{Moment, shift_axis};
 use crate::w16_3_cost_terraces::model::rests::Rests;
 use crate::w16_3_cost_terraces::model::terrains::Terrains;
+use crate::w16_3_cost_terraces::spec::Measure;
 use widget_kit::ticks::signed;
 
 /// Smallest range of a vertical axis, in m² or in score, so that flat ground looks flat.
@@ -17,15 +18,6 @@ const RESTS_SPAN_CM: f64 = 4.0;
 /// Size of the second ellipse, in standard deviations.
 const MANY_DEVIATIONS: f64 = 3.0;
 
-/// The landscape of a slice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
-    /// ICP's cost.
-    Icp,
-    /// NDT's score, not negated.
-    Ndt,
-}
-
 /// Direction of a slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
@@ -36,10 +28,11 @@ pub enum Along {
 }
 
 /// One landscape along the line of samples nearest to the cross hair; the title says which line.
-pub fn slice(terrains: &Terrains, moment: Moment, measure: Measure, along: Along) -> Panel {
-    let (landscape, sign, name) = match measure {
-        Measure::Icp => (&terrains.icp, 1.0, "ICP cost (m²)"),
-        Measure::Ndt => (&terrains.ndt, -1.0, "NDT score"),
+pub fn slice(terrains: &Terrains, moment: Moment, along: Along) -> Panel {
+    let landscape = terrains.of(moment.measure);
+    let (sign, name) = match moment.measure {
+        Measure::Icp => (1.0, "ICP cost (m²)"),
+        Measure::Ndt => (-1.0, "NDT score"),
     };
     let [x, y] = moment.probe_m;
     let (title, label, here, heights) = match along {
@@ -57,21 +50,16 @@ pub fn slice(terrains: &Terrains, moment: Moment, measure: Measure, along: Along
         .map(|[at, height]| [*at, sign * height])
         .collect();
     // Both slices of a landscape share the axis of the whole, so that a flat one looks flat.
-    let [low, high] = match measure {
-        Measure::Icp => landscape.range,
-        Measure::Ndt => landscape.range.map(|height| -height),
-    };
+    let [low, high] = landscape.range.map(|height| sign * height);
     let (low, high) = (low.min(high), low.max(high).max(MIN_SPAN));
     let margin = 0.05 * (high - low);
     let (min, max) = (low - margin, high + margin);
     let upright =
         |at: f64, stroke, tone| Layer::segments(vec![[[at, min], [at, max]]], stroke, tone, 1.5);
     Panel {
-        id: match (measure, along) {
-            (Measure::Icp, Along::X) => "icp-x",
-            (Measure::Icp, Along::Y) => "icp-y",
-            (Measure::Ndt, Along::X) => "ndt-x",
-            (Measure::Ndt, Along::Y) => "ndt-y",
+        id: match along {
+            Along::X => "slice-x",
+            Along::Y => "slice-y",
         },
         title,
         weight: Weight::Side,

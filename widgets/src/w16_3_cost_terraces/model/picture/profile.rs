@@ -1,8 +1,8 @@
-//! The ground under each ball, from its drop along its path and straight on to the truth.
+//! The ground under the ball, from its drop along its path and straight on to the truth.
 
 use widget_kit::scene::{Aspect, Axis, Layer, Panel, Stroke, Tone, Weight};
 
-use super::{Moment, ball};
+use super::{Moment, ball, name};
 use crate::w16_3_cost_terraces::model::landscape::Landscape;
 
 /// Columns that fill the ground: they touch on the widest screen.
@@ -16,18 +16,8 @@ const SKY: f64 = 0.3;
 const AXIS_STEP_M: f64 = 0.65;
 const AXIS_STEP_PERCENT: f64 = 25.0;
 
-/// ICP's cost under its ball.
-pub fn icp(landscape: &Landscape, moment: Moment) -> Panel {
-    profile("icp-path", "ICP", landscape, moment)
-}
-
-/// NDT's negated score under its ball.
-pub fn ndt(landscape: &Landscape, moment: Moment) -> Panel {
-    profile("ndt-path", "NDT", landscape, moment)
-}
-
-/// Both have the same scale: the share of the whole range of their landscape.
-fn profile(id: &'static str, name: &str, landscape: &Landscape, moment: Moment) -> Panel {
+/// The height as a share of the whole range of the landscape, the same scale for both measures.
+pub fn panel(landscape: &Landscape, moment: Moment) -> Panel {
     let ground: Vec<[f64; 2]> = landscape
         .profile()
         .iter()
@@ -44,13 +34,13 @@ fn profile(id: &'static str, name: &str, landscape: &Landscape, moment: Moment) 
     let step = moment.step.min(landscape.ball.steps());
     let sky = SKY * high;
     let flag = [[length_m, 0.0], [length_m, highest + 0.5 * sky]];
-    let title = if !landscape.ball.is_home() && step == landscape.ball.steps() {
-        format!(
-            "{name}'s ball stops {:.2} m off",
-            landscape.ball.rest_distance_m()
-        )
+    let title = if step < landscape.ball.steps() {
+        "The ground from the drop to the truth".to_owned()
+    } else if landscape.ball.is_home() {
+        format!("{}’s ball is home", name(moment.measure))
     } else {
-        format!("{name}: the ground to the truth")
+        let off_m = landscape.ball.rest_distance_m();
+        format!("{}’s ball sticks {off_m:.2} m off", name(moment.measure))
     };
     let mut layers = vec![
         Layer::segments(columns(&ground), Stroke::Solid, Tone::Faint, COLUMN_PX),
@@ -60,11 +50,11 @@ fn profile(id: &'static str, name: &str, landscape: &Landscape, moment: Moment) 
     layers.extend(ball(ground[step]));
     layers.push(Layer::label(flag[1], "truth".to_owned(), 6.0));
     Panel {
-        id,
+        id: "path",
         title,
         weight: Weight::Side,
         aspect: Aspect::Free,
-        x: Axis::new("distance from the drop (m)", 0.0, far),
+        x: Axis::new("from the drop (m)", 0.0, far),
         y: Axis::new("height (% of the highest)", 0.0, high + sky),
         layers,
         legend: Vec::new(),
