@@ -15,6 +15,7 @@ import * as esbuild from 'esbuild';
 
 import { writeModels, writeParameterTables, writeTypes } from './generate.mjs';
 import { heightTable } from './heights.mjs';
+import { withPolicy } from './html.mjs';
 import { endWithOneSentence } from './licences/allowed.mjs';
 import { partsOfWidgets, writePackageNotices } from './licences/notices.mjs';
 import { brotli, withBuildId, withoutNames } from './wasm-file.mjs';
@@ -175,7 +176,7 @@ async function bundle() {
     });
     metafiles.push(metafile);
   }
-  await cp(join(WEB, 'embed.html'), join(dist, 'embed.html'));
+  await writeFile(join(dist, 'embed.html'), withPolicy(await readFile(join(WEB, 'embed.html'), 'utf8')));
   for (const types of ['slam-widget.d.ts', 'slam-predict.d.ts', 'slam-anywidget.d.ts']) {
     await cp(join(WEB, types), join(dist, types));
   }

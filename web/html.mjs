@@ -1,3 +1,17 @@
+/**
+ * What a page may load: only what a page with widgets needs, from its own site; fonts are those of the formulas, frames
+ * those of the examples and of the reader's code.
+ */
+const POLICY = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'; img-src 'self' data:; "
+  + "style-src 'self' 'unsafe-inline'; font-src 'self'; frame-src 'self'; base-uri 'none'; form-action 'none'";
+/** The tag that pages opened from the disk have to lose. */
+export const POLICY_TAG = `<meta http-equiv="Content-Security-Policy" content="${POLICY}">\n`;
+
+/** A page with its policy, as the first thing that it loads. */
+export function withPolicy(html) {
+  return html.replace('<meta charset="utf-8">\n', (charset) => charset + POLICY_TAG);
+}
+
 /** Escapes a text for HTML and XML, including attributes. */
 export function escapeHtml(text) {
   return text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;').replaceAll('"', '&quot;');

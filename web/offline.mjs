@@ -8,6 +8,7 @@ import { join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 import * as esbuild from 'esbuild';
+import { POLICY_TAG } from './html.mjs';
 import { writeZip } from './zip.mjs';
 
 /** Files that scripts fetch: wasm, data, and workers. */
@@ -61,5 +62,6 @@ async function convert(name) {
   });
   contents[script] = Buffer.from(outputFiles[0].contents);
   const tags = `<script defer src="offline-files.js"></script>\n<script defer src="${script}"></script>\n`;
-  contents[name] = Buffer.from(html.replace(MODULE, '').replace('</head>', `${tags}</head>`));
+  // A file has no origin whose scripts a policy could allow.
+  contents[name] = Buffer.from(html.replace(POLICY_TAG, '').replace(MODULE, '').replace('</head>', `${tags}</head>`));
 }

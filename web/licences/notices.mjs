@@ -3,7 +3,7 @@
 import { cp, readFile, writeFile } from 'node:fs/promises';
 import path from 'node:path';
 
-import { escapeHtml } from '../html.mjs';
+import { escapeHtml, withPolicy } from '../html.mjs';
 import { ROOT, cratesOfModule, npmPackage, npmPackagesIn, rustVersion } from './packages.mjs';
 import { squeezed, withTexts } from './texts.mjs';
 
@@ -77,7 +77,7 @@ export async function writeNoticesPage(parts, folder, style) {
     ...lists,
     ['The texts', articles.join('\n')],
   ];
-  await writeFile(path.join(folder, PAGE), `<!doctype html>
+  await writeFile(path.join(folder, PAGE), withPolicy(`<!doctype html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
@@ -111,7 +111,7 @@ ${sections.map(section).join('\n\n')}
 </main>
 </body>
 </html>
-`);
+`));
 }
 
 function section([title, content], at) {

@@ -13,7 +13,7 @@ import { fileURLToPath } from 'node:url';
 import { build } from 'esbuild';
 import katex from 'katex';
 
-import { escapeHtml } from '../html.mjs';
+import { escapeHtml, withPolicy } from '../html.mjs';
 import { endWithOneSentence } from '../licences/allowed.mjs';
 import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
 import { colorStyle } from '../palette.mjs';
@@ -54,13 +54,14 @@ const { names, metafiles } = await bundleScripts({
 names.set('page.css', await copyStyle());
 names.set('slides.css', await writeHashed('slides.css', await style('slides.css')));
 const slides = slidesPage(pages, scripts, frames, (html) => renderFormulas(html));
-await writeFile(path.join(outDir, 'slides.html'), withNames(slides));
+await writeFile(path.join(outDir, 'slides.html'), withPolicy(withNames(slides)));
+await cp(path.join(here, 'write/your-code.html'), path.join(outDir, 'your-code.html'));
 await Promise.all([...pictured.map(renderPage), copyKatex()]);
 await writeNotices(metafiles).catch(endWithOneSentence);
 
 async function renderPage({ file, source, html }) {
   const page = await addListings(addSketches(addMatch(addStills(addGallery(html))), sketches, source), root);
-  await writeFile(path.join(outDir, file), withNames(page));
+  await writeFile(path.join(outDir, file), withPolicy(withNames(page)));
 }
 
 /** Replaces the names of sources by those with a hash. */
