@@ -103,6 +103,8 @@ export interface TheFullLapState {
 
 /** Cost terraces: every parameter. */
 export interface CostTerracesState {
+  /** ICP's cost or NDT's score of the same sweep on the same points; the relief morphs from one to the other. */
+  measure: 'icp' | 'ndt';
   /** Room A on its own points; a corridor without doors on a map with independent noise; the Apartment's corridor, with its doors, on its own points. */
   scene: 'room' | 'corridor' | 'own-corridor';
   /** ICP pairs a point with the nearest map point within τ; a point without a pair costs τ². 0.1 to 1.6 m. */
@@ -111,15 +113,15 @@ export interface CostTerracesState {
   'ndt-cell': number;
   /** The sweep is turned by this much about the sensor before it is shifted. -180 to 180 °. */
   heading: number;
-  /** Both maps are sampled at this many shifts along each axis. 49 to 161. */
+  /** The relief is sampled at this many shifts along each axis. 49 to 161. */
   cells: number;
   /** By rank, every colour covers equally many cells, which shows low steps on high ground. */
   colours: 'value' | 'rank';
   /** Seed of the range noise of the sweep; 1472 is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** Position of the cross hair and start of the balls, east of the truth. -1.3 to 1.3 m. */
+  /** Position of the cross hair and start of the ball, east of the truth. -1.3 to 1.3 m. */
   'probe-x': number;
-  /** Position of the cross hair and start of the balls, north of the truth. -1.3 to 1.3 m. */
+  /** Position of the cross hair and start of the ball, north of the truth. -1.3 to 1.3 m. */
   'probe-y': number;
   /** Number of sweeps with independent noise that are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m. 0 to 100. */
   drops: number;
@@ -127,7 +129,7 @@ export interface CostTerracesState {
   rows: number;
   /** Adds the row (1, 0, 0) with the weight 1/σ²; 0 adds none. 0 to 0.5 m. */
   odometry: number;
-  /** How many gradient steps both balls have taken. 0 to 400. */
+  /** How much of its path the ball has rolled, in steps of its descent. 0 to 100. */
   t: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -265,6 +267,8 @@ export interface TheMovingBoxState {
   share: number;
   /** How far the box was moved between the sweeps, away from the sensor along x. 0 to 0.8 m. */
   moved: number;
+  /** How far the box was moved between the sweeps along y. -1.2 to 0.5 m. */
+  'moved-y': number;
   /** Which share of the pairs trimming drops in each iteration, the longest first. 0 to 70 %. */
   dropped: number;
   /** Pairs longer than this pull with the same force, however long they are. 0.01 to 0.3 m. */
@@ -411,7 +415,7 @@ export interface WidgetStates {
 export interface WidgetButtons {
   'w16.1': 'play' | 'step' | 'reset' | 'sweep' | 'defaults' | 'near' | 'quarter-turn' | 'between' | 'between-plane' | 'half-turn' | 'fence' | 'mark-edge' | 'short-sighted';
   'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'one-back' | 'one-on' | 'tie' | 'undo' | 'edit-flat' | 'piece-back' | 'piece-on' | 'west' | 'east' | 'north' | 'south' | 'remove' | 'add-wall' | 'add-way-point' | 'turn-here' | 'take-back' | 'do-again' | 'open-flat' | 'save-flat' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'wrong-loop' | 'tamed-loop' | 'true-loop' | 'ring' | 'twins' | 'corridor' | 'hall' | 'phantom-wall' | 'own-flat' | 'bells' | 'sliding';
-  'w16.3': 'drop' | 'drop-100' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'bowl' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'own-corridor' | 'drop-room' | 'drop-corridor' | 'one-row' | 'wheels-row' | 'turned';
+  'w16.3': 'drop-100' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'bowl' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'own-corridor' | 'drop-room' | 'drop-corridor' | 'one-row' | 'wheels-row' | 'turned';
   'w16.4': 'play' | 'step' | 'reset' | 'next-event' | 'defaults' | 'watch' | 'blurred' | 'rebuilt' | 'noisy' | 'wrong-loop' | 'open';
   'w16.5': 'play' | 'step' | 'reset' | 'defaults' | 'three-poses' | 'stiff' | 'unpinned' | 'square' | 'tangled';
   'w16.6': 'play' | 'step' | 'reset' | 'defaults' | 'quarter-turn' | 'upside-down' | 'wide' | 'without-home' | 'coarse';
@@ -524,6 +528,7 @@ export interface SlamWidgetProperties {
   wipe: number | undefined;
   t: number | undefined;
   future: boolean | undefined;
+  measure: 'icp' | 'ndt' | undefined;
   'ndt-cell': number | undefined;
   ndtCell: number | undefined;
   cells: number | undefined;
@@ -570,6 +575,8 @@ export interface SlamWidgetProperties {
   method: 'plain' | 'trimmed' | 'huber' | undefined;
   share: number | undefined;
   moved: number | undefined;
+  'moved-y': number | undefined;
+  movedY: number | undefined;
   dropped: number | undefined;
   laps: number | undefined;
   x: number | undefined;
