@@ -92,7 +92,7 @@ describe('a widget', () => {
           const heights = await tab.evaluate((name) => window.heights[name], id);
           const spread = Math.max(...heights) - Math.min(...heights);
           // Less than a line of text with its spacing.
-          assert.ok(heights[0] > 500 && spread <= 17, `${id} was ${heights.join(', ')} px high`);
+          assert.ok(heights[0] > 400 && spread <= 17, `${id} was ${heights.join(', ')} px high`);
         }
       }, { options: { deviceScaleFactor, viewport: { width, height: 800 } } });
     });

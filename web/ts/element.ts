@@ -76,6 +76,7 @@ export class SlamWidget extends HTMLElement {
     this.#reservedHeight = new ReservedHeight(this.#parts);
     this.#verdict = new VerdictLine(this.#parts.verdict);
     this.#parts.whole.addEventListener('click', () => this.look('whole'));
+    this.#parts.drop.addEventListener('click', () => void this.press('open'));
     this.#lifecycle = new Lifecycle(this.#parts, this.#lifecycleHost());
     this.#appearance = new Appearance(this, this.#parts, this.#lifecycle, this.#pictures);
   }

@@ -167,7 +167,7 @@ export class Lifecycle implements Visibility, Drawer {
       const instance = await this.ensureInstance();
       await nextTask();
       // The first frame shows data: the still picture stands until then.
-      this.ask((ready) => ready.finishWork());
+      this.ask((ready) => ready.finish_work());
       await nextTask();
       if (generation !== this.#generation) return;
       this.#stage = new Stage(stage, instance, widget.title, () => this.fail(new ContextLostError()));

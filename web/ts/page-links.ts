@@ -63,7 +63,10 @@ function scrollToAddressed(): void {
   const linked = readQuery(location.search);
   if (linked === undefined || !('widget' in linked) || location.hash !== '') return;
   const widget = widgetNamed(linked.widget.id);
-  if (widget?.hasAttribute('linked') === true) keepInView(widget);
+  if (widget?.hasAttribute('linked') !== true) return;
+  // A page may hide one until it is used.
+  widget.hidden = false;
+  keepInView(widget);
 }
 
 function widgetNamed(name: string): SlamWidget | undefined {

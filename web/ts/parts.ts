@@ -19,6 +19,8 @@ export interface Parts {
   stage: HTMLElement;
   /** Shows a zoomed map completely again. */
   whole: HTMLButtonElement;
+  /** Stands for the picture while a widget for files has none. */
+  drop: HTMLButtonElement;
   picture: HTMLImageElement;
   progress: HTMLProgressElement;
   note: HTMLElement;
@@ -44,6 +46,8 @@ export function build(shadow: ShadowRoot): Parts {
   const view = create('div', { class: 'view' });
   const whole = create('button', { type: 'button', class: 'whole', hidden: '' });
   whole.textContent = 'Whole map';
+  const drop = create('button', { type: 'button', class: 'drop' });
+  drop.innerHTML = '<b>Drop a log of your robot here</b> or choose a file. It stays in this browser.';
   const bar = create('div', { class: 'bar', role: 'group' });
   const part = (name: string): HTMLElement => create('div', { class: name });
   const [transport, first, tools, verdict] = [part('transport'), part('first'), part('tools'), part('verdict')];
@@ -57,7 +61,7 @@ export function build(shadow: ShadowRoot): Parts {
   note.classList.add('note');
   stopKeyPropagation(bar);
   stage.append(picture, progress);
-  view.append(stage, whole);
+  view.append(stage, whole, drop);
   rest.append(presets, settings, actions);
   const controls = part('controls');
   controls.append(transport, first, tools, verdict);
@@ -65,7 +69,7 @@ export function build(shadow: ShadowRoot): Parts {
   frame.append(claim, view, note, summary, bar, live);
   shadow.append(style, frame);
   const places = { transport, first, tools, presets, settings, actions };
-  return { frame, claim, stage, whole, picture, progress, note, bar, places, verdict, rest, summary, live, status };
+  return { frame, claim, stage, whole, drop, picture, progress, note, bar, places, verdict, rest, summary, live, status };
 }
 
 /** The error in one sentence, and a button that restarts or reloads. */

@@ -16,6 +16,9 @@ export const STYLE = `
 .claim span { color: var(--soft); font-weight: 400; }
 .view { position: relative; }
 .whole { position: absolute; top: 0.5rem; right: 0.75rem; }
+.drop { display: none; }
+.without-file .drop { display: grid; place-content: center; position: absolute; inset: 0.75rem; border: 2px dashed var(--accent); border-radius: 8px; }
+.drop b { font-size: 1.25em; }
 .stage { position: relative; overflow: hidden; min-height: 12rem; height: var(--reserved-height); }
 .stage.live { min-height: 0; height: auto; }
 .picture { display: block; width: 100%; height: auto; }
@@ -136,7 +139,7 @@ thead tr { border-bottom: 1px solid var(--line); }
 .hidden { position: absolute; width: 1px; height: 1px; margin: -1px; overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
 [hidden] { display: none !important; }
 @media print {
-  .transport, .first, .tools, .rest, .whole, progress, .note, .loops { display: none; }
+  .transport, .first, .tools, .rest, .whole, .drop, progress, .note, .loops { display: none; }
   .stage, .stage .picture { height: auto !important; min-height: 0; }
   .stage .picture { max-height: 15cm; object-fit: contain; object-position: top left; }
   .stage canvas { display: none; }

@@ -1,5 +1,5 @@
-// The first figure of own-robot.html: odometry's scribble becomes a map. The widget below replaces it once the reader
-// drops or picks a log.
+// The first figure of own-robot.html: odometry's scribble becomes a map. The hidden widget below takes its place once the
+// reader drops or picks a log, or maps the sample.
 
 import { chooseFiles, LOGS, acceptDrops } from '../../ts/robot/files';
 import { type Ink } from '../lap/drawing';
@@ -12,6 +12,7 @@ const INKS: Ink[] = ['prediction', 'posterior', 'ink', 'paper'];
 
 interface Mapper extends HTMLElement {
   openFile(files: readonly File[]): void;
+  press(button: string): Promise<void>;
 }
 
 export class BuildingFigure {
@@ -61,16 +62,19 @@ export class BuildingFigure {
 
   #takeLogs(picture: HTMLElement): void {
     const widget = document.querySelector<Mapper>('slam-widget[name="w16.10"]');
-    const take = (files: File[]): void => {
+    const change = (open: (widget: Mapper) => void): void => {
       if (widget === null) return;
       this.#startedMs = undefined;
-      this.#figure.hidden = true;
-      widget.openFile(files);
+      widget.hidden = false;
+      open(widget);
       widget.scrollIntoView();
     };
+    const take = (files: File[]): void => change((mapper) => mapper.openFile(files));
     acceptDrops(picture, take);
     const choose = this.#figure.querySelector('[data-building="open"]');
     choose?.addEventListener('click', () => chooseFiles(picture, { accept: LOGS, label: 'A log of your robot', several: true }, take));
+    const sample = this.#figure.querySelector('[data-building="sample"]');
+    sample?.addEventListener('click', () => change((mapper) => void mapper.press('sample')));
   }
 
   #start(): void {

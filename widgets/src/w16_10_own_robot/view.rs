@@ -11,16 +11,18 @@ use crate::w16_10_own_robot::model::panel;
 pub struct RobotView;
 
 impl View for RobotView {
-    fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
+    fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
-        let map = slot(
-            panel::MAP,
-            if width < SIDE_BY_SIDE {
-                PlotHeight::Fixed(520.0)
-            } else {
-                PlotHeight::Natural { most: 620.0 }
-            },
-        );
+        let is_empty = scene.panels.iter().all(|panel| panel.layers.is_empty());
+        let height = if is_empty {
+            // The host's drop zone covers it.
+            PlotHeight::Fixed(220.0)
+        } else if width < SIDE_BY_SIDE {
+            PlotHeight::Fixed(520.0)
+        } else {
+            PlotHeight::Natural { most: 620.0 }
+        };
+        let map = slot(panel::MAP, height);
         let plots = [panel::FIT, panel::SURE].map(|id| slot(id, PlotHeight::Fixed(130.0)));
         let below = if width < SIDE_BY_SIDE {
             plots.iter().map(|plot| Row::new(&[*plot])).collect()

@@ -48,6 +48,9 @@ const TICKS_PER_S: f64 = 8.0;
 /// Duration of the pulses and of the repainting after a loop, s at speed 1: no more than a glance.
 const CLOSING_S: f64 = 1.5;
 
+/// How near the pointer has to be to a mark to light it: ticks, and lanes.
+const MARK_REACH: [f64; 2] = [1.5, 0.5];
+
 /// The model of the widget.
 pub struct ControlRoom {
     values: Values,
@@ -66,6 +69,8 @@ pub struct ControlRoom {
     playback: Playback,
     /// The shown share of what follows the loop that the playback has reached.
     closing: Option<f64>,
+    /// Tick and lane of the mark under the pointer.
+    hovered: Option<(usize, usize)>,
 }
 
 impl Default for ControlRoom {
@@ -86,6 +91,7 @@ impl Default for ControlRoom {
             world: World::apartment(),
             playback: Playback::default(),
             closing: None,
+            hovered: None,
             values,
             laps,
             next_events: 0,
@@ -104,6 +110,11 @@ impl ControlRoom {
     /// The selected lane.
     fn lane(&self) -> usize {
         self.values.get(&LANE)
+    }
+
+    /// Tick and lane of the mark under the pointer, or of the selected one.
+    fn looked_at(&self) -> (usize, usize) {
+        self.hovered.unwrap_or((self.tick(), self.lane()))
     }
 
     fn choose_lane(&mut self, lane: usize) {
@@ -148,6 +159,7 @@ impl ControlRoom {
         self.history = History::new(&self.record);
         self.events = log::events(&self.record);
         self.grid.forget();
+        self.hovered = None;
         self.go_to(self.values.get(&TICK));
         if !self.laps.is_running() {
             for _ in 0..core::mem::take(&mut self.next_events) {
@@ -324,6 +336,13 @@ impl Model for ControlRoom {
         if tick != self.values.get(&TICK) {
             self.go_to(tick);
         }
+    }
+
+    /// The mark under the pointer lights its sweep on the grid.
+    fn hover(&mut self, panel: &str, at: Option<[f64; 2]>) {
+        let at = at.filter(|_| panel == lanes::ID);
+        let mark = at.and_then(|at| lanes::event_at(&self.record, self.tick(), at, MARK_REACH));
+        self.hovered = mark.map(|(tick, lane)| (tick as usize, lane));
     }
 
     fn set_motion(&mut self, motion: Motion) {

@@ -65,7 +65,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "Walls blur where two passes disagree. At the first loop they sharpen: the cells that are more than 90 % likely to be occupied go from 110 to 156.",
     ],
     opening: Opening {
-        panels: &["map", "registration", "lanes"],
+        panels: &["map", "lanes"],
         params: &["noise"],
         buttons: &["play"],
     },

@@ -510,7 +510,6 @@ fn the_grid_has_a_legend_whose_areas_are_the_colours_of_its_cells() {
     let legend = &scene.panels[0].legend;
     for (label, of) in [
         ("occupied", Cell::Occupancy(1.0)),
-        ("free", Cell::Occupancy(0.0)),
         ("not seen", Cell::Unknown),
     ] {
         let entry = legend
@@ -528,4 +527,37 @@ fn the_grid_has_a_legend_whose_areas_are_the_colours_of_its_cells() {
         assert!(contrast(full, free) > 10.0);
         assert_eq!(full, tone(theme, Tone::Ink));
     }
+}
+
+#[test]
+fn the_pointer_on_a_mark_lights_the_sweep_of_its_tick_on_the_grid() {
+    let mut room = ControlRoom::default();
+    let lit = |room: &ControlRoom| {
+        let map = room.scene().panels.remove(0);
+        let mut label = None;
+        let mut points = 0;
+        for layer in map.layers {
+            match layer {
+                Layer::Points {
+                    points: lit,
+                    tone: Tone::Revisit,
+                    ..
+                } => points += lit.len(),
+                Layer::Label { text, .. } => label = Some(text),
+                _ => {}
+            }
+        }
+        (points, label)
+    };
+    assert_eq!(lit(&room), (0, None));
+    // Registering is the second of eight lanes from the top.
+    room.hover("lanes", Some([40.2, 7.1]));
+    let (points, label) = lit(&room);
+    assert!(points > 50, "{points} points");
+    assert_eq!(label.as_deref(), Some("register, tick 40"));
+    room.hover("lanes", Some([40.2, 1.0]));
+    assert_eq!(lit(&room), (0, None), "no mark is there");
+    room.hover("lanes", Some([40.2, 7.1]));
+    room.hover("lanes", None);
+    assert_eq!(lit(&room), (0, None));
 }

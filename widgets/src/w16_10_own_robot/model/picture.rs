@@ -153,29 +153,18 @@ fn bounds(robot: &LogState) -> Bounds {
     }
 }
 
-/// Text while there is no map.
-fn invitation(robot: &LogState) -> Vec<Layer> {
-    let lines: &[&str] = match robot.stage {
-        Stage::Empty => &[
-            "Drop a log of your robot here,",
-            "open one, or press Play",
-            "to map the sample.",
-            "It stays in this browser.",
-        ],
-        Stage::Failed => &["There is no map yet."],
-        _ => &["The log is read."],
+/// Text while there is no map; without a log the host's drop zone stands for the picture.
+fn invitation(robot: &LogState) -> Option<Layer> {
+    let text = match robot.stage {
+        Stage::Empty => return None,
+        Stage::Failed => "There is no map yet.",
+        _ => "The log is read.",
     };
-    let middle = EMPTY.middle();
-    let place = |row: usize| {
-        let below = row as f64 - 0.5 * (lines.len() as f64 - 1.0);
-        [middle[0], middle[1] - 0.9 * below]
-    };
-    let words = lines.iter().enumerate().map(|(row, text)| Layer::Text {
-        at: place(row),
-        text: (*text).to_owned(),
+    Some(Layer::Text {
+        at: EMPTY.middle(),
+        text: text.to_owned(),
         tone: Tone::Ink,
-    });
-    words.collect()
+    })
 }
 
 fn at(robot: &LogState, keyframe: usize) -> Option<[f64; 2]> {

@@ -7,9 +7,8 @@ use ch16_lab::lap::{LapRecord, RegistrationView};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::graph::EdgeKind;
 use pr_geom::SE2;
-use pr_sim::World;
 use widget_kit::scene::{
-    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Raster, Scene, Stroke, Tone, Weight,
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
 use super::ControlRoom;
@@ -24,21 +23,22 @@ pub fn scene(room: &ControlRoom) -> Scene {
     let (record, now) = (&room.record, room.tick());
     Scene {
         panels: vec![
-            map(record, now, room.grid.raster(), &room.world),
+            map(room),
             registration(record, now, room.registration.as_ref()),
-            lanes::lanes(record, now, room.lane(), room.closing),
+            lanes::lanes(record, now, room.looked_at(), room.closing),
             plots::threshold(&room.history, now),
             plots::errors(&room.history, now),
         ],
     }
 }
 
-/// The map at a tick: grid, graph, truth and robot.
-fn map(record: &LapRecord, tick: usize, raster: &Raster, world: &World) -> Panel {
-    let bounds = world.bounds();
+/// The map at the current tick: grid, graph, truth and robot; and the sweep of the mark under the pointer.
+fn map(room: &ControlRoom) -> Panel {
+    let (record, tick) = (&room.record, room.tick());
+    let bounds = room.world.bounds();
     let truth = |tick| record.drive.truth(tick);
-    let layers = vec![
-        Layer::Raster(raster.clone()),
+    let mut layers = vec![
+        Layer::Raster(room.grid.raster().clone()),
         Layer::line(
             (0..=tick).map(|tick| xy(&truth(tick))).collect(),
             Stroke::Dashed,
@@ -56,6 +56,19 @@ fn map(record: &LapRecord, tick: usize, raster: &Raster, world: &World) -> Panel
         robot(&truth(tick), Mark::Plus, Tone::Truth),
         robot(&estimate(record, tick), Mark::Square, Tone::Posterior),
     ];
+    if let Some((tick, lane)) = room.hovered {
+        let pose = estimate(record, tick);
+        let sweep = record.drive.sweep(tick).cloud.transformed(&pose);
+        layers.extend([
+            Layer::points(positions(&sweep), Mark::Dot, Tone::Revisit, 2.5),
+            robot(&pose, Mark::Circle, Tone::Revisit),
+            Layer::label(
+                xy(&pose),
+                format!("{}, tick {tick}", lanes::name(lane)),
+                10.0,
+            ),
+        ]);
+    }
     Panel {
         id: "map",
         title: "Occupancy grid and pose graph".to_owned(),
@@ -68,7 +81,6 @@ fn map(record: &LapRecord, tick: usize, raster: &Raster, world: &World) -> Panel
             LegendEntry::marked_line("truth", Tone::Truth, Mark::Plus, Stroke::Dashed),
             LegendEntry::marked_line("pose graph", Tone::Posterior, Mark::Square, Stroke::Solid),
             area("occupied", Tone::Ink),
-            area("free", Tone::Paper),
             area("not seen", Tone::Unseen),
         ],
         color_bar: None,
@@ -108,7 +120,6 @@ fn registration(record: &LapRecord, tick: usize, view: Option<&RegistrationView>
             LegendEntry::mark("as predicted", Tone::Prediction, Mark::Triangle),
             LegendEntry::mark("as registered", Tone::Measurement, Mark::Cross),
             LegendEntry::line("pairs", Tone::Ink, Stroke::Solid),
-            LegendEntry::mark("robot", Tone::Posterior, Mark::Square),
         ],
         color_bar: None,
     }

@@ -30,15 +30,13 @@ fn sweeps(window: &WholeWindow) -> Panel {
     let guess = window.guess();
     let pose = window.shown_pose();
     let turn = turn_handle(&guess);
-    let mut layers = vec![
-        points(scene.target(), Mark::Cross, Tone::Measurement, 3.0),
-        points(
-            &scene.source().transformed(&icp_now(window)),
-            Mark::Dot,
-            Tone::Series(2),
-            1.6,
-        ),
-        icp_path(window),
+    let mut layers = vec![points(scene.target(), Mark::Cross, Tone::Measurement, 3.0)];
+    if let Some(icp) = icp_now(window) {
+        let sweep = scene.source().transformed(&icp);
+        layers.push(points(&sweep, Mark::Dot, Tone::Series(2), 1.6));
+        layers.push(icp_path(window));
+    }
+    layers.extend([
         points(
             &scene.source().transformed(&pose),
             Mark::Square,
@@ -58,11 +56,10 @@ fn sweeps(window: &WholeWindow) -> Panel {
             tone: Tone::Prior,
             label: "turn the start; drag its sensor to move it",
         },
-        sensor(pose, Mark::Square, Tone::Posterior),
-    ];
-    if window.step() == 0 && window.place() == 0 {
-        // Before the search the source is at the start.
-        layers.pop();
+        Layer::label(position(&scene.truth()), "truth".to_owned(), 8.0),
+    ]);
+    if window.raced().is_some() {
+        layers.push(sensor(pose, Mark::Square, Tone::Posterior));
     }
     let [x, y] = frame(window);
     Panel {
@@ -78,27 +75,23 @@ fn sweeps(window: &WholeWindow) -> Panel {
             LegendEntry::mark("best pose so far", Tone::Posterior, Mark::Square),
             LegendEntry::mark("start, to be turned", Tone::Prior, Mark::Circle),
             LegendEntry::mark("ICP alone", Tone::Series(2), Mark::Dot),
-            LegendEntry::mark("truth", Tone::Truth, Mark::Plus),
         ],
         color_bar: None,
     }
 }
 
-/// The pose of ICP alone in the race; before it, the one where ICP would end.
-fn icp_now(window: &WholeWindow) -> SE2 {
+/// The pose of ICP alone in the race; before it nothing tells where it ends.
+fn icp_now(window: &WholeWindow) -> Option<SE2> {
     let path = &window.search_task.alone.path;
-    path[window.raced().unwrap_or(path.len() - 1)]
+    window.raced().map(|step| path[step])
 }
 
-/// The path of ICP alone: dotted before the race, then as far as it is.
+/// The path of ICP alone as far as it is.
 fn icp_path(window: &WholeWindow) -> Layer {
     let path = &window.search_task.alone.path;
-    let (done, stroke) = match window.raced() {
-        Some(k) => (&path[..=k], Stroke::Solid),
-        None => (&path[..], Stroke::Dotted),
-    };
-    let positions = done.iter().map(position).collect();
-    Layer::line(positions, stroke, Tone::Series(2), 2.0)
+    let done = path.iter().take(window.raced().map_or(0, |step| step + 1));
+    let positions = done.map(position).collect();
+    Layer::line(positions, Stroke::Solid, Tone::Series(2), 2.0)
 }
 
 /// Axes that hold the target, and the source at any heading about the truth.

@@ -241,58 +241,68 @@ fn attempt_now(moment: &Moment) -> Vec<Layer> {
     vec![Layer::label(loop_mark(moment, attempt), headline, 8.0)]
 }
 
-/// The robot's current pose by each estimate.
-fn robots(moment: &Moment) -> [Layer; 4] {
+/// The robot's current pose by each estimate, named where the legend does not.
+fn robots(moment: &Moment) -> Vec<Layer> {
     let tick = moment.tick;
-    let robot =
-        |pose: SE2, mark, tone, radius_px| Layer::pose(pose.to_array(), mark, tone, radius_px);
-    [
-        robot(moment.runs.truth(tick), Mark::Plus, Tone::Truth, 7.0),
-        robot(
+    let others = [
+        (moment.runs.truth(tick), Mark::Plus, Tone::Truth, 7.0),
+        (
             moment.runs.dead_reckoning(tick),
             Mark::Triangle,
             Tone::Prediction,
             6.0,
         ),
-        robot(
+        (
             moment.runs.front_end.estimate(tick),
             Mark::Circle,
             Tone::Prior,
             6.0,
         ),
-        robot(moment.estimate, Mark::Square, Tone::Posterior, 6.0),
-    ]
+    ];
+    let mut layers: Vec<_> = others
+        .iter()
+        .map(|(pose, mark, tone, radius_px)| Layer::pose(pose.to_array(), *mark, *tone, *radius_px))
+        .collect();
+    layers.push(Layer::pose(
+        moment.estimate.to_array(),
+        Mark::Square,
+        Tone::Posterior,
+        6.0,
+    ));
+    // At the start all are at one place.
+    if tick > 0 && !moment.drawn.as_ref().is_some_and(is_planned) {
+        let names = ["truth", "odometry", "front end alone"];
+        layers.extend(
+            others
+                .iter()
+                .zip(names)
+                .map(|((pose, ..), name)| Layer::label(xy(pose), name.to_owned(), 8.0)),
+        );
+    }
+    layers
 }
 
+/// Most entries of a legend.
+const MOST_ENTRIES: usize = 4;
+
 fn legend(moment: &Moment) -> Vec<LegendEntry> {
-    let mut legend = vec![
-        LegendEntry::marked_line("truth", Tone::Truth, Mark::Plus, Stroke::Dashed),
-        LegendEntry::marked_line("odometry", Tone::Prediction, Mark::Triangle, Stroke::Solid),
-        LegendEntry::marked_line(
-            "front end alone; graph before the loop",
-            Tone::Prior,
-            Mark::Circle,
-            Stroke::Solid,
-        ),
-        LegendEntry::marked_line(
-            "pose graph: nodes and factors",
-            Tone::Posterior,
-            Mark::Square,
-            Stroke::Solid,
-        ),
-        LegendEntry::mark("map, way out", Tone::Outbound, Mark::Dot),
-        LegendEntry::mark("map, way back", Tone::Revisit, Mark::Cross),
-        LoopStyle::ACCEPTED.entry("loop accepted"),
-    ];
-    if moment.loops_tried().any(|attempt| !attempt.accepted()) || moment.own.is_some() {
-        legend.push(LoopStyle::REFUSED.entry("loop refused"));
+    let mut legend = Vec::new();
+    if moment.drawn.as_ref().is_some_and(is_planned) {
+        legend.push(floor_plan::legend());
     }
     if parts::is_any_past_the_gate(moment) {
         let label = "strained: χ² past the gate";
         legend.push(LegendEntry::line(label, parts::STRAINED, Stroke::Solid));
     }
-    if moment.drawn.as_ref().is_some_and(is_planned) {
-        legend.push(floor_plan::legend());
+    if moment.loops_tried().any(|attempt| !attempt.accepted()) || moment.own.is_some() {
+        legend.push(LoopStyle::REFUSED.entry("loop refused"));
     }
+    legend.extend([
+        LegendEntry::marked_line("pose graph", Tone::Posterior, Mark::Square, Stroke::Solid),
+        LegendEntry::mark("map, way out", Tone::Outbound, Mark::Dot),
+        LegendEntry::mark("map, way back", Tone::Revisit, Mark::Cross),
+        LoopStyle::ACCEPTED.entry("loop accepted"),
+    ]);
+    legend.truncate(MOST_ENTRIES);
     legend
 }

@@ -224,8 +224,13 @@ fn pulses(now: usize, last: f64, share: f64) -> [Layer; 2] {
     ]
 }
 
-/// The lanes up to a tick; a ring around the mark of the selected lane at the current tick.
-pub fn lanes(record: &LapRecord, now: usize, chosen: usize, closing: Option<f64>) -> Panel {
+/// The lanes up to a tick; a ring around the mark in question, a tick and a lane.
+pub fn lanes(
+    record: &LapRecord,
+    now: usize,
+    (tick, lane): (usize, usize),
+    closing: Option<f64>,
+) -> Panel {
     let last = record.ticks() as f64;
     let mut layers = vec![Layer::line(
         vec![[now as f64, 0.4], [now as f64, height(0) + 0.6]],
@@ -247,9 +252,9 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize, closing: Option<f64>
             3.5,
         ),
     ]);
-    let here = record.lap.report(now);
-    if here.is_some_and(|report| (LANES[chosen].done)(report) != Done::Idle) {
-        let at = vec![[now as f64, height(chosen)]];
+    let report = record.lap.report(tick);
+    if report.is_some_and(|report| (LANES[lane].done)(report) != Done::Idle) {
+        let at = vec![[tick as f64, height(lane)]];
         layers.push(Layer::points(at, Mark::Circle, Tone::Ink, 7.0));
     }
     layers.extend(

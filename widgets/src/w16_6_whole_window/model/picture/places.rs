@@ -35,8 +35,10 @@ pub fn panel(window: &WholeWindow) -> Panel {
     }
     layers.push(sensor(window.scene.truth(), Mark::Plus, Tone::Truth));
     layers.push(sensor(window.guess(), Mark::Circle, Tone::Prior));
-    layers.push(icp_path(window));
-    layers.push(sensor(icp_now(window), Mark::Dot, Tone::Series(2)));
+    if let Some(icp) = icp_now(window) {
+        layers.push(icp_path(window));
+        layers.push(sensor(icp, Mark::Dot, Tone::Series(2)));
+    }
     if let Some(runner_up) = moment.runner_up {
         layers.push(sensor(runner_up.pose, Mark::Triangle, Tone::Series(1)));
     }
@@ -46,7 +48,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
     Panel {
         id: panel::PLACES,
         title: format!(
-            "{} sums in place of {}",
+            "{} of {} sums made; more ink fits better",
             grouped(moment.counts.scored()),
             grouped(moment.counts.window)
         ),
@@ -58,10 +60,8 @@ pub fn panel(window: &WholeWindow) -> Panel {
         legend: vec![
             LegendEntry::line("box that waits", Tone::Series(0), Stroke::Solid),
             LegendEntry::line("box looked into", Tone::Series(3), Stroke::Solid),
-            LegendEntry::mark("ICP alone", Tone::Series(2), Mark::Dot),
             LegendEntry::mark("best", Tone::Posterior, Mark::Square),
             LegendEntry::mark("runner-up", Tone::Series(1), Mark::Triangle),
-            LegendEntry::mark("more ink: fits better", Tone::Ink, Mark::Dot),
         ],
         color_bar: None,
     }
