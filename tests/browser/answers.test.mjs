@@ -77,6 +77,10 @@ it('the page counts attempts, and stores answers in the browser only on request'
       await question.getByRole('button', { name: 'Commit and see' }).click();
       await question.getByText(/^(As you predicted|It turns out differently)/).waitFor();
     };
+    await question.getByText(/^Your task has the noise [\d.]+ and a seed of its own\. The numbers in the text belong to the chapter’s, with the noise 4\. Choose by the ranges\.$/).waitFor();
+    await question.getByText('(0.5 to 1 m)').waitFor();
+    const same = tab.locator('slam-predict[exercise="16.1"]').getByText('Everyone has this task: another seed would hardly change its answer.');
+    assert.equal(await same.count(), 1);
     await answer();
     await question.getByText(/^This is your personal task, seed \d+\. The numbers in the text belong to the chapter’s task\.$/).waitFor();
     await question.getByRole('button', { name: 'Predict again' }).click();
@@ -98,5 +102,10 @@ it('the page counts attempts, and stores answers in the browser only on request'
     await tab.getByLabel(/^Name or token/).fill('Bob');
     await tab.getByLabel(/^Name or token/).press('Enter');
     await tab.getByText('0 exercises answered.').waitFor();
+    // The chapter's task.
+    await tab.getByLabel(/^Name or token/).fill('');
+    await tab.getByLabel(/^Name or token/).press('Enter');
+    await question.getByText(/^Your task has/).waitFor({ state: 'hidden' });
+    assert.ok(await question.getByText('(0.5 to 1 m)').isHidden());
   });
 });

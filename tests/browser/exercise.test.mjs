@@ -36,15 +36,22 @@ async function answer(frame, exercise, place) {
 const answers = (tab) => tab.evaluate(() => heard.filter((data) => data?.type === 'answer'));
 
 it('embed.html shows one part in a sandbox under the strict policy, and reports the answer to the surrounding page', async () => {
-  await framed('?exercise=16.5a&student=Ann', async (tab, frame) => {
+  await framed('?exercise=16.5a&student=Bob', async (tab, frame) => {
     await frame.locator('slam-predict').first().waitFor();
     assert.equal(await frame.locator('slam-predict').count(), 1);
     assert.equal(await frame.locator('slam-widget').getAttribute('name'), 'w16.2');
     assert.equal(await frame.locator('h1').textContent(), 'Exercise 5: noise, gates, and luck');
     await answer(frame, '16.5a', 0);
     const [told] = await answers(tab);
-    assert.deepEqual([told.slam, told.exercise, told.student, told.attempts], [1, '16.5a', 'Ann', 1]);
-    assert.match(told.state, /^noise=4&t=129&seed=\d+$/);
+    assert.deepEqual([told.slam, told.exercise, told.student, told.attempts], [1, '16.5a', 'Bob', 1]);
+    assert.match(told.state, /^noise=3\.25&t=129&seed=\d+$/);
+    // The file of answers, though this sandbox saves no files.
+    await frame.getByText('1 exercise answered. A reload forgets them, unless you keep or save them.').waitFor();
+    await frame.getByRole('button', { name: 'Save my answers' }).click();
+    const text = await frame.getByLabel('If this frame may not save files, copy this into a file answers-Bob.json:').inputValue();
+    const { schema, student, answers: saved } = JSON.parse(text);
+    assert.deepEqual([schema, student, saved[0].exercise, saved[0].state], ['slam2d-answers/1', 'Bob', '16.5a', told.state]);
+    assert.deepEqual(tab.troubles.splice(0).filter((trouble) => !trouble.includes('Download is disallowed')), []);
   }, { sandbox: 'sandbox="allow-scripts"', server: { policy: `${h.STRICT_POLICY}; frame-src 'self'`.replace("script-src 'self'", "script-src 'self' 'unsafe-inline'") } });
 });
 

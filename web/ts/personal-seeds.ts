@@ -15,3 +15,17 @@ export function seedOf(student: string, exercise: string, attempt: number): numb
   hash = Math.imul(hash ^ (hash >>> 13), 0xc2b2ae35);
   return (hash ^ (hash >>> 16)) >>> 0;
 }
+
+/** The value of a student's task by `varies="noise=3,4"`: one of them. Undefined if nothing but the seed varies. */
+export function ownValue(varies: string, student: string, exercise: string): { id: string; value: string } | undefined {
+  const [, id, values] = /^([\w-]+)=(.+)$/.exec(varies) ?? [];
+  if (id === undefined || values === undefined) return undefined;
+  const all = values.split(',');
+  const value = all[seedOf(student, exercise, 0) % all.length];
+  return value === undefined ? undefined : { id, value };
+}
+
+/** A state with a value in place of its own. */
+export function withValue(state: string, { id, value }: { id: string; value: string }): string {
+  return state.split('&').map((pair) => (pair.startsWith(`${id}=`) ? `${id}=${value}` : pair)).join('&');
+}

@@ -12,13 +12,14 @@
 // `<li data-choice="smaller" data-to="0.02">`, or `data-from` inclusive and `data-to` exclusive.
 //
 // For a student (attribute `student`, or `?student=` of the page), an exercise whose widget has a seed becomes a personal
-// task, unless `varies="no"` says that most seeds have the same answer.
+// task, unless `varies="no"` says that most seeds have the same answer. `varies="noise=3,4"` gives it one of these values, too,
+// and the question says which.
 
 // @ts-expect-error: a separate bundle.
 import './slam-widget.js';
-import { attemptsAt, student } from './answers';
+import { attemptsAt, changes, student } from './answers';
 import { stopKeyPropagation, withCode } from './dom';
-import { MAX_ATTEMPTS, seedOf } from './personal-seeds';
+import { MAX_ATTEMPTS, ownValue, seedOf, withValue } from './personal-seeds';
 import './slam-answers';
 import { showBackButton } from './back-button';
 import type { SlamWidget } from './element';
@@ -54,11 +55,18 @@ const DECIMALS = 3;
 export class SlamPredict extends HTMLElement {
   #form: HTMLFormElement | undefined;
   #answer: HTMLElement | undefined;
+  /** What a student has to know of the task before answering. */
+  readonly #task = document.createElement('p');
+  readonly #studentChanged = (): void => this.#showTask();
   /** Attempts at a question without an id, which answers.ts does not count. */
   #attempts = 0;
 
   connectedCallback(): void {
-    if (this.#form !== undefined) return;
+    changes.addEventListener('change', this.#studentChanged);
+    if (this.#form !== undefined) {
+      this.#showTask();
+      return;
+    }
     const shadow = this.attachShadow({ mode: 'open' });
     const style = document.createElement('style');
     style.textContent = STYLE;
@@ -71,12 +79,39 @@ export class SlamPredict extends HTMLElement {
     // The slot puts the explanation below the answer, wherever it is in the markup.
     const why = document.createElement('slot');
     why.name = 'why';
-    shadow.append(style, document.createElement('slot'), this.#form, this.#answer, why);
+    shadow.append(style, document.createElement('slot'), this.#task, this.#form, this.#answer, why);
     for (const hidden of this.querySelectorAll<HTMLElement>('[data-why]')) {
       hidden.slot = 'why';
       hidden.hidden = true;
     }
     for (const list of this.querySelectorAll<HTMLElement>(':has(> [data-choice])')) list.hidden = true;
+    this.#showTask();
+  }
+
+  disconnectedCallback(): void {
+    changes.removeEventListener('change', this.#studentChanged);
+  }
+
+  /** Tells a student what is personal about the task; the choices then have their ranges, because the text is the chapter's. */
+  #showTask(): void {
+    const person = this.#person();
+    const own = person === '' ? undefined : ownValue(this.getAttribute('varies') ?? '', person, this.getAttribute('exercise') ?? '');
+    const sentences = [];
+    if (own !== undefined) {
+      const chapter = new URLSearchParams(this.getAttribute('state') ?? '').get(own.id);
+      sentences.push(`Your task has the ${own.id} ${own.value} and a seed of its own.`);
+      sentences.push(`The numbers in the text belong to the chapter’s, with the ${own.id} ${chapter}.`);
+      if (this.hasAttribute('fact')) sentences.push('Choose by the ranges.');
+    } else if (person !== '' && this.#isSame()) {
+      sentences.push('Everyone has this task: another seed would hardly change its answer.');
+    }
+    this.#task.textContent = sentences.join(' ');
+    this.#task.hidden = sentences.length === 0;
+    for (const range of this.#form?.querySelectorAll<HTMLElement>('.range') ?? []) range.hidden = own === undefined;
+  }
+
+  #person(): string {
+    return this.getAttribute('student') ?? student();
   }
 
   #makeForm(): HTMLFormElement {
@@ -88,7 +123,7 @@ export class SlamPredict extends HTMLElement {
     const fact = this.getAttribute('fact');
     const choices = this.querySelectorAll<HTMLElement>('[data-choice]');
     if (fact === null || choices.length > 0) {
-      for (const choice of choices) fields.append(radio(choice));
+      for (const choice of choices) fields.append(radio(choice, this.getAttribute('unit') ?? ''));
     } else {
       fields.append(numberField(this.getAttribute('unit') ?? ''));
     }
@@ -116,7 +151,7 @@ export class SlamPredict extends HTMLElement {
     this.#lock(true);
     try {
       const exercise = this.getAttribute('exercise');
-      const person = this.getAttribute('student') ?? student();
+      const person = this.#person();
       const result = await this.#result(widget, exercise ?? '', person);
       const verdict = this.#judge(prediction, result.outcome);
       this.#show(verdict, result, widget);
@@ -148,11 +183,14 @@ export class SlamPredict extends HTMLElement {
     await setState(widget, state);
     const isFixed = this.#isSame() || widget.get('seed') === undefined || new URLSearchParams(state).has('seed');
     if (exercise === '' || person === '' || isFixed) return { state, outcome: outcomeOf(widget) };
+    const value = ownValue(this.getAttribute('varies') ?? '', person, exercise);
+    const own = value === undefined ? state : withValue(state, value);
+    if (value !== undefined) widget.set(value.id, value.value);
     for (let attempt = 0; attempt < MAX_ATTEMPTS; attempt += 1) {
       const seed = seedOf(person, exercise, attempt);
       widget.set('seed', seed);
       const outcome = outcomeOf(widget);
-      if (this.#right(outcome) !== null) return { state: `${state}&seed=${seed}`, outcome };
+      if (this.#right(outcome) !== null) return { state: `${own}&seed=${seed}`, outcome };
     }
     await setState(widget, state);
     return { state, outcome: outcomeOf(widget) };
@@ -206,9 +244,7 @@ export class SlamPredict extends HTMLElement {
     const isPersonal = state !== (this.getAttribute('state') ?? '');
     const seed = new URLSearchParams(state).get('seed');
     const note = `This is your personal task, seed ${seed}. The numbers in the text belong to the chapter’s task.`;
-    const isForPerson = (this.getAttribute('student') ?? student()) !== '';
-    const same = 'Everyone has this task: another seed would hardly change its answer.';
-    this.#showSentences([answered, ...(isPersonal ? [note] : []), ...(isForPerson && this.#isSame() ? [same] : [])]);
+    this.#showSentences([answered, ...(isPersonal ? [note] : [])]);
     // The widget may be far away, so the page does not scroll by itself.
     const show = button('Show it in the widget', () => {
       widget.scrollIntoView({ block: 'start' });
@@ -286,7 +322,8 @@ function button(text: string, press: () => void): HTMLButtonElement {
   return made;
 }
 
-function radio(choice: HTMLElement): HTMLLabelElement {
+/** A choice and its range, which is shown in a personal task. */
+function radio(choice: HTMLElement, unit: string): HTMLLabelElement {
   const label = document.createElement('label');
   const input = document.createElement('input');
   input.type = 'radio';
@@ -294,6 +331,15 @@ function radio(choice: HTMLElement): HTMLLabelElement {
   input.required = true;
   input.value = choice.dataset['choice'] ?? '';
   label.append(input, ` ${choice.textContent ?? ''}`);
+  const { from, to } = choice.dataset;
+  if (from !== undefined || to !== undefined) {
+    const range = document.createElement('span');
+    range.className = 'range';
+    range.hidden = true;
+    if (to === undefined) range.append(`(${from}${unit} or more)`);
+    else range.append(Number(from ?? 0) === 0 ? `(below ${to}${unit})` : `(${from} to ${to}${unit})`);
+    label.append(' ', range);
+  }
   return label;
 }
 

@@ -15,6 +15,7 @@ legend { padding: 0; font-weight: 600; }
 input[type='text'] { min-width: 0; max-width: 100%; }
 input[type='checkbox'] { flex: none; width: 1.25rem; height: 1.25rem; margin: 0; }
 p { margin: 0.5rem 0 0; }
+textarea { font: inherit; font-size: 0.8rem; width: 100%; box-sizing: border-box; }
 `;
 
 export class SlamAnswers extends HTMLElement {
@@ -73,17 +74,29 @@ export class SlamAnswers extends HTMLElement {
     try {
       const { name, text } = await answerFile();
       saveBlob(new Blob([text], { type: 'application/json' }), name);
+      if (window !== window.parent) this.#showText(name, text);
     } catch (error) {
       this.#showStatus(`The answers could not be saved: ${error instanceof Error ? error.message : String(error)}.`);
     }
+  }
+
+  /** Shows the file as text: no frame hears whether it may save. */
+  #showText(name: string, text: string): void {
+    const area = create('textarea', { readonly: '', rows: '4' });
+    area.value = text;
+    area.addEventListener('focus', () => area.select());
+    const label = create('label');
+    label.append(`If this frame may not save files, copy this into a file ${name}:`, area);
+    this.#status?.replaceChildren(label);
   }
 
   #showCount(): void {
     if (this.#name !== undefined) this.#name.value = student();
     const count = answered();
     const written = functions();
+    const kept = keepsAnswers() ? '' : ' A reload forgets them, unless you keep or save them.';
     const code = written === 0 ? '' : `, ${written} ${written === 1 ? 'function' : 'functions'} written`;
-    this.#showStatus(`${count} ${count === 1 ? 'exercise' : 'exercises'} answered${code}. Nothing leaves this browser unless you save the file.`);
+    this.#showStatus(`${count} ${count === 1 ? 'exercise' : 'exercises'} answered${code}.${count + written === 0 ? '' : kept} Nothing leaves this browser unless you save the file.`);
   }
 
   #showStatus(sentence: string): void {

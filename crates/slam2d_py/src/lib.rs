@@ -68,9 +68,11 @@ mod _rustslam2d {
     #[pymodule_export]
     use super::trajectories::save_tum;
 
-    /// Adds the version.
+    /// Adds the version, and the error that has two bases.
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let number_error = super::errors::number_error(module.py())?;
+        module.add("NumberError", number_error)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

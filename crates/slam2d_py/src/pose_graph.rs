@@ -13,14 +13,13 @@ use pr_optim::{
     Between, JacobianModel, Method, Optimizer, Problem, RobustKernel, Session, Settings, Start,
     StopReason,
 };
-use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use robot_io::graph_file::{GraphEdge, GraphFile, GraphNode};
 
 use crate::arrays;
 use crate::errors::{
-    ArrayError, ChoiceError, GraphError, OptimizeError, count, no_choice, os_error, within,
+    ArrayError, ChoiceError, GraphError, OptimizeError, count, index, no_choice, os_error, within,
 };
 use crate::restored::{self, Reduced};
 
@@ -136,12 +135,8 @@ impl PoseGraph {
 
 impl Graph {
     /// The node with that number.
-    fn node(&self, number: i64) -> PyResult<usize> {
-        let count = self.problem.node_count();
-        let node = usize::try_from(number).ok().filter(|node| *node < count);
-        node.ok_or_else(|| {
-            PyIndexError::new_err(format!("there is no node {number}: the graph has {count}"))
-        })
+    fn node(&self, number: f64) -> PyResult<usize> {
+        index("node", number, "the graph", self.problem.node_count())
     }
 
     fn file(&self) -> GraphFile {
@@ -252,12 +247,12 @@ impl PoseGraph {
     /// measurement: shape (3,), m, m, rad.
     /// information: inverse covariance of the residual, shape (3, 3), order x, y, θ.
     ///
-    /// Raises IndexError for a node that does not exist, GraphError for an edge from a node to itself or for an
+    /// Raises NumberError for a node that does not exist, GraphError for an edge from a node to itself or for an
     /// information matrix with a negative eigenvalue.
     fn add_edge(
         &self,
-        from_: i64,
-        to: i64,
+        from_: f64,
+        to: f64,
         measurement: &Bound<'_, PyAny>,
         information: &Bound<'_, PyAny>,
     ) -> PyResult<usize> {
@@ -386,12 +381,12 @@ impl PoseGraph {
 
     /// Covariance of the relative pose Tᵢ⁻¹ Tⱼ as all edges together know it, shape (3, 3).
     ///
-    /// Raises IndexError for a node that does not exist, OptimizeError if the measurements leave a pose free.
+    /// Raises NumberError for a node that does not exist, OptimizeError if the measurements leave a pose free.
     fn relative_covariance<'py>(
         &self,
         py: Python<'py>,
-        i: i64,
-        j: i64,
+        i: f64,
+        j: f64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let covariance = py.detach(|| {
             let (i, j) = {

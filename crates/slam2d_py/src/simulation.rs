@@ -15,7 +15,7 @@ use robot_io::json_log::FrameLine;
 
 use crate::arrays;
 use crate::callables::Callables;
-use crate::errors::{ChoiceError, no_choice, os_error, within};
+use crate::errors::{no_choice, os_error, whole, within};
 use crate::restored::{self, Reduced};
 use crate::sensor::Sensor;
 use crate::slam::{Slam, SlamStep};
@@ -65,19 +65,14 @@ pub struct Drive {
     text_signature = "(seed=0xC0FFEE, noise=1.0, *, world='apartment', icp=None, gate=None)")]
 pub fn simulate(
     py: Python<'_>,
-    seed: i64,
+    seed: f64,
     noise: f64,
     world: &str,
     icp: Option<Bound<'_, PyAny>>,
     gate: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Drive> {
     let functions = Callables::new(icp, gate)?;
-    let seed = u32::try_from(seed).map_err(|_| {
-        ChoiceError::new_err(format!(
-            "seed has to be a whole number from 0 to {}, not {seed}",
-            u32::MAX
-        ))
-    })?;
+    let seed = whole("seed", seed, f64::from(u32::MAX))? as u32;
     let noise = within("noise", noise, 0.0, 100.0, "")?;
     let names = || BuiltInWorld::all().map(|world| world.name());
     let found = BuiltInWorld::named(world)

@@ -15,7 +15,7 @@ use robot_io::map_image::MapBuilder;
 
 use crate::arrays;
 use crate::callables::{Callables, Raised};
-use crate::errors::{FrameError, OptimizeError, SlamError, within};
+use crate::errors::{FrameError, OptimizeError, SlamError, index, within};
 use crate::grid_map::GridMap;
 use crate::pose_graph::PoseGraph;
 use crate::restored::{self, Reduced};
@@ -364,20 +364,12 @@ impl Slam {
 
     /// Points of a keyframe's thinned scan in the body's frame, shape (n, 2), m.
     ///
-    /// Raises IndexError for a keyframe that does not exist.
-    fn scan<'py>(&self, py: Python<'py>, keyframe: i64) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    /// Raises NumberError for a keyframe that does not exist.
+    fn scan<'py>(&self, py: Python<'py>, keyframe: f64) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let estimator = self.lock(py)?;
         let keyframes = estimator.slam().map_or(&[][..], |slam| slam.keyframes());
-        let index = usize::try_from(keyframe).ok();
-        let found = index
-            .and_then(|index| keyframes.get(index))
-            .ok_or_else(|| {
-                pyo3::exceptions::PyIndexError::new_err(format!(
-                    "there is no keyframe {keyframe}: the estimator has {}",
-                    keyframes.len()
-                ))
-            })?;
-        arrays::of_points(py, found.scan.iter())
+        let at = index("keyframe", keyframe, "the estimator", keyframes.len())?;
+        arrays::of_points(py, keyframes[at].scan.iter())
     }
 
     /// Covariance of every keyframe against the first one, shape (k, 3, 3), order x, y, θ in the body's frame: m², rad².

@@ -1,6 +1,7 @@
 """Whatever is wrong with a value is a SlamError of one sentence, help has no gaps, and Ctrl-C is heard."""
 
 import inspect
+import pickle
 import signal
 import sys
 
@@ -25,6 +26,33 @@ POINTS = np.random.default_rng(16).uniform(-3, 3, (50, 2))
 def test_a_count_is_a_whole_number_that_is_not_negative(call, value):
     with pytest.raises(rs.SlamError, match="has to be a whole number from 0 to"):
         call(value)
+
+
+@pytest.mark.parametrize("value", [-1, 2**70, 0.5, 3])
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda graph, value: graph.add_edge(0, value, (1, 0, 0), np.eye(3)),
+        lambda graph, value: graph.add_edge(value, 0, (1, 0, 0), np.eye(3)),
+        lambda graph, value: graph.relative_covariance(0, value),
+        lambda graph, value: rs.Slam(sensor=rs.Sensor(first_angle_rad=0.0, angle_step_rad=0.1)).scan(value),
+    ],
+)
+def test_a_number_that_no_node_has_is_a_slam_error_and_an_index_error(call, value):
+    graph = rs.PoseGraph()
+    for x in range(3):
+        graph.add_node((x, 0, 0), fixed=x == 0)
+    for error in (rs.SlamError, IndexError):
+        with pytest.raises(error, match="there is no (node|keyframe) .*: the (graph|estimator) has [03]"):
+            call(graph, value)
+    kept = pickle.loads(pickle.dumps(rs.NumberError("there is no node 3")))
+    assert type(kept) is rs.NumberError and rs.NumberError.__module__ == "rustslam2d"
+
+
+@pytest.mark.parametrize("seed", [-1, 2**70, 0.5])
+def test_a_seed_has_32_bits(seed):
+    with pytest.raises(rs.ChoiceError, match="seed has to be a whole number from 0 to 4294967295"):
+        rs.simulate(seed)
 
 
 def test_a_mask_is_not_lost(drive):

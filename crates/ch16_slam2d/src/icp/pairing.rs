@@ -201,17 +201,16 @@ impl IcpWorkspace {
         self.distances.clear();
         self.distances
             .extend(self.pairs.iter().map(|pair| pair.distance_squared_m2));
-        match rule.accepted(&mut self.distances) {
-            Accepted::UpTo(limit_m2) => {
-                self.pairs
-                    .retain(|pair| pair.distance_squared_m2 <= limit_m2);
-            }
-            Accepted::AllBut(rejected) => {
-                let (mut indices, mut rejected) = (0.., rejected.into_iter().peekable());
-                self.pairs
-                    .retain(|_| rejected.next_if_eq(&indices.next().unwrap_or(0)).is_none());
-            }
-        }
+        let (limit_m2, rejected) = match rule.accepted(&mut self.distances) {
+            Accepted::UpTo(limit_m2) => (limit_m2, Vec::new()),
+            Accepted::AllBut(rejected) => (f64::INFINITY, rejected),
+        };
+        let (mut index, mut rejected) = (0, rejected.into_iter().peekable());
+        self.pairs.retain(|pair| {
+            let is_rejected = rejected.next_if_eq(&index).is_some();
+            index += 1;
+            !is_rejected && pair.distance_squared_m2 <= limit_m2
+        });
         self.sum_of_squares_m2 = self.pairs.iter().map(RawPair::square_m2).sum();
     }
 

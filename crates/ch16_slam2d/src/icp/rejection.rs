@@ -1,5 +1,7 @@
 //! Outlier rejection of pairs before each increment.
 
+use pr_geom::sort_numbers;
+
 /// A rule that rejects pairs by their distance.
 pub trait PairRejection: Send + Sync {
     /// The accepted pairs; `squared_m2` holds the squared distances of all pairs, m², at least one, and may be reordered.
@@ -39,7 +41,8 @@ impl PairRejection for Trimmed {
     fn accepted(&self, squared_m2: &mut [f64]) -> Accepted {
         let kept = ((1.0 - self.share) * squared_m2.len() as f64).ceil();
         let last = (kept as usize).clamp(1, squared_m2.len()) - 1;
-        Accepted::UpTo(*squared_m2.select_nth_unstable_by(last, f64::total_cmp).1)
+        sort_numbers(squared_m2);
+        Accepted::UpTo(squared_m2[last])
     }
 }
 

@@ -116,6 +116,13 @@ impl<'a> ComparedReader<'a> {
         self.motion.as_ref()
     }
 
+    /// Number of frames that were read and wait for their turn.
+    #[must_use]
+    pub fn waiting(&self) -> usize {
+        let late = self.late.as_ref().map_or(0, |late| late.waiting.len());
+        self.waiting.len() + late
+    }
+
     /// Reads and compares the first scans.
     fn compare(&mut self) -> Result<(), LogError> {
         let mut comparison: Option<Comparison> = None;

@@ -31,7 +31,8 @@ pub struct Exercise {
     tolerance: f64,
     #[serde(default)]
     unit: String,
-    /// "no" if everyone has the same task: the answer hardly depends on a seed.
+    /// "no" if everyone has the same task, because the answer hardly depends on a seed; `noise=3,4` if a personal task has
+    /// one of these values.
     varies: Option<String>,
     choices: Vec<Choice>,
 }
@@ -132,11 +133,9 @@ pub fn mark(answer: &Answer, student: &str) -> Marked {
 impl Exercise {
     /// The exercise as the page sets it for a student.
     pub fn task(&self, student: &str) -> Task {
-        let mut model = self.model();
-        let takes_seed = model.spec().params.iter().any(|param| param.id == "seed");
-        let has_seed = self.state.split('&').any(|pair| pair.starts_with("seed="));
-        let varies = self.varies.as_deref() != Some("no");
-        if varies && !student.is_empty() && takes_seed && !has_seed {
+        if !student.is_empty() && self.is_personal() {
+            let own = self.personal_state(student);
+            let mut model = self.model(&own);
             for attempt in 0..MAX_TRIES {
                 let seed = seed_of(student, &self.exercise, attempt);
                 model
@@ -145,12 +144,12 @@ impl Exercise {
                 model.finish_work();
                 let outcome = model.outcome();
                 if self.has_answer(&outcome) {
-                    let state = format!("{}&seed={seed}", self.state);
+                    let state = format!("{own}&seed={seed}");
                     return Task { state, outcome };
                 }
             }
-            model = self.model();
         }
+        let mut model = self.model(&self.state);
         model.finish_work();
         Task {
             state: self.state.clone(),
@@ -158,11 +157,46 @@ impl Exercise {
         }
     }
 
-    /// The widget in the state of the question.
-    fn model(&self) -> Box<dyn Model> {
+    /// Whether a name makes another task.
+    fn is_personal(&self) -> bool {
+        let widget = &SPECS[self.widget()];
+        let takes_seed = widget.params.iter().any(|param| param.id == "seed");
+        let has_seed = self.state.split('&').any(|pair| pair.starts_with("seed="));
+        takes_seed && !has_seed && self.varies.as_deref() != Some("no")
+    }
+
+    /// The state of a student's task without its seed.
+    ///
+    /// The page derives the same (`web/ts/personal-seeds.ts`).
+    fn personal_state(&self, student: &str) -> String {
+        let Some((id, values)) = self
+            .varies
+            .as_deref()
+            .and_then(|varies| varies.split_once('='))
+        else {
+            return self.state.clone();
+        };
+        let values: Vec<&str> = values.split(',').collect();
+        let value = values[seed_of(student, &self.exercise, 0) as usize % values.len()];
+        let pairs = self
+            .state
+            .split('&')
+            .map(|pair| match pair.split_once('=') {
+                Some((name, _)) if name == id => format!("{id}={value}"),
+                _ => pair.to_owned(),
+            });
+        pairs.collect::<Vec<_>>().join("&")
+    }
+
+    fn widget(&self) -> usize {
         let at = SPECS.iter().position(|spec| spec.id == self.widget);
-        let mut model = MODELS[at.expect("the build checks the widget")]();
-        for pair in self.state.split('&') {
+        at.expect("the build checks the widget")
+    }
+
+    /// The widget in a state of the question.
+    fn model(&self, state: &str) -> Box<dyn Model> {
+        let mut model = MODELS[self.widget()]();
+        for pair in state.split('&') {
             let (id, text) = pair.split_once('=').expect("a name and a value");
             model.set_text(id, text).expect("a test sets each state");
         }
@@ -309,7 +343,7 @@ mod tests {
     /// A personal task of which most of a class have the same answer would be copied.
     #[test]
     fn no_answer_to_a_personal_task_is_that_of_more_than_half_of_a_class() {
-        for exercise in EXERCISES.iter().filter(|one| one.varies.is_none()) {
+        for exercise in EXERCISES.iter().filter(|one| one.is_personal()) {
             let mut answers = std::collections::HashMap::new();
             for student in class() {
                 let task = exercise.task(&student);
@@ -329,7 +363,7 @@ mod tests {
     fn neighbours_have_other_laps() {
         let lap = EXERCISES.iter().find(|e| e.exercise == "16.5b").unwrap();
         let [ann, bob, chapter] = ["Ann", "Bob", ""].map(|student| lap.task(student).state);
-        assert!(ann.starts_with("noise=4&t=92&seed="), "{ann}");
+        assert!(ann.starts_with("noise=3.25&t=92&seed="), "{ann}");
         assert_ne!(ann, bob);
         assert_eq!(chapter, "noise=4&t=92");
     }
