@@ -613,6 +613,40 @@ describe('a reader’s log', () => {
   });
 });
 
+/** Opens a recording, or the files of its folder, and compares doctor's report, refusal and map with those of the command. */
+async function matchesCommand(tab, name) {
+  const path = join(FIELD, name);
+  const parts = statSync(path).isDirectory() ? readdirSync(path).map((part) => join(path, part)) : [path];
+  const command = (...words) => {
+    try {
+      return { json: JSON.parse(native('slam2d', ...words, '--json')) };
+    } catch ({ status, stdout, stderr }) {
+      // 1: something was repaired, or needs attention; 2, of the doctor: it cannot be mapped.
+      return { json: String(stdout) === '' ? undefined : JSON.parse(stdout), status, refusal: String(stderr).trim().split('\n').at(-1) };
+    }
+  };
+  await drop(tab, parts.map((part) => [basename(part), readFileSync(part)]));
+  const told = command('doctor', path);
+  if (told.json !== undefined) {
+    // The same bits in the page as natively; a recording from a folder has the name of its file.
+    await tab.waitForFunction((files) => files.some((file) => document.querySelector('slam-widget').diagnosis?.name.startsWith(file)),
+      parts.map((part) => basename(part)));
+    assert.deepEqual({ ...(await diagnosis(tab)), name: told.json.name }, told.json, name);
+  }
+  const { json: run, refusal } = command('run', path);
+  if (run === undefined) {
+    // The page gives a file, or the first one of a folder, without its path.
+    await says(tab, /^no map: /);
+    const { sentence } = await outcome(tab);
+    const fault = refusal.replace(`slam2d: ${path}`, '');
+    assert.ok(sentence.includes(fault), `${sentence}\n${fault}`);
+    return;
+  }
+  await isMapped(tab);
+  const { facts } = await outcome(tab);
+  assert.deepEqual([facts.scans, facts.keyframes], [run.scans, run.keyframes], name);
+}
+
 describe('the doctor', () => {
   it('shows a report before the map, with buttons and fields that map the log again, by keyboard and in any width', async () => {
     await visit(`<main><h1>A robot</h1>${BODY}</main>`, async (tab) => {
@@ -704,29 +738,27 @@ describe('the doctor', () => {
         'stamps/scan_clock_+3600.mcap',
         'units/degrees.mcap',
         'tum/euroc.csv',
-      ]) {
-        const path = join(FIELD, name);
-        const parts = statSync(path).isDirectory() ? readdirSync(path).map((part) => join(path, part)) : [path];
-        await drop(tab, parts.map((part) => [basename(part), readFileSync(part)]));
-        let told;
-        try {
-          told = JSON.parse(native('slam2d', 'doctor', path, '--json'));
-        } catch ({ status, stdout, stderr }) {
-          // 1: something was repaired, or needs attention.
-          if (status === 1) told = JSON.parse(stdout);
-          const refusal = String(stderr).trim().replace(`slam2d: ${path}`, basename(path));
-          if (told === undefined) {
-            await says(tab, /^no map: /);
-            assert.ok((await outcome(tab)).sentence.startsWith(refusal), refusal);
-            continue;
-          }
-        }
-        // The same bits in the page as natively; a recording from a folder has the name of its file.
-        await tab.waitForFunction((file) => document.querySelector('slam-widget').diagnosis?.name.startsWith(file),
-          told.name);
-        assert.deepEqual({ ...(await diagnosis(tab)), name: told.name }, told, name);
-        await isMapped(tab);
-      }
+      ]) await matchesCommand(tab, name);
+    });
+  });
+
+  it('maps or refuses slow sweeps, restarts, two robots, folders and tables as the command does', async (context) => {
+    if (!existsSync(FIELD)) return skip(context, 'files that people have: see docs/recordings.md');
+    await page(async (tab) => {
+      for (const name of [
+        'deskew/drive_no_wheels_sweep100.mcap',
+        'deskew/rest12_drive12_wheels_sweep100.mcap',
+        'deskew_real/create3_rplidar_20s.mcap',
+        'restart/carried_3s_ahead.mcap',
+        'two_robots/namespaced.mcap',
+        'two_robots/two_drivers_one_topic.mcap',
+        'starts_in_the_open/first_20_no_return_noodo.mcap',
+        'body/body_behind_108deg.mcap',
+        'folders/killed_recording_wal',
+        'folders/git_lfs_pointer',
+        'formats/rostopic_echo_p.csv',
+        'formats/map.pbstream',
+      ]) await matchesCommand(tab, name);
     });
   });
 });

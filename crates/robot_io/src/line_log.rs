@@ -5,9 +5,13 @@
 
 use std::io::BufRead;
 
+use ch16_slam2d::scan::LaserScan;
+
 use crate::lines::{LineEnd, next_line};
 use crate::log::{BrokenRecord, FilePosition, LogError, LogFrame, LogNotes, LogReader};
 use crate::log_format::Foreign;
+use crate::remark::{Part, Remark};
+use crate::ros::in_metres;
 
 /// Parser of a format's lines, in order.
 pub trait LineFormat: Default {
@@ -78,6 +82,18 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
         }
     }
 
+    /// Converts ranges that can only be in millimetres.
+    fn convert(&mut self, scan: &mut LaserScan) {
+        let Some(sentence) = in_metres(scan) else {
+            return;
+        };
+        let remark = Remark::mended(Part::Sensor, sentence);
+        let is_said = |said: &Remark| said.part == Part::Sensor && said.verdict == remark.verdict;
+        if !self.notes.warnings.iter().any(is_said) {
+            self.notes.warnings.push(remark);
+        }
+    }
+
     fn no_scans_error(&self) -> LogError {
         let name = self.name.clone();
         if self.notes.bytes == 0 {
@@ -136,8 +152,9 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
                     .read_line(&self.line, self.frames, &mut self.notes)
             };
             match taken {
-                Ok(Some(frame)) => {
+                Ok(Some(mut frame)) => {
                     self.frames += 1;
+                    self.convert(&mut frame.scan);
                     return Ok(Some(frame));
                 }
                 Ok(None) => {}

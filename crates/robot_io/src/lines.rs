@@ -111,9 +111,20 @@ pub fn finite(field: Option<&str>, name: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err(format!(
-            "{name} must be a finite number, not ‘{}’",
-            printable(text)
+            "{name} must be a finite number, not ‘{}’{}",
+            printable(text),
+            decimal_comma(text)
         )),
+    }
+}
+
+/// What to do about a word that is no number because of its decimal comma.
+pub fn decimal_comma(text: &str) -> &'static str {
+    let is_comma = text.replacen(',', ".", 1).parse::<f64>().is_ok();
+    if is_comma && text.contains(',') {
+        "; write its decimals after a point"
+    } else {
+        ""
     }
 }
 
@@ -171,7 +182,10 @@ mod tests {
         assert_eq!(finite(Some("1.5"), "x"), Ok(1.5));
         for (field, expected) in [
             (Some("nan"), "x must be a finite number, not ‘nan’"),
-            (Some("1,5"), "x must be a finite number, not ‘1,5’"),
+            (
+                Some("1,5"),
+                "x must be a finite number, not ‘1,5’; write its decimals after a point",
+            ),
             (None, "x is missing"),
         ] {
             assert_eq!(finite(field, "x").unwrap_err(), expected);

@@ -11,12 +11,14 @@
 //! Beams become a scan when their bearing goes back.
 
 mod layout;
+mod limit;
 mod sweep;
 
 use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 
 pub use layout::{Column, Layout};
+use limit::UnstatedLimit;
 use sweep::Sweep;
 
 use crate::line_log::{LineFormat, LineReader};
@@ -37,6 +39,7 @@ pub type TableReader<R> = LineReader<R, TableRows>;
 pub struct TableRows {
     layout: Layout,
     sweep: Sweep,
+    limit: UnstatedLimit,
     done: Option<LogFrame>,
     /// Frames completed so far: their times, if the table has none.
     frames: usize,
@@ -72,7 +75,9 @@ impl TableRows {
         };
         let fields = &mut row.fields;
         let is_sdk = text.contains("theta:");
-        let words = layout::words(text).filter(|word| !is_sdk || word.parse::<f64>().is_ok());
+        let words = layout::words(text).filter(|word| !is_sdk || layout::number(word).is_some());
+        // Readings without a number, before one that has.
+        let mut missing = 0;
         let mut time_s = None;
         for (at, word) in words.enumerate() {
             let Some((column, factor)) = self.layout.column(at) else {
@@ -87,17 +92,18 @@ impl TableRows {
                         .to_owned(),
                 );
             }
-            let number: f64 = match word.parse() {
-                Ok(number) => number,
-                Err(_) if word.is_empty() => continue,
-                Err(_) => {
-                    return Err(format!(
-                        "word {} must be a number, not ‘{}’",
-                        at + 1,
-                        printable(word)
-                    ));
-                }
-            };
+            if word.is_empty() {
+                missing += usize::from(column == Column::Ranges);
+                continue;
+            }
+            let number = layout::number(word).ok_or_else(|| {
+                let what = if column == Column::Time {
+                    "a number of seconds"
+                } else {
+                    "a number"
+                };
+                format!("word {} must be {what}, not ‘{}’", at + 1, printable(word))
+            })?;
             let value = factor.unwrap_or(1.0) * number;
             match column {
                 Column::Other => {}
@@ -117,9 +123,21 @@ impl TableRows {
                 Column::ScanTime => fields.scan_time = value,
                 Column::RangeMin => fields.range_min = value,
                 Column::RangeMax => fields.range_max = value,
-                Column::Ranges if fields.ranges_m.len() < MAX_BEAMS => fields.ranges_m.push(value),
+                Column::Ranges if fields.ranges_m.len() + missing < MAX_BEAMS => {
+                    let beams = fields.ranges_m.len() + std::mem::take(&mut missing);
+                    fields.ranges_m.resize(beams, f64::NAN);
+                    fields.ranges_m.push(value);
+                }
                 Column::Ranges => return Err(format!("a scan has more than {MAX_BEAMS} ranges")),
             }
+        }
+        // A separator at the end of the row is none; a reading with a name is one.
+        let named = self
+            .layout
+            .named_ranges()
+            .min(row.fields.ranges_m.len() + missing);
+        if row.fields.ranges_m.len() < named {
+            row.fields.ranges_m.resize(named, f64::NAN);
         }
         row.time_s = time_s.map(plausible_stamp_s).transpose()?;
         Ok(row)
@@ -127,7 +145,8 @@ impl TableRows {
 
     /// The frame of a scan; what was corrected goes to the notes.
     fn frame(&mut self, row: Row, notes: &mut LogNotes) -> Result<LogFrame, String> {
-        let (scan, remarks): (LaserScan, _) = row.fields.checked(0.0)?;
+        let (mut scan, mut remarks): (LaserScan, _) = row.fields.checked(0.0)?;
+        remarks.extend(self.limit.apply(&mut scan));
         for sentence in remarks {
             let remark = Remark::mended(Part::Sensor, sentence);
             if !notes.warnings.contains(&remark) && notes.warnings.len() < 10 {
@@ -208,13 +227,15 @@ impl LineFormat for TableRows {
         let (Some(angle), Some(range)) = (row.angle, row.range) else {
             return Err("a beam must have an angle and a range".to_owned());
         };
-        let ended = if self.sweep.is_before(angle) || text.starts_with("S ") {
-            self.end_sweep(notes)
-        } else {
-            Ok(None)
+        let continued = self.sweep.bearing(angle, row.time_s);
+        let bearing = continued.filter(|_| !text.starts_with("S "));
+        let ended = match bearing {
+            Some(_) => Ok(None),
+            None => self.end_sweep(notes),
         };
         let range = if row.is_return { range } else { 0.0 };
-        self.sweep.add(angle, range, row.time_s, row.pose)?;
+        let bearing = bearing.unwrap_or(angle);
+        self.sweep.add(bearing, range, row.time_s, row.pose)?;
         ended
     }
 
@@ -258,7 +279,7 @@ impl TableRows {
 
 /// Whether a row names columns.
 fn is_header(text: &str) -> bool {
-    layout::words(text).all(|word| word.parse::<f64>().is_err())
+    layout::words(text).all(|word| layout::number(word).is_none())
 }
 
 /// The unit of a time by its size: s, ms, µs or ns since 1970.

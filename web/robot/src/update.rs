@@ -12,6 +12,7 @@
 //! | `diagnosis` | | the doctor's report as `slam2d doctor --json` prints it |
 //! | `remarks` | | messages on the log, one sentence per line |
 //! | `scan` | keyframe, then x and y of every point in the body's frame, m | |
+//! | `sweep` | the same as it was measured, with the motion during the sweep in it | |
 //! | `grade` | see [`grade`](crate::grade) | as text |
 //! | `errors` | error of each keyframe, m; NaN if unknown | |
 //! | `offers` | | one option per line: name, current choice, possible choices, separated by tabs |

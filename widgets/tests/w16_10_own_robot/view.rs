@@ -1,6 +1,9 @@
 //! The widget's requests to its host, and its picture without a GPU.
 
+use widget_kit::model::Model as _;
+use widget_kit::scene::{Layer, Mark};
 use widgets::registry::find;
+use widgets::w16_10_own_robot::model::OwnRobot;
 use widgets::w16_10_own_robot::view::RobotView;
 
 use crate::w16_10_own_robot::model::{deliver, mapped};
@@ -27,9 +30,36 @@ fn stop_is_enabled_while_a_log_is_read() {
 }
 
 #[test]
+fn a_scan_that_took_time_is_shown_before_and_after_deskewing() {
+    let mut robot = mapped();
+    let dots = |robot: &OwnRobot| {
+        let layers = robot.scene().panels.swap_remove(0).layers;
+        let dots = layers.into_iter().filter_map(|layer| match layer {
+            Layer::Points {
+                points,
+                mark: Mark::Dot,
+                ..
+            } => Some(points),
+            _ => None,
+        });
+        dots.collect::<Vec<_>>()
+    };
+    deliver(&mut robot, "scan", "", &[4.0, 2.0, 0.0]);
+    assert!(dots(&robot).is_empty(), "it was one instant");
+    deliver(&mut robot, "sweep", "", &[3.0, 2.5, 0.0]);
+    assert!(dots(&robot).is_empty(), "that of another keyframe");
+    // Keyframe 4 is at x = 4 m.
+    deliver(&mut robot, "sweep", "", &[4.0, 2.5, 0.0]);
+    assert_eq!(dots(&robot), [[[6.5, 0.0]]]);
+}
+
+#[test]
 fn no_text_overlaps_or_is_cut_off_with_a_map_at_any_width() {
+    let mut robot = mapped();
+    deliver(&mut robot, "scan", "", &[4.0, 2.0, 0.0, 2.0, 1.0]);
+    deliver(&mut robot, "sweep", "", &[4.0, 2.0, 0.0, 2.4, 1.1]);
     for width in [320.0, 390.0, 560.0, 700.0, 1100.0] {
-        let faults = widget_kit::audit::text_faults(&mapped(), &RobotView, width);
+        let faults = widget_kit::audit::text_faults(&robot, &RobotView, width);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 }

@@ -3,7 +3,7 @@
 use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 
-use crate::lines::{finite, printable};
+use crate::lines::{decimal_comma, finite, printable};
 use crate::log::LogFrame;
 use crate::plausible::{MAX_BEAMS, plausible_pose, plausible_stamp_s};
 
@@ -60,9 +60,10 @@ impl<'a> Fields<'a> {
             }
             let value = text.parse::<f64>().map_err(|_| {
                 format!(
-                    "number {} of the {name} must be a number, not ‘{}’",
+                    "number {} of the {name} must be a number, not ‘{}’{}",
                     index + 1,
-                    printable(text)
+                    printable(text),
+                    decimal_comma(text)
                 )
             })?;
             values.push(value);

@@ -69,13 +69,22 @@ const fn kind(
 const FROM_ITS_RECORDING: &str = "pass the recording that it was made from";
 
 /// All kinds; the first one that fits is taken.
-static KINDS: [Foreign; 29] = [
+static KINDS: [Foreign; 30] = [
     kind(
         "a Git LFS pointer, not the file itself",
         "fetch the file with git lfs pull",
         &[b"version https://git-lfs"],
         &[],
     ),
+    Foreign {
+        is: |start| start.len() > 64 && start.iter().all(|&byte| byte == 0),
+        ..kind(
+            "zeros only, as after a power cut or an unfinished copy",
+            "copy it again, or record it again",
+            &[],
+            &[],
+        )
+    },
     Foreign {
         is: is_page,
         ..kind(

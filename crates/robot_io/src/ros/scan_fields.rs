@@ -233,20 +233,9 @@ impl ScanFields {
     /// Range limits (m), and the factor for all ranges.
     fn ranges(&self, remarks: &mut Vec<String>) -> (f64, f64, f64) {
         let positive = |value: f64| value.is_finite() && value > 0.0;
-        let returns = self
-            .ranges_m
-            .iter()
-            .copied()
-            .filter(|&range| positive(range));
-        let typical = median(returns.collect()).unwrap_or(0.0);
-        let scale = if typical > LONGEST_M {
-            remarks.push(format!(
-                "its ranges are about {typical:.0}, in millimetres; they were divided by 1000. Publish metres"
-            ));
-            1e-3
-        } else {
-            1.0
-        };
+        let of_millimetres = millimetres(&self.ranges_m);
+        let scale = if of_millimetres.is_some() { 1e-3 } else { 1.0 };
+        remarks.extend(of_millimetres);
         let limit = |value: f64| {
             if value > LONGEST_M && scale != 1.0 {
                 value * scale
@@ -265,6 +254,33 @@ impl ScanFields {
         }
         (range_min_m, range_max_m, scale)
     }
+}
+
+/// A sentence on ranges that can only be in millimetres.
+fn millimetres(ranges: &[f64]) -> Option<String> {
+    if !ranges.iter().any(|&range| range > LONGEST_M) {
+        return None;
+    }
+    let returns = ranges.iter().copied();
+    let returns = returns.filter(|&range| range.is_finite() && range > 0.0);
+    let typical = median(returns.collect()).filter(|&typical| typical > LONGEST_M)?;
+    Some(format!(
+        "its ranges are about {typical:.0}, in millimetres; they were divided by 1000. Publish metres"
+    ))
+}
+
+/// Converts ranges that can only be in millimetres; returns a sentence on it.
+pub fn in_metres(scan: &mut LaserScan) -> Option<String> {
+    let sentence = millimetres(&scan.ranges_m)?;
+    for range in &mut scan.ranges_m {
+        *range *= 1e-3;
+    }
+    for limit in [&mut scan.range_min_m, &mut scan.range_max_m] {
+        if *limit > LONGEST_M {
+            *limit *= 1e-3;
+        }
+    }
+    Some(sentence)
 }
 
 /// Whether an angle from the first beam to the last is in degrees, not in radians.

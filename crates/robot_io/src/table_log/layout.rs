@@ -86,7 +86,7 @@ impl Layout {
     fn of_header(text: &str) -> Option<Self> {
         let text = text.trim_start_matches(['#', '%', ' ']);
         let names: Vec<&str> = words(text).collect();
-        if names.len() < 2 || names.iter().any(|name| name.parse::<f64>().is_ok()) {
+        if names.len() < 2 || names.iter().any(|name| number(name).is_some()) {
             return None;
         }
         let mut columns: Vec<Scaled> = names.iter().map(|name| column(name)).collect();
@@ -173,8 +173,14 @@ impl Layout {
             .enumerate()
             .filter(|(at, _)| is_range(at))
             .peekable();
-        ranges.peek().is_some()
-            && ranges.all(|(_, word)| word.is_empty() || word.parse::<f64>().is_ok())
+        ranges.peek().is_some() && ranges.all(|(_, word)| word.is_empty() || number(word).is_some())
+    }
+
+    /// Number of readings that the header names.
+    #[must_use]
+    pub fn named_ranges(&self) -> usize {
+        let columns = self.columns.iter();
+        columns.filter(|column| column.0 == Column::Ranges).count()
     }
 
     /// Whether a row is a beam, not a scan.
@@ -216,17 +222,24 @@ impl FromStr for Layout {
     }
 }
 
-/// The words of a row: empty ones count between commas, not between spaces.
+/// The words of a row, without quotes and the brackets of a list: empty ones count between commas, not between spaces.
+/// A comma beside semicolons or tabs is the decimal sign.
 pub fn words(text: &str) -> impl Iterator<Item = &str> {
-    let separator = [',', ';', '\t'].into_iter().find(|c| text.contains(*c));
+    let separator = ['\t', ';', ','].into_iter().find(|c| text.contains(*c));
     text.split(separator.unwrap_or(' '))
-        .map(str::trim)
+        .map(|word| word.trim_matches([' ', '"', '\'', '[', ']']))
         .filter(move |word| separator.is_some() || !word.is_empty())
+}
+
+/// The number of a word, with a point or a comma before its decimals.
+pub fn number(word: &str) -> Option<f64> {
+    let number = word.parse().ok();
+    number.or_else(|| word.replacen(',', ".", 1).parse().ok())
 }
 
 /// The meaning of a name, and the factor of its unit.
 fn column(name: &str) -> Scaled {
-    let name = name.trim().trim_matches(['"', '\'']).to_ascii_lowercase();
+    let name = name.to_ascii_lowercase();
     let name = name.strip_prefix("field.").unwrap_or(&name);
     let (name, bracket) = name.split_once(['[', '(']).unwrap_or((name, ""));
     let unit = |unit: &str| match unit {

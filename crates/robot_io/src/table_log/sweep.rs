@@ -1,5 +1,7 @@
 //! Beams that become a scan.
 
+use core::f64::consts::TAU;
+
 use crate::plausible::MAX_BEAMS;
 use crate::ros::ScanFields;
 use crate::stamps::median;
@@ -16,6 +18,8 @@ pub struct Sweep {
     beams: Vec<(f64, f64)>,
     /// Times of the first and the last beam, s.
     times_s: Option<(f64, f64)>,
+    /// A turn in the units of the file, once the sweep passed one.
+    turn: Option<f64>,
     /// x, y and heading of odometry at the first beam.
     pub pose: [Option<f64>; 3],
 }
@@ -46,13 +50,30 @@ impl Sweep {
         Ok(())
     }
 
-    /// Whether a beam at this bearing belongs to the next sweep.
-    pub fn is_before(&self, angle: f64) -> bool {
-        let (Some(first), Some(last)) = (self.beams.first(), self.beams.last()) else {
-            return false;
+    /// The bearing of a beam in this sweep, a turn on if it passes the one from which bearings are counted; `None` if
+    /// the beam begins the next sweep.
+    pub fn bearing(&mut self, angle: f64, time_s: Option<f64>) -> Option<f64> {
+        let (Some((first, _)), Some((last, _))) = (self.beams.first(), self.beams.last()) else {
+            return Some(angle);
         };
-        let extent = last.0 - first.0;
-        self.beams.len() >= 2 && (angle - last.0) * extent.signum() < -BACK * extent.abs()
+        let extent = last - first;
+        let is_back =
+            self.beams.len() >= 2 && (angle - last) * extent.signum() < -BACK * extent.abs();
+        // Only one time for all beams of a sweep tells a sweep from the next one.
+        let one_s = self.times_s.filter(|(first_s, last_s)| first_s == last_s);
+        match one_s.filter(|_| self.beams.len() >= FEWEST) {
+            None => (!is_back).then_some(angle),
+            Some((one_s, _)) if time_s != Some(one_s) => None,
+            Some(_) if !is_back => Some(angle),
+            Some(_) => {
+                // Bearings of radians are less than a turn until one is passed.
+                let is_in_degrees = last.abs().max(angle.abs()) > 1.02 * TAU;
+                let turn = if is_in_degrees { 360.0 } else { TAU };
+                let turn = *self.turn.get_or_insert(turn);
+                let on = angle + turn * extent.signum();
+                ((on - first).abs() < 0.999 * turn).then_some(on)
+            }
+        }
     }
 
     /// Time of the first beam, s.

@@ -146,3 +146,85 @@ fn columns_are_named_by_the_user_or_asked_for() {
         assert!(error.starts_with(expected), "{error}");
     }
 }
+
+#[test]
+fn spreadsheets_of_other_countries_quotes_and_lists_are_read() {
+    let head = "time;angle_min;angle_increment;ranges0;ranges1;ranges2";
+    let expected = |frames: &[LogFrame]| {
+        assert_eq!(frames.len(), 1, "{frames:?}");
+        assert_eq!(frames[0].stamp_s, 0.5);
+        assert_eq!(frames[0].scan.angle_step_rad, 0.25);
+        let ranges_m = &frames[0].scan.ranges_m;
+        assert_eq!(ranges_m.len(), 3);
+        assert_eq!((ranges_m[0], ranges_m[2]), (1.5, 2.5));
+        assert!(ranges_m[1].is_nan(), "{ranges_m:?}");
+    };
+    for (separator, point) in [(";", ","), ("\t", ","), (";", "."), (",", ".")] {
+        // No reading between two, and a separator at the end of the row.
+        let row = "0.5;-1;0.25;1.5;;2.5;".replace('.', point);
+        let text = format!("{head}\r\n{row}\r\n").replace(';', separator);
+        expected(&read(&text));
+    }
+    expected(&read(
+        "\"time\",\"angle_min\",\"angle_increment\",\"ranges\"\n0.5,-1,\"0.25\",\"[1.5, nan, 2.5]\"\n",
+    ));
+    // The last beams of a header are not cut off if they have no reading.
+    let frames = read(&format!("{head}\n0;-1;1;2;;\n"));
+    assert_eq!(frames[0].scan.ranges_m.len(), 3);
+}
+
+#[test]
+fn the_longest_reading_that_comes_again_and_again_is_no_wall() {
+    let head = "time,angle_min,angle_increment,ranges";
+    let (frames, notes) = read_with(
+        &format!("{head}\n0,-1,0.1,2,8,8,8,8,3,8\n1,-1,0.1,2,3,8,4,3,3,2\n"),
+        &LogOptions::default(),
+    );
+    assert!(frames.iter().all(|frame| frame.scan.range_max_m == 8.0));
+    let said = &notes.warnings[0].text;
+    assert!(
+        said.contains("8 m, comes 5 times") && notes.warnings.len() == 1,
+        "{said}"
+    );
+    // A round hall, and a wall seen by few beams.
+    for row in ["2,2,2,2,2,2,2", "2,8,8,8,3,3,3"] {
+        let frames = read(&format!("{head}\n0,-1,0.1,{row}\n"));
+        assert_eq!(frames[0].scan.range_max_m, f64::INFINITY);
+    }
+}
+
+#[test]
+fn a_sweep_with_one_time_may_pass_the_bearing_where_counting_begins() {
+    let beams = |step: usize, first: usize, in_degrees: bool| {
+        let rows = (0..2).flat_map(|sweep| {
+            (0..36).map(move |beam| {
+                let degrees = (step * (first + beam) * 10) % 360;
+                let angle = degrees as f64;
+                let angle = if in_degrees {
+                    angle
+                } else {
+                    angle.to_radians()
+                };
+                format!("{sweep},{angle},{}\n", 1 + beam)
+            })
+        });
+        read(&format!("time,angle,range\n{}", rows.collect::<String>()))
+    };
+    for in_degrees in [false, true] {
+        // From behind, counter-clockwise and clockwise.
+        for step in [1, 35] {
+            let frames = beams(step, 18, in_degrees);
+            assert_eq!(frames.len(), 2);
+            for frame in &frames {
+                let expected: Vec<f64> = (1..=36).map(f64::from).collect();
+                assert_eq!(frame.scan.ranges_m, expected);
+            }
+        }
+    }
+    // Sweeps whose times have too few digits still end where the bearing goes back.
+    let rows = (0..3 * 36).map(|beam| format!("7,{},2\n", beam % 36 * 10));
+    assert_eq!(
+        read(&format!("time,angle,range\n{}", rows.collect::<String>())).len(),
+        3
+    );
+}

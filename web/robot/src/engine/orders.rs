@@ -4,6 +4,8 @@
 use ch16_slam2d::localize::StartPose;
 use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::metrics::position_error_m;
+use ch16_slam2d::scan::ScanPreparer;
+use nalgebra::Vector3;
 use pr_geom::SE2;
 use robot_io::map_image::{build_map, finest_map};
 use robot_io::report::Report;
@@ -112,8 +114,19 @@ impl<'a> Engine<'a> {
             let mut numbers = vec![keyframe as f64];
             numbers.extend(at.scan.iter().flat_map(|point| [point.x, point.y]));
             self.waiting.push(Update::numbers("scan", numbers));
+            self.waiting.extend(self.sweep_of(keyframe));
         }
         Ok(String::new())
+    }
+
+    /// The scan of a keyframe as it was measured; `None` if it counts as one instant.
+    fn sweep_of(&self, keyframe: usize) -> Option<Update> {
+        let scan = &self.recorder.keyframes().get(keyframe)?.scan;
+        let mut numbers = vec![keyframe as f64];
+        let mut preparer = ScanPreparer::new();
+        let points = preparer.points(scan, &Vector3::zeros()).iter();
+        numbers.extend(points.flat_map(|point| [point.x, point.y]));
+        (scan.beam_interval_s > 0.0).then(|| Update::numbers("sweep", numbers))
     }
 
     /// Removes a loop from the graph, or adds it.

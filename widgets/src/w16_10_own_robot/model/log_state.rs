@@ -176,6 +176,8 @@ pub struct LogState {
     pub remarks: Vec<String>,
     /// A keyframe's points in its own frame, m.
     pub scan: Option<(usize, Vec<[f64; 2]>)>,
+    /// The same as it was measured, with the motion during the sweep in it; `None` if it counts as one instant.
+    pub sweep: Option<(usize, Vec<[f64; 2]>)>,
     /// The grade, if a reference was given.
     pub grade: Option<Grade>,
     /// Error of each keyframe against the reference, m.
@@ -241,12 +243,8 @@ impl LogState {
                 self.look_into = numbers.iter().map(|&number| number as usize).collect();
             }
             "remarks" => self.remarks = lines(text),
-            "scan" => {
-                if let Some((&keyframe, points)) = numbers.split_first() {
-                    let points = points.chunks_exact(2).map(|point| [point[0], point[1]]);
-                    self.scan = Some((keyframe as usize, points.collect()));
-                }
-            }
+            "scan" => self.scan = points(numbers).or(self.scan.take()),
+            "sweep" => self.sweep = points(numbers).or(self.sweep.take()),
             "grade" => {
                 self.grade = Some(Grade {
                     words: text.to_owned(),
@@ -303,6 +301,13 @@ impl LogState {
             revision: self.map.as_ref().map_or(0, |map| map.revision + 1),
         });
     }
+}
+
+/// A keyframe and points in its frame.
+fn points(numbers: &[f64]) -> Option<(usize, Vec<[f64; 2]>)> {
+    let (&keyframe, points) = numbers.split_first()?;
+    let points = points.chunks_exact(2).map(|point| [point[0], point[1]]);
+    Some((keyframe as usize, points.collect()))
 }
 
 fn lines(text: &str) -> Vec<String> {

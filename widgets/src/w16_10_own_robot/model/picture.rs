@@ -97,6 +97,10 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
             Mark::Cross,
         ));
     }
+    if own.robot.sweep.is_some() {
+        let measured = LegendEntry::mark("before deskewing", Tone::Strained, Mark::Dot);
+        legend.push(measured);
+    }
     if own.robot.links.iter().any(|link| shows(&own.values, link)) {
         legend.push(LegendEntry::line("loop", Tone::Revisit, Stroke::Solid));
     }
@@ -282,19 +286,20 @@ fn here(own: &OwnRobot) -> Vec<Layer> {
         layers.push(Layer::points(doubts, Mark::Circle, Tone::Strained, 6.0));
     }
     let pose = robot.keyframes[shown].pose;
-    if let Some((of, points)) = &robot.scan
-        && *of == shown
-    {
-        let (sin, cos) = math::sin_cos(pose[2]);
-        let placed = points
-            .iter()
-            .map(|[x, y]| [pose[0] + cos * x - sin * y, pose[1] + sin * x + cos * y]);
-        layers.push(Layer::points(
-            placed.collect(),
-            Mark::Cross,
-            Tone::Measurement,
-            2.5,
-        ));
+    let (sin, cos) = math::sin_cos(pose[2]);
+    // The motion during the sweep moves the points off the walls.
+    for (scan, mark, tone) in [
+        (&robot.sweep, Mark::Dot, Tone::Strained),
+        (&robot.scan, Mark::Cross, Tone::Measurement),
+    ] {
+        if let Some((of, points)) = scan
+            && *of == shown
+        {
+            let placed = points
+                .iter()
+                .map(|[x, y]| [pose[0] + cos * x - sin * y, pose[1] + sin * x + cos * y]);
+            layers.push(Layer::points(placed.collect(), mark, tone, 2.5));
+        }
     }
     let marked = own.values.number("marked") as usize;
     if marked > 0
