@@ -1,6 +1,8 @@
 // "Write it yourself": an editor by the keyboard, tests as sentences, and code that can do no harm.
 
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { it } from 'node:test';
 import { violations } from './axe.mjs';
 import * as clock from './clock.mjs';
@@ -103,7 +105,31 @@ it('the code has no network, no page and no storage', async () => {
 it('a page whose policy forbids code says so', async () => {
   await writing('gate', async (tab) => {
     assert.match((await run(tab))[0], /^✗ The policy of this page does not let code run here/);
-  }, { quiet: false, server: { policy: h.STRICT_POLICY.replace("script-src 'self'", "script-src 'self' 'unsafe-inline'") } });
+  }, { quiet: false, server: { policy: `${h.STRICT_POLICY.replace("script-src 'self'", "script-src 'self' 'unsafe-inline'")}; frame-src 'self'` } });
+});
+
+it('every page carries its policy, and the frame of the code runs none outside a sandbox', async () => {
+  for (const page of [...h.PAGES, 'slides.html', 'embed.html', 'notices.html']) {
+    const html = readFileSync(join(h.DIST, page), 'utf8');
+    assert.match(html, /^<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'self' 'wasm-unsafe-eval';/, page);
+  }
+  await visit('<iframe src="/your-code.html"></iframe><iframe sandbox="allow-scripts" src="/your-code.html"></iframe>', async (tab) => {
+    const told = await tab.evaluate(async () => {
+      const heard = [];
+      const frames = [...document.querySelectorAll('iframe')];
+      addEventListener('message', ({ source, data }) => {
+        heard.push([frames.findIndex((frame) => frame.contentWindow === source), Object.keys(data)]);
+      });
+      for (const frame of frames) await new Promise((loaded) => {
+        frame.onload = loaded;
+        frame.src = `${frame.src}?again`;
+      });
+      for (const frame of frames) frame.contentWindow.postMessage({ text: 'postMessage({ ran: true })' }, '*');
+      while (!heard.some(([, keys]) => keys.includes('ran'))) await new Promise(requestAnimationFrame);
+      return heard;
+    });
+    assert.deepEqual(told, [[1, ['started']], [1, ['ran']]]);
+  });
 });
 
 it('code is kept only on wish, and deleted when the wish is withdrawn', async () => {
