@@ -71,7 +71,7 @@ pub enum Recipe {
 
 /// The graph after some number of steps.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Moment {
+pub struct Iterate {
     /// The poses.
     pub poses: Vec<SE2>,
     /// χ² = Σ eᵀΩe of the right residual.
@@ -84,7 +84,7 @@ pub struct Moment {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Descent {
     /// The start, and the graph after each step.
-    pub moments: Vec<Moment>,
+    pub iterates: Vec<Iterate>,
     /// Whether it converged within the given number of steps.
     pub rests: bool,
 }
@@ -93,13 +93,13 @@ impl Descent {
     /// Steps to the end.
     #[must_use]
     pub fn steps(&self) -> usize {
-        self.moments.len() - 1
+        self.iterates.len() - 1
     }
 
     /// The graph at the end.
     #[must_use]
-    pub fn end(&self) -> &Moment {
-        &self.moments[self.steps()]
+    pub fn end(&self) -> &Iterate {
+        &self.iterates[self.steps()]
     }
 }
 
@@ -170,26 +170,26 @@ pub fn optimum(problem: &Problem) -> (Vec<SE2>, f64) {
 pub fn descend(start: &Problem, recipe: Recipe, optimum: &[SE2], max_steps: usize) -> Descent {
     let mut problem = start.clone();
     let mut solver = Solver::new(recipe);
-    let mut moments = vec![moment(&problem, optimum)];
+    let mut iterates = vec![iterate(&problem, optimum)];
     let mut rests = false;
-    while !rests && moments.len() <= max_steps {
+    while !rests && iterates.len() <= max_steps {
         let Ok(step) = solver.step(&mut problem) else {
             break;
         };
-        let next = moment(&problem, optimum);
+        let next = iterate(&problem, optimum);
         if !(next.chi2.is_finite() && next.off_m.is_finite()) {
             break;
         }
-        moments.push(next);
+        iterates.push(next);
         rests = step.largest_step < REST;
     }
-    Descent { moments, rests }
+    Descent { iterates, rests }
 }
 
-fn moment(problem: &Problem, optimum: &[SE2]) -> Moment {
+fn iterate(problem: &Problem, optimum: &[SE2]) -> Iterate {
     let off = |(pose, best): (&SE2, &SE2)| math::norm2(pose.x() - best.x(), pose.y() - best.y());
     let offs = problem.poses().iter().zip(optimum).map(off);
-    Moment {
+    Iterate {
         poses: problem.poses().to_vec(),
         chi2: problem.chi2(),
         off_m: offs.fold(0.0, math::max),

@@ -20,7 +20,7 @@ mod settings;
 mod tables;
 mod texts;
 
-use ch16_lab::jacobians::{Descent, Moment, RingConfig, descend, optimum, ring};
+use ch16_lab::jacobians::{Descent, Iterate, RingConfig, descend, optimum, ring};
 use pr_geom::{SE2, math};
 use widget_kit::chart::{dragged_to, grab_now};
 use widget_kit::model::{
@@ -117,7 +117,7 @@ impl WrongJacobians {
 
     /// The loose end of the chain, which is there to bend before the first step.
     fn loose_end(&self) -> Option<[f64; 2]> {
-        let start = &self.solved.runs[0].moments[0].poses;
+        let start = &self.solved.runs[0].iterates[0].poses;
         (self.step() == 0).then(|| last_position(start))
     }
 
@@ -142,8 +142,8 @@ impl WrongJacobians {
     }
 
     /// A solver's graph at the current step, or at its last one.
-    fn shown(&self, solver: usize) -> &Moment {
-        &self.solved.runs[solver].moments[self.steps_of(solver)]
+    fn shown(&self, solver: usize) -> &Iterate {
+        &self.solved.runs[solver].iterates[self.steps_of(solver)]
     }
 }
 

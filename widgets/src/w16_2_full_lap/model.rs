@@ -62,7 +62,7 @@ use crate::w16_2_full_lap::spec::{
 use floor_plan::{FloorPlan, Tool};
 use moment::Moment;
 use own::Own;
-use pick::{Part, Step};
+use pick::{Direction, Part};
 use runs::{Results, Runs};
 use transition::Transition;
 
@@ -314,8 +314,8 @@ impl Model for FullLap {
             return Ok(());
         }
         match id {
-            "one-back" => self.look_on(Step::Back),
-            "one-on" => self.look_on(Step::On),
+            "one-back" => self.look_on(Direction::Back),
+            "one-on" => self.look_on(Direction::On),
             "tie" => self.press_tie(),
             "undo" => self.undo(),
             "defaults" => self.back_to_defaults(),

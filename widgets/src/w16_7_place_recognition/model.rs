@@ -34,7 +34,7 @@ use widget_kit::values::{Changed, Values};
 use crate::w16_7_place_recognition::spec::{
     CALLED, LAST_OLD, MAX_KEYFRAMES, MOST_ALIKE, NEWEST, OLDER, PARAMS, SPEC, TURN,
 };
-use lap::{Places, Work};
+use lap::{GradingTask, Places};
 
 /// Names of the panels.
 pub mod panel {
@@ -64,7 +64,7 @@ pub struct PlaceRecognition {
     playback: PlaybackParam,
     config: LapConfig,
     /// The lap under way; `None` once it is graded.
-    work: Option<Work>,
+    work: Option<GradingTask>,
     /// The last graded lap.
     places: Option<Places>,
     /// Number of graded laps so far.
@@ -77,7 +77,7 @@ impl Default for PlaceRecognition {
         let values = Values::defaults(PARAMS);
         let config = settings::config(&values);
         Self {
-            work: Some(Work::new(&config)),
+            work: Some(GradingTask::new(&config)),
             playback: PlaybackParam::along(&NEWEST),
             config,
             values,
@@ -92,7 +92,7 @@ impl PlaceRecognition {
     fn follow(&mut self) {
         let config = settings::config(&self.values);
         if config != self.config {
-            self.work = Some(Work::new(&config));
+            self.work = Some(GradingTask::new(&config));
             self.config = config;
         }
     }

@@ -1,6 +1,6 @@
 //! The panels: the graphs of all solvers, and the distance to the optimum over the steps.
 
-use ch16_lab::jacobians::Moment;
+use ch16_lab::jacobians::Iterate;
 use pr_geom::{SE2, math};
 use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
@@ -36,7 +36,7 @@ fn places(poses: &[SE2]) -> Vec<[f64; 2]> {
 
 /// Around the start and the optimum, the same for all four and constant during playback.
 fn axes(widget: &WrongJacobians) -> [Axis; 2] {
-    let start = &widget.solved.runs[0].moments[0].poses;
+    let start = &widget.solved.runs[0].iterates[0].poses;
     let poses = || start.iter().chain(&widget.solved.optimum);
     let span = |of: fn(&SE2) -> f64| {
         let low = poses().map(of).fold(f64::INFINITY, math::min) - MARGIN_M;
@@ -133,16 +133,16 @@ fn curve(widget: &WrongJacobians) -> Panel {
             power
         }
     };
-    let of = |moment: &Moment| {
+    let of = |iterate: &Iterate| {
         height(if is_distance {
-            moment.off_m
+            iterate.off_m
         } else {
-            moment.chi2 - best_chi2
+            iterate.chi2 - best_chi2
         })
     };
     let lines = widget.solved.runs.each_ref().map(|run| {
-        let moments = run.moments.iter().enumerate();
-        let points = moments.map(|(step, moment)| [step as f64, of(moment)]);
+        let iterates = run.iterates.iter().enumerate();
+        let points = iterates.map(|(step, iterate)| [step as f64, of(iterate)]);
         points.collect::<Vec<_>>()
     });
     let highest = lines.iter().flatten().map(|at| at[1]).fold(0.0, math::max);
@@ -200,7 +200,7 @@ fn curve(widget: &WrongJacobians) -> Panel {
         ));
         layers.push(Layer::line(line, Stroke::Solid, TONES[solver], 1.75));
     }
-    let exact = widget.solved.runs[0].moments.get(widget.step());
+    let exact = widget.solved.runs[0].iterates.get(widget.step());
     layers.push(Layer::Handle {
         at: [now, exact.map_or(low, &of)],
         tone: Tone::Ink,

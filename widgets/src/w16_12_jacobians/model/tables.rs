@@ -31,12 +31,12 @@ fn ends(widget: &WrongJacobians) -> Table {
 fn every_step(widget: &WrongJacobians) -> Table {
     let runs = widget.solved.runs.iter().zip(NAMES);
     let rows = runs.flat_map(|(run, name)| {
-        run.moments.iter().enumerate().map(move |(step, moment)| {
+        run.iterates.iter().enumerate().map(move |(step, iterate)| {
             vec![
                 name.to_owned(),
                 step.to_string(),
-                moment.off_m.to_string(),
-                moment.chi2.to_string(),
+                iterate.off_m.to_string(),
+                iterate.chi2.to_string(),
             ]
         })
     });

@@ -7,11 +7,11 @@ use widget_kit::param::{ParamError, printable};
 
 use super::FullLap;
 use super::floor_plan::{
-    Kept, Stroke, Tool, add_wall, add_way_point, is_own, new_wall, new_way_point,
+    Kept, PencilDrag, Tool, add_wall, add_way_point, is_own, new_wall, new_way_point,
 };
 use super::grid::snapped;
 use super::panel;
-use super::pick::Step;
+use super::pick::Direction;
 use super::picture;
 use super::plan_element::PlanElement;
 use crate::w16_2_full_lap::spec::{EDIT, FLAT, SPEC, WORLD};
@@ -124,8 +124,8 @@ impl FullLap {
                 // The wall tool is selected, so a drag draws at once.
                 self.values.put(&EDIT, is_off.then_some(Tool::Wall));
             }
-            "piece-back" => self.step_piece(Step::Back),
-            "piece-on" => self.step_piece(Step::On),
+            "piece-back" => self.step_piece(Direction::Back),
+            "piece-on" => self.step_piece(Direction::On),
             "west" => self.nudge([-1, 0]),
             "east" => self.nudge([1, 0]),
             "north" => self.nudge([0, 1]),
@@ -164,7 +164,7 @@ impl FullLap {
         true
     }
 
-    fn step_piece(&mut self, step: Step) {
+    fn step_piece(&mut self, step: Direction) {
         let piece = PlanElement::stepped(self.piece(), step, &self.floor_plan.sketch);
         self.choose(piece);
     }
@@ -200,7 +200,7 @@ impl FullLap {
                 if piece.index() >= left {
                     self.choose(PlanElement::stepped(
                         None,
-                        Step::Back,
+                        Direction::Back,
                         &self.floor_plan.sketch,
                     ));
                 }
@@ -341,7 +341,7 @@ impl FullLap {
             PLACE => self.piece(),
             _ => held,
         };
-        self.floor_plan.stroke = Some(Stroke {
+        self.floor_plan.stroke = Some(PencilDrag {
             handle,
             from: at,
             before: self.kept(),

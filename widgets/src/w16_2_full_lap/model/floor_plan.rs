@@ -52,7 +52,7 @@ pub struct Kept {
 }
 
 /// A stroke under way.
-pub struct Stroke {
+pub struct PencilDrag {
     /// The grabbed handle.
     pub handle: widget_kit::model::Handle,
     /// The position of the press, m.
@@ -70,7 +70,7 @@ pub struct FloorPlan {
     /// The drawing as a course, or why it cannot be driven.
     pub course: Result<Course, CourseError>,
     /// The stroke under way.
-    pub stroke: Option<Stroke>,
+    pub stroke: Option<PencilDrag>,
     /// The visible part of the map during the stroke, which keeps the picture still under the pointer.
     pub frame: Option<Bounds>,
     /// Why the last edit was rejected.

@@ -4,7 +4,7 @@ use ch16_lab::lap::{LoopAttempt, RecordedEdge};
 use ch16_slam2d::graph::EdgeKind;
 
 use super::moment::Moment;
-use super::pick::{Part, Step};
+use super::pick::{Direction, Part};
 
 /// A part that exists at the current tick.
 pub enum Found<'a> {
@@ -40,7 +40,7 @@ pub fn find<'a>(moment: &Moment<'a>, part: Part) -> Option<Found<'a>> {
 }
 
 /// The previous or next existing part of the same kind.
-pub fn stepped(part: Option<Part>, step: Step, moment: &Moment) -> Option<Part> {
+pub fn stepped(part: Option<Part>, step: Direction, moment: &Moment) -> Option<Part> {
     let nodes = moment.nodes.len();
     let (all, make): (Vec<usize>, fn(usize) -> Part) = match part {
         Some(Part::Edge(_)) => ((0..nodes - 1).collect(), Part::Edge),
@@ -53,13 +53,13 @@ pub fn stepped(part: Option<Part>, step: Step, moment: &Moment) -> Option<Part> 
     };
     let now = part.and_then(Part::number);
     let next = match (step, now) {
-        (Step::On, Some(now)) => all.iter().find(|number| **number > now),
-        (Step::Back, Some(now)) => all.iter().rfind(|number| **number < now),
+        (Direction::On, Some(now)) => all.iter().find(|number| **number > now),
+        (Direction::Back, Some(now)) => all.iter().rfind(|number| **number < now),
         (_, None) => None,
     };
     let around = match step {
-        Step::On => all.first(),
-        Step::Back => all.last(),
+        Direction::On => all.first(),
+        Direction::Back => all.last(),
     };
     next.or(around).copied().map(make)
 }

@@ -2,7 +2,7 @@
 
 use super::FullLap;
 use super::found::stepped;
-use super::pick::{Part, Step};
+use super::pick::{Direction, Part};
 use crate::w16_2_full_lap::spec::{LOOP_BUTTONS, OWN, OWN_FROM, OWN_TO};
 
 impl FullLap {
@@ -12,7 +12,7 @@ impl FullLap {
     }
 
     /// Selects the next part, or the previous one.
-    pub(super) fn look_on(&mut self, step: Step) {
+    pub(super) fn look_on(&mut self, step: Direction) {
         let part = stepped(Part::chosen(&self.values), step, &self.moment());
         self.look_at(part);
     }

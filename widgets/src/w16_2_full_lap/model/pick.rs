@@ -19,7 +19,7 @@ pub enum Part {
 
 /// A direction through the parts of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum Direction {
     /// To the previous part; from the first to the last.
     Back,
     /// To the next part; from the last to the first.

@@ -28,7 +28,7 @@ pub struct Refined {
 }
 
 /// The results of a search.
-pub struct Found {
+pub struct SearchResults {
     /// The best pose, and ICP from there.
     pub home: Option<(ScoredPose, Refined)>,
     /// The best pose at each of [`TURNS`]; `None` if the window lacks that heading.
@@ -46,7 +46,7 @@ pub struct SearchTask {
     /// ICP from the start alone.
     pub alone: Refined,
     /// The results; `None` during the search.
-    pub found: Option<Found>,
+    pub found: Option<SearchResults>,
 }
 
 impl SearchTask {
@@ -106,13 +106,13 @@ impl SearchTask {
         }
     }
 
-    fn finish(&self, scene: &BasinScene, workspace: &mut IcpWorkspace) -> Found {
+    fn finish(&self, scene: &BasinScene, workspace: &mut IcpWorkspace) -> SearchResults {
         let best = self.window.result().map(|result| result.best);
         let rival = |(k, (_, turn_deg)): (usize, &(&str, f64))| {
             let search = self.window.rival(scene, &best?.pose, *turn_deg)?;
             Some((k, search))
         };
-        Found {
+        SearchResults {
             pending: TURNS.iter().enumerate().filter_map(rival).collect(),
             rivals: [None; 3],
             home: best.map(|best| (best, icp(scene, best.pose, workspace))),

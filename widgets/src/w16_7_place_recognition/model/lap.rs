@@ -10,7 +10,7 @@ use pr_geom::sort_numbers;
 const PAIRS_PER_PIECE: usize = 5;
 
 /// The stages up to the grades of a lap.
-pub enum Work {
+pub enum GradingTask {
     /// The drive is simulated.
     Driving(Box<DriveSimulation>),
     /// The front end runs.
@@ -31,7 +31,7 @@ pub struct Places {
     pub same: usize,
 }
 
-impl Work {
+impl GradingTask {
     /// A lap before its first step.
     pub fn new(config: &LapConfig) -> Self {
         Self::Driving(Box::new(DriveSimulation::new(config.drive.clone())))
@@ -117,8 +117,8 @@ impl Places {
     }
 
     /// The grade of a detector at a threshold; equal distances share it.
-    pub fn graded_at(&self, detector: usize, threshold: f64) -> Grade {
-        let mut grade = Grade::default();
+    pub fn graded_at(&self, detector: usize, threshold: f64) -> DetectorCounts {
+        let mut grade = DetectorCounts::default();
         for pair in self.study.graded() {
             if pair.distances[detector] <= threshold {
                 grade.called += 1;
@@ -141,7 +141,7 @@ impl Places {
 
 /// Counts of a detector at a threshold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Grade {
+pub struct DetectorCounts {
     /// Reported pairs.
     pub called: usize,
     /// Right ones among them.
@@ -150,7 +150,7 @@ pub struct Grade {
     pub same: usize,
 }
 
-impl Grade {
+impl DetectorCounts {
     /// Precision and recall, if any pair is reported.
     pub fn point(&self, threshold: f64) -> Option<OperatingPoint> {
         (self.called > 0 && self.same > 0).then(|| OperatingPoint {

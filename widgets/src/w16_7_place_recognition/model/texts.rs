@@ -5,11 +5,11 @@ use ch16_lab::places::GRADED;
 use widget_kit::model::{Assessment, Fact, Outcome};
 
 use super::PlaceRecognition;
-use super::lap::{Grade, Places};
+use super::lap::{DetectorCounts, Places};
 use super::settings::distance_label;
 
 /// The grade of the selected detector.
-fn grade(been: &PlaceRecognition) -> Option<(&Places, Grade)> {
+fn grade(been: &PlaceRecognition) -> Option<(&Places, DetectorCounts)> {
     let places = been.places.as_ref().filter(|_| been.work.is_none())?;
     let detector = been.detector();
     Some((places, places.graded_at(detector, been.threshold(detector))))
@@ -29,7 +29,7 @@ pub fn standing(been: &PlaceRecognition) -> Assessment {
 pub fn verdict(been: &PlaceRecognition) -> &'static str {
     match grade(been) {
         None => "driving",
-        Some((_, Grade { called: 0, .. })) => "no pair is called the same",
+        Some((_, DetectorCounts { called: 0, .. })) => "no pair is called the same",
         Some((_, grade)) if grade.right == grade.called => "no false pair",
         Some((_, grade)) if 2 * grade.right >= grade.called => "some pairs are false",
         Some(_) => "most pairs are false",
