@@ -59,10 +59,34 @@ describe('the building of the own-robot page', () => {
       const chooser = tab.waitForEvent('filechooser');
       await tab.getByRole('button', { name: /Drop your log here/ }).click();
       await (await chooser).setFiles({ name: 'ring.log', mimeType: 'text/plain', buffer: readFileSync(`${h.DIST}/samples/ring.log`) });
-      await tab.waitForFunction(() => document.querySelector('#building').hidden
+      await tab.waitForFunction(() => !document.querySelector('#building').checkVisibility()
         && document.querySelector('slam-widget[name="w16.10"]').getBoundingClientRect().top < 200);
-      assert.equal(await tab.locator('#building').isVisible(), false);
     }, still);
+  });
+
+  it('is the one instrument of the page, until the sample takes its place', async () => {
+    await opened(async (tab) => {
+      await live(tab);
+      const widget = tab.locator('slam-widget');
+      assert.equal(await widget.isVisible(), false);
+      await tab.getByRole('button', { name: 'Map the sample' }).click();
+      await tab.waitForFunction(() => document.querySelector('slam-widget').checkVisibility() && !document.querySelector('#building').checkVisibility());
+      await tab.waitForFunction(() => document.querySelector('slam-widget').outcome?.sentence.includes('became'));
+    }, still);
+  });
+
+  it('gives way to a link to the widget, which waits as a drop zone', async () => {
+    await visit('', async (tab) => {
+      await h.ready(tab);
+      assert.equal(await tab.locator('#building').isVisible(), false);
+      const zone = tab.getByRole('button', { name: /Drop a log of your robot here/ });
+      const [wide, picture] = [await zone.boundingBox(), await tab.locator('slam-widget canvas').boundingBox()];
+      // The zone covers the picture but for its margin.
+      assert.ok(wide.width > 0.9 * picture.width && wide.height > 0.8 * picture.height, JSON.stringify([wide, picture]));
+      const chooser = tab.waitForEvent('filechooser');
+      await zone.click();
+      await chooser;
+    }, { path: '/own-robot.html?w=16.10', options: still });
   });
 
   it('gives way to a log that is dropped on it', async () => {
@@ -77,7 +101,7 @@ describe('the building of the own-robot page', () => {
         return ['dragover', 'drop'].map((type) => !send(type));
       }, log);
       assert.deepEqual(wasTaken, [true, true]);
-      await tab.waitForFunction(() => document.querySelector('#building').hidden
+      await tab.waitForFunction(() => !document.querySelector('#building').checkVisibility()
         && document.querySelector('slam-widget[name="w16.10"]').outcome?.sentence.startsWith('dropped.log'));
     }, still);
   });

@@ -197,6 +197,41 @@ describe('the lap under the title', () => {
     assert.equal(replay.at(replay.lengthS).before.strength, 1);
   });
 
+  it('closes the doubled wall in slow motion under one number, and no labels lie on each other, also on a phone', async () => {
+    const { Replay } = await load('story.ts');
+    const { draw } = await load('drawing.ts');
+    const story = JSON.parse(readFileSync(join(h.DIST, readdirSync(h.DIST).find((name) => name.startsWith('lap-story'))), 'utf8'));
+    const replay = new Replay(story);
+    const wordsAt = (seconds, width) => {
+      const words = [];
+      const nothing = () => {};
+      draw(story, replay.at(seconds), { line: nothing, dots: nothing, area: nothing, words: (text, at, ink, size) => words.push({ text, at, size }) }, width);
+      return words;
+    };
+    for (const width of [348, 900]) {
+      for (let seconds = 0; seconds <= replay.lengthS; seconds += 0.1) {
+        const words = wordsAt(seconds, width);
+        for (const [k, one] of words.entries()) {
+          for (const other of words.slice(k + 1)) {
+            // A letter is about half as wide as high.
+            const apart = [0.25 * (one.size * one.text.length + other.size * other.text.length), 0.5 * (one.size + other.size)];
+            assert.ok([0, 1].some((i) => Math.abs(one.at[i] - other.at[i]) >= apart[i]), `${width} px, ${seconds.toFixed(1)} s: ${one.text}, ${other.text}`);
+          }
+        }
+      }
+    }
+    const { before, keyframes } = replay.at(replay.lengthS);
+    const moved = keyframes.map(([x, y], node) => Math.hypot(x - before.poses[node][0], y - before.poses[node][1]));
+    assert.deepEqual(wordsAt(replay.lengthS, 900).map(({ text }) => text), [`${Math.round(100 * Math.max(...moved))} cm`]);
+    const numbers = [];
+    for (let seconds = replay.doubledS + 0.02; seconds < replay.doubledS + 2.6; seconds += 0.05) {
+      const [number] = wordsAt(seconds, 900);
+      numbers.push(parseInt(number.text, 10));
+    }
+    assert.ok(numbers[0] === 0 && numbers.at(-1) > 10, `${numbers}`);
+    assert.ok(new Set(numbers).size > 8, `it counts in slow motion: ${numbers}`);
+  });
+
   it('is a still picture without scripts', async () => {
     await reading(async (tab) => {
       const picture = tab.locator('#lap img');

@@ -14,8 +14,14 @@ export interface Surface {
   words(text: string, at: Point, ink: Ink, size: number): void;
 }
 
-/** Aspect ratio of the strip. */
+/** Aspect ratio of the strip; on a phone it is higher. `lap.css` has both, with the width. */
 export const ASPECT = 2.4;
+const PHONE_ASPECT = 1.6;
+const PHONE_PX = 480;
+
+export function aspectAt(widthPx: number): number {
+  return widthPx < PHONE_PX ? PHONE_ASPECT : ASPECT;
+}
 
 /** Centre and width of the view, in metres: the corridor of the flat, and a close-up. */
 const WHOLE = { x: 6, y: 4.55, width: 12.5 };
@@ -46,11 +52,22 @@ export function draw(story: Story, moment: Moment, surface: Surface, widthPx: nu
   const [wheelsX, wheelsY] = moment.wheels.at(-1) ?? [robotX, robotY];
   drawRobot(surface, toPixels, [wheelsX, wheelsY, wheelsHeading(moment)], 'prediction', 8 * unit);
   drawRobot(surface, toPixels, moment.robot, 'posterior', 10 * unit);
-  drawLabels(moment, surface, toPixels, unit);
+  if (moment.closed.length > 0) drawCorrection(moment, surface, unit, widthPx);
+  else drawLabels(moment, surface, toPixels, unit, widthPx);
+}
+
+/** As the doubled wall closes: how far the farthest keyframe has moved, and nothing else in words. */
+function drawCorrection({ before, keyframes }: Moment, surface: Surface, unit: number, widthPx: number): void {
+  const moved = keyframes.map(([x, y], node) => {
+    const [oldX, oldY] = before.poses[node] ?? [x, y];
+    return Math.hypot(x - oldX, y - oldY);
+  });
+  const size = 64 * unit;
+  surface.words(`${Math.round(100 * Math.max(...moved))} cm`, [widthPx / 2, 0.75 * size], 'ink', size);
 }
 
 /** Labels each path at its end, and the walls once the way back has some. */
-function drawLabels(moment: Moment, surface: Surface, toPixels: Camera, unit: number): void {
+function drawLabels(moment: Moment, surface: Surface, toPixels: Camera, unit: number, widthPx: number): void {
   const size = Math.max(14 * unit, 11);
   const robot = toPixels([moment.robot[0], moment.robot[1]]);
   const wheels = toPixels(moment.wheels.at(-1) ?? [moment.robot[0], moment.robot[1]]);
@@ -59,23 +76,17 @@ function drawLabels(moment: Moment, surface: Surface, toPixels: Camera, unit: nu
   const ofWheels = wheels[1] + side * 1.7 * size < size ? 1 : side;
   surface.words('by the wheels', [wheels[0], wheels[1] + ofWheels * 1.7 * size], 'prediction', size);
   surface.words('by the sweeps', [robot[0], robot[1] - side * 1.7 * size], 'posterior', size);
-  if (moment.act === 0) return;
+  // On a phone they would lie on each other: the caption has the words.
+  if (moment.act === 0 || widthPx < PHONE_PX) return;
   surface.words('walls, way out', toPixels(WALL_LABELS.out), 'outbound', size);
   surface.words('walls, way back', toPixels(WALL_LABELS.back), 'return', size);
 }
 
-/** At the end: the walls of the way back before the loops closed, and the largest correction of a keyframe. */
-function drawBefore(story: Story, { before: { poses, strength }, keyframes }: Moment, surface: Surface, toPixels: Camera, unit: number): void {
+/** At the end: the walls of the way back before the loops closed. */
+function drawBefore(story: Story, { before: { poses, strength } }: Moment, surface: Surface, toPixels: Camera, unit: number): void {
   if (strength === 0) return;
   const doubled = poses.flatMap((pose, node) => (node <= story.turn ? [] : placed(story.ticks[story.keyframes[node] ?? 0]?.sweep ?? [], pose)));
   surface.dots(doubled.map(toPixels), 'prior', 3 * unit, 0.4 * strength);
-  const moved = poses.map((pose, node) => ({ pose, now: keyframes[node] ?? pose }));
-  const far = ({ pose, now }: (typeof moved)[number]): number => Math.hypot(now[0] - pose[0], now[1] - pose[1]);
-  const farthest = moved.reduce((most, one) => (far(one) > far(most) ? one : most));
-  const [x, y] = toPixels([farthest.now[0], farthest.now[1]]);
-  const size = Math.max(14 * unit, 11);
-  surface.line([[x, y], toPixels([farthest.pose[0], farthest.pose[1]])], 'prior', 2.5 * unit, { alpha: strength });
-  surface.words(`moved by ${Math.round(100 * far(farthest))} cm`, [x, y + 2.6 * size], 'prior', size);
 }
 
 type Camera = (point: Point) => Point;
@@ -88,13 +99,13 @@ function frame(closeness: number, widthPx: number): { scale: number; middleX: nu
 /** Converts metres to pixels. */
 export function camera(closeness: number, widthPx: number): Camera {
   const { scale, middleX, middleY } = frame(closeness, widthPx);
-  return ([x, y]) => [widthPx / 2 + scale * (x - middleX), widthPx / ASPECT / 2 - scale * (y - middleY)];
+  return ([x, y]) => [widthPx / 2 + scale * (x - middleX), widthPx / aspectAt(widthPx) / 2 - scale * (y - middleY)];
 }
 
 /** Converts pixels to metres. */
 export function worldAt([x, y]: Point, closeness: number, widthPx: number): Point {
   const { scale, middleX, middleY } = frame(closeness, widthPx);
-  return [middleX + (x - widthPx / 2) / scale, middleY - (y - widthPx / ASPECT / 2) / scale];
+  return [middleX + (x - widthPx / 2) / scale, middleY - (y - widthPx / aspectAt(widthPx) / 2) / scale];
 }
 
 /** The points of all sweeps at the poses of their keyframes, of the way out and of the way back. */

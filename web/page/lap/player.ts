@@ -2,7 +2,7 @@
 //
 // It plays once while it is in view, unless the reader prefers reduced motion. The slider sets the time at any moment.
 
-import { ASPECT, camera, draw, type Ink, worldAt } from './drawing';
+import { aspectAt, camera, draw, type Ink, worldAt } from './drawing';
 import { type Point, Replay, type Story } from './story';
 import { canvasSurface, contextOf, type Inks, readInks, watchColors } from './surfaces';
 
@@ -174,7 +174,7 @@ export class LapPlayer {
 
   #paint(): void {
     const width = this.#canvas.clientWidth;
-    const context = contextOf(this.#canvas, width / ASPECT);
+    const context = contextOf(this.#canvas, width / aspectAt(width));
     if (context === undefined) return;
     this.#inks ??= readInks(this.#figure, INKS);
     draw(this.#story, this.#replay.at(this.#seconds), canvasSurface(context, this.#inks), width);

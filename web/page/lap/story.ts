@@ -48,11 +48,11 @@ export interface Moment {
   closeness: number;
 }
 
-/** Durations: way out, way back, each loop closure, and the drive between two of them. */
-const OUT_S = 3.4;
-const BACK_S = 2.5;
-const SNAP_S = [1.1, 0.6, 0.6];
-const BETWEEN_S = 0.5;
+/** Durations: way out, way back, each loop closure, the first in slow motion, and the drive between two of them. */
+const OUT_S = 2.6;
+const BACK_S = 2;
+const SNAP_S = [2.6, 0.5, 0.5];
+const BETWEEN_S = 0.4;
 /** Pauses on the doubled walls before the first loop, and on the corrected map at the end. */
 const PAUSE_S = 0.5;
 const END_S = 1.2;
@@ -198,7 +198,7 @@ function ease(share: number): number {
   return part * part * (3 - 2 * part);
 }
 
-/** A late, quick transition: a loop closure snaps. */
+/** A late transition: first both walls are seen. */
 function snap(share: number): number {
   return ease((share - 0.25) / 0.5);
 }
