@@ -87,6 +87,8 @@ def icp_information(points, normals, sigma, inflate):
     normals: of their partners; a pair without one measures along both axes.
     sigma: noise of a point, m. inflate: neighbouring beams are not independent.
     """
+    if len(points) == 0:
+        return np.zeros((3, 3))
     arms = points - points.mean(axis=0)
     known = ~np.isnan(normals[:, 0])
     axes = [np.tile(axis, (np.sum(~known), 1)) for axis in ([1.0, 0.0], [0.0, 1.0])]

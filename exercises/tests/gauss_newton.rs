@@ -111,6 +111,29 @@ fn the_held_node_stays_whichever_it_is() {
 }
 
 #[test]
+fn a_pose_without_an_edge_stays_by_the_ridge() {
+    let (mut ours, _) = rings(6, 0);
+    let loose = ours.add_node(at(9.0));
+    let largest = optimize_once(&mut ours, f64::INFINITY);
+    assert!(
+        largest.is_finite(),
+        "1e-9 on the diagonal keeps the matrix positive definite"
+    );
+    assert_same_pose(ours.pose(loose), at(9.0), 1e-9);
+}
+
+#[test]
+fn the_kernel_counts_in_every_step_and_no_more_are_made_than_allowed() {
+    let [mut ours, mut steps] = [(); 2].map(|()| rings(12, 0).0);
+    assert_eq!(optimize(&mut ours, 3, 1e-15, 0.5), 3);
+    for _ in 0..3 {
+        optimize_once(&mut steps, 0.5);
+    }
+    let poses = |graph: &PoseGraph| graph.graph.node_weights().copied().collect::<Vec<SE2>>();
+    assert_eq!(poses(&ours), poses(&steps), "three steps with the kernel");
+}
+
+#[test]
 fn a_matrix_that_is_not_positive_definite_moves_nothing() {
     let (mut ours, _) = rings(6, 0);
     ours.add_edge(

@@ -79,4 +79,13 @@ fn of_equals_the_older_comes_first_and_the_young_are_left_out() {
         detect_by_histogram(&sweeps, 5, 0, 6.0, 0.15),
         [0, 1, 2, 3, 4]
     );
+    let shares = |sweep: &PointCloud| range_histogram(sweep, 6.0);
+    let other = seen(&[1.0, 4.0]);
+    let limit = chi2_distance(&shares(&sweeps[0]), &shares(&other));
+    let sweeps = [&sweeps[..3], &[other]].concat();
+    assert_eq!(
+        detect_by_histogram(&sweeps, 3, 1, 6.0, limit),
+        [0, 1, 2],
+        "≤, not <"
+    );
 }

@@ -136,4 +136,36 @@ fn too_few_pairs_end_it_at_the_guess() {
     let found = icp(&source, &map, away, &settings(0.25));
     assert_eq!((found.pose, found.inliers, found.trace.len()), (away, 0, 1));
     assert_eq!(found.rmse, f64::INFINITY);
+    for (points, is_enough) in [(7, false), (8, true)] {
+        let few = PointCloud {
+            points: source.points[..points].to_vec(),
+            stamp: 0.0,
+        };
+        let found = icp(&few, &map, SE2::identity(), &settings(0.0));
+        let moves = found.trace.len() > 1;
+        assert_eq!(moves, is_enough, "{points} pairs, and min_pairs is 8");
+    }
+}
+
+#[test]
+fn a_small_increment_ends_it() {
+    let (source, map, _) = moving_box(1);
+    let guess = SE2::new(Vector2::new(0.3, 0.2), 0.1);
+    let at = |tolerance| {
+        let cfg = IcpConfig {
+            tolerance,
+            ..settings(0.0)
+        };
+        icp(&source, &map, guess, &cfg).trace
+    };
+    let (rough, fine) = (at(0.02), at(1e-6));
+    assert!(rough.len() < fine.len(), "{} increments", rough.len() - 1);
+    // The last increment is the first below the tolerance.
+    let step = |pair: &[SE2]| (pair[1] * pair[0].inverse()).step_size();
+    let steps: Vec<f64> = rough.windows(2).map(step).collect();
+    let (last, before) = steps.split_last().expect("it moves");
+    assert!(
+        *last < 0.02 && before.iter().all(|step| *step >= 0.02),
+        "{steps:?}"
+    );
 }

@@ -25,8 +25,7 @@ const PICTURE_PX: f64 = 90.0;
 
 fn sweeps() -> impl Iterator<Item = (BuiltInWorld, LapMatcher, InformationFrame)> {
     TRIALS.into_iter().flat_map(|(world, matcher)| {
-        let frames = InformationFrame::ALL.iter();
-        frames.map(move |&frame| (world, matcher, frame))
+        InformationFrame::all().map(move |frame| (world, matcher, frame))
     })
 }
 

@@ -13,6 +13,7 @@ mod errors;
 mod evaluation;
 mod grid_map;
 mod localizer;
+mod log_files;
 mod motions;
 mod pictures;
 mod pose_graph;

@@ -1,10 +1,6 @@
 //! Maps a recorded log with the estimator.
 
-use std::fs::{self, File};
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::path::PathBuf;
 
 use ch16_slam2d::slam::Slam;
 use nalgebra::Matrix3;
@@ -13,22 +9,21 @@ use pr_geom::SE2;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
 use robot_io::graph_file::GraphFile;
-use robot_io::log::{LogOptions, LogReader as _, with_remarks};
-use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
+use robot_io::log::{LogFrame, LogOptions, LogReader as _, with_remarks};
 use robot_io::log_format::LogFormat;
 use robot_io::map_image::{MapImage, build_map, finest_map, map_with_free_space};
 use robot_io::motion::{ComparedReader, OdometryUse};
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
-use robot_io::remark::Remark;
-use robot_io::rosbag2;
 use robot_io::run::LogRun;
 
 use crate::arrays;
-use crate::errors::{LogError, os_error, within};
+use crate::errors::{LogError, within};
 use crate::grid_map::GridMap;
+use crate::log_files::{self, ReadTo};
 use crate::pose_graph::PoseGraph;
 use crate::restored::{self, Reduced};
+use crate::sensor::Sensor;
 use crate::settings::{self, Chosen};
 use crate::{pictures, trajectories};
 
@@ -125,6 +120,9 @@ impl LogResult {
     }
 }
 
+/// Ranges, odometry and stamp of a scan.
+type StepArguments = (Py<PyArray1<f64>>, Option<Py<PyArray1<f64>>>, f64);
+
 /// Result of a run, before its conversion for Python.
 struct Found {
     trajectory: Vec<(f64, SE2)>,
@@ -205,20 +203,69 @@ impl Pipeline {
         })
     }
 
+    /// The scans of the log, for a `Slam` or for your own code: the sensor, and a list of (ranges, odometry, stamp) as
+    /// `Slam.step` takes them. Odometry is the motion since the scan before, None for the first and where the log has none.
+    ///
+    /// Raises OSError if the file cannot be read, LogError if it is no log, or its laser changes.
+    fn frames(&self, py: Python<'_>) -> PyResult<(Sensor, Vec<StepArguments>)> {
+        let frames = py.detach(|| self.read_frames())?;
+        let first = frames.first().ok_or_else(|| {
+            LogError::new_err(format!("{}: the log has no scan", self.log.display()))
+        })?;
+        let sensor = Sensor::from_scan(&first.scan);
+        let mut before = None;
+        let mut steps = Vec::new();
+        for (number, frame) in frames.iter().enumerate() {
+            if Sensor::from_scan(&frame.scan) != sensor {
+                return Err(LogError::new_err(format!(
+                    "{}: the laser of scan {number} has other angles, limits or mounting than that of the first; \
+                     leave one laser by scan_topic",
+                    self.log.display()
+                )));
+            }
+            let motion = before
+                .zip(frame.odometry)
+                .map(|(before, now): (SE2, SE2)| before.inverse() * now);
+            before = frame.odometry;
+            let ranges = PyArray1::from_slice(py, &frame.scan.ranges_m).unbind();
+            let motion = motion.map(|motion| arrays::of_pose(py, &motion).unbind());
+            steps.push((ranges, motion, frame.stamp_s));
+        }
+        Ok((sensor, steps))
+    }
+
     fn __repr__(&self) -> String {
         format!("Pipeline({:?})", self.log.display().to_string())
     }
 }
 
 impl Pipeline {
+    /// Opens the log.
+    fn reader(&self) -> PyResult<(ComparedReader<'static>, ReadTo)> {
+        let name = self.log.display().to_string();
+        let (parts, of_files, read) = log_files::parts(&self.log)?;
+        let reader = LogFormat::open_parts(parts, &name, &self.options).map_err(to_error)?;
+        let reader = ComparedReader::new(with_remarks(reader, of_files), false);
+        Ok((reader.with_odometry(self.odometry), read))
+    }
+
+    fn read_frames(&self) -> PyResult<Vec<LogFrame>> {
+        let (mut reader, _) = self.reader()?;
+        let mut frames = Vec::new();
+        loop {
+            match reader.next_frame() {
+                Ok(Some(frame)) => frames.push(frame),
+                Err(error) if frames.is_empty() => return Err(to_error(error)),
+                // A log that was cut off has the scans before.
+                Ok(None) | Err(_) => return Ok(frames),
+            }
+        }
+    }
+
     /// Runs the log without the interpreter's lock, except to report progress.
     fn drive(&self, progress: &Progress, cell_m: f64, free_space: bool) -> PyResult<Found> {
         let name = self.log.display().to_string();
-        let to_error = |error: robot_io::log::LogError| LogError::new_err(error.to_string());
-        let (parts, of_files, read) = parts(&self.log)?;
-        let reader = LogFormat::open_parts(parts, &name, &self.options).map_err(to_error)?;
-        let reader = with_remarks(reader, of_files);
-        let mut reader = ComparedReader::new(reader, false).with_odometry(self.odometry);
+        let (mut reader, read) = self.reader()?;
         let mut run = LogRun::default();
         for (setting, value) in &self.chosen {
             run = run.with_setting(setting, *value);
@@ -287,6 +334,10 @@ impl Pipeline {
     }
 }
 
+fn to_error(error: robot_io::log::LogError) -> PyErr {
+    LogError::new_err(error.to_string())
+}
+
 /// Target of the progress reports.
 enum Progress {
     Nowhere,
@@ -344,112 +395,4 @@ fn say(py: Python<'_>, text: &str) -> PyResult<()> {
     }
     stderr.call_method1("write", (text,))?;
     stderr.call_method0("flush").map(drop)
-}
-
-/// Where in the log the last read ended, and the size of the log, bytes. Some formats are read twice, for their contents and
-/// for their scans.
-struct ReadTo {
-    end: Arc<AtomicU64>,
-    size: u64,
-}
-
-impl ReadTo {
-    fn share(&self) -> f64 {
-        (self.end.load(Ordering::Relaxed) as f64 / self.size.max(1) as f64).min(1.0)
-    }
-}
-
-/// The files of a log.
-fn parts(path: &Path) -> PyResult<(Vec<LogBytes<'static>>, Vec<Remark>, ReadTo)> {
-    let unreadable = |path: &Path| {
-        let path = path.to_owned();
-        move |error: io::Error| os_error(&path, &error)
-    };
-    let mut files = vec![path.to_owned()];
-    let mut remarks = Vec::new();
-    if path.is_dir() {
-        let metadata = path.join(rosbag2::METADATA);
-        let listed = fs::read_to_string(&metadata).ok();
-        let entries = fs::read_dir(path).map_err(unreadable(path))?;
-        let names: Vec<String> = entries
-            .flatten()
-            .map(|entry| entry.file_name().to_string_lossy().into_owned())
-            .collect();
-        let order = rosbag2::in_order(listed.as_deref(), &names).map_err(|absent| {
-            LogError::new_err(format!(
-                "{}: {absent} is listed and not there",
-                path.display()
-            ))
-        })?;
-        files = order
-            .files
-            .iter()
-            .map(|at| path.join(&names[*at]))
-            .collect();
-        remarks = order.remarks;
-        if files.is_empty() {
-            return Err(LogError::new_err(format!(
-                "{} is a folder without a recording of ROS 2; give a log, or a folder with files that end in .mcap or .db3",
-                path.display()
-            )));
-        }
-    }
-    let end = Arc::new(AtomicU64::new(0));
-    let mut parts = Vec::new();
-    let mut size = 0;
-    for file in files {
-        let opened = File::open(&file).map_err(unreadable(&file))?;
-        let (before, bytes_of_file) = (size, opened.metadata().map_err(unreadable(&file))?.len());
-        size += bytes_of_file;
-        // Small pieces, so that the share grows with the scans of a short log, too.
-        let piece = (bytes_of_file / 256).clamp(1 << 9, 1 << 16) as usize;
-        let mut beside = file.clone().into_os_string();
-        beside.push(WRITE_AHEAD);
-        let bytes = |file: PathBuf| {
-            let end = Arc::clone(&end);
-            LogBytes::new(move || {
-                let source = Followed {
-                    file: File::open(&file)?,
-                    at: before,
-                    before,
-                    end: Arc::clone(&end),
-                };
-                Ok(BufReader::with_capacity(piece, source))
-            })
-        };
-        let part = bytes(file);
-        let beside = PathBuf::from(beside);
-        parts.push(if beside.is_file() {
-            part.with_write_ahead(bytes(beside))
-        } else {
-            part
-        });
-    }
-    Ok((parts, remarks, ReadTo { end, size }))
-}
-
-/// A file that notes where the last read ended.
-struct Followed {
-    file: File,
-    /// Its position in the log, and that of its start.
-    at: u64,
-    before: u64,
-    end: Arc<AtomicU64>,
-}
-
-impl Read for Followed {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.file.read(buffer)?;
-        self.at += count as u64;
-        self.end.store(self.at, Ordering::Relaxed);
-        Ok(count)
-    }
-}
-
-impl Seek for Followed {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        let found = self.file.seek(to)?;
-        self.at = self.before + found;
-        Ok(found)
-    }
 }

@@ -21,6 +21,7 @@ use crate::restored::{self, Reduced};
 ///
 /// Raises FrameError for an invalid number.
 #[pyclass(frozen, module = "rustslam2d")]
+#[derive(PartialEq)]
 pub struct Sensor {
     /// The geometry, without ranges.
     scan: LaserScan,

@@ -3,6 +3,8 @@
 import json
 import re
 import shutil
+import subprocess
+import sys
 
 import pytest
 from conftest import ROOT
@@ -61,6 +63,15 @@ def test_the_next_one_is_that_of_the_plan_and_what_waits_is_passed_over(capsys, 
         exercises.show(states, found, plan)
         assert f"Next: {following}.py" in capsys.readouterr().out
     assert exercises.PLANS["lab"][1] == "trimmed_icp" and set(exercises.PLANS["lab"]) == set(exercises.HINTS)
+
+
+def test_the_solutions_map_a_log(drive, tmp_path):
+    drive.write_log(tmp_path / "lap.jsonl")
+    command = [sys.executable, "-m", "rustslam2d.exercises", "--folder", FOLDER, "--code", FOLDER / "solutions"]
+    done = subprocess.run([*command, "--log", "lap.jsonl"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.stdout.startswith("Slam(130 scans, "), done.stderr
+    assert re.search(r"[1-9]\d* of [1-9]\d* loops accepted: map.yaml, map.pgm\n$", done.stdout), done.stdout
+    assert (tmp_path / "map.pgm").read_bytes().startswith(b"P5")
 
 
 @pytest.mark.parametrize("workflow", ["classroom-ci.yml", "classroom-python-ci.yml"])

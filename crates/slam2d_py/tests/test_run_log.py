@@ -51,6 +51,19 @@ def test_a_run_is_near_the_truth_and_settings_change_it(drive, log, run):
     assert not np.array_equal(alone.trajectory, run.trajectory)
 
 
+def test_the_scans_of_a_log_drive_any_estimator(drive, driven, log):
+    sensor, frames = rs.Pipeline(log).frames()
+    assert repr(sensor) == repr(drive.sensor) and len(frames) == len(drive)
+    ranges, odometry, stamps = zip(*frames)
+    assert np.array_equal(ranges, drive.ranges) and np.array_equal(stamps, drive.stamps)
+    # The log has poses of odometry, from which motions round differently.
+    assert odometry[0] is None and np.allclose(odometry[1:], drive.odometry[1:], atol=1e-9)
+    slam = rs.Slam.chapter(sensor=sensor, icp=lambda source, target, init, **_: init)
+    for frame in frames:
+        slam.step(*frame)
+    assert slam.frames == len(drive)
+
+
 def test_progress_comes_as_numbers_or_on_standard_error(log, capsys):
     told = []
     rs.Pipeline(log).run(progress=lambda scans, share: told.append((scans, share)))
@@ -87,9 +100,10 @@ def test_a_file_that_is_no_log_is_refused_in_a_sentence(tmp_path):
         (trajectory, f"{trajectory} is a trajectory, not a log of scans; pass a log; slam2d evaluate evaluates a trajectory"),
         (tmp_path, f"{tmp_path} is a folder without a recording of ROS 2; give a log, or a folder with files that end in .mcap or .db3"),
     ]:
-        with pytest.raises(rs.LogError) as refused:
-            rs.Pipeline(path).run()
-        assert str(refused.value) == said
+        for read in (rs.Pipeline(path).run, rs.Pipeline(path).frames):
+            with pytest.raises(rs.LogError) as refused:
+                read()
+            assert str(refused.value) == said
 
 
 def test_a_log_in_which_nothing_was_seen_is_refused(drive, log, tmp_path):

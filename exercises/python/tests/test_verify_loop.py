@@ -118,3 +118,10 @@ def test_the_edge_knows_what_its_pairs_know_and_trusts_its_points_as_it_is_told(
         expected = regularize(icp_information(at, normals[partners], *trust), 1.0, 2500.0)
         omega = verify_loop(*first, NODE, OLD, LoopConfig(trust=trust)).information
         assert np.abs(omega - expected).max() < 1e-6, f"with trust={trust} the information is\n{omega}, expected\n{expected}"
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_loop_without_pairs_is_rejected(first):
+    far = verify_loop(*moved(first, (50.0, 0.0, 0.0)), NODE, OLD)
+    assert far.inliers == 0 and not far.accepted, f"{far.inliers} pairs of a belief 50 m off"
+    assert np.allclose(far.information, np.eye(3)), "no pair says anything, so the ridge is left"

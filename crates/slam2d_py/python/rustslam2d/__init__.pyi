@@ -301,6 +301,7 @@ class Pipeline:
         cell: float = 0.05,
         free_space: bool = False,
     ) -> LogResult: ...
+    def frames(self) -> tuple[Sensor, list[tuple[_Floats, Optional[_Floats], float]]]: ...
 
 class Drive:
     @property

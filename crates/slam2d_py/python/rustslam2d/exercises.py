@@ -4,6 +4,7 @@
     python -m rustslam2d.exercises --plan lab      the next one in the order of the lab
     python -m rustslam2d.exercises --json          one object for a grader
     python -m rustslam2d.exercises --lap           your functions drive the chapter's lap
+    python -m rustslam2d.exercises --log FILE      they map a robot's log, into map.yaml
 
 Each exercise is tested by pytest in a process of its own. What counts is how the process ends and the report that pytest
 writes, in which each test has to stand once; what your code prints counts nothing.
@@ -101,23 +102,42 @@ def waits(name, result):
     return others[0] if others and any(results.values()) else None
 
 
-def lap(folder):
-    """Drives the chapter's lap with the functions that are written."""
-    import numpy as np
-
-    import rustslam2d as rs
-
+def written(folder, tried):
+    """The student's ICP and gate; the gate notes in `tried` what it was asked."""
     sys.path[:0] = [str(folder)]
     from trimmed_icp import icp
     from verify_loop import verify_loop
-
-    tried = []
 
     def gate(poses, sweeps, node, candidate):
         found = verify_loop(poses, sweeps, node, candidate)
         tried.append((node, candidate, found))
         return found
 
+    return icp, gate
+
+
+def map_log(folder, log):
+    """Maps a log with the student's ICP and gate."""
+    import rustslam2d as rs
+
+    tried = []
+    icp, gate = written(folder, tried)
+    sensor, frames = rs.Pipeline(log).frames()
+    slam = rs.Slam.chapter(sensor=sensor, icp=icp, gate=gate)
+    for frame in frames:
+        slam.step(*frame)
+    slam.map(0.1).save("map.yaml")
+    print(f"{slam}, {sum(found.accepted for _, _, found in tried)} of {len(tried)} loops accepted: map.yaml, map.pgm")
+
+
+def lap(folder):
+    """Drives the chapter's lap with the functions that are written."""
+    import numpy as np
+
+    import rustslam2d as rs
+
+    tried = []
+    icp, gate = written(folder, tried)
     for what, functions in (("ours", {}), ("your ICP", {"icp": icp}), ("your ICP and gate", {"icp": icp, "gate": gate})):
         try:
             drive = rs.simulate(icp=functions.get("icp", core_icp), gate=functions.get("gate"))
@@ -168,12 +188,13 @@ def main(arguments=None):
     parser.add_argument("--plan", choices=PLANS, default="list", help="the order in which the next one is named")
     parser.add_argument("--json", action="store_true", help="print one object for a grader")
     parser.add_argument("--lap", action="store_true", help="drive the chapter's lap with your functions")
+    parser.add_argument("--log", metavar="FILE", help="map a robot's log with your functions, into map.yaml")
     chosen = parser.parse_args(arguments)
     folder = folder_of(chosen.folder)
     code = Path(chosen.code).resolve() if chosen.code else folder
-    if chosen.lap:
+    if chosen.lap or chosen.log:
         sys.path.append(str(folder))
-        return lap(code)
+        return map_log(code, chosen.log) if chosen.log else lap(code)
     found = {name: run(name, folder, code) for name in HINTS}
     states = {name: state(name, code, results) for name, (results, _) in found.items()}
     if not chosen.json:
