@@ -8,10 +8,12 @@ use ch16_slam2d::chi_squared::CHAPTER_QUANTILE;
 use ch16_slam2d::loops::GateModel;
 use pr_sim::sketch::limits;
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{MORE, OneOf, Param, optional};
+use widget_kit::param::{MORE, Named, OneOf, Param, optional};
 use widget_kit::playback::SPEED;
 use widget_kit::run::{LOOPS, NOISE, seed};
-use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec, buttons};
+use widget_kit::spec::{
+    ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec, buttons, count,
+};
 use widget_kit::{one_of, params};
 
 /// Ticks of a lap of the Apartment.
@@ -38,6 +40,9 @@ const MAX_FLAT: usize = 33_000;
 
 /// Largest number of a wall, counted from 1.
 const MAX_PIECES: f64 = limits::WALLS as f64;
+
+/// The worlds that are built in.
+const WORLDS: &[Named<BuiltInWorld>] = BuiltInWorld::NAMED;
 
 /// The kind of the selected part of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -214,7 +219,7 @@ params! {
         Option<BuiltInWorld>,
         "world",
         "world",
-        &optional::<_, 6>(BuiltInWorld::NAMED, 5, ["own", "your own flat"]),
+        &optional::<_, { WORLDS.len() + 1 }>(WORLDS, WORLDS.len(), ["own", "your own flat"]),
     )
     .help("The world. The Apartment uses the chapter's estimator, every other world the default one.");
 
@@ -323,7 +328,7 @@ params! {
         Option<Claim>,
         "own",
         "your own loop",
-        &optional::<_, 4>(Claim::NAMED, 0, ["none", "none"]),
+        &optional::<_, { Claim::NAMED.len() + 1 }>(Claim::NAMED, 0, ["none", "none"]),
     )
     .help("A loop between any two keyframes. Registered: the registration of their sweeps, from their poses in the graph. The truth: what no robot knows. “The same place”: both at one position, right or wrong.");
 
@@ -367,6 +372,16 @@ params! {
     use MORE;
 }
 
+/// All buttons.
+const BUTTONS: &[&[ButtonSpec]] = &[
+    &[PLAY, STEP, RESET],
+    LOOP_BUTTONS,
+    GRAPH_BUTTONS,
+    &[EDIT_FLAT],
+    FLAT_BUTTONS,
+    &[DEFAULTS],
+];
+
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.2",
@@ -387,14 +402,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         buttons: &["play", "edit-flat"],
     },
     params: PARAMS,
-    buttons: &buttons::<27>(&[
-        &[PLAY, STEP, RESET],
-        LOOP_BUTTONS,
-        GRAPH_BUTTONS,
-        &[EDIT_FLAT],
-        FLAT_BUTTONS,
-        &[DEFAULTS],
-    ]),
+    buttons: &buttons::<{ count(BUTTONS) }>(BUTTONS),
     presets: &[
         Preset {
             id: "first-loop",

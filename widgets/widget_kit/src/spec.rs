@@ -45,7 +45,18 @@ impl ButtonSpec {
     }
 }
 
-/// The buttons of several groups in one list.
+/// The number of buttons of several groups.
+#[must_use]
+pub const fn count(groups: &[&[ButtonSpec]]) -> usize {
+    let (mut count, mut group) = (0, 0);
+    while group < groups.len() {
+        count += groups[group].len();
+        group += 1;
+    }
+    count
+}
+
+/// The buttons of several groups in one list, `N` of them: their [`count`].
 ///
 /// # Panics
 /// If they are not `N`: in a constant at compile time.
