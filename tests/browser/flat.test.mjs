@@ -238,6 +238,30 @@ describe('laps that break', () => {
     }, { path: '/break.html' });
   });
 
+  it('are sent with their picture and a link that opens them, and links to the site show one', async () => {
+    const { state } = GALLERY.find(({ id }) => id === 'library');
+    const sharing = `<script>Object.assign(Navigator.prototype, {
+      canShare: ({ files }) => files.length === 1,
+      share: async ({ files: [file], url }) => { window.sent = [file.name, [...new Uint8Array(await file.arrayBuffer()).subarray(1, 4)], url]; },
+    })</script>`;
+    const page = readFileSync(join(h.DIST, 'break.html'), 'utf8').replace('<head>', `<head>${sharing}`);
+    await visit('', async (tab) => {
+      await tab.locator('.own-card').getByRole('button', { name: 'Send' }).click();
+      await tab.waitForFunction(() => window.sent !== undefined);
+      const [name, start, url] = await tab.evaluate(() => window.sent);
+      assert.equal(name, 'my-flat.png');
+      assert.deepEqual(start, [...Buffer.from('PNG')]);
+      assert.ok(url.includes('flat='), url);
+      const card = await tab.locator('meta[property="og:image"]').getAttribute('content');
+      const size = await tab.evaluate(async (source) => {
+        const picture = Object.assign(new Image(), { src: source });
+        await picture.decode();
+        return [picture.naturalWidth, picture.naturalHeight];
+      }, card);
+      assert.deepEqual(size, [1200, 630]);
+    }, { path: `/break.html?w=16.2&${state}`, server: { pages: { '/break.html': page } } });
+  });
+
   it('give a flat of one’s own a card with a link and a picture, which another world takes away', async () => {
     const { state } = GALLERY.find(({ id }) => id === 'library');
     await visit('', async (tab) => {

@@ -221,7 +221,7 @@ describe('the lap under the title', () => {
       }
     }
     const { before, keyframes } = replay.at(replay.lengthS);
-    const moved = keyframes.map(([x, y], node) => Math.hypot(x - before.poses[node][0], y - before.poses[node][1]));
+    const moved = before.poses.map(([x, y], node) => Math.hypot(x - keyframes[node][0], y - keyframes[node][1]));
     assert.deepEqual(wordsAt(replay.lengthS, 900).map(({ text }) => text), [`${Math.round(100 * Math.max(...moved))} cm`]);
     const numbers = [];
     for (let seconds = replay.doubledS + 0.02; seconds < replay.doubledS + 2.6; seconds += 0.05) {

@@ -166,6 +166,33 @@ describe('a widget beside its text', () => {
     });
   }
 
+  for (const [width, height] of [[1440, 900], [390, 844]]) {
+    it(`leaves the controls in place when More opens, ${width} px wide`, async () => {
+      for (const page of h.PAGES.filter((file) => file !== 'break.html' && h.widgetsOf(file).length > 0)) {
+        // The maps of w16.1 are a part of its picture, which enters with the second start or with More.
+        for (const id of h.widgetsOf(page).filter((name) => name !== 'w16.1')) {
+          await chapter(`/${page}?w=${id.slice(1)}`, async (tab) => {
+            const css = named(id);
+            await h.ready(tab, css);
+            await h.quiet(tab);
+            const more = tab.locator(`${css} button[data-control="more"]`);
+            if (await more.count() === 0) return;
+            const top = () => tab.evaluate((name) => {
+              const { shadowRoot } = document.querySelector(name);
+              const [control, frame] = ['#control-more', '.frame'].map((one) => shadowRoot.querySelector(one).getBoundingClientRect());
+              return control.top - frame.top;
+            }, css);
+            const closed = await top();
+            await more.click();
+            await h.quiet(tab);
+            // 1.5: the height of a canvas is a whole number of pixels.
+            assert.ok(Math.abs((await top()) - closed) <= 1.5, `${id}: ${closed} and ${await top()}`);
+          }, { options: { deviceScaleFactor, viewport: { width, height } } });
+        }
+      }
+    });
+  }
+
   it('opens More below the picture, without a move of the picture and without a scroller of its own', async () => {
     await chapter('/index.html?w=16.1', async (tab) => {
       const css = named('w16.1');

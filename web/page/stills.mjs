@@ -7,6 +7,7 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 import { build } from 'esbuild';
 
 import { shades } from '../palette.mjs';
+import { card } from './card.mjs';
 import { GALLERY } from './gallery.mjs';
 
 const here = path.dirname(fileURLToPath(import.meta.url));
@@ -15,13 +16,16 @@ const PKG = path.join(here, '..', 'pkg');
 const CANONICAL_SEED = 12648430;
 
 /**
- * Writes `pictures/lap-light.svg` and its dark sister, and those of the small figures. Returns the figures' HTML by name,
+ * Writes `pictures/lap-light.svg` and its dark sister, `pictures/card.png` for links to the site, and those of the small figures. Returns the figures' HTML by name,
  * the lap as the page replays it, as JSON, and the first figure: its two sweeps as SVG, where one belongs as JSON.
  */
 export async function drawStills(outDir) {
   const core = await instantiate();
   const story = JSON.parse(core.lapStory(CANONICAL_SEED, 1));
   await drawStory('lap', story, outDir);
+  const { drawDoubled } = await load('lap/still.ts');
+  const picture = card((surface, width) => drawDoubled(story, below(surface, 65), width), shades('light'));
+  await writeFile(path.join(outDir, 'pictures', 'card.png'), picture);
   const building = await readFile(path.join(here, 'building/building.json'), 'utf8');
   await drawStory('building', JSON.parse(building), outDir);
   await drawGallery(core, outDir);
@@ -43,6 +47,17 @@ function withShortSweeps(story) {
     return { ...tick, sweep: tick.sweep.map((metres) => Number(metres.toFixed(digits))) };
   });
   return { ...story, ticks };
+}
+
+/** A surface on which everything stands that many pixels lower: the strip in the middle of the higher card. */
+function below(surface, down) {
+  const lower = (points) => points.map(([x, y]) => [x, y + down]);
+  return {
+    ...surface,
+    line: (points, ...more) => surface.line(lower(points), ...more),
+    dots: (points, ...more) => surface.dots(lower(points), ...more),
+    area: (points, ...more) => surface.area(lower(points), ...more),
+  };
 }
 
 async function drawStory(name, story, outDir) {

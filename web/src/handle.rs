@@ -294,6 +294,21 @@ impl Widget {
         self.shared.to_css([height])[0]
     }
 
+    /// Height of its part above the plots that More opens, CSS pixels.
+    #[wasm_bindgen(js_name = stageHeight)]
+    pub fn stage_height(&self) -> f32 {
+        let height = self.shared.shell.borrow().stage_height();
+        self.shared.to_css([height])[0]
+    }
+
+    /// Sets the height in CSS pixels that stays free for the controls above the plots that More opens.
+    #[wasm_bindgen(js_name = setGap)]
+    pub fn set_gap(&self, height_px: f32) {
+        let height = height_px / self.shared.scale.get();
+        self.shared.shell.borrow_mut().set_gap(height);
+        self.shared.request_repaint();
+    }
+
     /// Sets the available height for the picture, in CSS pixels.
     #[wasm_bindgen(js_name = setRoom)]
     pub fn set_room(&self, height_px: f32) {

@@ -34,7 +34,10 @@ export function exportMenu(source: Source, name: string, status: HTMLElement): H
     return element;
   };
   items.append(
-    button('Save picture', async () => savePng(await source.snapshot(), name)),
+    button('Send', async () => {
+      status.textContent = await send(await pngOf(await source.snapshot(), name), source.link);
+    }),
+    button('Save picture', async () => saveBlob(await pngOf(await source.snapshot(), name), `${name}.png`)),
     button('Save data', async () => saveCsv(await source.tables(), name)),
     button('Copy link', async () => {
       status.textContent = (await copyText(source.link)) ? 'The link is copied.' : source.link;
@@ -45,10 +48,21 @@ export function exportMenu(source: Source, name: string, status: HTMLElement): H
   return menu;
 }
 
-async function savePng(picture: ImageBitmap, name: string): Promise<void> {
+/** Sends a picture with a link by the system's dialog; without one, saves it and copies the link. Returns what was done. */
+export async function send(picture: File, link: string): Promise<string> {
+  const parcel = { files: [picture], title: document.title, url: link };
+  if (navigator.canShare?.(parcel) === true) {
+    await navigator.share(parcel);
+    return '';
+  }
+  saveBlob(picture, picture.name);
+  return (await copyText(link)) ? 'The picture is saved, the link copied.' : link;
+}
+
+async function pngOf(picture: ImageBitmap, name: string): Promise<File> {
   const canvas = new OffscreenCanvas(picture.width, picture.height);
   canvas.getContext('2d')?.drawImage(picture, 0, 0);
-  saveBlob(await canvas.convertToBlob({ type: 'image/png' }), `${name}.png`);
+  return new File([await canvas.convertToBlob({ type: 'image/png' })], `${name}.png`, { type: 'image/png' });
 }
 
 /** Saves each table as a file. */

@@ -6,6 +6,7 @@
 import type { Widget } from '../pkg/glue.js';
 import { claim, retryWaiting, release, type Drawer } from './contexts';
 import { CrashError, Instance } from './instance';
+import { placeControls } from './controls-place';
 import { nextTask } from './dom';
 import { LoadError } from './module';
 import type { Parts } from './parts';
@@ -63,6 +64,8 @@ export class Lifecycle implements Visibility, Drawer {
   #isBusy = false;
   /** The instance's frame counter after the last drawn frame. */
   #drawnFrames = 0;
+  /** Height of the controls that the instance knows. */
+  #gap = 0;
   /** Increases with every end: asynchronous work of an earlier start detects that it is outdated. */
   #generation = 0;
 
@@ -251,6 +254,7 @@ export class Lifecycle implements Visibility, Drawer {
   #begin(instance: Instance, stage: Stage): void {
     const startedAt = performance.now();
     this.#drawnFrames = 0;
+    this.#gap = 0;
     instance.frames.afterFrame = () => this.#afterFrame(instance, stage, startedAt);
     instance.frames.onCrash = (error) => this.fail(instance.crash() ?? error);
     instance.frames.open();
@@ -274,9 +278,13 @@ export class Lifecycle implements Visibility, Drawer {
     const crash = instance.crash();
     if (crash !== undefined) throw crash;
     const height = Math.ceil(instance.use((widget) => widget.contentHeight()));
+    const gap = this.#parts.controls.offsetHeight;
+    if (gap !== this.#gap) instance.use((widget) => widget.setGap(gap));
+    this.#gap = gap;
     const fits = Math.abs(height - canvas.clientHeight) <= 1;
     if (!fits && height > 0) canvas.style.height = `${height}px`;
     else if (!this.#parts.stage.classList.contains('live')) this.#showLive(startedAt);
+    placeControls(this.#parts, instance.use((widget) => widget.stageHeight()));
     const frames = instance.use((widget) => widget.frames());
     // eframe paints only changes, and without painting the canvas is empty.
     if (frames !== this.#drawnFrames) this.#host.drew(canvas);

@@ -25,6 +25,7 @@ export interface Parts {
   progress: HTMLProgressElement;
   note: HTMLElement;
   bar: HTMLElement;
+  controls: HTMLElement;
   places: Places;
   verdict: HTMLElement;
   rest: HTMLElement;
@@ -69,7 +70,7 @@ export function build(shadow: ShadowRoot): Parts {
   frame.append(claim, view, note, summary, bar, live);
   shadow.append(style, frame);
   const places = { transport, first, tools, presets, settings, actions };
-  return { frame, claim, stage, whole, drop, picture, progress, note, bar, places, verdict, rest, summary, live, status };
+  return { frame, claim, stage, whole, drop, picture, progress, note, bar, controls, places, verdict, rest, summary, live, status };
 }
 
 /** The error in one sentence, and a button that restarts or reloads. */

@@ -44,12 +44,14 @@ export class ReservedHeight {
 
   /** The height available to the picture: that of `max-height` or of `--room` without what is around it, else infinite. */
   get room(): number {
-    const { frame, rest } = this.#parts;
+    const { frame, rest, controls } = this.#parts;
     const { host } = this.#stage.getRootNode() as ShadowRoot;
     const style = getComputedStyle(host);
     const most = [style.maxHeight, style.getPropertyValue('--room')].find((length) => length.endsWith('px'));
     if (most === undefined) return Infinity;
-    return parseFloat(most) - (frame.offsetHeight - this.#stage.offsetHeight - rest.offsetHeight);
+    // In the gap of the canvas they are part of the stage.
+    const inGap = controls.style.marginBottom === '' ? 0 : controls.offsetHeight;
+    return parseFloat(most) - (frame.offsetHeight - this.#stage.offsetHeight - rest.offsetHeight) - inGap;
   }
 
   /** Removes the reservation: the picture gets its natural height. */

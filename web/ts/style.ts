@@ -60,8 +60,8 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .loops .older { stroke: var(--older); }
 .loops .newer { stroke: var(--newer); }
 .loops span { flex: 1 0 100%; color: var(--soft); font-size: 0.8125rem; }
-.bar { container-type: inline-size; border-top: 1px solid var(--line); }
-.controls { display: grid; grid-template: "transport transport" "first tools" "verdict verdict" / minmax(0, 1fr) auto;
+.bar { container-type: inline-size; }
+.controls { position: relative; z-index: 1; background: var(--paper); border-top: 1px solid var(--line); display: grid; grid-template: "transport transport" "first tools" "verdict verdict" / minmax(0, 1fr) auto;
   gap: 0.25rem 0.75rem; padding: 0.3rem 0.75rem 0.4rem; }
 .transport { grid-area: transport; }
 .first { grid-area: first; }
@@ -79,7 +79,9 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .transport, .presets, .actions, .zoom { display: flex; flex-wrap: wrap; gap: 0.25rem 0.5rem; align-items: center; }
 .tools { display: flex; flex-direction: column; gap: 0.25rem; }
 .tools .control button, .menu summary { width: 100%; }
-.verdict p { margin: 0; text-wrap: pretty; }
+.verdict p { margin: 0; text-wrap: pretty; display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 3; overflow: hidden; }
+@container (30rem <= width < 50rem) { .verdict p { -webkit-line-clamp: 4; } }
+.bar:has(.rest:not([hidden])) .verdict p { display: block; }
 .question { font-weight: 600; }
 .good { color: var(--good); }
 .doubtful { color: var(--fair); }
@@ -140,6 +142,8 @@ thead tr { border-bottom: 1px solid var(--line); }
 [hidden] { display: none !important; }
 @media print {
   .transport, .first, .tools, .rest, .whole, .drop, progress, .note, .loops { display: none; }
+  .controls { top: 0 !important; margin-bottom: 0 !important; }
+  .verdict p { display: block; }
   .stage, .stage .picture { height: auto !important; min-height: 0; }
   .stage .picture { max-height: 15cm; object-fit: contain; object-position: top left; }
   .stage canvas { display: none; }

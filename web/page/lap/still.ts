@@ -1,6 +1,6 @@
 // The still picture of the strip: shown until its script has started, or without scripts.
 
-import { ASPECT, draw } from './drawing';
+import { ASPECT, draw, type Surface } from './drawing';
 import { Replay, type Story } from './story';
 import { SvgSurface, type Inks } from './surfaces';
 
@@ -9,7 +9,12 @@ const WIDTH = 900;
 /** The moment before the first loop closes, as an SVG. */
 export function still(story: Story, inks: Inks): string {
   const surface = new SvgSurface(inks);
-  const replay = new Replay(story);
-  draw(story, replay.at(replay.doubledS), surface, WIDTH);
+  drawDoubled(story, surface, WIDTH);
   return surface.file(WIDTH, WIDTH / ASPECT);
+}
+
+/** Draws that moment, as wide as given. */
+export function drawDoubled(story: Story, surface: Surface, width: number): void {
+  const replay = new Replay(story);
+  draw(story, replay.at(replay.doubledS), surface, width);
 }

@@ -13,7 +13,7 @@ pub struct RobotView;
 impl View for RobotView {
     fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
-        let is_empty = scene.panels.iter().all(|panel| panel.layers.is_empty());
+        let is_empty = scene.panels[0].layers.is_empty();
         let height = if is_empty {
             // The host's drop zone covers it.
             PlotHeight::Fixed(220.0)

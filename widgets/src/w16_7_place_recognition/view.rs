@@ -1,4 +1,4 @@
-//! Layout of the panels: the flat above the distances, the views above the matrix, the curves below.
+//! Layout of the panels: the flat above the distances, the views beside them, the matrix and the curves below.
 
 use widget_kit::layout::PlotHeight;
 use widget_kit::scene::Scene;
@@ -26,12 +26,9 @@ impl View for PlacesView {
             let column = |share, slots| Column { share, slots };
             return Arrangement {
                 stage: vec![Row {
-                    columns: vec![
-                        column(1.55, vec![flat, scores]),
-                        column(1.0, vec![looks, matrix]),
-                    ],
+                    columns: vec![column(1.55, vec![flat, scores]), column(1.0, vec![looks])],
                 }],
-                below: vec![Row::new(&[curves])],
+                below: vec![Row::new(&[matrix, curves])],
             };
         }
         // On a phone the flat, the threshold and the control fit one screen without the matrix.

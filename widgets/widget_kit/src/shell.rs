@@ -53,6 +53,10 @@ pub struct Shell {
     panels: Vec<(&'static str, Transform)>,
     textures: Textures,
     content_height: f32,
+    /// Height of the part above the plots that More opens, in points.
+    stage_height: f32,
+    /// Height that stays free between the two for the host's controls, in points.
+    gap: f32,
     /// Available height for the picture, in points.
     room: f32,
     first: FirstAct,
@@ -88,6 +92,8 @@ impl Shell {
             panels: Vec::new(),
             textures: Textures::default(),
             content_height: 0.0,
+            stage_height: 0.0,
+            gap: 0.0,
             room: f32::INFINITY,
             first: FirstAct::default(),
         }
@@ -142,6 +148,20 @@ impl Shell {
     #[must_use]
     pub fn content_height(&self) -> f32 {
         self.content_height
+    }
+
+    /// Height of the part above the plots that More opens; without such plots, the whole height.
+    #[must_use]
+    pub fn stage_height(&self) -> f32 {
+        self.stage_height
+    }
+
+    /// Sets the height in points that stays free above the plots that More opens: the controls do not move.
+    pub fn set_gap(&mut self, height: f32) {
+        if self.gap != height {
+            self.gap = height;
+            self.stale = true;
+        }
     }
 
     /// Sets the available height in points; the plots of the stage shrink to fit.

@@ -10,7 +10,7 @@ use crate::egui_surface::{EguiMeasure, EguiSurface};
 use crate::layout::PanelLayout;
 use crate::pointer::Touched;
 use crate::scene::{Panel, Scene};
-use crate::view::{self, MARGIN, Placed};
+use crate::view::{self, MARGIN, PANEL_GAP, Placed, Row};
 
 /// A panel with its layout for this frame; it is painted last, after all changes of the model.
 pub(super) struct Reserved {
@@ -29,7 +29,18 @@ impl Shell {
         room::fit(&mut arrangement.stage, self.room - 2.0 * MARGIN, |rows| {
             view::place(&self.scene, rows, width, &mut measure)
         });
-        let (placed, height) = arrangement.place(&self.scene, width, &mut measure);
+        let mut place = |rows: &[Row]| view::place(&self.scene, rows, width, &mut measure);
+        let (mut placed, mut height) = place(&arrangement.stage);
+        self.stage_height = height + 2.0 * MARGIN;
+        let (below, below_height) = place(&arrangement.below);
+        if !below.is_empty() {
+            let top = self.stage_height - MARGIN + self.gap + PANEL_GAP;
+            placed.extend(below.into_iter().map(|mut placed| {
+                placed.origin[1] += top;
+                placed
+            }));
+            height = top + below_height;
+        }
         let mut touched = false;
         let mut reserved = Vec::with_capacity(placed.len());
         for placed in placed {
