@@ -46,9 +46,9 @@ fn a_hall_of_two_hectares_has_a_map_of_the_size_asked_for() {
     else {
         return;
     };
-    // 0.22 m: the wheels slip by 0.35 m in one turn, 3.4 of their standard deviations, and only 10 of 108 points of the
-    // scan after it contradict that. No loop corrects it.
-    assert!(error_m < 0.25, "{error_m}");
+    // In one turn the wheels slip by 0.35 m, farther than pairs of a registration's first stage reach: 0.22 m off
+    // without a candidate that reaches so far.
+    assert!(error_m < 0.1, "{error_m}");
     let head = |name: &str| {
         let bytes = fs::read(folder.path().join("run").join(name)).unwrap();
         String::from_utf8_lossy(&bytes[..20]).into_owned()

@@ -2,8 +2,9 @@
 
 use pr_geom::SE2;
 
-use super::{LocalMap, MapRegistration, MapRegistrationConfig, MotionPrior};
+use super::{LocalMap, MapRegistration, MapRegistrationConfig, MotionPrior, PriorTail};
 use crate::cloud::PointCloud;
+use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
 
 /// Without odometry a scan needs at least this fit to be sure of its basin, 0 to 1; `good_score` is lower, because
@@ -16,6 +17,11 @@ const STARTS: ([f64; 5], [f64; 9]) = (
     [0.0, -0.3, 0.3, -0.6, 0.6, -0.9, 0.9, -1.2, 1.2],
 );
 
+/// Largest slip of the wheels that is looked for, in standard deviations.
+const SLIP: f64 = 4.0;
+/// Costs within this do not decide, nats: then the pose with the better score is taken, because the cost counts few of a
+/// scan's points as independent.
+const TIE: f64 = 0.5;
 /// A larger prior cost means a deviation of more than three standard deviations.
 const MAX_PRIOR_COST: f64 = 6.0;
 /// Share of inliers that justifies such a deviation: a few points in unseen space fit any wall.
@@ -59,6 +65,21 @@ impl LocalMap {
                 best,
                 self.register(scan, prior.pose, near, Some(prior), config),
             );
+        }
+        // Odometry may be farther off than pairs of the first stage reach.
+        let slip_m = SLIP * prior.sigma_m;
+        if prior.tail == PriorTail::Student
+            && slip_m > config.max_correspondence_m
+            && slip_m <= 2.0 * config.max_correspondence_m
+        {
+            let reaches = [slip_m, stages[0], stages[1]];
+            let slipped = self.register(scan, prior.pose, &reaches, Some(prior), config);
+            let (one, other) = (best.registered.pose, slipped.registered.pose);
+            let is_other = position_error_m(&one, &other) > config.inlier_distance_m;
+            let is_fitting = slipped.fit.score > best.fit.score && slipped.cost < best.cost + TIE;
+            if is_other && is_fitting && is_justified(&slipped) {
+                best = slipped;
+            }
         }
         let is_vague = 2.0 * prior.sigma_m > config.max_correspondence_m;
         if is_vague && best.fit.score < SURE_SCORE {
@@ -106,11 +127,41 @@ mod tests {
     use pr_geom::Point2;
 
     use super::*;
-    use crate::local_map::{PriorTail, RangeProfile};
+    use crate::local_map::RangeProfile;
     use crate::slam::RobotConfig;
 
     fn wall(points: i32, at: impl Fn(f64) -> Point2<f64>) -> PointCloud {
         (0..points).map(|k| at(0.05 * f64::from(k))).collect()
+    }
+
+    #[test]
+    fn a_slip_beyond_the_pairs_of_the_first_stage_is_found() {
+        // The end of a corridor: the side walls fit at any place along it.
+        let sides = [-1.0, 1.0].map(|y| wall(100, |x| Point2::new(x, y)));
+        // Without corners, whose normals would pull along it.
+        let end = wall(24, |y| Point2::new(5.5, y - 0.6));
+        let hall: PointCloud = sides[0]
+            .iter()
+            .chain(sides[1].iter())
+            .chain(end.iter())
+            .collect();
+        let profile = Arc::new(RangeProfile::new(&hall));
+        let mut map = LocalMap::default();
+        map.rebuild([(SE2::identity(), &hall, &profile)]);
+        let config = RobotConfig::default().registration();
+        let found = |sigma_m: f64, map: &mut LocalMap| {
+            let prior = MotionPrior {
+                pose: SE2::new(0.36, 0.0, 0.0),
+                sigma_m,
+                sigma_rad: 0.02,
+                tail: PriorTail::Student,
+            };
+            map.locate(&hall, &prior, &[], &config).registered.pose.x()
+        };
+        // 0.05 m: the spacing of the points.
+        assert!(found(0.1, &mut map).abs() < 0.05);
+        // 7 standard deviations are no slip that is looked for.
+        assert!(found(0.05, &mut map) > 0.3);
     }
 
     #[test]
