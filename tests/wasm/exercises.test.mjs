@@ -15,7 +15,9 @@ it('gives each question of the page an id', () => {
   const exercises = readExercises(page);
   assert.equal(exercises.length, page.match(/<slam-predict/g).length);
   const { choices, ...rest } = exercises.find(({ exercise }) => exercise === '16.5a');
-  assert.deepEqual(rest, { exercise: '16.5a', widget: 'w16.2', state: 'noise=4&t=129', fact: 'front_end_error_m', unit: ' m' });
+  assert.deepEqual(rest, {
+    exercise: '16.5a', widget: 'w16.2', state: 'noise=4&t=129', fact: 'front_end_error_m', unit: ' m', varies: 'noise=3.25,3.5,3.75,4',
+  });
   assert.deepEqual(choices[2], { choice: 'twice', from: 1, to: 2 });
 });
 

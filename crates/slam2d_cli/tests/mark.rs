@@ -121,7 +121,7 @@ fn the_lap_of_a_neighbour_is_not_marked() {
     let neighbours = answer(
         "16.5a",
         "w16.2",
-        "noise=4&t=129&seed=1526909936",
+        "noise=3.25&t=129&seed=1526909936",
         "as before",
         "1",
     );
