@@ -395,7 +395,7 @@ describe('the chapter', () => {
       await tab.emulateMedia({ media: 'print' });
       assert.equal(await tab.locator(`${widget('w16.10')} .stage`).isVisible(), false);
       assert.match(await tab.locator(`${widget('w16.10')} .summary`).innerText(), /log/);
-    }, {}, { path: '/own-robot.html' });
+    }, {}, { path: h.addressOf('own-robot.html') });
   });
 
   it('shows the current section, links to the others, and the reading progress', async () => {
