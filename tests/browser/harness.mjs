@@ -27,6 +27,11 @@ export function pageOf(id) {
   return `/${PAGES.find((page) => widgetsOf(page).includes(id))}`;
 }
 
+/** The address of a page with its widgets on show: own-robot.html hides its widget until it is used. */
+export function addressOf(page) {
+  return `/${page}${page === 'own-robot.html' ? '?w=16.10' : ''}`;
+}
+
 /** The strictest content security policy under which the element has to work. */
 export const STRICT_POLICY =
   "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'; " +

@@ -81,9 +81,7 @@ it('a page from the disk runs a written function, which drives w16.1', async () 
 it('a page from the disk maps the sample log', async () => {
   await opened('own-robot.html', async (tab) => {
     const robot = 'slam-widget[name="w16.10"]';
-    await tab.locator(robot).scrollIntoViewIfNeeded();
-    await h.ready(tab, robot);
-    await tab.evaluate((css) => document.querySelector(css).press('sample'), robot);
+    await tab.getByRole('button', { name: 'Map the sample' }).click();
     await tab.waitForFunction((css) => document.querySelector(css).outcome?.facts.keyframes > 3, robot);
   });
 });
