@@ -7,8 +7,9 @@ use widget_kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 /// Width from which the close-up is beside the map.
 const BESIDE_THE_MAP: f32 = 860.0;
 
-/// Largest height of the map while the flat is drawn on it.
+/// Largest height of the map while the flat is drawn on it, and its height on a phone, with room around the flat.
 const DRAWN: f32 = 640.0;
+const DRAWN_NARROW: f32 = 580.0;
 
 /// Height of a plot over time.
 const PLOT: PlotHeight = PlotHeight::Fixed(130.0);
@@ -18,7 +19,7 @@ fn map(width: f32) -> Slot {
     let height = if width >= SIDE_BY_SIDE {
         PlotHeight::Natural { most: 450.0 }
     } else {
-        PlotHeight::Fixed(420.0)
+        PlotHeight::Fixed(460.0)
     };
     Slot {
         panel: "map",
@@ -50,7 +51,11 @@ pub struct FullLapView;
 impl View for FullLapView {
     fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
         if let [map] = &scene.panels[..] {
-            let height = PlotHeight::Natural { most: DRAWN };
+            let height = if width >= SIDE_BY_SIDE {
+                PlotHeight::Natural { most: DRAWN }
+            } else {
+                PlotHeight::Fixed(DRAWN_NARROW)
+            };
             let panel = map.id;
             return Arrangement {
                 stage: vec![Row::new(&[Slot { panel, height }])],
