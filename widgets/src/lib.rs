@@ -3,6 +3,7 @@
 //! Each module has the same parts: `spec` contains the texts and the parameters, `model` the logic, `view`
 //! the layout.
 
+mod icp_variant;
 mod reader_orders;
 pub mod registry;
 mod sweep_bounds;

@@ -2,12 +2,13 @@
 
 use ch16_lab::basin::BasinScene;
 use ch16_lab::basin::{BasinPlace, OffsetAxis};
-use ch16_slam2d::icp::IcpVariant;
 use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use widget_kit::{one_of, params};
+
+pub(super) use crate::icp_variant::VARIANT;
 
 /// Largest offset of a start, m.
 pub const OFFSET_SPAN_M: f64 = 1.5;
@@ -78,16 +79,7 @@ params! {
     )
     .help("What the two sweeps see: room A, almost a square, or a row of equal posts 0.5 m apart.");
 
-    pub(super) static VARIANT: OneOf<IcpVariant> = one_of!(
-        IcpVariant,
-        "variant",
-        "error that ICP reduces",
-        &[
-            (IcpVariant::PointToPoint, "point-to-point", "point to point"),
-            (IcpVariant::PointToPlane, "point-to-plane", "point to plane"),
-        ],
-    )
-    .help("Distance between paired points, or distance along the wall's normal.");
+    use VARIANT;
 
     pub(super) static TAU: Param<f64> = Param::slider("tau", "pairing distance τ", [0.1, 1.6], 0.05)
         .unit("m")

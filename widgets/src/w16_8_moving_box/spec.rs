@@ -1,11 +1,12 @@
 //! The widget's texts and its list of parameters.
 
-use ch16_slam2d::icp::IcpVariant;
 use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use widget_kit::{one_of, params};
+
+pub(super) use crate::icp_variant::VARIANT;
 
 /// Largest share of the box, %.
 pub const MAX_SHARE: f64 = 60.0;
@@ -61,16 +62,7 @@ params! {
         .default(0.7)
         .help("A point farther than this from the target has no pair: a gate is a kernel, too.");
 
-    pub(super) static VARIANT: OneOf<IcpVariant> = one_of!(
-        IcpVariant,
-        "variant",
-        "error that ICP reduces",
-        &[
-            (IcpVariant::PointToPoint, "point-to-point", "point to point"),
-            (IcpVariant::PointToPlane, "point-to-plane", "point to plane"),
-        ],
-    )
-    .help("Distance between paired points, or distance along the wall's normal.");
+    use VARIANT;
 
     pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", 1)
         .help("Seed of the range noise of the sweeps above; the curves have their own hundred seeds.");
