@@ -53,7 +53,7 @@ pub use map_pruning::{MapPruning, MapPruningConfig};
 pub use pending::PendingFrame;
 pub use registrar::{CloneRegistrar, ExpectedMotion, ScanRegistrar};
 pub use report::{Change, Conclusion, LoopAttempt, LoopEffect, SlamReport};
-pub use robots::{RobotConfig, SubmapLoopConfig};
+pub use robots::{OdometryNoise, RobotConfig, SubmapLoopConfig};
 pub use snapshot::{FrontEndSnapshot, NamedNumbers, SlamSnapshot, SnapshotError, is_within_limits};
 pub use strategies::Strategies;
 pub use window::{ScanWindow, WindowSweep};

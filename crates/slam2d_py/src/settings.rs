@@ -10,7 +10,7 @@ use crate::errors::SettingError;
 /// Settings with their values, as the core names them.
 pub type Chosen = Vec<(&'static Setting, f64)>;
 
-/// Reads a dict: `{"max_correspondence_m": 0.5, "loops": {"bundle": 6}}`, or the same with `"loops.bundle": 6`.
+/// Reads a dict: `{"keyframe_distance_m": 1.0, "loops": {"max_window_m": 10.0}}`, or the same with `"loops.max_window_m": 10.0`.
 pub fn chosen(config: Option<&Bound<'_, PyDict>>) -> PyResult<Chosen> {
     let mut chosen = Vec::new();
     if let Some(config) = config {

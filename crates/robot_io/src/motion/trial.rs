@@ -156,8 +156,8 @@ impl Spread {
         };
         Self {
             // Medians of the length of a normal vector in the plane and of a normal number, both of variance 1.
-            sigma_m: sigma(off_m, 1.1774, robot.odometry.floor_m),
-            sigma_rad: sigma(off_rad, 0.6745, robot.odometry.floor_rad),
+            sigma_m: sigma(off_m, 1.1774, robot.motion_noise(true).floor_m),
+            sigma_rad: sigma(off_rad, 0.6745, robot.motion_noise(true).floor_rad),
         }
     }
 }
@@ -182,12 +182,12 @@ fn posed(slam: &mut Slam, frame: &Frame, robot: &RobotConfig) -> Option<PosedSca
     let registration = slam.step(frame).ok()?.registration?;
     let motion = before.between(&registration.prediction);
     let stated = frame.odometry.map(|_| {
-        let (sigma_m, sigma_rad) = robot.odometry.deviations(&motion);
+        let (sigma_m, sigma_rad) = robot.motion_noise(true).deviations(&motion);
         Spread { sigma_m, sigma_rad }
     });
     let score = registration.matched.score.unwrap_or(0.0);
     Some(PosedScan {
-        misfit: 4.5 * robot.independent_points * (1.0 - score),
+        misfit: 4.5 * robot.registration().independent_points * (1.0 - score),
         prediction: registration.prediction,
         estimate: registration.estimate,
         stated,

@@ -109,11 +109,10 @@ fn a_log_of_another_scanner_is_reported() {
 
 #[test]
 fn pending_loops_are_saved_and_stay_pending() {
-    // A zero radius: every loop waits for confirmation.
+    // Odometry and points that are hardly informative: windows are wide, and every loop waits for confirmation.
     let settings = [
-        ("loops.unconfirmed_gate_radius_m", 0.0),
-        ("loops.min_margin", 0.0),
-        ("loops.pending_distance_m", 0.0),
+        ("point_sigma_m", 1.0),
+        ("odometry.per_metre", 0.5),
         ("loops.min_path_m", 4.0),
     ];
     let settings = settings.map(|(name, value)| (Setting::named(name).unwrap(), value));
@@ -219,14 +218,14 @@ fn a_session_with_other_parameters_is_refused_by_their_name() {
     let bytes = saved(&run(120, 0..20));
     for (from, to, expected) in [
         (
-            "\"max_correspondence_m\"",
-            "\"max_correspondence_k\"",
-            "missing field `max_correspondence_m`",
+            "\"point_sigma_m\"",
+            "\"point_sigma_k\"",
+            "missing field `point_sigma_m`",
         ),
         (
-            "\"inlier_distance_m\":0.15",
-            "\"inlier_distance_m\":-0.1",
-            "inlier_distance_m cannot be -0.1",
+            "\"keyframe_distance_m\":0.65",
+            "\"keyframe_distance_m\":-0.1",
+            "keyframe_distance_m cannot be -0.1",
         ),
     ] {
         let mut other = bytes.clone();
