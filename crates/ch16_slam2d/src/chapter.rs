@@ -6,7 +6,7 @@
 //! drift of the path ([`path_information`]). Edges get the information of their pairs, rotated as in the chapter's
 //! figures ([`InformationFrame`]), and the optimizer uses the chapter's approximate Jacobians.
 //!
-//! The estimator for recorded logs uses none of this: see [`RobotConfig`](crate::slam::RobotConfig).
+//! The estimator for recorded logs uses none of this: see [`LocalMapConfig`](crate::local_map::LocalMapConfig).
 
 mod adaptive_threshold;
 mod config;

@@ -1,18 +1,18 @@
 //! Parameters of the estimator by name, for `--set`, for Python and for the checks of a session's file.
 
-use ch16_slam2d::slam::RobotConfig;
+use ch16_slam2d::local_map::LocalMapConfig;
 use thiserror::Error;
 
 /// A parameter of the estimator.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
-    /// Its fields of [`RobotConfig`], joined by dots.
+    /// Its fields of [`LocalMapConfig`], joined by dots.
     pub name: &'static str,
     /// Unit; empty for shares.
     pub unit: &'static str,
     /// Short description.
     pub about: &'static str,
-    field: fn(&mut RobotConfig) -> &mut f64,
+    field: fn(&mut LocalMapConfig) -> &mut f64,
 }
 
 /// Why a parameter was not set.
@@ -35,7 +35,7 @@ pub enum SettingError {
 /// Largest plausible value.
 const MOST: f64 = 1e6;
 
-/// All parameters, in the order of [`RobotConfig`].
+/// All parameters, in the order of [`LocalMapConfig`].
 pub const SETTINGS: &[Setting] = &[
     Setting {
         name: "scan_cell_m",
@@ -104,7 +104,7 @@ impl Setting {
 
     /// Value in a configuration.
     #[must_use]
-    pub fn value(&self, config: &RobotConfig) -> f64 {
+    pub fn value(&self, config: &LocalMapConfig) -> f64 {
         let mut copy = *config;
         *(self.field)(&mut copy)
     }
@@ -126,7 +126,7 @@ impl Setting {
     ///
     /// # Errors
     /// If the value is negative or not finite.
-    pub fn set(&self, config: &RobotConfig, value: f64) -> Result<RobotConfig, SettingError> {
+    pub fn set(&self, config: &LocalMapConfig, value: f64) -> Result<LocalMapConfig, SettingError> {
         self.check(value)?;
         let mut copy = *config;
         *(self.field)(&mut copy) = value;
@@ -138,7 +138,7 @@ impl Setting {
 ///
 /// # Errors
 /// If a number is out of range; the message names the first.
-pub(crate) fn checked(config: RobotConfig) -> Result<RobotConfig, String> {
+pub(crate) fn checked(config: LocalMapConfig) -> Result<LocalMapConfig, String> {
     let radius = ("scan_normal_radius_m", "m", config.scan_normal_radius_m);
     let settings = SETTINGS
         .iter()
@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn every_number_that_does_not_follow_from_the_scanner_has_a_setting_that_changes_it_alone() {
-        let config = RobotConfig::default();
+        let config = LocalMapConfig::default();
         let mut names = Vec::new();
         leaves(&serde_json::to_value(config).unwrap(), "", &mut names);
         names.retain(|name| name != "scan_normal_radius_m");
@@ -201,8 +201,8 @@ mod tests {
             "{error}"
         );
         let distance = Setting::named("keyframe_distance_m").unwrap();
-        assert!(distance.set(&RobotConfig::default(), f64::NAN).is_err());
-        let error = distance.set(&RobotConfig::default(), -1.0).unwrap_err();
+        assert!(distance.set(&LocalMapConfig::default(), f64::NAN).is_err());
+        let error = distance.set(&LocalMapConfig::default(), -1.0).unwrap_err();
         assert_eq!(
             error.to_string(),
             "keyframe_distance_m must be a finite non-negative number, not -1"

@@ -131,12 +131,12 @@ impl SlamConfig {
     #[must_use]
     pub fn chapter() -> Self {
         Self {
-            robot: None,
+            local_map: None,
             chapter: ChapterConfig::default(),
             start: SE2::identity(),
             scan: ScanConfig::default(),
             loop_closure: LoopClosure::On,
-            window_sweeps: 6,
+            window_scans: 6,
             window_distance_m: 0.0,
             window_turn_rad: 0.0,
             min_inliers: 8,

@@ -19,7 +19,7 @@ use super::tuning::{
     LOOP_FLOOR, MAX_TURN_RAD, MIN_LOOP_SCORE, MIN_MARGIN, MIN_SEPARATION_M, PENDING_DISTANCE_M,
     SUBMAP_MARGIN_M, SUBMAPS, UNCONFIRMED_M, WINDOW_FLOOR_M, WINDOW_FLOOR_RAD, WINDOW_SIGMAS,
 };
-use super::{MIN_SEARCH_SCORE, MapRegistration, linking};
+use super::{LocalMapConfig, MIN_SEARCH_SCORE, MapRegistration, SubmapLoopConfig, linking};
 use crate::chi_squared::GATE_99;
 use crate::cloud::PointCloud;
 use crate::loops::{
@@ -27,9 +27,7 @@ use crate::loops::{
 };
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
-use crate::slam::{
-    Consistency, LoopFinder, Mapper, RobotConfig, SnapshotError, SubmapLoopConfig, TriedLoops,
-};
+use crate::slam::{Consistency, LoopFinder, Mapper, SnapshotError, TriedLoops};
 
 /// Finds loops, and keeps the pending ones.
 #[derive(Clone)]
@@ -49,7 +47,7 @@ struct Window {
 }
 
 impl SubmapLoops {
-    pub fn new(robot: &RobotConfig) -> Self {
+    pub fn new(robot: &LocalMapConfig) -> Self {
         Self {
             config: robot.loops,
             pending: Vec::new(),

@@ -12,7 +12,7 @@ use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::{Keyframe, Slam, SlamConfig, Strategies, WindowSweep};
+use super::{Keyframe, Slam, SlamConfig, Strategies, WindowScan};
 use crate::cloud::PointCloud;
 use crate::graph::{EdgeView, PoseNode};
 use crate::loops::PendingLoop;
@@ -60,7 +60,7 @@ pub struct FrontEndSnapshot {
     /// Duration of the last motion, s; infinite before the first.
     pub last_dt_s: f64,
     /// The sweeps of the next local map, oldest first.
-    pub window: Vec<WindowSweep>,
+    pub window: Vec<WindowScan>,
     /// Their scans, body frame.
     #[serde(skip)]
     pub scans: Vec<Arc<PointCloud>>,

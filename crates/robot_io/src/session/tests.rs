@@ -2,9 +2,9 @@ use std::f64::consts::TAU;
 use std::io::Cursor as Bytes;
 
 use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::local_map::LocalMapConfig;
 use ch16_slam2d::pipeline::ScanPose;
 use ch16_slam2d::scan::LaserScan;
-use ch16_slam2d::slam::RobotConfig;
 use pr_geom::{Point2, SE2, Vector3, math};
 
 use super::*;
@@ -365,12 +365,12 @@ fn foreign_files_are_distinguished_from_damaged_sessions() {
 #[test]
 fn every_parameter_is_written_and_read() {
     for setting in SETTINGS {
-        let value = setting.value(&RobotConfig::default()) + 1.0;
+        let value = setting.value(&LocalMapConfig::default()) + 1.0;
         let mut run = LogRun::default().with_setting(setting, value);
         // Few enough points to be stored exactly.
         run.step(frame(0, 120)).unwrap();
         let session = Session::from_bytes(&saved(&run), "x").unwrap();
-        let robot = session.snapshot.config.robot.unwrap();
+        let robot = session.snapshot.config.local_map.unwrap();
         assert_eq!(setting.value(&robot), value, "{}", setting.name);
         assert!(session == run.session().unwrap(), "{}", setting.name);
     }

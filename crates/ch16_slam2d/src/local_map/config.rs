@@ -2,11 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::config::SlamConfig;
-use super::motion_noise::MotionNoise;
+use super::{MapRegistrationConfig, tuning};
 use crate::graph::JacobianModel;
-use crate::local_map::{MapRegistrationConfig, tuning};
 use crate::scan::{LaserScan, ScanConfig};
+use crate::slam::{MotionNoise, SlamConfig};
 
 /// The parameters of the estimator for robots.
 ///
@@ -16,10 +15,10 @@ use crate::scan::{LaserScan, ScanConfig};
 /// constants now and are ignored.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
-pub struct RobotConfig {
+pub struct LocalMapConfig {
     /// A scan is thinned to a point in each cell of this side, m.
     pub scan_cell_m: f64,
-    /// Radius of the neighbours for normals within one scan, m: [`RobotConfig::for_scan`] derives it.
+    /// Radius of the neighbours for normals within one scan, m: [`LocalMapConfig::for_scan`] derives it.
     pub scan_normal_radius_m: f64,
     /// Standard deviation of a point across its wall, m.
     pub point_sigma_m: f64,
@@ -53,7 +52,7 @@ pub struct SubmapLoopConfig {
     pub max_window_m: f64,
 }
 
-impl Default for RobotConfig {
+impl Default for LocalMapConfig {
     fn default() -> Self {
         Self {
             scan_cell_m: 0.065,
@@ -73,7 +72,7 @@ impl Default for RobotConfig {
     }
 }
 
-impl RobotConfig {
+impl LocalMapConfig {
     /// The values for a scanner; they depend only on its angle between beams, because normals need
     /// neighbours.
     #[must_use]
@@ -119,25 +118,25 @@ impl SlamConfig {
     /// The estimator for robots with the values for the scanner of `scan`.
     #[must_use]
     pub fn for_robot(scan: &LaserScan) -> Self {
-        Self::from_robot(RobotConfig::for_scan(scan))
+        Self::from_local_map(LocalMapConfig::for_scan(scan))
     }
 
     /// The estimator for robots with these values.
     #[must_use]
-    pub fn from_robot(robot: RobotConfig) -> Self {
+    pub fn from_local_map(local_map: LocalMapConfig) -> Self {
         let default = Self::default();
         Self {
-            robot: Some(robot),
+            local_map: Some(local_map),
             scan: ScanConfig {
-                cell_m: robot.scan_cell_m,
-                normal_radius_m: robot.scan_normal_radius_m,
+                cell_m: local_map.scan_cell_m,
+                normal_radius_m: local_map.scan_normal_radius_m,
             },
-            window_sweeps: tuning::WINDOW_SCANS,
+            window_scans: tuning::WINDOW_SCANS,
             window_distance_m: tuning::WINDOW_DISTANCE_M,
             window_turn_rad: tuning::WINDOW_TURN_RAD,
             extrapolation: 1.0,
-            keyframe_distance_m: robot.keyframe_distance_m,
-            keyframe_turn_rad: robot.keyframe_turn_rad,
+            keyframe_distance_m: local_map.keyframe_distance_m,
+            keyframe_turn_rad: local_map.keyframe_turn_rad,
             jacobians: JacobianModel::Exact,
             least_correction: tuning::LEAST_CORRECTION,
             ..default
@@ -151,12 +150,12 @@ mod tests {
 
     #[test]
     fn the_estimator_for_robots_has_the_given_parameters() {
-        let robot = RobotConfig {
+        let robot = LocalMapConfig {
             keyframe_distance_m: 1.25,
-            ..RobotConfig::default()
+            ..LocalMapConfig::default()
         };
-        let config = SlamConfig::from_robot(robot);
-        assert_eq!(config.robot, Some(robot));
+        let config = SlamConfig::from_local_map(robot);
+        assert_eq!(config.local_map, Some(robot));
         assert_eq!(config.keyframe_distance_m, 1.25);
     }
 }
