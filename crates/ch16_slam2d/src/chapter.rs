@@ -13,7 +13,6 @@ mod config;
 mod drift_gate;
 mod nearby_loops;
 mod parts;
-mod scales;
 mod window_registrar;
 
 pub use adaptive_threshold::AdaptiveThreshold;

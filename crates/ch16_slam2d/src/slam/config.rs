@@ -20,7 +20,7 @@ pub enum LoopClosure {
 /// The estimator's parameters.
 ///
 /// [`SlamConfig::chapter`] has the chapter's, for its figures; the default corrects their faults, for rooms of the
-/// chapter's size; [`SlamConfig::for_scan`] derives the lengths from a sensor.
+/// chapter's size; [`SlamConfig::for_robot`] is the estimator for recorded logs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlamConfig {
     /// The parameters of the estimator for robots, which registers scans with a prior and closes loops on

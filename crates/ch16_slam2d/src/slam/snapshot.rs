@@ -333,7 +333,7 @@ mod tests {
         [
             doubting(),
             SlamConfig::for_robot(&scan),
-            SlamConfig::for_scan(&scan, 0.02),
+            SlamConfig::default(),
             SlamConfig::chapter(),
         ]
     }
