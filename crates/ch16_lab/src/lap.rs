@@ -47,7 +47,7 @@ pub use path_errors::{PATH_SHARES, PathErrors};
 pub use ranges::{ConfigRange, RANGES, random_config};
 pub use record::{Epoch, LAST_KEYFRAMES, LapRecord, LapSummary, LapTrace, RecordedEdge};
 pub use replay::RegistrationView;
-pub use report::{Keyframe, LoopAttempt, LoopEffect, TickMetrics, TickReport, WindowSweep};
+pub use report::{Keyframe, LoopAttempt, LoopEffect, TickMetrics, TickReport, WindowScan};
 pub use run::LapRun;
 pub use runner::LapRunner;
 pub use settings::LapSettings;

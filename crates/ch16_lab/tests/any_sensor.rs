@@ -2,7 +2,7 @@
 
 use ch16_lab::lap::{Drive, DriveConfig};
 use ch16_slam2d::metrics::position_error_m;
-use ch16_slam2d::scan::{Frame, LaserScan};
+use ch16_slam2d::scan::Frame;
 use ch16_slam2d::slam::{Slam, SlamConfig};
 use pr_geom::SE2;
 use pr_sim::LidarConfig;
@@ -34,10 +34,9 @@ fn dead_reckoning_m(drive: &Drive) -> f64 {
 
 /// The configuration that follows from a scan, with the map frame of the drive.
 fn of_scan(drive: &Drive) -> SlamConfig {
-    let lidar = drive.config().lidar;
     SlamConfig {
         start: drive.truth(0),
-        ..SlamConfig::for_scan(&drive.frame(0).scan, lidar.range_sigma_m)
+        ..SlamConfig::for_robot(&drive.frame(0).scan)
     }
 }
 
@@ -55,46 +54,6 @@ fn the_lap_is_tracked_from_40_to_4000_beams() {
             farthest < 0.7 * dead_reckoning_m(&drive),
             "{beams} beams: {farthest} m"
         );
-    }
-}
-
-/// A frame as a robot ten or a hundred times as large measures it.
-fn scaled(frame: Frame, factor: f64) -> Frame {
-    let scale = |pose: SE2| SE2::new(factor * pose.x(), factor * pose.y(), pose.theta());
-    let ranges_m = frame.scan.ranges_m.iter().map(|range| factor * range);
-    Frame {
-        odometry: frame.odometry.map(scale),
-        scan: LaserScan {
-            ranges_m: ranges_m.collect(),
-            range_max_m: factor * frame.scan.range_max_m,
-            ..frame.scan
-        },
-        ..frame
-    }
-}
-
-#[test]
-fn a_world_of_one_metre_and_one_of_a_hundred_are_tracked_alike() {
-    let drive = drive(LidarConfig {
-        beams: 360,
-        range_sigma_m: 0.03,
-        ..LidarConfig::default()
-    });
-    for factor in [1.0 / 6.0, 100.0 / 6.0] {
-        let frame = |tick| scaled(drive.frame(tick), factor);
-        let config = SlamConfig::for_scan(&frame(0).scan, factor * 0.03);
-        let mut slam = Slam::new(config);
-        let start = drive.truth(0);
-        for tick in 0..=drive.ticks().len() {
-            let estimate = slam.step(&frame(tick)).unwrap().estimate;
-            let truth = start.between(&drive.truth(tick));
-            let truth = SE2::new(factor * truth.x(), factor * truth.y(), truth.theta());
-            let off = position_error_m(&estimate, &truth) / factor;
-            assert!(
-                off < 0.7 * dead_reckoning_m(&drive),
-                "factor {factor}, tick {tick}: {off} m"
-            );
-        }
     }
 }
 

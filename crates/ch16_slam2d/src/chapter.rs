@@ -6,14 +6,13 @@
 //! drift of the path ([`path_information`]). Edges get the information of their pairs, rotated as in the chapter's
 //! figures ([`InformationFrame`]), and the optimizer uses the chapter's approximate Jacobians.
 //!
-//! The estimator for recorded logs uses none of this: see [`RobotConfig`](crate::slam::RobotConfig).
+//! The estimator for recorded logs uses none of this: see [`LocalMapConfig`](crate::local_map::LocalMapConfig).
 
 mod adaptive_threshold;
 mod config;
 mod drift_gate;
 mod nearby_loops;
 mod parts;
-mod scales;
 mod window_registrar;
 
 pub use adaptive_threshold::AdaptiveThreshold;

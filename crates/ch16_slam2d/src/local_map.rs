@@ -9,6 +9,7 @@
 //! the map, truncated at a miss. Free space counts as well: a point behind everything that was seen costs less
 //! than one in space that a scan has observed as free.
 
+mod config;
 mod linking;
 mod locate;
 mod pairwise_consistency;
@@ -26,6 +27,7 @@ use std::sync::Arc;
 use nalgebra::{Point2, Vector2};
 use pr_geom::{SE2, math};
 
+pub use config::{LocalMapConfig, OdometryNoise, SubmapLoopConfig};
 pub use prior::{MotionPrior, PriorTail};
 pub use range_profile::RangeProfile;
 pub(crate) use registrar::MapRegistrar;

@@ -21,9 +21,10 @@ use serde::{Deserialize, Serialize};
 use self::piece::Piece;
 use self::report::numbered_after;
 pub use self::report::{LeftOut, PieceFate, PieceReport};
+use crate::local_map::LocalMapConfig;
 use crate::localize::StartPose;
 use crate::scan::{Frame, FrameError, LaserScan};
-use crate::slam::{Conclusion, RobotConfig, Slam, SlamConfig, SlamReport, SlamSnapshot};
+use crate::slam::{Conclusion, Slam, SlamConfig, SlamReport, SlamSnapshot};
 
 /// A scan of a log, with the odometry at its time.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,7 +84,7 @@ pub struct ScanPose {
 /// ```
 #[derive(Clone, Default)]
 pub struct Pipeline {
-    robot: Option<RobotConfig>,
+    robot: Option<LocalMapConfig>,
     slam: Option<Slam>,
     scans: Vec<ScanPose>,
     last_odometry: Option<SE2>,
@@ -102,7 +103,7 @@ pub struct Pipeline {
 impl Pipeline {
     /// The same pipeline with these settings.
     #[must_use]
-    pub fn with_config(mut self, robot: RobotConfig) -> Self {
+    pub fn with_config(mut self, robot: LocalMapConfig) -> Self {
         self.robot = Some(robot);
         self
     }
@@ -157,8 +158,8 @@ impl Pipeline {
             None => {
                 let robot = self.robot;
                 let slam = self.slam.get_or_insert_with(|| {
-                    let robot = robot.unwrap_or_else(|| RobotConfig::for_scan(&frame.scan));
-                    Slam::new(SlamConfig::from_robot(robot))
+                    let robot = robot.unwrap_or_else(|| LocalMapConfig::for_scan(&frame.scan));
+                    Slam::new(SlamConfig::from_local_map(robot))
                 });
                 slam.step(&frame)?
             }

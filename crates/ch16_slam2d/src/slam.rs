@@ -27,7 +27,6 @@ mod map_pruning;
 mod pending;
 mod registrar;
 mod report;
-mod robots;
 mod snapshot;
 mod strategies;
 #[cfg(test)]
@@ -53,10 +52,9 @@ pub use map_pruning::{MapPruning, MapPruningConfig};
 pub use pending::PendingFrame;
 pub use registrar::{CloneRegistrar, ExpectedMotion, ScanRegistrar};
 pub use report::{Change, Conclusion, LoopAttempt, LoopEffect, SlamReport};
-pub use robots::{RobotConfig, SubmapLoopConfig};
 pub use snapshot::{FrontEndSnapshot, NamedNumbers, SlamSnapshot, SnapshotError, is_within_limits};
 pub use strategies::Strategies;
-pub use window::{ScanWindow, WindowSweep};
+pub use window::{ScanWindow, WindowScan};
 
 use crate::chapter::ChapterParts;
 pub use crate::graph::Keyframe;

@@ -85,9 +85,7 @@ fn no_frame_makes_the_estimator_panic_or_lose_its_pose() {
         let mut numbers = Numbers(seed as u64);
         let (mut taken, mut refused, mut unbelieved) = (0, 0, 0);
         for start in 0..12 {
-            let scales = numbers.frame(0.0).scan;
-            let config = SlamConfig::for_scan(&scales, 0.03).with_matcher(matcher);
-            let mut slam = Slam::new(config);
+            let mut slam = Slam::new(SlamConfig::default().with_matcher(matcher));
             for step in 0..40 {
                 match slam.step(&numbers.frame(0.1 * f64::from(step))) {
                     Ok(report) => {

@@ -5,10 +5,11 @@ mod sentences;
 
 pub use sentences::late_scans;
 
+use ch16_slam2d::local_map::LocalMapConfig;
 use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::pipeline::{LeftOut, PieceFate, PieceReport, Pipeline, ScanPose};
 use ch16_slam2d::scan::{FrameError, LaserScan};
-use ch16_slam2d::slam::{LoopAttempt, RobotConfig, Slam, SlamReport, SnapshotError};
+use ch16_slam2d::slam::{LoopAttempt, Slam, SlamReport, SnapshotError};
 use pr_geom::SE2;
 
 use crate::evidence::{PoorFit, TriedLoop};
@@ -137,7 +138,7 @@ impl LogRun {
     /// because it is invalid.
     pub fn step(&mut self, log: LogFrame) -> Option<SlamReport> {
         if self.pipeline.slam().is_none() && !self.settings.is_empty() {
-            let mut robot = RobotConfig::for_scan(&log.scan);
+            let mut robot = LocalMapConfig::for_scan(&log.scan);
             for (setting, value) in &self.settings {
                 robot = setting.set(&robot, *value).unwrap_or(robot);
             }

@@ -37,7 +37,7 @@ pub struct BuildingsArgs {
     /// Ignore odometry and match scans alone.
     #[arg(long)]
     no_odometry: bool,
-    /// Set a parameter of the estimator; docs/robots-parameters.md lists them.
+    /// Set a parameter of the estimator; docs/robots.md lists them.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
     settings: Vec<(String, f64)>,
     /// Write the recording of the first seed as a CARMEN log instead, and its true trajectory next to it.

@@ -22,7 +22,6 @@ mod mark;
 mod numbers;
 mod optimize;
 mod output;
-mod parameters;
 mod places;
 mod recordings;
 mod register;
@@ -71,7 +70,6 @@ enum Command {
     Relocalize(relocalize::RelocalizeArgs),
     Logs(logs::LogsArgs),
     Recordings(recordings::RecordingsArgs),
-    Parameters(parameters::ParametersArgs),
     Evaluate(evaluate::EvaluateArgs),
     Convert(convert::ConvertArgs),
     Map(map::MapArgs),
@@ -110,7 +108,6 @@ fn run(command: &Command) -> anyhow::Result<ExitCode> {
         Command::Relocalize(args) => relocalize::run(args)?,
         Command::Logs(args) => logs::run(args)?,
         Command::Recordings(args) => recordings::run(args)?,
-        Command::Parameters(args) => parameters::run(args)?,
         Command::Evaluate(args) => evaluate::run(args)?,
         Command::Convert(args) => convert::run(args)?,
         Command::Map(args) => map::run(args)?,

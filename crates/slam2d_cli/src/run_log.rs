@@ -47,7 +47,7 @@ pub struct RunArgs {
     /// Map the robots of a recording into one map, one after the other, if its scans are those of several.
     #[arg(long, conflicts_with_all = ["scan_topic", "odom_topic", "odom_frame", "body_frame"])]
     all_robots: bool,
-    /// Set a parameter of the estimator; docs/robots-parameters.md lists them.
+    /// Set a parameter of the estimator; docs/robots.md lists them.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
     settings: Vec<(String, f64)>,
     /// Continue this session, or that of a run's folder, with its parameters. The log is the rest of its recording, or

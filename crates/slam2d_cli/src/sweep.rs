@@ -3,11 +3,10 @@
 mod level;
 mod nudge;
 mod random;
-mod rows;
 mod shard;
 
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{bail, ensure};
 use ch16_lab::incremental::IncrementalKind;
@@ -64,19 +63,19 @@ pub struct SweepArgs {
     /// that every figure is finite.
     #[arg(long, conflicts_with_all = ["nudge", "noise", "world", "matcher", "front_end", "gate", "information", "no_information_cap", "estimator"])]
     random: bool,
-    /// Store the result of each lap in this file, one line each. Laps that are in it are not run again.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["nudge", "random"])]
-    rows: Option<PathBuf>,
-    /// Run one part of the seeds: 2/4 is the second of four. The laps are stored in the file of --rows.
-    #[arg(long, value_name = "K/N", value_parser = shard::shard, requires = "rows")]
+    /// Run one part of the seeds and write its laps to the file of -o: 2/4 is the second of four.
+    #[arg(long, value_name = "K/N", value_parser = shard::shard, requires = "output", conflicts_with_all = ["nudge", "random"])]
     shard: Option<Shard>,
-    /// Run no laps: merge the rows of these files and print the distribution of their figures.
+    /// The file of a part.
+    #[arg(short = 'o', long, value_name = "FILE", requires = "shard")]
+    output: Option<PathBuf>,
+    /// Run no laps: merge the files of all parts and print the distribution of their figures.
     #[arg(
         long,
         value_name = "FILES",
         num_args = 1..,
         conflicts_with_all = [
-            "seeds", "noise", "rows", "shard", "nudge", "random", "threads", "world", "matcher",
+            "seeds", "noise", "shard", "nudge", "random", "threads", "world", "matcher",
             "loop_matcher", "detector", "gate", "information", "no_information_cap", "estimator",
         ]
     )]
@@ -89,18 +88,12 @@ pub struct SweepArgs {
 /// Runs all laps and prints the distribution of their figures.
 ///
 /// # Errors
-/// If the sweep is too large, the world cannot be used, the threads cannot be started, rows cannot be stored or merged,
-/// or a random lap fails.
+/// If the sweep is too large, the world cannot be used, the threads cannot be started, a part cannot be written
+/// or merged, or a random lap fails.
 pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     if !args.merge.is_empty() {
-        let (header, rows) = rows::read_all(&args.merge)?;
-        let args = SweepArgs {
-            seeds: header.seeds(),
-            noise: header.noise.clone(),
-            estimator: header.estimators(),
-            ..args.clone()
-        };
-        print(&args, &rows.by_seed(&header)?);
+        let (args, by_seed) = shard::merge(args)?;
+        print(&args, &by_seed);
         return Ok(());
     }
     let laps = args.seeds.count() * args.noise.len() as u64;
@@ -131,19 +124,17 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
         pool.install(|| nudge::print(args, &trial));
         return Ok(());
     }
-    let by_seed = match &args.rows {
-        None => pool.install(|| all_runs(args, &trial)),
-        Some(path) => {
-            let part = args.shard.unwrap_or(Shard::WHOLE);
-            let driven = pool.install(|| shard::drive(args, &trial, part, path))?;
-            if args.shard.is_some() {
-                print_shard(&driven, path, args.json);
-                return Ok(());
-            }
-            driven.by_seed
+    if let (Some(part), Some(path)) = (args.shard, &args.output) {
+        let laps = pool.install(|| shard::drive(args, &trial, part, path))?;
+        if args.json {
+            print_json(&serde_json::json!({ "output": path, "laps": laps }));
+        } else {
+            say!("{laps} laps: {}", path.display());
         }
-    };
-    print(args, &by_seed);
+        return Ok(());
+    }
+    let seeds: Vec<u32> = (args.seeds.first..=args.seeds.last).collect();
+    print(args, &pool.install(|| all_runs(args, &trial, &seeds)));
     Ok(())
 }
 
@@ -161,28 +152,12 @@ fn print(args: &SweepArgs, by_seed: &[Vec<LapOutcome>]) {
     }
 }
 
-/// Prints where the rows of a shard are: a part of a sweep has no distribution of its own.
-fn print_shard(driven: &shard::ShardResult, path: &Path, json: bool) {
-    let file = path.display();
-    if json {
-        print_json(&serde_json::json!({
-            "rows": file.to_string(), "laps": driven.laps, "kept": driven.kept,
-        }));
-        return;
-    }
-    let kept = match driven.kept {
-        0 => String::new(),
-        kept => format!(", {kept} of them from an earlier run"),
-    };
-    say!("{} laps{kept}: {file}", driven.laps);
-}
-
-/// The runs of every seed, in order of the seeds, with one run per noise factor.
-fn all_runs(args: &SweepArgs, trial: &LapOptions) -> Vec<Vec<LapOutcome>> {
-    let bar = progress_bar(args.seeds.count());
-    let runs = (args.seeds.first..=args.seeds.last)
-        .into_par_iter()
-        .map_init(LapRunner::new, |runner, seed| {
+/// The runs of each of the seeds, one per noise factor.
+fn all_runs(args: &SweepArgs, trial: &LapOptions, seeds: &[u32]) -> Vec<Vec<LapOutcome>> {
+    let bar = progress_bar(seeds.len() as u64);
+    let runs = seeds
+        .par_iter()
+        .map_init(LapRunner::new, |runner, &seed| {
             let at = |&noise: &f64| args.outcome(runner, trial, seed, noise);
             let runs = args.noise.iter().map(at).collect();
             bar.inc(1);

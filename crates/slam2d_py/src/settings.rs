@@ -1,6 +1,6 @@
 //! The settings of the estimator from a dict, by the names in a session file and in `--set`.
 
-use ch16_slam2d::slam::RobotConfig;
+use ch16_slam2d::local_map::LocalMapConfig;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use robot_io::settings::{SETTINGS, Setting};
@@ -10,7 +10,7 @@ use crate::errors::SettingError;
 /// Settings with their values, as the core names them.
 pub type Chosen = Vec<(&'static Setting, f64)>;
 
-/// Reads a dict: `{"max_correspondence_m": 0.5, "loops": {"bundle": 6}}`, or the same with `"loops.bundle": 6`.
+/// Reads a dict: `{"keyframe_distance_m": 1.0, "loops": {"max_window_m": 10.0}}`, or the same with `"loops.max_window_m": 10.0`.
 pub fn chosen(config: Option<&Bound<'_, PyDict>>) -> PyResult<Chosen> {
     let mut chosen = Vec::new();
     if let Some(config) = config {
@@ -40,7 +40,7 @@ fn collect(config: &Bound<'_, PyDict>, above: &str, chosen: &mut Chosen) -> PyRe
 }
 
 /// The configuration with these values.
-pub fn applied(mut robot: RobotConfig, chosen: &Chosen) -> PyResult<RobotConfig> {
+pub fn applied(mut robot: LocalMapConfig, chosen: &Chosen) -> PyResult<LocalMapConfig> {
     for (setting, value) in chosen {
         let set = setting.set(&robot, *value);
         robot = set.map_err(|error| SettingError::new_err(error.to_string()))?;
@@ -51,7 +51,7 @@ pub fn applied(mut robot: RobotConfig, chosen: &Chosen) -> PyResult<RobotConfig>
 /// The settings of the estimator for recorded logs: name to (default, unit, what it does).
 #[pyfunction]
 pub fn settings(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-    let robot = RobotConfig::default();
+    let robot = LocalMapConfig::default();
     let names = PyDict::new(py);
     for setting in SETTINGS {
         names.set_item(

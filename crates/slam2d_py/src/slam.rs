@@ -3,8 +3,9 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ThreadId};
 
+use ch16_slam2d::local_map::LocalMapConfig;
 use ch16_slam2d::scan::{Frame, LaserScan};
-use ch16_slam2d::slam::{Keyframe, LoopAttempt, RobotConfig, SlamConfig, SlamReport};
+use ch16_slam2d::slam::{Keyframe, LoopAttempt, SlamConfig, SlamReport};
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pr_geom::SE2;
 use pyo3::prelude::*;
@@ -235,10 +236,10 @@ impl Estimator {
     /// The estimator for the sensor of a first scan.
     fn running(&mut self, frame: &Frame) -> PyResult<&mut ch16_slam2d::slam::Slam> {
         if let Self::Waiting { chosen, start } = self {
-            let robot = settings::applied(RobotConfig::for_scan(&frame.scan), chosen)?;
+            let robot = settings::applied(LocalMapConfig::for_scan(&frame.scan), chosen)?;
             let config = SlamConfig {
                 start: *start,
-                ..SlamConfig::from_robot(robot)
+                ..SlamConfig::from_local_map(robot)
             };
             let slam = ch16_slam2d::slam::Slam::new(config);
             *self = Self::Running(Box::new(slam));

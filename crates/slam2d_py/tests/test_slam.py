@@ -33,22 +33,22 @@ def test_the_estimator_for_robots_maps_the_lap(drive, mapped):
 
 def test_settings_are_those_of_the_core(drive, mapped):
     names = rs.settings()
-    default, unit, about = names["loops.bundle"]
-    assert (default, unit) == (8.0, "") and "keyframes" in about
-    far = drive_with(drive, config={"keyframe_distance_m": 2.0, "loops": {"bundle": 4}})
-    same = drive_with(drive, config={"keyframe_distance_m": 2.0, "loops.bundle": 4})
+    default, unit, about = names["loops.max_window_m"]
+    assert (default, unit) == (20.0, "m") and "radius" in about
+    far = drive_with(drive, config={"keyframe_distance_m": 2.0, "loops": {"min_path_m": 4.0}})
+    same = drive_with(drive, config={"keyframe_distance_m": 2.0, "loops.min_path_m": 4.0})
     assert np.array_equal(far.poses, same.poses) and len(far.poses) < len(mapped.poses)
-    stated = {name: value for name, (value, _, _) in names.items() if name != "scan_normal_radius_m"}
+    stated = {name: value for name, (value, _, _) in names.items()}
     assert np.array_equal(drive_with(drive, config=stated).poses, mapped.poses)
 
 
 @pytest.mark.parametrize(
     ("config", "said"),
     [
-        ({"reach": 1.0}, "the estimator has no parameter reach; docs/robots-parameters.md lists them"),
-        ({"loops": {"reach": 1}}, "the estimator has no parameter loops.reach; docs/robots-parameters.md lists them"),
-        ({"max_correspondence_m": -1.0}, "max_correspondence_m must be a finite non-negative number, not -1"),
-        ({"max_correspondence_m": "far"}, "max_correspondence_m has to be a number"),
+        ({"reach": 1.0}, f"the estimator has no parameter reach; it has {', '.join(rs.settings())}"),
+        ({"loops": {"reach": 1}}, f"the estimator has no parameter loops.reach; it has {', '.join(rs.settings())}"),
+        ({"keyframe_distance_m": -1.0}, "keyframe_distance_m must be a finite non-negative number, not -1"),
+        ({"keyframe_distance_m": "far"}, "keyframe_distance_m has to be a number"),
     ],
 )
 def test_a_wrong_setting_is_refused_in_the_words_of_the_core(drive, config, said):

@@ -3,7 +3,7 @@
 //! `docs/sessions.md` describes the file.
 
 use ch16_slam2d::digest::Digest;
-use ch16_slam2d::slam::RobotConfig;
+use ch16_slam2d::local_map::LocalMapConfig;
 use robot_io::session::{MAGIC, VERSION};
 
 /// A file with this content.
@@ -24,7 +24,7 @@ pub fn sealed(body: &[u8]) -> Vec<u8> {
 
 /// The content of a session with the default parameters; `rest` follows them.
 pub fn with_parameters(rest: &[u8]) -> Vec<u8> {
-    let json = serde_json::to_string(&RobotConfig::default()).expect("plain numbers");
+    let json = serde_json::to_string(&LocalMapConfig::default()).expect("plain numbers");
     let mut body = postcard::to_stdvec(&json).expect("a text");
     body.extend_from_slice(rest);
     body

@@ -59,7 +59,7 @@ fn is_small(session: &Session) -> bool {
     let snapshot = &session.snapshot;
     let scans = snapshot.keyframes.iter().map(|keyframe| &keyframe.scan);
     let mut scans = scans.chain(&snapshot.front_end.scans);
-    let robot = snapshot.config.robot.unwrap_or_default();
+    let robot = snapshot.config.local_map.unwrap_or_default();
     let mut values = SETTINGS.iter().map(|setting| setting.value(&robot));
     snapshot.keyframes.len() <= MAX_KEYFRAMES
         && snapshot.front_end.scans.len() <= MAX_KEYFRAMES

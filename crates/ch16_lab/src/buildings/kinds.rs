@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use ch16_slam2d::slam::RobotConfig;
+use ch16_slam2d::local_map::LocalMapConfig;
 
 use super::plan::{BuildingConfig, BuildingPlan, Layout, Rooms};
 use super::recording::{Recorder, Recording};
@@ -72,13 +72,13 @@ impl Choice for Kind {
 /// Records a drive of the kind's robot through the building of a seed. Returns the defaults for its
 /// scanner, too.
 #[must_use]
-pub fn recorded(kind: Kind, seed: u32) -> (Recording, RobotConfig) {
+pub fn recorded(kind: Kind, seed: u32) -> (Recording, LocalMapConfig) {
     recorded_by(Robot::Own, kind, seed)
 }
 
 /// Like [`recorded`] with another robot; the laps always use the chapter's.
 #[must_use]
-pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, RobotConfig) {
+pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, LocalMapConfig) {
     let plan = BuildingConfig {
         seed,
         ..BuildingConfig::default()
@@ -133,9 +133,9 @@ pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, RobotCon
     ))
 }
 
-fn with_defaults(recording: Recording) -> (Recording, RobotConfig) {
+fn with_defaults(recording: Recording) -> (Recording, LocalMapConfig) {
     // As for recorded logs.
-    let config = RobotConfig::for_scan(&recording.frames[0].scan);
+    let config = LocalMapConfig::for_scan(&recording.frames[0].scan);
     (recording, config)
 }
 

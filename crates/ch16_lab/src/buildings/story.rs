@@ -1,7 +1,8 @@
 //! A mapped building as plain data, for the picture with which the page of the reader's own robot opens.
 
+use ch16_slam2d::local_map::LocalMapConfig;
 use ch16_slam2d::metrics::position_error_m;
-use ch16_slam2d::slam::{LoopClosure, RobotConfig, Slam};
+use ch16_slam2d::slam::{LoopClosure, Slam};
 use pr_geom::SE2;
 use serde::Serialize;
 
@@ -48,7 +49,7 @@ impl BuildingStory {
     /// # Panics
     /// If the recording has no frame.
     #[must_use]
-    pub fn new(recording: &Recording, robot: &RobotConfig) -> Self {
+    pub fn new(recording: &Recording, robot: &LocalMapConfig) -> Self {
         let frames = &recording.frames;
         let (slam, _) = map(recording, robot, LoopClosure::On);
         let (_, alone) = map(recording, robot, LoopClosure::Off);
@@ -88,7 +89,7 @@ impl BuildingStory {
 }
 
 /// The estimator after the last scan, and its pose at every frame.
-fn map(recording: &Recording, robot: &RobotConfig, closure: LoopClosure) -> (Slam, Vec<SE2>) {
+fn map(recording: &Recording, robot: &LocalMapConfig, closure: LoopClosure) -> (Slam, Vec<SE2>) {
     let frames = &recording.frames;
     let mut slam = estimator(recording, *robot);
     slam.set_loop_closure(closure);

@@ -2,8 +2,9 @@
 
 use ch16_slam2d::chi_squared::CHAPTER_GATE;
 use ch16_slam2d::graph::EdgeKind;
+use ch16_slam2d::local_map::LocalMapConfig;
 use ch16_slam2d::metrics::position_error_m;
-use ch16_slam2d::slam::{LoopAttempt, RobotConfig, Slam, SlamConfig};
+use ch16_slam2d::slam::{LoopAttempt, Slam, SlamConfig};
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
@@ -51,7 +52,7 @@ impl Trial {
     /// # Panics
     /// If the recording has no frame.
     #[must_use]
-    pub fn run(recording: &Recording, robot: RobotConfig, with_wheels: bool) -> Self {
+    pub fn run(recording: &Recording, robot: LocalMapConfig, with_wheels: bool) -> Self {
         let frames = &recording.frames;
         let mut slam = estimator(recording, robot);
         let (mut tried, mut closed) = (0, TrialLoops::default());
@@ -106,10 +107,10 @@ impl Trial {
 ///
 /// # Panics
 /// If the recording has no frame.
-pub(super) fn estimator(recording: &Recording, robot: RobotConfig) -> Slam {
+pub(super) fn estimator(recording: &Recording, robot: LocalMapConfig) -> Slam {
     let config = SlamConfig {
         start: recording.frames[0].truth,
-        ..SlamConfig::from_robot(robot)
+        ..SlamConfig::from_local_map(robot)
     };
     Slam::new(config)
 }

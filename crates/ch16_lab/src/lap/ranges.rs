@@ -72,7 +72,7 @@ pub const RANGES: [ConfigRange; 56] = [
     number!(0.02, 1.0, drive.scan.cell_m),
     number!(0.05, 1.0, drive.scan.normal_radius_m),
     count!(1.0, 2000.0, drive.max_ticks),
-    count!(1.0, 20.0, slam.window_sweeps),
+    count!(1.0, 20.0, slam.window_scans),
     number!(0.0, 1.0, slam.window_distance_m),
     number!(0.0, 1.0, slam.window_turn_rad),
     number!(0.05, 1.0, slam.chapter.local_map.cell_m),

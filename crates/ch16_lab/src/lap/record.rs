@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 
-use super::report::{Keyframe, LoopAttempt, TickReport, WindowSweep};
+use super::report::{Keyframe, LoopAttempt, TickReport, WindowScan};
 use super::{Drive, Lap, LapConfig, LoopClosure};
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::metrics::position_error_m;
@@ -157,7 +157,7 @@ impl LapTrace {
 
     /// The sweeps of the local map on which the sweep of `tick` was registered, oldest first.
     #[must_use]
-    pub fn window(&self, tick: usize, config: &LapConfig) -> Vec<WindowSweep> {
+    pub fn window(&self, tick: usize, config: &LapConfig) -> Vec<WindowScan> {
         let joined = |taken: &usize| {
             self.report(*taken)
                 .is_none_or(|report| report.registration.joined_window)
@@ -165,12 +165,12 @@ impl LapTrace {
         let mut taken: Vec<usize> = (0..tick)
             .rev()
             .filter(joined)
-            .take(config.slam.window_sweeps)
+            .take(config.slam.window_scans)
             .collect();
         taken.reverse();
         taken
             .into_iter()
-            .map(|taken| WindowSweep {
+            .map(|taken| WindowScan {
                 tick: taken,
                 pose: self.window_pose(taken, tick, config),
             })

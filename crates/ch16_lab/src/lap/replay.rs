@@ -6,7 +6,7 @@
 use pr_geom::SE2;
 
 use super::record::{LapRecord, LapTrace, RecordedEdge};
-use super::{Drive, LapConfig, LoopAttempt, WindowSweep};
+use super::{Drive, LapConfig, LoopAttempt, WindowScan};
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 use ch16_slam2d::icp::{IcpConfig, IcpResult, icp};
@@ -15,7 +15,7 @@ use ch16_slam2d::icp::{IcpConfig, IcpResult, icp};
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegistrationView {
     /// The sweeps of the local map, oldest first.
-    pub window: Vec<WindowSweep>,
+    pub window: Vec<WindowScan>,
     /// Points of the local map, world frame; its cells keep only some of them.
     pub local_cloud: PointCloud,
     /// Initial guess of the registration: `world_from_body`.

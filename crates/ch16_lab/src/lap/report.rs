@@ -19,7 +19,7 @@ pub struct Keyframe {
 
 /// A sweep of the local map.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WindowSweep {
+pub struct WindowScan {
     /// The tick of the sweep; 0 is the start.
     pub tick: usize,
     /// Estimated pose of the sweep: `world_from_body`.

@@ -15,7 +15,7 @@ use crate::slam::{LoopClosure, MotionNoise, SlamConfig};
 /// A cell is at least 2.4 σ wide, so the normal of a wall through n cells has an error of at most
 /// `σ √12 / (n cell √n)` = `1.44 / n^1.5` rad: 7.4° with the chapter's ratio, n = 5, and 3.4° here.
 /// Wrong normals hold a sweep back along the wall, as point pairs do.
-pub(super) const NORMAL_RADIUS_CELLS: f64 = 4.2;
+const NORMAL_RADIUS_CELLS: f64 = 4.2;
 
 /// The adaptive correspondence threshold (Vizzo et al., "KISS-ICP", 2023, §III-B).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,12 +131,12 @@ impl SlamConfig {
     #[must_use]
     pub fn chapter() -> Self {
         Self {
-            robot: None,
+            local_map: None,
             chapter: ChapterConfig::default(),
             start: SE2::identity(),
             scan: ScanConfig::default(),
             loop_closure: LoopClosure::On,
-            window_sweeps: 6,
+            window_scans: 6,
             window_distance_m: 0.0,
             window_turn_rad: 0.0,
             min_inliers: 8,

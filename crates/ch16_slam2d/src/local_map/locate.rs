@@ -127,8 +127,7 @@ mod tests {
     use pr_geom::Point2;
 
     use super::*;
-    use crate::local_map::RangeProfile;
-    use crate::slam::RobotConfig;
+    use crate::local_map::{LocalMapConfig, RangeProfile};
 
     fn wall(points: i32, at: impl Fn(f64) -> Point2<f64>) -> PointCloud {
         (0..points).map(|k| at(0.05 * f64::from(k))).collect()
@@ -148,7 +147,7 @@ mod tests {
         let profile = Arc::new(RangeProfile::new(&hall));
         let mut map = LocalMap::default();
         map.rebuild([(SE2::identity(), &hall, &profile)]);
-        let config = RobotConfig::default().registration();
+        let config = LocalMapConfig::default().registration();
         let found = |sigma_m: f64, map: &mut LocalMap| {
             let prior = MotionPrior {
                 pose: SE2::new(0.36, 0.0, 0.0),
@@ -181,7 +180,7 @@ mod tests {
             sigma_rad: 0.02,
             tail: PriorTail::Student,
         };
-        let config = RobotConfig::default().registration();
+        let config = LocalMapConfig::default().registration();
         let others = [pose * SE2::new(-0.5, 0.0, 0.0)];
         let found = map.locate(&seen, &prior, &others, &config);
         assert!(pose.between(&found.registered.pose).step_size() < 0.05);

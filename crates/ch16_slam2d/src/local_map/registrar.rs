@@ -3,13 +3,13 @@
 use nalgebra::{Matrix3, Vector2};
 use pr_geom::SE2;
 
-use super::{LocalMap, MapRegistrationConfig, MotionPrior, PriorTail, ScanProfiles};
+use super::{
+    LocalMap, LocalMapConfig, MapRegistrationConfig, MotionPrior, PriorTail, ScanProfiles,
+};
 use crate::cloud::PointCloud;
 use crate::matching::{MatchStop, MatchSummary};
 use crate::scan::PreparedFrame;
-use crate::slam::{
-    ExpectedMotion, NamedNumbers, RobotConfig, ScanRegistrar, ScanWindow, SnapshotError,
-};
+use crate::slam::{ExpectedMotion, NamedNumbers, ScanRegistrar, ScanWindow, SnapshotError};
 
 /// Name of the covariance of the motions since the last keyframe in a snapshot.
 const MOTION_COVARIANCE: &str = "motion covariance";
@@ -17,7 +17,7 @@ const MOTION_COVARIANCE: &str = "motion covariance";
 /// Registers scans on the last few with the odometry as a prior.
 #[derive(Clone)]
 pub(crate) struct MapRegistrar {
-    config: RobotConfig,
+    config: LocalMapConfig,
     registration: MapRegistrationConfig,
     map: LocalMap,
     profiles: ScanProfiles,
@@ -30,7 +30,7 @@ pub(crate) struct MapRegistrar {
 }
 
 impl MapRegistrar {
-    pub fn new(config: RobotConfig) -> Self {
+    pub fn new(config: LocalMapConfig) -> Self {
         Self {
             registration: config.registration(),
             config,

@@ -15,10 +15,11 @@ use pr_optim::OptimizeError;
 use super::pairwise_consistency::are_consistent;
 use super::submaps::Submaps;
 use super::tuning::{
-    AGREEING_CONTRADICTING, AGREEING_EXPECTED, BUNDLE_CELL_M, EVERY_KEYFRAMES, HALF_SUBMAP,
-    LOOP_FLOOR, MIN_SEPARATION_M, SUBMAP_MARGIN_M, SUBMAPS, WINDOW_FLOOR_M, WINDOW_FLOOR_RAD,
+    AGREEING_CONTRADICTING, AGREEING_EXPECTED, BUNDLE, BUNDLE_CELL_M, EVERY_KEYFRAMES, HALF_SUBMAP,
+    LOOP_FLOOR, MAX_TURN_RAD, MIN_LOOP_SCORE, MIN_MARGIN, MIN_SEPARATION_M, PENDING_DISTANCE_M,
+    SUBMAP_MARGIN_M, SUBMAPS, UNCONFIRMED_M, WINDOW_FLOOR_M, WINDOW_FLOOR_RAD, WINDOW_SIGMAS,
 };
-use super::{MIN_SEARCH_SCORE, MapRegistration, linking};
+use super::{LocalMapConfig, MIN_SEARCH_SCORE, MapRegistration, SubmapLoopConfig, linking};
 use crate::chi_squared::GATE_99;
 use crate::cloud::PointCloud;
 use crate::loops::{
@@ -26,9 +27,7 @@ use crate::loops::{
 };
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
-use crate::slam::{
-    Consistency, LoopFinder, Mapper, RobotConfig, SnapshotError, SubmapLoopConfig, TriedLoops,
-};
+use crate::slam::{Consistency, LoopFinder, Mapper, SnapshotError, TriedLoops};
 
 /// Finds loops, and keeps the pending ones.
 #[derive(Clone)]
@@ -48,7 +47,7 @@ struct Window {
 }
 
 impl SubmapLoops {
-    pub fn new(robot: &RobotConfig) -> Self {
+    pub fn new(robot: &LocalMapConfig) -> Self {
         Self {
             config: robot.loops,
             pending: Vec::new(),
@@ -74,7 +73,7 @@ impl SubmapLoops {
             else {
                 continue;
             };
-            let sigma = |variance: f64| config.window_sigmas * math::sqrt(math::max(variance, 0.0));
+            let sigma = |variance: f64| WINDOW_SIGMAS * math::sqrt(math::max(variance, 0.0));
             let half_m = sigma(math::max(covariance.m11, covariance.m22)) + WINDOW_FLOOR_M;
             let half_rad = sigma(covariance.m33) + WINDOW_FLOOR_RAD;
             let half_m = math::min(half_m, config.max_window_m);
@@ -87,7 +86,7 @@ impl SubmapLoops {
                 belief: poses[candidate.node].between(&poses[node]),
                 covariance,
                 half_m,
-                half_rad: math::min(half_rad, config.max_turn_rad),
+                half_rad: math::min(half_rad, MAX_TURN_RAD),
             });
         }
         windows
@@ -98,7 +97,7 @@ impl SubmapLoops {
         let poses = mapper.poses();
         let here = poses[poses.len() - 1];
         let mut points = PointCloud::default();
-        let first = poses.len().saturating_sub(self.config.bundle);
+        let first = poses.len().saturating_sub(BUNDLE);
         for (pose, keyframe) in poses.iter().zip(mapper.keyframes()).skip(first) {
             points.extend_transformed(&keyframe.scan, &here.between(pose));
         }
@@ -136,8 +135,7 @@ impl SubmapLoops {
         lengths_m: &[f64],
     ) -> LoopVerification {
         self.build_submap(mapper, window, lengths_m);
-        let Self { config, .. } = *self;
-        let is_sure = window.half_m <= config.unconfirmed_gate_radius_m;
+        let is_sure = window.half_m <= UNCONFIRMED_M;
         let (start, margin) = if is_sure {
             (Some(window.belief), None)
         } else {
@@ -163,7 +161,7 @@ impl SubmapLoops {
                 half_width_m: window.half_m,
                 min_score: MIN_SEARCH_SCORE,
             }),
-            Some(_) => rejection(&found, margin, &config),
+            Some(_) => rejection(&found, margin),
         };
         self.verification(window, lengths_m.len() - 1, from, &found, margin, rejection)
     }
@@ -172,7 +170,7 @@ impl SubmapLoops {
     fn search(&self, window: &Window, bundle: &PointCloud) -> (Option<SE2>, Option<f64>) {
         let around = SearchWindow::around(window.belief, window.half_m, window.half_rad);
         // Distinct poses are searched up to twice the required margin.
-        let farthest = 2.0 * self.config.min_margin;
+        let farthest = 2.0 * MIN_MARGIN;
         match self.submaps.map.search(bundle, &around, farthest) {
             Some(found) => (
                 Some(found.best.pose),
@@ -225,7 +223,7 @@ impl SubmapLoops {
         for (index, other) in self.pending.iter().enumerate() {
             let apart_m = path_m - other.path_m;
             let is_beside = apart_m < MIN_SEPARATION_M;
-            if is_beside || apart_m > self.config.pending_distance_m {
+            if is_beside || apart_m > PENDING_DISTANCE_M {
                 continue;
             }
             if are_consistent(mapper, &other.verification, found) {
@@ -252,9 +250,7 @@ impl LoopFinder for SubmapLoops {
         for window in windows {
             let found = self.verify_window(mapper, &window, &bundle, &lengths_m);
             let is_expected = found.gate.passes();
-            if !found.accepted()
-                || (is_expected && window.half_m <= self.config.unconfirmed_gate_radius_m)
-            {
+            if !found.accepted() || (is_expected && window.half_m <= UNCONFIRMED_M) {
                 tried.found.push(found);
                 continue;
             }
@@ -266,7 +262,7 @@ impl LoopFinder for SubmapLoops {
             };
             let path_m = lengths_m[found.from_node];
             if agreeing.len() + 1 < needed {
-                let reach_m = self.config.pending_distance_m;
+                let reach_m = PENDING_DISTANCE_M;
                 self.pending
                     .retain(|other| path_m - other.path_m <= reach_m);
                 self.pending.push(PendingLoop {
@@ -360,16 +356,16 @@ fn old_enough(lengths_m: &[f64], min_path_m: f64) -> usize {
     lengths_m.partition_point(|length_m| *length_m < here_m - min_path_m)
 }
 
-fn rejection(
-    found: &MapRegistration,
-    margin: Option<f64>,
-    config: &SubmapLoopConfig,
-) -> Option<LoopRejection> {
-    let (score, min_score) = (found.fit.score, config.min_score);
-    if score < min_score {
-        return Some(LoopRejection::LowScore { score, min_score });
+fn rejection(found: &MapRegistration, margin: Option<f64>) -> Option<LoopRejection> {
+    let score = found.fit.score;
+    if score < MIN_LOOP_SCORE {
+        return Some(LoopRejection::LowScore {
+            score,
+            min_score: MIN_LOOP_SCORE,
+        });
     }
-    let min_margin = config.min_margin;
-    let margin = margin.filter(|margin| *margin < min_margin)?;
-    Some(LoopRejection::Ambiguous { margin, min_margin })
+    Some(LoopRejection::Ambiguous {
+        margin: margin.filter(|margin| *margin < MIN_MARGIN)?,
+        min_margin: MIN_MARGIN,
+    })
 }

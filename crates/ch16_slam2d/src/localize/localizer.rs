@@ -11,12 +11,14 @@ use super::trail::Trail;
 use super::{KnownMap, LocalizeConfig, LocalizeReport, MapSearch, StartPose, Verdict};
 use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, regularize};
-use crate::local_map::{LocalMap, MapRegistration, MapRegistrationConfig, MotionPrior, PriorTail};
+use crate::local_map::{
+    LocalMap, LocalMapConfig, MapRegistration, MapRegistrationConfig, MotionPrior, PriorTail,
+};
 use crate::loops::chi_squared_gate;
 use crate::metrics::position_error_m;
 use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer};
 use crate::search::{SearchResult, SearchWindow};
-use crate::slam::{RobotConfig, SlamConfig};
+use crate::slam::SlamConfig;
 
 /// Largest squared disagreement of scan and prediction for a pose that is not doubtful: the 99 % quantile.
 const GATE_CHI2: f64 = 11.34;
@@ -38,7 +40,7 @@ pub struct Localizer {
     config: LocalizeConfig,
     slam: SlamConfig,
     preparer: ScanPreparer,
-    robot: RobotConfig,
+    robot: LocalMapConfig,
     registration: MapRegistrationConfig,
     /// The local map, and its keyframes.
     local: LocalMap,
@@ -66,7 +68,7 @@ impl Localizer {
         config: LocalizeConfig,
         start: StartPose,
     ) -> Self {
-        let robot = slam.robot.unwrap_or_default();
+        let robot = slam.local_map.unwrap_or_default();
         Self {
             map,
             registration: robot.registration(),

@@ -111,7 +111,7 @@ fn fits(slam: &Slam, scan: &PointCloud, pose: SE2) -> bool {
             .zip(&profiles)
             .map(|(&(_, node), profile)| (poses[node], &*slam.keyframes()[node].scan, profile)),
     );
-    let settings = slam.config().robot.unwrap_or_default().registration();
+    let settings = slam.config().local_map.unwrap_or_default().registration();
     let stages = [settings.max_correspondence_m, settings.inlier_distance_m];
     let found = map.register(scan, pose, &stages, None, &settings);
     let shift = pose.between(&found.registered.pose);

@@ -2,9 +2,9 @@
 
 use pr_geom::SE2;
 
-use super::RobotConfig;
 use crate::chapter::ChapterConfig;
 use crate::graph::JacobianModel;
+use crate::local_map::LocalMapConfig;
 use crate::scan::ScanConfig;
 
 /// Whether the back end closes loops.
@@ -20,12 +20,12 @@ pub enum LoopClosure {
 /// The estimator's parameters.
 ///
 /// [`SlamConfig::chapter`] has the chapter's, for its figures; the default corrects their faults, for rooms of the
-/// chapter's size; [`SlamConfig::for_scan`] derives the lengths from a sensor.
+/// chapter's size; [`SlamConfig::for_robot`] is the estimator for recorded logs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlamConfig {
     /// The parameters of the estimator for robots, which registers scans with a prior and closes loops on
     /// submaps. `None` selects the chapter's system.
-    pub robot: Option<RobotConfig>,
+    pub local_map: Option<LocalMapConfig>,
     /// The parameters of the chapter's system; unused by the estimator for robots.
     pub chapter: ChapterConfig,
     /// Pose of the first frame, which defines the map's frame.
@@ -35,7 +35,7 @@ pub struct SlamConfig {
     /// Whether loops are closed.
     pub loop_closure: LoopClosure,
     /// Number of last sweeps in the local map.
-    pub window_sweeps: usize,
+    pub window_scans: usize,
     /// A sweep joins a full window only at this distance from the newest one in it, m: a standing robot
     /// keeps the map of its path.
     pub window_distance_m: f64,

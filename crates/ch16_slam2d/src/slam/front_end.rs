@@ -8,7 +8,7 @@ use pr_geom::SE2;
 use super::config::SlamConfig;
 use super::registrar::{ExpectedMotion, ScanRegistrar};
 use super::snapshot::{FrontEndSnapshot, SnapshotError};
-use super::window::{ScanWindow, WindowSweep};
+use super::window::{ScanWindow, WindowScan};
 use crate::cloud::PointCloud;
 use crate::matching::MatchSummary;
 use crate::metrics::position_error_m;
@@ -85,7 +85,7 @@ impl FrontEnd {
 
     /// The sweeps of the next local map, oldest first.
     #[must_use]
-    pub fn window(&self) -> &[WindowSweep] {
+    pub fn window(&self) -> &[WindowScan] {
         self.window.sweeps()
     }
 
@@ -206,7 +206,7 @@ impl FrontEnd {
     fn join_window(&mut self, frame: &PreparedFrame, number: usize, config: &SlamConfig) -> bool {
         let sweeps = self.window.sweeps();
         if let Some(newest) = sweeps.last()
-            && sweeps.len() >= config.window_sweeps
+            && sweeps.len() >= config.window_scans
         {
             let turn = newest.pose.between(&self.estimate).theta().abs();
             if position_error_m(&newest.pose, &self.estimate) < config.window_distance_m

@@ -238,8 +238,8 @@ fn is_replaced(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::slam::test_room::{frame, truth};
-    use crate::slam::{RobotConfig, Slam, SlamConfig};
+    use crate::slam::test_room::{doubting, frame, truth};
+    use crate::slam::{Slam, SlamConfig};
 
     /// Laps of a circle in a room; in the first two there is an obstacle in it.
     fn laps(laps: usize, is_pruned: bool) -> (Slam, Vec<usize>) {
@@ -309,14 +309,7 @@ mod tests {
 
     #[test]
     fn pending_loops_follow_their_keyframes() {
-        // Every loop needs confirmation.
-        let mut robot = RobotConfig::for_scan(&frame(0).scan);
-        robot.loops.unconfirmed_gate_radius_m = 0.0;
-        robot.loops.min_margin = 0.0;
-        robot.loops.pending_distance_m = 0.0;
-        robot.loops.min_path_m = 4.0;
-        let config = SlamConfig::from_robot(robot);
-        let mut slam = Slam::new(config);
+        let mut slam = Slam::new(doubting());
         (0..140).for_each(|step| drop(slam.step(&frame(step)).unwrap()));
         let ends = |slam: &Slam| -> Vec<(usize, usize)> {
             let frame = |node: usize| slam.keyframes()[node].frame;

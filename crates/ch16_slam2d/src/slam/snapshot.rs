@@ -12,7 +12,7 @@ use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::{Keyframe, Slam, SlamConfig, Strategies, WindowSweep};
+use super::{Keyframe, Slam, SlamConfig, Strategies, WindowScan};
 use crate::cloud::PointCloud;
 use crate::graph::{EdgeView, PoseNode};
 use crate::loops::PendingLoop;
@@ -60,7 +60,7 @@ pub struct FrontEndSnapshot {
     /// Duration of the last motion, s; infinite before the first.
     pub last_dt_s: f64,
     /// The sweeps of the next local map, oldest first.
-    pub window: Vec<WindowSweep>,
+    pub window: Vec<WindowScan>,
     /// Their scans, body frame.
     #[serde(skip)]
     pub scans: Vec<Arc<PointCloud>>,
@@ -320,8 +320,7 @@ impl Slam {
 mod tests {
     use super::*;
     use crate::graph::EdgeKind;
-    use crate::slam::RobotConfig;
-    use crate::slam::test_room::frame;
+    use crate::slam::test_room::{doubting, frame};
 
     fn run(slam: &mut Slam, steps: core::ops::Range<usize>) {
         for step in steps {
@@ -331,17 +330,10 @@ mod tests {
 
     fn configs() -> [SlamConfig; 4] {
         let scan = frame(0).scan;
-        // Every loop needs confirmation.
-        let mut doubting = RobotConfig::for_scan(&scan);
-        doubting.loops.unconfirmed_gate_radius_m = 0.0;
-        doubting.loops.min_margin = 0.0;
-        doubting.loops.pending_distance_m = 0.0;
-        doubting.loops.min_path_m = 4.0;
-        let doubting = SlamConfig::from_robot(doubting);
         [
-            doubting,
+            doubting(),
             SlamConfig::for_robot(&scan),
-            SlamConfig::for_scan(&scan, 0.02),
+            SlamConfig::default(),
             SlamConfig::chapter(),
         ]
     }

@@ -24,7 +24,7 @@ impl Strategies {
     /// The strategies that `config` selects: those for recorded logs, or the chapter's.
     #[must_use]
     pub fn from_config(config: &SlamConfig) -> Self {
-        match &config.robot {
+        match &config.local_map {
             Some(robot) => Self {
                 registrar: Box::new(MapRegistrar::new(*robot)),
                 finder: Box::new(SubmapLoops::new(robot)),

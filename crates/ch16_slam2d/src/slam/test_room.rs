@@ -3,6 +3,8 @@
 use nalgebra::Vector3;
 use pr_geom::SE2;
 
+use super::SlamConfig;
+use crate::local_map::LocalMapConfig;
 use crate::scan::{Frame, LaserScan};
 
 /// Around a circle in a room of 8 m × 6 m, in steps of 9 cm; 105 of them are a lap.
@@ -33,4 +35,13 @@ pub fn frame(step: usize) -> Frame {
         odometry: (step > 0).then(|| last.between(&pose) * SE2::new(0.0, 0.0, 0.005)),
         scan,
     }
+}
+
+/// Odometry and points that are hardly informative: the windows of loops are wide, so every loop needs confirmation.
+pub fn doubting() -> SlamConfig {
+    let mut robot = LocalMapConfig::for_scan(&frame(0).scan);
+    robot.point_sigma_m = 1.0;
+    robot.odometry.per_metre = 0.5;
+    robot.loops.min_path_m = 4.0;
+    SlamConfig::from_local_map(robot)
 }

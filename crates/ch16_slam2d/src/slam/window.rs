@@ -9,7 +9,7 @@ use crate::cloud::PointCloud;
 
 /// A sweep of the local map.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WindowSweep {
+pub struct WindowScan {
     /// The frame in which it was taken.
     pub frame: usize,
     /// Its estimated pose: `world_from_body`.
@@ -19,13 +19,13 @@ pub struct WindowSweep {
 /// The last few scans with their poses, oldest first.
 #[derive(Clone, Debug, Default)]
 pub struct ScanWindow {
-    sweeps: Vec<WindowSweep>,
+    sweeps: Vec<WindowScan>,
     scans: Vec<Arc<PointCloud>>,
 }
 
 impl ScanWindow {
     /// A window of these sweeps and their scans, in the same order.
-    pub(super) fn new(sweeps: &[WindowSweep], scans: &[Arc<PointCloud>]) -> Self {
+    pub(super) fn new(sweeps: &[WindowScan], scans: &[Arc<PointCloud>]) -> Self {
         Self {
             sweeps: sweeps.to_vec(),
             scans: scans.to_vec(),
@@ -34,7 +34,7 @@ impl ScanWindow {
 
     /// Frame and pose of each scan.
     #[must_use]
-    pub fn sweeps(&self) -> &[WindowSweep] {
+    pub fn sweeps(&self) -> &[WindowScan] {
         &self.sweeps
     }
 
@@ -51,7 +51,7 @@ impl ScanWindow {
     }
 
     pub(super) fn push(&mut self, frame: usize, pose: SE2, scan: Arc<PointCloud>) {
-        self.sweeps.push(WindowSweep { frame, pose });
+        self.sweeps.push(WindowScan { frame, pose });
         self.scans.push(scan);
     }
 

@@ -5,9 +5,9 @@
 //! odometry puts it: the score alone does not distinguish a mirror image from a room. A repair wins if it makes scans
 //! cheaper in both halves of the part, and on the whole by more than chance.
 
-use ch16_slam2d::local_map::{MotionPrior, PriorTail};
+use ch16_slam2d::local_map::{LocalMapConfig, MotionPrior, PriorTail};
 use ch16_slam2d::scan::Frame;
-use ch16_slam2d::slam::{LoopClosure, RobotConfig, Slam, SlamConfig};
+use ch16_slam2d::slam::{LoopClosure, Slam, SlamConfig};
 use pr_geom::{SE2, math};
 
 use super::repairs::Repairs;
@@ -68,8 +68,8 @@ impl Trial {
         let Some(first) = self.frames.first() else {
             return Vec::new();
         };
-        let robot = RobotConfig::for_scan(&first.scan);
-        let mut slam = Slam::new(SlamConfig::from_robot(robot));
+        let robot = LocalMapConfig::for_scan(&first.scan);
+        let mut slam = Slam::new(SlamConfig::from_local_map(robot));
         slam.set_loop_closure(LoopClosure::Off);
         let mut last_odometry = None;
         let frames = self.frames.iter().map(|frame| {
@@ -145,7 +145,7 @@ struct Spread {
 
 impl Spread {
     /// That of constant velocity, which depends on the robot: by the medians over the trial.
-    fn learned<'a>(scans: impl Iterator<Item = &'a PosedScan>, robot: &RobotConfig) -> Self {
+    fn learned<'a>(scans: impl Iterator<Item = &'a PosedScan>, robot: &LocalMapConfig) -> Self {
         let predicted = scans.filter(|scan| scan.stated.is_none());
         let off = predicted.map(|scan| scan.prediction.between(&scan.estimate));
         let (off_m, off_rad): (Vec<f64>, Vec<f64>) = off
@@ -156,8 +156,8 @@ impl Spread {
         };
         Self {
             // Medians of the length of a normal vector in the plane and of a normal number, both of variance 1.
-            sigma_m: sigma(off_m, 1.1774, robot.odometry.floor_m),
-            sigma_rad: sigma(off_rad, 0.6745, robot.odometry.floor_rad),
+            sigma_m: sigma(off_m, 1.1774, robot.motion_noise(true).floor_m),
+            sigma_rad: sigma(off_rad, 0.6745, robot.motion_noise(true).floor_rad),
         }
     }
 }
@@ -177,17 +177,17 @@ impl PosedScan {
 }
 
 /// Takes a frame; `None` if it cannot be used, and for the first one.
-fn posed(slam: &mut Slam, frame: &Frame, robot: &RobotConfig) -> Option<PosedScan> {
+fn posed(slam: &mut Slam, frame: &Frame, robot: &LocalMapConfig) -> Option<PosedScan> {
     let before = slam.front_end().estimate();
     let registration = slam.step(frame).ok()?.registration?;
     let motion = before.between(&registration.prediction);
     let stated = frame.odometry.map(|_| {
-        let (sigma_m, sigma_rad) = robot.odometry.deviations(&motion);
+        let (sigma_m, sigma_rad) = robot.motion_noise(true).deviations(&motion);
         Spread { sigma_m, sigma_rad }
     });
     let score = registration.matched.score.unwrap_or(0.0);
     Some(PosedScan {
-        misfit: 4.5 * robot.independent_points * (1.0 - score),
+        misfit: 4.5 * robot.registration().independent_points * (1.0 - score),
         prediction: registration.prediction,
         estimate: registration.estimate,
         stated,

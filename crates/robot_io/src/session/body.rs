@@ -4,7 +4,8 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use ch16_slam2d::graph::EdgeView;
-use ch16_slam2d::slam::{RobotConfig, SlamConfig};
+use ch16_slam2d::local_map::LocalMapConfig;
+use ch16_slam2d::slam::SlamConfig;
 use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +31,7 @@ struct Body<'a> {
 /// Serializes a session.
 pub fn write(session: &Session) -> Vec<u8> {
     let snapshot = &session.snapshot;
-    let robot = snapshot.config.robot.unwrap_or_default();
+    let robot = snapshot.config.local_map.unwrap_or_default();
     let radius_m = snapshot.config.scan.normal_radius_m;
     let keyframe_scans = snapshot.keyframes.iter().map(|keyframe| &*keyframe.scan);
     let window_scans = snapshot.front_end.scans.iter();
@@ -56,11 +57,11 @@ pub fn read(bytes: &[u8]) -> Result<Session, String> {
     if !rest.is_empty() {
         return Err(format!("{} bytes follow its content", rest.len()));
     }
-    let robot: RobotConfig = serde_json::from_str(&body.robot)
+    let robot: LocalMapConfig = serde_json::from_str(&body.robot)
         .map_err(|problem| format!("its parameters: {problem}"))?;
     let config = SlamConfig {
         start: body.start,
-        ..SlamConfig::from_robot(crate::settings::checked(robot)?)
+        ..SlamConfig::from_local_map(crate::settings::checked(robot)?)
     };
     let radius_m = config.scan.normal_radius_m;
     let restored = |scan: StoredScan| scan.restored(radius_m).map(Arc::new);

@@ -2,9 +2,9 @@ use std::f64::consts::TAU;
 use std::io::Cursor as Bytes;
 
 use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::local_map::LocalMapConfig;
 use ch16_slam2d::pipeline::ScanPose;
 use ch16_slam2d::scan::LaserScan;
-use ch16_slam2d::slam::RobotConfig;
 use pr_geom::{Point2, SE2, Vector3, math};
 
 use super::*;
@@ -109,11 +109,10 @@ fn a_log_of_another_scanner_is_reported() {
 
 #[test]
 fn pending_loops_are_saved_and_stay_pending() {
-    // A zero radius: every loop waits for confirmation.
+    // Odometry and points that are hardly informative: windows are wide, and every loop waits for confirmation.
     let settings = [
-        ("loops.unconfirmed_gate_radius_m", 0.0),
-        ("loops.min_margin", 0.0),
-        ("loops.pending_distance_m", 0.0),
+        ("point_sigma_m", 1.0),
+        ("odometry.per_metre", 0.5),
         ("loops.min_path_m", 4.0),
     ];
     let settings = settings.map(|(name, value)| (Setting::named(name).unwrap(), value));
@@ -219,14 +218,14 @@ fn a_session_with_other_parameters_is_refused_by_their_name() {
     let bytes = saved(&run(120, 0..20));
     for (from, to, expected) in [
         (
-            "\"max_correspondence_m\"",
-            "\"max_correspondence_k\"",
-            "missing field `max_correspondence_m`",
+            "\"point_sigma_m\"",
+            "\"point_sigma_k\"",
+            "missing field `point_sigma_m`",
         ),
         (
-            "\"inlier_distance_m\":0.15",
-            "\"inlier_distance_m\":-0.1",
-            "inlier_distance_m cannot be -0.1",
+            "\"keyframe_distance_m\":0.65",
+            "\"keyframe_distance_m\":-0.1",
+            "keyframe_distance_m cannot be -0.1",
         ),
     ] {
         let mut other = bytes.clone();
@@ -366,12 +365,12 @@ fn foreign_files_are_distinguished_from_damaged_sessions() {
 #[test]
 fn every_parameter_is_written_and_read() {
     for setting in SETTINGS {
-        let value = setting.value(&RobotConfig::default()) + 1.0;
+        let value = setting.value(&LocalMapConfig::default()) + 1.0;
         let mut run = LogRun::default().with_setting(setting, value);
         // Few enough points to be stored exactly.
         run.step(frame(0, 120)).unwrap();
         let session = Session::from_bytes(&saved(&run), "x").unwrap();
-        let robot = session.snapshot.config.robot.unwrap();
+        let robot = session.snapshot.config.local_map.unwrap();
         assert_eq!(setting.value(&robot), value, "{}", setting.name);
         assert!(session == run.session().unwrap(), "{}", setting.name);
     }

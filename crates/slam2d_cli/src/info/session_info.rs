@@ -59,7 +59,7 @@ impl SessionJson {
             parameters: SETTINGS
                 .iter()
                 .map(|setting| {
-                    let robot = snapshot.config.robot.unwrap_or_default();
+                    let robot = snapshot.config.local_map.unwrap_or_default();
                     format!("{} {}", setting.name, setting.value(&robot))
                 })
                 .collect(),

@@ -1,15 +1,22 @@
-//! `--shard K/N`: one part of the seeds, for one of several machines.
+//! `--shard K/N -o FILE`: one part of the seeds, for one of several machines, and `--merge`, which puts parts together.
+//!
+//! A file has all digits of each outcome, so the distribution of merged parts is that of one process.
 
-use std::path::Path;
-use std::sync::Mutex;
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
 
-use ch16_lab::lap::LapRunner;
+use anyhow::{anyhow, ensure};
+use ch16_lab::lap::{Choice, LapEstimator};
 use ch16_lab::results::LapOutcome;
-use rayon::prelude::*;
+use ch16_slam2d::digest::Digest;
+use serde::{Deserialize, Serialize};
 
-use super::rows::{Header, LapRow, RowsFile};
-use super::{SweepArgs, progress_bar};
+use super::SweepArgs;
+use crate::in_file::InFile as _;
 use crate::lap_options::LapOptions;
+use crate::numbers::Seeds;
+use crate::optimize::write_whole;
 
 /// Most shards.
 const MAX_SHARDS: u32 = 100_000;
@@ -22,12 +29,6 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// A single shard with all seeds.
-    pub const WHOLE: Self = Self {
-        number: 1,
-        count: 1,
-    };
-
     /// Whether the seed at this index is in the shard. Consecutive seeds go to different shards, which
     /// balances their run times.
     fn contains(self, index: u32) -> bool {
@@ -49,65 +50,127 @@ pub fn shard(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// Result of a shard.
-pub struct ShardResult {
-    /// Number of laps in the file.
-    pub laps: usize,
-    /// Number of laps that were in the file before.
-    pub kept: usize,
-    /// The outcomes of every seed of the shard, one for each noise factor.
-    pub by_seed: Vec<Vec<LapOutcome>>,
+/// What all parts of a sweep have in common.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct SweepIdentity {
+    slam2d: String,
+    seeds: [u32; 2],
+    noise: Vec<f64>,
+    estimators: Vec<String>,
+    /// Digest of the configuration of the first laps: world, matchers, everything.
+    configuration: String,
 }
 
-/// Runs the laps of a shard that `file` lacks, and appends each result.
+impl SweepIdentity {
+    fn new(args: &SweepArgs, trial: &LapOptions) -> Self {
+        let mut digest = Digest::new();
+        for &noise in &args.noise {
+            let words = format!("{:?}", trial.lap(args.seeds.first, noise));
+            words.bytes().for_each(|byte| digest.add_bits(byte.into()));
+        }
+        Self {
+            slam2d: env!("CARGO_PKG_VERSION").to_owned(),
+            seeds: [args.seeds.first, args.seeds.last],
+            noise: args.noise.clone(),
+            estimators: args.estimator.iter().map(|e| e.name().to_owned()).collect(),
+            configuration: format!("{:016x}", digest.value()),
+        }
+    }
+}
+
+/// The laps of a seed.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct SeedLaps {
+    seed: u32,
+    /// One for each noise factor.
+    outcomes: Vec<LapOutcome>,
+}
+
+/// The file of a part.
+#[derive(Serialize, Deserialize)]
+struct ShardFile {
+    sweep: SweepIdentity,
+    laps: Vec<SeedLaps>,
+}
+
+/// Drives the seeds of a part and writes its file.
 ///
 /// # Errors
-/// If a row cannot be written; earlier rows are kept.
+/// If the file cannot be written.
 pub fn drive(
     args: &SweepArgs,
     trial: &LapOptions,
     part: Shard,
     path: &Path,
-) -> anyhow::Result<ShardResult> {
-    let header = Header::new(args, trial);
-    let (file, rows) = RowsFile::open(path, &header)?;
-    let file = Mutex::new(file);
+) -> anyhow::Result<usize> {
     let seeds: Vec<u32> = (0..)
         .zip(args.seeds.first..=args.seeds.last)
         .filter_map(|(index, seed)| part.contains(index).then_some(seed))
         .collect();
-    let bar = progress_bar(seeds.len() as u64);
-    let by_seed: anyhow::Result<Vec<Vec<(LapOutcome, bool)>>> = seeds
-        .into_par_iter()
-        .map_init(LapRunner::new, |runner, seed| {
-            let mut at = |&noise: &f64| {
-                if let Some(outcome) = rows.get(seed, noise) {
-                    return Ok((outcome, true));
-                }
-                let outcome = args.outcome(runner, trial, seed, noise);
-                let row = LapRow {
-                    seed,
-                    noise,
-                    outcome,
-                };
-                file.lock().expect("no other thread panicked").add(&row)?;
-                Ok((outcome, false))
-            };
-            let laps = args.noise.iter().map(&mut at).collect();
-            bar.inc(1);
-            laps
-        })
+    let by_seed = super::all_runs(args, trial, &seeds);
+    let laps = seeds.iter().zip(by_seed);
+    let file = ShardFile {
+        sweep: SweepIdentity::new(args, trial),
+        laps: laps
+            .map(|(&seed, outcomes)| SeedLaps { seed, outcomes })
+            .collect(),
+    };
+    write_whole(path, &serde_json::to_vec(&file)?).in_file(path)?;
+    Ok(seeds.len() * args.noise.len())
+}
+
+/// Merges the files of parts: the arguments of their sweep, and the outcomes of each seed in order.
+///
+/// # Errors
+/// If a file cannot be used, the files belong to different sweeps, or laps are missing.
+pub fn merge(args: &SweepArgs) -> anyhow::Result<(SweepArgs, Vec<Vec<LapOutcome>>)> {
+    let mut by_seed: HashMap<u32, Vec<LapOutcome>> = HashMap::new();
+    let mut first: Option<(&PathBuf, SweepIdentity)> = None;
+    for path in &args.merge {
+        let text = fs::read(path).in_file(path)?;
+        let ShardFile { sweep, laps } = serde_json::from_slice(&text).map_err(|error| {
+            anyhow!(
+                "{}: {error}; give a file that slam2d sweep --shard wrote",
+                path.display()
+            )
+        })?;
+        let (known, identity) = &*first.get_or_insert_with(|| (path, sweep.clone()));
+        ensure!(
+            *identity == sweep,
+            "{} and {} are of different sweeps; drive all parts with the same program and arguments",
+            known.display(),
+            path.display()
+        );
+        for SeedLaps { seed, outcomes } in laps {
+            let before = by_seed.insert(seed, outcomes);
+            ensure!(
+                before.is_none_or(|before| before == by_seed[&seed]),
+                "{}: seed {seed} differs from an earlier file; one of the machines computes other bits",
+                path.display()
+            );
+        }
+    }
+    let (_, identity) = first.expect("clap asks for a file");
+    let [first, last] = identity.seeds;
+    let missing: Vec<u32> = (first..=last)
+        .filter(|seed| by_seed.get(seed).map(Vec::len) != Some(identity.noise.len()))
         .collect();
-    bar.finish_and_clear();
-    let by_seed = by_seed?;
-    let laps = by_seed.iter().map(Vec::len).sum();
-    let kept = by_seed.iter().flatten().filter(|(_, kept)| *kept).count();
-    let outcomes = |laps: Vec<(LapOutcome, bool)>| laps.into_iter().map(|(lap, _)| lap).collect();
-    Ok(ShardResult {
-        laps,
-        kept,
-        by_seed: by_seed.into_iter().map(outcomes).collect(),
-    })
+    ensure!(
+        missing.is_empty(),
+        "{} of {} seeds are missing, the first is {}; give the file of their part as well",
+        missing.len(),
+        Seeds { first, last }.count(),
+        missing[0]
+    );
+    let names = identity.estimators.iter();
+    let args = SweepArgs {
+        seeds: Seeds { first, last },
+        noise: identity.noise,
+        estimator: names.filter_map(|name| LapEstimator::named(name)).collect(),
+        ..args.clone()
+    };
+    let laps = (first..=last).filter_map(|seed| by_seed.remove(&seed));
+    Ok((args, laps.collect()))
 }
 
 #[cfg(test)]
@@ -122,7 +185,6 @@ mod tests {
                 assert_eq!(shards.filter(|shard| shard.contains(index)).count(), 1);
             }
         }
-        assert!(Shard::WHOLE.contains(7));
     }
 
     #[test]
