@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, LoopAttempt};
 use ch16_slam2d::loops::LoopRejection;
-use pr_geom::Translation;
+use pr_geom::{Translation, sort_numbers};
 use serde_json::{Value, json};
 use widget_kit::palette::Theme;
 use widget_kit::scene::{
@@ -195,7 +195,7 @@ fn curve([right, wrong]: [usize; 2], [gate_right, gate_wrong]: [usize; 2]) -> Pa
         .map(|candidate| candidate.chi2)
         .collect();
     thresholds.push(0.0);
-    thresholds.sort_by(f64::total_cmp);
+    sort_numbers(&mut thresholds);
     let spot = |[right, wrong]: [usize; 2]| [wrong as f64, right as f64];
     let points = thresholds
         .into_iter()

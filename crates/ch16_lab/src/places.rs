@@ -9,6 +9,7 @@ mod study;
 pub use study::{Place, PlaceStudy};
 
 use crate::lap::{Lap, LapConfig, LapDetector};
+use pr_geom::order_by;
 
 /// True positions closer than this are the same place, m.
 pub const SAME_PLACE_M: f64 = 1.0;
@@ -95,11 +96,10 @@ pub fn place_curves(pairs: &[PlacePair]) -> Vec<PlaceCurve> {
 }
 
 fn curve(pairs: &[PlacePair], index: usize, detector: LapDetector) -> PlaceCurve {
-    let mut ranked: Vec<(f64, bool)> = pairs
-        .iter()
-        .map(|pair| (pair.distances[index], pair.is_same))
+    let ranked: Vec<(f64, bool)> = order_by(pairs.len(), &|pair| pairs[pair].distances[index])
+        .into_iter()
+        .map(|pair| (pairs[pair].distances[index], pairs[pair].is_same))
         .collect();
-    ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
     let same = ranked.iter().filter(|(_, is_same)| *is_same).count();
     let mut curve = PlaceCurve {
         detector,

@@ -10,7 +10,7 @@ use ch16_slam2d::localize::{LocalizeReport, Localizer, PendingFix};
 use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::scan::PreparedFrame;
 use ch16_slam2d::search::{PoseBox, ScoredPose, SearchCounts};
-use pr_geom::{Point2, SE2};
+use pr_geom::{Point2, SE2, order_by};
 use pr_sim::World;
 
 use crate::lap::{Drive, DriveConfig};
@@ -184,9 +184,9 @@ impl LocalizationRun {
             return;
         }
         self.kept_at = (self.taken as f64 * KEPT_EVERY).ceil() as usize;
-        let mut boxes: Vec<PoseBox> = search.open_boxes().collect();
-        boxes.sort_by(|a, b| b.bound.total_cmp(&a.bound));
-        boxes.truncate(BOXES_KEPT);
+        let open: Vec<PoseBox> = search.open_boxes().collect();
+        let highest_first = order_by(open.len(), &|at| -open[at].bound).into_iter();
+        let boxes = highest_first.take(BOXES_KEPT).map(|at| open[at]).collect();
         let found = search.result();
         self.moments.push(Moment {
             tick: self.reports.len(),

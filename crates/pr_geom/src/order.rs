@@ -20,6 +20,14 @@ pub fn sort_ranked(ranked: &mut [(f64, usize)]) {
     ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
 }
 
+/// Returns the indices below `count` in ascending order of a key; those with equal keys stay in order.
+#[inline(never)]
+pub fn order_by(count: usize, key: &dyn Fn(usize) -> f64) -> Vec<usize> {
+    let mut ranked: Vec<(f64, usize)> = (0..count).map(|index| (key(index), index)).collect();
+    sort_ranked(&mut ranked);
+    ranked.into_iter().map(|(_, index)| index).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -57,5 +65,12 @@ mod tests {
         let mut ranked = [(0.5, 3), (0.25, 2), (0.5, 1), (0.25, 0)];
         sort_ranked(&mut ranked);
         assert_eq!(ranked, [(0.25, 0), (0.25, 2), (0.5, 1), (0.5, 3)]);
+    }
+
+    #[test]
+    fn equal_keys_keep_their_order() {
+        let keys = [2.0, -1.0, 2.0, f64::NAN, -1.0];
+        assert_eq!(order_by(keys.len(), &|at| keys[at]), [1, 4, 0, 2, 3]);
+        assert_eq!(order_by(keys.len(), &|at| -keys[at])[1..], [0, 2, 1, 4]);
     }
 }

@@ -1,6 +1,6 @@
 //! Walls and a path through them, generated from a seed.
 
-use pr_geom::{Point2, math};
+use pr_geom::{Point2, math, order_by};
 use pr_sim::{Bounds, Rng, Wall, World};
 
 /// Width of a door, m.
@@ -234,13 +234,13 @@ impl Draft {
                 let off = (x * dy - y * dx).abs() / span;
                 (off < 0.1 && along > 0.5 && along < span - 0.5).then_some(along)
             };
-            let mut stops: Vec<(f64, Visit)> = self
+            let stops: Vec<(f64, Visit)> = self
                 .visits
                 .iter()
                 .filter_map(|visit| Some((place(visit)?, *visit)))
                 .collect();
-            stops.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (_, stop) in stops {
+            for at in order_by(stops.len(), &|at| stops[at].0) {
+                let (_, stop) = stops[at];
                 path.extend([stop.corridor, stop.inside, stop.corridor]);
             }
         }

@@ -1,6 +1,6 @@
 //! Loop candidates: which old keyframes might show the same location.
 
-use pr_geom::{SE2, math};
+use pr_geom::{SE2, math, order_by};
 use serde::{Deserialize, Serialize};
 
 use super::LoopConfig;
@@ -27,9 +27,8 @@ pub fn detect_loop_candidates(
     node: usize,
     config: &LoopConfig,
 ) -> Vec<LoopCandidate> {
-    let mut candidates = nearby(poses, node, config.radius_m, config.min_gap_nodes);
-    sort_by(&mut candidates, &|candidate| candidate.distance_m);
-    candidates
+    let candidates = nearby(poses, node, config.radius_m, config.min_gap_nodes);
+    sorted_by(&candidates, &|candidate| candidate.distance_m)
 }
 
 /// [`detect_loop_candidates`] by index.
@@ -48,9 +47,13 @@ fn nearby(poses: &[SE2], node: usize, radius_m: f64, min_gap_nodes: usize) -> Ve
         .collect()
 }
 
-/// Sorts by cost; of equal costs the older first.
-fn sort_by(candidates: &mut [LoopCandidate], cost: &dyn Fn(&LoopCandidate) -> f64) {
-    candidates.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+/// The candidates by cost; of equal costs the older first.
+fn sorted_by(
+    candidates: &[LoopCandidate],
+    cost: &dyn Fn(&LoopCandidate) -> f64,
+) -> Vec<LoopCandidate> {
+    let order = order_by(candidates.len(), &|at| cost(&candidates[at]));
+    order.into_iter().map(|at| candidates[at]).collect()
 }
 
 /// A gap of this many nodes between two near ones ends a visit.
@@ -88,8 +91,7 @@ pub fn detect_visits(
             _ => visits.push(candidate),
         }
     }
-    sort_by(&mut visits, &cost);
-    visits
+    sorted_by(&visits, &cost)
 }
 
 #[cfg(test)]

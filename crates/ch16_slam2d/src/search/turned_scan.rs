@@ -3,7 +3,7 @@
 use core::ops::Range;
 use std::sync::Arc;
 
-use pr_geom::{Point2, Rotation, math};
+use pr_geom::{Point2, Rotation, math, order_by};
 
 use super::lattice::Lattice;
 use super::pyramid::{BATCH, CellSlice, LEVELS};
@@ -164,12 +164,12 @@ impl TurnedScan {
 /// Sorts far points first, because they move most with the heading; neighbours in this order need the same level.
 fn far_points_first(scan: &PointCloud) -> Vec<Point2<f64>> {
     let reach = |point: &Point2<f64>| math::norm2(point.x, point.y);
-    let mut points: Vec<_> = scan
+    let points: Vec<_> = scan
         .iter()
         .filter(|point| reach(point).is_finite())
         .collect();
-    points.sort_by(|a, b| reach(b).total_cmp(&reach(a)));
-    points
+    let order = order_by(points.len(), &|index| -reach(&points[index]));
+    order.into_iter().map(|index| points[index]).collect()
 }
 
 impl Cells {

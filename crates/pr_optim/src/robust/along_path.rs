@@ -1,6 +1,6 @@
 //! Selection of inlier loops along a path, one stretch after the other, as a robot meets them.
 
-use pr_geom::SE2;
+use pr_geom::{SE2, order_by};
 
 use super::marginal_gate::{MarginalGate, Standing};
 use super::path::{Path, variance_share};
@@ -73,10 +73,8 @@ pub fn select_along_path(
     let Some(path) = Path::new(&with_factors(problem, |k| trusted[k])) else {
         return Ok(None);
     };
-    let mut doubted: Vec<usize> = (0..trusted.len())
-        .filter(|&k| candidates[k] && !trusted[k])
-        .collect();
-    doubted.sort_by_key(|&k| (later_end(&problem.factors()[k]), k));
+    let mut doubted = order_by(trusted.len(), &|k| later_end(&problem.factors()[k]) as f64);
+    doubted.retain(|&k| candidates[k] && !trusted[k]);
     let mut selection = PathSelection {
         problem,
         path: &path,

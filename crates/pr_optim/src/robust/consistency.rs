@@ -1,5 +1,7 @@
 //! Pairwise consistency: the largest set of mutually consistent loops.
 
+use pr_geom::order_by;
+
 use super::path::{Loop, Path, variance_share};
 use super::{LOOP_CHI2, is_sequential};
 use crate::problem::Problem;
@@ -107,10 +109,7 @@ impl Agreement {
 
     /// The largest of the cliques grown from the loops of highest degree; the first of equals.
     fn large_clique(&self, beginnings: usize) -> Vec<bool> {
-        let mut by_degree: Vec<(u32, usize)> =
-            (0..self.count).map(|a| (self.degree(a), a)).collect();
-        by_degree.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
-        let order: Vec<usize> = by_degree.iter().map(|(_, a)| *a).collect();
+        let order = order_by(self.count, &|a| -f64::from(self.degree(a)));
         let mut best: Vec<usize> = Vec::new();
         for &first in order.iter().take(beginnings) {
             let clique = self.select_along_path(first, &order);

@@ -1,6 +1,6 @@
 //! Selection of inlier loops, from more than one start.
 
-use pr_geom::{SE2, math};
+use pr_geom::{SE2, math, order_by};
 
 use super::along_path::{Direction, select_along_path};
 use super::consistency::{ConsistencySettings, consistent_set};
@@ -279,12 +279,10 @@ impl<'a> Search<'a> {
         gains: &[Gain],
     ) -> Result<Option<InlierSelection>, OptimizeError> {
         let is_nearly = |gain: &Gain| !gain.is_sure || gain.value > (NEARLY - 1.0) * self.max_chi2;
-        let mut nearly: Vec<usize> = (0..gains.len())
-            .filter(|&k| !self.trusted[k] && selection.inliers[k] && is_nearly(&gains[k]))
-            .collect();
-        let value = |k: usize| gains[k].value;
-        nearly.sort_by(|&a, &b| value(b).total_cmp(&value(a)).then(a.cmp(&b)));
-        for &k in nearly.iter().take(TRIALS) {
+        let nearly = order_by(gains.len(), &|k| -gains[k].value)
+            .into_iter()
+            .filter(|&k| !self.trusted[k] && selection.inliers[k] && is_nearly(&gains[k]));
+        for k in nearly.take(TRIALS) {
             let mut inliers = selection.inliers.clone();
             inliers[k] = false;
             let next = self.solved(optimizer, &selection.poses, inliers, selection.start)?;

@@ -1,7 +1,7 @@
 //! The path along the trusted measurements, and how well cycles through it close.
 
 use nalgebra::Matrix3;
-use pr_geom::{SE2, sort_numbers};
+use pr_geom::{SE2, order_by, sort_numbers};
 
 use super::is_sequential;
 use crate::factor::Between;
@@ -128,12 +128,13 @@ fn transformed(to_from: &SE2, covariance: &Matrix3<f64>) -> Matrix3<f64> {
 /// Most of these loops are true, because two arbitrary poses are rarely close in time.
 pub fn variance_share(problem: &Problem, trusted: &[bool], path: &Path) -> f64 {
     let factors = problem.factors().iter().zip(trusted);
-    let mut loops: Vec<&Between> = factors
+    let loops: Vec<&Between> = factors
         .filter_map(|(factor, trusted)| (!trusted).then_some(factor))
         .collect();
-    loops.sort_by_key(|factor| factor.from.abs_diff(factor.to));
-    loops.truncate((loops.len() / SHORTEST_FRACTION).max(MIN_LOOPS));
-    let mut squares: Vec<f64> = loops.iter().filter_map(|f| path.cycle_chi2(f)).collect();
+    let shortest_first = order_by(loops.len(), &|k| loops[k].from.abs_diff(loops[k].to) as f64);
+    let shortest =
+        (shortest_first.into_iter()).take((loops.len() / SHORTEST_FRACTION).max(MIN_LOOPS));
+    let mut squares: Vec<f64> = shortest.filter_map(|k| path.cycle_chi2(loops[k])).collect();
     sort_numbers(&mut squares);
     let median = squares.get(squares.len() / 2);
     median.map_or(1.0, |median| {

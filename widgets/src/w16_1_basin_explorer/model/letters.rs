@@ -1,6 +1,6 @@
 //! Places the letters of a picture of classes in the middle of the widest areas.
 
-use core::cmp::Reverse;
+use pr_geom::order_by;
 
 /// Distance in cells between a letter and the border of its area.
 const MIN_ROOM: u16 = 3;
@@ -28,7 +28,7 @@ pub struct Room<C> {
 pub fn rooms<C: Copy + PartialEq>(cells: &[Option<C>], columns: usize) -> Vec<Room<C>> {
     let distances = distances(cells, columns);
     let wide = cells.iter().zip(distances).enumerate();
-    let mut rooms: Vec<_> = wide
+    let rooms: Vec<_> = wide
         .filter(|(_, (_, room))| *room >= MIN_ROOM)
         .filter_map(|(k, (class, room))| {
             class.map(|class| Room {
@@ -39,9 +39,9 @@ pub fn rooms<C: Copy + PartialEq>(cells: &[Option<C>], columns: usize) -> Vec<Ro
             })
         })
         .collect();
-    // Stable: among equal rooms the first one in the picture comes first.
-    rooms.sort_by_key(|room| Reverse(room.room));
-    rooms
+    // Among equal rooms the first one in the picture comes first.
+    let order = order_by(rooms.len(), &|at| -f64::from(rooms[at].room));
+    order.into_iter().map(|at| rooms[at]).collect()
 }
 
 /// A selection of the rooms that are far apart, and not near the spot (column, row).

@@ -1,5 +1,6 @@
 //! The distances of all pairs as stacks of dots, the same places above and all others below, and the threshold.
 
+use pr_geom::order_by;
 use widget_kit::scene::{Aspect, Axis, Layer, Mark, Panel, Stroke, Tone, Weight};
 
 use super::super::settings::distance_label;
@@ -31,13 +32,13 @@ pub fn dots(been: &PlaceRecognition) -> Vec<Dot> {
     let threshold = been.threshold(detector);
     let width = stack_width(places.largest(detector));
     let mut heights = [[0.0; STACKS]; 2];
-    let mut pairs: Vec<_> = places
+    let pairs: Vec<_> = places
         .study
         .graded()
         .filter(|pair| pair.nodes[1] <= known)
         .collect();
-    pairs.sort_by(|a, b| a.distances[detector].total_cmp(&b.distances[detector]));
-    let dot = |pair: &ch16_lab::places::PlacePair| {
+    let nearest_first = order_by(pairs.len(), &|at| pairs[at].distances[detector]);
+    let mut dot = |pair: &ch16_lab::places::PlacePair| {
         let distance = pair.distances[detector];
         let stack = ((distance / width) as usize).min(STACKS - 1);
         let height: &mut f64 = &mut heights[usize::from(pair.is_same)][stack];
@@ -50,7 +51,7 @@ pub fn dots(been: &PlaceRecognition) -> Vec<Dot> {
             is_called: distance <= threshold,
         }
     };
-    pairs.into_iter().map(dot).collect()
+    nearest_first.into_iter().map(|at| dot(pairs[at])).collect()
 }
 
 fn stack_width(largest: f64) -> f64 {
