@@ -59,32 +59,17 @@ await writeParameterTables(schema, join(WEB, '..', 'docs', 'parameters.md'));
 await writeModels(schema, join(WEB, '..', 'widgets', 'src'), join(WEB, '..', 'docs', 'model.md'));
 await measure();
 
-/** Writes the glue as a module that exports one function; its argument provides the frames. */
+/** Writes the glue as a module that exports one function; its arguments stand in place of the globals that eframe uses. */
 async function wrapGlue() {
-  let text = await readFile(join(PKG, 'slam_web.js'), 'utf8');
-  // In a hidden page eframe schedules by timers: they become frame requests, too.
-  text = replaceOnce(text, /arg0\.requestAnimationFrame\(arg1\)/, 'frames.request(arg1)');
-  text = replaceOnce(text, /arg0\.cancelAnimationFrame\(arg1\)/, 'frames.cancel(arg1)');
-  text = replaceOnce(text, /arg0\.setTimeout\(arg1, arg2\)/, 'frames.request(arg1)');
-  text = replaceOnce(text, /arg0\.clearTimeout\(arg1\)/, 'frames.cancel(arg1)');
-  // With an emulated pixel ratio a browser reports inconsistent device pixels.
-  text = replaceOnce(text, /arg0\.devicePixelContentBoxSize/, 'frames.deviceSize(arg0)');
-  text = replaceOnce(text, /arg0\.devicePixelRatio/, 'frames.pixelRatio()');
-  const wrapped = `export function createGlue(frames) {\n${text}\nreturn wasm_bindgen;\n}\n`;
-  await writeFile(join(PKG, 'glue.js'), wrapped);
+  const text = await readFile(join(PKG, 'slam_web.js'), 'utf8');
+  const head = 'export function createGlue(self = globalThis, ResizeObserver = self.ResizeObserver) {';
+  await writeFile(join(PKG, 'glue.js'), `${head}\n${text}\nreturn wasm_bindgen;\n}\n`);
   await cp(join(WEB, 'glue.template.d.ts'), join(PKG, 'glue.d.ts'));
-}
-
-function replaceOnce(text, pattern, replacement) {
-  const found = text.match(new RegExp(pattern, 'g'))?.length ?? 0;
-  if (found !== 1) throw new Error(`the glue has ${found} places like ${pattern}, not one`);
-  return text.replace(pattern, replacement);
 }
 
 async function instantiate(bytes) {
   const { createGlue } = await import(pathToFileURL(join(PKG, 'glue.js')).href);
-  const noFrames = { request: () => 0, cancel: () => {}, deviceSize: () => [], pixelRatio: () => 1 };
-  const core = createGlue(noFrames);
+  const core = createGlue();
   core.initSync({ module: bytes });
   return core;
 }

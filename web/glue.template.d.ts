@@ -3,12 +3,5 @@
 export type Glue = typeof wasm_bindgen;
 export type Widget = wasm_bindgen.Widget;
 
-export interface FrameSource {
-  request(callback: (time: number) => void): number;
-  cancel(): void;
-  pixelRatio(): number;
-  deviceSize(entry: ResizeObserverEntry): readonly ResizeObserverSize[];
-}
-
-/** Glue with separate state; `frames` replaces functions of the window. */
-export function createGlue(frames: FrameSource): Glue;
+/** Glue with separate state; eframe sees this window and this class. */
+export function createGlue(self?: object, observer?: typeof ResizeObserver): Glue;

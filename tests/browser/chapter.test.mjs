@@ -3,7 +3,6 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { describe, it } from 'node:test';
@@ -185,7 +184,9 @@ describe('the chapter', () => {
         );
         assert.equal(isDark, choice === 'dark');
         // Regression: code had the colours of the system's theme.
-        await tab.evaluate(() => document.querySelectorAll('details').forEach((fold) => (fold.open = true)));
+        await tab.evaluate(() => {
+          for (const fold of document.querySelectorAll('details')) fold.open = true;
+        });
         assert.deepEqual(await violations(tab, OF_COLORS), []);
         await tab.click('[data-theme-choice="auto"]');
         assert.notEqual(await background(tab), shade);

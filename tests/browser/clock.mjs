@@ -108,7 +108,11 @@ export function install({ pauseMs, stepMs, readingMs, quickReadingMs, longDelayM
   nextFrame(tick);
 
   const when = (condition) => new Promise((resolve) => {
-    watchers.add(() => condition() && (resolve(), true));
+    watchers.add(() => {
+      const holds = condition();
+      if (holds) resolve();
+      return holds;
+    });
   });
   window.frameClock = {
     /** Resolves after a time, with the number of frames that the page requested meanwhile. */

@@ -84,6 +84,28 @@ describe('a widget', () => {
     }, SMOOTH_MS);
   });
 
+  it('sets no timers in a hidden page while idle, as eframe does there', async () => {
+    await on(CALM, async (tab) => {
+      await h.ready(tab);
+      await h.quiet(tab);
+      await tab.evaluate(() => {
+        Object.defineProperty(document, 'hidden', { value: true });
+        document.dispatchEvent(new Event('visibilitychange'));
+      });
+      await h.quiet(tab);
+      await tab.evaluate(() => {
+        const { setTimeout } = window;
+        window.timers = 0;
+        window.setTimeout = (...call) => {
+          window.timers += 1;
+          return setTimeout(...call);
+        };
+      });
+      await h.countFrames(tab, 5000);
+      assert.equal(await tab.evaluate(() => window.timers), 0);
+    });
+  });
+
   it('settles for three frames after an event, however slow they are', async () => {
     await on(CALM, async (tab) => {
       const frames = await settlingFrames(tab);

@@ -205,7 +205,7 @@ describe('the lap under the title', () => {
     const wordsAt = (seconds, width) => {
       const words = [];
       const nothing = () => {};
-      draw(story, replay.at(seconds), { line: nothing, dots: nothing, area: nothing, words: (text, at, ink, size) => words.push({ text, at, size }) }, width);
+      draw(story, replay.at(seconds), { line: nothing, dots: nothing, area: nothing, words: (text, at, _ink, size) => words.push({ text, at, size }) }, width);
       return words;
     };
     for (const width of [348, 900]) {

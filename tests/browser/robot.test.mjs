@@ -264,7 +264,9 @@ describe('a reader’s log', () => {
       await press(tab, 'turn');
       await says(tab, /was added to the graph/);
       assert.equal(await loops(), before);
-      await tab.evaluate(() => Object.assign(document.querySelector('slam-widget').value = { keyframe: 0 }));
+      await tab.evaluate(() => {
+        document.querySelector('slam-widget').value = { keyframe: 0 };
+      });
       await press(tab, 'mark');
       await tab.evaluate(() => document.querySelector('slam-widget').set('keyframe', 1));
       await press(tab, 'add');

@@ -92,13 +92,21 @@ function heldBack() {
     response.setHeader('Content-Type', 'application/wasm');
     createReadStream(join(h.DIST, WASM)).pipe(response);
   };
-  const answer = (path, response) => path.endsWith('.wasm') && (hear(response), true);
+  const answer = (path, response) => {
+    const isModule = path.endsWith('.wasm');
+    if (isModule) hear(response);
+    return isModule;
+  };
   return { asked, send, server: { answer } };
 }
 
 describe('a wasm file', () => {
   const answerWasm = (answer) => ({
-    answer: (path, response) => path.endsWith('.wasm') && (answer(response), true),
+    answer: (path, response) => {
+      const isModule = path.endsWith('.wasm');
+      if (isModule) answer(response);
+      return isModule;
+    },
   });
 
   it('with the wrong MIME type runs', async () => {
@@ -365,7 +373,12 @@ it('a widget starts on a machine so slow that the canvas gets its size seconds l
 
 it('a page of many widgets fetches the wasm once', async () => {
   let asked = 0;
-  const server = { answer: (path) => ((asked += path.endsWith('.wasm') ? 1 : 0), false) };
+  const server = {
+    answer: (path) => {
+      if (path.endsWith('.wasm')) asked += 1;
+      return false;
+    },
+  };
   await on(ONE + ONE + ONE, async (tab) => {
     await tab.evaluate(() => document.querySelectorAll('slam-widget')[2].scrollIntoView());
     await tab.waitForFunction(() => document.querySelectorAll('slam-widget')[2].state === 'running');

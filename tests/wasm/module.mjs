@@ -6,7 +6,7 @@ import { createGlue } from '../../web/pkg/glue.js';
 
 export const ROOT = fileURLToPath(new URL('../../', import.meta.url));
 
-export const wasm = createGlue({ request: () => 0, cancel: () => {}, deviceSize: () => [], pixelRatio: () => 1 });
+export const wasm = createGlue();
 wasm.initSync({ module: readFileSync(`${ROOT}web/pkg/slam_web_bg.wasm`) });
 
 /** The widgets' schema. */

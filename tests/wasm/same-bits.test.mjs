@@ -32,7 +32,7 @@ describe('every widget', () => {
       const lines = afterEachPreset(id).split('\n');
       const expected = native('states', id).split('\n');
       assert.equal(lines.length, expected.length);
-      lines.forEach((line, at) => assert.equal(line, expected[at]));
+      for (const [at, line] of lines.entries()) assert.equal(line, expected[at]);
     });
   }
 });

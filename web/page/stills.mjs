@@ -125,7 +125,7 @@ async function load(file) {
 
 async function instantiate() {
   const { createGlue } = await import(pathToFileURL(path.join(PKG, 'glue.js')).href);
-  const core = createGlue({ request: () => 0, cancel: () => {}, deviceSize: () => [], pixelRatio: () => 1 });
+  const core = createGlue();
   core.initSync({ module: await readFile(path.join(PKG, 'slam_web_bg.wasm')) });
   return core;
 }

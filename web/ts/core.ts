@@ -1,14 +1,8 @@
 // An instance of the module: with frames for a widget, or without frames for figures of the page.
 
-import { createGlue, type FrameSource, type Glue } from '../pkg/glue.js';
+import { createGlue, type Glue } from '../pkg/glue.js';
+import { observerOf, windowOf, type FrameSource } from './glue-scope';
 import { forgetModule, loadModule, StaleError } from './module';
-
-const NO_FRAMES: FrameSource = {
-  request: () => 0,
-  cancel: () => {},
-  pixelRatio: () => 1,
-  deviceSize: () => [],
-};
 
 /** The compiled module, for example for a worker. */
 export function coreModule(progress: (share: number) => void = () => {}): Promise<WebAssembly.Module> {
@@ -16,9 +10,9 @@ export function coreModule(progress: (share: number) => void = () => {}): Promis
 }
 
 /** An instance without a widget. */
-export async function core(frames = NO_FRAMES, progress?: (share: number) => void): Promise<Glue> {
+export async function core(frames?: FrameSource, progress?: (share: number) => void): Promise<Glue> {
   const module = await coreModule(progress);
-  const glue = createGlue(frames);
+  const glue = frames === undefined ? createGlue() : createGlue(windowOf(frames), observerOf(frames));
   try {
     await glue({ module_or_path: module });
     return glue;

@@ -512,7 +512,9 @@ export class SlamWidget extends HTMLElement {
     const panels = [this.#doctor, this.#loops];
     const resized = deliveries.flatMap((delivery) => panels.filter((panel) => panel?.receive(delivery) === true));
     if (resized.length > 0) this.#resized();
-    this.#lifecycle.ask((widget) => deliveries.forEach((delivery) => deliverTo(widget, delivery)));
+    this.#lifecycle.ask((widget) => {
+      for (const delivery of deliveries) deliverTo(widget, delivery);
+    });
     this.#announce(this.#changes());
     this.#executeOrders();
     this.#lifecycle.wake();

@@ -27,7 +27,7 @@ export class FrameGate {
   /** The reduced pixel ratio of a widget that is too long for the screen's. */
   #reducedRatio = Infinity;
 
-  /** The glue calls this in place of `window.requestAnimationFrame`. */
+  /** eframe calls this in place of `window.requestAnimationFrame`. */
   request(callback: Callback): number {
     this.#waiting = callback;
     // eframe requests a frame at the end of every frame; outside of frames it has a reason, such as a resize.
@@ -36,13 +36,13 @@ export class FrameGate {
     return 1;
   }
 
-  /** The glue calls this in place of `window.cancelAnimationFrame`. */
+  /** eframe calls this in place of `window.cancelAnimationFrame`. */
   cancel(): void {
     this.#waiting = undefined;
     this.#unschedule();
   }
 
-  /** The glue calls this in place of `window.devicePixelRatio`. A very long widget gets a lower resolution. */
+  /** eframe reads this in place of `window.devicePixelRatio`. A very long widget gets a lower resolution. */
   pixelRatio(): number {
     const longest = Math.max(this.canvas?.clientWidth ?? 0, this.canvas?.clientHeight ?? 0, 1);
     const fits = MAX_SIDE_PX / longest;
@@ -53,7 +53,7 @@ export class FrameGate {
     return this.#reducedRatio;
   }
 
-  /** The glue calls this in place of `entry.devicePixelContentBoxSize`. */
+  /** eframe reads this in place of `entry.devicePixelContentBoxSize`. */
   deviceSize(entry: ResizeObserverEntry): readonly ResizeObserverSize[] {
     const ratio = this.pixelRatio();
     const { width, height } = entry.contentRect;

@@ -133,7 +133,10 @@ fn test_piece(piece: Piece, tools: &Tools) -> anyhow::Result<()> {
                 .args(["--package=slam_web", "--package=slam_robot"])
                 .args(["--", "-D", "warnings"])
                 .env("CARGO_INCREMENTAL", "0");
-            run("Linting code for WebAssembly only", &mut lint)
+            run("Linting code for WebAssembly only", &mut lint)?;
+            let mut scripts = program(tools::npm());
+            scripts.args(["run", "--silent", "lint"]);
+            run("Linting scripts", scripts.current_dir(root().join("web")))
         }
         Piece::Counts => {
             compile_programs()?;

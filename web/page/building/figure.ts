@@ -2,7 +2,7 @@
 // reader drops or picks a log, or maps the sample.
 
 import { chooseFiles, LOGS, acceptDrops } from '../../ts/robot/files';
-import { type Ink } from '../lap/drawing';
+import type { Ink } from '../lap/drawing';
 import { canvasSurface, contextOf, readInks, watchColors } from '../lap/surfaces';
 import { type Building, draw, LOOPS, formatError } from './drawing';
 

@@ -9,7 +9,7 @@ export function lightLines(): void {
   if (lap === null || lines.length === 0) return;
   const show = (): void => {
     const last = Number(lap.outcome?.facts['line'] ?? 0);
-    lines.forEach((line, at) => line.classList.toggle('ran', at < last));
+    for (const [at, line] of lines.entries()) line.classList.toggle('ran', at < last);
   };
   for (const event of ['slam-ready', 'slam-change', 'slam-result']) lap.addEventListener(event, show);
 }

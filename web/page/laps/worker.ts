@@ -11,7 +11,7 @@ self.addEventListener('message', ({ data }: MessageEvent<Order>) => {
 });
 
 async function start(module: WebAssembly.Module): Promise<LapRunner> {
-  const glue = createGlue({ request: () => 0, cancel: () => {}, pixelRatio: () => 1, deviceSize: () => [] });
+  const glue = createGlue();
   await glue({ module_or_path: module });
   return new glue.Laps();
 }

@@ -54,7 +54,7 @@ export class LoopsToLookInto {
     if (count === 0 && this.element.hidden) return;
     const loops = read(numbers);
     const focused = (this.element.getRootNode() as ShadowRoot).activeElement;
-    const held = [...this.#list.querySelectorAll('button')].findIndex((button) => button === focused);
+    const held = [...this.#list.querySelectorAll('button')].indexOf(focused as HTMLButtonElement);
     this.#heading.textContent =
       count === 0 ? 'No loop is left to look into.' : 'Do these scans belong together? The rest of the graph contradicts it.';
     this.#legend.hidden = count === 0;
