@@ -21,6 +21,7 @@ pub use dense_map::DenseMap;
 pub use nearest::{NearestMap, Neighbor, QueryCache};
 pub use nearest_table::NearestTable;
 pub use normals::NormalEstimator;
+pub(crate) use normals::{MAX_FLATNESS, MIN_NEIGHBORS};
 pub use point_cloud::{Downsampler, PointCloud};
 pub use voxel_map::VoxelMap;
 

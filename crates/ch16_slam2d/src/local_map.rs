@@ -35,17 +35,13 @@ pub use registration::{MapRegistration, MapRegistrationConfig, Registered};
 pub use scan_profiles::ScanProfiles;
 pub(crate) use submap_loops::SubmapLoops;
 
-use crate::cloud::{DenseMap, NearestMap, PointCloud};
+use crate::cloud::{DenseMap, MAX_FLATNESS, MIN_NEIGHBORS, NearestMap, PointCloud};
 use crate::search::{
     LikelihoodConfig, ScanSearch, SearchMap, SearchNeighborhood, SearchResult, SearchWindow,
 };
 
 /// Side of a cell, m, and points that it keeps: twice as many do not reduce the error.
 const CELLS: (f64, usize) = (0.135, 8);
-/// Smallest number of neighbours for a normal, the point itself included.
-const MIN_NEIGHBORS: f64 = 4.0;
-/// Largest ratio of the scatter across a wall to that along it.
-const MAX_SCATTER_RATIO: f64 = 0.35;
 
 /// Cells and blur of a search, m; registration refines its result.
 const SEARCH_GRID: LikelihoodConfig = LikelihoodConfig {
@@ -209,7 +205,7 @@ impl LocalMap {
             xy += dx * dy;
             yy += dy * dy;
         });
-        if count < MIN_NEIGHBORS {
+        if count < MIN_NEIGHBORS as f64 {
             // A far wall of few beams: the normal of its own scan used a larger radius.
             return self.points.normal(index);
         }
@@ -218,7 +214,7 @@ impl LocalMap {
         yy -= sum.y * sum.y / count;
         let (middle, half_gap) = (0.5 * (xx + yy), math::norm2(0.5 * (xx - yy), xy));
         let (across, along) = (middle - half_gap, middle + half_gap);
-        if along <= 0.0 || across > MAX_SCATTER_RATIO * along {
+        if along <= 0.0 || across > MAX_FLATNESS * along {
             return None;
         }
         // The direction of most scatter is half the angle of (xx − yy, 2 xy).

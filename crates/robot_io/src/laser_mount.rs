@@ -6,7 +6,6 @@ use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 
 use crate::lines::finite;
-use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::plausible::plausible_pose;
 
 /// Pose of a planar laser on the body, and whether its axis points up or down.
@@ -53,40 +52,6 @@ impl LaserMount {
 pub fn flip(scan: &mut LaserScan) {
     scan.first_angle_rad = -scan.first_angle_rad;
     scan.angle_step_rad = -scan.angle_step_rad;
-}
-
-/// A log whose laser has the mounting that an option sets.
-pub(crate) struct MountedReader<'a> {
-    inner: Box<dyn LogReader + 'a>,
-    mount: LaserMount,
-    notes: LogNotes,
-}
-
-impl<'a> MountedReader<'a> {
-    /// Yields the frames of `inner` with their laser at `mount`.
-    pub(crate) fn new(inner: Box<dyn LogReader + 'a>, mount: LaserMount) -> Self {
-        Self {
-            inner,
-            mount,
-            notes: LogNotes::default(),
-        }
-    }
-}
-
-impl LogReader for MountedReader<'_> {
-    fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
-        let frame = self.inner.next_frame();
-        self.notes.clone_from(self.inner.notes());
-        self.notes.laser = Some(self.mount);
-        Ok(frame?.map(|mut frame| {
-            self.mount.apply(&mut frame.scan);
-            frame
-        }))
-    }
-
-    fn notes(&self) -> &LogNotes {
-        &self.notes
-    }
 }
 
 impl FromStr for LaserMount {

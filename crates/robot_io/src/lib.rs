@@ -62,6 +62,7 @@ pub mod table_log;
 pub mod trajectory;
 
 mod lines;
+mod mounted_reader;
 mod odometry_poses;
 mod path_lengths;
 mod plausible;

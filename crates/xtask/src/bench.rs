@@ -8,11 +8,8 @@ use std::process::Command;
 use anyhow::Context as _;
 
 use crate::run::{cargo, program, root, run};
-use crate::site::{self, Speed, wasm_pack_build};
+use crate::site::{self, PAGE, Speed, wasm_pack_build};
 use crate::tools;
-
-/// The page with the tables.
-pub const PAGE: &str = "docs/performance.md";
 
 /// Measures, prints the tables, writes them into `docs/performance.md`, and writes the figures of the
 /// workloads to `json` if it is given.

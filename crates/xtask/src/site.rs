@@ -6,9 +6,11 @@ use std::{env, thread};
 
 use anyhow::{Context as _, anyhow};
 
-use crate::bench::PAGE;
 use crate::run::{cargo, output, program, root, run};
 use crate::tools::{self, TARGET};
+
+/// The page with the tables of times and sizes.
+pub const PAGE: &str = "docs/performance.md";
 
 /// The build profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

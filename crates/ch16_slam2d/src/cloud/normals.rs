@@ -6,9 +6,9 @@ use pr_geom::math;
 use super::{DenseMap, PointCloud};
 
 /// Smallest number of neighbours for a normal, the point itself included.
-const MIN_NEIGHBORS: usize = 4;
+pub(crate) const MIN_NEIGHBORS: usize = 4;
 /// Above this ratio of smallest to largest scatter the neighbourhood is not a line.
-const MAX_FLATNESS: f64 = 0.35;
+pub(crate) const MAX_FLATNESS: f64 = 0.35;
 /// Smallest cell of the neighbour search, m.
 const MIN_CELL_M: f64 = 0.05;
 /// Neighbour search keeps this many points of a cell.

@@ -7,7 +7,7 @@ mod records;
 
 use std::io::BufRead;
 
-use super::container::{Container, ContainerError, DeclaredTopics, MAX_BYTES, Recorded};
+use super::container::{Container, ContainerError, MAX_BYTES, Recorded};
 use super::decompress::Packing;
 use super::file_bytes::FileBytes;
 pub use records::Connections;
@@ -41,6 +41,12 @@ impl<R: BufRead> BagFile<R> {
     pub fn with_topics(mut self, connections: Connections) -> Self {
         self.connections = connections;
         self
+    }
+
+    /// The topics known by now, if messages were lost because their topic was declared later.
+    pub fn late_topics(&self) -> Option<Connections> {
+        let has_orphans = self.connections.has_orphans();
+        has_orphans.then(|| self.connections.clone())
     }
 
     /// Appends a length and that many bytes to `taken`; returns false if they are incomplete or too long.
@@ -165,14 +171,6 @@ impl<R: BufRead> Container for BagFile<R> {
 
     fn offset(&self) -> u64 {
         self.file.offset()
-    }
-
-    fn declared_topics(&self) -> Option<DeclaredTopics> {
-        let connections = self
-            .connections
-            .has_orphans()
-            .then(|| self.connections.clone());
-        connections.map(DeclaredTopics::Bag)
     }
 }
 

@@ -2,8 +2,6 @@
 
 use std::io;
 
-use super::bag_file::Connections;
-use super::mcap_file::Records;
 use super::wire::Wire;
 
 /// Longer records, and chunks that decompress to more, are not from a robot's laser.
@@ -44,15 +42,6 @@ impl ContainerError {
     }
 }
 
-/// Topics of a file by id, which may be declared again at its end.
-#[derive(Clone, Debug)]
-pub enum DeclaredTopics {
-    /// Topics of an MCAP file.
-    Mcap(Records),
-    /// Topics of a bag.
-    Bag(Connections),
-}
-
 /// A reader of messages in the order of the file.
 pub trait Container {
     /// Returns the next message; `None` at the end.
@@ -64,11 +53,6 @@ pub trait Container {
 
     /// Bytes read so far: the position of an error.
     fn offset(&self) -> u64;
-
-    /// The topics known by now, if messages were lost because their topic was declared later.
-    fn declared_topics(&self) -> Option<DeclaredTopics> {
-        None
-    }
 
     /// What the file contains instead of ROS messages; `None` if it has ROS messages or none at all.
     fn instead(&self) -> Option<String> {

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use std::io::BufRead;
 use std::rc::Rc;
 
-use super::bag_file::BagFile;
-use super::container::{Container, ContainerError, DeclaredTopics, MAX_BYTES, Recorded};
+use super::bag_file::{BagFile, Connections};
+use super::container::{Container, ContainerError, MAX_BYTES, Recorded};
 use super::decompress::Packing;
-use super::mcap_file::McapFile;
+use super::mcap_file::{McapFile, Records};
 use super::sqlite_file::SqliteFile;
 use super::wire::Wire;
 use crate::log_bytes::LogBytes;
@@ -16,6 +16,38 @@ use crate::log_format::LogFormat;
 
 /// First bytes of zstd data; CDR begins with a zero.
 const ZSTD: &[u8] = b"\x28\xb5\x2f\xfd";
+
+/// Topics of a file by id, which may be declared again at its end.
+#[derive(Clone)]
+enum DeclaredTopics {
+    Mcap(Records),
+    Bag(Connections),
+}
+
+/// A file of a recording.
+trait RosFile: Container {
+    /// The topics known by now, if messages were lost because their topic was declared later.
+    fn declared_topics(&self) -> Option<DeclaredTopics>;
+}
+
+impl<R: BufRead> RosFile for BagFile<R> {
+    fn declared_topics(&self) -> Option<DeclaredTopics> {
+        self.late_topics().map(DeclaredTopics::Bag)
+    }
+}
+
+impl<R: BufRead> RosFile for McapFile<R> {
+    fn declared_topics(&self) -> Option<DeclaredTopics> {
+        self.late_topics().map(DeclaredTopics::Mcap)
+    }
+}
+
+impl RosFile for SqliteFile<'_> {
+    /// Its topics are in a table of their own.
+    fn declared_topics(&self) -> Option<DeclaredTopics> {
+        None
+    }
+}
 
 /// Files of one recording, in order.
 #[derive(Clone)]
@@ -52,7 +84,7 @@ pub struct Messages<'a> {
     opened: usize,
     /// Whether topics were found after messages that were lost without them.
     has_late_topics: bool,
-    current: Option<Box<dyn Container + 'a>>,
+    current: Option<Box<dyn RosFile + 'a>>,
     /// Bytes of the files before.
     before: u64,
 }

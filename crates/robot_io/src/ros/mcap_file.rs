@@ -8,7 +8,7 @@ mod records;
 
 use std::io::BufRead;
 
-use super::container::{Container, ContainerError, DeclaredTopics, MAX_BYTES, Recorded};
+use super::container::{Container, ContainerError, MAX_BYTES, Recorded};
 use super::file_bytes::FileBytes;
 pub use records::Records;
 use records::{HEAD_BYTES, head, op};
@@ -47,6 +47,11 @@ impl<R: BufRead> McapFile<R> {
     pub fn with_topics(mut self, records: Records) -> Self {
         self.records = records;
         self
+    }
+
+    /// The topics known by now, if messages were lost because their topic was declared later.
+    pub fn late_topics(&self) -> Option<Records> {
+        self.records.has_orphans().then(|| self.records.clone())
     }
 
     fn magic(&mut self) -> Result<(), ContainerError> {
@@ -184,11 +189,6 @@ impl<R: BufRead> Container for McapFile<R> {
 
     fn offset(&self) -> u64 {
         self.file.offset()
-    }
-
-    fn declared_topics(&self) -> Option<DeclaredTopics> {
-        let records = self.records.has_orphans().then(|| self.records.clone());
-        records.map(DeclaredTopics::Mcap)
     }
 
     fn instead(&self) -> Option<String> {
