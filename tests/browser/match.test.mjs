@@ -30,12 +30,15 @@ async function drag(tab, from, to) {
   await tab.mouse.move(to.x, to.y, { steps: 4 });
   await tab.mouse.up();
 }
-/** Moves the source from its start to the truth by keyboard: the start is 0.6 m left, 0.75 m up and turned by 48°. */
-async function layOn(tab) {
+/** The presses from the initial offset of each room to the truth: right, down, and clockwise by 2° each. */
+const PRESSES = { '': [12, 15, 24], corridor: [24, 6, 6], hall: [18, 16, 17], twins: [26, 4, 4] };
+/** Moves the source from its start to the truth by keyboard. */
+async function layOn(tab, room = '') {
+  const [right, down, clockwise] = PRESSES[room];
   await tab.locator('#match svg').focus();
-  for (let step = 0; step < 24; step += 1) await tab.keyboard.press('Shift+ArrowRight');
-  for (let step = 0; step < 12; step += 1) await tab.keyboard.press('ArrowRight');
-  for (let step = 0; step < 15; step += 1) await tab.keyboard.press('ArrowDown');
+  for (let step = 0; step < clockwise; step += 1) await tab.keyboard.press('Shift+ArrowRight');
+  for (let step = 0; step < right; step += 1) await tab.keyboard.press('ArrowRight');
+  for (let step = 0; step < down; step += 1) await tab.keyboard.press('ArrowDown');
 }
 
 describe('the sweeps that the reader aligns', () => {
@@ -156,6 +159,79 @@ describe('the sweeps that the reader aligns', () => {
       // A clockwise turn by atan(1/2) about the resting finger.
       assert.ok(Math.abs(before.degrees - after.degrees - 26.6) < 2, `${before.degrees}°, then ${after.degrees}°`);
     }, { hasTouch: true, viewport: SIZES[2] });
+  });
+
+  for (const [what, viewport, options] of [['by keyboard', SIZES[0], {}], ['on a phone', SIZES[2], { hasTouch: true, isMobile: true }]]) {
+    it(`lead through four rooms ${what}: each is won, shows its pairs and the record, and opens the next`, async () => {
+      await reading(async (tab) => {
+        await live(tab);
+        const scroll = await tab.evaluate(() => [scrollY, document.documentElement.scrollHeight]);
+        for (const room of ['', 'corridor', 'hall', 'twins']) {
+          assert.equal(await tab.locator('#match').getAttribute('data-room') ?? '', room);
+          assert.equal(await tab.locator('.match-pairs').getAttribute('d'), '');
+          await layOn(tab, room);
+          await tab.getByRole('button', { name: 'Let ICP take over', exact: true }).press('Enter');
+          await ended(tab);
+          assert.match(await says(tab), /^ICP came home in \d+ steps?: \d cm and .* off, after \d+ s\. Your record: \d cm, \d+ s\.$/, room);
+          const lines = (await tab.locator('.match-pairs').getAttribute('d')).split('M').length - 1;
+          assert.ok(lines > 100, `${lines} lines in ${room}`);
+          // The button that took the place of the other one has its focus.
+          const next = tab.getByRole('button', { name: 'Next room', exact: true });
+          assert.ok(await next.evaluate((button) => button === document.activeElement));
+          assert.deepEqual(await tab.evaluate(() => [scrollY, document.documentElement.scrollHeight]), scroll, room);
+          await next.press('Enter');
+          await tab.waitForFunction((before) => (document.querySelector('#match').dataset.room ?? '') !== before, room);
+        }
+        assert.equal(await tab.locator('#match').getAttribute('data-room'), 'room');
+      }, { viewport, reducedMotion: 'reduce', ...options });
+    });
+  }
+
+  it('keep the best win of a room in this browser, and no worse one', async () => {
+    await reading(async (tab) => {
+      await live(tab);
+      const win = async () => {
+        await layOn(tab);
+        await press(tab, 'Let ICP take over');
+        await ended(tab);
+        return /after (\d+) s\. Your record: (\d+) cm, (\d+) s/.exec(await says(tab)).slice(1).map(Number);
+      };
+      const [seconds, cm, best] = await win();
+      assert.equal(best, seconds);
+      const stored = JSON.parse(await tab.evaluate(() => localStorage.getItem('slam-match-records')));
+      assert.deepEqual(stored, { room: { seconds, cm } });
+      await tab.evaluate(() => localStorage.setItem('slam-match-records', '{"room":{"seconds":0,"cm":7}}'));
+      await press(tab, 'Again');
+      assert.deepEqual((await win()).slice(1), [7, 0]);
+    }, { reducedMotion: 'reduce' });
+  });
+
+  it('send a picture with a link that opens the same room', async () => {
+    await visit('', async (tab) => {
+      await live(tab);
+      await tab.waitForSelector('#match[data-room="corridor"]');
+      assert.match(await says(tab), /^A corridor/);
+      await layOn(tab, 'corridor');
+      await press(tab, 'Let ICP take over');
+      await ended(tab);
+      await tab.evaluate(() => {
+        navigator.canShare = () => true;
+        navigator.share = (parcel) => { globalThis.parcel = parcel; return Promise.resolve(); };
+      });
+      await press(tab, 'Send');
+      await tab.waitForFunction(() => globalThis.parcel !== undefined);
+      const { link, colors } = await tab.evaluate(async () => {
+        const picture = await createImageBitmap(globalThis.parcel.files[0]);
+        const canvas = new OffscreenCanvas(picture.width, picture.height);
+        canvas.getContext('2d').drawImage(picture, 0, 0);
+        const { data } = canvas.getContext('2d').getImageData(0, 0, picture.width, picture.height);
+        return { link: globalThis.parcel.url, colors: new Set(new Uint32Array(data.buffer)).size };
+      });
+      // Crosses, squares and lines on paper, with the shades of their edges.
+      assert.ok(colors > 20, `${colors} colours`);
+      await tab.goto(link);
+      await tab.waitForSelector('#match[data-room="corridor"]');
+    }, { path: '/index.html?room=corridor', options: { reducedMotion: 'reduce' } });
   });
 
   it('are a still picture without scripts', async () => {

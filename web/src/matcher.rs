@@ -1,8 +1,9 @@
-//! The first figure of the page: two sweeps of one room that the reader lays on each other, and ICP from there.
+//! The matcher of the page: two sweeps of one room that the reader lays on each other, and ICP from there; won, the next.
 //!
 //! Poses are `world_from_source`, `[x, y, θ]` in metres and radians, so that the room stands upright.
 
-use ch16_lab::basin::{BasinScene, HOME_HEADING_DEG, SUCCESS_RADIUS_M};
+use ch16_lab::basin::{BasinPlace, BasinScene, HOME_HEADING_DEG, SUCCESS_RADIUS_M};
+use ch16_lab::lap::{BuiltInWorld, Choice as _};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
 use pr_geom::SE2;
 use serde_json::{Value, json};
@@ -12,11 +13,32 @@ use crate::story::{pose, short};
 /// Pairing distance of w16.1 at its defaults, m.
 const TAU_M: f64 = 0.7;
 
-/// The sweeps as JSON: points of the target in the world, points of the source in its sensor's frame,
+/// The rooms after the first: a built-in world and the poses of the two sweeps in it.
+fn room(name: &str) -> BasinScene {
+    let Some(world) = BuiltInWorld::named(name) else {
+        return BasinScene::new();
+    };
+    let at = SE2::new;
+    let sensors = match world {
+        // Within reach of one end: only it determines the position along the corridor.
+        BuiltInWorld::Corridor => [at(20.0, 0.8, 0.0), at(20.8, 0.65, 0.15)],
+        BuiltInWorld::Hall => [at(4.5, 3.5, 0.0), at(3.9, 4.3, 0.3)],
+        // Before both doors.
+        _ => [at(5.5, 0.8, 0.0), at(6.2, 0.7, 0.15)],
+    };
+    BasinScene::in_world(
+        world.course().world(),
+        sensors,
+        BasinPlace::Room,
+        BasinScene::SEED,
+    )
+}
+
+/// The sweeps of a room as JSON: points of the target in the world, points of the source in its sensor's frame,
 /// `[x0, y0, x1, y1, …]`, the true pose of the source, and how near counts as right, in metres and degrees.
 #[must_use]
-pub fn scene() -> Value {
-    let scene = BasinScene::new();
+pub fn scene(name: &str) -> Value {
+    let scene = room(name);
     let world_from_target = scene.world_from_target();
     let target = scene.target().iter();
     let target = target.map(|point| world_from_target.transform(point));
@@ -31,24 +53,24 @@ pub fn scene() -> Value {
     })
 }
 
-/// Runs ICP on the same sweeps, from one guess after the other.
+/// Runs ICP on the sweeps of a room, from one guess after the other.
 pub struct Matcher {
     scene: BasinScene,
     workspace: IcpWorkspace,
 }
 
-impl Default for Matcher {
-    fn default() -> Self {
+impl Matcher {
+    /// The matcher of a room; an unknown name is that of the first.
+    #[must_use]
+    pub fn new(name: &str) -> Self {
         Self {
-            scene: BasinScene::new(),
+            scene: room(name),
             workspace: IcpWorkspace::new(),
         }
     }
-}
 
-impl Matcher {
-    /// Point to point from a guess: `{"poses", "rmse", "ending"}`, the guess and the pose after each iteration, the
-    /// final rmse in metres, and the name of the minimum.
+    /// Point to point from a guess: `{"poses", "rmse", "reach", "ending"}`, the guess and the pose after each iteration,
+    /// the final rmse and the pairing distance in metres, and the name of the minimum.
     pub fn run(&mut self, world_from_source: &SE2) -> Value {
         let world_from_target = self.scene.world_from_target();
         let start = self
@@ -62,7 +84,12 @@ impl Matcher {
         let poses: Vec<Value> = trace
             .map(|state| pose(&(world_from_target * state.pose)))
             .collect();
-        json!({ "poses": poses, "rmse": short(found.rmse_m), "ending": found.ending.name() })
+        json!({
+            "poses": poses,
+            "rmse": short(found.rmse_m),
+            "reach": TAU_M,
+            "ending": found.ending.name(),
+        })
     }
 }
 
@@ -83,7 +110,7 @@ mod tests {
     /// The endings that the page tells of the two starts.
     #[test]
     fn a_guess_nearby_comes_home_and_a_quarter_turn_does_not() {
-        let mut matcher = Matcher::default();
+        let mut matcher = Matcher::new("room");
         let near = matcher.run(&turned(20.0));
         assert_eq!(near["ending"], "right minimum");
         let quarter = matcher.run(&turned(90.0));
@@ -95,10 +122,33 @@ mod tests {
 
     #[test]
     fn a_run_begins_at_the_guess_and_the_scene_has_its_truth() {
-        let run = Matcher::default().run(&turned(10.0));
+        let run = Matcher::new("room").run(&turned(10.0));
         assert_eq!(run["poses"][0], pose(&turned(10.0)));
-        assert_eq!(scene()["truth"], pose(&truth()));
-        let points = |name: &str| scene()[name].as_array().unwrap().len();
+        assert_eq!(scene("room")["truth"], pose(&truth()));
+        let points = |name: &str| scene("room")[name].as_array().unwrap().len();
         assert!(points("target") > 300 && points("source") > 200);
+    }
+
+    /// The run in a room from an offset of the true pose, m and degrees.
+    fn ending(name: &str, [right, up, degrees]: [f64; 3]) -> Value {
+        let mut matcher = Matcher::new(name);
+        let scene = &matcher.scene;
+        let truth = scene.world_from_target() * scene.truth();
+        let start = SE2::new(
+            truth.x() + right,
+            truth.y() + up,
+            truth.theta() + degrees.to_radians(),
+        );
+        matcher.run(&start)["ending"].clone()
+    }
+
+    /// What the hints of the rooms say.
+    #[test]
+    fn each_room_is_won_from_nearby_and_has_a_false_minimum_of_its_own() {
+        for name in ["room", "corridor", "hall", "twins"] {
+            assert_eq!(ending(name, [0.1, 0.05, 2.0]), "right minimum", "{name}");
+        }
+        assert_ne!(ending("corridor", [-1.2, 0.0, 0.0]), "right minimum");
+        assert_ne!(ending("twins", [-1.3, 0.0, 0.0]), "right minimum");
     }
 }

@@ -92,25 +92,27 @@ pub fn judge_candidates(answers: &str, width_px: f32, theme: &str) -> String {
     candidates::judged(&answers, width_px, theme_of(theme)).to_string()
 }
 
-/// The two sweeps of the page's first figure as JSON; see [`matcher::scene`].
+/// The two sweeps of a room of the page's matcher as JSON; see [`matcher::scene`].
 #[wasm_bindgen(js_name = matcherScene)]
-pub fn matcher_scene() -> String {
-    matcher::scene().to_string()
+pub fn matcher_scene(room: &str) -> String {
+    matcher::scene(room).to_string()
 }
 
 /// Runs ICP on these sweeps.
 #[wasm_bindgen]
-#[derive(Default)]
 pub struct Matcher {
     matcher: matcher::Matcher,
 }
 
 #[wasm_bindgen]
 impl Matcher {
-    /// Creates it before its first run.
+    /// The matcher of a room before its first run.
     #[wasm_bindgen(constructor)]
-    pub fn new() -> Self {
-        Self::default()
+    #[must_use]
+    pub fn new(room: &str) -> Self {
+        Self {
+            matcher: matcher::Matcher::new(room),
+        }
     }
 
     /// A run from that `world_from_source` as JSON; see [`matcher::Matcher::run`].

@@ -60,8 +60,20 @@ export async function send(picture: File, link: string): Promise<string> {
 }
 
 async function pngOf(picture: ImageBitmap, name: string): Promise<File> {
-  const canvas = new OffscreenCanvas(picture.width, picture.height);
-  canvas.getContext('2d')?.drawImage(picture, 0, 0);
+  return pngOfSize(picture, picture, name);
+}
+
+/** Draws an SVG at a size into a file. */
+export async function pngOfSvg(svg: string, size: { width: number; height: number }, name: string): Promise<File> {
+  const picture = document.createElement('img');
+  picture.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
+  await picture.decode();
+  return pngOfSize(picture, size, name);
+}
+
+async function pngOfSize(picture: CanvasImageSource, { width, height }: { width: number; height: number }, name: string): Promise<File> {
+  const canvas = new OffscreenCanvas(width, height);
+  canvas.getContext('2d')?.drawImage(picture, 0, 0, width, height);
   return new File([await canvas.convertToBlob({ type: 'image/png' })], `${name}.png`, { type: 'image/png' });
 }
 

@@ -1,12 +1,11 @@
 // The reader's own flat as a card: shown once its lap is over, to be copied as a link or saved as a picture.
 
 import type { SlamWidget } from '../../ts/main';
-import { copyText, saveBlob, send } from '../../ts/export';
+import { copyText, pngOfSvg, saveBlob, send } from '../../ts/export';
 import { drawing, HEIGHT, isUnnoticed, metresOff, numbers, WIDTH, type Facts } from './drawing';
 
 /** Scale of a saved picture. */
 const SAVED_SCALE = 3;
-const FILE_NAME = 'my-flat.png';
 /** Side of a square of the map, which is no file to fetch. */
 const CELL_PX = 1;
 /** A robot that ends nearer than this has come home, m. */
@@ -59,6 +58,7 @@ function sentence(facts: Facts): string {
 
 function fill(card: HTMLElement, widget: SlamWidget, svg: string, points: string, words: string): void {
   const source = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
+  const png = (): Promise<File> => pngOfSvg(svg, { width: SAVED_SCALE * WIDTH, height: SAVED_SCALE * HEIGHT }, 'my-flat');
   const picture = document.createElement('img');
   Object.assign(picture, { src: source, width: WIDTH, height: HEIGHT, alt: '' });
   const title = document.createElement('p');
@@ -80,19 +80,13 @@ function fill(card: HTMLElement, widget: SlamWidget, svg: string, points: string
   const buttons = document.createElement('div');
   buttons.className = 'decide-buttons';
   buttons.append(
-    button('Send', async () => send(await pngOf(picture), widget.link)),
+    button('Send', async () => send(await png(), widget.link)),
     button('Copy link', async () => ((await copyText(widget.link)) ? 'The link is copied.' : widget.link)),
     button('Save picture', async () => {
-      saveBlob(await pngOf(picture), FILE_NAME);
+      const file = await png();
+      saveBlob(file, file.name);
       return 'The picture is saved.';
     }),
   );
   card.replaceChildren(picture, title, says, buttons, status);
-}
-
-async function pngOf(picture: HTMLImageElement): Promise<File> {
-  await picture.decode();
-  const canvas = new OffscreenCanvas(SAVED_SCALE * WIDTH, SAVED_SCALE * HEIGHT);
-  canvas.getContext('2d')?.drawImage(picture, 0, 0, canvas.width, canvas.height);
-  return new File([await canvas.convertToBlob({ type: 'image/png' })], FILE_NAME, { type: 'image/png' });
 }

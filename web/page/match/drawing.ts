@@ -1,6 +1,7 @@
-// The SVG of the first figure, with its two sweeps. The build puts it into the page; the script moves the source sweep.
+// The SVG of the matcher, with the two sweeps of a room. The build puts that of the first room into the page; the script
+// moves the source sweep.
 
-import type { Pose } from '../lap/story';
+import type { Point, Pose } from '../lap/story';
 
 export interface Answer {
   /** The true pose of the source sweep. */
@@ -15,17 +16,31 @@ export interface Scene extends Answer {
   source: number[];
 }
 
-/** The visible square, in metres; a wide picture shows more at its sides. */
-const VIEW = { left: -1.9, top: 5.2, side: 7.2 };
+/** A room of the chain. */
+export interface Room {
+  /** As the module and the page's address name it. */
+  name: string;
+  /** The first words on entering it. */
+  hint: string;
+  /** The visible square in metres: left, top, side; a wide picture shows more at its sides. */
+  view: [number, number, number];
+  /** Initial offset of the source in metres and degrees: outside of ICP's basin of convergence, so the reader has to help. */
+  off: Pose;
+}
+
+export const ROOMS: readonly [Room, ...Room[]] = [
+  { name: 'room', hint: 'A room.', view: [-1.9, 5.2, 7.2], off: [-0.6, 0.75, 48] },
+  { name: 'corridor', hint: 'A corridor: only its end says how far along you are.', view: [17.2, 4.4, 7.2], off: [-1.2, 0.3, 12] },
+  { name: 'hall', hint: 'A round hall of 36 walls: a turn by one wall fits as well.', view: [-0.2, 7.2, 7.4], off: [-0.9, 0.8, 35] },
+  { name: 'twins', hint: 'Two rooms alike: one door farther it fits nearly as well.', view: [2.4, 5.2, 7.2], off: [-1.3, 0.2, 8] },
+];
 /** Radius of the ring that turns the source. */
 const RING_M = 1.3;
 /** Half the size of a cross. */
 const MARK_M = 0.06;
-/** Initial offset of the source: outside of ICP's basin of convergence, so the reader has to help. */
-const START_OFF = { x: -0.6, y: 0.75, degrees: 48 };
 
-export function startOf({ truth: [x, y, heading] }: Answer): Pose {
-  return [x + START_OFF.x, y + START_OFF.y, heading + (START_OFF.degrees * Math.PI) / 180];
+export function startOf({ truth: [x, y, heading] }: Answer, { off: [right, up, degrees] }: Room): Pose {
+  return [x + right, y + up, heading + (degrees * Math.PI) / 180];
 }
 
 /** The SVG transform of a pose, with y up. */
@@ -33,20 +48,29 @@ export function placedAt([x, y, heading]: Pose): string {
   return `translate(${x} ${y}) rotate(${(heading * 180) / Math.PI})`;
 }
 
-/** The SVG with the source at its first pose. */
+/** The SVG of the first room. */
 export function drawing(scene: Scene): string {
+  return `<svg viewBox="${viewBox(ROOMS[0])}" tabindex="-1" role="application"
+      aria-labelledby="match-name" aria-describedby="match-keys match-says">${sweeps(scene, ROOMS[0])}</svg>`;
+}
+
+export function viewBox({ view: [left, top, side] }: Room): string {
+  return `${left} ${-top} ${side} ${side}`;
+}
+
+/** The contents of the SVG with the source at its first pose. */
+export function sweeps(scene: Scene, room: Room): string {
   const crosses = points(scene.target).map(([x, y]) => {
     const [m, span] = [MARK_M, 2 * MARK_M];
     return `M${short(x - m)} ${short(y - m)}l${span} ${span}m0-${span}l-${span} ${span}`;
   });
   const squares = points(scene.source).map(([x, y]) => `M${short(x)} ${short(y)}h0`).join('');
-  const at = placedAt(startOf(scene));
-  return `<svg viewBox="${VIEW.left} ${-VIEW.top} ${VIEW.side} ${VIEW.side}" tabindex="-1" role="application"
-      aria-labelledby="match-name" aria-describedby="match-keys match-says">
-      <title id="match-name">Two sweeps of one room, to be laid on each other</title>
+  const at = placedAt(startOf(scene, room));
+  return `<title id="match-name">Two sweeps of one room, to be laid on each other</title>
       <g transform="scale(1 -1)">
         <path class="match-target" d="${crosses.join('')}"/>
         <path class="match-source match-left" d="${squares}" transform="${at}" visibility="hidden"/>
+        <path class="match-pairs" d=""/>
         <g class="match-moved" transform="${at}">
           <path class="match-source" d="${squares}"/>
           <circle class="match-grab" data-grab="move" r="${RING_M}"/>
@@ -56,11 +80,23 @@ export function drawing(scene: Scene): string {
           <circle class="match-knob" data-grab="turn" cx="${RING_M}" r="0.15"/>
           <path class="match-robot" d="M0.22 0L-0.15 0.14V-0.14Z"/>
         </g>
-      </g>
-    </svg>`;
+      </g>`;
 }
 
-function points(numbers: readonly number[]): [number, number][] {
+/** A line from each point of the source to the nearest of the target within the reach, which ICP pairs it with. */
+export function pairLines({ target, source }: Scene, [x, y, heading]: Pose, reachM: number): string {
+  const [cos, sin] = [Math.cos(heading), Math.sin(heading)];
+  const targets = points(target);
+  const line = ([along, aside]: Point): string => {
+    const from: Point = [x + cos * along - sin * aside, y + sin * along + cos * aside];
+    const far = ([toX, toY]: Point): number => Math.hypot(toX - from[0], toY - from[1]);
+    const nearest = targets.reduce((best, one) => (far(one) < far(best) ? one : best), targets[0] ?? from);
+    return far(nearest) <= reachM ? `M${from.map(short).join(' ')}L${nearest.map(short).join(' ')}` : '';
+  };
+  return points(source).map(line).join('');
+}
+
+function points(numbers: readonly number[]): Point[] {
   return Array.from({ length: numbers.length / 2 }, (_, at) => [numbers[2 * at] ?? 0, numbers[2 * at + 1] ?? 0]);
 }
 

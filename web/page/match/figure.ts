@@ -1,14 +1,18 @@
-// The first figure of the page: the reader aligns one sweep with another, and ICP refines the pose.
+// The matcher: the reader aligns one sweep with another, and ICP refines the pose. Who wins enters the next room.
 
 import type { Glue } from '../../pkg/glue.js';
 import { type Point, type Pose, between } from '../lap/story';
-import { type Answer, placedAt, startOf } from './drawing';
+import { pngOfSvg, send } from '../../ts/export';
+import { type Answer, pairLines, placedAt, ROOMS, type Scene, startOf, sweeps, viewBox } from './drawing';
+import { recordOf } from './record';
 
 /** The output of the module's `Matcher.run`. */
 interface Run {
   /** The initial guess and the pose after each iteration. */
   poses: Pose[];
   rmse: number;
+  /** Pairing distance, m. */
+  reach: number;
   ending: string;
 }
 
@@ -19,19 +23,27 @@ const KEY_M = 0.05;
 const KEY_RAD = (2 * Math.PI) / 180;
 /** Duration of an iteration in the animation. */
 const ITERATION_MS = 110;
+/** The parameter of the page's address that opens a room. */
+const ROOM_PARAM = 'room';
+/** Pixels per metre of a sent picture. */
+const SENT_PX_PER_M = 100;
+const UNREACHABLE = 'ICP could not be fetched. Try again once there is a connection.';
 const ARROWS: Record<string, Point> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 export class MatchFigure {
   readonly #figure: HTMLElement;
-  readonly #scene: Answer;
   readonly #core: () => Promise<Glue>;
   readonly #svg: SVGSVGElement;
   /** World positions of the pressed pointers. */
   readonly #pointers = new Map<number, Point>();
   /** Whether the first pointer grabbed the ring. */
   #turns = false;
+  #room = ROOMS[0];
+  #scene: Answer;
   #pose: Pose;
-  #matcher: Promise<Matcher> | undefined;
+  /** When the reader first acted in the room; starts the clock. */
+  #begun: number | undefined;
+  #loading: Promise<[Matcher, Scene]> | undefined;
   /** Increases with every action of the reader: an outdated run of ICP stops. */
   #generation = 0;
 
@@ -40,11 +52,13 @@ export class MatchFigure {
     this.#scene = scene;
     this.#core = core;
     this.#svg = figure.querySelector('svg') as SVGSVGElement;
-    this.#pose = startOf(scene);
+    this.#pose = startOf(scene, this.#room);
     this.#svg.tabIndex = 0;
     this.#listen();
     this.#show();
     figure.classList.add('live');
+    const room = ROOMS.find(({ name }) => name === new URLSearchParams(location.search).get(ROOM_PARAM));
+    if (room !== undefined && room !== ROOMS[0]) void this.#enter(room);
   }
 
   #listen(): void {
@@ -69,8 +83,13 @@ export class MatchFigure {
         void this.#runIcp();
       },
       again: () => {
-        this.#place(startOf(this.#scene));
+        this.#place(startOf(this.#scene, this.#room));
+        this.#begun = undefined;
         this.#announcePose();
+      },
+      next: () => void this.#enter(ROOMS[(ROOMS.indexOf(this.#room) + 1) % ROOMS.length] ?? ROOMS[0]),
+      send: () => {
+        this.#sent().then((said) => this.#announce(said), (error: Error) => this.#announce(`Send failed: ${error.message}.`));
       },
     };
     for (const [name, press] of Object.entries(presses)) {
@@ -136,22 +155,75 @@ export class MatchFigure {
   /** Sets the pose by hand. */
   #place(pose: Pose): void {
     this.#generation += 1;
+    this.#begun ??= performance.now();
     this.#pose = pose;
     this.#showGhost(undefined);
+    this.#showPairs('');
+    this.#showWon(false);
     this.#show();
+  }
+
+  /** Replaces the sweeps by those of another room. */
+  async #enter(room: (typeof ROOMS)[number]): Promise<void> {
+    const before = this.#room;
+    this.#generation += 1;
+    const generation = this.#generation;
+    this.#room = room;
+    this.#loading = undefined;
+    const scene = (await this.#loaded().catch(() => undefined))?.[1];
+    if (generation !== this.#generation) return;
+    if (scene === undefined) {
+      this.#room = before;
+      this.#announce(UNREACHABLE);
+      return;
+    }
+    this.#scene = scene;
+    this.#svg.innerHTML = sweeps(scene, room);
+    this.#svg.setAttribute('viewBox', viewBox(room));
+    this.#figure.dataset['room'] = room.name;
+    this.#place(startOf(scene, room));
+    this.#begun = undefined;
+    this.#announce(`${room.hint} Lay one sweep on the other.`);
+  }
+
+  /** Sends the picture with a link that opens the room. */
+  async #sent(): Promise<string> {
+    const link = new URL(location.href);
+    link.search = this.#room === ROOMS[0] ? '' : `?${ROOM_PARAM}=${this.#room.name}`;
+    link.hash = this.#figure.id;
+    const side = this.#room.view[2] * SENT_PX_PER_M;
+    return send(await pngOfSvg(this.#still(side), { width: side, height: side }, 'my-match'), link.href);
+  }
+
+  /** The SVG with its present looks: a file has no style sheet of the page. */
+  #still(side: number): string {
+    const still = this.#svg.cloneNode(true) as SVGSVGElement;
+    const shown = this.#svg.querySelectorAll('*');
+    for (const [at, part] of still.querySelectorAll('*').entries()) {
+      const { fill, stroke, strokeWidth, strokeLinecap, opacity } = getComputedStyle(shown[at] as Element);
+      Object.assign((part as SVGElement).style, { fill, stroke, strokeWidth, strokeLinecap, opacity });
+    }
+    still.style.background = getComputedStyle(document.body).backgroundColor;
+    for (const [name, value] of Object.entries({ xmlns: 'http://www.w3.org/2000/svg', width: side, height: side })) {
+      still.setAttribute(name, `${value}`);
+    }
+    return still.outerHTML;
   }
 
   async #runIcp(): Promise<void> {
     this.#generation += 1;
     const generation = this.#generation;
     const from = this.#pose;
+    this.#begun ??= performance.now();
+    const seconds = Math.max(1, Math.round((performance.now() - this.#begun) / 1000));
     this.#announce('ICP is running.');
-    const matcher = await this.#loaded().catch(() => undefined);
+    const loaded = await this.#loaded().catch(() => undefined);
     if (generation !== this.#generation) return;
-    if (matcher === undefined) {
-      this.#announce('ICP could not be fetched. Try again once there is a connection.');
+    if (loaded === undefined) {
+      this.#announce(UNREACHABLE);
       return;
     }
+    const [matcher, scene] = loaded;
     const run = JSON.parse(matcher.run(...from)) as Run;
     this.#showGhost(from);
     const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -159,7 +231,10 @@ export class MatchFigure {
     if (generation !== this.#generation) return;
     this.#pose = run.poses.at(-1) ?? from;
     this.#show();
-    this.#announce(this.#summary(run));
+    this.#showPairs(pairLines(scene, this.#pose, run.reach));
+    const isWon = run.ending === 'right minimum';
+    this.#showWon(isWon);
+    this.#announce(isWon ? this.#summaryOfWin(run, seconds) : this.#summary(run));
   }
 
   /** Animates the iterations until the reader intervenes. */
@@ -184,10 +259,11 @@ export class MatchFigure {
   }
 
   /** Fetches the core on the reader's first action; a failure can be retried. */
-  #loaded(): Promise<Matcher> {
-    this.#matcher ??= this.#core().then((glue) => new glue.Matcher());
-    this.#matcher.catch(() => { this.#matcher = undefined; });
-    return this.#matcher;
+  #loaded(): Promise<[Matcher, Scene]> {
+    const { name } = this.#room;
+    this.#loading ??= this.#core().then((glue) => [new glue.Matcher(name), JSON.parse(glue.matcherScene(name)) as Scene]);
+    this.#loading.catch(() => { this.#loading = undefined; });
+    return this.#loading;
   }
 
   #show(): void {
@@ -201,6 +277,21 @@ export class MatchFigure {
     const ghost = this.#svg.querySelector('.match-left');
     ghost?.setAttribute('visibility', pose === undefined ? 'hidden' : 'visible');
     if (pose !== undefined) ghost?.setAttribute('transform', placedAt(pose));
+  }
+
+  #showPairs(lines: string): void {
+    this.#svg.querySelector('.match-pairs')?.setAttribute('d', lines);
+  }
+
+  /** Offers the next room in place of ICP, and the way back when the reader moves the sweep again. */
+  #showWon(isWon: boolean): void {
+    const shown = { icp: !isWon, quarter: !isWon && this.#room === ROOMS[0], next: isWon, send: isWon };
+    const hadFocus = document.activeElement instanceof HTMLElement && document.activeElement.dataset['match'] === 'icp';
+    for (const [name, isShown] of Object.entries(shown)) {
+      const button = this.#figure.querySelector<HTMLButtonElement>(`[data-match="${name}"]`);
+      if (button !== null) button.hidden = !isShown;
+    }
+    if (isWon && hadFocus) this.#figure.querySelector<HTMLButtonElement>('[data-match="next"]')?.focus({ preventScroll: true });
   }
 
   #error(): { metres: number; degrees: number } {
@@ -226,16 +317,19 @@ export class MatchFigure {
     this.#announce(`By hand: ${this.#errorText()} off. ${hint}`);
   }
 
+  #summaryOfWin({ poses }: Run, seconds: number): string {
+    const cm = Math.round(100 * this.#error().metres);
+    const best = recordOf(this.#room.name, { seconds, cm });
+    return `ICP came home in ${counted(poses.length - 1)}: ${this.#errorText()} off, after ${seconds} s. Your record: ${best.cm} cm, ${best.seconds} s.`;
+  }
+
   #summary({ poses, rmse, ending }: Run): string {
-    const steps = poses.length - 1;
-    const by = `${steps} ${steps === 1 ? 'step' : 'steps'}`;
     const off = `${this.#errorText()} off`;
-    if (ending === 'right minimum') return `ICP came home in ${by}: ${off}.`;
     const fit = `Its pairs are ${Math.round(100 * rmse)} cm apart`;
-    if (ending === 'quarter turn' || ending === 'half turn') {
+    if (this.#room === ROOMS[0] && (ending === 'quarter turn' || ending === 'half turn')) {
       return `ICP stopped a ${ending} wrong, ${off}. ${fit}: the room is nearly square, so a wrong turn looks right, to you and to ICP.`;
     }
-    return `ICP stopped after ${by} in a wrong place, ${off}. ${fit}. Lay it nearer, and let it try again.`;
+    return `ICP stopped after ${counted(poses.length - 1)} in a wrong place, ${off}. ${fit}. Lay it nearer, and let it try again.`;
   }
 
   #errorText(): string {
@@ -251,6 +345,10 @@ export class MatchFigure {
     const element = this.#figure.querySelector(selector);
     if (element !== null && element.textContent !== text) element.textContent = text;
   }
+}
+
+function counted(steps: number): string {
+  return `${steps} ${steps === 1 ? 'step' : 'steps'}`;
 }
 
 /** The angle of a movement about a centre. */

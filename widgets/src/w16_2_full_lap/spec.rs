@@ -8,7 +8,7 @@ use ch16_slam2d::chi_squared::CHAPTER_QUANTILE;
 use ch16_slam2d::loops::GateModel;
 use pr_sim::sketch::limits;
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{MORE, Named, OneOf, Param, optional};
+use widget_kit::param::{MORE, OneOf, Param, optional};
 use widget_kit::playback::SPEED;
 use widget_kit::run::{LOOPS, NOISE, seed};
 use widget_kit::spec::{
@@ -40,9 +40,6 @@ const MAX_FLAT: usize = 33_000;
 
 /// Largest number of a wall, counted from 1.
 const MAX_PIECES: f64 = limits::WALLS as f64;
-
-/// The worlds that are built in.
-const WORLDS: &[Named<BuiltInWorld>] = BuiltInWorld::NAMED;
 
 /// The kind of the selected part of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -219,7 +216,11 @@ params! {
         Option<BuiltInWorld>,
         "world",
         "world",
-        &optional::<_, { WORLDS.len() + 1 }>(WORLDS, WORLDS.len(), ["own", "your own flat"]),
+        &optional::<_, { BuiltInWorld::NAMED.len() + 1 }>(
+            BuiltInWorld::NAMED,
+            BuiltInWorld::NAMED.len(),
+            ["own", "your own flat"],
+        ),
     )
     .help("The world. The Apartment uses the chapter's estimator, every other world the default one.");
 

@@ -1,7 +1,7 @@
 //! The widget's texts and its list of parameters.
 
-use ch16_lab::lap::BuiltInWorld;
 use ch16_lab::lap::CANONICAL_SEED;
+use ch16_lab::lap::{BuiltInWorld, Choice as _};
 use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
@@ -47,11 +47,7 @@ params! {
         BuiltInWorld,
         "world",
         "world",
-        &[
-            (BuiltInWorld::Apartment, "apartment", "the Apartment"),
-            (BuiltInWorld::Ring, "ring", "a ring of corridors"),
-            (BuiltInWorld::TwinRooms, "twins", "two rooms alike"),
-        ],
+        BuiltInWorld::NAMED.split_at(3).0,
     )
     .help("The world. Only the Apartment has the wardrobe.");
 

@@ -124,13 +124,18 @@ impl BasinScene {
     /// The scene at another location.
     #[must_use]
     pub fn at(place: BasinPlace, seed: u32) -> Self {
-        let [world_from_target, world_from_source] = place.sensors();
-        let world = place.world();
+        Self::in_world(&place.world(), place.sensors(), place, seed)
+    }
+
+    /// A scene in any world from two poses of the sensor of a place, whose rules judge its results.
+    #[must_use]
+    pub fn in_world(world: &World, sensors: [SE2; 2], place: BasinPlace, seed: u32) -> Self {
+        let [world_from_target, world_from_source] = sensors;
         let [target_kept_m, source_kept_m] = place.kept_m();
         let mut lidar = place.lidar();
         let mut rng = Rng::new(seed);
         let mut sweep = |world_from_sensor: &SE2, voxel_m: f64, kept_m: f64| -> PointCloud {
-            let cloud = scenes::sweep(&world, &mut lidar, world_from_sensor, &mut rng, voxel_m);
+            let cloud = scenes::sweep(world, &mut lidar, world_from_sensor, &mut rng, voxel_m);
             let near = cloud.iter();
             near.filter(|point| point.coords.norm() < kept_m).collect()
         };
