@@ -17,12 +17,12 @@
 mod buttons;
 mod interaction;
 pub mod log_state;
-pub mod other_log;
 mod picture;
 mod settings;
 mod tables;
 mod texts;
 
+use log_messages::{LocalizedScan, MapperOrder, Stage};
 use widget_kit::host_messages::Delivery;
 use widget_kit::model::{
     Activity, Assessment, Handle, Model, Motion, Outcome, Table, TablePlace, Timeline,
@@ -35,8 +35,7 @@ use widget_kit::spec::{DEFAULTS, WidgetSpec};
 use widget_kit::values::{Changed, Values};
 
 use crate::w16_10_own_robot::spec::{KEYS, MAX_KEYFRAMES, MAX_SCANS, PARAMS, SPEC};
-use log_state::{LogState, Stage};
-use other_log::LocalizedScan;
+use log_state::LogState;
 
 /// Names of the panels.
 pub mod panel {
@@ -53,12 +52,18 @@ const PLAY_S: f64 = 12.0;
 /// Largest number of marks on a timeline; more would be unreadable.
 const MAX_MARKS: usize = 150;
 
+/// A request to the page, or an order that it passes on.
+enum Request {
+    Page(String),
+    Worker(MapperOrder),
+}
+
 /// The reader's own robot.
 pub struct OwnRobot {
     values: Values,
     robot: LogState,
     playback: Playback,
-    orders: Vec<String>,
+    requests: Vec<Request>,
 }
 
 impl Default for OwnRobot {
@@ -75,7 +80,7 @@ impl OwnRobot {
             values: Values::defaults(PARAMS),
             robot: LogState::default(),
             playback: Playback::default(),
-            orders: Vec::new(),
+            requests: Vec::new(),
         }
     }
 
@@ -100,13 +105,15 @@ impl OwnRobot {
         Some((self.values.number("loop") as usize).min(last))
     }
 
-    /// Sends an order; it replaces an earlier one of the same replaceable kind.
-    fn ask(&mut self, order: String) {
-        let kind = |order: &str| order.split(' ').next().unwrap_or_default().to_owned();
-        let replaces = ["look", "pin"].contains(&kind(&order).as_str());
-        self.orders
-            .retain(|old| !replaces || kind(old) != kind(&order));
-        self.orders.push(order);
+    fn ask(&mut self, request: String) {
+        self.requests.push(Request::Page(request));
+    }
+
+    /// Sends an order to the worker, in place of a waiting one that it replaces.
+    fn order(&mut self, order: MapperOrder) {
+        let is_old = |old: &Request| matches!(old, Request::Worker(old) if order.replaces(old));
+        self.requests.retain(|old| !is_old(old));
+        self.requests.push(Request::Worker(order));
     }
 
     /// Selects a keyframe and requests its scan.
@@ -117,9 +124,9 @@ impl OwnRobot {
 
     fn look(&mut self) {
         let keyframe = self.keyframe();
-        let is_there = matches!(&self.robot.scan, Some((of, _)) if *of == keyframe);
+        let is_there = matches!(&self.robot.scan, Some(scan) if scan.keyframe == keyframe);
         if self.robot.has_scans && !is_there && !self.robot.keyframes.is_empty() {
-            self.ask(format!("look {keyframe}"));
+            self.order(MapperOrder::Look(keyframe));
         }
     }
 
@@ -139,7 +146,7 @@ impl OwnRobot {
     fn place(&self) -> Option<(usize, &LocalizedScan)> {
         let places = &self.robot.other_log.as_ref()?.places;
         let last = places.len().checked_sub(1)?;
-        let scan = self.values.number("scan");
+        let scan = self.values.number("scan") as usize;
         let after = places.partition_point(|place| place.scan <= scan);
         let shown = after.saturating_sub(1).min(last);
         Some((shown, &places[shown]))
@@ -159,7 +166,7 @@ impl OwnRobot {
         };
         let next = (here + 1..places.len()).find(is_change).unwrap_or(0);
         let scan = places[next].scan;
-        self.values.store("scan", scan);
+        self.values.store("scan", scan as f64);
     }
 
     /// Selects the newer keyframe of the current loop.
@@ -230,7 +237,7 @@ impl Model for OwnRobot {
         let dropped = self.values.number("drop");
         self.values.reset();
         self.robot = LogState::default();
-        self.orders.clear();
+        self.requests.clear();
         self.ask("close".to_owned());
         if dropped != self.values.number("drop") {
             self.ask_drop();
@@ -273,7 +280,7 @@ impl Model for OwnRobot {
             self.ask(order);
             self.values.store("scan", MAX_SCANS);
         }
-        if delivery.kind == "stage" && self.robot.stage == Stage::Done {
+        if delivery.kind == "progress" && self.robot.stage == Stage::Done {
             self.look();
         }
     }
@@ -283,7 +290,13 @@ impl Model for OwnRobot {
     }
 
     fn take_requests(&mut self) -> Vec<String> {
-        core::mem::take(&mut self.orders)
+        let requests = core::mem::take(&mut self.requests).into_iter();
+        requests
+            .map(|request| match request {
+                Request::Page(request) => request,
+                Request::Worker(order) => order.request(),
+            })
+            .collect()
     }
 
     fn scene(&self) -> Scene {

@@ -1,10 +1,11 @@
 //! The effect of each button.
 
+use log_messages::{MapperOrder, Stage};
 use widget_kit::spec::PLAY;
 
 use super::OwnRobot;
 use super::interaction::{may_edit, nudge};
-use super::log_state::{LogState, Stage};
+use super::log_state::LogState;
 use crate::w16_10_own_robot::spec::{FILES, MAX_SCANS, OPTIONS};
 
 impl OwnRobot {
@@ -34,7 +35,8 @@ impl OwnRobot {
     pub(super) fn press_own(&mut self, id: &str) -> Option<()> {
         let keyframe = self.keyframe();
         match id {
-            "open" | "cancel" | "unpin" | "reference" => self.ask(id.to_owned()),
+            "open" | "cancel" | "reference" => self.ask(id.to_owned()),
+            "unpin" => self.order(MapperOrder::Unpin),
             "sample" => self.begin_sample(),
             "locate" | "locate-sample" => {
                 let order = format!("{id}{}", self.start());
@@ -51,12 +53,12 @@ impl OwnRobot {
             }
             "turn" => {
                 if let Some(link) = self.link() {
-                    self.ask(format!("turn {link}"));
+                    self.order(MapperOrder::Turn(link));
                 }
             }
             "add" => {
-                let marked = self.values.number("marked");
-                self.ask(format!("add {marked} {keyframe}"));
+                let marked = self.values.number("marked") as usize;
+                self.order(MapperOrder::Add(marked, keyframe));
                 // Added loops come first.
                 self.values.store("loop", 0.0);
             }

@@ -3,12 +3,13 @@
 mod charts;
 mod visitor;
 
+use log_messages::Stage;
 use pr_geom::{math, sort_numbers};
 use widget_kit::scene::{
     Aspect, Axis, Bounds, ColorBar, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::log_state::{LogState, Stage};
+use super::log_state::LogState;
 use super::settings::{Colour, shows};
 use super::{OwnRobot, panel};
 use charts::{fit, sure};
@@ -97,7 +98,12 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
             Mark::Cross,
         ));
     }
-    if own.robot.sweep.is_some() {
+    if own
+        .robot
+        .scan
+        .as_ref()
+        .is_some_and(|scan| !scan.sweep.is_empty())
+    {
         let measured = LegendEntry::mark("before deskewing", Tone::Strained, Mark::Dot);
         legend.push(measured);
     }
@@ -288,16 +294,17 @@ fn here(own: &OwnRobot) -> Vec<Layer> {
     let pose = robot.keyframes[shown].pose;
     let (sin, cos) = math::sin_cos(pose[2]);
     // The motion during the sweep moves the points off the walls.
-    for (scan, mark, tone) in [
-        (&robot.sweep, Mark::Dot, Tone::Strained),
-        (&robot.scan, Mark::Cross, Tone::Measurement),
-    ] {
-        if let Some((of, points)) = scan
-            && *of == shown
-        {
-            let placed = points
-                .iter()
-                .map(|[x, y]| [pose[0] + cos * x - sin * y, pose[1] + sin * x + cos * y]);
+    let scan = robot.scan.iter().filter(|scan| scan.keyframe == shown);
+    for (points, mark, tone) in scan.flat_map(|scan| {
+        [
+            (&scan.sweep, Mark::Dot, Tone::Strained),
+            (&scan.points, Mark::Cross, Tone::Measurement),
+        ]
+    }) {
+        let placed = points
+            .iter()
+            .map(|[x, y]| [pose[0] + cos * x - sin * y, pose[1] + sin * x + cos * y]);
+        if !points.is_empty() {
             layers.push(Layer::points(placed.collect(), mark, tone, 2.5));
         }
     }

@@ -1,8 +1,9 @@
 //! Interprets the values of the parameters: the colours of the path, and which loops are shown.
 
+use log_messages::LoopReport;
 use widget_kit::values::Values;
 
-use super::log_state::{Link, LogState};
+use super::log_state::LogState;
 
 /// The quantity that colours the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,14 +48,14 @@ impl Colour {
                 Self::Time => keyframe.stamp_s - start_s,
                 Self::Fit => keyframe.fit,
                 Self::Sigma => keyframe.sigma_m,
-                Self::Error => robot.errors_m.get(k).copied().unwrap_or(f64::NAN),
+                Self::Error => robot.error_m(k),
             })
             .collect()
     }
 }
 
 /// Whether a loop is shown on the map.
-pub fn shows(values: &Values, link: &Link) -> bool {
+pub fn shows(values: &Values, link: &LoopReport) -> bool {
     match values.number("links") as usize {
         0 => false,
         1 => link.is_in_graph(),

@@ -1,10 +1,10 @@
 //! The tables: loops with their evidence and doubts beside the picture; all keyframes and all loops for the
 //! export.
 
+use log_messages::LoopReport;
 use widget_kit::model::{Table, TablePlace};
 
 use super::OwnRobot;
-use super::log_state::Link;
 use super::texts::verdict;
 use crate::w16_10_own_robot::spec::OPTIONS;
 
@@ -166,7 +166,7 @@ fn places(own: &OwnRobot) -> Option<Table> {
 }
 
 fn every_loop(own: &OwnRobot) -> Table {
-    let row = |link: &Link| {
+    let row = |link: &LoopReport| {
         vec![
             link.new.to_string(),
             link.old.to_string(),
@@ -203,7 +203,6 @@ fn every_loop(own: &OwnRobot) -> Table {
 }
 
 fn keyframes(own: &OwnRobot) -> Table {
-    let errors = &own.robot.errors_m;
     let keyframes = own.robot.keyframes.iter().enumerate();
     let rows = keyframes.map(|(k, keyframe)| {
         let [x, y, theta] = keyframe.pose;
@@ -215,7 +214,7 @@ fn keyframes(own: &OwnRobot) -> Table {
             theta.to_string(),
             number(keyframe.fit, 3),
             number(keyframe.sigma_m, 4),
-            number(errors.get(k).copied().unwrap_or(f64::NAN), 4),
+            number(own.robot.error_m(k), 4),
         ]
     });
     Table {
