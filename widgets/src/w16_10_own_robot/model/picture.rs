@@ -10,8 +10,9 @@ use widget_kit::scene::{
 };
 
 use super::log_state::LogState;
-use super::settings::{Colour, shows};
+use super::settings::{Colour, ShownLoops};
 use super::{OwnRobot, panel};
+use crate::w16_10_own_robot::spec::{COLOUR, LOOPS, MARKED};
 use charts::{fit, sure};
 use visitor::other_log;
 
@@ -107,10 +108,11 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
         let measured = LegendEntry::mark("before deskewing", Tone::Strained, Mark::Dot);
         legend.push(measured);
     }
-    if own.robot.links.iter().any(|link| shows(&own.values, link)) {
+    let shown = own.values.get(&LOOPS);
+    if own.robot.links.iter().any(|link| shown.include(link)) {
         legend.push(LegendEntry::line("loop", Tone::Revisit, Stroke::Solid));
     }
-    if own.values.number("links") == 2.0 && own.robot.links.iter().any(|link| !link.is_in_graph()) {
+    if shown == ShownLoops::All && own.robot.links.iter().any(|link| !link.is_in_graph()) {
         legend.push(LegendEntry::line(
             "refused",
             Tone::Series(2),
@@ -186,7 +188,8 @@ fn links(own: &OwnRobot) -> Vec<Layer> {
     let robot = &own.robot;
     let chosen = own.link();
     let segments = |is_in_graph: bool| {
-        let links = robot.links.iter().filter(|link| shows(&own.values, link));
+        let shown = own.values.get(&LOOPS);
+        let links = robot.links.iter().filter(|link| shown.include(link));
         let links = links.filter(|link| link.is_in_graph() == is_in_graph);
         links
             .filter_map(|link| Some([at(robot, link.new)?, at(robot, link.old)?]))
@@ -226,7 +229,7 @@ fn links(own: &OwnRobot) -> Vec<Layer> {
 /// The path in its colours over a line of ink, and the colour bar.
 fn way(own: &OwnRobot) -> (Vec<Layer>, Option<ColorBar>) {
     let robot = &own.robot;
-    let colour = Colour::from_values(&own.values);
+    let colour = own.values.get(&COLOUR);
     let values = colour.values(robot);
     let mut known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     sort_numbers(&mut known);
@@ -308,7 +311,7 @@ fn here(own: &OwnRobot) -> Vec<Layer> {
             layers.push(Layer::points(placed.collect(), mark, tone, 2.5));
         }
     }
-    let marked = own.values.number("marked") as usize;
+    let marked = own.values.get(&MARKED);
     if marked > 0
         && let Some(at) = at(robot, marked)
     {

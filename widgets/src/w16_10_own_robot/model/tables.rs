@@ -6,7 +6,7 @@ use widget_kit::model::{Table, TablePlace};
 
 use super::OwnRobot;
 use super::texts::verdict;
-use crate::w16_10_own_robot::spec::OPTIONS;
+use crate::w16_10_own_robot::spec::RECORDING_OPTIONS;
 
 /// Rows of loops beside the picture.
 const SHOWN_LOOPS: usize = 8;
@@ -115,8 +115,10 @@ fn offers(own: &OwnRobot) -> Option<Table> {
         .map(|offer| {
             let names = offer.names.iter().filter(|name| **name != offer.taken);
             let others: Vec<&str> = names.take(SHOWN_SENTENCES).map(String::as_str).collect();
-            let label = OPTIONS.iter().find(|option| option.id == offer.option);
-            let label = label.map_or("", |option| option.label);
+            let label = RECORDING_OPTIONS
+                .iter()
+                .find(|(name, ..)| *name == offer.option);
+            let label = label.map_or("", |(.., label)| label);
             vec![label.to_owned(), offer.taken.clone(), others.join(", ")]
         })
         .collect();
