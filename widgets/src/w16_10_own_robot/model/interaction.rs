@@ -56,6 +56,7 @@ pub fn grab(robot: &OwnRobot, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Opt
             "keyframe"
         },
         offset: [at[0] - spot[0], at[1] - spot[1]],
+        ..Handle::default()
     })
 }
 
@@ -69,6 +70,7 @@ pub fn nudge(robot: &mut OwnRobot, steps: [f64; 2]) {
             panel: panel::MAP,
             id: "held",
             offset: steps.map(|steps| -NUDGE_M * steps),
+            ..Handle::default()
         };
         drag(robot, handle, at);
     }
