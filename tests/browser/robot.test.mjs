@@ -527,7 +527,7 @@ describe('a reader’s log', () => {
       assert.equal(before.standing, 'doubtful');
       const count = before.facts.loops_doubted;
       const buttons = (name) => list.getByRole('button', { name });
-      assert.equal(await buttons(/^Refuse/).count(), Math.min(count, 6));
+      assert.equal(await buttons(/^Reject/).count(), Math.min(count, 6));
       const picture = list.getByRole('button', { name: /^Show the loop/ }).first().locator('svg');
       assert.ok(await picture.evaluate((it) => [...it.children].every((dots) => dots.getTotalLength() === 0 && dots.getAttribute('d').length > 500)));
       assert.deepEqual(await violations(tab, 'slam-widget', OF_COLORS), []);
@@ -538,14 +538,14 @@ describe('a reader’s log', () => {
       await tab.waitForFunction((left) => document.querySelector('slam-widget').outcome.facts.loops_doubted === left, count - 1);
       assert.equal((await outcome(tab)).facts.loops, before.facts.loops, 'an accepted loop stays');
       assert.match((await outcome(tab)).sentence, /1 accepted by you/);
-      const refused = await buttons(/^Refuse/).first().getAttribute('aria-label');
-      await buttons(/^Refuse/).first().focus();
+      const rejected = await buttons(/^Reject/).first().getAttribute('aria-label');
+      await buttons(/^Reject/).first().focus();
       await tab.keyboard.press('Enter');
       await says(tab, /was removed from the graph; keyframes moved/);
-      await list.getByRole('button', { name: refused }).waitFor({ state: 'detached' });
+      await list.getByRole('button', { name: rejected }).waitFor({ state: 'detached' });
       const after = await outcome(tab);
       assert.equal(after.facts.loops, before.facts.loops - 1);
-      assert.ok(after.facts.loops_doubted <= count - 2, 'the refused one does not count');
+      assert.ok(after.facts.loops_doubted <= count - 2, 'the rejected one does not count');
       const isInList = () => document.querySelector('slam-widget').shadowRoot.activeElement?.closest('.loops') !== null;
       assert.ok(await tab.evaluate(isInList), 'the focus is lost');
     });

@@ -90,7 +90,7 @@ fn text(path: &Path) -> String {
 }
 
 /// The packages of `crates/` in the order of the data flow, each with its allowed dependencies.
-const CORE: [(&str, &[&str]); 12] = [
+const CORE: [(&str, &[&str]); 13] = [
     ("pr_geom", &[]),
     ("pr_sim", &["pr_geom"]),
     ("pr_grid", &["pr_geom"]),
@@ -116,6 +116,7 @@ const CORE: [(&str, &[&str]); 12] = [
         "robot_io",
         &["pr_geom", "pr_grid", "pr_optim", "ch16_slam2d"],
     ),
+    ("log_messages", &[]),
     ("bench_support", &[]),
     (
         "solver_peers",

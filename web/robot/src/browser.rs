@@ -3,7 +3,8 @@
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
 use ch16_slam2d::localize::StartPose;
-use js_sys::{Array, Float64Array, Function, Object, Reflect, Uint8Array};
+use js_sys::{Array, Function, Object, Reflect, Uint8Array};
+use log_messages::MapperOrder;
 use pr_geom::SE2;
 use robot_io::log_bytes::LogBytes;
 use wasm_bindgen::prelude::*;
@@ -11,7 +12,7 @@ use wasm_bindgen::prelude::*;
 use crate::engine::Engine;
 use crate::given::{Choices, Given, GivenFile};
 use crate::sample;
-use crate::update::{Stage, Update};
+use crate::update::Update;
 
 /// Bytes of a file that are read at a time.
 const PIECE_BYTES: usize = 1 << 18;
@@ -117,18 +118,33 @@ impl Robot {
         self.engine.step()
     }
 
-    /// Whether all work on the file is done, or has failed.
-    #[wasm_bindgen(js_name = isOver)]
-    pub fn is_over(&self) -> bool {
-        matches!(self.engine.stage(), Stage::Done | Stage::Failed)
+    /// Whether the map is complete.
+    #[wasm_bindgen(js_name = isMapped)]
+    pub fn is_mapped(&self) -> bool {
+        self.engine.is_mapped()
     }
 
-    /// Executes an order of the user.
-    pub fn order(&mut self, order: &str) {
+    /// Makes the changes of an earlier worker, the text of its last update `edits`, once the map is complete.
+    pub fn repeat(&mut self, edits: &str) {
+        self.engine
+            .repeat(serde_json::from_str(edits).unwrap_or_default());
+    }
+
+    /// Executes the order of a request of the widget; returns whether it is one of many of a drag.
+    pub fn order(&mut self, request: &str) -> bool {
+        let Some(order) = MapperOrder::from_request(request) else {
+            return false;
+        };
         self.engine.order(order);
+        matches!(order, MapperOrder::Pin(..))
     }
 
-    /// Changes since the last call: objects with kind, text, numbers and bytes.
+    /// Stops reading, and keeps what was read.
+    pub fn cancel(&mut self) {
+        self.engine.cancel();
+    }
+
+    /// Changes since the last call: objects with kind, text and bytes.
     pub fn updates(&mut self) -> Array {
         self.engine.updates().iter().map(to_js).collect()
     }
@@ -182,10 +198,13 @@ fn to_js(update: &Update) -> JsValue {
         // A new object accepts every property.
         let _ = Reflect::set(&object, &JsValue::from_str(name), value);
     };
-    set("kind", &JsValue::from_str(update.kind));
-    set("text", &JsValue::from_str(&update.text));
-    set("numbers", &Float64Array::from(update.numbers.as_slice()));
-    set("bytes", &Uint8Array::from(update.bytes.as_slice()));
+    let bytes = match update {
+        Update::Report(report) => report.to_bytes(),
+        _ => Vec::new(),
+    };
+    set("kind", &JsValue::from_str(update.kind()));
+    set("text", &JsValue::from_str(&update.json()));
+    set("bytes", &Uint8Array::from(bytes.as_slice()));
     object.into()
 }
 

@@ -49,7 +49,7 @@ pub fn rebuilt(
             edge.kind,
         );
     }
-    for link in links.iter().filter(|link| link.verdict.is_in_graph()) {
+    for link in links.iter().filter(|link| link.decision.is_in_graph()) {
         graph.add_edge(
             link.old,
             link.new,

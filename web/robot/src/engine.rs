@@ -5,14 +5,16 @@
 //! size costs no memory. The engine reads no clock: the caller decides how long a time slice is.
 
 mod checking;
+mod edits;
 mod examining;
 mod orders;
 mod updates;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::io::{self, BufRead, Read};
 
 use ch16_slam2d::graph::PoseGraph;
+use log_messages::{MapperOrder, MapperReport, Stage};
 use pr_geom::SE2;
 use robot_io::doctor::Diagnosis;
 use robot_io::graph_file::GraphFile;
@@ -29,7 +31,7 @@ use crate::graph_log::{self, GraphSolving, loops_of};
 use crate::links::Link;
 use crate::localization::Localization;
 use crate::picture::MapPicture;
-use crate::update::{Stage, Update};
+use crate::update::Update;
 use examining::Examination;
 
 /// Current work.
@@ -88,6 +90,10 @@ pub struct Engine<'a> {
     /// Number of scans of an opened session.
     scans_before: usize,
     changes: Changes,
+    /// The user's changes of the graph.
+    edits: Vec<MapperOrder>,
+    /// Changes of an earlier worker, made again on the complete map.
+    to_repeat: VecDeque<MapperOrder>,
     /// Pending updates, including answers.
     waiting: Vec<Update>,
 }
@@ -193,6 +199,8 @@ impl<'a> Engine<'a> {
                 file: true,
                 ..Changes::default()
             },
+            edits: Vec::new(),
+            to_repeat: VecDeque::new(),
             waiting: Vec::new(),
         }
     }
@@ -218,7 +226,7 @@ impl<'a> Engine<'a> {
             Work::Finishing => self.close_last_loops(),
             Work::Solving(solving) => self.solve(solving),
             Work::Checking => self.check(),
-            Work::Idle => return self.paint() || self.localize_next(),
+            Work::Idle => return self.repeat_next() || self.paint() || self.localize_next(),
             Work::Failed(problem) => {
                 self.work = Work::Failed(problem);
                 return false;
@@ -276,7 +284,7 @@ impl<'a> Engine<'a> {
                 self.remarks.extend(problem);
                 self.remarks.extend(self.run.sentences(&self.name));
                 if !missing.is_empty() {
-                    self.waiting.push(Update::text("answer", missing));
+                    self.send(MapperReport::Answer(missing));
                 }
                 self.work = Work::Finishing;
             }
@@ -285,8 +293,7 @@ impl<'a> Engine<'a> {
                 self.work = Work::Failed(problem.or(unused).unwrap_or_else(stopped));
             }
         }
-        let remarks = self.remarks.join("\n");
-        self.waiting.push(Update::text("remarks", remarks));
+        self.send(MapperReport::Remarks(self.remarks.clone()));
     }
 
     fn close_last_loops(&mut self) {

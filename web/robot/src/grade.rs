@@ -1,16 +1,10 @@
 //! Evaluates a trajectory against the user's reference: relations or true poses.
-//!
-//! The update `grade` has ten numbers: 1 for relations or 2 for true poses, the number compared, then
-//! mean, standard deviation, median and 95th percentile of the translation error (m), and the same of the
-//! rotation error (degrees). With true poses, the trajectory is aligned first, and the first number of
-//! each four is the RMSE.
 
+use log_messages::GradeReport;
 use pr_geom::math;
-use robot_io::evaluate::{Alignment, Spread, onto_truth, relation_errors, truth_errors};
+use robot_io::evaluate::{Alignment, onto_truth, relation_errors, truth_errors};
 use robot_io::relations::{Relation, read_relations};
 use robot_io::trajectory::{StampedPose, Trajectory};
-
-use crate::update::Update;
 
 /// Largest time between a true pose and a keyframe, s.
 const SLACK_S: f64 = 0.1;
@@ -42,7 +36,7 @@ impl Reference {
         read.map_err(|problem| problem.to_string())
     }
 
-    /// The errors as numbers and text, and the error of each keyframe, m.
+    /// The errors in words, their mean, and that of each keyframe.
     ///
     /// # Errors
     /// If the two have no common times; the message is one sentence.
@@ -51,7 +45,7 @@ impl Reference {
         trajectory: &Trajectory,
         keyframes: &Trajectory,
         name: &str,
-    ) -> Result<(Update, Vec<f64>), String> {
+    ) -> Result<GradeReport, String> {
         match self {
             Self::Relations(relations) => {
                 let report = relation_errors(trajectory, relations).report();
@@ -65,54 +59,36 @@ impl Reference {
                     "{} relations: mean {:.3} m, median {:.3} m; mean {:.2}°",
                     report.n, report.trans.mean, report.trans.median, report.rot_deg.mean
                 );
-                let numbers = [numbers_of(&report.trans), numbers_of(&report.rot_deg)];
-                let errors = errors_by_relation(trajectory, relations, keyframes);
-                Ok((update(1.0, report.n, numbers.as_flattened(), words), errors))
+                Ok(GradeReport {
+                    words,
+                    error_m: report.trans.mean,
+                    errors_m: errors_by_relation(trajectory, relations, keyframes),
+                })
             }
             Self::Truth(truth) => {
                 let named =
                     |problem: robot_io::evaluate::TruthProblem| format!("{name}: {problem}");
                 let report = truth_errors(trajectory, truth, Alignment::Se2).map_err(named)?;
                 let onto = onto_truth(trajectory, truth, Alignment::Se2).map_err(named)?;
-                let (ate, turn) = (report.ate, report.rpe.rot_deg);
+                let ate = report.ate;
                 let words = format!(
                     "{} poses: RMSE {:.3} m, at most {:.3} m off the truth",
                     report.n, ate.rmse, ate.max
                 );
-                let numbers = [
-                    ate.rmse,
-                    ate.std,
-                    ate.median,
-                    ate.max,
-                    turn.rmse,
-                    turn.std,
-                    turn.median,
-                    turn.max,
-                ];
                 let off = |pose: &StampedPose| {
                     let truth = truth.at(pose.stamp_s, SLACK_S)?;
                     let moved = onto * pose.pose;
                     Some(math::norm2(moved.x() - truth.x(), moved.y() - truth.y()))
                 };
                 let errors = keyframes.poses().iter();
-                let errors = errors.map(|pose| off(pose).unwrap_or(f64::NAN)).collect();
-                Ok((update(2.0, report.n, &numbers, words), errors))
+                Ok(GradeReport {
+                    words,
+                    error_m: ate.rmse,
+                    errors_m: errors.map(|pose| off(pose).unwrap_or(f64::NAN)).collect(),
+                })
             }
         }
     }
-}
-
-fn update(kind: f64, count: usize, numbers: &[f64], words: String) -> Update {
-    let mut all = vec![kind, count as f64];
-    all.extend_from_slice(numbers);
-    Update {
-        text: words,
-        ..Update::numbers("grade", all)
-    }
-}
-
-fn numbers_of(spread: &Spread) -> [f64; 4] {
-    [spread.mean, spread.std, spread.median, spread.p95]
 }
 
 /// The largest error of the relations that end at a keyframe or its following scans.

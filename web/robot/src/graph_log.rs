@@ -1,12 +1,13 @@
 //! A pose graph file, g2o, TORO or JSON, optimized step by step.
 
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
+use log_messages::LoopDecision;
 use pr_optim::g2o::G2oFile;
 use pr_optim::{Method, Optimizer, Problem, Settings, StepReport};
 use robot_io::graph_file::GraphFile;
 use robot_io::quality::GATE_CHI2;
 
-use crate::links::{Link, Verdict};
+use crate::links::Link;
 
 /// Larger text graphs are not read, bytes.
 pub const MAX_BYTES: u64 = 1 << 28;
@@ -126,7 +127,7 @@ pub fn loops_of(graph: &PoseGraph) -> Vec<Link> {
             chi2: Some(graph.edge_chi2(view.id)),
             gate_chi2: GATE_CHI2,
             reason: String::new(),
-            verdict: Verdict::Accepted,
+            decision: LoopDecision::Closed,
         })
         .collect()
 }

@@ -1,11 +1,12 @@
 //! The worker of w16.10, which maps a robot's log piece by piece in the background of the page, and the core in the worker
 //! of a reader's function.
 //!
-//! The module has no egui and is fetched when a user opens a log, or lets a function drive a widget. [`engine`] reads the file on demand, runs the
-//! estimator and executes orders; changes go to the widget as [`update`]s of numbers and text. [`given`] is the user's
-//! input. [`links`] are the loops with evidence and verdict, [`editing`] builds a graph from them, [`picture`] paints
-//! the map, [`grade`] evaluates against a reference, [`localization`] localizes another log on the map, [`files`] writes
-//! what the user saves, and [`sample`] generates the sample logs of the page.
+//! The module has no egui and is fetched when a user opens a log, or lets a function drive a widget. [`engine`] reads
+//! the file on demand, runs the estimator and executes orders; changes go out as [`update`]s: reports to the widget, and
+//! what the page shows itself. [`given`] is the user's input. [`links`] are the loops with evidence and decision,
+//! [`editing`] builds a graph from them, [`picture`] paints the map, [`grade`] evaluates against a reference,
+//! [`localization`] localizes another log on the map, [`files`] writes what the user saves, and [`sample`] generates the
+//! sample logs of the page.
 //!
 //! All modules but the browser interface are plain Rust and tested natively.
 

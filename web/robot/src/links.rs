@@ -1,40 +1,9 @@
 //! Loops with their evidence and the decisions on them.
 
 use ch16_slam2d::loops::LoopVerification;
+use log_messages::{LoopDecision, LoopReport};
 use nalgebra::Matrix3;
 use pr_geom::SE2;
-
-/// The decision on a loop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// Accepted by its tests, and in the graph.
-    Accepted = 0,
-    /// Rejected by its tests.
-    Rejected = 1,
-    /// Removed by the user.
-    Removed = 2,
-    /// Added by the user.
-    Added = 3,
-    /// Kept by the user although the rest of the graph contradicts it.
-    Confirmed = 4,
-}
-
-impl Verdict {
-    /// Whether the graph contains it.
-    #[must_use]
-    pub fn is_in_graph(self) -> bool {
-        matches!(self, Self::Accepted | Self::Added | Self::Confirmed)
-    }
-
-    /// The opposite decision, by the user.
-    #[must_use]
-    pub fn toggled(self) -> Self {
-        match self {
-            Self::Accepted | Self::Added | Self::Confirmed => Self::Removed,
-            Self::Rejected | Self::Removed => Self::Added,
-        }
-    }
-}
 
 /// A loop.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,11 +25,8 @@ pub struct Link {
     /// Why its tests rejected it.
     pub reason: String,
     /// The decision.
-    pub verdict: Verdict,
+    pub decision: LoopDecision,
 }
-
-/// Count of numbers that [`Link::numbers`] returns.
-pub const NUMBERS: usize = 10;
 
 impl Link {
     /// Creates from a registration.
@@ -76,31 +42,30 @@ impl Link {
             chi2: chi2.is_finite().then_some(chi2),
             gate_chi2: found.gate.gate_chi2,
             reason: found.reason().unwrap_or_default(),
-            verdict: if is_in_graph {
-                Verdict::Accepted
+            decision: if is_in_graph {
+                LoopDecision::Closed
             } else {
-                Verdict::Rejected
+                LoopDecision::Rejected
             },
         }
     }
 
-    /// Newer and older keyframe, score, RMSE (m), inliers, margin, χ², gate, verdict, and whether it
-    /// was registered; NaN for unknown numbers.
+    /// What the widget shows of it.
     #[must_use]
-    pub fn numbers(&self) -> [f64; NUMBERS] {
+    pub fn report(&self) -> LoopReport {
         let found = self.found.as_ref();
         let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
-        [
-            self.new as f64,
-            self.old as f64,
-            or_nan(found.and_then(|found| found.score)),
-            or_nan(found.map(|found| found.rmse_m)),
-            or_nan(found.map(|found| found.inliers as f64)),
-            or_nan(found.and_then(|found| found.margin)),
-            or_nan(self.chi2),
-            self.gate_chi2,
-            f64::from(self.verdict as u8),
-            f64::from(u8::from(found.is_some())),
-        ]
+        LoopReport {
+            new: self.new,
+            old: self.old,
+            share: or_nan(found.and_then(|found| found.score)),
+            rmse_m: or_nan(found.map(|found| found.rmse_m)),
+            points: or_nan(found.map(|found| found.inliers as f64)),
+            margin: or_nan(found.and_then(|found| found.margin)),
+            chi2: or_nan(self.chi2),
+            gate_chi2: self.gate_chi2,
+            decision: self.decision,
+            reason: self.reason.clone(),
+        }
     }
 }

@@ -1,11 +1,10 @@
 //! “Where am I?”: localizes another log on the current map, scan by scan.
 //!
-//! The update `where` contains seven numbers on the whole log ([`HEAD`]), then ten for each scan
-//! ([`PLACE`]); its text is the log's name, followed by messages, one sentence per line.
 //! Poses are stored relative to their nearest keyframes, and so move with them when the user edits the map.
 
 use ch16_slam2d::localize::{LocalizeReport, StartPose, Verdict};
 use ch16_slam2d::metrics::position_error_m;
+use log_messages::{LocalizationState, LocalizedScan, OtherLog};
 use pr_geom::SE2;
 use robot_io::localize::LocalizeRun;
 use robot_io::log::{LogNotes, LogReader};
@@ -15,17 +14,10 @@ use robot_io::session::Session;
 use robot_io::trajectory::{StampedPose, Trajectory};
 
 use crate::given::{Choices, Given, compared};
-use crate::update::Update;
 
-/// Share done, whether it is over, and the number of scans by verdict: found, tracking, doubtful, lost; then
-/// the first localized scan, counted from 0, or NaN.
-pub const HEAD: usize = 7;
-/// Scan number, stamp (s), x, y (m), θ (rad), verdict, score, then the half axes of the
-/// 1σ ellipse, long and short (m), and the heading of the long one (rad); NaN if unknown.
-pub const PLACE: usize = 10;
-/// Most scans in an update: of a longer log every n-th scan is sent.
+/// Most scans in a report: of a longer log every n-th scan is sent.
 const MAX_SENT: usize = 20_000;
-/// An update is sent once the number of scans has grown by this factor.
+/// A report is sent once the number of scans has grown by this factor.
 const RESEND_GROWTH: f64 = 1.02;
 
 /// A pose relative to a keyframe of the map.
@@ -138,8 +130,8 @@ impl<'a> Localization<'a> {
         Trajectory::new(poses.collect())
     }
 
-    /// The update, if there is anything new.
-    pub fn update(&mut self, map: &[SE2]) -> Option<Update> {
+    /// The report, if there is anything new.
+    pub fn report(&mut self, map: &[SE2]) -> Option<OtherLog> {
         if !core::mem::take(&mut self.is_new) {
             return None;
         }
@@ -147,34 +139,34 @@ impl<'a> Localization<'a> {
         self.sent = reports.len();
         let count = |verdict| {
             let of_it = reports.iter().filter(|report| report.verdict == verdict);
-            of_it.count() as f64
+            of_it.count()
         };
-        let first = reports
-            .iter()
-            .position(|report| report.verdict.is_localized());
-        let mut numbers = vec![
-            self.share(),
-            f64::from(u8::from(self.is_over)),
-            count(Verdict::Found),
-            count(Verdict::Tracking),
-            count(Verdict::Doubtful),
-            count(Verdict::Lost),
-            first.map_or(f64::NAN, |first| first as f64),
-        ];
+        let mut remarks: Vec<String> = self.problem.iter().cloned().collect();
+        if self.is_over && !reports.is_empty() {
+            remarks.extend(self.remarks(self.reader.notes()));
+        }
         let stride = reports.len().div_ceil(MAX_SENT).max(1);
         let posed = reports.iter().zip(&self.poses).enumerate();
-        for (number, (report, anchored)) in posed.step_by(stride) {
+        let places = posed.step_by(stride).map(|(number, (report, anchored))| {
             let pose = anchored.and_then(|anchored| world_pose(map, anchored));
-            numbers.extend(pose_numbers(number, report, pose));
-        }
-        let mut lines = vec![self.name.clone()];
-        lines.extend(self.problem.clone());
-        if self.is_over && !reports.is_empty() {
-            lines.extend(self.remarks(self.reader.notes()));
-        }
-        Some(Update {
-            text: lines.join("\n"),
-            ..Update::numbers("where", numbers)
+            localized_scan(number, report, pose)
+        });
+        Some(OtherLog {
+            name: self.name.clone(),
+            share: self.share(),
+            is_over: self.is_over,
+            counts: [
+                Verdict::Found,
+                Verdict::Tracking,
+                Verdict::Doubtful,
+                Verdict::Lost,
+            ]
+            .map(count),
+            first: reports
+                .iter()
+                .position(|report| report.verdict.is_localized()),
+            remarks,
+            places: places.collect(),
         })
     }
 
@@ -208,34 +200,29 @@ fn world_pose(map: &[SE2], anchored: AnchoredPose) -> Option<SE2> {
     Some(*map.get(anchored.keyframe)? * anchored.keyframe_from_body)
 }
 
-fn pose_numbers(number: usize, report: &LocalizeReport, pose: Option<SE2>) -> [f64; PLACE] {
-    let [x, y, theta] = pose.map_or([f64::NAN; 3], |pose| pose.to_array());
+fn localized_scan(scan: usize, report: &LocalizeReport, pose: Option<SE2>) -> LocalizedScan {
+    let pose = pose.map_or([f64::NAN; 3], |pose| pose.to_array());
     let ellipse = report.covariance.map(|known| {
         let known = KeyframeQuality {
             stamp_s: report.stamp_s,
-            pose: [x, y, theta],
+            pose,
             covariance: core::array::from_fn(|i| core::array::from_fn(|j| known[(i, j)])),
         };
         known.ellipse()
     });
-    let (long, short, heading) = ellipse.unwrap_or((f64::NAN, f64::NAN, f64::NAN));
-    let verdict = match report.verdict {
-        Verdict::Found => 0.0,
-        Verdict::Tracking => 1.0,
-        Verdict::Doubtful => 2.0,
-        Verdict::Lost => 3.0,
-    };
-    let fit = report.score.unwrap_or(f64::NAN);
-    [
-        number as f64,
-        report.stamp_s,
-        x,
-        y,
-        theta,
-        verdict,
-        fit,
-        long,
-        short,
-        heading,
-    ]
+    LocalizedScan {
+        scan,
+        stamp_s: report.stamp_s,
+        pose,
+        state: match report.verdict {
+            Verdict::Found => LocalizationState::Found,
+            Verdict::Tracking => LocalizationState::Tracking,
+            Verdict::Doubtful => LocalizationState::Doubtful,
+            Verdict::Lost => LocalizationState::Lost,
+        },
+        fit: report.score.unwrap_or(f64::NAN),
+        ellipse: ellipse.map_or([f64::NAN; 3], |(long, short, heading)| {
+            [long, short, heading]
+        }),
+    }
 }

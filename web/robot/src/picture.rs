@@ -1,10 +1,9 @@
 //! The map as a picture, painted a few scans at a time, and repainted after the graph has moved.
 
+use log_messages::MapReport;
 use pr_geom::{SE2, math};
 use robot_io::log::LogFrame;
 use robot_io::map_image::{MapBuilder, MapError};
-
-use crate::update::Update;
 
 /// Size of the finest cells, m.
 const FINEST_M: f64 = 0.05;
@@ -24,7 +23,7 @@ pub struct MapPicture {
     map: MapBuilder,
     /// Poses of the scans when they were painted.
     painted: Vec<SE2>,
-    /// Whether it changed since the last [`MapPicture::update`].
+    /// Whether it changed since the last [`MapPicture::report`].
     is_new: bool,
 }
 
@@ -76,7 +75,7 @@ impl MapPicture {
     }
 
     /// The picture, if it is complete and changed.
-    pub fn update(&mut self, scans: usize) -> Option<Update> {
+    pub fn report(&mut self, scans: usize) -> Option<MapReport> {
         if !self.is_new || self.painted.len() < scans {
             return None;
         }
@@ -91,18 +90,11 @@ impl MapPicture {
         self.is_new = false;
         let log_odds = map.log_odds();
         let rows = log_odds.chunks(map.width).rev();
-        Some(Update {
-            bytes: rows.flatten().map(|&log_odds| shade(log_odds)).collect(),
-            ..Update::numbers(
-                "map",
-                vec![
-                    map.width as f64,
-                    map.height as f64,
-                    map.origin_m[0],
-                    map.origin_m[1],
-                    map.cell_m,
-                ],
-            )
+        Some(MapReport {
+            columns: map.width,
+            min: [map.origin_m[0], map.origin_m[1]],
+            cell_m: map.cell_m,
+            cells: rows.flatten().map(|&log_odds| shade(log_odds)).collect(),
         })
     }
 }

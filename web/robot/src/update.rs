@@ -1,72 +1,72 @@
-//! Updates for the widget: a kind, a text, numbers and bytes.
-//!
-//! | kind | numbers | text, bytes |
-//! |---|---|---|
-//! | `file` | size in bytes, whether there are scans | its name |
-//! | `stage` | [`Stage`] as a number, share done, scans, loops tested, loops accepted | the error |
-//! | `keyframes` | stamp (s), x, y (m), θ (rad), fit, σ (m) of each | |
-//! | `map` | columns, rows, least x, least y, cell (m) | a byte a cell from the least y: 0 unknown, 1 free … 255 occupied |
-//! | `loops` | ten for each, see [`links`](crate::links) | one line each: why it was rejected |
-//! | `evidence` | count of the loops to look into, then of each of the first few: index in `loops`, newer and older keyframe, χ², gate, points around the older and around the newer keyframe, x and y of each in the frame of the older, m | |
-//! | `doubts` | keyframes to check | one sentence per line |
-//! | `diagnosis` | | the doctor's report as `slam2d doctor --json` prints it |
-//! | `remarks` | | messages on the log, one sentence per line |
-//! | `scan` | keyframe, then x and y of every point in the body's frame, m | |
-//! | `sweep` | the same as it was measured, with the motion during the sweep in it | |
-//! | `grade` | see [`grade`](crate::grade) | as text |
-//! | `errors` | error of each keyframe, m; NaN if unknown | |
-//! | `offers` | | one option per line: name, current choice, possible choices, separated by tabs |
-//! | `where` | see [`localization`](crate::localization) | the other log's name, then one sentence per line |
-//! | `answer` | | result of the last order |
+//! Updates of the engine: reports for the widget, and what the page itself shows or keeps.
 
-/// Stage of the engine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
-    /// The file is read, scan by scan.
-    Reading = 1,
-    /// No scan follows: the last loops are tested.
-    Finishing = 2,
-    /// A graph file is optimized.
-    Solving = 3,
-    /// The covariances are computed.
-    Checking = 4,
-    /// The map is complete.
-    Done = 5,
-    /// The file cannot be used.
-    Failed = 6,
-}
+use log_messages::{MapperOrder, MapperReport};
+use robot_io::doctor::Diagnosis;
+use serde::Serialize;
 
 /// One update.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Update {
-    /// The part that changed.
-    pub kind: &'static str,
-    /// Text.
-    pub text: String,
-    /// Numbers.
-    pub numbers: Vec<f64>,
-    /// Cells.
-    pub bytes: Vec<u8>,
+#[derive(Clone, Debug)]
+pub enum Update {
+    /// For the widget.
+    Report(MapperReport),
+    /// For the page: the doctor's report.
+    Diagnosis(Box<Diagnosis>),
+    /// For the page: the loops to look into.
+    Evidence(Evidence),
+    /// For the page: the reader's changes so far, with which a new worker repeats them.
+    Edits(Vec<MapperOrder>),
 }
 
 impl Update {
-    /// An update with numbers only.
+    /// The name of its kind: an update replaces an earlier one of the same kind.
     #[must_use]
-    pub fn numbers(kind: &'static str, numbers: Vec<f64>) -> Self {
-        Self {
-            kind,
-            text: String::new(),
-            numbers,
-            bytes: Vec::new(),
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Report(report) => report.kind(),
+            Self::Diagnosis(_) => "diagnosis",
+            Self::Evidence(_) => "evidence",
+            Self::Edits(_) => "edits",
         }
     }
 
-    /// An update with text only.
+    /// What the page reads of it as JSON; empty for a report.
     #[must_use]
-    pub fn text(kind: &'static str, text: impl Into<String>) -> Self {
-        Self {
-            text: text.into(),
-            ..Self::numbers(kind, Vec::new())
+    pub fn json(&self) -> String {
+        match self {
+            Self::Report(_) => Ok(String::new()),
+            Self::Diagnosis(diagnosis) => serde_json::to_string(diagnosis),
+            Self::Evidence(evidence) => serde_json::to_string(evidence),
+            Self::Edits(edits) => serde_json::to_string(edits),
         }
+        .expect("plain numbers, strings and lists")
     }
+}
+
+/// The loops in the graph that the rest contradicts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Evidence {
+    /// Their number.
+    pub count: usize,
+    /// The first few.
+    pub loops: Vec<LoopEvidence>,
+}
+
+/// A loop to look into.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LoopEvidence {
+    /// Its index in the list.
+    pub index: usize,
+    /// The newer and the older keyframe.
+    pub ends: [usize; 2],
+    /// χ² against the rest of the graph.
+    pub chi2: f64,
+    /// The gate.
+    pub gate_chi2: f64,
+    /// The points around the older and around the newer keyframe in the frame of the older, as the loop lays them on
+    /// each other, m.
+    pub scans: [Vec<[f64; 2]>; 2],
+    /// The request that keeps it.
+    pub accept: String,
+    /// The request that removes it.
+    pub reject: String,
 }

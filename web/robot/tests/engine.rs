@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use log_messages::{KeyframeReport, LoopDecision, LoopReport, MapperOrder, MapperReport, Stage};
 use robot_io::log::LogOptions;
 use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
@@ -9,7 +10,24 @@ use robot_io::run::LogRun;
 use slam_robot::engine::Engine;
 use slam_robot::given::{Choices, Given};
 use slam_robot::sample;
-use slam_robot::update::{Stage, Update};
+use slam_robot::update::{LoopEvidence, Update};
+
+/// The first report of a kind, as it arrives.
+macro_rules! of {
+    ($updates:expr, $kind:ident) => {{
+        let sent = $updates.iter().find_map(|update| match update {
+            slam_robot::update::Update::Report(report @ log_messages::MapperReport::$kind(_)) => {
+                log_messages::MapperReport::from_bytes(&report.to_bytes())
+            }
+            _ => None,
+        });
+        match sent {
+            Some(log_messages::MapperReport::$kind(content)) => content,
+            _ => panic!("no report {}", stringify!($kind)),
+        }
+    }};
+}
+pub(crate) use of;
 
 pub fn files() -> &'static (Vec<u8>, Vec<u8>) {
     static FILES: OnceLock<(Vec<u8>, Vec<u8>)> = OnceLock::new();
@@ -30,21 +48,19 @@ pub fn finished(bytes: &[u8]) -> Engine<'_> {
     engine
 }
 
-/// Removes the first loop of the list; returns the updates.
-pub fn refuse_first(engine: &mut Engine<'_>) -> Vec<Update> {
-    engine.order("turn 0");
+/// Executes an order, and everything that follows of it.
+pub fn ordered(engine: &mut Engine<'_>, order: MapperOrder) -> Vec<Update> {
+    engine.order(order);
     while engine.step() {}
-    let updates = engine.updates();
-    let text = &of(&updates, "answer").text;
-    assert!(text.contains("was removed from the graph"), "{text}");
-    updates
+    engine.updates()
 }
 
-pub fn of<'u>(updates: &'u [Update], kind: &str) -> &'u Update {
+/// Removes the first loop of the list; returns the updates.
+pub fn reject_first(engine: &mut Engine<'_>) -> Vec<Update> {
+    let updates = ordered(engine, MapperOrder::Turn(0));
+    let text = of!(updates, Answer);
+    assert!(text.contains("was removed from the graph"), "{text}");
     updates
-        .iter()
-        .find(|update| update.kind == kind)
-        .unwrap_or_else(|| panic!("no update of {kind}"))
 }
 
 #[test]
@@ -54,41 +70,37 @@ fn the_sample_becomes_a_map_with_loops_and_its_grade() {
     assert_eq!(engine.stage(), Stage::Done);
     engine.take_reference(truth, "ring-truth.tum").unwrap();
     let updates = engine.updates();
-    let stage = &of(&updates, "stage").numbers;
-    assert_eq!((stage[0], stage[1]), (5.0, 1.0));
-    assert!(stage[2] > 100.0, "scans: {}", stage[2]);
-    let keyframes = of(&updates, "keyframes").numbers.len() / 6;
-    let map = of(&updates, "map");
-    assert_eq!(map.numbers[0] * map.numbers[1], map.bytes.len() as f64);
-    assert!(map.bytes.contains(&0) && map.bytes.iter().any(|&cell| cell > 240));
-    let loops = &of(&updates, "loops").numbers;
-    assert!(loops.chunks(10).any(|found| found[8] == 0.0), "none closed");
-    let grade = of(&updates, "grade");
+    let progress = of!(updates, Progress);
+    assert_eq!((progress.stage, progress.share), (Stage::Done, 1.0));
+    assert!(progress.scans > 100, "scans: {}", progress.scans);
+    let keyframes = of!(updates, Keyframes).len();
+    let map = of!(updates, Map);
+    assert_eq!(map.cells.len() % map.columns, 0);
+    assert!(map.cells.contains(&0) && map.cells.iter().any(|&cell| cell > 240));
+    let loops = of!(updates, Loops);
+    let is_closed = |link: &LoopReport| link.decision == LoopDecision::Closed;
+    assert!(loops.iter().any(is_closed), "none closed");
+    let grade = of!(updates, Grade);
     // The sensor has a resolution of a centimetre and the ring is 40 m long: a larger error would mean divergence.
-    assert!(grade.numbers[2] < 0.1, "{}", grade.text);
-    assert_eq!(of(&updates, "errors").numbers.len(), keyframes);
+    assert!(grade.error_m < 0.1, "{}", grade.words);
+    assert_eq!(grade.errors_m.len(), keyframes);
 }
 
-/// Loops of an update: newer and older keyframe, χ² and its gate, and the verdict.
-fn sent_loops(updates: &[Update]) -> Vec<([usize; 2], f64, f64, f64)> {
-    let loops = of(updates, "loops").numbers.chunks(10);
-    loops
-        .map(|sent| {
-            let ends = [sent[0] as usize, sent[1] as usize];
-            (ends, sent[6], sent[7], sent[8])
-        })
-        .collect()
+/// The ends of loops, in their order.
+fn ends(loops: &[LoopReport]) -> Vec<[usize; 2]> {
+    loops.iter().map(|link| [link.new, link.old]).collect()
 }
 
 #[test]
 fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
     let (log, _) = files();
     let mut engine = finished(log);
-    let sent = sent_loops(&engine.updates());
-    let closed: Vec<_> = sent.iter().filter(|sent| sent.3 == 0.0).collect();
+    let sent = of!(engine.updates(), Loops);
+    let is_closed = |link: &&LoopReport| link.decision == LoopDecision::Closed;
+    let closed: Vec<_> = sent.iter().filter(is_closed).collect();
     assert!(closed.len() > 5);
     assert!(
-        closed.windows(2).all(|two| two[0].1 >= two[1].1),
+        closed.windows(2).all(|two| two[0].chi2 >= two[1].chi2),
         "{sent:?}"
     );
 
@@ -102,81 +114,117 @@ fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
     let quality = run.quality();
     assert_eq!(quality.links.len(), closed.len());
     for link in &quality.links {
-        let found = closed.iter().find(|sent| sent.0 == [link.from, link.to]);
-        assert_eq!(found.map(|sent| Some(sent.1)), Some(link.chi2), "{link:?}");
+        let found = closed
+            .iter()
+            .find(|sent| (sent.new, sent.old) == (link.from, link.to));
+        assert_eq!(
+            found.map(|sent| Some(sent.chi2)),
+            Some(link.chi2),
+            "{link:?}"
+        );
     }
     // A loop keeps its number while it is removed, even if it is no longer the most doubtful.
-    let after = sent_loops(&refuse_first(&mut engine));
-    let ends =
-        |sent: &[([usize; 2], f64, f64, f64)]| sent.iter().map(|sent| sent.0).collect::<Vec<_>>();
+    let after = of!(reject_first(&mut engine), Loops);
     assert_eq!(ends(&after), ends(&sent));
 }
 
-/// A loop to look into: its index, the newer and older keyframe, and the points of both scans.
-type Evidence = (usize, [usize; 2], [Vec<[f64; 2]>; 2]);
-
-/// Their count, and the first few.
-fn evidence(updates: &[Update]) -> (f64, Vec<Evidence>) {
-    let (&count, mut rest) = of(updates, "evidence").numbers.split_first().unwrap();
-    let mut found = Vec::new();
-    while let [index, new, old, chi2, gate, older, newer, more @ ..] = rest {
-        assert!(chi2 > gate, "{chi2} of {gate}");
-        let (first, more) = more.split_at(2 * *older as usize);
-        let (second, more) = more.split_at(2 * *newer as usize);
-        let points = |of: &[f64]| of.chunks(2).map(|point| [point[0], point[1]]).collect();
-        let ends = [new, old].map(|k| *k as usize);
-        found.push((*index as usize, ends, [points(first), points(second)]));
-        rest = more;
-    }
-    (count, found)
+/// The number of loops to look into, and the first few.
+fn evidence(updates: &[Update]) -> (usize, Vec<LoopEvidence>) {
+    let mut found = updates.iter().filter_map(|update| match update {
+        Update::Evidence(evidence) => Some((evidence.count, evidence.loops.clone())),
+        _ => None,
+    });
+    found.next().expect("evidence")
 }
 
 #[test]
-fn a_contradicting_loop_shows_both_scans_and_is_accepted_or_refused_once() {
+fn a_contradicting_loop_shows_both_scans_and_is_accepted_or_rejected_once() {
     let (log, _) = files();
     let mut engine = finished(log);
-    let mut ordered = |order: &str| {
-        engine.order(order);
-        while engine.step() {}
-        engine.updates()
-    };
-    let first = ordered("look 0");
-    assert_eq!(of(&first, "evidence").numbers, [0.0], "the sample is clean");
+    let first = ordered(&mut engine, MapperOrder::Look(0));
+    assert_eq!(evidence(&first).0, 0, "the sample is clean");
     // A keyframe held beside its place contradicts the loops that end there.
-    let ends = sent_loops(&first)[0].0;
-    let at = &of(&first, "keyframes").numbers[6 * ends[0]..];
-    let added = ordered(&format!(
-        "pin {} {} {} {}",
-        ends[0],
-        at[1] + 0.5,
-        at[2],
-        at[3]
-    ));
+    let held = of!(first, Loops)[0].new;
+    let [x, y, theta] = of!(first, Keyframes)[held].pose;
+    let added = ordered(&mut engine, MapperOrder::Pin(held, [x + 0.5, y, theta]));
     let (count, shown) = evidence(&added);
-    assert!(count >= 1.0 && shown.len() <= 6);
-    let (wrong, of_it, scans) = &shown[0];
-    assert_eq!(*of_it, sent_loops(&added)[*wrong].0);
-    assert!(scans.iter().all(|scan| scan.len() > 50));
-    let doubts = |updates: &[Update]| of(updates, "doubts").numbers.len();
+    assert!(count >= 1 && shown.len() <= 6);
+    assert!(shown.iter().all(|wrong| wrong.chi2 > wrong.gate_chi2));
+    let wrong = &shown[0];
+    assert_eq!(wrong.ends, ends(&of!(added, Loops))[wrong.index]);
+    assert!(wrong.scans.iter().all(|scan| scan.len() > 50));
+    let doubts = |updates: &[Update]| {
+        let doubts = updates.iter().find_map(|update| match update {
+            Update::Report(MapperReport::Doubts { keyframes, .. }) => Some(keyframes.len()),
+            _ => None,
+        });
+        doubts.expect("doubts")
+    };
 
-    let accepted = ordered(&format!("accept {wrong}"));
-    assert_eq!(evidence(&accepted).0, count - 1.0);
-    assert_eq!(sent_loops(&accepted)[*wrong].3, 4.0);
+    let order = |request: &str| MapperOrder::from_request(request).unwrap();
+    let accepted = ordered(&mut engine, order(&wrong.accept));
+    assert_eq!(evidence(&accepted).0, count - 1);
+    let decision = |updates: &[Update]| of!(updates, Loops)[wrong.index].decision;
+    assert_eq!(decision(&accepted), LoopDecision::Confirmed);
     assert!(doubts(&accepted) < doubts(&added));
 
-    let refused = ordered(&format!("refuse {wrong}"));
-    assert_eq!(sent_loops(&refused)[*wrong].3, 2.0);
-    assert!(of(&refused, "answer").text.contains("was removed"));
-    let again = ordered(&format!("refuse {wrong}"));
+    let rejected = ordered(&mut engine, order(&wrong.reject));
+    assert_eq!(decision(&rejected), LoopDecision::Removed);
+    assert!(of!(rejected, Answer).contains("was removed"));
+    let again = ordered(&mut engine, order(&wrong.reject));
     assert_eq!(
-        of(&again, "answer").text,
-        format!("there is no loop {wrong} in the graph")
+        of!(again, Answer),
+        format!("there is no loop {} in the graph", wrong.index)
     );
-    assert!(again.iter().all(|update| update.kind != "loops"));
+    assert!(again.iter().all(|update| update.kind() != "loops"));
 }
 
 #[test]
-fn a_loop_that_is_refused_leaves_the_graph_and_comes_back() {
+fn changes_of_an_earlier_worker_are_made_again_before_the_map_counts_as_complete() {
+    let (log, _) = files();
+    let mut engine = finished(log);
+    let turned = ordered(&mut engine, MapperOrder::Turn(0));
+    let [x, y, theta] = of!(turned, Keyframes)[20].pose;
+    for shift_m in [0.1, 0.2] {
+        engine.order(MapperOrder::Pin(20, [x + shift_m, y, theta]));
+    }
+    // Nothing changes there.
+    engine.order(MapperOrder::Turn(usize::MAX));
+    while engine.step() {}
+    let updates = engine.updates();
+    let edits = updates.iter().rev().find_map(|update| match update {
+        Update::Edits(edits) => Some(edits.clone()),
+        _ => None,
+    });
+    let edits = edits.unwrap();
+    assert_eq!(
+        edits,
+        [
+            MapperOrder::Turn(0),
+            MapperOrder::Pin(20, [x + 0.2, y, theta])
+        ],
+        "of a drag the last pose"
+    );
+
+    let mut again = open(log, "ring.log").unwrap();
+    again.repeat(edits);
+    while !again.is_mapped() {
+        assert!(again.step());
+    }
+    while again.step() {}
+    let edges = |engine: &mut Engine<'_>| {
+        let graph = String::from_utf8(engine.file("graph.g2o").unwrap()).unwrap();
+        graph.matches("EDGE_SE2").count()
+    };
+    assert_eq!(edges(&mut again), edges(&mut engine));
+    assert_eq!(
+        of!(again.updates(), Keyframes)[20].pose,
+        [x + 0.2, y, theta]
+    );
+}
+
+#[test]
+fn a_loop_that_is_rejected_leaves_the_graph_and_comes_back() {
     let (log, _) = files();
     let mut engine = finished(log);
     let before = engine.updates();
@@ -186,22 +234,25 @@ fn a_loop_that_is_refused_leaves_the_graph_and_comes_back() {
     };
     let all = edges(&mut engine);
     assert_eq!(
-        of(&before, "loops").numbers[8],
-        0.0,
+        of!(before, Loops)[0].decision,
+        LoopDecision::Closed,
         "closed ones come first"
     );
-    let after = refuse_first(&mut engine);
-    assert_eq!(of(&after, "loops").numbers[8], 2.0);
+    let after = reject_first(&mut engine);
+    assert_eq!(of!(after, Loops)[0].decision, LoopDecision::Removed);
     assert_eq!(edges(&mut engine), all - 1);
-    engine.order("turn 0");
+    engine.order(MapperOrder::Turn(0));
     while engine.step() {}
     assert_eq!(edges(&mut engine), all);
     let back = engine.updates();
-    let [old, new] = [&before, &back].map(|updates| &of(updates, "keyframes").numbers);
+    let [old, new] = [before, back].map(|updates| of!(updates, Keyframes));
     // 1e-3 m: the solver stops at small steps, from another start.
-    let off = |k: &usize| (old[*k] - new[*k]).abs() > 1e-3;
-    let places = (0..old.len()).filter(|k| [1, 2].contains(&(k % 6)));
-    assert_eq!(places.filter(off).count(), 0);
+    let off = |(old, new): &(&KeyframeReport, &KeyframeReport)| {
+        [0, 1]
+            .iter()
+            .any(|&axis| (old.pose[axis] - new.pose[axis]).abs() > 1e-3)
+    };
+    assert_eq!(old.iter().zip(&new).filter(off).count(), 0);
 }
 
 #[test]
@@ -209,14 +260,13 @@ fn a_keyframe_that_is_dragged_stays_there_until_it_is_let_go() {
     let (log, _) = files();
     let mut engine = finished(log);
     let before = engine.updates();
-    let keyframes = &of(&before, "keyframes").numbers;
-    let [x, y, theta] = [1, 2, 3].map(|at| keyframes[6 * 20 + at]);
-    engine.order(&format!("pin 20 {} {y} {theta}", x + 0.5));
-    let during = engine.updates();
-    let moved = &of(&during, "keyframes").numbers;
-    assert_eq!(moved[6 * 20 + 1], x + 0.5);
+    let keyframes = of!(before, Keyframes);
+    let [x, y, theta] = keyframes[20].pose;
+    engine.order(MapperOrder::Pin(20, [x + 0.5, y, theta]));
+    let moved = of!(engine.updates(), Keyframes);
+    assert_eq!(moved[20].pose[0], x + 0.5);
     assert!(
-        moved[6 * 19 + 1] > keyframes[6 * 19 + 1] + 0.1,
+        moved[19].pose[0] > keyframes[19].pose[0] + 0.1,
         "its neighbours follow"
     );
     let checked = |engine: &mut Engine| {
@@ -224,18 +274,22 @@ fn a_keyframe_that_is_dragged_stays_there_until_it_is_let_go() {
         engine.updates()
     };
     let are_doubted = |updates: &[Update]| {
-        let doubts = &of(updates, "doubts").text;
-        doubts.contains("the path from keyframe")
+        updates.iter().any(|update| match update {
+            Update::Report(MapperReport::Doubts { sentences, .. }) => sentences
+                .iter()
+                .any(|doubt| doubt.contains("the path from keyframe")),
+            _ => false,
+        })
     };
     assert!(
         are_doubted(&checked(&mut engine)),
         "what was measured speaks against it"
     );
-    engine.order("unpin");
+    engine.order(MapperOrder::Unpin);
     let back = checked(&mut engine);
     assert!(!are_doubted(&back));
     // 0.01 m: the same minimum, within the solver's last step.
-    assert!((of(&back, "keyframes").numbers[6 * 20 + 1] - x).abs() < 0.01);
+    assert!((of!(back, Keyframes)[20].pose[0] - x).abs() < 0.01);
 }
 
 #[test]
@@ -243,18 +297,17 @@ fn a_loop_is_added_if_two_scans_fit_and_otherwise_rejected_with_a_reason() {
     let (log, _) = files();
     let mut engine = finished(log);
     let updates = engine.updates();
-    let keyframes = of(&updates, "keyframes").numbers.len() / 6;
-    let loops = &of(&updates, "loops").numbers;
-    let (new, old) = (loops[0], loops[1]);
-    engine.order(&format!("add {new} {old}"));
-    let text = of(&engine.updates(), "answer").text.clone();
+    let keyframes = of!(updates, Keyframes).len();
+    let first = &of!(updates, Loops)[0];
+    engine.order(MapperOrder::Add(first.new, first.old));
+    let text = of!(engine.updates(), Answer);
     assert!(text.contains("closes a loop with"), "{text}");
     // Opposite sides of the ring see different corridors.
-    engine.order(&format!("add 0 {}", keyframes / 4));
-    let text = of(&engine.updates(), "answer").text.clone();
+    engine.order(MapperOrder::Add(0, keyframes / 4));
+    let text = of!(engine.updates(), Answer);
     assert!(text.contains("does not close a loop"), "{text}");
-    engine.order("add 3 3");
-    let text = of(&engine.updates(), "answer").text.clone();
+    engine.order(MapperOrder::Add(3, 3));
+    let text = of!(engine.updates(), Answer);
     assert!(text.contains("two keyframes"), "{text}");
 }
 
@@ -263,33 +316,34 @@ fn a_reading_that_is_stopped_keeps_what_was_read() {
     let (log, truth) = files();
     let mut engine = open(log, "ring.log").unwrap();
     // The doctor's pass is complete before the first scan is mapped.
-    let scans = |engine: &mut Engine<'_>| of(&engine.updates(), "stage").numbers[2];
-    while scans(&mut engine) < 60.0 {
+    let scans = |engine: &mut Engine<'_>| of!(engine.updates(), Progress).scans;
+    while scans(&mut engine) < 60 {
         engine.step();
     }
-    engine.order("turn 0");
-    engine.order("cancel");
+    engine.order(MapperOrder::Turn(0));
+    engine.cancel();
     while engine.step() {}
 
     let mut unread = open(log, "ring.log").unwrap();
-    unread.order("cancel");
+    unread.cancel();
     unread.take_reference(truth, "ring-truth.tum").unwrap();
     let updates = unread.updates();
     assert_eq!(
-        of(&updates, "stage").text,
+        of!(updates, Progress).problem,
         "ring.log was stopped before its first scan"
     );
-    assert!(updates.iter().all(|update| update.kind != "answer"));
+    assert!(updates.iter().all(|update| update.kind() != "answer"));
 
     let updates = engine.updates();
     assert_eq!(engine.stage(), Stage::Done);
-    assert_eq!(of(&updates, "stage").numbers[2], 60.0);
-    let text: Vec<_> = updates
-        .iter()
-        .filter(|update| update.kind == "answer")
-        .collect();
-    assert!(text[0].text.contains("once the whole log is read"));
-    assert_eq!(text[1].text, "Stopped after 60 scans.");
+    assert_eq!(of!(updates, Progress).scans, 60);
+    let answers = updates.iter().filter_map(|update| match update {
+        Update::Report(MapperReport::Answer(answer)) => Some(answer.as_str()),
+        _ => None,
+    });
+    let answers: Vec<&str> = answers.collect();
+    assert!(answers[0].contains("once the whole log is read"));
+    assert_eq!(answers[1], "Stopped after 60 scans.");
     assert!(engine.file("map.pgm").unwrap().starts_with(b"P5"));
 }
 
@@ -346,7 +400,7 @@ fn a_file_that_goes_while_it_is_read_leaves_a_map_of_a_part_and_says_so() {
     let mut engine = Engine::open(given, &Choices::default()).unwrap();
     while engine.step() {}
     assert_eq!(engine.stage(), Stage::Done);
-    let text = of(&engine.updates(), "answer").text.clone();
+    let text = of!(engine.updates(), Answer);
     assert!(text.contains("it is gone"), "{text}");
 }
 
@@ -375,11 +429,20 @@ fn a_graph_is_solved_and_edited_without_scans() {
     while engine.step() {}
     let updates = engine.updates();
     assert_eq!(engine.stage(), Stage::Done);
-    assert_eq!(of(&updates, "file").numbers[1], 0.0);
-    assert!(!of(&updates, "loops").numbers.is_empty());
-    refuse_first(&mut engine);
-    engine.order("add 3 30");
-    assert!(of(&engine.updates(), "answer").text.contains("no scans"));
+    let has_scans = updates.iter().any(|update| {
+        matches!(
+            update,
+            Update::Report(MapperReport::File {
+                has_scans: true,
+                ..
+            })
+        )
+    });
+    assert!(!has_scans);
+    assert!(!of!(updates, Loops).is_empty());
+    reject_first(&mut engine);
+    engine.order(MapperOrder::Add(3, 30));
+    assert!(of!(engine.updates(), Answer).contains("no scans"));
     assert!(engine.file("map.png").unwrap_err().contains("no map"));
     assert!(engine.file("graph.g2o").unwrap().starts_with(b"VERTEX_SE2"));
 }
@@ -392,9 +455,9 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
     while engine.step() {}
     assert_eq!(engine.stage(), Stage::Done);
     let updates = engine.updates();
-    let text = &of(&updates, "remarks").text;
+    let text = of!(updates, Remarks).join("\n");
     assert!(text.contains("incomplete"), "{text}");
-    let text = &of(&updates, "answer").text;
+    let text = of!(updates, Answer);
     assert!(
         text.contains("incomplete"),
         "it is no map of all of it: {text}"
@@ -421,7 +484,7 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
     let mut engine = open(blind.as_bytes(), "blind.log").unwrap();
     while engine.step() {}
     assert_eq!(engine.stage(), Stage::Failed);
-    let text = of(&engine.updates(), "stage").text.clone();
+    let text = of!(engine.updates(), Progress).problem;
     assert!(text.contains("no beam of any keyframe"), "{text}");
     let expected = "photo.png is a map or a picture, not a log of scans";
     let picture = [0x89, 0x50, 0x4e, 0x47, 0, 1, 2, 3];
@@ -434,9 +497,9 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
     let mut engine = open(b"hello\nworld\n", "photo.png").unwrap();
     while engine.step() {}
     assert_eq!(engine.stage(), Stage::Failed);
-    let text = of(&engine.updates(), "stage").text.clone();
+    let text = of!(engine.updates(), Progress).problem;
     assert!(text.starts_with(expected), "{text}");
-    engine.order("turn 0");
-    assert!(of(&engine.updates(), "answer").text.contains("no graph"));
+    engine.order(MapperOrder::Turn(0));
+    assert!(of!(engine.updates(), Answer).contains("no graph"));
     assert!(engine.file("graph.g2o").is_err());
 }

@@ -4,12 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use bench_support::skip::skip;
+use log_messages::{MapperReport, Stage};
 use robot_io::log_bytes::LogBytes;
 use robot_io::motion::OdometryUse;
 use serde_json::Value;
 use slam_robot::engine::Engine;
 use slam_robot::given::{Choices, Given, GivenFile};
-use slam_robot::update::{Stage, Update};
+use slam_robot::update::Update;
 
 use crate::engine::{files, given, of, open};
 
@@ -85,18 +86,22 @@ fn updates(mut engine: Engine<'_>) -> Vec<Update> {
 }
 
 fn diagnosis(updates: &[Update]) -> Value {
-    serde_json::from_str(&of(updates, "diagnosis").text).unwrap()
+    let sent = updates.iter().find(|update| update.kind() == "diagnosis");
+    serde_json::from_str(&sent.unwrap().json()).unwrap()
 }
 
 #[test]
 fn the_doctor_s_screen_comes_before_the_first_keyframe_and_once() {
     let updates = updates(open(&files().0, "ring.log").unwrap());
-    let kinds: Vec<&str> = updates.iter().map(|update| update.kind).collect();
+    let kinds: Vec<&str> = updates.iter().map(|update| update.kind()).collect();
     let at = |kind: &str| kinds.iter().position(|other| *other == kind).unwrap();
     assert!(at("diagnosis") < at("keyframes") && at("diagnosis") < at("map"));
     assert_eq!(kinds.iter().filter(|kind| **kind == "diagnosis").count(), 1);
-    let shares = updates.iter().filter(|update| update.kind == "stage");
-    let shares: Vec<f64> = shares.map(|update| update.numbers[1]).collect();
+    let shares = updates.iter().filter_map(|update| match update {
+        Update::Report(MapperReport::Progress(progress)) => Some(progress.share),
+        _ => None,
+    });
+    let shares: Vec<f64> = shares.collect();
     assert!(shares.windows(2).all(|two| two[0] <= two[1]), "{shares:?}");
     let report = diagnosis(&updates);
     assert_eq!(
@@ -120,9 +125,9 @@ fn a_path_of_another_length_by_odometry_joins_the_doctor_s_screen_after_the_map(
     let log: Vec<u8> = lengthened.collect::<String>().into_bytes();
     let choices = Choices::read("odometry force").unwrap();
     let updates = updates(Engine::open(given(&log, "long.log"), &choices).unwrap());
-    let screens = updates.iter().filter(|update| update.kind == "diagnosis");
+    let screens = updates.iter().filter(|update| update.kind() == "diagnosis");
     let screens: Vec<bool> = screens
-        .map(|screen| screen.text.contains("m long on the map and"))
+        .map(|screen| screen.json().contains("m long on the map and"))
         .collect();
     assert_eq!(screens, [false, true]);
 }
@@ -150,11 +155,12 @@ fn scans_go_alone_if_the_reader_leaves_odometry_out() {
     let alone = updates(Engine::open(given(log, "ring.log"), &choices).unwrap());
     let with = updates(open(log, "ring.log").unwrap());
     let way = |updates: &[Update]| {
-        let last = updates
-            .iter()
-            .rev()
-            .find(|update| update.kind == "keyframes");
-        last.unwrap().numbers.clone()
+        let keyframes = updates.iter().rev().find_map(|update| match update {
+            Update::Report(MapperReport::Keyframes(keyframes)) => Some(keyframes),
+            _ => None,
+        });
+        let poses = keyframes.unwrap().iter().map(|keyframe| keyframe.pose);
+        poses.collect::<Vec<_>>()
     };
     assert_ne!(way(&alone), way(&with));
 }
@@ -205,7 +211,7 @@ fn files_that_people_have_are_mapped_or_named_as_by_the_command() {
             }
         };
         while engine.step() {}
-        let text = of(&engine.updates(), "stage").text.clone();
+        let text = of!(engine.updates(), Progress).problem;
         let is_mapped = engine.stage() == Stage::Done;
         assert_eq!(is_mapped, expected.is_empty(), "{name}: {text}");
         assert!(text.contains(expected), "{name}: {text}");
@@ -230,5 +236,5 @@ fn a_database_and_its_write_ahead_log_are_read_together() {
     let mut engine = Engine::open(Given::new(files).unwrap(), &Choices::default()).unwrap();
     while engine.step() {}
     let updates = engine.updates();
-    assert_eq!(of(&updates, "stage").numbers[2], 80.0);
+    assert_eq!(of!(updates, Progress).scans, 80);
 }

@@ -1,6 +1,7 @@
 //! Sessions saved and opened, another log on the map, and recordings with several topics.
 
 use ch16_slam2d::localize::StartPose;
+use log_messages::{LocalizationState, LoopDecision, MapperOrder, MapperReport, OtherLog, Stage};
 use pr_geom::SE2;
 use robot_io::log::LogOptions;
 use robot_io::log_format::LogFormat;
@@ -9,11 +10,10 @@ use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
 use slam_robot::engine::Engine;
 use slam_robot::given::{Choices, Given};
-use slam_robot::localization::{HEAD, PLACE};
 use slam_robot::sample;
-use slam_robot::update::{Stage, Update};
+use slam_robot::update::Update;
 
-use crate::engine::{files, finished, given, of, open, refuse_first};
+use crate::engine::{files, finished, given, of, open, ordered, reject_first};
 
 fn saved() -> Vec<u8> {
     let mut engine = finished(&files().0);
@@ -51,27 +51,33 @@ fn a_session_is_opened_with_its_map_and_loops_and_saved_as_it_was() {
     assert_eq!(engine.stage(), Stage::Done);
     assert!(engine.file("session.slam2d").unwrap() == session);
     let (before, after) = (log.updates(), engine.updates());
-    assert_eq!(of(&after, "file").numbers[1], 1.0);
-    assert_eq!(
-        of(&before, "stage").numbers[2],
-        of(&after, "stage").numbers[2]
-    );
-    let [then, now] = [&before, &after].map(|updates| &of(updates, "keyframes").numbers);
+    let has_scans = |update: &Update| {
+        matches!(
+            update,
+            Update::Report(MapperReport::File {
+                has_scans: true,
+                ..
+            })
+        )
+    };
+    assert!(after.iter().any(has_scans));
+    assert_eq!(of!(before, Progress).scans, of!(after, Progress).scans);
+    let [then, now] = [&before, &after].map(|updates| of!(updates, Keyframes));
     assert_eq!(then.len(), now.len());
-    for (then, now) in then.chunks(6).zip(now.chunks(6)) {
-        assert_eq!(then[..4], now[..4]);
+    for (then, now) in then.iter().zip(&now) {
+        assert_eq!((then.stamp_s, then.pose), (now.stamp_s, now.pose));
         // 1e-9 m: the same graph with its loops in another order.
         assert!(
-            (then[5] - now[5]).abs() < 1e-9,
+            (then.sigma_m - now.sigma_m).abs() < 1e-9,
             "σ {} and {}",
-            then[5],
-            now[5]
+            then.sigma_m,
+            now.sigma_m
         );
     }
     let closed = |updates: &[Update]| {
-        let loops = &of(updates, "loops").numbers;
-        let closed = loops.chunks(10).filter(|found| found[8] == 0.0);
-        let mut chi2: Vec<f64> = closed.map(|found| found[6]).collect();
+        let loops = of!(updates, Loops).into_iter();
+        let closed = loops.filter(|found| found.decision == LoopDecision::Closed);
+        let mut chi2: Vec<f64> = closed.map(|found| found.chi2).collect();
         chi2.sort_by(f64::total_cmp);
         chi2
     };
@@ -92,24 +98,17 @@ fn a_session_is_edited_further_and_what_was_changed_is_saved_with_it() {
     let mut engine = opened(&session);
     let all = edges(&mut engine);
     engine.updates();
-    refuse_first(&mut engine);
-    engine.order("look 3");
-    assert!(of(&engine.updates(), "scan").numbers.len() > 50);
+    reject_first(&mut engine);
+    engine.order(MapperOrder::Look(3));
+    assert!(of!(engine.updates(), Scan).points.len() > 25);
     let changed = engine.file("session.slam2d").unwrap();
     let mut again = opened(&changed);
     assert_eq!(edges(&mut again), all - 1);
-    let keyframes = again.updates();
-    let keyframes = &of(&keyframes, "keyframes").numbers;
-    again.order(&format!(
-        "pin 20 {} {} 0",
-        keyframes[121] + 0.5,
-        keyframes[122]
-    ));
-    while again.step() {}
+    let [x, y, _] = of!(again.updates(), Keyframes)[20].pose;
+    ordered(&mut again, MapperOrder::Pin(20, [x + 0.5, y, 0.0]));
     let pinned = again.file("session.slam2d").unwrap();
     let mut third = opened(&pinned);
-    let updates = third.updates();
-    assert_eq!(of(&updates, "keyframes").numbers[121], keyframes[121] + 0.5);
+    assert_eq!(of!(third.updates(), Keyframes)[20].pose[0], x + 0.5);
     // A continued run starts from the scans, not from what was pinned.
     let session = Session::from_bytes(&pinned, "pinned").unwrap();
     assert!(LogRun::resume(&session).is_ok());
@@ -147,12 +146,12 @@ fn sessions_that_are_broken_are_answered_in_one_sentence() {
     assert!(open(&session, "monday.log").is_ok());
 }
 
-fn look<'a>(engine: &mut Engine<'a>, log: &'a [u8], start: StartPose) -> Update {
+fn look<'a>(engine: &mut Engine<'a>, log: &'a [u8], start: StartPose) -> OtherLog {
     engine.updates();
     let begun = engine.locate(given(log, "tuesday.log"), &Choices::default(), start);
     begun.unwrap();
     while engine.step() {}
-    of(&engine.updates(), "where").clone()
+    of!(engine.updates(), OtherLog)
 }
 
 #[test]
@@ -166,16 +165,16 @@ fn the_robot_of_another_day_is_found_on_the_map_and_followed() {
             .unwrap_err()
             .contains("No other log")
     );
-    let update = look(&mut engine, &day, StartPose::Anywhere);
-    assert_eq!(update.text.lines().next(), Some("tuesday.log"));
-    let (head, places) = update.numbers.split_at(HEAD);
-    assert_eq!((head[0], head[1]), (1.0, 1.0));
-    let scans = places.len() / PLACE;
-    assert_eq!(head[2..6].iter().sum::<f64>(), scans as f64);
-    assert!(head[2] >= 1.0 && head[3] > 0.5 * scans as f64, "{head:?}");
+    let other = look(&mut engine, &day, StartPose::Anywhere);
+    assert_eq!(other.name, "tuesday.log");
+    assert_eq!((other.share, other.is_over), (1.0, true));
+    let scans = other.places.len();
+    assert_eq!(other.counts.iter().sum::<usize>(), scans);
+    let [found, tracking, ..] = other.counts;
+    assert!(found >= 1 && 2 * tracking > scans, "{:?}", other.counts);
     let written = engine.file("where.tum").unwrap();
     let way = Trajectory::read_tum(&written[..], "where.tum").unwrap();
-    assert_eq!(way.poses().len() as f64, head[2] + head[3]);
+    assert_eq!(way.poses().len(), other.localized());
 
     // The same as on the command line, which reads the session from the file.
     let session = Session::from_bytes(&session, "monday").unwrap();
@@ -184,11 +183,11 @@ fn the_robot_of_another_day_is_found_on_the_map_and_followed() {
     while let Some(frame) = reader.next_frame().unwrap() {
         run.step(frame);
     }
-    for (report, place) in run.reports().iter().zip(places.chunks(PLACE)) {
-        let [x, y, theta] = report.pose.map_or([f64::NAN; 3], |pose| pose.to_array());
+    for (report, place) in run.reports().iter().zip(&other.places) {
+        let pose = report.pose.map_or([f64::NAN; 3], |pose| pose.to_array());
         // 1e-9: the pose was stored relative to a keyframe.
         let is_same = |a: f64, b: f64| (a - b).abs() < 1e-9 || a.is_nan() && b.is_nan();
-        assert!(is_same(place[2], x) && is_same(place[3], y) && is_same(place[4], theta));
+        assert!([0, 1, 2].iter().all(|&i| is_same(place.pose[i], pose[i])));
     }
 }
 
@@ -197,14 +196,14 @@ fn a_start_that_is_given_is_where_the_robot_is_looked_for() {
     let day = sample::another_day();
     let session = saved();
     let mut engine = opened(&session);
-    let update = look(&mut engine, &day, StartPose::Anywhere);
-    let places: Vec<&[f64]> = update.numbers[HEAD..].chunks(PLACE).collect();
+    let other = look(&mut engine, &day, StartPose::Anywhere);
     // The best pose of the whole map at the first scan, localized or not.
-    let found = places.iter().find(|place| place[2].is_finite()).unwrap();
-    let at = SE2::new(found[2], found[3], found[4]);
+    let mut poses = other.places.iter().map(|place| place.pose);
+    let found = poses.find(|pose| pose[0].is_finite()).unwrap();
+    let at = SE2::new(found[0], found[1], found[2]);
     // A wrong initial guess by three metres does not localize the first scan; the right one does.
     let near = look(&mut engine, &day[..], StartPose::Near(at));
-    let first = |update: &Update| update.numbers[6];
+    let first = |other: &OtherLog| other.first.unwrap_or(usize::MAX);
     let far = SE2::new(at.x() + 30.0, at.y() + 30.0, at.theta());
     let away = look(&mut engine, &day[..], StartPose::Near(far));
     assert!(
@@ -213,7 +212,7 @@ fn a_start_that_is_given_is_where_the_robot_is_looked_for() {
         first(&near),
         first(&away)
     );
-    assert!(near.numbers[HEAD + 5] < 3.0);
+    assert!(near.places[0].state != LocalizationState::Lost);
 }
 
 #[test]
@@ -222,22 +221,13 @@ fn poses_move_with_the_map() {
     let session = saved();
     let mut engine = opened(&session);
     let before = look(&mut engine, &day, StartPose::Anywhere);
-    let keyframes = {
-        engine.order("turn 0");
-        while engine.step() {}
-        engine.updates()
-    };
-    engine.order("turn 0");
-    while engine.step() {}
-    let after = engine.updates();
-    assert_eq!(of(&keyframes, "where").numbers.len(), before.numbers.len());
-    let back = &of(&after, "where").numbers;
-    for (old, new) in before.numbers[HEAD..]
-        .chunks(PLACE)
-        .zip(back[HEAD..].chunks(PLACE))
-    {
+    let moved = of!(ordered(&mut engine, MapperOrder::Turn(0)), OtherLog);
+    assert_eq!(moved.places.len(), before.places.len());
+    let back = of!(ordered(&mut engine, MapperOrder::Turn(0)), OtherLog);
+    for (old, new) in before.places.iter().zip(&back.places) {
+        let (old, new) = (old.pose[0], new.pose[0]);
         // 1e-3 m: the solver stops at small steps, from another start.
-        assert!(old[2].is_nan() || (old[2] - new[2]).abs() < 1e-3);
+        assert!(old.is_nan() || (old - new).abs() < 1e-3);
     }
 }
 
@@ -261,9 +251,9 @@ fn files_that_are_not_logs_are_reported_and_change_nothing() {
     let begun = engine.locate(given(b"hello\n", "x.log"), &choices, StartPose::Anywhere);
     begun.unwrap();
     while engine.step() {}
-    let update = of(&engine.updates(), "where").clone();
-    assert!(update.text.contains("x.log"), "{}", update.text);
-    assert_eq!(update.numbers.len(), HEAD);
+    let other = of!(engine.updates(), OtherLog);
+    assert!(other.remarks[0].contains("x.log"), "{:?}", other.remarks);
+    assert!(other.places.is_empty());
     assert_eq!(engine.stage(), Stage::Done);
     let (log, _) = files();
     let graph = finished(log).file("graph.g2o").unwrap();
@@ -287,11 +277,11 @@ fn a_search_is_stopped_and_keeps_what_was_found() {
     for _ in 0..5 {
         engine.step();
     }
-    engine.order("cancel");
+    engine.cancel();
     while engine.step() {}
-    let update = of(&engine.updates(), "where").clone();
-    assert_eq!(update.numbers[1], 1.0);
-    assert_eq!((update.numbers.len() - HEAD) / PLACE, 5);
+    let other = of!(engine.updates(), OtherLog);
+    assert!(other.is_over);
+    assert_eq!(other.places.len(), 5);
 }
 
 #[test]
@@ -299,19 +289,13 @@ fn a_recording_says_what_its_options_could_choose_and_takes_them() {
     let recording = include_bytes!("../../../crates/robot_io/recordings/plain.mcap");
     let mut engine = open(recording, "plain.mcap").unwrap();
     while engine.step() {}
-    let update = of(&engine.updates(), "offers").text.clone();
-    let offer = |name: &str| {
-        let line = update.lines().find(|line| line.starts_with(name)).unwrap();
-        line.split('\t').map(str::to_owned).collect::<Vec<_>>()
-    };
-    let scans = offer("scan-topic");
-    assert!(
-        scans.len() >= 3 && scans[2..].contains(&scans[1]),
-        "{update}"
-    );
+    let offers = of!(engine.updates(), Offers);
+    let mut scans = offers.iter().filter(|offer| offer.option == "scan-topic");
+    let scans = scans.next().unwrap();
+    assert!(scans.names.contains(&scans.taken), "{offers:?}");
     let choices = Choices::read("scan-topic /nowhere").unwrap();
     let mut engine = Engine::open(given(recording, "plain.mcap"), &choices).unwrap();
     while engine.step() {}
-    let reply = of(&engine.updates(), "stage").text.clone();
+    let reply = of!(engine.updates(), Progress).problem;
     assert!(reply.contains("/nowhere is not one of"), "{reply}");
 }

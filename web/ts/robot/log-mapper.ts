@@ -19,10 +19,10 @@ const REFERENCES = ['.relations', '.tum'];
 const SCANS = '.yaml,.log,.clf,.mcap,.db3,.db3-wal,.bag,.jsonl,.csv,.txt,.dat,.gz,.zst,.zstd';
 /** Extension of a session. */
 const SESSION = '.slam2d';
-/** The stage of a finished map, in deliveries. */
-const DONE = 5;
 /** Maximum size of a reference. */
 const MAX_REFERENCE_BYTES = 1 << 28;
+const NO_NUMBERS = new Float64Array();
+const NO_BYTES = new Uint8Array();
 /** Retries of a log after a crash. */
 const MAX_RETRIES = 1;
 
@@ -38,7 +38,7 @@ const program = new ModuleFile(ROBOT_WASM_FILE);
 /** A pending request of a program for a saved file. */
 interface FileRequest {
   take(file: File): void;
-  refuse(problem: Error): void;
+  reject(problem: Error): void;
 }
 
 export interface LogMapperHost {
@@ -63,9 +63,8 @@ export class LogMapper {
   /** Whether a log was opened and not closed. */
   #isOpen = false;
   #crashes = 0;
-  /** The reader's changes of the graph; repeated after a crash. */
-  #edits: string[] = [];
-  #mustRepeatEdits = false;
+  /** The reader's changes of the graph as the worker reports them; repeated after a crash. */
+  #edits = '[]';
   /** The reader's options: topics, frames, the pose of the laser and others. */
   readonly #options = new Map<string, string>();
   /** A log to localize on the map, and its start pose. */
@@ -130,8 +129,14 @@ export class LogMapper {
       case 'save':
         this.#send({ save: words.join(' ') });
         break;
+      case 'pause':
+      case 'resume':
+        this.#send({ pause: name === 'pause' });
+        break;
+      case 'cancel':
+        this.#send({ cancel: true });
+        break;
       default:
-        if (['turn', 'accept', 'refuse', 'add', 'pin', 'unpin'].includes(name)) this.#keepEdit(order);
         this.#send({ order });
     }
   }
@@ -166,12 +171,12 @@ export class LogMapper {
 
   /** Returns a saved file by its name; rejects with a sentence if there is no data for it. */
   file(name: string): Promise<File> {
-    return new Promise((take, refuse) => {
+    return new Promise((take, reject) => {
       if (this.#worker === undefined) {
-        refuse(new Error('Open a log first.'));
+        reject(new Error('Open a log first.'));
         return;
       }
-      this.#fileRequests.set(name, [...(this.#fileRequests.get(name) ?? []), { take, refuse }]);
+      this.#fileRequests.set(name, [...(this.#fileRequests.get(name) ?? []), { take, reject }]);
       this.#send({ save: name });
     });
   }
@@ -184,7 +189,7 @@ export class LogMapper {
   /** Releases worker and memory. */
   close(): void {
     this.#generation += 1;
-    for (const { refuse } of [...this.#fileRequests.values()].flat()) refuse(new Error('The log was closed.'));
+    for (const { reject } of [...this.#fileRequests.values()].flat()) reject(new Error('The log was closed.'));
     this.#fileRequests.clear();
     this.#worker?.terminate();
     this.#worker = undefined;
@@ -193,7 +198,7 @@ export class LogMapper {
 
   /** Crashes the program on purpose, to test the recovery. */
   crashForTest(): void {
-    this.#send({ order: 'crash-for-test' });
+    this.#send({ crash: true });
   }
 
   /** Drops the present log; later orders are for the next one. */
@@ -207,7 +212,7 @@ export class LogMapper {
   /** Forgets what belongs to the present map. */
   #forgetMap(): void {
     this.#crashes = 0;
-    this.#edits = [];
+    this.#edits = '[]';
     this.#localization = undefined;
   }
 
@@ -278,7 +283,6 @@ export class LogMapper {
 
   async #start(files: File[]): Promise<void> {
     const generation = this.#generation;
-    this.#mustRepeatEdits = this.#edits.length > 0;
     this.#mustLocalize = this.#localization !== undefined;
     this.#isMapFinished = false;
     this.#latest.clear();
@@ -299,7 +303,7 @@ export class LogMapper {
         if (generation === this.#generation) this.#fail(NO_WORKER);
       });
       this.#worker = worker;
-      this.#send({ module, files, options: this.#optionLines });
+      this.#send({ module, files, options: this.#optionLines, edits: this.#edits });
       for (const order of this.#waiting.splice(0)) this.#send(order);
       if (this.#reference !== undefined) void this.#sendReference(this.#reference);
     } catch (error) {
@@ -323,7 +327,8 @@ export class LogMapper {
   #receive(report: Report): void {
     if ('deliveries' in report) {
       this.#publish(report.deliveries);
-      this.#continueOnMap(report.deliveries);
+      this.#edits = report.deliveries.findLast(({ kind }) => kind === 'edits')?.text ?? this.#edits;
+      if (report.isMapped === true) this.#continueOnMap();
     } else if ('saved' in report) {
       const bytes = report.bytes as Uint8Array<ArrayBuffer>;
       const request = this.#takeRequest(report.saved);
@@ -332,7 +337,7 @@ export class LogMapper {
     } else if ('unsaved' in report) {
       const request = this.#takeRequest(report.unsaved);
       if (request === undefined) this.#publish([textDelivery('answer', report.why)]);
-      else request.refuse(new Error(report.why));
+      else request.reject(new Error(report.why));
     } else if ('failed' in report) {
       this.#fail(report.failed);
     } else {
@@ -361,21 +366,11 @@ export class LogMapper {
     this.#publish([textDelivery('failed', sentence)]);
   }
 
-  /** Does the work that waits for the map. After a crash this includes the reader's changes. */
-  #continueOnMap(deliveries: readonly Delivery[]): void {
-    if (!deliveries.some(({ kind, numbers }) => kind === 'stage' && numbers[0] === DONE)) return;
+  /** Does the work that waits for the map. */
+  #continueOnMap(): void {
     this.#isMapFinished = true;
-    if (this.#mustRepeatEdits) for (const order of this.#edits) this.#send({ order });
     if (this.#mustLocalize) this.#sendLocalization();
-    this.#mustRepeatEdits = false;
     this.#mustLocalize = false;
-  }
-
-  /** Records a change; of a dragged keyframe only the last pose. */
-  #keepEdit(order: string): void {
-    const pinned = (text: string | undefined): string => /^pin \d+ /.exec(text ?? '')?.[0] ?? '';
-    if (pinned(order) !== '' && pinned(order) === pinned(this.#edits.at(-1))) this.#edits.pop();
-    this.#edits.push(order);
   }
 
   async #grade(file: File): Promise<void> {
@@ -421,7 +416,7 @@ function nameOf([first, ...rest]: readonly File[]): string {
   return `${first?.name ?? ''}${more}`;
 }
 
-export function deliverTo(widget: Widget, { kind, text, numbers, bytes }: Delivery): void {
+export function deliverTo(widget: Widget, { kind, text, numbers = NO_NUMBERS, bytes = NO_BYTES }: Delivery): void {
   widget.deliver(kind, text, numbers, bytes);
 }
 

@@ -7,18 +7,26 @@ import type { Delivery } from './protocol';
 export interface LoopsHost {
   /** Shows that loop of the list on the map. */
   show(loop: number): void;
-  /** Sends the decision to the worker. */
-  decide(order: string): void;
+  /** Passes a request with the decision to the worker. */
+  decide(request: string): void;
 }
 
-/** A loop of the delivery. */
+/** `Evidence` of web/robot/src/update.rs. */
+interface Evidence {
+  count: number;
+  loops: Loop[];
+}
+
 interface Loop {
-  /** Its number in the list. */
-  loop: number;
-  ends: string;
-  chi2: string;
-  /** The points around the older keyframe and around the newer one, x and y in turn, m. */
-  scans: Float64Array[];
+  index: number;
+  ends: [newer: number, older: number];
+  chi2: number;
+  gate_chi2: number;
+  /** The points around the older keyframe and around the newer one, m. */
+  scans: [x: number, y: number][][];
+  /** Requests with the decision. */
+  accept: string;
+  reject: string;
 }
 
 /** The share of the points that may lie outside of a picture at each of its edges. */
@@ -41,18 +49,16 @@ export class LoopsToLookInto {
   }
 
   /** Handles a delivery of the worker; returns whether the size may have changed. */
-  receive({ kind, numbers }: Delivery): boolean {
-    if (kind === 'evidence') this.#show(numbers);
+  receive({ kind, text }: Delivery): boolean {
+    if (kind === 'evidence') this.#show(JSON.parse(text) as Evidence);
     else if (kind === 'opening' || kind === 'closed' || kind === 'failed') this.element.hidden = true;
     else return false;
     return true;
   }
 
-  #show(numbers: Float64Array): void {
-    const [count = 0] = numbers;
+  #show({ count, loops }: Evidence): void {
     // After the reader's last decision the list stays, and is empty.
     if (count === 0 && this.element.hidden) return;
-    const loops = read(numbers);
     const focused = (this.element.getRootNode() as ShadowRoot).activeElement;
     const held = [...this.#list.querySelectorAll('button')].indexOf(focused as HTMLButtonElement);
     this.#heading.textContent =
@@ -67,20 +73,21 @@ export class LoopsToLookInto {
 
   #item(loop: Loop): HTMLElement {
     const item = create('li');
-    const show = this.#button(`Show the loop ${loop.ends} on the map`, () => this.#host.show(loop.loop));
+    const ends = loop.ends.join(' to ');
+    const show = this.#button(`Show the loop ${ends} on the map`, () => this.#host.show(loop.index));
     show.append(picture(loop));
-    const decide = (name: string, order: string): HTMLElement => {
-      const button = this.#button(`${name} the loop ${loop.ends}`, () => {
+    const decide = (name: string, request: string): HTMLElement => {
+      const button = this.#button(`${name} the loop ${ends}`, () => {
         // Until the graph is solved without it, or checked again.
         item.setAttribute('aria-busy', 'true');
-        this.#host.decide(`${order} ${loop.loop}`);
+        this.#host.decide(request);
       });
       button.append(name);
       return button;
     };
     const words = create('span');
-    words.textContent = `${loop.ends}: ${loop.chi2}`;
-    item.append(show, words, decide('Accept', 'accept'), decide('Refuse', 'refuse'));
+    words.textContent = `${ends}: χ² ${loop.chi2.toFixed(0)} of ${loop.gate_chi2.toFixed(0)}`;
+    item.append(show, words, decide('Accept', loop.accept), decide('Reject', loop.reject));
     return item;
   }
 
@@ -91,27 +98,14 @@ export class LoopsToLookInto {
   }
 }
 
-/** The loops of a delivery; `web/robot/src/update.rs` defines it. */
-function read(numbers: Float64Array): Loop[] {
-  const loops: Loop[] = [];
-  let at = 1;
-  while (at < numbers.length) {
-    const [loop = 0, newer, older, chi2 = 0, gate = 0, ...sizes] = numbers.subarray(at, at + 7);
-    at += 7;
-    const scans = sizes.map((size) => numbers.subarray(at, (at += 2 * size)));
-    loops.push({ loop, ends: `${newer} to ${older}`, chi2: `χ² ${chi2.toFixed(0)} of ${gate.toFixed(0)}`, scans });
-  }
-  return loops;
-}
-
 interface Range {
   middle: number;
   size: number;
 }
 
 /** The range of most points along an axis: a few distant ones would make the rest small. */
-function shownRange(scans: readonly Float64Array[], axis: number): Range {
-  const values = scans.flatMap((scan) => [...scan].filter((_, i) => i % 2 === axis)).sort((a, b) => a - b);
+function shownRange(scans: Loop['scans'], axis: 0 | 1): Range {
+  const values = scans.flat().map((point) => point[axis]).sort((a, b) => a - b);
   const at = (share: number): number => values[Math.round(share * (values.length - 1))] ?? 0;
   const [low, high] = [at(HIDDEN_SHARE), at(1 - HIDDEN_SHARE)];
   return { middle: 0.5 * (low + high), size: high - low };
@@ -119,16 +113,15 @@ function shownRange(scans: readonly Float64Array[], axis: number): Range {
 
 /** Both surroundings in their colours. */
 function picture({ scans }: Loop): SVGElement {
-  const [x, y] = [0, 1].map((axis) => shownRange(scans, axis)) as [Range, Range];
+  const [x, y] = [shownRange(scans, 0), shownRange(scans, 1)];
   const half = 0.5 * Math.max(x.size, y.size, 1);
   const svg = document.createElementNS(SVG, 'svg');
   svg.setAttribute('viewBox', [x.middle - half, -y.middle - half, 2 * half, 2 * half].join(' '));
   svg.setAttribute('aria-hidden', 'true');
   for (const [k, scan] of scans.entries()) {
     const dots = document.createElementNS(SVG, 'path');
-    let path = '';
     // A line without length is a dot.
-    for (let i = 0; i < scan.length; i += 2) path += `M${scan[i]?.toFixed(2)} ${(-(scan[i + 1] ?? 0)).toFixed(2)}h0`;
+    const path = scan.map(([x, y]) => `M${x.toFixed(2)} ${(-y).toFixed(2)}h0`).join('');
     dots.setAttribute('d', path);
     dots.setAttribute('class', k === 0 ? 'older' : 'newer');
     svg.append(dots);

@@ -1,26 +1,33 @@
 // Messages between the page and the worker that maps a log.
 
-/** One part of the worker's state, for the widget's model. */
+/**
+ * One part of the worker's state, which replaces an earlier one of its kind: for the widget's model the bytes of a report
+ * (crates/log_messages), for the page a text (web/robot/src/update.rs).
+ */
 export interface Delivery {
   kind: string;
   text: string;
-  numbers: Float64Array;
-  bytes: Uint8Array;
+  numbers?: Float64Array;
+  bytes?: Uint8Array;
 }
 
 /** To the worker. */
 export type Order =
-  /** The first message: the program, the files of the log, and its options, one per line. */
-  | { module: WebAssembly.Module; files: File[]; options: string }
+  /** The first message: the program, the files of the log, its options, one per line, and changes to repeat. */
+  | { module: WebAssembly.Module; files: File[]; options: string; edits: string }
   /** A log to localize on the map, starting near `[x, y, θ]`, or anywhere if `start` is empty. */
   | { locate: File[]; options: string; start: number[] }
+  /** A request of the widget that is for the worker, unread. */
   | { order: string }
+  | { pause: boolean }
+  | { cancel: true }
+  | { crash: true }
   | { reference: Uint8Array; name: string }
   | { save: string };
 
 /** From the worker. */
 export type Report =
-  | { deliveries: Delivery[] }
+  | { deliveries: Delivery[]; isMapped?: boolean }
   | { saved: string; bytes: Uint8Array }
   /** Why a file cannot be saved. */
   | { unsaved: string; why: string }
@@ -29,9 +36,7 @@ export type Report =
   /** The program crashed. */
   | { crashed: string };
 
-const NONE = new Uint8Array();
-
 /** A delivery of text, or of text and numbers. */
 export function textDelivery(kind: string, text: string, numbers: number[] = []): Delivery {
-  return { kind, text, numbers: Float64Array.from(numbers), bytes: NONE };
+  return { kind, text, numbers: Float64Array.from(numbers) };
 }

@@ -31,7 +31,7 @@ nextSlice.port1.onmessage = (): void => {
 };
 
 self.addEventListener('message', ({ data }: MessageEvent<Order>) => {
-  if ('module' in data) void open(data.module, data.files, data.options);
+  if ('module' in data) void open(data.module, data.files, data.options, data.edits);
   else if (robot === undefined) waiting.push(data);
   else guard(() => execute(data));
 });
@@ -45,10 +45,11 @@ function readable(files: File[]): [string[], Float64Array, (which: number, from:
   return [files.map(({ name }) => name), Float64Array.from(files, ({ size }) => size), read];
 }
 
-async function open(module: WebAssembly.Module, files: File[], options: string): Promise<void> {
+async function open(module: WebAssembly.Module, files: File[], options: string, edits: string): Promise<void> {
   try {
     await init({ module_or_path: module });
     robot = new Robot(...readable(files), options);
+    robot.repeat(edits);
   } catch (error) {
     // A plain Error is about the file, any subclass is a crash.
     if (error instanceof Error && error.constructor === Error) post({ failed: error.message });
@@ -74,12 +75,14 @@ function execute(order: Order): void {
   if ('save' in order) save(robot, order.save);
   else if ('reference' in order) grade(robot, order.reference, order.name);
   else if ('locate' in order) locate(robot, order.locate, order.options, order.start);
-  else if (order.order === 'pause' || order.order === 'resume') setPaused(order.order === 'pause');
-  else if (order.order === 'crash-for-test') throw new WebAssembly.RuntimeError('crashed on purpose');
-  else {
-    if (order.order === 'cancel') setPaused(false);
-    robot.order(order.order);
-    if (order.order.startsWith('pin')) busyUntil = performance.now() + DRAG_MS;
+  else if ('pause' in order) setPaused(order.pause);
+  else if ('crash' in order) throw new WebAssembly.RuntimeError('crashed on purpose');
+  else if ('cancel' in order) {
+    setPaused(false);
+    robot.cancel();
+    reportChanges(robot);
+  } else {
+    if (robot.order(order.order)) busyUntil = performance.now() + DRAG_MS;
     reportChanges(robot);
   }
   schedule();
@@ -95,7 +98,7 @@ function save(from: Robot, name: string): void {
     const bytes = from.file(name);
     post({ saved: name, bytes }, [bytes.buffer]);
   } catch (error) {
-    post({ unsaved: name, why: refusal(error) });
+    post({ unsaved: name, why: sentenceOf(error) });
   }
 }
 
@@ -122,10 +125,10 @@ function grade(by: Robot, bytes: Uint8Array, name: string): void {
 
 /** Reports an error of the program; rethrows a panic. */
 function reportError(error: unknown): void {
-  post({ deliveries: [textDelivery('answer', refusal(error))] });
+  post({ deliveries: [textDelivery('answer', sentenceOf(error))] });
 }
 
-function refusal(error: unknown): string {
+function sentenceOf(error: unknown): string {
   if (!(error instanceof Error) || error instanceof WebAssembly.RuntimeError) throw error;
   return error.message;
 }
@@ -154,8 +157,8 @@ function work(): void {
 function reportChanges(what: Robot): void {
   reportedAt = performance.now();
   const deliveries = what.updates() as Delivery[];
-  const buffers = deliveries.flatMap(({ numbers, bytes }) => [numbers.buffer, bytes.buffer]);
-  post({ deliveries }, buffers as ArrayBuffer[]);
+  const buffers = deliveries.flatMap(({ bytes }) => (bytes === undefined ? [] : [bytes.buffer]));
+  post({ deliveries, isMapped: what.isMapped() }, buffers);
 }
 
 function post(report: Report, buffers: ArrayBufferLike[] = []): void {

@@ -17,12 +17,12 @@
 mod buttons;
 mod interaction;
 pub mod log_state;
-pub mod other_log;
 mod picture;
-mod settings;
+pub(super) mod settings;
 mod tables;
 mod texts;
 
+use log_messages::{LocalizedScan, MapperOrder, Stage};
 use widget_kit::host_messages::Delivery;
 use widget_kit::model::{
     Activity, Assessment, Handle, Model, Motion, Outcome, Table, TablePlace, Timeline,
@@ -34,9 +34,11 @@ use widget_kit::scene::Scene;
 use widget_kit::spec::{DEFAULTS, WidgetSpec};
 use widget_kit::values::{Changed, Values};
 
-use crate::w16_10_own_robot::spec::{KEYS, MAX_KEYFRAMES, MAX_SCANS, PARAMS, SPEC};
-use log_state::{LogState, Stage};
-use other_log::LocalizedScan;
+use crate::w16_10_own_robot::spec::{
+    DROP, KEYFRAME, KEYS, LOOP, MARKED, MAX_KEYFRAMES, MAX_SCANS, PARAMS, POOR, SCAN, SPEC,
+    STARTS_HERE,
+};
+use log_state::LogState;
 
 /// Names of the panels.
 pub mod panel {
@@ -53,12 +55,18 @@ const PLAY_S: f64 = 12.0;
 /// Largest number of marks on a timeline; more would be unreadable.
 const MAX_MARKS: usize = 150;
 
+/// A request to the page, or an order that it passes on.
+enum Request {
+    Page(String),
+    Worker(MapperOrder),
+}
+
 /// The reader's own robot.
 pub struct OwnRobot {
     values: Values,
     robot: LogState,
     playback: Playback,
-    orders: Vec<String>,
+    requests: Vec<Request>,
 }
 
 impl Default for OwnRobot {
@@ -75,7 +83,7 @@ impl OwnRobot {
             values: Values::defaults(PARAMS),
             robot: LogState::default(),
             playback: Playback::default(),
-            orders: Vec::new(),
+            requests: Vec::new(),
         }
     }
 
@@ -91,42 +99,44 @@ impl OwnRobot {
 
     /// The current keyframe.
     fn keyframe(&self) -> usize {
-        (self.values.number("keyframe") as usize).min(self.last())
+        self.values.get(&KEYFRAME).min(self.last())
     }
 
     /// The selected loop, if any.
     fn link(&self) -> Option<usize> {
         let last = self.robot.links.len().checked_sub(1)?;
-        Some((self.values.number("loop") as usize).min(last))
+        Some(self.values.get(&LOOP).min(last))
     }
 
-    /// Sends an order; it replaces an earlier one of the same replaceable kind.
-    fn ask(&mut self, order: String) {
-        let kind = |order: &str| order.split(' ').next().unwrap_or_default().to_owned();
-        let replaces = ["look", "pin"].contains(&kind(&order).as_str());
-        self.orders
-            .retain(|old| !replaces || kind(old) != kind(&order));
-        self.orders.push(order);
+    fn ask(&mut self, request: String) {
+        self.requests.push(Request::Page(request));
+    }
+
+    /// Sends an order to the worker, in place of a waiting one that it replaces.
+    fn order(&mut self, order: MapperOrder) {
+        let is_old = |old: &Request| matches!(old, Request::Worker(old) if order.replaces(old));
+        self.requests.retain(|old| !is_old(old));
+        self.requests.push(Request::Worker(order));
     }
 
     /// Selects a keyframe and requests its scan.
     fn show(&mut self, keyframe: usize) {
-        self.values.store("keyframe", keyframe as f64);
+        self.values.put(&KEYFRAME, keyframe);
         self.look();
     }
 
     fn look(&mut self) {
         let keyframe = self.keyframe();
-        let is_there = matches!(&self.robot.scan, Some((of, _)) if *of == keyframe);
+        let is_there = matches!(&self.robot.scan, Some(scan) if scan.keyframe == keyframe);
         if self.robot.has_scans && !is_there && !self.robot.keyframes.is_empty() {
-            self.ask(format!("look {keyframe}"));
+            self.order(MapperOrder::Look(keyframe));
         }
     }
 
     /// The initial pose of the other log's robot, in the form of an order.
     fn start(&self) -> String {
         let shown = self.robot.keyframes.get(self.keyframe());
-        match shown.filter(|_| self.values.number("start") == 1.0) {
+        match shown.filter(|_| self.values.get(&STARTS_HERE)) {
             Some(shown) => {
                 let [x, y, theta] = shown.pose;
                 format!(" {x} {y} {theta}")
@@ -139,7 +149,7 @@ impl OwnRobot {
     fn place(&self) -> Option<(usize, &LocalizedScan)> {
         let places = &self.robot.other_log.as_ref()?.places;
         let last = places.len().checked_sub(1)?;
-        let scan = self.values.number("scan");
+        let scan = self.values.get(&SCAN);
         let after = places.partition_point(|place| place.scan <= scan);
         let shown = after.saturating_sub(1).min(last);
         Some((shown, &places[shown]))
@@ -159,7 +169,7 @@ impl OwnRobot {
         };
         let next = (here + 1..places.len()).find(is_change).unwrap_or(0);
         let scan = places[next].scan;
-        self.values.store("scan", scan);
+        self.values.put(&SCAN, scan);
     }
 
     /// Selects the newer keyframe of the current loop.
@@ -175,7 +185,7 @@ impl OwnRobot {
 
     /// Keyframes to check: those of contradicted loops and edges, and of scans that fit badly.
     fn doubts(&self) -> Vec<usize> {
-        let poor = self.values.number("poor");
+        let poor = self.values.get(&POOR);
         let keyframes = self.robot.keyframes.iter().enumerate();
         let badly = keyframes.filter(|(_, keyframe)| keyframe.fit < poor);
         let mut doubts: Vec<usize> = badly.map(|(k, _)| k).collect();
@@ -189,12 +199,7 @@ impl OwnRobot {
 
     /// Tells the worker the purpose of the next dropped log.
     fn ask_drop(&mut self) {
-        let order = if self.values.number("drop") == 1.0 {
-            "drop where"
-        } else {
-            "drop map"
-        };
-        self.ask(order.to_owned());
+        self.ask(format!("drop {}", self.values.get(&DROP)));
     }
 }
 
@@ -210,9 +215,9 @@ impl Model for OwnRobot {
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         if self.values.set(SPEC.id, id, value)? == Changed::Yes {
             match id {
-                "keyframe" => self.look(),
-                "loop" => self.show_link(),
-                "drop" => self.ask_drop(),
+                _ if id == KEYFRAME.id => self.look(),
+                _ if id == LOOP.id => self.show_link(),
+                _ if id == DROP.id => self.ask_drop(),
                 _ => {}
             }
         }
@@ -227,12 +232,12 @@ impl Model for OwnRobot {
             return press_preset(self, id);
         }
         self.playback.pause();
-        let dropped = self.values.number("drop");
+        let dropped = self.values.get(&DROP);
         self.values.reset();
         self.robot = LogState::default();
-        self.orders.clear();
+        self.requests.clear();
         self.ask("close".to_owned());
-        if dropped != self.values.number("drop") {
+        if dropped != self.values.get(&DROP) {
             self.ask_drop();
         }
         Ok(())
@@ -250,7 +255,7 @@ impl Model for OwnRobot {
         let rate = (last / PLAY_S).max(4.0) * self.values.get(&SPEED);
         let here = self.keyframe() as f64;
         let next = self.playback.advance(here, last, elapsed_s, rate);
-        self.values.store("keyframe", next);
+        self.values.store(KEYFRAME.id, next);
         self.look();
         Activity::Busy
     }
@@ -263,17 +268,17 @@ impl Model for OwnRobot {
         self.robot.receive(delivery);
         if delivery.kind == "opening" {
             self.playback.pause();
-            self.values.store("keyframe", MAX_KEYFRAMES);
-            self.values.store("loop", 0.0);
-            self.values.store("marked", 0.0);
-            self.values.store("scan", MAX_SCANS);
+            self.values.store(KEYFRAME.id, MAX_KEYFRAMES);
+            self.values.put(&LOOP, 0);
+            self.values.put(&MARKED, 0);
+            self.values.store(SCAN.id, MAX_SCANS);
         }
         if delivery.kind == "dropped" {
             let order = format!("locate-dropped{}", self.start());
             self.ask(order);
-            self.values.store("scan", MAX_SCANS);
+            self.values.store(SCAN.id, MAX_SCANS);
         }
-        if delivery.kind == "stage" && self.robot.stage == Stage::Done {
+        if delivery.kind == "progress" && self.robot.stage == Stage::Done {
             self.look();
         }
     }
@@ -283,7 +288,13 @@ impl Model for OwnRobot {
     }
 
     fn take_requests(&mut self) -> Vec<String> {
-        core::mem::take(&mut self.orders)
+        let requests = core::mem::take(&mut self.requests).into_iter();
+        requests
+            .map(|request| match request {
+                Request::Page(request) => request,
+                Request::Worker(order) => order.request(),
+            })
+            .collect()
     }
 
     fn scene(&self) -> Scene {
@@ -313,7 +324,7 @@ impl Model for OwnRobot {
         let last = self.last() as f64;
         let is_read = self.robot.is_under_way() && !self.robot.paused;
         Some(Timeline {
-            param: "keyframe",
+            param: KEYFRAME.id,
             last,
             playing: is_read || self.playback.is_playing(),
             marks: doubts
@@ -345,7 +356,7 @@ impl Model for OwnRobot {
     fn set_motion(&mut self, motion: Motion) {
         let last = self.last() as f64;
         if let Some(end) = self.playback.set_motion(motion, last) {
-            self.values.store("keyframe", end);
+            self.values.store(KEYFRAME.id, end);
         }
     }
 }

@@ -1,9 +1,12 @@
 //! The widget's texts and its list of parameters.
 
 use widget_kit::disclosure::Opening;
-use widget_kit::param::{Choice, MORE, ParamKind, ParamSpec};
+use widget_kit::param::{MORE, Named, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, WidgetSpec};
+use widget_kit::{one_of, params};
+
+use super::model::settings::{Colour, ShownLoops};
 
 /// An upper bound of the number of keyframes, beyond the end of every timeline.
 pub const MAX_KEYFRAMES: f64 = 999_999.0;
@@ -11,146 +14,112 @@ pub const MAX_KEYFRAMES: f64 = 999_999.0;
 /// An upper bound of the number of scans.
 pub const MAX_SCANS: f64 = 99_999_999.0;
 
-/// The options for recordings, with the names of the command line.
-pub const OPTIONS: &[Choice] = &[
-    Choice::new("scan-topic", "scan topic"),
-    Choice::new("odom-topic", "odometry topic"),
-    Choice::new("odom-frame", "odometry frame"),
-    Choice::new("body-frame", "body frame"),
+/// The options of recordings, with their names of the command line.
+pub const RECORDING_OPTIONS: &[Named<&str>] = &[
+    ("scan-topic", "scan-topic", "scan topic"),
+    ("odom-topic", "odom-topic", "odometry topic"),
+    ("odom-frame", "odom-frame", "odometry frame"),
+    ("body-frame", "body-frame", "body frame"),
 ];
 
-/// The files that can be saved, by the index of `save`.
-pub const FILES: &[Choice] = &[
-    Choice::new("map-pgm", "map.pgm"),
-    Choice::new("map-yaml", "map.yaml"),
-    Choice::new("map-png", "map.png"),
-    Choice::new("trajectory", "trajectory.tum"),
-    Choice::new("graph", "graph.g2o"),
-    Choice::new("report", "report.html"),
-    Choice::new("session", "session.slam2d"),
-    Choice::new("where", "where.tum"),
-];
+params! {
+    pub(super) static COLOUR: OneOf<Colour> = one_of!(
+        Colour,
+        "colour",
+        "colour the path by",
+        &[
+            (Colour::Time, "time", "time"),
+            (Colour::Fit, "fit", "fit"),
+            (Colour::Sigma, "sigma", "σ"),
+            (Colour::Error, "error", "error"),
+        ],
+    )
+    .help("Time, the share of each scan that fits, the standard deviation by the graph, or the error against a reference that you give.");
 
-/// The widget's parameters.
-pub const PARAMS: &[&ParamSpec] = &[
-    &ParamSpec {
-        id: "colour",
-        label: "colour the path by",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice::new("time", "time"),
-                Choice::new("fit", "fit"),
-                Choice::new("sigma", "σ"),
-                Choice::new("error", "error"),
-            ],
-        },
-        default: 0.0,
-        help: "Time, the share of each scan that fits, the standard deviation by the graph, or the error against a reference that you give.",
-    },
-    &ParamSpec {
-        id: "links",
-        label: "show loops",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice::new("none", "none"),
-                Choice::new("closed", "closed"),
-                Choice::new("all", "all"),
-            ],
-        },
-        default: 1.0,
-        help: "Which loops the map shows: none, those of the graph, or the rejected ones as well.",
-    },
-    &ParamSpec {
-        id: "loop",
-        label: "loop of the list",
-        unit: "",
-        kind: ParamKind::Seed { max: MAX_KEYFRAMES },
-        default: 0.0,
-        help: "The loop whose evidence is shown; 0 is the one that fits the graph least.",
-    },
-    &ParamSpec {
-        id: "marked",
-        label: "marked keyframe",
-        unit: "",
-        kind: ParamKind::Seed { max: MAX_KEYFRAMES },
-        default: 0.0,
-        help: "One end of a loop that you add; the other is the keyframe shown.",
-    },
-    &ParamSpec {
-        id: "poor",
-        label: "look into scans that fit less than",
-        unit: "",
-        kind: ParamKind::Slider {
-            min: 0.0,
-            max: 1.0,
-            step: 0.05,
-        },
-        default: 0.5,
-        help: "Keyframes with a smaller share of fitting points have a ring on the map, and “Next doubt” stops there.",
-    },
-    &ParamSpec {
-        id: "file",
-        label: "file to save",
-        unit: "",
-        kind: ParamKind::Choice { options: FILES },
-        default: 0.0,
-        help: "Map for Nav2, trajectory as TUM, graph as g2o, a report with pictures, the session for continuing later, or the poses of another log’s robot.",
-    },
-    &ParamSpec {
-        id: "start",
-        label: "look for the robot",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice::new("anywhere", "anywhere"),
-                Choice::new("here", "at the keyframe shown"),
-            ],
-        },
-        default: 0.0,
-        help: "Where the other log begins on this map: anywhere, or within 1.5 m and 34° of the keyframe shown.",
-    },
-    &ParamSpec {
-        id: "scan",
-        label: "scan of the other log",
-        unit: "",
-        kind: ParamKind::Seed { max: MAX_SCANS },
-        default: MAX_SCANS,
-        help: "The scan of the other log whose pose is shown; beyond the end, the last one.",
-    },
-    &ParamSpec {
-        id: "drop",
-        label: "a log that you drop",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice::new("map", "becomes the map"),
-                Choice::new("where", "is looked for on it"),
-            ],
-        },
-        default: 0.0,
-        help: "Whether a dropped log is mapped, or its robot is localized on the current map.",
-    },
-    &ParamSpec {
-        id: "option",
-        label: "of a recording",
-        unit: "",
-        kind: ParamKind::Choice { options: OPTIONS },
-        default: 0.0,
-        help: "What “Take another” changes if a recording has several: the topic of the scans or of the odometry, its frame, or the frame of the body.",
-    },
-    &ParamSpec {
-        id: "keyframe",
-        label: "keyframe",
-        unit: "",
-        kind: ParamKind::Timeline { max: MAX_KEYFRAMES },
-        default: MAX_KEYFRAMES,
-        help: "The keyframe whose scan is drawn over the map.",
-    },
-    &SPEED.spec,
-    &MORE.spec,
-];
+    pub(super) static LOOPS: OneOf<ShownLoops> = one_of!(
+        ShownLoops,
+        "links",
+        "show loops",
+        &[
+            (ShownLoops::None, "none", "none"),
+            (ShownLoops::InGraph, "closed", "closed"),
+            (ShownLoops::All, "all", "all"),
+        ],
+    )
+    .default("closed")
+    .help("Which loops the map shows: none, those of the graph, or the rejected ones as well.");
+
+    pub(super) static LOOP: Param<usize> = Param::typed("loop", "loop of the list", MAX_KEYFRAMES)
+        .help("The loop whose evidence is shown; 0 is the one that fits the graph least.");
+
+    pub(super) static MARKED: Param<usize> = Param::typed("marked", "marked keyframe", MAX_KEYFRAMES)
+        .help("One end of a loop that you add; the other is the keyframe shown.");
+
+    pub(super) static POOR: Param<f64> =
+        Param::slider("poor", "look into scans that fit less than", [0.0, 1.0], 0.05)
+            .default(0.5)
+            .help("Keyframes with a smaller share of fitting points have a ring on the map, and “Next doubt” stops there.");
+
+    pub(super) static FILE: OneOf<&'static str> = one_of!(
+        &'static str,
+        "file",
+        "file to save",
+        &[
+            ("map.pgm", "map-pgm", "map.pgm"),
+            ("map.yaml", "map-yaml", "map.yaml"),
+            ("map.png", "map-png", "map.png"),
+            ("trajectory.tum", "trajectory", "trajectory.tum"),
+            ("graph.g2o", "graph", "graph.g2o"),
+            ("report.html", "report", "report.html"),
+            ("session.slam2d", "session", "session.slam2d"),
+            ("where.tum", "where", "where.tum"),
+        ],
+    )
+    .help("Map for Nav2, trajectory as TUM, graph as g2o, a report with pictures, the session for continuing later, or the poses of another log’s robot.");
+
+    // Whether the other log starts at the keyframe shown.
+    pub(super) static STARTS_HERE: OneOf<bool> = one_of!(
+        bool,
+        "start",
+        "look for the robot",
+        &[
+            (false, "anywhere", "anywhere"),
+            (true, "here", "at the keyframe shown"),
+        ],
+    )
+    .help("Where the other log begins on this map: anywhere, or within 1.5 m and 34° of the keyframe shown.");
+
+    pub(super) static SCAN: Param<usize> = Param::typed("scan", "scan of the other log", MAX_SCANS)
+        .default(MAX_SCANS)
+        .help("The scan of the other log whose pose is shown; beyond the end, the last one.");
+
+    // What the page does with a log that is dropped, as it is named to the page.
+    pub(super) static DROP: OneOf<&'static str> = one_of!(
+        &'static str,
+        "drop",
+        "a log that you drop",
+        &[
+            ("map", "map", "becomes the map"),
+            ("where", "where", "is looked for on it"),
+        ],
+    )
+    .help("Whether a dropped log is mapped, or its robot is localized on the current map.");
+
+    pub(super) static OPTION: OneOf<&'static str> = one_of!(
+        &'static str,
+        "option",
+        "of a recording",
+        RECORDING_OPTIONS,
+    )
+    .help("What “Take another” changes if a recording has several: the topic of the scans or of the odometry, its frame, or the frame of the body.");
+
+    pub(super) static KEYFRAME: Param<usize> = Param::timeline("keyframe", "keyframe", MAX_KEYFRAMES)
+        .default(MAX_KEYFRAMES)
+        .help("The keyframe whose scan is drawn over the map.");
+
+    use SPEED;
+    use MORE;
+}
 
 /// Keys of the buttons that move a keyframe.
 pub const KEYS: &[(&str, &str)] = &[
@@ -278,14 +247,14 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "sure",
             label: "How sure is the graph?",
             help: "The sample, coloured by the standard deviation of each keyframe: it grows away from the start, and loops limit it.",
-            set: &[("colour", 2.0)],
+            set: &[COLOUR.to("sigma")],
             then: &["sample"],
         },
         Preset {
             id: "error",
             label: "How wrong is it?",
             help: "The sample, coloured by its error against the truth, which comes with it.",
-            set: &[("colour", 3.0)],
+            set: &[COLOUR.to("error")],
             then: &["sample"],
         },
         Preset {
@@ -299,7 +268,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "evidence",
             label: "All loops that were looked at",
             help: "The sample with the loops that failed its tests as well.",
-            set: &[("links", 2.0)],
+            set: &[LOOPS.to("all")],
             then: &["sample"],
         },
     ],

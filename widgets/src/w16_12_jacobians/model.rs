@@ -229,6 +229,7 @@ impl Model for WrongJacobians {
                 panel: panel::GRAPHS,
                 id: BIAS.id,
                 offset: off,
+                ..Handle::default()
             });
         }
         if panel != panel::CURVE {

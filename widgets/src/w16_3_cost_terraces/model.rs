@@ -230,6 +230,7 @@ impl Model for CostTerraces {
             panel: picture::RELIEF,
             id: "cell",
             offset: [0.0, 0.0],
+            ..Handle::default()
         })
     }
 

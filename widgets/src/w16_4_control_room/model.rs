@@ -322,6 +322,7 @@ impl Model for ControlRoom {
                 panel: lanes::ID,
                 id: lanes::name(lane),
                 offset: [at[0] - tick, 0.0],
+                ..Handle::default()
             });
         }
         let panel = *picture::OVER_TIME.iter().find(|id| **id == panel)?;

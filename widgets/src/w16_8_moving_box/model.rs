@@ -106,6 +106,7 @@ impl MovingBox {
             panel: panel::BIAS,
             id: "share",
             offset: [away, 0.0],
+            ..Handle::default()
         })
     }
 
@@ -222,6 +223,7 @@ impl Model for MovingBox {
             panel: panel::ROOM,
             id: BOX,
             offset,
+            ..Handle::default()
         })
     }
 

@@ -1,51 +1,119 @@
 //! The widget's reaction to the worker's reports, and its orders to the worker.
 
+use log_messages::{
+    GradeReport, KeyframeReport, LoopDecision, LoopReport, MapReport, MapperOrder, MapperProgress,
+    MapperReport, Stage,
+};
 use widget_kit::host_messages::Delivery;
 use widget_kit::model::{Activity, Assessment, Model};
 use widget_kit::scene::Layer;
 use widgets::w16_10_own_robot::model::OwnRobot;
-use widgets::w16_10_own_robot::model::log_state::Stage;
 
-pub fn tell(robot: &mut OwnRobot, kind: &str, text: &str, numbers: &[f64]) {
-    deliver(robot, kind, text, numbers);
-}
-
-pub fn deliver(model: &mut dyn Model, kind: &str, text: &str, numbers: &[f64]) {
-    model.receive(&Delivery {
+/// A message of the page.
+pub fn tell(robot: &mut OwnRobot, kind: &str, text: &str) {
+    robot.receive(&Delivery {
         kind,
         text,
-        numbers,
-        bytes: &[],
+        ..Delivery::default()
     });
+}
+
+/// A report of the worker.
+pub fn report(model: &mut dyn Model, report: &MapperReport) {
+    model.receive(&Delivery {
+        kind: report.kind(),
+        bytes: &report.to_bytes(),
+        ..Delivery::default()
+    });
+}
+
+pub fn progress(stage: Stage, scans: usize) -> MapperReport {
+    MapperReport::Progress(MapperProgress {
+        stage,
+        share: if stage == Stage::Done { 1.0 } else { 0.5 },
+        scans,
+        ..MapperProgress::default()
+    })
+}
+
+/// A loop from keyframe 3 to 0 of which 0.8 of the scan fits.
+fn link(chi2: f64, decision: LoopDecision) -> LoopReport {
+    LoopReport {
+        new: 3,
+        old: 0,
+        share: 0.8,
+        rmse_m: 0.02,
+        points: 90.0,
+        margin: f64::NAN,
+        chi2,
+        gate_chi2: 16.3,
+        decision,
+        reason: String::new(),
+    }
+}
+
+fn keyframes(count: u32) -> MapperReport {
+    let keyframe = |k| KeyframeReport {
+        stamp_s: k,
+        pose: [k, 0.0, 0.0],
+        fit: 1.0 - 0.1 * k,
+        sigma_m: 0.01 * k,
+    };
+    MapperReport::Keyframes((0..count).map(|k| keyframe(f64::from(k))).collect())
+}
+
+fn doubts(sentences: &[&str], keyframes: &[usize]) -> MapperReport {
+    MapperReport::Doubts {
+        sentences: sentences.iter().map(|&text| text.to_owned()).collect(),
+        keyframes: keyframes.to_vec(),
+    }
+}
+
+fn map(columns: usize, cells: Vec<u8>) -> MapperReport {
+    MapperReport::Map(MapReport {
+        columns,
+        min: [-1.0, -0.5],
+        cell_m: 1.0,
+        cells,
+    })
 }
 
 /// Five keyframes on a line, two loops, the second one rejected.
 pub fn mapped() -> OwnRobot {
     let mut robot = OwnRobot::new();
-    tell(&mut robot, "opening", "my.log", &[]);
-    tell(&mut robot, "file", "my.log", &[1000.0, 1.0]);
-    let keyframes = (0..5).flat_map(|k| {
-        let k = f64::from(k);
-        [k, k, 0.0, 0.0, 1.0 - 0.1 * k, 0.01 * k]
-    });
-    tell(&mut robot, "keyframes", "", &keyframes.collect::<Vec<_>>());
-    robot.receive(&Delivery {
-        kind: "map",
-        numbers: &[2.0, 1.0, -1.0, -0.5, 1.0],
-        bytes: &[0, 255],
-        ..Delivery::default()
-    });
-    let nan = f64::NAN;
-    let loops = [
-        [3.0, 0.0, 0.8, 0.02, 90.0, nan, 20.0, 16.3, 0.0, 1.0],
-        [4.0, 1.0, 0.3, 0.2, 12.0, nan, 90.0, 16.3, 1.0, 1.0],
-    ];
-    let reasons = "\n12 points fit, 30 are asked";
-    tell(&mut robot, "loops", reasons, loops.as_flattened());
-    tell(&mut robot, "doubts", "the loop contradicts", &[3.0]);
-    tell(&mut robot, "stage", "", &[5.0, 1.0, 40.0, 2.0, 1.0]);
+    tell(&mut robot, "opening", "my.log");
+    let rejected = LoopReport {
+        new: 4,
+        old: 1,
+        share: 0.3,
+        rmse_m: 0.2,
+        points: 12.0,
+        reason: "12 points fit, 30 are asked".to_owned(),
+        ..link(90.0, LoopDecision::Rejected)
+    };
+    for part in [
+        MapperReport::File {
+            name: "my.log".to_owned(),
+            has_scans: true,
+        },
+        keyframes(5),
+        map(2, vec![0, 255]),
+        MapperReport::Loops(vec![link(20.0, LoopDecision::Closed), rejected]),
+        doubts(&["the loop contradicts"], &[3]),
+        progress(Stage::Done, 40),
+    ] {
+        report(&mut robot, &part);
+    }
     robot.take_requests();
     robot
+}
+
+/// What the worker gets of the widget.
+pub fn orders(robot: &mut OwnRobot) -> Vec<MapperOrder> {
+    let requests = robot.take_requests().into_iter();
+    requests
+        .map(|request| MapperOrder::from_request(&request).unwrap_or_else(|| panic!("{request}")))
+        .collect()
 }
 
 #[test]
@@ -58,7 +126,7 @@ fn play_maps_the_sample_then_pauses_it_then_plays_the_path() {
     robot.press("play").unwrap();
     assert_eq!(robot.take_requests(), ["pause"]);
     assert!(!robot.timeline().unwrap().playing);
-    tell(&mut robot, "opening", "ring.log", &[]);
+    tell(&mut robot, "opening", "ring.log");
     assert!(
         !robot.timeline().unwrap().playing,
         "it was held before it came"
@@ -77,8 +145,8 @@ fn play_maps_the_sample_then_pauses_it_then_plays_the_path() {
     }
     assert_eq!(robot.values().number("keyframe"), 4.0);
     assert_eq!(
-        robot.take_requests(),
-        ["look 4"],
+        orders(&mut robot),
+        [MapperOrder::Look(4)],
         "of orders to look the last one stands"
     );
 }
@@ -86,11 +154,11 @@ fn play_maps_the_sample_then_pauses_it_then_plays_the_path() {
 #[test]
 fn other_doubts_are_reported_even_if_no_loop_contradicts() {
     let mut robot = mapped();
-    tell(&mut robot, "loops", "", &[]);
+    report(&mut robot, &MapperReport::Loops(Vec::new()));
     let sentence = |robot: &OwnRobot| robot.outcome().sentence.clone();
     assert!(sentence(&robot).contains("but the list of doubts is not empty"));
     assert_eq!(robot.outcome().standing, Assessment::Neutral);
-    tell(&mut robot, "doubts", "", &[]);
+    report(&mut robot, &doubts(&[], &[]));
     assert!(sentence(&robot).contains("no loop contradicts the graph."));
     assert_eq!(robot.outcome().standing, Assessment::Good);
 }
@@ -104,9 +172,9 @@ fn counts_of_one_are_singular() {
             .sentence
             .contains("40 scans became 5 keyframes")
     );
-    tell(&mut robot, "keyframes", "", &[0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
-    tell(&mut robot, "stage", "", &[5.0, 1.0, 1.0, 0.0, 0.0]);
-    tell(&mut robot, "loops", "", &[]);
+    report(&mut robot, &keyframes(1));
+    report(&mut robot, &progress(Stage::Done, 1));
+    report(&mut robot, &MapperReport::Loops(Vec::new()));
     let sentence = robot.outcome().sentence.clone();
     assert!(
         sentence.contains("1 scan became 1 keyframe on a path of 0 m with 0 loops"),
@@ -146,35 +214,32 @@ fn a_contradicting_loop_is_reported_and_shown_first() {
 }
 
 #[test]
-fn a_loop_that_the_reader_accepts_or_refuses_is_no_longer_one_to_look_into() {
-    let link = |chi2: f64, verdict: f64| {
-        let nan = f64::NAN;
-        [3.0, 0.0, 0.8, 0.02, 90.0, nan, chi2, 16.3, verdict, 1.0]
-    };
+fn a_loop_that_the_reader_accepts_or_rejects_is_no_longer_one_to_look_into() {
+    use LoopDecision::{Closed, Confirmed, Removed};
     for (loops, verdict, standing) in [
         (
-            vec![link(20.0, 0.0), link(30.0, 0.0)],
+            vec![link(20.0, Closed), link(30.0, Closed)],
             "2 of 2 loops",
             Assessment::Doubtful,
         ),
         (
-            vec![link(20.0, 4.0), link(30.0, 0.0)],
+            vec![link(20.0, Confirmed), link(30.0, Closed)],
             "1 of 2 loops",
             Assessment::Doubtful,
         ),
         (
-            vec![link(20.0, 4.0), link(30.0, 2.0)],
+            vec![link(20.0, Confirmed), link(30.0, Removed)],
             "none of 1 loop",
             Assessment::Good,
         ),
     ] {
         let mut robot = mapped();
-        tell(&mut robot, "doubts", "", &[]);
-        tell(&mut robot, "loops", "", loops.as_flattened());
+        report(&mut robot, &doubts(&[], &[]));
+        report(&mut robot, &MapperReport::Loops(loops.clone()));
         let outcome = robot.outcome();
         assert_eq!(outcome.verdict, format!("{verdict} to look into"));
         assert_eq!(outcome.standing, standing, "{verdict}");
-        let is_accepted = loops[0][8] == 4.0;
+        let is_accepted = loops[0].decision == Confirmed;
         assert_eq!(outcome.sentence.contains("1 accepted by you"), is_accepted);
     }
     let [amber, red] = [Assessment::Doubtful, Assessment::Bad]
@@ -214,17 +279,18 @@ fn the_list_can_be_stepped_through_and_every_choice_becomes_an_order() {
     robot.set("file", 4.0).unwrap();
     robot.press("save").unwrap();
     robot.press("cancel").unwrap();
-    let orders = robot.take_requests();
+    let requests = robot.take_requests();
+    let [turn, add, unpin, look] = [
+        MapperOrder::Turn(1),
+        MapperOrder::Add(4, 1),
+        MapperOrder::Unpin,
+        MapperOrder::Look(4),
+    ]
+    .map(|it| it.request());
+    let save = "save graph.g2o".to_owned();
     assert_eq!(
-        orders,
-        [
-            "turn 1",
-            "add 4 1",
-            "unpin",
-            "look 4",
-            "save graph.g2o",
-            "cancel"
-        ]
+        requests,
+        [turn, add, unpin, look, save, "cancel".to_owned()]
     );
 }
 
@@ -238,7 +304,7 @@ fn a_press_selects_a_keyframe_and_a_drag_moves_the_selected_one() {
     assert_eq!(handle.id, "keyframe");
     robot.drag(handle, at);
     assert_eq!(robot.values().number("keyframe"), 2.0);
-    assert_eq!(robot.take_requests(), ["look 2"]);
+    assert_eq!(orders(&mut robot), [MapperOrder::Look(2)]);
     let handle = robot.grab("map", at, reach).unwrap();
     assert_eq!(handle.id, "held");
     robot.drag(handle, at);
@@ -249,9 +315,10 @@ fn a_press_selects_a_keyframe_and_a_drag_moves_the_selected_one() {
     );
     robot.drag(handle, [2.1, 0.6]);
     robot.drag(handle, [2.1, 1.1]);
-    let orders = robot.take_requests();
-    assert_eq!(orders.len(), 1);
-    assert!(orders[0].starts_with("pin 2 2 1"), "{orders:?}");
+    let [MapperOrder::Pin(2, [x, y, _])] = orders(&mut robot)[..] else {
+        panic!("one order to pin keyframe 2");
+    };
+    assert_eq!([x, y].map(|m| (m * 1e6).round() / 1e6), [2.0, 1.0]);
     let sentence = robot.outcome().sentence;
     assert!(
         sentence.contains("Keyframe 2 is held at x 2.00 m, y 1.00 m."),
@@ -268,17 +335,16 @@ fn arrow_keys_move_the_selected_keyframe_like_a_drag() {
     robot.take_requests();
     for (key, button) in robot.keys() {
         robot.press(button).unwrap();
-        let orders = robot.take_requests();
         let expected = match *key {
-            "ArrowLeft" => "pin 2 1.95 0 0",
-            "ArrowUp" => "pin 2 2 0.05 0",
+            "ArrowLeft" => [1.95, 0.0, 0.0],
+            "ArrowUp" => [2.0, 0.05, 0.0],
             // Back again.
-            _ => "pin 2 2 0 0",
+            _ => [2.0, 0.0, 0.0],
         };
-        assert_eq!(orders, [expected], "{key}");
+        assert_eq!(orders(&mut robot), [MapperOrder::Pin(2, expected)], "{key}");
     }
     assert_eq!(robot.keys().len(), 4);
-    tell(&mut robot, "stage", "", &[1.0, 0.5, 20.0, 2.0, 1.0]);
+    report(&mut robot, &progress(Stage::Reading, 20));
     robot.press("north").unwrap();
     let none = Vec::<String>::new();
     assert_eq!(robot.take_requests(), none, "the graph is not there yet");
@@ -298,31 +364,19 @@ fn a_selected_loop_is_described_with_its_evidence() {
     assert!(sentence.contains(second), "{sentence}");
     assert_eq!(robot.summary().matches(second).count(), 1);
     // A loop of a graph from a file has no registration, and may have no χ².
-    let nan = f64::NAN;
-    tell(
-        &mut robot,
-        "loops",
-        "",
-        &[3.0, 0.0, nan, nan, nan, nan, nan, 16.3, 0.0, 0.0],
-    );
+    let bare = LoopReport {
+        share: f64::NAN,
+        ..link(f64::NAN, LoopDecision::Closed)
+    };
+    report(&mut robot, &MapperReport::Loops(vec![bare]));
     assert!(robot.summary().ends_with("from keyframe 3 to 0: closed."));
 }
 
 #[test]
 fn requests_without_a_map_are_answered() {
     let mut robot = mapped();
-    tell(
-        &mut robot,
-        "answer",
-        "The loop 3 to 0 is in the graph.",
-        &[],
-    );
-    tell(
-        &mut robot,
-        "failed",
-        "x.log is empty; give a recorded log",
-        &[],
-    );
+    tell(&mut robot, "answer", "The loop 3 to 0 is in the graph.");
+    tell(&mut robot, "failed", "x.log is empty; give a recorded log");
     assert_eq!(
         robot.outcome().sentence,
         "x.log is empty; give a recorded log"
@@ -331,7 +385,6 @@ fn requests_without_a_map_are_answered() {
         &mut robot,
         "answer",
         "truth.tum waits for a log to be opened.",
-        &[],
     );
     assert_eq!(
         robot.outcome().sentence,
@@ -342,7 +395,7 @@ fn requests_without_a_map_are_answered() {
 #[test]
 fn a_path_of_one_keyframe_has_length_zero() {
     let mut robot = mapped();
-    tell(&mut robot, "keyframes", "", &[0.0; 6]);
+    report(&mut robot, &keyframes(1));
     let sentence = robot.outcome().sentence;
     assert!(sentence.contains("on a path of 0 m"), "{sentence}");
 }
@@ -351,17 +404,34 @@ fn a_path_of_one_keyframe_has_length_zero() {
 fn a_malformed_delivery_changes_no_state() {
     let mut robot = mapped();
     let before = robot.robot().clone();
-    tell(&mut robot, "stage", "", &[9.0, 1.0, 1.0, 1.0, 1.0]);
-    tell(&mut robot, "stage", "", &[1.0]);
-    tell(&mut robot, "map", "", &[1e18, 1e18, 0.0, 0.0, 0.05]);
-    tell(&mut robot, "map", "", &[0.0, 0.0, 0.0, 0.0, 0.05]);
-    tell(&mut robot, "scan", "", &[]);
-    tell(&mut robot, "weather", "fine", &[1.0]);
+    report(&mut robot, &map(0, vec![0]));
+    report(&mut robot, &map(2, vec![0; 3]));
+    tell(&mut robot, "weather", "fine");
+    for bytes in [
+        &b""[..],
+        &[255; 40],
+        &progress(Stage::Done, 7).to_bytes()[..5],
+    ] {
+        robot.receive(&Delivery {
+            kind: "progress",
+            bytes,
+            ..Delivery::default()
+        });
+    }
     // NaN stands for a missing number, and does not equal itself.
     assert_eq!(format!("{before:?}"), format!("{:?}", robot.robot()));
-    tell(&mut robot, "loops", "", &[f64::NAN; 10]);
-    tell(&mut robot, "keyframes", "", &[f64::NAN; 12]);
-    tell(&mut robot, "errors", "", &[f64::INFINITY]);
+    let unknown = KeyframeReport {
+        stamp_s: f64::NAN,
+        pose: [f64::NAN; 3],
+        fit: f64::NAN,
+        sigma_m: f64::NAN,
+    };
+    report(&mut robot, &MapperReport::Keyframes(vec![unknown; 2]));
+    let far = LoopReport {
+        new: usize::MAX,
+        ..link(f64::INFINITY, LoopDecision::Closed)
+    };
+    report(&mut robot, &MapperReport::Loops(vec![far]));
     let _ = (
         robot.scene(),
         robot.outcome(),
@@ -398,8 +468,12 @@ fn the_path_is_coloured_by_the_selected_quantity() {
         (None, 0),
         "no reference was given"
     );
-    tell(&mut robot, "errors", "", &[0.0, 0.1, 0.2, f64::NAN, 0.4]);
-    tell(&mut robot, "grade", "5 poses: 0.2 m off", &[2.0, 5.0, 0.2]);
+    let grade = GradeReport {
+        words: "5 poses: 0.2 m off".to_owned(),
+        error_m: 0.2,
+        errors_m: vec![0.0, 0.1, 0.2, f64::NAN, 0.4],
+    };
+    report(&mut robot, &MapperReport::Grade(grade));
     assert_eq!(shades(&robot), 3);
     assert!(robot.outcome().sentence.contains("5 poses: 0.2 m off."));
 }
@@ -412,14 +486,13 @@ fn another_file_replaces_the_first_and_an_invalid_one_is_reported() {
     assert_eq!(robot.robot().stage, Stage::Opening);
     let mut robot = mapped();
     robot.set("keyframe", 2.0).unwrap();
-    tell(&mut robot, "opening", "other.bag", &[]);
+    tell(&mut robot, "opening", "other.bag");
     assert!(robot.robot().keyframes.is_empty());
     assert_eq!(robot.values().number("keyframe"), 999_999.0);
     tell(
         &mut robot,
         "failed",
         "other.bag is empty; give a recorded log",
-        &[],
     );
     let outcome = robot.outcome();
     assert_eq!(outcome.standing, Assessment::Bad);
@@ -430,7 +503,7 @@ fn another_file_replaces_the_first_and_an_invalid_one_is_reported() {
 fn what_could_not_be_fetched_is_told_once_and_no_file_is_blamed() {
     let mut robot = OwnRobot::new();
     let problem = "The sample could not be fetched; open a log of your own, or try again.";
-    tell(&mut robot, "failed", problem, &[]);
+    tell(&mut robot, "failed", problem);
     assert_eq!(robot.outcome().sentence, problem);
     let words = robot
         .scene()

@@ -1,12 +1,22 @@
 //! The widget's requests to its host, and its picture without a GPU.
 
+use log_messages::{MapperReport, ScanReport, Stage};
 use widget_kit::model::Model as _;
 use widget_kit::scene::{Layer, Mark};
 use widgets::registry::find;
 use widgets::w16_10_own_robot::model::OwnRobot;
 use widgets::w16_10_own_robot::view::RobotView;
 
-use crate::w16_10_own_robot::model::{deliver, mapped};
+use crate::w16_10_own_robot::model::{mapped, progress, report};
+
+/// The scan of a keyframe before it was deskewed, and after.
+fn scan(keyframe: usize, sweep: Vec<[f64; 2]>) -> MapperReport {
+    MapperReport::Scan(ScanReport {
+        keyframe,
+        points: vec![[2.0, 0.0], [2.0, 1.0]],
+        sweep,
+    })
+}
 
 #[test]
 fn a_press_on_a_button_becomes_a_request() {
@@ -21,11 +31,11 @@ fn stop_is_enabled_while_a_log_is_read() {
     assert!(shell.disabled().contains(&"cancel"));
     shell.press("cancel").unwrap();
     assert!(shell.take_requests().is_empty());
-    deliver(shell.model_mut(), "stage", "", &[1.0, 0.5, 20.0, 0.0, 0.0]);
+    report(shell.model_mut(), &progress(Stage::Reading, 20));
     assert!(!shell.disabled().contains(&"cancel"));
     shell.press("cancel").unwrap();
     assert_eq!(shell.take_requests(), ["cancel"]);
-    deliver(shell.model_mut(), "stage", "", &[5.0, 1.0, 40.0, 0.0, 0.0]);
+    report(shell.model_mut(), &progress(Stage::Done, 40));
     assert!(shell.disabled().contains(&"cancel"));
 }
 
@@ -44,20 +54,19 @@ fn a_scan_that_took_time_is_shown_before_and_after_deskewing() {
         });
         dots.collect::<Vec<_>>()
     };
-    deliver(&mut robot, "scan", "", &[4.0, 2.0, 0.0]);
+    report(&mut robot, &scan(4, vec![]));
     assert!(dots(&robot).is_empty(), "it was one instant");
-    deliver(&mut robot, "sweep", "", &[3.0, 2.5, 0.0]);
+    report(&mut robot, &scan(3, vec![[2.5, 0.0]]));
     assert!(dots(&robot).is_empty(), "that of another keyframe");
     // Keyframe 4 is at x = 4 m.
-    deliver(&mut robot, "sweep", "", &[4.0, 2.5, 0.0]);
+    report(&mut robot, &scan(4, vec![[2.5, 0.0]]));
     assert_eq!(dots(&robot), [[[6.5, 0.0]]]);
 }
 
 #[test]
 fn no_text_overlaps_or_is_cut_off_with_a_map_at_any_width() {
     let mut robot = mapped();
-    deliver(&mut robot, "scan", "", &[4.0, 2.0, 0.0, 2.0, 1.0]);
-    deliver(&mut robot, "sweep", "", &[4.0, 2.0, 0.0, 2.4, 1.1]);
+    report(&mut robot, &scan(4, vec![[2.0, 0.0], [2.4, 1.1]]));
     for width in [320.0, 390.0, 560.0, 700.0, 1100.0] {
         let faults = widget_kit::audit::text_faults(&robot, &RobotView, width);
         assert!(faults.is_empty(), "{faults:#?}");

@@ -1,48 +1,49 @@
 //! The robot of another log on the map, and recordings with several topics.
 
-use widget_kit::host_messages::Delivery;
+use log_messages::{LocalizationState, LocalizedScan, MapperReport, Offer, OtherLog, Stage};
 use widget_kit::model::{Assessment, Model};
 use widget_kit::scene::{Layer, Stroke};
 use widgets::w16_10_own_robot::model::OwnRobot;
-use widgets::w16_10_own_robot::model::other_log::LocalizationState;
 
-use crate::w16_10_own_robot::model::{mapped, tell};
+use crate::w16_10_own_robot::model::{mapped, progress, report, tell};
 
 const NAN: f64 = f64::NAN;
 
 /// Five scans: lost, doubtful, found, followed, lost again.
-fn places() -> Vec<f64> {
-    let place = |scan: f64, at: [f64; 3], verdict: f64, sigma_m: f64| {
-        let [x, y, theta] = at;
-        [
+fn places() -> Vec<LocalizedScan> {
+    use LocalizationState::{Doubtful, Found, Lost, Tracking};
+    let scans = [
+        ([NAN; 3], Lost, NAN),
+        ([1.0, 0.2, 0.0], Doubtful, NAN),
+        ([2.0, 0.2, 0.0], Found, 0.05),
+        ([2.5, 0.2, 0.1], Tracking, 0.04),
+        ([NAN; 3], Lost, NAN),
+    ];
+    let scans = scans.into_iter().enumerate();
+    scans
+        .map(|(scan, (pose, state, sigma_m))| LocalizedScan {
             scan,
-            10.0 + scan,
-            x,
-            y,
-            theta,
-            verdict,
-            0.8,
-            sigma_m,
-            0.5 * sigma_m,
-            0.0,
-        ]
-    };
-    [
-        place(0.0, [NAN; 3], 3.0, NAN),
-        place(1.0, [1.0, 0.2, 0.0], 2.0, NAN),
-        place(2.0, [2.0, 0.2, 0.0], 0.0, 0.05),
-        place(3.0, [2.5, 0.2, 0.1], 1.0, 0.04),
-        place(4.0, [NAN; 3], 3.0, NAN),
-    ]
-    .concat()
+            stamp_s: 10.0 + scan as f64,
+            pose,
+            state,
+            fit: 0.8,
+            ellipse: [sigma_m, 0.5 * sigma_m, 0.0],
+        })
+        .collect()
 }
 
 fn with_visitor(is_over: bool) -> OwnRobot {
     let mut robot = mapped();
-    let over = f64::from(u8::from(is_over));
-    let mut numbers = vec![0.4, over, 1.0, 1.0, 1.0, 2.0, 2.0];
-    numbers.extend(places());
-    tell(&mut robot, "where", "tuesday.log", &numbers);
+    let other = OtherLog {
+        name: "tuesday.log".to_owned(),
+        share: 0.4,
+        is_over,
+        counts: [1, 1, 1, 2],
+        first: Some(2),
+        remarks: Vec::new(),
+        places: places(),
+    };
+    report(&mut robot, &MapperReport::OtherLog(other));
     robot
 }
 
@@ -57,7 +58,7 @@ fn another_log_starts_anywhere_or_at_the_selected_keyframe() {
     robot.take_requests();
     robot.press("locate").unwrap();
     assert_eq!(robot.take_requests(), ["locate 2 0 0"]);
-    tell(&mut robot, "dropped", "tuesday.log", &[]);
+    tell(&mut robot, "dropped", "tuesday.log");
     assert_eq!(robot.take_requests(), ["locate-dropped 2 0 0"]);
     robot.set("drop", 1.0).unwrap();
     assert_eq!(robot.take_requests(), ["drop where"]);
@@ -161,7 +162,7 @@ fn localization_is_paused_and_resumed_by_play() {
     );
     robot.press("play").unwrap();
     assert_eq!(robot.take_requests(), ["pause"]);
-    tell(&mut robot, "stage", "", &[5.0, 1.0, 40.0, 2.0, 1.0]);
+    report(&mut robot, &progress(Stage::Done, 40));
     assert_eq!(robot.outcome().verdict, "held");
     robot.take_requests();
     robot.press("play").unwrap();
@@ -169,15 +170,15 @@ fn localization_is_paused_and_resumed_by_play() {
 }
 
 #[test]
-fn a_log_without_scans_is_reported_and_wrong_numbers_change_no_state() {
+fn a_log_without_scans_is_reported() {
     let mut robot = mapped();
-    let text = "x.log\nx.log is not a CARMEN log";
-    tell(
-        &mut robot,
-        "where",
-        text,
-        &[1.0, 1.0, 0.0, 0.0, 0.0, 0.0, NAN],
-    );
+    let other = OtherLog {
+        name: "x.log".to_owned(),
+        is_over: true,
+        remarks: vec!["x.log is not a CARMEN log".to_owned()],
+        ..OtherLog::default()
+    };
+    report(&mut robot, &MapperReport::OtherLog(other));
     assert!(
         robot
             .outcome()
@@ -185,23 +186,9 @@ fn a_log_without_scans_is_reported_and_wrong_numbers_change_no_state() {
             .contains(" x.log is not a CARMEN log.")
     );
     assert_eq!(robot.outcome().verdict, "1 of 1 loop to look into");
-    let before = format!("{:?}", robot.robot());
-    tell(&mut robot, "where", "y.log", &[1.0, 1.0]);
-    assert_eq!(before, format!("{:?}", robot.robot()));
-    robot.receive(&Delivery {
-        kind: "where",
-        numbers: &[NAN; 27],
-        ..Delivery::default()
-    });
-    let _ = (
-        robot.scene(),
-        robot.outcome(),
-        robot.summary(),
-        robot.tables(),
-    );
     robot.press("change").unwrap();
     let mut robot = with_visitor(true);
-    tell(&mut robot, "opening", "other.log", &[]);
+    tell(&mut robot, "opening", "other.log");
     assert!(robot.robot().other_log.is_none());
     assert!(LocalizationState::Found.is_localized() && !LocalizationState::Doubtful.is_localized());
 }
@@ -210,8 +197,17 @@ fn a_log_without_scans_is_reported_and_wrong_numbers_change_no_state() {
 fn another_topic_is_taken_if_the_recording_has_one() {
     let mut robot = mapped();
     assert!(!robot.is_enabled("other"));
-    let offers = "scan-topic\t/front\t/back\t/front\nodom-topic\t/odom\t/odom\nbody-frame\tbase\tbase\tlaser\tmap\n";
-    tell(&mut robot, "offers", offers, &[]);
+    let offer = |option: &str, names: &[&str]| Offer {
+        option: option.to_owned(),
+        taken: names[0].to_owned(),
+        names: names.iter().map(|&name| name.to_owned()).collect(),
+    };
+    let offers = vec![
+        offer("scan-topic", &["/front", "/back"]),
+        offer("odom-topic", &["/odom"]),
+        offer("body-frame", &["base", "laser", "map"]),
+    ];
+    report(&mut robot, &MapperReport::Offers(offers));
     let shown = robot.shown_tables();
     let table = shown.iter().find(|table| table.id == "offers").unwrap();
     assert_eq!(

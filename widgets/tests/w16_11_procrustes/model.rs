@@ -102,6 +102,7 @@ fn a_point_of_the_target_is_dragged_and_the_answer_follows() {
             panel: panel::POINTS,
             id,
             offset: [0.0; 2],
+            ..widget_kit::model::Handle::default()
         };
         trace.drag(handle, at(Point2::new(-seen[k].x, seen[k].y)));
     }

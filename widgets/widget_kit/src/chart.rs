@@ -102,6 +102,7 @@ pub fn grab_now(panel: &'static str, now: f64, at: [f64; 2], reach: [f64; 2]) ->
         panel,
         id: "now",
         offset: [from_line, 0.0],
+        ..Handle::default()
     })
 }
 

@@ -169,7 +169,7 @@ pub enum Motion {
 }
 
 /// Something grabbed by [`Model::grab`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Handle {
     /// The panel in which it is.
     pub panel: &'static str,
@@ -177,6 +177,10 @@ pub struct Handle {
     pub id: &'static str,
     /// Grabbed spot minus the thing's own position, which avoids a jump.
     pub offset: [f64; 2],
+    /// Which one, if there are several of the thing.
+    pub index: usize,
+    /// Within which distance of another thing a drag ends there, if it draws a line to one.
+    pub reach: f64,
 }
 
 /// The assessment of an outcome.

@@ -1,11 +1,12 @@
 //! Quality of the graph: covariances, tests of each loop against the rest, and doubts.
 
+use log_messages::{LoopDecision, MapperOrder};
 use pr_geom::SE2;
 use robot_io::quality::{LinkQuality, Quality, edge_tests};
 
 use super::{Engine, Work};
-use crate::links::{Link, Verdict};
-use crate::update::Update;
+use crate::links::Link;
+use crate::update::{Evidence, LoopEvidence, Update};
 
 /// Number of contradicting loops that are sent with their evidence.
 const SHOWN: usize = 6;
@@ -43,24 +44,30 @@ impl Engine<'_> {
         self.changes.loops = true;
         self.changes.doubts = true;
         let evidence = self.evidence();
-        self.waiting.push(evidence);
+        self.waiting.push(Update::Evidence(evidence));
         self.work = Work::Idle;
     }
 
     /// The first loops that the rest of the graph contradicts, each with the surroundings of both ends in the frame
     /// of the older one, as the loop lays them on each other.
-    fn evidence(&self) -> Update {
-        let mut numbers = vec![contradicting(&self.links).count() as f64];
-        for (index, link) in contradicting(&self.links).take(SHOWN) {
-            let older = self.surroundings(link.old, &SE2::identity());
-            let newer = self.surroundings(link.new, &link.measurement);
-            let [new, old] = [link.new, link.old].map(|k| k as f64);
-            let chi2 = link.chi2.unwrap_or(f64::NAN);
-            numbers.extend([index as f64, new, old, chi2, link.gate_chi2]);
-            numbers.extend([&older, &newer].map(|points| points.len() as f64));
-            numbers.extend(older.iter().chain(&newer).flatten());
+    fn evidence(&self) -> Evidence {
+        let loops = contradicting(&self.links).take(SHOWN);
+        let loops = loops.map(|(index, link)| LoopEvidence {
+            index,
+            ends: [link.new, link.old],
+            chi2: link.chi2.unwrap_or(f64::NAN),
+            gate_chi2: link.gate_chi2,
+            scans: [
+                self.surroundings(link.old, &SE2::identity()),
+                self.surroundings(link.new, &link.measurement),
+            ],
+            accept: MapperOrder::Accept(index).request(),
+            reject: MapperOrder::Reject(index).request(),
+        });
+        Evidence {
+            count: contradicting(&self.links).count(),
+            loops: loops.collect(),
         }
-        Update::numbers("evidence", numbers)
     }
 
     /// The scans of a keyframe at that pose and of its neighbours: a loop is registered with them too. Empty in a
@@ -90,7 +97,7 @@ impl Engine<'_> {
     fn rank(&mut self) {
         let doubt = |link: &Link| link.chi2.unwrap_or(f64::INFINITY) / link.gate_chi2;
         self.links.sort_by(|a, b| {
-            let in_graph = |link: &Link| link.verdict.is_in_graph();
+            let in_graph = |link: &Link| link.decision.is_in_graph();
             let by_graph = in_graph(b).cmp(&in_graph(a));
             by_graph.then(doubt(b).total_cmp(&doubt(a)))
         });
@@ -101,7 +108,7 @@ impl Engine<'_> {
     pub(super) fn quality(&mut self) -> Quality {
         let mut quality = self.run.quality();
         let unregistered = self.links.iter().filter(|link| link.found.is_none());
-        let in_graph = unregistered.filter(|link| link.verdict.is_in_graph());
+        let in_graph = unregistered.filter(|link| link.decision.is_in_graph());
         quality.links.extend(in_graph.map(|link| LinkQuality {
             from: link.new,
             to: link.old,
@@ -143,7 +150,7 @@ impl Engine<'_> {
         for link in self
             .links
             .iter_mut()
-            .filter(|link| link.verdict.is_in_graph())
+            .filter(|link| link.decision.is_in_graph())
         {
             let Some(found) = &link.found else { continue };
             // Two registrations of one pair of keyframes differ in their inliers.
@@ -172,8 +179,8 @@ impl Engine<'_> {
 /// The loops in the graph that the rest contradicts and that the user has not accepted, each with its index.
 fn contradicting(links: &[Link]) -> impl Iterator<Item = (usize, &Link)> {
     let is_doubted = |link: &Link| {
-        link.verdict.is_in_graph()
-            && link.verdict != Verdict::Confirmed
+        link.decision.is_in_graph()
+            && link.decision != LoopDecision::Confirmed
             && link.chi2.is_some_and(|chi2| chi2 > link.gate_chi2)
     };
     let links = links.iter().enumerate();

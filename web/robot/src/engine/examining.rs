@@ -70,7 +70,7 @@ impl<'a> Engine<'a> {
         } = examination;
         let motion = reader.motion().cloned().unwrap_or_default();
         let diagnosis = checkup.finish(&self.name, reader.notes(), &motion);
-        self.send(diagnosis);
+        self.keep_diagnosis(diagnosis);
     }
 
     /// Adds to the diagnosis what the map shows about the recording.
@@ -78,13 +78,13 @@ impl<'a> Engine<'a> {
         let found = self.run.path_remark();
         if let Some((mut diagnosis, remark)) = self.diagnosis.take().zip(found) {
             diagnosis.extend([remark]);
-            self.send(diagnosis);
+            self.keep_diagnosis(diagnosis);
         }
     }
 
-    fn send(&mut self, diagnosis: Diagnosis) {
-        let json = serde_json::to_string(&diagnosis).expect("plain numbers, strings and lists");
-        self.waiting.push(Update::text("diagnosis", json));
+    fn keep_diagnosis(&mut self, diagnosis: Diagnosis) {
+        self.waiting
+            .push(Update::Diagnosis(Box::new(diagnosis.clone())));
         self.diagnosis = Some(diagnosis);
     }
 }

@@ -1,10 +1,10 @@
-//! The user's orders as text: `turn 3`, `add 120 14`, `pin 7 1.5 2 0.1`, `unpin`,
-//! `look 12`, `cancel`; and the localization of another log.
+//! The user's orders, and the localization of another log.
 
 use ch16_slam2d::localize::StartPose;
 use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::scan::ScanPreparer;
+use log_messages::{GradeReport, LoopDecision, MapperOrder, MapperReport, ScanReport};
 use nalgebra::Vector3;
 use pr_geom::SE2;
 use robot_io::map_image::{build_map, finest_map};
@@ -16,9 +16,8 @@ use crate::editing::{Solving, rebuilt, solve};
 use crate::files::{self, MAP_CELL_M, NAMES, REPORT_CELL_M};
 use crate::given::{Choices, Given};
 use crate::grade::Reference;
-use crate::links::{Link, Verdict};
+use crate::links::Link;
 use crate::localization::Localization;
-use crate::update::Update;
 
 /// Settings for optimizing a graph file after a change.
 const PLAIN: Solving = Solving {
@@ -29,26 +28,28 @@ const PLAIN: Solving = Solving {
 
 impl<'a> Engine<'a> {
     /// Executes an order; the result is in the next updates.
-    pub fn order(&mut self, order: &str) {
-        let mut words = order.split_ascii_whitespace();
-        let name = words.next().unwrap_or_default();
-        let numbers: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
-        let answered = match (name, numbers.as_slice()) {
-            ("cancel", []) => self.cancel(),
-            ("look", [keyframe]) => self.look(*keyframe as usize),
-            ("turn", [link]) => self.turn(*link as usize),
-            ("accept", [link]) => self.accept(*link as usize),
-            ("refuse", [link]) => self.refuse(*link as usize),
-            ("add", [a, b]) => self.add(*a as usize, *b as usize),
-            ("pin", [keyframe, x, y, theta]) if x.is_finite() && y.is_finite() => {
-                self.pin(*keyframe as usize, SE2::new(*x, *y, *theta))
+    pub fn order(&mut self, order: MapperOrder) {
+        let done = match order {
+            MapperOrder::Look(keyframe) => {
+                self.look(keyframe);
+                return;
             }
-            ("unpin", []) => self.unpin(),
-            _ => Err("unknown order".to_owned()),
+            MapperOrder::Turn(link) => self.turn(link),
+            MapperOrder::Accept(link) => self.accept(link),
+            MapperOrder::Reject(link) => self.reject(link),
+            MapperOrder::Add(a, b) => self.add(a, b),
+            MapperOrder::Pin(keyframe, pose) => self.pin(keyframe, pose),
+            MapperOrder::Unpin => self.unpin(),
         };
-        let reply = answered.unwrap_or_else(|problem| problem);
+        if done.is_ok() {
+            self.keep_edit(order);
+        }
+        self.answer(done.unwrap_or_else(|problem| problem));
+    }
+
+    fn answer(&mut self, reply: String) {
         if !reply.is_empty() {
-            self.waiting.push(Update::text("answer", reply));
+            self.send(MapperReport::Answer(reply));
         }
     }
 
@@ -80,53 +81,63 @@ impl<'a> Engine<'a> {
     }
 
     /// Stops reading, and keeps what was read.
-    fn cancel(&mut self) -> Result<String, String> {
+    pub fn cancel(&mut self) {
+        let reply = self.stop();
+        self.answer(reply);
+    }
+
+    fn stop(&mut self) -> String {
         if let Some(localization) = self.localization.as_mut().filter(|it| !it.is_over()) {
             localization.end();
-            return Ok("Stopped looking for the robot.".to_owned());
+            return "Stopped looking for the robot.".to_owned();
         }
         match core::mem::replace(&mut self.work, Work::Idle) {
             Work::Examining(examination) => {
                 self.send_diagnosis(&examination);
                 self.end_of_log(&examination.reader, None);
-                Ok(String::new())
+                String::new()
             }
             Work::Reading(reader) => {
                 self.end_of_log(reader.as_ref(), None);
                 match self.work {
                     Work::Finishing => self.close_last_loops(),
                     // Ending an empty log reports that itself.
-                    _ => return Ok(String::new()),
+                    _ => return String::new(),
                 }
-                Ok(format!("Stopped after {} scans.", self.run.scans()))
+                format!("Stopped after {} scans.", self.run.scans())
             }
             other => {
                 self.work = other;
-                Ok(String::new())
+                String::new()
             }
         }
     }
 
     /// Sends the scan of a keyframe, to be drawn over the map.
-    fn look(&mut self, keyframe: usize) -> Result<String, String> {
+    fn look(&mut self, keyframe: usize) {
         let keyframes = self.run.slam().map_or(&[][..], |slam| slam.keyframes());
-        if let Some(at) = keyframes.get(keyframe) {
-            let mut numbers = vec![keyframe as f64];
-            numbers.extend(at.scan.iter().flat_map(|point| [point.x, point.y]));
-            self.waiting.push(Update::numbers("scan", numbers));
-            self.waiting.extend(self.sweep_of(keyframe));
-        }
-        Ok(String::new())
+        let Some(at) = keyframes.get(keyframe) else {
+            return;
+        };
+        self.send(MapperReport::Scan(ScanReport {
+            keyframe,
+            points: at.scan.iter().map(|point| [point.x, point.y]).collect(),
+            sweep: self.sweep_of(keyframe),
+        }));
     }
 
-    /// The scan of a keyframe as it was measured; `None` if it counts as one instant.
-    fn sweep_of(&self, keyframe: usize) -> Option<Update> {
-        let scan = &self.recorder.keyframes().get(keyframe)?.scan;
-        let mut numbers = vec![keyframe as f64];
+    /// The scan of a keyframe as it was measured; empty if it counts as one instant.
+    fn sweep_of(&self, keyframe: usize) -> Vec<[f64; 2]> {
+        let keyframe = self.recorder.keyframes().get(keyframe);
+        let Some(scan) = keyframe
+            .map(|it| &it.scan)
+            .filter(|scan| scan.beam_interval_s > 0.0)
+        else {
+            return Vec::new();
+        };
         let mut preparer = ScanPreparer::new();
         let points = preparer.points(scan, &Vector3::zeros()).iter();
-        numbers.extend(points.flat_map(|point| [point.x, point.y]));
-        (scan.beam_interval_s > 0.0).then(|| Update::numbers("sweep", numbers))
+        points.map(|point| [point.x, point.y]).collect()
     }
 
     /// Removes a loop from the graph, or adds it.
@@ -135,16 +146,16 @@ impl<'a> Engine<'a> {
         let Some(found) = self.links.get_mut(link) else {
             return Err(format!("there is no loop {link}"));
         };
-        let (before, ends) = (found.verdict, format!("{} to {}", found.new, found.old));
-        found.verdict = before.toggled();
-        let reply = match found.verdict {
-            Verdict::Removed => format!("The loop {ends} was removed from the graph"),
+        let (before, ends) = (found.decision, format!("{} to {}", found.new, found.old));
+        found.decision = before.toggled();
+        let reply = match found.decision {
+            LoopDecision::Removed => format!("The loop {ends} was removed from the graph"),
             _ => format!("The loop {ends} was added to the graph"),
         };
         match self.resolve() {
             Ok(moved_m) => Ok(format!("{reply}; keyframes moved by up to {moved_m:.2} m.")),
             Err(problem) => {
-                self.links[link].verdict = before;
+                self.links[link].decision = before;
                 Err(problem)
             }
         }
@@ -154,19 +165,19 @@ impl<'a> Engine<'a> {
     fn accept(&mut self, link: usize) -> Result<String, String> {
         self.may_edit()?;
         let found = self.links.get_mut(link);
-        let Some(found) = found.filter(|link| link.verdict.is_in_graph()) else {
+        let Some(found) = found.filter(|link| link.decision.is_in_graph()) else {
             return Err(format!("there is no loop {link} in the graph"));
         };
-        found.verdict = Verdict::Confirmed;
+        found.decision = LoopDecision::Confirmed;
         self.work = Work::Checking;
         let (new, old) = (found.new, found.old);
         Ok(format!("The loop {new} to {old} stays in the graph."))
     }
 
     /// Removes a loop from the graph; unlike [`Engine::turn`] it never adds one, however often it is sent.
-    fn refuse(&mut self, link: usize) -> Result<String, String> {
+    fn reject(&mut self, link: usize) -> Result<String, String> {
         match self.links.get(link) {
-            Some(found) if found.verdict.is_in_graph() => self.turn(link),
+            Some(found) if found.decision.is_in_graph() => self.turn(link),
             _ => Err(format!("there is no loop {link} in the graph")),
         }
     }
@@ -178,7 +189,7 @@ impl<'a> Engine<'a> {
         let found = self.register(old, new)?;
         let mut link = Link::registered(&found, found.accepted());
         if found.accepted() {
-            link.verdict = Verdict::Added;
+            link.decision = LoopDecision::Added;
         }
         let reason = link.reason.clone();
         self.links.insert(0, link);
@@ -211,8 +222,9 @@ impl<'a> Engine<'a> {
     }
 
     /// Fixes a keyframe at the user's pose.
-    fn pin(&mut self, keyframe: usize, pose: SE2) -> Result<String, String> {
+    fn pin(&mut self, keyframe: usize, [x, y, theta]: [f64; 3]) -> Result<String, String> {
         self.may_edit()?;
+        let pose = SE2::new(x, y, theta);
         if keyframe >= self.fixed.len() {
             return Err(format!("there is no keyframe {keyframe}"));
         }
@@ -267,7 +279,7 @@ impl<'a> Engine<'a> {
         match self.run.slam_mut() {
             Some(slam) if self.graph.is_none() => {
                 *slam.graph_mut() = graph;
-                let in_graph = self.links.iter().filter(|link| link.verdict.is_in_graph());
+                let in_graph = self.links.iter().filter(|link| link.decision.is_in_graph());
                 let found = in_graph.filter_map(|link| link.found);
                 let accepted = found.map(|found| LoopVerification {
                     rejection: None,
@@ -293,15 +305,10 @@ impl<'a> Engine<'a> {
         Ok(())
     }
 
-    /// The errors against the reference, if there is one.
-    pub(super) fn grade_updates(&self) -> Vec<Update> {
-        let Some((name, reference)) = &self.reference else {
-            return Vec::new();
-        };
-        match reference.grade(&self.trajectory(), &self.keyframes(), name) {
-            Ok((grade, errors)) => vec![grade, Update::numbers("errors", errors)],
-            Err(problem) => vec![Update::text("answer", problem)],
-        }
+    /// The errors against the reference, or why there are none; `None` without a reference.
+    pub(super) fn grade(&self) -> Option<Result<GradeReport, String>> {
+        let (name, reference) = self.reference.as_ref()?;
+        Some(reference.grade(&self.trajectory(), &self.keyframes(), name))
     }
 
     /// The content of one of [`NAMES`].
@@ -346,8 +353,10 @@ impl<'a> Engine<'a> {
         let lines = self.recorder.map_lines(&self.run);
         let map = finest_map(REPORT_CELL_M, |cell_m| build_map(&lines, cell_m)).ok();
         let mut remarks = self.remarks.clone();
-        remarks.extend(self.grade_updates().into_iter().map(|update| update.text));
-        remarks.retain(|remark| !remark.is_empty());
+        remarks.extend(self.grade().map(|grade| match grade {
+            Ok(grade) => grade.words,
+            Err(problem) => problem,
+        }));
         Report {
             name: &self.name,
             scans: self.scans_before + self.run.scans(),

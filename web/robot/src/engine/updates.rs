@@ -1,10 +1,11 @@
 //! Updates of the engine: progress, keyframes, loops, and choices for options.
 
+use log_messages::{KeyframeReport, MapperProgress, MapperReport, Offer, Stage};
 use robot_io::log::{LogOffer, LogReader};
 
 use super::{Engine, Work, links_of, poses_of};
 use crate::links::Link;
-use crate::update::{Stage, Update};
+use crate::update::Update;
 
 /// Share of the work after the doctor's pass, and after reading; the rest is the last loops.
 const EXAMINED_SHARE: f64 = 0.1;
@@ -16,40 +17,47 @@ impl Engine<'_> {
         let mut updates = Vec::new();
         let changes = core::mem::take(&mut self.changes);
         if changes.file {
-            let mut file = Update::text("file", self.name.clone());
-            let has_scans = f64::from(u8::from(self.has_scans));
-            file.numbers = vec![self.size_bytes as f64, has_scans];
-            updates.push(file);
+            updates.push(Update::Report(MapperReport::File {
+                name: self.name.clone(),
+                has_scans: self.has_scans,
+            }));
         }
-        updates.push(self.stage_update());
+        updates.push(Update::Report(MapperReport::Progress(self.progress())));
         if changes.keyframes {
-            updates.push(self.keyframes_update());
+            updates.push(Update::Report(self.keyframes_report()));
         }
         if changes.loops {
-            updates.push(self.loops_update());
+            updates.push(Update::Report(self.loops_report()));
         }
         if changes.doubts {
-            let mut doubts = Update::text("doubts", self.doubts.join("\n"));
-            doubts.numbers = self.look_into.iter().map(|&k| k as f64).collect();
-            updates.push(doubts);
+            updates.push(Update::Report(MapperReport::Doubts {
+                sentences: self.doubts.clone(),
+                keyframes: self.look_into.clone(),
+            }));
         }
         if changes.grade && !matches!(self.stage(), Stage::Reading | Stage::Failed) {
-            updates.extend(self.grade_updates());
+            let grade = self.grade().map(|grade| match grade {
+                Ok(grade) => MapperReport::Grade(grade),
+                Err(problem) => MapperReport::Answer(problem),
+            });
+            updates.extend(grade.map(Update::Report));
         }
         if self.has_scans {
             let scans = self.recorder.keyframes().len();
-            updates.extend(self.picture.update(scans));
+            let map = self.picture.report(scans).map(MapperReport::Map);
+            updates.extend(map.map(Update::Report));
         }
         if let Some(localization) = &mut self.localization {
-            updates.extend(localization.update(poses_of(&self.run)));
+            let other = localization.report(poses_of(&self.run));
+            updates.extend(other.map(|other| Update::Report(MapperReport::OtherLog(other))));
         }
         updates.append(&mut self.waiting);
         updates
     }
 
-    fn stage_update(&self) -> Update {
+    fn progress(&self) -> MapperProgress {
         let tried = self.run.loops();
-        let (mut share, mut words) = (1.0, String::new());
+        let (mut share, mut problem) = (1.0, String::new());
         match &self.work {
             Work::Examining(examination) => {
                 share = EXAMINED_SHARE * self.share_read(&examination.reader);
@@ -59,21 +67,15 @@ impl Engine<'_> {
                 share = EXAMINED_SHARE + rest * self.share_read(reader.as_ref());
             }
             Work::Finishing => share = READING_SHARE,
-            Work::Failed(problem) => words.clone_from(problem),
+            Work::Failed(why) => problem.clone_from(why),
             Work::Solving(_) | Work::Checking | Work::Idle => {}
         }
-        Update {
-            text: words,
-            ..Update::numbers(
-                "stage",
-                vec![
-                    f64::from(self.stage() as u8),
-                    share,
-                    (self.scans_before + self.run.scans()) as f64,
-                    tried.len() as f64,
-                    tried.iter().filter(|tried| tried.accepted).count() as f64,
-                ],
-            )
+        MapperProgress {
+            stage: self.stage(),
+            share,
+            scans: self.scans_before + self.run.scans(),
+            closed: tried.iter().filter(|tried| tried.accepted).count(),
+            problem,
         }
     }
 
@@ -82,19 +84,21 @@ impl Engine<'_> {
         read.min(1.0)
     }
 
-    fn keyframes_update(&self) -> Update {
+    fn keyframes_report(&self) -> MapperReport {
         let keyframes = self.keyframes();
-        let mut numbers = Vec::with_capacity(6 * keyframes.poses().len());
-        for (k, keyframe) in keyframes.poses().iter().enumerate() {
+        let reports = keyframes.poses().iter().enumerate().map(|(k, keyframe)| {
             let of = |values: &[f64]| values.get(k).copied().unwrap_or(f64::NAN);
-            let [x, y, theta] = keyframe.pose.to_array();
-            let sigma_m = of(&self.sigmas_m);
-            numbers.extend([keyframe.stamp_s, x, y, theta, of(&self.fits), sigma_m]);
-        }
-        Update::numbers("keyframes", numbers)
+            KeyframeReport {
+                stamp_s: keyframe.stamp_s,
+                pose: keyframe.pose.to_array(),
+                fit: of(&self.fits),
+                sigma_m: of(&self.sigmas_m),
+            }
+        });
+        MapperReport::Keyframes(reports.collect())
     }
 
-    fn loops_update(&self) -> Update {
+    fn loops_report(&self) -> MapperReport {
         let under_way;
         let links = match self.work {
             Work::Examining(_) | Work::Reading(_) | Work::Finishing => {
@@ -103,25 +107,21 @@ impl Engine<'_> {
             }
             _ => &self.links,
         };
-        let reasons: Vec<&str> = links.iter().map(|link| link.reason.as_str()).collect();
-        Update {
-            text: reasons.join("\n"),
-            ..Update::numbers("loops", links.iter().flat_map(Link::numbers).collect())
-        }
+        MapperReport::Loops(links.iter().map(Link::report).collect())
     }
 
     /// Reports the choices for the options of a recording.
     pub(super) fn send_offers(&mut self, offers: &[LogOffer]) {
-        let lines = offers.iter().map(|offer| {
-            let taken = offer.taken.as_deref().unwrap_or_default();
-            let names = offer.names.iter().map(String::as_str);
-            let words: Vec<&str> = [offer.option.name(), taken]
-                .into_iter()
-                .chain(names)
-                .collect();
-            words.join("\t")
+        let offers = offers.iter().map(|offer| Offer {
+            option: offer.option.name().to_owned(),
+            taken: offer.taken.clone().unwrap_or_default(),
+            names: offer.names.clone(),
         });
-        let lines: Vec<String> = lines.collect();
-        self.waiting.push(Update::text("offers", lines.join("\n")));
+        self.send(MapperReport::Offers(offers.collect()));
+    }
+
+    /// Sends a report with the next updates.
+    pub(super) fn send(&mut self, report: MapperReport) {
+        self.waiting.push(Update::Report(report));
     }
 }

@@ -1,11 +1,12 @@
 //! The effect of each button.
 
+use log_messages::{MapperOrder, Stage};
 use widget_kit::spec::PLAY;
 
 use super::OwnRobot;
 use super::interaction::{may_edit, nudge};
-use super::log_state::{LogState, Stage};
-use crate::w16_10_own_robot::spec::{FILES, MAX_SCANS, OPTIONS};
+use super::log_state::LogState;
+use crate::w16_10_own_robot::spec::{FILE, KEYFRAME, LOOP, MARKED, MAX_SCANS, OPTION, SCAN};
 
 impl OwnRobot {
     /// Whether a button has anything to do.
@@ -19,7 +20,7 @@ impl OwnRobot {
             "turn" => is_editable && !robot.links.is_empty(),
             "mark" | "save" => has_map,
             "add" => {
-                let marked = self.values.number("marked") as usize;
+                let marked = self.values.get(&MARKED);
                 is_editable && robot.has_scans && marked != self.keyframe()
             }
             "west" | "east" | "north" | "south" | "unpin" => is_editable && has_map,
@@ -34,12 +35,13 @@ impl OwnRobot {
     pub(super) fn press_own(&mut self, id: &str) -> Option<()> {
         let keyframe = self.keyframe();
         match id {
-            "open" | "cancel" | "unpin" | "reference" => self.ask(id.to_owned()),
+            "open" | "cancel" | "reference" => self.ask(id.to_owned()),
+            "unpin" => self.order(MapperOrder::Unpin),
             "sample" => self.begin_sample(),
             "locate" | "locate-sample" => {
                 let order = format!("{id}{}", self.start());
                 self.ask(order);
-                self.values.store("scan", MAX_SCANS);
+                self.values.store(SCAN.id, MAX_SCANS);
             }
             "change" => self.go_to_change(),
             "other" => self.take_other(),
@@ -47,25 +49,25 @@ impl OwnRobot {
             "previous" => self.go_to_link(false),
             "next" => self.go_to_link(true),
             "mark" => {
-                self.values.store("marked", keyframe as f64);
+                self.values.put(&MARKED, keyframe);
             }
             "turn" => {
                 if let Some(link) = self.link() {
-                    self.ask(format!("turn {link}"));
+                    self.order(MapperOrder::Turn(link));
                 }
             }
             "add" => {
-                let marked = self.values.number("marked");
-                self.ask(format!("add {marked} {keyframe}"));
+                let marked = self.values.get(&MARKED);
+                self.order(MapperOrder::Add(marked, keyframe));
                 // Added loops come first.
-                self.values.store("loop", 0.0);
+                self.values.put(&LOOP, 0);
             }
             "west" => nudge(self, [-1.0, 0.0]),
             "east" => nudge(self, [1.0, 0.0]),
             "north" => nudge(self, [0.0, 1.0]),
             "south" => nudge(self, [0.0, -1.0]),
             "save" => {
-                let file = FILES[self.values.number("file") as usize].label;
+                let file = self.values.get(&FILE);
                 self.ask(format!("save {file}"));
             }
             _ if id == PLAY.id => self.press_play(),
@@ -85,7 +87,7 @@ impl OwnRobot {
             _ => {
                 let (here, last) = (self.keyframe() as f64, self.last() as f64);
                 let position = self.playback.toggle(here, last);
-                self.values.store("keyframe", position);
+                self.values.store(KEYFRAME.id, position);
                 self.look();
             }
         }
@@ -99,7 +101,7 @@ impl OwnRobot {
 
     /// The order for the next topic or frame of the recording for the selected option, if it offers another one.
     fn other_order(&self) -> Option<String> {
-        let option = OPTIONS[self.values.number("option") as usize].id;
+        let option = self.values.get(&OPTION);
         let mut offers = self.robot.offers.iter();
         let offer = offers.find(|offer| offer.option == option)?;
         let here = offer.names.iter().position(|name| *name == offer.taken);
@@ -126,7 +128,7 @@ impl OwnRobot {
             (false, 0) => last,
             (false, here) => here - 1,
         };
-        self.values.store("loop", next as f64);
+        self.values.put(&LOOP, next);
         self.show_link();
     }
 

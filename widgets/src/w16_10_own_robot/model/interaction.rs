@@ -1,8 +1,8 @@
 //! Draggable things: any keyframe, to select it, and the selected one, to move it.
 
+use log_messages::{MapperOrder, Stage};
 use widget_kit::model::Handle;
 
-use super::log_state::Stage;
 use super::{OwnRobot, panel};
 
 /// Largest distance to which a keyframe can be dragged from the origin, m.
@@ -56,6 +56,7 @@ pub fn grab(robot: &OwnRobot, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Opt
             "keyframe"
         },
         offset: [at[0] - spot[0], at[1] - spot[1]],
+        ..Handle::default()
     })
 }
 
@@ -69,6 +70,7 @@ pub fn nudge(robot: &mut OwnRobot, steps: [f64; 2]) {
             panel: panel::MAP,
             id: "held",
             offset: steps.map(|steps| -NUDGE_M * steps),
+            ..Handle::default()
         };
         drag(robot, handle, at);
     }
@@ -99,7 +101,7 @@ pub fn drag(robot: &mut OwnRobot, handle: Handle, at: [f64; 2]) {
             (keyframe.pose[0], keyframe.pose[1]) = (spot[0], spot[1]);
             let [x, y, theta] = keyframe.pose;
             robot.robot.answer = format!("Keyframe {shown} is held at x {x:.2} m, y {y:.2} m.");
-            robot.ask(format!("pin {shown} {x} {y} {theta}"));
+            robot.order(MapperOrder::Pin(shown, [x, y, theta]));
         }
         _ => {
             if let Some((keyframe, _)) = nearest(robot, spot, [f64::MAX; 2]) {

@@ -3,14 +3,16 @@
 mod charts;
 mod visitor;
 
+use log_messages::Stage;
 use pr_geom::{math, sort_numbers};
 use widget_kit::scene::{
     Aspect, Axis, Bounds, ColorBar, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::log_state::{LogState, Stage};
-use super::settings::{Colour, shows};
+use super::log_state::LogState;
+use super::settings::{Colour, ShownLoops};
 use super::{OwnRobot, panel};
+use crate::w16_10_own_robot::spec::{COLOUR, LOOPS, MARKED};
 use charts::{fit, sure};
 use visitor::other_log;
 
@@ -97,14 +99,20 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
             Mark::Cross,
         ));
     }
-    if own.robot.sweep.is_some() {
+    if own
+        .robot
+        .scan
+        .as_ref()
+        .is_some_and(|scan| !scan.sweep.is_empty())
+    {
         let measured = LegendEntry::mark("before deskewing", Tone::Strained, Mark::Dot);
         legend.push(measured);
     }
-    if own.robot.links.iter().any(|link| shows(&own.values, link)) {
+    let shown = own.values.get(&LOOPS);
+    if own.robot.links.iter().any(|link| shown.include(link)) {
         legend.push(LegendEntry::line("loop", Tone::Revisit, Stroke::Solid));
     }
-    if own.values.number("links") == 2.0 && own.robot.links.iter().any(|link| !link.is_in_graph()) {
+    if shown == ShownLoops::All && own.robot.links.iter().any(|link| !link.is_in_graph()) {
         legend.push(LegendEntry::line(
             "refused",
             Tone::Series(2),
@@ -180,7 +188,8 @@ fn links(own: &OwnRobot) -> Vec<Layer> {
     let robot = &own.robot;
     let chosen = own.link();
     let segments = |is_in_graph: bool| {
-        let links = robot.links.iter().filter(|link| shows(&own.values, link));
+        let shown = own.values.get(&LOOPS);
+        let links = robot.links.iter().filter(|link| shown.include(link));
         let links = links.filter(|link| link.is_in_graph() == is_in_graph);
         links
             .filter_map(|link| Some([at(robot, link.new)?, at(robot, link.old)?]))
@@ -220,7 +229,7 @@ fn links(own: &OwnRobot) -> Vec<Layer> {
 /// The path in its colours over a line of ink, and the colour bar.
 fn way(own: &OwnRobot) -> (Vec<Layer>, Option<ColorBar>) {
     let robot = &own.robot;
-    let colour = Colour::from_values(&own.values);
+    let colour = own.values.get(&COLOUR);
     let values = colour.values(robot);
     let mut known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     sort_numbers(&mut known);
@@ -288,20 +297,21 @@ fn here(own: &OwnRobot) -> Vec<Layer> {
     let pose = robot.keyframes[shown].pose;
     let (sin, cos) = math::sin_cos(pose[2]);
     // The motion during the sweep moves the points off the walls.
-    for (scan, mark, tone) in [
-        (&robot.sweep, Mark::Dot, Tone::Strained),
-        (&robot.scan, Mark::Cross, Tone::Measurement),
-    ] {
-        if let Some((of, points)) = scan
-            && *of == shown
-        {
-            let placed = points
-                .iter()
-                .map(|[x, y]| [pose[0] + cos * x - sin * y, pose[1] + sin * x + cos * y]);
+    let scan = robot.scan.iter().filter(|scan| scan.keyframe == shown);
+    for (points, mark, tone) in scan.flat_map(|scan| {
+        [
+            (&scan.sweep, Mark::Dot, Tone::Strained),
+            (&scan.points, Mark::Cross, Tone::Measurement),
+        ]
+    }) {
+        let placed = points
+            .iter()
+            .map(|[x, y]| [pose[0] + cos * x - sin * y, pose[1] + sin * x + cos * y]);
+        if !points.is_empty() {
             layers.push(Layer::points(placed.collect(), mark, tone, 2.5));
         }
     }
-    let marked = own.values.number("marked") as usize;
+    let marked = own.values.get(&MARKED);
     if marked > 0
         && let Some(at) = at(robot, marked)
     {

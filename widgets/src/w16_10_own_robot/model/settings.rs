@@ -1,8 +1,8 @@
-//! Interprets the values of the parameters: the colours of the path, and which loops are shown.
+//! What the choices of the parameters mean: the colours of the path, and which loops are shown.
 
-use widget_kit::values::Values;
+use log_messages::LoopReport;
 
-use super::log_state::{Link, LogState};
+use super::log_state::LogState;
 
 /// The quantity that colours the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,16 +18,6 @@ pub enum Colour {
 }
 
 impl Colour {
-    /// The selected one.
-    pub fn from_values(values: &Values) -> Self {
-        match values.number("colour") as usize {
-            0 => Self::Time,
-            1 => Self::Fit,
-            2 => Self::Sigma,
-            _ => Self::Error,
-        }
-    }
-
     /// Name of the colour bar, with its unit.
     pub fn label(self) -> &'static str {
         match self {
@@ -47,17 +37,30 @@ impl Colour {
                 Self::Time => keyframe.stamp_s - start_s,
                 Self::Fit => keyframe.fit,
                 Self::Sigma => keyframe.sigma_m,
-                Self::Error => robot.errors_m.get(k).copied().unwrap_or(f64::NAN),
+                Self::Error => robot.error_m(k),
             })
             .collect()
     }
 }
 
-/// Whether a loop is shown on the map.
-pub fn shows(values: &Values, link: &Link) -> bool {
-    match values.number("links") as usize {
-        0 => false,
-        1 => link.is_in_graph(),
-        _ => true,
+/// Which loops the map shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShownLoops {
+    /// None.
+    None,
+    /// Those of the graph.
+    InGraph,
+    /// The rejected ones as well.
+    All,
+}
+
+impl ShownLoops {
+    /// Whether a loop is shown.
+    pub fn include(self, link: &LoopReport) -> bool {
+        match self {
+            Self::None => false,
+            Self::InGraph => link.is_in_graph(),
+            Self::All => true,
+        }
     }
 }

@@ -1,12 +1,12 @@
 //! The tables: loops with their evidence and doubts beside the picture; all keyframes and all loops for the
 //! export.
 
+use log_messages::LoopReport;
 use widget_kit::model::{Table, TablePlace};
 
 use super::OwnRobot;
-use super::log_state::Link;
 use super::texts::verdict;
-use crate::w16_10_own_robot::spec::OPTIONS;
+use crate::w16_10_own_robot::spec::RECORDING_OPTIONS;
 
 /// Rows of loops beside the picture.
 const SHOWN_LOOPS: usize = 8;
@@ -115,8 +115,10 @@ fn offers(own: &OwnRobot) -> Option<Table> {
         .map(|offer| {
             let names = offer.names.iter().filter(|name| **name != offer.taken);
             let others: Vec<&str> = names.take(SHOWN_SENTENCES).map(String::as_str).collect();
-            let label = OPTIONS.iter().find(|option| option.id == offer.option);
-            let label = label.map_or("", |option| option.label);
+            let label = RECORDING_OPTIONS
+                .iter()
+                .find(|(name, ..)| *name == offer.option);
+            let label = label.map_or("", |(.., label)| label);
             vec![label.to_owned(), offer.taken.clone(), others.join(", ")]
         })
         .collect();
@@ -166,7 +168,7 @@ fn places(own: &OwnRobot) -> Option<Table> {
 }
 
 fn every_loop(own: &OwnRobot) -> Table {
-    let row = |link: &Link| {
+    let row = |link: &LoopReport| {
         vec![
             link.new.to_string(),
             link.old.to_string(),
@@ -203,7 +205,6 @@ fn every_loop(own: &OwnRobot) -> Table {
 }
 
 fn keyframes(own: &OwnRobot) -> Table {
-    let errors = &own.robot.errors_m;
     let keyframes = own.robot.keyframes.iter().enumerate();
     let rows = keyframes.map(|(k, keyframe)| {
         let [x, y, theta] = keyframe.pose;
@@ -215,7 +216,7 @@ fn keyframes(own: &OwnRobot) -> Table {
             theta.to_string(),
             number(keyframe.fit, 3),
             number(keyframe.sigma_m, 4),
-            number(errors.get(k).copied().unwrap_or(f64::NAN), 4),
+            number(own.robot.error_m(k), 4),
         ]
     });
     Table {

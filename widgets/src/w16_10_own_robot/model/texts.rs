@@ -1,11 +1,12 @@
 //! The result in words and numbers.
 
+use log_messages::{KeyframeReport, LoopDecision, LoopReport, Stage};
 use pr_geom::math;
 use widget_kit::model::{Assessment, Fact, Outcome};
 use widget_kit::plural::plural;
 
 use super::OwnRobot;
-use super::log_state::{Link, LogState, Stage, Verdict};
+use super::log_state::LogState;
 
 /// The privacy statement about the reader's file.
 const STAYS: &str = "The file stays in this browser; nothing of it is sent anywhere.";
@@ -60,7 +61,8 @@ fn in_graph(robot: &LogState) -> usize {
 /// Loops of the graph that the rest of it contradicts, and that the reader has not accepted.
 fn to_look_into(robot: &LogState) -> usize {
     let links = robot.links.iter();
-    let open = links.filter(|link| link.is_contradicted() && link.verdict != Verdict::Confirmed);
+    let open =
+        links.filter(|link| link.is_contradicted() && link.decision != LoopDecision::Confirmed);
     open.count()
 }
 
@@ -77,9 +79,9 @@ fn sentence(own: &OwnRobot) -> String {
         Stage::Opening => format!("{name} is opened."),
         Stage::Reading => format!(
             "{name}: {done:.0} % done, {}, {}, {} closed.",
-            plural(robot.scans as usize, "scan"),
+            plural(robot.scans, "scan"),
             plural(robot.keyframes.len(), "keyframe"),
-            plural(robot.tried[1] as usize, "loop")
+            plural(robot.closed, "loop")
         ),
         Stage::Finishing => format!("{name}: {done:.0} % done, the last loops are closed."),
         Stage::Solving => format!(
@@ -114,8 +116,8 @@ fn visitor(own: &OwnRobot) -> String {
         };
     };
     let [.., doubtful, lost] = other.counts;
-    let first = if other.first.is_finite() {
-        format!("is found at its scan {:.0}", other.first)
+    let first = if let Some(first) = other.first {
+        format!("is found at its scan {first}")
     } else if other.is_over {
         "is found nowhere on this map".to_owned()
     } else {
@@ -143,7 +145,7 @@ fn visitor(own: &OwnRobot) -> String {
         String::new()
     };
     format!(
-        " The robot of {name} {first}{done}: of {scans:.0} scans {:.0} are localized, {doubtful:.0} doubtful, {lost:.0} lost. At scan {:.0} it is {}{at}.",
+        " The robot of {name} {first}{done}: of {scans} scans {} are localized, {doubtful} doubtful, {lost} lost. At scan {} it is {}{at}.",
         other.localized(),
         shown.scan,
         shown.state.name()
@@ -167,7 +169,7 @@ fn finished(robot: &LogState) -> String {
     let source = if robot.has_scans {
         format!(
             "{} became {}",
-            plural(robot.scans as usize, "scan"),
+            plural(robot.scans, "scan"),
             plural(robot.keyframes.len(), "keyframe")
         )
     } else {
@@ -193,7 +195,7 @@ fn path_length_m(robot: &LogState) -> f64 {
 }
 
 /// A loop with its evidence.
-pub fn evidence(link: &Link) -> String {
+pub fn evidence(link: &LoopReport) -> String {
     let why = match link.reason.as_str() {
         "" => String::new(),
         reason => format!(", because {reason}"),
@@ -220,31 +222,31 @@ pub fn evidence(link: &Link) -> String {
 }
 
 /// The decision on a loop.
-pub fn verdict(link: &Link) -> &'static str {
-    match link.verdict {
-        Verdict::Closed => "closed",
-        Verdict::Rejected => "rejected",
-        Verdict::Removed => "rejected by you",
-        Verdict::Added => "closed by you",
-        Verdict::Confirmed => "accepted by you",
+pub fn verdict(link: &LoopReport) -> &'static str {
+    match link.decision {
+        LoopDecision::Closed => "closed",
+        LoopDecision::Rejected => "rejected",
+        LoopDecision::Removed => "rejected by you",
+        LoopDecision::Added => "closed by you",
+        LoopDecision::Confirmed => "accepted by you",
     }
 }
 
 fn facts(own: &OwnRobot) -> Vec<Fact> {
     let robot = &own.robot;
-    let count = |of: &dyn Fn(&Link) -> bool| {
+    let count = |of: &dyn Fn(&LoopReport) -> bool| {
         let links = robot.links.iter().filter(|link| of(link)).count();
         links as f64
     };
     let sigmas = robot.keyframes.iter().map(|keyframe| keyframe.sigma_m);
     let worst_m = sigmas.filter(|s| s.is_finite()).fold(f64::NAN, f64::max);
     let shown = robot.keyframes.get(own.keyframe());
-    let of_shown = |of: fn(&super::log_state::Keyframe) -> f64| shown.map_or(f64::NAN, of);
+    let of_shown = |of: fn(&KeyframeReport) -> f64| shown.map_or(f64::NAN, of);
     let grade_m = robot.grade.as_ref().map_or(f64::NAN, |grade| grade.error_m);
     let done = 100.0 * robot.share;
     let mut facts = vec![
         Fact::count("done_percent", "done, %", done.floor()),
-        Fact::count("scans", "scans", robot.scans),
+        Fact::count("scans", "scans", robot.scans as f64),
         Fact::count("keyframes", "keyframes", robot.keyframes.len() as f64),
         Fact::new("path_length_m", "path", path_length_m(robot), "m", 1),
         Fact::count("loops", "loops in the graph", in_graph(robot) as f64),
@@ -265,11 +267,14 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
     ];
     if let Some(other) = &robot.other_log {
         let [.., doubtful, lost] = other.counts;
-        facts.extend([
-            Fact::count("where_localized", "other log: localized", other.localized()),
-            Fact::count("where_doubtful", "other log: doubtful", doubtful),
-            Fact::count("where_lost", "other log: lost", lost),
-        ]);
+        facts.extend(
+            [
+                ("where_localized", "other log: localized", other.localized()),
+                ("where_doubtful", "other log: doubtful", doubtful),
+                ("where_lost", "other log: lost", lost),
+            ]
+            .map(|(id, label, count)| Fact::count(id, label, count as f64)),
+        );
     }
     facts
 }

@@ -30,6 +30,7 @@ pub fn grab(trace: &ProcrustesTrace, panel: &str, at: [f64; 2], reach: [f64; 2])
         panel: panel::POINTS,
         id,
         offset: [at[0] - point.x, at[1] - point.y],
+        ..Handle::default()
     })
 }
 

@@ -46,6 +46,7 @@ pub fn grab(
             thing::START
         },
         offset: [0.0, 0.0],
+        ..Handle::default()
     })
 }
 
@@ -58,6 +59,7 @@ fn grab_source(explorer: &BasinExplorer, at: [f64; 2], reach: [f64; 2]) -> Optio
         panel: panel::SWEEPS,
         id,
         offset: [at[0] - spot.x, at[1] - spot.y],
+        ..Handle::default()
     };
     let turn = turn_handle(explorer);
     if near(turn) {

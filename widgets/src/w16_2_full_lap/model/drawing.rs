@@ -262,6 +262,7 @@ impl FullLap {
             panel: panel::MAP,
             id,
             offset: [0.0; 2],
+            ..Handle::default()
         };
         match tool {
             Tool::Move => under.map(PlanElement::handle),

@@ -107,6 +107,7 @@ pub fn grab(moment: &Moment, name: &str, at: [f64; 2], reach: [f64; 2]) -> Optio
             panel: panel::MAP,
             id: WIPE,
             offset: [off, 0.0],
+            ..Handle::default()
         })
     };
     let any = || part_at(moment, name, at, reach);
@@ -134,9 +135,9 @@ fn keyframe(moment: &Moment, part: Option<Part>, at: [f64; 2], reach: [f64; 2]) 
     is_near.then_some(Handle {
         panel: panel::MAP,
         id: KEYFRAME,
-        // The dragged thing is a line without a position of its own: the handle stores the keyframe at its
-        // start and the reach.
-        offset: [node as f64, reach[0]],
+        index: node,
+        reach: reach[0],
+        ..Handle::default()
     })
 }
 
@@ -145,8 +146,9 @@ pub fn dragged_ends(moment: &Moment, handle: Handle, at: [f64; 2]) -> Option<[us
     if handle.id != KEYFRAME {
         return None;
     }
-    let [from, reach] = handle.offset;
-    let from = from as usize;
+    let Handle {
+        index: from, reach, ..
+    } = handle;
     let shown = picture::shown_nodes(moment);
     let away = |node: usize| {
         let [x, y] = shown[node];

@@ -121,7 +121,7 @@ impl PlanElement {
     /// The piece of a handle.
     pub fn held(handle: Handle) -> Option<Self> {
         let kind = KINDS.iter().position(|name| *name == handle.id)?;
-        Self::from_index(kind, handle.offset[0] as usize)
+        Self::from_index(kind, handle.index)
     }
 
     /// The handle of the piece.
@@ -129,8 +129,8 @@ impl PlanElement {
         Handle {
             panel: panel::MAP,
             id: KINDS[self.kind()],
-            // The index identifies the piece; the stroke stores where it began.
-            offset: [self.index() as f64, 0.0],
+            index: self.index(),
+            ..Handle::default()
         }
     }
 

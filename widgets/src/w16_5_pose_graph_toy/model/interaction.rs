@@ -86,6 +86,7 @@ pub fn grab(toy: &PoseGraphToy, panel: &str, at: [f64; 2], reach: [f64; 2]) -> O
         panel: panel::GRAPH,
         id,
         offset: [at[0] - spot.x, at[1] - spot.y],
+        ..Handle::default()
     })
 }
 

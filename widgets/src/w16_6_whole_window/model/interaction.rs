@@ -32,6 +32,7 @@ pub fn grab(window: &WholeWindow, panel: &str, at: [f64; 2], reach: [f64; 2]) ->
             panel,
             id,
             offset: away,
+            ..Handle::default()
         })
     };
     let turn = (panel == panel::SWEEPS).then(|| take(thing::TURN, turn_handle(&guess)));

@@ -28,6 +28,7 @@ pub fn grab(been: &PlaceRecognition, panel: &str, at: [f64; 2], reach: [f64; 2])
         panel,
         id,
         offset: [at[0] - x, at[1] - y],
+        ..Handle::default()
     };
     match panel {
         panel::FLAT => {

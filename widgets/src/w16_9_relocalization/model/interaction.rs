@@ -32,6 +32,7 @@ pub fn grab(back: &Relocalization, panel: &str, at: [f64; 2], reach: [f64; 2]) -
             panel: panel::MAP,
             id,
             offset: away,
+            ..Handle::default()
         })
     };
     take(thing::TURN, turn_handle(&start)).or_else(|| take(thing::PLACE, start.position()))

@@ -327,6 +327,7 @@ impl Model for Fake {
             panel: "map",
             id: "thing",
             offset,
+            ..Handle::default()
         })
     }
 

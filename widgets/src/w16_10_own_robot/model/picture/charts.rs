@@ -26,14 +26,14 @@ pub fn sure(own: &OwnRobot) -> Panel {
         tone: Tone::Posterior,
         mark: Mark::Square,
     };
-    if own.robot.errors_m.is_empty() {
+    if own.robot.errors_m().is_empty() {
         return chart.panel(&[sigma]);
     }
     chart.panel(&[
         sigma,
         Series {
             label: "error",
-            values: &own.robot.errors_m,
+            values: own.robot.errors_m(),
             tone: Tone::Truth,
             mark: Mark::Plus,
         },
