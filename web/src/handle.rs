@@ -238,6 +238,12 @@ impl Widget {
         self.shared.request_repaint();
     }
 
+    /// The effect of the handle under the pointer, which the page shows beside it.
+    #[must_use]
+    pub fn handle(&self) -> Option<String> {
+        self.shared.shell.borrow().handle().map(str::to_owned)
+    }
+
     /// Whether a map is zoomed.
     #[wasm_bindgen(js_name = isZoomed)]
     pub fn is_zoomed(&self) -> bool {

@@ -285,6 +285,8 @@ export class Lifecycle implements Visibility, Drawer {
     if (!fits && height > 0) canvas.style.height = `${height}px`;
     else if (!this.#parts.stage.classList.contains('live')) this.#showLive(startedAt);
     placeControls(this.#parts, instance.use((widget) => widget.stageHeight()));
+    const handle = instance.use((widget) => widget.handle()) ?? '';
+    if (canvas.title !== handle) canvas.title = handle;
     const frames = instance.use((widget) => widget.frames());
     // eframe paints only changes, and without painting the canvas is empty.
     if (frames !== this.#drawnFrames) this.#host.drew(canvas);

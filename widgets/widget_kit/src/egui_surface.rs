@@ -89,12 +89,6 @@ fn image(raster: &Raster, theme: Theme) -> egui::ColorImage {
     egui::ColorImage::new([raster.columns, raster.rows], pixels)
 }
 
-/// The font of a size.
-#[must_use]
-pub fn font(size: TextSize) -> FontId {
-    FontId::proportional(size.px())
-}
-
 /// A colour of the palette for egui.
 #[must_use]
 pub fn color([r, g, b]: Rgb) -> Color32 {
@@ -111,7 +105,11 @@ fn egui_rect(rect: PxRect) -> Rect {
 
 /// Lays out a text without a colour, so that egui caches one layout for measuring and for every colour.
 fn laid_out(painter: &Painter, text: &str, size: TextSize) -> Arc<Galley> {
-    painter.layout_no_wrap(text.to_owned(), font(size), Color32::PLACEHOLDER)
+    painter.layout_no_wrap(
+        text.to_owned(),
+        FontId::proportional(size.px()),
+        Color32::PLACEHOLDER,
+    )
 }
 
 /// Measures text with egui's fonts.

@@ -50,5 +50,3 @@ pub mod egui_surface;
 pub mod pointer;
 #[cfg(feature = "view")]
 pub mod shell;
-#[cfg(feature = "view")]
-pub mod style;

@@ -1,14 +1,11 @@
 //! The pointer over the panels: grab, drag, hover, zoom, pan.
 
-use egui::{CursorIcon, Event, MultiTouchInfo, PointerButton, Pos2, Response, Sense, Tooltip, Ui};
+use egui::{CursorIcon, Event, MultiTouchInfo, PointerButton, Pos2, Response, Sense, Ui};
 
 use crate::model::{Handle, Model};
 use crate::scene::{Layer, Panel};
 use crate::transform::Transform;
 use crate::zoom::Zoom;
-
-/// Distance of a tooltip from the pointer: what is grabbed stays visible.
-const POINTER_GAP_PX: f32 = 16.0;
 
 /// Distance within which a mouse grabs something, pixels.
 pub const MOUSE_REACH_PX: f64 = 14.0;
@@ -24,8 +21,8 @@ pub struct Pointer {
     /// Whether the last press was by touch.
     by_touch: bool,
     hovered: Option<(&'static str, [f64; 2])>,
-    /// The tooltip of the handle that was dragged last: it would cover the result of the drag.
-    followed: Option<&'static str>,
+    /// The handle under the pointer.
+    handle: Option<&'static str>,
     /// Whether a press reached the model.
     pressed: bool,
 }
@@ -111,6 +108,12 @@ impl Pointer {
         self.pressed
     }
 
+    /// The effect of the handle under the pointer, which the host shows.
+    #[must_use]
+    pub fn handle(&self) -> Option<&'static str> {
+        self.handle
+    }
+
     /// Ends every drag.
     pub fn release(&mut self, model: &mut dyn Model) {
         if let Some(Held::Thing(_)) = self.held.take() {
@@ -179,7 +182,7 @@ impl Pointer {
             }
             let moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO);
             if from.is_some() || moved {
-                touched = self.pull(panel, to, model, at);
+                touched = self.pull(panel, model, at);
             }
         }
         if is_down {
@@ -212,19 +215,12 @@ impl Pointer {
         };
     }
 
-    fn pull(
-        &mut self,
-        panel: &Panel,
-        to: &Transform,
-        model: &mut dyn Model,
-        at: [f64; 2],
-    ) -> Touched {
+    fn pull(&mut self, panel: &Panel, model: &mut dyn Model, at: [f64; 2]) -> Touched {
         if self.panel_held() != Some(panel.id) {
             return Touched::No;
         }
         match self.held {
             Some(Held::Thing(handle)) => {
-                self.followed = handle_label(panel, to, at).or(self.followed);
                 model.drag(handle, at);
                 Touched::Yes
             }
@@ -269,22 +265,15 @@ impl Pointer {
             .filter(|_| self.held.is_none())
             .map(|pos| (panel.id, to.from_px([pos.x, pos.y])));
         let was_here = self.hovered.is_some_and(|(id, _)| id == panel.id);
-        if let Some((_, at)) = place {
-            if model.grab(panel.id, at, reach(to, false)).is_some() {
-                ui.ctx().set_cursor_icon(CursorIcon::Grab);
-            }
-            let label = handle_label(panel, to, at);
-            if let Some(label) = label.filter(|_| label != self.followed) {
-                let tooltip = Tooltip::for_widget(response)
-                    .at_pointer()
-                    .gap(POINTER_GAP_PX);
-                tooltip.show(|ui| ui.label(label));
-            }
+        let can_grab = |(_, at)| model.grab(panel.id, at, reach(to, false)).is_some();
+        if place.is_some_and(can_grab) {
+            ui.ctx().set_cursor_icon(CursorIcon::Grab);
         }
         if place == self.hovered || (place.is_none() && !was_here) {
             return Touched::No;
         }
         model.hover(panel.id, place.map(|(_, at)| at));
+        self.handle = place.and_then(|(_, at)| handle_label(panel, to, at));
         self.hovered = place;
         Touched::Yes
     }

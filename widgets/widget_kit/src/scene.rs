@@ -145,7 +145,7 @@ pub enum Layer {
         at: [f64; 2],
         /// Meaning.
         tone: Tone,
-        /// Its effect, for the tooltip: `turn the source`.
+        /// Its effect, for the host to show at the pointer: `turn the source`.
         label: &'static str,
     },
     /// The ellipse `center + A u`, |u| = 1, with the columns of A as half axes.

@@ -15,7 +15,6 @@ use crate::palette::{self, Theme};
 use crate::param::ParamError;
 use crate::pointer::{Pointer, TOUCH_REACH_PX};
 use crate::scene::{Aspect, Scene, Tone};
-use crate::style;
 use crate::surface::PxRect;
 use crate::svg::picture_svg;
 use crate::transform::Transform;
@@ -230,6 +229,12 @@ impl Shell {
         Some(to.to_px(at))
     }
 
+    /// The effect of the handle under the pointer, see [`Pointer::handle`].
+    #[must_use]
+    pub fn handle(&self) -> Option<&'static str> {
+        self.pointer.handle()
+    }
+
     /// Whether a map is zoomed.
     #[must_use]
     pub fn is_zoomed(&self) -> bool {
@@ -277,7 +282,6 @@ impl Shell {
 
     /// Draws the picture into the available width.
     pub fn ui(&mut self, ui: &mut Ui) {
-        ui.set_style(style::style(self.theme));
         let paper = color(palette::tone(self.theme, Tone::Paper));
         ui.painter().rect_filled(ui.clip_rect(), 0.0, paper);
         self.advance(ui);
