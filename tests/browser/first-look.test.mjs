@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import * as h from './harness.mjs';
-import { cloudSpot } from './spots.mjs';
+import { cloudSpot, restingSpot } from './spots.mjs';
 
 const visit = h.visitor();
 const at = (path, test, options = {}) => visit('', test, { path, options });
@@ -98,6 +98,32 @@ describe('what can be pressed', () => {
       }, { viewport: { width: 1280, height: 900 } });
     });
   }
+});
+
+describe('a handle under the pointer', () => {
+  it('has its effect beside it, and the paper has nothing', async () => {
+    await visit('<slam-widget name="w16.8"></slam-widget>', async (tab) => {
+      await h.ready(tab);
+      const rest = await restingSpot(tab);
+      const spots = await tab.evaluate(() => {
+        const widget = document.querySelector('slam-widget');
+        const { left, top, width, height } = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
+        const grid = (length) => Array.from({ length: Math.floor(length / 12) }, (_, at) => 12 * at);
+        return grid(height).flatMap((y) => grid(width).map((x) => [x, y]))
+          .filter(([x, y]) => widget.dragsAt(x, y)).map(([x, y]) => [left + x, top + y]);
+      });
+      const titleAt = async (spot) => {
+        await tab.mouse.move(...spot);
+        await h.moreFrames(tab, 2);
+        return tab.evaluate(() => document.querySelector('slam-widget').shadowRoot.querySelector('canvas').title);
+      };
+      // Where a finger grabs the box, some spots are too far from it for the mouse.
+      const titles = new Set();
+      for (const spot of spots) titles.add(await titleAt(spot));
+      assert.ok(titles.has('drag the box'), [...titles].join(' | '));
+      assert.equal(await titleAt(rest), '');
+    });
+  });
 });
 
 describe('a handle that is held', () => {

@@ -1,5 +1,6 @@
 //! A window with a widget in it: its picture, and its controls in a panel beside it.
 
+use egui::{PopupAnchor, Tooltip};
 use widget_kit::palette::Theme;
 use widget_kit::shell::Shell;
 
@@ -7,6 +8,8 @@ use crate::panel::panel;
 
 /// Width of the side panel, points.
 const PANEL: f32 = 340.0;
+/// Distance of a handle's effect from the pointer, points: what is grabbed stays visible.
+const POINTER_GAP: f32 = 16.0;
 
 /// Opens a window with that widget and returns when it is closed.
 ///
@@ -42,6 +45,16 @@ impl eframe::App for Window {
         egui::ScrollArea::vertical()
             .auto_shrink(false)
             .show(ui, |ui| self.shell.ui(ui));
+        if let Some(effect) = self.shell.handle() {
+            Tooltip::always_open(
+                ui.ctx().clone(),
+                ui.layer_id(),
+                ui.scope_id(),
+                PopupAnchor::Pointer,
+            )
+            .gap(POINTER_GAP)
+            .show(|ui| ui.label(effect));
+        }
     }
 
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
