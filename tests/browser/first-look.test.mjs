@@ -118,9 +118,9 @@ describe('a handle under the pointer', () => {
         return tab.evaluate(() => document.querySelector('slam-widget').shadowRoot.querySelector('canvas').title);
       };
       // Where a finger grabs the box, some spots are too far from it for the mouse.
-      const titles = new Set();
-      for (const spot of spots) titles.add(await titleAt(spot));
-      assert.ok(titles.has('drag the box'), [...titles].join(' | '));
+      let title = '';
+      while (!title && spots.length > 0) title = await titleAt(spots.pop());
+      assert.equal(title, 'drag the box');
       assert.equal(await titleAt(rest), '');
     });
   });
