@@ -3,7 +3,6 @@
 #[cfg(feature = "exercises")]
 mod exercises;
 mod incremental;
-mod laps;
 mod report;
 
 use std::fs::File;
@@ -17,20 +16,15 @@ use robot_io::json_log::FrameLine;
 use serde::Serialize;
 
 use crate::in_file::InFile as _;
-use crate::lap_options::{TrialArgs, choice};
-use crate::numbers;
+use crate::lap_options::{NoiseArgs, TrialArgs, choice};
 use crate::output::{print_json, say};
 use report::{LapJson, TickJson, print_errors};
 
 /// Simulate the lap in the Apartment or another world, and estimate it.
 #[derive(Args, Clone, Debug)]
 pub struct LapArgs {
-    /// Seed of all noise, decimal or 0x….
-    #[arg(long, default_value = "0xC0FFEE", value_parser = numbers::seed, allow_hyphen_values = true)]
-    seed: u32,
-    /// Factor on the six parameters of odometry noise.
-    #[arg(long, default_value = "1", value_parser = numbers::noise_factor, allow_hyphen_values = true)]
-    noise: f64,
+    #[command(flatten)]
+    noise: NoiseArgs,
     #[command(flatten)]
     trial: TrialArgs,
     /// Estimator of the lap.
@@ -43,10 +37,8 @@ pub struct LapArgs {
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
     /// Let the functions that you wrote in exercises/ drive the lap: docs/teaching/exercises.md.
-    #[arg(long, conflicts_with_all = ["front_end", "loop_matcher", "gate", "information", "no_information_cap", "estimator", "laps", "json"])]
+    #[arg(long, conflicts_with_all = ["front_end", "loop_matcher", "gate", "information", "no_information_cap", "estimator", "json"])]
     exercises: bool,
-    #[command(flatten)]
-    laps: laps::LapsArgs,
     /// Print one JSON object with every tick, keyframe and loop event.
     #[arg(long)]
     json: bool,
@@ -67,11 +59,8 @@ impl LapArgs {
 /// # Errors
 /// If the world file cannot be used, or the frames cannot be written.
 pub fn run(args: &LapArgs) -> anyhow::Result<()> {
-    if let Some(count) = args.laps.laps {
-        let course = args.trial.course()?;
-        return laps::run(&args.laps, count, &course, args.seed, args.noise, args.json);
-    }
-    let mut config = args.trial.trial()?.lap(args.seed, args.noise);
+    let NoiseArgs { seed, noise } = args.noise;
+    let mut config = args.trial.trial()?.lap(seed, noise);
     if args.estimator() == LapEstimator::FrontEnd {
         config = config.without_loops();
     }
@@ -134,7 +123,6 @@ fn json(record: &LapRecord, args: &LapArgs) -> impl Serialize {
     let lap = &record.lap;
     let poses = lap.poses(record.ticks());
     LapJson {
-        seed: args.seed,
         noise: args.noise,
         estimator: args.estimator().name(),
         digest: format!("{:016x}", record.digest()),
@@ -149,7 +137,7 @@ fn json(record: &LapRecord, args: &LapArgs) -> impl Serialize {
 
 fn print_text(record: &LapRecord, args: &LapArgs) {
     let summary = &record.lap.summary;
-    say!("seed {:#x}, noise ×{}", args.seed, args.noise);
+    say!("seed {:#x}, noise ×{}", args.noise.seed, args.noise.noise);
     print_errors(
         [summary.ticks, summary.keyframes],
         [summary.odometry_end_error_m, summary.odometry_rms_m],

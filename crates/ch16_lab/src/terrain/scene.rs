@@ -2,6 +2,7 @@
 
 use pr_geom::{Rotation, SE2};
 use pr_sim::{Lidar, Rng, World};
+use serde::Serialize;
 
 use super::information::{PoseInformation, pose_information};
 use crate::scenes::{self, MAP_POINTS_PER_CELL, NORMAL_RADIUS_M};
@@ -49,7 +50,7 @@ impl SceneKind {
 }
 
 /// Settings of the landscapes, apart from the location.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TerrainSettings {
     /// Shifts along each axis.
     pub n: usize,

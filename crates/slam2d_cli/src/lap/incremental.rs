@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::LapArgs;
 use super::report::{LapJson, TickJson, print_errors};
+use crate::lap_options::NoiseArgs;
 use crate::output::{print_json, say};
 
 /// Runs incremental mapping on the lap of `config` and prints the result.
@@ -29,7 +30,6 @@ fn json(trace: &IncrementalTrace, drive: &Drive, args: &LapArgs) -> impl Seriali
     poses.for_each(|pose| digest.add_pose(pose));
     let ticks = drive.ticks().iter().zip(&trace.estimates);
     LapJson {
-        seed: args.seed,
         noise: args.noise,
         estimator: args.estimator.name(),
         digest: format!("{:016x}", digest.value()),
@@ -63,7 +63,8 @@ fn off_m(closure: &CycleClosure) -> f64 {
 fn print_text(trace: &IncrementalTrace, args: &LapArgs) {
     let summary = &trace.outcome.summary;
     let estimator = args.estimator.label();
-    say!("seed {:#x}, noise ×{}, {estimator}", args.seed, args.noise);
+    let NoiseArgs { seed, noise } = args.noise;
+    say!("seed {seed:#x}, noise ×{noise}, {estimator}");
     print_errors(
         [summary.ticks, summary.keyframes],
         [summary.odometry_end_error_m, summary.odometry_rms_m],

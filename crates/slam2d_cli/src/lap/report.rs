@@ -4,13 +4,14 @@ use ch16_lab::lap::TickReport;
 use pr_geom::SE2;
 use serde::Serialize;
 
+use crate::lap_options::NoiseArgs;
 use crate::output::say;
 
 /// What `--json` prints; `summary` and `events` depend on the estimator.
 #[derive(Serialize)]
 pub struct LapJson<Summary, Event> {
-    pub seed: u32,
-    pub noise: f64,
+    #[serde(flatten)]
+    pub noise: NoiseArgs,
     pub estimator: &'static str,
     pub digest: String,
     #[serde(flatten)]
