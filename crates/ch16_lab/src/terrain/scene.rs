@@ -137,7 +137,7 @@ impl TerrainScene {
             SceneKind::LongCorridor => {
                 let mut target = PointCloud::default();
                 for step_m in [-MAP_STEP_M, 0.0, MAP_STEP_M] {
-                    let beside = SE2::translation(step_m, 0.0) * world_from_sensor;
+                    let beside = SE2::from_xy(step_m, 0.0) * world_from_sensor;
                     let sweep = sweeper.fresh_sweep(&beside, &mut rng);
                     target.extend_transformed(&sweep, &SE2::identity());
                 }
