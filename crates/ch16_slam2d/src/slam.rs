@@ -27,6 +27,7 @@ mod map_pruning;
 mod pending;
 mod registrar;
 mod report;
+mod restore;
 mod snapshot;
 mod strategies;
 #[cfg(test)]
@@ -42,7 +43,7 @@ use pr_optim::OptimizeError;
 
 pub use config::{LoopClosure, SlamConfig};
 pub use finder::{CloneFinder, LoopFinder, TriedLoops};
-pub use front_end::{FrontEnd, Registration};
+pub use front_end::FrontEnd;
 pub use join::PiecePose;
 pub use loop_closer::LoopCloser;
 pub use mapper::{Consistency, LoopOutlierTest, Mapper};
@@ -50,7 +51,7 @@ pub use motion_noise::MotionNoise;
 
 pub use map_pruning::{MapPruning, MapPruningConfig};
 pub use pending::PendingFrame;
-pub use registrar::{CloneRegistrar, ExpectedMotion, ScanRegistrar};
+pub use registrar::{CloneRegistrar, ExpectedMotion, Registration, ScanRegistrar};
 pub use report::{Change, Conclusion, LoopAttempt, LoopEffect, SlamReport};
 pub use snapshot::{FrontEndSnapshot, NamedNumbers, SlamSnapshot, SnapshotError, is_within_limits};
 pub use strategies::Strategies;

@@ -7,11 +7,11 @@ use std::io::BufRead;
 
 use ch16_slam2d::scan::LaserScan;
 
+use crate::foreign::Foreign;
 use crate::lines::{LineEnd, next_line};
 use crate::log::{BrokenRecord, FilePosition, LogError, LogFrame, LogNotes, LogReader};
-use crate::log_format::Foreign;
+use crate::range_unit::in_metres;
 use crate::remark::{Part, Remark};
-use crate::ros::in_metres;
 
 /// Parser of a format's lines, in order.
 pub trait LineFormat: Default {

@@ -7,10 +7,10 @@ use std::io;
 
 use thiserror::Error;
 
+use crate::footprint::Footprint;
 use crate::laser_mount::LaserMount;
-use crate::near_readings::Footprint;
 use crate::remark::Remark;
-use crate::table_log::Layout;
+use crate::table_layout::Layout;
 
 /// A position in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -24,10 +24,9 @@ mod repairs;
 mod trial;
 
 pub use compared::Motion;
-pub use finding::{Finding, Suggestion};
+pub use finding::{Costs, Finding, Suggestion};
 pub use odometry_use::OdometryUse;
 pub use reader::ComparedReader;
-pub use trial::Costs;
 
 use ch16_slam2d::scan::{Frame, LaserScan};
 use ch16_slam2d::slam::{Slam, SlamConfig};

@@ -39,7 +39,7 @@ mod transforms;
 mod wire;
 
 pub use reader::RosReader;
-pub(crate) use scan_fields::{ScanFields, in_metres};
+pub(crate) use scan_fields::ScanFields;
 
 #[cfg(test)]
 mod tests;

@@ -10,14 +10,12 @@
 //! Units are those of a name (`time_us`, `angle_deg`, `range_mm`), else those that the size of the numbers suggests.
 //! Beams become a scan when their bearing goes back.
 
-mod layout;
 mod limit;
 mod sweep;
 
 use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 
-pub use layout::{Column, Layout};
 use limit::UnstatedLimit;
 use sweep::Sweep;
 
@@ -27,6 +25,7 @@ use crate::log::{LogFrame, LogNotes};
 use crate::plausible::{MAX_BEAMS, plausible_pose, plausible_stamp_s};
 use crate::remark::{Part, Remark};
 use crate::ros::ScanFields;
+use crate::table_layout::{self, Column, Layout};
 
 /// Time between scans of a table without times, s: that of most cheap scanners.
 const PERIOD_S: f64 = 0.1;
@@ -75,7 +74,8 @@ impl TableRows {
         };
         let fields = &mut row.fields;
         let is_sdk = text.contains("theta:");
-        let words = layout::words(text).filter(|word| !is_sdk || layout::number(word).is_some());
+        let words = table_layout::words(text)
+            .filter(|word| !is_sdk || table_layout::number(word).is_some());
         // Readings without a number, before one that has.
         let mut missing = 0;
         let mut time_s = None;
@@ -96,7 +96,7 @@ impl TableRows {
                 missing += usize::from(column == Column::Ranges);
                 continue;
             }
-            let number = layout::number(word).ok_or_else(|| {
+            let number = table_layout::number(word).ok_or_else(|| {
                 let what = if column == Column::Time {
                     "a number of seconds"
                 } else {
@@ -279,7 +279,7 @@ impl TableRows {
 
 /// Whether a row names columns.
 fn is_header(text: &str) -> bool {
-    layout::words(text).all(|word| layout::number(word).is_none())
+    table_layout::words(text).all(|word| table_layout::number(word).is_none())
 }
 
 /// The unit of a time by its size: s, ms, µs or ns since 1970.

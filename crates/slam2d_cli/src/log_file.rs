@@ -8,15 +8,15 @@ use std::time::{Duration, Instant};
 use anyhow::ensure;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use robot_io::footprint::Footprint;
 use robot_io::laser_mount::LaserMount;
 use robot_io::log::{LogFrame, LogOptions, LogReader, with_remarks};
 use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::log_format::LogFormat;
 use robot_io::motion::{ComparedReader, OdometryUse};
-use robot_io::near_readings::Footprint;
 use robot_io::remark::Remark;
 use robot_io::rosbag2;
-use robot_io::table_log::Layout;
+use robot_io::table_layout::Layout;
 
 use crate::in_file::InFile as _;
 use crate::numbers;

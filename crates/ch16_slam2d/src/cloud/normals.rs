@@ -31,6 +31,15 @@ pub struct NormalEstimator {
     normals: Vec<(f64, f64)>,
 }
 
+impl PointCloud {
+    /// Estimates the normal of every point from its neighbours within `radius_m`.
+    ///
+    /// See [`NormalEstimator`] for the rules; use that directly to keep its memory between clouds.
+    pub fn estimate_normals(&mut self, radius_m: f64) {
+        NormalEstimator::default().estimate(self, radius_m);
+    }
+}
+
 impl NormalEstimator {
     /// Sets the normal of every point of `cloud` from its neighbours within `radius_m`.
     pub fn estimate(&mut self, cloud: &mut PointCloud, radius_m: f64) {

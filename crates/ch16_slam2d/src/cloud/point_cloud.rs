@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector2};
 use pr_geom::{Rotation, SE2};
 use rustc_hash::FxHashMap;
 
-use super::{NormalEstimator, cell_index};
+use super::cell_index;
 
 /// Points in metres in one frame, with unit normals if they are known, and the time of the sweep.
 ///
@@ -166,13 +166,6 @@ impl PointCloud {
         let mut thinned = Self::default();
         Downsampler::default().downsample_into(self, cell_m, &mut thinned);
         thinned
-    }
-
-    /// Estimates the normal of every point from its neighbours within `radius_m`.
-    ///
-    /// See [`NormalEstimator`] for the rules; use that directly to keep its memory between clouds.
-    pub fn estimate_normals(&mut self, radius_m: f64) {
-        NormalEstimator::default().estimate(self, radius_m);
     }
 
     pub(crate) fn set_normals(&mut self, normals: impl ExactSizeIterator<Item = (f64, f64)>) {

@@ -128,14 +128,7 @@ fn link(
             .register(scan, better.best.pose, &stages, None, settings);
     }
     let (gate_information, gate_chi2) = (allowed.information, allowed.chi2);
-    let mut link = LoopVerification::from_registration(
-        node,
-        visit,
-        belief,
-        &found,
-        gate_information,
-        gate_chi2,
-    );
+    let mut link = found.verification(node, visit, belief, gate_information, gate_chi2);
     let score = found.fit.score;
     link.rejection = if score < MIN_LINK_SCORE {
         let min_score = MIN_LINK_SCORE;

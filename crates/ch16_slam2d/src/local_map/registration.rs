@@ -5,6 +5,7 @@ use pr_geom::{SE2, math};
 
 use super::{LocalMap, MapFit, MotionPrior};
 use crate::cloud::{NearestMap, PointCloud, QueryCache};
+use crate::loops::{LoopCandidate, LoopVerification, chi_squared_gate};
 use crate::scan::MovingSweep;
 
 /// A step below this, m and rad added, ends a stage.
@@ -64,6 +65,37 @@ pub struct MapRegistration {
 }
 
 impl MapRegistration {
+    /// This registration as a loop that started at the belief, with the gate of `gate_information`; not rejected.
+    pub(crate) fn verification(
+        &self,
+        from_node: usize,
+        candidate: LoopCandidate,
+        belief: SE2,
+        gate_information: Matrix3<f64>,
+        gate_chi2: f64,
+    ) -> LoopVerification {
+        let registered = self.registered.pose;
+        let innovation = belief.between(&registered).log();
+        LoopVerification {
+            from_node,
+            candidate,
+            belief,
+            initial: belief,
+            registered,
+            rmse_m: self.fit.rmse_m,
+            inliers: self.fit.inliers,
+            iterations: self.registered.iterations,
+            score: Some(self.fit.score),
+            margin: None,
+            innovation,
+            gate_information,
+            gate: chi_squared_gate(&innovation, &gate_information, gate_chi2),
+            information: self.information(),
+            rejection: None,
+            waits: None,
+        }
+    }
+
     /// Information of the pairs, reduced if only part of the scan fits, because that part may fit elsewhere as well:
     /// a score of .84 halves it, and one of .56 leaves a tenth. The fourth power is a rule of thumb; other powers were
     /// not measured.

@@ -200,11 +200,10 @@ impl SubmapLoops {
             margin,
             information,
             rejection,
-            ..LoopVerification::from_registration(
+            ..found.verification(
                 node,
                 window.candidate,
                 window.belief,
-                found,
                 gate_information,
                 GATE_99,
             )

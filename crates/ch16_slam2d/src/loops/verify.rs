@@ -10,7 +10,6 @@ use super::{LoopCandidate, LoopConfig};
 use crate::cloud::PointCloud;
 use crate::graph::{Keyframe, LoopId};
 use crate::icp::{INFORMATION_RIDGE, Pair, regularize};
-use crate::local_map::MapRegistration;
 use crate::matching::{InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information};
 
 /// Why a loop was rejected, with the measured value.
@@ -174,37 +173,6 @@ pub struct LoopVerification {
 }
 
 impl LoopVerification {
-    /// A registration on a local map, started at the belief, with the gate of `gate_information`; not rejected.
-    pub(crate) fn from_registration(
-        from_node: usize,
-        candidate: LoopCandidate,
-        belief: SE2,
-        found: &MapRegistration,
-        gate_information: Matrix3<f64>,
-        gate_chi2: f64,
-    ) -> Self {
-        let registered = found.registered.pose;
-        let innovation = belief.between(&registered).log();
-        Self {
-            from_node,
-            candidate,
-            belief,
-            initial: belief,
-            registered,
-            rmse_m: found.fit.rmse_m,
-            inliers: found.fit.inliers,
-            iterations: found.registered.iterations,
-            score: Some(found.fit.score),
-            margin: None,
-            innovation,
-            gate_information,
-            gate: chi_squared_gate(&innovation, &gate_information, gate_chi2),
-            information: found.information(),
-            rejection: None,
-            waits: None,
-        }
-    }
-
     /// The same loop, with `chi2` of another gate in place of that of its own.
     pub(crate) fn with_gate_chi2(mut self, chi2: f64) -> Self {
         self.gate.chi2 = chi2;

@@ -6,26 +6,8 @@ use nalgebra::{Point2, Vector3};
 use pr_geom::{Rotation, SE2, math};
 
 use super::sweep::TimedPoints;
-use super::{Frame, FrameError, LaserScan, PreparedFrame, Sweep};
+use super::{Frame, FrameError, LaserScan, PreparedFrame, ScanConfig, Sweep};
 use crate::cloud::{Downsampler, NormalEstimator, PointCloud};
-
-/// Settings for making a cloud from a scan; the defaults are the chapter's.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScanConfig {
-    /// A sweep is thinned to one point in each cell of this side, m.
-    pub cell_m: f64,
-    /// Radius of the neighbours for normals within a sweep, m.
-    pub normal_radius_m: f64,
-}
-
-impl Default for ScanConfig {
-    fn default() -> Self {
-        Self {
-            cell_m: 0.12,
-            normal_radius_m: 0.3,
-        }
-    }
-}
 
 /// Makes clouds from scans; keeps its buffers and the beams' directions.
 #[derive(Clone, Debug, Default)]

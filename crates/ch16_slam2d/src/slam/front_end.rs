@@ -6,11 +6,10 @@ use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
 
 use super::config::SlamConfig;
-use super::registrar::{ExpectedMotion, ScanRegistrar};
+use super::registrar::{ExpectedMotion, Registration, ScanRegistrar};
 use super::snapshot::{FrontEndSnapshot, SnapshotError};
 use super::window::{ScanWindow, WindowScan};
 use crate::cloud::PointCloud;
-use crate::matching::MatchSummary;
 use crate::metrics::position_error_m;
 use crate::scan::{MovingSweep, PreparedFrame, is_finite};
 
@@ -18,26 +17,6 @@ use crate::scan::{MovingSweep, PreparedFrame, is_finite};
 const MIN_INTERVAL_S: f64 = 1e-6;
 /// Largest predicted motion by a velocity, m; beyond any map.
 const MAX_MOTION_M: f64 = 1e9;
-
-/// Result of registering one scan.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Registration {
-    /// Estimate before it, moved by the odometry or by the last velocity: `world_from_body`.
-    pub prediction: SE2,
-    /// The result, or the prediction if too few pairs were found.
-    pub estimate: SE2,
-    /// Correspondence threshold τ that was used, m.
-    pub tau_m: f64,
-    /// τ for the next registration, m, adapted to this one's correction.
-    pub next_tau_m: f64,
-    /// Whether the result was accepted.
-    pub accepted: bool,
-    /// Whether the scan joined the window of the next local map.
-    pub joined_window: bool,
-    /// The registration itself.
-    pub matched: MatchSummary,
-}
 
 /// Window and estimate, with the strategy that registers scans.
 ///

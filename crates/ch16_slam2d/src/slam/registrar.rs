@@ -9,6 +9,26 @@ use crate::cloud::PointCloud;
 use crate::matching::MatchSummary;
 use crate::scan::{MovingSweep, PreparedFrame};
 
+/// Result of registering one scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Registration {
+    /// Estimate before it, moved by the odometry or by the last velocity: `world_from_body`.
+    pub prediction: SE2,
+    /// The result, or the prediction if too few pairs were found.
+    pub estimate: SE2,
+    /// Correspondence threshold τ that was used, m.
+    pub tau_m: f64,
+    /// τ for the next registration, m, adapted to this one's correction.
+    pub next_tau_m: f64,
+    /// Whether the result was accepted.
+    pub accepted: bool,
+    /// Whether the scan joined the window of the next local map.
+    pub joined_window: bool,
+    /// The registration itself.
+    pub matched: MatchSummary,
+}
+
 /// The motion to a scan before it is registered.
 #[derive(Clone, Copy, Debug)]
 pub struct ExpectedMotion<'a> {

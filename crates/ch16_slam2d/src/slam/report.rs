@@ -3,7 +3,7 @@
 use pr_geom::SE2;
 use serde::Serialize;
 
-use super::front_end::Registration;
+use super::registrar::Registration;
 use crate::loops::LoopVerification;
 
 /// Effect of closing a loop.

@@ -6,11 +6,12 @@ use nalgebra::Complex;
 use pr_geom::{SE2, math, wrap_angle};
 use serde::Serialize;
 
+use super::Costs;
 use super::Stretch;
 use super::finding::{Finding, Suggestion};
 use super::lag::{Heading, lag_s};
 use super::repairs::Repairs;
-use super::trial::{Costs, Trial};
+use super::trial::Trial;
 use crate::laser_mount::LaserMount;
 use crate::stamps::median;
 

@@ -4,8 +4,20 @@ use core::f64::consts::{PI, TAU};
 
 use pr_geom::{SE2, wrap_angle};
 
-use super::Costs;
 use crate::laser_mount::LaserMount;
+
+/// Mean cost of a scan with and without a repair, nats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Costs {
+    /// Number of scans.
+    pub scans: usize,
+    /// With the repair.
+    pub with: f64,
+    /// Without it.
+    pub without: f64,
+    /// Whether the repair is better in both halves of the scans, by more than chance.
+    pub wins: bool,
+}
 
 /// A fault with its correction.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,6 +10,7 @@ use ch16_slam2d::scan::Frame;
 use ch16_slam2d::slam::{LoopClosure, Slam, SlamConfig};
 use pr_geom::{SE2, math};
 
+use super::Costs;
 use super::repairs::Repairs;
 use crate::log::LogFrame;
 use crate::odometry_poses::OdometryPoses;
@@ -22,19 +23,6 @@ const MIN_NATS: f64 = 0.1;
 const MIN_ERRORS: f64 = 2.0;
 /// What a single scan counts at most, nats: one that matched a wrong place must not decide.
 const MAX_NATS: f64 = 10.0;
-
-/// Mean cost of a scan with and without a repair, nats.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Costs {
-    /// Number of scans.
-    pub scans: usize,
-    /// With the repair.
-    pub with: f64,
-    /// Without it.
-    pub without: f64,
-    /// Whether the repair is better in both halves of the scans, by more than chance.
-    pub wins: bool,
-}
 
 /// The part of a log that is mapped in different ways.
 pub(super) struct Trial {

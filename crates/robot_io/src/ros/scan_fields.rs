@@ -8,14 +8,12 @@ use core::f64::consts::{PI, TAU};
 
 use ch16_slam2d::scan::LaserScan;
 
-use crate::stamps::median;
+use crate::range_unit::{LONGEST_M, millimetres};
 
 /// A sweep is at most a turn, up to the rounding of 32-bit floats and one extra beam.
 const FULL_TURN: f64 = 1.02 * TAU;
 /// No scanner sees less, degrees: smaller angles that are more than a turn in radians are not degrees either.
 const LEAST_VIEW_DEG: f64 = 20.0;
-/// Longer ranges are not in metres.
-const LONGEST_M: f64 = 400.0;
 /// A sweep may take this many scan periods: stamps jitter.
 const SWEEP_SLACK: f64 = 1.3;
 
@@ -254,33 +252,6 @@ impl ScanFields {
         }
         (range_min_m, range_max_m, scale)
     }
-}
-
-/// A sentence on ranges that can only be in millimetres.
-fn millimetres(ranges: &[f64]) -> Option<String> {
-    if !ranges.iter().any(|&range| range > LONGEST_M) {
-        return None;
-    }
-    let returns = ranges.iter().copied();
-    let returns = returns.filter(|&range| range.is_finite() && range > 0.0);
-    let typical = median(returns.collect()).filter(|&typical| typical > LONGEST_M)?;
-    Some(format!(
-        "its ranges are about {typical:.0}, in millimetres; they were divided by 1000. Publish metres"
-    ))
-}
-
-/// Converts ranges that can only be in millimetres; returns a sentence on it.
-pub fn in_metres(scan: &mut LaserScan) -> Option<String> {
-    let sentence = millimetres(&scan.ranges_m)?;
-    for range in &mut scan.ranges_m {
-        *range *= 1e-3;
-    }
-    for limit in [&mut scan.range_min_m, &mut scan.range_max_m] {
-        if *limit > LONGEST_M {
-            *limit *= 1e-3;
-        }
-    }
-    Some(sentence)
 }
 
 /// Whether an angle from the first beam to the last is in degrees, not in radians.

@@ -1,0 +1,204 @@
+//! Opens the reader of a log by its format.
+
+use std::io::{self, BufRead};
+
+use crate::carmen::CarmenReader;
+use crate::course_log::CourseReader;
+use crate::json_log::JsonLogReader;
+use crate::log::{FilePosition, LogError, LogOptions, LogReader};
+use crate::log_bytes::LogBytes;
+use crate::log_format::LogFormat;
+use crate::mounted_reader::MountedReader;
+use crate::near_readings::without_near_readings;
+use crate::restamped::restamped;
+use crate::ros::RosReader;
+use crate::table_layout::Layout;
+use crate::table_log::{TableReader, TableRows};
+
+impl LogFormat {
+    /// Opens a log by its first bytes; errors contain `name`.
+    ///
+    /// # Errors
+    /// If the bytes cannot be read, are empty, or have a format that is not supported.
+    pub fn open<'a>(
+        bytes: impl Into<LogBytes<'a>>,
+        name: &str,
+        options: &LogOptions,
+    ) -> Result<Box<dyn LogReader + 'a>, LogError> {
+        Self::open_parts(vec![bytes.into()], name, options)
+    }
+
+    /// Opens a log of several files in order: a recording of ROS 2 may be split.
+    ///
+    /// # Errors
+    /// Those of [`open`](Self::open), and if several files are not a recording of ROS.
+    pub fn open_parts<'a>(
+        parts: Vec<LogBytes<'a>>,
+        name: &str,
+        options: &LogOptions,
+    ) -> Result<Box<dyn LogReader + 'a>, LogError> {
+        let io = |source| LogError::Io {
+            name: name.to_owned(),
+            position: FilePosition::Byte(0),
+            source,
+        };
+        let Some(first) = parts.first().cloned() else {
+            return Err(LogError::Empty {
+                name: name.to_owned(),
+            });
+        };
+        let packed = |problem: io::Error| match first.is_packed() {
+            Ok(true) => LogError::NoScans {
+                name: name.to_owned(),
+                detail: format!(
+                    "it is compressed by gzip or zstd and cannot be decompressed: {problem}; copy it again from its source"
+                ),
+            },
+            _ => io(problem),
+        };
+        let mut bytes = first.stream().map_err(packed)?;
+        let start = bytes.fill_buf().map_err(packed)?;
+        if start.is_empty() {
+            return Err(LogError::Empty {
+                name: name.to_owned(),
+            });
+        }
+        let foreign = |found, advice| LogError::Foreign {
+            name: name.to_owned(),
+            found,
+            advice,
+        };
+        let found = match (Self::detect(start), &options.columns) {
+            (Self::Carmen | Self::Course | Self::Foreign(_), Some(_)) => Self::Table,
+            (found, _) => found,
+        };
+        if let Self::Foreign(kind) = found {
+            return Err(foreign(kind.found, kind.advice));
+        }
+        if parts.len() > 1 && !found.is_ros() {
+            return Err(foreign(
+                "several files, the first of which is not a ROS recording",
+                "give one log at a time",
+            ));
+        }
+        if matches!(found, Self::Carmen | Self::Json)
+            && let Some((option, wanted)) = options.first_asked()
+        {
+            return Err(LogError::Missing {
+                name: name.to_owned(),
+                option: option.name(),
+                wanted: wanted.to_owned(),
+                advice: "only a recording of ROS has topics and frames; leave the option out"
+                    .to_owned(),
+            });
+        }
+        let mounted = |reader: io::Result<Box<dyn LogReader + 'a>>| {
+            let reader = reader.map_err(io)?;
+            Ok(match options.laser {
+                Some(mount) => Box::new(MountedReader::new(reader, mount)),
+                None => reader,
+            })
+        };
+        let reader = match found {
+            Self::Json => mounted(restamped(&first, |source| JsonLogReader::new(source, name))),
+            Self::Course => mounted(restamped(&first, |source| CourseReader::new(source, name))),
+            Self::Table => {
+                let columns = options.columns.clone();
+                let layout = columns.or_else(|| Layout::of(start)).unwrap_or_default();
+                mounted(restamped(&first, |source| {
+                    TableReader::with_format(source, name, TableRows::new(layout.clone()))
+                }))
+            }
+            Self::Mcap | Self::RosBag | Self::Sqlite => {
+                let reader: Box<dyn LogReader> = Box::new(RosReader::new(parts, name, options));
+                Ok(reader)
+            }
+            Self::Carmen | Self::Foreign(_) => {
+                mounted(restamped(&first, |source| CarmenReader::new(source, name)))
+            }
+        };
+        Ok(without_near_readings(
+            reader?,
+            options.min_range_m,
+            options.footprint,
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::LogOption;
+
+    #[test]
+    fn a_topic_is_refused_where_there_are_none() {
+        let options = LogOptions::default().with(LogOption::OdometryTopic, "/wheels");
+        for bytes in [
+            &b"FLASER 1 2 0 0 0 0 0 0 0 host 0\n"[..],
+            b"{\"stamp\": 1}\n",
+        ] {
+            let refused = LogFormat::open(bytes, "x.log", &options).err();
+            assert_eq!(
+                refused.map(|error| error.to_string()).as_deref(),
+                Some(
+                    "x.log has no odom-topic /wheels; only a recording of ROS has topics and frames; leave the option out"
+                )
+            );
+            assert!(LogFormat::open(bytes, "x.log", &LogOptions::default()).is_ok());
+        }
+    }
+
+    #[test]
+    fn empty_and_foreign_files_are_refused_in_one_sentence() {
+        for (bytes, expected) in [
+            (&b""[..], "x.log is empty; give a recorded log"),
+            (
+                b"\x1f\x8b\x08",
+                "x.log has no usable scan: it is compressed by gzip or zstd and cannot be decompressed: unexpected end of file; copy it again from its source",
+            ),
+            (
+                b"\xff\xfeF\0L\0",
+                "x.log is text in UTF-16; save it as UTF-8 first",
+            ),
+            (
+                b"#ROSRECORD V1.1\n",
+                "x.log is a ROS 1 recording older than version 2.0; convert it with rosbag fix first",
+            ),
+            (
+                b"#ROSBAG V1.2\n",
+                "x.log is a ROS 1 recording older than version 2.0; convert it with rosbag fix first",
+            ),
+            (
+                b"version https://git-lfs.github.com/spec/v1\n",
+                "x.log is a Git LFS pointer, not the file itself; fetch the file with git lfs pull",
+            ),
+            (
+                b"# stamp\n1,0,0,0,0,0,0,1\n",
+                "x.log is a trajectory, not a log of scans; pass a log; slam2d evaluate evaluates a trajectory",
+            ),
+            (
+                b"LASER_READING 361 1.2\n",
+                "x.log is the output of GMapping, not a log of scans; pass the log that GMapping was run on",
+            ),
+            (
+                b"{\"nrays\":3,\"min_theta\":0,\"readings\":[1,2,3]}\n",
+                "x.log is a log of CSM, the canonical scan matcher; convert it to CARMEN with CSM's json2carmen first",
+            ),
+            (
+                b"rosbag2_bagfile_information:\n",
+                "x.log is the description of a ROS 2 recording, not the recording itself; pass its folder, or the files that it lists",
+            ),
+            (
+                b"SLAM2D\r\n",
+                "x.log is a saved session, not a log of scans; pass a log; slam2d run LOG --continue continues a session",
+            ),
+            (
+                b"VERTEX_SE2 0 0 0 0\n",
+                "x.log is a pose graph, not a log of scans; optimize it with slam2d optimize",
+            ),
+        ] {
+            let opened = LogFormat::open(bytes, "x.log", &LogOptions::default());
+            assert_eq!(opened.err().unwrap().to_string(), expected);
+        }
+    }
+}

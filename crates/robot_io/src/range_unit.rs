@@ -1,0 +1,35 @@
+//! Ranges that can only be in millimetres.
+
+use ch16_slam2d::scan::LaserScan;
+
+use crate::stamps::median;
+
+/// Longer ranges are not in metres.
+pub const LONGEST_M: f64 = 400.0;
+
+/// A sentence on ranges that can only be in millimetres.
+pub fn millimetres(ranges: &[f64]) -> Option<String> {
+    if !ranges.iter().any(|&range| range > LONGEST_M) {
+        return None;
+    }
+    let returns = ranges.iter().copied();
+    let returns = returns.filter(|&range| range.is_finite() && range > 0.0);
+    let typical = median(returns.collect()).filter(|&typical| typical > LONGEST_M)?;
+    Some(format!(
+        "its ranges are about {typical:.0}, in millimetres; they were divided by 1000. Publish metres"
+    ))
+}
+
+/// Converts ranges that can only be in millimetres; returns a sentence on it.
+pub fn in_metres(scan: &mut LaserScan) -> Option<String> {
+    let sentence = millimetres(&scan.ranges_m)?;
+    for range in &mut scan.ranges_m {
+        *range *= 1e-3;
+    }
+    for limit in [&mut scan.range_min_m, &mut scan.range_max_m] {
+        if *limit > LONGEST_M {
+            *limit *= 1e-3;
+        }
+    }
+    Some(sentence)
+}
