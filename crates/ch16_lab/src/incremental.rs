@@ -8,7 +8,7 @@ use incremental_mapping::{CycleTest, CycleVerdict, IncrementalConfig, Incrementa
 use pr_geom::{SE2, math};
 use serde::{Deserialize, Serialize};
 
-use crate::lap::{Drive, Keyframe, LAST_KEYFRAMES, LapConfig, PathErrors};
+use crate::lap::{Drive, LAST_KEYFRAMES, LapConfig, PathErrors, RecordedKeyframe};
 
 /// The two incremental methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -78,7 +78,7 @@ pub struct IncrementalOutcome {
 #[derive(Clone, Debug, PartialEq)]
 pub struct IncrementalTrace {
     /// Keyframes in order, with their truth.
-    pub keyframes: Vec<Keyframe>,
+    pub keyframes: Vec<RecordedKeyframe>,
     /// Their poses at the end, `world_from_body`.
     pub poses: Vec<SE2>,
     /// The estimate after every tick, `world_from_body`.
@@ -111,10 +111,10 @@ impl IncrementalTrace {
                 estimates.push(report.estimate);
             }
         }
-        let keyframes: Vec<Keyframe> = mapper
+        let keyframes: Vec<RecordedKeyframe> = mapper
             .keyframes()
             .iter()
-            .map(|keyframe| Keyframe {
+            .map(|keyframe| RecordedKeyframe {
                 node: keyframe.node,
                 tick: keyframe.frame,
                 truth: drive.truth(keyframe.frame),
@@ -138,7 +138,7 @@ impl IncrementalTrace {
 
 fn outcome(
     mapper: &IncrementalMapper,
-    keyframes: &[Keyframe],
+    keyframes: &[RecordedKeyframe],
     tests: &[CycleTest],
     drive: &Drive,
 ) -> IncrementalOutcome {
@@ -177,7 +177,7 @@ fn outcome(
 /// Distance between the map of the outward path and what the return path saw, at the final poses.
 fn disagreement_m(
     mapper: &IncrementalMapper,
-    keyframes: &[Keyframe],
+    keyframes: &[RecordedKeyframe],
     drive: &Drive,
 ) -> Option<f64> {
     let turn = drive.config().turn?;

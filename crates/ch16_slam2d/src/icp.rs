@@ -18,7 +18,7 @@ mod pairing;
 mod rejection;
 mod stepper;
 
-pub use align::{Alignment, closed_form, point_to_plane_step, svd_align};
+pub use align::{RigidAlignment, closed_form, point_to_plane_step, svd_align};
 pub use config::{IcpConfig, IcpVariant, huber_weight};
 pub use information::{
     INFORMATION_CAP, INFORMATION_RIDGE, centroid, icp_information, icp_information_along,

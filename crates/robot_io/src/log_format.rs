@@ -11,7 +11,7 @@ use crate::mounted_reader::MountedReader;
 use crate::near_readings::without_near_readings;
 use crate::restamped::restamped;
 use crate::ros::RosReader;
-use crate::table_log::{Layout, TableReader, TableRows};
+use crate::table_log::{TableLayout, TableReader, TableRows};
 use std::io::{self, BufRead};
 
 pub use foreign::Foreign;
@@ -48,7 +48,7 @@ impl LogFormat {
             Self::Sqlite
         } else if CourseLines::begins(start) {
             Self::Course
-        } else if Layout::of(start).is_some() {
+        } else if TableLayout::of(start).is_some() {
             Self::Table
         } else if let Some(kind) = Foreign::of(start) {
             Self::Foreign(kind)
@@ -155,7 +155,9 @@ impl LogFormat {
             Self::Course => mounted(restamped(&first, |source| CourseReader::new(source, name))),
             Self::Table => {
                 let columns = options.columns.clone();
-                let layout = columns.or_else(|| Layout::of(start)).unwrap_or_default();
+                let layout = columns
+                    .or_else(|| TableLayout::of(start))
+                    .unwrap_or_default();
                 mounted(restamped(&first, |source| {
                     TableReader::with_format(source, name, TableRows::new(layout.clone()))
                 }))

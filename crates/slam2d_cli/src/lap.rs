@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 use ch16_lab::lap::{
-    Choice, Drive, LapConfig, LapEstimator, LapRecord, LapRunner, LoopAttempt, TickReport,
+    Drive, LapConfig, LapEstimator, LapRecord, LapRunner, NamedChoice, RecordedLoopAttempt,
+    TickReport,
 };
 use clap::Args;
 use robot_io::json_log::FrameLine;
@@ -206,7 +207,7 @@ impl LapJson {
 }
 
 impl EventJson {
-    fn new(attempt: &LoopAttempt) -> Self {
+    fn new(attempt: &RecordedLoopAttempt) -> Self {
         let found = &attempt.verification;
         let rms = attempt.effect.map(|effect| effect.keyframe_rms_m);
         Self {

@@ -2,7 +2,7 @@
 
 use super::model::floor_plan::Tool;
 use ch16_lab::lap;
-use ch16_lab::lap::{BuiltInWorld, Choice as _, Claim, LapMatcher, OwnKernel};
+use ch16_lab::lap::{BuiltInWorld, Claim, LapMatcher, NamedChoice as _, OwnKernel};
 use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::chi_squared::CHAPTER_QUANTILE;
 use ch16_slam2d::loops::GateModel;

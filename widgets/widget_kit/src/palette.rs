@@ -1,7 +1,7 @@
 //! The colours of each meaning, in light and dark.
 
 use crate::model::Assessment;
-use crate::scene::{Cell, Tone};
+use crate::scene::{RasterCell, Tone};
 
 /// An opaque colour, sRGB.
 pub type Rgb = [u8; 3];
@@ -120,16 +120,18 @@ fn class_color(theme: Theme, class: u8) -> Rgb {
 
 /// The colour of a raster's cell.
 #[must_use]
-pub fn cell(theme: Theme, cell: Cell) -> Rgb {
+pub fn cell(theme: Theme, cell: RasterCell) -> Rgb {
     match cell {
-        Cell::Unknown => tone(theme, Tone::Unseen),
-        Cell::Level(level) => level_color(level),
-        Cell::Relief { level, light } => {
+        RasterCell::Unknown => tone(theme, Tone::Unseen),
+        RasterCell::Level(level) => level_color(level),
+        RasterCell::Relief { level, light } => {
             let lit = if light > 0.0 { [255; 3] } else { [0; 3] };
             mix(level_color(level), lit, MAX_LIGHT * light.abs())
         }
-        Cell::Class(class) => class_color(theme, class),
-        Cell::Occupancy(share) => mix(tone(theme, Tone::Paper), tone(theme, Tone::Ink), share),
+        RasterCell::Class(class) => class_color(theme, class),
+        RasterCell::Occupancy(share) => {
+            mix(tone(theme, Tone::Paper), tone(theme, Tone::Ink), share)
+        }
     }
 }
 

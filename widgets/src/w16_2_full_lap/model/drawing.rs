@@ -11,7 +11,7 @@ use super::floor_plan::{
 };
 use super::grid::snapped;
 use super::panel;
-use super::pick::Direction;
+use super::pick::PickDirection;
 use super::picture;
 use super::plan_element::PlanElement;
 use crate::w16_2_full_lap::spec::{EDIT, FLAT, SPEC, WORLD};
@@ -124,8 +124,8 @@ impl FullLap {
                 // The wall tool is selected, so a drag draws at once.
                 self.values.put(&EDIT, is_off.then_some(Tool::Wall));
             }
-            "piece-back" => self.step_piece(Direction::Back),
-            "piece-on" => self.step_piece(Direction::On),
+            "piece-back" => self.step_piece(PickDirection::Back),
+            "piece-on" => self.step_piece(PickDirection::On),
             "west" => self.nudge([-1, 0]),
             "east" => self.nudge([1, 0]),
             "north" => self.nudge([0, 1]),
@@ -164,7 +164,7 @@ impl FullLap {
         true
     }
 
-    fn step_piece(&mut self, step: Direction) {
+    fn step_piece(&mut self, step: PickDirection) {
         let piece = PlanElement::stepped(self.piece(), step, &self.floor_plan.sketch);
         self.choose(piece);
     }
@@ -200,7 +200,7 @@ impl FullLap {
                 if piece.index() >= left {
                     self.choose(PlanElement::stepped(
                         None,
-                        Direction::Back,
+                        PickDirection::Back,
                         &self.floor_plan.sketch,
                     ));
                 }

@@ -12,7 +12,7 @@ mod wipe;
 
 use widget_kit::scene::Scene;
 
-use super::moment::Moment;
+use super::moment::LapState;
 
 pub use map::{loop_mark, shown_bounds as map_bounds};
 pub use plots::{OVER_TIME, gate_mark};
@@ -20,7 +20,7 @@ pub use strain::{part_of, strain_mark};
 pub use wipe::{divider, shown_nodes};
 
 /// The whole picture.
-pub fn scene(moment: &Moment) -> Scene {
+pub fn scene(moment: &LapState) -> Scene {
     Scene {
         panels: vec![
             map::map(moment),
