@@ -8,21 +8,9 @@ use incremental_mapping::{CycleTest, CycleVerdict, IncrementalConfig, Incrementa
 use pr_geom::{SE2, math};
 use serde::{Deserialize, Serialize};
 
-use crate::lap::{Drive, LAST_KEYFRAMES, LapConfig, PathErrors, RecordedKeyframe};
-
-/// The two incremental methods.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum IncrementalKind {
-    /// Incremental maximum likelihood mapping.
-    MaximumLikelihood,
-    /// The same with the variant for cycles.
-    WithCycles,
-}
+use crate::lap::{Drive, IncrementalKind, LAST_KEYFRAMES, LapConfig, PathErrors, RecordedKeyframe};
 
 impl IncrementalKind {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::MaximumLikelihood, Self::WithCycles];
-
     /// Creates the mapper with the lengths and the noise of a lap's estimator; the particles' seed is the
     /// drive's.
     #[must_use]

@@ -30,15 +30,15 @@ use std::sync::Arc;
 
 pub use ch16_slam2d::slam::{Change, LoopClosure, Registration, SlamConfig};
 pub use choices::{
-    BuiltInWorld, LapDetector, LapEstimator, LapFrontEnd, LapMatcher, LoopMatcher, NamedChoice,
+    BuiltInWorld, IncrementalKind, LapDetector, LapEstimator, LapFrontEnd, LapMatcher, LoopMatcher,
+    NamedChoice,
 };
-pub use config::{CANONICAL_SEED, DriveConfig, LAP_TICKS, LapConfig};
+pub use config::{CANONICAL_SEED, DriveConfig, GridExtent, LAP_TICKS, LapConfig};
 pub use consistency::{HalfWay, LapConsistency};
 pub use digest::lap_digest;
 pub use drive::{Drive, DriveSimulation, DriveTick, SimulatedSweep};
 pub use judge::Judge;
 pub use loop_error::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopError, LoopJudgement};
-pub use map::GridExtent;
 pub use newest::{NewestLap, NewestStep};
 pub use own_loop::{
     Claim, EdgeStrain, GateUse, OwnKernel, OwnLoop, OwnLoopError, OwnLoopRequest, edge_strain,

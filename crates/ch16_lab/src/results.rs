@@ -5,8 +5,8 @@
 use pr_geom::sort_numbers;
 use serde::{Deserialize, Serialize};
 
-use crate::incremental::{IncrementalKind, IncrementalOutcome, IncrementalTrace};
-use crate::lap::{LapRecord, LapSummary, PATH_SHARES, PathErrors};
+use crate::incremental::{IncrementalOutcome, IncrementalTrace};
+use crate::lap::{IncrementalKind, LapRecord, LapSummary, PATH_SHARES, PathErrors};
 
 /// A column of the results table: the estimator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -24,6 +24,6 @@ pub use information::{
     INFORMATION_CAP, INFORMATION_RIDGE, centroid, icp_information, icp_information_along,
     move_information, regularize,
 };
-pub use pairing::{IcpWorkspace, Pair, correspondences};
+pub use pairing::{IcpTrace, IcpWorkspace, Pair, correspondences};
 pub use rejection::{Accepted, MaxDistance, PairRejection, Trimmed};
-pub use stepper::{Icp, IcpResult, IcpStep, IcpSummary, IcpTrace, Increment, StopReason, icp};
+pub use stepper::{Icp, IcpResult, IcpStep, IcpSummary, Increment, StopReason, icp};

@@ -9,8 +9,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use anyhow::{bail, ensure};
-use ch16_lab::incremental::IncrementalKind;
-use ch16_lab::lap::{LapEstimator, LapRunner, NamedChoice};
+use ch16_lab::lap::{IncrementalKind, LapEstimator, LapRunner, NamedChoice};
 use ch16_lab::results::{LapOutcome, LapStatistics, ResultColumn};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};

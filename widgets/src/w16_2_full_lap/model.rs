@@ -57,9 +57,9 @@ use widget_kit::values::{Changed, Values};
 
 use crate::reader_orders::Orders;
 use crate::w16_2_full_lap::spec::{
-    EDIT_FLAT, EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WIPE, WORLD,
+    EDIT, EDIT_FLAT, EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WIPE, WORLD,
 };
-use floor_plan::{FloorPlan, Tool};
+use floor_plan::FloorPlan;
 use moment::LapState;
 use own::Own;
 use pick::{GraphPart, PickDirection};
@@ -259,7 +259,7 @@ impl Model for FullLap {
     fn disclosure(&self) -> Disclosure {
         match (
             Disclosure::visible(SPEC.opening, &self.values),
-            Tool::chosen(&self.values),
+            self.values.get(&EDIT),
         ) {
             (Disclosure::First(_), Some(_)) => Disclosure::First(EDITING),
             (Disclosure::All, None) => Disclosure::AllBut(&FLAT_CONTROLS),
@@ -397,7 +397,7 @@ impl Model for FullLap {
     }
 
     fn is_pressed(&self, button: &str) -> bool {
-        let is_editing = Tool::chosen(&self.values).is_some();
+        let is_editing = self.values.get(&EDIT).is_some();
         (button == EDIT_FLAT.id && is_editing) || (button == PLAY.id && self.playback.is_playing())
     }
 

@@ -11,7 +11,6 @@ use ch16_slam2d::slam::SlamConfig;
 use pr_sim::Course;
 
 use super::config::LapConfig;
-use crate::incremental::IncrementalKind;
 
 /// A named choice from a short list.
 pub trait NamedChoice: Copy + PartialEq + Sized + 'static {
@@ -199,6 +198,20 @@ pub enum LapEstimator {
     FrontEnd,
     /// Incremental maximum likelihood mapping or its variant for cycles.
     IncrementalKind(IncrementalKind),
+}
+
+/// The two incremental methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum IncrementalKind {
+    /// Incremental maximum likelihood mapping.
+    MaximumLikelihood,
+    /// The same with the variant for cycles.
+    WithCycles,
+}
+
+impl IncrementalKind {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::MaximumLikelihood, Self::WithCycles];
 }
 
 impl NamedChoice for LapEstimator {

@@ -2,11 +2,21 @@
 
 use std::sync::Arc;
 
-use super::map::GridExtent;
 use ch16_slam2d::scan::ScanConfig;
 use ch16_slam2d::slam::SlamConfig;
 use pr_geom::SE2;
 use pr_sim::{Course, DriverConfig, LidarConfig, VelocityNoise, World};
+
+/// The area of a lap's grid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GridExtent {
+    /// The plan of the world, as in the chapter's figures; beams are cut at its border.
+    Plan,
+    /// Everything in sensor range of the poses, because a robot has no plan of an unknown world, and an
+    /// estimate that drifts leaves the plan.
+    #[default]
+    Poses,
+}
 
 /// The seed of the canonical run.
 pub const CANONICAL_SEED: u32 = 0x00C0_FFEE;

@@ -5,10 +5,10 @@ use pr_geom::SE2;
 use pr_sim::{CourseError, Sketch};
 use widget_kit::scene::Bounds;
 
-use super::floor_plan::Tool;
 use super::pick::GraphPart;
 use super::plan_element::PlanElement;
 use super::runs::Runs;
+use crate::w16_2_full_lap::spec::Tool;
 
 /// The drawing of the reader's own flat, or of a world that is being edited.
 #[derive(Clone, Copy)]

@@ -1,24 +1,16 @@
 //! The map panel: the world, the three estimates, the graph and its map.
 
 use ch16_lab::lap::{BuiltInWorld, RecordedLoopAttempt};
-use pr_geom::{SE2, math};
+use pr_geom::SE2;
 use pr_sim::{Wall, World};
-use widget_kit::scene::{
-    Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight,
-};
+use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
+use super::bounds::shown_bounds;
 use super::loop_style::LoopStyle;
 use super::shapes::{arc, xy};
 use super::{floor_plan, parts, wipe};
-use crate::w16_2_full_lap::model::floor_plan::extent;
 use crate::w16_2_full_lap::model::moment::{Drawn, LapState};
 use crate::w16_2_full_lap::model::panel;
-
-/// Margin around the world, m.
-const MARGIN_M: f64 = 0.4;
-
-/// Margin during editing: how far outside a stroke may go, m.
-const EDIT_MARGIN_M: f64 = 1.0;
 
 /// The world at a tick.
 pub fn map(moment: &LapState) -> Panel {
@@ -88,41 +80,6 @@ fn title(moment: &LapState) -> String {
     match moved {
         Some(moved) => format!("{words}: moved by {:.2} m", moved.max_shift_m),
         None => words,
-    }
-}
-
-/// The world with a margin, and the extent of the estimates except in the Apartment, whose axes are fixed.
-pub fn shown_bounds(moment: &LapState) -> Bounds {
-    if let Some(frame) = moment.drawn.and_then(|drawn| drawn.frame) {
-        return frame;
-    }
-    let Bounds { mut min, mut max } = match &moment.drawn {
-        Some(drawn) => extent(drawn.sketch),
-        None => {
-            let walls = moment.runs.world().bounds();
-            Bounds {
-                min: [walls.min.x, walls.min.y],
-                max: [walls.max.x, walls.max.y],
-            }
-        }
-    };
-    let is_shown = moment.drawn.is_none_or(|drawn| drawn.problem.is_none());
-    if moment.runs.place() != Some(BuiltInWorld::Apartment) && is_shown {
-        let ends = moment.runs.graph.poses_at(moment.runs.ticks());
-        for pose in ends.iter().chain(&moment.nodes).map(xy) {
-            for i in 0..2 {
-                min[i] = math::min(min[i], pose[i]);
-                max[i] = math::max(max[i], pose[i]);
-            }
-        }
-    }
-    let margin = match moment.drawn.and_then(|drawn| drawn.tool) {
-        Some(_) => EDIT_MARGIN_M,
-        None => MARGIN_M,
-    };
-    Bounds {
-        min: min.map(|least| least - margin),
-        max: max.map(|most| most + margin),
     }
 }
 

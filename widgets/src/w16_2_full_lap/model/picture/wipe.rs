@@ -2,7 +2,7 @@
 
 use widget_kit::scene::{Layer, Mark, Stroke, Tone};
 
-use super::map::shown_bounds;
+use super::bounds::shown_bounds;
 use super::shapes::xy;
 use crate::w16_2_full_lap::model::moment::LapState;
 
