@@ -132,7 +132,7 @@ impl LogFormat {
                 "give one log at a time",
             ));
         }
-        if matches!(found, Self::Carmen | Self::Json)
+        if !found.is_ros()
             && let Some((option, wanted)) = options.first_asked()
         {
             return Err(LogError::Missing {
@@ -189,6 +189,8 @@ mod tests {
         for bytes in [
             &b"FLASER 1 2 0 0 0 0 0 0 0 host 0\n"[..],
             b"{\"stamp\": 1}\n",
+            b"O 100 200 1.5 0.01\n",
+            b"angle,range\n0,1\n",
         ] {
             let refused = LogFormat::open(bytes, "x.log", &options).err();
             assert_eq!(
