@@ -11,10 +11,10 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-LISTINGS = HERE.parent / "crates/ch16_slam2d/src/listings"
+LISTINGS = HERE.parent / "crates/ch16_listings/src"
 OURS = HERE / "solutions/src"
 HEAD = """#![allow(warnings, missing_docs, clippy::all, clippy::pedantic)]
-use ch16_slam2d::listings::*;
+use ch16_listings::*;
 use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
 use petgraph::graph::NodeIndex;
 """

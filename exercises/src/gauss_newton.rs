@@ -17,7 +17,7 @@
 //! `graph.graph.edge_references()` with `petgraph::visit::EdgeRef` has `source()`, `target()` and `weight()`, a
 //! `PoseEdge`, and `graph.graph[node]` is a pose that can be set. `nalgebra::DMatrix` has `fixed_view_mut::<3, 3>`.
 
-use ch16_slam2d::listings::PoseGraph;
+use ch16_listings::PoseGraph;
 
 /// One step; returns the largest correction of a node, `‖(v_x, v_y)‖ + |ω|`.
 ///

@@ -20,7 +20,7 @@
 //!
 //! **Rules.** Pairs without a normal do not count. Fewer than three normals give the identity.
 
-use ch16_slam2d::listings::{Correspondence, SE2};
+use ch16_listings::{Correspondence, SE2};
 
 /// The step, a motion in the frame of the map: the new pose is `step * pose`.
 #[must_use]

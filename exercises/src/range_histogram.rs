@@ -12,7 +12,7 @@
 //!
 //! It is 0 for equal histograms, and 1 if they share no bin.
 
-use ch16_slam2d::listings::PointCloud;
+use ch16_listings::PointCloud;
 
 /// Number of bins.
 pub const BINS: usize = 64;

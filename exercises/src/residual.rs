@@ -13,7 +13,7 @@
 //! They leave out the factors `J_r⁻¹(e)` at j and `J_l⁻¹(e)` at i, which are I if e is zero. Otherwise the optimum moves
 //! by O(e²); a residual that is wrong to first order moves it by O(e) (exercise 3 of the page).
 
-use ch16_slam2d::listings::SE2;
+use ch16_listings::SE2;
 use nalgebra::{Matrix3, Vector3};
 
 /// `e`, in m, m, rad, of the poses `from` (Tᵢ) and `to` (Tⱼ) and the measurement `z` (Z).

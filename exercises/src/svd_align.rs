@@ -19,7 +19,7 @@
 //!
 //! **Rules.** No pairs give the identity.
 
-use ch16_slam2d::listings::SE2;
+use ch16_listings::SE2;
 use nalgebra::Point2;
 
 /// The motion that minimizes `Σ ‖R p + t − q‖²`; both slices have the same length.

@@ -20,7 +20,7 @@
 //! increment; `inliers` and `rmse` are of the last pairs. The rmse is that of the residual that the variant minimizes: distances, or
 //! `n · (p − q)` for point to plane if the pair has a normal. Without pairs it is infinite.
 
-use ch16_slam2d::listings::{IcpConfig, IcpResult, PointCloud, SE2, VoxelMap};
+use ch16_listings::{IcpConfig, IcpResult, PointCloud, SE2, VoxelMap};
 
 /// Registers a cloud on a map from the guess `init`.
 #[must_use]

@@ -19,7 +19,7 @@
 //! **Rules.** ICP is point to point, τ = max(cfg.radius/2, 0.6), at most 30 iterations, otherwise the default. The
 //! listings provide the rest: `submap`, `icp`, `associate`, `icp_information`, `regularize`.
 
-use ch16_slam2d::listings::{LoopConfig, PointCloud, PoseGraph, VerifiedLoop};
+use ch16_listings::{LoopConfig, PointCloud, PoseGraph, VerifiedLoop};
 use petgraph::graph::NodeIndex;
 
 /// Registers the sweep of `node` on the submap around `candidate`, and tests the result.

@@ -1,8 +1,8 @@
 //! The chapter's lap, seed 0xC0FFEE, in the types of the listings, and the comparison of two poses.
 
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner};
+use ch16_listings::{PointCloud, PoseGraph, SE2};
 use ch16_slam2d::cloud;
-use ch16_slam2d::listings::{PointCloud, PoseGraph, SE2};
 
 /// The lap as the core drives it.
 pub fn lap() -> LapRecord {

@@ -1,7 +1,7 @@
 //! 4. The graph, by a dense matrix.
 
+use ch16_listings::{EdgeKind, PoseEdge, PoseGraph, SE2};
 use ch16_slam2d::graph;
-use ch16_slam2d::listings::{EdgeKind, PoseEdge, PoseGraph, SE2};
 use exercises::{optimize, optimize_once};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use petgraph::graph::NodeIndex;

@@ -1,7 +1,7 @@
 //! 2. The step across the walls.
 
+use ch16_listings::{Correspondence, SE2};
 use ch16_slam2d::icp;
-use ch16_slam2d::listings::{Correspondence, SE2};
 use exercises::point_to_plane_step;
 use nalgebra::{Point2, Vector2};
 use pr_geom::Rng;

@@ -1,7 +1,7 @@
 //! 7. Place recognition by range histograms.
 
 use ch16_lab::lap::{Lap, LapConfig};
-use ch16_slam2d::listings::{PointCloud, SE2};
+use ch16_listings::{PointCloud, SE2};
 use ch16_slam2d::loops::{LoopDetector, LoopQuery};
 use ch16_slam2d::places::{PlaceDetector, PlaceDetectorConfig};
 use exercises::{chi2_distance, detect_by_histogram, range_histogram};

@@ -2,7 +2,7 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use ch16_slam2d::listings::SE2;
+use ch16_listings::SE2;
 use exercises::{jacobians, residual};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use pr_geom::Rng;

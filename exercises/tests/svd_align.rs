@@ -1,7 +1,7 @@
 //! 1. The closed form.
 
+use ch16_listings::SE2;
 use ch16_slam2d::icp;
-use ch16_slam2d::listings::SE2;
 use exercises::svd_align;
 use nalgebra::{Point2, Vector2, Vector3};
 use pr_geom::Rng;

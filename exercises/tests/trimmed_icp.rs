@@ -2,8 +2,8 @@
 
 use ch16_lab::basin::BasinScene;
 use ch16_lab::moving_box::{BoxConfig, BoxMethods, BoxScene};
+use ch16_listings::{IcpConfig, IcpVariant, PointCloud, SE2, VoxelMap, associate};
 use ch16_slam2d::icp::{self, IcpWorkspace};
-use ch16_slam2d::listings::{IcpConfig, IcpVariant, PointCloud, SE2, VoxelMap, associate};
 use exercises::icp;
 use nalgebra::{Point2, Vector2};
 use serde::Deserialize;

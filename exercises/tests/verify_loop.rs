@@ -1,6 +1,6 @@
 //! 5. The gate, on the canonical lap.
 
-use ch16_slam2d::listings::{
+use ch16_listings::{
     EdgeKind, IcpConfig, IcpResult, LoopConfig, PointCloud, PoseGraph, SE2, VerifiedLoop,
     associate, icp, icp_information, regularize, submap,
 };

@@ -211,8 +211,8 @@ describe('a custom flat', () => {
         writeFileSync(join(folder, 'flat.json'), json);
         const lap = JSON.parse(native('slam2d', 'lap', '--world', join(folder, 'flat.json'), '--information', 'chapter', '--json'));
         assert.equal(lap.keyframes, facts.keyframes);
-        assert.equal(lap.keyframe_rms, facts.keyframe_rms_m);
-        assert.equal(lap.odometry_end_error, facts.odometry_error_m);
+        assert.equal(lap.keyframe_rms_m, facts.keyframe_rms_m);
+        assert.equal(lap.odometry_end_error_m, facts.odometry_error_m);
       } finally {
         rmSync(folder, { recursive: true });
       }

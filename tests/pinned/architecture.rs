@@ -90,13 +90,14 @@ fn text(path: &Path) -> String {
 }
 
 /// The packages of `crates/` in the order of the data flow, each with its allowed dependencies.
-const CORE: [(&str, &[&str]); 13] = [
+const CORE: [(&str, &[&str]); 14] = [
     ("pr_geom", &[]),
     ("pr_sim", &["pr_geom"]),
     ("pr_grid", &["pr_geom"]),
     ("pr_optim", &["pr_geom"]),
     // Neither the simulator nor the lab: the estimator has no access to the truth.
     ("ch16_slam2d", &["pr_geom", "pr_optim"]),
+    ("ch16_listings", &["pr_geom", "ch16_slam2d"]),
     (
         "incremental_mapping",
         &["pr_geom", "pr_grid", "ch16_slam2d"],

@@ -5,7 +5,7 @@
 
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 use nalgebra::Matrix3;
-use pr_geom::{SE2, Translation};
+use pr_geom::SE2;
 use pr_optim::{
     Between, Factorization, JacobianModel, Method, Optimizer, Problem, Settings, StopReason,
 };
@@ -14,12 +14,12 @@ use pr_optim::{
 fn chapter_listing_solves_the_three_poses() {
     let mut graph = PoseGraph::new();
     let a = graph.add_fixed_node(SE2::identity());
-    let b = graph.add_node(SE2::translation(1.0, 0.0));
-    let c = graph.add_node(SE2::translation(2.0, 0.0));
+    let b = graph.add_node(SE2::from_xy(1.0, 0.0));
+    let c = graph.add_node(SE2::from_xy(2.0, 0.0));
     let omega = Matrix3::identity();
-    graph.add_edge(a, b, SE2::translation(1.0, 0.0), omega, EdgeKind::Odometry);
-    graph.add_edge(b, c, SE2::translation(1.0, 0.0), omega, EdgeKind::Odometry);
-    graph.add_edge(a, c, SE2::translation(2.6, 0.0), omega, EdgeKind::Loop);
+    graph.add_edge(a, b, SE2::from_xy(1.0, 0.0), omega, EdgeKind::Odometry);
+    graph.add_edge(b, c, SE2::from_xy(1.0, 0.0), omega, EdgeKind::Odometry);
+    graph.add_edge(a, c, SE2::from_xy(2.6, 0.0), omega, EdgeKind::Loop);
     assert!((graph.chi2() - 0.36).abs() < 1e-12);
     graph.optimize(10, 1e-9);
     assert_eq!(graph.pose(a), SE2::identity());
@@ -41,13 +41,13 @@ fn every_method_jacobian_and_factorization_solves_the_three_poses() {
             for factorization in [Factorization::Block, Factorization::Faer] {
                 let mut problem = Problem::new();
                 problem.add_fixed_pose(SE2::identity());
-                problem.add_pose(SE2::translation(1.0, 0.0));
-                problem.add_pose(SE2::translation(2.0, 0.0));
+                problem.add_pose(SE2::from_xy(1.0, 0.0));
+                problem.add_pose(SE2::from_xy(2.0, 0.0));
                 for (from, to, x) in [(0, 1, 1.0), (1, 2, 1.0), (0, 2, 2.6)] {
                     problem.add_factor(Between {
                         from,
                         to,
-                        measurement: SE2::translation(x, 0.0),
+                        measurement: SE2::from_xy(x, 0.0),
                         information: Matrix3::identity(),
                     });
                 }

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, RecordedLoopAttempt};
 use ch16_slam2d::loops::LoopRejection;
-use pr_geom::{Translation, sort_numbers};
+use pr_geom::sort_numbers;
 use serde_json::{Value, json};
 use widget_kit::palette::Theme;
 use widget_kit::scene::{

@@ -12,7 +12,7 @@ use pr_geom::{Rng, SE2};
 /// A straight path of `edges` equal steps.
 #[must_use]
 pub fn straight(edges: usize, step_m: f64) -> Vec<SE2> {
-    vec![SE2::translation(step_m, 0.0); edges]
+    vec![SE2::from_xy(step_m, 0.0); edges]
 }
 
 /// The same, but turned round in place after half of the edges.

@@ -8,6 +8,7 @@ use ch16_slam2d::scan::PreparedFrame;
 use ch16_slam2d::slam::{MapPruning, MapPruningConfig, Slam, SlamConfig};
 use pr_geom::{Point2, SE2};
 use pr_sim::{Course, Wall, World};
+use serde::Serialize;
 use std::sync::Arc;
 
 use crate::lap::{Drive, DriveConfig};
@@ -62,7 +63,7 @@ impl LapsConfig {
 }
 
 /// The result of one lap.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LapNumbers {
     /// Number of the lap, counted from 1.
     pub lap: usize,

@@ -10,6 +10,7 @@ pub use study::{Place, PlaceStudy};
 
 use crate::lap::{Lap, LapConfig, LapDetector};
 use pr_geom::order_by;
+use serde::Serialize;
 
 /// True positions closer than this are the same place, m.
 pub const SAME_PLACE_M: f64 = 1.0;
@@ -38,7 +39,7 @@ pub struct PlacePair {
 }
 
 /// Precision and recall of a detector at one threshold.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct OperatingPoint {
     /// Pairs at this distance or below are detected.
     pub threshold: f64,
@@ -49,7 +50,7 @@ pub struct OperatingPoint {
 }
 
 /// Precision and recall of a detector at all thresholds.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlaceCurve {
     /// The detector.
     pub detector: LapDetector,

@@ -28,7 +28,7 @@ pub fn graph(errors_m: impl Fn(usize) -> f64, tie: Option<usize>) -> PoseGraph {
     let mut nodes = vec![graph.add_fixed_node(SE2::identity())];
     for edge in 0..EDGES {
         let ahead_m = if edge < EDGES / 2 { 1.0 } else { -1.0 };
-        let step = SE2::translation(ahead_m + errors_m(edge), 0.0);
+        let step = SE2::from_xy(ahead_m + errors_m(edge), 0.0);
         let node = graph.add_node(graph.pose(nodes[edge]) * step);
         let information = information(1.0 / (SIGMA_M * SIGMA_M));
         graph.add_edge(nodes[edge], node, step, information, EdgeKind::Odometry);

@@ -197,7 +197,7 @@ fn a_registration_says_why_it_ended() {
     let far = icp(
         scene.source(),
         scene.map(),
-        SE2::translation(50.0, 0.0),
+        SE2::from_xy(50.0, 0.0),
         &config,
     );
     let (pairs, min_pairs) = (0, 8);
@@ -291,7 +291,7 @@ fn information_moved_to_the_body_is_the_hessian_of_the_cost_under_perturbations_
     }
 
     let center = centroid(&pairs);
-    let body_from_center = map_from_body.inverse() * SE2::translation(center.x, center.y);
+    let body_from_center = map_from_body.inverse() * SE2::from_xy(center.x, center.y);
     let at_center = icp_information(&pairs, sigma, covariance_scale);
     let at_body = move_information(&at_center, &body_from_center.inverse());
     // 1e-6: central differences over 1e-4 leave 1e-8 of an arm of a few metres.
@@ -321,8 +321,8 @@ fn regularizing_caps_the_largest_diagonal_entry_at_2500() {
 #[test]
 fn the_threshold_adapts_after_three_deviations() {
     let mut threshold = AdaptiveThreshold::new(0.5, 0.03, 6.0);
-    let shifted = SE2::translation(0.1, 0.0);
-    threshold.update(&SE2::identity(), &SE2::translation(0.02, 0.0));
+    let shifted = SE2::from_xy(0.1, 0.0);
+    threshold.update(&SE2::identity(), &SE2::from_xy(0.02, 0.0));
     for _ in 0..2 {
         threshold.update(&SE2::identity(), &shifted);
         assert_eq!(threshold.tau_m(), 0.5);

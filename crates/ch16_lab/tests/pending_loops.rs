@@ -66,7 +66,7 @@ fn a_frame_that_cannot_be_used_leaves_the_estimator_as_it_was() {
         Err(FrameError::Stamp { .. })
     ));
     let mut frame = drive.frame(2);
-    frame.odometry = Some(SE2::translation(f64::NAN, 0.0));
+    frame.odometry = Some(SE2::from_xy(f64::NAN, 0.0));
     assert!(matches!(
         slam.step(&frame),
         Err(FrameError::Odometry { .. })
@@ -160,7 +160,7 @@ fn with_a_liar(config: SlamConfig, proposals: &[SE2]) -> Slam {
 #[test]
 fn candidates_are_tried_in_order_up_to_the_limit_from_their_proposals() {
     let drive = drive();
-    let far = SE2::translation(50.0, 0.0);
+    let far = SE2::from_xy(50.0, 0.0);
     for (limit, tried) in [(1, 1), (2, 2), (9, 3)] {
         let mut config = SlamConfig::default();
         config.chapter.loops.candidates_tried = limit;
@@ -192,7 +192,7 @@ fn a_loop_that_the_graph_does_not_bear_is_taken_out_again() {
     // A gate that accepts every loop, and a measurement that overflows the cost.
     config.chapter.loops.gate_chi2 = f64::INFINITY;
     config.chapter.loops.max_rmse_m = f64::INFINITY;
-    let mut slam = with_a_liar(config, &[SE2::translation(1e200, 0.0)]);
+    let mut slam = with_a_liar(config, &[SE2::from_xy(1e200, 0.0)]);
     let mut taken_back = 0;
     for tick in 0..80 {
         let report = slam.step_prepared(&drive.prepared(tick)).unwrap();

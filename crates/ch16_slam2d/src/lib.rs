@@ -7,8 +7,6 @@ pub mod cloud;
 pub mod digest;
 pub mod graph;
 pub mod icp;
-#[cfg(feature = "listings")]
-pub mod listings;
 pub mod local_map;
 pub mod localize;
 pub mod loops;

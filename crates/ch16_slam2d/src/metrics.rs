@@ -130,7 +130,7 @@ mod tests {
         let wall = wall();
         disagreement.start([(&SE2::identity(), &wall)]);
         assert_eq!(disagreement.value_m(), None);
-        disagreement.compare(&SE2::translation(0.0, 0.3), &wall);
+        disagreement.compare(&SE2::from_xy(0.0, 0.3), &wall);
         assert!((disagreement.value_m().unwrap() - 0.3).abs() < 1e-12);
     }
 
@@ -139,7 +139,7 @@ mod tests {
         let mut disagreement = MapDisagreement::new(DisagreementConfig::default());
         let wall = wall();
         disagreement.start([(&SE2::identity(), &wall)]);
-        disagreement.compare(&SE2::translation(0.0, 1.6), &wall);
+        disagreement.compare(&SE2::from_xy(0.0, 1.6), &wall);
         assert_eq!(disagreement.value_m(), None);
     }
 

@@ -68,7 +68,7 @@ pub struct ScanPose {
 /// // A robot in a round hall of 3 m, a scan every 10 cm.
 /// let scans = (0..20).map(|k| LogFrame {
 ///     stamp_s: f64::from(k),
-///     odometry: Some(SE2::translation(0.1 * f64::from(k), 0.0)),
+///     odometry: Some(SE2::from_xy(0.1 * f64::from(k), 0.0)),
 ///     scan: LaserScan {
 ///         angle_step_rad: 0.05,
 ///         ranges_m: vec![3.0; 120],

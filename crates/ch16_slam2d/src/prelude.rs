@@ -22,11 +22,11 @@
 //! let omega = Matrix3::identity();
 //! let mut graph = PoseGraph::new();
 //! let a = graph.add_fixed_node(SE2::identity());
-//! let b = graph.add_node(SE2::translation(1.0, 0.0));
-//! let c = graph.add_node(SE2::translation(2.0, 0.0));
-//! graph.add_edge(a, b, SE2::translation(1.0, 0.0), omega, EdgeKind::Odometry);
-//! graph.add_edge(b, c, SE2::translation(1.0, 0.0), omega, EdgeKind::Odometry);
-//! graph.add_edge(a, c, SE2::translation(2.6, 0.0), omega, EdgeKind::Loop);
+//! let b = graph.add_node(SE2::from_xy(1.0, 0.0));
+//! let c = graph.add_node(SE2::from_xy(2.0, 0.0));
+//! graph.add_edge(a, b, SE2::from_xy(1.0, 0.0), omega, EdgeKind::Odometry);
+//! graph.add_edge(b, c, SE2::from_xy(1.0, 0.0), omega, EdgeKind::Odometry);
+//! graph.add_edge(a, c, SE2::from_xy(2.6, 0.0), omega, EdgeKind::Loop);
 //! assert!((graph.chi2() - 0.36).abs() < 1e-12);
 //!
 //! graph.optimize(10, 1e-9);
@@ -39,7 +39,7 @@
 //! }
 //! ```
 
-pub use pr_geom::{Matrix3, Point2, SE2, Translation, Vector2, Vector3};
+pub use pr_geom::{Matrix3, Point2, SE2, Vector2, Vector3};
 
 pub use crate::cloud::{NearestMap, Neighbor, PointCloud, VoxelMap};
 pub use crate::graph::{EdgeKind, NodeId, PoseEdge, PoseGraph};

@@ -1,7 +1,7 @@
 //! The chapter's worked example and the two increments.
 
 use ch16_slam2d::icp::{closed_form, point_to_plane_step, svd_align};
-use pr_geom::{Point2, SE2, Translation, Vector2};
+use pr_geom::{Point2, SE2, Vector2};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
@@ -140,9 +140,9 @@ proptest! {
         let step = point_to_plane_step(&src, &dst, &wrapped);
         let center = mean(&src);
         let about = |x: f64, y: f64, turn: f64| {
-            SE2::translation(center.x + x, center.y + y)
+            SE2::from_xy(center.x + x, center.y + y)
                 * SE2::new(0.0, 0.0, turn)
-                * SE2::translation(-center.x, -center.y)
+                * SE2::from_xy(-center.x, -center.y)
         };
         let h = 1e-5;
         let slope = |x: f64, y: f64, turn: f64| {

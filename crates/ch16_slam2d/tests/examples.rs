@@ -21,7 +21,7 @@ use ch16_slam2d::slam::SlamConfig;
 #[test]
 fn the_robot_of_the_aligned_clouds_moved_straight() {
     // The room of the example moved by (−0.5, −0.2): the robot moved in the opposite direction.
-    let expected = SE2::translation(0.5, 0.2);
+    let expected = SE2::from_xy(0.5, 0.2);
     let motion = align_two_clouds::motion();
     assert!(expected.between(&motion).step_size() < 1e-12);
     align_two_clouds::main();

@@ -29,7 +29,7 @@ fn the_listings_on_poses_compile() {
     // The perturbation acts on the right: the robot moves along its own heading.
     let ahead = (moved.translation() - position).normalize();
     assert!((ahead - Vector2::new(0.5_f64.cos(), 0.5_f64.sin())).norm() < 1e-12);
-    let moved_back: SE2 = SE2::identity() * SE2::translation(-2.0, -1.0) * pose;
+    let moved_back: SE2 = SE2::identity() * SE2::from_xy(-2.0, -1.0) * pose;
     assert_eq!(moved_back.translation(), Vector2::zeros());
 }
 
@@ -98,12 +98,12 @@ fn the_listings_on_single_steps_compile() {
 fn the_listing_on_the_pose_graph_compiles() {
     let mut graph = PoseGraph::new();
     let a: NodeId = graph.add_fixed_node(SE2::identity());
-    let b = graph.add_node(SE2::translation(1.0, 0.0));
-    let c = graph.add_node(SE2::translation(2.0, 0.0));
+    let b = graph.add_node(SE2::from_xy(1.0, 0.0));
+    let c = graph.add_node(SE2::from_xy(2.0, 0.0));
     let omega = Matrix3::<f64>::identity();
-    graph.add_edge(a, b, SE2::translation(1.0, 0.0), omega, EdgeKind::Odometry);
-    graph.add_edge(b, c, SE2::translation(1.0, 0.0), omega, EdgeKind::Odometry);
-    graph.add_edge(a, c, SE2::translation(2.6, 0.0), omega, EdgeKind::Loop);
+    graph.add_edge(a, b, SE2::from_xy(1.0, 0.0), omega, EdgeKind::Odometry);
+    graph.add_edge(b, c, SE2::from_xy(1.0, 0.0), omega, EdgeKind::Odometry);
+    graph.add_edge(a, c, SE2::from_xy(2.6, 0.0), omega, EdgeKind::Loop);
     let (max_iters, tolerance, huber) = (10, 1e-9, f64::INFINITY);
     let before: f64 = graph.chi2();
     let largest_step: f64 = graph.optimize_once(huber);

@@ -4,6 +4,5 @@ mod alignment;
 mod any_frame;
 mod examples;
 mod listings;
-mod listings_and_core;
 mod nearest;
 mod reasons;

@@ -4,6 +4,7 @@ use core::f64::consts::TAU;
 
 use nalgebra::{Point2, Vector3};
 use pr_geom::{Rng, SE2, math, wrap_angle};
+use serde::Serialize;
 
 use super::LikelihoodMap;
 use ch16_slam2d::cloud::PointCloud;
@@ -12,7 +13,7 @@ use ch16_slam2d::cloud::PointCloud;
 const POINT_STRIDE: usize = 2;
 
 /// Spread of the particles.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BeliefSpread {
     /// Standard deviation of the position, `√(σ_x² + σ_y²)`, m.
     pub position_m: f64,

@@ -1,12 +1,13 @@
 //! Reports of incremental mapping.
 
 use pr_geom::SE2;
+use serde::Serialize;
 
 use super::BeliefSpread;
 use crate::field::Climb;
 
 /// Test for a cycle at a keyframe.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CycleTest {
     /// The keyframe.
     pub node: usize,
@@ -21,7 +22,8 @@ pub struct CycleTest {
 }
 
 /// Result of the test for a cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum CycleVerdict {
     /// The location is new: too little of the old map is in view.
     NewPlace,
@@ -36,7 +38,7 @@ pub enum CycleVerdict {
 }
 
 /// A closed cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CycleClosure {
     /// The first keyframe, which stays.
     pub from_node: usize,

@@ -145,16 +145,10 @@ pub struct LoopReport {
 }
 
 impl LoopReport {
-    /// Whether it is in the graph.
-    #[must_use]
-    pub fn is_in_graph(&self) -> bool {
-        self.decision.is_in_graph()
-    }
-
     /// Whether it is in the graph, and the rest of the graph contradicts it.
     #[must_use]
     pub fn is_contradicted(&self) -> bool {
-        self.is_in_graph() && self.chi2 > self.gate_chi2
+        self.decision.is_in_graph() && self.chi2 > self.gate_chi2
     }
 }
 

@@ -21,4 +21,4 @@ pub use angle::wrap_angle;
 pub use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
 pub use order::{order_by, sort_numbers, sort_pairs, sort_ranked};
 pub use rng::Rng;
-pub use se2::{Rotation, SE2, Translation, twist_size};
+pub use se2::{Rotation, SE2, twist_size};

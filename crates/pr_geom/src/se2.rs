@@ -67,20 +67,6 @@ impl From<SE2> for [f64; 3] {
     }
 }
 
-/// Read access to the translation part. It is a trait because the constructor [`SE2::translation`]
-/// has the same name, and the chapter's listings use both.
-pub trait Translation {
-    /// The translation part `(x, y)` in metres.
-    fn translation(&self) -> Vector2<f64>;
-}
-
-impl Translation for SE2 {
-    #[inline]
-    fn translation(&self) -> Vector2<f64> {
-        Vector2::new(self.x, self.y)
-    }
-}
-
 impl SE2 {
     /// The pose at `(x, y)` metres with heading `theta` radians, wrapped to (−π, π].
     #[inline]
@@ -103,7 +89,7 @@ impl SE2 {
     /// A motion without rotation.
     #[inline]
     #[must_use]
-    pub fn translation(x: f64, y: f64) -> Self {
+    pub fn from_xy(x: f64, y: f64) -> Self {
         Self { x, y, theta: 0.0 }
     }
 
@@ -119,6 +105,13 @@ impl SE2 {
     #[must_use]
     pub fn y(&self) -> f64 {
         self.y
+    }
+
+    /// The translation part `(x, y)`, m.
+    #[inline]
+    #[must_use]
+    pub fn translation(&self) -> Vector2<f64> {
+        Vector2::new(self.x, self.y)
     }
 
     /// Position of the body's origin in the world frame, m.

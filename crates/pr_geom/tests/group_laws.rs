@@ -1,6 +1,6 @@
 //! The group laws of SE(2) on random motions, and the angles at which implementations fail.
 
-use pr_geom::{Matrix3, Point2, SE2, Translation, Vector2, Vector3};
+use pr_geom::{Matrix3, Point2, SE2, Vector2, Vector3};
 use proptest::prelude::*;
 
 /// Rounding of a handful of products of numbers up to 30.
@@ -108,7 +108,7 @@ fn a_quarter_turn_of_unit_arc_ends_where_geometry_says() {
 
 #[test]
 fn translation_is_both_constructor_and_accessor() {
-    let pose = SE2::translation(1.5, -2.0);
+    let pose = SE2::from_xy(1.5, -2.0);
     assert_eq!(pose.translation(), Vector2::new(1.5, -2.0));
     assert_eq!(pose.position(), Point2::new(1.5, -2.0));
     assert_eq!(pose.theta(), 0.0);

@@ -72,7 +72,7 @@ mod tests {
     /// Simulates a solve that accepts every step and visits these costs.
     fn walk(costs: &[f64]) -> BestPoses {
         let mut best = BestPoses::default();
-        let pose = |k: usize| [SE2::translation(k as f64, 0.0)];
+        let pose = |k: usize| [SE2::from_xy(k as f64, 0.0)];
         for (k, &cost) in costs.iter().enumerate() {
             best.record_arrival(cost, &pose(k.saturating_sub(1)));
             best.record_step(cost, true);

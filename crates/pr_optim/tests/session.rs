@@ -95,11 +95,11 @@ fn a_start_with_a_high_first_gain_ratio_is_followed() {
 fn a_consistent_graph_is_solved_at_once() {
     let mut problem = Problem::new();
     problem.add_fixed_pose(SE2::identity());
-    problem.add_pose(SE2::translation(1.0, 0.0));
+    problem.add_pose(SE2::from_xy(1.0, 0.0));
     problem.add_factor(Between {
         from: 0,
         to: 1,
-        measurement: SE2::translation(1.0, 0.0),
+        measurement: SE2::from_xy(1.0, 0.0),
         information: Matrix3::identity(),
     });
     let mut optimizer = Optimizer::new(Settings {

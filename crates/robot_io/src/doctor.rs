@@ -378,7 +378,7 @@ mod tests {
         for number in 0..3 {
             checkup.add(&LogFrame {
                 stamp_s: f64::from(number),
-                odometry: Some(SE2::translation(f64::from(number), 0.0)),
+                odometry: Some(SE2::from_xy(f64::from(number), 0.0)),
                 scan: LaserScan {
                     angle_step_rad: 0.1,
                     ranges_m: vec![1.0, 0.0],

@@ -108,7 +108,7 @@ mod tests {
         for (stamp_s, x, range_m) in [(10.0, 0.0, 2.0), (11.0, 0.5, 0.0), (10.5, 1.0, 3.0)] {
             info.add(&LogFrame {
                 stamp_s,
-                odometry: Some(SE2::translation(x, 0.0)),
+                odometry: Some(SE2::from_xy(x, 0.0)),
                 scan: LaserScan {
                     angle_step_rad: core::f64::consts::FRAC_PI_2,
                     ranges_m: vec![range_m; 3],

@@ -163,7 +163,7 @@ mod tests {
         let mut odometry = OdometryPoses::default();
         assert_eq!(odometry.at(1.0), None);
         for (stamp_s, x) in [(1.0, 0.0), (2.0, 1.0), (1.5, 9.0), (4.0, 2.0)] {
-            odometry.push(stamp_s, SE2::translation(x, 0.0));
+            odometry.push(stamp_s, SE2::from_xy(x, 0.0));
         }
         // The pose of 1.5 s came too late and is skipped.
         for (stamp_s, x) in [(0.9, 0.0), (1.5, 0.5), (3.0, 1.5), (4.1, 2.0)] {
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn restarted_odometry_continues_the_path() {
-        let pose = |k: u32| SE2::translation(5.0 + 0.1 * f64::from(k % 30), 0.0);
+        let pose = |k: u32| SE2::from_xy(5.0 + 0.1 * f64::from(k % 30), 0.0);
         let poses = (0..60).map(|k| (0.1 * f64::from(k), pose(k)));
         let (odometry, jumps) = OdometryPoses::new(poses.collect(), 0.1);
         assert_eq!(jumps.len(), 1);
@@ -187,7 +187,7 @@ mod tests {
     fn beyond_the_known_poses_and_in_a_gap_there_is_none() {
         let mut odometry = OdometryPoses::default();
         for stamp_s in [1.0, 2.0, 60.0] {
-            odometry.push(stamp_s, SE2::translation(stamp_s, 0.0));
+            odometry.push(stamp_s, SE2::from_xy(stamp_s, 0.0));
         }
         for stamp_s in [0.0, 30.0, 61.0] {
             assert_eq!(odometry.at(stamp_s), None, "{stamp_s}");

@@ -69,12 +69,12 @@ mod tests {
         slam.graph_mut().add_fixed_node(SE2::identity());
         for number in 1..10_u8 {
             slam.graph_mut()
-                .add_node(SE2::translation(f64::from(number), 0.0));
+                .add_node(SE2::from_xy(f64::from(number), 0.0));
         }
         let sentence = |scale: f64| {
             let mut lengths = PathLengths::default();
             for number in 0..10_u8 {
-                let at = SE2::translation(scale * f64::from(number), 0.0);
+                let at = SE2::from_xy(scale * f64::from(number), 0.0);
                 // The odometry starts at the second keyframe.
                 lengths.add(usize::from(number), (number > 0).then_some(at));
             }

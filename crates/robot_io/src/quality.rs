@@ -272,8 +272,8 @@ mod tests {
         // Along x: odometry says 0 ± 1, the loop says 3 ± 2. The mean is 3 · (1/4) / (1 + 1/4).
         let information = Matrix3::identity() * 0.25;
         let covariance = Matrix3::identity() / 1.25;
-        let relative = SE2::translation(0.6, 0.0);
-        let measured = SE2::translation(3.0, 0.0);
+        let relative = SE2::from_xy(0.6, 0.0);
+        let measured = SE2::from_xy(3.0, 0.0);
         let chi2 = innovation_chi2(&measured, &information, &relative, &covariance).unwrap();
         // Against the graph without the loop: 3² / (1 + 4).
         assert!((chi2 - 1.8).abs() < 1e-12, "{chi2}");

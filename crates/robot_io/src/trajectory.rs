@@ -6,6 +6,7 @@
 use std::io::{BufRead, Write};
 
 use pr_geom::{SE2, math};
+use serde::Serialize;
 use thiserror::Error;
 
 use crate::lines::{LineEnd, finite, next_line};
@@ -18,7 +19,7 @@ pub struct Trajectory {
 }
 
 /// A pose with its stamp.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StampedPose {
     /// Stamp, s.
     pub stamp_s: f64,

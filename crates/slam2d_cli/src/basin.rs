@@ -1,9 +1,9 @@
 //! `slam2d basin`: basin of convergence of ICP in w16.1, from one start or a sweep of headings.
 
 use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart};
-use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpConfig, IcpVariant, IcpWorkspace, StopReason};
 use clap::{Args, ValueEnum};
+use pr_geom::{Point2, SE2, Vector2};
 use serde::Serialize;
 
 use crate::numbers::{self, Headings};
@@ -54,32 +54,25 @@ enum VariantName {
 
 #[derive(Serialize)]
 struct BasinJson {
+    variant: &'static str,
+    tau_m: f64,
     /// Points of the target in its sensor's frame, m.
-    target: Vec<[f64; 2]>,
+    target: Vec<Point2<f64>>,
     /// Unit normals of the target's points; null for points without one.
-    normals: Vec<Option<[f64; 2]>>,
+    normals: Vec<Option<Vector2<f64>>>,
     /// Points of the source in its sensor's frame, m.
-    source: Vec<[f64; 2]>,
+    source: Vec<Point2<f64>>,
     /// The true `target_from_source`.
-    truth: [f64; 3],
+    truth: SE2,
     runs: Vec<RunJson>,
 }
 
 #[derive(Serialize)]
 struct RunJson {
-    heading_deg: f64,
-    dx: f64,
-    dy: f64,
-    variant: &'static str,
-    tau: f64,
-    pose: [f64; 3],
-    iterations: usize,
-    converged: bool,
-    rmse: Option<f64>,
-    inliers: usize,
-    error_m: f64,
-    error_deg: f64,
-    minimum: &'static str,
+    #[serde(flatten)]
+    start: BasinStart,
+    #[serde(flatten)]
+    outcome: BasinOutcome,
 }
 
 /// Registers from every heading and prints the outcomes.
@@ -103,30 +96,23 @@ pub fn run(args: &BasinArgs) {
     let outcomes = scene.sweep(start, headings(), &config, &mut workspace);
     let runs = headings().zip(outcomes);
     if args.json {
-        let run_json = |(heading_deg, outcome): (f64, BasinOutcome)| RunJson {
-            heading_deg,
-            dx: args.dx,
-            dy: args.dy,
-            variant: variant_name,
-            tau: args.tau,
-            pose: outcome.pose.to_array(),
-            iterations: outcome.iterations,
-            converged: outcome.stop.converged(),
-            rmse: outcome.rmse_m.is_finite().then_some(outcome.rmse_m),
-            inliers: outcome.inliers,
-            error_m: outcome.error_m,
-            error_deg: outcome.error_deg,
-            minimum: outcome.ending.name(),
-        };
         let target = scene.target();
         print_json(&BasinJson {
-            target: points(target),
-            normals: (0..target.len())
-                .map(|index| target.normal(index).map(Into::into))
+            variant: variant_name,
+            tau_m: args.tau,
+            target: target.iter().collect(),
+            normals: (0..target.len()).map(|k| target.normal(k)).collect(),
+            source: scene.source().iter().collect(),
+            truth: scene.truth(),
+            runs: runs
+                .map(|(heading_deg, outcome)| RunJson {
+                    start: BasinStart {
+                        heading_deg,
+                        ..start
+                    },
+                    outcome,
+                })
                 .collect(),
-            source: points(scene.source()),
-            truth: scene.truth().to_array(),
-            runs: runs.map(run_json).collect(),
         });
         return;
     }
@@ -155,8 +141,4 @@ pub fn run(args: &BasinArgs) {
             pose(&outcome.pose),
         );
     }
-}
-
-fn points(cloud: &PointCloud) -> Vec<[f64; 2]> {
-    cloud.iter().map(Into::into).collect()
 }

@@ -83,13 +83,6 @@ impl Kind {
     }
 }
 
-/// A pose of a trajectory in JSON.
-#[derive(Serialize)]
-struct PoseJson {
-    stamp_s: f64,
-    pose: [f64; 3],
-}
-
 /// Runs the conversion.
 ///
 /// # Errors
@@ -221,15 +214,7 @@ fn convert_session(args: &ConvertArgs, to: &str) -> anyhow::Result<()> {
 fn convert_trajectory(args: &ConvertArgs) -> anyhow::Result<()> {
     let name = args.input.display().to_string();
     let trajectory = Trajectory::read_tum(open(&args.input)?, &name)?;
-    let poses: Vec<PoseJson> = trajectory
-        .poses()
-        .iter()
-        .map(|stamped| PoseJson {
-            stamp_s: stamped.stamp_s,
-            pose: stamped.pose.to_array(),
-        })
-        .collect();
-    write_whole(&args.output, json(&poses).as_bytes()).in_file(&args.output)
+    write_whole(&args.output, json(&trajectory.poses()).as_bytes()).in_file(&args.output)
 }
 
 fn json(value: &impl Serialize) -> String {

@@ -1,4 +1,4 @@
-//! World and estimator of `lap` and `sweep`: `--world`, `--matcher`,
+//! Noise, world and estimator of `lap`, `laps` and `sweep`: `--seed`, `--noise`, `--world`, `--matcher`,
 //! `--loop-matcher`, `--detector`, `--gate`, `--information`, `--no-information-cap`.
 
 use ch16_lab::lap::{
@@ -10,8 +10,21 @@ use clap::Args;
 use clap::builder::PossibleValue;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use pr_sim::Course;
+use serde::Serialize;
 
+use crate::numbers;
 use crate::world::WorldArg;
+
+/// Seed and strength of the noise of a drive.
+#[derive(Args, Clone, Copy, Debug, Serialize)]
+pub struct NoiseArgs {
+    /// Seed of all noise, decimal or 0x….
+    #[arg(long, default_value = "0xC0FFEE", value_parser = numbers::seed, allow_hyphen_values = true)]
+    pub seed: u32,
+    /// Factor on the six parameters of odometry noise.
+    #[arg(long, default_value = "1", value_parser = numbers::noise_factor, allow_hyphen_values = true)]
+    pub noise: f64,
+}
 
 /// Arguments shared by a lap and a sweep of laps.
 #[derive(Args, Clone, Debug)]
@@ -69,14 +82,6 @@ impl TrialArgs {
             (self.no_information_cap, "--no-information-cap"),
         ];
         given.into_iter().find(|(is, _)| *is).map(|(_, name)| name)
-    }
-
-    /// Reads the world.
-    ///
-    /// # Errors
-    /// If the world file cannot be used.
-    pub fn course(&self) -> anyhow::Result<Course> {
-        self.world.course()
     }
 
     /// The laps, with the world read.

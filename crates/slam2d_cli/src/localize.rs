@@ -81,7 +81,7 @@ impl FromStr for Init {
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct LocalizeJson {
+struct LocalizeJson<'a> {
     /// Whether Ctrl-C or SIGTERM ended it early.
     interrupted: bool,
     scans: usize,
@@ -98,34 +98,8 @@ struct LocalizeJson {
     relations: Option<Grade>,
     #[serde(skip_serializing_if = "Option::is_none")]
     truth: Option<Grade>,
-    poses: Vec<PoseJson>,
-}
-
-/// A scan; unknown numbers are null.
-#[derive(Serialize)]
-struct PoseJson {
-    stamp_s: f64,
-    verdict: &'static str,
-    pose: Option<[f64; 3]>,
-    covariance: Option<[[f64; 3]; 3]>,
-    score: Option<f64>,
-    margin: Option<f64>,
-}
-
-impl PoseJson {
-    fn from_report(report: &LocalizeReport) -> Self {
-        let rows = |m: pr_geom::Matrix3<f64>| {
-            core::array::from_fn(|i| core::array::from_fn(|j| m[(i, j)]))
-        };
-        Self {
-            stamp_s: report.stamp_s,
-            verdict: report.verdict.name(),
-            pose: report.pose.map(|pose| pose.to_array()),
-            covariance: report.covariance.map(rows),
-            score: report.score,
-            margin: report.margin(),
-        }
-    }
+    /// The report of every scan; unknown numbers are null.
+    poses: &'a [LocalizeReport],
 }
 
 /// Localizes the log and prints the result.
@@ -211,12 +185,12 @@ pub fn run(args: &LocalizeArgs) -> anyhow::Result<ExitCode> {
         peak_mb: process::peak_mb(),
         relations: of(true),
         truth: of(false),
-        poses: reports.iter().map(PoseJson::from_report).collect(),
+        poses: reports,
     };
     if args.json {
         print_json(&result);
     } else {
-        print_text(&result, reports);
+        print_text(&result);
     }
     Ok(if is_interrupted {
         interrupt::EXIT_CODE.into()
@@ -226,8 +200,8 @@ pub fn run(args: &LocalizeArgs) -> anyhow::Result<ExitCode> {
 }
 
 /// Prints a line for each change of the verdict, and the totals.
-fn print_text(result: &LocalizeJson, reports: &[LocalizeReport]) {
-    for run in reports.chunk_by(|a, b| a.verdict == b.verdict) {
+fn print_text(result: &LocalizeJson<'_>) {
+    for run in result.poses.chunk_by(|a, b| a.verdict == b.verdict) {
         let (first, scans) = (&run[0], run.len());
         let at = match first.pose {
             Some(pose) => {

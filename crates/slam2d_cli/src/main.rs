@@ -14,6 +14,7 @@ mod info;
 mod interrupt;
 mod lap;
 mod lap_options;
+mod laps;
 mod localize;
 mod log_file;
 mod logs;
@@ -55,6 +56,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Lap(lap::LapArgs),
+    Laps(laps::LapsArgs),
     Basin(basin::BasinArgs),
     Terrain(terrain::TerrainArgs),
     Table(table::TableArgs),
@@ -93,6 +95,7 @@ fn main() -> ExitCode {
 fn run(command: &Command) -> anyhow::Result<ExitCode> {
     match command {
         Command::Lap(args) => lap::run(args)?,
+        Command::Laps(args) => laps::run(args)?,
         Command::Basin(args) => basin::run(args),
         Command::Terrain(args) => terrain::run(args),
         Command::Table(args) => table::run(args),

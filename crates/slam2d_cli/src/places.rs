@@ -32,16 +32,7 @@ struct WorldJson {
     world: &'static str,
     pairs: usize,
     same: usize,
-    detectors: Vec<DetectorJson>,
-}
-
-#[derive(Serialize)]
-struct DetectorJson {
-    detector: &'static str,
-    average_precision: f64,
-    recall_without_errors: f64,
-    /// Threshold, precision and recall.
-    curve: Vec<[f64; 3]>,
+    detectors: Vec<PlaceCurve>,
 }
 
 impl WorldJson {
@@ -50,21 +41,7 @@ impl WorldJson {
             world: world.name(),
             pairs: pairs.len(),
             same: pairs.iter().filter(|pair| pair.is_same).count(),
-            detectors: place_curves(pairs).iter().map(DetectorJson::new).collect(),
-        }
-    }
-}
-
-impl DetectorJson {
-    fn new(curve: &PlaceCurve) -> Self {
-        let points = curve.points.iter();
-        Self {
-            detector: curve.detector.name(),
-            average_precision: curve.average_precision,
-            recall_without_errors: curve.recall_without_errors,
-            curve: points
-                .map(|point| [point.threshold, point.precision, point.recall])
-                .collect(),
+            detectors: place_curves(pairs),
         }
     }
 }
@@ -116,13 +93,12 @@ fn print_world(world: &WorldJson) {
         "precision at half"
     );
     for detector in &world.detectors {
-        let half = detector.curve.iter().find(|[_, _, recall]| *recall >= 0.5);
         say!(
             "  {:<12} {:>18.3} {:>24.3} {:>20.3}",
-            detector.detector,
+            detector.detector.name(),
             detector.average_precision,
             detector.recall_without_errors,
-            half.map_or(0.0, |[_, precision, _]| *precision)
+            detector.precision_at_fixed_recall().unwrap_or(0.0)
         );
     }
 }

@@ -54,14 +54,11 @@ enum MethodName {
 #[derive(Serialize)]
 struct RegisterJson {
     method: &'static str,
-    tau: f64,
+    tau_m: f64,
     map_points: usize,
     scan_points: usize,
-    pose: [f64; 3],
-    iterations: usize,
-    converged: bool,
-    rmse: Option<f64>,
-    inliers: usize,
+    #[serde(flatten)]
+    found: IcpSummary,
     us: f64,
     us_build: f64,
 }
@@ -102,14 +99,10 @@ pub fn run(args: &RegisterArgs) -> anyhow::Result<()> {
     if args.json {
         print_json(&RegisterJson {
             method,
-            tau: args.tau,
+            tau_m: args.tau,
             map_points: map_points.len(),
             scan_points: scan.len(),
-            pose: found.pose.to_array(),
-            iterations: found.iterations,
-            converged: found.stop.converged(),
-            rmse: found.rmse_m.is_finite().then_some(found.rmse_m),
-            inliers: found.inliers,
+            found,
             us,
             us_build,
         });

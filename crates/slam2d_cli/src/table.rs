@@ -14,69 +14,24 @@ pub struct TableArgs {
     json: bool,
 }
 
+/// The summaries of both estimators; each has the figures of odometry, too.
 #[derive(Serialize)]
 struct TableJson {
     seed: u32,
-    ticks: usize,
-    keyframes: usize,
-    loops: usize,
-    odometry: ColumnJson,
-    front_end: ColumnJson,
-    with_loops: ColumnJson,
-}
-
-/// A column of the table; rows that odometry lacks are null.
-#[derive(Serialize)]
-struct ColumnJson {
-    end_error: f64,
-    rms: f64,
-    last_nine: Option<(f64, f64)>,
-    largest_keyframe_error: Option<f64>,
-    map_disagreement: Option<f64>,
-}
-
-impl ColumnJson {
-    fn from_keyframes(summary: &LapSummary) -> Self {
-        Self {
-            end_error: summary.keyframe_end_error_m,
-            rms: summary.keyframe_rms_m,
-            last_nine: Some(summary.last_keyframes_m),
-            largest_keyframe_error: Some(summary.keyframe_max_m),
-            map_disagreement: summary.map_disagreement_m,
-        }
-    }
-
-    fn from_odometry(summary: &LapSummary) -> Self {
-        Self {
-            end_error: summary.odometry_end_error_m,
-            rms: summary.odometry_rms_m,
-            last_nine: None,
-            largest_keyframe_error: None,
-            map_disagreement: None,
-        }
-    }
+    front_end: LapSummary,
+    with_loops: LapSummary,
 }
 
 /// Runs the canonical lap and prints its table.
 pub fn run(args: &TableArgs) {
     let config = LapConfig::default();
     let record = LapRunner::new().run(&config);
-    let lap = &record.lap.summary;
-    let columns = [
-        ColumnJson::from_odometry(lap),
-        ColumnJson::from_keyframes(&record.front_end.summary),
-        ColumnJson::from_keyframes(lap),
-    ];
+    let (front_end, lap) = (record.front_end.summary, record.lap.summary);
     if args.json {
-        let [odometry, front_end, with_loops] = columns;
         print_json(&TableJson {
             seed: config.drive.seed,
-            ticks: lap.ticks,
-            keyframes: lap.keyframes,
-            loops: lap.loops,
-            odometry,
             front_end,
-            with_loops,
+            with_loops: lap,
         });
         return;
     }
@@ -86,32 +41,34 @@ pub fn run(args: &TableArgs) {
         lap.ticks,
         lap.keyframes
     );
-    say!(
-        "{:<30} {:>10} {:>12} {:>17}",
-        "",
-        "odometry",
-        "front end",
-        format!("+ {} loop factors", lap.loops)
+    let loops = format!("+ {} loop factors", lap.loops);
+    print_row("", ["odometry", "front end", &loops]);
+    let row = |name, odometry: Option<String>, of: fn(&LapSummary) -> String| {
+        let odometry = odometry.unwrap_or_default();
+        print_row(name, [&odometry, &of(&front_end), &of(&lap)]);
+    };
+    let four = |value_m: f64| Some(format!("{value_m:.4}"));
+    row(
+        "position error at the end (m)",
+        four(lap.odometry_end_error_m),
+        |of| format!("{:.4}", of.keyframe_end_error_m),
     );
-    print_row("position error at the end (m)", &columns, |c| {
-        Some(format!("{:.4}", c.end_error))
+    row("rms position error (m)", four(lap.odometry_rms_m), |of| {
+        format!("{:.4}", of.keyframe_rms_m)
     });
-    print_row("rms position error (m)", &columns, |c| {
-        Some(format!("{:.4}", c.rms))
+    row("last nine keyframes (m)", None, |of| {
+        let (low_m, high_m) = of.last_keyframes_m;
+        format!("{low_m:.2}–{high_m:.2}")
     });
-    print_row("last nine keyframes (m)", &columns, |c| {
-        c.last_nine.map(|(low, high)| format!("{low:.2}–{high:.2}"))
+    row("largest keyframe error (m)", None, |of| {
+        format!("{:.2}", of.keyframe_max_m)
     });
-    print_row("largest keyframe error (m)", &columns, |c| {
-        c.largest_keyframe_error.map(|value| format!("{value:.2}"))
-    });
-    print_row("map self-disagreement (m)", &columns, |c| {
-        c.map_disagreement.map(|value| format!("{value:.4}"))
+    row("map self-disagreement (m)", None, |of| {
+        let value_m = of.map_disagreement_m;
+        value_m.map_or_else(String::new, |value_m| format!("{value_m:.4}"))
     });
 }
 
-fn print_row(name: &str, columns: &[ColumnJson; 3], entry: impl Fn(&ColumnJson) -> Option<String>) {
-    let [odometry, front_end, with_loops] =
-        columns.each_ref().map(|c| entry(c).unwrap_or_default());
+fn print_row(name: &str, [odometry, front_end, with_loops]: [&str; 3]) {
     say!("{name:<30} {odometry:>10} {front_end:>12} {with_loops:>17}");
 }

@@ -36,9 +36,8 @@ enum SceneName {
 #[derive(Serialize)]
 struct TerrainJson<'a> {
     scene: &'static str,
-    tau: f64,
-    n: usize,
-    span_m: f64,
+    #[serde(flatten)]
+    settings: TerrainSettings,
     points: usize,
     ndt_cells: usize,
     icp_cost_m2: &'a [f64],
@@ -61,9 +60,7 @@ pub fn run(args: &TerrainArgs) {
     if args.json {
         print_json(&TerrainJson {
             scene: name,
-            tau: args.tau,
-            n: settings.n,
-            span_m: settings.span_m,
+            settings,
             points: scene.cloud().len(),
             ndt_cells: scene.ndt().cells().len(),
             icp_cost_m2: terrain.icp_cost_m2(),

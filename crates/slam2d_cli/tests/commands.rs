@@ -4,8 +4,12 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use crate::support::{assert_refused, json, slam2d};
+use ch16_lab::basin::{BasinScene, BasinStart};
+use ch16_lab::lap::{LapConfig, LapRunner};
+use ch16_lab::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
+use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
 use serde_json::Value;
-use slam2d_tests::{assert_close, reference};
+use slam2d_tests::assert_close;
 
 /// Asserts that `actual` has every field of `expected`, numbers within `tolerance`.
 fn assert_covers(path: &str, actual: &Value, expected: &Value, tolerance: f64) {
@@ -40,18 +44,37 @@ fn a_missing_field_is_noticed() {
     assert_covers("", &serde_json::json!({"a": 1}), &expected, 1e-6);
 }
 
+/// The library's figures are tested against the reference; the command has to print them of the right lap.
 #[test]
-fn lap_prints_the_fields_of_the_reference() {
-    let laps: Vec<Value> = reference("lap.json");
-    assert_eq!(laps.len(), 9);
-    for expected in &laps {
-        let (seed, noise) = (expected["seed"].to_string(), expected["noise"].to_string());
-        let mut arguments = vec!["lap", "--seed", &seed, "--noise", &noise, "--json"];
-        if expected["loops"] == Value::Bool(false) {
+fn lap_prints_the_librarys_record_of_its_seed_noise_and_loops() {
+    for (seed, noise, loops) in [("1", "0.25", true), ("6", "2", true), ("6", "2", false)] {
+        let mut arguments = vec!["lap", "--seed", seed, "--noise", noise, "--json"];
+        let mut config =
+            LapConfig::with_seed_and_noise(seed.parse().unwrap(), noise.parse().unwrap());
+        if !loops {
             arguments.push("--no-loops");
+            config = config.without_loops();
         }
-        // 1e-6: a whole lap. No heading is near ±π, where it could wrap.
-        assert_covers(&arguments.join(" "), &json(&arguments), expected, 1e-6);
+        let (printed, record) = (json(&arguments), LapRunner::new().run(&config));
+        let at = arguments.join(" ");
+        // Zero: one computation, and JSON keeps every bit.
+        let summary = serde_json::to_value(record.lap.summary).unwrap();
+        assert_covers(&at, &printed, &summary, 0.0);
+        assert_eq!(
+            printed["digest"],
+            format!("{:016x}", record.digest()),
+            "{at}"
+        );
+        let poses = serde_json::to_value(record.lap.poses(record.ticks())).unwrap();
+        assert_eq!(printed["keyframe_poses"], poses, "{at}");
+        assert_eq!(
+            printed["events"].as_array().unwrap().len(),
+            record.lap.summary.loop_attempts
+        );
+        assert_eq!(
+            printed["per_tick"].as_array().unwrap().len(),
+            record.ticks()
+        );
     }
 }
 
@@ -75,104 +98,89 @@ fn basin_reports_used_up_iterations_as_an_outcome_of_its_own() {
     };
     // basin.json: 0.116 m and 25.3° off after 30 iterations.
     let short = run("30");
-    assert_eq!(
-        (&short["minimum"], &short["converged"]),
-        (&"stopped before it converged".into(), &false.into())
-    );
+    assert_eq!(short["ending"], "not_converged");
+    assert_eq!(short["stop"]["iteration_limit"]["max_iterations"], 30);
     let patient = run("200");
-    assert_eq!(
-        (&patient["minimum"], &patient["converged"]),
-        (&"right minimum".into(), &true.into())
-    );
+    assert_eq!(patient["ending"], "right");
+    assert!(patient["stop"]["small_step"].is_object(), "{patient}");
 }
 
 #[test]
-fn basin_prints_the_runs_of_the_reference() {
-    let basin: Value = reference("basin.json");
-    let runs = basin["runs"].as_array().unwrap();
-    let mut seen = 0;
-    for variant in ["point-to-point", "point-to-plane"] {
-        for (tau, dx, dy) in groups(runs) {
-            let arguments = [
-                "basin",
-                "--variant",
-                variant,
-                "--tau",
-                &tau,
-                "--dx",
-                &dx,
-                "--dy",
-                &dy,
-                "--heading-deg=-180:180:1",
-                "--json",
-            ];
-            let printed = json(&arguments);
-            for field in ["target", "source", "truth"] {
-                assert_covers(field, &printed[field], &basin[field], 1e-9);
-            }
-            assert_same_lines(&printed["normals"], &basin["normals"]);
-            let same_start = |run: &&Value| {
-                run["variant"] == variant
-                    && [&run["tau"], &run["dx"], &run["dy"]].map(Value::to_string)
-                        == [&tau, &dx, &dy].map(String::clone)
+fn basin_prints_the_librarys_outcome_of_every_start() {
+    let (dx_m, dy_m) = (0.3, -0.2);
+    for (name, variant) in [
+        ("point-to-point", IcpVariant::PointToPoint),
+        ("point-to-plane", IcpVariant::PointToPlane),
+    ] {
+        let printed = json(&[
+            "basin",
+            "--variant",
+            name,
+            "--tau",
+            "1.1",
+            "--dx",
+            "0.3",
+            "--dy",
+            "-0.2",
+            "--heading-deg=-170:170:85",
+            "--json",
+        ]);
+        let config = BasinScene::config(variant, 1.1);
+        let (scene, mut workspace) = (BasinScene::new(), IcpWorkspace::new());
+        assert_eq!(
+            (&printed["variant"], &printed["tau_m"]),
+            (&name.into(), &1.1.into())
+        );
+        assert_eq!(
+            printed["source"].as_array().unwrap().len(),
+            scene.source().len()
+        );
+        let headings_deg = [-170.0, -85.0, 0.0, 85.0, 170.0];
+        assert_eq!(
+            printed["runs"].as_array().unwrap().len(),
+            headings_deg.len()
+        );
+        for (heading_deg, run) in headings_deg
+            .into_iter()
+            .zip(printed["runs"].as_array().unwrap())
+        {
+            let start = BasinStart {
+                heading_deg,
+                dx_m,
+                dy_m,
             };
-            for expected in runs.iter().filter(same_start) {
-                let heading = expected["heading_deg"].as_f64().unwrap();
-                let actual = &printed["runs"][(heading + 180.0) as usize];
-                assert_covers(&format!("{arguments:?}"), actual, expected, 1e-9);
-                seen += 1;
+            let outcome = scene.register_from(&start, &config, &mut workspace);
+            // Zero: one computation, and JSON keeps every bit.
+            for expected in [serde_json::to_value(start), serde_json::to_value(outcome)] {
+                assert_covers(name, run, &expected.unwrap(), 0.0);
             }
         }
     }
-    assert_eq!(seen, runs.len());
-}
-
-/// Asserts that normals equal those of the reference up to sign.
-fn assert_same_lines(actual: &Value, expected: &Value) {
-    let normals = |list: &Value| -> Vec<Option<[f64; 2]>> {
-        serde_json::from_value(list.clone()).expect("a list of normals and nulls")
-    };
-    let (actual, expected) = (normals(actual), normals(expected));
-    assert_eq!(actual.len(), expected.len());
-    for (index, pair) in actual.into_iter().zip(expected).enumerate() {
-        match pair {
-            (None, None) => {}
-            (Some([ax, ay]), Some([bx, by])) => {
-                let sign = (ax * bx + ay * by).signum();
-                assert_close(&format!("normals[{index}]: x"), sign * ax, bx, 1e-9);
-                assert_close(&format!("normals[{index}]: y"), sign * ay, by, 1e-9);
-            }
-            _ => panic!("normals[{index}]: one of {pair:?} is missing"),
-        }
-    }
-}
-
-/// The offsets and thresholds in the reference, as it writes them.
-fn groups(runs: &[Value]) -> Vec<(String, String, String)> {
-    let mut groups: Vec<_> = runs
-        .iter()
-        .map(|run| {
-            (
-                run["tau"].to_string(),
-                run["dx"].to_string(),
-                run["dy"].to_string(),
-            )
-        })
-        .collect();
-    groups.sort();
-    groups.dedup();
-    groups
 }
 
 #[test]
-fn terrain_prints_the_landscapes_of_the_reference() {
-    for expected in reference::<Vec<Value>>("terrain.json") {
-        let scene = expected["scene"].as_str().unwrap();
-        let (tau, n) = (expected["tau"].to_string(), expected["n"].to_string());
-        let arguments = [
-            "terrain", "--scene", scene, "--tau", &tau, "--n", &n, "--json",
-        ];
-        assert_covers(scene, &json(&arguments), &expected, 1e-9);
+fn terrain_prints_the_librarys_landscapes() {
+    for (name, kind) in [("room", SceneKind::Room), ("corridor", SceneKind::Corridor)] {
+        let printed = json(&[
+            "terrain", "--scene", name, "--tau", "0.4", "--n", "5", "--json",
+        ]);
+        let settings = TerrainSettings {
+            n: 5,
+            tau_m: 0.4,
+            ..TerrainSettings::default()
+        };
+        let scene = TerrainScene::new(kind, TerrainScene::DEFAULT_NDT_CELL_M);
+        let terrain = Terrain::compute(&scene, &settings);
+        let expected = serde_json::json!({
+            "scene": name,
+            "tau_m": 0.4,
+            "n": 5,
+            "points": scene.cloud().len(),
+            "ndt_cells": scene.ndt().cells().len(),
+            "icp_cost_m2": terrain.icp_cost_m2(),
+            "ndt_score": terrain.ndt_score(),
+        });
+        assert_covers(name, &printed, &expected, 0.0);
     }
 }
 

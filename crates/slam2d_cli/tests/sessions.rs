@@ -255,7 +255,7 @@ fn the_log_of_another_building_is_found_nowhere() {
 fn repeated_laps_print_lines_and_write_a_session() {
     let folder = TempDir::new().unwrap();
     let session = folder.path().join("laps.slam2d").display().to_string();
-    let run = json(&["lap", "--laps", "2", "--session", &session, "--json"]);
+    let run = json(&["laps", "2", "--session", &session, "--json"]);
     let laps = run["laps"].as_array().unwrap();
     assert_eq!(laps.len(), 2);
     let info = json(&["info", &session, "--json"]);
@@ -263,23 +263,15 @@ fn repeated_laps_print_lines_and_write_a_session() {
     assert_eq!(info["edges"], laps[1]["edges"]);
     assert_eq!(info["bytes"], laps[1]["bytes"]);
     for (arguments, expected) in [
-        (vec!["lap", "--laps", "0"], "not within 1 to 10000"),
-        (vec!["lap", "--session", "x"], "--laps"),
+        (vec!["laps", "0"], "not within 1 to 10000"),
+        (vec!["laps", "--session", "x"], "not provided"),
         (
-            vec!["lap", "--laps", "2", "--matcher", "ndt"],
-            "cannot be used with",
-        ),
-        (
-            vec!["lap", "--laps", "2", "--wardrobe", "1", "--world", "ring"],
+            vec!["laps", "2", "--wardrobe", "1", "--world", "ring"],
             "--wardrobe applies to the Apartment only",
         ),
         (
-            vec!["lap", "--laps", "2", "--wardrobe", "3"],
-            "is beyond --laps 2; use a lap up to 2",
-        ),
-        (
-            vec!["lap", "--laps", "2", "--front-end", "local-map"],
-            "cannot be used with",
+            vec!["laps", "2", "--wardrobe", "3"],
+            "is beyond the 2 laps; use a lap up to 2",
         ),
     ] {
         assert_refused(&arguments, expected);

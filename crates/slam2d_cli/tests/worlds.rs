@@ -23,7 +23,7 @@ fn every_matcher_drives_the_lap_and_only_the_chapters_has_its_digest() {
         let lap = json(&["lap", "--matcher", matcher, "--json"]);
         assert_ne!(lap["digest"], chapter["digest"]);
         let ends =
-            ["keyframe_end_error", "odometry_end_error"].map(|end| lap[end].as_f64().unwrap());
+            ["keyframe_end_error_m", "odometry_end_error_m"].map(|end| lap[end].as_f64().unwrap());
         assert!(ends[0] < 0.7 * ends[1], "{matcher}: {ends:?}");
     }
 }
@@ -33,13 +33,14 @@ fn the_ring_and_a_world_of_ones_own_are_driven() {
     let on_the_ring = ["lap", "--world", "ring", "--matcher", "ndt", "--json"];
     let ring = json(&on_the_ring);
     assert!(ring["ticks"].as_u64().unwrap() > 150);
-    let ends = ["keyframe_end_error", "odometry_end_error"].map(|end| ring[end].as_f64().unwrap());
+    let ends =
+        ["keyframe_end_error_m", "odometry_end_error_m"].map(|end| ring[end].as_f64().unwrap());
     assert!(ends[0] < ends[1]);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("room.json");
     fs::write(&path, ROOM).unwrap();
     let room = json(&["lap", "--world", path.to_str().unwrap(), "--json"]);
-    assert!(room["keyframe_end_error"].as_f64().unwrap() < 0.8);
+    assert!(room["keyframe_end_error_m"].as_f64().unwrap() < 0.8);
     // Loops are closed in this world, so the information of the edges affects χ².
     let chapter = [&on_the_ring[..], &["--information", "chapter"]].concat();
     assert_ne!(json(&chapter)["chi2"], ring["chi2"]);

@@ -15,14 +15,14 @@ def test_the_lap_has_the_bits_of_the_command(lap, drive, driven):
     assert np.array_equal(drive.dead_reckoning[1:], [tick["dead_reckoning"] for tick in ticks])
     assert np.array_equal([step.pose for step in steps[1:]], [tick["estimate"] for tick in ticks])
     assert [step.inliers for step in steps[1:]] == [tick["inliers"] for tick in ticks]
-    assert [step.rmse for step in steps[1:]] == [tick["rmse"] for tick in ticks]
+    assert [step.rmse for step in steps[1:]] == [tick["rmse_m"] for tick in ticks]
     assert np.array_equal(slam.poses, lap["keyframe_poses"])
     assert np.array_equal(drive.truth[slam.keyframes], lap["keyframe_truth"])
     assert (steps[-1].chi2, len(slam.graph)) == (lap["chi2"], lap["keyframes"])
     accepted = [tried for step in steps for tried in step.loops if tried["accepted"]]
-    events = [event for event in lap["events"] if event["accepted"]]
+    events = [event["verification"] for event in lap["events"] if event["effect"]]
     assert [(tried["from"], tried["to"], tried["chi2"]) for tried in accepted] == [
-        (event["from"], event["to"], event["chi2"]) for event in events
+        (event["from_node"], event["candidate"]["node"], event["gate"]["chi2"]) for event in events
     ]
 
 

@@ -1,6 +1,6 @@
 //! 4. Dense Gauss–Newton on a pose graph.
 
-use ch16_slam2d::listings::{PoseGraph, SE2};
+use ch16_listings::{PoseGraph, SE2};
 use nalgebra::{DMatrix, DVector, Vector3};
 use petgraph::visit::EdgeRef;
 

@@ -1,6 +1,6 @@
 //! 7. Loops by the histogram of ranges.
 
-use ch16_slam2d::listings::PointCloud;
+use ch16_listings::PointCloud;
 
 /// Number of bins.
 const BINS: usize = 64;

@@ -1,6 +1,6 @@
 //! 3. The residual of an edge and its Jacobians.
 
-use ch16_slam2d::listings::SE2;
+use ch16_listings::SE2;
 use nalgebra::{Matrix3, Vector3};
 
 /// `e = log(Z⁻¹ Tᵢ⁻¹ Tⱼ)`.

@@ -51,7 +51,7 @@ fn street_walk(nodes: usize, side: i64) -> Problem {
             0.0
         };
         let turned = last * SE2::new(0.0, 0.0, quarter * core::f64::consts::FRAC_PI_2);
-        let next = turned * SE2::translation(1.0, 0.0);
+        let next = turned * SE2::from_xy(1.0, 0.0);
         let place = (next.x().round() as i64, next.y().round() as i64);
         if place.0.abs() > side || place.1.abs() > side {
             continue;

@@ -97,7 +97,7 @@ fn graph(false_loops: usize) -> Problem {
     for k in 0..false_loops {
         close(
             (2 + 4 * k) % ROUND + k / TRUE_LOOPS,
-            SE2::translation(LIE_M, 0.0),
+            SE2::from_xy(LIE_M, 0.0),
         );
     }
     problem

@@ -44,7 +44,7 @@ fn sweeps() -> [PointCloud; 2] {
 
 /// The score of the second sweep shifted along x.
 fn score(map: &NdtMap, sweep: &PointCloud, shift_m: f64) -> f64 {
-    map.score(sweep, &SE2::translation(shift_m, 0.0))
+    map.score(sweep, &SE2::from_xy(shift_m, 0.0))
 }
 
 /// The shifts at which the curve is computed, m.

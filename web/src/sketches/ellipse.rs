@@ -101,7 +101,7 @@ fn sigmas_m(root: &[[f64; 2]; 2]) -> [f64; 2] {
 
 fn at(driven_m: f64) -> Shown {
     let [x, y] = place(driven_m);
-    let body = SE2::translation(x, y);
+    let body = SE2::from_xy(x, y);
     let known = known(&body);
     let [along, across] = sigmas_m(&known.root).map(|sigma_m| 100.0 * sigma_m);
     let seen = known.points.iter().map(|&point| {
@@ -156,7 +156,7 @@ mod tests {
 
     fn sigmas_at(driven_m: f64) -> [f64; 2] {
         let [x, y] = place(driven_m);
-        sigmas_m(&known(&SE2::translation(x, y)).root)
+        sigmas_m(&known(&SE2::from_xy(x, y)).root)
     }
 
     /// The claim of the section: nearly a circle in the room, a needle in the corridor.

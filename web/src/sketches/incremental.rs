@@ -79,7 +79,7 @@ impl SearchScene {
 
     /// `ln p(z | s)` of the sweep, plus the odometry's `ln p(s | u)` if it is given, at s along the row.
     fn score(&self, along_m: f64, wheels: Option<PosePrior>) -> f64 {
-        let pose = SE2::translation(along_m, 0.0);
+        let pose = SE2::from_xy(along_m, 0.0);
         let field = self.map.field(self.map.config().sigma_m);
         ScanClimb::new(&field, &self.sweep, pose, wheels, CLIMB)
             .objective(&pose)
@@ -98,7 +98,7 @@ impl SearchScene {
 fn odometry_prior(error_m: f64) -> PosePrior {
     let known = 1.0 / (ODOMETRY_SIGMA_M * ODOMETRY_SIGMA_M);
     PosePrior {
-        pose: SE2::translation(error_m, 0.0),
+        pose: SE2::from_xy(error_m, 0.0),
         information: Matrix3::from_diagonal(&Vector3::new(known, 1e4, 1e4)),
     }
 }
@@ -120,9 +120,9 @@ impl Paths {
             truth.push(truth[k] * SE2::new(1.0, 0.0, turn));
         }
         let share = |k: usize| error_m * k as f64 / STEPS as f64;
-        let drifted = |(k, pose): (usize, &SE2)| SE2::translation(share(k), 0.0) * *pose;
+        let drifted = |(k, pose): (usize, &SE2)| SE2::from_xy(share(k), 0.0) * *pose;
         let wheels: Vec<SE2> = truth.iter().enumerate().map(drifted).collect();
-        let end = SE2::translation(found_m, 0.0) * truth[STEPS];
+        let end = SE2::from_xy(found_m, 0.0) * truth[STEPS];
         let mut climbed = wheels.clone();
         climbed[STEPS] = end;
         let mut pushed = wheels.clone();

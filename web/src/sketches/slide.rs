@@ -70,12 +70,7 @@ impl Wall {
             tau_m: TAU_M,
             ..IcpConfig::default()
         };
-        correspondences(
-            &self.sweep,
-            &self.map,
-            SE2::translation(shift_m, 0.0),
-            &config,
-        )
+        correspondences(&self.sweep, &self.map, SE2::from_xy(shift_m, 0.0), &config)
     }
 
     /// The mean squared distance, point to point and point to plane, cm².

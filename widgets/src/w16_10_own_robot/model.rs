@@ -310,7 +310,11 @@ impl Model for OwnRobot {
     }
 
     fn timeline(&self) -> Option<Timeline> {
-        let closed = self.robot.links.iter().filter(|link| link.is_in_graph());
+        let closed = self
+            .robot
+            .links
+            .iter()
+            .filter(|link| link.decision.is_in_graph());
         let loops = closed.map(|link| TimelineMark {
             at: link.new as f64,
             label: format!("loop {} to {}", link.new, link.old),

@@ -1,6 +1,7 @@
 //! Classifies the result of a registration by the minimum that it reached.
 
 use pr_geom::{SE2, math};
+use serde::Serialize;
 
 use super::{BasinPlace, FENCE_SPACING_M};
 use ch16_slam2d::icp::{IcpSummary, StopReason};
@@ -15,7 +16,8 @@ pub const HOME_HEADING_DEG: f64 = 3.0;
 const TURN_TOLERANCE_DEG: f64 = 10.0;
 
 /// The minimum in which a registration ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Minimum {
     /// The right one: within 0.12 m of the truth and within 3°.
     Right,
@@ -102,7 +104,7 @@ impl Minimum {
 }
 
 /// The result of one start.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BasinOutcome {
     /// `target_from_source` as registered.
     pub pose: SE2,

@@ -2,6 +2,7 @@
 
 use pr_geom::SE2;
 use pr_sim::{Lidar, LidarConfig, Rng, World};
+use serde::Serialize;
 
 use super::{BasinOutcome, BasinPlace, fence};
 use crate::scenes::{self, MAP_POINTS_PER_CELL, NORMAL_RADIUS_M};
@@ -19,7 +20,7 @@ const TABLE_SQUARE_M: f64 = 0.08;
 const TABLE_REACH_M: f64 = 2.0;
 
 /// An initial guess, relative to the truth.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BasinStart {
     /// Added to the heading, degrees.
     pub heading_deg: f64,

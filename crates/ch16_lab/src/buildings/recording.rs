@@ -292,7 +292,7 @@ impl Person {
     fn place(&self, poses: &[SE2], number: usize) -> Point2<f64> {
         let last = poses.len() as f64 - 1.0;
         let at = (number as f64 + self.scans_ahead).clamp(0.0, last) as usize;
-        let aside = poses[at] * SE2::translation(0.0, self.aside_m);
+        let aside = poses[at] * SE2::from_xy(0.0, self.aside_m);
         aside.position()
     }
 }

@@ -9,6 +9,7 @@ use ch16_slam2d::places::PlaceDetectorConfig;
 use ch16_slam2d::scan::{LaserScan, ScanConfig};
 use ch16_slam2d::slam::SlamConfig;
 use pr_sim::Course;
+use serde::Serialize;
 
 use super::config::LapConfig;
 
@@ -169,7 +170,8 @@ impl NamedChoice for LoopMatcher {
 }
 
 /// Detectors of loop candidates.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum LapDetector {
     /// Keyframes nearby in the graph, the chapter's.
     #[default]

@@ -4,7 +4,7 @@
 //! whose information was capped is less certain than its pairs say: both are separate here.
 
 use nalgebra::{Matrix2, Vector2};
-use pr_geom::{Translation, math};
+use pr_geom::math;
 
 use super::path_errors::path_shares;
 use super::record::{LapRecord, LapTrace};

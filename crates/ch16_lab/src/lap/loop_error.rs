@@ -104,7 +104,7 @@ mod tests {
         let lap = LapRunner::new().run(&LapConfig::default()).lap;
         assert_eq!(lap.false_acceptances().count(), 0);
         let tick = lap.loop_attempts().next().unwrap().tick;
-        for offset in [SE2::translation(0.6, 0.0), SE2::new(0.0, 0.0, 0.2)] {
+        for offset in [SE2::from_xy(0.6, 0.0), SE2::new(0.0, 0.0, 0.2)] {
             let mut wrong = lap.clone();
             let attempt = wrong.reports[tick - 1].loop_attempt.as_mut().unwrap();
             attempt.verification.registered = attempt.verification.registered * offset;
@@ -119,11 +119,8 @@ mod tests {
         // Just within and just beyond 0.3 m and 5°, to either side.
         let turn = |degrees: f64| SE2::new(0.0, 0.0, degrees.to_radians());
         for (offset, judgement) in [
-            (SE2::translation(0.0, -0.299), LoopJudgement::Right),
-            (
-                SE2::translation(0.0, -0.301),
-                LoopJudgement::FalseAcceptance,
-            ),
+            (SE2::from_xy(0.0, -0.299), LoopJudgement::Right),
+            (SE2::from_xy(0.0, -0.301), LoopJudgement::FalseAcceptance),
             (turn(-4.99), LoopJudgement::Right),
             (turn(-5.01), LoopJudgement::FalseAcceptance),
             (turn(5.01), LoopJudgement::FalseAcceptance),

@@ -117,7 +117,7 @@ mod tests {
             "loop 29 to 7 accepted, chi-squared 4.24 below 7.815, history moved 0.24 m"
         );
         let right = attempt;
-        attempt.verification.registered = lap.loop_truth(&attempt) * SE2::translation(0.0, 0.456);
+        attempt.verification.registered = lap.loop_truth(&attempt) * SE2::from_xy(0.0, 0.456);
         assert_eq!(
             lap.loop_sentence(&attempt),
             "wrong loop 29 to 7 accepted, chi-squared 4.24 below 7.815, history moved 0.24 m: \

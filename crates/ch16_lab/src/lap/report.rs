@@ -3,6 +3,7 @@
 use ch16_slam2d::loops::LoopVerification;
 use pr_geom::SE2;
 use pr_sim::VelocityCommand;
+use serde::Serialize;
 
 use super::{Change, Registration};
 
@@ -27,7 +28,7 @@ pub struct RecordedWindowScan {
 }
 
 /// The effect of closing a loop.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RecordedLoopEffect {
     /// Newest node's pose after the optimization ∘ inverse of its pose before it: the correction of the
     /// estimate and of the window.
@@ -43,7 +44,7 @@ pub struct RecordedLoopEffect {
 }
 
 /// An attempt to close a loop.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RecordedLoopAttempt {
     /// The tick of the attempt, counted from 1.
     pub tick: usize,

@@ -63,7 +63,7 @@ impl Drops {
         let sensor = scene.world_from_sensor();
         let sweep = self.sweeper.fresh_sweep(&sensor, &mut rng);
         let mut shift = || rng.uniform(-self.spread_m, self.spread_m);
-        let start = SE2::translation(shift(), shift());
+        let start = SE2::from_xy(shift(), shift());
         let config = IcpConfig {
             variant: IcpVariant::PointToPlane,
             ..IcpConfig::default()

@@ -2,6 +2,7 @@
 
 use pr_geom::{Rotation, SE2};
 use pr_sim::{Lidar, Rng, World};
+use serde::Serialize;
 
 use super::information::{PoseInformation, pose_information};
 use crate::scenes::{self, MAP_POINTS_PER_CELL, NORMAL_RADIUS_M};
@@ -49,7 +50,7 @@ impl SceneKind {
 }
 
 /// Settings of the landscapes, apart from the location.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TerrainSettings {
     /// Shifts along each axis.
     pub n: usize,
@@ -136,7 +137,7 @@ impl TerrainScene {
             SceneKind::LongCorridor => {
                 let mut target = PointCloud::default();
                 for step_m in [-MAP_STEP_M, 0.0, MAP_STEP_M] {
-                    let beside = SE2::translation(step_m, 0.0) * world_from_sensor;
+                    let beside = SE2::from_xy(step_m, 0.0) * world_from_sensor;
                     let sweep = sweeper.fresh_sweep(&beside, &mut rng);
                     target.extend_transformed(&sweep, &SE2::identity());
                 }

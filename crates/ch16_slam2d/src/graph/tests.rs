@@ -4,19 +4,13 @@ use super::*;
 fn chapter_example() -> PoseGraph {
     let mut graph = PoseGraph::new();
     let a = graph.add_fixed_node(SE2::identity());
-    let b = graph.add_node(SE2::translation(1.0, 0.0));
-    let c = graph.add_node(SE2::translation(2.0, 0.0));
+    let b = graph.add_node(SE2::from_xy(1.0, 0.0));
+    let c = graph.add_node(SE2::from_xy(2.0, 0.0));
     let information = Matrix3::identity();
-    let step = SE2::translation(1.0, 0.0);
+    let step = SE2::from_xy(1.0, 0.0);
     graph.add_edge(a, b, step, information, EdgeKind::Odometry);
     graph.add_edge(b, c, step, information, EdgeKind::Odometry);
-    graph.add_edge(
-        a,
-        c,
-        SE2::translation(2.6, 0.0),
-        information,
-        EdgeKind::Loop,
-    );
+    graph.add_edge(a, c, SE2::from_xy(2.6, 0.0), information, EdgeKind::Loop);
     graph
 }
 
@@ -66,7 +60,7 @@ fn cached_chi2_has_the_bits_of_a_new_sum() {
     graph.optimize_robust(10, 1e-9, 0.1);
     compare(&graph);
     let node = graph.add_node(SE2::new(2.9, 0.1, 0.2));
-    let step = SE2::translation(1.0, 0.0);
+    let step = SE2::from_xy(1.0, 0.0);
     graph.add_edge(2, node, step, Matrix3::identity(), EdgeKind::Odometry);
     compare(&graph);
     compare(&graph.clone());
@@ -114,10 +108,10 @@ fn fixed_node_keeps_its_bits() {
 fn a_closed_loop_makes_the_relative_pose_more_certain() {
     let mut graph = PoseGraph::new();
     let information = Matrix3::from_diagonal(&nalgebra::Vector3::new(100.0, 50.0, 400.0));
-    let step = SE2::translation(1.0, 0.0);
+    let step = SE2::from_xy(1.0, 0.0);
     let mut nodes = vec![graph.add_fixed_node(SE2::identity())];
     for k in 1..5 {
-        nodes.push(graph.add_node(SE2::translation(f64::from(k), 0.0)));
+        nodes.push(graph.add_node(SE2::from_xy(f64::from(k), 0.0)));
         graph.add_edge(
             nodes[k as usize - 1],
             nodes[k as usize],
@@ -135,7 +129,7 @@ fn a_closed_loop_makes_the_relative_pose_more_certain() {
     graph.add_edge(
         nodes[1],
         nodes[4],
-        SE2::translation(3.0, 0.0),
+        SE2::from_xy(3.0, 0.0),
         information,
         EdgeKind::Loop,
     );

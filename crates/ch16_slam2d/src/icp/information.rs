@@ -70,7 +70,7 @@ pub fn centroid(pairs: &[Pair]) -> Point2<f64> {
 ///
 /// `information` belongs to perturbations `T ⊞ δ` of the old frame, translation first. A perturbation
 /// δ of the new frame moves the old one by `Ad δ`. The information of [`icp_information`] at the
-/// origin of a registered body, along its axes, is that for `SE2::translation(cx, cy)⁻¹ · map_from_body`
+/// origin of a registered body, along its axes, is that for `SE2::from_xy(cx, cy)⁻¹ · map_from_body`
 /// with the centroid `(cx, cy)`.
 ///
 /// Source: Solà, Deray, Atchuthan 2018, section II-F.

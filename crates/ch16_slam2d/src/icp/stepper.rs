@@ -1,12 +1,14 @@
 //! The loop of ICP, one iteration at a time or to the end.
 
 use pr_geom::SE2;
+use serde::Serialize;
 
 use super::{IcpConfig, IcpTrace, IcpWorkspace, Pair, PairRejection};
 use crate::cloud::{NearestMap, PointCloud};
 
 /// Why a registration ended, with the measured value.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum StopReason {
     /// The last increment was smaller than the tolerance: converged.
     SmallStep {
@@ -67,7 +69,7 @@ pub struct IcpStep {
 }
 
 /// The outcome of a registration without its history.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct IcpSummary {
     /// `target_from_source`.

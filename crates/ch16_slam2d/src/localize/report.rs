@@ -2,11 +2,13 @@
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
+use serde::{Serialize, Serializer};
 
 use crate::search::{ScoredPose, SearchResult};
 
 /// Reliability of a pose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// The pose was found by a search in this frame.
     Found,
@@ -45,7 +47,7 @@ impl core::fmt::Display for Verdict {
 }
 
 /// Result of one frame.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct LocalizeReport {
     /// Index of the frame.
@@ -57,6 +59,7 @@ pub struct LocalizeReport {
     /// `map_from_body`; `None` if the robot is lost.
     pub pose: Option<SE2>,
     /// Covariance of the pose in the body's frame, 3×3, translation first: m², rad².
+    #[serde(serialize_with = "rows")]
     pub covariance: Option<Matrix3<f64>>,
     /// Share of the scan that fits at the pose, 0 to 1.
     pub score: Option<f64>,
@@ -76,4 +79,12 @@ impl LocalizeReport {
     pub fn runner_up(&self) -> Option<ScoredPose> {
         self.search?.runner_up
     }
+}
+
+/// The rows of a symmetric matrix.
+fn rows<S: Serializer>(
+    covariance: &Option<Matrix3<f64>>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    covariance.map(|matrix| matrix.data.0).serialize(serializer)
 }

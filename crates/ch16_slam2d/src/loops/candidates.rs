@@ -100,7 +100,7 @@ mod tests {
 
     /// A path along x with nodes 0.5 m apart, and back again.
     fn there_and_back() -> Vec<SE2> {
-        let pose = |x: f64| SE2::translation(x, 0.0);
+        let pose = |x: f64| SE2::from_xy(x, 0.0);
         let out = (0..20).map(|k| pose(0.5 * f64::from(k)));
         let back = (0..20).rev().map(|k| pose(0.5 * f64::from(k) + 0.1));
         out.chain(back).collect()
@@ -149,7 +149,7 @@ mod tests {
         for pose in &mut poses[20..] {
             *pose = turned(pose);
         }
-        poses.extend((0..20).map(|k| SE2::translation(0.5 * f64::from(k), 0.2)));
+        poses.extend((0..20).map(|k| SE2::from_xy(0.5 * f64::from(k), 0.2)));
         // Node 50 is at x = 5 m: node 10 was there on the way out, node 29 on the way back.
         let visits = detect_visits(&poses, 50, 2.0, 5);
         let nodes: Vec<usize> = visits.iter().map(|visit| visit.node).collect();

@@ -29,7 +29,7 @@ pub fn match_information(
     trust: &TrustConfig,
 ) -> Matrix3<f64> {
     let middle = centroid(pairs);
-    let middle_from_body = SE2::translation(middle.x, middle.y).between(target_from_body);
+    let middle_from_body = SE2::from_xy(middle.x, middle.y).between(target_from_body);
     move_information(
         &icp_information(pairs, trust.sigma_m, trust.covariance_scale),
         &middle_from_body,

@@ -1,9 +1,10 @@
 //! Reports of a search: for a step, and for its end.
 
 use pr_geom::SE2;
+use serde::Serialize;
 
 /// A pose and its score.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ScoredPose {
     /// `map_from_scan`.
@@ -66,7 +67,7 @@ pub struct SearchReport {
 }
 
 /// Work of a search.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct SearchCounts {
     /// Boxes of more than one pose that were bounded, by one sum over the points each.
@@ -86,7 +87,7 @@ impl SearchCounts {
 }
 
 /// Result of a search.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct SearchResult {
     /// The best pose; of equals the first in heading, then y, then x.

@@ -37,7 +37,7 @@ impl SearchWindow {
         let (low, high) = (grid.min_m(), grid.max_m());
         let middle = Point2::from((low.coords + high.coords) / 2.0);
         Self {
-            center: SE2::translation(middle.x, middle.y),
+            center: SE2::from_xy(middle.x, middle.y),
             half_x_m: (high.x - low.x) / 2.0,
             half_y_m: (high.y - low.y) / 2.0,
             half_turn_rad: PI,

@@ -115,7 +115,7 @@ mod tests {
             ..MotionNoise::default()
         };
         let turned = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, 0.01));
-        let after = noise.then(&turned, &SE2::translation(3.0, 0.0));
+        let after = noise.then(&turned, &SE2::from_xy(3.0, 0.0));
         assert!((after[(1, 1)] - 0.01 * 9.0).abs() < 1e-11);
         assert!(after[(0, 0)].abs() < 1e-11);
     }

@@ -1,6 +1,7 @@
 //! Reports of the estimator.
 
 use pr_geom::SE2;
+use serde::Serialize;
 
 use super::front_end::Registration;
 use crate::loops::LoopVerification;
@@ -22,7 +23,7 @@ pub struct LoopEffect {
 }
 
 /// A value before and after.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Change {
     /// Before.
     pub before: f64,

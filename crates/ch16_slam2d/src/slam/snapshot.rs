@@ -385,7 +385,7 @@ mod tests {
                 "edge 0 connects node 0 to 999",
             ),
             (
-                |s| s.nodes[1].pose = SE2::translation(f64::NAN, 0.0),
+                |s| s.nodes[1].pose = SE2::from_xy(f64::NAN, 0.0),
                 "node 1 has",
             ),
             (|s| s.last_loop_node = 999, "newest node with a loop"),

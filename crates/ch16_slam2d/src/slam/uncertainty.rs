@@ -45,14 +45,14 @@ mod tests {
         let mut graph = PoseGraph::new();
         graph.add_fixed_node(SE2::identity());
         (1..nodes).for_each(|k| {
-            graph.add_node(SE2::translation(k as f64, 0.0));
+            graph.add_node(SE2::from_xy(k as f64, 0.0));
         });
         let sigma = 0.01;
         let information = Matrix3::identity() / (sigma * sigma);
         for from in 0..nodes {
             for to in (from + 1..nodes).take(reach) {
                 let error = Vector3::from_fn(|_, _| rng.normal(0.0, times * sigma));
-                let measured = SE2::translation((to - from) as f64, 0.0) * SE2::exp(&error);
+                let measured = SE2::from_xy((to - from) as f64, 0.0) * SE2::exp(&error);
                 graph.add_edge(from, to, measured, information, EdgeKind::Odometry);
             }
         }

@@ -145,7 +145,7 @@ mod tests {
         assert_eq!([of(5), of(6)], [(4, 5); 2], "two were");
         assert_eq!([of(7), of(100)], [(5, 7); 2], "all were");
         let mut moved = graph(6, &ends);
-        moved.poses_mut()[3] = SE2::translation(1.0, 0.0);
+        moved.poses_mut()[3] = SE2::from_xy(1.0, 0.0);
         assert_eq!(moved.optimized_factors(), 8);
         moved.pop_factor();
         assert_eq!(moved.optimized_factors(), 7);

@@ -9,14 +9,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{Context as _, anyhow, bail};
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner};
+use ch16_listings::{
+    Correspondence, IcpConfig, IcpVariant, LoopConfig, PointCloud, PoseEdge, PoseGraph,
+    VerifiedLoop, VoxelMap, associate,
+};
 use ch16_slam2d::chapter::{ChapterParts, DetectorKind};
 use ch16_slam2d::cloud;
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::icp::{self, Pair};
-use ch16_slam2d::listings::{
-    Correspondence, IcpConfig, IcpVariant, LoopConfig, PointCloud, PoseEdge, PoseGraph,
-    VerifiedLoop, VoxelMap, associate,
-};
 use ch16_slam2d::loops::{self, LoopCandidate, LoopDetector, LoopQuery};
 use ch16_slam2d::matching::{
     MapConfig, Match, MatchRequest, MatchStop, MatchSummary, Matcher, MatcherKind,

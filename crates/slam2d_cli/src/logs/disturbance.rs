@@ -231,7 +231,7 @@ mod tests {
     fn line(scans: u32) -> Vec<LogFrame> {
         let frame = |k: u32| LogFrame {
             stamp_s: 100.0 + f64::from(k * k),
-            odometry: Some(SE2::translation(0.1 * f64::from(k), 0.0)),
+            odometry: Some(SE2::from_xy(0.1 * f64::from(k), 0.0)),
             scan: LaserScan {
                 first_angle_rad: -core::f64::consts::FRAC_PI_2,
                 angle_step_rad: core::f64::consts::PI / 180.0,

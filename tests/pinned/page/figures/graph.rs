@@ -2,7 +2,7 @@
 
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 use nalgebra::Matrix3;
-use pr_geom::{SE2, Translation};
+use pr_geom::SE2;
 
 /// Measurement of each odometry edge, m.
 const ODOMETRY_M: f64 = 1.0;
@@ -12,14 +12,14 @@ const LOOP_M: f64 = 2.6;
 /// `start2`, `end1`, `chi2_after`: poses along the line and disagreement, before and after.
 pub fn value(what: &str) -> Option<f64> {
     let mut graph = PoseGraph::new();
-    let step = SE2::translation(ODOMETRY_M, 0.0);
+    let step = SE2::from_xy(ODOMETRY_M, 0.0);
     let first = graph.add_fixed_node(SE2::identity());
     let second = graph.add_node(step);
     let third = graph.add_node(step * step);
     let weight = Matrix3::identity();
     graph.add_edge(first, second, step, weight, EdgeKind::Odometry);
     graph.add_edge(second, third, step, weight, EdgeKind::Odometry);
-    let seen = SE2::translation(LOOP_M, 0.0);
+    let seen = SE2::from_xy(LOOP_M, 0.0);
     graph.add_edge(first, third, seen, weight, EdgeKind::Loop);
     let before = graph.clone();
     graph.optimize(10, 1e-9);

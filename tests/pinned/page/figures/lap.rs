@@ -6,7 +6,7 @@ use ch16_lab::lap::{
 };
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::icp::INFORMATION_CAP;
-use pr_geom::{SE2, Translation};
+use pr_geom::SE2;
 
 use super::loops;
 

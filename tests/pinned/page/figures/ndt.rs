@@ -4,7 +4,7 @@ use ch16_lab::terrain::{SceneKind, TerrainScene};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::ndt::{NdtConfig, NdtMap, NdtResult, ndt_align};
 use nalgebra::{Matrix2x3, Matrix3, Vector2, Vector3};
-use pr_geom::{Rotation, SE2, Translation};
+use pr_geom::{Rotation, SE2};
 use pr_sim::{Lidar, LidarConfig, Rng, World};
 
 /// A registration of `ndt.json`: its sweep, and one of its starts.

@@ -104,7 +104,7 @@ fn tau_deviations() -> f64 {
     const DIFFERENCE_M: f64 = 0.125;
     let mut threshold = AdaptiveThreshold::new(0.5, 0.0, 6.0);
     for _ in 0..8 {
-        threshold.update(&SE2::identity(), &SE2::translation(DIFFERENCE_M, 0.0));
+        threshold.update(&SE2::identity(), &SE2::from_xy(DIFFERENCE_M, 0.0));
     }
     threshold.tau_m() / DIFFERENCE_M
 }

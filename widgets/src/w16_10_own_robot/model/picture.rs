@@ -111,7 +111,13 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
     if own.robot.links.iter().any(|link| shown.include(link)) {
         legend.push(LegendEntry::line("loop", Tone::Revisit, Stroke::Solid));
     }
-    if shown == ShownLoops::All && own.robot.links.iter().any(|link| !link.is_in_graph()) {
+    if shown == ShownLoops::All
+        && own
+            .robot
+            .links
+            .iter()
+            .any(|link| !link.decision.is_in_graph())
+    {
         legend.push(LegendEntry::line(
             "refused",
             Tone::Series(2),
@@ -189,7 +195,7 @@ fn links(own: &OwnRobot) -> Vec<Layer> {
     let segments = |is_in_graph: bool| {
         let shown = own.values.get(&LOOPS);
         let links = robot.links.iter().filter(|link| shown.include(link));
-        let links = links.filter(|link| link.is_in_graph() == is_in_graph);
+        let links = links.filter(|link| link.decision.is_in_graph() == is_in_graph);
         links
             .filter_map(|link| Some([at(robot, link.new)?, at(robot, link.old)?]))
             .collect()

@@ -36,7 +36,7 @@ impl ShownLoops {
     pub fn include(self, link: &LoopReport) -> bool {
         match self {
             Self::None => false,
-            Self::InGraph => link.is_in_graph(),
+            Self::InGraph => link.decision.is_in_graph(),
             Self::All => true,
         }
     }

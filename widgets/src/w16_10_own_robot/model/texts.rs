@@ -55,7 +55,11 @@ fn verdict_on_loops(robot: &LogState) -> String {
 }
 
 fn in_graph(robot: &LogState) -> usize {
-    robot.links.iter().filter(|link| link.is_in_graph()).count()
+    robot
+        .links
+        .iter()
+        .filter(|link| link.decision.is_in_graph())
+        .count()
 }
 
 /// Loops of the graph that the rest of it contradicts, and that the reader has not accepted.
@@ -253,7 +257,7 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
         Fact::count(
             "loops_refused",
             "loops not in the graph",
-            count(&|link| !link.is_in_graph()),
+            count(&|link| !link.decision.is_in_graph()),
         ),
         Fact::count(
             "loops_doubted",

@@ -82,7 +82,7 @@ pub fn graph(values: &Values) -> PoseGraph {
         graph.add_edge(k, k + 1, step, odometry, EdgeKind::Odometry);
     }
     // Ahead of the first pose, in its frame.
-    let gap = SE2::translation(gap_m, 0.0);
+    let gap = SE2::from_xy(gap_m, 0.0);
     let seen = gap * shape.driven(gap_m)[last];
     let stiffness = Matrix3::from_diagonal_element(values.get(&STIFFNESS));
     graph.add_edge(0, last, seen, stiffness, EdgeKind::Loop);

@@ -3,7 +3,7 @@
 //! Each file is one concept, written for the reader: clouds are vectors of points, the map is a hash,
 //! the graph is `petgraph`'s, and its normal equations go to `faer`'s sparse Cholesky as scalars. The
 //! laps and the page use the core's own types, which do the same faster; the tests compare the two to
-//! 1e-9. Nothing else depends on this module: it stands behind the feature `listings`.
+//! 1e-9.
 //!
 //! | file | what it holds |
 //! |---|---|
@@ -16,6 +16,8 @@
 //! | `information` | [`icp_information`], [`regularize`] |
 //! | `pose_graph` | [`PoseEdge`], [`PoseGraph`] |
 //! | `loop_closure` | [`detect_loop_candidates`], [`submap`], [`verify_loop`] |
+
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 
 mod align;
 mod cloud;

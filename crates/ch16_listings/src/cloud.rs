@@ -3,7 +3,7 @@
 use nalgebra::{Point2, Vector2};
 use pr_geom::math;
 
-use super::{SE2, VoxelMap};
+use crate::{SE2, VoxelMap};
 
 /// A return at this share of the longest range or beyond is not a point: the beam hit nothing.
 const RANGE_LIMIT_SHARE: f64 = 0.995;

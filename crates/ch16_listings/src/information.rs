@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-use super::Correspondence;
+use crate::Correspondence;
 
 /// `Σ J Jᵀ / (σ² · inflate)` with a row `J = (n, (p − c) × n)` for each direction that a pair
 /// measures, about the centroid c of all pairs, along the axes of the map; 3×3, translation first.

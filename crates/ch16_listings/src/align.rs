@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
 
-use super::{Correspondence, SE2};
+use crate::{Correspondence, SE2};
 
 /// A point-to-plane step needs a row for each degree of freedom.
 const MIN_ROWS: usize = 3;

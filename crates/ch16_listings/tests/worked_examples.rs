@@ -1,6 +1,6 @@
 //! The chapter's two worked examples, by the chapter's listings and by the core.
 
-use ch16_slam2d::listings::{EdgeKind, PoseEdge, PoseGraph, SE2, svd_align};
+use ch16_listings::{EdgeKind, PoseEdge, PoseGraph, SE2, svd_align};
 use ch16_slam2d::{graph, icp};
 use nalgebra::{Matrix3, Point2, Vector2};
 

@@ -3,7 +3,7 @@
 use nalgebra::{Point2, Vector2};
 use smallvec::{SmallVec, smallvec};
 
-use super::{PointCloud, SE2, VoxelMap};
+use crate::{PointCloud, SE2, VoxelMap};
 
 /// A point of the sweep and the map point nearest to it, both in the map's frame, m.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,8 +8,8 @@ use petgraph::graph::{NodeIndex, UnGraph};
 use petgraph::visit::EdgeRef;
 use pr_geom::{math, twist_size};
 
-use super::SE2;
-pub use crate::graph::EdgeKind;
+use crate::SE2;
+pub use ch16_slam2d::graph::EdgeKind;
 
 /// Added to each diagonal entry of the normal equations.
 const RIDGE: f64 = 1e-9;

@@ -4,10 +4,10 @@
 
 use std::sync::Arc;
 
+use ch16_listings::*;
 use ch16_slam2d::chapter::{InformationFrame, path_information};
 use ch16_slam2d::cloud::{self, NearestMap};
 use ch16_slam2d::icp::{self, IcpVariant as CoreVariant};
-use ch16_slam2d::listings::*;
 use ch16_slam2d::loops::{self, KeyframeView, LoopCandidate, LoopWorkspace};
 use ch16_slam2d::matching::IcpMatcher;
 use ch16_slam2d::slam::Keyframe;

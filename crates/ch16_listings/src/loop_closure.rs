@@ -3,11 +3,11 @@
 use nalgebra::{Vector2, Vector3};
 use petgraph::graph::NodeIndex;
 
-use super::{
+use crate::{
     EdgeKind, IcpConfig, PointCloud, PoseEdge, PoseGraph, SE2, VoxelMap, associate, icp,
     icp_information, regularize,
 };
-use crate::chi_squared::CHAPTER_GATE;
+use ch16_slam2d::chi_squared::CHAPTER_GATE;
 
 /// The constants of loop closure.
 #[derive(Clone, Copy, Debug, PartialEq)]

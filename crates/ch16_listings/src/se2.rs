@@ -3,7 +3,6 @@
 use core::ops::Mul;
 
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
-use pr_geom::Translation;
 
 /// A rigid motion `world_from_body`; the arithmetic is that of [`pr_geom::SE2`].
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

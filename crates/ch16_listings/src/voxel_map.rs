@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector2};
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
-use crate::cloud::cell_index;
+use ch16_slam2d::cloud::cell_index;
 
 /// Points hashed by cell, at most `max_per_cell` in each.
 ///

@@ -2,7 +2,7 @@
 
 use pr_geom::math;
 
-use super::{Correspondence, PointCloud, SE2, VoxelMap, associate, point_to_plane_step, svd_align};
+use crate::{Correspondence, PointCloud, SE2, VoxelMap, associate, point_to_plane_step, svd_align};
 
 /// The error that an increment minimizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
