@@ -8,7 +8,9 @@ use std::path::PathBuf;
 
 use bench_support::skip::{NO_RECORDED_GRAPHS, skip};
 use pr_optim::g2o::G2oFile;
-use pr_optim::{JacobianModel, Optimizer, Outcome, Problem, Session, Settings, Start, StopReason};
+use pr_optim::{
+    JacobianModel, Optimizer, Problem, SessionOutcome, Settings, SolveSession, Start, StopReason,
+};
 
 /// Best known χ², seven digits.
 const OPTIMA: [(&str, f64); 8] = [
@@ -39,10 +41,10 @@ fn settings() -> Settings {
 }
 
 /// The recorded graph solved from its file, and the outcome; `None` without the data.
-fn solved(name: &str, optimizer: &mut Optimizer) -> Option<(Problem, Outcome)> {
+fn solved(name: &str, optimizer: &mut Optimizer) -> Option<(Problem, SessionOutcome)> {
     let text = std::fs::read_to_string(graph_file(name)).ok()?;
     let mut problem = G2oFile::parse(&text).unwrap().problem;
-    let outcome = Session::new(optimizer, &mut problem, Start::Auto)
+    let outcome = SolveSession::new(optimizer, &mut problem, Start::Auto)
         .unwrap()
         .run();
     Some((problem, outcome))

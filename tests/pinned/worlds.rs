@@ -3,7 +3,7 @@
 //! Thousands of laps take minutes, so the numbers are the recorded output of the commands in
 //! `docs/worlds.md`. Some of the laps are run again, and their bits compared.
 
-use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner, PATH_SHARES};
+use ch16_lab::lap::{BuiltInWorld, LapConfig, LapMatcher, LapRunner, NamedChoice, PATH_SHARES};
 use ch16_slam2d::chapter::InformationFrame;
 
 use serde_json::Value;

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, LoopAttempt};
+use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, RecordedLoopAttempt};
 use ch16_slam2d::loops::LoopRejection;
 use pr_geom::sort_numbers;
 use serde_json::{Value, json};
@@ -57,7 +57,7 @@ fn candidates() -> &'static [Candidate] {
 }
 
 impl Candidate {
-    fn new(record: &LapRecord, attempt: &LoopAttempt) -> Self {
+    fn new(record: &LapRecord, attempt: &RecordedLoopAttempt) -> Self {
         let loop_ = &attempt.verification;
         let lap = &record.lap;
         let poses = lap.poses(attempt.tick - 1);

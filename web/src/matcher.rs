@@ -3,7 +3,7 @@
 //! Poses are `world_from_source`, `[x, y, θ]` in metres and radians, so that the room stands upright.
 
 use ch16_lab::basin::{BasinPlace, BasinScene, HOME_HEADING_DEG, SUCCESS_RADIUS_M};
-use ch16_lab::lap::{BuiltInWorld, Choice as _};
+use ch16_lab::lap::{BuiltInWorld, NamedChoice as _};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
 use pr_geom::SE2;
 use serde_json::{Value, json};
@@ -54,12 +54,12 @@ pub fn scene(name: &str) -> Value {
 }
 
 /// Runs ICP on the sweeps of a room, from one guess after the other.
-pub struct Matcher {
+pub struct RoomMatcher {
     scene: BasinScene,
     workspace: IcpWorkspace,
 }
 
-impl Matcher {
+impl RoomMatcher {
     /// The matcher of a room; an unknown name is that of the first.
     #[must_use]
     pub fn new(name: &str) -> Self {
@@ -110,7 +110,7 @@ mod tests {
     /// The endings that the page tells of the two starts.
     #[test]
     fn a_guess_nearby_comes_home_and_a_quarter_turn_does_not() {
-        let mut matcher = Matcher::new("room");
+        let mut matcher = RoomMatcher::new("room");
         let near = matcher.run(&turned(20.0));
         assert_eq!(near["ending"], "right minimum");
         let quarter = matcher.run(&turned(90.0));
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn a_run_begins_at_the_guess_and_the_scene_has_its_truth() {
-        let run = Matcher::new("room").run(&turned(10.0));
+        let run = RoomMatcher::new("room").run(&turned(10.0));
         assert_eq!(run["poses"][0], pose(&turned(10.0)));
         assert_eq!(scene("room")["truth"], pose(&truth()));
         let points = |name: &str| scene("room")[name].as_array().unwrap().len();
@@ -131,7 +131,7 @@ mod tests {
 
     /// The run in a room from an offset of the true pose, m and degrees.
     fn ending(name: &str, [right, up, degrees]: [f64; 3]) -> Value {
-        let mut matcher = Matcher::new(name);
+        let mut matcher = RoomMatcher::new(name);
         let scene = &matcher.scene;
         let truth = scene.world_from_target() * scene.truth();
         let start = SE2::new(

@@ -53,7 +53,7 @@ pub fn lap_story(seed: u32, noise_factor: f64) -> String {
 /// Title and slider of each small figure of the page, a JSON array; see [`sketches`].
 #[wasm_bindgen(js_name = sketchSchemas)]
 pub fn sketch_schemas() -> String {
-    let figures = sketches::SKETCHES.iter().map(sketches::Sketch::schema);
+    let figures = sketches::SKETCHES.iter().map(sketches::SketchSpec::schema);
     Value::from(figures.collect::<Vec<_>>()).to_string()
 }
 
@@ -101,7 +101,7 @@ pub fn matcher_scene(room: &str) -> String {
 /// Runs ICP on these sweeps.
 #[wasm_bindgen]
 pub struct Matcher {
-    matcher: matcher::Matcher,
+    matcher: matcher::RoomMatcher,
 }
 
 #[wasm_bindgen]
@@ -111,11 +111,11 @@ impl Matcher {
     #[must_use]
     pub fn new(room: &str) -> Self {
         Self {
-            matcher: matcher::Matcher::new(room),
+            matcher: matcher::RoomMatcher::new(room),
         }
     }
 
-    /// A run from that `world_from_source` as JSON; see [`matcher::Matcher::run`].
+    /// A run from that `world_from_source` as JSON; see [`matcher::RoomMatcher::run`].
     pub fn run(&mut self, x: f64, y: f64, theta: f64) -> String {
         self.matcher.run(&SE2::new(x, y, theta)).to_string()
     }

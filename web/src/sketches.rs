@@ -51,7 +51,7 @@ pub struct Shown {
 
 /// A figure with its slider.
 #[derive(Clone, Copy, Debug)]
-pub struct Sketch {
+pub struct SketchSpec {
     /// Its name in the page: `slide`.
     pub name: &'static str,
     /// Its topic.
@@ -67,7 +67,7 @@ pub struct Sketch {
 const PLACES: f64 = 120.0;
 
 /// All figures, in the order of the page.
-pub const SKETCHES: [Sketch; 12] = [
+pub const SKETCHES: [SketchSpec; 12] = [
     nearest::SKETCH,
     slide::SKETCH,
     bells::SKETCH,
@@ -84,11 +84,11 @@ pub const SKETCHES: [Sketch; 12] = [
 
 /// Looks up a figure by name.
 #[must_use]
-pub fn find(name: &str) -> Option<&'static Sketch> {
+pub fn find(name: &str) -> Option<&'static SketchSpec> {
     SKETCHES.iter().find(|sketch| sketch.name == name)
 }
 
-impl Sketch {
+impl SketchSpec {
     /// The figure with its slider at `value`, rounded to the nearest valid value.
     #[must_use]
     pub fn at(&self, value: f64) -> Shown {

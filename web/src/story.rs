@@ -3,7 +3,7 @@
 //! The page replays it tick by tick and interpolates only what a loop moves. Values are in metres and radians
 //! in the world's frame, rounded to a tenth of a millimetre: less than a pixel of any screen.
 
-use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, LapTrace, LoopAttempt};
+use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, LapTrace, RecordedLoopAttempt};
 use ch16_slam2d::cloud::PointCloud;
 use pr_geom::SE2;
 use serde_json::{Value, json};
@@ -50,7 +50,7 @@ fn tick(record: &LapRecord, at: usize) -> Value {
     })
 }
 
-fn closure(lap: &LapTrace, attempt: &LoopAttempt) -> Value {
+fn closure(lap: &LapTrace, attempt: &RecordedLoopAttempt) -> Value {
     let found = &attempt.verification;
     json!({
         "tick": attempt.tick,

@@ -11,6 +11,8 @@ export interface FrameSource {
 
 export function windowOf(frames: FrameSource): Window {
   const own: Partial<Record<string | symbol, unknown>> = {
+    // Without it `constructor` and `toString` would be those of this object.
+    __proto__: null,
     requestAnimationFrame: (callback: FrameRequestCallback) => frames.request(callback),
     cancelAnimationFrame: () => frames.cancel(),
     setTimeout: (callback: () => void) => frames.request(callback),

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use pr_geom::{Point2, SE2};
 use widget_kit::host_messages::Delivery;
 use widget_kit::model::{Activity, Model};
-use widget_kit::scene::{Cell, Layer};
+use widget_kit::scene::{Layer, RasterCell};
 use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
 use widgets::w16_2_full_lap::model::FullLap;
 
@@ -179,7 +179,7 @@ fn the_other_variant_is_driven_by_ours() {
     assert_eq!(facts(&model), facts(&ours));
 }
 
-fn raster(model: &BasinExplorer, panel: &str) -> Arc<[Cell]> {
+fn raster(model: &BasinExplorer, panel: &str) -> Arc<[RasterCell]> {
     let layers = panel_of(model, panel).layers;
     let raster = layers.into_iter().find_map(|layer| match layer {
         Layer::Raster(raster) => Some(raster.cells),

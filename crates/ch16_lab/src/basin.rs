@@ -9,10 +9,12 @@ mod edge;
 mod fence;
 mod map;
 mod outcome;
+mod place;
 mod scene;
 
 pub use edge::EdgeSearch;
 pub use fence::FENCE_SPACING_M;
 pub use map::{BasinMap, BasinMapAxes, OffsetAxis};
-pub use outcome::{BasinOutcome, HOME_HEADING_DEG, Minimum};
-pub use scene::{BasinPlace, BasinScene, BasinStart, SUCCESS_RADIUS_M};
+pub use outcome::{BasinOutcome, HOME_HEADING_DEG, Minimum, SUCCESS_RADIUS_M};
+pub use place::BasinPlace;
+pub use scene::{BasinScene, BasinStart};

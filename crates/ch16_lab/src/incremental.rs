@@ -8,21 +8,9 @@ use incremental_mapping::{CycleTest, CycleVerdict, IncrementalConfig, Incrementa
 use pr_geom::{SE2, math};
 use serde::{Deserialize, Serialize};
 
-use crate::lap::{Drive, Keyframe, LAST_KEYFRAMES, LapConfig, PathErrors};
-
-/// The two incremental methods.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum IncrementalKind {
-    /// Incremental maximum likelihood mapping.
-    MaximumLikelihood,
-    /// The same with the variant for cycles.
-    WithCycles,
-}
+use crate::lap::{Drive, IncrementalKind, LAST_KEYFRAMES, LapConfig, PathErrors, RecordedKeyframe};
 
 impl IncrementalKind {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::MaximumLikelihood, Self::WithCycles];
-
     /// Creates the mapper with the lengths and the noise of a lap's estimator; the particles' seed is the
     /// drive's.
     #[must_use]
@@ -78,7 +66,7 @@ pub struct IncrementalOutcome {
 #[derive(Clone, Debug, PartialEq)]
 pub struct IncrementalTrace {
     /// Keyframes in order, with their truth.
-    pub keyframes: Vec<Keyframe>,
+    pub keyframes: Vec<RecordedKeyframe>,
     /// Their poses at the end, `world_from_body`.
     pub poses: Vec<SE2>,
     /// The estimate after every tick, `world_from_body`.
@@ -111,10 +99,10 @@ impl IncrementalTrace {
                 estimates.push(report.estimate);
             }
         }
-        let keyframes: Vec<Keyframe> = mapper
+        let keyframes: Vec<RecordedKeyframe> = mapper
             .keyframes()
             .iter()
-            .map(|keyframe| Keyframe {
+            .map(|keyframe| RecordedKeyframe {
                 node: keyframe.node,
                 tick: keyframe.frame,
                 truth: drive.truth(keyframe.frame),
@@ -138,7 +126,7 @@ impl IncrementalTrace {
 
 fn outcome(
     mapper: &IncrementalMapper,
-    keyframes: &[Keyframe],
+    keyframes: &[RecordedKeyframe],
     tests: &[CycleTest],
     drive: &Drive,
 ) -> IncrementalOutcome {
@@ -177,7 +165,7 @@ fn outcome(
 /// Distance between the map of the outward path and what the return path saw, at the final poses.
 fn disagreement_m(
     mapper: &IncrementalMapper,
-    keyframes: &[Keyframe],
+    keyframes: &[RecordedKeyframe],
     drive: &Drive,
 ) -> Option<f64> {
     let turn = drive.config().turn?;

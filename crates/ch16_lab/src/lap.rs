@@ -30,15 +30,15 @@ use std::sync::Arc;
 
 pub use ch16_slam2d::slam::{Change, LoopClosure, Registration, SlamConfig};
 pub use choices::{
-    BuiltInWorld, Choice, LapDetector, LapEstimator, LapFrontEnd, LapMatcher, LoopMatcher,
+    BuiltInWorld, IncrementalKind, LapDetector, LapEstimator, LapFrontEnd, LapMatcher, LoopMatcher,
+    NamedChoice,
 };
-pub use config::{CANONICAL_SEED, DriveConfig, LAP_TICKS, LapConfig};
-pub use consistency::{Consistency, HalfWay};
+pub use config::{CANONICAL_SEED, DriveConfig, GridExtent, LAP_TICKS, LapConfig};
+pub use consistency::{HalfWay, LapConsistency};
 pub use digest::lap_digest;
-pub use drive::{Drive, DriveSimulation, DriveTick, Sweep};
+pub use drive::{Drive, DriveSimulation, DriveTick, SimulatedSweep};
 pub use judge::Judge;
 pub use loop_error::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopError, LoopJudgement};
-pub use map::GridExtent;
 pub use newest::{NewestLap, NewestStep};
 pub use own_loop::{
     Claim, EdgeStrain, GateUse, OwnKernel, OwnLoop, OwnLoopError, OwnLoopRequest, edge_strain,
@@ -47,7 +47,10 @@ pub use path_errors::{PATH_SHARES, PathErrors};
 pub use ranges::{ConfigRange, RANGES, random_config};
 pub use record::{Epoch, LAST_KEYFRAMES, LapRecord, LapSummary, LapTrace, RecordedEdge};
 pub use replay::RegistrationView;
-pub use report::{Keyframe, LoopAttempt, LoopEffect, TickMetrics, TickReport, WindowScan};
+pub use report::{
+    RecordedKeyframe, RecordedLoopAttempt, RecordedLoopEffect, RecordedWindowScan, TickMetrics,
+    TickReport,
+};
 pub use run::LapRun;
 pub use runner::LapRunner;
 pub use settings::LapSettings;
@@ -162,9 +165,9 @@ impl Lap {
     }
 
     /// The keyframes with their truth.
-    pub fn keyframes(&self) -> impl ExactSizeIterator<Item = Keyframe> + '_ {
+    pub fn keyframes(&self) -> impl ExactSizeIterator<Item = RecordedKeyframe> + '_ {
         let keyframes = self.slam.keyframes().iter();
-        keyframes.map(|keyframe| Keyframe {
+        keyframes.map(|keyframe| RecordedKeyframe {
             node: keyframe.node,
             tick: keyframe.frame,
             truth: self.drive.truth(keyframe.frame),

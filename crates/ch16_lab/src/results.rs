@@ -5,12 +5,12 @@
 use pr_geom::sort_numbers;
 use serde::{Deserialize, Serialize};
 
-use crate::incremental::{IncrementalKind, IncrementalOutcome, IncrementalTrace};
-use crate::lap::{LapRecord, LapSummary, PATH_SHARES, PathErrors};
+use crate::incremental::{IncrementalOutcome, IncrementalTrace};
+use crate::lap::{IncrementalKind, LapRecord, LapSummary, PATH_SHARES, PathErrors};
 
 /// A column of the results table: the estimator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Column {
+pub enum ResultColumn {
     /// Dead reckoning.
     Odometry,
     /// Scan matching without loops.
@@ -25,7 +25,7 @@ pub enum Column {
 
 /// A row of the results table: the kind of error, m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Row {
+pub enum ResultRow {
     /// Position error at the end.
     EndError,
     /// Root mean square position error.
@@ -44,7 +44,7 @@ pub enum Row {
     MapDisagreement,
 }
 
-impl Column {
+impl ResultColumn {
     /// All columns, from left to right.
     pub const ALL: [Self; 5] = [
         Self::Odometry,
@@ -64,7 +64,7 @@ impl Column {
     }
 }
 
-impl Row {
+impl ResultRow {
     /// All rows, from top to bottom.
     pub const ALL: [Self; 8] = [
         Self::EndError,
@@ -124,50 +124,50 @@ impl LapOutcome {
 
     /// An entry of the results table, m; `None` if the table has a gap.
     #[must_use]
-    pub fn entry(&self, column: Column, row: Row) -> Option<f64> {
+    pub fn entry(&self, column: ResultColumn, row: ResultRow) -> Option<f64> {
         let (summary, way) = match column {
-            Column::Odometry => return self.odometry_entry(row),
-            Column::FrontEnd => (&self.front_end, &self.front_end_way),
-            Column::WithLoops => (&self.lap, &self.lap_way),
-            Column::MaximumLikelihood => {
+            ResultColumn::Odometry => return self.odometry_entry(row),
+            ResultColumn::FrontEnd => (&self.front_end, &self.front_end_way),
+            ResultColumn::WithLoops => (&self.lap, &self.lap_way),
+            ResultColumn::MaximumLikelihood => {
                 return self.incremental_entry(IncrementalKind::MaximumLikelihood, row);
             }
-            Column::MaximumLikelihoodCycles => {
+            ResultColumn::MaximumLikelihoodCycles => {
                 return self.incremental_entry(IncrementalKind::WithCycles, row);
             }
         };
         match row {
-            Row::EndError => Some(summary.keyframe_end_error_m),
-            Row::Rms => Some(summary.keyframe_rms_m),
-            Row::LastKeyframesMin => Some(summary.last_keyframes_m.0),
-            Row::LastKeyframesMax => Some(summary.last_keyframes_m.1),
-            Row::KeyframeMax => Some(summary.keyframe_max_m),
-            Row::HalfWay => Some(way.half_path_length_m()),
-            Row::HalfWaySigma => way.half_way_sigma_m,
-            Row::MapDisagreement => summary.map_disagreement_m,
+            ResultRow::EndError => Some(summary.keyframe_end_error_m),
+            ResultRow::Rms => Some(summary.keyframe_rms_m),
+            ResultRow::LastKeyframesMin => Some(summary.last_keyframes_m.0),
+            ResultRow::LastKeyframesMax => Some(summary.last_keyframes_m.1),
+            ResultRow::KeyframeMax => Some(summary.keyframe_max_m),
+            ResultRow::HalfWay => Some(way.half_path_length_m()),
+            ResultRow::HalfWaySigma => way.half_way_sigma_m,
+            ResultRow::MapDisagreement => summary.map_disagreement_m,
         }
     }
 
     /// Incremental mapping has no graph, so it has no standard deviation.
-    fn incremental_entry(&self, kind: IncrementalKind, row: Row) -> Option<f64> {
+    fn incremental_entry(&self, kind: IncrementalKind, row: ResultRow) -> Option<f64> {
         let IncrementalOutcome { summary, way } = self.incremental_runs[kind as usize].as_ref()?;
         match row {
-            Row::EndError => Some(summary.keyframe_end_error_m),
-            Row::Rms => Some(summary.keyframe_rms_m),
-            Row::LastKeyframesMin => Some(summary.last_keyframes_m.0),
-            Row::LastKeyframesMax => Some(summary.last_keyframes_m.1),
-            Row::KeyframeMax => Some(summary.keyframe_max_m),
-            Row::HalfWay => Some(way.half_path_length_m()),
-            Row::HalfWaySigma => way.half_way_sigma_m,
-            Row::MapDisagreement => summary.map_disagreement_m,
+            ResultRow::EndError => Some(summary.keyframe_end_error_m),
+            ResultRow::Rms => Some(summary.keyframe_rms_m),
+            ResultRow::LastKeyframesMin => Some(summary.last_keyframes_m.0),
+            ResultRow::LastKeyframesMax => Some(summary.last_keyframes_m.1),
+            ResultRow::KeyframeMax => Some(summary.keyframe_max_m),
+            ResultRow::HalfWay => Some(way.half_path_length_m()),
+            ResultRow::HalfWaySigma => way.half_way_sigma_m,
+            ResultRow::MapDisagreement => summary.map_disagreement_m,
         }
     }
 
     /// Dead reckoning has neither keyframes nor a map.
-    fn odometry_entry(&self, row: Row) -> Option<f64> {
+    fn odometry_entry(&self, row: ResultRow) -> Option<f64> {
         match row {
-            Row::EndError => Some(self.lap.odometry_end_error_m),
-            Row::Rms => Some(self.lap.odometry_rms_m),
+            ResultRow::EndError => Some(self.lap.odometry_end_error_m),
+            ResultRow::Rms => Some(self.lap.odometry_rms_m),
             _ => None,
         }
     }
@@ -197,28 +197,30 @@ pub struct LapStatistics {
 impl LapStatistics {
     /// The distribution of an entry of the results table; `None` if no lap has it.
     #[must_use]
-    pub fn spread(&self, column: Column, row: Row) -> Option<Spread> {
+    pub fn spread(&self, column: ResultColumn, row: ResultRow) -> Option<Percentiles> {
         let entries = self.outcomes.iter();
-        Spread::from_values(entries.filter_map(|outcome| outcome.entry(column, row)))
+        Percentiles::from_values(entries.filter_map(|outcome| outcome.entry(column, row)))
     }
 
     /// Medians of the position errors along the path, m, at the ends of its shares; `None` for dead reckoning
     /// and without laps.
     #[must_use]
-    pub fn along_path_m(&self, column: Column) -> Option<[f64; PATH_SHARES + 1]> {
+    pub fn along_path_m(&self, column: ResultColumn) -> Option<[f64; PATH_SHARES + 1]> {
         let way = |outcome: &LapOutcome| match column {
-            Column::Odometry => None,
-            Column::FrontEnd => Some(outcome.front_end_way),
-            Column::WithLoops => Some(outcome.lap_way),
-            Column::MaximumLikelihood => outcome.incremental_runs[0].map(|outcome| outcome.way),
-            Column::MaximumLikelihoodCycles => {
+            ResultColumn::Odometry => None,
+            ResultColumn::FrontEnd => Some(outcome.front_end_way),
+            ResultColumn::WithLoops => Some(outcome.lap_way),
+            ResultColumn::MaximumLikelihood => {
+                outcome.incremental_runs[0].map(|outcome| outcome.way)
+            }
+            ResultColumn::MaximumLikelihoodCycles => {
                 outcome.incremental_runs[1].map(|outcome| outcome.way)
             }
         };
         let ways: Vec<PathErrors> = self.outcomes.iter().filter_map(way).collect();
         let mut medians = [0.0; PATH_SHARES + 1];
         for (k, median) in medians.iter_mut().enumerate() {
-            *median = Spread::from_values(ways.iter().map(|way| way.errors_m[k]))?.median;
+            *median = Percentiles::from_values(ways.iter().map(|way| way.errors_m[k]))?.median;
         }
         Some(medians)
     }
@@ -258,7 +260,7 @@ impl LapStatistics {
 
 /// Median and tails of a distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spread {
+pub struct Percentiles {
     /// One value in twenty is lower.
     pub p05: f64,
     /// Half of the values are lower.
@@ -267,7 +269,7 @@ pub struct Spread {
     pub p95: f64,
 }
 
-impl Spread {
+impl Percentiles {
     /// The spread of some values; `None` without values.
     #[must_use]
     pub fn from_values(values: impl IntoIterator<Item = f64>) -> Option<Self> {
@@ -303,8 +305,8 @@ mod tests {
         assert_eq!(quantile(&values, 1.0), Some(16.0));
         // Position 0.05 · 4 = 0.2 between 1 and 2.
         assert_eq!(quantile(&values, 0.05), Some(1.2));
-        assert_eq!(Spread::from_values([]), None);
-        let spread = Spread::from_values([8.0, 1.0, 16.0, 4.0, 2.0]).unwrap();
+        assert_eq!(Percentiles::from_values([]), None);
+        let spread = Percentiles::from_values([8.0, 1.0, 16.0, 4.0, 2.0]).unwrap();
         assert_eq!((spread.p05, spread.median), (1.2, 4.0));
     }
 
@@ -330,14 +332,18 @@ mod tests {
         let record = LapRunner::new().run(&LapConfig::default());
         let outcome = LapOutcome::from_record(&record);
         let entries_of = |column| {
-            let rows = Row::ALL.into_iter();
+            let rows = ResultRow::ALL.into_iter();
             rows.filter_map(|row| outcome.entry(column, row)).count()
         };
-        assert_eq!(Column::ALL.map(entries_of), [2, 8, 8, 0, 0]);
+        assert_eq!(ResultColumn::ALL.map(entries_of), [2, 8, 8, 0, 0]);
         let outcome = outcome.with_incremental(IncrementalKind::WithCycles, &record);
-        let entries = Row::ALL.map(|row| outcome.entry(Column::MaximumLikelihoodCycles, row));
+        let entries =
+            ResultRow::ALL.map(|row| outcome.entry(ResultColumn::MaximumLikelihoodCycles, row));
         // All but the standard deviation, which needs a graph.
         assert_eq!(entries.iter().flatten().count(), 7);
-        assert_eq!(outcome.entry(Column::MaximumLikelihood, Row::Rms), None);
+        assert_eq!(
+            outcome.entry(ResultColumn::MaximumLikelihood, ResultRow::Rms),
+            None
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use ch16_slam2d::cloud::PointCloud;
 use pr_geom::{Point2, SE2};
-use pr_sim::{Bounds, Lidar, LidarConfig, Rng, Wall, World};
+use pr_sim::{Lidar, LidarConfig, Rng, Wall, World, WorldRect};
 
 /// In the middle of room A, which has walls on all four sides, `world_from_sensor`.
 pub fn room_a() -> SE2 {
@@ -24,7 +24,7 @@ pub fn long_corridor() -> World {
         start: Point2::new(west, y_m),
         end: Point2::new(east, y_m),
     };
-    let bounds = Bounds {
+    let bounds = WorldRect {
         min: Point2::new(west, south_m),
         max: Point2::new(east, north_m),
     };

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use ch16_lab::incremental::{IncrementalKind, IncrementalTrace};
-use ch16_lab::lap::{BuiltInWorld, Drive, LapConfig, LapMatcher};
+use ch16_lab::incremental::IncrementalTrace;
+use ch16_lab::lap::{BuiltInWorld, Drive, IncrementalKind, LapConfig, LapMatcher};
 use ch16_slam2d::scan::FrameError;
 use incremental_mapping::{CycleVerdict, IncrementalMapper};
 use pr_geom::SE2;

@@ -10,7 +10,7 @@ use ch16_slam2d::metrics::{position_error_m, rms};
 use ch16_slam2d::scan::PreparedFrame;
 use ch16_slam2d::slam::{Slam, SlamConfig};
 use pr_geom::{Point2, SE2};
-use pr_sim::{Bounds, Course, Wall, World};
+use pr_sim::{Course, Wall, World, WorldRect};
 
 /// A course with the map that one lap of it leaves.
 struct MappedWorld {
@@ -188,7 +188,7 @@ fn twin_rooms() -> Course {
         wall(4.0, 3.0, 4.0, 5.0),
         wall(4.0, 8.0, 4.0, 9.0),
     ];
-    let bounds = Bounds {
+    let bounds = WorldRect {
         min: Point2::new(0.0, -1.0),
         max: Point2::new(5.2, 9.0),
     };

@@ -1,6 +1,6 @@
 //! A world with a true cycle, and other matchers, in the same code as the chapter's lap.
 
-use ch16_lab::lap::{BuiltInWorld, Choice, Lap, LapConfig, LapMatcher, LapRecord, LapRunner};
+use ch16_lab::lap::{BuiltInWorld, Lap, LapConfig, LapMatcher, LapRecord, LapRunner, NamedChoice};
 use ch16_slam2d::scan::ScanConfig;
 use ch16_slam2d::slam::SlamConfig;
 use pr_geom::{Point2, SE2};

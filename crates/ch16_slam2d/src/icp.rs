@@ -18,12 +18,12 @@ mod pairing;
 mod rejection;
 mod stepper;
 
-pub use align::{Alignment, closed_form, point_to_plane_step, svd_align};
+pub use align::{RigidAlignment, closed_form, point_to_plane_step, svd_align};
 pub use config::{IcpConfig, IcpVariant, huber_weight};
 pub use information::{
     INFORMATION_CAP, INFORMATION_RIDGE, centroid, icp_information, icp_information_along,
     move_information, regularize,
 };
-pub use pairing::{IcpWorkspace, Pair, correspondences};
+pub use pairing::{IcpTrace, IcpWorkspace, Pair, correspondences};
 pub use rejection::{Accepted, MaxDistance, PairRejection, Trimmed};
-pub use stepper::{Icp, IcpResult, IcpStep, IcpSummary, IcpTrace, Increment, StopReason, icp};
+pub use stepper::{Icp, IcpResult, IcpStep, IcpSummary, Increment, StopReason, icp};

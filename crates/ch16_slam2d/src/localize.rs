@@ -14,12 +14,14 @@
 
 mod belief;
 mod config;
+mod fit;
 mod known_map;
 mod localizer;
 mod map_search;
 mod pending_fix;
 mod report;
 mod trail;
+mod trial;
 
 #[cfg(test)]
 mod tests;

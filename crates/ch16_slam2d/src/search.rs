@@ -28,13 +28,16 @@ mod turned_scan;
 mod window;
 
 pub use error::SearchError;
-pub use likelihood_grid::{LikelihoodConfig, LikelihoodGrid, MAX_GRID_CELLS};
+pub use likelihood_grid::{LikelihoodConfig, LikelihoodGrid};
 pub use pyramid::SearchMap;
 pub use report::{
     BoxFate, PoseBox, ScoredPose, SearchCounts, SearchGoal, SearchReport, SearchResult,
 };
 pub use scan_search::ScanSearch;
 pub use window::{SearchNeighborhood, SearchWindow};
+
+/// Largest number of cells of a grid: 105 m × 105 m at 0.05 m. The levels above it take ten times the memory.
+pub const MAX_GRID_CELLS: u64 = 1 << 22;
 
 #[cfg(test)]
 mod tests;

@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Point2, Vector2};
 use pr_geom::{SE2, math};
 use pr_grid::{Cell, bresenham};
 
-use crate::field::{PointScore, PointScores, TiledGrid};
+use crate::field::{FieldTiles, PointScore, PointScores};
 use ch16_slam2d::cloud::PointCloud;
 
 /// Largest number of cells of a map: 64 MB, 120 m × 120 m at 0.06 m if all of it is walls.
@@ -67,7 +67,7 @@ struct MapCell {
 #[derive(Clone, Debug)]
 pub struct LikelihoodMap {
     config: LikelihoodMapConfig,
-    cells: TiledGrid<MapCell>,
+    cells: FieldTiles<MapCell>,
     /// Logarithms of likelihood ratios, by squared distance in steps of the field's end.
     log_ratios: Vec<f64>,
 }
@@ -89,7 +89,7 @@ impl LikelihoodMap {
         };
         Self {
             config,
-            cells: TiledGrid::new(config.cell_m, unknown, MAX_MAP_CELLS),
+            cells: FieldTiles::new(config.cell_m, unknown, MAX_MAP_CELLS),
             log_ratios: (0..=TABLE_STEPS)
                 .map(|k| {
                     let distance2_m2 = config.far2_m2() * k as f64 / TABLE_STEPS as f64;

@@ -4,7 +4,7 @@
 //!
 //! A [`Problem`] holds poses and measurements between them. An [`Optimizer`] minimizes `Σ ρ(eᵀΩe)` by Gauss–Newton
 //! or Levenberg–Marquardt, one [`step`](Optimizer::step) at a time or to the end with [`run`](Optimizer::run), and
-//! reports why it stopped. A [`Session`] also chooses the initial guess, and tries another one if the first
+//! reports why it stopped. A [`SolveSession`] also chooses the initial guess, and tries another one if the first
 //! converges to a suspicious minimum. Covariances of poses come [from the factor](Optimizer::joint_covariance),
 //! exact to first order.
 //!
@@ -53,5 +53,5 @@ pub use marginals::JointCovariance;
 pub use optimizer::Optimizer;
 pub use problem::Problem;
 pub use report::{Report, StepReport, StopReason};
-pub use session::{Outcome, SUSPICIOUS_TURN_RAD, Session, Start, Trial};
+pub use session::{SUSPICIOUS_TURN_RAD, SessionOutcome, SolveSession, Start, TriedStart};
 pub use settings::{FactorUse, Method, Settings};

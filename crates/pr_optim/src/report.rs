@@ -22,21 +22,21 @@ pub enum StopReason {
         /// The threshold.
         tolerance: f64,
     },
-    /// A step raised the cost, and a [`Session`](crate::Session) has another start to try.
+    /// A step raised the cost, and a [`SolveSession`](crate::SolveSession) has another start to try.
     CostRose {
         /// Cost before the step.
         before: f64,
         /// Cost after it.
         after: f64,
     },
-    /// The gain ratio of the first step is too low: a [`Session`](crate::Session) tries another start.
+    /// The gain ratio of the first step is too low: a [`SolveSession`](crate::SolveSession) tries another start.
     LowGainRatio {
         /// Decrease of the cost by the linear model.
         predicted: f64,
         /// Actual decrease of the cost.
         actual: f64,
     },
-    /// By a step with a good gain ratio, this attempt of a [`Session`](crate::Session) cannot end below an
+    /// By a step with a good gain ratio, this attempt of a [`SolveSession`](crate::SolveSession) cannot end below an
     /// earlier one.
     CannotImprove {
         /// Cost at the minimum of the linear model.

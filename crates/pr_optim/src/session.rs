@@ -7,7 +7,7 @@
 //! costs more than the result so far. If that result is suspicious too, damped steps follow from there, provided
 //! that full steps raised the cost or did not converge. An attempt is abandoned once it cannot end below an
 //! earlier one. The best converged attempt is kept, unless it costs more than the given poses: then the best of
-//! all. This is a heuristic, not a proof of a global optimum. [`Outcome::tried`] lists all attempts.
+//! all. This is a heuristic, not a proof of a global optimum. [`SessionOutcome::tried`] lists all attempts.
 //!
 //! A robust kernel has many more local minima: from a poor guess it rejects true measurements. With one,
 //! [`Start::Auto`] also solves the same graph without it, and from there again with it: with full steps, and with
@@ -19,7 +19,7 @@ mod watch;
 
 use pr_geom::SE2;
 
-pub use self::attempt::Trial;
+pub use self::attempt::TriedStart;
 use self::attempt::{Attempt, best_of};
 use self::watch::Watch;
 use crate::error::OptimizeError;
@@ -57,7 +57,7 @@ pub enum Start {
 
 /// Result of a session.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Outcome {
+pub struct SessionOutcome {
     /// The solve that was kept.
     pub report: Report,
     /// Its initial guess, never [`Start::Auto`].
@@ -65,7 +65,7 @@ pub struct Outcome {
     /// Linear systems solved by Gauss–Newton or Levenberg–Marquardt in all attempts.
     pub total_iterations: usize,
     /// Every guess that was considered, in this order.
-    pub tried: Vec<Trial>,
+    pub tried: Vec<TriedStart>,
 }
 
 /// Cost and start of a round. Without a kernel there is only the first round.
@@ -95,7 +95,7 @@ enum Stage {
 /// If dropped before [`finish`](Self::finish), it leaves the poses after the last step. In both cases the
 /// optimizer gets its original method back.
 #[derive(Debug)]
-pub struct Session<'a> {
+pub struct SolveSession<'a> {
     optimizer: &'a mut Optimizer,
     problem: &'a mut Problem,
     /// The caller's method. Later attempts use another; dropping restores it.
@@ -112,7 +112,7 @@ pub struct Session<'a> {
     stage: Stage,
     automatic: bool,
     start: Start,
-    tried: Vec<Trial>,
+    tried: Vec<TriedStart>,
     steps: Vec<StepReport>,
     last_step: Option<StepReport>,
     /// The attempts of this round that have ended.
@@ -123,7 +123,7 @@ pub struct Session<'a> {
     finished: bool,
 }
 
-impl<'a> Session<'a> {
+impl<'a> SolveSession<'a> {
     /// Moves `problem` to its initial guess.
     ///
     /// # Errors
@@ -192,7 +192,7 @@ impl<'a> Session<'a> {
 
     /// Iterates to the end, and leaves the poses of the kept attempt in the problem.
     #[must_use]
-    pub fn run(mut self) -> Outcome {
+    pub fn run(mut self) -> SessionOutcome {
         while self.step() {}
         self.finish()
     }
@@ -206,7 +206,7 @@ impl<'a> Session<'a> {
     /// Converged attempts rank before others, then by lower cost. An attempt that is cut off is reported with
     /// [`StopReason::IterationLimit`].
     #[must_use]
-    pub fn finish(mut self) -> Outcome {
+    pub fn finish(mut self) -> SessionOutcome {
         if !self.finished {
             let limit = self.steps.len();
             self.automatic = false;
@@ -228,7 +228,7 @@ impl<'a> Session<'a> {
             };
         }
         self.problem.poses_mut().copy_from_slice(&best.poses);
-        Outcome {
+        SessionOutcome {
             report: best.report,
             start: best.start,
             total_iterations: self.total_iterations,
@@ -265,7 +265,7 @@ impl<'a> Session<'a> {
             start: self.start,
             poses: self.problem.poses().to_vec(),
         };
-        self.tried.push(Trial {
+        self.tried.push(TriedStart {
             start: attempt.start,
             method: self.optimizer.settings.method,
             kernel: self.optimizer.settings.kernel,
@@ -369,7 +369,7 @@ impl<'a> Session<'a> {
     }
 }
 
-impl Drop for Session<'_> {
+impl Drop for SolveSession<'_> {
     fn drop(&mut self) {
         self.optimizer.settings.method = self.method;
         self.optimizer.settings.kernel = self.kernel;

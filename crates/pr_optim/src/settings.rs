@@ -44,7 +44,7 @@ pub struct Settings {
     pub jacobians: JacobianModel,
     /// Robust kernel of the factors.
     pub kernel: RobustKernel,
-    /// Largest number of linear systems solved; for a [`Session`](crate::Session), in one attempt.
+    /// Largest number of linear systems solved; for a [`SolveSession`](crate::SolveSession), in one attempt.
     pub max_iterations: usize,
     /// Stop if `1 + λ` times the largest `‖(v_x, v_y)‖ + |ω|` over the nodes, metres and radians
     /// added, falls below this; 0 never stops.

@@ -5,8 +5,8 @@
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::{
-    Between, JacobianModel, OptimizeError, Optimizer, Problem, RobustKernel, Session, Settings,
-    Start, StopReason,
+    Between, JacobianModel, OptimizeError, Optimizer, Problem, RobustKernel, Settings,
+    SolveSession, Start, StopReason,
 };
 
 /// Poses, the first of them fixed, and measurements with unit information.
@@ -108,7 +108,7 @@ fn steps_that_do_not_converge_end_at_the_best_poses() {
     // A session with a given start has the same guarantee.
     let mut optimizer = solver(8);
     let mut in_session = square();
-    let session = Session::new(&mut optimizer, &mut in_session, Start::Given).unwrap();
+    let session = SolveSession::new(&mut optimizer, &mut in_session, Start::Given).unwrap();
     assert_eq!(session.run().report, report);
     assert_eq!(in_session.poses(), solved.poses());
 }
@@ -150,7 +150,7 @@ fn overflowing_poses_are_unchanged_and_the_error_is_reported() {
                 kernel,
                 ..Settings::default()
             });
-            let error = match Session::new(&mut optimizer, &mut unsolvable, start) {
+            let error = match SolveSession::new(&mut optimizer, &mut unsolvable, start) {
                 Err(error) => error,
                 Ok(session) => match session.run().report.stop {
                     StopReason::Failed { error } => error,
@@ -164,7 +164,7 @@ fn overflowing_poses_are_unchanged_and_the_error_is_reported() {
     // A tree of valid measurements leads back into the range of numbers.
     let mut lost = far(1e308, 1.0);
     let mut optimizer = Optimizer::new(Settings::default());
-    let session = Session::new(&mut optimizer, &mut lost, Start::Auto).unwrap();
+    let session = SolveSession::new(&mut optimizer, &mut lost, Start::Auto).unwrap();
     let outcome = session.run();
     assert_eq!(outcome.start, Start::SpanningTree);
     assert_eq!(outcome.report.cost, 0.0);

@@ -5,8 +5,8 @@ use core::f64::consts::TAU;
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::{
-    Between, JacobianModel, Method, Optimizer, Outcome, Problem, RobustKernel, Session, Settings,
-    Start,
+    Between, JacobianModel, Method, Optimizer, Problem, RobustKernel, SessionOutcome, Settings,
+    SolveSession, Start,
 };
 
 const NODES: usize = 24;
@@ -37,7 +37,7 @@ fn ring_measured(turns: f64, measured_turns: f64) -> Problem {
     problem
 }
 
-fn solve(problem: &mut Problem, start: Start, kernel: RobustKernel) -> Outcome {
+fn solve(problem: &mut Problem, start: Start, kernel: RobustKernel) -> SessionOutcome {
     let mut optimizer = Optimizer::new(Settings {
         jacobians: JacobianModel::Exact,
         kernel,
@@ -45,7 +45,7 @@ fn solve(problem: &mut Problem, start: Start, kernel: RobustKernel) -> Outcome {
         step_tolerance: 1e-9,
         ..Settings::default()
     });
-    let session = Session::new(&mut optimizer, problem, start).unwrap();
+    let session = SolveSession::new(&mut optimizer, problem, start).unwrap();
     session.run()
 }
 
@@ -178,7 +178,7 @@ fn stubborn() -> Optimizer {
 fn the_original_method_is_restored_after_the_fallback() {
     let mut problem = untrusted_ring();
     let mut optimizer = stubborn();
-    let session = Session::new(&mut optimizer, &mut problem, Start::Auto).unwrap();
+    let session = SolveSession::new(&mut optimizer, &mut problem, Start::Auto).unwrap();
     let outcome = session.run();
     assert_eq!(optimizer.settings.method, Method::GaussNewton);
     assert_eq!(problem.chi2(), outcome.report.chi2);
@@ -189,7 +189,7 @@ fn the_original_method_is_restored_after_the_fallback() {
 fn a_session_dropped_during_the_fallback_restores_the_method() {
     let mut problem = untrusted_ring();
     let mut optimizer = stubborn();
-    let mut session = Session::new(&mut optimizer, &mut problem, Start::Auto).unwrap();
+    let mut session = SolveSession::new(&mut optimizer, &mut problem, Start::Auto).unwrap();
     while session.last_step().is_none_or(|step| step.damping == 0.0) {
         assert!(session.step(), "the fallback takes damped steps");
     }
@@ -254,7 +254,7 @@ fn a_session_that_ends_early_reports_the_cost_with_the_kernel() {
     for steps in 0..=whole {
         let mut problem = open_ring();
         let mut optimizer = Optimizer::new(settings);
-        let mut session = Session::new(&mut optimizer, &mut problem, Start::Auto).unwrap();
+        let mut session = SolveSession::new(&mut optimizer, &mut problem, Start::Auto).unwrap();
         for _ in 0..steps {
             session.step();
         }

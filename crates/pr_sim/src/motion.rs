@@ -19,12 +19,12 @@ pub struct VelocityCommand {
 
 /// The six noise parameters α of the velocity motion model (Thrun, Burgard, Fox 2005, Table 5.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OdometryNoise {
+pub struct VelocityNoise {
     /// α₁…α₆: variance of speed, of turn rate and of the final rotation, each per v² and ω².
     pub alpha: [f64; 6],
 }
 
-impl Default for OdometryNoise {
+impl Default for VelocityNoise {
     fn default() -> Self {
         Self {
             alpha: [0.06, 0.02, 0.05, 0.02, 0.02, 0.01],
@@ -32,7 +32,7 @@ impl Default for OdometryNoise {
     }
 }
 
-impl OdometryNoise {
+impl VelocityNoise {
     /// Multiplies all six α by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
@@ -56,7 +56,7 @@ pub fn drive_exactly(world_from_body: &SE2, command: VelocityCommand, dt_s: f64)
 pub fn sample_velocity_motion(
     world_from_body: &SE2,
     command: VelocityCommand,
-    noise: &OdometryNoise,
+    noise: &VelocityNoise,
     dt_s: f64,
     rng: &mut Rng,
 ) -> SE2 {
@@ -138,7 +138,7 @@ mod tests {
             omega_radps: 0.3,
         };
         let start = SE2::new(1.0, -2.0, 3.0);
-        let quiet = OdometryNoise::default().scaled(0.0);
+        let quiet = VelocityNoise::default().scaled(0.0);
         let sample = sample_velocity_motion(&start, command, &quiet, 0.25, &mut Rng::new(3));
         assert_eq!(sample, drive_exactly(&start, command, 0.25));
     }

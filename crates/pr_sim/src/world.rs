@@ -35,7 +35,7 @@ impl Wall {
 
 /// An axis-aligned rectangle in metres, world frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
+pub struct WorldRect {
     /// Lower left corner.
     pub min: Point2<f64>,
     /// Upper right corner.
@@ -48,20 +48,20 @@ pub struct Room {
     /// The chapter's name of the room.
     pub name: &'static str,
     /// Its extent.
-    pub bounds: Bounds,
+    pub bounds: WorldRect,
 }
 
 /// A planar world of walls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
-    bounds: Bounds,
+    bounds: WorldRect,
     walls: Vec<Wall>,
 }
 
 impl World {
     /// Creates a world of walls within `bounds`.
     #[must_use]
-    pub fn new(bounds: Bounds, walls: Vec<Wall>) -> Self {
+    pub fn new(bounds: WorldRect, walls: Vec<Wall>) -> Self {
         Self { bounds, walls }
     }
 
@@ -114,7 +114,7 @@ impl World {
 
     /// The extent of the world.
     #[must_use]
-    pub fn bounds(&self) -> Bounds {
+    pub fn bounds(&self) -> WorldRect {
         self.bounds
     }
 
@@ -134,8 +134,8 @@ impl World {
     }
 }
 
-pub(crate) fn rectangle(x_from: f64, y_from: f64, x_to: f64, y_to: f64) -> Bounds {
-    Bounds {
+pub(crate) fn rectangle(x_from: f64, y_from: f64, x_to: f64, y_to: f64) -> WorldRect {
+    WorldRect {
         min: Point2::new(x_from, y_from),
         max: Point2::new(x_to, y_to),
     }

@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use crate::info::LogInfo;
 use crate::log::{LogFrame, LogNotes, LogOption};
-use crate::motion::Motion;
-use crate::remark::{Part, Remark, Verdict};
+use crate::motion::MotionComparison;
+use crate::remark::{Condition, Part, Remark};
 
 /// A lower share of returns suggests a covered laser or wrong range limits.
 const MIN_VALID: f64 = 0.1;
@@ -57,7 +57,7 @@ pub struct Diagnosis {
     /// Name of the recording.
     pub name: String,
     /// Worst of the verdicts.
-    pub verdict: Verdict,
+    pub verdict: Condition,
     /// The scans.
     pub sensor: SensorSummary,
     /// The odometry; `None` if there is none.
@@ -65,7 +65,7 @@ pub struct Diagnosis {
     /// Mounting of the laser, as `--laser` sets it; `None` if each line of the log states it.
     pub laser: Option<String>,
     /// Comparison of scans and odometry.
-    pub motion: Motion,
+    pub motion: MotionComparison,
     /// One remark for each check.
     pub remarks: Vec<Remark>,
 }
@@ -111,7 +111,7 @@ impl Checkup {
 
     /// The diagnosis of the log with that name.
     #[must_use]
-    pub fn finish(&self, name: &str, notes: &LogNotes, motion: &Motion) -> Diagnosis {
+    pub fn finish(&self, name: &str, notes: &LogNotes, motion: &MotionComparison) -> Diagnosis {
         let info = &self.info;
         let per_second = |count: usize| {
             let gaps = count.saturating_sub(1) as f64;
@@ -167,7 +167,7 @@ impl Checkup {
         remarks.extend(notes.warnings.iter().cloned());
         let mut diagnosis = Diagnosis {
             name: name.to_owned(),
-            verdict: Verdict::Good,
+            verdict: Condition::Good,
             sensor,
             odometry,
             laser: notes.laser.map(|mount| mount.value()),
@@ -233,7 +233,10 @@ fn sensor_remark(sensor: &SensorSummary) -> Remark {
 }
 
 /// `motion` is the comparison with the scans, if that supports a figure.
-fn odometry_remark(odometry: Option<&OdometrySummary>, motion: Option<&Motion>) -> Remark {
+fn odometry_remark(
+    odometry: Option<&OdometrySummary>,
+    motion: Option<&MotionComparison>,
+) -> Remark {
     let Some(odometry) = odometry else {
         let text = "there is none; matching scans alone needs a high scan rate and a path without featureless corridors";
         return Remark::mended(Part::Odometry, text.to_owned());
@@ -256,7 +259,7 @@ fn odometry_remark(odometry: Option<&OdometrySummary>, motion: Option<&Motion>) 
     Remark::good(Part::Odometry, text)
 }
 
-fn mounting_remark(notes: &LogNotes, motion: &Motion) -> Option<Remark> {
+fn mounting_remark(notes: &LogNotes, motion: &MotionComparison) -> Option<Remark> {
     if notes
         .warnings
         .iter()
@@ -328,7 +331,7 @@ impl Diagnosis {
         self.remarks.extend(remarks);
         self.remarks.sort_by_key(|remark| remark.part);
         let worst = self.remarks.iter().map(|remark| remark.verdict).max();
-        self.verdict = worst.unwrap_or(Verdict::Good);
+        self.verdict = worst.unwrap_or(Condition::Good);
     }
 
     /// Whether the recording has scans that see something.
@@ -383,8 +386,9 @@ mod tests {
                 },
             });
         }
-        let diagnosis = checkup.finish("x.mcap", &LogNotes::default(), &Motion::default());
-        assert_eq!(diagnosis.verdict, Verdict::Mended);
+        let diagnosis =
+            checkup.finish("x.mcap", &LogNotes::default(), &MotionComparison::default());
+        assert_eq!(diagnosis.verdict, Condition::Mended);
         assert_eq!(
             (diagnosis.sensor.valid, diagnosis.sensor.rate_hz),
             (0.5, 1.0)

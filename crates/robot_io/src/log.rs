@@ -10,7 +10,7 @@ use thiserror::Error;
 use crate::footprint::Footprint;
 use crate::laser_mount::LaserMount;
 use crate::remark::Remark;
-use crate::table_layout::Layout;
+use crate::table_layout::TableLayout;
 
 /// A position in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +50,7 @@ pub struct LogOptions {
     /// Readings on the robot are no returns.
     pub footprint: Option<Footprint>,
     /// Columns of a table; default: those of its header, or those of a known form.
-    pub columns: Option<Layout>,
+    pub columns: Option<TableLayout>,
     /// Whether the scans of further robots are read after those of the first one, so that they need not be named.
     pub all_robots: bool,
     /// Height band (m, on the body) for points of a 3-D sensor; without it, only single-ring clouds are read.

@@ -2,7 +2,7 @@
 
 use crate::course_log::CourseLines;
 use crate::foreign::Foreign;
-use crate::table_layout::Layout;
+use crate::table_layout::TableLayout;
 
 /// Formats, distinguished by their first bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ impl LogFormat {
             Self::Sqlite
         } else if CourseLines::begins(start) {
             Self::Course
-        } else if Layout::of(start).is_some() {
+        } else if TableLayout::of(start).is_some() {
             Self::Table
         } else if let Some(kind) = Foreign::of(start) {
             Self::Foreign(kind)

@@ -23,7 +23,7 @@ mod remarks;
 mod repairs;
 mod trial;
 
-pub use compared::Motion;
+pub use compared::MotionComparison;
 pub use finding::{Costs, Finding, Suggestion};
 pub use odometry_use::OdometryUse;
 pub use reader::ComparedReader;

@@ -12,7 +12,7 @@ use crate::mounted_reader::MountedReader;
 use crate::near_readings::without_near_readings;
 use crate::restamped::restamped;
 use crate::ros::RosReader;
-use crate::table_layout::Layout;
+use crate::table_layout::TableLayout;
 use crate::table_log::{TableReader, TableRows};
 
 impl LogFormat {
@@ -81,7 +81,7 @@ impl LogFormat {
                 "give one log at a time",
             ));
         }
-        if matches!(found, Self::Carmen | Self::Json)
+        if !found.is_ros()
             && let Some((option, wanted)) = options.first_asked()
         {
             return Err(LogError::Missing {
@@ -104,7 +104,9 @@ impl LogFormat {
             Self::Course => mounted(restamped(&first, |source| CourseReader::new(source, name))),
             Self::Table => {
                 let columns = options.columns.clone();
-                let layout = columns.or_else(|| Layout::of(start)).unwrap_or_default();
+                let layout = columns
+                    .or_else(|| TableLayout::of(start))
+                    .unwrap_or_default();
                 mounted(restamped(&first, |source| {
                     TableReader::with_format(source, name, TableRows::new(layout.clone()))
                 }))
@@ -136,6 +138,8 @@ mod tests {
         for bytes in [
             &b"FLASER 1 2 0 0 0 0 0 0 0 host 0\n"[..],
             b"{\"stamp\": 1}\n",
+            b"O 100 200 1.5 0.01\n",
+            b"angle,range\n0,1\n",
         ] {
             let refused = LogFormat::open(bytes, "x.log", &options).err();
             assert_eq!(

@@ -24,7 +24,7 @@ pub enum Part {
 /// Condition of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum Condition {
     /// Correct.
     Good,
     /// Something was wrong and was corrected, is missing and not required, or is suspected without proof.
@@ -33,7 +33,7 @@ pub enum Verdict {
     Wrong,
 }
 
-impl Verdict {
+impl Condition {
     /// Symbol: ✓, ! or ✗.
     #[must_use]
     pub fn sign(self) -> char {
@@ -51,7 +51,7 @@ pub struct Remark {
     /// The part that it concerns.
     pub part: Part,
     /// Its verdict.
-    pub verdict: Verdict,
+    pub verdict: Condition,
     /// The sentence, without a full stop.
     pub text: String,
     /// Command line options that resolve it, such as `--laser 0,0,180`: alternatives.
@@ -60,7 +60,7 @@ pub struct Remark {
 }
 
 impl Remark {
-    fn new(part: Part, verdict: Verdict, text: String) -> Self {
+    fn new(part: Part, verdict: Condition, text: String) -> Self {
         Self {
             part,
             verdict,
@@ -72,19 +72,19 @@ impl Remark {
     /// A remark that something is correct.
     #[must_use]
     pub fn good(part: Part, text: String) -> Self {
-        Self::new(part, Verdict::Good, text)
+        Self::new(part, Condition::Good, text)
     }
 
     /// A remark that something was corrected.
     #[must_use]
     pub fn mended(part: Part, text: String) -> Self {
-        Self::new(part, Verdict::Mended, text)
+        Self::new(part, Condition::Mended, text)
     }
 
     /// A remark that something is wrong.
     #[must_use]
     pub fn wrong(part: Part, text: String) -> Self {
-        Self::new(part, Verdict::Wrong, text)
+        Self::new(part, Condition::Wrong, text)
     }
 
     /// Adds an option that resolves it.

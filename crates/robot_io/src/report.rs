@@ -40,7 +40,7 @@ td.text, th.text { text-align: left }
 
 /// Content of the report.
 #[derive(Clone, Copy, Debug)]
-pub struct Report<'a> {
+pub struct LogReport<'a> {
     /// Name of the log.
     pub name: &'a str,
     /// Number of scans.
@@ -55,7 +55,7 @@ pub struct Report<'a> {
     pub remarks: &'a [String],
 }
 
-impl Report<'_> {
+impl LogReport<'_> {
     /// The complete HTML file.
     #[must_use]
     pub fn html(&self) -> String {
@@ -265,7 +265,7 @@ mod tests {
     #[test]
     fn a_report_stands_alone_and_text_from_outside_stays_text() {
         let quality = quality();
-        let report = Report {
+        let report = LogReport {
             name: "<script>x</script>.mcap",
             scans: 3,
             quality: &quality,
@@ -327,7 +327,7 @@ mod tests {
 
     #[test]
     fn a_run_without_anything_has_a_report() {
-        let page = Report {
+        let page = LogReport {
             name: "x",
             scans: 0,
             quality: &Quality::default(),

@@ -6,7 +6,7 @@ use crate::lines::printable;
 
 /// Meaning of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Column {
+pub enum ColumnMeaning {
     /// Nothing that is read.
     Other,
     /// Time of a scan or a beam.
@@ -46,12 +46,12 @@ pub enum Column {
 }
 
 /// A column with the factor that makes its unit SI; `None` if it is to be found by the size of the numbers.
-pub type Scaled = (Column, Option<f64>);
+pub type Scaled = (ColumnMeaning, Option<f64>);
 
 /// The columns of a table in order.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Layout {
-    /// The columns; the last one counts for all further words if it is [`Column::Ranges`].
+pub struct TableLayout {
+    /// The columns; the last one counts for all further words if it is [`ColumnMeaning::Ranges`].
     pub columns: Vec<Scaled>,
     /// Whether beams turn clockwise, as RPLidar counts them.
     pub is_clockwise: bool,
@@ -64,7 +64,7 @@ const BREEZY: (usize, usize) = (682, 24);
 /// First angle and step of that sensor, degrees.
 const BREEZY_ANGLES: [f64; 2] = [-120.0, 240.0 / 681.0];
 
-impl Layout {
+impl TableLayout {
     /// The layout of a file with this start.
     #[must_use]
     pub fn of(start: &[u8]) -> Option<Self> {
@@ -92,26 +92,28 @@ impl Layout {
         let mut columns: Vec<Scaled> = names.iter().map(|name| column(name)).collect();
         // A sentence may have the words of a header.
         let is_prose =
-            !text.contains([',', ';', '\t']) && columns.iter().any(|c| c.0 == Column::Other);
+            !text.contains([',', ';', '\t']) && columns.iter().any(|c| c.0 == ColumnMeaning::Other);
         if is_prose || names.iter().any(|name| name.contains(' ')) {
             return None;
         }
-        let of =
-            |wanted: Column, columns: &[Scaled]| columns.iter().filter(|c| c.0 == wanted).count();
+        let of = |wanted: ColumnMeaning, columns: &[Scaled]| {
+            columns.iter().filter(|c| c.0 == wanted).count()
+        };
         // A bag's own stamp is better than the time of recording before it.
-        if of(Column::Time, &columns) > 1 {
+        if of(ColumnMeaning::Time, &columns) > 1 {
             let best = names.iter().position(|name| name.ends_with("header.stamp"));
-            let best = best.or_else(|| columns.iter().position(|c| c.0 == Column::Time));
+            let best = best.or_else(|| columns.iter().position(|c| c.0 == ColumnMeaning::Time));
             for (at, column) in columns.iter_mut().enumerate() {
-                if column.0 == Column::Time && Some(at) != best {
-                    column.0 = Column::Other;
+                if column.0 == ColumnMeaning::Time && Some(at) != best {
+                    column.0 = ColumnMeaning::Other;
                 }
             }
         }
-        let is_of_beams = of(Column::Angle, &columns) == 1 && of(Column::Range, &columns) == 1;
-        let is_of_scans = of(Column::Ranges, &columns) > 0;
+        let is_of_beams =
+            of(ColumnMeaning::Angle, &columns) == 1 && of(ColumnMeaning::Range, &columns) == 1;
+        let is_of_scans = of(ColumnMeaning::Ranges, &columns) > 0;
         (is_of_beams != is_of_scans).then(|| Self {
-            is_clockwise: is_of_beams && of(Column::Quality, &columns) > 0,
+            is_clockwise: is_of_beams && of(ColumnMeaning::Quality, &columns) > 0,
             columns,
             angles_rad: None,
         })
@@ -124,9 +126,9 @@ impl Layout {
             .all(|word| text.contains(word));
         is_sdk.then(|| Self {
             columns: vec![
-                (Column::Angle, Some(1.0_f64.to_radians())),
-                (Column::Range, Some(1e-3)),
-                (Column::Quality, Some(1.0)),
+                (ColumnMeaning::Angle, Some(1.0_f64.to_radians())),
+                (ColumnMeaning::Range, Some(1e-3)),
+                (ColumnMeaning::Quality, Some(1.0)),
             ],
             is_clockwise: true,
             angles_rad: None,
@@ -154,9 +156,9 @@ impl Layout {
         let is_row =
             words.len() == beams + before && words.iter().all(|w| w.parse::<u64>().is_ok());
         is_row.then(|| {
-            let mut columns = vec![(Column::Other, None); before];
-            columns[0] = (Column::Time, Some(1e-6));
-            columns.push((Column::Ranges, Some(1e-3)));
+            let mut columns = vec![(ColumnMeaning::Other, None); before];
+            columns[0] = (ColumnMeaning::Time, Some(1e-6));
+            columns.push((ColumnMeaning::Ranges, Some(1e-3)));
             Self {
                 columns,
                 is_clockwise: false,
@@ -167,8 +169,12 @@ impl Layout {
 
     /// Whether a row has numbers where the layout has ranges.
     fn has_numbers(&self, row: &str) -> bool {
-        let is_range =
-            |at: &usize| matches!(self.column(*at), Some((Column::Range | Column::Ranges, _)));
+        let is_range = |at: &usize| {
+            matches!(
+                self.column(*at),
+                Some((ColumnMeaning::Range | ColumnMeaning::Ranges, _))
+            )
+        };
         let mut ranges = words(row)
             .enumerate()
             .filter(|(at, _)| is_range(at))
@@ -180,39 +186,46 @@ impl Layout {
     #[must_use]
     pub fn named_ranges(&self) -> usize {
         let columns = self.columns.iter();
-        columns.filter(|column| column.0 == Column::Ranges).count()
+        columns
+            .filter(|column| column.0 == ColumnMeaning::Ranges)
+            .count()
     }
 
     /// Whether a row is a beam, not a scan.
     #[must_use]
     pub fn is_of_beams(&self) -> bool {
-        self.columns.iter().any(|column| column.0 == Column::Angle)
+        self.columns
+            .iter()
+            .any(|column| column.0 == ColumnMeaning::Angle)
     }
 
     /// The column of a word; `None` beyond the last.
     #[must_use]
     pub fn column(&self, at: usize) -> Option<Scaled> {
-        let last = self.columns.last().filter(|last| last.0 == Column::Ranges);
+        let last = self
+            .columns
+            .last()
+            .filter(|last| last.0 == ColumnMeaning::Ranges);
         self.columns.get(at).or(last).copied()
     }
 }
 
-impl FromStr for Layout {
+impl FromStr for TableLayout {
     type Err = String;
 
     /// Names of columns, separated by commas; `-` is not read, and `ranges` at the end stands for all that follow.
     fn from_str(text: &str) -> Result<Self, String> {
         let columns: Vec<Scaled> = text.split(',').map(|name| column(name.trim())).collect();
         for (name, (column, _)) in text.split(',').zip(&columns) {
-            if *column == Column::Other && !matches!(name.trim(), "-" | "frame_id") {
+            if *column == ColumnMeaning::Other && !matches!(name.trim(), "-" | "frame_id") {
                 return Err(format!(
                     "there is no column {}; use time, sec, nanosec, angle, range, quality, x, y, heading, angle_min, angle_max, angle_increment, time_increment, scan_time, range_min, range_max, ranges or -, with units such as time_us, angle_deg, range_mm",
                     printable(name.trim())
                 ));
             }
         }
-        let has = |wanted: Column| columns.iter().any(|column| column.0 == wanted);
-        if has(Column::Ranges) == (has(Column::Angle) && has(Column::Range)) {
+        let has = |wanted: ColumnMeaning| columns.iter().any(|column| column.0 == wanted);
+        if has(ColumnMeaning::Ranges) == (has(ColumnMeaning::Angle) && has(ColumnMeaning::Range)) {
             return Err("name either ranges, or angle and range".to_owned());
         }
         Ok(Self {
@@ -261,31 +274,31 @@ fn column(name: &str) -> Scaled {
         without_number.len() < stem.len() || bracket.starts_with(|c: char| c.is_ascii_digit());
     let column = match without_number.trim_end_matches('_') {
         "range" | "ranges" | "dist" | "distance" | "r" | "d" | "scan" if is_numbered => {
-            Column::Ranges
+            ColumnMeaning::Ranges
         }
         _ => match stem {
-            "ranges" => Column::Ranges,
-            "time" | "stamp" | "timestamp" | "t" | "header.stamp" => Column::Time,
+            "ranges" => ColumnMeaning::Ranges,
+            "time" | "stamp" | "timestamp" | "t" | "header.stamp" => ColumnMeaning::Time,
             "sec" | "secs" | "seconds" | "header.stamp.sec" | "header.stamp.secs" => {
-                Column::Seconds
+                ColumnMeaning::Seconds
             }
             "nanosec" | "nsecs" | "nanoseconds" | "header.stamp.nanosec" | "header.stamp.nsecs" => {
-                Column::Nanoseconds
+                ColumnMeaning::Nanoseconds
             }
-            "angle" | "theta" | "bearing" => Column::Angle,
-            "range" | "distance" | "dist" => Column::Range,
-            "quality" | "q" => Column::Quality,
-            "x" | "odom_x" => Column::X,
-            "y" | "odom_y" => Column::Y,
-            "heading" | "yaw" | "odom_theta" | "odom_yaw" => Column::Heading,
-            "angle_min" => Column::AngleMin,
-            "angle_max" => Column::AngleMax,
-            "angle_increment" => Column::AngleIncrement,
-            "time_increment" => Column::TimeIncrement,
-            "scan_time" => Column::ScanTime,
-            "range_min" => Column::RangeMin,
-            "range_max" => Column::RangeMax,
-            _ => Column::Other,
+            "angle" | "theta" | "bearing" => ColumnMeaning::Angle,
+            "range" | "distance" | "dist" => ColumnMeaning::Range,
+            "quality" | "q" => ColumnMeaning::Quality,
+            "x" | "odom_x" => ColumnMeaning::X,
+            "y" | "odom_y" => ColumnMeaning::Y,
+            "heading" | "yaw" | "odom_theta" | "odom_yaw" => ColumnMeaning::Heading,
+            "angle_min" => ColumnMeaning::AngleMin,
+            "angle_max" => ColumnMeaning::AngleMax,
+            "angle_increment" => ColumnMeaning::AngleIncrement,
+            "time_increment" => ColumnMeaning::TimeIncrement,
+            "scan_time" => ColumnMeaning::ScanTime,
+            "range_min" => ColumnMeaning::RangeMin,
+            "range_max" => ColumnMeaning::RangeMax,
+            _ => ColumnMeaning::Other,
         },
     };
     (column, factor)

@@ -17,7 +17,7 @@ use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 
 use limit::UnstatedLimit;
-use sweep::Sweep;
+use sweep::BeamBuffer;
 
 use crate::line_log::{LineFormat, LineReader};
 use crate::lines::printable;
@@ -25,7 +25,7 @@ use crate::log::{LogFrame, LogNotes};
 use crate::plausible::{MAX_BEAMS, plausible_pose, plausible_stamp_s};
 use crate::remark::{Part, Remark};
 use crate::ros::ScanFields;
-use crate::table_layout::{self, Column, Layout};
+use crate::table_layout::{self, ColumnMeaning, TableLayout};
 
 /// Time between scans of a table without times, s: that of most cheap scanners.
 const PERIOD_S: f64 = 0.1;
@@ -36,8 +36,8 @@ pub type TableReader<R> = LineReader<R, TableRows>;
 /// State of a table that is being read.
 #[derive(Debug, Default)]
 pub struct TableRows {
-    layout: Layout,
-    sweep: Sweep,
+    layout: TableLayout,
+    sweep: BeamBuffer,
     limit: UnstatedLimit,
     done: Option<LogFrame>,
     /// Frames completed so far: their times, if the table has none.
@@ -60,7 +60,7 @@ struct Row {
 impl TableRows {
     /// The state before the first row.
     #[must_use]
-    pub fn new(layout: Layout) -> Self {
+    pub fn new(layout: TableLayout) -> Self {
         Self {
             layout,
             ..Self::default()
@@ -83,7 +83,7 @@ impl TableRows {
             let Some((column, factor)) = self.layout.column(at) else {
                 break;
             };
-            if column == Column::Other {
+            if column == ColumnMeaning::Other {
                 continue;
             }
             if word.contains("...") {
@@ -93,11 +93,11 @@ impl TableRows {
                 );
             }
             if word.is_empty() {
-                missing += usize::from(column == Column::Ranges);
+                missing += usize::from(column == ColumnMeaning::Ranges);
                 continue;
             }
             let number = table_layout::number(word).ok_or_else(|| {
-                let what = if column == Column::Time {
+                let what = if column == ColumnMeaning::Time {
                     "a number of seconds"
                 } else {
                     "a number"
@@ -106,29 +106,33 @@ impl TableRows {
             })?;
             let value = factor.unwrap_or(1.0) * number;
             match column {
-                Column::Other => {}
-                Column::Time => time_s = Some(factor.unwrap_or_else(|| second(number)) * number),
-                Column::Seconds => time_s = Some(time_s.unwrap_or(0.0) + number),
-                Column::Nanoseconds => time_s = Some(time_s.unwrap_or(0.0) + 1e-9 * number),
-                Column::Angle => row.angle = Some(value),
-                Column::Range => row.range = Some(value),
-                Column::Quality => row.is_return = number > 0.0,
-                Column::X => row.pose[0] = Some(value),
-                Column::Y => row.pose[1] = Some(value),
-                Column::Heading => row.pose[2] = Some(value),
-                Column::AngleMin => fields.angle_min = value,
-                Column::AngleMax => fields.angle_max = value,
-                Column::AngleIncrement => fields.angle_increment = value,
-                Column::TimeIncrement => fields.time_increment = value,
-                Column::ScanTime => fields.scan_time = value,
-                Column::RangeMin => fields.range_min = value,
-                Column::RangeMax => fields.range_max = value,
-                Column::Ranges if fields.ranges_m.len() + missing < MAX_BEAMS => {
+                ColumnMeaning::Other => {}
+                ColumnMeaning::Time => {
+                    time_s = Some(factor.unwrap_or_else(|| second(number)) * number)
+                }
+                ColumnMeaning::Seconds => time_s = Some(time_s.unwrap_or(0.0) + number),
+                ColumnMeaning::Nanoseconds => time_s = Some(time_s.unwrap_or(0.0) + 1e-9 * number),
+                ColumnMeaning::Angle => row.angle = Some(value),
+                ColumnMeaning::Range => row.range = Some(value),
+                ColumnMeaning::Quality => row.is_return = number > 0.0,
+                ColumnMeaning::X => row.pose[0] = Some(value),
+                ColumnMeaning::Y => row.pose[1] = Some(value),
+                ColumnMeaning::Heading => row.pose[2] = Some(value),
+                ColumnMeaning::AngleMin => fields.angle_min = value,
+                ColumnMeaning::AngleMax => fields.angle_max = value,
+                ColumnMeaning::AngleIncrement => fields.angle_increment = value,
+                ColumnMeaning::TimeIncrement => fields.time_increment = value,
+                ColumnMeaning::ScanTime => fields.scan_time = value,
+                ColumnMeaning::RangeMin => fields.range_min = value,
+                ColumnMeaning::RangeMax => fields.range_max = value,
+                ColumnMeaning::Ranges if fields.ranges_m.len() + missing < MAX_BEAMS => {
                     let beams = fields.ranges_m.len() + std::mem::take(&mut missing);
                     fields.ranges_m.resize(beams, f64::NAN);
                     fields.ranges_m.push(value);
                 }
-                Column::Ranges => return Err(format!("a scan has more than {MAX_BEAMS} ranges")),
+                ColumnMeaning::Ranges => {
+                    return Err(format!("a scan has more than {MAX_BEAMS} ranges"));
+                }
             }
         }
         // A separator at the end of the row is none; a reading with a name is one.

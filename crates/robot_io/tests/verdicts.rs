@@ -12,7 +12,7 @@ use pr_geom::SE2;
 use robot_io::log::{LogError, LogFrame, LogNotes, LogOptions, LogReader};
 use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
-use robot_io::motion::{ComparedReader, Finding, Motion, OdometryUse};
+use robot_io::motion::{ComparedReader, Finding, MotionComparison, OdometryUse};
 
 /// Scans that are read: more than the doctor compares.
 const MOST_SCANS: usize = 2100;
@@ -54,7 +54,7 @@ fn frames(name: &str) -> Vec<LogFrame> {
 }
 
 /// The comparison of scans and odometry, with its trials.
-fn motion(frames: impl IntoIterator<Item = LogFrame>) -> Motion {
+fn motion(frames: impl IntoIterator<Item = LogFrame>) -> MotionComparison {
     let frames = Frames {
         frames: frames.into_iter().collect(),
         notes: LogNotes::default(),
@@ -65,7 +65,7 @@ fn motion(frames: impl IntoIterator<Item = LogFrame>) -> Motion {
 }
 
 /// One word for each finding.
-fn words(motion: &Motion) -> Vec<&'static str> {
+fn words(motion: &MotionComparison) -> Vec<&'static str> {
     let word = |finding: &Finding| match finding {
         Finding::Mirrored { .. } => "mirrored",
         Finding::Turned { .. } => "turned",

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use anyhow::{bail, ensure};
 use ch16_lab::buildings::{Kind, Recording, Robot, Trial, recorded_by};
-use ch16_lab::lap::Choice;
+use ch16_lab::lap::NamedChoice;
 use clap::Args;
 use rayon::prelude::*;
 use robot_io::carmen::write_carmen;

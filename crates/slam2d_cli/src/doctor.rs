@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Args;
 use robot_io::doctor::Checkup;
 use robot_io::log::LogReader;
-use robot_io::remark::Verdict;
+use robot_io::remark::Condition;
 use robot_io::run::LogRun;
 
 use crate::log_file::{OdometryArgs, TopicArgs, open_compared};
@@ -56,6 +56,6 @@ pub fn run(args: &DoctorArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(if !diagnosis.can_be_mapped() {
         2
     } else {
-        u8::from(diagnosis.verdict != Verdict::Good)
+        u8::from(diagnosis.verdict != Condition::Good)
     }))
 }

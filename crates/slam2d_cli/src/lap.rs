@@ -10,7 +10,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
-use ch16_lab::lap::{Choice, Drive, LapConfig, LapEstimator, LapRecord, LapRunner};
+use ch16_lab::lap::{Drive, LapConfig, LapEstimator, LapRecord, LapRunner, NamedChoice};
 use clap::Args;
 use robot_io::json_log::FrameLine;
 use serde::Serialize;

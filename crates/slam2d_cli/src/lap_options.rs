@@ -2,7 +2,7 @@
 //! `--loop-matcher`, `--detector`, `--gate`, `--information`, `--no-information-cap`.
 
 use ch16_lab::lap::{
-    BuiltInWorld, Choice, LapConfig, LapDetector, LapFrontEnd, LapMatcher, LoopMatcher,
+    BuiltInWorld, LapConfig, LapDetector, LapFrontEnd, LapMatcher, LoopMatcher, NamedChoice,
 };
 use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::loops::GateModel;
@@ -136,7 +136,7 @@ impl LapOptions {
 }
 
 /// Parses the short names of a list, and shows its labels in the help.
-pub fn choice<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = C> {
+pub fn choice<C: NamedChoice + Send + Sync>() -> impl TypedValueParser<Value = C> {
     let values = C::NAMED
         .iter()
         .map(|(_, name, label)| PossibleValue::new(*name).help(*label));

@@ -16,7 +16,7 @@ use robot_io::log_format::LogFormat;
 use robot_io::motion::{ComparedReader, OdometryUse};
 use robot_io::remark::Remark;
 use robot_io::rosbag2;
-use robot_io::table_layout::Layout;
+use robot_io::table_layout::TableLayout;
 
 use crate::in_file::InFile as _;
 use crate::numbers;
@@ -53,7 +53,7 @@ pub struct TopicArgs {
     /// Columns of a table of scans or beams without a header, such as time_us,angle_deg,range_mm or
     /// time,x,y,heading,angle_min,angle_increment,ranges; - is not read.
     #[arg(long, value_name = "NAMES", allow_hyphen_values = true)]
-    columns: Option<Layout>,
+    columns: Option<TableLayout>,
     /// Mounting of the laser in the session that the log continues.
     #[arg(skip)]
     laser_before: Option<LaserMount>,

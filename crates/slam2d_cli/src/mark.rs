@@ -13,8 +13,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::output::{print_json, say};
-use answers::Answers;
-use exercise::{Mark, Marked};
+use answers::StudentAnswers;
+use exercise::{AnswerMark, Marked};
 use gradebook::{Columns, Roster};
 
 /// Mark the answers that students saved from the page.
@@ -94,14 +94,15 @@ pub fn run(args: &MarkArgs) -> anyhow::Result<()> {
 }
 
 fn sheet_of(path: &Path) -> anyhow::Result<Sheet> {
-    let file = Answers::read(path)?;
+    let file = StudentAnswers::read(path)?;
     let answers: Vec<Marked> = file
         .answers
         .iter()
         .map(|answer| exercise::mark(answer, &file.student))
         .chain(file.code.iter().map(written::mark))
         .collect();
-    let is_right = |answer: &&Marked| matches!(answer.mark, Mark::Right | Mark::WithinTolerance);
+    let is_right =
+        |answer: &&Marked| matches!(answer.mark, AnswerMark::Right | AnswerMark::WithinTolerance);
     Ok(Sheet {
         file: path.display().to_string(),
         intact: file.is_intact(),
@@ -181,7 +182,7 @@ impl Sheet {
     }
 }
 
-impl Mark {
+impl AnswerMark {
     /// As in the JSON.
     fn words(self) -> &'static str {
         match self {

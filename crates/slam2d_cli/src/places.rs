@@ -1,7 +1,7 @@
 //! `slam2d places`: precision–recall curves of place recognition.
 
 use anyhow::ensure;
-use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher};
+use ch16_lab::lap::{BuiltInWorld, LapConfig, LapMatcher, NamedChoice};
 use ch16_lab::places::{PlaceCurve, PlacePair, place_curves, place_pairs};
 use clap::Args;
 use rayon::prelude::*;

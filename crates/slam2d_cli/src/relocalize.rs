@@ -29,6 +29,8 @@ const MARKS: [&str; 2] = [
 const RIGHT: (f64, f64) = (0.5, 0.175);
 /// The map shows the surroundings of a scan if a mapped scan was taken within this distance, m.
 const IN_THE_MAP_M: f64 = 2.0;
+/// A start counts if that holds over this path length after it, m.
+const STAYS_M: f64 = 8.0;
 /// Largest difference between the stamps of a scan and its pose, s.
 const SLACK_S: f64 = 1e-3;
 
@@ -36,7 +38,7 @@ const SLACK_S: f64 = 1e-3;
 /// pose, or never found.
 ///
 /// A robot that was switched on drives until it is found, and on, over the path length of `--path`. A start counts if
-/// the map shows its surroundings.
+/// the map shows the surroundings of its first 8 m.
 #[derive(Args, Clone, Debug)]
 pub struct RelocalizeArgs {
     /// The logs.
@@ -201,7 +203,9 @@ impl Bench {
                 (away_m(&nearest) <= IN_THE_MAP_M).then(|| nearest.1 * nearest.0.between(at))
             })
             .collect();
-        let may_start = |index: &usize| split == Split::Elsewhere || truth[*index].is_some();
+        let may_start = |index: &usize| {
+            split == Split::Elsewhere || stays_on_the_map(&driven[*index..], &truth[*index..])
+        };
         let possible: Vec<usize> = (0..driven.len()).filter(may_start).collect();
         let count = args.starts.min(possible.len());
         let chosen = (0..count).map(|k| possible[k * possible.len() / count]);
@@ -267,6 +271,23 @@ impl Bench {
         }
         Some(start)
     }
+}
+
+/// Whether the map shows the surroundings of these scans over `STAYS_M`.
+fn stays_on_the_map(driven: &[(&LogFrame, SE2)], truth: &[Option<SE2>]) -> bool {
+    let mut path_m = 0.0;
+    for (index, (_, at)) in driven.iter().enumerate() {
+        path_m += index
+            .checked_sub(1)
+            .map_or(0.0, |last| position_error_m(&driven[last].1, at));
+        if path_m >= STAYS_M {
+            return true;
+        }
+        if truth[index].is_none() {
+            return false;
+        }
+    }
+    false
 }
 
 /// The counts in Markdown.

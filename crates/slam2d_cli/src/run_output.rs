@@ -20,7 +20,7 @@ use robot_io::map_image::{
 };
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
-use robot_io::report::Report;
+use robot_io::report::LogReport;
 use robot_io::run::LogRun;
 use robot_io::session::FILE_NAME;
 
@@ -99,7 +99,7 @@ pub fn write_folder(folder: &Path, results: &Results<'_>) -> anyhow::Result<Opti
     let map = finest_map(REPORT_CELL_M, draw).ok();
     let mut remarks = results.remarks.to_vec();
     remarks.extend(said.clone());
-    let html = Report {
+    let html = LogReport {
         name: results.log,
         scans: run.scans(),
         quality,

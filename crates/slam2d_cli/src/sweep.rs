@@ -9,9 +9,8 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use anyhow::{bail, ensure};
-use ch16_lab::incremental::IncrementalKind;
-use ch16_lab::lap::{Choice, LapEstimator, LapRunner};
-use ch16_lab::results::{Column, LapOutcome, LapStatistics};
+use ch16_lab::lap::{IncrementalKind, LapEstimator, LapRunner, NamedChoice};
+use ch16_lab::results::{LapOutcome, LapStatistics, ResultColumn};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
@@ -186,14 +185,14 @@ impl SweepArgs {
     }
 
     /// Whether a column is requested; odometry always is.
-    fn shows(&self, column: Column) -> bool {
+    fn shows(&self, column: ResultColumn) -> bool {
         match column {
-            Column::Odometry => true,
-            Column::FrontEnd => self.has_a_graph(),
-            Column::WithLoops => self.has(LapEstimator::Graph),
-            Column::MaximumLikelihood | Column::MaximumLikelihoodCycles => self
+            ResultColumn::Odometry => true,
+            ResultColumn::FrontEnd => self.has_a_graph(),
+            ResultColumn::WithLoops => self.has(LapEstimator::Graph),
+            ResultColumn::MaximumLikelihood | ResultColumn::MaximumLikelihoodCycles => self
                 .incremental_kinds()
-                .any(|kind| Column::from_incremental(kind) == column),
+                .any(|kind| ResultColumn::from_incremental(kind) == column),
         }
     }
 

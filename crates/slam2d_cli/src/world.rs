@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use ch16_lab::lap::{BuiltInWorld, Choice};
+use ch16_lab::lap::{BuiltInWorld, NamedChoice};
 use pr_sim::Course;
 
 use crate::in_file::InFile as _;

@@ -10,8 +10,8 @@ use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pr_geom::SE2;
 use pr_optim::robust::{GncSettings, is_sequential, select_inliers};
 use pr_optim::{
-    Between, JacobianModel, Method, Optimizer, Problem, RobustKernel, Session, Settings, Start,
-    StopReason,
+    Between, JacobianModel, Method, Optimizer, Problem, RobustKernel, Settings, SolveSession,
+    Start, StopReason,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -339,7 +339,8 @@ impl PoseGraph {
             let chi2_initial = graph.problem.chi2();
             let mut solved = graph.problem.clone();
             let mut optimizer = Optimizer::new(settings);
-            let session = Session::new(&mut optimizer, &mut solved, *start).map_err(py_error)?;
+            let session =
+                SolveSession::new(&mut optimizer, &mut solved, *start).map_err(py_error)?;
             let outcome = session.run();
             if let StopReason::Failed { error } = outcome.report.stop {
                 return Err(py_error(error));

@@ -5,7 +5,7 @@ use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use ch16_lab::lap::{
-    BuiltInWorld, CANONICAL_SEED, Choice as _, Drive as Simulated, LapConfig, SlamConfig,
+    BuiltInWorld, CANONICAL_SEED, Drive as Simulated, LapConfig, NamedChoice as _, SlamConfig,
 };
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
 use pr_geom::SE2;

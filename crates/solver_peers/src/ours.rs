@@ -2,7 +2,7 @@
 
 use bench_support::timed;
 use pr_optim::{
-    JacobianModel, OptimizeError, Optimizer, Outcome, Problem, Session, Settings, Start,
+    JacobianModel, OptimizeError, Optimizer, Problem, SessionOutcome, Settings, SolveSession, Start,
 };
 
 use crate::{Peer, Solve};
@@ -41,8 +41,8 @@ fn solve_at(
     optimizer: &mut Optimizer,
     problem: &mut Problem,
     start: Start,
-) -> Result<Outcome, OptimizeError> {
-    Session::new(optimizer, problem, start).map(Session::run)
+) -> Result<SessionOutcome, OptimizeError> {
+    SolveSession::new(optimizer, problem, start).map(SolveSession::run)
 }
 
 fn solve(optimizer: &mut Optimizer, problem: &Problem, start: Start) -> Solve {

@@ -9,8 +9,8 @@ use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
 use pr_optim::system::NormalEquations;
 use pr_optim::{
-    Between, Factorization, JacobianModel, LinearSolver, Optimizer, Problem, RobustKernel, Session,
-    Settings, Start,
+    Between, Factorization, JacobianModel, LinearSolver, Optimizer, Problem, RobustKernel,
+    Settings, SolveSession, Start,
 };
 
 /// Uniform numbers in (−1, 1) from a 64-bit linear congruential generator (Knuth's constants).
@@ -93,7 +93,8 @@ fn settings() -> Settings {
 }
 
 fn solve(optimizer: &mut Optimizer, mut problem: Problem) -> f64 {
-    let session = Session::new(optimizer, &mut problem, Start::Auto).expect("a connected graph");
+    let session =
+        SolveSession::new(optimizer, &mut problem, Start::Auto).expect("a connected graph");
     session.run().report.chi2
 }
 

@@ -1,7 +1,7 @@
 //! Invariants of every solve, for any graph.
 
 use pr_geom::SE2;
-use pr_optim::{OptimizeError, Optimizer, Problem, Session, Settings, Start, StopReason};
+use pr_optim::{OptimizeError, Optimizer, Problem, Settings, SolveSession, Start, StopReason};
 
 /// Solves, and checks that the result is finite and costs no more than its start, or that the error is typed.
 pub fn solve(problem: &mut Problem, settings: Settings, start: Start) {
@@ -9,7 +9,7 @@ pub fn solve(problem: &mut Problem, settings: Settings, start: Start) {
     let (cost, chi2) = problem.cost_and_chi2(settings.kernel);
     let can_start = cost.is_finite() && chi2.is_finite();
     let mut optimizer = Optimizer::new(settings);
-    match Session::new(&mut optimizer, problem, start).map(Session::run) {
+    match SolveSession::new(&mut optimizer, problem, start).map(SolveSession::run) {
         Err(_) => assert_same(&given, problem.poses()),
         Ok(outcome) => {
             let report = outcome.report;

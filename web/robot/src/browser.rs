@@ -67,12 +67,12 @@ impl Seek for JsFile {
 
 /// A log that is being mapped.
 #[wasm_bindgen]
-pub struct Robot {
+pub struct LogMapper {
     engine: Engine<'static>,
 }
 
 #[wasm_bindgen]
-impl Robot {
+impl LogMapper {
     /// Opens files that were given together: `read(which, from, to)` returns bytes of one of them as a `Uint8Array`,
     /// and `chosen` has one option per line: `scan-topic /front`.
     ///

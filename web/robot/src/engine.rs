@@ -26,7 +26,7 @@ use robot_io::trajectory::{StampedPose, Trajectory};
 
 use crate::files;
 use crate::given::{Choices, Given};
-use crate::grade::Reference;
+use crate::grade::DroppedReference;
 use crate::graph_log::{self, GraphSolving, loops_of};
 use crate::links::Link;
 use crate::localization::Localization;
@@ -81,7 +81,7 @@ pub struct Engine<'a> {
     remarks: Vec<String>,
     doubts: Vec<String>,
     look_into: Vec<usize>,
-    reference: Option<(String, Reference)>,
+    reference: Option<(String, DroppedReference)>,
     /// The last saved picture of the map, to which `map.yaml` refers.
     image: &'static str,
     /// Another log on this map.

@@ -13,14 +13,14 @@ const UNIT_SLACK: f64 = 1e-3;
 
 /// Reference of the evaluation.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Reference {
+pub enum DroppedReference {
     /// Relations between two times.
     Relations(Vec<Relation>),
     /// True poses.
     Truth(Trajectory),
 }
 
-impl Reference {
+impl DroppedReference {
     /// Reads either, by the file name, or else by whether the last four numbers are a unit quaternion.
     ///
     /// # Errors

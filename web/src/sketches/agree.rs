@@ -12,7 +12,7 @@ use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::{Shown, Sketch, Slider};
+use super::{Shown, SketchSpec, Slider};
 
 /// Poses of one round of a ring; the robot drives two.
 const ROUND: usize = 20;
@@ -29,7 +29,7 @@ const LIE_M: f64 = 0.4;
 /// The three tests, as rows of the picture from below.
 const TESTS: [&str; 3] = ["GNC", "pairwise", "gate"];
 
-pub(super) const SKETCH: Sketch = Sketch {
+pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "agree",
     title: "Loops against each other",
     slider: Slider {

@@ -10,13 +10,13 @@ use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::{Shown, Sketch, Slider};
+use super::{Shown, SketchSpec, Slider};
 
 /// Largest distance of the relative error, and its step, m.
 const FARTHEST_M: f64 = 15.0;
 const STEP_M: f64 = 0.5;
 
-pub(super) const SKETCH: Sketch = Sketch {
+pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "ate",
     title: "Absolute and relative errors of a trajectory",
     slider: Slider {

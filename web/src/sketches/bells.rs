@@ -8,7 +8,7 @@ use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::{Shown, Sketch, Slider};
+use super::{Shown, SketchSpec, Slider};
 
 /// Beams of each of the two sweeps.
 const BEAMS: usize = 180;
@@ -19,7 +19,7 @@ const FARTHEST_M: f64 = 1.5;
 /// Size of the drawn ellipses in standard deviations.
 const DRAWN_SIGMAS: f64 = 2.0;
 
-pub(super) const SKETCH: Sketch = Sketch {
+pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "bells",
     title: "A room as bells",
     slider: Slider {

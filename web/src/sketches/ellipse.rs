@@ -14,7 +14,7 @@ use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::{Shown, Sketch, Slider};
+use super::{Shown, SketchSpec, Slider};
 
 /// The path from the middle of room A through its door, and down the corridor, m.
 const PATH_M: [[f64; 2]; 3] = [[2.05, 1.9], [2.05, 4.4], [10.8, 4.4]];
@@ -25,7 +25,7 @@ const NORMAL_RADIUS_M: f64 = 0.3;
 /// Magnification of the ellipse.
 const ENLARGED: f64 = 20.0;
 
-pub(super) const SKETCH: Sketch = Sketch {
+pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "ellipse",
     title: "What a sweep knows of its place",
     slider: Slider {

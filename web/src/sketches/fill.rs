@@ -8,7 +8,7 @@ use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::{Shown, Sketch, Slider};
+use super::{Shown, SketchSpec, Slider};
 
 /// Keyframes of the chain.
 const NODES: usize = 12;
@@ -16,7 +16,7 @@ const NODES: usize = 12;
 const HUB: usize = 1;
 const TIED: [usize; 4] = [5, 7, 9, 11];
 
-pub(super) const SKETCH: Sketch = Sketch {
+pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "fill",
     title: "The order of elimination",
     slider: Slider {

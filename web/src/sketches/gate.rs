@@ -12,7 +12,7 @@ use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::{Shown, Sketch, Slider};
+use super::{Shown, SketchSpec, Slider};
 
 /// Number of drawn drifts.
 const DRIFTS: usize = 200;
@@ -20,7 +20,7 @@ const DRIFTS: usize = 200;
 const REACH_M: f64 = 1.2;
 const REACH_DEG: f64 = 20.0;
 
-pub(super) const SKETCH: Sketch = Sketch {
+pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "gate",
     title: "A gate that grows with the path",
     slider: Slider {

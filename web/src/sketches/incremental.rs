@@ -13,7 +13,7 @@ use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::{Shown, Sketch, Slider};
+use super::{Shown, SketchSpec, Slider};
 
 /// Distance of two posts, m: every position looks like the next one.
 const SPACING_M: f64 = 1.0;
@@ -35,7 +35,7 @@ const CLIMB: ClimbConfig = ClimbConfig {
     tolerance: 1e-7,
 };
 
-pub(super) const SKETCH: Sketch = Sketch {
+pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "incremental",
     title: "A climb, and an error that it finds",
     slider: Slider {

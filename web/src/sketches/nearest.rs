@@ -11,7 +11,7 @@ use widget_kit::scene::{
     Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::{Shown, Sketch, Slider};
+use super::{Shown, SketchSpec, Slider};
 
 /// Width of a cell, and largest distance of a partner, m.
 const TAU_M: f64 = 0.5;
@@ -22,7 +22,7 @@ const QUERY: [f64; 2] = [1.3, 3.65];
 /// Half the side of the picture of the cells, m.
 const NEAR_M: f64 = 1.25;
 
-pub(super) const SKETCH: Sketch = Sketch {
+pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "nearest",
     title: "One query in a map that grows",
     slider: Slider {

@@ -2,18 +2,18 @@
 
 use std::sync::OnceLock;
 
-use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, LoopAttempt};
+use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, RecordedLoopAttempt};
 use ch16_slam2d::loops::{GateTest, chi_squared_gate};
 use ch16_slam2d::metrics::{DisagreementConfig, MapDisagreement};
 use pr_geom::{Point2, SE2};
 use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Tone, Weight};
 
-use super::{Shown, Sketch, Slider};
+use super::{Shown, SketchSpec, Slider};
 
 /// The drawn part of the corridor, around the next keyframe, m.
 const REACH_M: [f64; 2] = [2.4, 1.3];
 
-pub(super) const SKETCH: Sketch = Sketch {
+pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "push",
     title: "The sweeps after a loop",
     slider: Slider {
@@ -32,8 +32,8 @@ pub(super) const SKETCH: Sketch = Sketch {
 /// The canonical lap between its first loop and its second.
 struct Between {
     record: LapRecord,
-    first: LoopAttempt,
-    second: LoopAttempt,
+    first: RecordedLoopAttempt,
+    second: RecordedLoopAttempt,
     /// The correction by the first loop: newest node's pose after it ∘ pose before it, inverted.
     correction: SE2,
 }

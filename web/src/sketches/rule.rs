@@ -5,7 +5,7 @@ use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::{Shown, Sketch, Slider};
+use super::{Shown, SketchSpec, Slider};
 
 /// Number of simulated drives.
 const DRIVES: usize = 1000;
@@ -14,7 +14,7 @@ const TIP: usize = EDGES / 2;
 /// A dot is drawn for every so many nodes.
 const EVERY: usize = 2;
 
-pub(super) const SKETCH: Sketch = Sketch {
+pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "rule",
     title: "What a loop is worth",
     slider: Slider {

@@ -8,7 +8,7 @@ use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::{Shown, Sketch, Slider};
+use super::{Shown, SketchSpec, Slider};
 
 /// Spacing of the points of a wall, m.
 const SPACING_M: f64 = 0.3;
@@ -19,7 +19,7 @@ const FARTHEST_M: f64 = 0.6;
 /// Correspondence distance, m: no point loses its partner here.
 const TAU_M: f64 = 1.0;
 
-pub(super) const SKETCH: Sketch = Sketch {
+pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "slide",
     title: "A sweep slides along a wall",
     slider: Slider {

@@ -9,7 +9,7 @@ use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::{Shown, Sketch, Slider};
+use super::{Shown, SketchSpec, Slider};
 use certificate::Certificate;
 use wound::{chordal_start, ring, solved_from, wound_up};
 
@@ -18,7 +18,7 @@ const CONFIRMS: f64 = 0.01;
 /// Largest twist, degrees.
 const MAX_TWIST_DEG: f64 = 360.0;
 
-pub(super) const SKETCH: Sketch = Sketch {
+pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "start",
     title: "A guess that is wound up",
     slider: Slider {

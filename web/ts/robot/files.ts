@@ -2,8 +2,10 @@
 
 import { create } from '../dom';
 
-/** File types of the dialog; the `.yaml` describes a recording of several files. */
-export const LOGS = '.yaml,.log,.clf,.mcap,.db3,.db3-wal,.bag,.jsonl,.csv,.txt,.dat,.gz,.zst,.zstd,.g2o,.graph,.toro,.slam2d';
+/** File types of recordings in the dialog; the `.yaml` describes one of several files. */
+export const SCANS = '.yaml,.log,.clf,.mcap,.db3,.db3-wal,.bag,.jsonl,.csv,.txt,.dat,.gz,.zst,.zstd';
+/** With those of pose graphs and sessions. */
+export const LOGS = `${SCANS},.g2o,.graph,.toro,.slam2d`;
 
 export interface DialogOptions {
   accept: string;

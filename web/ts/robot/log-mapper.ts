@@ -5,7 +5,7 @@ import type { Widget } from '../../pkg/glue.js';
 import { saveBlob } from '../export';
 import { assetUrl, fetchAsset } from '../assets';
 import { LoadError, ModuleFile, StaleError } from '../module';
-import { LOGS } from './files';
+import { LOGS, SCANS } from './files';
 import { textDelivery, type Delivery, type Order, type Report } from './protocol';
 
 /** Set by the build: the module that maps logs, its worker, and the samples. */
@@ -15,8 +15,6 @@ declare const SAMPLE_FILES: readonly string[];
 
 /** Extensions of references. */
 const REFERENCES = ['.relations', '.tum'];
-/** File types of logs to localize. */
-const SCANS = '.yaml,.log,.clf,.mcap,.db3,.db3-wal,.bag,.jsonl,.csv,.txt,.dat,.gz,.zst,.zstd';
 /** Extension of a session. */
 const SESSION = '.slam2d';
 /** Maximum size of a reference. */

@@ -1,7 +1,7 @@
 // The worker that maps a log. The first message has the program and the files, later ones the reader's orders. It works
 // in time slices, and handles orders in between.
 
-import init, { Robot } from '../../pkg-robot/slam_robot.js';
+import init, { LogMapper } from '../../pkg-robot/slam_robot.js';
 import { textDelivery, type Delivery, type Order, type Report } from './protocol';
 
 /** Length of a time slice. */
@@ -16,7 +16,7 @@ declare class FileReaderSync {
   readAsArrayBuffer(blob: Blob): ArrayBuffer;
 }
 
-let robot: Robot | undefined;
+let robot: LogMapper | undefined;
 let isPaused = false;
 let isScheduled = false;
 let busyUntil = 0;
@@ -48,7 +48,7 @@ function readable(files: File[]): [string[], Float64Array, (which: number, from:
 async function open(module: WebAssembly.Module, files: File[], options: string, edits: string): Promise<void> {
   try {
     await init({ module_or_path: module });
-    robot = new Robot(...readable(files), options);
+    robot = new LogMapper(...readable(files), options);
     robot.repeat(edits);
   } catch (error) {
     // A plain Error is about the file, any subclass is a crash.
@@ -93,7 +93,7 @@ function setPaused(isOn: boolean): void {
   post({ deliveries: [textDelivery('paused', '', [isOn ? 1 : 0])] });
 }
 
-function save(from: Robot, name: string): void {
+function save(from: LogMapper, name: string): void {
   try {
     const bytes = from.file(name);
     post({ saved: name, bytes }, [bytes.buffer]);
@@ -102,7 +102,7 @@ function save(from: Robot, name: string): void {
   }
 }
 
-function locate(on: Robot, log: File[], options: string, start: number[]): void {
+function locate(on: LogMapper, log: File[], options: string, start: number[]): void {
   try {
     on.locate(...readable(log), options, Float64Array.from(start));
     if (isPaused) setPaused(false);
@@ -114,7 +114,7 @@ function locate(on: Robot, log: File[], options: string, start: number[]): void 
   }
 }
 
-function grade(by: Robot, bytes: Uint8Array, name: string): void {
+function grade(by: LogMapper, bytes: Uint8Array, name: string): void {
   try {
     by.reference(bytes, name);
     reportChanges(by);
@@ -154,7 +154,7 @@ function work(): void {
   if (isMore) schedule();
 }
 
-function reportChanges(what: Robot): void {
+function reportChanges(what: LogMapper): void {
   reportedAt = performance.now();
   const deliveries = what.updates() as Delivery[];
   const buffers = deliveries.flatMap(({ bytes }) => (bytes === undefined ? [] : [bytes.buffer]));

@@ -6,7 +6,29 @@ use widget_kit::playback::SPEED;
 use widget_kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, WidgetSpec};
 use widget_kit::{one_of, params};
 
-use super::model::settings::{Colour, ShownLoops};
+/// The quantity that colours the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Colour {
+    /// Position on the timeline.
+    Time,
+    /// Share of each scan that fits.
+    Fit,
+    /// Standard deviation of the position.
+    Sigma,
+    /// Error against a reference.
+    Error,
+}
+
+/// Which loops the map shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShownLoops {
+    /// None.
+    None,
+    /// Those of the graph.
+    InGraph,
+    /// The rejected ones as well.
+    All,
+}
 
 /// An upper bound of the number of keyframes, beyond the end of every timeline.
 pub const MAX_KEYFRAMES: f64 = 999_999.0;

@@ -39,7 +39,7 @@ mod track;
 mod transition;
 mod your_code;
 
-use ch16_lab::lap::{LapRecord, LoopAttempt, NewestLap, NewestStep, OwnLoopError};
+use ch16_lab::lap::{LapRecord, NewestLap, NewestStep, OwnLoopError, RecordedLoopAttempt};
 use pr_sim::{Course, Sketch};
 use widget_kit::chart::{dragged_to, grab_now};
 use widget_kit::disclosure::Disclosure;
@@ -57,13 +57,13 @@ use widget_kit::values::{Changed, Values};
 
 use crate::reader_orders::Orders;
 use crate::w16_2_full_lap::spec::{
-    EDIT_FLAT, EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WIPE, WORLD,
+    EDIT, EDIT_FLAT, EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WIPE, WORLD,
 };
-use floor_plan::{FloorPlan, Tool};
-use moment::Moment;
+use floor_plan::FloorPlan;
+use moment::LapState;
 use own::Own;
-use pick::{Direction, Part};
-use runs::{Results, Runs};
+use pick::{GraphPart, PickDirection};
+use runs::{ResultsTable, Runs};
 use transition::Transition;
 
 pub use settings::lap_of_link;
@@ -81,12 +81,12 @@ pub struct FullLap {
     /// Buttons that wait for the lap they were pressed for.
     pressed: Vec<&'static str>,
     /// The results of the chapter's run after each tick.
-    canonical: Vec<Results>,
+    canonical: Vec<ResultsTable>,
     playback: Playback,
     transition: Option<Transition>,
     own: Own,
     floor_plan: FloorPlan,
-    hovered: Option<Part>,
+    hovered: Option<GraphPart>,
     /// Orders to the reader's function, if it drives.
     yours: Option<Orders>,
 }
@@ -146,7 +146,7 @@ impl FullLap {
     fn animate(&mut self) {
         let attempt = self.runs.graph.attempt_at(self.tick());
         let own = self.own.tried().map(|own| &own.attempt);
-        let closed = own.or(attempt).is_some_and(LoopAttempt::accepted);
+        let closed = own.or(attempt).is_some_and(RecordedLoopAttempt::accepted);
         self.transition =
             (closed && self.playback.motion() == Motion::Full).then(Transition::default);
     }
@@ -206,7 +206,8 @@ impl FullLap {
         let now = self.tick() as f64;
         let rate = TICKS_PER_S * self.values.get(&SPEED);
         let reached = self.playback.advance(now, self.last(), elapsed_s, rate) as usize;
-        let ahead = |attempt: &&LoopAttempt| attempt.tick > now as usize && attempt.tick < reached;
+        let ahead =
+            |attempt: &&RecordedLoopAttempt| attempt.tick > now as usize && attempt.tick < reached;
         let stop = self.runs.graph.attempts().iter().find(ahead);
         let target = stop.map_or(reached, |attempt| attempt.tick);
         if target < reached && !self.playback.is_playing() {
@@ -227,17 +228,17 @@ impl FullLap {
         }
     }
 
-    fn moment(&self) -> Moment<'_> {
+    fn moment(&self) -> LapState<'_> {
         let share = self.transition.as_ref().map_or(1.0, Transition::share);
         let seen_until = self.seen_until();
         let own = self.own.tried();
-        Moment {
-            picked: Part::chosen(&self.values),
+        LapState {
+            picked: GraphPart::chosen(&self.values),
             hovered: self.hovered,
             tied: self.own.tied,
             wipe: self.values.get(&WIPE),
             drawn: drawing::drawn(self),
-            ..Moment::new(&self.runs, self.tick(), share, seen_until, own)
+            ..LapState::new(&self.runs, self.tick(), share, seen_until, own)
         }
     }
 
@@ -258,7 +259,7 @@ impl Model for FullLap {
     fn disclosure(&self) -> Disclosure {
         match (
             Disclosure::visible(SPEC.opening, &self.values),
-            Tool::chosen(&self.values),
+            self.values.get(&EDIT),
         ) {
             (Disclosure::First(_), Some(_)) => Disclosure::First(EDITING),
             (Disclosure::All, None) => Disclosure::AllBut(&FLAT_CONTROLS),
@@ -314,8 +315,8 @@ impl Model for FullLap {
             return Ok(());
         }
         match id {
-            "one-back" => self.look_on(Direction::Back),
-            "one-on" => self.look_on(Direction::On),
+            "one-back" => self.look_on(PickDirection::Back),
+            "one-on" => self.look_on(PickDirection::On),
             "tie" => self.press_tie(),
             "undo" => self.undo(),
             "defaults" => self.back_to_defaults(),
@@ -377,7 +378,7 @@ impl Model for FullLap {
 
     fn timeline(&self) -> Option<Timeline> {
         let lap = self.runs.graph.lap();
-        let mark = |attempt: &LoopAttempt| TimelineMark {
+        let mark = |attempt: &RecordedLoopAttempt| TimelineMark {
             at: attempt.tick as f64,
             label: lap.loop_headline(attempt),
             standing: texts::standing(lap.judge(attempt)),
@@ -396,7 +397,7 @@ impl Model for FullLap {
     }
 
     fn is_pressed(&self, button: &str) -> bool {
-        let is_editing = Tool::chosen(&self.values).is_some();
+        let is_editing = self.values.get(&EDIT).is_some();
         (button == EDIT_FLAT.id && is_editing) || (button == PLAY.id && self.playback.is_playing())
     }
 
@@ -466,7 +467,7 @@ impl Model for FullLap {
         }
         let part = interaction::part_at(&self.moment(), panel, at, reach);
         self.look_at(part);
-        if self.own.tied.is_some() && matches!(part, Some(Part::Keyframe(_))) {
+        if self.own.tied.is_some() && matches!(part, Some(GraphPart::Keyframe(_))) {
             self.press_tie();
         }
     }

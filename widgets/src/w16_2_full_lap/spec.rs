@@ -1,8 +1,7 @@
 //! The widget's texts and its list of parameters.
 
-use super::model::floor_plan::Tool;
 use ch16_lab::lap;
-use ch16_lab::lap::{BuiltInWorld, Choice as _, Claim, LapMatcher, OwnKernel};
+use ch16_lab::lap::{BuiltInWorld, Claim, LapMatcher, NamedChoice as _, OwnKernel};
 use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::chi_squared::CHAPTER_QUANTILE;
 use ch16_slam2d::loops::GateModel;
@@ -40,6 +39,19 @@ const MAX_FLAT: usize = 33_000;
 
 /// Largest number of a wall, counted from 1.
 const MAX_PIECES: f64 = limits::WALLS as f64;
+
+/// The effect of a press on the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tool {
+    /// Moves a wall, an end, a way point or the start.
+    Move,
+    /// Draws a wall.
+    Wall,
+    /// Places a way point.
+    Way,
+    /// Removes the piece under it.
+    Remove,
+}
 
 /// The kind of the selected part of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -41,12 +41,12 @@ use widget_kit::spec::WidgetSpec;
 use widget_kit::values::{Changed, Values};
 
 use crate::w16_3_cost_terraces::spec::{
-    DROPS, END_PERCENT, HALF_SPAN_M, MAX_DROPS, MEASURE, Measure, PARAMS, ROLLED, SPEC,
+    DROPS, END_PERCENT, HALF_SPAN_M, MAX_DROPS, MEASURE, PARAMS, ROLLED, ReliefMeasure, SPEC,
 };
 use morph::Morph;
-use picture::{Looked, Moment};
+use picture::{Looked, PictureState};
 use rests::Rests;
-use settings::Settings;
+use settings::TerraceSettings;
 use terrains::Terrains;
 
 /// Share of the path that the ball rolls in a second at speed ×1.
@@ -68,7 +68,7 @@ impl Default for CostTerraces {
     /// The widget with every parameter at its default.
     fn default() -> Self {
         let values = Values::defaults(PARAMS);
-        let terrains = Terrains::new(Settings::read(&values));
+        let terrains = Terrains::new(TerraceSettings::read(&values));
         Self {
             rests: Rests::new(&terrains),
             morph: Morph::new(&terrains),
@@ -82,11 +82,11 @@ impl Default for CostTerraces {
 }
 
 impl CostTerraces {
-    fn settings(&self) -> Settings {
-        Settings::read(&self.values)
+    fn settings(&self) -> TerraceSettings {
+        TerraceSettings::read(&self.values)
     }
 
-    fn measure(&self) -> Measure {
+    fn measure(&self) -> ReliefMeasure {
         self.values.get(&MEASURE)
     }
 
@@ -120,13 +120,13 @@ impl CostTerraces {
             .turn_to(self.measure(), self.playback.motion(), &self.terrains);
     }
 
-    fn moment(&self) -> Moment {
+    fn moment(&self) -> PictureState {
         let measure = self.measure();
         let ball = &self.terrains.of(measure).ball;
         let share = self.rolled() / END_PERCENT;
         let step = (share * ball.steps() as f64).round() as usize;
         let rolls = 0 < step && step < ball.steps();
-        Moment {
+        PictureState {
             measure,
             probe_m: self.settings().probe_m,
             looked: match self.hover_m {

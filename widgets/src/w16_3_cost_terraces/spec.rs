@@ -24,7 +24,7 @@ pub const MAX_ROWS: f64 = 120.0;
 
 /// Location of the sweep, and its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum SweepPlace {
     /// Room A: walls in both directions. The sweep is its own map.
     Room,
     /// A corridor without doors: walls along x alone. Map and sweep have independent noise.
@@ -35,7 +35,7 @@ pub enum Place {
 
 /// The measure that the relief shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
+pub enum ReliefMeasure {
     /// ICP's truncated cost.
     Icp,
     /// NDT's score.
@@ -184,25 +184,25 @@ const PRESETS: &[Preset] = &[
 ];
 
 params! {
-    pub(super) static MEASURE: OneOf<Measure> = one_of!(
-        Measure,
+    pub(super) static MEASURE: OneOf<ReliefMeasure> = one_of!(
+        ReliefMeasure,
         "measure",
         "relief of",
         &[
-            (Measure::Icp, "icp", "ICP"),
-            (Measure::Ndt, "ndt", "NDT"),
+            (ReliefMeasure::Icp, "icp", "ICP"),
+            (ReliefMeasure::Ndt, "ndt", "NDT"),
         ],
     )
     .help("ICP's cost or NDT's score of the same sweep on the same points; the relief morphs from one to the other.");
 
-    pub(super) static SCENE: OneOf<Place> = one_of!(
-        Place,
+    pub(super) static SCENE: OneOf<SweepPlace> = one_of!(
+        SweepPlace,
         "scene",
         "scene",
         &[
-            (Place::Room, "room", "room"),
-            (Place::Corridor, "corridor", "corridor"),
-            (Place::OwnCorridor, "own-corridor", "corridor on itself"),
+            (SweepPlace::Room, "room", "room"),
+            (SweepPlace::Corridor, "corridor", "corridor"),
+            (SweepPlace::OwnCorridor, "own-corridor", "corridor on itself"),
         ],
     )
     .help("Room A on its own points; a corridor without doors on a map with independent noise; the Apartment's corridor, with its doors, on its own points.");

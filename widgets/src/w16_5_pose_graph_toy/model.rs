@@ -36,7 +36,7 @@ use widget_kit::spec::{PLAY, WidgetSpec};
 use widget_kit::values::{Changed, Values};
 
 use crate::w16_5_pose_graph_toy::spec::{GRAPH, MAX_POSES, PARAMS, SPEC, STEPS};
-use course::{Course, Moment};
+use course::{GraphState, SolverRun};
 use pr_geom::SE2;
 
 /// Names of the panels.
@@ -64,7 +64,7 @@ const POSE_CONTROLS: [&str; 3 * MAX_POSES] = [
 /// The model of the widget.
 pub struct PoseGraphToy {
     values: Values,
-    course: Course,
+    course: SolverRun,
     playback: PlaybackParam,
     /// The axes while something is dragged, so that they stay.
     held_axes: Option<[Axis; 2]>,
@@ -75,7 +75,7 @@ impl Default for PoseGraphToy {
     fn default() -> Self {
         let values = Values::defaults(PARAMS);
         Self {
-            course: Course::new(settings::graph(&values)),
+            course: SolverRun::new(settings::graph(&values)),
             values,
             playback: PlaybackParam::along(&STEPS),
             held_axes: None,
@@ -85,7 +85,7 @@ impl Default for PoseGraphToy {
 
 impl PoseGraphToy {
     fn solve(&mut self) {
-        self.course = Course::new(settings::graph(&self.values));
+        self.course = SolverRun::new(settings::graph(&self.values));
     }
 
     /// The current step.
@@ -93,7 +93,7 @@ impl PoseGraphToy {
         self.playback.place(&self.values, self.course.last() as f64) as usize
     }
 
-    fn shown(&self) -> &Moment {
+    fn shown(&self) -> &GraphState {
         &self.course.moments[self.step()]
     }
 

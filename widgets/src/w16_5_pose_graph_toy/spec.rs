@@ -20,7 +20,7 @@ const CHAPTER_GAP_M: f64 = 0.6;
 
 /// The shape of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
+pub enum GraphShape {
     /// The chapter's three poses on a line.
     Line,
     /// Four poses around a square.
@@ -95,14 +95,14 @@ params! {
         "Information of the loop, relative to each edge of odometry: a stiffer spring gives way less.",
     );
 
-    pub(super) static GRAPH: OneOf<Shape> = one_of!(
-        Shape,
+    pub(super) static GRAPH: OneOf<GraphShape> = one_of!(
+        GraphShape,
         "graph",
         "graph",
         &[
-            (Shape::Line, "line", "three poses"),
-            (Shape::Square, "square", "a square"),
-            (Shape::Ring, "ring", "a ring of six"),
+            (GraphShape::Line, "line", "three poses"),
+            (GraphShape::Square, "square", "a square"),
+            (GraphShape::Ring, "ring", "a ring of six"),
         ],
     )
     .default("ring")

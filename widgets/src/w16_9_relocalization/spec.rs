@@ -1,7 +1,7 @@
 //! The widget's texts and its list of parameters.
 
 use ch16_lab::lap::CANONICAL_SEED;
-use ch16_lab::lap::{BuiltInWorld, Choice as _};
+use ch16_lab::lap::{BuiltInWorld, NamedChoice as _};
 use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;

@@ -1,7 +1,7 @@
 //! Helpers for the tests of the widget's model.
 
 use widget_kit::model::Model;
-use widget_kit::scene::{Cell, Layer};
+use widget_kit::scene::{Layer, RasterCell};
 use widgets::w16_1_basin_explorer::model::BasinExplorer;
 
 use crate::support::panel_of;
@@ -25,7 +25,7 @@ pub fn fill(model: &mut BasinExplorer) -> usize {
 }
 
 /// The class under a spot of a basin map.
-pub fn class_at(model: &BasinExplorer, id: &str, at: [f64; 2]) -> Cell {
+pub fn class_at(model: &BasinExplorer, id: &str, at: [f64; 2]) -> RasterCell {
     let panel = panel_of(model, id);
     let raster = panel.layers.iter().find_map(|layer| match layer {
         Layer::Raster(raster) => Some(raster),

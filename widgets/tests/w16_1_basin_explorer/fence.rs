@@ -3,7 +3,7 @@
 use crate::support::{fact, panel_of};
 use crate::w16_1_basin_explorer::common::{class_at, fill, with};
 use widget_kit::model::{Assessment, Model};
-use widget_kit::scene::Cell;
+use widget_kit::scene::RasterCell;
 use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
 
 #[test]
@@ -14,7 +14,7 @@ fn the_basin_map_has_a_band_at_each_spacing() {
     let bands = [(0.0, 0), (0.5, 1), (1.0, 2), (-0.5, 1), (-1.0, 2)];
     for (dx_m, class) in bands {
         let cell = class_at(&model, panel::POINT, [0.0, dx_m]);
-        assert_eq!(cell, Cell::Class(class), "from {dx_m} m");
+        assert_eq!(cell, RasterCell::Class(class), "from {dx_m} m");
     }
     let legend = panel_of(&model, panel::PLANE).legend;
     let names: Vec<_> = legend.iter().map(|entry| entry.label.as_str()).collect();
@@ -51,7 +51,10 @@ fn the_preset_sets_the_fence_and_defaults_restore_the_room() {
     assert_eq!(model.outcome().verdict, "one post off");
     assert!(model.summary().contains("one row of equal posts"));
     // A map of the room is not reused for the fence.
-    assert_eq!(class_at(&model, panel::POINT, [0.0, 0.0]), Cell::Unknown);
+    assert_eq!(
+        class_at(&model, panel::POINT, [0.0, 0.0]),
+        RasterCell::Unknown
+    );
     model.press("defaults").unwrap();
     assert_eq!(model.summary(), room);
 }

@@ -6,7 +6,7 @@
 use crate::support::{fact, panel_of};
 use crate::w16_1_basin_explorer::common::{class_at, fill, with};
 use widget_kit::model::{Activity, Model};
-use widget_kit::scene::{Cell, Layer};
+use widget_kit::scene::{Layer, RasterCell};
 use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
 
 #[test]
@@ -194,7 +194,11 @@ fn a_basin_map_agrees_with_a_run_from_that_spot() {
                 _ => 3,
             };
             let shown = class_at(&model, id, [heading, dx]);
-            assert_eq!(shown, Cell::Class(class), "{id} at {heading}°, {dx} m");
+            assert_eq!(
+                shown,
+                RasterCell::Class(class),
+                "{id} at {heading}°, {dx} m"
+            );
         }
     }
 }
@@ -222,9 +226,9 @@ fn basin_maps_fill_in_small_pieces_and_only_start_over_when_they_must() {
         ("axis", 1.0),
     ] {
         let middle = |model: &BasinExplorer| class_at(model, panel::PLANE, [0.0, 0.0]);
-        assert_ne!(middle(&model), Cell::Unknown);
+        assert_ne!(middle(&model), RasterCell::Unknown);
         model.set(id, value).unwrap();
-        assert_eq!(middle(&model), Cell::Unknown, "{id}");
+        assert_eq!(middle(&model), RasterCell::Unknown, "{id}");
         // The coarsest pass covers everything in 2 × 16 × 6 registrations.
         for _ in 0..64 {
             assert_eq!(model.work(), Activity::Busy);

@@ -3,7 +3,7 @@
 use crate::support::{fact, panel_of};
 use crate::w16_1_basin_explorer::common::{class_at, fill, with};
 use widget_kit::model::{Activity, Assessment, Model};
-use widget_kit::scene::{Cell, Layer, Mark, Tone};
+use widget_kit::scene::{Layer, Mark, RasterCell, Tone};
 use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
 use widgets::w16_1_basin_explorer::spec::SPEC;
 
@@ -64,7 +64,7 @@ fn verdict_and_basin_map_agree_at_the_edges_of_the_right_basin() {
         // The map has a column every 3°; none of the edges is among them.
         let columns = (-60..=60).step_by(3).map(f64::from);
         for heading in columns {
-            let right = class_at(&map, id, [heading, 0.0]) == Cell::Class(0);
+            let right = class_at(&map, id, [heading, 0.0]) == RasterCell::Class(0);
             assert_eq!(
                 verdict(heading) == "right minimum",
                 right,

@@ -446,7 +446,7 @@ fn a_slope_that_faces_the_light_is_brighter_than_one_that_turns_away() {
     });
     let raster = raster.unwrap();
     let light = |column: usize, row: usize| match raster.cells[row * raster.columns + column] {
-        widget_kit::scene::Cell::Relief { light, .. } => light,
+        widget_kit::scene::RasterCell::Relief { light, .. } => light,
         other => panic!("{other:?}"),
     };
     // A bowl about cell 24: its lower right wall faces the upper left.

@@ -390,7 +390,7 @@ fn pulses(room: &ControlRoom) -> Vec<[f64; 2]> {
 }
 
 /// The cells of the grid.
-fn cells(room: &ControlRoom) -> Vec<widget_kit::scene::Cell> {
+fn cells(room: &ControlRoom) -> Vec<widget_kit::scene::RasterCell> {
     let layers = &room.scene().panels[0].layers;
     let rasters = layers.iter().filter_map(|layer| match layer {
         Layer::Raster(raster) => Some(raster.cells.to_vec()),
@@ -504,13 +504,13 @@ fn plots_do_not_show_the_future() {
 #[test]
 fn the_grid_has_a_legend_whose_areas_are_the_colours_of_its_cells() {
     use widget_kit::palette::{Theme, cell, contrast, tone};
-    use widget_kit::scene::Cell;
+    use widget_kit::scene::RasterCell;
     let room = ControlRoom::default();
     let scene = room.scene();
     let legend = &scene.panels[0].legend;
     for (label, of) in [
-        ("occupied", Cell::Occupancy(1.0)),
-        ("not seen", Cell::Unknown),
+        ("occupied", RasterCell::Occupancy(1.0)),
+        ("not seen", RasterCell::Unknown),
     ] {
         let entry = legend
             .iter()
@@ -523,7 +523,7 @@ fn the_grid_has_a_legend_whose_areas_are_the_colours_of_its_cells() {
     }
     // Occupied is ink and free is paper, in both themes.
     for theme in [Theme::Light, Theme::Dark] {
-        let [full, free] = [1.0, 0.0].map(|share| cell(theme, Cell::Occupancy(share)));
+        let [full, free] = [1.0, 0.0].map(|share| cell(theme, RasterCell::Occupancy(share)));
         assert!(contrast(full, free) > 10.0);
         assert_eq!(full, tone(theme, Tone::Ink));
     }

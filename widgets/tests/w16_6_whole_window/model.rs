@@ -1,7 +1,7 @@
 //! The whole window without its picture; reference values from the room of the chapter's basins.
 
 use widget_kit::model::{Activity, Assessment, Model};
-use widget_kit::scene::{Cell, Layer, Tone};
+use widget_kit::scene::{Layer, RasterCell, Tone};
 use widgets::w16_6_whole_window::model::{WholeWindow, panel};
 use widgets::w16_6_whole_window::spec::SPEC;
 
@@ -71,7 +71,7 @@ fn the_surface_fills_in_and_ends() {
         Layer::Raster(raster) => Some(raster.cells.clone()),
         _ => None,
     });
-    let fits = |cell: &&Cell| matches!(cell, Cell::Occupancy(share) if *share > 0.0);
+    let fits = |cell: &&RasterCell| matches!(cell, RasterCell::Occupancy(share) if *share > 0.0);
     let ink = ink.expect("the positions have a raster");
     assert_eq!(ink.iter().filter(fits).count(), ink.len());
     assert_eq!(window.work(), Activity::Idle);

@@ -1,6 +1,6 @@
 //! The comparison without its picture; reference values from `slam2d places`.
 
-use ch16_lab::lap::{Choice, LapConfig, LapDetector, LapMatcher};
+use ch16_lab::lap::{LapConfig, LapDetector, LapMatcher, NamedChoice};
 use ch16_lab::places::{place_curves, place_pairs};
 use widget_kit::model::{Activity, Assessment, Model, Motion};
 use widget_kit::param::ParamKind;

@@ -1,6 +1,6 @@
 //! The localization without its picture.
 
-use ch16_lab::lap::{BuiltInWorld, Choice};
+use ch16_lab::lap::{BuiltInWorld, NamedChoice};
 use widget_kit::model::{Activity, Assessment, Model, Motion};
 use widget_kit::param::ParamKind;
 use widget_kit::scene::{Layer, Tone};

@@ -1,7 +1,7 @@
 //! Invariants of every model: for the tests over all widgets, and for the fuzzer.
 
 use crate::model::Model;
-use crate::scene::{Cell, Layer, Scene};
+use crate::scene::{Layer, RasterCell, Scene};
 
 /// Asserts that every value is in the range of its parameter.
 ///
@@ -67,9 +67,9 @@ fn numbers_are_finite(layer: &Layer) -> bool {
         Layer::Raster(raster) => {
             raster.cells.len() == raster.columns * raster.rows
                 && raster.cells.iter().all(|cell| match cell {
-                    Cell::Level(level) | Cell::Occupancy(level) => level.is_finite(),
-                    Cell::Relief { level, light } => level.is_finite() && light.is_finite(),
-                    Cell::Unknown | Cell::Class(_) => true,
+                    RasterCell::Level(level) | RasterCell::Occupancy(level) => level.is_finite(),
+                    RasterCell::Relief { level, light } => level.is_finite() && light.is_finite(),
+                    RasterCell::Unknown | RasterCell::Class(_) => true,
                 })
         }
     }

@@ -1,7 +1,7 @@
 //! The colours of each meaning, in light and dark.
 
 use crate::model::Assessment;
-use crate::scene::{Cell, Tone};
+use crate::scene::{RasterCell, Tone};
 
 /// An opaque colour, sRGB.
 pub type Rgb = [u8; 3];
@@ -63,6 +63,18 @@ const SERIES: [[Rgb; 2]; 4] = [
     shades("series-4"),
 ];
 
+/// Classes differ mainly in lightness, which keeps them distinct for every kind of colour vision. All but
+/// the sixth are areas below marks: they differ from the colours of the meanings and from paper.
+const CLASSES: [[Rgb; 2]; 7] = [
+    shades("class-1"),
+    shades("class-2"),
+    shades("class-3"),
+    shades("class-4"),
+    shades("class-5"),
+    shades("class-6"),
+    shades("class-7"),
+];
+
 /// The shade of a meaning in a theme.
 #[must_use]
 pub fn tone(theme: Theme, tone: Tone) -> Rgb {
@@ -85,7 +97,7 @@ pub fn tone(theme: Theme, tone: Tone) -> Rgb {
                 0.5,
             );
         }
-        Tone::Class(class) => return class_color(theme, class),
+        Tone::Class(class) => CLASSES[usize::from(class) % CLASSES.len()],
         Tone::Series(n) => SERIES[usize::from(n) % SERIES.len()],
         Tone::Level(level) => return level_color(f32::from(level) / 255.0),
     };
@@ -102,34 +114,20 @@ pub fn accent(theme: Theme) -> Rgb {
 /// Largest share of white or black in the colour of a relief's slope.
 const MAX_LIGHT: f32 = 0.55;
 
-/// Classes differ mainly in lightness, which keeps them distinct for every kind of colour vision. All but
-/// the sixth are areas below marks: they differ from the colours of the meanings and from paper.
-fn class_color(theme: Theme, class: u8) -> Rgb {
-    const LIGHT: [u32; 7] = [
-        0xd6e8fb, 0xf2d84b, 0x9b3408, 0x889abf, 0xf9cc9e, 0x1e293b, 0x88b8a8,
-    ];
-    const DARK: [u32; 7] = [
-        0x113460, 0xe8d84a, 0x9c4b55, 0x6c7aa8, 0x873a07, 0xf8fafc, 0x709850,
-    ];
-    let table = match theme {
-        Theme::Light => LIGHT,
-        Theme::Dark => DARK,
-    };
-    hex(table[usize::from(class) % table.len()])
-}
-
 /// The colour of a raster's cell.
 #[must_use]
-pub fn cell(theme: Theme, cell: Cell) -> Rgb {
+pub fn cell(theme: Theme, cell: RasterCell) -> Rgb {
     match cell {
-        Cell::Unknown => tone(theme, Tone::Unseen),
-        Cell::Level(level) => level_color(level),
-        Cell::Relief { level, light } => {
+        RasterCell::Unknown => tone(theme, Tone::Unseen),
+        RasterCell::Level(level) => level_color(level),
+        RasterCell::Relief { level, light } => {
             let lit = if light > 0.0 { [255; 3] } else { [0; 3] };
             mix(level_color(level), lit, MAX_LIGHT * light.abs())
         }
-        Cell::Class(class) => class_color(theme, class),
-        Cell::Occupancy(share) => mix(tone(theme, Tone::Paper), tone(theme, Tone::Ink), share),
+        RasterCell::Class(class) => tone(theme, Tone::Class(class)),
+        RasterCell::Occupancy(share) => {
+            mix(tone(theme, Tone::Paper), tone(theme, Tone::Ink), share)
+        }
     }
 }
 

@@ -249,14 +249,14 @@ pub struct Raster {
     /// Cells along y.
     pub rows: usize,
     /// The cells row by row from the smallest y, `columns × rows`.
-    pub cells: Arc<[Cell]>,
+    pub cells: Arc<[RasterCell]>,
     /// A number that changes with `cells`, so that textures are uploaded only then.
     pub revision: u64,
 }
 
 /// One cell of a raster.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cell {
+pub enum RasterCell {
     /// Not yet computed: paper.
     Unknown,
     /// Position in the perceptual colour map, 0…1.

@@ -1,7 +1,7 @@
 //! A row of equal posts, a picket fence: a shift by one spacing fits as well as the truth.
 
 use pr_geom::{Point2, SE2};
-use pr_sim::{Bounds, Lidar, LidarConfig, Wall, World};
+use pr_sim::{Lidar, LidarConfig, Wall, World, WorldRect};
 
 /// Distance between the centers of neighbouring posts, m.
 pub const FENCE_SPACING_M: f64 = 0.5;
@@ -33,7 +33,7 @@ pub fn world() -> World {
         })
         .collect();
     let end_m = f64::from(POSTS_ASIDE + 1) * FENCE_SPACING_M;
-    let bounds = Bounds {
+    let bounds = WorldRect {
         min: Point2::new(-end_m, 0.0),
         max: Point2::new(end_m, AHEAD_M + POST_M),
     };

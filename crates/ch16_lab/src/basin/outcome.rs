@@ -3,8 +3,11 @@
 use pr_geom::{SE2, math};
 use serde::Serialize;
 
-use super::{BasinPlace, FENCE_SPACING_M, SUCCESS_RADIUS_M};
+use super::{BasinPlace, FENCE_SPACING_M};
 use ch16_slam2d::icp::{IcpSummary, StopReason};
+
+/// A registration counts as right if it is closer to the truth than this, m.
+pub const SUCCESS_RADIUS_M: f64 = 0.12;
 
 /// Largest heading error of a registration that counts as right, degrees.
 pub const HOME_HEADING_DEG: f64 = 3.0;

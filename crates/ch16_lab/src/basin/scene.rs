@@ -4,15 +4,12 @@ use pr_geom::SE2;
 use pr_sim::{Lidar, LidarConfig, Rng, World};
 use serde::Serialize;
 
-use super::{BasinOutcome, fence};
+use super::{BasinOutcome, BasinPlace, fence};
 use crate::scenes::{self, MAP_POINTS_PER_CELL, NORMAL_RADIUS_M};
 use ch16_slam2d::cloud::{DenseMap, NearestTable, PointCloud};
 use ch16_slam2d::icp::{
     Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace, Increment, PairRejection,
 };
-
-/// A registration counts as right if it is closer to the truth than this, m.
-pub const SUCCESS_RADIUS_M: f64 = 0.12;
 
 const RANGE_SIGMA_M: f64 = 0.012;
 const TARGET_VOXEL_M: f64 = 0.06;
@@ -41,16 +38,6 @@ impl Default for BasinStart {
             dy_m: 0.45,
         }
     }
-}
-
-/// The location of the two sweeps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum BasinPlace {
-    /// Room A, almost a square: false minima at other headings.
-    #[default]
-    Room,
-    /// In front of a row of equal posts: false minima at other offsets.
-    Fence,
 }
 
 impl BasinPlace {

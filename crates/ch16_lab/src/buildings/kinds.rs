@@ -7,7 +7,7 @@ use ch16_slam2d::local_map::LocalMapConfig;
 use super::plan::{BuildingConfig, BuildingPlan, Layout, Rooms};
 use super::recording::{Recorder, Recording};
 use super::robots::Robot;
-use crate::lap::{BuiltInWorld, Choice, Drive, DriveConfig};
+use crate::lap::{BuiltInWorld, Drive, DriveConfig, NamedChoice};
 
 /// The building and the scanner of a simulated recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +34,7 @@ impl Kind {
     }
 }
 
-impl Choice for Kind {
+impl NamedChoice for Kind {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
         (
             Self::Ring,

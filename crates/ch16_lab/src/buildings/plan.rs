@@ -1,7 +1,7 @@
 //! Walls and a path through them, generated from a seed.
 
 use pr_geom::{Point2, math, order_by};
-use pr_sim::{Bounds, Rng, Wall, World};
+use pr_sim::{Rng, Wall, World, WorldRect};
 
 /// Width of a door, m.
 const DOOR_M: f64 = 0.95;
@@ -91,7 +91,7 @@ impl BuildingPlan {
         };
         let [length, width] = config.extent_m;
         let reach = 2.0 * DEPTH_M + config.corridor_m;
-        let bounds = Bounds {
+        let bounds = WorldRect {
             min: Point2::new(-reach, -reach),
             max: Point2::new(length + reach, width + reach),
         };

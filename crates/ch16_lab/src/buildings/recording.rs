@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use ch16_slam2d::scan::{Frame, LaserScan};
 use pr_geom::{Point2, SE2, math};
 use pr_sim::world::Viewpoint;
-use pr_sim::{Bounds, LidarConfig, Rng, Wall, World};
+use pr_sim::{LidarConfig, Rng, Wall, World, WorldRect};
 
 use super::plan::BuildingPlan;
 use crate::lap::Drive;
@@ -407,7 +407,7 @@ fn crowd(people: impl Iterator<Item = Point2<f64>>) -> World {
             end: pair[1],
         }));
     }
-    let bounds = Bounds {
+    let bounds = WorldRect {
         min: Point2::new(0.0, 0.0),
         max: Point2::new(0.0, 0.0),
     };

@@ -5,7 +5,7 @@ use core::f64::consts::{PI, TAU};
 use pr_geom::SE2;
 
 use super::recording::{Mounting, Recorder};
-use crate::lap::Choice;
+use crate::lap::NamedChoice;
 
 /// The robot that drives through a building of some [`Kind`](super::Kind); each but the first differs in one
 /// aspect.
@@ -54,7 +54,7 @@ pub enum Robot {
     Crowded,
 }
 
-impl Choice for Robot {
+impl NamedChoice for Robot {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Own, "own", "the robot of the kind"),
         (Self::Degree, "degree", "181 beams over half a circle, 80 m"),

@@ -12,10 +12,9 @@ use pr_sim::Course;
 use serde::Serialize;
 
 use super::config::LapConfig;
-use crate::incremental::IncrementalKind;
 
 /// A named choice from a short list.
-pub trait Choice: Copy + PartialEq + Sized + 'static {
+pub trait NamedChoice: Copy + PartialEq + Sized + 'static {
     /// Each choice with its short name, for commands and links, and its label, for readers; the chapter's first.
     const NAMED: &'static [(Self, &'static str, &'static str)];
 
@@ -87,7 +86,7 @@ impl BuiltInWorld {
     }
 }
 
-impl Choice for BuiltInWorld {
+impl NamedChoice for BuiltInWorld {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Apartment, "apartment", "the Apartment"),
         (Self::Ring, "ring", "a ring of corridors"),
@@ -121,7 +120,7 @@ impl LapMatcher {
     }
 }
 
-impl Choice for LapMatcher {
+impl NamedChoice for LapMatcher {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
         (Self::PointToPoint, "p2p", "point to point"),
         (Self::PointToPlane, "p2l", "point to plane"),
@@ -149,7 +148,7 @@ impl LoopMatcher {
     }
 }
 
-impl Choice for LoopMatcher {
+impl NamedChoice for LoopMatcher {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
         (
             Self::Local(LapMatcher::PointToPoint),
@@ -183,7 +182,7 @@ pub enum LapDetector {
     Context,
 }
 
-impl Choice for LapDetector {
+impl NamedChoice for LapDetector {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Nearby, "nearby", "near in the graph"),
         (Self::Histogram, "histogram", "histogram of ranges"),
@@ -203,7 +202,21 @@ pub enum LapEstimator {
     IncrementalKind(IncrementalKind),
 }
 
-impl Choice for LapEstimator {
+/// The two incremental methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum IncrementalKind {
+    /// Incremental maximum likelihood mapping.
+    MaximumLikelihood,
+    /// The same with the variant for cycles.
+    WithCycles,
+}
+
+impl IncrementalKind {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::MaximumLikelihood, Self::WithCycles];
+}
+
+impl NamedChoice for LapEstimator {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Graph, "graph", "pose graph with loops"),
         (Self::FrontEnd, "front-end", "scan matching alone"),
@@ -230,7 +243,7 @@ pub enum LapFrontEnd {
     LocalMap,
 }
 
-impl Choice for LapFrontEnd {
+impl NamedChoice for LapFrontEnd {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Window, "window", "the points of the last sweeps"),
         (
@@ -241,14 +254,14 @@ impl Choice for LapFrontEnd {
     ];
 }
 
-impl Choice for InformationFrame {
+impl NamedChoice for InformationFrame {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Chapter, "chapter", "as the chapter's figures"),
         (Self::Exact, "exact", "at the edge's target"),
     ];
 }
 
-impl Choice for GateModel {
+impl NamedChoice for GateModel {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
         (
             Self::PathApproximation,
@@ -364,7 +377,7 @@ impl LapConfig {
 mod tests {
     use super::*;
 
-    fn check<C: Choice + core::fmt::Debug>() {
+    fn check<C: NamedChoice + core::fmt::Debug>() {
         for (k, choice) in C::all().enumerate() {
             assert_eq!(C::named(choice.name()), Some(choice));
             assert!(!choice.label().is_empty());

@@ -2,11 +2,21 @@
 
 use std::sync::Arc;
 
-use super::map::GridExtent;
 use ch16_slam2d::scan::ScanConfig;
 use ch16_slam2d::slam::SlamConfig;
 use pr_geom::SE2;
-use pr_sim::{Course, DriverConfig, LidarConfig, OdometryNoise, World};
+use pr_sim::{Course, DriverConfig, LidarConfig, VelocityNoise, World};
+
+/// The area of a lap's grid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GridExtent {
+    /// The plan of the world, as in the chapter's figures; beams are cut at its border.
+    Plan,
+    /// Everything in sensor range of the poses, because a robot has no plan of an unknown world, and an
+    /// estimate that drifts leaves the plan.
+    #[default]
+    Poses,
+}
 
 /// The seed of the canonical run.
 pub const CANONICAL_SEED: u32 = 0x00C0_FFEE;
@@ -34,7 +44,7 @@ pub struct DriveConfig {
     /// Way points and controller.
     pub driver: DriverConfig,
     /// Wheel odometry at noise factor 1.
-    pub odometry_noise: OdometryNoise,
+    pub odometry_noise: VelocityNoise,
     /// The sensor.
     pub lidar: LidarConfig,
     /// How each sweep becomes a cloud: the drive stores the clouds.
@@ -53,7 +63,7 @@ impl Default for DriveConfig {
             turn: Some(0),
             dt_s: 0.25,
             driver: DriverConfig::default(),
-            odometry_noise: OdometryNoise::default(),
+            odometry_noise: VelocityNoise::default(),
             lidar: LidarConfig::default(),
             scan: ScanConfig::default(),
             max_ticks: 2000,

@@ -51,7 +51,7 @@ impl LapRecord {
 
 /// The errors of many laps beside the covariances of their graphs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Consistency {
+pub struct LapConsistency {
     /// Length of the mean error, m: what all laps share.
     pub bias_m: f64,
     /// Root of the trace of the errors' covariance, m.
@@ -62,7 +62,7 @@ pub struct Consistency {
     pub nees: f64,
 }
 
-impl Consistency {
+impl LapConsistency {
     /// Evaluates at least two laps; `None` for fewer, or for a singular covariance.
     #[must_use]
     pub fn of(laps: &[HalfWay]) -> Option<Self> {
@@ -100,13 +100,13 @@ mod tests {
         };
         // Four errors of length 1 about the mean (3, 0): the trace of their covariance is 4/3.
         let laps = [lap(4.0, 0.0), lap(2.0, 0.0), lap(3.0, 1.0), lap(3.0, -1.0)];
-        let found = Consistency::of(&laps).unwrap();
+        let found = LapConsistency::of(&laps).unwrap();
         assert_eq!(found.bias_m, 3.0);
         // 1e-12: rounding of a square root.
         assert!((found.scatter_m - (4.0_f64 / 3.0).sqrt()).abs() < 1e-12);
         assert!((found.sigma_m - 2.0_f64.sqrt()).abs() < 1e-12);
         // The squares of the bias and of the errors about it.
         assert_eq!(found.nees, 10.0);
-        assert_eq!(Consistency::of(&laps[..1]), None);
+        assert_eq!(LapConsistency::of(&laps[..1]), None);
     }
 }

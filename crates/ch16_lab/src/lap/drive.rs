@@ -20,7 +20,7 @@ pub use simulation::DriveSimulation;
 
 /// One revolution of the sensor.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Sweep {
+pub struct SimulatedSweep {
     /// Ranges in metres, one for each beam.
     pub ranges_m: Vec<f64>,
     /// The returns as points in the sensor frame, thinned, with the normals of this sweep alone; a map of
@@ -42,7 +42,7 @@ pub struct DriveTick {
     /// Way point reached in this tick.
     pub reached: Option<usize>,
     /// The sweep taken at `truth`.
-    pub sweep: Sweep,
+    pub sweep: SimulatedSweep,
     /// State of the generator before the odometry noise, to draw other odometry from the same numbers.
     rng_before_odometry: Rng,
 }
@@ -51,7 +51,7 @@ pub struct DriveTick {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
     config: DriveConfig,
-    first_sweep: Sweep,
+    first_sweep: SimulatedSweep,
     ticks: Vec<DriveTick>,
 }
 
@@ -95,7 +95,7 @@ impl Drive {
 
     /// The sweep taken at the start.
     #[must_use]
-    pub fn first_sweep(&self) -> &Sweep {
+    pub fn first_sweep(&self) -> &SimulatedSweep {
         &self.first_sweep
     }
 
@@ -175,7 +175,7 @@ impl Drive {
 
     /// The sweep taken after `tick` ticks; 0 is the start.
     #[must_use]
-    pub fn sweep(&self, tick: usize) -> &Sweep {
+    pub fn sweep(&self, tick: usize) -> &SimulatedSweep {
         match tick {
             0 => &self.first_sweep,
             _ => &self.ticks[tick - 1].sweep,

@@ -4,7 +4,7 @@ use ch16_slam2d::metrics::{DisagreementConfig, MapDisagreement, position_error_m
 use ch16_slam2d::slam::{self, Slam, SlamReport};
 use pr_geom::{SE2, math};
 
-use super::report::{LoopAttempt, LoopEffect, TickMetrics, TickReport};
+use super::report::{RecordedLoopAttempt, RecordedLoopEffect, TickMetrics, TickReport};
 use super::{Change, Drive};
 
 /// Accumulates the errors tick by tick.
@@ -85,15 +85,20 @@ impl Judge {
     }
 
     /// The decisive attempt: the closed one, or else the best candidate.
-    fn loop_attempt(&self, report: &SlamReport, slam: &Slam, drive: &Drive) -> Option<LoopAttempt> {
+    fn loop_attempt(
+        &self,
+        report: &SlamReport,
+        slam: &Slam,
+        drive: &Drive,
+    ) -> Option<RecordedLoopAttempt> {
         let attempts = &report.loop_attempts;
         let closed = attempts.iter().find(|attempt| attempt.accepted());
         let decisive = closed.or(attempts.first())?;
         let rms_m = |poses: &[SE2]| rms(keyframe_errors_m(poses, slam.keyframes(), drive));
-        Some(LoopAttempt {
+        Some(RecordedLoopAttempt {
             tick: decisive.frame,
             verification: decisive.verification,
-            effect: decisive.effect.as_ref().map(|effect| LoopEffect {
+            effect: decisive.effect.as_ref().map(|effect| RecordedLoopEffect {
                 correction: effect.correction,
                 max_shift_m: effect.max_shift_m,
                 iterations: effect.iterations,

@@ -5,7 +5,7 @@
 use pr_geom::SE2;
 
 use super::record::LapTrace;
-use super::report::LoopAttempt;
+use super::report::RecordedLoopAttempt;
 use ch16_slam2d::metrics::position_error_m;
 
 /// A loop farther than this from the true relative pose is false, m.
@@ -51,7 +51,7 @@ impl LapTrace {
     /// # Panics
     /// If the lap lacks a node of the attempt.
     #[must_use]
-    pub fn loop_truth(&self, attempt: &LoopAttempt) -> SE2 {
+    pub fn loop_truth(&self, attempt: &RecordedLoopAttempt) -> SE2 {
         let truth_of = |node: usize| self.keyframes[node].truth;
         let loop_ = &attempt.verification;
         truth_of(loop_.candidate.node).between(&truth_of(loop_.from_node))
@@ -62,7 +62,7 @@ impl LapTrace {
     /// # Panics
     /// If the lap lacks a node of the attempt.
     #[must_use]
-    pub fn loop_error(&self, attempt: &LoopAttempt) -> LoopError {
+    pub fn loop_error(&self, attempt: &RecordedLoopAttempt) -> LoopError {
         let error = self
             .loop_truth(attempt)
             .between(&attempt.verification.registered);
@@ -77,7 +77,7 @@ impl LapTrace {
     /// # Panics
     /// If the lap lacks a node of the attempt.
     #[must_use]
-    pub fn judge(&self, attempt: &LoopAttempt) -> LoopJudgement {
+    pub fn judge(&self, attempt: &RecordedLoopAttempt) -> LoopJudgement {
         if !attempt.accepted() {
             LoopJudgement::Rejected
         } else if self.loop_error(attempt).is_false() {
@@ -88,7 +88,7 @@ impl LapTrace {
     }
 
     /// The false loops that were closed.
-    pub fn false_acceptances(&self) -> impl Iterator<Item = &LoopAttempt> {
+    pub fn false_acceptances(&self) -> impl Iterator<Item = &RecordedLoopAttempt> {
         self.loop_attempts()
             .filter(|attempt| self.judge(attempt) == LoopJudgement::FalseAcceptance)
     }

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::loop_error::LoopJudgement;
 use super::record::LapTrace;
-use super::report::LoopAttempt;
+use super::report::RecordedLoopAttempt;
 use ch16_slam2d::loops::{Agreement, GateTest, LoopRejection};
 
 impl fmt::Display for LoopJudgement {
@@ -24,7 +24,7 @@ impl LapTrace {
     /// # Panics
     /// If the lap lacks a node of the attempt.
     #[must_use]
-    pub fn loop_headline(&self, attempt: &LoopAttempt) -> String {
+    pub fn loop_headline(&self, attempt: &RecordedLoopAttempt) -> String {
         let loop_ = &attempt.verification;
         let (name, verdict) = match self.judge(attempt) {
             LoopJudgement::Right => ("loop", "accepted"),
@@ -41,7 +41,7 @@ impl LapTrace {
     /// # Panics
     /// If the lap lacks a node of the attempt.
     #[must_use]
-    pub fn loop_sentence(&self, attempt: &LoopAttempt) -> String {
+    pub fn loop_sentence(&self, attempt: &RecordedLoopAttempt) -> String {
         let head = self.loop_headline(attempt);
         let gate = gate_words(&attempt.verification.gate);
         if let Some(effect) = &attempt.effect {

@@ -6,21 +6,11 @@ use pr_geom::Vector2;
 use pr_grid::{Beams, GridConfig, OccupancyGrid};
 use pr_sim::Lidar;
 
+use super::config::GridExtent;
 use super::record::LapRecord;
 
 /// Most cells of a grid: 300 m × 300 m.
 const MAX_CELLS: f64 = 4e6;
-
-/// The area of a lap's grid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum GridExtent {
-    /// The plan of the world, as in the chapter's figures; beams are cut at its border.
-    Plan,
-    /// Everything in sensor range of the poses, because a robot has no plan of an unknown world, and an
-    /// estimate that drifts leaves the plan.
-    #[default]
-    Poses,
-}
 
 impl LapRecord {
     /// The occupancy grid of the keyframes up to `tick`, at their poses of that tick.

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 use pr_geom::{SE2, math};
 
 use super::record::{LapRecord, LapTrace, RecordedEdge};
-use super::report::{LoopAttempt, LoopEffect};
+use super::report::{RecordedLoopAttempt, RecordedLoopEffect};
 use super::{Change, Drive, LapConfig};
 use ch16_slam2d::chapter::{marginal_information, path_information};
 use ch16_slam2d::graph::{EdgeKind, PoseGraph, StopReason};
@@ -59,7 +59,7 @@ pub struct OwnLoop {
     /// The request.
     pub request: OwnLoopRequest,
     /// The loop with its tests and its effect, as those of the lap.
-    pub attempt: LoopAttempt,
+    pub attempt: RecordedLoopAttempt,
     /// Its edge, closed or not.
     pub edge: RecordedEdge,
     /// Poses of all nodes after closing it, `world_from_body`; the lap's own if it was not closed.
@@ -159,7 +159,7 @@ impl Site<'_> {
                 information: verification.information,
                 kind: EdgeKind::Loop,
             },
-            attempt: LoopAttempt {
+            attempt: RecordedLoopAttempt {
                 tick: request.tick,
                 verification,
                 effect: effect.ok(),
@@ -262,7 +262,7 @@ impl Site<'_> {
         graph: &mut PoseGraph,
         verification: &LoopVerification,
         request: &OwnLoopRequest,
-    ) -> Result<LoopEffect, LoopRejection> {
+    ) -> Result<RecordedLoopEffect, LoopRejection> {
         let before = graph.poses().to_vec();
         let kernel = request.kernel.kernel();
         let mut loop_chi2 = put(graph, verification, 1.0);
@@ -310,7 +310,7 @@ impl Site<'_> {
             rms(pairs.map(|(pose, keyframe)| position_error_m(pose, &keyframe.truth)))
         };
         let moved = before.iter().zip(after);
-        Ok(LoopEffect {
+        Ok(RecordedLoopEffect {
             correction: after[newest] * before[newest].inverse(),
             max_shift_m: moved
                 .map(|(old, new)| position_error_m(new, old))

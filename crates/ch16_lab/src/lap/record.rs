@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 
-use super::report::{Keyframe, LoopAttempt, TickReport, WindowScan};
+use super::report::{RecordedKeyframe, RecordedLoopAttempt, RecordedWindowScan, TickReport};
 use super::{Drive, Lap, LapConfig, LoopClosure};
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::metrics::position_error_m;
@@ -47,7 +47,7 @@ pub struct LapTrace {
     /// Reports of all ticks; tick t is at index t − 1.
     pub reports: Vec<TickReport>,
     /// Keyframes in order; node k is keyframe k.
-    pub keyframes: Vec<Keyframe>,
+    pub keyframes: Vec<RecordedKeyframe>,
     /// Edges in the order in which they were added.
     pub edges: Vec<RecordedEdge>,
     /// Epochs in order; one more than accepted loops.
@@ -119,7 +119,7 @@ impl LapTrace {
     }
 
     /// All attempts to close a loop, in order.
-    pub fn loop_attempts(&self) -> impl Iterator<Item = &LoopAttempt> {
+    pub fn loop_attempts(&self) -> impl Iterator<Item = &RecordedLoopAttempt> {
         self.reports
             .iter()
             .filter_map(|report| report.loop_attempt.as_ref())
@@ -157,7 +157,7 @@ impl LapTrace {
 
     /// The sweeps of the local map on which the sweep of `tick` was registered, oldest first.
     #[must_use]
-    pub fn window(&self, tick: usize, config: &LapConfig) -> Vec<WindowScan> {
+    pub fn window(&self, tick: usize, config: &LapConfig) -> Vec<RecordedWindowScan> {
         let joined = |taken: &usize| {
             self.report(*taken)
                 .is_none_or(|report| report.registration.joined_window)
@@ -170,7 +170,7 @@ impl LapTrace {
         taken.reverse();
         taken
             .into_iter()
-            .map(|taken| WindowScan {
+            .map(|taken| RecordedWindowScan {
                 tick: taken,
                 pose: self.window_pose(taken, tick, config),
             })
@@ -261,7 +261,7 @@ impl Recorder {
     pub(super) fn into_trace(mut self) -> LapTrace {
         self.store_poses(self.lap.graph().poses().to_vec());
         let lap = &self.lap;
-        let keyframes: Vec<Keyframe> = lap.keyframes().collect();
+        let keyframes: Vec<RecordedKeyframe> = lap.keyframes().collect();
         let edges = lap.graph().edges().map(|view| {
             let (from, to) = (view.from.index(), view.to.index());
             RecordedEdge {
@@ -301,7 +301,7 @@ impl LapSummary {
             ticks: reports.len(),
             keyframes: errors.len(),
             loop_attempts: attempts().count(),
-            loops: attempts().filter(LoopAttempt::accepted).count(),
+            loops: attempts().filter(RecordedLoopAttempt::accepted).count(),
             odometry_end_error_m: metrics.map_or(0.0, |m| m.odometry_error_m),
             odometry_rms_m: metrics.map_or(0.0, |m| m.odometry_rms_m),
             keyframe_end_error_m: metrics.map_or(0.0, |m| m.keyframe_error_m),

@@ -6,7 +6,7 @@
 use pr_geom::SE2;
 
 use super::record::{LapRecord, LapTrace, RecordedEdge};
-use super::{Drive, LapConfig, LoopAttempt, WindowScan};
+use super::{Drive, LapConfig, RecordedLoopAttempt, RecordedWindowScan};
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 use ch16_slam2d::icp::{IcpConfig, IcpResult, icp};
@@ -15,7 +15,7 @@ use ch16_slam2d::icp::{IcpConfig, IcpResult, icp};
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegistrationView {
     /// The sweeps of the local map, oldest first.
-    pub window: Vec<WindowScan>,
+    pub window: Vec<RecordedWindowScan>,
     /// Points of the local map, world frame; its cells keep only some of them.
     pub local_cloud: PointCloud,
     /// Initial guess of the registration: `world_from_body`.
@@ -74,7 +74,7 @@ impl LapTrace {
 
     /// The graph before `attempt`: with the new keyframe, without the candidate loop.
     #[must_use]
-    pub fn graph_before(&self, attempt: &LoopAttempt) -> PoseGraph {
+    pub fn graph_before(&self, attempt: &RecordedLoopAttempt) -> PoseGraph {
         let tick = attempt.tick;
         let poses = match self.loop_motion(tick) {
             Some((before, _)) => before,

@@ -9,7 +9,7 @@ use super::{Change, Registration};
 
 /// A keyframe: a node of the graph and its sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Keyframe {
+pub struct RecordedKeyframe {
     /// Number of its node.
     pub node: usize,
     /// The tick after which it was taken; 0 is the start.
@@ -20,7 +20,7 @@ pub struct Keyframe {
 
 /// A sweep of the local map.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WindowScan {
+pub struct RecordedWindowScan {
     /// The tick of the sweep; 0 is the start.
     pub tick: usize,
     /// Estimated pose of the sweep: `world_from_body`.
@@ -29,7 +29,7 @@ pub struct WindowScan {
 
 /// The effect of closing a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct LoopEffect {
+pub struct RecordedLoopEffect {
     /// Newest node's pose after the optimization ∘ inverse of its pose before it: the correction of the
     /// estimate and of the window.
     pub correction: SE2,
@@ -45,16 +45,16 @@ pub struct LoopEffect {
 
 /// An attempt to close a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct LoopAttempt {
+pub struct RecordedLoopAttempt {
     /// The tick of the attempt, counted from 1.
     pub tick: usize,
     /// Candidate, registration and tests.
     pub verification: LoopVerification,
     /// Its effect on the graph; `None` if it was rejected.
-    pub effect: Option<LoopEffect>,
+    pub effect: Option<RecordedLoopEffect>,
 }
 
-impl LoopAttempt {
+impl RecordedLoopAttempt {
     /// Whether the loop was closed.
     #[must_use]
     pub fn accepted(&self) -> bool {
@@ -101,7 +101,7 @@ pub struct TickReport {
     /// Node of the new keyframe.
     pub new_keyframe: Option<usize>,
     /// The decisive attempt to close a loop: the one that was closed, or else the best.
-    pub loop_attempt: Option<LoopAttempt>,
+    pub loop_attempt: Option<RecordedLoopAttempt>,
     /// Errors and map quality.
     pub metrics: TickMetrics,
     /// Whether the lap is finished.

@@ -11,7 +11,7 @@ use ch16_slam2d::places::{
 use pr_geom::{SE2, math};
 
 use super::{PlacePair, SAME_PLACE_M};
-use crate::lap::{Keyframe, Lap};
+use crate::lap::{Lap, RecordedKeyframe};
 
 /// A keyframe with its appearance.
 #[derive(Clone, Debug)]
@@ -55,7 +55,7 @@ impl PlaceStudy {
         };
         let poses = lap.graph().poses();
         let scans = lap.slam().keyframes();
-        let place = |(keyframe, pose): (Keyframe, &SE2)| {
+        let place = |(keyframe, pose): (RecordedKeyframe, &SE2)| {
             let scan = &scans[keyframe.node].scan;
             Place {
                 truth: keyframe.truth,

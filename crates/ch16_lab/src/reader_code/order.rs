@@ -12,7 +12,7 @@ use pr_sim::{Course, Sketch};
 
 use super::{Callable, Function, Rejection, SEAT};
 use crate::basin::{BasinMapAxes, BasinOutcome, BasinPlace, BasinScene, BasinStart, OffsetAxis};
-use crate::lap::{BuiltInWorld, Choice as _, LapConfig, LapMatcher, LapSettings, LoopClosure};
+use crate::lap::{BuiltInWorld, LapConfig, LapMatcher, LapSettings, LoopClosure, NamedChoice as _};
 
 /// A computation with a reader's function.
 #[derive(Clone, Debug, PartialEq)]

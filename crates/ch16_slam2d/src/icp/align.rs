@@ -9,7 +9,7 @@ const MIN_NORMALS: usize = 3;
 /// The rigid motion that aligns paired points, and the bound that it reaches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Alignment {
+pub struct RigidAlignment {
     /// The motion `dst_from_src`.
     pub pose: SE2,
     /// The largest `tr(R H)` over all rotations, m²: the cost is `Σ‖p‖² + Σ‖q‖² − 2 tr(R H)` about
@@ -38,7 +38,7 @@ pub fn svd_align(src: &[Point2<f64>], dst: &[Point2<f64>]) -> SE2 {
 /// # Panics
 /// If the slices differ in length.
 #[must_use]
-pub fn closed_form(src: &[Point2<f64>], dst: &[Point2<f64>]) -> Alignment {
+pub fn closed_form(src: &[Point2<f64>], dst: &[Point2<f64>]) -> RigidAlignment {
     assert_eq!(src.len(), dst.len(), "points come in pairs");
     let pairs = src.iter().zip(dst);
     point_to_point(pairs.map(|(p, q)| PointPair {
@@ -93,7 +93,7 @@ pub(super) struct PlanePair {
 }
 
 #[inline]
-pub(super) fn point_to_point(pairs: impl Iterator<Item = PointPair> + Clone) -> Alignment {
+pub(super) fn point_to_point(pairs: impl Iterator<Item = PointPair> + Clone) -> RigidAlignment {
     let (mut total, mut px, mut py, mut qx, mut qy) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for PointPair {
         source,
@@ -108,7 +108,7 @@ pub(super) fn point_to_point(pairs: impl Iterator<Item = PointPair> + Clone) -> 
         qy += weight * target.1;
     }
     if total <= 0.0 {
-        return Alignment {
+        return RigidAlignment {
             pose: SE2::identity(),
             trace_bound: 0.0,
         };
@@ -128,7 +128,7 @@ pub(super) fn point_to_point(pairs: impl Iterator<Item = PointPair> + Clone) -> 
     }
     let theta = math::atan2(cross, dot);
     let (rx, ry) = Rotation::new(theta).rotate(px, py);
-    Alignment {
+    RigidAlignment {
         pose: SE2::new(qx - rx, qy - ry, theta),
         trace_bound: math::norm2(cross, dot),
     }

@@ -4,8 +4,22 @@ use nalgebra::{Point2, Vector2};
 use pr_geom::{SE2, math};
 
 use super::align::{PlanePair, PointPair, point_to_plane, point_to_point};
-use super::{Accepted, IcpConfig, IcpTrace, IcpVariant, PairRejection, Trimmed, huber_weight};
+use super::{Accepted, IcpConfig, IcpVariant, PairRejection, Trimmed, huber_weight};
 use crate::cloud::{NearestMap, PointCloud, QueryCache};
+
+/// The state of a registration after one association.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct IcpTrace {
+    /// `target_from_source`.
+    pub pose: SE2,
+    /// Number of pairs at this pose.
+    pub pairs: usize,
+    /// Root mean square residual of the pairs, m; infinite without pairs.
+    pub rmse_m: f64,
+    /// Mean over the cloud of `min(d², τ²)`, m²: point-to-point ICP never raises it.
+    pub truncated_cost_m2: f64,
+}
 
 /// A moved cloud point and the map point nearest to it.
 #[derive(Clone, Copy, Debug, PartialEq)]

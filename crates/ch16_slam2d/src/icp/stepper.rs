@@ -3,22 +3,8 @@
 use pr_geom::SE2;
 use serde::Serialize;
 
-use super::{IcpConfig, IcpWorkspace, Pair, PairRejection};
+use super::{IcpConfig, IcpTrace, IcpWorkspace, Pair, PairRejection};
 use crate::cloud::{NearestMap, PointCloud};
-
-/// The state of a registration after one association.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct IcpTrace {
-    /// `target_from_source`.
-    pub pose: SE2,
-    /// Number of pairs at this pose.
-    pub pairs: usize,
-    /// Root mean square residual of the pairs, m; infinite without pairs.
-    pub rmse_m: f64,
-    /// Mean over the cloud of `min(d², τ²)`, m²: point-to-point ICP never raises it.
-    pub truncated_cost_m2: f64,
-}
 
 /// Why a registration ended, with the measured value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -34,12 +34,15 @@ pub struct LocalizeConfig {
     pub doubt_m: f64,
     /// Cells and blur of the whole map; the cells are enlarged if the map needs too many.
     pub grid: LikelihoodConfig,
-    /// Farther points are not used by the search, m, because they require small steps of the heading.
+    /// Farther points are not used by the search, m, because they require small steps of the heading. If four of five
+    /// points of the map are seen from farther away, this and the cells of the search are enlarged.
     pub search_reach_m: f64,
     /// Cell of the trail's points for the search, m.
     pub search_cell_m: f64,
-    /// A search is given up after this many sums over the points, to bound the time of a frame.
+    /// A search is given up after this many sums over the points.
     pub most_sums: u64,
+    /// Sums over the points in one frame, which bound its time: the search goes on in the next one.
+    pub frame_sums: u64,
     /// What counts as a distinct pose.
     pub neighborhood: SearchNeighborhood,
     /// Smallest score of a search result, 0 to 1.
@@ -47,6 +50,9 @@ pub struct LocalizeConfig {
     /// A best pose with a lower score is reported but not accepted, 0 to 1, because walls have similar distances in
     /// other buildings.
     pub found_score: f64,
+    /// Side of the largest room that a building may have several times, m. A trail that shows less may be in one that
+    /// is not on the map.
+    pub room_m: f64,
     /// If the usual score is lower, the pose is doubtful and the whole map is searched, 0 to 1.
     pub usual_score: f64,
     /// A best pose is accepted if its margin to the runner-up is at least this, and the next search
@@ -79,17 +85,19 @@ impl Default for LocalizeConfig {
             poor_score: 0.6,
             lost_after: 5,
             score_drop: 0.1,
-            doubt_m: 1.0,
+            doubt_m: 0.5,
             grid: LikelihoodConfig {
                 cell_m: 0.1,
                 sigma_m: 0.12,
             },
             search_reach_m: 10.0,
             search_cell_m: 0.25,
-            most_sums: 200_000,
+            most_sums: 1_000_000,
+            frame_sums: 100_000,
             neighborhood: SearchNeighborhood::default(),
             min_score: 0.55,
             found_score: 0.85,
+            room_m: 5.5,
             usual_score: 0.8,
             min_margin: 0.05,
             unconfirmed_margin: 0.15,

@@ -17,6 +17,14 @@ use crate::slam::Keyframe;
 /// Largest number of doublings of the grid's cells until the map fits.
 const DOUBLINGS: usize = 8;
 
+/// Share of the map's points that are nearer to their sensor than the reach of a search.
+const REACH_QUANTILE: f64 = 0.8;
+/// Largest enlargement of a search.
+const MAX_SCALE: f64 = 8.0;
+/// Keyframes for the test of a trail: their largest distance from its newest scan, m, the least between two, m and rad,
+/// and their number.
+const WIDE: (f64, (f64, f64), usize) = (12.0, (0.7, 1.0), 60);
+
 /// A keyframe that looks similar to a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -39,6 +47,7 @@ pub struct KnownMap {
     profiles: Vec<Arc<RangeProfile>>,
     points: PointCloud,
     search: Arc<SearchMap>,
+    scale: f64,
 }
 
 impl KnownMap {
@@ -52,17 +61,22 @@ impl KnownMap {
         config: &LocalizeConfig,
     ) -> Result<Self, SearchError> {
         let mut points = PointCloud::default();
-        let mut farthest_m: f64 = 1.0;
+        let mut ranges_m = Vec::new();
         for (keyframe, pose) in keyframes.iter().zip(&poses) {
             points.extend_transformed(&keyframe.scan, pose);
-            let ranges = keyframe
-                .scan
-                .iter()
-                .map(|point| math::norm2(point.x, point.y));
-            farthest_m = ranges.fold(farthest_m, math::max);
+            let ranges = keyframe.scan.iter();
+            ranges_m.extend(ranges.map(|point| math::norm2(point.x, point.y)));
         }
-        let points = points.downsample(config.grid.cell_m);
-        let mut grid = config.grid;
+        pr_geom::sort_numbers(&mut ranges_m);
+        let farthest_m = math::max(ranges_m.last().copied().unwrap_or_default(), 1.0);
+        let at = (REACH_QUANTILE * ranges_m.len() as f64) as usize;
+        let usual_m = ranges_m.get(at).copied().unwrap_or_default();
+        let scale = (usual_m / config.search_reach_m).clamp(1.0, MAX_SCALE);
+        let mut grid = LikelihoodConfig {
+            cell_m: scale * config.grid.cell_m,
+            sigma_m: scale * config.grid.sigma_m,
+        };
+        let points = points.downsample(grid.cell_m);
         let mut search = SearchMap::build(&points, grid);
         for _ in 0..DOUBLINGS {
             if !matches!(search, Err(SearchError::MapTooLarge { .. })) {
@@ -92,6 +106,7 @@ impl KnownMap {
             poses,
             looks,
             points,
+            scale,
         })
     }
 
@@ -111,6 +126,12 @@ impl KnownMap {
     #[must_use]
     pub fn points(&self) -> &PointCloud {
         &self.points
+    }
+
+    /// Enlargement of reach and cells of a search: 1 indoors, more where the walls are far away.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        self.scale
     }
 
     /// A new search for a scan, or for a trail of scans.
@@ -174,6 +195,30 @@ impl KnownMap {
         let mut near: Vec<usize> = near.into_iter().map(|(_, keyframe)| keyframe).collect();
         near.sort_unstable();
         near
+    }
+
+    /// Keyframes around a pose that show the surroundings of a trail, spread evenly, by index.
+    pub(super) fn around(&self, pose: &SE2) -> Vec<usize> {
+        let (reach_m, (apart_m, apart_rad), most) = WIDE;
+        let distances = self.poses.iter().map(|at| position_error_m(at, pose));
+        let mut near: Vec<(f64, usize)> = distances
+            .zip(0..)
+            .filter(|(distance_m, _)| *distance_m <= self.scale * reach_m)
+            .collect();
+        sort_ranked(&mut near);
+        let mut spread: Vec<usize> = Vec::new();
+        for (_, keyframe) in near {
+            let is_beside = |other: &usize| {
+                let (one, other) = (&self.poses[keyframe], &self.poses[*other]);
+                position_error_m(one, other) < apart_m
+                    && one.between(other).theta().abs() < apart_rad
+            };
+            if spread.len() < most && !spread.iter().any(is_beside) {
+                spread.push(keyframe);
+            }
+        }
+        spread.sort_unstable();
+        spread
     }
 
     /// Builds `local` from these keyframes, in the map frame.

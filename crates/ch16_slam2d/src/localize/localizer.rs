@@ -1,11 +1,13 @@
 //! The localizer: tracks the pose, or searches for it, one frame at a time.
 
+mod finding;
+
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Vector3};
 use pr_geom::{SE2, math};
 
 use super::belief::Belief;
+use super::fit::ExpectedFit;
 use super::pending_fix::PendingFix;
 use super::trail::Trail;
 use super::{KnownMap, LocalizeConfig, LocalizeReport, MapSearch, StartPose, Verdict};
@@ -14,10 +16,8 @@ use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, regularize};
 use crate::local_map::{
     LocalMap, LocalMapConfig, MapRegistration, MapRegistrationConfig, MotionPrior, PriorTail,
 };
-use crate::loops::chi_squared_gate;
-use crate::metrics::position_error_m;
 use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer};
-use crate::search::{SearchResult, SearchWindow};
+use crate::search::{ScoredPose, SearchResult, SearchWindow};
 use crate::slam::SlamConfig;
 
 /// Largest squared disagreement of scan and prediction for a pose that is not doubtful: the 99 % quantile.
@@ -45,14 +45,19 @@ pub struct Localizer {
     /// The local map, and its keyframes.
     local: LocalMap,
     near: Vec<usize>,
+    expected: ExpectedFit,
     trail: Trail,
     frames: usize,
     last_stamp_s: f64,
     start: StartPose,
     belief: Option<Belief>,
+    /// Whether a pose was accepted before: then "not on the map" needs no trial, because the robot was carried by someone.
+    was_on_the_map: bool,
     /// The unconfirmed result of the last search, propagated by the motion since.
     candidate: Option<SE2>,
     searched_ago: usize,
+    /// A search that goes on, and the motion since it began.
+    running: Option<(MapSearch, SE2)>,
     /// Sweeps that the trail needs before the next search, and the interval between searches, which doubles after
     /// each failure: in an unmapped area every search is slow and fails.
     scans_until_search: usize,
@@ -69,9 +74,11 @@ impl Localizer {
         start: StartPose,
     ) -> Self {
         let robot = slam.local_map.unwrap_or_default();
+        let registration = robot.registration();
         Self {
+            expected: ExpectedFit::learned(&map, &config, &registration),
             map,
-            registration: robot.registration(),
+            registration,
             robot,
             local: LocalMap::default(),
             near: Vec::new(),
@@ -81,8 +88,10 @@ impl Localizer {
             last_stamp_s: f64::NEG_INFINITY,
             start,
             belief: None,
+            was_on_the_map: false,
             candidate: None,
             searched_ago: 0,
+            running: None,
             scans_until_search: 0,
             search_interval: 1,
             slam,
@@ -132,10 +141,16 @@ impl Localizer {
         let mut frame = frame.clone();
         let moved = self.trail.step(&mut frame, dt_s, &self.config);
         let frame = &frame;
-        let motion = moved
-            .motion
-            .or(frame.odometry)
+        // In a corridor scans alone stand still; their motion is already in the trail.
+        let motion = frame
+            .odometry
+            .or(moved.motion)
             .unwrap_or_else(SE2::identity);
+        self.running = self
+            .running
+            .take()
+            .zip(moved.motion)
+            .map(|((search, since), motion)| (search, since * motion));
         self.candidate = match moved.motion {
             Some(motion) => self.candidate.map(|pose| pose * motion),
             None => None,
@@ -145,6 +160,8 @@ impl Localizer {
             joined: moved.joined,
             start: None,
             search: None,
+            since: SE2::identity(),
+            sums_before: 0,
             report: LocalizeReport {
                 frame: self.frames - 1,
                 stamp_s: frame.stamp_s,
@@ -160,7 +177,7 @@ impl Localizer {
             let (sigma_m, sigma_rad) = (self.config.start_sigma_m, self.config.start_sigma_rad);
             let window =
                 SearchWindow::around(start, START_SIGMAS * sigma_m, START_SIGMAS * sigma_rad);
-            let around = self.trail.cloud(&frame.cloud, &self.config);
+            let around = self.trail_cloud(&frame.cloud);
             pending.start = Some(start);
             pending.search = Some(MapSearch::within(around, window, self.config.min_score));
             return Ok(pending);
@@ -177,6 +194,11 @@ impl Localizer {
         let Some(search) = &mut pending.search else {
             return false;
         };
+        let is_whole_map = pending.start.is_none();
+        if is_whole_map && search.sums() - pending.sums_before >= self.config.frame_sums {
+            self.running = pending.search.take().map(|search| (search, pending.since));
+            return false;
+        }
         if search.step(&self.map, &self.config) {
             return true;
         }
@@ -187,7 +209,19 @@ impl Localizer {
                 self.evaluate_near(&start, result, pending);
                 self.plan_search(pending);
             }
-            None => self.evaluate_whole_map(result, pending),
+            None => {
+                // The robot may have moved during the search.
+                let moved = |scored: ScoredPose| ScoredPose {
+                    pose: scored.pose * pending.since,
+                    ..scored
+                };
+                let result = result.map(|result| SearchResult {
+                    best: moved(result.best),
+                    runner_up: result.runner_up.map(moved),
+                    ..result
+                });
+                self.evaluate_whole_map(result, pending);
+            }
         }
         pending.search.is_some()
     }
@@ -212,7 +246,7 @@ impl Localizer {
         let mut next = Belief {
             pose: prediction,
             covariance,
-            misses: if score < self.config.good_score {
+            misses: if score < self.expected.good_score {
                 belief.misses + 1
             } else {
                 0
@@ -265,119 +299,7 @@ impl Localizer {
 
     /// Whether the usual score is as high as at a correct pose.
     fn is_usual(&self, belief: &Belief) -> bool {
-        belief.usual_score >= self.config.usual_score
-    }
-
-    /// Tests the result of a search around a given start against it.
-    fn evaluate_near(
-        &mut self,
-        start: &SE2,
-        result: Option<SearchResult>,
-        pending: &mut PendingFix,
-    ) {
-        let Some(result) = result else { return };
-        let square = |sigma: f64| 1.0 / (sigma * sigma);
-        let xy = square(self.config.start_sigma_m);
-        let theta = square(self.config.start_sigma_rad);
-        let localized = Matrix3::from_diagonal(&Vector3::new(xy, xy, theta));
-        let found = self.register(&pending.scan, result.best.pose);
-        let innovation = start.between(&found.registered.pose).log();
-        let gate = chi_squared_gate(&innovation, &localized, self.config.gate_chi2);
-        if gate.passes() {
-            self.accept(&found, Some(localized), &mut pending.report);
-        }
-        pending.report.search = Some(result);
-    }
-
-    /// Starts a search of the whole map for the trail, if the robot is not localized and a search is due.
-    fn plan_search(&mut self, pending: &mut PendingFix) {
-        let is_settled = |belief: Belief| self.is_usual(&belief) && !self.is_suspect(&belief);
-        if self.belief.is_some_and(is_settled) {
-            return;
-        }
-        self.searched_ago += 1;
-        self.scans_until_search = self
-            .scans_until_search
-            .saturating_sub(usize::from(pending.joined));
-        let has_moved = pending.joined && self.scans_until_search == 0;
-        let is_due = has_moved || self.searched_ago >= SEARCH_EVERY || self.frames == 1;
-        if !is_due || pending.scan.is_empty() {
-            return;
-        }
-        self.searched_ago = 0;
-        let trail = self.trail.cloud(&pending.scan, &self.config);
-        let search = MapSearch::whole(&self.map, trail, &pending.scan, &self.config);
-        pending.search = Some(search);
-    }
-
-    /// Accepts or rejects the best pose on the whole map.
-    fn evaluate_whole_map(&mut self, result: Option<SearchResult>, pending: &mut PendingFix) {
-        let Some(result) = result else {
-            self.candidate = None;
-            self.search_interval = (2 * self.search_interval).min(MAX_SEARCH_INTERVAL);
-            self.scans_until_search = self.search_interval;
-            return;
-        };
-        self.search_interval = 1;
-        let report = &mut pending.report;
-        report.search = Some(result);
-        let margin = result.margin().unwrap_or(1.0);
-        let best = result.best.pose;
-        let is_best = |pose: &SE2| {
-            position_error_m(pose, &best) < CONFIRMATION_REACH
-                && pose.between(&best).theta().abs() < CONFIRMATION_REACH
-        };
-        if let Some(belief) = self.belief.as_mut().filter(|belief| is_best(&belief.pose)) {
-            // The pose is correct after all: the environment has changed.
-            belief.drops = 0;
-            belief.usual_score = report.score.unwrap_or_default();
-            return;
-        }
-        let is_again = self.candidate.as_ref().is_some_and(is_best);
-        self.candidate = Some(best);
-        let is_localized = result.best.score >= self.config.found_score
-            && (margin >= self.config.unconfirmed_margin
-                || (margin >= self.config.min_margin && is_again));
-        let found = self.register(&pending.scan, best);
-        if (is_localized && self.accept(&found, None, report)) || self.belief.is_some() {
-            return;
-        }
-        report.verdict = Verdict::Doubtful;
-        report.pose = Some(best);
-        report.score = Some(found.fit.score);
-    }
-
-    /// Accepts a registration if it fits; returns whether it did.
-    fn accept(
-        &mut self,
-        found: &MapRegistration,
-        prior: Option<Matrix3<f64>>,
-        report: &mut LocalizeReport,
-    ) -> bool {
-        let score = found.fit.score;
-        if score < self.config.good_score {
-            return false;
-        }
-        let known = found.information() + prior.unwrap_or_default();
-        let known = regularize(known, INFORMATION_RIDGE, INFORMATION_CAP);
-        let covariance = known.try_inverse().unwrap_or_else(Matrix3::identity);
-        self.belief = Some(Belief {
-            pose: found.registered.pose,
-            covariance,
-            misses: 0,
-            usual_score: score,
-            drops: 0,
-        });
-        self.candidate = None;
-        report.verdict = if score >= self.config.usual_score {
-            Verdict::Found
-        } else {
-            Verdict::Doubtful
-        };
-        report.pose = Some(found.registered.pose);
-        report.covariance = Some(covariance);
-        report.score = Some(score);
-        true
+        belief.usual_score >= self.expected.usual_score
     }
 
     /// Registers a scan around a pose from a search.

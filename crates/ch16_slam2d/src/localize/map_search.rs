@@ -20,6 +20,8 @@ pub struct MapSearch {
     /// The requested window; `None` once its search has started.
     requested: Option<SearchWindow>,
     floor: f64,
+    /// Sums over the points in earlier windows.
+    sums: u64,
     under_way: Option<ScanSearch>,
     result: Option<SearchResult>,
 }
@@ -32,6 +34,7 @@ impl MapSearch {
             alike: Vec::new(),
             requested: Some(window),
             floor: min_score,
+            sums: 0,
             under_way: None,
             result: None,
         }
@@ -67,6 +70,13 @@ impl MapSearch {
         self.under_way.as_ref()
     }
 
+    /// Sums over the points so far.
+    #[must_use]
+    pub fn sums(&self) -> u64 {
+        let under_way = self.under_way.as_ref();
+        self.sums + under_way.map_or(0, |search| search.counts().scored())
+    }
+
     /// Whether the requested window is being searched, not a small one before it.
     #[must_use]
     pub fn is_at_last(&self) -> bool {
@@ -84,6 +94,7 @@ impl MapSearch {
             return true;
         }
         let found = search.result().filter(|_| !is_given_up);
+        self.sums += search.counts().scored();
         self.under_way = None;
         if self.requested.is_none() {
             self.result = found;

@@ -16,6 +16,10 @@ pub struct PendingFix {
     /// The given start around which to search; `None` for the whole map.
     pub(super) start: Option<SE2>,
     pub(super) search: Option<MapSearch>,
+    /// The motion since the search began, in an earlier frame.
+    pub(super) since: SE2,
+    /// Its sums over the points in earlier frames.
+    pub(super) sums_before: u64,
     pub(super) report: LocalizeReport,
 }
 

@@ -91,20 +91,23 @@ impl Trail {
         }
     }
 
-    /// All sweeps in the present body frame, including the newest scan, thinned and cropped to the search
-    /// range.
-    pub fn cloud(&self, newest: &PointCloud, config: &LocalizeConfig) -> PointCloud {
+    /// All sweeps in the present body frame, including the newest scan, without points beyond `reach_m`, thinned to
+    /// cells of `cell_m`.
+    pub fn cloud(&self, newest: &PointCloud, reach_m: f64, cell_m: f64) -> PointCloud {
+        thinned(&self.sweeps_of(newest, |_| true), reach_m, cell_m)
+    }
+
+    /// The newest scan and those sweeps that are chosen by their `body_from_sweep`, in the present body frame.
+    pub fn sweeps_of(&self, newest: &PointCloud, is_chosen: impl Fn(&SE2) -> bool) -> PointCloud {
         let body_from_start = self.front_end.estimate().inverse();
         let mut all = newest.clone();
         for (pose, scan) in &self.sweeps {
-            all.extend_transformed(scan, &(body_from_start * *pose));
+            let body_from_sweep = body_from_start * *pose;
+            if is_chosen(&body_from_sweep) {
+                all.extend_transformed(scan, &body_from_sweep);
+            }
         }
-        let reach_m2 = config.search_reach_m * config.search_reach_m;
-        let near = all
-            .iter()
-            .filter(|point| point.coords.norm_squared() <= reach_m2);
-        let near: PointCloud = near.collect();
-        near.downsample(config.search_cell_m)
+        all
     }
 
     /// Drops all sweeps before this frame's; the motion estimate continues.
@@ -117,4 +120,14 @@ impl Trail {
         self.restart(frame, 0);
         self.frames = 1;
     }
+}
+
+/// Points within `reach_m` of the origin, at most one in each cell of `cell_m`.
+pub fn thinned(points: &PointCloud, reach_m: f64, cell_m: f64) -> PointCloud {
+    let reach_m2 = reach_m * reach_m;
+    let near = points
+        .iter()
+        .filter(|point| point.coords.norm_squared() <= reach_m2);
+    let near: PointCloud = near.collect();
+    near.downsample(cell_m)
 }

@@ -2,12 +2,9 @@
 
 use pr_geom::{Point2, math};
 
-use super::SearchError;
 use super::score_scale::{FARTHEST_SIGMAS, ScoreScale};
+use super::{MAX_GRID_CELLS, SearchError};
 use crate::cloud::{PointCloud, cell_index};
-
-/// Largest number of cells of a grid: 105 m × 105 m at 0.05 m. The levels above it take ten times the memory.
-pub const MAX_GRID_CELLS: u64 = 1 << 22;
 
 /// Largest number of columns and of rows: a cell's index fits into 16 bits, including a window's width.
 const MAX_SIDE_CELLS: u64 = 16_000;

@@ -14,7 +14,7 @@ const CELLS: usize = (SIDE * SIDE) as usize;
 /// Cell (i, j) covers `[i, i+1) × [j, j+1)` times its side, from the frame's origin. A tile is allocated
 /// with its first known cell, up to a limit, so memory is bounded.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TiledGrid<T> {
+pub struct FieldTiles<T> {
     cell_m: f64,
     unknown: T,
     tiles: Vec<Tile<T>>,
@@ -29,7 +29,7 @@ struct Tile<T> {
     cells: Box<[T; CELLS]>,
 }
 
-impl<T: Copy> TiledGrid<T> {
+impl<T: Copy> FieldTiles<T> {
     /// A grid of cells of `cell_m` metres that are all `unknown`; allocates at most `max_cells`.
     #[must_use]
     pub fn new(cell_m: f64, unknown: T, max_cells: usize) -> Self {
@@ -166,7 +166,7 @@ mod tests {
 
     #[test]
     fn written_cells_are_read_back_and_others_are_unknown() {
-        let mut grid = TiledGrid::new(0.1, -1.0, 1 << 20);
+        let mut grid = FieldTiles::new(0.1, -1.0, 1 << 20);
         let cells = [(0, 0), (-1, -1), (15, 16), (-17, 300), (i32::MIN, i32::MAX)];
         for (k, &cell) in cells.iter().enumerate() {
             *grid.get_mut(cell).unwrap() = k as f64;
@@ -182,7 +182,7 @@ mod tests {
 
     #[test]
     fn cells_beyond_the_limit_are_refused_and_known_ones_stay() {
-        let mut grid = TiledGrid::new(0.1, 0.0, 3 * CELLS);
+        let mut grid = FieldTiles::new(0.1, 0.0, 3 * CELLS);
         for k in 0..3 {
             *grid.get_mut((100 * k, 0)).unwrap() = 1.0;
         }
@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn the_field_is_smooth_across_the_borders_of_tiles() {
-        let mut grid = TiledGrid::new(0.5, 0.0, 1 << 20);
+        let mut grid = FieldTiles::new(0.5, 0.0, 1 << 20);
         let plane = |(column, row): (i32, i32)| f64::from(3 * column - 2 * row);
         for column in -20..40 {
             for row in -20..40 {

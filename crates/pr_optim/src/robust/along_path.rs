@@ -3,7 +3,7 @@
 use pr_geom::{SE2, order_by};
 
 use super::marginal_gate::{MarginalGate, Standing};
-use super::path::{Path, variance_share};
+use super::path::{SequentialPath, variance_share};
 use super::with_factors;
 use crate::error::OptimizeError;
 use crate::factor::Between;
@@ -70,7 +70,7 @@ pub fn select_along_path(
             grown
         }));
     }
-    let Some(path) = Path::new(&with_factors(problem, |k| trusted[k])) else {
+    let Some(path) = SequentialPath::new(&with_factors(problem, |k| trusted[k])) else {
         return Ok(None);
     };
     let mut doubted = order_by(trusted.len(), &|k| later_end(&problem.factors()[k]) as f64);
@@ -125,7 +125,7 @@ fn reversed(problem: &Problem) -> Problem {
 
 struct PathSelection<'a> {
     problem: &'a Problem,
-    path: &'a Path,
+    path: &'a SequentialPath,
     inliers: Vec<bool>,
     /// Poses of the path so far.
     poses: Vec<SE2>,

@@ -2,7 +2,7 @@
 
 use pr_geom::order_by;
 
-use super::path::{Loop, Path, variance_share};
+use super::path::{Loop, SequentialPath, variance_share};
 use super::{LOOP_CHI2, is_sequential};
 use crate::problem::Problem;
 
@@ -44,7 +44,7 @@ impl Default for ConsistencySettings {
 #[must_use]
 pub fn consistent_set(problem: &Problem, settings: &ConsistencySettings) -> Vec<bool> {
     let mut member = vec![true; problem.factors().len()];
-    let Some(path) = Path::new(problem) else {
+    let Some(path) = SequentialPath::new(problem) else {
         return member;
     };
     let loops: Vec<(usize, Loop)> = problem

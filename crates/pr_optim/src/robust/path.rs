@@ -40,13 +40,13 @@ impl Loop {
 }
 
 /// The path along the sequential measurements, with its covariance accumulated in the first frame.
-pub struct Path {
+pub struct SequentialPath {
     poses: Vec<SE2>,
     /// `Σ Ad Q Adᵀ` of the steps up to each pose: the covariance between two poses is a difference.
     sums: Vec<Matrix3<f64>>,
 }
 
-impl Path {
+impl SequentialPath {
     /// `None` if the sequential measurements do not connect every pose to the next.
     pub fn new(problem: &Problem) -> Option<Self> {
         let mut steps: Vec<Option<&Between>> = vec![None; problem.node_count().checked_sub(1)?];
@@ -126,7 +126,7 @@ fn transformed(to_from: &SE2, covariance: &Matrix3<f64>) -> Matrix3<f64> {
 /// Ratio of actual to stated variance of loops over short paths.
 ///
 /// Most of these loops are true, because two arbitrary poses are rarely close in time.
-pub fn variance_share(problem: &Problem, trusted: &[bool], path: &Path) -> f64 {
+pub fn variance_share(problem: &Problem, trusted: &[bool], path: &SequentialPath) -> f64 {
     let factors = problem.factors().iter().zip(trusted);
     let loops: Vec<&Between> = factors
         .filter_map(|(factor, trusted)| (!trusted).then_some(factor))

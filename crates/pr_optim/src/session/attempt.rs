@@ -9,7 +9,7 @@ use crate::settings::Method;
 
 /// Record of one initial guess that a session considered.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Trial {
+pub struct TriedStart {
     /// The guess.
     pub start: Start,
     /// The method of its steps.

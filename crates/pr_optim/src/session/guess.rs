@@ -2,13 +2,13 @@
 
 use pr_geom::SE2;
 
-use super::attempt::Trial;
-use super::{Round, Session, Start};
+use super::attempt::TriedStart;
+use super::{Round, SolveSession, Start};
 use crate::error::OptimizeError;
 use crate::init::{chordal, spanning_tree};
 use crate::report::StopReason;
 
-impl Session<'_> {
+impl SolveSession<'_> {
     /// Takes the better of the given poses and the spanning tree.
     pub(super) fn start_cheaply(&mut self) {
         self.steps.clear();
@@ -32,7 +32,7 @@ impl Session<'_> {
 
     /// Records a guess of this cost that is not followed.
     fn pass_over(&mut self, start: Start, cost: f64) {
-        self.tried.push(Trial {
+        self.tried.push(TriedStart {
             start,
             method: self.optimizer.settings.method,
             kernel: self.optimizer.settings.kernel,

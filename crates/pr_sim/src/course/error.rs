@@ -5,7 +5,7 @@ use core::fmt;
 use thiserror::Error;
 
 use super::CLEARANCE_M;
-use crate::world::Bounds;
+use crate::world::WorldRect;
 
 /// A part of a course, counted from 1 as in its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,7 +112,7 @@ pub enum CourseError {
         /// The start, way point or wall.
         place: CoursePoint,
         /// The bounds of the walls.
-        bounds: Bounds,
+        bounds: WorldRect,
     },
     /// The start or a way point is too close to a wall.
     #[error(

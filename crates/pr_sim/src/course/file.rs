@@ -5,7 +5,7 @@ use serde::Deserialize;
 use serde_json::error::Category;
 
 use super::{Course, CourseError};
-use crate::world::{Bounds, Wall, World};
+use crate::world::{Wall, World, WorldRect};
 
 /// The byte order mark, which some editors write.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -73,7 +73,7 @@ impl Course {
     }
 }
 
-pub(crate) fn extent(walls: &[Wall]) -> Bounds {
+pub(crate) fn extent(walls: &[Wall]) -> WorldRect {
     let ends = || walls.iter().flat_map(|wall| [wall.start, wall.end]);
     let lowest = |axis: usize| ends().map(|end| end[axis]).fold(f64::INFINITY, f64::min);
     let highest = |axis: usize| {
@@ -81,7 +81,7 @@ pub(crate) fn extent(walls: &[Wall]) -> Bounds {
             .map(|end| end[axis])
             .fold(f64::NEG_INFINITY, f64::max)
     };
-    Bounds {
+    WorldRect {
         min: Point2::new(lowest(0), lowest(1)),
         max: Point2::new(highest(0), highest(1)),
     }

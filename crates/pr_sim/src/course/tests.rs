@@ -6,7 +6,7 @@ use super::clearance::{nearest_wall, nearest_wall_to_leg};
 use super::*;
 use crate::driver::WaypointDriver;
 use crate::motion::drive_exactly;
-use crate::world::{Bounds, Wall};
+use crate::world::{Wall, WorldRect};
 
 /// Tick of the chapter's lap, s, and the largest number of ticks of a lap.
 const DT_S: f64 = 0.25;
@@ -346,7 +346,7 @@ proptest! {
         stops in prop::collection::vec((0.3..9.7, 0.3..9.7), 2..6),
         heading in -3.1..3.1,
     ) {
-        let bounds = Bounds {
+        let bounds = WorldRect {
             min: Point2::new(0.0, 0.0),
             max: Point2::new(10.0, 10.0),
         };
@@ -368,7 +368,7 @@ proptest! {
 #[test]
 fn the_longest_drive_that_is_accepted_ends() {
     // 50 way points and 200 m: back and forth, with a turn around at each.
-    let bounds = Bounds {
+    let bounds = WorldRect {
         min: Point2::new(0.0, 0.0),
         max: Point2::new(10.0, 4.0),
     };

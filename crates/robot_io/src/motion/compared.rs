@@ -50,7 +50,7 @@ const STILL: f64 = 0.03;
 
 /// Comparison of scans and odometry.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Motion {
+pub struct MotionComparison {
     /// Number of segments compared.
     pub stretches: usize,
     /// Path length by scans, m.
@@ -78,7 +78,7 @@ pub struct Motion {
     suggestions: Vec<Suggestion>,
 }
 
-impl Motion {
+impl MotionComparison {
     /// Evaluates segments for a laser with this stated mounting.
     pub(super) fn from_stretches(stretches: &[Stretch], mount: SE2) -> Self {
         let mut motion = Self {

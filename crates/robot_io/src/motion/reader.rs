@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::repairs::Repairs;
 use super::trial::Trial;
-use super::{Comparison, Motion, OdometryUse};
+use super::{Comparison, MotionComparison, OdometryUse};
 use crate::laser_mount::LaserMount;
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::odometry_poses::OdometryPoses;
@@ -67,8 +67,8 @@ pub struct ComparedReader<'a> {
     odometry: OdometryUse,
     waiting: VecDeque<LogFrame>,
     /// Result of an earlier comparison.
-    known: Option<Motion>,
-    motion: Option<Motion>,
+    known: Option<MotionComparison>,
+    motion: Option<MotionComparison>,
     repairs: Repairs,
     late: Option<Late>,
     /// The frame after the last one, or why there is none.
@@ -105,14 +105,14 @@ impl<'a> ComparedReader<'a> {
 
     /// Reuses the result of an earlier comparison of the same log.
     #[must_use]
-    pub fn with_motion(mut self, motion: Motion) -> Self {
+    pub fn with_motion(mut self, motion: MotionComparison) -> Self {
         self.known = Some(motion);
         self
     }
 
     /// The result of the comparison; `None` before the first frame.
     #[must_use]
-    pub fn motion(&self) -> Option<&Motion> {
+    pub fn motion(&self) -> Option<&MotionComparison> {
         self.motion.as_ref()
     }
 
@@ -155,7 +155,7 @@ impl<'a> ComparedReader<'a> {
             is_flipped: false,
         });
         let Some(stated) = stated else {
-            self.motion = Some(Motion::default());
+            self.motion = Some(MotionComparison::default());
             return Ok(());
         };
         let recorded = self.inner.notes().laser.unwrap_or(stated);
@@ -165,7 +165,8 @@ impl<'a> ComparedReader<'a> {
         };
         let found = self.known.take().or_else(|| {
             let compared = comparison.filter(|_| has_odometry)?;
-            let mut motion = Motion::from_stretches(&compared.stretches, stated.body_from_sensor);
+            let mut motion =
+                MotionComparison::from_stretches(&compared.stretches, stated.body_from_sensor);
             motion.compare_turns(&compared.headings);
             if matches!(self.odometry, OdometryUse::Force | OdometryUse::Ignore) {
                 motion.keep_mounting();

@@ -2,11 +2,11 @@
 
 use core::f64::consts::PI;
 
-use super::{Costs, Finding, Motion, OdometryUse, Suggestion};
+use super::{Costs, Finding, MotionComparison, OdometryUse, Suggestion};
 use crate::laser_mount::LaserMount;
 use crate::remark::{NO_ODOMETRY, Part, Remark};
 
-impl Motion {
+impl MotionComparison {
     /// The findings, one remark each; `mount` is the stated mounting, and `is_mount_fixed` whether the user set it, so
     /// that it was not corrected.
     #[must_use]

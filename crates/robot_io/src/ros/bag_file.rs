@@ -11,7 +11,7 @@ use super::container::{Container, ContainerError, MAX_BYTES, Recorded};
 use super::decompress::Packing;
 use super::file_bytes::FileBytes;
 pub use records::Connections;
-use records::{Fields, LONGEST_START, begins, op, piece};
+use records::{HeaderFields, LONGEST_START, begins, op, piece};
 
 const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
 
@@ -73,11 +73,12 @@ impl<R: BufRead> BagFile<R> {
         }
         let header_end = taken.len();
         let header = taken[4..].to_vec();
-        let fields =
-            match Fields::parse(&header).and_then(|fields| fields.op().map(|op| (op, fields))) {
-                Ok(fields) => fields,
-                Err(problem) => return self.resync(&taken, false, problem),
-            };
+        let fields = match HeaderFields::parse(&header)
+            .and_then(|fields| fields.op().map(|op| (op, fields)))
+        {
+            Ok(fields) => fields,
+            Err(problem) => return self.resync(&taken, false, problem),
+        };
         let (op, fields) = fields;
         if !self.with_length("a record's data", &mut taken)? {
             return self.resync(&taken, true, "expected a record's data".to_owned());
@@ -141,7 +142,7 @@ impl<R: BufRead> BagFile<R> {
         let header = piece(&mut rest, "a record's header inside a chunk")?;
         let data = piece(&mut rest, "a record's data inside a chunk")?;
         self.chunk_at = self.chunk.len() - rest.len();
-        self.connections.read(&Fields::parse(header)?, data)
+        self.connections.read(&HeaderFields::parse(header)?, data)
     }
 }
 
@@ -175,7 +176,7 @@ impl<R: BufRead> Container for BagFile<R> {
 }
 
 /// Decompresses a chunk with this header.
-fn unpacked(fields: &Fields<'_>, data: Vec<u8>) -> Result<Vec<u8>, String> {
+fn unpacked(fields: &HeaderFields<'_>, data: Vec<u8>) -> Result<Vec<u8>, String> {
     let size = (fields.u32("size")? as usize).min(MAX_BYTES);
     match fields.name("compression")?.as_str() {
         "none" => Ok(data),

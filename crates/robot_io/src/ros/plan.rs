@@ -287,7 +287,7 @@ fn planned(
     topic: &str,
     stream: &ScanStream,
     clock: &MendedStamps,
-    found: &mounts::Found,
+    found: &mounts::FoundMount,
 ) -> PlannedScans {
     PlannedScans {
         topic: topic.to_owned(),

@@ -18,7 +18,7 @@ use crate::lines::printable;
 use crate::log_bytes::SeekRead;
 use pages::Pages;
 use record::{Value, columns};
-use table::Table;
+use table::DatabaseTable;
 use write_ahead::WriteAhead;
 
 /// More topics than any robot has.
@@ -46,7 +46,7 @@ pub struct SqliteFile<'a> {
     write_ahead: Option<Box<dyn SeekRead + 'a>>,
     pages: Option<Pages<'a>>,
     topics: BTreeMap<i64, Topic>,
-    messages: Table,
+    messages: DatabaseTable,
     columns: Columns,
     other: Option<(String, String)>,
     has_messages: bool,
@@ -60,7 +60,7 @@ impl<'a> SqliteFile<'a> {
             write_ahead: None,
             pages: None,
             topics: BTreeMap::new(),
-            messages: Table::at(0),
+            messages: DatabaseTable::at(0),
             columns: Columns {
                 topic: 1,
                 time: 2,
@@ -82,7 +82,7 @@ impl<'a> SqliteFile<'a> {
         let newer = self.write_ahead.take().map(WriteAhead::new).transpose()?;
         let mut pages = Pages::new(source, newer.flatten())?;
         let mut tables: BTreeMap<String, (u32, Vec<String>)> = BTreeMap::new();
-        let mut list = Table::at(1);
+        let mut list = DatabaseTable::at(1);
         while let Some(row) = list.next_row(&mut pages)? {
             // type, name, tbl_name, rootpage, sql
             if let [
@@ -123,7 +123,7 @@ impl<'a> SqliteFile<'a> {
         };
         let [name_at, kind_at, format_at] = [("name", 1), ("type", 2), ("serialization_format", 3)]
             .map(|(name, usual)| at(topic_columns, name, usual));
-        let mut rows = Table::at(*topics_at);
+        let mut rows = DatabaseTable::at(*topics_at);
         while let Some(row) = rows.next_row(&mut pages)? {
             let text = |at: usize| {
                 row.values
@@ -143,7 +143,7 @@ impl<'a> SqliteFile<'a> {
                 self.topics.insert(row.id, Topic { name, kind, wire });
             }
         }
-        self.messages = Table::at(*messages_at);
+        self.messages = DatabaseTable::at(*messages_at);
         self.pages = Some(pages);
         Ok(())
     }

@@ -121,7 +121,7 @@ impl ScanStream {
 
 /// Poses of a body from one source.
 #[derive(Clone, Debug, Default)]
-pub struct Track {
+pub struct BodyPoses {
     /// Parent frame.
     pub above: String,
     /// Moving frame.
@@ -141,7 +141,7 @@ pub struct Track {
     seen: usize,
 }
 
-impl Track {
+impl BodyPoses {
     fn add(&mut self, stamp_s: f64, recorded_s: f64, pose: SE2) {
         self.every = self.every.max(1);
         self.seen += 1;
@@ -180,9 +180,9 @@ pub struct Survey {
     /// Scans by topic.
     pub scans: BTreeMap<String, ScanStream>,
     /// Odometry by topic.
-    pub odometry: BTreeMap<String, Track>,
+    pub odometry: BTreeMap<String, BodyPoses>,
     /// Transforms that may be odometry, by parent frame and body.
-    pub tracks: BTreeMap<(String, String), Track>,
+    pub tracks: BTreeMap<(String, String), BodyPoses>,
     /// The latest transforms.
     pub transforms: Transforms,
 }
@@ -222,11 +222,11 @@ impl Survey {
                     let has_room = self.tracks.len() < MAX_TRACKS;
                     if may_be_odometry && (has_room || self.tracks.contains_key(&key)) {
                         let order = self.tracks.len();
-                        let track = self.tracks.entry(key).or_insert_with(|| Track {
+                        let track = self.tracks.entry(key).or_insert_with(|| BodyPoses {
                             above: parent.clone(),
                             body: transform.child.clone(),
                             order,
-                            ..Track::default()
+                            ..BodyPoses::default()
                         });
                         track.add(transform.header.stamp_s, message.recorded_s, pose);
                     }
@@ -308,7 +308,7 @@ impl Survey {
         let track = self
             .odometry
             .entry(message.topic.clone())
-            .or_insert_with(|| Track {
+            .or_insert_with(|| BodyPoses {
                 above: parsed.header.frame.clone(),
                 body: if parsed.child.is_empty() {
                     "base_link".to_owned()
@@ -316,7 +316,7 @@ impl Survey {
                     parsed.child.clone()
                 },
                 order,
-                ..Track::default()
+                ..BodyPoses::default()
             });
         track.add(parsed.header.stamp_s, message.recorded_s, pose);
         Ok(())

@@ -13,7 +13,7 @@ const BACK: f64 = 0.25;
 
 /// Beams in the order of the file.
 #[derive(Clone, Debug, Default)]
-pub struct Sweep {
+pub struct BeamBuffer {
     /// Bearing and range of each beam, in the units of the file.
     beams: Vec<(f64, f64)>,
     /// Times of the first and the last beam, s.
@@ -24,7 +24,7 @@ pub struct Sweep {
     pub pose: [Option<f64>; 3],
 }
 
-impl Sweep {
+impl BeamBuffer {
     /// Adds a beam.
     pub fn add(
         &mut self,

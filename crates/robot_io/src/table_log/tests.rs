@@ -142,7 +142,7 @@ fn columns_are_named_by_the_user_or_asked_for() {
         ("time,colour,ranges", "there is no column colour; use time"),
         ("time,x", "name either ranges, or angle and range"),
     ] {
-        let error = columns.parse::<super::Layout>().unwrap_err();
+        let error = columns.parse::<super::TableLayout>().unwrap_err();
         assert!(error.starts_with(expected), "{error}");
     }
 }

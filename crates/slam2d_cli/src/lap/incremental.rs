@@ -1,7 +1,7 @@
 //! `slam2d lap --estimator ml|ml-cycles`: incremental mapping on the frames of the lap.
 
-use ch16_lab::incremental::{IncrementalKind, IncrementalTrace};
-use ch16_lab::lap::{Choice, Drive, LapConfig};
+use ch16_lab::incremental::IncrementalTrace;
+use ch16_lab::lap::{Drive, IncrementalKind, LapConfig, NamedChoice};
 use ch16_slam2d::digest::Digest;
 use ch16_slam2d::metrics::position_error_m;
 use incremental_mapping::{CycleClosure, CycleTest, CycleVerdict};

@@ -23,7 +23,7 @@ const HONEST: f64 = 0.8;
 
 /// Result for a log under a disturbance.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Outcome {
+pub struct DisturbedResult {
     log: String,
     disturbance: String,
     /// Error of the kind of the log's reference, m; null if nothing can be compared.
@@ -33,7 +33,7 @@ pub struct Outcome {
 }
 
 /// Maps every log under every disturbance; all outcomes of a log together, in the order of [`Disturbance::ALL`].
-pub(super) fn outcomes(benches: &[Bench], seed: u32) -> Vec<Vec<Outcome>> {
+pub(super) fn outcomes(benches: &[Bench], seed: u32) -> Vec<Vec<DisturbedResult>> {
     let of_log = |bench: &Bench| {
         let disturbances = Disturbance::ALL.par_iter();
         disturbances
@@ -44,11 +44,11 @@ pub(super) fn outcomes(benches: &[Bench], seed: u32) -> Vec<Vec<Outcome>> {
 }
 
 impl Bench {
-    fn outcome(&self, disturbance: Disturbance, seed: u32) -> Outcome {
+    fn outcome(&self, disturbance: Disturbance, seed: u32) -> DisturbedResult {
         let frames = disturbance.frames(&self.frames, seed);
         let mut run = mapped(&frames);
         let trajectory = disturbance.as_recorded(&self.frames, &run.trajectory());
-        Outcome {
+        DisturbedResult {
             log: self.name.clone(),
             disturbance: disturbance.name(),
             error_m: self.error_m(&trajectory),
@@ -146,7 +146,7 @@ fn is_within(error: &SE2, covariance: Matrix2<f64>) -> bool {
 }
 
 /// The table in Markdown: a row for each disturbance, a column for each log.
-pub(super) fn table(outcomes: &[Vec<Outcome>]) -> String {
+pub(super) fn table(outcomes: &[Vec<DisturbedResult>]) -> String {
     let row = |name: String, cells: Vec<String>| format!("| {name} | {} |", cells.join(" | "));
     let number = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.2}"));
     let names = outcomes.iter().map(|log| log[0].log.clone());
@@ -156,7 +156,7 @@ pub(super) fn table(outcomes: &[Vec<Outcome>]) -> String {
     ];
     for (index, disturbance) in Disturbance::ALL.into_iter().enumerate() {
         let cells = outcomes.iter().map(|log| {
-            let Outcome {
+            let DisturbedResult {
                 error_m, within_95, ..
             } = &log[index];
             let within =
@@ -193,7 +193,7 @@ pub(super) fn table(outcomes: &[Vec<Outcome>]) -> String {
 }
 
 /// Whether a run is as good as the plain one, or says how bad it is.
-fn is_held(outcome: &Outcome, plain: &Outcome) -> bool {
+fn is_held(outcome: &DisturbedResult, plain: &DisturbedResult) -> bool {
     let most_m = plain
         .error_m
         .map_or(SOUND.0, |plain_m| math::max(SOUND.0, SOUND.1 * plain_m));

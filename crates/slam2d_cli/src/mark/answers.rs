@@ -31,7 +31,7 @@ const MAX_BYTES: u64 = 1 << 20;
 /// The answers of one student.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Answers {
+pub struct StudentAnswers {
     schema: String,
     /// Name or token; empty for the tasks of the chapter.
     pub student: String,
@@ -81,7 +81,7 @@ pub fn without_bom(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
-impl Answers {
+impl StudentAnswers {
     /// Reads a file of answers.
     ///
     /// # Errors

@@ -50,7 +50,7 @@ struct Choice {
 
 /// What the widget shows to one student.
 #[derive(Clone, Debug)]
-pub struct Task {
+pub struct StudentTask {
     /// The state of the widget, with the student's seed.
     pub state: String,
     outcome: Outcome,
@@ -59,7 +59,7 @@ pub struct Task {
 /// The assessment of one answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Mark {
+pub enum AnswerMark {
     /// The right choice, or exactly the number.
     Right,
     /// A number that is close enough.
@@ -76,7 +76,7 @@ pub struct Marked {
     /// Id of the exercise.
     pub exercise: String,
     /// The mark.
-    pub mark: Mark,
+    pub mark: AnswerMark,
     /// The student's choice or number.
     pub prediction: String,
     /// The right choice, or the number.
@@ -107,7 +107,7 @@ pub fn count() -> usize {
 pub fn mark(answer: &Answer, student: &str) -> Marked {
     let mut marked = Marked {
         exercise: answer.exercise.clone(),
-        mark: Mark::NotMarked,
+        mark: AnswerMark::NotMarked,
         prediction: answer.prediction.clone(),
         right: None,
         result: None,
@@ -132,7 +132,7 @@ pub fn mark(answer: &Answer, student: &str) -> Marked {
 
 impl Exercise {
     /// The exercise as the page sets it for a student.
-    pub fn task(&self, student: &str) -> Task {
+    pub fn task(&self, student: &str) -> StudentTask {
         if !student.is_empty() && self.is_personal() {
             let own = self.personal_state(student);
             let mut model = self.model(&own);
@@ -145,13 +145,13 @@ impl Exercise {
                 let outcome = model.outcome();
                 if self.has_answer(&outcome) {
                     let state = format!("{own}&seed={seed}");
-                    return Task { state, outcome };
+                    return StudentTask { state, outcome };
                 }
             }
         }
         let mut model = self.model(&self.state);
         model.finish_work();
-        Task {
+        StudentTask {
             state: self.state.clone(),
             outcome: model.outcome(),
         }
@@ -232,7 +232,7 @@ impl Exercise {
         }
     }
 
-    fn judge(&self, answer: &Answer, task: &Task, marked: &mut Marked) {
+    fn judge(&self, answer: &Answer, task: &StudentTask, marked: &mut Marked) {
         if answer.state != task.state {
             marked.note = Some(format!(
                 "the state `{}` is not this student's task, which is `{}`",
@@ -256,11 +256,11 @@ impl Exercise {
         if self.choices.is_empty() {
             marked.right.clone_from(&marked.result);
             match (answer.prediction.parse::<f64>(), value) {
-                (Ok(number), Some(value)) if number == value => marked.mark = Mark::Right,
+                (Ok(number), Some(value)) if number == value => marked.mark = AnswerMark::Right,
                 (Ok(number), Some(value)) if (number - value).abs() <= self.tolerance => {
-                    marked.mark = Mark::WithinTolerance;
+                    marked.mark = AnswerMark::WithinTolerance;
                 }
-                (Ok(_), _) => marked.mark = Mark::Wrong,
+                (Ok(_), _) => marked.mark = AnswerMark::Wrong,
                 (Err(_), _) => {
                     marked.note = Some(format!("`{}` is not a number", answer.prediction));
                 }
@@ -270,9 +270,9 @@ impl Exercise {
         let right = self.right_choice(&task.outcome);
         marked.right = right.map(|choice| choice.choice.clone());
         if marked.right.as_ref() == Some(&answer.prediction) {
-            marked.mark = Mark::Right;
+            marked.mark = AnswerMark::Right;
         } else if self.choices.iter().any(|c| c.choice == answer.prediction) {
-            marked.mark = Mark::Wrong;
+            marked.mark = AnswerMark::Wrong;
         } else {
             let choices: Vec<&str> = self.choices.iter().map(|c| c.choice.as_str()).collect();
             marked.note = Some(format!(

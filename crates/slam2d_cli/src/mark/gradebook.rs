@@ -7,7 +7,7 @@ use std::path::Path;
 use anyhow::ensure;
 
 use super::answers::without_bom;
-use super::exercise::{self, Mark};
+use super::exercise::{self, AnswerMark};
 use super::{Sheet, csv_cell, written};
 use crate::in_file::InFile as _;
 use crate::output::say;
@@ -210,9 +210,9 @@ fn points(ids: &[&str], sheet: Option<&Sheet>) -> Vec<String> {
             .map(|answer| answer.mark)
     };
     let cell = |id: &str| match mark(id) {
-        Some(Mark::Right | Mark::WithinTolerance) => "1",
-        Some(Mark::Wrong) => "0",
-        Some(Mark::NotMarked) | None => "",
+        Some(AnswerMark::Right | AnswerMark::WithinTolerance) => "1",
+        Some(AnswerMark::Wrong) => "0",
+        Some(AnswerMark::NotMarked) | None => "",
     };
     let mut cells: Vec<String> = ids.iter().map(|id| cell(id).to_owned()).collect();
     cells.push(sheet.map_or_else(String::new, |sheet| sheet.right.to_string()));

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use rquickjs::{CatchResultExt as _, Context, Ctx, Function, Object, Runtime, Value};
 
 use super::answers::Written;
-use super::exercise::{Mark, Marked};
+use super::exercise::{AnswerMark, Marked};
 
 /// The tests; the build writes the file from the page's.
 const TESTS: &str = include_str!("written.js");
@@ -43,7 +43,7 @@ fn id_of(name: &str) -> String {
 pub fn mark(written: &Written) -> Marked {
     let mut marked = Marked {
         exercise: id_of(&written.function),
-        mark: Mark::NotMarked,
+        mark: AnswerMark::NotMarked,
         prediction: format!("{} lines", written.code.lines().count()),
         right: None,
         result: None,
@@ -68,16 +68,16 @@ pub fn mark(written: &Written) -> Marked {
             fault,
         }) => {
             marked.mark = if passed == tests {
-                Mark::Right
+                AnswerMark::Right
             } else {
-                Mark::Wrong
+                AnswerMark::Wrong
             };
             marked.right = Some(format!("{tests} tests"));
             marked.result = Some(format!("{passed} tests"));
             marked.note = fault;
         }
         Err(problem) => {
-            marked.mark = Mark::Wrong;
+            marked.mark = AnswerMark::Wrong;
             marked.note = Some(problem);
         }
     }
@@ -268,10 +268,10 @@ mod tests {
     #[test]
     fn a_right_function_passes_and_a_wrong_one_is_told_its_fault() {
         let right = marked("gate", GATE);
-        assert_eq!((right.mark, right.note), (Mark::Right, None));
+        assert_eq!((right.mark, right.note), (AnswerMark::Right, None));
         assert_eq!(right.result.as_deref(), Some("7 tests"));
         let wrong = marked("gate", &GATE.replace("<= limit", "<= 7.815"));
-        assert_eq!(wrong.mark, Mark::Wrong);
+        assert_eq!(wrong.mark, AnswerMark::Wrong);
         assert!(
             wrong
                 .note
@@ -284,7 +284,7 @@ mod tests {
                 function,
                 &format!("function {function}() {{ return [0, 0, 0]; }}"),
             );
-            assert_eq!(stub.mark, Mark::Wrong, "{function}");
+            assert_eq!(stub.mark, AnswerMark::Wrong, "{function}");
             assert!(stub.note.unwrap().contains("expected"), "{function}");
         }
     }
@@ -305,7 +305,7 @@ mod tests {
             ("function gate() { return {get chi2() { for (;;) {} }}; }", "is there a loop without end?"),
         ] {
             let found = marked("gate", code);
-            assert_eq!(found.mark, Mark::Wrong, "{code}");
+            assert_eq!(found.mark, AnswerMark::Wrong, "{code}");
             let told = found.note.unwrap();
             assert!(told.contains(note), "{code}: {told}");
         }
@@ -328,16 +328,16 @@ mod tests {
                 "gate",
                 &format!("if (typeof {name} !== 'undefined') throw 1;\n{GATE}"),
             );
-            assert_eq!(found.mark, Mark::Right, "{name}");
+            assert_eq!(found.mark, AnswerMark::Right, "{name}");
         }
         let found = marked("gate", &format!("import('fs').then(() => {{}});\n{GATE}"));
-        assert_eq!(found.mark, Mark::Right, "an import finds nothing");
+        assert_eq!(found.mark, AnswerMark::Right, "an import finds nothing");
     }
 
     #[test]
     fn an_unknown_function_is_not_marked() {
         let found = marked("main", "function main() {}");
-        assert_eq!(found.mark, Mark::NotMarked);
+        assert_eq!(found.mark, AnswerMark::NotMarked);
         assert!(
             found
                 .note

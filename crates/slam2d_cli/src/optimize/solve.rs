@@ -3,8 +3,8 @@
 use bench_support::CpuClock;
 use indicatif::{ProgressBar, ProgressStyle};
 use pr_optim::{
-    JacobianModel, Method, OptimizeError, Optimizer, Outcome, Problem, Session, Settings, Start,
-    StopReason,
+    JacobianModel, Method, OptimizeError, Optimizer, Problem, SessionOutcome, Settings,
+    SolveSession, Start, StopReason,
 };
 
 use super::args::{MethodName, OptimizeArgs};
@@ -20,7 +20,7 @@ const STEP_TOLERANCE: f64 = 1e-10;
 /// Result and times of a solve.
 pub struct Solved {
     /// The last solve; all are equal.
-    pub outcome: Outcome,
+    pub outcome: SessionOutcome,
     /// Result of `--robust`.
     pub inliers: Option<InlierCounts>,
     /// CPU time of the first solve, with ordering and symbolic analysis, ms.
@@ -89,7 +89,7 @@ fn solve_once(
     problem: &mut Problem,
     args: &OptimizeArgs,
     bar: &ProgressBar,
-) -> Result<(Outcome, Option<InlierCounts>, f64), OptimizeError> {
+) -> Result<(SessionOutcome, Option<InlierCounts>, f64), OptimizeError> {
     let mut clock = CpuClock::start();
     let Some(mut selected) = select(problem, args.robust, settings(args))? else {
         let outcome = solve_session(optimizer, problem, args.init.start(), &mut clock, bar)?;
@@ -114,8 +114,8 @@ fn solve_session(
     start: Start,
     clock: &mut CpuClock,
     bar: &ProgressBar,
-) -> Result<Outcome, OptimizeError> {
-    let mut session = Session::new(optimizer, problem, start)?;
+) -> Result<SessionOutcome, OptimizeError> {
+    let mut session = SolveSession::new(optimizer, problem, start)?;
     loop {
         let more = session.step();
         if !more {

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use pr_optim::{Method, RobustKernel, Start, Trial};
+use pr_optim::{Method, RobustKernel, Start, TriedStart};
 use serde::Serialize;
 
 /// One start that the solver tried.
@@ -22,8 +22,8 @@ pub struct Tried {
     stop: String,
 }
 
-impl From<&Trial> for Tried {
-    fn from(trial: &Trial) -> Self {
+impl From<&TriedStart> for Tried {
+    fn from(trial: &TriedStart) -> Self {
         Self {
             init: start_name(trial.start),
             method: match trial.method {

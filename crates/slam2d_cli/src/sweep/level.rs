@@ -1,7 +1,7 @@
 //! Distribution of the figures of the laps at one noise factor.
 
 use ch16_lab::lap::LapEstimator;
-use ch16_lab::results::{Column, LapStatistics, Row};
+use ch16_lab::results::{LapStatistics, ResultColumn, ResultRow};
 use serde::{Serialize, Serializer};
 
 use super::SweepArgs;
@@ -56,9 +56,9 @@ struct Sample {
 #[derive(Serialize)]
 struct Entry {
     #[serde(serialize_with = "column_id")]
-    column: Column,
+    column: ResultColumn,
     #[serde(serialize_with = "row_id")]
-    row: Row,
+    row: ResultRow,
     /// 5th percentile, m.
     p05: f64,
     /// Median, m.
@@ -118,10 +118,10 @@ impl AlongTheWay {
             medians.map(Vec::from).unwrap_or_default()
         };
         Self {
-            front_end: medians(Column::FrontEnd),
-            with_loops: medians(Column::WithLoops),
-            ml: medians(Column::MaximumLikelihood),
-            ml_cycles: medians(Column::MaximumLikelihoodCycles),
+            front_end: medians(ResultColumn::FrontEnd),
+            with_loops: medians(ResultColumn::WithLoops),
+            ml: medians(ResultColumn::MaximumLikelihood),
+            ml_cycles: medians(ResultColumn::MaximumLikelihoodCycles),
         }
     }
 }
@@ -139,10 +139,10 @@ fn samples(first_seed: u32, statistics: &LapStatistics) -> Vec<Sample> {
 }
 
 fn entries(args: &SweepArgs, statistics: &LapStatistics) -> Vec<Entry> {
-    let cells = Column::ALL
+    let cells = ResultColumn::ALL
         .into_iter()
         .filter(|&column| args.shows(column))
-        .flat_map(|column| Row::ALL.into_iter().map(move |row| (column, row)));
+        .flat_map(|column| ResultRow::ALL.into_iter().map(move |row| (column, row)));
     cells
         .filter_map(|(column, row)| {
             let spread = statistics.spread(column, row)?;
@@ -157,50 +157,50 @@ fn entries(args: &SweepArgs, statistics: &LapStatistics) -> Vec<Entry> {
         .collect()
 }
 
-fn column_id<S: Serializer>(column: &Column, serializer: S) -> Result<S::Ok, S::Error> {
+fn column_id<S: Serializer>(column: &ResultColumn, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(match column {
-        Column::Odometry => "odometry",
-        Column::FrontEnd => "front_end",
-        Column::WithLoops => "with_loops",
-        Column::MaximumLikelihood => "ml",
-        Column::MaximumLikelihoodCycles => "ml_cycles",
+        ResultColumn::Odometry => "odometry",
+        ResultColumn::FrontEnd => "front_end",
+        ResultColumn::WithLoops => "with_loops",
+        ResultColumn::MaximumLikelihood => "ml",
+        ResultColumn::MaximumLikelihoodCycles => "ml_cycles",
     })
 }
 
 /// The names that the figures of the page use as well.
-fn row_id<S: Serializer>(row: &Row, serializer: S) -> Result<S::Ok, S::Error> {
+fn row_id<S: Serializer>(row: &ResultRow, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(match row {
-        Row::EndError => "end_error",
-        Row::Rms => "rms",
-        Row::LastKeyframesMin => "last_nine_min",
-        Row::LastKeyframesMax => "last_nine_max",
-        Row::KeyframeMax => "max_error",
-        Row::HalfWay => "half_way",
-        Row::HalfWaySigma => "half_way_sigma",
-        Row::MapDisagreement => "map_disagreement",
+        ResultRow::EndError => "end_error",
+        ResultRow::Rms => "rms",
+        ResultRow::LastKeyframesMin => "last_nine_min",
+        ResultRow::LastKeyframesMax => "last_nine_max",
+        ResultRow::KeyframeMax => "max_error",
+        ResultRow::HalfWay => "half_way",
+        ResultRow::HalfWaySigma => "half_way_sigma",
+        ResultRow::MapDisagreement => "map_disagreement",
     })
 }
 
-fn column_title(column: Column) -> &'static str {
+fn column_title(column: ResultColumn) -> &'static str {
     match column {
-        Column::Odometry => "odometry",
-        Column::FrontEnd => "front end",
-        Column::WithLoops => "with loops",
-        Column::MaximumLikelihood => "ml",
-        Column::MaximumLikelihoodCycles => "ml, cycles",
+        ResultColumn::Odometry => "odometry",
+        ResultColumn::FrontEnd => "front end",
+        ResultColumn::WithLoops => "with loops",
+        ResultColumn::MaximumLikelihood => "ml",
+        ResultColumn::MaximumLikelihoodCycles => "ml, cycles",
     }
 }
 
-fn row_title(row: Row) -> &'static str {
+fn row_title(row: ResultRow) -> &'static str {
     match row {
-        Row::EndError => "position error at the end (m)",
-        Row::Rms => "rms position error (m)",
-        Row::LastKeyframesMin => "best of the last nine keyframes (m)",
-        Row::LastKeyframesMax => "worst of the last nine keyframes (m)",
-        Row::KeyframeMax => "largest keyframe error (m)",
-        Row::HalfWay => "error at half of the path (m)",
-        Row::HalfWaySigma => "standard deviation by the graph (m)",
-        Row::MapDisagreement => "map self-disagreement (m)",
+        ResultRow::EndError => "position error at the end (m)",
+        ResultRow::Rms => "rms position error (m)",
+        ResultRow::LastKeyframesMin => "best of the last nine keyframes (m)",
+        ResultRow::LastKeyframesMax => "worst of the last nine keyframes (m)",
+        ResultRow::KeyframeMax => "largest keyframe error (m)",
+        ResultRow::HalfWay => "error at half of the path (m)",
+        ResultRow::HalfWaySigma => "standard deviation by the graph (m)",
+        ResultRow::MapDisagreement => "map self-disagreement (m)",
     }
 }
 

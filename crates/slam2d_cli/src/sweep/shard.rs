@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, ensure};
-use ch16_lab::lap::{Choice, LapEstimator};
+use ch16_lab::lap::{LapEstimator, NamedChoice};
 use ch16_lab::results::LapOutcome;
 use ch16_slam2d::digest::Digest;
 use serde::{Deserialize, Serialize};

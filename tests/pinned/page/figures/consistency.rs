@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use ch16_lab::lap::{
-    BuiltInWorld, Choice as _, Consistency, HalfWay, LapConfig, LapMatcher, LapRunner,
+    BuiltInWorld, HalfWay, LapConfig, LapConsistency, LapMatcher, LapRunner, NamedChoice as _,
 };
 use ch16_slam2d::chapter::InformationFrame;
 
@@ -11,7 +11,7 @@ use ch16_slam2d::chapter::InformationFrame;
 const SEEDS: u32 = 100;
 
 /// The front end and the lap with loops, of laps that differ in their seed only.
-type Case = [Consistency; 2];
+type Case = [LapConsistency; 2];
 
 /// The cases that were asked for.
 #[derive(Default)]
@@ -59,6 +59,6 @@ fn case(world: &str, matcher: &str, bound: &str) -> Option<Case> {
         halves[0].extend(record.front_end_half_way());
         halves[1].extend(record.half_way());
     }
-    let [front_end, with_loops] = halves.each_ref().map(|laps| Consistency::of(laps));
+    let [front_end, with_loops] = halves.each_ref().map(|laps| LapConsistency::of(laps));
     Some([front_end?, with_loops?])
 }

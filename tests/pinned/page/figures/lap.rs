@@ -1,8 +1,8 @@
 //! Laps by name, and their entries in the results table.
 
 use ch16_lab::lap::{
-    BuiltInWorld, CANONICAL_SEED, Choice as _, Claim, GateUse, LapConfig, LapMatcher, LapRecord,
-    LapTrace, OwnKernel, OwnLoopRequest,
+    BuiltInWorld, CANONICAL_SEED, Claim, GateUse, LapConfig, LapMatcher, LapRecord, LapTrace,
+    NamedChoice as _, OwnKernel, OwnLoopRequest,
 };
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::icp::INFORMATION_CAP;

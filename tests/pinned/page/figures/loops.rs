@@ -1,9 +1,9 @@
 //! Attempts to close a loop: the registration, the gate, and the error against the truth.
 
-use ch16_lab::lap::{LapTrace, LoopAttempt};
+use ch16_lab::lap::{LapTrace, RecordedLoopAttempt};
 
 /// `from`, `chi2`, `max_shift`: one attempt, by name.
-pub fn attempt(attempt: &LoopAttempt, lap: &LapTrace, what: &str) -> Option<f64> {
+pub fn attempt(attempt: &RecordedLoopAttempt, lap: &LapTrace, what: &str) -> Option<f64> {
     let verification = &attempt.verification;
     let gate_std = |axis: usize| 1.0 / verification.gate_information[(axis, axis)].sqrt();
     Some(match what {

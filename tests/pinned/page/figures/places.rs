@@ -1,6 +1,6 @@
 //! Place recognition over the laps of `slam2d places`: precision and recall.
 
-use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapDetector, LapMatcher};
+use ch16_lab::lap::{BuiltInWorld, LapConfig, LapDetector, LapMatcher, NamedChoice};
 use ch16_lab::places::{GRADED, PlaceCurve, PlacePair, place_curves, place_pairs};
 
 /// Laps of each world, from seed 1 on.

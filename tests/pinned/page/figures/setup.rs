@@ -15,7 +15,7 @@ use super::basin::{TAU_M, WIDE_TAU_M};
 
 /// Sizes of the Apartment, m.
 pub fn world(what: &str) -> Option<f64> {
-    let size = |bounds: pr_sim::Bounds| bounds.max - bounds.min;
+    let size = |bounds: pr_sim::WorldRect| bounds.max - bounds.min;
     let rooms = World::apartment_rooms();
     let (a, d) = (rooms[0].bounds, rooms[3].bounds);
     match what {

@@ -8,7 +8,7 @@ use std::thread;
 
 use ch16_lab::lap::{LapConfig, LapRunner, LapSummary};
 use ch16_lab::nudge::{NUDGE, NudgeStatistics, farthest_keyframe_m, nudged};
-use ch16_lab::results::{Column, LapOutcome, LapStatistics, Row};
+use ch16_lab::results::{LapOutcome, LapStatistics, ResultColumn, ResultRow};
 use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::metrics::position_error_m;
 
@@ -171,24 +171,24 @@ fn grew(lap: &LapOutcome, error_m: impl Fn(&LapSummary) -> f64) -> bool {
     error_m(&lap.lap) > error_m(&lap.front_end)
 }
 
-fn column_of(name: &str) -> Option<Column> {
+fn column_of(name: &str) -> Option<ResultColumn> {
     match name {
-        "odometry" => Some(Column::Odometry),
-        "front_end" => Some(Column::FrontEnd),
-        "with_loops" => Some(Column::WithLoops),
+        "odometry" => Some(ResultColumn::Odometry),
+        "front_end" => Some(ResultColumn::FrontEnd),
+        "with_loops" => Some(ResultColumn::WithLoops),
         _ => None,
     }
 }
 
-fn row_of(name: &str) -> Option<Row> {
+fn row_of(name: &str) -> Option<ResultRow> {
     match name {
-        "end_error" => Some(Row::EndError),
-        "rms" => Some(Row::Rms),
-        "last_nine_min" => Some(Row::LastKeyframesMin),
-        "last_nine_max" => Some(Row::LastKeyframesMax),
-        "max_error" => Some(Row::KeyframeMax),
-        "map_disagreement" => Some(Row::MapDisagreement),
-        "half_way_sigma" => Some(Row::HalfWaySigma),
+        "end_error" => Some(ResultRow::EndError),
+        "rms" => Some(ResultRow::Rms),
+        "last_nine_min" => Some(ResultRow::LastKeyframesMin),
+        "last_nine_max" => Some(ResultRow::LastKeyframesMax),
+        "max_error" => Some(ResultRow::KeyframeMax),
+        "map_disagreement" => Some(ResultRow::MapDisagreement),
+        "half_way_sigma" => Some(ResultRow::HalfWaySigma),
         _ => None,
     }
 }

@@ -8,14 +8,14 @@ use log_messages::{GradeReport, LoopDecision, MapperOrder, MapperReport, ScanRep
 use nalgebra::Vector3;
 use pr_geom::SE2;
 use robot_io::map_image::{build_map, finest_map};
-use robot_io::report::Report;
+use robot_io::report::LogReport;
 use robot_io::session;
 
 use super::{Engine, Work};
 use crate::editing::{Solving, rebuilt, solve};
 use crate::files::{self, MAP_CELL_M, NAMES, REPORT_CELL_M};
 use crate::given::{Choices, Given};
-use crate::grade::Reference;
+use crate::grade::DroppedReference;
 use crate::links::Link;
 use crate::localization::Localization;
 
@@ -299,7 +299,7 @@ impl<'a> Engine<'a> {
     /// # Errors
     /// If it is not a reference; the message is one sentence.
     pub fn take_reference(&mut self, bytes: &[u8], name: &str) -> Result<(), String> {
-        let reference = Reference::read(bytes, name)?;
+        let reference = DroppedReference::read(bytes, name)?;
         self.reference = Some((name.to_owned(), reference));
         self.changes.grade = true;
         Ok(())
@@ -357,7 +357,7 @@ impl<'a> Engine<'a> {
             Ok(grade) => grade.words,
             Err(problem) => problem,
         }));
-        Report {
+        LogReport {
             name: &self.name,
             scans: self.scans_before + self.run.scans(),
             quality: &quality,

@@ -7,7 +7,7 @@ use log_messages::{
     OtherLog, ScanReport, Stage,
 };
 use widget_kit::host_messages::Delivery;
-use widget_kit::scene::{Bounds, Cell, Raster};
+use widget_kit::scene::{Bounds, Raster, RasterCell};
 
 /// The state of a log.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -152,7 +152,7 @@ impl LogState {
         if !(x + y + cell_m).is_finite() || cell_m <= 0.0 || rows * columns != map.cells.len() {
             return;
         }
-        let cells: Arc<[Cell]> = map.cells.iter().map(|&byte| cell(byte)).collect();
+        let cells: Arc<[RasterCell]> = map.cells.iter().map(|&byte| cell(byte)).collect();
         self.map = Some(Raster {
             bounds: Bounds {
                 min: [x, y],
@@ -167,9 +167,9 @@ impl LogState {
 }
 
 /// 0 is unknown, 1 free, 255 occupied.
-fn cell(byte: u8) -> Cell {
+fn cell(byte: u8) -> RasterCell {
     match byte.checked_sub(1) {
-        None => Cell::Unknown,
-        Some(level) => Cell::Occupancy(f32::from(level) / 254.0),
+        None => RasterCell::Unknown,
+        Some(level) => RasterCell::Occupancy(f32::from(level) / 254.0),
     }
 }

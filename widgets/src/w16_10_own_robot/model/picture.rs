@@ -10,9 +10,8 @@ use widget_kit::scene::{
 };
 
 use super::log_state::LogState;
-use super::settings::{Colour, ShownLoops};
 use super::{OwnRobot, panel};
-use crate::w16_10_own_robot::spec::{COLOUR, LOOPS, MARKED};
+use crate::w16_10_own_robot::spec::{COLOUR, Colour, LOOPS, MARKED, ShownLoops};
 use charts::{fit, sure};
 use visitor::other_log;
 

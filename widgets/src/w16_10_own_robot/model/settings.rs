@@ -3,19 +3,7 @@
 use log_messages::LoopReport;
 
 use super::log_state::LogState;
-
-/// The quantity that colours the path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Colour {
-    /// Position on the timeline.
-    Time,
-    /// Share of each scan that fits.
-    Fit,
-    /// Standard deviation of the position.
-    Sigma,
-    /// Error against a reference.
-    Error,
-}
+use crate::w16_10_own_robot::spec::{Colour, ShownLoops};
 
 impl Colour {
     /// Name of the colour bar, with its unit.
@@ -41,17 +29,6 @@ impl Colour {
             })
             .collect()
     }
-}
-
-/// Which loops the map shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ShownLoops {
-    /// None.
-    None,
-    /// Those of the graph.
-    InGraph,
-    /// The rejected ones as well.
-    All,
 }
 
 impl ShownLoops {

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use ch16_lab::basin::{BasinMap, BasinMapAxes, BasinScene, BasinStart, Minimum, OffsetAxis};
 use ch16_slam2d::icp::{IcpConfig, IcpVariant, IcpWorkspace};
 use widget_kit::model::Activity;
-use widget_kit::scene::{Bounds, Cell, Raster};
+use widget_kit::scene::{Bounds, Raster, RasterCell};
 use widget_kit::values::Values;
 
-use super::letters::{Room, rooms, spread};
+use super::letters::{LetterCell, rooms, spread};
 use super::settings::{axis, config, start};
 use crate::w16_1_basin_explorer::spec::OFFSET_SPAN_M;
 
@@ -41,8 +41,8 @@ struct Try {
 /// Cached drawing data of one map.
 #[derive(Default)]
 struct Drawn {
-    cells: OnceCell<Arc<[Cell]>>,
-    rooms: OnceCell<Vec<Room<Minimum>>>,
+    cells: OnceCell<Arc<[RasterCell]>>,
+    rooms: OnceCell<Vec<LetterCell<Minimum>>>,
 }
 
 impl Basins {
@@ -178,12 +178,12 @@ impl Basins {
     pub fn raster(&self, variant: IcpVariant) -> Raster {
         let draw = || {
             let cells = minima(self.map(variant)).map(|minimum| match minimum {
-                Some(minimum) => Cell::Class(class(minimum)),
-                None => Cell::Unknown,
+                Some(minimum) => RasterCell::Class(class(minimum)),
+                None => RasterCell::Unknown,
             });
             cells.collect()
         };
-        let cells: &Arc<[Cell]> = self.drawn[place(variant)].cells.get_or_init(draw);
+        let cells: &Arc<[RasterCell]> = self.drawn[place(variant)].cells.get_or_init(draw);
         // The centers of the cells are on the grid, so the picture is larger by half a cell on each side.
         let half = [
             180.0 / (COLUMNS - 1) as f64,

@@ -13,7 +13,7 @@ const CLEAR: (f64, f64) = (7.0, 6.0);
 
 /// A cell with room for a letter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Room<C> {
+pub struct LetterCell<C> {
     /// Its column.
     pub column: usize,
     /// Its row.
@@ -25,13 +25,13 @@ pub struct Room<C> {
 }
 
 /// All cells with enough room for a letter, by decreasing room.
-pub fn rooms<C: Copy + PartialEq>(cells: &[Option<C>], columns: usize) -> Vec<Room<C>> {
+pub fn rooms<C: Copy + PartialEq>(cells: &[Option<C>], columns: usize) -> Vec<LetterCell<C>> {
     let distances = distances(cells, columns);
     let wide = cells.iter().zip(distances).enumerate();
     let rooms: Vec<_> = wide
         .filter(|(_, (_, room))| *room >= MIN_ROOM)
         .filter_map(|(k, (class, room))| {
-            class.map(|class| Room {
+            class.map(|class| LetterCell {
                 column: k % columns,
                 row: k / columns,
                 class,
@@ -45,12 +45,15 @@ pub fn rooms<C: Copy + PartialEq>(cells: &[Option<C>], columns: usize) -> Vec<Ro
 }
 
 /// A selection of the rooms that are far apart, and not near the spot (column, row).
-pub fn spread<C: Copy + PartialEq>(rooms: &[Room<C>], keep_clear: (f64, f64)) -> Vec<Room<C>> {
-    let mut chosen: Vec<Room<C>> = Vec::new();
+pub fn spread<C: Copy + PartialEq>(
+    rooms: &[LetterCell<C>],
+    keep_clear: (f64, f64),
+) -> Vec<LetterCell<C>> {
+    let mut chosen: Vec<LetterCell<C>> = Vec::new();
     for room in rooms {
         let hides = (room.column as f64 - keep_clear.0).abs() < CLEAR.0
             && (room.row as f64 - keep_clear.1).abs() < CLEAR.1;
-        let crowds = |other: &Room<C>| {
+        let crowds = |other: &LetterCell<C>| {
             let apart = if other.class == room.class {
                 APART
             } else {

@@ -17,7 +17,7 @@ const OFFSETS: [f64; 3] = [-2.0 / 3.0, 0.0, 2.0 / 3.0];
 const OVER_THE_BORDER_DEG: f64 = 180.0;
 
 /// One path.
-pub struct Path {
+pub struct IterationPath {
     /// Spots on the map from the start on; NaN where the path crosses ±180°.
     pub spots: Vec<[f64; 2]>,
 }
@@ -27,7 +27,7 @@ pub struct Paths {
     /// The settings of the computed paths.
     key: Option<Key>,
     waiting: Vec<BasinStart>,
-    done: Vec<Path>,
+    done: Vec<IterationPath>,
 }
 
 /// The settings on which a path depends, apart from the sweeps.
@@ -78,14 +78,14 @@ impl Paths {
         let along_y = key.axis == OffsetAxis::Dy;
         let poses = workspace.trace().iter().map(|state| state.pose);
         let spots = poses.map(|pose| start_spot(&scene.start_of(&pose), along_y));
-        self.done.push(Path {
+        self.done.push(IterationPath {
             spots: split_at_half_turn(spots),
         });
         Activity::Busy
     }
 
     /// The computed paths.
-    pub fn done(&self) -> &[Path] {
+    pub fn done(&self) -> &[IterationPath] {
         &self.done
     }
 }

@@ -7,14 +7,14 @@ use widget_kit::param::{ParamError, printable};
 
 use super::FullLap;
 use super::floor_plan::{
-    Kept, PencilDrag, Tool, add_wall, add_way_point, is_own, new_wall, new_way_point,
+    Kept, PencilDrag, add_wall, add_way_point, is_own, new_wall, new_way_point,
 };
 use super::grid::snapped;
 use super::panel;
-use super::pick::Direction;
+use super::pick::PickDirection;
 use super::picture;
 use super::plan_element::PlanElement;
-use crate::w16_2_full_lap::spec::{EDIT, FLAT, SPEC, WORLD};
+use crate::w16_2_full_lap::spec::{EDIT, FLAT, SPEC, Tool, WORLD};
 
 /// The file name of a saved flat.
 const FILE_NAME: &str = "flat.json";
@@ -119,13 +119,13 @@ impl FullLap {
         self.floor_plan.note = None;
         match id {
             "edit-flat" => {
-                let is_off = Tool::chosen(&self.values).is_none();
+                let is_off = self.values.get(&EDIT).is_none();
                 self.playback.pause();
                 // The wall tool is selected, so a drag draws at once.
                 self.values.put(&EDIT, is_off.then_some(Tool::Wall));
             }
-            "piece-back" => self.step_piece(Direction::Back),
-            "piece-on" => self.step_piece(Direction::On),
+            "piece-back" => self.step_piece(PickDirection::Back),
+            "piece-on" => self.step_piece(PickDirection::On),
             "west" => self.nudge([-1, 0]),
             "east" => self.nudge([1, 0]),
             "north" => self.nudge([0, 1]),
@@ -164,7 +164,7 @@ impl FullLap {
         true
     }
 
-    fn step_piece(&mut self, step: Direction) {
+    fn step_piece(&mut self, step: PickDirection) {
         let piece = PlanElement::stepped(self.piece(), step, &self.floor_plan.sketch);
         self.choose(piece);
     }
@@ -200,7 +200,7 @@ impl FullLap {
                 if piece.index() >= left {
                     self.choose(PlanElement::stepped(
                         None,
-                        Direction::Back,
+                        PickDirection::Back,
                         &self.floor_plan.sketch,
                     ));
                 }
@@ -279,7 +279,7 @@ impl FullLap {
 
     /// The tool that applies to a panel.
     pub(super) fn tool_on(&self, name: &str) -> Option<Tool> {
-        Tool::chosen(&self.values).filter(|_| name == panel::MAP)
+        self.values.get(&EDIT).filter(|_| name == panel::MAP)
     }
 
     /// The piece under the pointer; the selected one first if several overlap.
@@ -408,7 +408,7 @@ impl FullLap {
 
 /// The state of the flat, for the picture and the texts.
 pub(super) fn drawn(lap: &FullLap) -> Option<super::moment::Drawn<'_>> {
-    let tool = Tool::chosen(&lap.values);
+    let tool = lap.values.get(&EDIT);
     (tool.is_some() || is_own(&lap.values)).then(|| super::moment::Drawn {
         sketch: &lap.floor_plan.sketch,
         tool,

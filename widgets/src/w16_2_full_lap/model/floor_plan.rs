@@ -11,7 +11,7 @@ use widget_kit::values::Values;
 
 use super::grid::{moved, snapped};
 use super::plan_element::PlanElement;
-use crate::w16_2_full_lap::spec::{EDIT, WORLD};
+use crate::w16_2_full_lap::spec::WORLD;
 
 /// Largest number of changes that can be undone.
 const MAX_UNDO: usize = 200;
@@ -21,26 +21,6 @@ const NEW_WALL_CM: i32 = 100;
 
 /// Distance of a way point added by a button from the one before, cm.
 const NEW_WAY_POINT_CM: i32 = 50;
-
-/// The effect of a press on the map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tool {
-    /// Moves a wall, an end, a way point or the start.
-    Move,
-    /// Draws a wall.
-    Wall,
-    /// Places a way point.
-    Way,
-    /// Removes the piece under it.
-    Remove,
-}
-
-impl Tool {
-    /// The selected tool; `None` while the flat is not edited.
-    pub fn chosen(values: &Values) -> Option<Self> {
-        values.get(&EDIT)
-    }
-}
 
 /// A world in the undo history.
 #[derive(Clone, Debug, PartialEq)]

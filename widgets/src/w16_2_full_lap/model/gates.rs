@@ -1,6 +1,6 @@
 //! Both gates of a loop: the drift model of each, and the region in which it accepts the measured position.
 
-use ch16_lab::lap::{LapTrace, LoopAttempt};
+use ch16_lab::lap::{LapTrace, RecordedLoopAttempt};
 use ch16_slam2d::chapter::{marginal_information, path_information};
 use ch16_slam2d::graph::PoseGraph;
 use ch16_slam2d::loops::{GateModel, GateTest, LoopConfig, LoopVerification, chi_squared_gate};
@@ -38,12 +38,12 @@ pub struct Region {
 
 impl Gates {
     /// Both gates for an attempt of `lap`.
-    pub fn new(lap: &LapTrace, attempt: &LoopAttempt, config: &LoopConfig) -> Self {
+    pub fn new(lap: &LapTrace, attempt: &RecordedLoopAttempt, config: &LoopConfig) -> Self {
         Self::on(&mut lap.graph_before(attempt), attempt, config)
     }
 
     /// Both gates for an attempt, on the graph before it.
-    pub fn on(graph: &mut PoseGraph, attempt: &LoopAttempt, config: &LoopConfig) -> Self {
+    pub fn on(graph: &mut PoseGraph, attempt: &RecordedLoopAttempt, config: &LoopConfig) -> Self {
         let loop_ = &attempt.verification;
         let marginal = marginal_information(graph, loop_.candidate.node, loop_.from_node);
         let gate = |model, information| Gate {

@@ -2,18 +2,18 @@
 
 use super::FullLap;
 use super::found::stepped;
-use super::pick::{Direction, Part};
+use super::pick::{GraphPart, PickDirection};
 use crate::w16_2_full_lap::spec::{LOOP_BUTTONS, OWN, OWN_FROM, OWN_TO};
 
 impl FullLap {
     /// Selects a part of the graph, or nothing.
-    pub(super) fn look_at(&mut self, part: Option<Part>) {
-        Part::put(part, &mut self.values);
+    pub(super) fn look_at(&mut self, part: Option<GraphPart>) {
+        GraphPart::put(part, &mut self.values);
     }
 
     /// Selects the next part, or the previous one.
-    pub(super) fn look_on(&mut self, step: Direction) {
-        let part = stepped(Part::chosen(&self.values), step, &self.moment());
+    pub(super) fn look_on(&mut self, step: PickDirection) {
+        let part = stepped(GraphPart::chosen(&self.values), step, &self.moment());
         self.look_at(part);
     }
 
@@ -36,7 +36,7 @@ impl FullLap {
 
     /// Starts a loop at the selected keyframe, or ends it there.
     pub(super) fn press_tie(&mut self) {
-        let Some(Part::Keyframe(node)) = Part::chosen(&self.values) else {
+        let Some(GraphPart::Keyframe(node)) = GraphPart::chosen(&self.values) else {
             self.own.tied = None;
             return;
         };

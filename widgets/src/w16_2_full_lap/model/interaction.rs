@@ -5,9 +5,9 @@ use pr_geom::math;
 use widget_kit::model::Handle;
 
 use super::found::find;
-use super::moment::Moment;
+use super::moment::LapState;
 use super::panel;
-use super::pick::Part;
+use super::pick::GraphPart;
 use super::picture;
 
 /// Radius within which the map reacts to a hovering pointer, m.
@@ -23,7 +23,7 @@ const KEYFRAME: &str = "keyframe";
 const WIPE: &str = "wipe";
 
 /// The part of the graph nearest to a point of a panel, within `reach` along each axis.
-pub fn part_at(moment: &Moment, name: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Part> {
+pub fn part_at(moment: &LapState, name: &str, at: [f64; 2], reach: [f64; 2]) -> Option<GraphPart> {
     let places = places(moment, name);
     let away = |place: &[f64; 2]| {
         math::norm2((place[0] - at[0]) / reach[0], (place[1] - at[1]) / reach[1])
@@ -37,7 +37,7 @@ pub fn part_at(moment: &Moment, name: &str, at: [f64; 2], reach: [f64; 2]) -> Op
 }
 
 /// The part under a hovering pointer.
-pub fn hovered(moment: &Moment, name: &str, at: [f64; 2]) -> Option<Part> {
+pub fn hovered(moment: &LapState, name: &str, at: [f64; 2]) -> Option<GraphPart> {
     let reach = match name {
         panel::MAP => [HOVER_M; 2],
         _ => {
@@ -50,25 +50,25 @@ pub fn hovered(moment: &Moment, name: &str, at: [f64; 2]) -> Option<Part> {
 }
 
 /// The position of each part in a panel: of an edge at its middle, of a loop at its mark.
-fn places(moment: &Moment, name: &str) -> Vec<(Part, [f64; 2])> {
+fn places(moment: &LapState, name: &str) -> Vec<(GraphPart, [f64; 2])> {
     let nodes = &moment.nodes;
     match name {
         panel::MAP => {
             let shown = picture::shown_nodes(moment);
             let at = |node: usize| shown[node];
-            let keyframes = (0..nodes.len()).map(|node| (Part::Keyframe(node), at(node)));
+            let keyframes = (0..nodes.len()).map(|node| (GraphPart::Keyframe(node), at(node)));
             let mut places: Vec<_> = keyframes.collect();
             places.extend((1..nodes.len()).map(|to| {
                 let (a, b) = (at(to - 1), at(to));
                 let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-                (Part::Edge(to - 1), middle)
+                (GraphPart::Edge(to - 1), middle)
             }));
             places.extend(moment.loops_tried().map(|attempt| {
-                let part = Part::Loop(attempt.verification.from_node);
+                let part = GraphPart::Loop(attempt.verification.from_node);
                 (part, picture::loop_mark(moment, attempt))
             }));
             if let Some(own) = moment.own {
-                places.push((Part::Own, picture::loop_mark(moment, &own.attempt)));
+                places.push((GraphPart::Own, picture::loop_mark(moment, &own.attempt)));
             }
             places
         }
@@ -86,7 +86,7 @@ fn places(moment: &Moment, name: &str) -> Vec<(Part, [f64; 2])> {
             let tried = moment.loops_tried();
             tried
                 .map(|attempt| {
-                    let part = Part::Loop(attempt.verification.from_node);
+                    let part = GraphPart::Loop(attempt.verification.from_node);
                     (part, picture::gate_mark(moment, attempt))
                 })
                 .collect()
@@ -96,7 +96,7 @@ fn places(moment: &Moment, name: &str) -> Vec<(Part, [f64; 2])> {
 }
 
 /// Grabs the selected keyframe, the line between before and after, or another keyframe.
-pub fn grab(moment: &Moment, name: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+pub fn grab(moment: &LapState, name: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
     if name != panel::MAP {
         return None;
     }
@@ -117,7 +117,7 @@ pub fn grab(moment: &Moment, name: &str, at: [f64; 2], reach: [f64; 2]) -> Optio
 }
 
 /// Where a drag puts the line between before and after, as a share of the map's width.
-pub fn dragged_wipe(moment: &Moment, handle: Handle, at: [f64; 2]) -> Option<f64> {
+pub fn dragged_wipe(moment: &LapState, handle: Handle, at: [f64; 2]) -> Option<f64> {
     let bounds = picture::map_bounds(moment);
     let share = (at[0] - handle.offset[0] - bounds.min[0]) / bounds.size()[0];
     let is_held = handle.panel == panel::MAP && handle.id == WIPE && share.is_finite();
@@ -125,8 +125,13 @@ pub fn dragged_wipe(moment: &Moment, handle: Handle, at: [f64; 2]) -> Option<f64
 }
 
 /// The handle of a part within reach, if it is a keyframe.
-fn keyframe(moment: &Moment, part: Option<Part>, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-    let Some(Part::Keyframe(node)) = part else {
+fn keyframe(
+    moment: &LapState,
+    part: Option<GraphPart>,
+    at: [f64; 2],
+    reach: [f64; 2],
+) -> Option<Handle> {
+    let Some(GraphPart::Keyframe(node)) = part else {
         return None;
     };
     let [x, y] = picture::shown_nodes(moment)[node];
@@ -142,7 +147,7 @@ fn keyframe(moment: &Moment, part: Option<Part>, at: [f64; 2], reach: [f64; 2]) 
 }
 
 /// The two ends of a dragged loop; `None` before it reaches another keyframe.
-pub fn dragged_ends(moment: &Moment, handle: Handle, at: [f64; 2]) -> Option<[usize; 2]> {
+pub fn dragged_ends(moment: &LapState, handle: Handle, at: [f64; 2]) -> Option<[usize; 2]> {
     if handle.id != KEYFRAME {
         return None;
     }

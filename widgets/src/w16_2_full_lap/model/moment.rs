@@ -1,14 +1,14 @@
 //! The state of the widget at a tick: poses of the graph, interpolated during a loop's animation.
 
-use ch16_lab::lap::{LoopAttempt, OwnLoop, RecordedEdge};
+use ch16_lab::lap::{OwnLoop, RecordedEdge, RecordedLoopAttempt};
 use pr_geom::SE2;
 use pr_sim::{CourseError, Sketch};
 use widget_kit::scene::Bounds;
 
-use super::floor_plan::Tool;
-use super::pick::Part;
+use super::pick::GraphPart;
 use super::plan_element::PlanElement;
 use super::runs::Runs;
+use crate::w16_2_full_lap::spec::Tool;
 
 /// The drawing of the reader's own flat, or of a world that is being edited.
 #[derive(Clone, Copy)]
@@ -28,7 +28,7 @@ pub struct Drawn<'a> {
 }
 
 /// The state at one tick.
-pub struct Moment<'a> {
+pub struct LapState<'a> {
     /// The laps.
     pub runs: &'a Runs,
     /// The current tick.
@@ -36,7 +36,7 @@ pub struct Moment<'a> {
     /// The last tick that plots show: the current one, or the end of the lap.
     pub seen_until: usize,
     /// The attempt made in this tick.
-    pub attempt: Option<&'a LoopAttempt>,
+    pub attempt: Option<&'a RecordedLoopAttempt>,
     /// The custom loop.
     pub own: Option<&'a OwnLoop>,
     /// Poses of the graph's nodes before the attempt or the custom loop; empty without one.
@@ -46,9 +46,9 @@ pub struct Moment<'a> {
     /// The graph's pose of the robot as shown: `world_from_body`.
     pub estimate: SE2,
     /// The selected part.
-    pub picked: Option<Part>,
+    pub picked: Option<GraphPart>,
     /// The part under the pointer.
-    pub hovered: Option<Part>,
+    pub hovered: Option<GraphPart>,
     /// The keyframe at which an unfinished custom loop begins.
     pub tied: Option<usize>,
     /// Where the map changes from before the loop to after it, as a share of its width.
@@ -57,7 +57,7 @@ pub struct Moment<'a> {
     pub drawn: Option<Drawn<'a>>,
 }
 
-impl<'a> Moment<'a> {
+impl<'a> LapState<'a> {
     /// The state at `tick` with the custom loop; `share` is the applied fraction of a loop's correction.
     pub fn new(
         runs: &'a Runs,
@@ -111,14 +111,16 @@ impl<'a> Moment<'a> {
     }
 
     /// The loops tried so far.
-    pub fn loops_tried(&self) -> impl DoubleEndedIterator<Item = &'a LoopAttempt> + use<'a> {
+    pub fn loops_tried(
+        &self,
+    ) -> impl DoubleEndedIterator<Item = &'a RecordedLoopAttempt> + use<'a> {
         let tick = self.tick;
         let attempts = self.runs.graph.attempts().iter();
         attempts.filter(move |attempt| attempt.tick <= tick)
     }
 
     /// The loop to which the tick belongs, if it was tried by then.
-    pub fn loop_near(&self) -> Option<&'a LoopAttempt> {
+    pub fn loop_near(&self) -> Option<&'a RecordedLoopAttempt> {
         let graph = &self.runs.graph;
         let newest = graph.newest_attempt(self.seen_until.min(self.tick + 1));
         let first = graph.attempts().first();
@@ -139,7 +141,7 @@ impl<'a> Moment<'a> {
     /// Whether nodes moved: a loop was closed in this tick, or the custom one is.
     pub fn has_moved(&self) -> bool {
         let own = self.own.is_some_and(OwnLoop::is_closed);
-        own || self.attempt.is_some_and(LoopAttempt::accepted)
+        own || self.attempt.is_some_and(RecordedLoopAttempt::accepted)
     }
 }
 

@@ -6,7 +6,7 @@ use crate::w16_2_full_lap::spec::{NUMBER, PICK, Picked};
 
 /// Part of the graph, by the numbers of its keyframes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum GraphPart {
     /// A keyframe.
     Keyframe(usize),
     /// The edge of odometry from this keyframe to the next.
@@ -19,14 +19,14 @@ pub enum Part {
 
 /// A direction through the parts of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
+pub enum PickDirection {
     /// To the previous part; from the first to the last.
     Back,
     /// To the next part; from the last to the first.
     On,
 }
 
-impl Part {
+impl GraphPart {
     /// The selection in the settings; `None` if they select nothing.
     pub fn chosen(values: &Values) -> Option<Self> {
         let number = values.get(&NUMBER);

@@ -1,5 +1,6 @@
 //! The panels: the map, the close-up of the loop, the plots over time, the strain of each edge.
 
+mod bounds;
 mod closeup;
 mod floor_plan;
 mod loop_style;
@@ -12,15 +13,16 @@ mod wipe;
 
 use widget_kit::scene::Scene;
 
-use super::moment::Moment;
+use super::moment::LapState;
 
-pub use map::{loop_mark, shown_bounds as map_bounds};
+pub use bounds::shown_bounds as map_bounds;
+pub use map::loop_mark;
 pub use plots::{OVER_TIME, gate_mark};
 pub use strain::{part_of, strain_mark};
 pub use wipe::{divider, shown_nodes};
 
 /// The whole picture.
-pub fn scene(moment: &Moment) -> Scene {
+pub fn scene(moment: &LapState) -> Scene {
     Scene {
         panels: vec![
             map::map(moment),

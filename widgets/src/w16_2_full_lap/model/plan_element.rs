@@ -8,7 +8,7 @@ use widget_kit::values::Values;
 
 use super::grid::{GRID_CM, HEADING_STEP_DEG, moved, snapped};
 use super::panel;
-use super::pick::Direction;
+use super::pick::PickDirection;
 
 use crate::w16_2_full_lap::spec::{PIECE, PIECE_NUMBER};
 
@@ -105,15 +105,15 @@ impl PlanElement {
     }
 
     /// The previous or next piece of its kind; without a selection, the last or the first wall.
-    pub fn stepped(piece: Option<Self>, step: Direction, sketch: &Sketch) -> Option<Self> {
+    pub fn stepped(piece: Option<Self>, step: PickDirection, sketch: &Sketch) -> Option<Self> {
         let kind = piece.map_or(0, Self::kind);
         let count = Self::from_index(kind, 0)?.count(sketch);
         let last = count.checked_sub(1)?;
         let index = match (piece.map(Self::index), step) {
-            (None, Direction::On) => 0,
-            (None, Direction::Back) => last,
-            (Some(index), Direction::On) => (index + 1) % count,
-            (Some(index), Direction::Back) => index.checked_sub(1).unwrap_or(last),
+            (None, PickDirection::On) => 0,
+            (None, PickDirection::Back) => last,
+            (Some(index), PickDirection::On) => (index + 1) % count,
+            (Some(index), PickDirection::Back) => index.checked_sub(1).unwrap_or(last),
         };
         Self::from_index(kind, index)
     }

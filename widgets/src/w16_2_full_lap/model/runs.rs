@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use ch16_lab::lap::{
-    BuiltInWorld, Choice as _, Drive, LapConfig, LapRecord, LapSummary, LoopAttempt, LoopJudgement,
-    OwnLoop, OwnLoopError, OwnLoopRequest,
+    BuiltInWorld, Drive, LapConfig, LapRecord, LapSummary, LoopJudgement, NamedChoice as _,
+    OwnLoop, OwnLoopError, OwnLoopRequest, RecordedLoopAttempt,
 };
 use ch16_slam2d::loops::LoopConfig;
 use pr_geom::SE2;
@@ -32,7 +32,7 @@ pub struct Runs {
 
 /// The results table of a lap.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Results {
+pub struct ResultsTable {
     /// The front end alone.
     pub front_end: LapSummary,
     /// The pose graph with its loops.
@@ -103,14 +103,14 @@ impl Runs {
     ///
     /// # Panics
     /// If the attempt belongs to another lap.
-    pub fn gates(&self, attempt: &LoopAttempt) -> &Gates {
+    pub fn gates(&self, attempt: &RecordedLoopAttempt) -> &Gates {
         let attempts = self.graph.attempts();
         let index = attempts.partition_point(|other| other.tick < attempt.tick);
         &self.gates[index]
     }
 
     /// The attempts to close a loop in the first ticks, in order.
-    pub fn attempts_until(&self, tick: usize) -> &[LoopAttempt] {
+    pub fn attempts_until(&self, tick: usize) -> &[RecordedLoopAttempt] {
         let all = self.graph.attempts();
         &all[..all.partition_point(|attempt| attempt.tick <= tick)]
     }
@@ -170,15 +170,15 @@ impl Runs {
     }
 
     /// The results table as of a tick.
-    pub fn results_at(&self, tick: usize) -> Results {
-        Results {
+    pub fn results_at(&self, tick: usize) -> ResultsTable {
+        ResultsTable {
             front_end: self.front_end.lap().summary_at(tick),
             graph: self.graph.lap().summary_at(tick),
         }
     }
 
     /// The results table of every tick, the start first.
-    pub fn results_over_time(&self) -> Vec<Results> {
+    pub fn results_over_time(&self) -> Vec<ResultsTable> {
         (0..=self.ticks())
             .map(|tick| self.results_at(tick))
             .collect()

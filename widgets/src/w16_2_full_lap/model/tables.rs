@@ -2,18 +2,20 @@
 //!
 //! They end at the last tick that is shown.
 
-use ch16_lab::lap::{LapSummary, LoopAttempt, LoopEffect, RecordedEdge, edge_strain};
+use ch16_lab::lap::{
+    LapSummary, RecordedEdge, RecordedLoopAttempt, RecordedLoopEffect, edge_strain,
+};
 use ch16_slam2d::loops::LoopRejection;
 use widget_kit::model::{Table, TablePlace};
 
-use super::moment::Moment;
-use super::pick::Part;
+use super::moment::LapState;
+use super::pick::GraphPart;
 use super::picture::part_of;
-use super::runs::{Results, Runs};
+use super::runs::{ResultsTable, Runs};
 use super::texts::{ends, model_name};
 
 /// The tables beside the picture.
-pub fn shown(runs: &Runs, seen: usize, canonical: &[Results]) -> Vec<Table> {
+pub fn shown(runs: &Runs, seen: usize, canonical: &[ResultsTable]) -> Vec<Table> {
     let when = |last: usize| {
         if seen < last {
             format!("after tick {seen}")
@@ -38,7 +40,7 @@ pub fn shown(runs: &Runs, seen: usize, canonical: &[Results]) -> Vec<Table> {
 }
 
 /// All tables, the shown ones first.
-pub fn all(runs: &Runs, seen: usize, canonical: &[Results]) -> Vec<Table> {
+pub fn all(runs: &Runs, seen: usize, canonical: &[ResultsTable]) -> Vec<Table> {
     let mut tables = shown(runs, seen, canonical);
     tables.extend([
         loop_attempts(runs, seen),
@@ -50,8 +52,8 @@ pub fn all(runs: &Runs, seen: usize, canonical: &[Results]) -> Vec<Table> {
     tables
 }
 
-fn results(id: &'static str, title: String, results: &Results) -> Table {
-    let Results { front_end, graph } = results;
+fn results(id: &'static str, title: String, results: &ResultsTable) -> Table {
+    let ResultsTable { front_end, graph } = results;
     let keyframes = |name: &str, of: fn(&LapSummary) -> String| {
         vec![name.to_owned(), String::new(), of(front_end), of(graph)]
     };
@@ -102,7 +104,7 @@ fn loops(runs: &Runs, seen: usize) -> Table {
         "moved (m)",
         "verdict",
     ];
-    let row = |attempt: &LoopAttempt| {
+    let row = |attempt: &RecordedLoopAttempt| {
         let loop_ = &attempt.verification;
         let gates = runs.gates(attempt);
         let moved = attempt.effect.map(|effect| effect.max_shift_m);
@@ -146,12 +148,13 @@ fn loop_attempts(runs: &Runs, seen: usize) -> Table {
         "keyframe rms after (m)",
         "verdict",
     ];
-    let row = |attempt: &LoopAttempt| {
+    let row = |attempt: &RecordedLoopAttempt| {
         let loop_ = &attempt.verification;
         let gates = runs.gates(attempt);
         let error = runs.graph.lap().loop_error(attempt);
-        let effect =
-            |of: fn(&LoopEffect) -> f64| exact(attempt.effect.as_ref().map_or(f64::NAN, of));
+        let effect = |of: fn(&RecordedLoopEffect) -> f64| {
+            exact(attempt.effect.as_ref().map_or(f64::NAN, of))
+        };
         vec![
             attempt.tick.to_string(),
             loop_.from_node.to_string(),
@@ -178,7 +181,7 @@ fn loop_attempts(runs: &Runs, seen: usize) -> Table {
     )
 }
 
-fn verdict_with_reason(attempt: &LoopAttempt) -> &'static str {
+fn verdict_with_reason(attempt: &RecordedLoopAttempt) -> &'static str {
     match attempt.verification.rejection {
         None if attempt.verification.waits.is_some() => "waits for others",
         None => "accepted",
@@ -288,7 +291,7 @@ fn map(runs: &Runs, seen: usize) -> Table {
 }
 
 /// Every edge of the graph at the current tick.
-pub fn edges(moment: &Moment) -> Table {
+pub fn edges(moment: &LapState) -> Table {
     let head = [
         "from node",
         "to node",
@@ -301,9 +304,9 @@ pub fn edges(moment: &Moment) -> Table {
     let row = |edge: &RecordedEdge| {
         let strain = edge_strain(edge, &moment.nodes);
         let kind = match part_of(moment, edge) {
-            Part::Own => "your loop",
-            Part::Loop(_) => "loop",
-            Part::Edge(_) | Part::Keyframe(_) => "odometry",
+            GraphPart::Own => "your loop",
+            GraphPart::Loop(_) => "loop",
+            GraphPart::Edge(_) | GraphPart::Keyframe(_) => "odometry",
         };
         let numbers = [
             strain.chi2,

@@ -44,7 +44,7 @@ fn press(model: &mut FullLap, id: &str) {
 }
 
 /// The results table at the end of the lap.
-fn results(model: &FullLap) -> Results {
+fn results(model: &FullLap) -> ResultsTable {
     model.runs.results_at(model.runs.ticks())
 }
 

@@ -1,11 +1,13 @@
 //! The result in words and numbers.
 
-use ch16_lab::lap::{BuiltInWorld, LoopAttempt, LoopEffect, LoopJudgement, OwnLoopError};
+use ch16_lab::lap::{
+    BuiltInWorld, LoopJudgement, OwnLoopError, RecordedLoopAttempt, RecordedLoopEffect,
+};
 use ch16_slam2d::loops::GateModel;
 use widget_kit::model::{Assessment, Fact, Outcome};
 use widget_kit::plural::plural;
 
-use super::moment::Moment;
+use super::moment::LapState;
 use super::runs::Runs;
 
 pub mod floor_plan;
@@ -24,7 +26,7 @@ pub struct Statement {
 }
 
 /// `29 to 7`: the new node and the old one.
-pub fn ends(attempt: &LoopAttempt) -> String {
+pub fn ends(attempt: &RecordedLoopAttempt) -> String {
     let loop_ = &attempt.verification;
     format!("{} to {}", loop_.from_node, loop_.candidate.node)
 }
@@ -48,7 +50,7 @@ pub fn standing(judgement: LoopJudgement) -> Assessment {
 
 /// The result at a tick: of the selected part, else of the custom loop, else of the loop tried in the tick,
 /// else of the estimates. `refused` is the reason why the custom loop is impossible.
-pub fn outcome(moment: &Moment, refused: Option<&OwnLoopError>) -> Outcome {
+pub fn outcome(moment: &LapState, refused: Option<&OwnLoopError>) -> Outcome {
     let Statement {
         standing,
         verdict,
@@ -73,7 +75,7 @@ pub fn outcome(moment: &Moment, refused: Option<&OwnLoopError>) -> Outcome {
     }
 }
 
-fn statement(moment: &Moment, refused: Option<&OwnLoopError>) -> Statement {
+fn statement(moment: &LapState, refused: Option<&OwnLoopError>) -> Statement {
     let (runs, tick) = (moment.runs, moment.tick);
     let neutral = |verdict: &str, sentence| Statement {
         standing: Assessment::Neutral,
@@ -201,12 +203,12 @@ fn last_line(runs: &Runs, tick: usize) -> f64 {
 /// Facts of the newest attempt; not finite before the first one, because the list of facts is fixed.
 fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
     let attempt = runs.graph.newest_attempt(tick);
-    let of = |read: &dyn Fn(&LoopAttempt) -> f64| attempt.map_or(f64::NAN, read);
-    let of_effect = |read: &dyn Fn(&LoopEffect) -> f64| {
+    let of = |read: &dyn Fn(&RecordedLoopAttempt) -> f64| attempt.map_or(f64::NAN, read);
+    let of_effect = |read: &dyn Fn(&RecordedLoopEffect) -> f64| {
         let effect = attempt.and_then(|attempt| attempt.effect.as_ref());
         effect.map_or(f64::NAN, read)
     };
-    let error = |attempt: &LoopAttempt| runs.graph.lap().loop_error(attempt);
+    let error = |attempt: &RecordedLoopAttempt| runs.graph.lap().loop_error(attempt);
     let chi2 = of(&|attempt| attempt.verification.gate.chi2);
     let path = of(&|attempt| runs.gates(attempt).path.test.chi2);
     let exact = of(&|attempt| runs.gates(attempt).exact.test.chi2);
@@ -252,7 +254,7 @@ fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
 }
 
 /// The text alternative of the picture.
-pub fn summary(moment: &Moment, refused: Option<&OwnLoopError>) -> String {
+pub fn summary(moment: &LapState, refused: Option<&OwnLoopError>) -> String {
     let (runs, tick) = (moment.runs, moment.tick);
     let truth = runs.truth(tick);
     let way = if runs.is_way_back(tick) {

@@ -1,13 +1,13 @@
 //! One estimator's lap, with its series for the plots.
 
-use ch16_lab::lap::{LapSummary, LapTrace, LoopAttempt, TickMetrics};
+use ch16_lab::lap::{LapSummary, LapTrace, RecordedLoopAttempt, TickMetrics};
 use pr_geom::SE2;
 
 /// A finished lap of one estimator.
 pub struct Track {
     start: SE2,
     trace: LapTrace,
-    attempts: Vec<LoopAttempt>,
+    attempts: Vec<RecordedLoopAttempt>,
     /// Position error of the estimate after each tick, m; the start first.
     pub errors_m: Vec<f64>,
     /// Root mean square position error of the keyframes after each tick, m.
@@ -81,28 +81,28 @@ impl Track {
     }
 
     /// The attempts to close a loop, in order.
-    pub fn attempts(&self) -> &[LoopAttempt] {
+    pub fn attempts(&self) -> &[RecordedLoopAttempt] {
         &self.attempts
     }
 
     /// The attempt made in that tick.
-    pub fn attempt_at(&self, tick: usize) -> Option<&LoopAttempt> {
+    pub fn attempt_at(&self, tick: usize) -> Option<&RecordedLoopAttempt> {
         self.trace.report(tick)?.loop_attempt.as_ref()
     }
 
     /// The newest attempt made in the first `tick` ticks.
-    pub fn newest_attempt(&self, tick: usize) -> Option<&LoopAttempt> {
+    pub fn newest_attempt(&self, tick: usize) -> Option<&RecordedLoopAttempt> {
         self.attempts.iter().rfind(|attempt| attempt.tick <= tick)
     }
 
     /// The attempt to which a tick belongs: the newest one up to the next tick, else the first one.
-    pub fn attempt_near(&self, tick: usize) -> Option<&LoopAttempt> {
+    pub fn attempt_near(&self, tick: usize) -> Option<&RecordedLoopAttempt> {
         self.newest_attempt(tick + 1).or(self.attempts.first())
     }
 
     /// Number of closed loops after that many ticks.
     pub fn accepted_until(&self, tick: usize) -> usize {
-        let accepted = |attempt: &&LoopAttempt| attempt.accepted() && attempt.tick <= tick;
+        let accepted = |attempt: &&RecordedLoopAttempt| attempt.accepted() && attempt.tick <= tick;
         self.attempts.iter().filter(accepted).count()
     }
 }

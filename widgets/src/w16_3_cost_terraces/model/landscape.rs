@@ -18,7 +18,7 @@ pub struct Landscape {
     /// Shift of the lowest cell, m.
     pub lowest_m: [f64; 2],
     /// The ball that was dropped at the cross hair.
-    pub ball: Ball,
+    pub ball: BallPath,
     /// Heights from its end straight on to the truth, as `[distance from the end (m), height]`.
     pub ahead: Vec<[f64; 2]>,
     heights: Vec<f64>,
@@ -27,7 +27,7 @@ pub struct Landscape {
 
 /// The path of a ball.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ball {
+pub struct BallPath {
     /// Shift after every step, the drop first, m; never empty.
     pub path_m: Vec<[f64; 2]>,
     /// Height after every step.
@@ -45,7 +45,7 @@ pub enum End {
     OutOfSteps,
 }
 
-impl Ball {
+impl BallPath {
     /// A ball that stops where it was dropped.
     pub fn at(shift_m: [f64; 2], height: f64) -> Self {
         Self {
@@ -100,7 +100,7 @@ impl Landscape {
             levels: Vec::new(),
             range: [0.0, 1.0],
             lowest_m: [0.0, 0.0],
-            ball: Ball::at([0.0, 0.0], 0.0),
+            ball: BallPath::at([0.0, 0.0], 0.0),
             ahead: Vec::new(),
             heights: Vec::new(),
             cells: 0,

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use widget_kit::model::{Activity, Motion};
-use widget_kit::scene::{Bounds, Cell, Raster};
+use widget_kit::scene::{Bounds, Raster, RasterCell};
 
 use super::landscape::spacing_m;
 use super::terrains::Terrains;
-use crate::w16_3_cost_terraces::spec::{HALF_SPAN_M, Measure};
+use crate::w16_3_cost_terraces::spec::{HALF_SPAN_M, ReliefMeasure};
 
 /// Duration of a morph, s.
 const MORPH_S: f64 = 0.8;
@@ -49,10 +49,10 @@ impl Morph {
     }
 
     /// Starts to morph into a measure, and follows changed landscapes.
-    pub fn turn_to(&mut self, measure: Measure, motion: Motion, terrains: &Terrains) {
+    pub fn turn_to(&mut self, measure: ReliefMeasure, motion: Motion, terrains: &Terrains) {
         self.wanted = match measure {
-            Measure::Icp => 0.0,
-            Measure::Ndt => 1.0,
+            ReliefMeasure::Icp => 0.0,
+            ReliefMeasure::Ndt => 1.0,
         };
         if motion == Motion::Reduced {
             self.share = self.wanted;
@@ -110,7 +110,7 @@ impl Morph {
 }
 
 /// The relief: each cell with the slope to its neighbours, lit from the upper left.
-fn lit(levels: &[f32], cells: usize) -> Arc<[Cell]> {
+fn lit(levels: &[f32], cells: usize) -> Arc<[RasterCell]> {
     let gain = LIGHT_PER_SLOPE_M / (2.0 * spacing_m(cells)) as f32;
     let rise = |along: usize, stride: usize, index: usize| {
         let (before, after) = (along.min(1), (cells - 1 - along).min(1));
@@ -118,7 +118,7 @@ fn lit(levels: &[f32], cells: usize) -> Arc<[Cell]> {
     };
     let cell = |(index, level): (usize, &f32)| {
         let up_right = rise(index % cells, 1, index) - rise(index / cells, cells, index);
-        Cell::Relief {
+        RasterCell::Relief {
             level: *level,
             light: (gain * up_right).clamp(-1.0, 1.0),
         }

@@ -12,7 +12,7 @@ use widget_kit::scene::{Axis, Layer, Mark, Scene, Tone};
 use super::morph::Morph;
 use super::rests::Rests;
 use super::terrains::Terrains;
-use crate::w16_3_cost_terraces::spec::{Colors, HALF_SPAN_M, Measure};
+use crate::w16_3_cost_terraces::spec::{Colors, HALF_SPAN_M, ReliefMeasure};
 use plots::Along;
 
 /// Name of the panel with the relief.
@@ -20,9 +20,9 @@ pub const RELIEF: &str = "relief";
 
 /// The state that the picture shows besides the landscapes.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment {
+pub struct PictureState {
     /// The measure that the relief shows.
-    pub measure: Measure,
+    pub measure: ReliefMeasure,
     /// Shift under the cross hair, m.
     pub probe_m: [f64; 2],
     /// The shift at which the sweep is shown.
@@ -44,7 +44,7 @@ pub enum Looked {
     Pointer([f64; 2]),
 }
 
-impl Moment {
+impl PictureState {
     /// The shift at which the sweep is shown, m.
     pub fn looked_m(&self, terrains: &Terrains) -> [f64; 2] {
         match self.looked {
@@ -61,14 +61,14 @@ impl Moment {
 }
 
 /// The whole picture.
-pub fn scene(terrains: &Terrains, rests: &Rests, morph: &Morph, moment: Moment) -> Scene {
+pub fn scene(terrains: &Terrains, rests: &Rests, morph: &Morph, moment: PictureState) -> Scene {
     Scene {
         panels: vec![
             relief::panel(terrains, &rests.now_m(), morph, moment),
             profile::panel(terrains.of(moment.measure), moment),
             match moment.measure {
-                Measure::Icp => places::pairs(terrains, moment),
-                Measure::Ndt => places::bells(terrains, moment),
+                ReliefMeasure::Icp => places::pairs(terrains, moment),
+                ReliefMeasure::Ndt => places::bells(terrains, moment),
             },
             plots::slice(terrains, moment, Along::X),
             plots::slice(terrains, moment, Along::Y),
@@ -79,10 +79,10 @@ pub fn scene(terrains: &Terrains, rests: &Rests, morph: &Morph, moment: Moment) 
 }
 
 /// The name of a measure.
-fn name(measure: Measure) -> &'static str {
+fn name(measure: ReliefMeasure) -> &'static str {
     match measure {
-        Measure::Icp => "ICP",
-        Measure::Ndt => "NDT",
+        ReliefMeasure::Icp => "ICP",
+        ReliefMeasure::Ndt => "NDT",
     }
 }
 

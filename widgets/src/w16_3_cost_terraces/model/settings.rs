@@ -3,15 +3,15 @@
 use widget_kit::values::Values;
 
 use crate::w16_3_cost_terraces::spec::{
-    CELLS, COLOURS, Colors, HEADING, MAX_ROWS, NDT_CELL, ODOMETRY, PROBE_X, PROBE_Y, Place, ROWS,
-    SCENE, SEED, TAU,
+    CELLS, COLOURS, Colors, HEADING, MAX_ROWS, NDT_CELL, ODOMETRY, PROBE_X, PROBE_Y, ROWS, SCENE,
+    SEED, SweepPlace, TAU,
 };
 
 /// The parameters in the form of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
+pub struct TerraceSettings {
     /// Location of the sweep.
-    pub place: Place,
+    pub place: SweepPlace,
     /// Largest distance of a pair, m.
     pub tau_m: f64,
     /// Seed of the range noise of the sweep.
@@ -32,7 +32,7 @@ pub struct Settings {
     pub odometry_m: Option<f64>,
 }
 
-impl Settings {
+impl TerraceSettings {
     /// Reads the values.
     pub fn read(values: &Values) -> Self {
         Self {

@@ -3,9 +3,9 @@
 use widget_kit::model::Table;
 use widget_kit::ticks::signed;
 
-use super::landscape::{Ball, Landscape, shift_m};
+use super::landscape::{BallPath, Landscape, shift_m};
 use super::rests::Rests;
-use super::settings::Settings;
+use super::settings::TerraceSettings;
 use super::terrains::Terrains;
 
 /// The tables beside the picture.
@@ -14,7 +14,7 @@ pub fn shown(terrains: &Terrains) -> Vec<Table> {
 }
 
 /// All tables, the shown ones first.
-pub fn all(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Vec<Table> {
+pub fn all(terrains: &Terrains, rests: &Rests, settings: &TerraceSettings) -> Vec<Table> {
     let mut tables = shown(terrains);
     tables.extend([
         information(terrains),
@@ -134,7 +134,7 @@ fn dropped(rests: &Rests) -> Table {
 }
 
 /// The pairs at the cross hair, and those that are about to change.
-fn partners(terrains: &Terrains, settings: &Settings) -> Table {
+fn partners(terrains: &Terrains, settings: &TerraceSettings) -> Table {
     let pairing = terrains.pairing_at(settings.probe_m);
     let groups = [
         ("stays", pairing.pairs),
@@ -210,7 +210,7 @@ fn slice(
     )
 }
 
-fn way(id: &'static str, title: &str, height: &str, ball: &Ball) -> Table {
+fn way(id: &'static str, title: &str, height: &str, ball: &BallPath) -> Table {
     let rows = ball
         .path_m
         .iter()

@@ -1,17 +1,17 @@
 //! Both landscapes of a location, and what has to be recomputed if a setting changes.
 
 use ch16_lab::terrain::{
-    Ball as Roller, BallConfig, BallStop, Objective, PartnerChange, PlaneRows, RowConstraints,
-    SceneKind, Terrain, TerrainProbe, TerrainScene, TerrainSettings,
+    Ball, BallConfig, BallStop, Objective, PartnerChange, PlaneRows, RowConstraints, SceneKind,
+    Terrain, TerrainProbe, TerrainScene, TerrainSettings,
 };
 use ch16_slam2d::cloud::{NearestMap, PointCloud};
 use ch16_slam2d::ndt::NdtCell;
 use pr_geom::{SE2, Vector2, math};
 use widget_kit::scene::Bounds;
 
-use super::landscape::{Ball, End, Landscape};
-use super::settings::Settings;
-use crate::w16_3_cost_terraces::spec::{HALF_SPAN_M, MAX_BALL_STEPS, Measure, Place};
+use super::landscape::{BallPath, End, Landscape};
+use super::settings::TerraceSettings;
+use crate::w16_3_cost_terraces::spec::{HALF_SPAN_M, MAX_BALL_STEPS, ReliefMeasure, SweepPlace};
 
 /// Lower limit of the information for the drawing of the ellipse, 1/m²: no axis is longer than a metre.
 const MIN_INFORMATION_PER_M2: f64 = 1.0;
@@ -33,7 +33,7 @@ pub struct Terrains {
     pub information: Hold,
     /// The rows of the point-to-plane step at the truth.
     pub rows: PlaneRows,
-    settings: Settings,
+    settings: TerraceSettings,
     scene: TerrainScene,
     grids: Terrain,
     turned: PointCloud,
@@ -102,7 +102,7 @@ impl Stale {
         ndt_ball: true,
     };
 
-    fn between(old: &Settings, new: &Settings) -> Self {
+    fn between(old: &TerraceSettings, new: &TerraceSettings) -> Self {
         let place = old.place != new.place || old.seed != new.seed;
         let turn = place || old.heading_deg != new.heading_deg;
         let cells = old.cells != new.cells;
@@ -124,7 +124,7 @@ impl Stale {
 
 impl Terrains {
     /// Computes everything for these settings.
-    pub fn new(settings: Settings) -> Self {
+    pub fn new(settings: TerraceSettings) -> Self {
         let scene = scene_of(&settings);
         let mut terrains = Self {
             icp: Landscape::flat(),
@@ -142,7 +142,7 @@ impl Terrains {
     }
 
     /// Recomputes only what depends on the changed settings.
-    pub fn update(&mut self, settings: Settings) {
+    pub fn update(&mut self, settings: TerraceSettings) {
         let stale = Stale::between(&self.settings, &settings);
         self.settings = settings;
         if stale.place {
@@ -156,7 +156,7 @@ impl Terrains {
     }
 
     fn renew(&mut self, stale: Stale) {
-        let Settings { cells, probe_m, .. } = self.settings;
+        let TerraceSettings { cells, probe_m, .. } = self.settings;
         let grid = self.grid();
         if stale.place {
             let map = self.scene.map();
@@ -199,10 +199,10 @@ impl Terrains {
     }
 
     /// The landscape of a measure.
-    pub fn of(&self, measure: Measure) -> &Landscape {
+    pub fn of(&self, measure: ReliefMeasure) -> &Landscape {
         match measure {
-            Measure::Icp => &self.icp,
-            Measure::Ndt => &self.ndt,
+            ReliefMeasure::Icp => &self.icp,
+            ReliefMeasure::Ndt => &self.ndt,
         }
     }
 
@@ -291,20 +291,20 @@ impl Terrains {
     }
 }
 
-fn scene_of(settings: &Settings) -> TerrainScene {
+fn scene_of(settings: &TerraceSettings) -> TerrainScene {
     TerrainScene::with_seed(kind(settings), settings.ndt_cell_m, settings.seed)
 }
 
-fn kind(settings: &Settings) -> SceneKind {
+fn kind(settings: &TerraceSettings) -> SceneKind {
     match settings.place {
-        Place::Room => SceneKind::Room,
-        Place::Corridor => SceneKind::LongCorridor,
-        Place::OwnCorridor => SceneKind::Corridor,
+        SweepPlace::Room => SceneKind::Room,
+        SweepPlace::Corridor => SceneKind::LongCorridor,
+        SweepPlace::OwnCorridor => SceneKind::Corridor,
     }
 }
 
 /// Drops a ball at a shift and follows it until it stops.
-fn roll(probe: &TerrainProbe<'_>, objective: Objective, [x, y]: [f64; 2]) -> Ball {
+fn roll(probe: &TerrainProbe<'_>, objective: Objective, [x, y]: [f64; 2]) -> BallPath {
     let config = BallConfig {
         max_steps: MAX_BALL_STEPS,
         ..BallConfig::default()
@@ -314,7 +314,7 @@ fn roll(probe: &TerrainProbe<'_>, objective: Objective, [x, y]: [f64; 2]) -> Bal
         Objective::NdtScore => -1.0,
     };
     let start = Vector2::new(x, y);
-    let mut ball = Roller::new(objective, start, config);
+    let mut ball = Ball::new(objective, start, config);
     let mut heights = vec![sign * probe.slope(objective, start).value];
     let end = loop {
         let step = ball.step(probe);
@@ -324,7 +324,7 @@ fn roll(probe: &TerrainProbe<'_>, objective: Objective, [x, y]: [f64; 2]) -> Bal
             Some(BallStop::Settled { .. } | BallStop::Level { .. }) => break End::Rests,
         }
     };
-    Ball {
+    BallPath {
         path_m: ball.path().iter().map(|at| [at.x, at.y]).collect(),
         heights,
         end,

@@ -3,14 +3,14 @@
 use widget_kit::model::{Assessment, Fact, Outcome};
 use widget_kit::ticks::signed;
 
-use super::landscape::{Ball, End};
+use super::landscape::{BallPath, End};
 use super::rests::{Rests, Scatter};
-use super::settings::Settings;
+use super::settings::TerraceSettings;
 use super::terrains::Terrains;
-use crate::w16_3_cost_terraces::spec::Place;
+use crate::w16_3_cost_terraces::spec::SweepPlace;
 
 /// The results of the balls, with the numbers.
-pub fn outcome(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Outcome {
+pub fn outcome(terrains: &Terrains, rests: &Rests, settings: &TerraceSettings) -> Outcome {
     let (icp, ndt) = (&terrains.icp.ball, &terrains.ndt.ball);
     let (standing, verdict) = match (icp.is_home(), ndt.is_home()) {
         (true, true) => (Assessment::Good, "both arrive"),
@@ -68,7 +68,7 @@ fn shift([x, y]: [f64; 2]) -> String {
     format!("({}, {}) m", signed(x, 2), signed(y, 2))
 }
 
-fn rest(ball: &Ball) -> String {
+fn rest(ball: &BallPath) -> String {
     let (steps, distance) = (ball.steps(), ball.rest_distance_m());
     match ball.end {
         End::Rests if ball.is_home() => format!("arrives after {steps} steps"),
@@ -79,7 +79,7 @@ fn rest(ball: &Ball) -> String {
     }
 }
 
-fn facts(terrains: &Terrains, scatter: &Scatter, settings: &Settings) -> Vec<Fact> {
+fn facts(terrains: &Terrains, scatter: &Scatter, settings: &TerraceSettings) -> Vec<Fact> {
     let off = |label: &'static str, id, [x, y]: [f64; 2]| {
         Fact::new(id, label, pr_geom::math::norm2(x, y), "m", 3)
     };
@@ -161,11 +161,11 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &Settings) -> Vec<Fac
 }
 
 /// The text alternative of the picture.
-pub fn summary(terrains: &Terrains, rests: &Rests, settings: &Settings) -> String {
+pub fn summary(terrains: &Terrains, rests: &Rests, settings: &TerraceSettings) -> String {
     let place = match settings.place {
-        Place::Room => "a room, over its own points",
-        Place::Corridor => "a corridor without doors, over a map that was measured apart",
-        Place::OwnCorridor => "the Apartment's corridor, over its own points",
+        SweepPlace::Room => "a room, over its own points",
+        SweepPlace::Corridor => "a corridor without doors, over a map that was measured apart",
+        SweepPlace::OwnCorridor => "the Apartment's corridor, over its own points",
     };
     let (icp, ndt) = (&terrains.icp, &terrains.ndt);
     let [firm, loose] = terrains.information.eigenvalues_per_cm2;

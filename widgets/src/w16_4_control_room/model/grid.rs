@@ -7,7 +7,7 @@ use ch16_slam2d::graph::EdgeKind;
 use pr_geom::math;
 use pr_grid::OccupancyGrid;
 use widget_kit::model::Fact;
-use widget_kit::scene::{Bounds, Cell, Raster};
+use widget_kit::scene::{Bounds, Raster, RasterCell};
 
 /// Odds above which a cell counts as occupied: nine to one, a probability of 0.9.
 const SURE_ODDS: f64 = 9.0;
@@ -128,7 +128,7 @@ impl GridView {
 fn raster(grid: &OccupancyGrid, revision: u64) -> Raster {
     let config = grid.config();
     let (min, cell_m) = (config.min_m, config.cell_m);
-    let cells: Arc<[Cell]> = grid.log_odds().iter().map(|l| occupancy(*l)).collect();
+    let cells: Arc<[RasterCell]> = grid.log_odds().iter().map(|l| occupancy(*l)).collect();
     Raster {
         bounds: Bounds {
             min: [min.x, min.y],
@@ -145,9 +145,9 @@ fn raster(grid: &OccupancyGrid, revision: u64) -> Raster {
 }
 
 /// Probability of occupancy, `1 − 1/(1 + e^l)`; log odds of 0 mean that the cell was not observed.
-fn occupancy(log_odds: f64) -> Cell {
+fn occupancy(log_odds: f64) -> RasterCell {
     if log_odds == 0.0 {
-        return Cell::Unknown;
+        return RasterCell::Unknown;
     }
-    Cell::Occupancy((1.0 - 1.0 / (1.0 + math::exp(log_odds))) as f32)
+    RasterCell::Occupancy((1.0 - 1.0 / (1.0 + math::exp(log_odds))) as f32)
 }

@@ -1,6 +1,6 @@
 //! The event log, tick by tick, in words.
 
-use ch16_lab::lap::{LapRecord, LapTrace, LoopAttempt, LoopJudgement};
+use ch16_lab::lap::{LapRecord, LapTrace, LoopJudgement, RecordedLoopAttempt};
 use widget_kit::model::{Assessment, TimelineMark};
 
 /// One line of the log.
@@ -84,7 +84,7 @@ pub fn marks(events: &[Event]) -> Vec<TimelineMark> {
 }
 
 /// The test of a loop, and the grid after an accepted one.
-fn loop_events(lap: &LapTrace, attempt: &LoopAttempt) -> Vec<Event> {
+fn loop_events(lap: &LapTrace, attempt: &RecordedLoopAttempt) -> Vec<Event> {
     let event = |part, text, standing, marked| Event {
         tick: attempt.tick,
         part,

@@ -9,7 +9,7 @@ use crate::w16_5_pose_graph_toy::spec::MAX_STEPS;
 const REST: f64 = 1e-6;
 
 /// The graph after a number of steps.
-pub struct Moment {
+pub struct GraphState {
     /// The poses.
     pub poses: Vec<SE2>,
     /// `eᵀΩe` of each edge.
@@ -21,16 +21,16 @@ pub struct Moment {
 }
 
 /// All steps to convergence.
-pub struct Course {
+pub struct SolverRun {
     /// The edges, which are constant.
     pub edges: Vec<EdgeView>,
     /// The start, and the graph after each step.
-    pub moments: Vec<Moment>,
+    pub moments: Vec<GraphState>,
     /// Whether a step failed.
     pub failed: bool,
 }
 
-impl Course {
+impl SolverRun {
     /// Runs the steps until no pose moves any more.
     pub fn new(mut graph: PoseGraph) -> Self {
         let edges: Vec<_> = graph.edges().collect();
@@ -60,9 +60,9 @@ impl Course {
     }
 }
 
-fn moment(graph: &PoseGraph, edges: &[EdgeView], moved: f64) -> Moment {
+fn moment(graph: &PoseGraph, edges: &[EdgeView], moved: f64) -> GraphState {
     let of = |id: EdgeId| graph.edge_chi2(id);
-    Moment {
+    GraphState {
         poses: graph.poses().to_vec(),
         edge_chi2: edges.iter().map(|edge| of(edge.id)).collect(),
         chi2: graph.chi2(),

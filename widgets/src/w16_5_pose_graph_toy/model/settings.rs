@@ -5,12 +5,14 @@ use nalgebra::Matrix3;
 use pr_geom::{SE2, math};
 use widget_kit::values::Values;
 
-use crate::w16_5_pose_graph_toy::spec::{GAP, GRAPH, MOVED, ODOMETRY, PINNED, STIFFNESS, Shape};
+use crate::w16_5_pose_graph_toy::spec::{
+    GAP, GRAPH, GraphShape, MOVED, ODOMETRY, PINNED, STIFFNESS,
+};
 
 /// Sides of the square and of the ring, m.
 const SIDE_M: f64 = 1.0;
 
-impl Shape {
+impl GraphShape {
     /// Number of poses.
     pub fn poses(self) -> usize {
         match self {

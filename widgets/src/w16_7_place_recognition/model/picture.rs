@@ -7,10 +7,10 @@ pub mod scores;
 
 use std::sync::Arc;
 
-use ch16_lab::lap::Choice;
+use ch16_lab::lap::NamedChoice;
 use ch16_lab::places::GRADED;
 use widget_kit::scene::{
-    Aspect, Axis, Bounds, Cell, Layer, LegendEntry, Mark, Panel, Raster, Scene, Stroke, Tone,
+    Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Raster, RasterCell, Scene, Stroke, Tone,
     Weight,
 };
 
@@ -103,14 +103,14 @@ fn raster(been: &PlaceRecognition, places: &Places) -> Raster {
     let cell = |k: usize| {
         let (old, new) = (k / count, k % count);
         if new > newest {
-            return Cell::Unknown;
+            return RasterCell::Unknown;
         }
         match places.study.pair(old, new) {
             Some(pair) => {
                 let alike = 1.0 - (pair.distances[detector] / widest).min(1.0);
-                Cell::Occupancy((alike * alike) as f32)
+                RasterCell::Occupancy((alike * alike) as f32)
             }
-            None => Cell::Unknown,
+            None => RasterCell::Unknown,
         }
     };
     let high = count as f64 - 0.5;
@@ -121,7 +121,7 @@ fn raster(been: &PlaceRecognition, places: &Places) -> Raster {
         },
         columns: count,
         rows: count,
-        cells: (0..count * count).map(cell).collect::<Arc<[Cell]>>(),
+        cells: (0..count * count).map(cell).collect::<Arc<[RasterCell]>>(),
         // Everything on which the picture depends, in one number.
         revision: (been.laps << 16) + ((newest as u64) << 2) + detector as u64,
     }

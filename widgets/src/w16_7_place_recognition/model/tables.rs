@@ -1,6 +1,6 @@
 //! The tables: the detectors beside the picture, all pairs for the export.
 
-use ch16_lab::lap::Choice;
+use ch16_lab::lap::NamedChoice;
 use ch16_lab::places::GRADED;
 use widget_kit::model::Table;
 

@@ -1,6 +1,6 @@
 //! The result in words and numbers.
 
-use ch16_lab::lap::Choice;
+use ch16_lab::lap::NamedChoice;
 use ch16_lab::places::GRADED;
 use widget_kit::model::{Assessment, Fact, Outcome};
 

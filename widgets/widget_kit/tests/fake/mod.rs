@@ -8,8 +8,8 @@ use widget_kit::model::{
 use widget_kit::param::{Choice, MORE, ParamError, ParamKind, ParamSpec};
 use widget_kit::playback::{Playback, SPEED};
 use widget_kit::scene::{
-    Aspect, Axis, Bounds, Cell, ColorBar, Layer, LegendEntry, Mark, Panel, Raster, Scene, Stroke,
-    Tone, Weight,
+    Aspect, Axis, Bounds, ColorBar, Layer, LegendEntry, Mark, Panel, Raster, RasterCell, Scene,
+    Stroke, Tone, Weight,
 };
 use widget_kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use widget_kit::values::{Changed, Values};
@@ -180,12 +180,12 @@ impl Model for Fake {
 
     fn scene(&self) -> Scene {
         let x = self.values.number("x");
-        let cells: Vec<Cell> = (0..100)
+        let cells: Vec<RasterCell> = (0..100)
             .map(|k| {
                 if k / 10 < self.filled {
-                    Cell::Level(k as f32 / 99.0)
+                    RasterCell::Level(k as f32 / 99.0)
                 } else {
-                    Cell::Unknown
+                    RasterCell::Unknown
                 }
             })
             .collect();

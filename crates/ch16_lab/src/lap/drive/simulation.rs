@@ -5,10 +5,10 @@ use std::sync::Arc;
 use ch16_slam2d::scan::{LaserScan, ScanPreparer};
 use nalgebra::Vector3;
 use pr_geom::SE2;
-use pr_sim::motion::{OdometryNoise, drive_exactly, sample_velocity_motion};
+use pr_sim::motion::{VelocityNoise, drive_exactly, sample_velocity_motion};
 use pr_sim::{Lidar, Rng, WaypointDriver};
 
-use super::{Drive, DriveTick, Sweep, empty_scan};
+use super::{Drive, DriveTick, SimulatedSweep, empty_scan};
 use crate::lap::DriveConfig;
 
 /// A simulation under way: [`Drive::simulate`] in pieces.
@@ -16,9 +16,9 @@ pub struct DriveSimulation {
     config: DriveConfig,
     rng: Rng,
     driver: WaypointDriver,
-    noise: OdometryNoise,
+    noise: VelocityNoise,
     sensor: Sensor,
-    first_sweep: Sweep,
+    first_sweep: SimulatedSweep,
     ticks: Vec<DriveTick>,
     truth: SE2,
     dead_reckoning: SE2,
@@ -105,7 +105,12 @@ impl Sensor {
         }
     }
 
-    fn sweep(&mut self, config: &DriveConfig, world_from_sensor: &SE2, rng: &mut Rng) -> Sweep {
+    fn sweep(
+        &mut self,
+        config: &DriveConfig,
+        world_from_sensor: &SE2,
+        rng: &mut Rng,
+    ) -> SimulatedSweep {
         self.lidar.sense_into(
             &config.world,
             world_from_sensor,
@@ -116,7 +121,7 @@ impl Sensor {
         let cloud = self
             .preparer
             .prepare(&self.scan, &Vector3::zeros(), &config.scan);
-        Sweep {
+        SimulatedSweep {
             ranges_m: self.scan.ranges_m.clone(),
             cloud: Arc::new(cloud),
         }

@@ -3,7 +3,7 @@
 use ch16_slam2d::graph::RobustKernel;
 use thiserror::Error;
 
-use super::super::choices::Choice;
+use super::super::choices::NamedChoice;
 
 /// Width of Huber's kernel, a Mahalanobis norm: 95 % of the efficiency of plain least squares on Gaussian
 /// noise (Huber 1964). The lap's own width, 12, is too large to reduce a wrong loop.
@@ -24,7 +24,7 @@ pub enum Claim {
     SamePlace,
 }
 
-impl Choice for Claim {
+impl NamedChoice for Claim {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Registered, "registered", "registered"),
         (Self::Truth, "truth", "the truth"),
@@ -65,7 +65,7 @@ impl OwnKernel {
     }
 }
 
-impl Choice for OwnKernel {
+impl NamedChoice for OwnKernel {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Quadratic, "quadratic", "quadratic"),
         (Self::Huber, "huber", "Huber"),

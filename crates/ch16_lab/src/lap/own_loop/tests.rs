@@ -34,7 +34,7 @@ const WRONG: OwnLoopRequest = OwnLoopRequest {
     ..REQUEST
 };
 
-fn effect(record: &LapRecord, request: OwnLoopRequest) -> LoopEffect {
+fn effect(record: &LapRecord, request: OwnLoopRequest) -> RecordedLoopEffect {
     record.own_loop(&request).unwrap().attempt.effect.unwrap()
 }
 

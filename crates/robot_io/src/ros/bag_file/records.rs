@@ -35,7 +35,11 @@ pub struct Connections {
 
 impl Connections {
     /// Reads a record that is not a chunk; returns its message if it is one.
-    pub fn read(&mut self, fields: &Fields<'_>, data: &[u8]) -> Result<Option<Recorded>, String> {
+    pub fn read(
+        &mut self,
+        fields: &HeaderFields<'_>,
+        data: &[u8],
+    ) -> Result<Option<Recorded>, String> {
         match fields.op()? {
             op::CONNECTION => self.read_connection(fields, data).map(|()| None),
             op::MESSAGE => self.message(fields, data).map(Some),
@@ -43,10 +47,10 @@ impl Connections {
         }
     }
 
-    fn read_connection(&mut self, named: &Fields<'_>, data: &[u8]) -> Result<(), String> {
+    fn read_connection(&mut self, named: &HeaderFields<'_>, data: &[u8]) -> Result<(), String> {
         let number = named.u32("conn")?;
         let topic = named.name("topic")?;
-        let kind = Fields::parse(data)?.name("type")?;
+        let kind = HeaderFields::parse(data)?.name("type")?;
         if self.known.len() < MAX_CONNECTIONS {
             let kind = kind_of(&kind);
             self.known.insert(number, Connection { topic, kind });
@@ -61,7 +65,7 @@ impl Connections {
             .any(|number| self.known.contains_key(number))
     }
 
-    fn message(&mut self, named: &Fields<'_>, data: &[u8]) -> Result<Recorded, String> {
+    fn message(&mut self, named: &HeaderFields<'_>, data: &[u8]) -> Result<Recorded, String> {
         let number = named.u32("conn")?;
         let Some(connection) = self.known.get(&number) else {
             self.orphans.insert(number);
@@ -89,7 +93,7 @@ pub fn begins(bytes: &[u8]) -> bool {
     let Ok(header) = piece(&mut rest, "a header") else {
         return false;
     };
-    let is_known = Fields::parse(header).and_then(|fields| fields.op());
+    let is_known = HeaderFields::parse(header).and_then(|fields| fields.op());
     let length = rest
         .first_chunk::<4>()
         .map(|length| u32::from_le_bytes(*length));
@@ -108,11 +112,11 @@ pub fn piece<'a>(rest: &mut &'a [u8], what: &str) -> Result<&'a [u8], String> {
 }
 
 /// The named fields of a header.
-pub struct Fields<'a> {
+pub struct HeaderFields<'a> {
     named: BTreeMap<&'a [u8], &'a [u8]>,
 }
 
-impl<'a> Fields<'a> {
+impl<'a> HeaderFields<'a> {
     /// Parses the fields of these bytes.
     pub fn parse(mut header: &'a [u8]) -> Result<Self, String> {
         let mut named = BTreeMap::new();

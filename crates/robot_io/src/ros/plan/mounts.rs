@@ -8,7 +8,7 @@ use crate::ros::survey::Survey;
 use crate::ros::transforms::planar_mount;
 
 /// A mounting, and how it was determined.
-pub struct Found {
+pub struct FoundMount {
     /// Mounting in the plane.
     pub mount: LaserMount,
     /// Mounting in 3-D.
@@ -28,9 +28,9 @@ pub fn find(
     sensor: &str,
     ground: Option<&str>,
     options: &LogOptions,
-) -> Found {
+) -> FoundMount {
     let transforms = &survey.transforms;
-    let mut found = Found {
+    let mut found = FoundMount {
         mount: LaserMount::default(),
         body_from_sensor: Isometry3::identity(),
         body: body.to_owned(),
@@ -91,7 +91,7 @@ pub fn find(
 }
 
 /// A mounting in words.
-pub fn sentence(found: &Found) -> String {
+pub fn sentence(found: &FoundMount) -> String {
     let [x, y, theta] = found.mount.body_from_sensor.to_array();
     format!(
         "the laser is at {x:.3} m, {y:.3} m, {:.2}° on {}{}",

@@ -5,7 +5,7 @@ use crate::lines::listed;
 use crate::log::LogOptions;
 use crate::odometry_poses::{OdometryPoses, jumps_remark};
 use crate::remark::{NO_ODOMETRY, Part, Remark};
-use crate::ros::survey::{Survey, Track};
+use crate::ros::survey::{BodyPoses, Survey};
 use crate::stamps::MendedStamps;
 
 /// Clocks that differ by less are one clock with a delay, s.
@@ -20,7 +20,7 @@ pub struct SelectedOdometry<'a> {
     /// Topic.
     pub topic: String,
     /// Poses.
-    pub track: &'a Track,
+    pub track: &'a BodyPoses,
     /// Stamps of the poses.
     pub clock: MendedStamps,
     /// Whether it is a transform.
@@ -94,7 +94,7 @@ enum LaserLink {
     Connected,
 }
 
-fn laser_link(survey: &Survey, track: &Track, sensor: &str) -> LaserLink {
+fn laser_link(survey: &Survey, track: &BodyPoses, sensor: &str) -> LaserLink {
     let transforms = &survey.transforms;
     let ground = Some(track.above.as_str());
     let mut edges = transforms.edges();

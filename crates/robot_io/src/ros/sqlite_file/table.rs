@@ -11,7 +11,7 @@ const INTERIOR: u8 = 5;
 const LEAF: u8 = 13;
 
 /// A row of a table.
-pub struct Row {
+pub struct DatabaseRow {
     /// Row id.
     pub id: i64,
     /// Values by column.
@@ -26,7 +26,7 @@ struct Level {
 }
 
 /// The rows of a table in sequence.
-pub struct Table {
+pub struct DatabaseTable {
     root: Option<u32>,
     /// From the root to the current leaf.
     levels: Vec<Level>,
@@ -34,7 +34,7 @@ pub struct Table {
     last_id: Option<i64>,
 }
 
-impl Table {
+impl DatabaseTable {
     /// Creates for the table whose root is this page.
     pub fn at(root: u32) -> Self {
         Self {
@@ -48,7 +48,10 @@ impl Table {
     ///
     /// # Errors
     /// If a page or a row is malformed; the next call continues after it.
-    pub fn next_row(&mut self, pages: &mut Pages<'_>) -> Result<Option<Row>, ContainerError> {
+    pub fn next_row(
+        &mut self,
+        pages: &mut Pages<'_>,
+    ) -> Result<Option<DatabaseRow>, ContainerError> {
         if let Some(root) = self.root.take() {
             self.descend(root, pages)?;
         }
@@ -125,7 +128,7 @@ fn four(page: &[u8], at: usize) -> Option<u32> {
 }
 
 /// Decodes the row of a cell, including its overflow pages.
-fn row_of(cell: &[u8], pages: &mut Pages<'_>, what: &str) -> Result<Row, ContainerError> {
+fn row_of(cell: &[u8], pages: &mut Pages<'_>, what: &str) -> Result<DatabaseRow, ContainerError> {
     let read = || {
         let (length, first) = varint(cell)?;
         let (id, second) = varint(&cell[first..])?;
@@ -157,5 +160,5 @@ fn row_of(cell: &[u8], pages: &mut Pages<'_>, what: &str) -> Result<Row, Contain
         next = four(&page, 0);
     }
     let values = values(&record).ok_or_else(|| broken(what))?;
-    Ok(Row { id, values })
+    Ok(DatabaseRow { id, values })
 }

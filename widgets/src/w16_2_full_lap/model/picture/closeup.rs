@@ -1,12 +1,12 @@
 //! Close-up of one loop in the frame of the old node: the predicted pose of the new sweep, the registered
 //! one, and the region in which each gate accepts it.
 
-use ch16_lab::lap::LoopAttempt;
+use ch16_lab::lap::RecordedLoopAttempt;
 use pr_geom::SE2;
 use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
 use crate::w16_2_full_lap::model::gates::{Gate, Gates, Region};
-use crate::w16_2_full_lap::model::moment::Moment;
+use crate::w16_2_full_lap::model::moment::LapState;
 use crate::w16_2_full_lap::model::panel;
 use crate::w16_2_full_lap::model::runs::Runs;
 use crate::w16_2_full_lap::model::texts::{ends, model_name};
@@ -18,7 +18,7 @@ const HALF_VIEW_M: [f64; 2] = [2.0, 1.3];
 const ROOM_M: f64 = 0.25;
 
 /// The custom loop, else the newest one of the lap, or a text if none was tried so far.
-pub fn closeup(moment: &Moment) -> Panel {
+pub fn closeup(moment: &LapState) -> Panel {
     let runs = moment.runs;
     if let Some(own) = moment.own {
         let before = runs.graph.poses_at(moment.tick);
@@ -58,7 +58,7 @@ pub fn closeup(moment: &Moment) -> Panel {
 
 /// A loop with the poses of all nodes before and after it.
 struct LoopShown<'a> {
-    attempt: &'a LoopAttempt,
+    attempt: &'a RecordedLoopAttempt,
     gates: &'a Gates,
     before: &'a [SE2],
     after: &'a [SE2],

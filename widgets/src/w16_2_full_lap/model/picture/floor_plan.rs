@@ -3,9 +3,9 @@
 use pr_sim::sketch::to_m;
 use widget_kit::scene::{Layer, LegendEntry, Mark, Stroke, Tone};
 
-use crate::w16_2_full_lap::model::floor_plan::Tool;
 use crate::w16_2_full_lap::model::moment::Drawn;
 use crate::w16_2_full_lap::model::plan_element::PlanElement;
+use crate::w16_2_full_lap::spec::Tool;
 
 /// Distance of text from its way point, in pixels.
 const CLEAR_PX: f32 = 12.0;

@@ -1,6 +1,6 @@
 //! The style of a loop, shared by all panels.
 
-use ch16_lab::lap::LoopAttempt;
+use ch16_lab::lap::RecordedLoopAttempt;
 use widget_kit::scene::{LegendEntry, Mark, Stroke, Tone};
 
 /// The line and the mark of a loop.
@@ -28,7 +28,7 @@ impl LoopStyle {
     };
 
     /// The style of an attempt.
-    pub fn from_attempt(attempt: &LoopAttempt) -> Self {
+    pub fn from_attempt(attempt: &RecordedLoopAttempt) -> Self {
         if attempt.accepted() {
             Self::ACCEPTED
         } else {

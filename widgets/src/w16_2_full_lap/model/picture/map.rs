@@ -1,27 +1,19 @@
 //! The map panel: the world, the three estimates, the graph and its map.
 
-use ch16_lab::lap::{BuiltInWorld, LoopAttempt};
-use pr_geom::{SE2, math};
+use ch16_lab::lap::{BuiltInWorld, RecordedLoopAttempt};
+use pr_geom::SE2;
 use pr_sim::{Wall, World};
-use widget_kit::scene::{
-    Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight,
-};
+use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
+use super::bounds::shown_bounds;
 use super::loop_style::LoopStyle;
 use super::shapes::{arc, xy};
 use super::{floor_plan, parts, wipe};
-use crate::w16_2_full_lap::model::floor_plan::extent;
-use crate::w16_2_full_lap::model::moment::{Drawn, Moment};
+use crate::w16_2_full_lap::model::moment::{Drawn, LapState};
 use crate::w16_2_full_lap::model::panel;
 
-/// Margin around the world, m.
-const MARGIN_M: f64 = 0.4;
-
-/// Margin during editing: how far outside a stroke may go, m.
-const EDIT_MARGIN_M: f64 = 1.0;
-
 /// The world at a tick.
-pub fn map(moment: &Moment) -> Panel {
+pub fn map(moment: &LapState) -> Panel {
     let bounds = shown_bounds(moment);
     let mut layers = vec![walls(moment)];
     // A lap of another world does not belong into this one.
@@ -53,7 +45,7 @@ pub fn map(moment: &Moment) -> Panel {
 }
 
 /// The estimates and the truth.
-fn lap(moment: &Moment) -> Vec<Layer> {
+fn lap(moment: &LapState) -> Vec<Layer> {
     let mut layers = Vec::from(map_points(moment));
     layers.extend(paths(moment));
     layers.extend(graph(moment));
@@ -70,7 +62,7 @@ fn is_planned(drawn: &Drawn) -> bool {
 }
 
 /// `The Apartment after tick 92`.
-fn title(moment: &Moment) -> String {
+fn title(moment: &LapState) -> String {
     if let Some(drawn) = moment.drawn.filter(is_planned) {
         return floor_plan::title(&drawn);
     }
@@ -91,43 +83,8 @@ fn title(moment: &Moment) -> String {
     }
 }
 
-/// The world with a margin, and the extent of the estimates except in the Apartment, whose axes are fixed.
-pub fn shown_bounds(moment: &Moment) -> Bounds {
-    if let Some(frame) = moment.drawn.and_then(|drawn| drawn.frame) {
-        return frame;
-    }
-    let Bounds { mut min, mut max } = match &moment.drawn {
-        Some(drawn) => extent(drawn.sketch),
-        None => {
-            let walls = moment.runs.world().bounds();
-            Bounds {
-                min: [walls.min.x, walls.min.y],
-                max: [walls.max.x, walls.max.y],
-            }
-        }
-    };
-    let is_shown = moment.drawn.is_none_or(|drawn| drawn.problem.is_none());
-    if moment.runs.place() != Some(BuiltInWorld::Apartment) && is_shown {
-        let ends = moment.runs.graph.poses_at(moment.runs.ticks());
-        for pose in ends.iter().chain(&moment.nodes).map(xy) {
-            for i in 0..2 {
-                min[i] = math::min(min[i], pose[i]);
-                max[i] = math::max(max[i], pose[i]);
-            }
-        }
-    }
-    let margin = match moment.drawn.and_then(|drawn| drawn.tool) {
-        Some(_) => EDIT_MARGIN_M,
-        None => MARGIN_M,
-    };
-    Bounds {
-        min: min.map(|least| least - margin),
-        max: max.map(|most| most + margin),
-    }
-}
-
 /// The walls of the drawing, even before the lap has followed.
-fn walls(moment: &Moment) -> Layer {
+fn walls(moment: &LapState) -> Layer {
     let ends = |wall: &Wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]];
     Layer::segments(
         match &moment.drawn {
@@ -153,7 +110,7 @@ fn rooms() -> impl Iterator<Item = Layer> {
 
 /// The sweeps of the keyframes at the graph's poses: dots from the outward path, × in the other green from
 /// the return path, which makes a doubled wall visible.
-fn map_points(moment: &Moment) -> [Layer; 2] {
+fn map_points(moment: &LapState) -> [Layer; 2] {
     let turn = moment.runs.graph.turn_node();
     let mut out = Vec::new();
     let mut back = Vec::new();
@@ -176,7 +133,7 @@ fn map_points(moment: &Moment) -> [Layer; 2] {
     ]
 }
 
-fn paths(moment: &Moment) -> [Layer; 3] {
+fn paths(moment: &LapState) -> [Layer; 3] {
     let until = 0..=moment.tick;
     let path = |pose_at: &dyn Fn(usize) -> SE2, stroke, tone| {
         Layer::line(
@@ -202,7 +159,7 @@ fn paths(moment: &Moment) -> [Layer; 3] {
 }
 
 /// Nodes, the factors between neighbours, and the factors of the loops closed so far.
-fn graph(moment: &Moment) -> Vec<Layer> {
+fn graph(moment: &LapState) -> Vec<Layer> {
     let line = wipe::divider(moment);
     let nodes = moment.nodes.iter().map(xy);
     let nodes: Vec<_> = nodes.filter(|at| !wipe::is_before(line, *at)).collect();
@@ -218,13 +175,13 @@ fn graph(moment: &Moment) -> Vec<Layer> {
 }
 
 /// Position of a loop's mark: at the top of its arc.
-pub fn loop_mark(moment: &Moment, attempt: &LoopAttempt) -> [f64; 2] {
+pub fn loop_mark(moment: &LapState, attempt: &RecordedLoopAttempt) -> [f64; 2] {
     let arc = arc(moment, attempt);
     arc[arc.len() / 2]
 }
 
 /// An accepted loop is solid and green, a rejected one dotted, grey and hollow.
-fn loop_layers(attempt: &LoopAttempt, arc: Vec<[f64; 2]>, top: [f64; 2]) -> [Layer; 2] {
+fn loop_layers(attempt: &RecordedLoopAttempt, arc: Vec<[f64; 2]>, top: [f64; 2]) -> [Layer; 2] {
     let look = LoopStyle::from_attempt(attempt);
     [
         Layer::line(arc, look.stroke, look.tone, 2.5),
@@ -233,7 +190,7 @@ fn loop_layers(attempt: &LoopAttempt, arc: Vec<[f64; 2]>, top: [f64; 2]) -> [Lay
 }
 
 /// The label of the loop tried in this tick.
-fn attempt_now(moment: &Moment) -> Vec<Layer> {
+fn attempt_now(moment: &LapState) -> Vec<Layer> {
     let Some(attempt) = moment.attempt else {
         return Vec::new();
     };
@@ -242,7 +199,7 @@ fn attempt_now(moment: &Moment) -> Vec<Layer> {
 }
 
 /// The robot's current pose by each estimate, named where the legend does not.
-fn robots(moment: &Moment) -> Vec<Layer> {
+fn robots(moment: &LapState) -> Vec<Layer> {
     let tick = moment.tick;
     let others = [
         (moment.runs.truth(tick), Mark::Plus, Tone::Truth, 7.0),
@@ -285,7 +242,7 @@ fn robots(moment: &Moment) -> Vec<Layer> {
 /// Most entries of a legend.
 const MOST_ENTRIES: usize = 4;
 
-fn legend(moment: &Moment) -> Vec<LegendEntry> {
+fn legend(moment: &LapState) -> Vec<LegendEntry> {
     let mut legend = Vec::new();
     if moment.drawn.as_ref().is_some_and(is_planned) {
         legend.push(floor_plan::legend());

@@ -7,8 +7,8 @@ use super::loop_style::LoopStyle;
 use super::shapes::{arc, xy};
 use super::wipe::{clipped, divider, shown_nodes};
 use crate::w16_2_full_lap::model::found::{Found, find};
-use crate::w16_2_full_lap::model::moment::Moment;
-use crate::w16_2_full_lap::model::pick::Part;
+use crate::w16_2_full_lap::model::moment::LapState;
+use crate::w16_2_full_lap::model::pick::GraphPart;
 use crate::w16_2_full_lap::model::texts::{ends, part_label};
 
 /// Distance of text from its mark, in pixels.
@@ -25,7 +25,7 @@ const LOOKS: [(f64, Tone, f32); 3] = [
 ];
 
 /// The edges between neighbours, each with its look; by χ² against the gate.
-fn neighbours<'a>(moment: &'a Moment) -> impl Iterator<Item = (usize, &'a RecordedEdge)> {
+fn neighbours<'a>(moment: &'a LapState) -> impl Iterator<Item = (usize, &'a RecordedEdge)> {
     let chain = moment.edges().filter(|edge| edge.to == edge.from + 1);
     chain.map(|edge| {
         let share = edge_strain(edge, &moment.nodes).chi2 / moment.runs.gate_chi2();
@@ -35,12 +35,12 @@ fn neighbours<'a>(moment: &'a Moment) -> impl Iterator<Item = (usize, &'a Record
 }
 
 /// Whether an edge between neighbours is strained past the gate.
-pub fn is_any_past_the_gate(moment: &Moment) -> bool {
+pub fn is_any_past_the_gate(moment: &LapState) -> bool {
     neighbours(moment).any(|(look, _)| look == LOOKS.len() - 1)
 }
 
 /// The edges between neighbours after the loop, wider and in another colour the more they are strained.
-pub fn edges(moment: &Moment) -> Vec<Layer> {
+pub fn edges(moment: &LapState) -> Vec<Layer> {
     let line = divider(moment);
     let at = |node: usize| xy(&moment.nodes[node]);
     let mut by_look = vec![Vec::new(); LOOKS.len()];
@@ -58,7 +58,7 @@ pub fn edges(moment: &Moment) -> Vec<Layer> {
 }
 
 /// The selected part and the one under the pointer: with a ring or wide, and a label.
-pub fn looked_at(moment: &Moment) -> Vec<Layer> {
+pub fn looked_at(moment: &LapState) -> Vec<Layer> {
     let mut layers = Vec::new();
     if let Some(node) = moment.tied.filter(|node| *node < moment.nodes.len()) {
         let at = shown_nodes(moment)[node];
@@ -79,7 +79,7 @@ pub fn looked_at(moment: &Moment) -> Vec<Layer> {
     layers
 }
 
-fn part_layers(moment: &Moment, part: Part, is_picked: bool) -> Vec<Layer> {
+fn part_layers(moment: &LapState, part: GraphPart, is_picked: bool) -> Vec<Layer> {
     let mut layers = Vec::new();
     let line = |points| Layer::line(points, Stroke::Solid, Tone::Ink, 3.0);
     let at = match find(moment, part) {
@@ -116,7 +116,7 @@ fn part_layers(moment: &Moment, part: Part, is_picked: bool) -> Vec<Layer> {
 }
 
 /// The custom loop: like those of the lap, and wider.
-pub fn own(moment: &Moment) -> Vec<Layer> {
+pub fn own(moment: &LapState) -> Vec<Layer> {
     let Some(own) = moment.own else {
         return Vec::new();
     };

@@ -1,11 +1,11 @@
 //! The plots over time: errors, map disagreement, and the χ² of each attempt with the gate.
 
-use ch16_lab::lap::LoopAttempt;
+use ch16_lab::lap::RecordedLoopAttempt;
 use widget_kit::chart::{Series, TimeChart, axis_from_zero};
 use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
 use super::loop_style::LoopStyle;
-use crate::w16_2_full_lap::model::moment::Moment;
+use crate::w16_2_full_lap::model::moment::LapState;
 use crate::w16_2_full_lap::model::panel;
 use crate::w16_2_full_lap::model::runs::Runs;
 use crate::w16_2_full_lap::model::texts::ends;
@@ -23,7 +23,7 @@ const GATES_SHOWN: f64 = 3.0;
 const LABEL_CLEAR_PX: f32 = 8.0;
 
 /// Position error over time of the three estimates.
-pub fn errors(moment: &Moment) -> Panel {
+pub fn errors(moment: &LapState) -> Panel {
     let (runs, tick) = (moment.runs, moment.tick);
     let odometry = Series {
         label: "odometry",
@@ -42,7 +42,7 @@ pub fn errors(moment: &Moment) -> Panel {
 }
 
 /// Distance between the map of the outward path and that of the return path, over time.
-pub fn disagreement(moment: &Moment) -> Panel {
+pub fn disagreement(moment: &LapState) -> Panel {
     let (runs, tick) = (moment.runs, moment.tick);
     let series = [
         front_end(&runs.front_end.disagreement_m),
@@ -54,7 +54,7 @@ pub fn disagreement(moment: &Moment) -> Panel {
 }
 
 /// A plot without the future; its axes do not change during playback.
-fn until(moment: &Moment, mut panel: Panel) -> Panel {
+fn until(moment: &LapState, mut panel: Panel) -> Panel {
     for layer in &mut panel.layers {
         if let Layer::Line { points, .. } = layer {
             points.retain(|point| point[0] <= moment.seen_until as f64);
@@ -99,7 +99,7 @@ fn chart<'a>(
 }
 
 /// χ² of each attempt so far with the gate: accepted ones are solid, rejected ones hollow.
-pub fn gate(moment: &Moment) -> Panel {
+pub fn gate(moment: &LapState) -> Panel {
     let (runs, tick) = (moment.runs, moment.tick);
     let attempts = runs.attempts_until(moment.seen_until);
     let gate = runs.gate_chi2();
@@ -150,7 +150,7 @@ fn look(look: &LoopStyle, at: Vec<[f64; 2]>) -> Layer {
 
 /// `29 to 7` near each mark, with the number if the mark is at the edge; left out if there is no space,
 /// because the table has it.
-fn labels(attempts: &[LoopAttempt], top: f64) -> impl Iterator<Item = Layer> + '_ {
+fn labels(attempts: &[RecordedLoopAttempt], top: f64) -> impl Iterator<Item = Layer> + '_ {
     attempts.iter().map(move |attempt| {
         let chi2 = attempt.verification.gate.chi2;
         let text = if chi2 > top {
@@ -163,13 +163,13 @@ fn labels(attempts: &[LoopAttempt], top: f64) -> impl Iterator<Item = Layer> + '
 }
 
 /// Position of an attempt in the plot of the gate.
-pub fn gate_mark(moment: &Moment, attempt: &LoopAttempt) -> [f64; 2] {
+pub fn gate_mark(moment: &LapState, attempt: &RecordedLoopAttempt) -> [f64; 2] {
     let top = gate_axis(moment).max;
     [attempt.tick as f64, attempt.verification.gate.chi2.min(top)]
 }
 
 /// The χ² axis of the whole lap, which does not change during playback.
-fn gate_axis(moment: &Moment) -> Axis {
+fn gate_axis(moment: &LapState) -> Axis {
     let gate = moment.runs.gate_chi2();
     let attempts = moment.runs.graph.attempts().iter();
     let highest = attempts

@@ -1,9 +1,9 @@
 //! Shapes of the graph's parts on the map.
 
-use ch16_lab::lap::LoopAttempt;
+use ch16_lab::lap::RecordedLoopAttempt;
 use pr_geom::{SE2, math};
 
-use crate::w16_2_full_lap::model::moment::Moment;
+use crate::w16_2_full_lap::model::moment::LapState;
 
 /// Lowest and highest arc of a loop, m; in between its height is the distance of its ends.
 const ARC_HEIGHT_M: [f64; 2] = [0.7, 1.2];
@@ -11,7 +11,7 @@ const ARC_HEIGHT_M: [f64; 2] = [0.7, 1.2];
 const ARC_STEPS: u32 = 24;
 
 /// A loop's factor as an arc to the north; straight, the factors of the corridor would hide it.
-pub fn arc(moment: &Moment, attempt: &LoopAttempt) -> Vec<[f64; 2]> {
+pub fn arc(moment: &LapState, attempt: &RecordedLoopAttempt) -> Vec<[f64; 2]> {
     let loop_ = &attempt.verification;
     let [from, to] = [loop_.from_node, loop_.candidate.node].map(|node| xy(&moment.nodes[node]));
     let apart = math::norm2(to[0] - from[0], to[1] - from[1]);

@@ -7,9 +7,9 @@ use widget_kit::chart::axis_from_zero;
 use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
 use super::loop_style::LoopStyle;
-use crate::w16_2_full_lap::model::moment::Moment;
+use crate::w16_2_full_lap::model::moment::LapState;
 use crate::w16_2_full_lap::model::panel;
-use crate::w16_2_full_lap::model::pick::Part;
+use crate::w16_2_full_lap::model::pick::GraphPart;
 
 /// Smallest upper end of the axis: a Gaussian residual seldom exceeds it.
 const MIN_TOP: f64 = 3.0;
@@ -18,12 +18,12 @@ const MIN_TOP: f64 = 3.0;
 const ROOM_NODES: f64 = 0.8;
 
 /// The part of the graph that an edge is.
-pub fn part_of(moment: &Moment, edge: &RecordedEdge) -> Part {
+pub fn part_of(moment: &LapState, edge: &RecordedEdge) -> GraphPart {
     let is_own = moment.own.is_some_and(|own| own.edge == *edge);
     match edge.kind {
-        EdgeKind::Odometry => Part::Edge(edge.from),
-        EdgeKind::Loop if is_own => Part::Own,
-        EdgeKind::Loop => Part::Loop(edge.to),
+        EdgeKind::Odometry => GraphPart::Edge(edge.from),
+        EdgeKind::Loop if is_own => GraphPart::Own,
+        EdgeKind::Loop => GraphPart::Loop(edge.to),
     }
 }
 
@@ -33,7 +33,7 @@ pub fn strain_mark(strain: &EdgeStrain) -> [f64; 2] {
 }
 
 /// The strain of each edge, as standard deviations of its measurement.
-pub fn strain(moment: &Moment) -> Panel {
+pub fn strain(moment: &LapState) -> Panel {
     let of = |poses| move |edge: &RecordedEdge| (edge.kind, strain_mark(&edge_strain(edge, poses)));
     let now: Vec<_> = moment.edges_with_own().map(of(&moment.nodes)).collect();
     let before: Vec<_> = if moment.own.is_some_and(|own| own.is_closed()) {

@@ -2,9 +2,9 @@
 
 use widget_kit::scene::{Layer, Mark, Stroke, Tone};
 
-use super::map::shown_bounds;
+use super::bounds::shown_bounds;
 use super::shapes::xy;
-use crate::w16_2_full_lap::model::moment::Moment;
+use crate::w16_2_full_lap::model::moment::LapState;
 
 /// Distance of a word from the line, as a share of the map's width.
 const WORD_SHARE: f64 = 0.09;
@@ -16,7 +16,7 @@ const EDGE_M: f64 = 0.2;
 const HANDLE_M: f64 = 1.4;
 
 /// Position of the line, if a loop was closed in this tick or a custom one is, m.
-pub fn divider(moment: &Moment) -> Option<f64> {
+pub fn divider(moment: &LapState) -> Option<f64> {
     let bounds = shown_bounds(moment);
     moment
         .has_moved()
@@ -29,7 +29,7 @@ pub fn is_before(line: Option<f64>, at: [f64; 2]) -> bool {
 }
 
 /// The positions of the nodes on the map: each before the loop if that is left of the line, else after it.
-pub fn shown_nodes(moment: &Moment) -> Vec<[f64; 2]> {
+pub fn shown_nodes(moment: &LapState) -> Vec<[f64; 2]> {
     let line = divider(moment);
     let mut shown: Vec<_> = moment.nodes.iter().map(xy).collect();
     for (at, old) in shown.iter_mut().zip(moment.old_nodes.iter().map(xy)) {
@@ -64,7 +64,7 @@ pub fn clipped(
 }
 
 /// The old graph left of the line, the line, its handle and its two words.
-pub fn layers(moment: &Moment) -> Vec<Layer> {
+pub fn layers(moment: &LapState) -> Vec<Layer> {
     let line = divider(moment);
     let Some(x) = line else {
         return Vec::new();

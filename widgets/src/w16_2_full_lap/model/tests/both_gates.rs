@@ -7,7 +7,7 @@ use widget_kit::scene::Stroke;
 use super::*;
 use crate::w16_2_full_lap::model::gates::{Gate, Gates, Region};
 
-fn gate_of<'a>(model: &'a FullLap, attempt: &LoopAttempt, chosen: GateModel) -> &'a Gate {
+fn gate_of<'a>(model: &'a FullLap, attempt: &RecordedLoopAttempt, chosen: GateModel) -> &'a Gate {
     let gates = model.runs.gates(attempt);
     match chosen {
         GateModel::PathApproximation => &gates.path,

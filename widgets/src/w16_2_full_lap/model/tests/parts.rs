@@ -1,7 +1,7 @@
 //! Selection of keyframes, edges and loops: by pointer, by keys, by values.
 
 use super::*;
-use crate::w16_2_full_lap::model::moment::Moment;
+use crate::w16_2_full_lap::model::moment::LapState;
 
 /// A mouse on a map of 1,000 pixels.
 const REACH: [f64; 2] = [0.18, 0.18];
@@ -68,7 +68,7 @@ fn loops_and_edges_can_be_selected_on_the_map_and_in_the_plots() {
         assert_eq!(model.outcome().verdict, verdict);
         assert!(fact(&model, "looked_at_chi2").is_finite());
         // A tap on its mark in the plot of strains finds it again.
-        let part = Part::chosen(model.values());
+        let part = GraphPart::chosen(model.values());
         let moment = model.moment();
         let edge = moment
             .edges()
@@ -78,9 +78,9 @@ fn loops_and_edges_can_be_selected_on_the_map_and_in_the_plots() {
         let mark = picture::strain_mark(&strain);
         set(&mut model, "pick", 0.0);
         model.tap("strain", mark, [0.2, 0.05]);
-        assert_eq!(Part::chosen(model.values()), part);
+        assert_eq!(GraphPart::chosen(model.values()), part);
     }
-    let gate = |moment: &Moment| picture::gate_mark(moment, moment.loops_tried().next().unwrap());
+    let gate = |moment: &LapState| picture::gate_mark(moment, moment.loops_tried().next().unwrap());
     let mark = gate(&model.moment());
     set(&mut model, "pick", 0.0);
     model.tap("gate", mark, [1.0, 0.2]);

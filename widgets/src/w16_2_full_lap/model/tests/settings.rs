@@ -1,6 +1,6 @@
 //! Effects of settings and presets on the lap.
 
-use ch16_lab::lap::{Choice, LapConfig, LapMatcher, LapRunner};
+use ch16_lab::lap::{LapConfig, LapMatcher, LapRunner, NamedChoice};
 use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::loops::LoopRejection;
 

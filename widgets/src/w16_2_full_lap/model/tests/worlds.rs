@@ -1,6 +1,6 @@
 //! Worlds other than the Apartment, and the failures in those that break a map.
 
-use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner, LoopJudgement};
+use ch16_lab::lap::{BuiltInWorld, LapConfig, LapMatcher, LapRunner, LoopJudgement, NamedChoice};
 use ch16_slam2d::chapter::InformationFrame;
 
 use super::*;

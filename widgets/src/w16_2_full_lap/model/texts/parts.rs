@@ -7,8 +7,8 @@ use widget_kit::model::{Assessment, Fact};
 
 use super::{Statement, ends, standing};
 use crate::w16_2_full_lap::model::found::{Found, find};
-use crate::w16_2_full_lap::model::moment::Moment;
-use crate::w16_2_full_lap::model::pick::Part;
+use crate::w16_2_full_lap::model::moment::LapState;
+use crate::w16_2_full_lap::model::pick::GraphPart;
 
 /// Error and χ² of a part, as far as it has them.
 struct Numbers {
@@ -18,22 +18,22 @@ struct Numbers {
 }
 
 /// A short label beside the part on the map.
-pub fn part_label(moment: &Moment, part: Part) -> String {
+pub fn part_label(moment: &LapState, part: GraphPart) -> String {
     let Numbers { error_m, chi2, .. } = numbers(moment, part);
     match part {
-        Part::Keyframe(node) => format!("{node}: {error_m:.2} m off, χ² {chi2:.2}"),
-        Part::Edge(from) => {
+        GraphPart::Keyframe(node) => format!("{node}: {error_m:.2} m off, χ² {chi2:.2}"),
+        GraphPart::Edge(from) => {
             let to = from + 1;
             format!("edge {from} to {to}: {error_m:.3} m off, χ² {chi2:.2}")
         }
-        Part::Loop(_) | Part::Own => {
+        GraphPart::Loop(_) | GraphPart::Own => {
             let name = named(moment, part);
             format!("{name}: {error_m:.2} m off, χ² {chi2:.2}")
         }
     }
 }
 
-fn named(moment: &Moment, part: Part) -> String {
+fn named(moment: &LapState, part: GraphPart) -> String {
     match find(moment, part) {
         Some(Found::Loop(attempt)) => format!("loop {}", ends(attempt)),
         Some(Found::Own) => moment
@@ -45,7 +45,7 @@ fn named(moment: &Moment, part: Part) -> String {
 }
 
 /// The verdict and the sentence on a part.
-pub fn part_statement(moment: &Moment, part: Part) -> Statement {
+pub fn part_statement(moment: &LapState, part: GraphPart) -> Statement {
     let Numbers {
         error_m,
         error_deg,
@@ -121,15 +121,15 @@ pub fn part_statement(moment: &Moment, part: Part) -> Statement {
             },
             |own| own_statement(moment, own),
         ),
-        (Part::Loop(node), None) => neutral(
+        (GraphPart::Loop(node), None) => neutral(
             "no such loop".to_owned(),
             format!("no loop was tried at keyframe {node} until tick {tick}"),
         ),
-        (Part::Keyframe(number) | Part::Edge(number), None) => neutral(
+        (GraphPart::Keyframe(number) | GraphPart::Edge(number), None) => neutral(
             "not yet there".to_owned(),
             format!(
                 "keyframe {} is not yet there at tick {tick}: keyframe {} is the newest so far",
-                if matches!(part, Part::Edge(_)) {
+                if matches!(part, GraphPart::Edge(_)) {
                     number + 1
                 } else {
                     number
@@ -137,7 +137,7 @@ pub fn part_statement(moment: &Moment, part: Part) -> Statement {
                 moment.nodes.len() - 1
             ),
         ),
-        (Part::Own, None) => neutral(
+        (GraphPart::Own, None) => neutral(
             "no loop of your own".to_owned(),
             "there is no loop of your own".to_owned(),
         ),
@@ -154,7 +154,7 @@ fn left(strain: &EdgeStrain) -> String {
     )
 }
 
-fn numbers(moment: &Moment, part: Part) -> Numbers {
+fn numbers(moment: &LapState, part: GraphPart) -> Numbers {
     let truth = |node: usize| moment.runs.truth(moment.runs.graph.keyframe_tick(node));
     let off = |error: SE2, chi2| Numbers {
         error_m: position_error_m(&error, &SE2::identity()),
@@ -214,7 +214,7 @@ const NONE: Numbers = Numbers {
 };
 
 /// The verdict and the sentence on the custom loop.
-pub fn own_statement(moment: &Moment, own: &OwnLoop) -> Statement {
+pub fn own_statement(moment: &LapState, own: &OwnLoop) -> Statement {
     let lap = moment.runs.graph.lap();
     let judgement = lap.judge(&own.attempt);
     let verdict = match judgement {
@@ -265,13 +265,14 @@ pub fn own_statement(moment: &Moment, own: &OwnLoop) -> Statement {
 }
 
 /// Facts of the selected part and of the custom loop; not finite if there is none.
-pub fn facts(moment: &Moment) -> Vec<Fact> {
+pub fn facts(moment: &LapState) -> Vec<Fact> {
     let looked_at = moment.picked.map_or(NONE, |part| numbers(moment, part));
     let own = moment.own;
     let effect = own.and_then(|own| own.attempt.effect);
     let of = |read: &dyn Fn(&OwnLoop) -> f64| own.map_or(f64::NAN, read);
-    let of_effect =
-        |read: &dyn Fn(&ch16_lab::lap::LoopEffect) -> f64| effect.as_ref().map_or(f64::NAN, read);
+    let of_effect = |read: &dyn Fn(&ch16_lab::lap::RecordedLoopEffect) -> f64| {
+        effect.as_ref().map_or(f64::NAN, read)
+    };
     let own_gate = of(&|own| own.attempt.verification.gate.chi2);
     let before = of_effect(&|effect| effect.chi2.before);
     let after = of_effect(&|effect| effect.chi2.after);

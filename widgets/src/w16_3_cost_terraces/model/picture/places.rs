@@ -5,7 +5,7 @@ use widget_kit::scene::{
     Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight,
 };
 
-use super::{Looked, Moment};
+use super::{Looked, PictureState};
 use crate::w16_3_cost_terraces::model::terrains::{Bell, Pairing, Terrains};
 
 /// Margin around the map's walls, m.
@@ -22,7 +22,7 @@ const STRAY_SHARE: f64 = 0.02;
 
 /// The sweep at the current shift with its partners; those that are about to change are highlighted. If the
 /// ball is elsewhere, the sweep is drawn there, too.
-pub fn pairs(terrains: &Terrains, moment: Moment) -> Panel {
+pub fn pairs(terrains: &Terrains, moment: PictureState) -> Panel {
     let Pairing {
         pairs,
         changing,
@@ -71,7 +71,7 @@ pub fn pairs(terrains: &Terrains, moment: Moment) -> Panel {
 }
 
 /// One Gaussian for each cell: the ellipses of one and two standard deviations.
-pub fn bells(terrains: &Terrains, moment: Moment) -> Panel {
+pub fn bells(terrains: &Terrains, moment: PictureState) -> Panel {
     let bells = terrains.bells();
     let mut layers = vec![
         Layer::segments(
@@ -124,7 +124,7 @@ pub(super) fn map_points(terrains: &Terrains) -> Layer {
     Layer::points(points, Mark::Cross, Tone::Measurement, 2.5)
 }
 
-fn sweep(terrains: &Terrains, moment: Moment) -> Layer {
+fn sweep(terrains: &Terrains, moment: PictureState) -> Layer {
     let points = terrains.sweep_at(moment.looked_m(terrains));
     match moment.looked {
         Looked::Ball => Layer::points(points, Mark::Square, Tone::Posterior, 2.0),

@@ -2,10 +2,10 @@
 
 use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
-use super::{Moment, shift_axis};
+use super::{PictureState, shift_axis};
 use crate::w16_3_cost_terraces::model::rests::Rests;
 use crate::w16_3_cost_terraces::model::terrains::Terrains;
-use crate::w16_3_cost_terraces::spec::Measure;
+use crate::w16_3_cost_terraces::spec::ReliefMeasure;
 use widget_kit::ticks::signed;
 
 /// Smallest range of a vertical axis, in m² or in score, so that flat ground looks flat.
@@ -28,11 +28,11 @@ pub enum Along {
 }
 
 /// One landscape along the line of samples nearest to the cross hair; the title says which line.
-pub fn slice(terrains: &Terrains, moment: Moment, along: Along) -> Panel {
+pub fn slice(terrains: &Terrains, moment: PictureState, along: Along) -> Panel {
     let landscape = terrains.of(moment.measure);
     let (sign, name) = match moment.measure {
-        Measure::Icp => (1.0, "ICP cost (m²)"),
-        Measure::Ndt => (-1.0, "NDT score"),
+        ReliefMeasure::Icp => (1.0, "ICP cost (m²)"),
+        ReliefMeasure::Ndt => (-1.0, "NDT score"),
     };
     let [x, y] = moment.probe_m;
     let (title, label, here, heights) = match along {

@@ -2,7 +2,7 @@
 
 use widget_kit::scene::{Aspect, Axis, Layer, Panel, Stroke, Tone, Weight};
 
-use super::{Moment, ball, name};
+use super::{PictureState, ball, name};
 use crate::w16_3_cost_terraces::model::landscape::Landscape;
 
 /// Columns that fill the ground: they touch on the widest screen.
@@ -17,7 +17,7 @@ const AXIS_STEP_M: f64 = 0.65;
 const AXIS_STEP_PERCENT: f64 = 25.0;
 
 /// The height as a share of the whole range of the landscape, the same scale for both measures.
-pub fn panel(landscape: &Landscape, moment: Moment) -> Panel {
+pub fn panel(landscape: &Landscape, moment: PictureState) -> Panel {
     let ground: Vec<[f64; 2]> = landscape
         .profile()
         .iter()

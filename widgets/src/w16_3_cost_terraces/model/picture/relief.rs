@@ -4,13 +4,18 @@ use widget_kit::scene::{
     Aspect, Axis, ColorBar, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight,
 };
 
-use super::{Looked, Moment, RELIEF, ball, haloed, name};
+use super::{Looked, PictureState, RELIEF, ball, haloed, name};
 use crate::w16_3_cost_terraces::model::morph::Morph;
 use crate::w16_3_cost_terraces::model::terrains::Terrains;
-use crate::w16_3_cost_terraces::spec::{Colors, HALF_SPAN_M, Measure};
+use crate::w16_3_cost_terraces::spec::{Colors, HALF_SPAN_M, ReliefMeasure};
 
 /// ICP's cost or NDT's negated score, so that a ball descends on both; dark is low. Dropped sweeps fly over ICP's.
-pub fn panel(terrains: &Terrains, rests_m: &[[f64; 2]], morph: &Morph, moment: Moment) -> Panel {
+pub fn panel(
+    terrains: &Terrains,
+    rests_m: &[[f64; 2]],
+    morph: &Morph,
+    moment: PictureState,
+) -> Panel {
     let landscape = terrains.of(moment.measure);
     let mut layers = vec![Layer::Raster(morph.raster.clone())];
     layers.extend(cross_hair(moment.probe_m, Stroke::Solid));
@@ -47,7 +52,7 @@ pub fn panel(terrains: &Terrains, rests_m: &[[f64; 2]], morph: &Morph, moment: M
     }
     layers.push(Layer::label(moment.probe_m, "drop".to_owned(), 12.0));
     let mut legend = Vec::new();
-    if moment.measure == Measure::Icp && !rests_m.is_empty() {
+    if moment.measure == ReliefMeasure::Icp && !rests_m.is_empty() {
         let halo_and_dot = [(Tone::Paper, 3.0), (Tone::Posterior, 1.75)];
         layers.extend(
             halo_and_dot.map(|(tone, radius_px)| {
@@ -74,13 +79,13 @@ pub fn panel(terrains: &Terrains, rests_m: &[[f64; 2]], morph: &Morph, moment: M
     }
 }
 
-fn color_bar(terrains: &Terrains, moment: Moment) -> ColorBar {
+fn color_bar(terrains: &Terrains, moment: PictureState) -> ColorBar {
     let [low, high] = terrains.of(moment.measure).range;
     let (label, min, max) = match (moment.colors, moment.measure) {
         (Colors::ByRank, _) => ("% fit better", 0.0, 100.0),
-        (Colors::ByHeight, Measure::Icp) => ("m²", low, high),
+        (Colors::ByHeight, ReliefMeasure::Icp) => ("m²", low, high),
         // From the highest score, which is dark, to the lowest.
-        (Colors::ByHeight, Measure::Ndt) => ("score", -low, -high),
+        (Colors::ByHeight, ReliefMeasure::Ndt) => ("score", -low, -high),
     };
     ColorBar {
         label: label.to_owned(),

@@ -1,6 +1,6 @@
 //! Front end and back end over time: a lane for each of their operations, and a mark for each execution.
 
-use ch16_lab::lap::{LapRecord, LoopAttempt, TickReport};
+use ch16_lab::lap::{LapRecord, RecordedLoopAttempt, TickReport};
 use ch16_slam2d::loops::LoopRejection;
 use widget_kit::scene::{Aspect, Axis, Layer, Mark, Panel, Stroke, Tone, Weight};
 use widget_kit::ticks::signed;
@@ -141,7 +141,7 @@ static LANES: [Lane; 8] = [
 /// The data of a lane in a tick without its operation.
 const NOTHING: &str = "nothing to do";
 
-fn of_loop(report: &TickReport, say: impl Fn(&LoopAttempt) -> String) -> String {
+fn of_loop(report: &TickReport, say: impl Fn(&RecordedLoopAttempt) -> String) -> String {
     let attempt = report.loop_attempt.as_ref();
     attempt.map_or_else(|| NOTHING.to_owned(), say)
 }

@@ -2,7 +2,7 @@
 
 use ch16_slam2d::search::PoseBox;
 use widget_kit::scene::{
-    Aspect, Axis, Bounds, Cell, Layer, LegendEntry, Mark, Panel, Raster, Stroke, Tone, Weight,
+    Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Raster, RasterCell, Stroke, Tone, Weight,
 };
 
 use super::super::texts::grouped;
@@ -96,7 +96,9 @@ fn raster(window: &WholeWindow) -> Raster {
         bounds: Bounds { min, max },
         columns,
         rows,
-        cells: cells.map(|score| Cell::Occupancy(*score as f32)).collect(),
+        cells: cells
+            .map(|score| RasterCell::Occupancy(*score as f32))
+            .collect(),
         // Surfaces of two searches may have equally many rows.
         revision: (window.searches << 32) + surface.rows_done() as u64,
     }
