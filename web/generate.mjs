@@ -73,7 +73,9 @@ export async function writeModels(schema, widgets, path) {
     const code = await readFile(join(widgets, folder, 'model.rs'), 'utf8');
     const comment = code.match(/^(?:\/\/!.*\n)+/)[0].replaceAll(/^\/\/! ?/gm, '');
     const sections = comment.slice(comment.indexOf('# Computed')).replaceAll(/^# (.*)\n\n/gm, '**$1.** ').trim();
-    if (!sections.startsWith('**Computed.**')) throw new Error(`${folder}/model.rs does not say what is "# Computed"`);
+    for (const name of ['Computed', 'Numbers', 'Simplified']) {
+      if (!sections.includes(`**${name}.** `)) throw new Error(`the head of ${folder}/model.rs lacks the section "# ${name}"`);
+    }
     return `## ${id} ${title}\n\n${sections}\n\nParameters: [parameters.md](parameters.md#${anchor(`${id} ${title}`)}).`;
   });
   const text = `# Models

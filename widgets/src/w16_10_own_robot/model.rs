@@ -278,7 +278,7 @@ impl Model for OwnRobot {
             self.ask(order);
             self.values.store(SCAN.id, MAX_SCANS);
         }
-        if delivery.kind == "progress" && self.robot.stage == Stage::Done {
+        if delivery.kind == "progress" && self.robot.progress.stage == Stage::Done {
             self.look();
         }
     }

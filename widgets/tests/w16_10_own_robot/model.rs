@@ -121,7 +121,7 @@ fn play_maps_the_sample_then_pauses_it_then_plays_the_path() {
     let mut robot = OwnRobot::new();
     robot.press("play").unwrap();
     assert_eq!(robot.take_requests(), ["sample"]);
-    assert_eq!(robot.robot().stage, Stage::Opening);
+    assert_eq!(robot.robot().progress.stage, Stage::Opening);
     assert!(robot.timeline().unwrap().playing);
     robot.press("play").unwrap();
     assert_eq!(robot.take_requests(), ["pause"]);
@@ -483,7 +483,7 @@ fn another_file_replaces_the_first_and_an_invalid_one_is_reported() {
     let mut robot = mapped();
     robot.press("sure").unwrap();
     assert_eq!(robot.take_requests(), ["close", "sample"]);
-    assert_eq!(robot.robot().stage, Stage::Opening);
+    assert_eq!(robot.robot().progress.stage, Stage::Opening);
     let mut robot = mapped();
     robot.set("keyframe", 2.0).unwrap();
     tell(&mut robot, "opening", "other.bag");

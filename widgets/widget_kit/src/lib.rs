@@ -22,6 +22,7 @@ pub mod plural;
 pub mod run;
 pub mod scene;
 pub mod spec;
+mod table;
 pub mod ticks;
 pub mod values;
 

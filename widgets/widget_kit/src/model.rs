@@ -8,6 +8,8 @@ use crate::spec::{PLAY, Preset, STEP, WidgetSpec};
 use crate::ticks::signed;
 use crate::values::Values;
 
+pub use crate::table::{Table, TableCell, TableColumn, TablePlace};
+
 /// A widget without its drawing: tested headless, drawn by [`crate`]'s view half.
 ///
 /// Everything that a reader can change is a parameter of the list, including the position on the timeline. So
@@ -319,64 +321,6 @@ pub struct TimelineMark {
     pub label: String,
     /// Good or bad.
     pub standing: Assessment,
-}
-
-/// A table: one CSV file, one block of readouts.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Table {
-    /// File name without ending: `errors-over-time`.
-    pub id: &'static str,
-    /// Title on screen.
-    pub title: String,
-    /// Head of every column, with units.
-    pub columns: Vec<String>,
-    /// The rows; a cell is text or a number already formatted.
-    pub rows: Vec<Vec<String>>,
-    /// Shown beside the picture, or only exported as CSV.
-    pub place: TablePlace,
-}
-
-impl Table {
-    /// A table beside the picture.
-    #[must_use]
-    pub fn shown(
-        id: &'static str,
-        title: impl Into<String>,
-        columns: &[&str],
-        rows: Vec<Vec<String>>,
-    ) -> Self {
-        let columns = columns.iter().map(|&head| head.to_owned());
-        Self {
-            id,
-            title: title.into(),
-            columns: columns.collect(),
-            rows,
-            place: TablePlace::Shown,
-        }
-    }
-
-    /// A table for the export alone.
-    #[must_use]
-    pub fn exported(
-        id: &'static str,
-        title: impl Into<String>,
-        columns: &[&str],
-        rows: Vec<Vec<String>>,
-    ) -> Self {
-        Self {
-            place: TablePlace::ExportOnly,
-            ..Self::shown(id, title, columns, rows)
-        }
-    }
-}
-
-/// Where a table is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TablePlace {
-    /// Beside the picture.
-    Shown,
-    /// In the CSV export alone.
-    ExportOnly,
 }
 
 /// Sets a model to the state of a preset.

@@ -24,7 +24,9 @@ impl OwnRobot {
                 is_editable && robot.has_scans && marked != self.keyframe()
             }
             "west" | "east" | "north" | "south" | "unpin" => is_editable && has_map,
-            "locate" | "locate-sample" => !matches!(robot.stage, Stage::Empty | Stage::Failed),
+            "locate" | "locate-sample" => {
+                !matches!(robot.progress.stage, Stage::Empty | Stage::Failed)
+            }
             "change" => self.place().is_some(),
             "other" => self.other_order().is_some(),
             _ => true,
@@ -77,7 +79,7 @@ impl OwnRobot {
     }
 
     fn press_play(&mut self) {
-        match self.robot.stage {
+        match self.robot.progress.stage {
             Stage::Empty | Stage::Failed => self.begin_sample(),
             _ if self.robot.is_under_way() => {
                 self.robot.paused = !self.robot.paused;

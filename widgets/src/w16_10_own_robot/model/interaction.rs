@@ -27,7 +27,7 @@ fn nearest(robot: &OwnRobot, at: [f64; 2], reach: [f64; 2]) -> Option<(usize, [f
 
 /// Whether the worker takes changes of the graph.
 pub fn may_edit(robot: &OwnRobot) -> bool {
-    matches!(robot.robot.stage, Stage::Done | Stage::Checking)
+    matches!(robot.robot.progress.stage, Stage::Done | Stage::Checking)
 }
 
 /// Grabs the selected keyframe itself; a press on another one selects it.

@@ -14,20 +14,12 @@ use widget_kit::scene::{Bounds, Raster, RasterCell};
 pub struct LogState {
     /// Name of the file.
     pub name: String,
-    /// Stage of the worker.
-    pub stage: Stage,
+    /// What the worker has done.
+    pub progress: MapperProgress,
     /// Whether it is paused.
     pub paused: bool,
-    /// Finished share of the work.
-    pub share: f64,
-    /// Number of processed scans.
-    pub scans: usize,
-    /// Number of loops that were closed while reading.
-    pub closed: usize,
     /// Whether there are scans; a graph from a file has none.
     pub has_scans: bool,
-    /// The error.
-    pub problem: String,
     /// The keyframes in order.
     pub keyframes: Vec<KeyframeReport>,
     /// The map.
@@ -58,7 +50,10 @@ impl LogState {
     pub fn opening(name: &str) -> Self {
         Self {
             name: name.to_owned(),
-            stage: Stage::Opening,
+            progress: MapperProgress {
+                stage: Stage::Opening,
+                ..MapperProgress::default()
+            },
             ..Self::default()
         }
     }
@@ -66,7 +61,7 @@ impl LogState {
     /// Whether the worker is busy and can be paused.
     #[must_use]
     pub fn is_under_way(&self) -> bool {
-        self.stage.is_under_way() || self.other_log.as_ref().is_some_and(|it| !it.is_over)
+        self.progress.stage.is_under_way() || self.other_log.as_ref().is_some_and(|it| !it.is_over)
     }
 
     /// Error of each keyframe against the reference, m; NaN if unknown, empty without a reference.
@@ -87,13 +82,13 @@ impl LogState {
         match delivery.kind {
             "opening" => {
                 // A pause requested before the file arrived remains in effect.
-                let is_held = self.paused && self.stage == Stage::Opening;
+                let is_held = self.paused && self.progress.stage == Stage::Opening;
                 *self = Self::opening(text);
                 self.paused = is_held;
             }
             "failed" => {
-                self.stage = Stage::Failed;
-                self.problem = text.to_owned();
+                self.progress.stage = Stage::Failed;
+                self.progress.problem = text.to_owned();
                 // Clears messages about the previous log.
                 self.answer.clear();
             }
@@ -114,10 +109,7 @@ impl LogState {
                 (self.name, self.has_scans) = (name, has_scans)
             }
             MapperReport::Progress(progress) => {
-                let MapperProgress { stage, share, .. } = progress;
-                (self.stage, self.share) = (stage, share);
-                (self.scans, self.closed) = (progress.scans, progress.closed);
-                self.problem = progress.problem;
+                self.progress = progress;
                 self.paused &= self.is_under_way();
             }
             MapperReport::Keyframes(keyframes) => self.keyframes = keyframes,

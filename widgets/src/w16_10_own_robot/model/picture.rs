@@ -61,7 +61,7 @@ fn map(own: &OwnRobot) -> Panel {
     }
     Panel {
         id: panel::MAP,
-        title: match robot.stage {
+        title: match robot.progress.stage {
             Stage::Empty => "Your map".to_owned(),
             _ => format!("Map of {}", short(&robot.name)),
         },
@@ -172,7 +172,7 @@ fn bounds(robot: &LogState) -> Bounds {
 
 /// Text while there is no map; without a log the host's drop zone stands for the picture.
 fn invitation(robot: &LogState) -> Option<Layer> {
-    let text = match robot.stage {
+    let text = match robot.progress.stage {
         Stage::Empty => return None,
         Stage::Failed => "There is no map yet.",
         _ => "The log is read.",
@@ -322,7 +322,7 @@ fn here(own: &OwnRobot) -> Vec<Layer> {
     {
         layers.push(Layer::points(vec![at], Mark::Plus, Tone::Ink, 8.0));
     }
-    if robot.stage == Stage::Done {
+    if robot.progress.stage == Stage::Done {
         layers.push(Layer::Handle {
             at: [pose[0], pose[1]],
             tone: Tone::Posterior,

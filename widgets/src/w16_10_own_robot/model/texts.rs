@@ -14,7 +14,7 @@ const STAYS: &str = "The file stays in this browser; nothing of it is sent anywh
 /// The current result.
 pub fn outcome(own: &OwnRobot) -> Outcome {
     let robot = &own.robot;
-    let (standing, verdict) = match robot.stage {
+    let (standing, verdict) = match robot.progress.stage {
         Stage::Empty => (Assessment::Neutral, "no log yet"),
         Stage::Failed => (Assessment::Bad, "no map"),
         _ if robot.paused => (Assessment::Neutral, "held"),
@@ -73,19 +73,23 @@ fn to_look_into(robot: &LogState) -> usize {
 fn sentence(own: &OwnRobot) -> String {
     let robot = &own.robot;
     let name = &robot.name;
-    let done = (100.0 * robot.share).round();
-    let progress = match robot.stage {
+    let done = (100.0 * robot.progress.share).round();
+    let progress = match robot.progress.stage {
         Stage::Empty => "Drop a log, open one, or map the sample.".to_owned(),
-        Stage::Failed if robot.answer.is_empty() => return robot.problem.clone(),
+        Stage::Failed if robot.answer.is_empty() => return robot.progress.problem.clone(),
         Stage::Failed => {
-            return format!("{}. {}", robot.problem.trim_end_matches('.'), robot.answer);
+            return format!(
+                "{}. {}",
+                robot.progress.problem.trim_end_matches('.'),
+                robot.answer
+            );
         }
         Stage::Opening => format!("{name} is opened."),
         Stage::Reading => format!(
             "{name}: {done:.0} % done, {}, {}, {} closed.",
-            plural(robot.scans, "scan"),
+            plural(robot.progress.scans, "scan"),
             plural(robot.keyframes.len(), "keyframe"),
-            plural(robot.closed, "loop")
+            plural(robot.progress.closed, "loop")
         ),
         Stage::Finishing => format!("{name}: {done:.0} % done, the last loops are closed."),
         Stage::Solving => format!(
@@ -173,7 +177,7 @@ fn finished(robot: &LogState) -> String {
     let source = if robot.has_scans {
         format!(
             "{} became {}",
-            plural(robot.scans, "scan"),
+            plural(robot.progress.scans, "scan"),
             plural(robot.keyframes.len(), "keyframe")
         )
     } else {
@@ -247,10 +251,10 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
     let shown = robot.keyframes.get(own.keyframe());
     let of_shown = |of: fn(&KeyframeReport) -> f64| shown.map_or(f64::NAN, of);
     let grade_m = robot.grade.as_ref().map_or(f64::NAN, |grade| grade.error_m);
-    let done = 100.0 * robot.share;
+    let done = 100.0 * robot.progress.share;
     let mut facts = vec![
         Fact::count("done_percent", "done, %", done.floor()),
-        Fact::count("scans", "scans", robot.scans as f64),
+        Fact::count("scans", "scans", robot.progress.scans as f64),
         Fact::count("keyframes", "keyframes", robot.keyframes.len() as f64),
         Fact::new("path_length_m", "path", path_length_m(robot), "m", 1),
         Fact::count("loops", "loops in the graph", in_graph(robot) as f64),

@@ -30,20 +30,19 @@ fn ends(widget: &WrongJacobians) -> Table {
 
 fn every_step(widget: &WrongJacobians) -> Table {
     let runs = widget.solved.runs.iter().zip(NAMES);
-    let rows = runs.flat_map(|(run, name)| {
-        run.iterates.iter().enumerate().map(move |(step, iterate)| {
-            vec![
-                name.to_owned(),
-                step.to_string(),
-                iterate.off_m.to_string(),
-                iterate.chi2.to_string(),
-            ]
-        })
+    let steps = runs.flat_map(|(run, name)| {
+        let iterates = run.iterates.iter().enumerate();
+        iterates.map(move |(step, iterate)| (name, step, iterate))
     });
-    Table::exported(
+    Table::of_items(
         "steps",
         "Every step",
-        &["solver", "step", "off (m)", "χ²"],
-        rows.collect(),
+        steps,
+        &[
+            ("solver", &|(name, ..)| (*name).into()),
+            ("step", &|(_, step, _)| (*step).into()),
+            ("off (m)", &|(.., iterate)| iterate.off_m.into()),
+            ("χ²", &|(.., iterate)| iterate.chi2.into()),
+        ],
     )
 }

@@ -58,28 +58,22 @@ fn variants(explorer: &BasinExplorer) -> Table {
 /// The iterations of the registration.
 fn iterations(explorer: &BasinExplorer) -> Table {
     let truth = explorer.scene.truth();
-    let rows = explorer.run.trace.iter().enumerate().map(|(k, state)| {
-        let pose = state.pose;
-        vec![
-            k.to_string(),
-            state.pairs.to_string(),
-            state.rmse_m.to_string(),
-            error_m(&truth, &pose).to_string(),
-            pose.x().to_string(),
-            pose.y().to_string(),
-            pose.theta().to_string(),
-        ]
-    });
-    let head = [
-        "iteration",
-        "pairs",
-        "rmse (m)",
-        "error (m)",
-        "x (m)",
-        "y (m)",
-        "theta (rad)",
-    ];
-    Table::exported("iterations", "Every iteration", &head, rows.collect())
+    Table::of_items(
+        "iterations",
+        "Every iteration",
+        explorer.run.trace.iter().enumerate(),
+        &[
+            ("iteration", &|(k, _)| (*k).into()),
+            ("pairs", &|(_, state)| state.pairs.into()),
+            ("rmse (m)", &|(_, state)| state.rmse_m.into()),
+            ("error (m)", &|(_, state)| {
+                error_m(&truth, &state.pose).into()
+            }),
+            ("x (m)", &|(_, state)| state.pose.x().into()),
+            ("y (m)", &|(_, state)| state.pose.y().into()),
+            ("theta (rad)", &|(_, state)| state.pose.theta().into()),
+        ],
+    )
 }
 
 /// Both basin maps.

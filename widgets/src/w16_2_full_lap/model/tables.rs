@@ -2,9 +2,7 @@
 //!
 //! They end at the last tick that is shown.
 
-use ch16_lab::lap::{
-    LapSummary, RecordedEdge, RecordedLoopAttempt, RecordedLoopEffect, edge_strain,
-};
+use ch16_lab::lap::{LapSummary, RecordedLoopAttempt, edge_strain};
 use ch16_slam2d::loops::LoopRejection;
 use widget_kit::model::{Table, TablePlace};
 
@@ -131,53 +129,46 @@ fn loops(runs: &Runs, seen: usize) -> Table {
 
 /// All data of each attempt.
 fn loop_attempts(runs: &Runs, seen: usize) -> Table {
-    let head = [
-        "tick",
-        "new node",
-        "old node",
-        "χ²",
-        "gate χ²",
-        "χ² path",
-        "χ² exact",
-        "rmse (m)",
-        "pairs",
-        "off the truth (m)",
-        "off the truth (°)",
-        "moved (m)",
-        "keyframe rms before (m)",
-        "keyframe rms after (m)",
-        "verdict",
-    ];
-    let row = |attempt: &RecordedLoopAttempt| {
-        let loop_ = &attempt.verification;
-        let gates = runs.gates(attempt);
-        let error = runs.graph.lap().loop_error(attempt);
-        let effect = |of: fn(&RecordedLoopEffect) -> f64| {
-            exact(attempt.effect.as_ref().map_or(f64::NAN, of))
-        };
-        vec![
-            attempt.tick.to_string(),
-            loop_.from_node.to_string(),
-            loop_.candidate.node.to_string(),
-            exact(loop_.gate.chi2),
-            exact(loop_.gate.gate_chi2),
-            exact(gates.path.test.chi2),
-            exact(gates.exact.test.chi2),
-            exact(loop_.rmse_m),
-            loop_.inliers.to_string(),
-            exact(error.position_m),
-            exact(error.heading_deg),
-            effect(|effect| effect.max_shift_m),
-            effect(|effect| effect.keyframe_rms_m.before),
-            effect(|effect| effect.keyframe_rms_m.after),
-            verdict_with_reason(attempt).to_owned(),
-        ]
-    };
-    Table::exported(
+    let error = |attempt| runs.graph.lap().loop_error(attempt);
+    Table::of_items(
         "loop-attempts",
         "Loops tried",
-        &head,
-        runs.attempts_until(seen).iter().map(row).collect(),
+        runs.attempts_until(seen),
+        &[
+            ("tick", &|tried| tried.tick.into()),
+            ("new node", &|tried| tried.verification.from_node.into()),
+            ("old node", &|tried| {
+                tried.verification.candidate.node.into()
+            }),
+            ("χ²", &|tried| tried.verification.gate.chi2.into()),
+            ("gate χ²", &|tried| {
+                tried.verification.gate.gate_chi2.into()
+            }),
+            ("χ² path", &|tried| {
+                runs.gates(tried).path.test.chi2.into()
+            }),
+            ("χ² exact", &|tried| {
+                runs.gates(tried).exact.test.chi2.into()
+            }),
+            ("rmse (m)", &|tried| tried.verification.rmse_m.into()),
+            ("pairs", &|tried| tried.verification.inliers.into()),
+            ("off the truth (m)", &|tried| error(tried).position_m.into()),
+            ("off the truth (°)", &|tried| {
+                error(tried).heading_deg.into()
+            }),
+            ("moved (m)", &|tried| {
+                tried.effect.map(|effect| effect.max_shift_m).into()
+            }),
+            ("keyframe rms before (m)", &|tried| {
+                let rms_m = tried.effect.map(|effect| effect.keyframe_rms_m);
+                rms_m.map(|rms_m| rms_m.before).into()
+            }),
+            ("keyframe rms after (m)", &|tried| {
+                let rms_m = tried.effect.map(|effect| effect.keyframe_rms_m);
+                rms_m.map(|rms_m| rms_m.after).into()
+            }),
+            ("verdict", &|tried| verdict_with_reason(tried).into()),
+        ],
     )
 }
 
@@ -201,76 +192,71 @@ fn verdict_with_reason(attempt: &RecordedLoopAttempt) -> &'static str {
 }
 
 fn over_time(runs: &Runs, seen: usize) -> Table {
-    let head = [
-        "tick",
-        "odometry error (m)",
-        "front end error (m)",
-        "pose graph error (m)",
-        "front end keyframe rms (m)",
-        "pose graph keyframe rms (m)",
-        "front end map disagreement (m)",
-        "pose graph map disagreement (m)",
-    ];
-    let row = |tick: usize| {
-        let columns = [
-            runs.odometry_errors_m[tick],
-            runs.front_end.errors_m[tick],
-            runs.graph.errors_m[tick],
-            runs.front_end.keyframe_rms_m[tick],
-            runs.graph.keyframe_rms_m[tick],
-            runs.front_end.disagreement_m[tick],
-            runs.graph.disagreement_m[tick],
-        ];
-        let cells = columns.into_iter().map(exact);
-        core::iter::once(tick.to_string()).chain(cells).collect()
-    };
-    Table::exported(
+    let Runs {
+        front_end, graph, ..
+    } = runs;
+    Table::of_items(
         "errors-over-time",
         "Errors over time",
-        &head,
-        (0..=seen).map(row).collect(),
+        0..=seen,
+        &[
+            ("tick", &|&tick| tick.into()),
+            ("odometry error (m)", &|&tick| {
+                runs.odometry_errors_m[tick].into()
+            }),
+            ("front end error (m)", &|&tick| {
+                front_end.errors_m[tick].into()
+            }),
+            ("pose graph error (m)", &|&tick| graph.errors_m[tick].into()),
+            ("front end keyframe rms (m)", &|&tick| {
+                front_end.keyframe_rms_m[tick].into()
+            }),
+            ("pose graph keyframe rms (m)", &|&tick| {
+                graph.keyframe_rms_m[tick].into()
+            }),
+            ("front end map disagreement (m)", &|&tick| {
+                front_end.disagreement_m[tick].into()
+            }),
+            ("pose graph map disagreement (m)", &|&tick| {
+                graph.disagreement_m[tick].into()
+            }),
+        ],
     )
 }
 
 fn keyframes(runs: &Runs, seen: usize) -> Table {
-    let head = [
-        "node",
-        "tick",
-        "true x (m)",
-        "true y (m)",
-        "x (m)",
-        "y (m)",
-        "heading (rad)",
-    ];
     let poses = runs.graph.poses_at(seen);
-    let row = |(node, pose): (usize, &pr_geom::SE2)| {
+    let keyframes = poses.iter().enumerate().map(|(node, pose)| {
         let tick = runs.graph.keyframe_tick(node);
-        let truth = runs.truth(tick);
-        let columns = [truth.x(), truth.y(), pose.x(), pose.y(), pose.theta()];
-        let cells = columns.into_iter().map(exact);
-        [node.to_string(), tick.to_string()]
-            .into_iter()
-            .chain(cells)
-            .collect()
-    };
-    Table::exported(
+        (node, tick, runs.truth(tick), pose)
+    });
+    Table::of_items(
         "keyframes",
         format!("Keyframes after tick {seen}"),
-        &head,
-        poses.iter().enumerate().map(row).collect(),
+        keyframes,
+        &[
+            ("node", &|(node, ..)| (*node).into()),
+            ("tick", &|(_, tick, ..)| (*tick).into()),
+            ("true x (m)", &|(.., truth, _)| truth.x().into()),
+            ("true y (m)", &|(.., truth, _)| truth.y().into()),
+            ("x (m)", &|(.., pose)| pose.x().into()),
+            ("y (m)", &|(.., pose)| pose.y().into()),
+            ("heading (rad)", &|(.., pose)| pose.theta().into()),
+        ],
     )
 }
 
 fn walls(runs: &Runs) -> Table {
-    let row = |wall: &pr_sim::Wall| {
-        let ends = [wall.start.x, wall.start.y, wall.end.x, wall.end.y];
-        ends.map(exact).to_vec()
-    };
-    Table::exported(
+    Table::of_items(
         "walls",
         "The true walls",
-        &["from x (m)", "from y (m)", "to x (m)", "to y (m)"],
-        runs.world().walls().iter().map(row).collect(),
+        runs.world().walls(),
+        &[
+            ("from x (m)", &|wall| wall.start.x.into()),
+            ("from y (m)", &|wall| wall.start.y.into()),
+            ("to x (m)", &|wall| wall.end.x.into()),
+            ("to y (m)", &|wall| wall.end.y.into()),
+        ],
     )
 }
 
@@ -292,38 +278,25 @@ fn map(runs: &Runs, seen: usize) -> Table {
 
 /// Every edge of the graph at the current tick.
 pub fn edges(moment: &LapState) -> Table {
-    let head = [
-        "from node",
-        "to node",
-        "kind",
-        "χ²",
-        "left ahead (m)",
-        "left aside (m)",
-        "left turn (rad)",
-    ];
-    let row = |edge: &RecordedEdge| {
-        let strain = edge_strain(edge, &moment.nodes);
-        let kind = match part_of(moment, edge) {
-            GraphPart::Own => "your loop",
-            GraphPart::Loop(_) => "loop",
-            GraphPart::Edge(_) | GraphPart::Keyframe(_) => "odometry",
-        };
-        let numbers = [
-            strain.chi2,
-            strain.residual.x,
-            strain.residual.y,
-            strain.residual.z,
-        ];
-        [edge.from.to_string(), edge.to.to_string(), kind.to_owned()]
-            .into_iter()
-            .chain(numbers.map(exact))
-            .collect()
+    let kind = |edge| match part_of(moment, edge) {
+        GraphPart::Own => "your loop",
+        GraphPart::Loop(_) => "loop",
+        GraphPart::Edge(_) | GraphPart::Keyframe(_) => "odometry",
     };
-    Table::exported(
+    let edges = moment.edges_with_own();
+    Table::of_items(
         "edges",
         format!("Edges after tick {}", moment.tick),
-        &head,
-        moment.edges_with_own().map(row).collect(),
+        edges.map(|edge| (edge, edge_strain(edge, &moment.nodes))),
+        &[
+            ("from node", &|(edge, _)| edge.from.into()),
+            ("to node", &|(edge, _)| edge.to.into()),
+            ("kind", &|(edge, _)| kind(edge).into()),
+            ("χ²", &|(_, strain)| strain.chi2.into()),
+            ("left ahead (m)", &|(_, strain)| strain.residual.x.into()),
+            ("left aside (m)", &|(_, strain)| strain.residual.y.into()),
+            ("left turn (rad)", &|(_, strain)| strain.residual.z.into()),
+        ],
     )
 }
 
@@ -333,14 +306,5 @@ fn metres(value: f64) -> String {
         format!("{value:.4}")
     } else {
         "–".to_owned()
-    }
-}
-
-/// All digits; empty if there is no value.
-fn exact(value: f64) -> String {
-    if value.is_finite() {
-        value.to_string()
-    } else {
-        String::new()
     }
 }

@@ -64,44 +64,32 @@ fn row(event: &Event) -> Vec<String> {
 
 /// All samples of the run, one row a tick.
 fn over_time(room: &ControlRoom) -> Table {
-    let head = [
-        "tick",
-        "tau (m)",
-        "pairs",
-        "rmse (m)",
-        "iterations",
-        "odometry error (m)",
-        "estimate error (m)",
-        "map disagreement (m)",
-    ];
     let history = &room.history;
-    let rows = room.record.lap.reports.iter().map(|report| {
-        let matched = &report.registration.matched;
-        let tick = report.tick;
-        vec![
-            tick.to_string(),
-            history.tau_m[tick].to_string(),
-            matched.inliers.to_string(),
-            matched.rmse_m.to_string(),
-            matched.iterations.to_string(),
-            history.odometry_error_m[tick].to_string(),
-            history.estimate_error_m[tick].to_string(),
-            finite(history.disagreement_m[tick]),
-        ]
-    });
-    Table::exported(
+    Table::of_items(
         "control-room-over-time",
         "The run, tick by tick",
-        &head,
-        rows.collect(),
+        &room.record.lap.reports,
+        &[
+            ("tick", &|report| report.tick.into()),
+            ("tau (m)", &|report| history.tau_m[report.tick].into()),
+            ("pairs", &|report| {
+                report.registration.matched.inliers.into()
+            }),
+            ("rmse (m)", &|report| {
+                report.registration.matched.rmse_m.into()
+            }),
+            ("iterations", &|report| {
+                report.registration.matched.iterations.into()
+            }),
+            ("odometry error (m)", &|report| {
+                history.odometry_error_m[report.tick].into()
+            }),
+            ("estimate error (m)", &|report| {
+                history.estimate_error_m[report.tick].into()
+            }),
+            ("map disagreement (m)", &|report| {
+                history.disagreement_m[report.tick].into()
+            }),
+        ],
     )
-}
-
-/// The number; empty if it is not finite.
-fn finite(value: f64) -> String {
-    if value.is_finite() {
-        value.to_string()
-    } else {
-        String::new()
-    }
 }

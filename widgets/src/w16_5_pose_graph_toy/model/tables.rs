@@ -45,27 +45,22 @@ fn springs(toy: &PoseGraphToy) -> Table {
 }
 
 fn steps(toy: &PoseGraphToy) -> Table {
-    let rows = toy
-        .course
-        .moments
-        .iter()
-        .enumerate()
-        .flat_map(|(step, moment)| {
-            moment.poses.iter().enumerate().map(move |(k, pose)| {
-                vec![
-                    step.to_string(),
-                    moment.chi2.to_string(),
-                    (k + 1).to_string(),
-                    pose.x().to_string(),
-                    pose.y().to_string(),
-                    pose.theta().to_string(),
-                ]
-            })
-        });
-    Table::exported(
+    let steps = toy.course.moments.iter().enumerate();
+    let poses = steps.flat_map(|(step, state)| {
+        let poses = state.poses.iter().enumerate();
+        poses.map(move |(k, pose)| (step, state.chi2, k, pose))
+    });
+    Table::of_items(
         "steps",
         "Every pose after every step",
-        &["step", "χ²", "pose", "x (m)", "y (m)", "heading (rad)"],
-        rows.collect(),
+        poses,
+        &[
+            ("step", &|(step, ..)| (*step).into()),
+            ("χ²", &|(_, chi2, ..)| (*chi2).into()),
+            ("pose", &|(.., k, _)| (k + 1).into()),
+            ("x (m)", &|(.., pose)| pose.x().into()),
+            ("y (m)", &|(.., pose)| pose.y().into()),
+            ("heading (rad)", &|(.., pose)| pose.theta().into()),
+        ],
     )
 }

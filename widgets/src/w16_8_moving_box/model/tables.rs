@@ -36,29 +36,16 @@ fn methods(moving: &MovingBox) -> Table {
 }
 
 fn curves(moving: &MovingBox) -> Table {
-    let of = |method: usize| moving.curves.bias_m(method);
-    let rows = of(0)
-        .zip(of(1))
-        .zip(of(2))
-        .map(|((plain, trimmed), huber)| {
-            let as_text =
-                |bias: Option<f64>| bias.map_or_else(String::new, |bias| bias.to_string());
-            vec![
-                plain.0.to_string(),
-                as_text(plain.1),
-                as_text(trimmed.1),
-                as_text(huber.1),
-            ]
-        });
-    Table::exported(
+    let bias = |method: usize| moving.curves.bias_m(method);
+    Table::of_items(
         "bias",
         format!("Bias over {} seeds", moving.curves.seeds()),
+        bias(0).zip(bias(1)).zip(bias(2)),
         &[
-            "points on the box (%)",
-            "plain (m)",
-            "trimmed (m)",
-            "Huber (m)",
+            ("points on the box (%)", &|((plain, _), _)| plain.0.into()),
+            ("plain (m)", &|((plain, _), _)| plain.1.into()),
+            ("trimmed (m)", &|((_, trimmed), _)| trimmed.1.into()),
+            ("Huber (m)", &|(_, huber)| huber.1.into()),
         ],
-        rows.collect(),
     )
 }

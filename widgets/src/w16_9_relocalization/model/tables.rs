@@ -6,34 +6,27 @@ use super::Relocalization;
 
 /// All tables.
 pub fn all(back: &Relocalization) -> Vec<Table> {
-    let rows = back.finished().into_iter().flat_map(|(_, run)| {
+    let scans = back.finished().into_iter().flat_map(|(_, run)| {
         let reports = run.reports().iter().enumerate();
-        reports.map(|(tick, report)| {
-            let number = |value: Option<f64>| value.map_or(String::new(), |v| v.to_string());
-            let best = report.search.map(|found| found.best.score);
-            let next = report.runner_up().map(|found| found.score);
-            vec![
-                tick.to_string(),
-                report.verdict.name().to_owned(),
-                number(report.score),
-                number(best),
-                number(next),
-                number(run.error_m(tick)),
-            ]
-        })
+        reports.map(move |(tick, report)| (run, tick, report))
     });
-    let head = [
-        "scan",
-        "verdict",
-        "share that fits",
-        "best place's score",
-        "next place's score",
-        "position error (m)",
-    ];
-    vec![Table::exported(
+    vec![Table::of_items(
         "scans",
         "Every scan of the run",
-        &head,
-        rows.collect(),
+        scans,
+        &[
+            ("scan", &|(_, tick, _)| (*tick).into()),
+            ("verdict", &|(.., report)| report.verdict.name().into()),
+            ("share that fits", &|(.., report)| report.score.into()),
+            ("best place's score", &|(.., report)| {
+                report.search.map(|found| found.best.score).into()
+            }),
+            ("next place's score", &|(.., report)| {
+                report.runner_up().map(|found| found.score).into()
+            }),
+            ("position error (m)", &|(run, tick, _)| {
+                run.error_m(*tick).into()
+            }),
+        ],
     )]
 }
