@@ -21,7 +21,9 @@ mod scan_profiles;
 mod submap_loops;
 mod submaps;
 pub(crate) mod tuning;
+mod walls;
 
+use core::ops::Range;
 use std::sync::Arc;
 
 use nalgebra::{Point2, Vector2};
@@ -78,8 +80,18 @@ pub struct LocalMap {
     cloud: PointCloud,
     points: DenseMap,
     normals: Vec<Normal>,
-    /// `body_from_map` of each scan, and its ranges.
-    views: Vec<(SE2, Arc<RangeProfile>)>,
+    views: Vec<View>,
+    /// The points and the walls through them, built when they are needed.
+    walls: Option<DenseMap>,
+}
+
+/// A scan of the map.
+#[derive(Clone, Debug)]
+struct View {
+    body_from_map: SE2,
+    profile: Arc<RangeProfile>,
+    /// Indices of its points in the cloud.
+    points: Range<usize>,
 }
 
 impl Default for LocalMap {
@@ -89,6 +101,7 @@ impl Default for LocalMap {
             points: DenseMap::new(CELLS.0, CELLS.1),
             normals: Vec::new(),
             views: Vec::new(),
+            walls: None,
         }
     }
 }
@@ -102,11 +115,16 @@ impl LocalMap {
         self.cloud.clear();
         self.views.clear();
         for (map_from_body, scan, profile) in scans {
+            let first = self.cloud.len();
             self.cloud.extend_transformed(scan, &map_from_body);
-            self.views
-                .push((map_from_body.inverse(), Arc::clone(profile)));
+            self.views.push(View {
+                body_from_map: map_from_body.inverse(),
+                profile: Arc::clone(profile),
+                points: first..self.cloud.len(),
+            });
         }
         self.points.rebuild(&self.cloud);
+        self.walls = None;
         self.normals.clear();
         self.normals.resize(self.points.len(), Normal::Unknown);
     }
@@ -125,16 +143,51 @@ impl LocalMap {
         map_from_scan: &SE2,
         config: &MapRegistrationConfig,
     ) -> MapFit {
+        self.fit_on(&self.points, scan, map_from_scan, config)
+    }
+
+    /// The fit of `scan` at `map_from_scan` on the walls through the points.
+    ///
+    /// At a grazing angle the returns of a scan are far apart. Along a corridor, a scan meets those of the last one where
+    /// that was taken, and falls between them where it was taken itself, so [`LocalMap::fit`] favours a robot at rest.
+    pub(crate) fn fit_on_walls(
+        &mut self,
+        scan: &PointCloud,
+        map_from_scan: &SE2,
+        config: &MapRegistrationConfig,
+    ) -> MapFit {
+        let walls = self.walls.take().unwrap_or_else(|| self.build_walls());
+        let fit = self.fit_on(&walls, scan, map_from_scan, config);
+        self.walls = Some(walls);
+        fit
+    }
+
+    fn build_walls(&self) -> DenseMap {
+        let mut points = self.cloud.clone();
+        for view in &self.views {
+            let scan = view.points.clone().map(|index| self.cloud.point(index));
+            let body_from_map = &view.body_from_map;
+            let mut between = PointCloud::default();
+            walls::add_between(scan.map(|at| body_from_map.transform(at)), &mut between);
+            points.extend_transformed(&between, &body_from_map.inverse());
+        }
+        DenseMap::from_cloud(&points, CELLS.0, CELLS.1)
+    }
+
+    fn fit_on(
+        &self,
+        points: &DenseMap,
+        scan: &PointCloud,
+        map_from_scan: &SE2,
+        config: &MapRegistrationConfig,
+    ) -> MapFit {
         let miss_m2 = config.inlier_distance_m * config.inlier_distance_m;
         let (mut cost, mut squares_m2) = (0.0, 0.0);
         let (mut inliers, mut contradicting) = (0_usize, 0_usize);
         let mut last_found = None;
         for point in scan.iter() {
             let at = map_from_scan.transform(point);
-            match self
-                .points
-                .neighbor_from(at, config.inlier_distance_m, last_found)
-            {
+            match points.neighbor_from(at, config.inlier_distance_m, last_found) {
                 Some(nearest) => {
                     squares_m2 += nearest.distance_squared_m2;
                     inliers += 1;
@@ -176,7 +229,10 @@ impl LocalMap {
     /// Whether any scan has observed a point as free, newest scans first.
     fn is_free(&self, at: Point2<f64>) -> bool {
         let mut views = self.views.iter().rev();
-        views.any(|(body_from_map, profile)| profile.sees_through(body_from_map.transform(at)))
+        views.any(|view| {
+            let seen = view.body_from_map.transform(at);
+            view.profile.sees_through(seen)
+        })
     }
 
     /// The normal of point `index`, estimated on first use.

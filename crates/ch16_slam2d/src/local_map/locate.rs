@@ -24,10 +24,54 @@ const SLIP: f64 = 4.0;
 const TIE: f64 = 0.5;
 /// A larger prior cost means a deviation of more than three standard deviations.
 const MAX_PRIOR_COST: f64 = 6.0;
+/// Costs that differ by more than this, nats, refute a pose that the returns alone prefer: odds of 20 to 1.
+const SURE: f64 = 3.0;
 /// Share of inliers that justifies such a deviation: a few points in unseen space fit any wall.
 const MAJORITY: f64 = 0.5;
 /// Share of points in observed free space above which a pose contradicts the map.
 const MAX_CONTRADICTING: f64 = 0.05;
+
+/// Registrations of a scan from different starts, of which the best is kept.
+struct Candidates<'a> {
+    scan: &'a PointCloud,
+    prior: &'a MotionPrior,
+    config: &'a MapRegistrationConfig,
+    best: MapRegistration,
+}
+
+impl Candidates<'_> {
+    /// Keeps another one if it is cheaper.
+    fn add(&mut self, other: MapRegistration) {
+        if other.cost < self.best.cost && self.is_justified(&other) {
+            self.best = other;
+        }
+    }
+
+    /// Keeps one elsewhere if the scan fits better there and their costs do not decide against it.
+    fn add_slip(&mut self, other: MapRegistration) {
+        let is_fitting = other.fit.score > self.best.fit.score && other.cost < self.best.cost + TIE;
+        if self.is_elsewhere(&other) && is_fitting && self.is_justified(&other) {
+            self.best = other;
+        }
+    }
+
+    fn is_justified(&self, found: &MapRegistration) -> bool {
+        found.fit.inliers as f64 >= MAJORITY * self.scan.len() as f64 || !self.deviates(found)
+    }
+
+    fn deviates(&self, found: &MapRegistration) -> bool {
+        self.prior.cost(&found.registered.pose) > MAX_PRIOR_COST
+    }
+
+    fn is_elsewhere(&self, other: &MapRegistration) -> bool {
+        let [one, other] = [&self.best, other].map(|found| found.registered.pose);
+        position_error_m(&one, &other) > self.config.inlier_distance_m
+    }
+
+    fn is_poor(&self) -> bool {
+        self.best.fit.score < self.config.good_score
+    }
+}
 
 impl LocalMap {
     /// The pose of lowest cost among the registrations from the prediction, from `others`, and from the best pose of
@@ -42,29 +86,21 @@ impl LocalMap {
     ) -> MapRegistration {
         let stages = [config.max_correspondence_m, config.inlier_distance_m];
         let near = &stages[1..];
-        let is_justified = |found: &MapRegistration| {
-            found.fit.inliers as f64 >= MAJORITY * scan.len() as f64
-                || prior.cost(&found.registered.pose) <= MAX_PRIOR_COST
+        let first = self.register(scan, prior.pose, &stages, Some(prior), config);
+        let mut found = Candidates {
+            scan,
+            prior,
+            config,
+            best: first,
         };
-        let cheaper = |one: MapRegistration, other: MapRegistration| {
-            if other.cost < one.cost && is_justified(&other) {
-                other
-            } else {
-                one
-            }
-        };
-        let mut best = self.register(scan, prior.pose, &stages, Some(prior), config);
         // With few pairs the registration is pulled farther than its information justifies.
-        if prior.cost(&best.registered.pose) > MAX_PRIOR_COST {
-            let predicted = self.register(scan, prior.pose, &[], Some(prior), config);
-            best = cheaper(predicted, best);
+        if found.deviates(&first) {
+            found.best = self.register(scan, prior.pose, &[], Some(prior), config);
+            found.add(first);
         }
         // A registration from a distant start may slide along a wall although the scan fits better at the prediction.
-        if self.fit(scan, &prior.pose, config).score > best.fit.score {
-            best = cheaper(
-                best,
-                self.register(scan, prior.pose, near, Some(prior), config),
-            );
+        if self.fit(scan, &prior.pose, config).score > found.best.fit.score {
+            found.add(self.register(scan, prior.pose, near, Some(prior), config));
         }
         // Odometry may be farther off than pairs of the first stage reach.
         let slip_m = SLIP * prior.sigma_m;
@@ -73,50 +109,60 @@ impl LocalMap {
             && slip_m <= 2.0 * config.max_correspondence_m
         {
             let reaches = [slip_m, stages[0], stages[1]];
-            let slipped = self.register(scan, prior.pose, &reaches, Some(prior), config);
-            let (one, other) = (best.registered.pose, slipped.registered.pose);
-            let is_other = position_error_m(&one, &other) > config.inlier_distance_m;
-            let is_fitting = slipped.fit.score > best.fit.score && slipped.cost < best.cost + TIE;
-            if is_other && is_fitting && is_justified(&slipped) {
-                best = slipped;
-            }
+            found.add_slip(self.register(scan, prior.pose, &reaches, Some(prior), config));
         }
         let is_vague = 2.0 * prior.sigma_m > config.max_correspondence_m;
-        if is_vague && best.fit.score < SURE_SCORE {
+        if is_vague && found.best.fit.score < SURE_SCORE {
             for turn_rad in STARTS.1 {
                 for ahead_m in STARTS.0 {
                     let start = prior.pose * SE2::new(ahead_m, 0.0, turn_rad);
-                    if prior.cost(&start) < best.cost {
-                        best = cheaper(
-                            best,
-                            self.register(scan, start, &stages, Some(prior), config),
-                        );
+                    if prior.cost(&start) < found.best.cost {
+                        found.add(self.register(scan, start, &stages, Some(prior), config));
                     }
                 }
             }
         }
-        let is_poor = |best: &MapRegistration| best.fit.score < config.good_score;
         for start in others {
-            if is_poor(&best) {
-                best = cheaper(
-                    best,
-                    self.register(scan, *start, &stages, Some(prior), config),
-                );
+            if found.is_poor() {
+                found.add(self.register(scan, *start, &stages, Some(prior), config));
             }
         }
         // A scan of unseen space fits anywhere: only one that contradicts the map was taken elsewhere.
         let is_contradicted =
-            best.fit.contradicting as f64 >= MAX_CONTRADICTING * scan.len() as f64;
-        if is_poor(&best) && is_contradicted {
+            found.best.fit.contradicting as f64 >= MAX_CONTRADICTING * scan.len() as f64;
+        if found.is_poor() && is_contradicted {
             let window = SearchWindow::around(prior.pose, config.search_m, config.search_rad);
-            if let Some(found) = self.search(scan, &window, 0.0) {
-                best = cheaper(
-                    best,
-                    self.register(scan, found.best.pose, near, Some(prior), config),
-                );
+            if let Some(searched) = self.search(scan, &window, 0.0) {
+                let start = searched.best.pose;
+                found.add(self.register(scan, start, near, Some(prior), config));
             }
         }
-        best
+        if prior.tail == PriorTail::Student && found.deviates(&found.best) {
+            self.without_slip(&mut found);
+        }
+        found.best
+    }
+
+    /// Replaces a pose that contradicts the odometry by that of wheels that do not slip, if that is cheaper on walls.
+    fn without_slip(&mut self, found: &mut Candidates<'_>) {
+        let (scan, config) = (found.scan, found.config);
+        let rolling = MotionPrior {
+            tail: PriorTail::Normal,
+            ..*found.prior
+        };
+        let stages = [config.max_correspondence_m, config.inlier_distance_m];
+        let other = self.register(scan, rolling.pose, &stages, Some(&rolling), config);
+        if !found.is_elsewhere(&other) {
+            return;
+        }
+        let [on_walls, other_on_walls] = [&found.best, &other].map(|found_at| {
+            let pose = &found_at.registered.pose;
+            let fit = self.fit_on_walls(scan, pose, config);
+            config.misfit_cost(scan, fit.score) + found.prior.cost(pose)
+        });
+        if other_on_walls + SURE < on_walls {
+            found.best = other;
+        }
     }
 }
 
@@ -161,6 +207,45 @@ mod tests {
         assert!(found(0.1, &mut map).abs() < 0.05);
         // 7 standard deviations are no slip that is looked for.
         assert!(found(0.05, &mut map) > 0.3);
+    }
+
+    /// A scan of two walls 6 m apart, of beams 4° apart: the same at any place between them.
+    fn grazed_corridor() -> PointCloud {
+        let bearings = (-40..=40).map(|beam| (4.0 * f64::from(beam)).to_radians());
+        let returns = bearings.map(|bearing| {
+            let range_m = 3.0 / bearing.sin().abs();
+            Point2::new(range_m * bearing.cos(), range_m * bearing.sin())
+        });
+        returns.filter(|at| at.x.abs() < 30.0).collect()
+    }
+
+    #[test]
+    fn returns_that_meet_those_of_the_last_scan_do_not_hold_a_rolling_robot() {
+        let scan = grazed_corridor();
+        let profile = Arc::new(RangeProfile::new(&scan));
+        let mut map = LocalMap::default();
+        map.rebuild([(SE2::identity(), &scan, &profile)]);
+        let config = LocalMapConfig::default().registration();
+        let prior = MotionPrior {
+            pose: SE2::new(1.0, 0.0, 0.0),
+            sigma_m: 0.06,
+            sigma_rad: 0.03,
+            tail: PriorTail::Student,
+        };
+        let [at_rest, rolled] = [SE2::identity(), prior.pose]
+            .map(|pose| map.register(&scan, pose, &[], Some(&prior), &config));
+        // At rest every return lies on one of the last scan; a metre on, most fall between those.
+        assert!(at_rest.cost < rolled.cost);
+        let mut found = Candidates {
+            scan: &scan,
+            prior: &prior,
+            config: &config,
+            best: at_rest,
+        };
+        map.without_slip(&mut found);
+        let off_m = (found.best.registered.pose.x() - 1.0).abs();
+        // 0.06 m: a standard deviation of the odometry, which alone determines it.
+        assert!(off_m < 0.06, "{:?}", found.best);
     }
 
     #[test]
