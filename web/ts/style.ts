@@ -109,7 +109,6 @@ button[aria-disabled='true'] { color: var(--soft); border-color: var(--line); cu
 .timeline { flex: 1 1 13rem; flex-wrap: nowrap; }
 .timeline > :not(.rail) { flex: none; order: 1; }
 .timeline .name { color: var(--soft); }
-.timeline input[type='number'] { width: 3em; }
 .empty :is(.unit, input[type='number']) { visibility: hidden; }
 input[type='range'] { flex: 1; min-width: 3rem; min-height: 1.625rem; margin: 0; accent-color: var(--accent); }
 .marks { position: absolute; inset: 0 8px; pointer-events: none; }
@@ -119,6 +118,8 @@ input[type='range'] { flex: 1; min-width: 3rem; min-height: 1.625rem; margin: 0;
 .marks .doubtful { background: var(--fair); }
 input[type='number'] { width: 3.5em; min-height: 1.5rem; padding: 0 0.3rem; border-color: transparent; border-radius: 4px; text-align: right;
   appearance: textfield; font-variant-numeric: tabular-nums; }
+/* Chromium keeps the room of its arrows. */
+input::-webkit-inner-spin-button { display: none; }
 :is(.seed, .settings) input[type='number'] { width: 5em; border-color: var(--line); }
 .seed input[type='number'] { width: 7em; }
 input[type='text'] { width: 100%; min-width: 0; border-radius: 4px; }
