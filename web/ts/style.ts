@@ -82,6 +82,7 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .verdict p { margin: 0; text-wrap: pretty; display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 3; overflow: hidden; }
 @container (30rem <= width < 50rem) { .verdict p { -webkit-line-clamp: 4; } }
 .bar:has(.rest:not([hidden])) .verdict p { display: block; }
+.bar:not(:has(.rest:not([hidden]))) .further { display: none; }
 .question { font-weight: 600; }
 .good { color: var(--good); }
 .doubtful { color: var(--fair); }
