@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import * as h from './harness.mjs';
-import { cloudSpot, restingSpot } from './spots.mjs';
+import { grabbingSpot, restingSpot } from './spots.mjs';
 
 const visit = h.visitor();
 const at = (path, test, options = {}) => visit('', test, { path, options });
@@ -126,22 +126,55 @@ describe('a handle under the pointer', () => {
   });
 });
 
-describe('a handle that is held', () => {
-  it('keeps the cursor of a grab while frames go by without a movement', async () => {
-    await visit('<slam-widget name="w16.1"></slam-widget>', async (tab) => {
+describe('a widget before the first act', () => {
+  for (const { id, question } of h.schema) {
+    it(`asks its question, and says a verdict only afterwards: ${id}`, async () => {
+      await visit(`<slam-widget name="${id}"></slam-widget>`, async (tab) => {
+        await h.ready(tab);
+        await h.quiet(tab);
+        const line = tab.locator('slam-widget .verdict');
+        assert.equal(await line.textContent(), question);
+        // Without a log there is nothing to judge.
+        if (id === 'w16.10') return;
+        await tab.evaluate(() => document.querySelector('slam-widget').press('play'));
+        await h.quiet(tab);
+        const { verdict } = await tab.evaluate(() => document.querySelector('slam-widget').outcome);
+        assert.equal(await line.locator('strong').textContent().then((words) => words.slice(2)), verdict);
+        assert.equal(await line.locator('.question').count(), 0);
+      });
+    });
+  }
+
+  it('that waits for a log counts no keyframes', async () => {
+    await visit('<slam-widget name="w16.10"></slam-widget>', async (tab) => {
       await h.ready(tab);
-      const cursor = () => tab.evaluate(() => document.querySelector('slam-widget').shadowRoot.querySelector('canvas').style.cursor);
-      await tab.mouse.move(...await cloudSpot(tab));
-      await tab.mouse.down();
-      for (let frame = 0; frame < 4; frame += 1) {
-        await h.moreFrames(tab, 2);
-        assert.equal(await cursor(), 'grabbing');
-      }
-      await tab.mouse.up();
-      await h.moreFrames(tab, 2);
-      assert.notEqual(await cursor(), 'grabbing');
+      await h.quiet(tab);
+      const timeline = tab.locator('slam-widget .timeline');
+      assert.equal(await timeline.isVisible(), true);
+      for (const part of ['.unit', 'input[type="number"]']) assert.equal(await timeline.locator(part).isVisible(), false, part);
     });
   });
+});
+
+describe('a handle that is held', () => {
+  for (const { id } of h.schema.filter(({ id }) => id !== 'w16.10')) {
+    it(`keeps the cursor of a grab while frames go by without a movement: ${id}`, async () => {
+      await visit(`<slam-widget name="${id}"></slam-widget>`, async (tab) => {
+        await h.ready(tab);
+        await h.quiet(tab);
+        const cursor = () => tab.evaluate(() => document.querySelector('slam-widget').shadowRoot.querySelector('canvas').style.cursor);
+        await tab.mouse.move(...await grabbingSpot(tab));
+        await tab.mouse.down();
+        for (let frame = 0; frame < 4; frame += 1) {
+          await h.moreFrames(tab, 2);
+          assert.equal(await cursor(), 'grabbing');
+        }
+        await tab.mouse.up();
+        await h.moreFrames(tab, 2);
+        assert.notEqual(await cursor(), 'grabbing');
+      });
+    });
+  }
 });
 
 describe('a challenge', () => {

@@ -79,6 +79,20 @@ describe('a small figure', () => {
     });
   }
 
+  it('has its value on one line, also on a phone', async () => {
+    await reading(async (tab) => {
+      for (const name of NAMES) {
+        await slider(tab, name);
+        const lines = await figure(tab, name).locator('output').evaluate((value) => {
+          const range = document.createRange();
+          range.selectNodeContents(value);
+          return new Set([...range.getClientRects()].map(({ top }) => Math.round(top))).size;
+        });
+        assert.equal(lines, 1, name);
+      }
+    }, { viewport: { width: 390, height: 844 } });
+  });
+
   it('is drawn in the theme that the reader chooses', async () => {
     await reading(async (tab) => {
       const range = await slider(tab, 'gate');

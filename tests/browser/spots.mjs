@@ -46,14 +46,21 @@ export async function sliderRail(tab, parameter, css = 'slam-widget') {
   return { x: x + THUMB_PX, y: y + height / 2, width: width - 2 * THUMB_PX };
 }
 
-/** A point of the picture of w16.1 at which the mouse can grab the cloud. */
+/** A point of the picture of w16.1 at which the mouse can grab the cloud, away from the other draggable things. */
 export async function cloudSpot(tab, css = 'slam-widget') {
-  const spots = await tab.evaluate((name) => {
+  const [left, bottom, right, top] = await tab.evaluate((name) => {
+    const widget = document.querySelector(name);
+    return [...widget.panelToScreen('sweeps', -2, -2), ...widget.panelToScreen('sweeps', 2, 2)];
+  }, css);
+  return grabbingSpot(tab, css, { left, bottom, right, top });
+}
+
+/** A point of the canvas at which the mouse can grab something, within a rectangle if one is given. */
+export async function grabbingSpot(tab, css = 'slam-widget', within = null) {
+  const spots = await tab.evaluate(([name, given]) => {
     const widget = document.querySelector(name);
     const box = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
-    // Away from the other draggable things around the picture.
-    const [left, bottom] = widget.panelToScreen('sweeps', -2, -2);
-    const [right, top] = widget.panelToScreen('sweeps', 2, 2);
+    const { left, top, right, bottom } = given ?? { left: 0, top: 0, right: box.width, bottom: Math.min(box.height, innerHeight - box.top) };
     const found = [];
     for (let y = Math.ceil(top); y < bottom; y += 7) {
       for (let x = Math.ceil(left); x < right; x += 7) {
@@ -61,7 +68,7 @@ export async function cloudSpot(tab, css = 'slam-widget') {
       }
     }
     return found;
-  }, css);
+  }, [css, within]);
   // `dragsAt` has the larger reach of a finger: the cursor shows whether the mouse grabs.
   for (const [x, y] of spots) {
     await tab.mouse.move(x, y);

@@ -89,6 +89,21 @@ describe('the controls', () => {
     });
   }
 
+  it('show the last number of each timeline whole', async () => {
+    for (const { id, params } of h.schema) {
+      const timeline = params.find(({ kind }) => kind === 'timeline');
+      if (timeline === undefined || id === 'w16.10') continue;
+      await visit(`<slam-widget name="${id}"></slam-widget>`, async (tab) => {
+        await h.ready(tab);
+        await tab.evaluate((last) => document.querySelector('slam-widget').set(...last), [timeline.id, timeline.max]);
+        await h.quiet(tab);
+        const number = tab.locator('.transport input[type="number"]');
+        const [value, hidden] = await number.evaluate((field) => [field.value, field.scrollWidth - field.clientWidth]);
+        assert.ok(value.length > 0 && hidden <= 0, `${id}: ${hidden} px of ${value} are hidden`);
+      });
+    }
+  });
+
   it('follow the size of the page’s text, and so does the picture', async () => {
     const heights = [];
     for (const px of [16, 24]) {

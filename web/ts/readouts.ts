@@ -14,7 +14,7 @@ export interface Details {
 /** A shape for each standing, in addition to its colour. */
 const SIGNS: Record<Outcome['standing'], string> = { good: '✓', bad: '✗', doubtful: '△', neutral: '○' };
 
-/** Shows the question until the reader acts, and then the verdict. It never gets lower, so that nothing below it jumps. */
+/** Shows the question until the reader acts, and then the verdict: one sentence, and all of them with More. It never gets lower, so that nothing below it jumps. */
 export class VerdictLine {
   readonly #element: HTMLElement;
   #shown = '';
@@ -35,7 +35,10 @@ export class VerdictLine {
     const words = create('strong', { class: standing });
     sign.textContent = `${SIGNS[standing]} `;
     words.append(sign, verdict);
-    line.append(words, ` ${sentence}`);
+    const [first = sentence] = /^.*?[.!?](?= )/.exec(sentence) ?? [];
+    const further = create('span', { class: 'further' });
+    further.textContent = sentence.slice(first.length);
+    line.append(words, ` ${first}`, further);
     this.#replace(`${standing} ${verdict} ${sentence}`, line);
   }
 

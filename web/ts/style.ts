@@ -82,6 +82,7 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .verdict p { margin: 0; text-wrap: pretty; display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 3; overflow: hidden; }
 @container (30rem <= width < 50rem) { .verdict p { -webkit-line-clamp: 4; } }
 .bar:has(.rest:not([hidden])) .verdict p { display: block; }
+.bar:not(:has(.rest:not([hidden]))) .further { display: none; }
 .question { font-weight: 600; }
 .good { color: var(--good); }
 .doubtful { color: var(--fair); }
@@ -109,7 +110,6 @@ button[aria-disabled='true'] { color: var(--soft); border-color: var(--line); cu
 .timeline { flex: 1 1 13rem; flex-wrap: nowrap; }
 .timeline > :not(.rail) { flex: none; order: 1; }
 .timeline .name { color: var(--soft); }
-.timeline input[type='number'] { width: 3em; }
 .empty :is(.unit, input[type='number']) { visibility: hidden; }
 input[type='range'] { flex: 1; min-width: 3rem; min-height: 1.625rem; margin: 0; accent-color: var(--accent); }
 .marks { position: absolute; inset: 0 8px; pointer-events: none; }
@@ -119,6 +119,8 @@ input[type='range'] { flex: 1; min-width: 3rem; min-height: 1.625rem; margin: 0;
 .marks .doubtful { background: var(--fair); }
 input[type='number'] { width: 3.5em; min-height: 1.5rem; padding: 0 0.3rem; border-color: transparent; border-radius: 4px; text-align: right;
   appearance: textfield; font-variant-numeric: tabular-nums; }
+/* Chromium keeps the room of its arrows. */
+input::-webkit-inner-spin-button { display: none; }
 :is(.seed, .settings) input[type='number'] { width: 5em; border-color: var(--line); }
 .seed input[type='number'] { width: 7em; }
 input[type='text'] { width: 100%; min-width: 0; border-radius: 4px; }

@@ -18,7 +18,7 @@ impl View for RobotView {
             // The host's drop zone covers it.
             PlotHeight::Fixed(220.0)
         } else if width < SIDE_BY_SIDE {
-            PlotHeight::Fixed(520.0)
+            PlotHeight::Natural { most: 520.0 }
         } else {
             PlotHeight::Natural { most: 620.0 }
         };

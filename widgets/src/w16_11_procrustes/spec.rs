@@ -57,7 +57,7 @@ params! {
             (Shape::Corners, "corners", "four corners"),
             (Shape::Two, "two", "two points"),
             (Shape::Wall, "wall", "a bare wall"),
-            (Shape::UpsideDown, "upside-down", "corners, upside down"),
+            (Shape::UpsideDown, "upside-down", "upside down"),
         ],
     )
     .default("upside-down")

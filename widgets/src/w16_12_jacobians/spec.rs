@@ -28,7 +28,7 @@ pub enum Curve {
 params! {
     pub(super) static BIAS: Param<f64> = Param::slider(
         "bias",
-        "each edge turns too little by",
+        "missing turn per edge",
         [0.0, MAX_BIAS_DEG],
         BIAS_STEP_DEG,
     )

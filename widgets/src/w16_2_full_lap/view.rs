@@ -14,18 +14,10 @@ const DRAWN_NARROW: f32 = 580.0;
 /// Height of a plot over time.
 const PLOT: PlotHeight = PlotHeight::Fixed(130.0);
 
-/// The map, on a phone higher than wide.
-fn map(width: f32) -> Slot {
-    let height = if width >= SIDE_BY_SIDE {
-        PlotHeight::Natural { most: 450.0 }
-    } else {
-        PlotHeight::Fixed(460.0)
-    };
-    Slot {
-        panel: "map",
-        height,
-    }
-}
+const MAP: Slot = Slot {
+    panel: "map",
+    height: PlotHeight::Natural { most: 450.0 },
+};
 
 const LOOP: Slot = Slot {
     panel: "loop",
@@ -65,13 +57,13 @@ impl View for FullLapView {
         if width >= BESIDE_THE_MAP {
             Arrangement {
                 stage: vec![Row {
-                    columns: vec![column(2.0, &[map(width)]), column(1.0, &[LOOP, ERRORS])],
+                    columns: vec![column(2.0, &[MAP]), column(1.0, &[LOOP, ERRORS])],
                 }],
                 below: vec![Row::new(&[DISAGREEMENT, GATE, STRAIN])],
             }
         } else if width >= SIDE_BY_SIDE {
             Arrangement {
-                stage: vec![Row::new(&[map(width)])],
+                stage: vec![Row::new(&[MAP])],
                 below: vec![Row {
                     columns: vec![
                         column(1.0, &[LOOP, DISAGREEMENT]),
@@ -80,9 +72,10 @@ impl View for FullLapView {
                 }],
             }
         } else {
-            let below = [LOOP, ERRORS, DISAGREEMENT, GATE, STRAIN];
+            // On a phone the flat is low: the close-up takes the rest of the screen.
+            let below = [ERRORS, DISAGREEMENT, GATE, STRAIN];
             Arrangement {
-                stage: vec![Row::new(&[map(width)])],
+                stage: vec![Row::new(&[MAP]), Row::new(&[LOOP])],
                 below: below.iter().map(|slot| Row::new(&[*slot])).collect(),
             }
         }

@@ -17,7 +17,10 @@ impl View for ToyView {
         let most = if is_wide { 420.0 } else { 330.0 };
         let graph = slot(panel::GRAPH, PlotHeight::Natural { most });
         let bars = slot(panel::BARS, PlotHeight::Fixed(150.0));
-        let steps = slot(panel::STEPS, PlotHeight::Fixed(150.0));
+        let steps = slot(
+            panel::STEPS,
+            PlotHeight::Fixed(if is_wide { 330.0 } else { 150.0 }),
+        );
         let stage = if is_wide {
             let column = |share, slot| Column {
                 share,

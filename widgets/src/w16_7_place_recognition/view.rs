@@ -1,4 +1,4 @@
-//! Layout of the panels: the flat above the distances, the views beside them, the matrix and the curves below.
+//! Layout of the panels: the flat beside the views, the distances, the matrix and the curves below.
 
 use widget_kit::layout::PlotHeight;
 use widget_kit::scene::Scene;
@@ -18,16 +18,20 @@ impl View for PlacesView {
         let scores = slot(panel::SCORES, PlotHeight::Fixed(120.0));
         let looks = slot(
             panel::LOOKS,
-            PlotHeight::Fixed(if is_wide { 250.0 } else { 100.0 }),
+            PlotHeight::Fixed(if is_wide { 280.0 } else { 100.0 }),
         );
         let matrix = slot(panel::MATRIX, PlotHeight::Natural { most: 290.0 });
         let curves = slot(panel::CURVES, PlotHeight::Fixed(130.0));
         if is_wide {
-            let column = |share, slots| Column { share, slots };
+            let column = |share, slot| Column {
+                share,
+                slots: vec![slot],
+            };
+            let pair = Row {
+                columns: vec![column(1.55, flat), column(1.0, looks)],
+            };
             return Arrangement {
-                stage: vec![Row {
-                    columns: vec![column(1.55, vec![flat, scores]), column(1.0, vec![looks])],
-                }],
+                stage: vec![pair, Row::new(&[scores])],
                 below: vec![Row::new(&[matrix, curves])],
             };
         }

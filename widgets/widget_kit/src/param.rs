@@ -29,7 +29,7 @@ macro_rules! one_of {
 ///
 /// ```text
 /// params! {
-///     pub(super) static BIAS: Param<f64> = Param::slider("bias", "turns too little by", [0.0, 10.0], 0.5);
+///     pub(super) static BIAS: Param<f64> = Param::slider("bias", "missing turn", [0.0, 10.0], 0.5);
 ///     use SPEED;
 ///     use MORE;
 /// }

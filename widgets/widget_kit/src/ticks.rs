@@ -16,16 +16,20 @@ pub struct Ticks {
 pub enum Scale {
     /// 1, 2, 5 times a power of ten.
     Decimal,
+    /// Whole round numbers.
+    Whole,
     /// Parts of a turn: 5, 10, 15, 30, 45, 60, 90, 180 degrees.
     Degrees,
 }
 
 impl Scale {
-    /// Degrees if the label contains the unit.
+    /// Degrees if the label contains the unit, whole numbers if it counts steps.
     #[must_use]
     pub fn from_label(label: &str) -> Self {
         if label.contains('°') {
             Scale::Degrees
+        } else if label == "step" {
+            Scale::Whole
         } else {
             Scale::Decimal
         }
@@ -90,7 +94,7 @@ pub fn signed(value: f64, decimals: usize) -> String {
 
 /// The smallest round number that is not below `step`.
 fn round_step(step: f64, scale: Scale) -> f64 {
-    if !(step.is_finite() && step > 0.0) {
+    if !(step.is_finite() && step > 0.0) || (scale == Scale::Whole && step < 1.0) {
         return 1.0;
     }
     if scale == Scale::Degrees && step > 1.0 {
@@ -118,6 +122,12 @@ mod tests {
         let ticks = Ticks::new(-0.05, 0.31, 4, Scale::Decimal);
         assert_eq!(ticks.step, 0.1);
         assert_eq!(ticks.values.len(), 4);
+    }
+
+    #[test]
+    fn a_count_of_steps_is_a_whole_number() {
+        let ticks = Ticks::new(0.0, 5.0, 10, Scale::from_label("step"));
+        assert_eq!(ticks.values, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
     }
 
     #[test]

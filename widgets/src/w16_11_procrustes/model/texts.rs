@@ -50,9 +50,9 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
     let here = problem.trace_m2(trace.tried(), trace.theta_rad());
     let winner = problem.winner();
     let consequence = match winner {
-        Winner::Turn => "so an unchecked decomposition finds the turn, too",
-        Winner::Mirror => "so an unchecked decomposition mirrors the map",
-        Winner::Tie => "so an unchecked decomposition may return either",
+        Winner::Turn => "an unchecked decomposition finds the turn, too",
+        Winner::Mirror => "an unchecked decomposition mirrors the map",
+        Winner::Tie => "an unchecked decomposition may return either",
     };
     let standing = match winner {
         Winner::Turn => Assessment::Good,
@@ -63,10 +63,8 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
         standing,
         verdict: verdict(winner).to_owned(),
         sentence: format!(
-            "the singular values add up to {:.3} m²; the best turn, by {aligned_deg:.1}°, reaches {:.3} m², the best mirror image {:.3} m², {consequence}",
-            first + second,
-            turn.trace_m2,
-            mirror.trace_m2,
+            "the trace reaches {:.2} m² by a turn, {:.2} m² by a mirror image: {consequence}",
+            turn.trace_m2, mirror.trace_m2,
         ),
         facts: vec![
             Fact::new("trace_m2", "trace of the matrix tried", here, "m²", 3),

@@ -160,6 +160,7 @@ fn curve(widget: &WrongJacobians) -> Panel {
     };
     let [low, top] = [y.min, y.max];
     let now = widget.step() as f64;
+    let last = widget.last().max(1) as f64;
     let mut layers = vec![Layer::line(
         vec![[now, low], [now, top]],
         Stroke::Solid,
@@ -168,7 +169,6 @@ fn curve(widget: &WrongJacobians) -> Panel {
     )];
     if is_distance {
         let same = height(SAME_END_M);
-        let last = widget.last().max(1) as f64;
         layers.push(Layer::line(
             vec![[0.0, same], [last, same]],
             Stroke::Dashed,
@@ -200,7 +200,8 @@ fn curve(widget: &WrongJacobians) -> Panel {
         ));
         layers.push(Layer::line(line, Stroke::Solid, TONES[solver], 1.75));
     }
-    let exact = widget.solved.runs[0].iterates.get(widget.step());
+    let exact = &widget.solved.runs[0].iterates;
+    let exact = exact.get(widget.step()).or(exact.last());
     layers.push(Layer::Handle {
         at: [now, exact.map_or(low, &of)],
         tone: Tone::Ink,
@@ -216,12 +217,8 @@ fn curve(widget: &WrongJacobians) -> Panel {
         title: title.to_owned(),
         weight: Weight::Half,
         aspect: Aspect::Free,
-        // The handle at the first step is whole.
-        x: Axis::new(
-            "step",
-            -0.05 * widget.last().max(1) as f64,
-            widget.last().max(1) as f64,
-        ),
+        // The handle is whole at the first step and at the last one.
+        x: Axis::new("step", -0.05 * last, 1.05 * last),
         y,
         layers,
         legend: Vec::new(),

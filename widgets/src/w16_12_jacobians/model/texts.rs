@@ -2,7 +2,6 @@
 
 use ch16_lab::jacobians::EDGE_STD;
 use widget_kit::model::{Assessment, Fact, Outcome};
-use widget_kit::plural::plural;
 
 use super::{NAMES, WrongJacobians};
 
@@ -66,12 +65,8 @@ pub fn outcome(widget: &WrongJacobians) -> Outcome {
         };
     }
     let parts = widget.solved.runs.iter().zip(NAMES).map(|(run, name)| {
-        let ends = if run.rests {
-            format!("{name} {:.3} m off after", run.end().off_m)
-        } else {
-            format!("{name} still {:.3} m off after", run.end().off_m)
-        };
-        format!("{ends} {}", plural(run.steps(), "step"))
+        let still = if run.rests { "" } else { "still " };
+        format!("{name} {still}{:.3} m", run.end().off_m)
     });
     let parts: Vec<_> = parts.collect();
     let good = (0..NAMES.len()).all(|solver| ends_at_the_optimum(widget, solver));
@@ -82,10 +77,7 @@ pub fn outcome(widget: &WrongJacobians) -> Outcome {
             Assessment::Bad
         },
         verdict: verdict(widget).to_owned(),
-        sentence: format!(
-            "from the same start the four end where χ² is least, or beside it: {}",
-            parts.join(", ")
-        ),
+        sentence: format!("off the optimum at the end: {}", parts.join(", ")),
         facts: facts(widget),
     }
 }

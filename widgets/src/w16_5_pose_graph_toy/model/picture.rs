@@ -275,12 +275,10 @@ fn short(value: f64) -> String {
 }
 
 fn steps(toy: &PoseGraphToy) -> Panel {
-    let chi2: Vec<f64> = toy
-        .course
-        .moments
-        .iter()
-        .map(|moment| moment.chi2)
-        .collect();
+    let moments = &toy.course.moments;
+    // What is to come would give the answer away.
+    let so_far = &moments[..=toy.step().min(moments.len() - 1)];
+    let chi2: Vec<f64> = so_far.iter().map(|moment| moment.chi2).collect();
     let chart = TimeChart {
         id: panel::STEPS,
         title: "χ² over the steps",
@@ -289,10 +287,16 @@ fn steps(toy: &PoseGraphToy) -> Panel {
         y_label: "χ²",
         now: toy.step(),
     };
-    chart.panel(&[Series {
+    let highest = moments.iter().map(|moment| moment.chi2).fold(0.0, f64::max);
+    let drawn = chart.panel(&[Series {
         label: "χ² of the graph",
         values: &chi2,
         tone: Tone::Posterior,
         mark: Mark::Square,
-    }])
+    }]);
+    Panel {
+        y: axis_from_zero(chart.y_label, highest),
+        legend: Vec::new(),
+        ..drawn
+    }
 }

@@ -72,8 +72,8 @@ fn sweeps(window: &WholeWindow) -> Panel {
         layers,
         legend: vec![
             LegendEntry::mark("target", Tone::Measurement, Mark::Cross),
-            LegendEntry::mark("best pose so far", Tone::Posterior, Mark::Square),
-            LegendEntry::mark("start, to be turned", Tone::Prior, Mark::Circle),
+            LegendEntry::mark("best so far", Tone::Posterior, Mark::Square),
+            LegendEntry::mark("start", Tone::Prior, Mark::Circle),
             LegendEntry::mark("ICP alone", Tone::Series(2), Mark::Dot),
         ],
         color_bar: None,

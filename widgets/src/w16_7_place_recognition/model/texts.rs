@@ -69,16 +69,24 @@ pub fn outcome(been: &PlaceRecognition) -> Outcome {
     }
 }
 
-/// The selected pair, and what the detector makes of it.
+/// The selected pair by its names.
 pub fn pair_title(been: &PlaceRecognition) -> String {
+    been.pair().map_or_else(
+        // As high as the title that follows.
+        || "Two places of the lap".to_owned(),
+        |[old, new]| format!("The views of keyframes {old} and {new}"),
+    )
+}
+
+/// The selected pair, and what the detector makes of it.
+fn pair_judged(been: &PlaceRecognition) -> String {
     let judged = been.places.as_ref().zip(been.pair());
     let judged = judged.and_then(|(places, [old, new])| {
         let pair = places.study.pair(old, new)?;
         Some((pair, places.study.is_loop(pair.nodes)))
     });
     let Some((pair, is_loop)) = judged else {
-        // As high as the title that follows.
-        return "Two places of the lap are about to be compared".to_owned();
+        return String::new();
     };
     let detector = been.detector();
     let is_called = pair.distances[detector] <= been.threshold(detector);
@@ -99,7 +107,7 @@ fn pair_words(been: &PlaceRecognition) -> String {
     let pair = pair.and_then(|(places, [old, new])| places.study.pair(old, new));
     pair.map_or_else(String::new, |pair| {
         let distance = pair.distances[been.detector()];
-        format!("{}: distance {distance:.2}.", pair_title(been))
+        format!("{}: distance {distance:.2}.", pair_judged(been))
     })
 }
 

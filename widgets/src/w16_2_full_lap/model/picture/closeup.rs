@@ -96,14 +96,10 @@ fn of_loop(runs: &Runs, shown: &LoopShown) -> Panel {
         },
     });
     layers.extend(gates.iter().filter_map(GateShown::layer));
+    let truth = runs.graph.lap().loop_truth(attempt);
     layers.extend([
         pose(SE2::identity(), Mark::Circle, Tone::Prior, 7.0),
-        pose(
-            runs.graph.lap().loop_truth(attempt),
-            Mark::Plus,
-            Tone::Truth,
-            8.0,
-        ),
+        pose(truth, Mark::Plus, Tone::Truth, 8.0),
         pose(predicted, Mark::Triangle, Tone::Prediction, 7.0),
     ]);
     if attempt.accepted() {
@@ -113,11 +109,13 @@ fn of_loop(runs: &Runs, shown: &LoopShown) -> Panel {
     }
     // On top and larger, because the final pose is close to the registered one.
     layers.push(pose(registered, Mark::Cross, Tone::Measurement, 9.0));
+    let named = [(predicted, "expected"), (truth, "truth")];
+    layers.extend(named.map(|(at, name)| Layer::label([at.x(), at.y()], name.to_owned(), 10.0)));
     // Both nodes in view: candidates are within 2 m, the ends of a custom loop may be anywhere.
     let middle = [0.5 * predicted.x(), 0.5 * predicted.y()];
     let wider = (0..2).map(|i| (middle[i].abs() + ROOM_M) / HALF_VIEW_M[i]);
     let scale = wider.fold(1.0, f64::max);
-    let legend = legend(&gates, attempt.accepted());
+    let legend = legend(&gates);
     view(shown.title.clone(), middle, scale, layers, legend)
 }
 
@@ -188,21 +186,11 @@ fn pose(pose: SE2, mark: Mark, tone: Tone, radius_px: f32) -> Layer {
     Layer::pose(pose.to_array(), mark, tone, radius_px)
 }
 
-fn legend(gates: &[GateShown; 2], accepted: bool) -> Vec<LegendEntry> {
-    let mut legend = vec![
+fn legend(gates: &[GateShown; 2]) -> Vec<LegendEntry> {
+    vec![
         LegendEntry::mark("old node and its sweeps", Tone::Prior, Mark::Circle),
-        LegendEntry::mark("expected", Tone::Prediction, Mark::Triangle),
         gates[0].entry(),
         gates[1].entry(),
         LegendEntry::mark("registered", Tone::Measurement, Mark::Cross),
-        LegendEntry::mark("truth", Tone::Truth, Mark::Plus),
-    ];
-    if accepted {
-        legend.push(LegendEntry::mark(
-            "after the loop",
-            Tone::Posterior,
-            Mark::Square,
-        ));
-    }
-    legend
+    ]
 }

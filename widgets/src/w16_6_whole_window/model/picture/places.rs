@@ -58,8 +58,8 @@ pub fn panel(window: &WholeWindow) -> Panel {
         y: Axis::hidden(low[1] - margin, high[1] + margin),
         layers,
         legend: vec![
-            LegendEntry::line("box that waits", Tone::Series(0), Stroke::Solid),
-            LegendEntry::line("box looked into", Tone::Series(3), Stroke::Solid),
+            LegendEntry::line("box", Tone::Series(0), Stroke::Solid),
+            LegendEntry::line("opened", Tone::Series(3), Stroke::Solid),
             LegendEntry::mark("best", Tone::Posterior, Mark::Square),
             LegendEntry::mark("runner-up", Tone::Series(1), Mark::Triangle),
         ],

@@ -12,6 +12,8 @@ const STACKS: usize = 48;
 /// Height of the plot that the dots share, in pixels, and the limits of their radius.
 const HEIGHT_PX: f64 = 120.0;
 const RADIUS_PX: [f64; 2] = [0.8, 3.2];
+/// Height of the upper half over that of its dots.
+const NAME_ROOM: f64 = 1.6;
 
 /// One pair.
 pub struct Dot {
@@ -73,7 +75,8 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
     let (largest, threshold) = (places.largest(detector), been.threshold(detector).max(0.0));
     let dots = dots(been);
     let reach = |up: f64| dots.iter().map(|dot| up * dot.at[1]).fold(4.0, f64::max) + 1.5;
-    let (low, high) = (-reach(-1.0), reach(1.0));
+    // The name of the upper half stands above its dots.
+    let (low, high) = (-reach(-1.0), NAME_ROOM * reach(1.0));
     panel.x = Axis::new(distance_label(detector), 0.0, 1.02 * largest);
     panel.y = Axis::hidden(low, high);
     let radius_px = (0.45 * HEIGHT_PX / (high - low)).clamp(RADIUS_PX[0], RADIUS_PX[1]) as f32;
@@ -119,11 +122,15 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
             label: "drag the threshold",
         },
         Layer::label(
-            [0.93 * largest, 0.8 * high],
+            [0.93 * largest, 0.85 * high],
             "the same place".to_owned(),
             0.0,
         ),
-        Layer::label([0.93 * largest, 0.8 * low], "another place".to_owned(), 0.0),
+        Layer::label(
+            [0.93 * largest, 0.85 * low],
+            "another place".to_owned(),
+            0.0,
+        ),
     ]);
     panel
 }
