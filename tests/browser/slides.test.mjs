@@ -96,18 +96,38 @@ it('slides.html lets a class predict: the slide of a question has its premise an
   }, SLIDES);
 });
 
-it('slides.html fits each widget on the screen of a projector, in letters of 24 pixels', async () => {
+/** Texts of the slide on show, its widget's included, in letters below 24 pixels. */
+const small = (tab) => tab.evaluate(() => {
+  const found = [];
+  const read = (root) => {
+    for (const element of root.querySelectorAll('*:not(.katex *, .hidden, .hidden *, style, option)')) {
+      if (element.shadowRoot) read(element.shadowRoot);
+      const says = [...element.childNodes].some(({ nodeType, textContent }) => nodeType === Node.TEXT_NODE && textContent.trim() !== '');
+      if (says && element.checkVisibility() && parseFloat(getComputedStyle(element).fontSize) < 24) found.push(element.textContent.trim());
+    }
+  };
+  read(document.querySelector('main > .shown'));
+  return found;
+});
+
+it('slides.html fits each widget and each question on the screen of a projector, in letters of 24 pixels', async () => {
   await visit('', async (tab) => {
-    assert.equal(await tab.evaluate(() => getComputedStyle(document.body).fontSize), '24px');
-    for (const { id } of h.schema) {
-      const css = `.figure slam-widget[name="${id}"]`;
-      await turnTo(tab, css);
-      await h.ready(tab, css);
-      const box = await tab.locator(css).evaluate((widget) => {
-        const { top, bottom } = widget.getBoundingClientRect();
-        return { top, bottom, height: innerHeight };
-      });
-      assert.ok(box.top >= 0 && box.bottom <= box.height, `${id}: ${JSON.stringify(box)}`);
+    const count = await tab.locator('main > section').count();
+    for (let k = 1; k <= count; k++) {
+      await tab.evaluate((number) => { location.hash = String(number); }, k);
+      await tab.waitForFunction((number) => document.querySelectorAll('main > section')[number - 1].classList.contains('shown'), k);
+      const title = await shownTitle(tab);
+      const css = 'main > .shown slam-widget';
+      if ((await tab.locator(css).count()) === 1) {
+        await h.ready(tab, css);
+        const box = await tab.locator(css).evaluate((widget) => {
+          const { top, bottom } = widget.getBoundingClientRect();
+          return { top, bottom, height: innerHeight };
+        });
+        assert.ok(box.top >= 0 && box.bottom <= box.height, `${title}: ${JSON.stringify(box)}`);
+      }
+      assert.equal(await tab.evaluate(() => document.documentElement.scrollHeight), 720, title);
+      assert.deepEqual(await small(tab), [], title);
     }
   }, { ...SLIDES, options: { viewport: { width: 1280, height: 720 } } });
 });

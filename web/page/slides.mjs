@@ -112,8 +112,8 @@ function questions(widget, exercises) {
   return exercises.flatMap(({ title, intro, questions: asked }) => asked.filter((question) => question.widget === widget)
     .map(({ html }) => `<section class="question">
 <h1>${title}</h1>
-<div>${intro.replace(/<details\b[\s\S]*?<\/details>/g, '')}
-${html}</div>
+<div class="premise">${intro.replace(/<details\b[\s\S]*?<\/details>/g, '')}</div>
+<div>${html}</div>
 <slam-widget name="${widget}"></slam-widget>
 </section>`));
 }

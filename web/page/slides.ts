@@ -19,7 +19,16 @@ function show(number: number): void {
   if (count !== null) count.textContent = `${at + 1} of ${slides.length}`;
   history.replaceState(null, '', `${location.search}#${at + 1}`);
   if (hasNotes) showNotes();
-  else scrollTo(0, 0);
+  else {
+    scrollTo(0, 0);
+    fitWidget();
+  }
+}
+
+/** Leaves a widget the height below the text of its slide. */
+function fitWidget(): void {
+  const widget = slides[at]?.querySelector<HTMLElement>(':scope > slam-widget');
+  if (widget) widget.style.maxHeight = `${innerHeight - widget.getBoundingClientRect().top - 8}px`;
 }
 
 /** The note of the slide, and what follows. */
@@ -85,5 +94,6 @@ document.querySelector('[data-notes]')?.addEventListener('click', openNotes);
 addEventListener('keydown', press, { capture: true });
 const showAddress = (): void => show(Number(location.hash.slice(1)) - 1);
 addEventListener('hashchange', showAddress);
+addEventListener('resize', fitWidget);
 channel.addEventListener('message', ({ data }) => show(Number(data)));
 showAddress();
