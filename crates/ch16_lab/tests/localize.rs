@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use ch16_lab::lap::{Drive, DriveConfig};
 use ch16_lab::laps::LapsConfig;
+use ch16_lab::relocalization::switched_on as switched_on_at;
 use ch16_slam2d::localize::{KnownMap, LocalizeConfig, LocalizeReport, Localizer, StartPose};
 use ch16_slam2d::metrics::{position_error_m, rms};
 use ch16_slam2d::scan::PreparedFrame;
@@ -237,4 +238,45 @@ fn in_one_of_two_equal_rooms_no_frame_is_localized_before_the_door() {
             );
         }
     }
+}
+
+/// Of 24 starts in a room that the lap only saw through its door: how many were localized half a metre or more off.
+fn found_in_another_room(place: &MappedWorld, room_m: f64) -> usize {
+    let spots = [
+        [0.8, 0.7],
+        [0.8, 1.9],
+        [2.0, 0.7],
+        [2.0, 1.9],
+        [2.0, 3.1],
+        [3.2, 1.9],
+    ];
+    let starts = spots
+        .iter()
+        .flat_map(|[x, y]| [0.3, 1.87, -2.84, -1.27].map(|heading| SE2::new(*x, *y, heading)));
+    let day = DriveConfig {
+        seed: 1001,
+        ..place.drive.clone()
+    };
+    let is_wrong = |start: &SE2| {
+        let drive = Drive::simulate(&switched_on_at(&day, *start, 40));
+        let config = LocalizeConfig {
+            room_m,
+            ..LocalizeConfig::default()
+        };
+        let (map, slam) = (Arc::clone(&place.map), place.slam.clone());
+        let mut localizer = Localizer::new(map, slam, config, StartPose::Anywhere);
+        (0..=drive.ticks().len()).any(|tick| {
+            let report = localizer.step_prepared(&drive.prepared(tick)).unwrap();
+            report.verdict.is_localized() && error_m(&report, &drive.truth(tick)) > 0.5
+        })
+    };
+    starts.filter(is_wrong).count()
+}
+
+#[test]
+fn a_robot_in_a_room_seen_through_its_door_is_not_found_in_one_like_it() {
+    let place = MappedWorld::new(&Course::apartment());
+    let LocalizeConfig { room_m, .. } = LocalizeConfig::default();
+    assert_eq!(found_in_another_room(&place, room_m), 0);
+    assert!(found_in_another_room(&place, 0.0) > 0, "without the trial");
 }

@@ -25,6 +25,20 @@ pub struct TrailFit {
 }
 
 impl TrailFit {
+    /// The fit of points on `map` at a pose, where space that no scan has seen costs as in a registration.
+    pub fn with_unseen(
+        map: &LocalMap,
+        points: &PointCloud,
+        map_from_points: &SE2,
+        config: &MapRegistrationConfig,
+    ) -> Self {
+        let fit = map.fit(points, map_from_points, config);
+        Self {
+            score: fit.score,
+            in_free_space: fit.contradicting as f64 / points.len().max(1) as f64,
+        }
+    }
+
     /// The fit of points on `map` at a pose.
     pub fn new(
         map: &LocalMap,

@@ -51,8 +51,9 @@ pub struct Localizer {
     last_stamp_s: f64,
     start: StartPose,
     belief: Option<Belief>,
-    /// Whether a pose was accepted before: then "not on the map" needs no trial, because the robot was carried by someone.
-    was_on_the_map: bool,
+    /// Whether a pose was called found before: the robot is in the map's building, so "not on the map" is unlikely. An
+    /// accepted pose that stayed doubtful is no evidence for that.
+    was_found: bool,
     /// The unconfirmed result of the last search, propagated by the motion since.
     candidate: Option<SE2>,
     searched_ago: usize,
@@ -88,7 +89,7 @@ impl Localizer {
             last_stamp_s: f64::NEG_INFINITY,
             start,
             belief: None,
-            was_on_the_map: false,
+            was_found: false,
             candidate: None,
             searched_ago: 0,
             running: None,

@@ -69,16 +69,8 @@ impl Trial<'_> {
             self.map.build_local(&self.map.around(&pose), &mut around);
             let found = around.register(&points, pose, &stages, None, self.registration);
             let pose = found.registered.pose;
-            let fit = around.fit(&points, &pose, self.registration);
-            let in_free_space = fit.contradicting as f64 / points.len().max(1) as f64;
-            let score = fit.score;
-            compared.push((
-                pose,
-                TrailFit {
-                    score,
-                    in_free_space,
-                },
-            ));
+            let fit = TrailFit::with_unseen(&around, &points, &pose, self.registration);
+            compared.push((pose, fit));
         }
         compared.sort_by(|a, b| b.1.score.total_cmp(&a.1.score));
         let (pose, whole) = *compared.first()?;
@@ -115,7 +107,7 @@ impl Trial<'_> {
                     spread_m: spread_m(&points),
                 },
                 TriedPart {
-                    fit: TrailFit::new(&around, &shown, &pose, self.registration),
+                    fit: TrailFit::with_unseen(&around, &shown, &pose, self.registration),
                     spread_m: spread_m(&thinned(&shown, reach_m, TRAIL_CELL_M)),
                 },
             ],

@@ -5,7 +5,7 @@ use pr_geom::SE2;
 
 use super::super::belief::Belief;
 use super::super::pending_fix::PendingFix;
-use super::super::trial::{Trial, Tried};
+use super::super::trial::{Trial, Tried, TriedPart};
 use super::{CONFIRMATION_REACH, Localizer, MAX_SEARCH_INTERVAL, SEARCH_EVERY};
 use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, regularize};
@@ -107,11 +107,12 @@ impl Localizer {
         }
         let is_again = self.candidate.as_ref().is_some_and(is_best);
         self.candidate = Some(best);
-        let fits = parts.iter().any(|part| {
-            part.fit.score >= self.expected.found_score
-                && part.fit.in_free_space <= self.expected.in_free_space
-                && (self.was_on_the_map || part.spread_m >= trial.room_spread_m())
-        });
+        let is_free = |part: &TriedPart| part.fit.in_free_space > self.expected.in_free_space;
+        let fits = !parts.iter().any(is_free)
+            && parts.iter().any(|part| {
+                part.fit.score >= self.expected.found_score
+                    && (self.was_found || part.spread_m >= trial.room_spread_m())
+            });
         let is_localized = fits
             && (margin >= self.config.unconfirmed_margin
                 || (margin >= self.config.min_margin && is_again));
@@ -156,8 +157,8 @@ impl Localizer {
             drops: 0,
         });
         self.candidate = None;
-        self.was_on_the_map = true;
         report.verdict = if score >= self.expected.usual_score {
+            self.was_found = true;
             Verdict::Found
         } else {
             Verdict::Doubtful
