@@ -2,6 +2,7 @@
 
 use pr_geom::SE2;
 
+use crate::chi_squared::GATE_999;
 use crate::search::{LikelihoodConfig, SearchNeighborhood};
 
 /// Prior knowledge of the first pose.
@@ -107,7 +108,7 @@ impl Default for LocalizeConfig {
             alike: 5,
             start_sigma_m: 0.5,
             start_sigma_rad: 0.2,
-            gate_chi2: 16.266,
+            gate_chi2: GATE_999,
         }
     }
 }

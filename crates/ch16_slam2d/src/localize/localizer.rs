@@ -11,6 +11,7 @@ use super::fit::ExpectedFit;
 use super::pending_fix::PendingFix;
 use super::trail::Trail;
 use super::{KnownMap, LocalizeConfig, LocalizeReport, MapSearch, StartPose, Verdict};
+use crate::chi_squared::GATE_99;
 use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, regularize};
 use crate::local_map::{
@@ -20,8 +21,6 @@ use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer};
 use crate::search::{ScoredPose, SearchResult, SearchWindow};
 use crate::slam::SlamConfig;
 
-/// Largest squared disagreement of scan and prediction for a pose that is not doubtful: the 99 % quantile.
-const GATE_CHI2: f64 = 11.34;
 /// A search result confirms the previous one within this distance, m and rad.
 const CONFIRMATION_REACH: f64 = 0.4;
 /// While the robot is lost, a search starts at least every this many frames.
@@ -271,11 +270,11 @@ impl Localizer {
         let mut is_sure = next.misses == 0 && next.drops == 0 && self.is_usual(&next);
         if score >= self.config.poor_score {
             let (position, heading) = prior.squared(&prior.deviation(&found.registered.pose));
-            is_sure &= position + heading <= GATE_CHI2;
+            is_sure &= position + heading <= GATE_99;
             next.pose = found.registered.pose;
             // Large if the odometry predicted a different pose.
             let before = covariance.try_inverse().unwrap_or_default()
-                * math::min(GATE_CHI2 / (position + heading), 1.0);
+                * math::min(GATE_99 / (position + heading), 1.0);
             let joint = found.information() + before;
             let joint = regularize(joint, INFORMATION_RIDGE, INFORMATION_CAP);
             next.covariance = joint.try_inverse().unwrap_or(covariance);
