@@ -46,7 +46,7 @@ class SlamNode(Node):
         return np.array([found.translation.x, found.translation.y, heading])
 
     def take(self, scan):
-        """Takes a scan; one without odometry, or that the estimator refuses, is left out."""
+        """Takes a scan; one without odometry, or that the estimator rejects, is left out."""
         stamp = scan.header.stamp
         try:
             odom_from_body = self.pose(self.odom, self.body, stamp)

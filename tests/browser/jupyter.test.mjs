@@ -19,7 +19,7 @@ const CELLS = [
   ['basin.heading = 120'],
   ['robot = Robot("ring.log", reference="ring-truth.tum", where="ring-another-day.log", colour="error")', 'robot'],
   ['robot.save("trajectory.tum")', 'robot.save("map.png", "kept.png")', 'robot.save("nothing.txt")'],
-  ['print("came:", *(f"{path.name} {path.stat().st_size > 1000}" for path in robot.saved), "| refused:", robot.refused,',
+  ['print("came:", *(f"{path.name} {path.stat().st_size > 1000}" for path in robot.saved), "| rejected:", robot.rejected,',
     '      "| tables:", *sorted(robot.tables))'],
 ];
 
@@ -111,7 +111,7 @@ test('the wheel works in JupyterLab without a network: values and results in bot
     await verdict(3, /^(mapped|[^:]*to look into): ring\.log.*off the truth.*The robot of ring-another-day\.log is found/);
     // Files arrive once the page has written them.
     await run(4);
-    await asks(5, /came: trajectory\.tum True kept\.png True \| refused: .*nothing\.txt.* \| tables: .*loops.*/);
+    await asks(5, /came: trajectory\.tum True kept\.png True \| rejected: .*nothing\.txt.* \| tables: .*loops.*/);
     assert.ok(statSync(join(folder, 'work', 'kept.png')).size > 1000);
   } finally {
     await browser?.close();

@@ -503,7 +503,7 @@ describe('a reader’s log', () => {
     });
   });
 
-  it('lays the scans of each contradicting loop on each other, to be accepted or refused', async () => {
+  it('lays the scans of each contradicting loop on each other, to be accepted or rejected', async () => {
     await page(async (tab) => {
       const host = tab.locator('slam-widget');
       const stop = host.getByRole('button', { name: 'Stop', exact: true });
@@ -615,7 +615,7 @@ describe('a reader’s log', () => {
   });
 });
 
-/** Opens a recording, or the files of its folder, and compares doctor's report, refusal and map with those of the command. */
+/** Opens a recording, or the files of its folder, and compares doctor's report, rejection and map with those of the command. */
 async function matchesCommand(tab, name) {
   const path = join(FIELD, name);
   const parts = statSync(path).isDirectory() ? readdirSync(path).map((part) => join(path, part)) : [path];
@@ -624,7 +624,7 @@ async function matchesCommand(tab, name) {
       return { json: JSON.parse(native('slam2d', ...words, '--json')) };
     } catch ({ status, stdout, stderr }) {
       // 1: something was repaired, or needs attention; 2, of the doctor: it cannot be mapped.
-      return { json: String(stdout) === '' ? undefined : JSON.parse(stdout), status, refusal: String(stderr).trim().split('\n').at(-1) };
+      return { json: String(stdout) === '' ? undefined : JSON.parse(stdout), status, rejection: String(stderr).trim().split('\n').at(-1) };
     }
   };
   await drop(tab, parts.map((part) => [basename(part), readFileSync(part)]));
@@ -635,12 +635,12 @@ async function matchesCommand(tab, name) {
       parts.map((part) => basename(part)));
     assert.deepEqual({ ...(await diagnosis(tab)), name: told.json.name }, told.json, name);
   }
-  const { json: run, refusal } = command('run', path);
+  const { json: run, rejection } = command('run', path);
   if (run === undefined) {
     // The page gives a file, or the first one of a folder, without its path.
     await says(tab, /^no map: /);
     const { sentence } = await outcome(tab);
-    const fault = refusal.replace(`slam2d: ${path}`, '');
+    const fault = rejection.replace(`slam2d: ${path}`, '');
     assert.ok(sentence.includes(fault), `${sentence}\n${fault}`);
     return;
   }
@@ -744,7 +744,7 @@ describe('the doctor', () => {
     });
   });
 
-  it('maps or refuses slow sweeps, restarts, two robots, folders and tables as the command does', async (context) => {
+  it('maps or rejects slow sweeps, restarts, two robots, folders and tables as the command does', async (context) => {
     if (!existsSync(FIELD)) return skip(context, 'files that people have: see docs/recordings.md');
     await page(async (tab) => {
       for (const name of [

@@ -50,17 +50,17 @@ function readArguments(args) {
     if (option === '--only') {
       found.only = value.split(',');
       const unknown = found.only.filter((name) => !known.includes(name));
-      if (unknown.length > 0) refuse(`there is no ${unknown.join(', ')}; there are ${known.join(', ')}`);
+      if (unknown.length > 0) reject(`there is no ${unknown.join(', ')}; there are ${known.join(', ')}`);
     } else if (option === '--jobs' && /^[1-9]\d*$/.test(value)) {
       found.jobs = Number(value);
     } else {
-      refuse(`run.mjs takes --only NAME,NAME and --jobs NUMBER, not \`${[option, value].join(' ').trim()}\``);
+      reject(`run.mjs takes --only NAME,NAME and --jobs NUMBER, not \`${[option, value].join(' ').trim()}\``);
     }
   }
   return found;
 }
 
-function refuse(sentence) {
+function reject(sentence) {
   console.error(sentence);
   process.exit(2);
 }

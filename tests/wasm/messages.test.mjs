@@ -96,7 +96,7 @@ function listener(spec) {
 }
 
 it('no message throws, or changes a parameter that it does not name', async () => {
-  const counts = { taken: 0, refused: 0, answered: 0 };
+  const counts = { taken: 0, rejected: 0, answered: 0 };
   for (const [index, spec] of SCHEMA.entries()) {
     const inventor = new Inventor(spec, 1 + index);
     const widget = listener(spec);
@@ -113,7 +113,7 @@ it('no message throws, or changes a parameter that it does not name', async () =
         (error) => {
           assert.ok(error instanceof Error);
           assert.ok(error.message.length > 0 && error.message.length < 400, error.message);
-          counts.refused += 1;
+          counts.rejected += 1;
         },
       );
       const named = message?.slam === 1 && message.type === 'set' ? Object.keys(message.values ?? {}) : [];

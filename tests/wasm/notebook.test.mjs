@@ -32,27 +32,27 @@ import slam_widgets
 from slam_widgets import Basin, WIDGETS
 basin = Basin(heading=60)
 basin.tau = 1.2
-refused = []
+rejected = []
 for wrong in (lambda: Basin(headin=60), lambda: slam_widgets.SlamWidget(name="w99"), lambda: Basin.from_link("?w=16.2")):
     try:
         wrong()
     except Exception as error:
-        refused.append(str(error))
+        rejected.append(str(error))
 print(json.dumps({
-    "ids": list(WIDGETS), "value": basin.value, "default": basin.dx, "refused": refused,
+    "ids": list(WIDGETS), "value": basin.value, "default": basin.dx, "rejected": rejected,
     "link": Basin.from_link("?w=16.1&heading=25&variant=point-to-plane&other=1").value,
     "doc": Basin.__doc__,
 }))`], { env: { ...process.env, PYTHONPATH: site }, encoding: 'utf8' });
-    const { ids, value, default: dx, refused, link, doc } = JSON.parse(said);
+    const { ids, value, default: dx, rejected, link, doc } = JSON.parse(said);
     const schema = JSON.parse(readFileSync(join(dist, 'schema.json'), 'utf8'));
     assert.deepEqual(ids, schema.map((widget) => widget.id));
     assert.deepEqual(value, { heading: 60, tau: 1.2 });
     assert.equal(dx, schema[0].params.find((param) => param.id === 'dx').default);
     assert.deepEqual(link, { heading: 25, variant: 'point-to-plane' });
     assert.match(doc, /heading: -180 to 180 °\./);
-    assert.match(refused[0], /Basin has no parameter 'headin'; it has heading, /);
-    assert.match(refused[1], /there is no widget 'w99'; there are w16\.1, /);
-    assert.match(refused[2], /the link is for w16\.2, and Basin is w16\.1/);
+    assert.match(rejected[0], /Basin has no parameter 'headin'; it has heading, /);
+    assert.match(rejected[1], /there is no widget 'w99'; there are w16\.1, /);
+    assert.match(rejected[2], /the link is for w16\.2, and Basin is w16\.1/);
   } finally {
     rmSync(folder, { recursive: true });
   }

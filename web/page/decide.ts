@@ -57,7 +57,7 @@ export class DecideFigure {
     count.className = 'decide-count';
     this.#show(candidate, count, row(
       button('Accept', () => this.#answer('1')),
-      button('Refuse', () => this.#answer('0')),
+      button('Reject', () => this.#answer('0')),
     ));
   }
 

@@ -170,7 +170,7 @@ pub fn judged(answers: &[bool], width_px: f32, theme: Theme) -> Value {
         let did = if answers.get(k) == Some(&true) {
             "accepted"
         } else {
-            "refused"
+            "rejected"
         };
         format!(
             "You {did} it. It is {truth}, {}; χ² {:.2}.",

@@ -68,7 +68,7 @@ export class SlamWidget extends HTMLElement {
     this.#textFiles = {
       frame: this.#parts.frame,
       act: (action) => void this.#act(action),
-      refuse: (problem) => this.#notifier.invalid('value', problem),
+      reject: (problem) => this.#notifier.invalid('value', problem),
     };
     const shownSummary = (): string => this.#shownSummary();
     this.#notifier = new Notifier(this, this.#parts, this.#notes, () => this.#showTimeline(), shownSummary);
@@ -395,7 +395,7 @@ export class SlamWidget extends HTMLElement {
         const state = this.#state;
         this.#mapper?.restore(widget);
         for (const [id, text] of state?.texts ?? []) {
-          const problem = refusal(() => widget.set(id, text));
+          const problem = rejection(() => widget.set(id, text));
           if (problem !== undefined) this.#notifier.invalid('value', `${problem}. The default is used.`, id);
         }
         // The model may clamp a value: a time to the end of the run.
@@ -619,7 +619,7 @@ export class SlamWidget extends HTMLElement {
     if (state.text(id) === parsed.text) return undefined;
     let problem: string | undefined;
     const kept = this.#lifecycle.ask((running) => {
-      problem = refusal(() => running.set(id, parsed.text));
+      problem = rejection(() => running.set(id, parsed.text));
       return running.text(id);
     });
     if (problem !== undefined) return problem;
@@ -646,7 +646,7 @@ export class SlamWidget extends HTMLElement {
 }
 
 /** Returns the core's reason to reject a well-formed value; rethrows a panic. */
-function refusal(action: () => void): string | undefined {
+function rejection(action: () => void): string | undefined {
   try {
     action();
     return undefined;

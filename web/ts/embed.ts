@@ -94,11 +94,11 @@ function listen(element: SlamWidget): void {
     }),
   };
   window.addEventListener('message', (event: MessageEvent<unknown>) => {
-    if (event.source === window.parent) receive(addressed, event.data, post, refuse);
+    if (event.source === window.parent) receive(addressed, event.data, post, reject);
   });
 }
 
-function refuse({ message }: Error): void {
+function reject({ message }: Error): void {
   post({ type: 'error', name: spec?.id ?? null, kind: 'message', message });
 }
 

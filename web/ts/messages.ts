@@ -23,18 +23,18 @@ export interface MessageTarget {
   state(): Message;
 }
 
-/** Handles a message of our protocol; `post` sends an answer, `refuse` an error. */
+/** Handles a message of our protocol; `post` sends an answer, `reject` an error. */
 export function receive(
   widget: MessageTarget,
   data: unknown,
   post: (message: Message) => void,
-  refuse: (error: Error) => void,
+  reject: (error: Error) => void,
 ): void {
   if (!isOurs(data)) return;
   try {
-    answer(widget, data, post, refuse);
+    answer(widget, data, post, reject);
   } catch (error) {
-    refuse(error as Error);
+    reject(error as Error);
   }
 }
 
@@ -46,7 +46,7 @@ function answer(
   widget: MessageTarget,
   message: Message,
   post: (message: Message) => void,
-  refuse: (error: Error) => void,
+  reject: (error: Error) => void,
 ): void {
   if (message['slam'] !== VERSION) {
     const version = shorten(String(message['slam']));
@@ -58,13 +58,13 @@ function answer(
       if (typeof values !== 'object' || values === null) {
         throw new TypeError('set takes `values`, an object of parameters');
       }
-      setAll(widget, values as Record<string, Value>, refuse);
+      setAll(widget, values as Record<string, Value>, reject);
       break;
     }
     case 'press': {
       const { button } = message;
       if (typeof button !== 'string') throw new TypeError('press takes `button`, a name');
-      widget.press(button).catch(refuse);
+      widget.press(button).catch(reject);
       break;
     }
     case 'get':
@@ -88,17 +88,17 @@ function idOf({ id }: Message): string | number | null {
 function setAll(
   widget: MessageTarget,
   values: Record<string, Value>,
-  refuse: (error: Error) => void,
+  reject: (error: Error) => void,
 ): void {
-  let refused = 0;
+  let rejected = 0;
   for (const [id, value] of Object.entries(values)) {
     try {
       widget.set(id, value);
     } catch (error) {
-      refused += 1;
-      if (refused <= MAX_ERRORS) refuse(error as Error);
+      rejected += 1;
+      if (rejected <= MAX_ERRORS) reject(error as Error);
     }
   }
-  const more = refused - MAX_ERRORS;
-  if (more > 0) refuse(new RangeError(`${more} more values are invalid`));
+  const more = rejected - MAX_ERRORS;
+  if (more > 0) reject(new RangeError(`${more} more values are invalid`));
 }

@@ -34,7 +34,7 @@ export function exchangeFiles(model: Model, widget: SlamWidget): { writeTables: 
       const bytes = await (await widget.savedFile(name)).arrayBuffer();
       model.send?.({ type: 'file', name }, undefined, [bytes]);
     } catch (error) {
-      model.send?.({ type: 'refused', name, why: (error as Error).message });
+      model.send?.({ type: 'rejected', name, why: (error as Error).message });
     }
   };
   const writeTables = (): void => {

@@ -12,7 +12,7 @@ export interface TextFileHost {
   /** Executes an action on the widget, once it runs. */
   act(action: (widget: Widget) => void): void;
   /** Reports a problem with a file. */
-  refuse(problem: string): void;
+  reject(problem: string): void;
 }
 
 /** Executes an order of the widget about text files; returns false for other orders. */
@@ -33,13 +33,13 @@ export function executeTextOrder(order: string, host: TextFileHost): boolean {
 /** Passes a reader's file to the widget. */
 export async function takeTextFile(file: File, host: TextFileHost): Promise<void> {
   if (file.size > MAX_BYTES) {
-    host.refuse(`\`${file.name.slice(0, 60)}\` is larger than a world of 1 MB.`);
+    host.reject(`\`${file.name.slice(0, 60)}\` is larger than a world of 1 MB.`);
     return;
   }
   try {
     const bytes = new Uint8Array(await file.arrayBuffer());
     host.act((widget) => widget.deliver('text-file', file.name, new Float64Array(), bytes));
   } catch {
-    host.refuse(`\`${file.name.slice(0, 60)}\` cannot be read any more; it may have moved or changed.`);
+    host.reject(`\`${file.name.slice(0, 60)}\` cannot be read any more; it may have moved or changed.`);
   }
 }

@@ -14,7 +14,7 @@ const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 /** Validates a value from a reader, a link or a program. */
 export function parseValue(spec: ParamSpec, input: unknown): Parsed {
   const text = String(input).trim();
-  const refuse = (expected: string): Parsed => ({
+  const reject = (expected: string): Parsed => ({
     ok: false,
     problem: `\`${spec.id}\` takes ${expected}, not \`${shorten(text)}\``,
   });
@@ -22,22 +22,22 @@ export function parseValue(spec: ParamSpec, input: unknown): Parsed {
     case 'choice':
       return spec.options.some((option) => option.id === text)
         ? { ok: true, text }
-        : refuse(spec.options.map((option) => option.id).join(' or '));
+        : reject(spec.options.map((option) => option.id).join(' or '));
     case 'switch':
       if (['on', '1', 'true'].includes(text)) return { ok: true, text: 'on' };
       if (['off', '0', 'false'].includes(text)) return { ok: true, text: 'off' };
-      return refuse('on or off');
+      return reject('on or off');
     case 'text':
       // The core validates the content when it runs.
       return text.length <= spec.max && WORD.test(text)
         ? { ok: true, text }
-        : refuse(`at most ${spec.max} letters, digits, - and _`);
+        : reject(`at most ${spec.max} letters, digits, - and _`);
     default: {
-      if (!NUMBER.test(text)) return refuse('a number');
+      if (!NUMBER.test(text)) return reject('a number');
       const value = Number(text);
       const slack = 1e-6 * spec.step;
       if (!Number.isFinite(value) || value < spec.min - slack || value > spec.max + slack) {
-        return refuse(`${spec.min} to ${spec.max}`);
+        return reject(`${spec.min} to ${spec.max}`);
       }
       const clamped = Math.min(Math.max(value, spec.min), spec.max);
       return { ok: true, text: String(spec.kind === 'slider' ? clamped : Math.round(clamped)) };

@@ -52,8 +52,8 @@ fn a_widget_is_registered_under_its_own_name() {
         assert_eq!(find(spec.id).unwrap()().model().spec().id, spec.id);
     }
     assert!(names().contains("w16.4"));
-    let refused = find("w17.1").err().unwrap();
-    assert!(refused.starts_with("there is no widget `w17.1`; there are w16.1, w16.2"));
+    let rejected = find("w17.1").err().unwrap();
+    assert!(rejected.starts_with("there is no widget `w17.1`; there are w16.1, w16.2"));
 }
 
 #[test]
@@ -123,15 +123,15 @@ fn a_wrong_value_or_button_is_an_error_and_changes_no_state() {
         for param in spec.params {
             let (min, max) = param.range();
             for bad in [min - 1.0, max + 1.0, -1e300, f64::INFINITY, f64::NAN] {
-                let refused = model.set(param.id, bad);
-                assert!(refused.is_err(), "{}: {} took {bad}", spec.id, param.id);
+                let rejected = model.set(param.id, bad);
+                assert!(rejected.is_err(), "{}: {} took {bad}", spec.id, param.id);
             }
         }
         assert!(model.set("nonsense", 0.0).is_err(), "{}", spec.id);
         assert!(model.set_text("nonsense", "0").is_err(), "{}", spec.id);
-        let refused = model.press("stepp").unwrap_err().to_string();
+        let rejected = model.press("stepp").unwrap_err().to_string();
         for known in spec.buttons.iter().map(|button| button.id) {
-            assert!(refused.contains(known), "{refused}");
+            assert!(rejected.contains(known), "{rejected}");
         }
         assert_eq!(state_text(model.as_ref()), before);
     }

@@ -304,7 +304,7 @@ fn a_wrong_gate_or_increment_changes_the_lap() {
 }
 
 #[test]
-fn what_is_no_order_is_refused() {
+fn what_is_no_order_is_rejected() {
     let function: Arc<dyn Callable> = Arc::new(Ours);
     let mut model = BasinExplorer::default();
     deliver(&mut model, SEAT, "svd_align", &[]);

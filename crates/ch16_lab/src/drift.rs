@@ -44,16 +44,16 @@ pub fn drawn_innovation(path: &[SE2], config: &LoopConfig, rng: &mut Rng) -> Vec
     belief.between(&truth).log()
 }
 
-/// Share of right closures over `path` that the gate refuses, of `draws` draws.
+/// Share of right closures over `path` that the gate rejects, of `draws` draws.
 #[must_use]
-pub fn refused_share(path: &[SE2], config: &LoopConfig, draws: usize, seed: u32) -> f64 {
+pub fn rejected_share(path: &[SE2], config: &LoopConfig, draws: usize, seed: u32) -> f64 {
     let information = path_information(path.len(), config);
     let mut rng = Rng::new(seed);
-    let refused = (0..draws).filter(|_| {
+    let rejected = (0..draws).filter(|_| {
         let innovation = drawn_innovation(path, config, &mut rng);
         !chi_squared_gate(&innovation, &information, config.gate_chi2).passes()
     });
-    refused.count() as f64 / draws as f64
+    rejected.count() as f64 / draws as f64
 }
 
 #[cfg(test)]
@@ -63,20 +63,23 @@ mod tests {
     const DRAWS: usize = 4000;
 
     #[test]
-    fn the_gate_refuses_its_nominal_share_only_if_the_robot_does_not_move() {
+    fn the_gate_rejects_its_nominal_share_only_if_the_robot_does_not_move() {
         let config = LoopConfig::default();
-        let refused = |path: &[SE2]| refused_share(path, &config, DRAWS, 1);
+        let rejected = |path: &[SE2]| rejected_share(path, &config, DRAWS, 1);
         // The gate's threshold is the 95 % quantile; 4 standard deviations of a share of 4000 are 1.4 %.
-        let still = refused(&straight(22, 0.0));
+        let still = rejected(&straight(22, 0.0));
         assert!((still - 0.05).abs() < 0.014, "{still}");
-        let (back, away) = (refused(&out_and_back(22, 0.4)), refused(&straight(22, 0.4)));
+        let (back, away) = (
+            rejected(&out_and_back(22, 0.4)),
+            rejected(&straight(22, 0.4)),
+        );
         assert!(still + 0.014 < back && back + 0.014 < away, "{back} {away}");
         // The lever is the cause: without errors of the heading the share is the nominal one again.
         let exact = LoopConfig {
             drift_sigma_rad: 1e-9,
             ..config
         };
-        let held = refused_share(&straight(22, 0.4), &exact, DRAWS, 1);
+        let held = rejected_share(&straight(22, 0.4), &exact, DRAWS, 1);
         assert!((held - 0.05).abs() < 0.014, "{held}");
     }
 

@@ -83,7 +83,7 @@ fn no_frame_makes_the_estimator_panic_or_lose_its_pose() {
     .enumerate()
     {
         let mut numbers = Numbers(seed as u64);
-        let (mut taken, mut refused, mut unbelieved) = (0, 0, 0);
+        let (mut taken, mut rejected, mut unbelieved) = (0, 0, 0);
         for start in 0..12 {
             let mut slam = Slam::new(SlamConfig::default().with_matcher(matcher));
             for step in 0..40 {
@@ -97,13 +97,13 @@ fn no_frame_makes_the_estimator_panic_or_lose_its_pose() {
                         assert!(is_finite, "{matcher:?}, {start}, {step}: {pose:?}");
                     }
                     Err(error) => {
-                        refused += 1;
+                        rejected += 1;
                         assert!(!error.to_string().is_empty());
                     }
                 }
             }
         }
-        assert!(taken > 100 && refused > 100 && unbelieved > 10);
+        assert!(taken > 100 && rejected > 100 && unbelieved > 10);
     }
 }
 

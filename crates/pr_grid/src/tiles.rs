@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn two_rooms_far_apart_cost_two_rooms_and_too_many_cells_are_refused() {
+    fn two_rooms_far_apart_cost_two_rooms_and_too_many_cells_are_rejected() {
         let (beams, ranges_m) = beams();
         let mut grid = TiledGrid::new(GridConfig::default(), 10 * 64 * 64);
         for x in [0.0, 1e5, 0.0] {

@@ -251,9 +251,9 @@ fn a_measurement_far_more_certain_than_the_graph_is_factorized() {
         ..nearly_sure
     });
     let mut optimizer = Optimizer::new(Settings::default());
-    let refused = optimizer.joint_covariance(&problem, 3, 28);
+    let rejected = optimizer.joint_covariance(&problem, 3, 28);
     assert!(matches!(
-        refused,
+        rejected,
         Err(OptimizeError::NotPositiveDefinite { .. })
     ));
 }

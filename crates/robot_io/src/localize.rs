@@ -18,7 +18,7 @@ pub struct LocalizeRun {
     last_stamp_s: f64,
     reports: Vec<LocalizeReport>,
     late: usize,
-    refused: Option<FrameError>,
+    rejected: Option<FrameError>,
 }
 
 impl LocalizeRun {
@@ -37,7 +37,7 @@ impl LocalizeRun {
             last_stamp_s: f64::NEG_INFINITY,
             reports: Vec::new(),
             late: 0,
-            refused: None,
+            rejected: None,
         })
     }
 
@@ -58,7 +58,7 @@ impl LocalizeRun {
         match self.localizer.step(&frame) {
             Ok(report) => self.reports.push(report),
             Err(problem) => {
-                self.refused.get_or_insert(problem);
+                self.rejected.get_or_insert(problem);
                 return None;
             }
         }
@@ -81,8 +81,8 @@ impl LocalizeRun {
 
     /// The reason why the first invalid scan was rejected.
     #[must_use]
-    pub fn refused(&self) -> Option<FrameError> {
-        self.refused
+    pub fn rejected(&self) -> Option<FrameError> {
+        self.rejected
     }
 
     /// The localized poses, in the frame of the session's map.

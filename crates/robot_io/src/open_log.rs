@@ -133,7 +133,7 @@ mod tests {
     use crate::log::LogOption;
 
     #[test]
-    fn a_topic_is_refused_where_there_are_none() {
+    fn a_topic_is_rejected_where_there_are_none() {
         let options = LogOptions::default().with(LogOption::OdometryTopic, "/wheels");
         for bytes in [
             &b"FLASER 1 2 0 0 0 0 0 0 0 host 0\n"[..],
@@ -141,9 +141,9 @@ mod tests {
             b"O 100 200 1.5 0.01\n",
             b"angle,range\n0,1\n",
         ] {
-            let refused = LogFormat::open(bytes, "x.log", &options).err();
+            let rejected = LogFormat::open(bytes, "x.log", &options).err();
             assert_eq!(
-                refused.map(|error| error.to_string()).as_deref(),
+                rejected.map(|error| error.to_string()).as_deref(),
                 Some(
                     "x.log has no odom-topic /wheels; only a recording of ROS has topics and frames; leave the option out"
                 )
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn empty_and_foreign_files_are_refused_in_one_sentence() {
+    fn empty_and_foreign_files_are_rejected_in_one_sentence() {
         for (bytes, expected) in [
             (&b""[..], "x.log is empty; give a recorded log"),
             (

@@ -32,7 +32,7 @@ pub fn read_relations(source: impl BufRead, name: &str) -> Result<Vec<Relation>,
     let mut numbers = NumberLines::new(source, name, LINE);
     while let Some([first_s, second_s, x, y, _, _, _, yaw]) = numbers.next_line()? {
         let motion =
-            plausible_pose(SE2::new(x, y, yaw)).map_err(|problem| numbers.refuse(problem))?;
+            plausible_pose(SE2::new(x, y, yaw)).map_err(|problem| numbers.reject(problem))?;
         relations.push(Relation {
             first_s,
             second_s,

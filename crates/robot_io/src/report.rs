@@ -152,7 +152,7 @@ fn loops_table(page: &mut String, title: &str, loops: &[LinkQuality]) {
         let verdict = match (&tried.reason, tried.accepted) {
             (_, true) => "closed".to_owned(),
             (Some(why), false) => format!("rejected: {why}"),
-            (None, false) => "refused".to_owned(),
+            (None, false) => "rejected".to_owned(),
         };
         push_line(
             page,

@@ -44,7 +44,7 @@ pub struct LogRun {
     blind: usize,
     /// Number of scans with zero odometry motion; `None` once the robot moved.
     still: Option<usize>,
-    refused: Option<FrameError>,
+    rejected: Option<FrameError>,
     /// Beam geometry of a log that continues a session, if it differs from the session's.
     other_sensor: Option<LaserScan>,
     /// Beam geometry of this log, without ranges.
@@ -76,7 +76,7 @@ impl LogRun {
             late: 0,
             blind: 0,
             still: Some(0),
-            refused: None,
+            rejected: None,
             other_sensor: None,
             own_sensor: None,
             robots: Vec::new(),
@@ -161,7 +161,7 @@ impl LogRun {
                 return None;
             }
             Err(problem) => {
-                self.refused.get_or_insert(problem);
+                self.rejected.get_or_insert(problem);
                 return None;
             }
         };

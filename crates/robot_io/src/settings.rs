@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_set_is_refused_in_a_sentence() {
+    fn what_cannot_be_set_is_rejected_in_a_sentence() {
         let error = Setting::named("radius").unwrap_err().to_string();
         assert!(
             error.starts_with("the estimator has no parameter radius; it has scan_cell_m, "),

@@ -99,17 +99,17 @@ impl Trajectory {
             };
             if stamp == OVERFLOWN && poses.last().is_some_and(|last| last.stamp_s == OVERFLOWN) {
                 let problem = "the stamps are all 2147483647: they overflowed 32 bits; write them with 64 bits";
-                return Err(numbers.refuse(problem.to_owned()));
+                return Err(numbers.reject(problem.to_owned()));
             }
             if poses.last().is_some_and(|last| stamp_s <= last.stamp_s) {
                 return Err(
-                    numbers.refuse("the stamp is not later than the one before it".to_owned())
+                    numbers.reject("the stamp is not later than the one before it".to_owned())
                 );
             }
             // Yaw of a quaternion of any length.
             let norm = qx * qx + qy * qy + qz * qz + qw * qw;
             if norm < 1e-12 {
-                return Err(numbers.refuse("the quaternion is zero".to_owned()));
+                return Err(numbers.reject("the quaternion is zero".to_owned()));
             }
             let sin = 2.0 * (qw * qz + qx * qy);
             let cos = qw * qw + qx * qx - qy * qy - qz * qz;
@@ -118,7 +118,7 @@ impl Trajectory {
                 let pose = plausible_pose(pose)?;
                 Ok(StampedPose { stamp_s, pose })
             });
-            poses.push(stamped.map_err(|problem| numbers.refuse(problem))?);
+            poses.push(stamped.map_err(|problem| numbers.reject(problem))?);
         }
         numbers.at_least_one(poses.len())?;
         Ok(Self { poses })
@@ -217,7 +217,7 @@ impl<'a, R: BufRead> NumberLines<'a, R> {
         }
     }
 
-    pub(crate) fn refuse(&self, problem: String) -> TextError {
+    pub(crate) fn reject(&self, problem: String) -> TextError {
         TextError::Line {
             name: self.name.to_owned(),
             line: self.number,
@@ -250,10 +250,10 @@ impl<'a, R: BufRead> NumberLines<'a, R> {
             };
             self.number += 1;
             if end == LineEnd::TooLong {
-                return Err(self.refuse("the line is longer than 4 MB".to_owned()));
+                return Err(self.reject("the line is longer than 4 MB".to_owned()));
             }
             let text = std::str::from_utf8(&self.line)
-                .map_err(|_| self.refuse("the line is not UTF-8 text".to_owned()))?;
+                .map_err(|_| self.reject("the line is not UTF-8 text".to_owned()))?;
             let text = text.trim_start_matches('\u{feff}').trim();
             if text.is_empty() || text.starts_with('#') {
                 continue;
@@ -264,7 +264,7 @@ impl<'a, R: BufRead> NumberLines<'a, R> {
             let mut words = text.split(separates).filter(|word| !word.is_empty());
             let mut numbers = [0.0; N];
             for (slot, name) in numbers.iter_mut().zip(names) {
-                *slot = finite(words.next(), name).map_err(|problem| self.refuse(problem))?;
+                *slot = finite(words.next(), name).map_err(|problem| self.reject(problem))?;
             }
             return Ok(Some(numbers));
         }

@@ -131,7 +131,7 @@ pub fn run(args: &LocalizeArgs) -> anyhow::Result<ExitCode> {
     }
     progress.end();
     if run.reports().is_empty() {
-        let problem = run.refused().map(|problem| problem.to_string());
+        let problem = run.rejected().map(|problem| problem.to_string());
         let problem =
             problem.unwrap_or_else(|| "it was interrupted before the first one".to_owned());
         bail!("{name}: no scan could be used: {problem}");

@@ -81,7 +81,7 @@ enum Command {
 fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => return refuse_arguments(&error),
+        Err(error) => return reject_arguments(&error),
     };
     match run(&cli.command) {
         Ok(code) => code,
@@ -120,7 +120,7 @@ fn run(command: &Command) -> anyhow::Result<ExitCode> {
 }
 
 /// Prints help and version on request, and argument errors as one line.
-fn refuse_arguments(error: &clap::Error) -> ExitCode {
+fn reject_arguments(error: &clap::Error) -> ExitCode {
     if matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion

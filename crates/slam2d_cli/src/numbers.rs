@@ -172,12 +172,12 @@ mod tests {
 
     #[test]
     fn a_step_in_the_wrong_direction_differs_from_one_that_is_too_small() {
-        let refused = |text| headings_deg(text).unwrap_err();
+        let rejected = |text| headings_deg(text).unwrap_err();
         for away in ["0:10:-1", "0:10:0", "10:10:0"] {
-            assert!(refused(away).contains("does not reach"), "{away}");
+            assert!(rejected(away).contains("does not reach"), "{away}");
         }
         for small in ["0:10:1e-9", "0:10:1e-320", "0:100:0.001"] {
-            assert!(refused(small).contains("too many headings"), "{small}");
+            assert!(rejected(small).contains("too many headings"), "{small}");
         }
         assert_eq!(headings_deg("0:99.999:0.001").unwrap().0.len(), 100_000);
         // With equal ends, any step is accepted.
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_out_of_range_and_not_finite_are_refused() {
+    fn numbers_out_of_range_and_not_finite_are_rejected() {
         assert_eq!(tau_m("0.7"), Ok(0.7));
         for wrong in ["0", "-1", "inf", "NaN", "11", "0.7m"] {
             assert!(tau_m(wrong).is_err(), "{wrong}");

@@ -34,7 +34,7 @@ const FIELD: [&str; 2] = [
 #[derive(Args, Clone, Debug)]
 pub struct RecordingsArgs {
     /// Map the recordings of this folder's subfolders that have a README instead, and print each error, or the sentence
-    /// that refuses it. The true path of X.mcap is X.truth.tum, or truth*.tum, beside it.
+    /// that rejects it. The true path of X.mcap is X.truth.tum, or truth*.tum, beside it.
     #[arg(long, value_name = "DIR")]
     field: Option<PathBuf>,
     /// Write the tables into this page, between their markers.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use crate::support::{assert_refused, json, slam2d};
+use crate::support::{assert_rejected, json, slam2d};
 use ch16_lab::basin::{BasinScene, BasinStart};
 use ch16_lab::lap::{LapConfig, LapRunner};
 use ch16_lab::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
@@ -333,7 +333,7 @@ fn a_bad_line_is_named_with_its_file() {
     let bad = folder.path().join("bad.csv");
     std::fs::write(&bad, "1,2\n3,nan\n").unwrap();
     let bad = bad.to_string_lossy();
-    assert_refused(&["register", &bad, &bad], "bad.csv: line 2: ");
+    assert_rejected(&["register", &bad, &bad], "bad.csv: line 2: ");
 }
 
 #[test]
@@ -379,7 +379,7 @@ fn wrong_arguments_end_in_one_line_and_exit_code_2() {
         (&["optimize", "a.g2o", "--tolerance", "-1"], "0 to 1"),
         (&["optimize", "a.g2o", "--repeat", "0"], "0"),
     ] {
-        assert_refused(arguments, expected);
+        assert_rejected(arguments, expected);
     }
     assert!(!Path::new("absent.csv").exists());
 }
@@ -432,5 +432,5 @@ fn a_closed_pipe_is_not_an_error() {
 #[test]
 fn a_command_without_the_exercises_says_how_to_build_one_with_them() {
     let command = "cargo run -p slam2d_cli --features exercises -- lap --exercises";
-    assert_refused(&["lap", "--exercises"], command);
+    assert_rejected(&["lap", "--exercises"], command);
 }

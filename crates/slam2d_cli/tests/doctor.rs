@@ -6,7 +6,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::logs::{corridor, corridor_with, text};
-use crate::support::{assert_refused, slam2d};
+use crate::support::{assert_rejected, slam2d};
 
 #[test]
 fn the_doctor_reports_each_part_of_a_recording_with_a_symbol() {
@@ -30,7 +30,7 @@ fn the_doctor_reports_each_part_of_a_recording_with_a_symbol() {
         (&report["sensor"]["scans"], &report["verdict"]),
         (&Value::from(40), &Value::from("wrong"))
     );
-    assert_refused(&["doctor", "/absent"], "/absent: ");
+    assert_rejected(&["doctor", "/absent"], "/absent: ");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::support::{assert_refused, json};
+use crate::support::{assert_rejected, json};
 
 #[test]
 fn every_estimator_drives_the_lap_and_each_is_another_one() {
@@ -61,11 +61,11 @@ fn a_sweep_has_the_columns_that_were_asked_for() {
 
 #[test]
 fn arguments_without_effect_on_an_estimator_are_rejected() {
-    assert_refused(
+    assert_rejected(
         &["lap", "--estimator", "ml", "--matcher", "ndt"],
         "--matcher has no effect on the estimator ml",
     );
-    assert_refused(
+    assert_rejected(
         &[
             "sweep",
             "--estimator",
@@ -75,7 +75,7 @@ fn arguments_without_effect_on_an_estimator_are_rejected() {
         ],
         "--detector has no effect on ml, ml-cycles",
     );
-    assert_refused(&["lap", "--estimator", "kalman"], "kalman");
+    assert_rejected(&["lap", "--estimator", "kalman"], "kalman");
 }
 
 #[test]
@@ -88,8 +88,8 @@ fn the_estimator_for_logs_drives_another_lap_and_is_not_of_incremental_mapping()
     let ends = ["keyframe_end_error_m", "odometry_end_error_m"]
         .map(|end| local_map[end].as_f64().unwrap());
     assert!(ends[0] < 0.7 * ends[1], "{ends:?}");
-    let refused = ["lap", "--estimator", "ml", "--front-end", "local-map"];
-    assert_refused(&refused, "--front-end has no effect on the estimator ml");
+    let rejected = ["lap", "--estimator", "ml", "--front-end", "local-map"];
+    assert_rejected(&rejected, "--front-end has no effect on the estimator ml");
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn the_gate_with_the_graphs_own_covariance_lets_pass_what_the_path_gate_turns_aw
     let (path, exact) = (lap(&["--gate", "path"]), lap(&["--gate", "exact"]));
     assert_eq!(default["digest"], path["digest"]);
     assert_eq!((accepted(&path), accepted(&exact)), (0, 3));
-    assert_refused(&["lap", "--gate", "wide"], "wide");
-    let refused = ["lap", "--estimator", "ml", "--gate", "exact"];
-    assert_refused(&refused, "--gate has no effect on the estimator ml");
+    assert_rejected(&["lap", "--gate", "wide"], "wide");
+    let rejected = ["lap", "--estimator", "ml", "--gate", "exact"];
+    assert_rejected(&rejected, "--gate has no effect on the estimator ml");
 }

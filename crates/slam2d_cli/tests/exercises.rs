@@ -3,15 +3,15 @@
 #[allow(dead_code, reason = "the tests of the other commands use the rest")]
 mod support;
 
-use support::assert_refused;
+use support::assert_rejected;
 
 #[test]
-fn what_no_exercise_does_is_refused() {
+fn what_no_exercise_does_is_rejected() {
     for (argument, value, instead) in [
         ("--matcher", "ndt", "p2p or p2l"),
         ("--detector", "context", "nearby or histogram"),
     ] {
-        assert_refused(&["lap", "--exercises", argument, value], instead);
+        assert_rejected(&["lap", "--exercises", argument, value], instead);
     }
 }
 
@@ -21,7 +21,7 @@ fn what_no_exercise_does_is_refused() {
 fn what_is_not_written_is_named() {
     let text = include_str!("../../../exercises/src/trimmed_icp.rs");
     if text.contains("not_written(") {
-        assert_refused(&["lap", "--exercises"], "trimmed_icp is not written yet");
+        assert_rejected(&["lap", "--exercises"], "trimmed_icp is not written yet");
     }
 }
 

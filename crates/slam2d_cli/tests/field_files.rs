@@ -1,4 +1,4 @@
-//! Files that people have, from `../shared/data/field` beside the repository: each is mapped, or refused in one sentence
+//! Files that people have, from `../shared/data/field` beside the repository: each is mapped, or rejected in one sentence
 //! that names what it is and what to do. Without that folder, these tests report it and pass.
 
 use std::fs;
@@ -8,7 +8,7 @@ use bench_support::skip::skip;
 use robot_io::trajectory::Trajectory;
 use tempfile::TempDir;
 
-use crate::support::{assert_refused, json, slam2d};
+use crate::support::{assert_rejected, json, slam2d};
 
 fn field(name: &str) -> Option<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/field");
@@ -75,7 +75,7 @@ fn one_command_maps_every_file_with_its_error_or_a_sentence() {
         assert!(page.contains(row), "not in docs/recordings.md: {row}");
         let cells: Vec<&str> = row.split('|').map(str::trim).collect();
         assert!(
-            cells[2] != "refused" || cells[4].contains("; "),
+            cells[2] != "rejected" || cells[4].contains("; "),
             "no remedy: {row}"
         );
     }
@@ -248,7 +248,7 @@ fn folders_that_were_renamed_or_whose_recording_was_killed_are_read_whole() {
         );
     }
     if let Some(path) = field("folders/git_lfs_pointer") {
-        assert_refused(
+        assert_rejected(
             &["run", &path],
             "is a Git LFS pointer, not the file itself; fetch the file with git lfs pull",
         );
@@ -307,7 +307,7 @@ fn files_that_are_no_log_are_named_with_the_way_to_one() {
         let Some(path) = field(name) else {
             return;
         };
-        assert_refused(&["run", &path], expected);
+        assert_rejected(&["run", &path], expected);
     }
 }
 
@@ -324,6 +324,6 @@ fn graphs_with_few_vertices_are_placed_by_their_edges() {
     let last = text.lines().last().unwrap();
     assert_eq!(last, "FIX 0", "GTSAM 4.3 reads no edge after it");
     if let Some(path) = field("g2o/se3.g2o") {
-        assert_refused(&["optimize", &path], "the graph is three-dimensional");
+        assert_rejected(&["optimize", &path], "the graph is three-dimensional");
     }
 }

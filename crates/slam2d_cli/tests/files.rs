@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::support::{assert_refused, json, slam2d};
+use crate::support::{assert_rejected, json, slam2d};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -38,7 +38,7 @@ fn the_content_of_a_ros_recording_is_summarized() {
         let about = info["about"].as_array().unwrap();
         assert_eq!(about[0], "scans are those of /scan, in frame laser");
     }
-    assert_refused(
+    assert_rejected(
         &["info", &recording("tf.mcap"), "--scan-topic", "/front"],
         "/front is not one of /scan (sensor_msgs/LaserScan), /tf (tf2_msgs/TFMessage)",
     );
@@ -115,7 +115,7 @@ fn a_run_leaves_trajectory_graph_map_and_report() {
             "not within 0.01 to 1 m",
         ),
     ] {
-        assert_refused(&arguments, expected);
+        assert_rejected(&arguments, expected);
     }
 }
 
@@ -220,7 +220,7 @@ fn impossible_conversions_list_the_possible_ones() {
             "half.bag has no usable scan: byte 15: expected a record's header",
         ),
     ] {
-        assert_refused(&["convert", input, output], expected);
+        assert_rejected(&["convert", input, output], expected);
     }
     assert!(!Path::new(&out).exists(), "no output without input");
 }
@@ -252,7 +252,7 @@ fn a_topic_or_frame_that_is_not_there_is_named_with_those_that_are() {
     ] {
         let file = recording(file);
         for command in ["run", "info"] {
-            assert_refused(&[command, &file, option, "/nowhere"], expected);
+            assert_rejected(&[command, &file, option, "/nowhere"], expected);
         }
     }
 }
@@ -263,9 +263,9 @@ fn a_log_is_never_written_over_by_what_it_becomes() {
     let log = in_folder(&folder, "a.jsonl");
     runs(&["convert", &recording("plain.mcap"), &log]);
     let before = fs::read(&log).unwrap();
-    assert_refused(&["convert", &log, &log], "is both input and output");
+    assert_rejected(&["convert", &log, &log], "is both input and output");
     let roundabout = in_folder(&folder, "./a.jsonl");
-    assert_refused(
+    assert_rejected(
         &["convert", &log, &roundabout],
         "choose another output file",
     );
@@ -273,7 +273,7 @@ fn a_log_is_never_written_over_by_what_it_becomes() {
     // An input that cannot be read completely leaves the output unchanged, without temporary files.
     let bad = in_folder(&folder, "bad.log");
     fs::write(&bad, "hello\n").unwrap();
-    assert_refused(&["convert", &bad, &log], "is not a CARMEN log");
+    assert_rejected(&["convert", &bad, &log], "is not a CARMEN log");
     assert_eq!(fs::read(&log).unwrap(), before);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
 }
@@ -284,14 +284,14 @@ fn unwritable_outputs_are_rejected_before_the_work() {
     let log = recording("plain.mcap");
     let taken = in_folder(&folder, "taken");
     fs::write(&taken, "mine").unwrap();
-    assert_refused(&["run", &log, "-o", &taken], "taken: not a directory");
+    assert_rejected(&["run", &log, "-o", &taken], "taken: not a directory");
     assert_eq!(fs::read_to_string(&taken).unwrap(), "mine");
     let below = in_folder(&folder, "taken/deep");
-    assert_refused(&["run", &log, "-o", &below], "not a directory");
+    assert_rejected(&["run", &log, "-o", &below], "not a directory");
     let run = in_folder(&folder, "run");
     runs(&["run", &log, "-o", &run]);
     let nowhere = in_folder(&folder, "nowhere/poses.tum");
-    assert_refused(&["localize", &run, &log, "-o", &nowhere], "No such file");
+    assert_rejected(&["localize", &run, &log, "-o", &nowhere], "No such file");
     // The checks leave no files.
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     // The folder of a run stands for its session.
@@ -300,7 +300,7 @@ fn unwritable_outputs_are_rejected_before_the_work() {
     let own = Path::new(&run).join("graph.g2o");
     assert_eq!(fs::read(&graph).unwrap(), fs::read(own).unwrap());
     let session = Path::new(&run).join("session.slam2d");
-    assert_refused(
+    assert_rejected(
         &["run", text(&session)],
         "is a saved session, not a log of scans",
     );
@@ -324,7 +324,7 @@ fn a_log_without_returns_is_rejected() {
         .collect();
     fs::write(&log, lines.join("\n")).unwrap();
     let run = in_folder(&folder, "run");
-    assert_refused(
+    assert_rejected(
         &["run", &log, "-o", &run],
         "no beam of any keyframe has a range",
     );

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::support::{assert_refused, json, slam2d};
+use crate::support::{assert_rejected, json, slam2d};
 use robot_io::settings::SETTINGS;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -261,7 +261,7 @@ fn files_that_cannot_be_used_end_in_one_line() {
             "stamp must be a finite number",
         ),
     ] {
-        assert_refused(&arguments, expected);
+        assert_rejected(&arguments, expected);
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-use crate::support::{assert_refused, json, slam2d};
+use crate::support::{assert_rejected, json, slam2d};
 
 /// Fields of an answer, in the order of the digest.
 const FIELDS: [&str; 7] = [
@@ -148,7 +148,7 @@ fn an_unknown_exercise_or_choice_is_not_marked_and_says_which_there_are() {
 }
 
 #[test]
-fn what_is_no_file_of_answers_is_refused_in_one_line() {
+fn what_is_no_file_of_answers_is_rejected_in_one_line() {
     let twice = file("", &[rank("2"), rank("2")]).to_string();
     let newer = file("", &[]).to_string().replace("answers/1", "answers/2");
     for (content, expected) in [
@@ -165,9 +165,9 @@ fn what_is_no_file_of_answers_is_refused_in_one_line() {
         (&" ".repeat((1 << 20) + 1), "more than 1048576 bytes"),
     ] {
         let (_folder, path) = saved(content);
-        assert_refused(&["mark", path.to_str().unwrap()], expected);
+        assert_rejected(&["mark", path.to_str().unwrap()], expected);
     }
-    assert_refused(&["mark", "nowhere.json"], "nowhere.json: ");
+    assert_rejected(&["mark", "nowhere.json"], "nowhere.json: ");
 }
 
 #[test]
@@ -317,7 +317,7 @@ fn a_gradebook_of_80_joins_the_roster_of_canvas_and_of_moodle_by_column_names() 
         "{errors}"
     );
     let nameless = write("bad.csv", "Height\n1\n".to_owned());
-    assert_refused(
+    assert_rejected(
         &["mark", "--csv", "--roster", &nameless, &files[0]],
         "bad.csv has no column that identifies a student",
     );

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::support::{assert_refused, json, slam2d};
+use crate::support::{assert_rejected, json, slam2d};
 use bench_support::skip::{NO_RECORDED_GRAPHS, skip};
 use pr_optim::g2o::G2oFile;
 use serde_json::Value;
@@ -49,11 +49,11 @@ impl Graph {
 
     /// Asserts that the graph is rejected in one line, and that the output is unchanged.
     #[track_caller]
-    fn assert_refused(&self, options: &[&str], expected: &str) {
+    fn assert_rejected(&self, options: &[&str], expected: &str) {
         let output = self.output();
         fs::write(&output, "old").unwrap();
         let to = ["optimize", self.input(), "-o", output.to_str().unwrap()];
-        assert_refused(&[&to, options].concat(), expected);
+        assert_rejected(&[&to, options].concat(), expected);
         assert_eq!(fs::read(&output).unwrap(), b"old");
         // No temporary file is left either.
         assert_eq!(fs::read_dir(self.folder.path()).unwrap().count(), 2);
@@ -212,14 +212,14 @@ fn missing_parts_of_a_graph_are_added_and_reported() {
         );
     }
     let in_space = "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n";
-    Graph::new(in_space).assert_refused(
+    Graph::new(in_space).assert_rejected(
         &[],
         "in.g2o: line 1 is a VERTEX_SE3:QUAT: the graph is three-dimensional",
     );
 }
 
 #[test]
-fn graphs_that_cannot_be_solved_are_refused_in_one_line() {
+fn graphs_that_cannot_be_solved_are_rejected_in_one_line() {
     for (line, expected) in [
         (
             "EDGE_SE2 0 1 1 0",
@@ -240,10 +240,10 @@ fn graphs_that_cannot_be_solved_are_refused_in_one_line() {
         ("FIX", "line 9: FIX names no vertex"),
         ("FIX 7", "line 9: there is no vertex 7"),
     ] {
-        Graph::new(format!("{SQUARE}{line}\n")).assert_refused(&[], expected);
+        Graph::new(format!("{SQUARE}{line}\n")).assert_rejected(&[], expected);
     }
-    Graph::new("").assert_refused(&[], "the file has no VERTEX_SE2");
-    Graph::new(b"VERTEX_SE2 0 0 0 \xFF\n").assert_refused(&[], "line 1: the line is not UTF-8");
+    Graph::new("").assert_rejected(&[], "the file has no VERTEX_SE2");
+    Graph::new(b"VERTEX_SE2 0 0 0 \xFF\n").assert_rejected(&[], "line 1: the line is not UTF-8");
 }
 
 #[test]
@@ -265,7 +265,7 @@ fn kept_records_are_reported_and_standard_output_is_complete() {
 #[test]
 fn an_edge_whose_cost_overflows_is_named() {
     let far = SQUARE.replace("VERTEX_SE2 2 1 1.1", "VERTEX_SE2 2 1e200 1.1");
-    Graph::new(far).assert_refused(&[], "in.g2o: line 6: eᵀΩe of this edge is too large");
+    Graph::new(far).assert_rejected(&[], "in.g2o: line 6: eᵀΩe of this edge is too large");
     // Each edge alone has a finite cost, but the sum overflows: the largest is named.
     let heavy = SQUARE.replace(
         "EDGE_SE2 2 3 1 0 1.5707963 50 0 0 50",
@@ -275,7 +275,7 @@ fn an_edge_whose_cost_overflows_is_named() {
         "EDGE_SE2 1 2 1 0 1.5707963 50 0 0 50",
         "EDGE_SE2 1 2 1 10 1.5707963 1.5e306 0 0 1.5e306",
     );
-    Graph::new(heavy).assert_refused(&[], "eᵀΩe of this edge is too large");
+    Graph::new(heavy).assert_rejected(&[], "eᵀΩe of this edge is too large");
 }
 
 #[test]
@@ -289,7 +289,7 @@ EDGE_SE2 50 60 1 0 0 50 0 0 50 0 100
 EDGE_SE2 60 70 1 0 0 1e12 1e12 0 1e12 0 0
 EDGE_SE2 50 70 2 0 0 1e12 1e12 0 1e12 0 0
 ";
-    Graph::new(text).assert_refused(
+    Graph::new(text).assert_rejected(
         &[],
         "in.g2o: line 3: the measurements do not determine the pose of vertex 70",
     );

@@ -9,7 +9,7 @@ use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
 use tempfile::TempDir;
 
-use crate::support::{assert_refused, json, slam2d};
+use crate::support::{assert_rejected, json, slam2d};
 
 /// The simulator's lap as a log, whole and in two halves.
 struct Lap {
@@ -71,7 +71,7 @@ fn a_run_in_two_parts_is_the_run_in_one() {
         second["keyframes"].as_u64().unwrap()
     );
     let again = lap.file("second.jsonl");
-    assert_refused(
+    assert_rejected(
         &[
             "run",
             &again,
@@ -118,7 +118,7 @@ fn a_session_is_summarized_mapped_and_converted() {
     );
     let keyframes = run["keyframes"].as_u64().unwrap();
     assert_eq!(lines(Path::new(&tum)).len() as u64, keyframes);
-    assert_refused(
+    assert_rejected(
         &["convert", &session, "x.clf"],
         "convert a session to .g2o, .graph, .toro or .json, or .tum",
     );
@@ -160,11 +160,11 @@ fn sessions_that_cannot_be_used_end_in_one_line() {
         (lap.file("empty_folder"), "has no session.slam2d"),
         (lap.file("huge.slam2d"), "larger than 512 MB"),
     ] {
-        assert_refused(&["run", &log, "--continue", &file], expected);
+        assert_rejected(&["run", &log, "--continue", &file], expected);
         if !file.ends_with("folder") {
-            assert_refused(&["info", &file], expected);
-            assert_refused(&["map", &file, "-o", &lap.file("m.yaml")], expected);
-            assert_refused(&["convert", &file, &lap.file("x.g2o")], expected);
+            assert_rejected(&["info", &file], expected);
+            assert_rejected(&["map", &file, "-o", &lap.file("m.yaml")], expected);
+            assert_rejected(&["convert", &file, &lap.file("x.g2o")], expected);
         }
     }
 }
@@ -213,7 +213,7 @@ fn a_log_is_found_on_the_map_of_a_session() {
         (vec!["localize", &log, &log], "is not a session"),
         (vec!["localize", &folder, "/absent"], "/absent: "),
     ] {
-        assert_refused(&arguments, expected);
+        assert_rejected(&arguments, expected);
     }
 }
 
@@ -274,7 +274,7 @@ fn repeated_laps_print_lines_and_write_a_session() {
             "is beyond the 2 laps; use a lap up to 2",
         ),
     ] {
-        assert_refused(&arguments, expected);
+        assert_rejected(&arguments, expected);
     }
 }
 

@@ -4,7 +4,7 @@ use std::fs;
 
 use tempfile::TempDir;
 
-use crate::support::{assert_refused, slam2d};
+use crate::support::{assert_rejected, slam2d};
 
 const SWEEP: [&str; 5] = ["sweep", "--seeds", "1..=6", "--noise", "0.25,1"];
 
@@ -37,14 +37,14 @@ fn shards_put_together_print_what_one_process_prints_to_the_last_digit() {
         printed_by(&["sweep", "--merge", &first, &second]),
         printed_by(&SWEEP)
     );
-    assert_refused(
+    assert_rejected(
         &["sweep", "--merge", &second],
         "3 of 6 seeds are missing, the first is 1; give the file of their part as well",
     );
 }
 
 #[test]
-fn parts_that_do_not_belong_together_are_refused_in_one_sentence() {
+fn parts_that_do_not_belong_together_are_rejected_in_one_sentence() {
     let folder = TempDir::new().unwrap();
     let sweep = ["sweep", "--seeds", "1..=2", "--noise", "1"];
     let part = driven(&folder, &sweep, "1/1", "part.json");
@@ -57,7 +57,7 @@ fn parts_that_do_not_belong_together_are_refused_in_one_sentence() {
             _ => [&sweep[..], &option].concat(),
         };
         let other = driven(&folder, &sweep, "1/1", name);
-        assert_refused(
+        assert_rejected(
             &["sweep", "--merge", &part, &other],
             &format!("{name} are of different sweeps"),
         );
@@ -66,20 +66,20 @@ fn parts_that_do_not_belong_together_are_refused_in_one_sentence() {
     let text = fs::read_to_string(&part).unwrap();
     fs::write(&bent, text.replacen("\"loops\":", "\"loops\":1", 1)).unwrap();
     let bent_path = bent.to_str().unwrap();
-    assert_refused(
+    assert_rejected(
         &["sweep", "--merge", &part, bent_path],
         "bent.json: seed 1 differs from an earlier file",
     );
     fs::write(&bent, "x,y\n1,2\n").unwrap();
-    assert_refused(
+    assert_rejected(
         &["sweep", "--merge", bent_path],
         "give a file that slam2d sweep --shard wrote",
     );
-    assert_refused(&["sweep", "--merge", "no-such-file"], "no-such-file");
-    assert_refused(
+    assert_rejected(&["sweep", "--merge", "no-such-file"], "no-such-file");
+    assert_rejected(
         &["sweep", "--shard", "3/2", "-o", &part],
         "not a part such as 2/4",
     );
-    assert_refused(&["sweep", "--shard", "1/2"], "--output");
-    assert_refused(&["sweep", "--merge", &part, "--seeds", "1..=2"], "--merge");
+    assert_rejected(&["sweep", "--shard", "1/2"], "--output");
+    assert_rejected(&["sweep", "--merge", &part, "--seeds", "1..=2"], "--merge");
 }

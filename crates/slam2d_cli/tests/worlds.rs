@@ -5,7 +5,7 @@ use std::fs;
 use pr_sim::Course;
 use serde_json::Value;
 
-use crate::support::{assert_refused, json};
+use crate::support::{assert_rejected, json};
 
 /// An empty room of 6 m × 5 m with a pillar, and a path through it.
 const ROOM: &str = r#"{
@@ -126,12 +126,12 @@ fn a_world_that_cannot_be_driven_is_one_sentence() {
     ] {
         let path = folder.path().join(format!("{name}.json"));
         fs::write(&path, text).unwrap();
-        assert_refused(&["lap", "--world", path.to_str().unwrap()], part);
+        assert_rejected(&["lap", "--world", path.to_str().unwrap()], part);
     }
-    assert_refused(&["lap", "--world", "nowhere.json"], "nowhere.json");
-    assert_refused(&["sweep", "--world", "nowhere.json"], "nowhere.json");
-    assert_refused(&["lap", "--matcher", "best"], "best");
-    assert_refused(
+    assert_rejected(&["lap", "--world", "nowhere.json"], "nowhere.json");
+    assert_rejected(&["sweep", "--world", "nowhere.json"], "nowhere.json");
+    assert_rejected(&["lap", "--matcher", "best"], "best");
+    assert_rejected(
         &["lap", "--world", "moon"],
         "expected apartment, ring, twins, corridor, hall or a .json file",
     );

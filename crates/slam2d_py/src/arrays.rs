@@ -28,11 +28,11 @@ fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArr
     options.set_item("dtype", "float64")?;
     let numpy = py.import("numpy")?;
     let array = numpy.call_method("asarray", (value,), Some(&options));
-    let refused = || ArrayError::new_err(format!("{name} cannot be read as an array of numbers"));
+    let rejected = || ArrayError::new_err(format!("{name} cannot be read as an array of numbers"));
     array
-        .map_err(|_| refused())?
+        .map_err(|_| rejected())?
         .extract()
-        .map_err(|_| refused())
+        .map_err(|_| rejected())
 }
 
 fn wrong_shape(name: &str, wanted: &str, shape: &[usize]) -> PyErr {

@@ -1,4 +1,4 @@
-"""What comes in as an array, and what is refused; and the motions, which are the simplest that take one."""
+"""What comes in as an array, and what is rejected; and the motions, which are the simplest that take one."""
 
 import numpy as np
 import pytest
@@ -55,11 +55,11 @@ def test_an_array_that_is_read_is_not_written(drive):
         (None, "points has to have the shape (n, 2), not ()"),
     ],
 )
-def test_a_bad_array_is_refused_in_a_sentence(points, said):
-    with pytest.raises(rs.ArrayError) as refused:
+def test_a_bad_array_is_rejected_in_a_sentence(points, said):
+    with pytest.raises(rs.ArrayError) as rejected:
         rs.transform(QUARTER, points)
-    assert str(refused.value) == said
-    assert isinstance(refused.value, (rs.SlamError, ValueError))
+    assert str(rejected.value) == said
+    assert isinstance(rejected.value, (rs.SlamError, ValueError))
 
 
 def test_motions_make_a_group():

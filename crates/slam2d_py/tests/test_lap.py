@@ -62,7 +62,7 @@ def test_another_seed_is_another_drive_and_a_world_another_course(drive):
         ({"world": "moon"}, 'world has to be one of apartment, ring, twins, corridor, hall, not "moon"'),
     ],
 )
-def test_what_cannot_be_simulated_is_refused_in_a_sentence(arguments, said):
-    with pytest.raises(rs.ChoiceError) as refused:
+def test_what_cannot_be_simulated_is_rejected_in_a_sentence(arguments, said):
+    with pytest.raises(rs.ChoiceError) as rejected:
         rs.simulate(**arguments)
-    assert str(refused.value) == said
+    assert str(rejected.value) == said

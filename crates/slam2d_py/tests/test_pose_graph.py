@@ -92,20 +92,20 @@ def test_ids_of_a_file_stay_and_new_nodes_come_after_them():
         ((0, 1, (1, 0, 0), EYE[:2]), rs.ArrayError, "information has to have the shape (3, 3), not (2, 3)"),
     ],
 )
-def test_a_wrong_edge_is_refused_in_a_sentence(chain, edge, error, said):
-    with pytest.raises(error) as refused:
+def test_a_wrong_edge_is_rejected_in_a_sentence(chain, edge, error, said):
+    with pytest.raises(error) as rejected:
         chain.add_edge(*edge)
-    assert str(refused.value) == said
+    assert str(rejected.value) == said
     assert len(chain.edges) == 3
 
 
 def test_what_cannot_be_solved_is_said_and_moves_nothing(chain):
     chain.add_node((5, 5, 0))
     before = chain.poses
-    for refuse in (chain.optimize, chain.marginals, chain.inlier_edges, lambda: chain.relative_covariance(0, 1)):
-        with pytest.raises(rs.OptimizeError) as refused:
-            refuse()
-        assert str(refused.value) == "no chain of edges ties node 3 to a fixed node; give one node fixed=True"
+    for reject in (chain.optimize, chain.marginals, chain.inlier_edges, lambda: chain.relative_covariance(0, 1)):
+        with pytest.raises(rs.OptimizeError) as rejected:
+            reject()
+        assert str(rejected.value) == "no chain of edges ties node 3 to a fixed node; give one node fixed=True"
     assert np.array_equal(chain.poses, before)
     far = rs.PoseGraph()
     far.add_node((0, 0, 0), fixed=True)
@@ -126,9 +126,9 @@ def test_what_cannot_be_solved_is_said_and_moves_nothing(chain):
 def test_a_malformed_file_is_named_with_its_line(tmp_path):
     path = tmp_path / "broken.g2o"
     path.write_text("VERTEX_SE2 0 0 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0\n")
-    with pytest.raises(rs.GraphError) as refused:
+    with pytest.raises(rs.GraphError) as rejected:
         rs.PoseGraph.read_g2o(path)
-    assert str(refused.value) == f"{path}: line 2: EDGE_SE2 needs 11 numbers, found 10"
+    assert str(rejected.value) == f"{path}: line 2: EDGE_SE2 needs 11 numbers, found 10"
     with pytest.raises(FileNotFoundError) as absent:
         rs.PoseGraph.read_g2o(tmp_path / "absent.g2o")
     assert absent.value.filename == str(tmp_path / "absent.g2o")

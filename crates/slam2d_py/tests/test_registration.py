@@ -99,13 +99,13 @@ def test_ndt_climbs_to_where_the_cloud_lies(room):
         ({"normal_radius": -1}, "normal_radius has to be within 0.000001 to 1000000 m, not -1"),
     ],
 )
-def test_an_argument_out_of_its_range_is_refused_in_a_sentence(room, keywords, said):
-    with pytest.raises(rs.ChoiceError) as refused:
+def test_an_argument_out_of_its_range_is_rejected_in_a_sentence(room, keywords, said):
+    with pytest.raises(rs.ChoiceError) as rejected:
         rs.icp(room, room, **keywords)
-    assert str(refused.value) == said
+    assert str(rejected.value) == said
 
 
-def test_ndt_refuses_cells_that_cannot_be(room):
+def test_ndt_rejects_cells_that_cannot_be(room):
     with pytest.raises(rs.ChoiceError, match="cell has to be within"):
         rs.Ndt(room, cell=0.0)
     with pytest.raises(rs.ChoiceError, match="one point has no covariance"):

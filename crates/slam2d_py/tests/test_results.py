@@ -74,7 +74,7 @@ def test_a_run_is_drawn(run):
     pyplot.close("all")
 
 
-def test_a_log_without_topics_refuses_one(drive, tmp_path):
+def test_a_log_without_topics_rejects_one(drive, tmp_path):
     log = tmp_path / "lap.jsonl"
     drive.write_log(log)
     with pytest.raises(rs.LogError, match="has no odom-topic /odom; only a recording of ROS has topics"):

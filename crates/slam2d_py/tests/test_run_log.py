@@ -88,7 +88,7 @@ def test_what_a_progress_function_raises_ends_the_run(log):
         rs.Pipeline(log).run(progress=stop)
 
 
-def test_a_file_that_is_no_log_is_refused_in_a_sentence(tmp_path):
+def test_a_file_that_is_no_log_is_rejected_in_a_sentence(tmp_path):
     with pytest.raises(FileNotFoundError):
         rs.Pipeline(tmp_path / "absent.mcap").run()
     empty = tmp_path / "empty.log"
@@ -101,12 +101,12 @@ def test_a_file_that_is_no_log_is_refused_in_a_sentence(tmp_path):
         (tmp_path, f"{tmp_path} is a folder without a recording of ROS 2; give a log, or a folder with files that end in .mcap or .db3"),
     ]:
         for read in (rs.Pipeline(path).run, rs.Pipeline(path).frames):
-            with pytest.raises(rs.LogError) as refused:
+            with pytest.raises(rs.LogError) as rejected:
                 read()
-            assert str(refused.value) == said
+            assert str(rejected.value) == said
 
 
-def test_a_log_in_which_nothing_was_seen_is_refused(drive, log, tmp_path):
+def test_a_log_in_which_nothing_was_seen_is_rejected(drive, log, tmp_path):
     blind = tmp_path / "blind.jsonl"
     lines = [json.loads(line) for line in log.read_text().splitlines()[:20]]
     blind.write_text("".join(json.dumps({**line, "ranges_m": [None] * 120}) + "\n" for line in lines))
@@ -138,7 +138,7 @@ def test_errors_against_truth_and_relations():
         ({"relations": [(8.0, 9.0, 0, 0, 0)], "align": "sim3"}, rs.ChoiceError, "align has to be one of none, se2"),
     ],
 )
-def test_what_cannot_be_compared_is_refused_in_a_sentence(keywords, error, said):
-    with pytest.raises(error) as refused:
+def test_what_cannot_be_compared_is_rejected_in_a_sentence(keywords, error, said):
+    with pytest.raises(error) as rejected:
         rs.evaluate([0.0, 1.0], np.zeros((2, 3)), **keywords)
-    assert str(refused.value).startswith(said)
+    assert str(rejected.value).startswith(said)

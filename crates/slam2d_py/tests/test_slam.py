@@ -51,20 +51,20 @@ def test_settings_are_those_of_the_core(drive, mapped):
         ({"keyframe_distance_m": "far"}, "keyframe_distance_m has to be a number"),
     ],
 )
-def test_a_wrong_setting_is_refused_in_the_words_of_the_core(drive, config, said):
-    for refuse in (lambda: rs.Slam(config, sensor=drive.sensor), lambda: rs.Pipeline("log", config)):
-        with pytest.raises(rs.SettingError) as refused:
-            refuse()
-        assert str(refused.value) == said
+def test_a_wrong_setting_is_rejected_in_the_words_of_the_core(drive, config, said):
+    for reject in (lambda: rs.Slam(config, sensor=drive.sensor), lambda: rs.Pipeline("log", config)):
+        with pytest.raises(rs.SettingError) as rejected:
+            reject()
+        assert str(rejected.value) == said
 
 
 def test_a_scan_that_cannot_be_used_leaves_the_estimator_as_it_was(drive):
     slam = rs.Slam(sensor=drive.sensor)
     first = slam.step(drive.ranges[0])
     assert (first.frame, first.keyframe, first.inliers, first.rmse, first.loops) == (0, 0, None, None, [])
-    with pytest.raises(rs.FrameError) as refused:
+    with pytest.raises(rs.FrameError) as rejected:
         slam.step(drive.ranges[1], stamp=0.0)
-    assert str(refused.value) == "the frame's stamp 0 s is not after the last one, 0 s; sort the frames by time"
+    assert str(rejected.value) == "the frame's stamp 0 s is not after the last one, 0 s; sort the frames by time"
     with pytest.raises(rs.ArrayError, match=r"ranges has to have the shape \(n,\), not \(2, 60\)"):
         slam.step(drive.ranges[1].reshape(2, 60))
     assert slam.frames == 1
@@ -90,6 +90,6 @@ def test_a_sensor_says_where_its_points_are(drive):
     assert np.array_equal(sensor.body_from_sensor, (1, 0, np.pi)) and sensor.beam_interval_s == 0.0
     assert (sensor.first_angle_rad, sensor.range_min_m, sensor.range_max_m) == (0.0, 0.0, 5.0)
     assert sensor.angle_step_rad == np.pi / 2
-    with pytest.raises(rs.FrameError) as refused:
+    with pytest.raises(rs.FrameError) as rejected:
         rs.Sensor(first_angle_rad=0.0, angle_step_rad=0.0)
-    assert str(refused.value) == "the scan's angle step is 0; give radians other than 0"
+    assert str(rejected.value) == "the scan's angle step is 0; give radians other than 0"

@@ -82,7 +82,7 @@ def test_two_threads_share_a_graph():
     assert len(graph) == 60
 
 
-def test_a_second_step_is_refused_and_a_reader_waits(drive):
+def test_a_second_step_is_rejected_and_a_reader_waits(drive):
     inside, over = threading.Event(), threading.Event()
 
     def icp(source, target, init, **_):

@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn requests_outside_of_the_folder_and_malformed_ones_are_refused() {
+    fn requests_outside_of_the_folder_and_malformed_ones_are_rejected() {
         for line in [
             "GET /../xtask/Cargo.toml HTTP/1.1",
             "GET /src/../Cargo.toml HTTP/1.1",

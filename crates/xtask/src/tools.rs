@@ -231,13 +231,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_old_node_and_a_missing_one_are_refused() {
+    fn an_old_node_and_a_missing_one_are_rejected() {
         assert!(check_node(Some("v20.0.0")).is_ok());
         assert!(check_node(Some("v26.1.0-nightly")).is_ok());
-        let refused = |version| check_node(version).unwrap_err().to_string();
-        assert!(refused(Some("v18.19.1")).starts_with("Node v18.19.1 is too old"));
-        assert!(refused(Some("nonsense")).starts_with("Node nonsense is too old"));
-        assert!(refused(None).starts_with("Node is missing"));
+        let rejected = |version| check_node(version).unwrap_err().to_string();
+        assert!(rejected(Some("v18.19.1")).starts_with("Node v18.19.1 is too old"));
+        assert!(rejected(Some("nonsense")).starts_with("Node nonsense is too old"));
+        assert!(rejected(None).starts_with("Node is missing"));
     }
 
     #[test]

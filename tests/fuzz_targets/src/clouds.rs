@@ -14,8 +14,8 @@ pub fn fuzz(text: &[u8]) {
     let lines = text.split(|&byte| byte == b'\n').count();
     let cloud = match PointCloud::from_csv(text) {
         Ok(cloud) => cloud,
-        Err(refusal) => {
-            assert!(refusal.to_string().len() < 100, "{refusal}");
+        Err(rejection) => {
+            assert!(rejection.to_string().len() < 100, "{rejection}");
             return;
         }
     };

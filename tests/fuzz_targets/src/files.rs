@@ -10,7 +10,7 @@ use robot_io::graph_file::GraphFile;
 use robot_io::relations::{Relation, read_relations};
 use robot_io::trajectory::{StampedPose, Trajectory};
 
-use crate::sentences::{NAME, assert_refusal, assert_sentence};
+use crate::sentences::{NAME, assert_rejection, assert_sentence};
 
 /// A text is rejected in one sentence, or survives a round trip through writing and reading.
 pub fn fuzz(data: &[u8]) {
@@ -30,7 +30,7 @@ pub fn fuzz(data: &[u8]) {
 
 /// The value that was read, or `None` after checking that the error is one sentence.
 fn accepted<T, E: std::error::Error>(read: Result<T, E>) -> Option<T> {
-    read.map_err(|refusal| assert_refusal(&refusal.to_string()))
+    read.map_err(|rejection| assert_rejection(&rejection.to_string()))
         .ok()
 }
 
@@ -130,14 +130,14 @@ fn assert_same(old: &SE2, new: &SE2) {
 fn world(text: &[u8]) {
     match Course::from_json(text) {
         Ok(course) => sketched(&Sketch::from_course(&course)),
-        Err(refusal) => assert_sentence(&refusal.to_string()),
+        Err(rejection) => assert_sentence(&rejection.to_string()),
     }
 }
 
 fn sketch(text: &str) {
     match Sketch::from_text(text) {
         Ok(sketch) => sketched(&sketch),
-        Err(refusal) => assert_sentence(&refusal.to_string()),
+        Err(rejection) => assert_sentence(&rejection.to_string()),
     }
 }
 
@@ -148,7 +148,7 @@ fn sketched(sketch: &Sketch) {
     assert_eq!(Course::from_json(json.as_bytes()), sketch.course());
     match sketch.course() {
         Ok(course) => assert_eq!(&Sketch::from_course(&course), sketch),
-        Err(refusal) => assert_sentence(&refusal.to_string()),
+        Err(rejection) => assert_sentence(&rejection.to_string()),
     }
 }
 

@@ -14,10 +14,10 @@ const MAX_ITERATIONS: usize = 8;
 pub fn fuzz(text: &[u8]) {
     let mut file = match G2oFile::parse(text) {
         Ok(file) => file,
-        Err(refusal) => {
+        Err(rejection) => {
             let lines = text.split(|&byte| byte == b'\n').count();
-            assert!((1..=lines).contains(&refusal.line), "{refusal}");
-            assert!(refusal.to_string().len() < 400, "{refusal}");
+            assert!((1..=lines).contains(&rejection.line), "{rejection}");
+            assert!(rejection.to_string().len() < 400, "{rejection}");
             return;
         }
     };

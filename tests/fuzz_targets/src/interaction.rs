@@ -88,7 +88,7 @@ fn set(bytes: &mut Unstructured<'_>, model: &mut dyn Model) -> Result<()> {
     let before = model.values().clone();
     match model.set(param.id, value) {
         Ok(()) => assert!(param.check(value).is_ok(), "{} took {value}", param.id),
-        Err(_) => assert_eq!(&before, model.values(), "{} refused {value}", param.id),
+        Err(_) => assert_eq!(&before, model.values(), "{} rejected {value}", param.id),
     }
     Ok(())
 }

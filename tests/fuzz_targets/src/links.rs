@@ -24,8 +24,8 @@ pub fn fuzz(data: &[u8]) {
             assert_eq!(values.to_text(param.id), text.trim());
         }
         Ok(value) => accepted(spec.id, param, value, &mut Values::defaults(spec.params)),
-        Err(refusal) => {
-            let sentence = refusal.to_string();
+        Err(rejection) => {
+            let sentence = rejection.to_string();
             assert!(sentence.contains(param.id), "{sentence}");
             assert!(sentence.len() < 400, "{sentence}");
             assert!(!sentence.contains(char::is_control), "{sentence:?}");

@@ -10,7 +10,7 @@ use robot_io::motion::ComparedReader;
 use robot_io::run::LogRun;
 
 use crate::runs::{assert_finite, assert_loads, drive};
-use crate::sentences::{NAME, assert_refusal, assert_sentence};
+use crate::sentences::{NAME, assert_rejection, assert_sentence};
 
 /// More frames are read, but not mapped: this target tests the readers.
 const MAX_MAPPED: usize = 6;
@@ -62,7 +62,7 @@ fn compare(bytes: &[u8]) {
 
 /// The frames and notes of a log; `None` after checking that the error is one sentence.
 pub fn read(bytes: &[u8], options: &LogOptions) -> Option<(Vec<LogFrame>, LogNotes)> {
-    let check = |refusal: robot_io::log::LogError| assert_refusal(&refusal.to_string());
+    let check = |rejection: robot_io::log::LogError| assert_rejection(&rejection.to_string());
     let mut reader = LogFormat::open(bytes, NAME, options).map_err(check).ok()?;
     let mut frames = Vec::new();
     while let Some(frame) = reader.next_frame().map_err(check).ok()? {
@@ -78,7 +78,7 @@ pub fn read(bytes: &[u8], options: &LogOptions) -> Option<(Vec<LogFrame>, LogNot
     notes
         .sentences(NAME)
         .iter()
-        .for_each(|said| assert_refusal(said));
+        .for_each(|said| assert_rejection(said));
     notes.about.iter().for_each(|said| assert_sentence(said));
     Some((frames, notes.clone()))
 }

@@ -49,16 +49,16 @@ fn set(listener: &mut Listener, id: &str, text: &str) {
             let (param, value) = listener.values().find(id).expect("it was set");
             assert_eq!(param.parse(text).map(f64::to_bits), Ok(value.to_bits()));
         }
-        Err(refusal) => assert!(refusal.to_string().len() < 600, "{refusal}"),
+        Err(rejection) => assert!(rejection.to_string().len() < 600, "{rejection}"),
     }
 }
 
 fn press(listener: &mut Listener, button: &str) {
     match listener.press(button) {
         Ok(()) => assert_eq!(listener.presses, 1),
-        Err(refusal) => {
+        Err(rejection) => {
             assert_eq!(listener.presses, 0);
-            assert!(refusal.to_string().len() < 900, "{refusal}");
+            assert!(rejection.to_string().len() < 900, "{rejection}");
         }
     }
 }

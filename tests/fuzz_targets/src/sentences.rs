@@ -6,7 +6,7 @@ pub const NAME: &str = "it.file";
 const MAX_BYTES: usize = 3000;
 
 /// Asserts that an error is one line that starts with the file name.
-pub fn assert_refusal(text: &str) {
+pub fn assert_rejection(text: &str) {
     assert!(text.starts_with(NAME), "{text:?}");
     assert_sentence(text);
 }

@@ -17,7 +17,7 @@ use robot_io::settings::SETTINGS;
 
 use crate::runs::{assert_finite, assert_loads, drive};
 use crate::sealed::{sealed, with_parameters};
-use crate::sentences::{NAME, assert_refusal, assert_sentence};
+use crate::sentences::{NAME, assert_rejection, assert_sentence};
 
 /// Larger sessions are loaded and written, but not continued: this target tests the file format.
 const MAX_KEYFRAMES: usize = 6;
@@ -41,7 +41,7 @@ pub fn fuzz(data: &[u8]) {
     };
     let session = match Session::from_bytes(&file, NAME) {
         Ok(session) => session,
-        Err(refusal) => return assert_refusal(&refusal.to_string()),
+        Err(rejection) => return assert_rejection(&rejection.to_string()),
     };
     let written = session.to_bytes();
     let again = Session::from_bytes(&written, NAME).expect("what was written can be loaded");
@@ -85,11 +85,11 @@ fn continue_run(session: &Session) {
         // Numbers at the limit of what can be loaded may grow beyond it.
         Ok(mut run) => {
             let saved = drive(&mut run, frames(session)).expect("a run goes on");
-            if let Err(refusal) = Session::from_bytes(&saved, NAME) {
-                assert_refusal(&refusal.to_string());
+            if let Err(rejection) = Session::from_bytes(&saved, NAME) {
+                assert_rejection(&rejection.to_string());
             }
         }
-        Err(refusal) => assert_sentence(&refusal.to_string()),
+        Err(rejection) => assert_sentence(&rejection.to_string()),
     }
 }
 
@@ -98,7 +98,7 @@ fn localize(session: &Session) {
     for start in [StartPose::Anywhere, start] {
         let mut run = match LocalizeRun::new(session, start) {
             Ok(run) => run,
-            Err(refusal) => return assert_sentence(&refusal.to_string()),
+            Err(rejection) => return assert_sentence(&rejection.to_string()),
         };
         for report in frames(session).filter_map(|frame| run.step(frame).cloned()) {
             report.pose.iter().for_each(assert_finite);
@@ -110,10 +110,10 @@ fn localize(session: &Session) {
 fn reopen(session: &Session) {
     match LogRun::reopen(session) {
         Ok(mut run) => assert_loads(&drive(&mut run, []).expect("it has keyframes")),
-        Err(refusal) => assert_sentence(&refusal.to_string()),
+        Err(rejection) => assert_sentence(&rejection.to_string()),
     }
     match build_session_map(session, CELL_M) {
         Ok(map) => assert_eq!(map.counts().iter().sum::<usize>(), map.width * map.height),
-        Err(refusal) => assert_sentence(&refusal.to_string()),
+        Err(rejection) => assert_sentence(&rejection.to_string()),
     }
 }

@@ -49,6 +49,6 @@ fn with_columns(text: &[u8]) {
             };
             logs::read(rows, &options);
         }
-        Err(refusal) => assert_sentence(&refusal),
+        Err(rejection) => assert_sentence(&rejection),
     }
 }

@@ -59,7 +59,7 @@ impl Figures {
             ["consistency", what @ ..] => self.consistency.value(what),
             ["rule", what] => rule::value(what),
             ["drift", "longer"] => Some(drift::LONGER_EDGES as f64),
-            ["drift", path, edges] => drift::refused_percent(path, edges),
+            ["drift", path, edges] => drift::rejected_percent(path, edges),
             ["ndt", "hessian", what] => ndt::hessian(what),
             ["ndt", start, what] => ndt::value(start, what),
             ["procrustes", what @ ..] => procrustes::value(what),

@@ -50,16 +50,16 @@ mod tests {
     #[test]
     fn a_widget_is_opened_by_its_name_and_an_unknown_one_lists_the_names() {
         assert_eq!(asked_for(&["w16.11"]), Ok("w16.11"));
-        let refused = asked_for(&["w16.99"]).unwrap_err();
+        let rejected = asked_for(&["w16.99"]).unwrap_err();
         assert!(
-            refused.starts_with("there is no widget `w16.99`; there are w16.1, w16.2"),
-            "{refused}"
+            rejected.starts_with("there is no widget `w16.99`; there are w16.1, w16.2"),
+            "{rejected}"
         );
         for words in [&[][..], &["w16.1", "w16.2"]] {
-            let refused = asked_for(words).unwrap_err();
+            let rejected = asked_for(words).unwrap_err();
             assert!(
-                refused.starts_with("slam_desktop takes the name"),
-                "{refused}"
+                rejected.starts_with("slam_desktop takes the name"),
+                "{rejected}"
             );
         }
     }

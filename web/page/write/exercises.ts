@@ -299,7 +299,7 @@ function gate(innovation, gap, drift, limit) {
   ],
   help: [
     'S = gap · diag(σ², σ², σ_θ²), and χ² = νᵀ S⁻¹ ν: S is diagonal, so it is a sum of three quotients.',
-    'A loop is accepted if χ² ≤ limit; write it so that NaN is refused.',
+    'A loop is accepted if χ² ≤ limit; write it so that NaN is rejected.',
     'const chi2 = (x² + y²) / (gap σ²) + θ² / (gap σ_θ²).',
   ],
   solution: `function gate(innovation, gap, drift, limit) {

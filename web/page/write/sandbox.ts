@@ -54,7 +54,7 @@ const FRAME = 'your-code.html';
 
 interface Told {
   started?: boolean;
-  refused?: boolean;
+  rejected?: boolean;
   ready?: boolean;
   working?: boolean;
   done?: boolean;
@@ -139,7 +139,7 @@ export class Sandbox {
   #wind(): void {
     const { patience_ms = PATIENCE_MS } = this.#pending ?? {};
     clearTimeout(this.#timer);
-    this.#timer = setTimeout(() => this.#fail(patience_ms === START_MS ? refused() : slow()), patience_ms);
+    this.#timer = setTimeout(() => this.#fail(patience_ms === START_MS ? rejected() : slow()), patience_ms);
   }
 
   #fail(why: NotRun): void {
@@ -152,8 +152,8 @@ export class Sandbox {
     const pending = this.#pending;
     if (pending === undefined) return;
     this.#wind();
-    if (told.refused === true) {
-      this.#fail(refused());
+    if (told.rejected === true) {
+      this.#fail(rejected());
     } else if (told.missing !== undefined) {
       this.#fail(new NotRun(`There is no function ${told.missing}. Keep its name.`));
     } else if (told.broken !== undefined) {
@@ -181,7 +181,7 @@ export async function call(code: string, name: string, calls: unknown[][]): Prom
   }
 }
 
-function refused(): NotRun {
+function rejected(): NotRun {
   return new NotRun('The policy of this page does not let code run here. Open the chapter’s own page.');
 }
 

@@ -132,8 +132,8 @@ class _RobotWidget(_Widget):
 
     #: Every plot and table as CSV, by its name: loops, keyframes, where.
     tables = traitlets.Dict().tag(sync=True)
-    #: Why the last refused file was refused.
-    refused = traitlets.Unicode("")
+    #: Why the last rejected file was rejected.
+    rejected = traitlets.Unicode("")
 
     def __init__(self, log=None, *, reference=None, where=None, **parameters):
         # Files by their purpose, in order: each page that shows the widget gets them.
@@ -163,7 +163,7 @@ class _RobotWidget(_Widget):
     def save(self, name, path=None):
         """Requests a file from the page, such as `session.slam2d` or `map.png`, and writes it to `path` on arrival.
 
-        `saved` lists the files that arrived, and `refused` has the reason why one did not.
+        `saved` lists the files that arrived, and `rejected` has the reason why one did not.
         """
         self._requested.setdefault(name, []).append(Path(path or name))
         self.send({"type": "file", "name": name})
@@ -205,11 +205,11 @@ class _RobotWidget(_Widget):
                 path = paths.pop(0)
                 path.write_bytes(bytes(buffers[0]))
                 self._saved.append(path)
-        elif kind == "refused":
+        elif kind == "rejected":
             paths = self._requested.get(message["name"], [])
             if paths:
                 paths.pop(0)
-            self.refused = message["why"]
+            self.rejected = message["why"]
 
 #: Every widget's class by its name in the chapter: `WIDGETS["w16.1"]` is `Basin`.
 WIDGETS = {id: _class(widget) for id, widget in _SCHEMA.items()}

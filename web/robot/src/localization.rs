@@ -98,7 +98,7 @@ impl<'a> Localization<'a> {
         self.is_new = true;
         if self.poses.is_empty() && self.problem.is_none() {
             let name = &self.name;
-            self.problem = Some(match self.run.refused() {
+            self.problem = Some(match self.run.rejected() {
                 Some(why) => format!("{name}: no scan could be used: {why}"),
                 None => format!("{name} was stopped before its first scan"),
             });

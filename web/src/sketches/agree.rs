@@ -198,7 +198,7 @@ fn picture(accepted: &[Vec<bool>; 3]) -> Panel {
         legend: vec![
             LegendEntry::mark("true, accepted", Tone::Posterior, Mark::Square),
             LegendEntry::mark("false, accepted", Tone::Strained, Mark::Square),
-            LegendEntry::mark("refused", Tone::Truth, Mark::Circle),
+            LegendEntry::mark("rejected", Tone::Truth, Mark::Circle),
         ],
         color_bar: None,
     }
@@ -221,7 +221,7 @@ mod tests {
 
     /// The gate tests each loop alone: how many others agree is nothing to it.
     #[test]
-    fn the_gate_takes_false_loops_that_the_others_refuse_while_true_ones_are_the_majority() {
+    fn the_gate_takes_false_loops_that_the_others_reject_while_true_ones_are_the_majority() {
         for false_loops in 1..TRUE_LOOPS - 1 {
             let [gnc, pairs, gate] = all(false_loops);
             assert_eq!(gate, [TRUE_LOOPS, false_loops]);

@@ -59,7 +59,7 @@ fn at(nodes: f64) -> Shown {
     let word = if tested.passes() {
         "accepted"
     } else {
-        "refused"
+        "rejected"
     };
     let [reach_m, reach_deg] = reach(gap, &config);
     Shown {
@@ -104,12 +104,12 @@ fn picture(gap: usize, config: &LoopConfig) -> Panel {
     let (label, mark, tone) = if passes(found) {
         ("the loop, accepted", Mark::Square, Tone::Posterior)
     } else {
-        ("the loop, refused", Mark::Circle, Tone::Truth)
+        ("the loop, rejected", Mark::Circle, Tone::Truth)
     };
     Panel {
         id: "gate",
         title: format!(
-            "What {gap} nodes of drift may come to: {} of {DRIFTS} refused",
+            "What {gap} nodes of drift may come to: {} of {DRIFTS} rejected",
             beyond.len()
         ),
         weight: Weight::Main,
@@ -203,7 +203,7 @@ mod tests {
         );
     }
 
-    /// A picture in which a refused loop lies within the gate would deny its own verdict.
+    /// A picture in which a rejected loop lies within the gate would deny its own verdict.
     #[test]
     fn a_loop_lies_within_the_drawn_gate_exactly_if_it_passes() {
         let config = LapConfig::default().slam.chapter.loops;

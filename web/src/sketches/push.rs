@@ -116,7 +116,7 @@ fn at(percent: f64) -> Shown {
     let verdict = if gate.passes() {
         "passes"
     } else {
-        "is refused"
+        "is rejected"
     };
     Shown {
         scene: Scene {

@@ -242,7 +242,7 @@ impl FullLap {
         }
     }
 
-    fn own_refused(&self) -> Option<&OwnLoopError> {
+    fn own_rejected(&self) -> Option<&OwnLoopError> {
         self.own.made.as_ref()?.as_ref().err()
     }
 }
@@ -369,11 +369,11 @@ impl Model for FullLap {
     }
 
     fn outcome(&self) -> Outcome {
-        texts::outcome(&self.moment(), self.own_refused())
+        texts::outcome(&self.moment(), self.own_rejected())
     }
 
     fn summary(&self) -> String {
-        texts::summary(&self.moment(), self.own_refused())
+        texts::summary(&self.moment(), self.own_rejected())
     }
 
     fn timeline(&self) -> Option<Timeline> {

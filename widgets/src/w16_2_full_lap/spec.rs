@@ -426,7 +426,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         },
         Preset {
             id: "rejected",
-            label: "Seed 6: a loop is refused",
+            label: "Seed 6: a loop is rejected",
             help: "The χ² is below the gate, but the sweep fits the old walls badly; four keyframes later a better match passes.",
             set: &[SEED.to(6), TICK.to(90.0)],
             then: &[],
@@ -448,21 +448,21 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "tight-gate",
             label: "A tight gate on a noisy lap",
-            help: "At the 0.90 quantile the gate refuses a loop that the chapter's gate accepts.",
+            help: "At the 0.90 quantile the gate rejects a loop that the chapter's gate accepts.",
             set: &[NOISE.to(4.0), GATE.to(0.90), TICK.to(116.0)],
             then: &[],
         },
         Preset {
             id: "locked-out",
             label: "Right loops, locked out",
-            help: "Seed 2 at three times the noise drifts more than the gate allows for: it refuses three right loops, and the drift goes on.",
+            help: "Seed 2 at three times the noise drifts more than the gate allows for: it rejects three right loops, and the drift goes on.",
             set: &[SEED.to(2), NOISE.to(3.0), TICK.to(LAP_TICKS)],
             then: &[],
         },
         Preset {
             id: "let-in",
             label: "The same lap, exact gate",
-            help: "The chapter's gate refuses the first loop for its heading alone. The edges are less sure of the heading: the exact gate lets all three loops in, and the lap ends more than a metre closer.",
+            help: "The chapter's gate rejects the first loop for its heading alone. The edges are less sure of the heading: the exact gate lets all three loops in, and the lap ends more than a metre closer.",
             set: &[
                 SEED.to(2),
                 NOISE.to(3.0),
@@ -501,8 +501,8 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         },
         Preset {
             id: "true-loop",
-            label: "A true loop that the gate refuses",
-            help: "From keyframe 25, on the way back, to the start, as it truly is: the typical error over the keyframes falls from 0.59 m to 0.14 m. The gate refuses it, at χ² 13.0: drift does not explain it.",
+            label: "A true loop that the gate rejects",
+            help: "From keyframe 25, on the way back, to the start, as it truly is: the typical error over the keyframes falls from 0.59 m to 0.14 m. The gate rejects it, at χ² 13.0: drift does not explain it.",
             set: &[
                 OWN.to("truth"),
                 OWN_FROM.to(25),

@@ -101,7 +101,7 @@ impl CostTerraces {
     /// Sets a parameter of the widget to a valid value.
     fn put(&mut self, id: &'static str, value: f64) {
         if let Err(error) = self.values.set(SPEC.id, id, value) {
-            unreachable!("the widget's own value was refused: {error}");
+            unreachable!("the widget's own value was rejected: {error}");
         }
     }
 

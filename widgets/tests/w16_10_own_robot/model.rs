@@ -201,7 +201,7 @@ fn a_contradicting_loop_is_reported_and_shown_first() {
             .value
     };
     assert_eq!(
-        (fact("loops"), fact("loops_refused"), fact("loops_doubted")),
+        (fact("loops"), fact("loops_rejected"), fact("loops_doubted")),
         (1.0, 1.0, 1.0)
     );
     assert_eq!(

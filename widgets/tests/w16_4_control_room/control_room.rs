@@ -218,8 +218,8 @@ fn the_transport_steps_resets_and_restores() {
         widget.set("t", 87.0).unwrap();
     }
     assert_eq!(room.outcome(), fresh.outcome());
-    let refused = room.press("plya").unwrap_err().to_string();
-    assert!(refused.contains("next-event"), "{refused}");
+    let rejected = room.press("plya").unwrap_err().to_string();
+    assert!(rejected.contains("next-event"), "{rejected}");
 }
 
 #[test]
@@ -254,7 +254,7 @@ fn lane_marks(room: &ControlRoom) -> [Vec<[f64; 2]>; 2] {
 fn every_lane_has_a_mark_for_each_execution_up_to_the_current_tick() {
     let mut room = ControlRoom::default();
     set(&mut room, "t", 92.0);
-    let [passed, refused] = lane_marks(&room);
+    let [passed, rejected] = lane_marks(&room);
     let lane = |height: f64| passed.iter().filter(|mark| mark[1] == height).count();
     // Predict and register at every tick; candidate, fit, gate, optimize and repaint at the first loop, in
     // tick 92.
@@ -267,13 +267,13 @@ fn every_lane_has_a_mark_for_each_execution_up_to_the_current_tick() {
     for height in [5.0, 4.0, 3.0, 2.0, 1.0] {
         assert_eq!(lane(height), 1, "lane {height}");
     }
-    assert!(refused.is_empty());
+    assert!(rejected.is_empty());
     // Seed 6: at tick 90 a candidate passes the gate and fails the fit.
     set(&mut room, "seed", 6.0);
     set(&mut room, "t", 90.0);
-    let [passed, refused] = lane_marks(&room);
+    let [passed, rejected] = lane_marks(&room);
     assert!(passed.contains(&[90.0, 3.0]));
-    assert!(refused.contains(&[90.0, 4.0]));
+    assert!(rejected.contains(&[90.0, 4.0]));
 }
 
 #[test]

@@ -213,7 +213,7 @@ impl Site<'_> {
         let innovation = belief.between(&claimed).log();
         let assumed = gate_information.unwrap_or_default();
         let gate = chi_squared_gate(&innovation, &assumed, config.gate_chi2);
-        let refused = (!gate.passes()).then_some(LoopRejection::OutsideGate(gate));
+        let rejected = (!gate.passes()).then_some(LoopRejection::OutsideGate(gate));
         let (place, turn) = (ASSERTED_SIGMA_M, ASSERTED_SIGMA_RAD);
         let sigmas = Vector3::new(place, place, turn);
         LoopVerification {
@@ -235,7 +235,7 @@ impl Site<'_> {
             rejection: gate_information
                 .err()
                 .map(LoopRejection::NoCovariance)
-                .or(refused),
+                .or(rejected),
         }
     }
 

@@ -61,7 +61,7 @@ impl Lattice {
         grid: &LikelihoodGrid,
     ) -> Result<Self, SearchError> {
         let cell_m = grid.config().cell_m;
-        let refused = SearchError::Window {
+        let rejected = SearchError::Window {
             half_x_m: window.half_x_m,
             half_y_m: window.half_y_m,
             half_turn_rad: window.half_turn_rad,
@@ -71,7 +71,7 @@ impl Lattice {
             || window.half_turn_rad.is_nan()
             || window.half_turn_rad < 0.0
         {
-            return Err(refused);
+            return Err(rejected);
         }
         let cells = |half_m: f64| {
             let cells = (half_m / cell_m - 1e-9).ceil().max(0.0);
@@ -79,7 +79,7 @@ impl Lattice {
             if is_searchable {
                 Ok(cells as i32)
             } else {
-                Err(refused)
+                Err(rejected)
             }
         };
         let (half_columns, half_rows) = (cells(window.half_x_m)?, cells(window.half_y_m)?);
@@ -91,7 +91,7 @@ impl Lattice {
         } else {
             let half = (window.half_turn_rad / step_rad - 1e-9).ceil().max(0.0);
             if 2.0 * half + 1.0 > MAX_HEADINGS {
-                return Err(refused);
+                return Err(rejected);
             }
             (2 * half as i32 + 1, half as i32, step_rad)
         };

@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_beyond_the_limit_are_refused_and_known_ones_stay() {
+    fn cells_beyond_the_limit_are_rejected_and_known_ones_stay() {
         let mut grid = FieldTiles::new(0.1, 0.0, 3 * CELLS);
         for k in 0..3 {
             *grid.get_mut((100 * k, 0)).unwrap() = 1.0;

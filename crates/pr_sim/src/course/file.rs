@@ -37,7 +37,7 @@ impl Course {
     /// If the text is not JSON or does not describe a course that can be driven.
     pub fn from_json(text: &[u8]) -> Result<Self, CourseError> {
         let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
-        let file: CourseFile = serde_json::from_slice(text).map_err(|error| refusal(&error))?;
+        let file: CourseFile = serde_json::from_slice(text).map_err(|error| rejection(&error))?;
         let turn = match file.turn_at {
             Some(0) => {
                 return Err(CourseError::NoSuchTurn {
@@ -87,7 +87,7 @@ pub(crate) fn extent(walls: &[Wall]) -> WorldRect {
     }
 }
 
-fn refusal(error: &serde_json::Error) -> CourseError {
+fn rejection(error: &serde_json::Error) -> CourseError {
     let (line, column) = (error.line(), error.column());
     let words = error.to_string();
     let place = format!(" at line {line} column {column}");

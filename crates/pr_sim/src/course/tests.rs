@@ -240,7 +240,7 @@ fn what_is_wrong_is_one_sentence_that_says_what_where_and_what_to_do() {
 }
 
 #[test]
-fn what_is_too_much_is_refused_with_its_limit() {
+fn what_is_too_much_is_rejected_with_its_limit() {
     let (course, way) = (Course::ring(), Course::ring().way_points().to_vec());
     let with = |walls: Vec<Wall>, way_points| {
         let world = World::new(course.world().bounds(), walls);
@@ -266,7 +266,7 @@ fn what_is_too_much_is_refused_with_its_limit() {
 }
 
 #[test]
-fn numbers_that_are_not_finite_are_refused() {
+fn numbers_that_are_not_finite_are_rejected() {
     let course = Course::apartment();
     let with = |start, way_points| Course::new(course.world().clone(), start, way_points, None);
     let way = course.way_points().to_vec();

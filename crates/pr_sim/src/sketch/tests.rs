@@ -45,7 +45,7 @@ fn the_apartment_takes_a_tenth_of_what_a_link_may() {
 }
 
 #[test]
-fn a_text_that_lost_or_changed_a_character_is_refused() {
+fn a_text_that_lost_or_changed_a_character_is_rejected() {
     let text = Sketch::from_course(&Course::twin_rooms()).to_text();
     for at in 0..text.len() {
         let (before, after) = (&text[..at], &text[at + 1..]);
@@ -63,12 +63,12 @@ fn a_text_that_lost_or_changed_a_character_is_refused() {
 }
 
 #[test]
-fn huge_counts_far_places_and_newer_versions_are_refused_by_name() {
-    let refusal = |numbers: &[i32]| Sketch::from_text(&text::written(numbers)).unwrap_err();
-    assert_eq!(refusal(&[2, 0]), SketchError::Newer);
-    assert_eq!(refusal(&[1, 0, 0, 0, 0, 51]), SketchError::TooLarge);
-    assert_eq!(refusal(&[1, 0, 0, 0, 0, 0, 2001]), SketchError::TooLarge);
-    assert_eq!(refusal(&[1, 0, 0, 10_001, 0]), SketchError::TooLarge);
+fn huge_counts_far_places_and_newer_versions_are_rejected_by_name() {
+    let rejection = |numbers: &[i32]| Sketch::from_text(&text::written(numbers)).unwrap_err();
+    assert_eq!(rejection(&[2, 0]), SketchError::Newer);
+    assert_eq!(rejection(&[1, 0, 0, 0, 0, 51]), SketchError::TooLarge);
+    assert_eq!(rejection(&[1, 0, 0, 0, 0, 0, 2001]), SketchError::TooLarge);
+    assert_eq!(rejection(&[1, 0, 0, 10_001, 0]), SketchError::TooLarge);
     for (numbers, what) in [
         (&[1, 0, 360, 0, 0, 0, 0][..], "a heading beyond a turn"),
         (&[1, 1, 0, 0, 0, 0, 0], "a turn at no way point"),
@@ -77,7 +77,7 @@ fn huge_counts_far_places_and_newer_versions_are_refused_by_name() {
         (&[1, 0, 0, 0, 0, -1], "fewer than none"),
         (&[1, 0, 0, 0, 0, 0, i32::MAX - 1], "more than memory holds"),
     ] {
-        let error = refusal(numbers);
+        let error = rejection(numbers);
         assert_ne!(error, SketchError::Newer, "{what}");
         assert!(!error.to_string().contains('\n'), "{what}");
     }

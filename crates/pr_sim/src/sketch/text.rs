@@ -75,7 +75,7 @@ impl Sketch {
         let is_whole = (0..360).contains(&heading_deg)
             && turn.is_none_or(|turn| turn < sketch.way_points_cm.len())
             && sketch.walls_cm.iter().all(|[from, to]| from != to);
-        // Leading zeros are refused, because every number has one spelling.
+        // Leading zeros are rejected, because every number has one spelling.
         if !is_whole || sketch.to_text() != text {
             return Err(SketchError::Damaged);
         }

@@ -214,7 +214,7 @@ fn a_truncated_last_line_is_no_broken_line() {
 }
 
 #[test]
-fn what_holds_no_scan_is_refused_in_one_sentence() {
+fn what_holds_no_scan_is_rejected_in_one_sentence() {
     for (text, expected) in [
         ("", "x.clf is empty; give a recorded log"),
         (

@@ -23,7 +23,7 @@ pub enum Alignment {
     /// Least-squares rigid motion in the plane (Umeyama 1991).
     ///
     /// evo aligns in 3-D. It flips the plane if the mirror image fits better, which happens with few poses or a nearly
-    /// straight path, and it refuses collinear poses. This planar alignment does neither.
+    /// straight path, and it rejects collinear poses. This planar alignment does neither.
     Se2,
 }
 
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn stamps_that_lie_apart_are_refused() {
+    fn stamps_that_lie_apart_are_rejected() {
         let truth = arc(10, SE2::identity());
         let late = Trajectory::new(
             truth

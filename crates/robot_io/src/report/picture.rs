@@ -27,8 +27,8 @@ pub fn map(quality: &Quality, map: Option<&MapImage>) -> String {
         let [x, y, _] = quality.keyframes.get(keyframe)?.pose;
         Some((x, y))
     };
-    let refused = quality.tried.iter().filter(|tried| !tried.accepted);
-    for tried in refused.chain(&quality.links) {
+    let rejected = quality.tried.iter().filter(|tried| !tried.accepted);
+    for tried in rejected.chain(&quality.links) {
         let (Some((ax, ay)), Some((bx, by))) = (position(tried.from), position(tried.to)) else {
             continue;
         };

@@ -250,19 +250,19 @@ fn a_truncated_recording_yields_its_frames_and_reports_its_end() {
 #[test]
 fn a_wrong_byte_never_panics() {
     for (name, bytes) in FIXTURES {
-        let mut refused = 0;
+        let mut rejected = 0;
         for spot in (0..bytes.len()).step_by(bytes.len() / 150) {
             let mut wrong = bytes.to_vec();
             wrong[spot] ^= 0x5a;
             match read(&wrong, name) {
-                Ok((_, notes)) => refused += notes.broken,
+                Ok((_, notes)) => rejected += notes.broken,
                 Err(error) => {
-                    refused += 1;
+                    rejected += 1;
                     let text = error.to_string();
                     assert!(text.starts_with(name) && !text.contains('\n'), "{text}");
                 }
             }
         }
-        assert!(refused > 0, "{name}");
+        assert!(rejected > 0, "{name}");
     }
 }

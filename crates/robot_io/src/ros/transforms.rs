@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn a_laser_that_looks_at_the_floor_is_refused() {
+    fn a_laser_that_looks_at_the_floor_is_rejected() {
         let forward = UnitQuaternion::from_euler_angles(0.0, PI / 4.0, 0.0);
         let leaning = Isometry3::from_parts(Translation3::identity(), forward);
         assert!(planar_mount(&leaning).unwrap_err().contains("tilted"));

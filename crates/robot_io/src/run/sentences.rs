@@ -46,8 +46,8 @@ impl LogRun {
                  session's scanner"
             )
         });
-        let refused = self
-            .refused
+        let rejected = self
+            .rejected
             .map(|problem| format!("{name}: scans were skipped; the first because {problem}"));
         let late = late_scans(name, self.late);
         let still = self.still_odometry(name);
@@ -65,7 +65,7 @@ impl LogRun {
             Some(robot) => robot_sentence(name, robot, piece),
             None => piece_sentence(name, piece, self.session_scans),
         });
-        [other, late, blind, still, lengths, refused]
+        [other, late, blind, still, lengths, rejected]
             .into_iter()
             .flatten()
             .chain(pieces)
@@ -79,8 +79,8 @@ impl LogRun {
             return (!self.has_seen()).then(|| NOTHING_SEEN.to_owned());
         }
         let is_blind = self.blind > 0;
-        let refused = self.refused.map(|problem| problem.to_string());
-        refused.or_else(|| is_blind.then(|| NOTHING_SEEN.to_owned()))
+        let rejected = self.rejected.map(|problem| problem.to_string());
+        rejected.or_else(|| is_blind.then(|| NOTHING_SEEN.to_owned()))
     }
 
     /// A remark if the path on the map and that of the odometry have different lengths.

@@ -214,7 +214,7 @@ fn scans_of_another_make_keep_their_normals_and_crowded_ones_are_thinned() {
 }
 
 #[test]
-fn a_session_with_other_parameters_is_refused_by_their_name() {
+fn a_session_with_other_parameters_is_rejected_by_their_name() {
     let bytes = saved(&run(120, 0..20));
     for (from, to, expected) in [
         (
@@ -306,29 +306,29 @@ fn a_map_may_have_lost_every_loop_that_was_driven() {
 #[test]
 fn impossible_states_are_rejected() {
     let good = run(40, 0..12).session().unwrap();
-    let refused = |change: &dyn Fn(&mut Session), expected: &str| {
+    let rejected = |change: &dyn Fn(&mut Session), expected: &str| {
         let mut session = good.clone();
         change(&mut session);
         let error = Session::from_bytes(&session.to_bytes(), "x").unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
     };
     let far = SE2::new(1e60, 0.0, 0.0);
-    refused(&|x| x.snapshot.nodes[0].pose = far, "within ±1e50");
-    refused(
+    rejected(&|x| x.snapshot.nodes[0].pose = far, "within ±1e50");
+    rejected(
         &|x| x.snapshot.edges[0].edge.information *= 1e60,
         "within ±1e50",
     );
-    refused(
+    rejected(
         &|x| x.snapshot.last_stamp_s = 0.0,
         "keyframes are not in order",
     );
-    refused(&|x| x.snapshot.keyframes[1].stamp_s = 0.0, "not in order");
+    rejected(&|x| x.snapshot.keyframes[1].stamp_s = 0.0, "not in order");
     let last_s = good.snapshot.last_stamp_s;
-    refused(
+    rejected(
         &|x| x.scan_poses.last_mut().unwrap().stamp_s = last_s + 1.0,
         "poses of scans are not in order",
     );
-    refused(
+    rejected(
         &|x| x.scan_poses[0].keyframe = 1,
         "poses of scans are not in order",
     );

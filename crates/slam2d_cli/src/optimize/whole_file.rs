@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_is_refused() {
+    fn a_folder_is_rejected() {
         let folder = tempfile::tempdir().unwrap();
         assert!(write_whole(folder.path(), b"solved").is_err());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);

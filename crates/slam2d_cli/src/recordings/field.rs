@@ -1,4 +1,4 @@
-//! Recordings that people have: each is mapped and compared with its truth, or refused in a sentence.
+//! Recordings that people have: each is mapped and compared with its truth, or rejected in a sentence.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -117,7 +117,7 @@ fn outcome(log: &Path, run: LogRun, topics: &TopicArgs) -> [String; 3] {
                 let size = format!("{} poses, {} edges", graph.nodes.len(), graph.edges.len());
                 [size, "–".to_owned(), String::new()]
             }
-            Err(problem) => ["refused".to_owned(), "–".to_owned(), problem.to_string()],
+            Err(problem) => ["rejected".to_owned(), "–".to_owned(), problem.to_string()],
         };
     }
     match mapped(log, run, topics) {
@@ -125,7 +125,7 @@ fn outcome(log: &Path, run: LogRun, topics: &TopicArgs) -> [String; 3] {
             let error = error_m(&run, log).map_or("–".to_owned(), |m| format!("{m:.3}"));
             [format!("{} scans", run.scans()), error, said.join("\n")]
         }
-        Err(problem) => ["refused".to_owned(), "–".to_owned(), problem.to_string()],
+        Err(problem) => ["rejected".to_owned(), "–".to_owned(), problem.to_string()],
     }
 }
 

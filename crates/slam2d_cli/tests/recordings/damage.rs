@@ -98,11 +98,11 @@ fn a_cloud_of_several_rings_is_cut_by_heights() {
         }
     }
     let bytes = mcap(&all, PER_CHUNK);
-    let refused = read(&bytes, &LogOptions::default());
+    let rejected = read(&bytes, &LogOptions::default());
     assert!(
-        refused.path.is_empty() && refused.notes.contains("--heights LOW,HIGH"),
+        rejected.path.is_empty() && rejected.notes.contains("--heights LOW,HIGH"),
         "{}",
-        refused.notes
+        rejected.notes
     );
     let options = LogOptions {
         heights_m: Some((0.0, 0.3)),

@@ -192,7 +192,7 @@ fn a_log_whose_stamps_have_six_digits_keeps_its_scans() {
 }
 
 #[test]
-fn the_other_files_of_the_field_are_read_or_refused_by_name() {
+fn the_other_files_of_the_field_are_read_or_rejected_by_name() {
     if truth().is_none() {
         return skip(
             "graphs, trajectories and a map without returns",

@@ -32,13 +32,13 @@ pub struct Outcome {
 /// Maps a recording as `slam2d run` does.
 pub fn mapped(parts: Vec<LogBytes<'_>>, name: &str, options: &LogOptions) -> Outcome {
     let mut run = LogRun::default();
-    let refused = |notes: String| Outcome {
+    let rejected = |notes: String| Outcome {
         path: Vec::new(),
         notes,
     };
     let reader = match LogFormat::open_parts(parts, name, options) {
         Ok(reader) => reader,
-        Err(problem) => return refused(problem.to_string()),
+        Err(problem) => return rejected(problem.to_string()),
     };
     let mut reader = ComparedReader::new(reader, options.laser.is_some());
     loop {
@@ -47,7 +47,7 @@ pub fn mapped(parts: Vec<LogBytes<'_>>, name: &str, options: &LogOptions) -> Out
                 run.step(frame);
             }
             Ok(None) => break,
-            Err(problem) => return refused(problem.to_string()),
+            Err(problem) => return rejected(problem.to_string()),
         }
     }
     run.finish();

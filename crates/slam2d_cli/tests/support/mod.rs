@@ -22,7 +22,7 @@ pub fn json(arguments: &[&str]) -> Value {
 
 /// Asserts exit code 2, empty standard output, and one line on standard error that contains `expected`.
 #[track_caller]
-pub fn assert_refused(arguments: &[&str], expected: &str) {
+pub fn assert_rejected(arguments: &[&str], expected: &str) {
     let output = slam2d(arguments);
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     assert!(output.stdout.is_empty(), "{arguments:?}");

@@ -1,6 +1,6 @@
 //! Drifts drawn edge by edge over the gate that assumes their sum.
 
-use ch16_lab::drift::{out_and_back, refused_share, straight};
+use ch16_lab::drift::{out_and_back, rejected_share, straight};
 use ch16_lab::lap::LapConfig;
 
 /// Draws of a path: the standard deviation of a share is 0.2 %.
@@ -9,8 +9,8 @@ const SEED: u32 = 1;
 /// Edges of the longer path in the text.
 pub const LONGER_EDGES: usize = 35;
 
-/// `straight.22`, `back.22`, `still.22`: right closures that the gate refuses, by path and number of edges, %.
-pub fn refused_percent(path: &str, edges: &str) -> Option<f64> {
+/// `straight.22`, `back.22`, `still.22`: right closures that the gate rejects, by path and number of edges, %.
+pub fn rejected_percent(path: &str, edges: &str) -> Option<f64> {
     let config = LapConfig::default();
     let (edges, step_m) = (edges.parse().ok()?, config.slam.keyframe_distance_m);
     let path = match path {
@@ -19,6 +19,6 @@ pub fn refused_percent(path: &str, edges: &str) -> Option<f64> {
         "back" => out_and_back(edges, step_m),
         _ => return None,
     };
-    let share = refused_share(&path, &config.slam.chapter.loops, DRAWS, SEED);
+    let share = rejected_share(&path, &config.slam.chapter.loops, DRAWS, SEED);
     Some(100.0 * share)
 }

@@ -117,7 +117,7 @@ pub fn gate(what: &str) -> Option<f64> {
             let gate = LapConfig::default().slam.chapter.loops.gate_chi2;
             Some(100.0 * cdf3(gate))
         }
-        "refused_share" => Some(1.0 - cdf3(LapConfig::default().slam.chapter.loops.gate_chi2)),
+        "rejected_share" => Some(1.0 - cdf3(LapConfig::default().slam.chapter.loops.gate_chi2)),
         "tight_chi2" => Some(gate_threshold(0.9)),
         _ => None,
     }

@@ -119,7 +119,7 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
             .any(|link| !link.decision.is_in_graph())
     {
         legend.push(LegendEntry::line(
-            "refused",
+            "rejected",
             Tone::Series(2),
             Stroke::Dotted,
         ));

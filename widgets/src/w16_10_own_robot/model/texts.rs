@@ -259,7 +259,7 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
         Fact::new("path_length_m", "path", path_length_m(robot), "m", 1),
         Fact::count("loops", "loops in the graph", in_graph(robot) as f64),
         Fact::count(
-            "loops_refused",
+            "loops_rejected",
             "loops not in the graph",
             count(&|link| !link.decision.is_in_graph()),
         ),

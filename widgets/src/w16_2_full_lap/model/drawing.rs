@@ -62,7 +62,7 @@ impl FullLap {
         let sketch = if text.is_empty() {
             Sketch::from_course(&Course::apartment())
         } else {
-            Sketch::from_text(text).map_err(|error| ParamError::Refused {
+            Sketch::from_text(text).map_err(|error| ParamError::Rejected {
                 id: param.id,
                 problem: error.to_string(),
             })?
@@ -110,7 +110,7 @@ impl FullLap {
     }
 
     /// Reports why an edit was rejected.
-    fn refuse(&mut self, why: impl Into<String>) {
+    fn reject(&mut self, why: impl Into<String>) {
         self.floor_plan.note = Some(why.into());
     }
 
@@ -178,18 +178,18 @@ impl FullLap {
 
     fn nudge(&mut self, by: [i32; 2]) {
         let Some(piece) = self.piece() else {
-            self.refuse("nothing is selected: select a wall, an end or a way point first");
+            self.reject("nothing is selected: select a wall, an end or a way point first");
             return;
         };
         match piece.nudged(&self.floor_plan.sketch, by) {
             Some(sketch) => self.draw(sketch),
-            None => self.refuse("a wall needs two different ends"),
+            None => self.reject("a wall needs two different ends"),
         }
     }
 
     fn remove_piece(&mut self) {
         let Some(piece) = self.piece() else {
-            self.refuse("nothing is selected: select a wall or a way point first");
+            self.reject("nothing is selected: select a wall or a way point first");
             return;
         };
         match piece.removed(&self.floor_plan.sketch) {
@@ -205,7 +205,7 @@ impl FullLap {
                     ));
                 }
             }
-            Err(why) => self.refuse(why),
+            Err(why) => self.reject(why),
         }
     }
 
@@ -215,14 +215,14 @@ impl FullLap {
                 self.draw(sketch);
                 self.choose(Some(piece));
             }
-            Err(why) => self.refuse(why),
+            Err(why) => self.reject(why),
         }
     }
 
     /// Revisits start from the selected way point; if they do already, the mark is removed.
     fn mark_revisit_start(&mut self) {
         let Some(index) = self.chosen_way_point() else {
-            self.refuse(
+            self.reject(
                 "no way point is selected: select the one from which on known locations are seen again",
             );
             return;
@@ -234,7 +234,7 @@ impl FullLap {
 
     fn restore(&mut self, kept: Option<Kept>, otherwise: &str) {
         let Some(Kept { world, sketch }) = kept else {
-            self.refuse(otherwise);
+            self.reject(otherwise);
             return;
         };
         self.floor_plan.follows = true;
@@ -251,7 +251,7 @@ impl FullLap {
     pub(super) fn open_flat(&mut self, name: &str, text: &[u8]) {
         match Sketch::from_json(text) {
             Ok(sketch) => self.draw(sketch),
-            Err(error) => self.refuse(format!("{} cannot be driven: {error}", printable(name))),
+            Err(error) => self.reject(format!("{} cannot be driven: {error}", printable(name))),
         }
     }
 
@@ -312,7 +312,7 @@ impl FullLap {
                 let mut sketch = before.clone();
                 let added = (from != to).then(|| add_wall(&mut sketch, [from, to]));
                 match added {
-                    Some(Err(why)) => return self.end_refused(&why),
+                    Some(Err(why)) => return self.end_rejected(&why),
                     Some(Ok(index)) => Some((sketch, PlanElement::Wall(index))),
                     None => None,
                 }
@@ -321,7 +321,7 @@ impl FullLap {
                 let mut sketch = before.clone();
                 let behind = self.chosen_before_stroke();
                 match add_way_point(&mut sketch, behind, snapped(at)) {
-                    Err(why) => return self.end_refused(&why),
+                    Err(why) => return self.end_rejected(&why),
                     Ok(index) => Some((sketch, PlanElement::WayPoint(index))),
                 }
             }
@@ -360,8 +360,8 @@ impl FullLap {
         }
     }
 
-    fn end_refused(&mut self, why: &str) -> bool {
-        self.refuse(why);
+    fn end_rejected(&mut self, why: &str) -> bool {
+        self.reject(why);
         true
     }
 
@@ -393,7 +393,7 @@ impl FullLap {
                 self.remove_piece();
             }
             Tool::Wall if self.floor_plan.note.is_none() => {
-                self.refuse("drag from one end of the wall to the other");
+                self.reject("drag from one end of the wall to the other");
             }
             Tool::Wall | Tool::Way => {}
         }

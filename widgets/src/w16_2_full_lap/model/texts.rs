@@ -49,15 +49,15 @@ pub fn standing(judgement: LoopJudgement) -> Assessment {
 }
 
 /// The result at a tick: of the selected part, else of the custom loop, else of the loop tried in the tick,
-/// else of the estimates. `refused` is the reason why the custom loop is impossible.
-pub fn outcome(moment: &LapState, refused: Option<&OwnLoopError>) -> Outcome {
+/// else of the estimates. `rejected` is the reason why the custom loop is impossible.
+pub fn outcome(moment: &LapState, rejected: Option<&OwnLoopError>) -> Outcome {
     let Statement {
         standing,
         verdict,
         sentence,
     } = match &moment.drawn {
-        Some(drawn) => floor_plan::statement(drawn, statement(moment, refused)),
-        None => statement(moment, refused),
+        Some(drawn) => floor_plan::statement(drawn, statement(moment, rejected)),
+        None => statement(moment, rejected),
     };
     let (runs, tick) = (moment.runs, moment.tick);
     let sentence = match runs.driver {
@@ -75,7 +75,7 @@ pub fn outcome(moment: &LapState, refused: Option<&OwnLoopError>) -> Outcome {
     }
 }
 
-fn statement(moment: &LapState, refused: Option<&OwnLoopError>) -> Statement {
+fn statement(moment: &LapState, rejected: Option<&OwnLoopError>) -> Statement {
     let (runs, tick) = (moment.runs, moment.tick);
     let neutral = |verdict: &str, sentence| Statement {
         standing: Assessment::Neutral,
@@ -88,8 +88,8 @@ fn statement(moment: &LapState, refused: Option<&OwnLoopError>) -> Statement {
     if let Some(own) = moment.own {
         return parts::own_statement(moment, own);
     }
-    if let Some(refused) = refused {
-        return neutral("no loop of your own", refused.to_string());
+    if let Some(rejected) = rejected {
+        return neutral("no loop of your own", rejected.to_string());
     }
     let lap = runs.graph.lap();
     match moment.attempt {
@@ -254,7 +254,7 @@ fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
 }
 
 /// The text alternative of the picture.
-pub fn summary(moment: &LapState, refused: Option<&OwnLoopError>) -> String {
+pub fn summary(moment: &LapState, rejected: Option<&OwnLoopError>) -> String {
     let (runs, tick) = (moment.runs, moment.tick);
     let truth = runs.truth(tick);
     let way = if runs.is_way_back(tick) {
@@ -273,8 +273,8 @@ pub fn summary(moment: &LapState, refused: Option<&OwnLoopError>) -> String {
     let mut rest = String::new();
     if let Some(own) = moment.own {
         rest += &format!(" Then {}.", parts::own_statement(moment, own).sentence);
-    } else if let Some(refused) = refused {
-        rest += &format!(" Your own loop: {refused}.");
+    } else if let Some(rejected) = rejected {
+        rest += &format!(" Your own loop: {rejected}.");
     }
     if moment.has_moved() {
         rest += &format!(

@@ -49,7 +49,7 @@ pub enum ParamError {
     },
     /// A text with valid characters and invalid content.
     #[error("`{id}` is invalid: {problem}")]
-    Refused {
+    Rejected {
         /// Parameter.
         id: &'static str,
         /// What is wrong, and how to fix it.

@@ -45,10 +45,10 @@ fn the_gate_rejects_a_wrong_loop_and_can_be_bypassed() {
         gate: GateUse::Asked,
         ..WRONG
     };
-    let refused = record.own_loop(&asked).unwrap();
-    let rejection = refused.attempt.verification.rejection;
+    let rejected = record.own_loop(&asked).unwrap();
+    let rejection = rejected.attempt.verification.rejection;
     assert!(matches!(rejection, Some(LoopRejection::OutsideGate(_))));
-    assert_eq!(refused.poses, record.lap.poses(129));
+    assert_eq!(rejected.poses, record.lap.poses(129));
     let forced = record.own_loop(&WRONG).unwrap();
     assert_eq!(
         record.lap.judge(&forced.attempt),
@@ -133,15 +133,15 @@ fn a_true_loop_to_the_far_end_mends_the_corridor_that_no_gate_lets_be_mended() {
 fn a_registered_loop_of_the_lap_is_found_again_as_the_lap_found_it() {
     // A rejected loop leaves the graph as it was.
     let noisy = LapRunner::new().run(&LapConfig::with_seed_and_noise(2, 3.0));
-    let refused = noisy
+    let rejected = noisy
         .lap
         .loop_attempts()
         .find(|attempt| !attempt.accepted());
-    let refused = refused.expect("this lap is locked out");
-    let loop_ = &refused.verification;
+    let rejected = rejected.expect("this lap is locked out");
+    let loop_ = &rejected.verification;
     let own = noisy
         .own_loop(&OwnLoopRequest {
-            tick: refused.tick,
+            tick: rejected.tick,
             nodes: [loop_.from_node, loop_.candidate.node],
             ..REQUEST
         })
@@ -152,7 +152,7 @@ fn a_registered_loop_of_the_lap_is_found_again_as_the_lap_found_it() {
 }
 
 #[test]
-fn ends_that_cannot_be_are_refused_in_a_sentence() {
+fn ends_that_cannot_be_are_rejected_in_a_sentence() {
     let record = record();
     for (nodes, tick, words) in [
         (

@@ -21,7 +21,7 @@ impl LoopStyle {
         mark: Mark::Dot,
     };
     /// Hollow and in a colour of no meaning.
-    pub const REFUSED: Self = Self {
+    pub const REJECTED: Self = Self {
         stroke: Stroke::Dotted,
         tone: Tone::Series(3),
         mark: Mark::Circle,
@@ -32,7 +32,7 @@ impl LoopStyle {
         if attempt.accepted() {
             Self::ACCEPTED
         } else {
-            Self::REFUSED
+            Self::REJECTED
         }
     }
 

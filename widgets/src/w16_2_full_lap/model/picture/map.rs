@@ -252,7 +252,7 @@ fn legend(moment: &LapState) -> Vec<LegendEntry> {
         legend.push(LegendEntry::line(label, parts::STRAINED, Stroke::Solid));
     }
     if moment.loops_tried().any(|attempt| !attempt.accepted()) || moment.own.is_some() {
-        legend.push(LoopStyle::REFUSED.entry("loop refused"));
+        legend.push(LoopStyle::REJECTED.entry("loop rejected"));
     }
     legend.extend([
         LegendEntry::marked_line("pose graph", Tone::Posterior, Mark::Square, Stroke::Solid),

@@ -120,7 +120,7 @@ pub fn gate(moment: &LapState) -> Panel {
             1.5,
         ),
         look(&LoopStyle::ACCEPTED, of(true)),
-        look(&LoopStyle::REFUSED, of(false)),
+        look(&LoopStyle::REJECTED, of(false)),
     ];
     layers.extend(labels(attempts, y.max));
     with_room_at_the_end(Panel {
@@ -137,7 +137,11 @@ pub fn gate(moment: &LapState) -> Panel {
                 LoopStyle::ACCEPTED.tone,
                 LoopStyle::ACCEPTED.mark,
             ),
-            LegendEntry::mark("refused", LoopStyle::REFUSED.tone, LoopStyle::REFUSED.mark),
+            LegendEntry::mark(
+                "rejected",
+                LoopStyle::REJECTED.tone,
+                LoopStyle::REJECTED.mark,
+            ),
             LegendEntry::line(&format!("gate {gate:.3}"), Tone::Ink, Stroke::Dotted),
         ],
         color_bar: None,

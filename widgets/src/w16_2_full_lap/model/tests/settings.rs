@@ -377,7 +377,7 @@ fn a_link_gives_the_lap_that_the_widget_drives() {
 
 #[test]
 fn the_lit_line_is_the_last_that_ran() {
-    // A tick between keyframes, one with a keyframe, and those of a loop refused and accepted.
+    // A tick between keyframes, one with a keyframe, and those of a loop rejected and accepted.
     let line = |seed: f64, tick: f64| fact(&at(&[("seed", seed), ("t", tick)]), "line");
     assert_eq!(line(6.0, 0.0), 0.0);
     assert_eq!(line(6.0, 90.0), 4.0);

@@ -264,7 +264,7 @@ pub fn lanes(
     );
     Panel {
         id: ID,
-        title: "Who does what when: dots are done, rings refused".to_owned(),
+        title: "Who does what when: dots are done, rings rejected".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Free,
         // The rings at the first and the last one are whole.
