@@ -97,7 +97,7 @@ mod tests {
             assert!(is_near(&tick["estimate"][1], report.estimate.y()));
         }
         let loops = lap["loops"].as_array().unwrap();
-        assert_eq!(loops.len(), record.lap.summary.loops);
+        assert_eq!(loops.len(), record.lap.graph_summary.loops);
         assert_eq!(loops.len() + 1, lap["epochs"].as_array().unwrap().len());
         assert!(is_near(&loops[0]["shift"], 0.2389));
     }

@@ -5,10 +5,10 @@
 use ch16_slam2d::metrics::{DisagreementConfig, MapDisagreement, position_error_m, rms};
 use ch16_slam2d::slam::SlamConfig;
 use incremental_mapping::{CycleTest, CycleVerdict, IncrementalConfig, IncrementalMapper};
-use pr_geom::{SE2, math};
+use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 
-use crate::lap::{Drive, IncrementalKind, LAST_KEYFRAMES, LapConfig, PathErrors, RecordedKeyframe};
+use crate::lap::{Drive, IncrementalKind, LapConfig, LapSummary, PathErrors, RecordedKeyframe};
 
 impl IncrementalKind {
     /// Creates the mapper with the lengths and the noise of a lap's estimator; the particles' seed is the
@@ -28,36 +28,13 @@ impl IncrementalKind {
     }
 }
 
-/// The rows of the results table for an incremental method.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct IncrementalSummary {
-    /// Ticks of the lap.
-    pub ticks: usize,
-    /// Keyframes.
-    pub keyframes: usize,
-    /// Cycles that were closed.
-    pub cycles: usize,
-    /// Position error of dead reckoning at the end, m.
-    pub odometry_end_error_m: f64,
-    /// Root mean square position error of dead reckoning over the ticks, m.
-    pub odometry_rms_m: f64,
-    /// Position error of the last keyframe, m.
-    pub keyframe_end_error_m: f64,
-    /// Root mean square position error of the keyframes, m.
-    pub keyframe_rms_m: f64,
-    /// Largest position error of a keyframe, m.
-    pub keyframe_max_m: f64,
-    /// Smallest and largest position error of the last nine keyframes, m.
-    pub last_keyframes_m: (f64, f64),
-    /// Map self-disagreement at the end, m.
-    pub map_disagreement_m: Option<f64>,
-}
-
 /// Results of one incremental run that statistics need.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct IncrementalOutcome {
     /// The rows of the results table.
-    pub summary: IncrementalSummary,
+    pub summary: LapSummary,
+    /// Cycles that were closed.
+    pub cycles: usize,
     /// Errors along the path; without standard deviations.
     pub way: PathErrors,
 }
@@ -134,8 +111,6 @@ fn outcome(
     let errors: Vec<f64> = poses
         .map(|(pose, keyframe)| position_error_m(pose, &keyframe.truth))
         .collect();
-    let last = &errors[errors.len().saturating_sub(LAST_KEYFRAMES)..];
-    let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, math::max);
     let wheels = drive.ticks().iter();
     let wheels: Vec<f64> = wheels
         .map(|tick| position_error_m(&tick.dead_reckoning, &tick.truth))
@@ -143,21 +118,16 @@ fn outcome(
     let ticks: Vec<usize> = keyframes.iter().map(|keyframe| keyframe.tick).collect();
     let is_closed = |test: &&CycleTest| matches!(test.verdict, CycleVerdict::Closed(_));
     IncrementalOutcome {
-        summary: IncrementalSummary {
-            ticks: drive.ticks().len(),
-            keyframes: keyframes.len(),
-            cycles: tests.iter().filter(is_closed).count(),
-            odometry_end_error_m: wheels.last().copied().unwrap_or(0.0),
-            odometry_rms_m: rms(wheels.iter().copied()),
-            keyframe_end_error_m: errors.last().copied().unwrap_or(0.0),
-            keyframe_rms_m: rms(errors.iter().copied()),
-            keyframe_max_m: largest(&errors),
-            last_keyframes_m: (
-                last.iter().copied().fold(f64::INFINITY, math::min),
-                largest(last),
-            ),
-            map_disagreement_m: disagreement_m(mapper, keyframes, drive),
-        },
+        summary: LapSummary::from_errors(
+            wheels.len(),
+            [
+                wheels.last().copied().unwrap_or(0.0),
+                rms(wheels.iter().copied()),
+            ],
+            &errors,
+            disagreement_m(mapper, keyframes, drive),
+        ),
+        cycles: tests.iter().filter(is_closed).count(),
         way: PathErrors::along_path(drive, &ticks, &errors, None),
     }
 }

@@ -45,7 +45,9 @@ pub use own_loop::{
 };
 pub use path_errors::{PATH_SHARES, PathErrors};
 pub use ranges::{ConfigRange, RANGES, random_config};
-pub use record::{Epoch, LAST_KEYFRAMES, LapRecord, LapSummary, LapTrace, RecordedEdge};
+pub use record::{
+    Epoch, GraphSummary, LAST_KEYFRAMES, LapRecord, LapSummary, LapTrace, RecordedEdge,
+};
 pub use replay::RegistrationView;
 pub use report::{
     RecordedKeyframe, RecordedLoopAttempt, RecordedLoopEffect, RecordedWindowScan, TickMetrics,

@@ -85,6 +85,8 @@ pub struct LapOutcome {
     pub lap: LapSummary,
     /// Its front end alone.
     pub front_end: LapSummary,
+    /// Loops that were closed.
+    pub loops: usize,
     /// Errors of the lap along its path.
     pub lap_way: PathErrors,
     /// Errors of its front end alone.
@@ -106,6 +108,7 @@ impl LapOutcome {
         Self {
             lap: record.lap.summary,
             front_end: record.front_end.summary,
+            loops: record.lap.graph_summary.loops,
             lap_way: record.path_errors(),
             front_end_way: record.front_end_path_errors(),
             false_acceptances: record.lap.false_acceptances().count(),
@@ -125,17 +128,10 @@ impl LapOutcome {
     /// An entry of the results table, m; `None` if the table has a gap.
     #[must_use]
     pub fn entry(&self, column: ResultColumn, row: ResultRow) -> Option<f64> {
-        let (summary, way) = match column {
-            ResultColumn::Odometry => return self.odometry_entry(row),
-            ResultColumn::FrontEnd => (&self.front_end, &self.front_end_way),
-            ResultColumn::WithLoops => (&self.lap, &self.lap_way),
-            ResultColumn::MaximumLikelihood => {
-                return self.incremental_entry(IncrementalKind::MaximumLikelihood, row);
-            }
-            ResultColumn::MaximumLikelihoodCycles => {
-                return self.incremental_entry(IncrementalKind::WithCycles, row);
-            }
-        };
+        if column == ResultColumn::Odometry {
+            return self.odometry_entry(row);
+        }
+        let (summary, way) = self.of(column)?;
         match row {
             ResultRow::EndError => Some(summary.keyframe_end_error_m),
             ResultRow::Rms => Some(summary.keyframe_rms_m),
@@ -148,18 +144,18 @@ impl LapOutcome {
         }
     }
 
-    /// Incremental mapping has no graph, so it has no standard deviation.
-    fn incremental_entry(&self, kind: IncrementalKind, row: ResultRow) -> Option<f64> {
-        let IncrementalOutcome { summary, way } = self.incremental_runs[kind as usize].as_ref()?;
-        match row {
-            ResultRow::EndError => Some(summary.keyframe_end_error_m),
-            ResultRow::Rms => Some(summary.keyframe_rms_m),
-            ResultRow::LastKeyframesMin => Some(summary.last_keyframes_m.0),
-            ResultRow::LastKeyframesMax => Some(summary.last_keyframes_m.1),
-            ResultRow::KeyframeMax => Some(summary.keyframe_max_m),
-            ResultRow::HalfWay => Some(way.half_path_length_m()),
-            ResultRow::HalfWaySigma => way.half_way_sigma_m,
-            ResultRow::MapDisagreement => summary.map_disagreement_m,
+    /// Errors of an estimator with keyframes, if it was run.
+    fn of(&self, column: ResultColumn) -> Option<(&LapSummary, &PathErrors)> {
+        let incremental = |kind: IncrementalKind| {
+            let run = self.incremental_runs[kind as usize].as_ref()?;
+            Some((&run.summary, &run.way))
+        };
+        match column {
+            ResultColumn::Odometry => None,
+            ResultColumn::FrontEnd => Some((&self.front_end, &self.front_end_way)),
+            ResultColumn::WithLoops => Some((&self.lap, &self.lap_way)),
+            ResultColumn::MaximumLikelihood => incremental(IncrementalKind::MaximumLikelihood),
+            ResultColumn::MaximumLikelihoodCycles => incremental(IncrementalKind::WithCycles),
         }
     }
 
@@ -206,18 +202,8 @@ impl LapStatistics {
     /// and without laps.
     #[must_use]
     pub fn along_path_m(&self, column: ResultColumn) -> Option<[f64; PATH_SHARES + 1]> {
-        let way = |outcome: &LapOutcome| match column {
-            ResultColumn::Odometry => None,
-            ResultColumn::FrontEnd => Some(outcome.front_end_way),
-            ResultColumn::WithLoops => Some(outcome.lap_way),
-            ResultColumn::MaximumLikelihood => {
-                outcome.incremental_runs[0].map(|outcome| outcome.way)
-            }
-            ResultColumn::MaximumLikelihoodCycles => {
-                outcome.incremental_runs[1].map(|outcome| outcome.way)
-            }
-        };
-        let ways: Vec<PathErrors> = self.outcomes.iter().filter_map(way).collect();
+        let laps = self.outcomes.iter();
+        let ways: Vec<&PathErrors> = laps.filter_map(|lap| Some(lap.of(column)?.1)).collect();
         let mut medians = [0.0; PATH_SHARES + 1];
         for (k, median) in medians.iter_mut().enumerate() {
             *median = Percentiles::from_values(ways.iter().map(|way| way.errors_m[k]))?.median;
@@ -235,7 +221,7 @@ impl LapStatistics {
     /// Shares of the laps with 0, 1, 2, and 3 or more closed loops.
     #[must_use]
     pub fn loop_shares(&self) -> [f64; 4] {
-        [0, 1, 2, 3].map(|loops| self.share(|outcome| outcome.lap.loops.min(3) == loops))
+        [0, 1, 2, 3].map(|loops| self.share(|outcome| outcome.loops.min(3) == loops))
     }
 
     /// Share of the laps that closed a false loop.
@@ -247,7 +233,7 @@ impl LapStatistics {
     /// Closed loops of all laps.
     #[must_use]
     pub fn accepted_loops(&self) -> usize {
-        self.outcomes.iter().map(|outcome| outcome.lap.loops).sum()
+        self.outcomes.iter().map(|outcome| outcome.loops).sum()
     }
 
     /// The false ones among [`Self::accepted_loops`].
@@ -315,10 +301,10 @@ mod tests {
         let record = LapRunner::new().run(&LapConfig::default());
         let right = LapOutcome::from_record(&record);
         let mut wrong = right;
-        wrong.lap.loops = 4;
+        wrong.loops = 4;
         wrong.false_acceptances = 2;
         let mut lost = right;
-        lost.lap.loops = 0;
+        lost.loops = 0;
         let outcomes = vec![right, wrong, lost, lost];
         let statistics = LapStatistics { outcomes };
         assert_eq!(statistics.loop_shares(), [0.5, 0.0, 0.0, 0.5]);

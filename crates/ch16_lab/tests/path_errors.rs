@@ -20,7 +20,7 @@ fn the_path_begins_at_the_start_and_the_turn_is_halfway() {
 #[test]
 fn a_loop_reduces_the_deviation_halfway() {
     let record = LapRunner::new().run(&LapConfig::default());
-    assert!(record.lap.summary.loops > 0);
+    assert!(record.lap.graph_summary.loops > 0);
     assert!(
         record.path_errors().half_way_sigma_m < record.front_end_path_errors().half_way_sigma_m
     );

@@ -10,7 +10,7 @@ fn every_figure_of_a_lap_within_the_ranges_is_finite() {
     for seed in 1..=100 {
         let record = LapRunner::new().run(&random_config(seed));
         assert_eq!(record.first_fault(), None, "configuration {seed}");
-        loops += record.lap.summary.loops;
+        loops += record.lap.graph_summary.loops;
     }
     // An estimator that closes no loop would pass the checks above.
     assert!(loops > 10, "{loops} loops closed");

@@ -17,7 +17,7 @@ fn ndt_closes_the_cycle_of_the_ring_and_reduces_the_error_all_around() {
     for seed in 1..=4 {
         let record = ring(seed, LapMatcher::Ndt);
         let (lap, alone) = (record.lap.summary, record.front_end.summary);
-        assert!(lap.loops > 0, "seed {seed}");
+        assert!(record.lap.graph_summary.loops > 0, "seed {seed}");
         assert_eq!(record.lap.false_acceptances().count(), 0, "seed {seed}");
         // Unlike on the way back through a corridor, the error in the middle of the path falls, too.
         assert!(lap.keyframe_rms_m < alone.keyframe_rms_m, "seed {seed}");
@@ -85,7 +85,7 @@ fn point_to_point_turns_toward_the_outer_wall_of_the_ring_in_both_directions() {
     // So the loop is not closed: old keyframes are close again and tried, but rejected for their fit.
     let record = ring(1, LapMatcher::PointToPoint);
     assert!(record.lap.loop_attempts().count() > 0);
-    assert_eq!(record.lap.summary.loops, 0);
+    assert_eq!(record.lap.graph_summary.loops, 0);
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn point_to_plane_closes_on_the_ring_more_often_by_normals_of_the_defaults_radiu
                     .with_matcher(LapMatcher::PointToPlane)
                     .with_scan(scan);
                 let lap = LapRunner::new().run(&config).lap;
-                lap.summary.loops > 0 && lap.false_acceptances().count() == 0
+                lap.graph_summary.loops > 0 && lap.false_acceptances().count() == 0
             })
             .count()
     };

@@ -3,7 +3,7 @@
 #[cfg(feature = "exercises")]
 mod exercises;
 mod incremental;
-mod report;
+pub mod report;
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -18,7 +18,7 @@ use serde::Serialize;
 use crate::in_file::InFile as _;
 use crate::lap_options::{NoiseArgs, TrialArgs, choice};
 use crate::output::{print_json, say};
-use report::{LapJson, TickJson, print_errors};
+use report::{GraphLapJson, LapJson, TickJson, print_errors};
 
 /// Simulate the lap in the Apartment or another world, and estimate it.
 #[derive(Args, Clone, Debug)]
@@ -126,7 +126,7 @@ fn json(record: &LapRecord, args: &LapArgs) -> impl Serialize {
         noise: args.noise,
         estimator: args.estimator().name(),
         digest: format!("{:016x}", record.digest()),
-        summary: lap.summary,
+        summary: GraphLapJson::from(lap),
         events: lap.loop_attempts().copied().collect(),
         keyframe_poses: poses.to_vec(),
         keyframe_truth: lap.keyframes.iter().map(|k| k.truth).collect(),
@@ -136,15 +136,9 @@ fn json(record: &LapRecord, args: &LapArgs) -> impl Serialize {
 }
 
 fn print_text(record: &LapRecord, args: &LapArgs) {
-    let summary = &record.lap.summary;
     say!("seed {:#x}, noise ×{}", args.noise.seed, args.noise.noise);
-    print_errors(
-        [summary.ticks, summary.keyframes],
-        [summary.odometry_end_error_m, summary.odometry_rms_m],
-        [summary.keyframe_end_error_m, summary.keyframe_rms_m],
-        summary.map_disagreement_m,
-    );
-    say!("graph chi2        {:.4}", summary.chi2);
+    print_errors(&record.lap.summary);
+    say!("graph chi2        {:.4}", record.lap.graph_summary.chi2);
     for attempt in record.lap.loop_attempts() {
         let found = &attempt.verification;
         let verdict = match attempt.effect {

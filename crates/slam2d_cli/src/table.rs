@@ -4,6 +4,7 @@ use ch16_lab::lap::{LapConfig, LapRunner, LapSummary};
 use clap::Args;
 use serde::Serialize;
 
+use crate::lap::report::GraphLapJson;
 use crate::output::{print_json, say};
 
 /// Print the chapter's results table from the canonical run.
@@ -18,8 +19,8 @@ pub struct TableArgs {
 #[derive(Serialize)]
 struct TableJson {
     seed: u32,
-    front_end: LapSummary,
-    with_loops: LapSummary,
+    front_end: GraphLapJson,
+    with_loops: GraphLapJson,
 }
 
 /// Runs the canonical lap and prints its table.
@@ -30,8 +31,8 @@ pub fn run(args: &TableArgs) {
     if args.json {
         print_json(&TableJson {
             seed: config.drive.seed,
-            front_end,
-            with_loops: lap,
+            front_end: GraphLapJson::from(&record.front_end),
+            with_loops: GraphLapJson::from(&record.lap),
         });
         return;
     }
@@ -41,7 +42,7 @@ pub fn run(args: &TableArgs) {
         lap.ticks,
         lap.keyframes
     );
-    let loops = format!("+ {} loop factors", lap.loops);
+    let loops = format!("+ {} loop factors", record.lap.graph_summary.loops);
     print_row("", ["odometry", "front end", &loops]);
     let row = |name, odometry: Option<String>, of: fn(&LapSummary) -> String| {
         let odometry = odometry.unwrap_or_default();

@@ -60,6 +60,8 @@ fn lap_prints_the_librarys_record_of_its_seed_noise_and_loops() {
         // Zero: one computation, and JSON keeps every bit.
         let summary = serde_json::to_value(record.lap.summary).unwrap();
         assert_covers(&at, &printed, &summary, 0.0);
+        let graph = serde_json::to_value(record.lap.graph_summary).unwrap();
+        assert_covers(&at, &printed, &graph, 0.0);
         assert_eq!(
             printed["digest"],
             format!("{:016x}", record.digest()),
@@ -69,7 +71,7 @@ fn lap_prints_the_librarys_record_of_its_seed_noise_and_loops() {
         assert_eq!(printed["keyframe_poses"], poses, "{at}");
         assert_eq!(
             printed["events"].as_array().unwrap().len(),
-            record.lap.summary.loop_attempts
+            record.lap.graph_summary.loop_attempts
         );
         assert_eq!(
             printed["per_tick"].as_array().unwrap().len(),

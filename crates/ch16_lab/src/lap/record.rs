@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::report::{RecordedKeyframe, RecordedLoopAttempt, RecordedWindowScan, TickReport};
 use super::{Drive, Lap, LapConfig, LoopClosure};
 use ch16_slam2d::graph::EdgeKind;
-use ch16_slam2d::metrics::position_error_m;
+use ch16_slam2d::metrics::{position_error_m, rms};
 
 /// Number of last keyframes whose range of errors the results table shows.
 pub const LAST_KEYFRAMES: usize = 9;
@@ -56,19 +56,17 @@ pub struct LapTrace {
     pub turn_node: Option<usize>,
     /// The rows of the results table.
     pub summary: LapSummary,
+    /// Its loops and its graph.
+    pub graph_summary: GraphSummary,
 }
 
-/// The rows of the chapter's results table, and the counts of the run.
+/// The rows of the chapter's results table, which every estimator has.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LapSummary {
     /// Ticks of the lap.
     pub ticks: usize,
     /// Keyframes.
     pub keyframes: usize,
-    /// Attempts to close a loop that had a candidate.
-    pub loop_attempts: usize,
-    /// Loops that were closed.
-    pub loops: usize,
     /// Position error of dead reckoning at the end, m.
     pub odometry_end_error_m: f64,
     /// Root mean square position error of dead reckoning over the ticks, m.
@@ -83,6 +81,15 @@ pub struct LapSummary {
     pub last_keyframes_m: (f64, f64),
     /// Map self-disagreement, m.
     pub map_disagreement_m: Option<f64>,
+}
+
+/// What only an estimator with a pose graph has.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct GraphSummary {
+    /// Attempts to close a loop that had a candidate.
+    pub loop_attempts: usize,
+    /// Loops that were closed.
+    pub loops: usize,
     /// χ² of the graph.
     pub chi2: f64,
 }
@@ -152,7 +159,17 @@ impl LapTrace {
     #[must_use]
     pub fn summary_at(&self, tick: usize) -> LapSummary {
         let errors: Vec<f64> = self.keyframe_errors_m(tick).collect();
-        LapSummary::so_far(&errors, &self.reports[..tick.min(self.reports.len())])
+        LapSummary::so_far(&errors, self.reports_until(tick))
+    }
+
+    /// Loops and graph at the end of `tick`.
+    #[must_use]
+    pub fn graph_summary_at(&self, tick: usize) -> GraphSummary {
+        GraphSummary::so_far(self.reports_until(tick))
+    }
+
+    fn reports_until(&self, tick: usize) -> &[TickReport] {
+        &self.reports[..tick.min(self.reports.len())]
     }
 
     /// The sweeps of the local map on which the sweep of `tick` was registered, oldest first.
@@ -277,6 +294,7 @@ impl Recorder {
             edges: edges.collect(),
             turn_node: lap.turn_node(),
             summary: LapSummary::from_lap(lap, &self.reports),
+            graph_summary: GraphSummary::so_far(&self.reports),
             keyframes,
             reports: self.reports,
             epochs: self.epochs,
@@ -293,26 +311,47 @@ impl LapSummary {
 
     /// Computes it from the position errors of the keyframes so far, m, and the reports so far.
     fn so_far(errors: &[f64], reports: &[TickReport]) -> Self {
+        let metrics = reports.last().map(|report| report.metrics);
+        let odometry_m = metrics.map_or([0.0; 2], |m| [m.odometry_error_m, m.odometry_rms_m]);
+        let disagreement_m = metrics.and_then(|m| m.map_disagreement_m);
+        Self::from_errors(reports.len(), odometry_m, errors, disagreement_m)
+    }
+
+    /// The summary of so many ticks: error of dead reckoning at the end and its root mean square, position errors of the
+    /// keyframes, and self-disagreement of the map, m.
+    pub(crate) fn from_errors(
+        ticks: usize,
+        [odometry_end_error_m, odometry_rms_m]: [f64; 2],
+        errors: &[f64],
+        map_disagreement_m: Option<f64>,
+    ) -> Self {
         let last = &errors[errors.len().saturating_sub(LAST_KEYFRAMES)..];
         let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
-        let attempts = || reports.iter().filter_map(|report| report.loop_attempt);
-        let metrics = reports.last().map(|report| report.metrics);
         Self {
-            ticks: reports.len(),
+            ticks,
             keyframes: errors.len(),
-            loop_attempts: attempts().count(),
-            loops: attempts().filter(RecordedLoopAttempt::accepted).count(),
-            odometry_end_error_m: metrics.map_or(0.0, |m| m.odometry_error_m),
-            odometry_rms_m: metrics.map_or(0.0, |m| m.odometry_rms_m),
-            keyframe_end_error_m: metrics.map_or(0.0, |m| m.keyframe_error_m),
-            keyframe_rms_m: metrics.map_or(0.0, |m| m.keyframe_rms_m),
+            odometry_end_error_m,
+            odometry_rms_m,
+            keyframe_end_error_m: errors.last().copied().unwrap_or(0.0),
+            keyframe_rms_m: rms(errors.iter().copied()),
             keyframe_max_m: largest(errors),
             last_keyframes_m: (
                 last.iter().copied().fold(f64::INFINITY, f64::min),
                 largest(last),
             ),
-            map_disagreement_m: metrics.and_then(|m| m.map_disagreement_m),
-            chi2: metrics.map_or(0.0, |m| m.chi2),
+            map_disagreement_m,
+        }
+    }
+}
+
+impl GraphSummary {
+    /// Computes it from the reports so far.
+    fn so_far(reports: &[TickReport]) -> Self {
+        let attempts = || reports.iter().filter_map(|report| report.loop_attempt);
+        Self {
+            loop_attempts: attempts().count(),
+            loops: attempts().filter(RecordedLoopAttempt::accepted).count(),
+            chi2: reports.last().map_or(0.0, |report| report.metrics.chi2),
         }
     }
 }

@@ -63,7 +63,7 @@ impl LapTrace {
             summary.last_keyframes_m.0,
             summary.last_keyframes_m.1,
             summary.map_disagreement_m.unwrap_or(0.0),
-            summary.chi2,
+            self.graph_summary.chi2,
         ];
         let is_sound = numbers.iter().all(|value| value.is_finite());
         (!is_sound).then(|| format!("{summary:?}"))

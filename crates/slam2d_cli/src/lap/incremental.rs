@@ -1,7 +1,7 @@
 //! `slam2d lap --estimator ml|ml-cycles`: incremental mapping on the frames of the lap.
 
 use ch16_lab::incremental::IncrementalTrace;
-use ch16_lab::lap::{Drive, IncrementalKind, LapConfig, NamedChoice};
+use ch16_lab::lap::{Drive, IncrementalKind, LapConfig, LapSummary, NamedChoice};
 use ch16_slam2d::digest::Digest;
 use ch16_slam2d::metrics::position_error_m;
 use incremental_mapping::{CycleClosure, CycleTest, CycleVerdict};
@@ -23,6 +23,14 @@ pub fn print(kind: IncrementalKind, config: &LapConfig, args: &LapArgs) {
     }
 }
 
+/// Rows of the results table, and the cycles that were closed.
+#[derive(Serialize)]
+struct CycleLapJson {
+    #[serde(flatten)]
+    summary: LapSummary,
+    cycles: usize,
+}
+
 /// What `--json` prints.
 fn json(trace: &IncrementalTrace, drive: &Drive, args: &LapArgs) -> impl Serialize {
     let mut digest = Digest::new();
@@ -33,7 +41,10 @@ fn json(trace: &IncrementalTrace, drive: &Drive, args: &LapArgs) -> impl Seriali
         noise: args.noise,
         estimator: args.estimator.name(),
         digest: format!("{:016x}", digest.value()),
-        summary: trace.outcome.summary,
+        summary: CycleLapJson {
+            summary: trace.outcome.summary,
+            cycles: trace.outcome.cycles,
+        },
         events: trace.tests.clone(),
         keyframe_poses: trace.poses.clone(),
         keyframe_truth: trace.keyframes.iter().map(|k| k.truth).collect(),
@@ -61,16 +72,10 @@ fn off_m(closure: &CycleClosure) -> f64 {
 }
 
 fn print_text(trace: &IncrementalTrace, args: &LapArgs) {
-    let summary = &trace.outcome.summary;
     let estimator = args.estimator.label();
     let NoiseArgs { seed, noise } = args.noise;
     say!("seed {seed:#x}, noise ×{noise}, {estimator}");
-    print_errors(
-        [summary.ticks, summary.keyframes],
-        [summary.odometry_end_error_m, summary.odometry_rms_m],
-        [summary.keyframe_end_error_m, summary.keyframe_rms_m],
-        summary.map_disagreement_m,
-    );
+    print_errors(&trace.outcome.summary);
     for test in &trace.tests {
         if let Some(closure) = closure(test) {
             say!(

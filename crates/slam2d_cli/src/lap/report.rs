@@ -1,6 +1,6 @@
 //! What all estimators of a lap report.
 
-use ch16_lab::lap::TickReport;
+use ch16_lab::lap::{GraphSummary, LapSummary, LapTrace, TickReport};
 use pr_geom::SE2;
 use serde::Serialize;
 
@@ -22,6 +22,24 @@ pub struct LapJson<Summary, Event> {
     pub keyframe_truth: Vec<SE2>,
     pub keyframe_errors_m: Vec<f64>,
     pub per_tick: Vec<TickJson>,
+}
+
+/// Rows of the results table, loops and graph of a lap.
+#[derive(Serialize)]
+pub struct GraphLapJson {
+    #[serde(flatten)]
+    summary: LapSummary,
+    #[serde(flatten)]
+    graph: GraphSummary,
+}
+
+impl From<&LapTrace> for GraphLapJson {
+    fn from(lap: &LapTrace) -> Self {
+        Self {
+            summary: lap.summary,
+            graph: lap.graph_summary,
+        }
+    }
 }
 
 /// A tick.
@@ -64,19 +82,18 @@ impl TickJson {
 }
 
 /// Prints the counts of ticks and keyframes, and the errors at the end and on average, m.
-pub fn print_errors(
-    [ticks, keyframes]: [usize; 2],
-    odometry_m: [f64; 2],
-    keyframes_m: [f64; 2],
-    map_disagreement_m: Option<f64>,
-) {
-    say!("ticks             {ticks}");
-    say!("keyframes         {keyframes}");
-    for (what, [end_m, rms_m]) in [("odometry", odometry_m), ("keyframes", keyframes_m)] {
-        say!("{:<18}{end_m:.4} m", format!("{what}, end"));
-        say!("{:<18}{rms_m:.4} m", format!("{what}, rms"));
+pub fn print_errors(summary: &LapSummary) {
+    say!("ticks             {}", summary.ticks);
+    say!("keyframes         {}", summary.keyframes);
+    for (what, error_m) in [
+        ("odometry, end", summary.odometry_end_error_m),
+        ("odometry, rms", summary.odometry_rms_m),
+        ("keyframes, end", summary.keyframe_end_error_m),
+        ("keyframes, rms", summary.keyframe_rms_m),
+    ] {
+        say!("{what:<18}{error_m:.4} m");
     }
-    match map_disagreement_m {
+    match summary.map_disagreement_m {
         Some(value) => say!("map disagreement  {value:.4} m"),
         None => say!("map disagreement  none: no area was scanned twice"),
     }

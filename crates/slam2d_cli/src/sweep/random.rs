@@ -79,7 +79,7 @@ fn run(seed: u32) -> Random {
     match lap {
         Ok(record) => Random {
             seed,
-            loops: record.lap.summary.loops,
+            loops: record.lap.graph_summary.loops,
             ticks: record.ticks(),
             fault: record.first_fault(),
         },

@@ -149,7 +149,7 @@ fn summary(lap: &LapTrace, what: &str) -> Option<f64> {
     let summary = &lap.summary;
     Some(match what {
         "ticks" => summary.ticks as f64,
-        "loops" => summary.loops as f64,
+        "loops" => lap.graph_summary.loops as f64,
         "keyframes" => lap.keyframes.len() as f64,
         "odometry_end_error" => summary.odometry_end_error_m,
         "odometry_rms" => summary.odometry_rms_m,

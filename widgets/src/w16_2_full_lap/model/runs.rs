@@ -37,6 +37,8 @@ pub struct ResultsTable {
     pub front_end: LapSummary,
     /// The pose graph with its loops.
     pub graph: LapSummary,
+    /// Loops that were closed.
+    pub loops: usize,
 }
 
 impl Runs {
@@ -174,6 +176,7 @@ impl Runs {
         ResultsTable {
             front_end: self.front_end.lap().summary_at(tick),
             graph: self.graph.lap().summary_at(tick),
+            loops: self.graph.lap().graph_summary_at(tick).loops,
         }
     }
 

@@ -51,7 +51,11 @@ pub fn all(runs: &Runs, seen: usize, canonical: &[ResultsTable]) -> Vec<Table> {
 }
 
 fn results(id: &'static str, title: String, results: &ResultsTable) -> Table {
-    let ResultsTable { front_end, graph } = results;
+    let ResultsTable {
+        front_end,
+        graph,
+        loops,
+    } = results;
     let keyframes = |name: &str, of: fn(&LapSummary) -> String| {
         vec![name.to_owned(), String::new(), of(front_end), of(graph)]
     };
@@ -70,7 +74,7 @@ fn results(id: &'static str, title: String, results: &ResultsTable) -> Table {
             "error in m".to_owned(),
             "odometry".to_owned(),
             "front end".to_owned(),
-            match graph.loops {
+            match loops {
                 1 => "+ 1 loop".to_owned(),
                 loops => format!("+ {loops} loops"),
             },

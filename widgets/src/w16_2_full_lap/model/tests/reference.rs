@@ -118,7 +118,9 @@ fn the_canonical_table_is_the_chapters() {
 #[test]
 fn the_notes_about_the_canonical_run_are_right() {
     let model = FullLap::default();
-    let ResultsTable { front_end, graph } = results(&model);
+    let ResultsTable {
+        front_end, graph, ..
+    } = results(&model);
     let third = graph.map_disagreement_m.unwrap() / front_end.map_disagreement_m.unwrap();
     assert!((0.30..0.37).contains(&third), "about a third: {third}");
     let change = graph.keyframe_rms_m / front_end.keyframe_rms_m;
