@@ -44,7 +44,7 @@ pub fn over_time(title: &str, points: &[[f64; 2]], marks: &[f64]) -> String {
     for &at_s in marks {
         let _ = writeln!(
             svg,
-            "<path class=\"good\" d=\"M{:.1} {TOP}V{}\"/>",
+            "<path class=\"loop\" d=\"M{:.1} {TOP}V{}\"/>",
             x(at_s),
             HEIGHT - BOTTOM
         );

@@ -32,7 +32,7 @@ pub fn map(quality: &Quality, map: Option<&MapImage>) -> String {
         let (Some((ax, ay)), Some((bx, by))) = (position(tried.from), position(tried.to)) else {
             continue;
         };
-        let class = if tried.accepted { "good" } else { "bad" };
+        let class = if tried.accepted { "loop" } else { "rejected" };
         let _ = writeln!(
             svg,
             "<line class=\"{class}\" stroke-width=\"{:.4}\" style=\"stroke-dasharray:{}\" \
@@ -49,7 +49,7 @@ pub fn map(quality: &Quality, map: Option<&MapImage>) -> String {
     }
     let _ = write!(
         svg,
-        "<polyline class=\"way\" stroke-width=\"{:.4}\" points=\"",
+        "<polyline class=\"path\" stroke-width=\"{:.4}\" points=\"",
         1.5 * pixel_m
     );
     for keyframe in &quality.keyframes {
@@ -63,7 +63,7 @@ pub fn map(quality: &Quality, map: Option<&MapImage>) -> String {
         let [x, y, _] = keyframe.pose;
         let _ = writeln!(
             svg,
-            "<ellipse class=\"sure\" stroke-width=\"{pixel_m:.4}\" rx=\"{:.4}\" ry=\"{:.4}\" \
+            "<ellipse class=\"uncertainty\" stroke-width=\"{pixel_m:.4}\" rx=\"{:.4}\" ry=\"{:.4}\" \
              transform=\"translate({x:.3} {y:.3}) rotate({:.2})\"/>",
             3.0 * long,
             3.0 * short,
