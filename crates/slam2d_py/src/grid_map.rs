@@ -10,7 +10,7 @@ use robot_io::map_image::{MapImage, MapMode};
 
 use crate::errors::{ArrayError, ChoiceError, os_error, within};
 use crate::pictures;
-use crate::restored::{self, Reduced};
+use crate::reduced::{self, Reduced};
 
 /// An occupancy grid.
 ///
@@ -120,7 +120,7 @@ impl GridMap {
         keywords.set_item("log_odds", slf.get().log_odds(slf.py())?)?;
         keywords.set_item("origin", slf.get().origin())?;
         keywords.set_item("cell", slf.get().cell())?;
-        restored::by_keywords("GridMap", keywords)
+        reduced::by_keywords("GridMap", keywords)
     }
 
     pub fn __repr__(&self) -> String {

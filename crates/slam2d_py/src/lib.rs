@@ -17,6 +17,7 @@ mod log_files;
 mod motions;
 mod pictures;
 mod pose_graph;
+mod reduced;
 mod registration;
 mod restored;
 mod run_log;

@@ -13,7 +13,7 @@ use robot_io::session::{FILE_NAME, MAX_BYTES, Session};
 
 use crate::arrays;
 use crate::errors::{FrameError, LogError, SlamError, os_error};
-use crate::restored::{self, Reduced};
+use crate::reduced::{self, Reduced};
 use crate::sensor::Sensor;
 use crate::slam::Slam;
 
@@ -47,10 +47,14 @@ pub struct Fix {
     pub margin: Option<f64>,
 }
 
+reduced::restorable! {
+    Fix { stamp, verdict, pose, covariance, score, margin }
+}
+
 #[pymethods]
 impl Fix {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        restored::by_attributes(slf.as_any())
+        reduced::by_attributes(slf)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

@@ -21,7 +21,7 @@ use crate::arrays;
 use crate::errors::{
     ArrayError, ChoiceError, GraphError, OptimizeError, count, index, no_choice, os_error, within,
 };
-use crate::restored::{self, Reduced};
+use crate::reduced::{self, Reduced};
 
 /// First damping of method "lm", relative to the diagonal.
 const INITIAL_DAMPING: f64 = 1e-6;
@@ -65,10 +65,14 @@ pub struct OptimizeReport {
     pub stop: String,
 }
 
+reduced::restorable! {
+    OptimizeReport { chi2_initial, chi2, cost, iterations, start, converged, stop }
+}
+
 #[pymethods]
 impl OptimizeReport {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        restored::by_attributes(slf.as_any())
+        reduced::by_attributes(slf)
     }
 
     fn __repr__(&self) -> String {
@@ -215,7 +219,7 @@ impl PoseGraph {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         let keywords = PyDict::new(slf.py());
         keywords.set_item("text", slf.get().to_g2o(slf.py()))?;
-        restored::by_keywords("PoseGraph", keywords)
+        reduced::by_keywords("PoseGraph", keywords)
     }
 
     /// Writes the graph as a file of g2o.

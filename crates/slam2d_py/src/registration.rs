@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 
 use crate::arrays;
 use crate::errors::{ChoiceError, count, no_choice, within};
-use crate::restored::{self, Reduced};
+use crate::reduced::{self, Reduced};
 
 /// Width of a map cell as a share of the largest distance: a query then sees a handful of cells.
 const CELL_PER_DISTANCE: f64 = 0.5;
@@ -56,10 +56,14 @@ pub struct IcpResult {
     pub stop: String,
 }
 
+reduced::restorable! {
+    IcpResult { pose, covariance, information, trace, trace_rmse, pairs, rmse, inliers, iterations, converged, stop }
+}
+
 #[pymethods]
 impl IcpResult {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        restored::by_attributes(slf.as_any())
+        reduced::by_attributes(slf)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -267,10 +271,14 @@ pub struct NdtResult {
     pub stop: String,
 }
 
+reduced::restorable! {
+    NdtResult { pose, trace, score, iterations, stop }
+}
+
 #[pymethods]
 impl NdtResult {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        restored::by_attributes(slf.as_any())
+        reduced::by_attributes(slf)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

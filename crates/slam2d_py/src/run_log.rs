@@ -22,7 +22,7 @@ use crate::errors::{LogError, within};
 use crate::grid_map::GridMap;
 use crate::log_files::{self, ReadTo};
 use crate::pose_graph::PoseGraph;
-use crate::restored::{self, Reduced};
+use crate::reduced::{self, Reduced};
 use crate::sensor::Sensor;
 use crate::settings::{self, Chosen};
 use crate::{pictures, trajectories};
@@ -78,10 +78,14 @@ pub struct LogResult {
     pub remarks: Vec<String>,
 }
 
+reduced::restorable! {
+    LogResult { stamps, trajectory, keyframes, covariances, map, quality, graph, remarks }
+}
+
 #[pymethods]
 impl LogResult {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        restored::by_attributes(slf.as_any())
+        reduced::by_attributes(slf)
     }
 
     /// Writes the trajectory as lines of TUM, which evo reads.

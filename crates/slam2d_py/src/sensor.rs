@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays;
 use crate::errors::FrameError;
-use crate::restored::{self, Reduced};
+use crate::reduced::{self, Reduced};
 
 /// The geometry of a planar laser: bearings of its beams, limits of its ranges, mounting.
 ///
@@ -144,7 +144,7 @@ impl Sensor {
         ] {
             keywords.set_item(name, slf.getattr(name)?)?;
         }
-        restored::by_keywords("Sensor", keywords)
+        reduced::by_keywords("Sensor", keywords)
     }
 
     fn __repr__(&self) -> String {

@@ -16,7 +16,7 @@ use robot_io::json_log::FrameLine;
 use crate::arrays;
 use crate::callables::Callables;
 use crate::errors::{no_choice, os_error, whole, within};
-use crate::restored::{self, Reduced};
+use crate::reduced::{self, Reduced};
 use crate::sensor::Sensor;
 use crate::slam::{Slam, SlamStep};
 
@@ -145,7 +145,7 @@ impl Drive {
         keywords.set_item("seed", config.seed)?;
         keywords.set_item("noise", config.noise_factor)?;
         keywords.set_item("world", slf.get().world)?;
-        restored::by_keywords("Drive", keywords)
+        reduced::by_keywords("Drive", keywords)
     }
 
     /// Number of scans.

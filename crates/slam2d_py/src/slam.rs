@@ -19,7 +19,7 @@ use crate::callables::{Callables, Raised};
 use crate::errors::{FrameError, OptimizeError, SlamError, index, within};
 use crate::grid_map::GridMap;
 use crate::pose_graph::PoseGraph;
-use crate::restored::{self, Reduced};
+use crate::reduced::{self, Reduced};
 use crate::sensor::Sensor;
 use crate::settings::{self, Chosen};
 
@@ -76,10 +76,14 @@ pub struct SlamStep {
     pub loops: Vec<Py<PyDict>>,
 }
 
+reduced::restorable! {
+    SlamStep { pose, frame, keyframe, chi2, inliers, rmse, loops }
+}
+
 #[pymethods]
 impl SlamStep {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        restored::by_attributes(slf.as_any())
+        reduced::by_attributes(slf)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
