@@ -1,4 +1,4 @@
-//! The widget without its picture, against the reference laps and the claims of its texts.
+//! The widget without its picture, against the laps of the library and the claims of its texts.
 
 mod both_gates;
 mod floor_plan;
