@@ -414,15 +414,15 @@ export interface WidgetStates {
 /** The buttons and presets of each widget, for `press`. */
 export interface WidgetButtons {
   'w16.1': 'play' | 'step' | 'reset' | 'sweep' | 'defaults' | 'near' | 'quarter-turn' | 'between' | 'between-plane' | 'half-turn' | 'fence' | 'mark-edge' | 'short-sighted';
-  'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'one-back' | 'one-on' | 'tie' | 'undo' | 'edit-flat' | 'piece-back' | 'piece-on' | 'west' | 'east' | 'north' | 'south' | 'remove' | 'add-wall' | 'add-way-point' | 'turn-here' | 'take-back' | 'do-again' | 'open-flat' | 'save-flat' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'wrong-loop' | 'tamed-loop' | 'true-loop' | 'ring' | 'twins' | 'corridor' | 'hall' | 'phantom-wall' | 'own-flat' | 'bells' | 'sliding';
-  'w16.3': 'drop-100' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'bowl' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'own-corridor' | 'drop-room' | 'drop-corridor' | 'one-row' | 'wheels-row' | 'turned';
+  'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'one-back' | 'one-on' | 'tie' | 'undo' | 'edit-flat' | 'piece-back' | 'piece-on' | 'west' | 'east' | 'north' | 'south' | 'remove' | 'add-wall' | 'add-way-point' | 'turn-here' | 'take-back' | 'do-again' | 'open-flat' | 'save-flat' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'wrong-loop' | 'tamed-loop' | 'true-loop' | 'ring' | 'twins' | 'corridor' | 'hall' | 'phantom-wall' | 'bells' | 'sliding';
+  'w16.3': 'drop-100' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'bowl' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'own-corridor' | 'drop-room' | 'drop-corridor' | 'one-row' | 'turned';
   'w16.4': 'play' | 'step' | 'reset' | 'next-event' | 'defaults' | 'watch' | 'blurred' | 'rebuilt' | 'noisy' | 'wrong-loop' | 'open';
   'w16.5': 'play' | 'step' | 'reset' | 'defaults' | 'three-poses' | 'stiff' | 'unpinned' | 'square' | 'tangled';
   'w16.6': 'play' | 'step' | 'reset' | 'defaults' | 'quarter-turn' | 'upside-down' | 'wide' | 'without-home' | 'coarse';
-  'w16.7': 'play' | 'step' | 'reset' | 'defaults' | 'lap' | 'ranges' | 'nearby' | 'drifted' | 'ring';
+  'w16.7': 'play' | 'step' | 'reset' | 'defaults' | 'lap';
   'w16.8': 'play' | 'step' | 'reset' | 'defaults' | 'fifth' | 'most' | 'none' | 'gate';
   'w16.9': 'play' | 'step' | 'reset' | 'defaults' | 'room' | 'corridor' | 'forget' | 'twins';
-  'w16.10': 'open' | 'play' | 'sample' | 'cancel' | 'doubt' | 'previous' | 'next' | 'turn' | 'mark' | 'add' | 'west' | 'east' | 'north' | 'south' | 'unpin' | 'reference' | 'locate' | 'locate-sample' | 'change' | 'other' | 'save' | 'defaults' | 'sure' | 'error' | 'where' | 'evidence';
+  'w16.10': 'open' | 'play' | 'sample' | 'cancel' | 'doubt' | 'previous' | 'next' | 'turn' | 'mark' | 'add' | 'west' | 'east' | 'north' | 'south' | 'unpin' | 'reference' | 'locate' | 'locate-sample' | 'change' | 'other' | 'save' | 'defaults' | 'sure' | 'error' | 'where';
   'w16.11': 'play' | 'step' | 'reset' | 'defaults' | 'corners' | 'two-points' | 'bare-wall' | 'upside-down';
   'w16.12': 'play' | 'step' | 'reset' | 'defaults' | 'four' | 'agree' | 'left' | 'half';
 }

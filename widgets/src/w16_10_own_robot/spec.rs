@@ -286,12 +286,5 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             set: &[],
             then: &["sample", "locate-sample"],
         },
-        Preset {
-            id: "evidence",
-            label: "All loops that were looked at",
-            help: "The sample with the loops that failed its tests as well.",
-            set: &[LOOPS.to("all")],
-            then: &["sample"],
-        },
     ],
 };

@@ -566,13 +566,6 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             then: &[],
         },
         Preset {
-            id: "own-flat",
-            label: "Draw your own flat",
-            help: "The Apartment with a pencil in your hand: each wall that you draw is there at once, and the lap follows.",
-            set: &[EDIT.to("wall")],
-            then: &[],
-        },
-        Preset {
             id: "bells",
             label: "The same lap by NDT",
             help: "The same sweeps, matched to bells in place of points: the lap ends 0.04 m off instead of 0.24 m.",

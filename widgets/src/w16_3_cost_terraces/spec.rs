@@ -168,13 +168,6 @@ const PRESETS: &[Preset] = &[
         then: &[],
     },
     Preset {
-        id: "wheels-row",
-        label: "Add one row of odometry",
-        help: "The rank is three. Along the corridor the pose is known to the σ of that row, and no better.",
-        set: &[("scene", 1.0), ("odometry", 0.05)],
-        then: &[],
-    },
-    Preset {
         id: "turned",
         label: "Turn the sweep by 20°",
         help: "No shift undoes a turn. The lowest cost rises, and NDT's lowest cell leaves the truth.",

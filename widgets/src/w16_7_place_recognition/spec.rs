@@ -112,41 +112,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     },
     params: PARAMS,
     buttons: &[PLAY, ONE_KEYFRAME, RESET, DEFAULTS],
-    presets: &[
-        Preset {
-            id: "lap",
-            label: "Drive the lap",
-            help: "Each new keyframe is compared with all older ones, and a column is added.",
-            set: &[OLDER.to(MOST_ALIKE), NEWEST.to(0.0)],
-            then: &["play"],
-        },
-        Preset {
-            id: "ranges",
-            label: "By ranges alone",
-            help: "The corridor is one square of ink: the histogram cannot tell its places apart.",
-            set: &[DETECTOR.to("histogram")],
-            then: &[],
-        },
-        Preset {
-            id: "nearby",
-            label: "By the estimated pose",
-            help: "On a short lap the pose is the best detector; it is wrong where drift is large.",
-            set: &[DETECTOR.to("nearby")],
-            then: &[],
-        },
-        Preset {
-            id: "drifted",
-            label: "Four times the noise",
-            help: "The wheels drift, and what is near in the graph is less often the same place. Looks do not drift.",
-            set: &[run::NOISE.to(4.0)],
-            then: &[],
-        },
-        Preset {
-            id: "ring",
-            label: "A ring of corridors",
-            help: "Four corridors that look alike: every look-alike is a trap here.",
-            set: &[WORLD.to("ring"), OLDER.to(MOST_ALIKE)],
-            then: &[],
-        },
-    ],
+    presets: &[Preset {
+        id: "lap",
+        label: "Drive the lap",
+        help: "Each new keyframe is compared with all older ones, and a column is added.",
+        set: &[OLDER.to(MOST_ALIKE), NEWEST.to(0.0)],
+        then: &["play"],
+    }],
 };
