@@ -9,17 +9,16 @@
 //! The estimator for recorded logs uses none of this: see [`LocalMapConfig`](crate::local_map::LocalMapConfig).
 
 mod adaptive_threshold;
-mod config;
 mod drift_gate;
 mod nearby_loops;
 mod parts;
 mod window_registrar;
 
 pub use adaptive_threshold::AdaptiveThreshold;
-pub use config::{ChapterConfig, DetectorKind, ThresholdConfig};
 pub use drift_gate::{marginal_information, path_information};
 pub(crate) use nearby_loops::NearbyLoops;
 pub use parts::ChapterParts;
 pub(crate) use window_registrar::WindowRegistrar;
 
+pub use crate::config::{ChapterConfig, DetectorKind, ThresholdConfig};
 pub use crate::matching::{InformationFrame, chapter_information};

@@ -1,9 +1,11 @@
 #![doc = include_str!("../README.md")]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 
+mod assembly;
 pub mod chapter;
 pub mod chi_squared;
 pub mod cloud;
+mod config;
 pub mod digest;
 pub mod graph;
 pub mod icp;

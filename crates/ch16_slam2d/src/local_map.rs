@@ -9,7 +9,6 @@
 //! the map, truncated at a miss. Free space counts as well: a point behind everything that was seen costs less
 //! than one in space that a scan has observed as free.
 
-mod config;
 mod linking;
 mod locate;
 mod pairwise_consistency;
@@ -20,7 +19,6 @@ mod registration;
 mod scan_profiles;
 mod submap_loops;
 mod submaps;
-pub(crate) mod tuning;
 mod walls;
 
 use core::ops::Range;
@@ -29,15 +27,16 @@ use std::sync::Arc;
 use nalgebra::{Point2, Vector2};
 use pr_geom::{SE2, math};
 
-pub use config::{LocalMapConfig, OdometryNoise, SubmapLoopConfig};
 pub use prior::{MotionPrior, PriorTail};
 pub use range_profile::RangeProfile;
 pub(crate) use registrar::MapRegistrar;
-pub use registration::{MapRegistration, MapRegistrationConfig, Registered};
+pub use registration::{MapRegistration, Registered};
 pub use scan_profiles::ScanProfiles;
 pub(crate) use submap_loops::SubmapLoops;
 
 use crate::cloud::{DenseMap, MAX_FLATNESS, MIN_NEIGHBORS, NearestMap, PointCloud};
+use crate::config::tuning;
+pub use crate::config::{LocalMapConfig, MapRegistrationConfig, OdometryNoise, SubmapLoopConfig};
 use crate::search::{
     LikelihoodConfig, ScanSearch, SearchMap, SearchNeighborhood, SearchResult, SearchWindow,
 };

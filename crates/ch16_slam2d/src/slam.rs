@@ -15,15 +15,12 @@
 //! Limitations: drift that no loop observes, such as the bend of an outbound path before the first
 //! loop, and a location that looks like another one within the gate.
 
-mod config;
 mod finder;
 mod front_end;
 mod join;
 mod loop_closer;
-mod mapper;
-mod motion_noise;
-
 mod map_pruning;
+mod mapper;
 mod pending;
 mod registrar;
 mod report;
@@ -41,15 +38,12 @@ use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::OptimizeError;
 
-pub use config::{LoopClosure, SlamConfig};
 pub use finder::{CloneFinder, LoopFinder, TriedLoops};
 pub use front_end::FrontEnd;
 pub use join::PiecePose;
 pub use loop_closer::LoopCloser;
-pub use mapper::{Consistency, LoopOutlierTest, Mapper};
-pub use motion_noise::MotionNoise;
-
 pub use map_pruning::{MapPruning, MapPruningConfig};
+pub use mapper::{Consistency, LoopOutlierTest, Mapper};
 pub use pending::PendingFrame;
 pub use registrar::{CloneRegistrar, ExpectedMotion, Registration, ScanRegistrar};
 pub use report::{Change, Conclusion, LoopAttempt, LoopEffect, SlamReport};
@@ -57,7 +51,7 @@ pub use snapshot::{FrontEndSnapshot, NamedNumbers, SlamSnapshot, SnapshotError, 
 pub use strategies::Strategies;
 pub use window::{ScanWindow, WindowScan};
 
-use crate::chapter::ChapterParts;
+pub use crate::config::{LoopClosure, MotionNoise, SlamConfig};
 pub use crate::graph::Keyframe;
 use crate::graph::PoseGraph;
 use crate::loops::{LoopVerification, LoopWorkspace};
@@ -77,20 +71,6 @@ pub struct Slam {
 }
 
 impl Slam {
-    /// An estimator without frames, with the strategies that `config` selects.
-    #[must_use]
-    pub fn new(config: SlamConfig) -> Self {
-        let strategies = Strategies::from_config(&config);
-        Self::with(config, strategies)
-    }
-
-    /// The chapter's estimator with custom matchers and a custom loop detector.
-    #[must_use]
-    pub fn with_parts(config: SlamConfig, parts: ChapterParts) -> Self {
-        let strategies = parts.into_strategies(&config.chapter);
-        Self::with(config, strategies)
-    }
-
     /// An estimator with custom strategies.
     #[must_use]
     pub fn with(config: SlamConfig, strategies: Strategies) -> Self {

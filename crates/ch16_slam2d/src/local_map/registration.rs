@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector2, Vector3};
 use pr_geom::{SE2, math};
 
-use super::{LocalMap, MapFit, MotionPrior};
+use super::{LocalMap, MapFit, MapRegistrationConfig, MotionPrior};
 use crate::cloud::{NearestMap, PointCloud, QueryCache};
 use crate::loops::{LoopCandidate, LoopVerification, chi_squared_gate};
 use crate::scan::MovingSweep;
@@ -16,29 +16,6 @@ const STEPS: usize = 10;
 const HUBER_M: f64 = 0.05;
 /// Smallest information of any direction, 1/m² and 1/rad²: makes the normal equations solvable.
 const RIDGE: f64 = 1e-6;
-
-/// Settings for registering and scoring scans.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MapRegistrationConfig {
-    /// Radius of the neighbours for normals of the map, m.
-    pub normal_radius_m: f64,
-    /// Largest distance of a pair in the first stage, m.
-    pub max_correspondence_m: f64,
-    /// Largest distance of a pair in the last stage, and of an inlier, m.
-    pub inlier_distance_m: f64,
-    /// Standard deviation of a point across its wall, m.
-    pub point_sigma_m: f64,
-    /// Largest number of independent points of a scan, because the errors of neighbours are correlated.
-    pub independent_points: f64,
-    /// Cost of a point in unseen space, as a share of a miss.
-    pub unseen_cost: f64,
-    /// If the score is lower, the window around the prediction is searched, 0 to 1.
-    pub good_score: f64,
-    /// Half the width of that window, m.
-    pub search_m: f64,
-    /// Half its range of headings, rad.
-    pub search_rad: f64,
-}
 
 /// A pose by least squares, and the information of its pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
 
-use super::config::SlamConfig;
 use super::registrar::{ExpectedMotion, Registration, ScanRegistrar};
 use super::snapshot::{FrontEndSnapshot, SnapshotError};
 use super::window::{ScanWindow, WindowScan};
 use crate::cloud::PointCloud;
+use crate::config::SlamConfig;
 use crate::metrics::position_error_m;
 use crate::scan::{MovingSweep, PreparedFrame, is_finite};
 

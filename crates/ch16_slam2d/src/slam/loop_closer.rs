@@ -1,9 +1,9 @@
 //! The loop closer: searches for loops at keyframes, if a search is due.
 
-use super::config::{LoopClosure, SlamConfig};
 use super::finder::{LoopFinder, TriedLoops};
 use super::mapper::Mapper;
 use super::snapshot::SnapshotError;
+use crate::config::{LoopClosure, SlamConfig};
 use crate::loops::PendingLoop;
 
 /// When loops are searched, with the strategy that finds them.

@@ -6,10 +6,10 @@ use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::{OptimizeError, StopReason};
 
-use super::config::SlamConfig;
 use super::report::{Change, LoopEffect};
 use super::snapshot::SlamSnapshot;
 use crate::cloud::PointCloud;
+use crate::config::SlamConfig;
 use crate::graph::{
     EdgeKind, EdgeView, InlierEdges, Keyframe, MarginalizeError, Marginalized, PoseGraph,
 };

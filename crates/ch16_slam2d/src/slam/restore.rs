@@ -21,14 +21,6 @@ impl Slam {
         }
     }
 
-    /// An estimator that continues from a snapshot, with the strategies of its parameters.
-    ///
-    /// # Errors
-    /// If the snapshot is inconsistent.
-    pub fn restore(snapshot: &SlamSnapshot) -> Result<Self, SnapshotError> {
-        Self::restore_with(snapshot, Strategies::from_config(&snapshot.config))
-    }
-
     /// [`Slam::restore`] with custom strategies.
     ///
     /// # Errors

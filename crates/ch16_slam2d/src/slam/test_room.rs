@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use pr_geom::SE2;
 
 use super::SlamConfig;
-use crate::local_map::LocalMapConfig;
+use crate::config::LocalMapConfig;
 use crate::scan::{Frame, LaserScan};
 
 /// Around a circle in a room of 8 m × 6 m, in steps of 9 cm; 105 of them are a lap.

@@ -4,7 +4,7 @@
 //! 1 mm at most. Its stamps are inferred, so differences below 10 mm are not significant. Numbers without a measurement
 //! say so.
 
-use crate::slam::MotionNoise;
+use super::MotionNoise;
 
 /// Radius of the neighbours for normals within one scan, m, per degree between beams. No effect.
 pub(crate) const SCAN_NORMAL_RADIUS_M: f64 = 0.5;

@@ -1,11 +1,19 @@
 //! The parameters of the estimator: those shared by both systems, and those of either.
+//!
+//! They lie below everything that computes with them; `slam`, `chapter` and `local_map` export their own.
+
+mod chapter;
+mod local_map;
+mod motion_noise;
+pub(crate) mod tuning;
 
 use pr_geom::SE2;
 
-use crate::chapter::ChapterConfig;
 use crate::graph::JacobianModel;
-use crate::local_map::LocalMapConfig;
 use crate::scan::ScanConfig;
+pub use chapter::{ChapterConfig, DetectorKind, ThresholdConfig};
+pub use local_map::{LocalMapConfig, MapRegistrationConfig, OdometryNoise, SubmapLoopConfig};
+pub use motion_noise::MotionNoise;
 
 /// Whether the back end closes loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

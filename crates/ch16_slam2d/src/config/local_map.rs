@@ -2,15 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{MapRegistrationConfig, tuning};
+use super::{MotionNoise, SlamConfig, tuning};
 use crate::graph::JacobianModel;
 use crate::scan::{LaserScan, ScanConfig};
-use crate::slam::{MotionNoise, SlamConfig};
 
 /// The parameters of the estimator for robots.
 ///
 /// One set of values for planar lasers on wheeled robots, in rooms, corridors and outdoors. Lengths are in
-/// metres. These are the numbers that an owner of a robot may know; `local_map/tuning.rs` has the others, with what
+/// metres. These are the numbers that an owner of a robot may know; `config/tuning.rs` has the others, with what
 /// chose them. `docs/robots.md` has results on recorded logs. A session file may contain former parameters, which are
 /// constants now and are ignored.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,6 +49,29 @@ pub struct SubmapLoopConfig {
     pub min_path_m: f64,
     /// Largest half width of the search window, m.
     pub max_window_m: f64,
+}
+
+/// Settings for registering and scoring scans.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapRegistrationConfig {
+    /// Radius of the neighbours for normals of the map, m.
+    pub normal_radius_m: f64,
+    /// Largest distance of a pair in the first stage, m.
+    pub max_correspondence_m: f64,
+    /// Largest distance of a pair in the last stage, and of an inlier, m.
+    pub inlier_distance_m: f64,
+    /// Standard deviation of a point across its wall, m.
+    pub point_sigma_m: f64,
+    /// Largest number of independent points of a scan, because the errors of neighbours are correlated.
+    pub independent_points: f64,
+    /// Cost of a point in unseen space, as a share of a miss.
+    pub unseen_cost: f64,
+    /// If the score is lower, the window around the prediction is searched, 0 to 1.
+    pub good_score: f64,
+    /// Half the width of that window, m.
+    pub search_m: f64,
+    /// Half its range of headings, rad.
+    pub search_rad: f64,
 }
 
 impl Default for LocalMapConfig {

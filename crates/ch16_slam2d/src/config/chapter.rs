@@ -2,13 +2,13 @@
 
 use pr_geom::SE2;
 
+use super::{LoopClosure, MotionNoise, SlamConfig};
 use crate::graph::JacobianModel;
 use crate::icp::INFORMATION_CAP;
 use crate::loops::LoopConfig;
 use crate::matching::{InformationFrame, MapConfig, MatcherKind, TrustConfig};
 use crate::places::PlaceDetectorConfig;
 use crate::scan::ScanConfig;
-use crate::slam::{LoopClosure, MotionNoise, SlamConfig};
 
 /// Radius of the neighbours for a point's normal, in cells.
 ///
@@ -93,7 +93,7 @@ impl Default for ChapterConfig {
 
 impl ChapterConfig {
     /// Noise of a motion that was measured by odometry, or predicted.
-    pub(super) fn motion_noise(&self, is_measured: bool) -> &MotionNoise {
+    pub(crate) fn motion_noise(&self, is_measured: bool) -> &MotionNoise {
         if is_measured {
             &self.odometry_noise
         } else {
