@@ -73,7 +73,7 @@ impl Candidate {
         let sweep = cloud(loop_.from_node);
         let moved = sweep.iter().map(|point| loop_.registered.transform(point));
         let error = lap.loop_error(attempt);
-        let off = loop_.belief.between(&loop_.registered);
+        let off = loop_.predicted.between(&loop_.registered);
         Self {
             submap: submap.map(|point| [point.x, point.y]).collect(),
             sweep: moved.map(|point| [point.x, point.y]).collect(),

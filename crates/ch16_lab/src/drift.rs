@@ -35,13 +35,13 @@ pub fn drawn_innovation(path: &[SE2], config: &LoopConfig, rng: &mut Rng) -> Vec
         config.drift_sigma_m,
         config.drift_sigma_rad,
     ];
-    let (mut belief, mut truth) = (SE2::identity(), SE2::identity());
+    let (mut predicted, mut truth) = (SE2::identity(), SE2::identity());
     for edge in path {
         let error = Vector3::from(sigmas.map(|sigma| rng.normal(0.0, sigma)));
-        belief = belief * *edge;
+        predicted = predicted * *edge;
         truth = truth * *edge * SE2::exp(&error);
     }
-    belief.between(&truth).log()
+    predicted.between(&truth).log()
 }
 
 /// Share of right closures over `path` that the gate rejects, of `draws` draws.

@@ -175,7 +175,7 @@ fn candidates_are_tried_in_order_up_to_the_limit_from_their_proposals() {
             let found = &attempt.verification;
             assert_eq!((found.initial, found.registered), (proposal, proposal));
             // The gate tests against the graph, not against the proposal.
-            assert!(found.belief.between(&proposal).step_size() > 30.0);
+            assert!(found.predicted.between(&proposal).step_size() > 30.0);
             assert!(matches!(
                 found.rejection,
                 Some(LoopRejection::OutsideGate(_))

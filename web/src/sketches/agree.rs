@@ -115,8 +115,8 @@ fn accepted(problem: &Problem) -> [Vec<bool>; 3] {
     };
     let config = LapConfig::default().slam.chapter.loops;
     let passes = |_: usize, factor: &Between| {
-        let belief = problem.poses()[factor.from].between(&problem.poses()[factor.to]);
-        let innovation = belief.between(&factor.measurement).log();
+        let predicted = problem.poses()[factor.from].between(&problem.poses()[factor.to]);
+        let innovation = predicted.between(&factor.measurement).log();
         let information = path_information(factor.to - factor.from, &config);
         chi_squared_gate(&innovation, &information, config.gate_chi2).passes()
     };

@@ -16,7 +16,7 @@ use super::{Shown, SketchSpec, Slider};
 
 /// Number of drawn drifts.
 const DRIFTS: usize = 200;
-/// The drawn part: distance from the belief, m, and turn away from it, degrees.
+/// The drawn part: distance from the prediction, m, and turn away from it, degrees.
 const REACH_M: f64 = 1.2;
 const REACH_DEG: f64 = 20.0;
 
@@ -114,7 +114,7 @@ fn picture(gap: usize, config: &LoopConfig) -> Panel {
         ),
         weight: Weight::Main,
         aspect: Aspect::Free,
-        x: Axis::new("distance from the belief (m)", 0.0, REACH_M),
+        x: Axis::new("distance from the prediction (m)", 0.0, REACH_M),
         y: Axis::new("turn away from it (°)", -REACH_DEG, REACH_DEG),
         layers: vec![
             Layer::points(places(&within), Mark::Dot, Tone::Prior, 2.0),
@@ -129,7 +129,7 @@ fn picture(gap: usize, config: &LoopConfig) -> Panel {
             Layer::points(vec![drawn(found)], mark, tone, 7.0),
         ],
         legend: vec![
-            LegendEntry::mark("belief", Tone::Prior, Mark::Plus),
+            LegendEntry::mark("predicted", Tone::Prior, Mark::Plus),
             LegendEntry::mark("true drifts that pass", Tone::Prior, Mark::Dot),
             LegendEntry::mark("that do not", Tone::Prediction, Mark::Triangle),
             LegendEntry::line("gate", Tone::Ink, Stroke::Dotted),

@@ -84,7 +84,7 @@ impl Between {
     fn gate(&self, left: &SE2) -> GateTest {
         let loop_ = &self.second.verification;
         let old = self.poses()[loop_.candidate.node];
-        let new = old * loop_.belief;
+        let new = old * loop_.predicted;
         let innovation = old.between(&(*left * new)).between(&loop_.registered).log();
         chi_squared_gate(&innovation, &loop_.gate_information, loop_.gate.gate_chi2)
     }

@@ -181,7 +181,7 @@ impl Site<'_> {
             GateModel::ExactMarginal => marginal_information(graph, old, new),
         };
         let (from, to) = (graph.pose(old), graph.pose(new));
-        let belief = from.between(&to);
+        let predicted = from.between(&to);
         let candidate = LoopCandidate {
             node: old,
             distance_m: position_error_m(&from, &to),
@@ -208,9 +208,9 @@ impl Site<'_> {
                 );
             }
             Claim::Truth => truth_of(old).between(&truth_of(new)),
-            Claim::SamePlace => SE2::new(0.0, 0.0, belief.theta()),
+            Claim::SamePlace => SE2::new(0.0, 0.0, predicted.theta()),
         };
-        let innovation = belief.between(&claimed).log();
+        let innovation = predicted.between(&claimed).log();
         let assumed = gate_information.unwrap_or_default();
         let gate = chi_squared_gate(&innovation, &assumed, config.gate_chi2);
         let rejected = (!gate.passes()).then_some(LoopRejection::OutsideGate(gate));
@@ -219,8 +219,8 @@ impl Site<'_> {
         LoopVerification {
             from_node: new,
             candidate,
-            belief,
-            initial: belief,
+            predicted,
+            initial: predicted,
             registered: claimed,
             rmse_m: f64::NAN,
             inliers: 0,

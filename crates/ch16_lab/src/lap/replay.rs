@@ -149,7 +149,7 @@ mod tests {
             let loop_ = &attempt.verification;
             let (old, new) = (loop_.candidate.node, loop_.from_node);
             let mut graph = lap.graph_before(attempt);
-            assert_eq!(graph.pose(old).between(&graph.pose(new)), loop_.belief);
+            assert_eq!(graph.pose(old).between(&graph.pose(new)), loop_.predicted);
             assert_eq!(
                 marginal_information(&mut graph, old, new),
                 Ok(loop_.gate_information)

@@ -114,13 +114,15 @@ fn link(
     let last = (center + HALF_VISIT).min(node - 1);
     submaps.build(mapper, center.saturating_sub(HALF_VISIT)..=last, center);
     let settings = &submaps.registration;
-    let belief = poses[center].between(&poses[node]);
+    let predicted = poses[center].between(&poses[node]);
     let stages = [settings.max_correspondence_m, settings.inlier_distance_m];
     let scan = mapper.scan(node);
-    let mut found = submaps.map.register(scan, belief, &stages, None, settings);
+    let mut found = submaps
+        .map
+        .register(scan, predicted, &stages, None, settings);
     if let Some((half_m, half_rad)) = allowed.window
         && found.fit.score < MIN_LINK_SCORE
-        && let window = SearchWindow::around(belief, half_m, half_rad)
+        && let window = SearchWindow::around(predicted, half_m, half_rad)
         && let Some(better) = submaps.map.search(scan, &window, 0.0)
     {
         found = submaps
@@ -128,7 +130,7 @@ fn link(
             .register(scan, better.best.pose, &stages, None, settings);
     }
     let (gate_information, gate_chi2) = (allowed.information, allowed.chi2);
-    let mut link = found.verification(node, visit, belief, gate_information, gate_chi2);
+    let mut link = found.verification(node, visit, predicted, gate_information, gate_chi2);
     let score = found.fit.score;
     link.rejection = if score < MIN_LINK_SCORE {
         let min_score = MIN_LINK_SCORE;

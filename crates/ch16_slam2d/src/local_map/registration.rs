@@ -42,22 +42,22 @@ pub struct MapRegistration {
 }
 
 impl MapRegistration {
-    /// This registration as a loop that started at the belief, with the gate of `gate_information`; not rejected.
+    /// This registration as a loop that started at the predicted pose, with the gate of `gate_information`; not rejected.
     pub(crate) fn verification(
         &self,
         from_node: usize,
         candidate: LoopCandidate,
-        belief: SE2,
+        predicted: SE2,
         gate_information: Matrix3<f64>,
         gate_chi2: f64,
     ) -> LoopVerification {
         let registered = self.registered.pose;
-        let innovation = belief.between(&registered).log();
+        let innovation = predicted.between(&registered).log();
         LoopVerification {
             from_node,
             candidate,
-            belief,
-            initial: belief,
+            predicted,
+            initial: predicted,
             registered,
             rmse_m: self.fit.rmse_m,
             inliers: self.fit.inliers,

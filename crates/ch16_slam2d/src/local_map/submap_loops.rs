@@ -40,7 +40,7 @@ pub(crate) struct SubmapLoops {
 /// A submap that may show the surroundings of the newest keyframes, and the uncertainty of the relative pose.
 struct Window {
     candidate: LoopCandidate,
-    belief: SE2,
+    predicted: SE2,
     covariance: Matrix3<f64>,
     half_m: f64,
     half_rad: f64,
@@ -83,7 +83,7 @@ impl SubmapLoops {
             let poses = mapper.poses();
             windows.push(Window {
                 candidate,
-                belief: poses[candidate.node].between(&poses[node]),
+                predicted: poses[candidate.node].between(&poses[node]),
                 covariance,
                 half_m,
                 half_rad: math::min(half_rad, MAX_TURN_RAD),
@@ -137,7 +137,7 @@ impl SubmapLoops {
         self.build_submap(mapper, window, lengths_m);
         let is_sure = window.half_m <= UNCONFIRMED_M;
         let (start, margin) = if is_sure {
-            (Some(window.belief), None)
+            (Some(window.predicted), None)
         } else {
             self.search(window, bundle)
         };
@@ -150,7 +150,7 @@ impl SubmapLoops {
             inlier_distance_m,
         ];
         let stages = if is_sure { &stages[..] } else { &stages[1..] };
-        let from = start.unwrap_or(window.belief);
+        let from = start.unwrap_or(window.predicted);
         let stages = if start.is_some() { stages } else { &[] };
         let found = self
             .submaps
@@ -168,7 +168,7 @@ impl SubmapLoops {
 
     /// The best pose of the window, and its margin to the best distinct one.
     fn search(&self, window: &Window, bundle: &PointCloud) -> (Option<SE2>, Option<f64>) {
-        let around = SearchWindow::around(window.belief, window.half_m, window.half_rad);
+        let around = SearchWindow::around(window.predicted, window.half_m, window.half_rad);
         // Distinct poses are searched up to twice the required margin.
         let farthest = 2.0 * MIN_MARGIN;
         match self.submaps.map.search(bundle, &around, farthest) {
@@ -203,7 +203,7 @@ impl SubmapLoops {
             ..found.verification(
                 node,
                 window.candidate,
-                window.belief,
+                window.predicted,
                 gate_information,
                 GATE_99,
             )

@@ -140,7 +140,7 @@ pub struct LoopVerification {
     /// The old node.
     pub candidate: LoopCandidate,
     /// `candidate_from_new` by the graph, T₀: the reference of the gate.
-    pub belief: SE2,
+    pub predicted: SE2,
     /// `candidate_from_new` at the start of the registration: the candidate's proposal, or T₀.
     pub initial: SE2,
     /// `candidate_from_new` by the registration, T̂.
@@ -292,8 +292,8 @@ pub fn verify_loop(
 ) -> LoopVerification {
     workspace.build_submap(view, candidate.node, config.submap_half_width);
     let center = view.poses[candidate.node];
-    let belief = center.between(&view.poses[node]);
-    let initial = candidate.proposal.unwrap_or(belief);
+    let predicted = center.between(&view.poses[node]);
+    let initial = candidate.proposal.unwrap_or(predicted);
     let tau_m = (config.radius_m / 2.0).max(config.min_tau_m);
     let answer = workspace.matcher.register(
         &view.keyframes[node].scan,
@@ -307,13 +307,13 @@ pub fn verify_loop(
     };
     let found = answer.summary;
     workspace.pairs = answer.pairs;
-    let innovation = belief.between(&found.pose).log();
+    let innovation = predicted.between(&found.pose).log();
     let assumed = gate_information.unwrap_or_default();
     let gate = chi_squared_gate(&innovation, &assumed, config.gate_chi2);
     LoopVerification {
         from_node: node,
         candidate,
-        belief,
+        predicted,
         initial,
         registered: found.pose,
         rmse_m: found.rmse_m,

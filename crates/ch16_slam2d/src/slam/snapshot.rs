@@ -196,7 +196,7 @@ impl SlamSnapshot {
             if found.from_node >= nodes || found.candidate.node >= found.from_node {
                 return Err(SnapshotError::Counter("node of a pending loop"));
             }
-            let poses = [&found.belief, &found.initial, &found.registered];
+            let poses = [&found.predicted, &found.initial, &found.registered];
             let matrices = [&found.information, &found.gate_information];
             let known = poses.into_iter().all(is_within_limits)
                 && found

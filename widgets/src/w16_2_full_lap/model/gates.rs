@@ -82,7 +82,7 @@ impl Gate {
             return None;
         }
         let at = |rho: Vector2<f64>| {
-            let pose = loop_.belief * SE2::exp(&Vector3::new(rho.x, rho.y, theta));
+            let pose = loop_.predicted * SE2::exp(&Vector3::new(rho.x, rho.y, theta));
             Vector2::new(pose.x(), pose.y())
         };
         let center = at(-drag * theta);

@@ -68,7 +68,7 @@ struct LoopShown<'a> {
 fn of_loop(runs: &Runs, shown: &LoopShown) -> Panel {
     let attempt = shown.attempt;
     let loop_ = &attempt.verification;
-    let (predicted, registered) = (loop_.belief, loop_.registered);
+    let (predicted, registered) = (loop_.predicted, loop_.registered);
     let mut layers = vec![
         Layer::points(submap(runs, shown), Mark::Dot, Tone::Prior, 1.6),
         Layer::points(
