@@ -34,7 +34,7 @@ widgets! {
     w16_6_whole_window: WholeWindow, WindowView;
     w16_7_place_recognition: PlaceRecognition, PlacesView;
     w16_8_moving_box: MovingBox, BoxView;
-    w16_9_relocalization: Relocalization, ComeBackView;
+    w16_9_relocalization: Relocalization, RelocalizationView;
     w16_10_own_robot: OwnRobot, RobotView;
     w16_11_procrustes: ProcrustesTrace, TraceView;
     w16_12_jacobians: WrongJacobians, JacobiansView;

@@ -8,9 +8,9 @@ use crate::w16_9_relocalization::model::panel;
 
 /// The layout of the widget.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct ComeBackView;
+pub struct RelocalizationView;
 
-impl View for ComeBackView {
+impl View for RelocalizationView {
     fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
         let is_wide = width >= SIDE_BY_SIDE;

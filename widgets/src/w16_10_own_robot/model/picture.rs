@@ -13,7 +13,7 @@ use super::log_state::LogState;
 use super::{OwnRobot, panel};
 use crate::w16_10_own_robot::spec::{COLOUR, Colour, LOOPS, MARKED, ShownLoops};
 use charts::{fit, sure};
-use visitor::other_log;
+use visitor::{OTHER, other_log};
 
 /// The view before there is a map, m.
 const EMPTY: Bounds = Bounds {
@@ -26,8 +26,6 @@ const RATIO: f64 = 1.5;
 const MARGIN_M: f64 = 0.5;
 /// Number of colours along the path.
 const SHADES: usize = 24;
-/// Colour of the other log's robot.
-const OTHER: Tone = Tone::Class(2);
 /// Quantile at which values are clamped: a single outlier would hide the others.
 const SCALE_QUANTILE: f64 = 0.98;
 

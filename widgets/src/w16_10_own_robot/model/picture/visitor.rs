@@ -1,10 +1,12 @@
 //! The robot of another log on the map.
 
 use pr_geom::math;
-use widget_kit::scene::{Layer, Mark, Stroke};
+use widget_kit::scene::{Layer, Mark, Stroke, Tone};
 
-use super::OTHER;
 use crate::w16_10_own_robot::model::OwnRobot;
+
+/// Colour of the other log's robot.
+pub const OTHER: Tone = Tone::Class(2);
 
 /// Size of its ellipse in standard deviations.
 const SIGMAS: f64 = 3.0;
