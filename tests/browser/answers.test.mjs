@@ -69,7 +69,7 @@ for (const student of ['', 'Βασίλης “7”']) {
 }
 
 it('the page counts attempts, and stores answers in the browser only on request', async () => {
-  await reading('?student=Ann', async (tab, server) => {
+  await reading('?student=Ann#exercise-5', async (tab, server) => {
     await isDefined(tab);
     const question = tab.locator('slam-predict[exercise="16.5a"]');
     const answer = async () => {

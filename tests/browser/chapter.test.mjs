@@ -31,6 +31,10 @@ const isSeen = (css) => {
   const { top, bottom } = document.querySelector(css).getBoundingClientRect();
   return bottom > 0 && top < innerHeight;
 };
+/** Opens the exercise that a widget is in, if it is in one. */
+const unfold = (tab, id) => tab.locator(widget(id)).evaluate((element) => element.closest('details')?.setAttribute('open', ''));
+/** Opens an exercise as a reader does. */
+const open = (tab, id) => tab.locator(`#${id} > details > summary`).click();
 const background = (tab) => tab.evaluate(() => getComputedStyle(document.body).backgroundColor);
 
 describe('the chapter', () => {
@@ -42,6 +46,7 @@ describe('the chapter', () => {
         // Widgets further down have not started.
         const later = inOrder.length - place - 1;
         assert.deepEqual((await states()).slice(place + 1), Array(later).fill('resting'));
+        await unfold(tab, id);
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
         await h.ready(tab, widget(id));
         // Without a log the drop zone stands for the picture; without its data a picture is a frame with thin lines.
@@ -150,6 +155,7 @@ describe('the chapter', () => {
 
   it('shows the answer only after the prediction', async () => {
     await reading(async (tab) => {
+      await open(tab, 'further-variants');
       const question = tab.locator('#further-variants slam-predict');
       const why = question.locator('[data-why]');
       await question.scrollIntoViewIfNeeded();
@@ -198,6 +204,7 @@ describe('the chapter', () => {
     let found = 0;
     await onEach(async (tab, inOrder) => {
       for (const id of inOrder) {
+        await unfold(tab, id);
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
         await h.ready(tab, widget(id));
         const height = await tab.evaluate((css) => document.querySelector(css).offsetHeight, widget(id));
@@ -276,6 +283,7 @@ describe('the chapter', () => {
   it('shows still pictures and the reason without scripts', async () => {
     await onEach(async (tab, inOrder, server) => {
       for (const id of inOrder) {
+        await unfold(tab, id);
         const picture = tab.locator(`${widget(id)} img`);
         await picture.scrollIntoViewIfNeeded();
         assert.ok(await picture.evaluate((image) => image.decode().then(() => image.naturalWidth > 100)), id);
@@ -291,6 +299,7 @@ describe('the chapter', () => {
 
   it('judges predictions in words, and by the number in question', async () => {
     await reading(async (tab) => {
+      await open(tab, 'exercise-5');
       const question = tab.locator('#exercise-5 slam-predict[fact="map_disagreement_m"]');
       await question.scrollIntoViewIfNeeded();
       await tab.waitForFunction(() => customElements.get('slam-predict') !== undefined);
@@ -300,6 +309,7 @@ describe('the chapter', () => {
       const answer = (at) => at.evaluate((element) => element.shadowRoot.querySelector('.answer p').textContent);
       assert.match(await answer(question), /^As you predicted\. You said: less than half of it\. It is 0\.090 m\.$/);
 
+      await open(tab, 'exercise-2');
       const rank = tab.locator('#exercise-2 slam-predict');
       await rank.scrollIntoViewIfNeeded();
       await rank.locator('input').fill('3');

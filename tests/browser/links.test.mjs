@@ -121,7 +121,7 @@ describe('a link in the text', () => {
 
   it('that scrolls away shows a button back to its sentence', async () => {
     await reading(async (tab) => {
-      const here = link(tab, '60°');
+      const here = tab.locator('.legend a.slam-link');
       await here.evaluate((a) => a.scrollIntoView({ block: 'center' }));
       await here.click();
       await tab.waitForFunction((css) => document.querySelector(css).getBoundingClientRect().top < innerHeight, widget('w16.1'));
@@ -141,7 +141,7 @@ describe('a link in the text', () => {
       const here = link(tab, 'τ = 0.1 m');
       const led = async () => {
         await here.evaluate((a) => {
-          a.closest('details').open = true;
+          for (let fold = a.closest('details'); fold; fold = fold.parentElement.closest('details')) fold.open = true;
           a.scrollIntoView({ block: 'center' });
         });
         await here.click();
@@ -169,6 +169,7 @@ describe('a link in the text', () => {
 
   it('has a back button, and so has an answer that is shown in its widget', async () => {
     await reading(async (tab) => {
+      await tab.locator('#further-variants summary').first().click();
       const question = tab.locator('#further-variants slam-predict');
       await question.scrollIntoViewIfNeeded();
       await tab.waitForFunction(() => customElements.get('slam-predict') !== undefined);

@@ -17,7 +17,7 @@ import { escapeHtml, withPolicy } from '../html.mjs';
 import { endWithOneSentence } from '../licences/allowed.mjs';
 import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
 import { colorStyle } from '../palette.mjs';
-import { frameExercises, readExercises } from './exercises.mjs';
+import { foldExercises, frameExercises, readExercises } from './exercises.mjs';
 import { addGallery } from './gallery.mjs';
 import { addListings } from './listings.mjs';
 import { placesOf, readPages, withFrame } from './pages.mjs';
@@ -60,7 +60,7 @@ await Promise.all([...pictured.map(renderPage), copyKatex()]);
 await writeNotices(metafiles).catch(endWithOneSentence);
 
 async function renderPage({ file, source, html }) {
-  const page = await addListings(addSketches(addMatch(addStills(addGallery(html))), sketches, source), root);
+  const page = await addListings(addSketches(addMatch(addStills(addGallery(foldExercises(html)))), sketches, source), root);
   await writeFile(path.join(outDir, file), withPolicy(withNames(page)));
 }
 

@@ -43,6 +43,12 @@ export function frameExercises(html, render) {
   }).sort(byId(({ name }) => name));
 }
 
+/** Folds each exercise under its title, which a link in it would make ambiguous. */
+export function foldExercises(html) {
+  return html.replace(/(<article class="exercise"[^>]*>)\s*(<h3>[\s\S]*?)(?:<a class="anchor"[^>]*>#<\/a>)?<\/h3>([\s\S]*?)<\/article>/g,
+    '$1<details><summary>$2</h3></summary><div class="exercise-body">$3</div></details></article>');
+}
+
 function choiceOf(item) {
   const { 'data-choice': choice, 'data-from': from, 'data-to': to } = attributes(item);
   return withoutUndefined({ choice, from: numberOf(from), to: numberOf(to) });

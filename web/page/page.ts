@@ -20,6 +20,7 @@ import { lightLines } from './lap/lines';
 import type { Answer } from './match/drawing';
 import { MatchFigure } from './match/figure';
 import type { SlamWidget } from '../ts/main';
+import { reveal } from '../ts/reveal';
 import { SketchFigure, type SketchSchema } from './sketch';
 import { chosenTheme, keepTheme, showTheme, type ThemeChoice } from './theme-choice';
 
@@ -39,6 +40,8 @@ const PREFETCH_MARGIN = '200% 0px';
 declare const PLACES: Places;
 
 redirectOldAddress(PLACES);
+openAddressedExercise();
+addEventListener('hashchange', openAddressedExercise);
 trackReading();
 listenToThemeButtons();
 makeScrollableFocusable(document.querySelectorAll<HTMLElement>('.math, .scroll'));
@@ -54,6 +57,14 @@ startOwnFlatCard();
 watchChallenges();
 letOpenWidgetsScroll();
 onceNear(document.querySelectorAll(NEEDS_CORE), () => void startCoreFigures());
+
+/** Opens the exercise that the address names. */
+function openAddressedExercise(): void {
+  for (const exercise of document.querySelectorAll('.exercise')) {
+    const fold = exercise.querySelector(':scope > details');
+    if (fold !== null && location.hash === `#${exercise.id}`) reveal(fold);
+  }
+}
 
 /** Loads the editor when the first place to write is opened. */
 function listenToEditors(): void {

@@ -31,6 +31,16 @@ function fitWidget(): void {
   if (widget) widget.style.maxHeight = `${innerHeight - widget.getBoundingClientRect().top - 8}px`;
 }
 
+/** Gives the pictures what the controls leave, which are higher once they are filled. */
+async function watchControls(): Promise<void> {
+  await customElements.whenDefined('slam-widget');
+  const bars = new ResizeObserver(() => dispatchEvent(new Event('resize')));
+  for (const { shadowRoot } of document.querySelectorAll('slam-widget')) {
+    const bar = shadowRoot?.querySelector('[part="bar"]');
+    if (bar) bars.observe(bar);
+  }
+}
+
 /** The note of the slide, and what follows. */
 function showNotes(): void {
   const put = (css: string, ...parts: (Node | string)[]): void => document.querySelector(css)?.replaceChildren(...parts);
@@ -95,5 +105,6 @@ addEventListener('keydown', press, { capture: true });
 const showAddress = (): void => show(Number(location.hash.slice(1)) - 1);
 addEventListener('hashchange', showAddress);
 addEventListener('resize', fitWidget);
+void watchControls();
 channel.addEventListener('message', ({ data }) => show(Number(data)));
 showAddress();

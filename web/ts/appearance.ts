@@ -8,7 +8,6 @@ import type { Parts } from './parts';
 import { PinnedPicture } from './pinned';
 import type { Pictures } from './pictures';
 import { themeOf, watchTheme, type Theme } from './theme';
-import { typeScale } from './type-scale';
 
 const reducedMotion = globalThis.matchMedia?.('(prefers-reduced-motion: reduce)');
 /** Minimum width of a picture. */
@@ -63,7 +62,6 @@ export class Appearance {
   /** Sets the appearance in a new instance. */
   prepare(widget: Widget): void {
     widget.setTheme(themeOf(this.#host));
-    widget.setTypeScale(typeScale());
     showMotion(widget);
   }
 

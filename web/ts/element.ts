@@ -22,6 +22,7 @@ import { ReservedHeight } from './reserved-height';
 import { findParam, findWidget, widgets } from './schema';
 import { State } from './state';
 import { defaultText, shorten, type Value } from './values';
+import { fitPicture } from './type-scale';
 import { unwatchVisibility, watchVisibility } from './visibility';
 import { answersTo, type Driver, isForDriver, seat } from './driver';
 import { LogMapper, deliverTo, type FileUse } from './robot/log-mapper';
@@ -405,7 +406,7 @@ export class SlamWidget extends HTMLElement {
         this.#offerControls(widget);
         this.#appearance.prepare(widget);
         if (this.#hasActed) widget.act();
-        widget.setRoom(this.#reservedHeight.room);
+        this.#fit(widget);
       },
       live: (milliseconds) => {
         this.#executeOrders();
@@ -601,8 +602,12 @@ export class SlamWidget extends HTMLElement {
   #resized(): void {
     this.#verdict.resized();
     this.#reservedHeight.fit();
-    this.#lifecycle.ask((widget) => widget.setRoom(this.#reservedHeight.room));
+    this.#lifecycle.ask((widget) => this.#fit(widget));
     this.#lifecycle.wake();
+  }
+
+  #fit(widget: Widget): void {
+    fitPicture(widget, this, this.#parts.stage.clientWidth, this.#reservedHeight.room);
   }
 
   // ---- values -------------------------------------------------------------------------------

@@ -7,6 +7,7 @@ import { keepInView } from './keep-in-view';
 import { readQuery, type LinkedState } from './links';
 import { defaultText } from './values';
 import { hideBackButton, showBackButton } from './back-button';
+import { reveal } from './reveal';
 
 /** Handles clicks on all slam-links of the document. */
 export function installLinks(): void {
@@ -35,6 +36,7 @@ function follow(link: HTMLAnchorElement): boolean {
   const timeline = linked.widget.params.find(({ kind }) => kind === 'timeline')?.id;
   if (!linked.values.some(([id]) => id === timeline)) void widget.playFromStart().catch(() => {});
   hideBackButton();
+  reveal(widget);
   if (bringIntoView(widget)) showBackButton(link, widget);
   return true;
 }
@@ -66,6 +68,7 @@ function scrollToAddressed(): void {
   if (widget?.hasAttribute('linked') !== true) return;
   // A page may hide one until it is used.
   widget.hidden = false;
+  reveal(widget);
   keepInView(widget);
 }
 

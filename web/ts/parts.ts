@@ -49,8 +49,8 @@ export function build(shadow: ShadowRoot): Parts {
   whole.textContent = 'Whole map';
   const drop = create('button', { type: 'button', class: 'drop' });
   drop.innerHTML = '<b>Drop a log of your robot here</b> or choose a file. It stays in this browser.';
-  const bar = create('div', { class: 'bar', role: 'group' });
-  const part = (name: string): HTMLElement => create('div', { class: name });
+  const bar = create('div', { class: 'bar', part: 'bar', role: 'group' });
+  const part = (name: string): HTMLElement => create('div', { class: name, part: name });
   const [transport, first, tools, verdict] = [part('transport'), part('first'), part('tools'), part('verdict')];
   const rest = create('div', { class: 'rest', id: REST, hidden: '' });
   const presets = create('div', { class: 'presets', role: 'group', 'aria-label': 'What to try' });

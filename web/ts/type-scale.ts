@@ -1,9 +1,28 @@
 // The size of text: pictures follow the page's root, as all other text of a widget does.
 
+import type { Widget } from '../pkg/glue.js';
+
 /** The root's font size of browsers by default, px. */
 const USUAL_ROOT_PX = 16;
 
 /** How much larger the page's text is than usual. */
 export function typeScale(): number {
   return parseFloat(getComputedStyle(document.documentElement).fontSize) / USUAL_ROOT_PX;
+}
+
+/** Steps by which text shrinks. */
+const STEP = 0.1;
+
+/**
+ * Sets the height that a picture may have, and the size of its text: that of the page. If the picture does not fit, its text
+ * shrinks as far as the host's `--least-type` permits, as a multiple of the usual size.
+ */
+export function fitPicture(widget: Widget, host: HTMLElement, widthPx: number, roomPx: number): void {
+  const most = typeScale();
+  const least = Math.min(most, parseFloat(getComputedStyle(host).getPropertyValue('--least-type')) || most);
+  for (let scale = most; ; scale = Math.max(scale - STEP, least)) {
+    widget.setTypeScale(scale);
+    widget.setRoom(roomPx);
+    if (scale === least || scale * widget.heightAt(widthPx / scale) <= roomPx) return;
+  }
 }
