@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import * as h from './harness.mjs';
+import { grabbingSpot } from './spots.mjs';
 
 const visit = h.visitor();
 const named = (id) => `slam-widget[name="${id}"]`;
@@ -45,6 +46,51 @@ describe('the picture', () => {
           }
           assert.deepEqual(low, []);
         }, { path: `/${page}`, options: { viewport: { width, height }, deviceScaleFactor: 1 } });
+      });
+    }
+  }
+});
+
+describe('the verdict', () => {
+  for (const [width, height] of [[1440, 900], [1280, 680], [390, 844]]) {
+    for (const page of h.PAGES.filter((file) => h.widgetsOf(file).length > 0)) {
+      it(`is not cut, neither at the end of a run nor after a drag: ${page} at ${width}×${height}`, async () => {
+        await visit('', async (tab) => {
+          const cut = [];
+          for (const id of h.widgetsOf(page)) {
+            const css = named(id);
+            const keep = async (when) => {
+              await h.quiet(tab);
+              const [words, hidden] = await tab.evaluate((name) => {
+                const line = document.querySelector(name).shadowRoot.querySelector('.verdict p');
+                return [line.textContent, line.scrollHeight - line.clientHeight];
+              }, css);
+              if (hidden > 1) cut.push(`${id} ${when}: ${hidden} px of “${words}”`);
+            };
+            await tab.locator(css).scrollIntoViewIfNeeded();
+            await h.ready(tab, css);
+            await h.quiet(tab);
+            await keep('at rest');
+            if (id === 'w16.10') {
+              await tab.evaluate((name) => document.querySelector(name).press('sample'), css);
+              await tab.waitForFunction((name) => document.querySelector(name).outcome.facts.done_percent === 100, css);
+              await keep('with a log');
+              continue;
+            }
+            await tab.evaluate((name) => document.querySelector(name).press('play'), css);
+            await keep('after its run');
+            await tab.evaluate((name) => document.querySelector(name).press('defaults'), css);
+            await tab.evaluate((name) => document.querySelector(name).scrollIntoView({ block: 'start' }), css);
+            await h.quiet(tab);
+            const [x, y] = await grabbingSpot(tab, css);
+            await tab.mouse.move(x, y);
+            await tab.mouse.down();
+            await tab.mouse.move(x + 40, y + 25, { steps: 4 });
+            await tab.mouse.up();
+            await keep('after a drag');
+          }
+          assert.deepEqual(cut, []);
+        }, { path: h.addressOf(page), options: { viewport: { width, height }, deviceScaleFactor: 1 } });
       });
     }
   }

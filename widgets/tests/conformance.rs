@@ -1,6 +1,6 @@
 //! Requirements for every widget: each test iterates over the registry.
 
-use egui::vec2;
+use egui::{Event, Modifiers, PointerButton, pos2, vec2};
 use widget_kit::invariants::{assert_reports, assert_values};
 use widget_kit::model::{Activity, Model, Motion};
 use widget_kit::param::MORE;
@@ -8,6 +8,8 @@ use widget_kit::scene::Layer;
 use widget_kit::shell::Shell;
 use widget_kit::spec::Preset;
 use widgets::registry::{MODELS, SHELLS, SPECS, find, names};
+
+use crate::support::drawn;
 
 /// States other than the defaults in which the limits of every parameter are tried.
 ///
@@ -54,6 +56,56 @@ fn a_widget_is_registered_under_its_own_name() {
     assert!(names().contains("w16.4"));
     let rejected = find("w17.1").err().unwrap();
     assert!(rejected.starts_with("there is no widget `w17.1`; there are w16.1, w16.2"));
+}
+
+#[test]
+fn the_first_press_on_the_picture_reveals_what_it_held_back() {
+    for name in ["w16.7", "w16.11"] {
+        let mut harness = drawn(name, 560.0, |shell| {
+            shell.finish_work();
+        });
+        let before = harness.state().model().scene();
+        let picture = harness.state().scene_rect().expect("a picture");
+        // A corner, where nothing is to be grabbed or selected.
+        let pos = pos2(picture.left + 3.0, picture.top + 3.0);
+        harness.event(Event::PointerMoved(pos));
+        for pressed in [true, false] {
+            harness.event(Event::PointerButton {
+                pos,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::NONE,
+            });
+            harness.run_steps(2);
+        }
+        assert_ne!(harness.state().model().scene(), before, "{name}");
+    }
+}
+
+#[test]
+fn a_legend_has_at_most_four_entries() {
+    for make in MODELS {
+        let name = make().spec().id;
+        for state in states(name) {
+            let mut model = make();
+            for (id, value) in state {
+                model.set(id, value).expect("a value in range");
+            }
+            model.finish_work();
+            let check = |model: &dyn Model| {
+                for panel in model.scene().panels {
+                    let count = panel.legend.len();
+                    assert!(count <= 4, "{name}: {} has {count}", panel.id);
+                }
+            };
+            check(model.as_ref());
+            model.set_motion(Motion::Reduced);
+            model.press("play").expect("every widget plays");
+            model.reveal();
+            model.finish_work();
+            check(model.as_ref());
+        }
+    }
 }
 
 #[test]

@@ -54,6 +54,8 @@ pub struct ProcrustesTrace {
     pairs: Pairs,
     problem: Procrustes,
     playback: PlaybackParam,
+    /// Whether the picture holds back which matrix fits best.
+    asks: bool,
 }
 
 impl Default for ProcrustesTrace {
@@ -66,6 +68,7 @@ impl Default for ProcrustesTrace {
             pairs,
             values,
             playback: PlaybackParam::along(&TURN),
+            asks: true,
         }
     }
 }
@@ -159,6 +162,10 @@ impl Model for ProcrustesTrace {
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
         interaction::drag(self, handle, at);
+    }
+
+    fn reveal(&mut self) {
+        self.asks = false;
     }
 
     fn set_motion(&mut self, motion: Motion) {

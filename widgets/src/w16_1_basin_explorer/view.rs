@@ -8,9 +8,9 @@ use crate::w16_1_basin_explorer::model::panel;
 
 /// Height of a map beside the sweeps: both maps together are as high as the sweeps alone, so nothing jumps as they
 /// enter.
-const BESIDE_PX: f32 = 126.0;
+const BESIDE_PX: f32 = 140.0;
 /// Height of the sweeps on a phone.
-const PHONE_PX: f32 = 390.0;
+const PHONE_PX: f32 = 415.0;
 /// Height of a map below the sweeps of a phone.
 const BELOW_PX: f32 = 150.0;
 

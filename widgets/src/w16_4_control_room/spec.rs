@@ -11,6 +11,9 @@ use widget_kit::{one_of, params};
 /// Ticks of a lap.
 const LAP_TICKS: f64 = lap::LAP_TICKS as f64;
 
+/// The last tick before the first loop of the canonical lap.
+const BEFORE_THE_LOOP: f64 = 91.0;
+
 /// Goes to the next event of the log.
 const NEXT_EVENT: ButtonSpec = ButtonSpec {
     id: "next-event",
@@ -43,7 +46,7 @@ params! {
     .help("The operation whose data of this tick are described; a press on a mark of the lanes selects it.");
 
     pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", LAP_TICKS)
-        .default(60.0)
+        .default(BEFORE_THE_LOOP)
         .help("The moment shown; a tick is a quarter of a second, and the marks are loops.");
 
     use SPEED;
@@ -83,7 +86,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "blurred",
             label: "Just before the first loop",
             help: "The corridor has been mapped twice, and the two passes disagree by 0.12 m.",
-            set: &[TICK.to(91.0)],
+            set: &[TICK.to(BEFORE_THE_LOOP)],
             then: &[],
         },
         Preset {

@@ -69,6 +69,8 @@ pub struct PlaceRecognition {
     places: Option<Places>,
     /// Number of graded laps so far.
     laps: u64,
+    /// Whether the picture holds back which pairs are the same place.
+    asks: bool,
 }
 
 impl Default for PlaceRecognition {
@@ -83,6 +85,7 @@ impl Default for PlaceRecognition {
             values,
             places: None,
             laps: 0,
+            asks: true,
         }
     }
 }
@@ -268,6 +271,10 @@ impl Model for PlaceRecognition {
 
     fn tap(&mut self, panel: &str, at: [f64; 2], reach: [f64; 2]) {
         interaction::tap(self, panel, at, reach);
+    }
+
+    fn reveal(&mut self) {
+        self.asks = false;
     }
 
     fn set_motion(&mut self, motion: Motion) {

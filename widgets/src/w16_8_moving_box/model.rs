@@ -34,7 +34,7 @@ use widget_kit::spec::WidgetSpec;
 use widget_kit::values::{Changed, Values};
 
 use crate::w16_8_moving_box::spec::{
-    ITERATION, MAX_SHARE, METHOD, MOVED, MOVED_M, MOVED_Y, PARAMS, SHARE, SPEC,
+    ITERATION, MAX_ITERATIONS, MAX_SHARE, METHOD, MOVED, MOVED_M, MOVED_Y, PARAMS, SHARE, SPEC,
 };
 use curves::Curves;
 
@@ -123,6 +123,11 @@ impl MovingBox {
 
     fn iteration(&self) -> usize {
         self.playback.place(&self.values, self.last() as f64) as usize
+    }
+
+    /// Whether no method has made a step, so that the picture holds back where they end.
+    fn is_before(&self) -> bool {
+        self.iteration() == 0
     }
 
     /// A run at the current iteration, or at its last one.
@@ -233,6 +238,8 @@ impl Model for MovingBox {
             return;
         }
         self.playback.pause();
+        // Where the registrations end is the answer to the drag.
+        self.values.put(&ITERATION, MAX_ITERATIONS);
         if handle.id == BOX {
             let middle = picture::box_middle(&self.scene);
             // The shift in the target's frame, whose axes are the world's.

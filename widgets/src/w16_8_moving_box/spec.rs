@@ -68,7 +68,6 @@ params! {
         .help("Seed of the range noise of the sweeps above; the curves have their own hundred seeds.");
 
     pub(super) static ITERATION: Param<f64> = Param::timeline("iteration", "iteration", MAX_ITERATIONS)
-        .default(MAX_ITERATIONS)
         .help(
             "Which iteration is shown of all three; beyond its last one a registration has converged.",
         );
@@ -102,28 +101,28 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "fifth",
             label: "A fifth of the points",
             help: "The exercise: plain is pulled after the box, trimmed and Huber hardly.",
-            set: &[ITERATION.to(0.0)],
+            set: &[],
             then: &["play"],
         },
         Preset {
             id: "most",
             label: "More than trimming drops",
             help: "At half of the points the box has more pairs than a quarter: who degrades most gracefully?",
-            set: &[SHARE.to(50.0), ITERATION.to(0.0)],
+            set: &[SHARE.to(50.0)],
             then: &["play"],
         },
         Preset {
             id: "none",
             label: "No box",
             help: "Without a box all three agree, and trimming has thrown good pairs away.",
-            set: &[SHARE.to(0.0), ITERATION.to(0.0)],
+            set: &[SHARE.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "gate",
             label: "A short τ",
             help: "With τ of 0.2 m the box has few partners, and plain is as good as the others.",
-            set: &[TAU.to(0.2), ITERATION.to(0.0)],
+            set: &[TAU.to(0.2)],
             then: &["play"],
         },
     ],

@@ -177,7 +177,7 @@ fn counts_of_one_are_singular() {
     report(&mut robot, &MapperReport::Loops(Vec::new()));
     let sentence = robot.outcome().sentence.clone();
     assert!(
-        sentence.contains("1 scan became 1 keyframe on a path of 0 m with 0 loops"),
+        sentence.contains("1 scan became 1 keyframe on a path of 0 m. It holds 0 loops"),
         "{sentence}"
     );
 }

@@ -11,6 +11,7 @@ use crate::support::fact;
 
 fn with(values: &[(&str, f64)]) -> ProcrustesTrace {
     let mut trace = ProcrustesTrace::default();
+    trace.reveal();
     for (id, value) in values {
         trace.set(id, *value).unwrap();
     }
@@ -159,9 +160,21 @@ fn every_preset_does_what_its_button_claims() {
 }
 
 #[test]
-fn it_opens_with_the_mirrored_flat_beside_the_right_one() {
-    let trace = ProcrustesTrace::default();
+fn the_mirrored_flat_and_the_waves_are_drawn_once_the_reader_acts() {
+    let mut trace = ProcrustesTrace::default();
     assert_eq!(trace.outcome().verdict, "a mirror image fits best");
     assert_eq!(title(&trace, panel::MAP_TURN), "By svd_align: det +1");
+    assert!(title(&trace, panel::MAP_UNCHECKED).ends_with("det ?"));
+    let waves = |trace: &ProcrustesTrace| {
+        let panels = trace.scene().panels;
+        let wave = panels.iter().find(|panel| panel.id == panel::TRACE);
+        let layers = wave.expect("a wave").layers.iter();
+        layers
+            .filter(|layer| matches!(layer, Layer::Line { points, .. } if points.len() > 2))
+            .count()
+    };
+    assert_eq!(waves(&trace), 0);
+    trace.reveal();
+    assert_eq!(waves(&trace), 2);
     assert!(title(&trace, panel::MAP_UNCHECKED).ends_with("det −1"));
 }

@@ -21,10 +21,8 @@ fn the_basin_map_has_a_band_at_each_spacing() {
     assert_eq!(
         names,
         [
-            "R right minimum",
             "1 one post off",
             "2 two posts off or more",
-            "W right place, wrong heading",
             "F another false minimum",
             "S stopped before it converged"
         ]

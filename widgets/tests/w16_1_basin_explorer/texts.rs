@@ -20,7 +20,7 @@ fn success_requires_position_and_heading_and_the_sentence_reports_the_wrong_one(
     assert!(sentence.contains("stopped at the limit of 30 iterations"));
     // Half of its error remains, and only the fit shows it.
     assert!(
-        sentence.contains("25.3° from the truth: rmse 0.344 m"),
+        sentence.contains("25.3° from the truth. Its rmse is 0.344 m"),
         "{sentence}"
     );
     // With hardly a pair in reach it converges where it stands: that is a wrong heading.

@@ -114,6 +114,7 @@ fn scrubbing_back_shows_what_playing_showed() {
 #[test]
 fn the_line_at_the_moment_shown_can_be_dragged_in_every_plot_over_time() {
     let mut room = ControlRoom::default();
+    room.set("t", 60.0).unwrap();
     for panel in &room.scene().panels {
         let grabbed = room.grab(panel.id, [61.0, 0.1], [3.0, 0.1]);
         assert_eq!(grabbed.is_some(), panel.x.label == "tick", "{}", panel.id);
@@ -196,7 +197,7 @@ fn the_next_event_belongs_to_the_requested_run() {
 fn the_transport_steps_resets_and_restores() {
     let mut room = ControlRoom::default();
     set(&mut room, "noise", 2.0);
-    for (button, tick) in [("step", 61.0), ("reset", 0.0), ("defaults", 60.0)] {
+    for (button, tick) in [("step", 92.0), ("reset", 0.0), ("defaults", 91.0)] {
         press(&mut room, button);
         assert_eq!(room.values().number("t"), tick, "{button}");
     }

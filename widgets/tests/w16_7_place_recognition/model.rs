@@ -19,6 +19,7 @@ fn set(been: &mut PlaceRecognition, values: &[(&str, f64)]) {
 
 fn with(values: &[(&str, f64)]) -> PlaceRecognition {
     let mut been = PlaceRecognition::default();
+    been.reveal();
     set(&mut been, values);
     been
 }
@@ -295,4 +296,25 @@ fn every_preset_shows_a_lap_with_its_grades() {
             preset.id
         );
     }
+}
+
+#[test]
+fn which_pairs_are_one_place_is_drawn_once_the_reader_acts() {
+    let mut been = PlaceRecognition::default();
+    been.finish_work();
+    let sides = |been: &PlaceRecognition| {
+        let dots = panel_of(been, panel::SCORES).layers;
+        let of_pairs = dots.iter().filter_map(|layer| match layer {
+            Layer::Points { points, tone, .. } if *tone != Tone::Posterior => Some((*tone, points)),
+            _ => None,
+        });
+        let drawn = of_pairs.filter(|(_, points)| !points.is_empty());
+        drawn
+            .map(|(tone, points)| (tone, points.iter().all(|at| at[1] > 0.0)))
+            .collect::<Vec<_>>()
+    };
+    assert!(sides(&been).iter().all(|side| *side == (Tone::Ink, true)));
+    been.reveal();
+    assert!(sides(&been).iter().all(|(tone, _)| *tone != Tone::Ink));
+    assert!(sides(&been).iter().any(|(_, is_above)| !is_above));
 }

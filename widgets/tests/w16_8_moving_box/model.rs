@@ -1,14 +1,17 @@
 //! The moving box without its picture.
 
 use widget_kit::model::{Activity, Model};
-use widget_kit::scene::{Layer, Stroke, Tone};
+use widget_kit::palette::Theme;
+use widget_kit::scene::{Layer, Scene, Stroke, Tone};
+use widget_kit::svg::{scene_places, scene_svg};
 use widgets::w16_8_moving_box::model::{MovingBox, panel};
-use widgets::w16_8_moving_box::spec::SPEC;
+use widgets::w16_8_moving_box::spec::{MAX_ITERATIONS, SPEC};
 
 use crate::support::{fact, panel_of};
 
 fn with(values: &[(&str, f64)]) -> MovingBox {
     let mut moving = MovingBox::default();
+    moving.set("iteration", MAX_ITERATIONS).unwrap();
     for (id, value) in values {
         moving.set(id, *value).unwrap();
     }
@@ -194,4 +197,92 @@ fn no_pull_leaves_the_picture_wherever_the_box_is() {
             }
         }
     }
+}
+
+#[test]
+fn where_the_methods_end_is_drawn_once_the_box_is_dragged_or_a_step_is_made() {
+    let answers = |moving: &MovingBox| {
+        let panels = moving.scene().panels;
+        let layers = panels.iter().flat_map(|panel| &panel.layers);
+        let of_methods = layers.filter(|layer| {
+            matches!(
+                layer,
+                Layer::Line {
+                    tone: Tone::Series(_),
+                    ..
+                } | Layer::Points {
+                    tone: Tone::Series(_),
+                    ..
+                }
+            )
+        });
+        of_methods.count()
+    };
+    let mut stepped = MovingBox::default();
+    stepped.work();
+    assert_eq!(answers(&stepped), 0);
+    stepped.press("step").unwrap();
+    assert!(answers(&stepped) > 5);
+    let mut dragged = MovingBox::default();
+    let handle = dragged.grab(panel::BIAS, [20.0, 1.0], [1.0, 1.0]).unwrap();
+    dragged.drag(handle, [30.0, 1.0]);
+    assert!(answers(&dragged) > 5);
+}
+
+/// Positions of the methods and of their names on the room's picture at the width of a phone's panel, px.
+fn methods_and_names(moving: &MovingBox) -> Vec<([f32; 2], [f32; 2])> {
+    const WIDTH_PX: f32 = 342.0;
+    let room = panel_of(moving, panel::ROOM);
+    let labels = room.layers.iter().filter_map(|layer| match layer {
+        Layer::Label { at, text, .. } => Some((*at, text.clone())),
+        _ => None,
+    });
+    let (points, names): (Vec<_>, Vec<_>) =
+        labels.map(|(at, name)| ((panel::ROOM, at), name)).unzip();
+    let scene = Scene { panels: vec![room] };
+    let places = scene_places(&scene, WIDTH_PX, &points);
+    let svg = scene_svg(&scene, "", "", WIDTH_PX, Theme::Light);
+    let written = |name: &String| {
+        let (before, _) = svg.rsplit_once(&format!(">{name}</text>"))?;
+        let (_, element) = before.rsplit_once("<text ")?;
+        let number = |attribute: &str| {
+            let (_, rest) = element.split_once(attribute)?;
+            rest.split('"').next()?.parse::<f32>().ok()
+        };
+        Some([number("x=\"")?, number("y=\"")?])
+    };
+    let pairs = places.into_iter().zip(&names);
+    pairs
+        .filter_map(|(place, name)| Some((place, written(name)?)))
+        .collect()
+}
+
+#[test]
+fn the_name_of_a_method_stands_nearest_to_its_own_mark() {
+    let mut named = 0;
+    for share in [10.0, 20.0, 30.0, 40.0, 50.0] {
+        for moved_y in [-0.6, 0.0, 0.3] {
+            let shown = methods_and_names(&with(&[("share", share), ("moved-y", moved_y)]));
+            let (marks, names): (Vec<_>, Vec<_>) = shown.into_iter().unzip();
+            for (own, [x, y]) in names.into_iter().enumerate() {
+                // From a line of text, half as wide as Huber's name.
+                let away = |[left, top]: [f32; 2]| {
+                    let aside = ((left - x).abs() - 13.0).max(0.0);
+                    aside.hypot((top - y).abs())
+                };
+                let nearest = marks
+                    .iter()
+                    .map(|mark| away(*mark))
+                    .fold(f32::MAX, f32::min);
+                // 3 px: marks that touch.
+                let is_own = away(marks[own]) <= nearest + 3.0;
+                assert!(
+                    is_own,
+                    "{own} at {share} %, {moved_y} m: {marks:?}, {x}, {y}"
+                );
+                named += 1;
+            }
+        }
+    }
+    assert!(named > 30, "{named}");
 }

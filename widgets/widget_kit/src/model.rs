@@ -137,6 +137,9 @@ pub trait Model {
         Vec::new()
     }
 
+    /// Shows what the picture holds back while it asks its question: the reader has acted.
+    fn reveal(&mut self) {}
+
     /// Sets whether animations run or jump to their end.
     fn set_motion(&mut self, _motion: Motion) {}
 }

@@ -170,8 +170,8 @@ pub enum Layer {
         /// Meaning.
         tone: Tone,
     },
-    /// Text in ink near a point, placed where it overlaps no other text of the panel, in the order of the layers,
-    /// and left out if there is no such position.
+    /// Text in ink near a point, placed where it overlaps no other text of the panel and no other labelled point is
+    /// nearer, in the order of the layers, and left out if there is no such position.
     Label {
         /// The labelled point.
         at: [f64; 2],

@@ -173,9 +173,10 @@ impl Shell {
         self.theme = theme;
     }
 
-    /// Records that the reader has acted: the verdict takes the place of the question.
+    /// Records that the reader has acted: the verdict takes the place of the question, and the picture shows the answer.
     pub fn act(&mut self) {
         self.first.is_over = true;
+        self.model.reveal();
         self.touch();
     }
 

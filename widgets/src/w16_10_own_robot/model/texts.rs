@@ -184,7 +184,7 @@ fn finished(robot: &LogState) -> String {
         plural(robot.keyframes.len(), "pose")
     };
     format!(
-        "{}: {source} on a path of {:.0} m with {}; {doubted}.",
+        "{}: {source} on a path of {:.0} m. It holds {}; {doubted}.",
         robot.name,
         path_length_m(robot),
         plural(closed, "loop")

@@ -19,18 +19,28 @@ const CURVE_STEP_DEG: u32 = 4;
 pub fn scene(trace: &ProcrustesTrace) -> Scene {
     let best = trace.problem.best(Handedness::Turn);
     let (kind, unchecked) = trace.problem.unchecked();
+    let aligned = map(
+        panel::MAP_TURN,
+        "By svd_align",
+        Handedness::Turn,
+        best.theta_rad,
+    );
+    let mut unchecked = map(panel::MAP_UNCHECKED, "Unchecked", kind, unchecked.theta_rad);
+    if trace.asks {
+        unchecked.title = "Unchecked: det ?".to_owned();
+        unchecked.layers = vec![question([0.0, 0.0], "turn or mirror image?")];
+    }
     Scene {
-        panels: vec![
-            points(trace),
-            curves(trace),
-            map(
-                panel::MAP_TURN,
-                "By svd_align",
-                Handedness::Turn,
-                best.theta_rad,
-            ),
-            map(panel::MAP_UNCHECKED, "Unchecked", kind, unchecked.theta_rad),
-        ],
+        panels: vec![points(trace), curves(trace), aligned, unchecked],
+    }
+}
+
+/// Words in place of the answer.
+fn question(at: [f64; 2], words: &str) -> Layer {
+    Layer::Text {
+        at,
+        text: words.to_owned(),
+        tone: Tone::Ink,
     }
 }
 
@@ -125,17 +135,25 @@ fn curves(trace: &ProcrustesTrace) -> Panel {
         )
     };
     let turn = trace.values.get(&TURN);
-    let mut layers = vec![
-        Layer::line(
-            vec![[turn, -top], [turn, top]],
-            Stroke::Solid,
-            Tone::Faint,
-            2.5,
-        ),
-        level(first + second, Stroke::Dotted),
-        level(first - second, Stroke::Dashed),
-    ];
-    for kind in Handedness::ALL {
+    let mut layers = vec![Layer::line(
+        vec![[turn, -top], [turn, top]],
+        Stroke::Solid,
+        Tone::Faint,
+        2.5,
+    )];
+    if trace.asks {
+        let middle = [0.5 * WHOLE_TURN_DEG, 0.5 * top];
+        layers.push(question(middle, "whose wave is higher?"));
+    } else {
+        layers.push(level(first + second, Stroke::Dotted));
+        layers.push(level(first - second, Stroke::Dashed));
+    }
+    let answers = if trace.asks {
+        &[][..]
+    } else {
+        &Handedness::ALL
+    };
+    for kind in answers.iter().copied() {
         let at = |degrees: u32| {
             let degrees = f64::from(degrees);
             [degrees, problem.trace_m2(kind, degrees.to_radians())]
@@ -164,7 +182,8 @@ fn curves(trace: &ProcrustesTrace) -> Panel {
         title: "The trace over the angle".to_owned(),
         weight: Weight::Half,
         aspect: Aspect::Free,
-        x: Axis::new("angle tried (°)", 0.0, WHOLE_TURN_DEG),
+        // The handle is whole at either end.
+        x: Axis::new("angle tried (°)", -10.0, WHOLE_TURN_DEG + 10.0),
         y: Axis::new("tr(M H) (m²)", -top, top),
         layers,
         legend: vec![

@@ -50,9 +50,9 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
     let here = problem.trace_m2(trace.tried(), trace.theta_rad());
     let winner = problem.winner();
     let consequence = match winner {
-        Winner::Turn => "an unchecked decomposition finds the turn, too",
-        Winner::Mirror => "an unchecked decomposition mirrors the map",
-        Winner::Tie => "an unchecked decomposition may return either",
+        Winner::Turn => "An unchecked decomposition finds the turn, too",
+        Winner::Mirror => "An unchecked decomposition mirrors the map",
+        Winner::Tie => "An unchecked decomposition may return either",
     };
     let standing = match winner {
         Winner::Turn => Assessment::Good,
@@ -63,7 +63,7 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
         standing,
         verdict: verdict(winner).to_owned(),
         sentence: format!(
-            "the trace reaches {:.2} m² by a turn, {:.2} m² by a mirror image: {consequence}",
+            "the trace reaches {:.2} m² by a turn, {:.2} m² by a mirror image. {consequence}",
             turn.trace_m2, mirror.trace_m2,
         ),
         facts: vec![

@@ -56,19 +56,14 @@ pub fn outcome(widget: &WrongJacobians) -> Outcome {
             standing: Assessment::Neutral,
             verdict: "on the way".to_owned(),
             sentence: format!(
-                "step {} of {}: {}",
+                "step {} of {}. {}",
                 widget.step(),
                 widget.last(),
-                now(widget)
+                distances(widget)
             ),
             facts: facts(widget),
         };
     }
-    let parts = widget.solved.runs.iter().zip(NAMES).map(|(run, name)| {
-        let still = if run.rests { "" } else { "still " };
-        format!("{name} {still}{:.3} m", run.end().off_m)
-    });
-    let parts: Vec<_> = parts.collect();
     let good = (0..NAMES.len()).all(|solver| ends_at_the_optimum(widget, solver));
     Outcome {
         standing: if good {
@@ -77,7 +72,7 @@ pub fn outcome(widget: &WrongJacobians) -> Outcome {
             Assessment::Bad
         },
         verdict: verdict(widget).to_owned(),
-        sentence: format!("off the optimum at the end: {}", parts.join(", ")),
+        sentence: distances(widget),
         facts: facts(widget),
     }
 }
@@ -123,12 +118,29 @@ fn facts(widget: &WrongJacobians) -> Vec<Fact> {
         .collect()
 }
 
-/// `exact 0.000 m off, approximate 0.012 m off, …` at the current step.
-fn now(widget: &WrongJacobians) -> String {
-    let each = NAMES.iter().enumerate();
-    let distances =
-        each.map(|(solver, name)| format!("{name} {:.3} m off", widget.shown(solver).off_m));
-    distances.collect::<Vec<_>>().join(", ")
+/// `Off by: approximate 12 mm, … At the optimum: exact, …` at the current step.
+fn distances(widget: &WrongJacobians) -> String {
+    let (far, near): (Vec<_>, Vec<_>) = (0..NAMES.len())
+        .map(|solver| (solver, (1e3 * widget.shown(solver).off_m).round()))
+        .partition(|(_, off_mm)| *off_mm > 0.0);
+    let off = far.into_iter().map(|(solver, off_mm)| {
+        let is_stuck = widget.is_over() && !widget.solved.runs[solver].rests;
+        let still = if is_stuck { "still " } else { "" };
+        format!("{} {still}{off_mm:.0} mm", NAMES[solver])
+    });
+    let at = near.into_iter().map(|(solver, _)| NAMES[solver].to_owned());
+    let list = |head: &str, names: Vec<String>| {
+        (!names.is_empty()).then(|| format!("{head}: {}", names.join(", ")))
+    };
+    let sentences = [
+        list("Off by", off.collect()),
+        list("At the optimum", at.collect()),
+    ];
+    sentences
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join(". ")
 }
 
 pub fn summary(widget: &WrongJacobians) -> String {

@@ -244,14 +244,21 @@ pub fn spot_of(values: &Values) -> [f64; 2] {
     [at.heading_deg, offset(axis(values), &at)]
 }
 
+/// The minimum as the map has it: one that is right but for its heading is another false one.
+pub fn in_the_map(minimum: Minimum) -> Minimum {
+    match minimum {
+        Minimum::WrongHeading => Minimum::Other,
+        other => other,
+    }
+}
+
 /// Index of a minimum's colour.
 pub fn class(minimum: Minimum) -> u8 {
     match minimum {
         Minimum::Right => 0,
         Minimum::QuarterTurn | Minimum::OnePost => 1,
         Minimum::HalfTurn | Minimum::MorePosts => 2,
-        Minimum::Other => 3,
-        Minimum::WrongHeading => 4,
+        Minimum::Other | Minimum::WrongHeading => 3,
         Minimum::NotConverged => 6,
     }
 }

@@ -9,7 +9,7 @@ use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::basins::{class, spot_of, start_spot};
+use super::basins::{class, in_the_map, spot_of, start_spot};
 use super::edge;
 use super::interaction::turn_handle;
 use super::paths::split_at_half_turn;
@@ -22,6 +22,8 @@ use crate::w16_1_basin_explorer::spec::{EDGE, OFFSET_SPAN_M, Phase};
 /// One point in this many leaves a trail.
 const POINTS_PER_TRAIL: usize = 11;
 
+/// Radius of the mark of a sensor, pixels.
+const SENSOR_PX: f32 = 6.0;
 /// Distance of a handle's word from its center, pixels.
 const HANDLE_CLEAR_PX: f32 = 12.0;
 
@@ -125,6 +127,12 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
         "turn".to_owned(),
         HANDLE_CLEAR_PX,
     ));
+    let truth = scene.truth();
+    layers.push(Layer::label(
+        [truth.x(), truth.y()],
+        "truth".to_owned(),
+        SENSOR_PX,
+    ));
     let [x, y] = frame(explorer);
     let entry = |label: &str, tone, mark, stroke| LegendEntry {
         label: label.to_owned(),
@@ -134,15 +142,16 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     };
     let mut legend = vec![
         entry("target", Tone::Measurement, Some(Mark::Cross), None),
-        entry("source now", Tone::Posterior, Some(Mark::Square), None),
-        entry("truth", Tone::Truth, Some(Mark::Plus), Some(Stroke::Dashed)),
-        entry("without a pair", Tone::Series(0), Some(Mark::Circle), None),
+        entry("source", Tone::Posterior, Some(Mark::Square), None),
     ];
+    if ours.is_none() {
+        legend.push(entry("no pair", Tone::Series(0), Some(Mark::Circle), None));
+    }
     if iteration > 0 {
-        legend.push(entry("first guess", Tone::Prior, Some(Mark::Circle), None));
+        legend.push(entry("start", Tone::Prior, Some(Mark::Circle), None));
     } else if explorer.previews_end() {
         legend.push(entry(
-            "where it ends",
+            "end",
             Tone::Posterior,
             Some(Mark::Dot),
             Some(Stroke::Dotted),
@@ -244,7 +253,7 @@ fn sensor(pose: SE2, mark: Mark, tone: Tone) -> Layer {
         pose: pose.to_array(),
         mark,
         tone,
-        radius_px: 6.0,
+        radius_px: SENSOR_PX,
     }
 }
 
@@ -295,7 +304,10 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
     }
     let mut legend = edge::legend(&explorer.values);
     if !covered {
-        let minima = Minimum::at_place(explorer.scene.place());
+        // The right minimum is named in the map.
+        let minima = Minimum::at_place(explorer.scene.place()).into_iter();
+        let minima =
+            minima.filter(|minimum| *minimum != Minimum::Right && in_the_map(*minimum) == *minimum);
         legend.extend(minima.map(|minimum| LegendEntry {
             label: format!("{} {}", minimum.letter(), minimum.name()),
             tone: Tone::Class(class(minimum)),
@@ -352,7 +364,10 @@ fn letters(explorer: &BasinExplorer, of: IcpVariant) -> impl Iterator<Item = Lay
     let letters = explorer.basins.letters(of, &explorer.values);
     letters.into_iter().map(|(at, minimum)| Layer::Text {
         at,
-        text: minimum.letter().to_string(),
+        text: match in_the_map(minimum) {
+            Minimum::Right => "right".to_owned(),
+            other => other.letter().to_string(),
+        },
         tone: Tone::Class(class(minimum)),
     })
 }

@@ -44,8 +44,8 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
         standing: standing(end.ending),
         verdict: end.ending.name().to_owned(),
         sentence: format!(
-            "From {:.0}° off, {by} ends {:.2} m and {:.1}° from the truth: rmse {:.3} m over {} \
-             pairs; it {} {}{beside}.",
+            "From {:.0}° off, {by} ends {:.2} m and {:.1}° from the truth. Its rmse is {:.3} m over \
+             {} pairs; it {} {}{beside}.",
             explorer.values.get(&HEADING),
             end.error_m,
             end.error_deg.abs(),

@@ -119,7 +119,7 @@ fn tick_sentence(runs: &Runs, tick: usize) -> String {
 fn lap_sentence(runs: &Runs) -> String {
     let summary = runs.graph.summary();
     format!(
-        "lap finished with {}: end error {:.2} m, rms over the keyframes {:.2} m, largest {:.2} m, map disagreement {:.2} m",
+        "{}, the end is {:.2} m off. Rms over the keyframes {:.2} m, largest {:.2} m, map disagreement {:.2} m",
         loops_in_words(runs.graph.lap().graph_summary.loops),
         summary.keyframe_end_error_m,
         summary.keyframe_rms_m,

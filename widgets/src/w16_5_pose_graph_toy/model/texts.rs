@@ -53,7 +53,7 @@ pub fn outcome(toy: &PoseGraphToy) -> Outcome {
         format!("before the first step χ² is {:.3}{worst}", shown.chi2)
     } else {
         format!(
-            "step {step} of {last} takes χ² from {:.3} to {:.3} and moves a pose by {:.2} m + rad at most{worst}",
+            "step {step} of {last} takes χ² from {:.3} to {:.3}. It moves a pose by {:.2} m + rad at most{worst}",
             before.chi2, shown.chi2, shown.moved
         )
     };

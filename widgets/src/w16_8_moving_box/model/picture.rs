@@ -58,23 +58,14 @@ fn room(moving: &MovingBox) -> Panel {
             Tone::Posterior,
         ),
     ];
-    // A beam that leaves through the door ends outside.
-    let pulls = pulls(moving).filter(|pull| is_in_picture(pull.from));
-    let pulls: Vec<Pull> = pulls.collect();
-    let larger = largest(&pulls);
-    for (on_box, tone) in [(false, TONES[method]), (true, ON_BOX)] {
-        let pulls = pulls.iter().filter(|pull| pull.on_box == on_box);
-        let arrows = pulls.flat_map(|pull| arrow(pull.from, pull.by_m * larger));
-        layers.push(Layer::line(arrows.collect(), Stroke::Solid, tone, 0.75));
-    }
+    let title = if moving.is_before() {
+        "Two sweeps of a room: the box moved in between".to_owned()
+    } else {
+        let larger = add_pulls(moving, &mut layers);
+        add_errors(moving, &mut layers);
+        format!("Each pair pulls: pulls ×{larger}, errors ×{ERRORS_LARGER}")
+    };
     layers.push(Layer::pose(truth.to_array(), Mark::Plus, Tone::Truth, 6.0));
-    for (k, name) in BoxMethods::NAMES.into_iter().enumerate() {
-        let [x, y] = BoxScene::error_m(&moving.shown(k).pose);
-        let at = [truth.x() + ERRORS_LARGER * x, truth.y() + ERRORS_LARGER * y];
-        let radius_px = if k == method { 6.0 } else { 4.0 };
-        layers.push(Layer::points(vec![at], MARKS[k], TONES[k], radius_px));
-        layers.push(Layer::label(at, name.to_owned(), 8.0));
-    }
     layers.push(Layer::Handle {
         at: box_middle(scene),
         tone: Tone::Ink,
@@ -82,7 +73,7 @@ fn room(moving: &MovingBox) -> Panel {
     });
     Panel {
         id: panel::ROOM,
-        title: format!("Each pair pulls: pulls ×{larger}, errors ×{ERRORS_LARGER}"),
+        title,
         weight: Weight::Main,
         aspect: Aspect::Equal,
         x: Axis::hidden(-HALF_M[0], HALF_M[0]),
@@ -94,6 +85,32 @@ fn room(moving: &MovingBox) -> Panel {
             LegendEntry::mark("the true place of the sensor", Tone::Truth, Mark::Plus),
         ],
         color_bar: None,
+    }
+}
+
+/// Adds an arrow for the pull of each pair. Returns how many times as long they are drawn.
+fn add_pulls(moving: &MovingBox, layers: &mut Vec<Layer>) -> f64 {
+    // A beam that leaves through the door ends outside.
+    let pulls = pulls(moving).filter(|pull| is_in_picture(pull.from));
+    let pulls: Vec<Pull> = pulls.collect();
+    let larger = largest(&pulls);
+    for (on_box, tone) in [(false, TONES[moving.method()]), (true, ON_BOX)] {
+        let pulls = pulls.iter().filter(|pull| pull.on_box == on_box);
+        let arrows = pulls.flat_map(|pull| arrow(pull.from, pull.by_m * larger));
+        layers.push(Layer::line(arrows.collect(), Stroke::Solid, tone, 0.75));
+    }
+    larger
+}
+
+/// Adds where each method sets the sensor, with its error enlarged.
+fn add_errors(moving: &MovingBox, layers: &mut Vec<Layer>) {
+    let truth = BoxScene::truth();
+    for (k, name) in BoxMethods::NAMES.into_iter().enumerate() {
+        let [x, y] = BoxScene::error_m(&moving.shown(k).pose);
+        let at = [truth.x() + ERRORS_LARGER * x, truth.y() + ERRORS_LARGER * y];
+        let radius_px = if k == moving.method() { 6.0 } else { 4.0 };
+        layers.push(Layer::points(vec![at], MARKS[k], TONES[k], radius_px));
+        layers.push(Layer::label(at, name.to_owned(), 8.0));
     }
 }
 
@@ -190,9 +207,17 @@ fn bias(moving: &MovingBox) -> Panel {
         Tone::Faint,
         2.5,
     )];
-    for (k, line) in lines.into_iter().enumerate() {
-        layers.push(Layer::points(line.clone(), MARKS[k], TONES[k], 3.0));
-        layers.push(Layer::line(line, Stroke::Solid, TONES[k], 1.75));
+    if moving.is_before() {
+        layers.push(Layer::Text {
+            at: [0.5 * MAX_SHARE, 0.5 * y.max],
+            text: "who is pulled off, and how far?".to_owned(),
+            tone: Tone::Ink,
+        });
+    } else {
+        for (k, line) in lines.into_iter().enumerate() {
+            layers.push(Layer::points(line.clone(), MARKS[k], TONES[k], 3.0));
+            layers.push(Layer::line(line, Stroke::Solid, TONES[k], 1.75));
+        }
     }
     let progress = if curves.progress() < 1.0 {
         format!(

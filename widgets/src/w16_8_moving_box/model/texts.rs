@@ -50,14 +50,14 @@ pub fn outcome(moving: &MovingBox) -> Outcome {
     let parts = BoxMethods::NAMES
         .iter()
         .enumerate()
-        .map(|(k, name)| format!("{name} {:.3} m off", error_m(moving, k)));
+        .map(|(k, name)| format!("{name} {:.0} mm", 1e3 * error_m(moving, k)));
     let parts: Vec<_> = parts.collect();
     let rmse = moving.runs[0].end.rmse_m;
     Outcome {
         standing: standing(moving),
         verdict: verdict(moving).to_owned(),
         sentence: format!(
-            "With {share:.0} % of the points on the box, registration ends with {}; the rmse of plain is {rmse:.3} m.",
+            "With {share:.0} % of the points on the box they end off by {}. The rmse of plain is {rmse:.3} m.",
             parts.join(", ")
         ),
         facts: facts(moving),

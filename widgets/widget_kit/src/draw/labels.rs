@@ -36,16 +36,17 @@ pub fn labels(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: T
         }
     }
     let plot = to.plot();
-    for layer in &panel.layers {
-        let Layer::Label { at, text, clear_px } = layer else {
-            continue;
-        };
-        let px = to.to_px(*at);
-        if !is_finite(at) || !plot.contains(px) {
-            continue;
+    let labels = panel.layers.iter().filter_map(|layer| match layer {
+        Layer::Label { at, text, clear_px } if is_finite(at) && plot.contains(to.to_px(*at)) => {
+            Some((to.to_px(*at), text, clear_px))
         }
+        _ => None,
+    });
+    let labels: Vec<_> = labels.collect();
+    let points: Vec<Px> = labels.iter().map(|(px, ..)| *px).collect();
+    for (px, text, clear_px) in labels {
         let width = surface.text_width(text, TextSize::Small);
-        if let Some(place) = place(px, width, *clear_px, &plot, &taken) {
+        if let Some(place) = place(px, width, *clear_px, &plot, &taken, &points) {
             leader(surface, px, &place, *clear_px, theme);
             surface.rect(place, palette::tone(theme, Tone::Paper));
             words(surface, place.center(), text, Tone::Ink, theme);
@@ -56,19 +57,36 @@ pub fn labels(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: T
 
 /// A line from the point to a text that had to move away from it.
 fn leader(surface: &mut dyn Surface, at: Px, place: &PxRect, clear_px: f32, theme: Theme) {
-    let near = [
-        at[0].clamp(place.left, place.right()),
-        at[1].clamp(place.top, place.bottom()),
-    ];
-    let [x, y] = [near[0] - at[0], near[1] - at[1]];
-    if (x * x + y * y).sqrt() > clear_px + LINE {
+    if distance(at, place) > clear_px + LINE {
         let pen = Pen::solid(palette::tone(theme, Tone::Ink), 1.0);
-        surface.line(&[at, near], pen);
+        surface.line(&[at, nearest(at, place)], pen);
     }
 }
 
-/// The nearest free rectangle for text of that width; `None` if there is none.
-fn place(at: Px, width: f32, clear_px: f32, plot: &PxRect, taken: &[PxRect]) -> Option<PxRect> {
+/// The spot of a rectangle nearest to a point.
+fn nearest([x, y]: Px, place: &PxRect) -> Px {
+    [
+        x.clamp(place.left, place.right()),
+        y.clamp(place.top, place.bottom()),
+    ]
+}
+
+fn distance(at: Px, place: &PxRect) -> f32 {
+    let near = nearest(at, place);
+    let [x, y] = [near[0] - at[0], near[1] - at[1]];
+    (x * x + y * y).sqrt()
+}
+
+/// The nearest free rectangle for text of that width to which no other of the labelled points is nearer; `None` if there
+/// is none.
+fn place(
+    at: Px,
+    width: f32,
+    clear_px: f32,
+    plot: &PxRect,
+    taken: &[PxRect],
+    points: &[Px],
+) -> Option<PxRect> {
     let reach = |away: f32| {
         let beyond = [clear_px + 0.5 * width + ROOM, clear_px + 0.5 * LINE];
         SIDES.map(|[x, y]| {
@@ -80,12 +98,17 @@ fn place(at: Px, width: f32, clear_px: f32, plot: &PxRect, taken: &[PxRect]) -> 
     };
     let on_it = (clear_px == 0.0).then_some(at);
     let around_it = (0..=MAX_LINES).flat_map(|lines| reach(f32::from(lines) * LINE));
-    on_it.into_iter().chain(around_it).find_map(|middle| {
+    let mut free = on_it.into_iter().chain(around_it).filter_map(|middle| {
         let place = within(around(middle, width), plot)?;
         let covers = place.contains(at) && clear_px > 0.0;
         let is_free = !covers && taken.iter().all(|other| !overlap(&place, other));
         is_free.then_some(place)
-    })
+    });
+    let is_its_own = |place: &PxRect| {
+        let own = distance(at, place);
+        points.iter().all(|other| distance(*other, place) >= own)
+    };
+    free.find(is_its_own)
 }
 
 /// The rectangle of a text centered at `at`.

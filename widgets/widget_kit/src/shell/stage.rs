@@ -52,7 +52,9 @@ impl Shell {
             let to = draw::transform(panel, &placed.layout, origin, &window);
             let effect = self.pointer.panel(ui, panel, &to, self.model.as_mut());
             touched |= effect == Touched::Yes;
-            self.first.is_over |= self.pointer.has_pressed();
+            if self.pointer.has_pressed() && !self.first.is_over {
+                self.act();
+            }
             reserved.push(Reserved {
                 placed,
                 origin,

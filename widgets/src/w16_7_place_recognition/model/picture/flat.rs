@@ -62,7 +62,8 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
         ]);
         ends[k] = at;
     }
-    if study.is_loop(pair)
+    if !been.asks
+        && study.is_loop(pair)
         && let Some(judged) = study.pair(pair[0], pair[1])
         && judged.distances[been.detector()] <= been.threshold(been.detector())
     {

@@ -1,4 +1,5 @@
-//! The distances of all pairs as stacks of dots, the same places above and all others below, and the threshold.
+//! The distances of all pairs as stacks of dots, and the threshold. Once the reader has acted, the same places are above
+//! and all others below.
 
 use pr_geom::order_by;
 use widget_kit::scene::{Aspect, Axis, Layer, Mark, Panel, Stroke, Tone, Weight};
@@ -43,9 +44,10 @@ pub fn dots(been: &PlaceRecognition) -> Vec<Dot> {
     let mut dot = |pair: &ch16_lab::places::PlacePair| {
         let distance = pair.distances[detector];
         let stack = ((distance / width) as usize).min(STACKS - 1);
-        let height: &mut f64 = &mut heights[usize::from(pair.is_same)][stack];
+        let is_above = been.asks || pair.is_same;
+        let height: &mut f64 = &mut heights[usize::from(is_above)][stack];
         *height += 1.0;
-        let up = if pair.is_same { 1.0 } else { -1.0 };
+        let up = if is_above { 1.0 } else { -1.0 };
         Dot {
             nodes: pair.nodes,
             at: [(stack as f64 + 0.5) * width, up * *height],
@@ -66,7 +68,14 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
         aspect: Aspect::Free,
         x: Axis::new(distance_label(been.detector()), 0.0, 1.0),
         y: Axis::hidden(-1.0, 1.0),
-        ..empty(panel::SCORES, "Left of the line: called the same place")
+        ..empty(
+            panel::SCORES,
+            if been.asks {
+                "Each dot is a pair of views: which are one place?"
+            } else {
+                "Left of the line: called the same place"
+            },
+        )
     };
     let Some(places) = &been.places else {
         return panel;
@@ -81,7 +90,11 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
     panel.y = Axis::hidden(low, high);
     let radius_px = (0.45 * HEIGHT_PX / (high - low)).clamp(RADIUS_PX[0], RADIUS_PX[1]) as f32;
     for is_same in [true, false] {
-        let tone = if is_same { SAME } else { OTHER };
+        let tone = match is_same {
+            _ if been.asks => Tone::Ink,
+            true => SAME,
+            false => OTHER,
+        };
         for is_called in [false, true] {
             let mark = if is_called { Mark::Dot } else { Mark::Circle };
             let here = dots
@@ -121,16 +134,12 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
             tone: Tone::Ink,
             label: "drag the threshold",
         },
-        Layer::label(
-            [0.93 * largest, 0.85 * high],
-            "the same place".to_owned(),
-            0.0,
-        ),
-        Layer::label(
-            [0.93 * largest, 0.85 * low],
-            "another place".to_owned(),
-            0.0,
-        ),
     ]);
+    if !been.asks {
+        for (name, end) in [("the same place", high), ("another place", low)] {
+            let at = [0.93 * largest, 0.85 * end];
+            panel.layers.push(Layer::label(at, name.to_owned(), 0.0));
+        }
+    }
     panel
 }
