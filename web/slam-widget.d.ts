@@ -419,7 +419,7 @@ export interface WidgetButtons {
   'w16.4': 'play' | 'step' | 'reset' | 'next-event' | 'defaults' | 'watch' | 'blurred' | 'rebuilt' | 'noisy' | 'wrong-loop' | 'open';
   'w16.5': 'play' | 'step' | 'reset' | 'defaults' | 'three-poses' | 'stiff' | 'unpinned' | 'square' | 'tangled';
   'w16.6': 'play' | 'step' | 'reset' | 'defaults' | 'quarter-turn' | 'upside-down' | 'wide' | 'without-home' | 'coarse';
-  'w16.7': 'play' | 'step' | 'reset' | 'defaults' | 'lap';
+  'w16.7': 'play' | 'step' | 'reset' | 'defaults' | 'lap' | 'ring';
   'w16.8': 'play' | 'step' | 'reset' | 'defaults' | 'fifth' | 'most' | 'none' | 'gate';
   'w16.9': 'play' | 'step' | 'reset' | 'defaults' | 'room' | 'corridor' | 'forget' | 'twins';
   'w16.10': 'open' | 'play' | 'sample' | 'cancel' | 'doubt' | 'previous' | 'next' | 'turn' | 'mark' | 'add' | 'west' | 'east' | 'north' | 'south' | 'unpin' | 'reference' | 'locate' | 'locate-sample' | 'change' | 'other' | 'save' | 'defaults' | 'sure' | 'error' | 'where';

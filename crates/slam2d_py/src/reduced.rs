@@ -1,8 +1,8 @@
 //! Pickling: a result is reduced to its fields, what can be computed again to its arguments.
 
+use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use pyo3::{PyClass, PyTypeInfo};
 
 /// What `__reduce__` returns: the function that restores, and its arguments.
 pub type Reduced<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
@@ -50,7 +50,8 @@ pub fn by_attributes<'py, T: Restorable>(thing: &Bound<'py, T>) -> PyResult<Redu
     for name in T::ATTRIBUTES {
         fields.set_item(name, thing.as_any().getattr(*name)?)?;
     }
-    by_keywords(<T as PyTypeInfo>::NAME, fields)
+    let class = thing.as_any().get_type().name()?.to_string();
+    by_keywords(&class, fields)
 }
 
 /// Reduces an object to keywords of the function that makes it.

@@ -112,11 +112,20 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     },
     params: PARAMS,
     buttons: &[PLAY, ONE_KEYFRAME, RESET, DEFAULTS],
-    presets: &[Preset {
-        id: "lap",
-        label: "Drive the lap",
-        help: "Each new keyframe is compared with all older ones, and a column is added.",
-        set: &[OLDER.to(MOST_ALIKE), NEWEST.to(0.0)],
-        then: &["play"],
-    }],
+    presets: &[
+        Preset {
+            id: "lap",
+            label: "Drive the lap",
+            help: "Each new keyframe is compared with all older ones, and a column is added.",
+            set: &[OLDER.to(MOST_ALIKE), NEWEST.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "ring",
+            label: "A ring of corridors",
+            help: "Four corridors that look alike: every look-alike is a trap here.",
+            set: &[WORLD.to("ring"), OLDER.to(MOST_ALIKE)],
+            then: &[],
+        },
+    ],
 };

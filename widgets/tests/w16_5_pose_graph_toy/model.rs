@@ -43,6 +43,14 @@ fn one_step_takes_the_chapters_three_poses_from_0_36_to_0_12() {
 }
 
 #[test]
+fn a_loop_that_disagrees_by_twice_as_much_costs_four_times_as_much() {
+    // χ² is 0.36 at the chapter's gap of 0.6 m.
+    for (gap_m, chi2) in [(0.0, 0.0), (0.3, 0.09), (1.2, 1.44)] {
+        assert!((fact(&with(&[("gap", gap_m)]), "chi2") - chi2).abs() < 1e-12);
+    }
+}
+
+#[test]
 fn a_stiff_loop_gives_way_less() {
     let left = |stiffness: f64| {
         let toy = with(&[("stiffness", stiffness), ("steps", 20.0)]);

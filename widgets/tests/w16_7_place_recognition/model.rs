@@ -36,6 +36,24 @@ fn its_curves_are_those_of_the_command_line() {
     }
 }
 
+#[test]
+fn every_preset_does_what_its_button_claims() {
+    let pressed = |preset: &str| {
+        let mut been = PlaceRecognition::default();
+        been.press(preset).unwrap();
+        been.finish_work();
+        been
+    };
+    assert_eq!(pressed("lap").values().number("new"), 0.0);
+    let area = |been: &PlaceRecognition, detector| fact(been, &format!("{detector}_area"));
+    let (lap, ring) = (with(&[]), pressed("ring"));
+    // Every look-alike is a trap, for each detector that goes by looks.
+    for detector in ["histogram", "context"] {
+        assert!(area(&ring, detector) < 0.5 * area(&lap, detector));
+    }
+    assert_eq!(SPEC.presets.len(), 2, "a preset without a test");
+}
+
 /// A precision says nothing without its base rate: in the ring it is lower for the perfect detector, too.
 #[test]
 fn a_precision_stands_beside_that_of_a_guess_and_of_a_perfect_detector() {

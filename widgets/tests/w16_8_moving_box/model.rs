@@ -43,6 +43,22 @@ fn a_short_tau_does_the_work_of_trimming() {
 }
 
 #[test]
+fn trimming_without_a_dropped_pair_is_plain() {
+    let [plain, trimmed, _] = errors(&with(&[("share", 20.0), ("dropped", 0.0)]));
+    assert_eq!(trimmed, plain);
+}
+
+#[test]
+fn a_huber_width_beyond_the_move_of_the_box_pulls_like_plain() {
+    let [plain, _, wide] = errors(&with(&[("share", 20.0), ("huber", 0.3)]));
+    let [_, _, narrow] = errors(&with(&[("share", 20.0), ("huber", 0.01)]));
+    assert!(
+        wide > 0.8 * plain && narrow < 0.5 * wide,
+        "{narrow}, {wide}, {plain}"
+    );
+}
+
+#[test]
 fn a_box_that_did_not_move_causes_no_bias() {
     for error in errors(&with(&[("share", 40.0), ("moved", 0.0)])) {
         assert!(error < 0.02, "{error}");
