@@ -1,5 +1,6 @@
 //! Requirements for every widget: each test iterates over the registry.
 
+use bench_support::timed;
 use egui::{Event, Modifiers, PointerButton, pos2, vec2};
 use widget_kit::invariants::{assert_reports, assert_values};
 use widget_kit::model::{Activity, Model, Motion};
@@ -79,6 +80,27 @@ fn the_first_press_on_the_picture_reveals_what_it_held_back() {
             harness.run_steps(2);
         }
         assert_ne!(harness.state().model().scene(), before, "{name}");
+    }
+}
+
+/// A page stays responsive if no task takes longer, ms.
+const LONGEST_TASK_MS: f64 = 100.0;
+
+/// In CPU time of the thread, which the load of the machine does not change.
+#[test]
+fn a_widget_starts_in_tasks_of_at_most_a_tenth_of_a_second() {
+    for (make, spec) in SHELLS.into_iter().zip(SPECS) {
+        let (mut shell, start_ms) = timed(make);
+        let (_, scene_ms) = timed(|| shell.model().scene());
+        let pieces = (0..400).map(|_| timed(|| shell.model_mut().work()).1);
+        let piece_ms = pieces.fold(0.0, f64::max);
+        for (what, ms) in [
+            ("start", start_ms),
+            ("picture", scene_ms),
+            ("piece", piece_ms),
+        ] {
+            assert!(ms < LONGEST_TASK_MS, "{}: {what} takes {ms} ms", spec.id);
+        }
     }
 }
 

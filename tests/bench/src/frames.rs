@@ -104,8 +104,11 @@ pub fn workloads() -> Vec<Workload> {
     ]
 }
 
+/// A widget whose reader has acted, so that its picture holds nothing back.
 fn widget(name: &str) -> Shell {
-    widgets::registry::find(name).expect("a widget of the chapter")()
+    let mut shell = widgets::registry::find(name).expect("a widget of the chapter")();
+    shell.act();
+    shell
 }
 
 /// The whole window in cells of 10 cm: its searches end soon under the counter, and its picture has the same

@@ -8,10 +8,10 @@ use widget_kit::view::{Arrangement, Column, PANEL_GAP, Row, Slot, View};
 const BESIDE: f32 = 440.0;
 
 /// Width and height of the relief: its steps have to be seen.
-const RELIEF_PX: f32 = 400.0;
+const RELIEF_PX: f32 = 368.0;
 
 /// Height of the ground beside the relief: with its axes it is as high.
-const TALL_PX: f32 = 340.0;
+const TALL_PX: f32 = 308.0;
 const LOW_PX: f32 = 110.0;
 
 /// The relief with the ground under its ball, the rest below.
