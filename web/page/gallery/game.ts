@@ -17,7 +17,7 @@ export function startGame(game: HTMLElement, widget: SlamWidget): void {
   press('[data-undo]', () => void widget.press('take-back'));
   press('[data-drive]', () => {
     widget.set('edit', 'off');
-    void widget.playFromStart();
+    void widget.press('reset').then(() => widget.press('play'));
   });
   press('[data-all]', (button) => button.setAttribute('aria-expanded', String(game.classList.toggle('all'))));
   widget.addEventListener('slam-change', show);
