@@ -31,8 +31,6 @@ const isSeen = (css) => {
   const { top, bottom } = document.querySelector(css).getBoundingClientRect();
   return bottom > 0 && top < innerHeight;
 };
-/** Opens the exercise that a widget is in, if it is in one. */
-const unfold = (tab, id) => tab.locator(widget(id)).evaluate((element) => element.closest('details')?.setAttribute('open', ''));
 /** Opens an exercise as a reader does. */
 const open = (tab, id) => tab.locator(`#${id} > details > summary`).click();
 const background = (tab) => tab.evaluate(() => getComputedStyle(document.body).backgroundColor);
@@ -46,7 +44,7 @@ describe('the chapter', () => {
         // Widgets further down have not started.
         const later = inOrder.length - place - 1;
         assert.deepEqual((await states()).slice(place + 1), Array(later).fill('resting'));
-        await unfold(tab, id);
+        await h.unfold(tab, widget(id));
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
         await h.ready(tab, widget(id));
         // Without a log the drop zone stands for the picture; without its data a picture is a frame with thin lines.
@@ -204,7 +202,7 @@ describe('the chapter', () => {
     let found = 0;
     await onEach(async (tab, inOrder) => {
       for (const id of inOrder) {
-        await unfold(tab, id);
+        await h.unfold(tab, widget(id));
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
         await h.ready(tab, widget(id));
         const height = await tab.evaluate((css) => document.querySelector(css).offsetHeight, widget(id));
@@ -283,7 +281,7 @@ describe('the chapter', () => {
   it('shows still pictures and the reason without scripts', async () => {
     await onEach(async (tab, inOrder, server) => {
       for (const id of inOrder) {
-        await unfold(tab, id);
+        await h.unfold(tab, widget(id));
         const picture = tab.locator(`${widget(id)} img`);
         await picture.scrollIntoViewIfNeeded();
         assert.ok(await picture.evaluate((image) => image.decode().then(() => image.naturalWidth > 100)), id);

@@ -220,6 +220,42 @@ describe('a custom flat', () => {
   });
 });
 
+describe('the game', () => {
+  for (const [width, height] of [[1440, 900], [1280, 680], [390, 844]]) {
+    it(`shows the flat, tools and Drive on one screen, and no other control, at ${width}×${height}`, async () => {
+      await visit('', async (tab) => {
+        await h.ready(tab);
+        await h.quiet(tab);
+        const { share, bottom, others } = await tab.evaluate(() => {
+          const { shadowRoot } = document.querySelector('slam-widget');
+          const box = shadowRoot.querySelector('canvas').getBoundingClientRect();
+          const controls = [...shadowRoot.querySelectorAll(':is(button, input, select, summary):not([aria-hidden])')];
+          return { share: box.height / innerHeight, bottom: box.bottom, others: controls.filter((one) => one.checkVisibility()).length };
+        });
+        assert.equal(others, 0);
+        assert.ok(bottom <= height, `the flat ends at ${bottom}`);
+        assert.ok(share >= 0.65, `the flat has ${share} of the screen`);
+        assert.equal(await tab.getByRole('button', { name: 'Pencil' }).getAttribute('aria-pressed'), 'true');
+      }, { path: '/break.html', options: { viewport: { width, height } } });
+    });
+  }
+
+  it('takes a tool in hand, and drives the robot when asked to', async () => {
+    await visit('', async (tab) => {
+      await h.ready(tab);
+      const tool = (name) => tab.locator('.game-tools').getByRole('button', { name });
+      await tool('Eraser').click();
+      assert.equal(await get(tab, 'edit'), 'remove');
+      assert.deepEqual([await tool('Pencil').getAttribute('aria-pressed'), await tool('Eraser').getAttribute('aria-pressed')], ['false', 'true']);
+      await tool('Drive').click();
+      assert.equal(await get(tab, 'edit'), 'off');
+      await tab.waitForFunction(() => document.querySelector('slam-widget').get('t') > 0);
+      await tool('More').click();
+      await tab.locator('slam-widget').getByRole('slider').first().waitFor();
+    }, { path: '/break.html' });
+  });
+});
+
 describe('laps that break', () => {
   const LARGEST_BYTES = 6_000;
 

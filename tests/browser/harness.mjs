@@ -209,6 +209,11 @@ export function visitor() {
   return visit;
 }
 
+/** Opens the exercise that an element is in, if it is in one. */
+export function unfold(page, selector) {
+  return page.locator(selector).evaluate((element) => element.closest('details')?.setAttribute('open', ''));
+}
+
 /** Waits until a widget has drawn its first frame. */
 export function ready(page, selector = 'slam-widget') {
   return page.waitForFunction((css) => document.querySelector(css)?.state === 'running'

@@ -9,6 +9,7 @@ import type { Building } from './building/drawing';
 import { watchChallenges } from './challenges';
 import { addCopyButtons } from './copy';
 import { DecideFigure } from './decide';
+import { startGame } from './gallery/game';
 import { watchOwnFlat } from './gallery/own';
 import { type Places, redirectOldAddress } from './redirects';
 import { LapPlayer } from './lap/player';
@@ -53,7 +54,7 @@ void startReplay('#lap', LAP_STORY_FILE, (figure, story: Story) => new LapPlayer
 void startReplay('#building', BUILDING_FILE, (figure, story: Building) => new BuildingFigure(figure, story));
 startLapsFigures();
 lightLines();
-startOwnFlatCard();
+startFlatGame();
 watchChallenges();
 letOpenWidgetsScroll();
 onceNear(document.querySelectorAll(NEEDS_CORE), () => void startCoreFigures());
@@ -146,11 +147,13 @@ function letOpenWidgetsScroll(): void {
   }
 }
 
-/** Shows a card for a flat that the reader has drawn. */
-function startOwnFlatCard(): void {
+/** The game: tools, and a card for a flat that the reader has drawn. */
+function startFlatGame(): void {
   const lap = document.querySelector<SlamWidget>('slam-widget[name="w16.2"]');
-  const gallery = document.querySelector<HTMLElement>('.gallery');
-  if (lap !== null && gallery !== null) watchOwnFlat(lap, gallery);
+  const [game, gallery, says] = ['.game', '.gallery', '.game-says'].map((css) => document.querySelector<HTMLElement>(css));
+  if (lap === null || !game || !gallery || !says) return;
+  startGame(game, lap);
+  watchOwnFlat(lap, gallery, says);
 }
 
 /** Shows the reading progress as a thin bar, and the current section in the contents list. */

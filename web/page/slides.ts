@@ -104,7 +104,8 @@ document.querySelector('[data-notes]')?.addEventListener('click', openNotes);
 addEventListener('keydown', press, { capture: true });
 const showAddress = (): void => show(Number(location.hash.slice(1)) - 1);
 addEventListener('hashchange', showAddress);
-addEventListener('resize', fitWidget);
+// Before the widgets, which read the height that they have.
+addEventListener('resize', fitWidget, { capture: true });
 void watchControls();
 channel.addEventListener('message', ({ data }) => show(Number(data)));
 showAddress();

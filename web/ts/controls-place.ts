@@ -3,9 +3,9 @@
 import type { Parts } from './parts';
 
 /** Puts the controls at the end of the picture's own part, if the canvas goes on below it. */
-export function placeControls({ controls, stage }: Parts, stageHeight: number): void {
+export function placeControls({ controls, rest, stage }: Parts, stageHeight: number): void {
   const wasSplit = controls.style.top !== '';
-  const isSplit = stageHeight < stage.clientHeight - 1;
+  const isSplit = !rest.hidden && stageHeight < stage.clientHeight - 1;
   if (!isSplit) {
     if (wasSplit) controls.style.top = controls.style.marginBottom = '';
     return;

@@ -43,7 +43,7 @@ export function build(shadow: ShadowRoot): Parts {
   const picture = create('img', { class: 'picture', alt: '', loading: 'lazy' });
   const progress = create('progress', { max: '1', hidden: '', 'aria-label': 'Loading the widget' });
   const note = create('div', { class: 'note-box', role: 'status' });
-  const claim = create('p', { class: 'claim' });
+  const claim = create('p', { class: 'claim', part: 'claim' });
   const view = create('div', { class: 'view' });
   const whole = create('button', { type: 'button', class: 'whole', hidden: '' });
   whole.textContent = 'Whole map';

@@ -17,8 +17,8 @@ interface Result {
   readonly outcome: { readonly facts: Facts };
 }
 
-/** Shows the card before the gallery whenever a lap of a drawn flat is seen to its end. */
-export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement): void {
+/** Shows the score, and the card before the gallery, whenever a lap of a drawn flat is seen to its end. */
+export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement, says: HTMLElement): void {
   const card = document.createElement('aside');
   card.className = 'card own-card';
   card.setAttribute('aria-label', 'Your flat');
@@ -36,10 +36,14 @@ export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement): void {
     // Another result may have come meanwhile.
     if (ask !== asked) return;
     card.hidden = !isShown;
+    says.textContent = '';
+    says.classList.toggle('unnoticed', isShown && isUnnoticed(facts));
     if (!isShown) return;
     const points = score(facts);
     record = Math.max(record, points);
-    fill(card, widget, svg, `Score ${points.toFixed(1)}, best ${record.toFixed(1)}`, sentence(facts));
+    const [title, words] = [`Score ${points.toFixed(1)}, best ${record.toFixed(1)}`, sentence(facts)];
+    says.textContent = `${title}. ${words}`;
+    fill(card, widget, svg, title, words);
   };
   widget.addEventListener('slam-result', (event) => void show((event as CustomEvent<Result>).detail.outcome));
 }
