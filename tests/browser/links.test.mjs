@@ -271,3 +271,19 @@ describe('on a narrow screen', () => {
     }, { viewport: { width: 390, height: 844 }, sees: true });
   });
 });
+
+describe('a folded exercise', () => {
+  it('opens for the address that names it, and for one that sets its widget', async () => {
+    const isOpen = (tab, id) => tab.waitForFunction((name) => document.querySelector(`#${name} > details`).open, id);
+    await visit('', async (tab) => {
+      await isOpen(tab, 'exercise-2');
+      assert.equal(await tab.locator('#exercise-5 > details').getAttribute('open'), null);
+      await tab.evaluate(() => { location.hash = 'exercise-5'; });
+      await isOpen(tab, 'exercise-5');
+    }, { path: '/index.html#exercise-2' });
+    await visit('', async (tab) => {
+      await isOpen(tab, 'exercise-3');
+      await h.ready(tab, widget('w16.12'));
+    }, { path: '/index.html?w=16.12&bias=3' });
+  });
+});

@@ -110,37 +110,24 @@ const small = (tab) => tab.evaluate(() => {
   return found;
 });
 
-/** Waits until nothing of the widget on show has to be scrolled to, and returns its place; null without one. */
-async function settled(tab) {
-  const css = 'main > .shown slam-widget';
-  if ((await tab.locator(css).count()) === 0) return null;
-  await h.ready(tab, css);
-  await tab.waitForFunction((name) => {
-    const { scrollHeight, clientHeight } = document.querySelector(name);
-    return scrollHeight <= clientHeight + 1;
-  }, css);
-  return tab.locator(css).evaluate((widget) => {
-    const { top, bottom } = widget.getBoundingClientRect();
-    return { top, bottom, share: widget.shadowRoot.querySelector('canvas').clientHeight / innerHeight };
-  });
-}
-
-for (const [width, height] of [[1280, 720], [1440, 900], [1920, 1080]]) {
-  it(`slides.html fits each widget and each question on a screen of ${width}×${height}, in letters of 24 pixels, and nothing scrolls`, async () => {
-    await visit('', async (tab) => {
-      const count = await tab.locator('main > section').count();
-      for (let k = 1; k <= count; k++) {
-        await tab.evaluate((number) => { location.hash = String(number); }, k);
-        await tab.waitForFunction((number) => document.querySelectorAll('main > section')[number - 1].classList.contains('shown'), k);
-        const title = await shownTitle(tab);
-        const box = await settled(tab);
-        if (box !== null) {
-          assert.ok(box.top >= 0 && box.bottom <= height, `${title}: ${JSON.stringify(box)}`);
-          assert.ok(box.share > 0.5, `${title}: the picture has ${box.share} of the height`);
-        }
-        assert.equal(await tab.evaluate(() => document.documentElement.scrollHeight), height, title);
-        assert.deepEqual(await small(tab), [], title);
+it('slides.html fits each widget and each question on the screen of a projector, in letters of 24 pixels', async () => {
+  await visit('', async (tab) => {
+    const count = await tab.locator('main > section').count();
+    for (let k = 1; k <= count; k++) {
+      await tab.evaluate((number) => { location.hash = String(number); }, k);
+      await tab.waitForFunction((number) => document.querySelectorAll('main > section')[number - 1].classList.contains('shown'), k);
+      const title = await shownTitle(tab);
+      const css = 'main > .shown slam-widget';
+      if ((await tab.locator(css).count()) === 1) {
+        await h.ready(tab, css);
+        const box = await tab.locator(css).evaluate((widget) => {
+          const { top, bottom } = widget.getBoundingClientRect();
+          return { top, bottom, height: innerHeight };
+        });
+        assert.ok(box.top >= 0 && box.bottom <= box.height, `${title}: ${JSON.stringify(box)}`);
       }
-    }, { ...SLIDES, options: { viewport: { width, height } } });
-  });
-}
+      assert.equal(await tab.evaluate(() => document.documentElement.scrollHeight), 720, title);
+      assert.deepEqual(await small(tab), [], title);
+    }
+  }, { ...SLIDES, options: { viewport: { width: 1280, height: 720 } } });
+});
