@@ -27,7 +27,7 @@ pub use rays::rays;
 /// The first bytes of a session.
 pub const MAGIC: [u8; 8] = *b"SLAM2D\r\n";
 /// The version that is written and read.
-pub const VERSION: u32 = 6;
+pub const VERSION: u32 = 5;
 /// Default name of a session in the folder of a run.
 pub const FILE_NAME: &str = "session.slam2d";
 /// Larger files are rejected before they are read, bytes: 150,000 keyframes.

@@ -49,6 +49,7 @@ pub struct SlamSnapshot {
     /// The pending loops, in order.
     pub pending: Vec<PendingLoop>,
     /// What is left to search.
+    #[serde(default)]
     pub searches: LoopSearches,
     /// Estimate, window and threshold.
     pub front_end: FrontEndSnapshot,

@@ -349,11 +349,11 @@ fn foreign_files_are_distinguished_from_damaged_sessions() {
         (b"SLAM2D\r\n", "x ends at byte 8 of 20"),
         (
             &newer,
-            "x is a session of version 7, but this program reads version 6",
+            "x is a session of version 7, but this program reads version 5",
         ),
         (
             &older,
-            "x is a session of version 1, but this program reads version 6",
+            "x is a session of version 1, but this program reads version 5",
         ),
         (&longer, "x continues after its end at byte"),
     ] {
