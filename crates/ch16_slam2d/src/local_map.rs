@@ -21,7 +21,6 @@ mod scan_profiles;
 mod submap_loops;
 mod submaps;
 mod walls;
-mod window_search;
 
 use core::ops::Range;
 use std::sync::Arc;
@@ -221,12 +220,10 @@ impl LocalMap {
         window: &SearchWindow,
         margin: f64,
     ) -> Option<SearchResult> {
-        window_search(self.search_map()?, scan, window, margin)?.run()
-    }
-
-    /// The map of [`LocalMap::search`].
-    fn search_map(&self) -> Option<Arc<SearchMap>> {
-        Some(Arc::new(SearchMap::build(&self.cloud, SEARCH_GRID).ok()?))
+        let map = Arc::new(SearchMap::build(&self.cloud, SEARCH_GRID).ok()?);
+        let search = ScanSearch::new(map, scan, window, &SearchNeighborhood::default()).ok()?;
+        let search = search.with_min_score(MIN_SEARCH_SCORE);
+        search.with_margin(margin).run()
     }
 
     /// Whether any scan has observed a point as free, newest scans first.
@@ -280,18 +277,6 @@ impl LocalMap {
         let (sin, cos) = math::sin_cos(0.5 * math::atan2(2.0 * xy, xx - yy));
         Some(Vector2::new(-sin, cos))
     }
-}
-
-/// The search of [`LocalMap::search`], before its first step.
-fn window_search(
-    map: Arc<SearchMap>,
-    scan: &PointCloud,
-    window: &SearchWindow,
-    margin: f64,
-) -> Option<ScanSearch> {
-    let search = ScanSearch::unbounded(map, scan, window, &SearchNeighborhood::default()).ok()?;
-    let search = search.with_min_score(MIN_SEARCH_SCORE);
-    Some(search.with_margin(margin))
 }
 
 #[cfg(test)]

@@ -13,7 +13,6 @@ mod candidates;
 mod config;
 mod detector;
 mod gate;
-mod loop_searches;
 mod pending_loop;
 mod verify;
 
@@ -21,7 +20,6 @@ pub use candidates::{LoopCandidate, detect_loop_candidates, detect_visits};
 pub use config::{GateModel, LoopConfig};
 pub use detector::{CloneDetector, LoopDetector, LoopQuery, NearbyDetector};
 pub use gate::{GateTest, InnovationGate, chi_squared_gate};
-pub use loop_searches::{LoopSearches, LoopWindow};
 pub use pending_loop::PendingLoop;
 pub use verify::{
     Agreement, KeyframeView, LoopRejection, LoopVerification, LoopWorkspace, verify_loop,

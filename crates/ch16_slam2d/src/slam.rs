@@ -139,13 +139,12 @@ impl Slam {
         Ok(PendingFrame::new(frame.stamp_s, registration, new_keyframe))
     }
 
-    /// Second part: searches for loops.
+    /// Second part: searches for loops at a new keyframe.
     pub fn verify_loops(&mut self, pending: &mut PendingFrame) {
-        let is_keyframe = pending.new_keyframe().is_some();
-        let tried = self
-            .loop_closer
-            .find(&mut self.mapper, &self.config, is_keyframe);
-        pending.add(self.frames - 1, tried);
+        if pending.new_keyframe().is_some() {
+            let tried = self.loop_closer.find(&mut self.mapper, &self.config);
+            pending.add(self.frames - 1, tried);
+        }
     }
 
     /// Third part: adds the edges of the accepted loops and optimizes; reverts them if the graph cannot be

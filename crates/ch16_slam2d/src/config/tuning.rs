@@ -83,8 +83,6 @@ pub(crate) const MAX_TURN_RAD: f64 = 0.5;
 pub(crate) const MIN_LOOP_SCORE: f64 = 0.6;
 /// Smallest margin of the best pose to the best distinct one. No effect.
 pub(crate) const MIN_MARGIN: f64 = 0.03;
-/// Number of boxes and poses of a wider window that are evaluated at a scan: about a millisecond.
-pub(crate) const EVALUATIONS: u64 = 2000;
 /// A loop within a window of this half width needs no confirmation, m. No effect.
 pub(crate) const UNCONFIRMED_M: f64 = 1.0;
 /// Otherwise it waits for confirmation over this path length, m. No effect.

@@ -1,65 +1,65 @@
 //! Loop closure for robots: registers the newest keyframes together on submaps of older ones.
 //!
-//! Candidates are submaps within the covariance of the relative pose in the graph. A loop in a window of more than a
-//! metre, which is searched over several scans, needs a margin to every distinct pose, and waits for confirmation by
-//! another one along the path. Loops that contradict the graph need two others, and then the outlier test runs over all
-//! loops.
+//! Candidates are submaps within the covariance of the relative pose in the graph. If the window is smaller than a
+//! metre, registration starts at the graph's relative pose; otherwise the whole window is searched by branch and
+//! bound, the best pose needs a margin to every distinct one, and the loop waits for confirmation by another one
+//! along the path. Loops that contradict the graph need two others, and then the outlier test runs over all loops.
 //!
 //! Sources: Hess et al., "Real-time loop closure in 2D LIDAR SLAM", 2016, for keyframes on submaps; Olson,
 //! "Recognizing places using spectrally clustered local matches", 2009, for loops that agree.
 
-use pr_geom::math;
+use nalgebra::Matrix3;
+use pr_geom::{SE2, math};
 use pr_optim::OptimizeError;
 
 use super::pairwise_consistency::are_consistent;
 use super::submaps::Submaps;
 use super::tuning::{
-    AGREEING_CONTRADICTING, AGREEING_EXPECTED, EVALUATIONS, EVERY_KEYFRAMES, MAX_TURN_RAD,
-    MIN_SEPARATION_M, PENDING_DISTANCE_M, SUBMAP_MARGIN_M, SUBMAPS, WINDOW_FLOOR_M,
-    WINDOW_FLOOR_RAD, WINDOW_SIGMAS,
+    AGREEING_CONTRADICTING, AGREEING_EXPECTED, BUNDLE, BUNDLE_CELL_M, EVERY_KEYFRAMES, HALF_SUBMAP,
+    LOOP_FLOOR, MAX_TURN_RAD, MIN_LOOP_SCORE, MIN_MARGIN, MIN_SEPARATION_M, PENDING_DISTANCE_M,
+    SUBMAP_MARGIN_M, SUBMAPS, UNCONFIRMED_M, WINDOW_FLOOR_M, WINDOW_FLOOR_RAD, WINDOW_SIGMAS,
 };
-use super::window_search::{WindowSearch, is_sure};
-use super::{LocalMapConfig, SubmapLoopConfig, linking};
+use super::{LocalMapConfig, MIN_SEARCH_SCORE, MapRegistration, SubmapLoopConfig, linking};
+use crate::chi_squared::GATE_99;
+use crate::cloud::PointCloud;
 use crate::loops::{
-    Agreement, LoopSearches, LoopVerification, LoopWindow, PendingLoop, detect_visits,
+    Agreement, LoopCandidate, LoopRejection, LoopVerification, PendingLoop, detect_visits,
 };
+use crate::metrics::position_error_m;
+use crate::search::SearchWindow;
 use crate::slam::{Consistency, LoopFinder, Mapper, SnapshotError, TriedLoops};
 
 /// Finds loops, and keeps the pending ones.
 #[derive(Clone)]
 pub(crate) struct SubmapLoops {
     config: SubmapLoopConfig,
-    /// Largest number of boxes and poses that are evaluated at a scan.
-    budget: u64,
     pending: Vec<PendingLoop>,
-    searches: LoopSearches,
-    /// The search of the first window; it is repeated if it was dropped.
-    active: Option<WindowSearch>,
     submaps: Submaps,
+}
+
+/// A submap that may show the surroundings of the newest keyframes, and the uncertainty of the relative pose.
+struct Window {
+    candidate: LoopCandidate,
+    predicted: SE2,
+    covariance: Matrix3<f64>,
+    half_m: f64,
+    half_rad: f64,
 }
 
 impl SubmapLoops {
     pub fn new(robot: &LocalMapConfig) -> Self {
         Self {
             config: robot.loops,
-            budget: EVALUATIONS,
             pending: Vec::new(),
-            searches: LoopSearches::default(),
-            active: None,
             submaps: Submaps::new(robot.registration()),
         }
     }
 
-    #[cfg(test)]
-    pub fn with_budget(mut self, budget: u64) -> Self {
-        self.budget = budget;
-        self
-    }
-
-    /// Windows around keyframes that are near `node` and older, the nearest first.
-    fn windows(&self, mapper: &mut Mapper, node: usize) -> Vec<LoopWindow> {
+    /// Windows around older keyframes near the newest one, the nearest first.
+    fn windows(&self, mapper: &mut Mapper, lengths_m: &[f64]) -> Vec<Window> {
         let config = &self.config;
-        let old_enough = old_enough(&mapper.path_lengths_m()[..=node], config.min_path_m);
+        let node = lengths_m.len() - 1;
+        let old_enough = old_enough(lengths_m, config.min_path_m);
         let Some(youngest) = old_enough.checked_sub(1) else {
             return Vec::new();
         };
@@ -80,9 +80,10 @@ impl SubmapLoops {
             if candidate.distance_m > half_m + SUBMAP_MARGIN_M {
                 continue;
             }
-            windows.push(LoopWindow {
-                node,
+            let poses = mapper.poses();
+            windows.push(Window {
                 candidate,
+                predicted: poses[candidate.node].between(&poses[node]),
                 covariance,
                 half_m,
                 half_rad: math::min(half_rad, MAX_TURN_RAD),
@@ -91,86 +92,132 @@ impl SubmapLoops {
         windows
     }
 
-    /// The share of one scan of the search of `window`; the result, once there is one.
-    fn search(
-        &mut self,
-        mapper: &Mapper,
-        window: LoopWindow,
-        evaluated: &mut u64,
-    ) -> Option<LoopVerification> {
-        let is_begun = self.active.is_some();
-        let lengths_m = mapper.path_lengths_m();
-        let submaps = &mut self.submaps;
-        let active = self.active.get_or_insert_with(|| {
-            let end = old_enough(&lengths_m[..=window.node], self.config.min_path_m);
-            WindowSearch::new(window, mapper, submaps, end)
-        });
-        // What was done before the search was dropped.
-        let missed = if is_begun { 0 } else { self.searches.scans };
-        let found = (0..=missed).find_map(|_| active.step(submaps, self.budget));
-        *evaluated += active.evaluated;
-        self.searches.scans += 1;
-        if found.is_some() {
-            self.active = None;
-            self.searches.windows.remove(0);
-            self.searches.scans = 0;
+    /// The newest keyframes in the frame of the last one, thinned.
+    fn bundle(&self, mapper: &Mapper) -> PointCloud {
+        let poses = mapper.poses();
+        let here = poses[poses.len() - 1];
+        let mut points = PointCloud::default();
+        let first = poses.len().saturating_sub(BUNDLE);
+        for (pose, keyframe) in poses.iter().zip(mapper.keyframes()).skip(first) {
+            points.extend_transformed(&keyframe.scan, &here.between(pose));
         }
-        found
+        points.downsample(BUNDLE_CELL_M)
     }
 
-    /// Closes a loop, or lets it wait for others.
-    fn decide(
-        &mut self,
-        mapper: &mut Mapper,
-        window: &LoopWindow,
-        found: LoopVerification,
-        tried: &mut TriedLoops,
-    ) {
-        let is_expected = found.gate.passes();
-        if !found.accepted() || (is_expected && is_sure(window)) {
-            tried.found.push(found);
-            return;
-        }
-        let path_m = mapper.path_lengths_m()[found.from_node];
-        let agreeing = self.agreeing(mapper, &found, path_m);
-        let needed = if is_expected {
-            AGREEING_EXPECTED
-        } else {
-            AGREEING_CONTRADICTING
+    /// Builds the submap around a candidate in its frame, of the keyframes of one visit within the
+    /// window.
+    fn build_submap(&mut self, mapper: &Mapper, window: &Window, lengths_m: &[f64]) {
+        let node = lengths_m.len() - 1;
+        let poses = mapper.poses();
+        let here = poses[node];
+        let reach_m = window.half_m + SUBMAP_MARGIN_M;
+        let last = old_enough(lengths_m, self.config.min_path_m) - 1;
+        let center = window.candidate.node;
+        let is_near = |near: usize| {
+            center.abs_diff(near) <= HALF_SUBMAP || position_error_m(&poses[near], &here) < reach_m
         };
-        if agreeing.len() + 1 < needed {
-            let reach_m = PENDING_DISTANCE_M;
-            self.pending
-                .retain(|other| path_m - other.path_m <= reach_m);
-            self.pending.push(PendingLoop {
-                verification: found,
-                path_m,
-                is_expected,
-            });
-            tried.found.push(LoopVerification {
-                waits: Some(Agreement {
-                    agreeing: agreeing.len() + 1,
-                    needed,
-                }),
-                ..found
-            });
-            return;
+        let mut first = center;
+        while first > 0 && is_near(first - 1) {
+            first -= 1;
         }
-        for index in agreeing.into_iter().rev() {
-            let waited = self.pending.remove(index);
-            if !waited.is_expected {
-                tried.consistency = Consistency::Contradicting;
-            }
-            tried.found.push(waited.verification);
+        let mut end = center;
+        while end < last && is_near(end + 1) {
+            end += 1;
         }
-        if !is_expected {
-            tried.consistency = Consistency::Contradicting;
+        self.submaps.build(mapper, first..=end, center);
+    }
+
+    fn verify_window(
+        &mut self,
+        mapper: &Mapper,
+        window: &Window,
+        bundle: &PointCloud,
+        lengths_m: &[f64],
+    ) -> LoopVerification {
+        self.build_submap(mapper, window, lengths_m);
+        let is_sure = window.half_m <= UNCONFIRMED_M;
+        let (start, margin) = if is_sure {
+            (Some(window.predicted), None)
+        } else {
+            self.search(window, bundle)
+        };
+        let settings = self.submaps.registration;
+        let (max_correspondence_m, inlier_distance_m) =
+            (settings.max_correspondence_m, settings.inlier_distance_m);
+        let stages = [
+            2.0 * max_correspondence_m,
+            max_correspondence_m,
+            inlier_distance_m,
+        ];
+        let stages = if is_sure { &stages[..] } else { &stages[1..] };
+        let from = start.unwrap_or(window.predicted);
+        let stages = if start.is_some() { stages } else { &[] };
+        let found = self
+            .submaps
+            .map
+            .register(bundle, from, stages, None, &settings);
+        let rejection = match start {
+            None => Some(LoopRejection::NoPlace {
+                half_width_m: window.half_m,
+                min_score: MIN_SEARCH_SCORE,
+            }),
+            Some(_) => rejection(&found, margin),
+        };
+        self.verification(window, lengths_m.len() - 1, from, &found, margin, rejection)
+    }
+
+    /// The best pose of the window, and its margin to the best distinct one.
+    fn search(&self, window: &Window, bundle: &PointCloud) -> (Option<SE2>, Option<f64>) {
+        let around = SearchWindow::around(window.predicted, window.half_m, window.half_rad);
+        // Distinct poses are searched up to twice the required margin.
+        let farthest = 2.0 * MIN_MARGIN;
+        match self.submaps.map.search(bundle, &around, farthest) {
+            Some(found) => (
+                Some(found.best.pose),
+                Some(found.margin().unwrap_or(farthest)),
+            ),
+            None => (None, None),
         }
-        tried.found.push(found);
+    }
+
+    fn verification(
+        &self,
+        window: &Window,
+        node: usize,
+        initial: SE2,
+        found: &MapRegistration,
+        margin: Option<f64>,
+        rejection: Option<LoopRejection>,
+    ) -> LoopVerification {
+        let information = found.information() + Matrix3::identity() * LOOP_FLOOR;
+        let own = information.try_inverse().unwrap_or_default();
+        let gate_information = (window.covariance + own).try_inverse().unwrap_or_default();
+        let is_nowhere = matches!(rejection, Some(LoopRejection::NoPlace { .. }));
+        LoopVerification {
+            initial,
+            // Without a pose there is no score.
+            score: (!is_nowhere).then_some(found.fit.score),
+            margin,
+            information,
+            rejection,
+            ..found.verification(
+                node,
+                window.candidate,
+                window.predicted,
+                gate_information,
+                GATE_99,
+            )
+        }
     }
 
     /// Indices of the pending loops that agree with this one.
-    fn agreeing(&self, mapper: &mut Mapper, found: &LoopVerification, path_m: f64) -> Vec<usize> {
+    fn agreeing(
+        &self,
+        mapper: &mut Mapper,
+        found: &LoopVerification,
+        lengths_m: &[f64],
+    ) -> Vec<usize> {
+        let path_m = lengths_m[found.from_node];
         let mut agreeing = Vec::new();
         for (index, other) in self.pending.iter().enumerate() {
             let apart_m = path_m - other.path_m;
@@ -192,37 +239,65 @@ impl LoopFinder for SubmapLoops {
     }
 
     fn find(&mut self, mapper: &mut Mapper) -> TriedLoops {
-        self.searches.due.extend(mapper.newest());
-        self.advance(mapper)
-    }
-
-    /// Searches the small windows of a keyframe, or a share of a wide one.
-    fn advance(&mut self, mapper: &mut Mapper) -> TriedLoops {
         let mut tried = TriedLoops::default();
-        while self.searches.windows.is_empty() && !self.searches.due.is_empty() {
-            let node = self.searches.due.remove(0);
-            self.searches.windows = self.windows(mapper, node);
+        let lengths_m = mapper.path_lengths_m();
+        let windows = self.windows(mapper, &lengths_m);
+        if windows.is_empty() {
+            return tried;
         }
-        while let Some(&window) = self.searches.windows.first() {
-            let found = self.search(mapper, window, &mut tried.evaluated);
-            if let Some(found) = found {
-                self.decide(mapper, &window, found, &mut tried);
+        let bundle = self.bundle(mapper);
+        for window in windows {
+            let found = self.verify_window(mapper, &window, &bundle, &lengths_m);
+            let is_expected = found.gate.passes();
+            if !found.accepted() || (is_expected && window.half_m <= UNCONFIRMED_M) {
+                tried.found.push(found);
+                continue;
             }
-            if !is_sure(&window) {
-                break;
+            let agreeing = self.agreeing(mapper, &found, &lengths_m);
+            let needed = if is_expected {
+                AGREEING_EXPECTED
+            } else {
+                AGREEING_CONTRADICTING
+            };
+            let path_m = lengths_m[found.from_node];
+            if agreeing.len() + 1 < needed {
+                let reach_m = PENDING_DISTANCE_M;
+                self.pending
+                    .retain(|other| path_m - other.path_m <= reach_m);
+                self.pending.push(PendingLoop {
+                    verification: found,
+                    path_m,
+                    is_expected,
+                });
+                tried.found.push(LoopVerification {
+                    waits: Some(Agreement {
+                        agreeing: agreeing.len() + 1,
+                        needed,
+                    }),
+                    ..found
+                });
+                continue;
             }
+            for index in agreeing.into_iter().rev() {
+                let waited = self.pending.remove(index);
+                if !waited.is_expected {
+                    tried.consistency = Consistency::Contradicting;
+                }
+                tried.found.push(waited.verification);
+            }
+            if !is_expected {
+                tried.consistency = Consistency::Contradicting;
+            }
+            tried.found.push(found);
         }
         tried
     }
 
-    /// Completes the searches, and accepts the newest pending loop if no pending loop contradicts the graph.
+    /// Accepts the newest pending loop if no pending loop contradicts the graph.
     fn conclude(&mut self, mapper: &mut Mapper, is_searched: bool) -> Option<TriedLoops> {
-        if !is_searched {
-            self.searches.due.extend(mapper.newest());
-        }
         let mut tried = TriedLoops::default();
-        while !self.searches.is_empty() {
-            tried.append(self.advance(mapper));
+        if !is_searched {
+            tried = self.find(mapper);
         }
         if tried.found.iter().any(LoopVerification::accepted) {
             return Some(tried);
@@ -237,7 +312,6 @@ impl LoopFinder for SubmapLoops {
     }
 
     fn link_all(&mut self, mapper: &mut Mapper) -> Vec<LoopVerification> {
-        self.active = None;
         linking::link_all(mapper, &mut self.submaps)
     }
 
@@ -247,7 +321,6 @@ impl LoopFinder for SubmapLoops {
         old: usize,
         new: usize,
     ) -> Result<LoopVerification, OptimizeError> {
-        self.active = None;
         linking::link_on_request(mapper, old, new, &mut self.submaps)
     }
 
@@ -255,25 +328,14 @@ impl LoopFinder for SubmapLoops {
         &self.pending
     }
 
-    fn searches(&self) -> LoopSearches {
-        self.searches.clone()
-    }
-
-    fn restore(
-        &mut self,
-        pending: &[PendingLoop],
-        searches: &LoopSearches,
-    ) -> Result<(), SnapshotError> {
+    fn restore(&mut self, pending: &[PendingLoop]) -> Result<(), SnapshotError> {
         self.pending = pending.to_vec();
-        self.searches = searches.clone();
         Ok(())
     }
 
     fn remove_keyframe(&mut self, node: usize, path_m: &[f64]) {
         let moved_up = |known: usize| known - usize::from(known > node);
         self.submaps.forget();
-        self.active = None;
-        self.searches.remove(node);
         self.pending.retain(|pending| {
             let found = &pending.verification;
             found.from_node != node && found.candidate.node != node
@@ -291,4 +353,18 @@ impl LoopFinder for SubmapLoops {
 fn old_enough(lengths_m: &[f64], min_path_m: f64) -> usize {
     let here_m = lengths_m.last().copied().unwrap_or_default();
     lengths_m.partition_point(|length_m| *length_m < here_m - min_path_m)
+}
+
+fn rejection(found: &MapRegistration, margin: Option<f64>) -> Option<LoopRejection> {
+    let score = found.fit.score;
+    if score < MIN_LOOP_SCORE {
+        return Some(LoopRejection::LowScore {
+            score,
+            min_score: MIN_LOOP_SCORE,
+        });
+    }
+    Some(LoopRejection::Ambiguous {
+        margin: margin.filter(|margin| *margin < MIN_MARGIN)?,
+        min_margin: MIN_MARGIN,
+    })
 }

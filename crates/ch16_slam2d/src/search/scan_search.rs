@@ -1,7 +1,6 @@
 //! Branch and bound over the poses of a window, one box at a time.
 
 mod exhaustive;
-mod surface;
 
 use core::cmp::Ordering;
 use std::sync::Arc;
@@ -13,9 +12,6 @@ use super::{
     SearchNeighborhood, SearchReport, SearchResult, SearchWindow,
 };
 use crate::cloud::PointCloud;
-
-/// Most parts of a box: two along each axis of the window, or four headings.
-const MOST_PARTS: u64 = 8;
 
 /// A search for the pose of a scan on a map.
 ///
@@ -29,8 +25,6 @@ pub struct ScanSearch {
     scan: TurnedScan,
     nearness: Nearness,
     goal: SearchGoal,
-    /// The first heading whose boxes of the first shape are not bounded yet.
-    first_heading: i32,
     /// Boxes to be expanded, the most promising one last.
     open: Vec<OpenBox>,
     /// Boxes that do not contain the best pose, but may contain the runner-up.
@@ -80,25 +74,10 @@ impl ScanSearch {
         window: &SearchWindow,
         neighborhood: &SearchNeighborhood,
     ) -> Result<Self, SearchError> {
-        let mut search = Self::unbounded(map, scan, window, neighborhood)?;
-        while search.bound_first() {}
-        Ok(search)
-    }
-
-    /// The same search before its first boxes are bounded, which [`ScanSearch::advance`] does.
-    ///
-    /// # Errors
-    /// If [`ScanSearch::new`] fails.
-    pub fn unbounded(
-        map: Arc<SearchMap>,
-        scan: &PointCloud,
-        window: &SearchWindow,
-        neighborhood: &SearchNeighborhood,
-    ) -> Result<Self, SearchError> {
         let lattice = Lattice::new(window, scan, map.grid())?;
         let shapes = BoxShape::schedule(lattice.columns, lattice.rows, lattice.headings);
         let scan = TurnedScan::new(scan, &lattice, map.grid(), &shapes);
-        Ok(Self {
+        let mut search = Self {
             nearness: lattice.nearness(neighborhood),
             counts: SearchCounts {
                 window: lattice.len(),
@@ -109,7 +88,6 @@ impl ScanSearch {
             shapes,
             scan,
             goal: SearchGoal::Best,
-            first_heading: 0,
             open: Vec::new(),
             set_aside: Vec::new(),
             parts: Vec::new(),
@@ -117,36 +95,11 @@ impl ScanSearch {
             margin: u32::MAX,
             best: None,
             runner_up: None,
-        })
-    }
-
-    /// Bounds the first boxes of the next headings; returns whether there were any left.
-    fn bound_first(&mut self) -> bool {
-        let mut last = self.lattice.last();
-        if self.first_heading > last.heading {
-            return false;
-        }
-        let first = LatticePose {
-            heading: self.first_heading,
-            ..LatticePose::default()
         };
-        self.first_heading += self.shapes[0].headings();
-        last.heading = last.heading.min(self.first_heading - 1);
-        self.bound_parts(first, last, 0);
-        self.open.append(&mut self.parts);
-        if self.first_heading > self.lattice.last().heading {
-            self.open.sort_by(OpenBox::promise);
-        }
-        true
-    }
-
-    /// Number of the first boxes of the same headings.
-    fn first_boxes(&self) -> u64 {
-        let side = self.shapes[0].cells();
-        [self.lattice.columns, self.lattice.rows]
-            .map(|cells| ((cells - 1) / side + 1) as u64)
-            .iter()
-            .product()
+        search.bound_parts(LatticePose::default(), search.lattice.last(), 0);
+        core::mem::swap(&mut search.open, &mut search.parts);
+        search.open.sort_by(OpenBox::promise);
+        Ok(search)
     }
 
     /// The same search for a pose with a score of at least `min_score`, 0 to 1; the runner-up may score
@@ -170,40 +123,6 @@ impl ScanSearch {
 
     /// Expands one box; `None` once the search is finished.
     pub fn step(&mut self) -> Option<SearchReport> {
-        let (taken, fate) = self.expand()?;
-        Some(SearchReport {
-            goal: self.goal,
-            taken: self.pose_box(&taken),
-            fate,
-        })
-    }
-
-    /// Expands boxes as long as that takes at most `budget` sums over the points; returns whether the search is finished.
-    /// A budget below the number of first boxes of a heading changes nothing.
-    pub fn advance(&mut self, budget: u64) -> bool {
-        let end = self.counts.scored().saturating_add(budget);
-        while self.first_heading < self.lattice.headings {
-            if self.counts.scored() + self.first_boxes() > end {
-                return false;
-            }
-            self.bound_first();
-        }
-        while self.counts.scored() + MOST_PARTS <= end {
-            if self.expand().is_none() {
-                return true;
-            }
-        }
-        false
-    }
-
-    /// Runs to the end; `None` if no pose reaches the minimum score.
-    #[must_use]
-    pub fn run(mut self) -> Option<SearchResult> {
-        self.advance(u64::MAX);
-        self.result()
-    }
-
-    fn expand(&mut self) -> Option<(OpenBox, BoxFate)> {
         if self.open.is_empty() && self.goal == SearchGoal::Best {
             self.start_runner_up_search();
         }
@@ -212,7 +131,28 @@ impl ScanSearch {
             SearchGoal::Best => self.evaluate_for_best(taken),
             SearchGoal::RunnerUp => self.evaluate_for_runner_up(taken),
         };
-        Some((taken, fate))
+        Some(SearchReport {
+            goal: self.goal,
+            taken: self.pose_box(&taken),
+            fate,
+        })
+    }
+
+    /// Runs to the end; `None` if no pose reaches the minimum score.
+    #[must_use]
+    pub fn run(mut self) -> Option<SearchResult> {
+        loop {
+            if self.open.is_empty() && self.goal == SearchGoal::Best {
+                self.start_runner_up_search();
+            }
+            let Some(taken) = self.open.pop() else {
+                return self.result();
+            };
+            match self.goal {
+                SearchGoal::Best => self.evaluate_for_best(taken),
+                SearchGoal::RunnerUp => self.evaluate_for_runner_up(taken),
+            };
+        }
     }
 
     /// The result so far; `None` before a pose was found.
@@ -236,6 +176,58 @@ impl ScanSearch {
     #[must_use]
     pub fn counts(&self) -> SearchCounts {
         self.counts
+    }
+
+    /// Number of headings of the window.
+    #[must_use]
+    pub fn headings(&self) -> usize {
+        self.lattice.headings as usize
+    }
+
+    /// A heading of the window, not wrapped, rad.
+    #[must_use]
+    pub fn heading_rad(&self, heading: usize) -> f64 {
+        self.lattice.heading_rad(heading as i32)
+    }
+
+    /// The scores of all positions at one heading, 0 to 1, row by row from the lowest y.
+    ///
+    /// A slice through the score surface, for display; it is not counted as work of the search.
+    pub fn scores_at(&self, heading: usize, scores: &mut Vec<f64>) {
+        scores.clear();
+        let poses = self.poses_at(heading as i32);
+        scores.extend(poses.map(|pose| self.share(pose.bound)));
+    }
+
+    /// Number of rows and columns of positions at every heading.
+    #[must_use]
+    pub fn places(&self) -> [usize; 2] {
+        [self.lattice.rows as usize, self.lattice.columns as usize]
+    }
+
+    /// Extent of the positions, including half a cell all around: lowest x and y, highest x and y, m.
+    #[must_use]
+    pub fn extent_m(&self) -> [[f64; 2]; 2] {
+        let corner = |column: f64, row: f64| [self.lattice.x_m(column), self.lattice.y_m(row)];
+        let last = self.lattice.last();
+        [
+            corner(-0.5, -0.5),
+            corner(f64::from(last.column) + 0.5, f64::from(last.row) + 0.5),
+        ]
+    }
+
+    /// The scores of one row of [`ScanSearch::scores_at`], from the lowest x.
+    pub fn row_scores(&self, heading: usize, row: usize) -> impl Iterator<Item = f64> + '_ {
+        let at = LatticePose {
+            heading: heading as i32,
+            row: row as i32,
+            column: 0,
+        };
+        let finest = self.shapes.len() - 1;
+        (0..self.lattice.columns).map(move |column| {
+            let pose = self.bounded(LatticePose { column, ..at }, finest, 0);
+            self.share(pose.bound)
+        })
     }
 
     fn evaluate_for_best(&mut self, taken: OpenBox) -> BoxFate {
@@ -382,5 +374,22 @@ impl ScanSearch {
 
     fn share(&self, score: u32) -> f64 {
         f64::from(score) / f64::from(self.scan.full_score())
+    }
+
+    fn pose_box(&self, open: &OpenBox) -> PoseBox {
+        let last = self.last_of(open);
+        let ends = |first: i32, last: i32, at: &dyn Fn(f64) -> f64| {
+            [at(f64::from(first) - 0.5), at(f64::from(last) + 0.5)]
+        };
+        PoseBox {
+            x_m: ends(open.first.column, last.column, &|at| self.lattice.x_m(at)),
+            y_m: ends(open.first.row, last.row, &|at| self.lattice.y_m(at)),
+            heading_rad: [
+                self.lattice.heading_rad(open.first.heading),
+                self.lattice.heading_rad(last.heading),
+            ],
+            bound: self.share(open.bound),
+            is_pose: self.shapes[open.shape].is_pose(),
+        }
     }
 }

@@ -4,7 +4,7 @@ use pr_optim::OptimizeError;
 
 use super::mapper::{Consistency, Mapper};
 use super::snapshot::SnapshotError;
-use crate::loops::{LoopSearches, LoopVerification, LoopWorkspace, PendingLoop};
+use crate::loops::{LoopVerification, LoopWorkspace, PendingLoop};
 
 /// Attempts to close loops at a keyframe.
 #[derive(Clone, Debug, Default)]
@@ -13,19 +13,6 @@ pub struct TriedLoops {
     pub found: Vec<LoopVerification>,
     /// Whether the accepted ones contradict the graph.
     pub consistency: Consistency,
-    /// Number of boxes and poses of windows that were evaluated.
-    pub evaluated: u64,
-}
-
-impl TriedLoops {
-    /// Adds later attempts.
-    pub fn append(&mut self, later: Self) {
-        self.found.extend(later.found);
-        self.evaluated += later.evaluated;
-        if later.consistency == Consistency::Contradicting {
-            self.consistency = Consistency::Contradicting;
-        }
-    }
 }
 
 /// Proposes loops and verifies them, with its own parameters and memory; it does not change the graph, but for
@@ -37,16 +24,11 @@ pub trait LoopFinder: CloneFinder + Send {
     /// A search is due at every this many keyframes.
     fn every_keyframes(&self) -> usize;
 
-    /// Searches for loops at the newest keyframe, or begins to.
+    /// Searches for loops at the newest keyframe.
     fn find(&mut self, mapper: &mut Mapper) -> TriedLoops;
 
-    /// Continues searches that are spread over scans; called for every scan at which none is due.
-    fn advance(&mut self, _mapper: &mut Mapper) -> TriedLoops {
-        TriedLoops::default()
-    }
-
-    /// Ends the run: completes the searches, also at the newest keyframe unless that was done, and decides on the
-    /// pending loops. `None` if the end of a run changes nothing.
+    /// Ends the run: searches at the newest keyframe unless that was done, and decides on the pending loops. `None`
+    /// if the end of a run changes nothing.
     fn conclude(&mut self, _mapper: &mut Mapper, _is_searched: bool) -> Option<TriedLoops> {
         None
     }
@@ -73,21 +55,12 @@ pub trait LoopFinder: CloneFinder + Send {
         &[]
     }
 
-    /// What is left to search.
-    fn searches(&self) -> LoopSearches {
-        LoopSearches::default()
-    }
-
-    /// Continues with the pending loops and the searches of a snapshot.
+    /// Continues with the pending loops of a snapshot.
     ///
     /// # Errors
     /// If it keeps none.
-    fn restore(
-        &mut self,
-        pending: &[PendingLoop],
-        searches: &LoopSearches,
-    ) -> Result<(), SnapshotError> {
-        if pending.is_empty() && searches.is_empty() {
+    fn restore(&mut self, pending: &[PendingLoop]) -> Result<(), SnapshotError> {
+        if pending.is_empty() {
             Ok(())
         } else {
             Err(SnapshotError::Numbers("list of pending loops"))

@@ -116,8 +116,6 @@ impl SlamSnapshot {
                 pending
             })
             .collect();
-        joined.searches = piece.searches.clone();
-        joined.searches.renumber(|node| first + node);
         joined.frames += piece.frames;
         joined.last_stamp_s = piece.last_stamp_s;
         joined.last_attempt_node = piece.last_attempt_node.map(|node| first + node);

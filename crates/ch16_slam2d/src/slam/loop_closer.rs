@@ -4,7 +4,7 @@ use super::finder::{LoopFinder, TriedLoops};
 use super::mapper::Mapper;
 use super::snapshot::SnapshotError;
 use crate::config::{LoopClosure, SlamConfig};
-use crate::loops::{LoopSearches, PendingLoop};
+use crate::loops::PendingLoop;
 
 /// When loops are searched, with the strategy that finds them.
 #[derive(Clone)]
@@ -22,25 +22,19 @@ impl LoopCloser {
         }
     }
 
-    /// Searches for loops at the newest keyframe, if it is new and a search is due; otherwise continues the last
-    /// searches.
-    pub(super) fn find(
-        &mut self,
-        mapper: &mut Mapper,
-        config: &SlamConfig,
-        is_keyframe: bool,
-    ) -> TriedLoops {
-        // The first keyframe has no predecessors, and does not count as an attempt.
-        let Some(node) = mapper.newest().filter(|node| *node > 0) else {
+    /// Searches for loops at the newest keyframe, if a search is due.
+    pub(super) fn find(&mut self, mapper: &mut Mapper, config: &SlamConfig) -> TriedLoops {
+        let Some(node) = mapper.newest() else {
             return TriedLoops::default();
         };
-        if config.loop_closure == LoopClosure::Off {
-            return TriedLoops::default();
-        }
         let every = self.finder.every_keyframes();
-        let is_due = |last: usize| node - last >= every;
-        if !is_keyframe || !self.last_attempt_node.is_none_or(is_due) {
-            return self.finder.advance(mapper);
+        let is_early = |last: usize| node - last < every;
+        // The first keyframe has no predecessors, and does not count as an attempt.
+        if config.loop_closure == LoopClosure::Off
+            || node == 0
+            || self.last_attempt_node.is_some_and(is_early)
+        {
+            return TriedLoops::default();
         }
         self.last_attempt_node = Some(node);
         self.finder.find(mapper)
@@ -66,21 +60,14 @@ impl LoopCloser {
         self.finder.pending()
     }
 
-    /// What is left to search.
-    #[must_use]
-    pub fn searches(&self) -> LoopSearches {
-        self.finder.searches()
-    }
-
     /// Continues with the state of a snapshot.
     pub(super) fn restore(
         &mut self,
         last_attempt_node: Option<usize>,
         pending: &[PendingLoop],
-        searches: &LoopSearches,
     ) -> Result<(), SnapshotError> {
         self.last_attempt_node = last_attempt_node;
-        self.finder.restore(pending, searches)
+        self.finder.restore(pending)
     }
 
     /// Handles the removal of a keyframe, which decreases the index of later ones; `path_m` is the path

@@ -15,12 +15,10 @@ use thiserror::Error;
 use super::{Keyframe, SlamConfig, WindowScan};
 use crate::cloud::PointCloud;
 use crate::graph::{EdgeView, PoseNode};
-use crate::loops::{LoopSearches, PendingLoop};
+use crate::loops::PendingLoop;
 
 /// Larger numbers are not measurements, and their products would overflow.
 const LARGEST: f64 = 1e50;
-/// Larger windows would take too long: half their width, m, or range of headings, rad.
-const LARGEST_HALF: f64 = 100.0;
 /// Upper limit of the number of frames.
 const MAX_FRAMES: usize = 1 << 30;
 
@@ -48,9 +46,6 @@ pub struct SlamSnapshot {
     pub last_loop_node: usize,
     /// The pending loops, in order.
     pub pending: Vec<PendingLoop>,
-    /// What is left to search.
-    #[serde(default)]
-    pub searches: LoopSearches,
     /// Estimate, window and threshold.
     pub front_end: FrontEndSnapshot,
 }
@@ -215,23 +210,6 @@ impl SlamSnapshot {
             if !known {
                 return Err(out_of_range("pending loop", number));
             }
-        }
-        for (number, window) in self.searches.windows.iter().enumerate() {
-            if window.node >= nodes || window.candidate.node >= window.node {
-                return Err(SnapshotError::Counter("node of a window"));
-            }
-            let numbers = [&window.half_m, &window.half_rad];
-            let known = window.candidate.proposal.is_none()
-                && numbers
-                    .into_iter()
-                    .all(|half| (0.0..=LARGEST_HALF).contains(half))
-                && is_each_number(&window.covariance);
-            if !known {
-                return Err(out_of_range("window", number));
-            }
-        }
-        if self.searches.due.iter().any(|node| *node >= nodes) {
-            return Err(SnapshotError::Counter("node of a due search"));
         }
         let is_counted = (self.frames == 0) == (nodes == 0) && self.frames < MAX_FRAMES;
         if !is_counted || self.last_stamp_s.is_nan() {
