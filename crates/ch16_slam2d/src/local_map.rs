@@ -9,7 +9,6 @@
 //! the map, truncated at a miss. Free space counts as well: a point behind everything that was seen costs less
 //! than one in space that a scan has observed as free.
 
-mod heading_noise;
 mod linking;
 mod locate;
 mod pairwise_consistency;

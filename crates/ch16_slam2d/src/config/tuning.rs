@@ -24,11 +24,6 @@ pub(crate) const ODOMETRY: MotionNoise = MotionNoise {
     per_rad: 0.05,
     rad_per_metre: 0.025,
 };
-/// Least heading noise of the odometry, as a share of the stated one: the learned factor is 0.1 on infinite-corridor, whose
-/// ellipses are too small then (54 % of the keyframes of the reversed log in them, 79 % here), and 0.4 to 1 elsewhere.
-pub(crate) const LEAST_HEADING_NOISE: f64 = 0.3;
-/// Change of that factor with a scan: 60 scans from 1 to 0.3. Not measured.
-pub(crate) const HEADING_RATE: f64 = 1.02;
 /// Constant-velocity prediction: if scans are a metre or half a radian apart, it is hardly informative.
 pub(crate) const CONSTANT_VELOCITY: MotionNoise = MotionNoise {
     floor_m: 0.1,

@@ -3,7 +3,6 @@
 use nalgebra::{Matrix3, Vector2};
 use pr_geom::SE2;
 
-use super::heading_noise::HeadingNoise;
 use super::{
     LocalMap, LocalMapConfig, MapRegistrationConfig, MotionPrior, PriorTail, ScanProfiles,
 };
@@ -12,9 +11,8 @@ use crate::matching::{MatchStop, MatchSummary};
 use crate::scan::PreparedFrame;
 use crate::slam::{ExpectedMotion, NamedNumbers, ScanRegistrar, ScanWindow, SnapshotError};
 
-/// Names in a snapshot: the covariance of the motions since the last keyframe, and the factor of the heading noise.
+/// Name of the covariance of the motions since the last keyframe in a snapshot.
 const MOTION_COVARIANCE: &str = "motion covariance";
-const HEADING_NOISE: &str = "heading noise";
 
 /// Registers scans on the last few with the odometry as a prior.
 #[derive(Clone)]
@@ -29,7 +27,6 @@ pub(crate) struct MapRegistrar {
     scan_information: Matrix3<f64>,
     /// Covariance of the motions since the last keyframe, by odometry.
     motion_covariance: Matrix3<f64>,
-    heading_noise: HeadingNoise,
 }
 
 impl MapRegistrar {
@@ -42,7 +39,6 @@ impl MapRegistrar {
             is_outdated: true,
             scan_information: Matrix3::zeros(),
             motion_covariance: Matrix3::zeros(),
-            heading_noise: HeadingNoise::default(),
         }
     }
 
@@ -87,12 +83,7 @@ impl ScanRegistrar for MapRegistrar {
             self.rebuild(window);
         }
         let (before, motion) = (&expected.before, &expected.motion);
-        let stated = self.prior(before, motion, expected.is_measured);
-        let prior = if expected.is_measured {
-            self.heading_noise.applied(&stated)
-        } else {
-            stated
-        };
+        let prior = self.prior(before, motion, expected.is_measured);
         let starts = [*before * expected.extrapolated];
         let config = &self.registration;
         let mut found = self.map.locate(&frame.cloud, &prior, &starts, config);
@@ -103,12 +94,6 @@ impl ScanRegistrar for MapRegistrar {
                 .register_sweep(&frame.cloud, sweep, start, &prior, config);
         }
         let pose = found.registered.pose;
-        if expected.is_measured {
-            let deviation_rad = prior.deviation(&pose).z;
-            let information = found.registered.information.m33;
-            self.heading_noise
-                .learn(&stated, deviation_rad, information);
-        }
         self.scan_information = found.information();
         let adjoint = motion.inverse().adjoint();
         self.motion_covariance = adjoint * self.motion_covariance * adjoint.transpose()
@@ -140,15 +125,11 @@ impl ScanRegistrar for MapRegistrar {
     }
 
     fn snapshot(&self) -> NamedNumbers {
-        NamedNumbers::default()
-            .with(MOTION_COVARIANCE, self.motion_covariance.as_slice())
-            .with(HEADING_NOISE, &[self.heading_noise.factor()])
+        NamedNumbers::default().with(MOTION_COVARIANCE, self.motion_covariance.as_slice())
     }
 
     fn restore(&mut self, snapshot: &NamedNumbers) -> Result<(), SnapshotError> {
         self.motion_covariance = Matrix3::from_column_slice(&snapshot.get::<9>(MOTION_COVARIANCE)?);
-        let [factor] = snapshot.get(HEADING_NOISE)?;
-        self.heading_noise = HeadingNoise::with_factor(factor);
         Ok(())
     }
 }
