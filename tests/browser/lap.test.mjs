@@ -82,7 +82,7 @@ describe('the lap under the title', () => {
     }
   });
 
-  it('fetches the module once for page and widgets, two screens ahead of the first use', async () => {
+  it('fetches the module once for page and widgets, a screen ahead of the first use', async () => {
     const asked = [];
     const answer = (path) => void (path.endsWith('.wasm') && asked.push(path));
     await reading(async (tab) => {
@@ -90,7 +90,7 @@ describe('the lap under the title', () => {
       const request = tab.waitForRequest((one) => one.url().endsWith('.wasm'));
       await tab.evaluate(() => {
         const { top } = document.querySelector('slam-widget').getBoundingClientRect();
-        scrollTo(0, top - 2.6 * innerHeight);
+        scrollTo(0, top - 1.6 * innerHeight);
       });
       await request;
       assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').state), 'resting');

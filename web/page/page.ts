@@ -35,7 +35,7 @@ declare const MATCH_ANSWER: Answer;
 /** Elements that need the module of the widgets. */
 const NEEDS_CORE = 'slam-widget, [data-sketch], #decide, .laps';
 /** Distance from the viewport at which the module is prefetched. */
-const PREFETCH_MARGIN = '200% 0px';
+const PREFETCH_MARGIN = '100% 0px';
 
 /** Set by the build: the page of each anchor and widget. */
 declare const PLACES: Places;
