@@ -327,6 +327,7 @@ describe('a cached slam-widget.js whose core is gone', () => {
     const widgets = await tab.evaluate(async () => {
       const isSeen = (element) => element.getBoundingClientRect().height > 10;
       const found = [];
+      for (const fold of document.querySelectorAll('details:has(slam-widget)')) fold.open = true;
       for (const widget of document.querySelectorAll('slam-widget')) {
         const image = widget.querySelector('img');
         // One after the other, because of lazy loading.
