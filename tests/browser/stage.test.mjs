@@ -65,6 +65,7 @@ describe('the verdict', () => {
               }, css);
               if (hidden > 1) cut.push(`${id} ${when}: ${hidden} px of “${words}”`);
             };
+            await h.unfold(tab, css);
             await tab.locator(css).scrollIntoViewIfNeeded();
             await h.ready(tab, css);
             await h.quiet(tab);
