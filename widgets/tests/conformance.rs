@@ -1,7 +1,7 @@
 //! Requirements for every widget: each test iterates over the registry.
 
 use bench_support::timed;
-use egui::{Event, Modifiers, PointerButton, pos2, vec2};
+use egui::{pos2, vec2};
 use widget_kit::invariants::{assert_reports, assert_values};
 use widget_kit::model::{Activity, Model, Motion};
 use widget_kit::param::MORE;
@@ -10,7 +10,7 @@ use widget_kit::shell::Shell;
 use widget_kit::spec::Preset;
 use widgets::registry::{MODELS, SHELLS, SPECS, find, names};
 
-use crate::support::drawn;
+use crate::support::{click_at, drawn};
 
 /// States other than the defaults in which the limits of every parameter are tried.
 ///
@@ -69,16 +69,7 @@ fn the_first_press_on_the_picture_reveals_what_it_held_back() {
         let picture = harness.state().scene_rect().expect("a picture");
         // A corner, where nothing is to be grabbed or selected.
         let pos = pos2(picture.left + 3.0, picture.top + 3.0);
-        harness.event(Event::PointerMoved(pos));
-        for pressed in [true, false] {
-            harness.event(Event::PointerButton {
-                pos,
-                button: PointerButton::Primary,
-                pressed,
-                modifiers: Modifiers::NONE,
-            });
-            harness.run_steps(2);
-        }
+        click_at(&mut harness, pos);
         assert_ne!(harness.state().model().scene(), before, "{name}");
     }
 }

@@ -1,6 +1,6 @@
 //! Helpers for tests of several widgets, and a shell on a screen without a GPU.
 
-use egui::vec2;
+use egui::{Event, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
 use widget_kit::model::Model;
 use widget_kit::scene::Panel;
@@ -39,6 +39,26 @@ pub fn drawn_whole(name: &str, width: f32) -> Harness<'static, Shell> {
         let more = shell.model_mut().set("more", 1.0);
         more.expect("every widget has layers");
     })
+}
+
+/// Moves the pointer there, with the primary button pressed or released if that is given, and runs two frames.
+pub fn point(harness: &mut Harness<'_, Shell>, pos: Pos2, pressed: Option<bool>) {
+    harness.event(Event::PointerMoved(pos));
+    if let Some(pressed) = pressed {
+        harness.event(Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+    }
+    harness.run_steps(2);
+}
+
+/// Presses and releases the primary button.
+pub fn click_at(harness: &mut Harness<'_, Shell>, pos: Pos2) {
+    point(harness, pos, Some(true));
+    point(harness, pos, Some(false));
 }
 
 /// The value of a parameter.

@@ -1,11 +1,11 @@
 //! The widget through the pointer.
 
-use egui::{Event, Modifiers, PointerButton, Pos2, pos2};
+use egui::{Pos2, pos2};
 use egui_kittest::Harness;
 use widget_kit::shell::Shell;
 use widgets::w16_1_basin_explorer::model::panel;
 
-use crate::support::{drawn_whole, value};
+use crate::support::{drawn_whole, point, value};
 
 fn screen(harness: &Harness<'_, Shell>, panel: &str, at: [f64; 2]) -> Pos2 {
     let [x, y] = harness
@@ -17,16 +17,7 @@ fn screen(harness: &Harness<'_, Shell>, panel: &str, at: [f64; 2]) -> Pos2 {
 
 fn drag(harness: &mut Harness<'_, Shell>, from: Pos2, to: Pos2) {
     for (pos, pressed) in [(from, Some(true)), (to, None), (to, Some(false))] {
-        harness.event(Event::PointerMoved(pos));
-        if let Some(pressed) = pressed {
-            harness.event(Event::PointerButton {
-                pos,
-                button: PointerButton::Primary,
-                pressed,
-                modifiers: Modifiers::NONE,
-            });
-        }
-        harness.run_steps(2);
+        point(harness, pos, pressed);
     }
 }
 

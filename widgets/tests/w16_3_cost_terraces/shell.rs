@@ -1,26 +1,13 @@
 //! The widget through its pointer.
 
-use egui::{Event, Modifiers, PointerButton, Pos2, pos2};
+use egui::pos2;
 use egui_kittest::Harness;
 use widget_kit::shell::Shell;
 
-use crate::support::{drawn_whole, value};
+use crate::support::{click_at, drawn_whole, value};
 
 fn verdict(harness: &Harness<'_, Shell>) -> String {
     harness.state().model().outcome().verdict
-}
-
-fn click_at(harness: &mut Harness<'_, Shell>, pos: Pos2) {
-    harness.event(Event::PointerMoved(pos));
-    for pressed in [true, false] {
-        harness.event(Event::PointerButton {
-            pos,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::NONE,
-        });
-        harness.run_steps(2);
-    }
 }
 
 #[test]
