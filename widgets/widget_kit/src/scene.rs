@@ -227,6 +227,16 @@ impl Layer {
         Self::Label { at, text, clear_px }
     }
 
+    /// Words of a question, in place of the answer that the picture holds back.
+    #[must_use]
+    pub fn question(at: [f64; 2], words: &str) -> Self {
+        Self::Text {
+            at,
+            text: words.to_owned(),
+            tone: Tone::Ink,
+        }
+    }
+
     /// [`Layer::Pose`].
     #[must_use]
     pub fn pose(pose: [f64; 3], mark: Mark, tone: Tone, radius_px: f32) -> Self {

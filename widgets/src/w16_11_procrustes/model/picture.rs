@@ -28,19 +28,10 @@ pub fn scene(trace: &ProcrustesTrace) -> Scene {
     let mut unchecked = map(panel::MAP_UNCHECKED, "Unchecked", kind, unchecked.theta_rad);
     if trace.asks {
         unchecked.title = "Unchecked: det ?".to_owned();
-        unchecked.layers = vec![question([0.0, 0.0], "turn or mirror image?")];
+        unchecked.layers = vec![Layer::question([0.0, 0.0], "turn or mirror image?")];
     }
     Scene {
         panels: vec![points(trace), curves(trace), aligned, unchecked],
-    }
-}
-
-/// Words in place of the answer.
-fn question(at: [f64; 2], words: &str) -> Layer {
-    Layer::Text {
-        at,
-        text: words.to_owned(),
-        tone: Tone::Ink,
     }
 }
 
@@ -143,33 +134,28 @@ fn curves(trace: &ProcrustesTrace) -> Panel {
     )];
     if trace.asks {
         let middle = [0.5 * WHOLE_TURN_DEG, 0.5 * top];
-        layers.push(question(middle, "whose wave is higher?"));
+        layers.push(Layer::question(middle, "whose wave is higher?"));
     } else {
         layers.push(level(first + second, Stroke::Dotted));
         layers.push(level(first - second, Stroke::Dashed));
-    }
-    let answers = if trace.asks {
-        &[][..]
-    } else {
-        &Handedness::ALL
-    };
-    for kind in answers.iter().copied() {
-        let at = |degrees: u32| {
-            let degrees = f64::from(degrees);
-            [degrees, problem.trace_m2(kind, degrees.to_radians())]
-        };
-        layers.push(Layer::line(
-            (0..=WHOLE_TURN_DEG as u32)
-                .step_by(CURVE_STEP_DEG as usize)
-                .map(at)
-                .collect(),
-            Stroke::Solid,
-            tone(kind),
-            if kind == trace.tried() { 2.5 } else { 1.25 },
-        ));
-        let best = problem.best(kind);
-        let place = vec![[whole_degrees(best.theta_rad), best.trace_m2]];
-        layers.push(Layer::points(place, mark(kind), tone(kind), 4.5));
+        for kind in Handedness::ALL {
+            let at = |degrees: u32| {
+                let degrees = f64::from(degrees);
+                [degrees, problem.trace_m2(kind, degrees.to_radians())]
+            };
+            layers.push(Layer::line(
+                (0..=WHOLE_TURN_DEG as u32)
+                    .step_by(CURVE_STEP_DEG as usize)
+                    .map(at)
+                    .collect(),
+                Stroke::Solid,
+                tone(kind),
+                if kind == trace.tried() { 2.5 } else { 1.25 },
+            ));
+            let best = problem.best(kind);
+            let place = vec![[whole_degrees(best.theta_rad), best.trace_m2]];
+            layers.push(Layer::points(place, mark(kind), tone(kind), 4.5));
+        }
     }
     let here = problem.trace_m2(trace.tried(), trace.theta_rad());
     layers.push(Layer::Handle {

@@ -208,11 +208,8 @@ fn bias(moving: &MovingBox) -> Panel {
         2.5,
     )];
     if moving.is_before() {
-        layers.push(Layer::Text {
-            at: [0.5 * MAX_SHARE, 0.5 * y.max],
-            text: "who is pulled off, and how far?".to_owned(),
-            tone: Tone::Ink,
-        });
+        let middle = [0.5 * MAX_SHARE, 0.5 * y.max];
+        layers.push(Layer::question(middle, "who is pulled off, and how far?"));
     } else {
         for (k, line) in lines.into_iter().enumerate() {
             layers.push(Layer::points(line.clone(), MARKS[k], TONES[k], 3.0));

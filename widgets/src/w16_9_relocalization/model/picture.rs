@@ -220,11 +220,11 @@ fn scores(back: &Relocalization) -> Panel {
     if back.place() == 0 {
         let words = "fits well enough".to_owned();
         layers.push(Layer::label([0.5 * last, found], words, 4.0));
-        layers.push(Layer::Text {
-            at: [0.5 * last, 0.5 * found],
-            text: "play: which place fits, and how well?".to_owned(),
-            tone: Tone::Ink,
-        });
+        let below = [0.5 * last, 0.5 * found];
+        layers.push(Layer::question(
+            below,
+            "play: which place fits, and how well?",
+        ));
     }
     Panel {
         id: panel::SCORES,
