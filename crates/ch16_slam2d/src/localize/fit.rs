@@ -4,7 +4,7 @@ use pr_geom::{SE2, math, sort_numbers};
 
 use super::{KnownMap, LocalizeConfig};
 use crate::cloud::PointCloud;
-use crate::local_map::{LocalMap, MapRegistrationConfig};
+use crate::local_map::{LocalMap, MapFit, MapRegistrationConfig};
 
 /// Number of keyframes from which the usual fit of a map is learned.
 const LEARNED_FROM: usize = 32;
@@ -15,10 +15,10 @@ const SCORE_SLACK: f64 = 0.05;
 /// Share of contradictions that any map may have, 0 to 1.
 const CONTRADICTIONS: f64 = 0.05;
 
-/// Fit of scans on a map. Space that no scan of the map has seen neither confirms nor contradicts them.
+/// Fit of scans on a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrailFit {
-    /// Score of the points in space that the map shows, 0 to 1.
+    /// Score of the points, 0 to 1.
     pub score: f64,
     /// Share of all points in space that the map's scans observed as free.
     pub in_free_space: f64,
@@ -32,14 +32,10 @@ impl TrailFit {
         map_from_points: &SE2,
         config: &MapRegistrationConfig,
     ) -> Self {
-        let fit = map.fit(points, map_from_points, config);
-        Self {
-            score: fit.score,
-            in_free_space: fit.contradicting as f64 / points.len().max(1) as f64,
-        }
+        Self::of(&map.fit(points, map_from_points, config), points)
     }
 
-    /// The fit of points on `map` at a pose.
+    /// The fit of points on `map` at a pose, where space that no scan has seen does not count.
     pub fn new(
         map: &LocalMap,
         points: &PointCloud,
@@ -52,7 +48,14 @@ impl TrailFit {
         let cost = (1.0 - fit.score) * all - config.unseen_cost * (all - shown);
         Self {
             score: 1.0 - cost / math::max(shown, 1.0),
-            in_free_space: fit.contradicting as f64 / math::max(all, 1.0),
+            ..Self::of(&fit, points)
+        }
+    }
+
+    fn of(fit: &MapFit, points: &PointCloud) -> Self {
+        Self {
+            score: fit.score,
+            in_free_space: fit.contradicting as f64 / points.len().max(1) as f64,
         }
     }
 }
