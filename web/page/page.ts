@@ -61,10 +61,8 @@ onceNear(document.querySelectorAll(NEEDS_CORE), () => void startCoreFigures());
 
 /** Opens the exercise that the address names. */
 function openAddressedExercise(): void {
-  for (const exercise of document.querySelectorAll('.exercise')) {
-    const fold = exercise.querySelector(':scope > details');
-    if (fold !== null && location.hash === `#${exercise.id}`) reveal(fold);
-  }
+  const fold = document.getElementById(location.hash.slice(1))?.querySelector(':scope.exercise > details');
+  if (fold) reveal(fold);
 }
 
 /** Loads the editor when the first place to write is opened. */
