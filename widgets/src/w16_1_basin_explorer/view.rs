@@ -1,8 +1,7 @@
 //! Layout of the panels: the sweeps beside the two basin maps, or above them on a phone; the curve below.
 
-use widget_kit::layout::PlotHeight;
 use widget_kit::scene::Scene;
-use widget_kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
+use widget_kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot};
 
 use crate::w16_1_basin_explorer::model::panel;
 
@@ -15,41 +14,21 @@ const PHONE_PX: f32 = 415.0;
 const BELOW_PX: f32 = 150.0;
 
 /// The layout of the widget.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct BasinView;
-
-impl View for BasinView {
-    fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
-        let sweeps = if width >= SIDE_BY_SIDE {
-            slot(panel::SWEEPS, PlotHeight::Natural { most: 470.0 })
-        } else {
-            slot(panel::SWEEPS, PlotHeight::Fixed(PHONE_PX))
-        };
-        let mut columns = vec![Column {
-            share: 1.5,
-            slots: vec![sweeps],
-        }];
-        let mut rows = Vec::new();
-        if width >= SIDE_BY_SIDE {
-            columns.push(Column {
-                share: 1.0,
-                slots: maps(BESIDE_PX).to_vec(),
-            });
-        } else {
-            rows.extend(maps(BELOW_PX).map(|map| Row::new(&[map])));
-        }
-        let curve = slot(panel::CURVE, PlotHeight::Fixed(120.0));
-        Arrangement {
-            stage: [vec![Row { columns }], rows].concat(),
-            below: vec![Row::new(&[curve])],
-        }
+#[must_use]
+pub fn arrange(_scene: &Scene, width: f32) -> Arrangement {
+    let maps = |px| [panel::POINT, panel::PLANE].map(|id| Slot::fixed(id, px));
+    let stage = if width >= SIDE_BY_SIDE {
+        let sweeps = Slot::natural(panel::SWEEPS, 470.0);
+        vec![Row::of_columns(&[
+            (1.5, &[sweeps]),
+            (1.0, &maps(BESIDE_PX)),
+        ])]
+    } else {
+        let [point, plane] = maps(BELOW_PX);
+        Row::each(&[Slot::fixed(panel::SWEEPS, PHONE_PX), point, plane])
+    };
+    Arrangement {
+        stage,
+        below: Row::each(&[Slot::fixed(panel::CURVE, 120.0)]),
     }
-}
-
-fn slot(panel: &'static str, height: PlotHeight) -> Slot {
-    Slot { panel, height }
-}
-
-fn maps(height: f32) -> [Slot; 2] {
-    [panel::POINT, panel::PLANE].map(|id| slot(id, PlotHeight::Fixed(height)))
 }

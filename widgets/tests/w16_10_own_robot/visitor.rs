@@ -145,7 +145,7 @@ fn its_path_is_drawn_over_the_map_with_doubtful_parts_dotted() {
             .any(|entry| entry.label == "the other log, localized")
     );
     let faults =
-        widget_kit::audit::text_faults(&robot, &widgets::w16_10_own_robot::view::RobotView, 390.0);
+        widget_kit::audit::text_faults(&robot, widgets::w16_10_own_robot::view::arrange, 390.0);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 

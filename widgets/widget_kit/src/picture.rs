@@ -11,15 +11,13 @@ use crate::view::{Arrangement, MARGIN, View};
 pub fn picture(
     surface: &mut dyn Surface,
     model: &dyn Model,
-    view: &dyn View,
+    view: View,
     width_px: f32,
     theme: Theme,
 ) -> f32 {
     let scene = model.scene();
     let width = width_px - 2.0 * MARGIN;
-    let arrangement = view
-        .arrange(&scene, width)
-        .of_disclosure(&model.disclosure());
+    let arrangement = view(&scene, width).of_disclosure(&model.disclosure());
     2.0 * MARGIN
         + panels(
             surface,

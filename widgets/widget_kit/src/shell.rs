@@ -35,7 +35,7 @@ const WORK_AT_REST: Duration = Duration::from_millis(10);
 /// A widget on egui: model, view, and the state between frames.
 pub struct Shell {
     model: Box<dyn Model>,
-    view: Box<dyn View>,
+    view: View,
     theme: Theme,
     /// The model's picture at its last change.
     scene: Scene,
@@ -75,7 +75,7 @@ enum Moving {
 impl Shell {
     /// Creates a widget from its two halves.
     #[must_use]
-    pub fn new(model: Box<dyn Model>, view: Box<dyn View>) -> Self {
+    pub fn new(model: Box<dyn Model>, view: View) -> Self {
         Self {
             scene: model.scene(),
             model,
@@ -260,19 +260,19 @@ impl Shell {
     /// The static picture of the current state.
     #[must_use]
     pub fn picture_svg(&self, width_px: f32, theme: Theme) -> String {
-        picture_svg(self.model.as_ref(), self.view.as_ref(), width_px, theme)
+        picture_svg(self.model.as_ref(), self.view, width_px, theme)
     }
 
     /// Faults of the texts in that picture, see [`crate::audit`].
     #[must_use]
     pub fn text_faults(&self, width_px: f32) -> Vec<String> {
-        text_faults(self.model.as_ref(), self.view.as_ref(), width_px)
+        text_faults(self.model.as_ref(), self.view, width_px)
     }
 
     /// Overlapping texts over the data of that picture.
     #[must_use]
     pub fn label_faults(&self, width_px: f32) -> Vec<String> {
-        label_faults(self.model.as_ref(), self.view.as_ref(), width_px)
+        label_faults(self.model.as_ref(), self.view, width_px)
     }
 
     /// Whether another frame is needed without further input.
