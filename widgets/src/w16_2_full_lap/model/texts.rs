@@ -7,7 +7,7 @@ use ch16_slam2d::loops::GateModel;
 use widget_kit::model::{Assessment, Fact, Outcome};
 use widget_kit::plural::plural;
 
-use super::moment::LapState;
+use super::moment::{LapState, WrongPlace};
 use super::runs::Runs;
 
 pub mod floor_plan;
@@ -91,6 +91,13 @@ fn statement(moment: &LapState, rejected: Option<&OwnLoopError>) -> Statement {
     if let Some(rejected) = rejected {
         return neutral("no loop of your own", rejected.to_string());
     }
+    if let Some(wrong) = moment.wrong_place() {
+        return Statement {
+            standing: Assessment::Bad,
+            verdict: wrong_words(&wrong),
+            sentence: lap_sentence(runs),
+        };
+    }
     let lap = runs.graph.lap();
     match moment.attempt {
         Some(attempt) => {
@@ -103,6 +110,14 @@ fn statement(moment: &LapState, rejected: Option<&OwnLoopError>) -> Statement {
         }
         None if tick == runs.ticks() => neutral("lap finished", lap_sentence(runs)),
         None => neutral("on the way", tick_sentence(runs, tick)),
+    }
+}
+
+/// `wrong loop 80 to 12` or `9.3 m off`.
+pub fn wrong_words(wrong: &WrongPlace) -> String {
+    match wrong {
+        WrongPlace::Loop(attempt) => format!("wrong loop {}", ends(attempt)),
+        WrongPlace::Keyframe(_, off_m) => format!("{off_m:.1} m off"),
     }
 }
 
