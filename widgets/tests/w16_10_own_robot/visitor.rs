@@ -101,7 +101,7 @@ fn its_verdicts_are_reported_and_can_be_stepped_through() {
     let table = tables.iter().find(|table| table.id == "where").unwrap();
     let verdicts: Vec<&str> = table.rows.iter().map(|row| row[2].as_str()).collect();
     assert_eq!(verdicts, ["lost", "doubtful", "found", "followed", "lost"]);
-    assert!(robot.summary().contains("tuesday.log"));
+    assert!(robot.outcome().sentence.contains("tuesday.log"));
 }
 
 #[test]

@@ -105,7 +105,7 @@ pub trait Model {
     /// The result in words and numbers.
     fn outcome(&self) -> Outcome;
 
-    /// A text alternative of the picture, for screen readers.
+    /// The picture in words, without its result: see [`text_alternative`].
     fn summary(&self) -> String;
 
     /// The timeline, if the widget has one.
@@ -395,6 +395,25 @@ pub fn apply_preset<M: Model + ?Sized>(model: &mut M, preset: &Preset) -> Result
         model.press(button)?;
     }
     Ok(())
+}
+
+/// The panels that a widget shows at present.
+#[must_use]
+pub fn shown_scene(model: &dyn Model) -> Scene {
+    let (mut scene, disclosure) = (model.scene(), model.disclosure());
+    scene.panels.retain(|panel| disclosure.has_panel(panel.id));
+    scene
+}
+
+/// The text alternative of the picture for screen readers: it asks the question or gives the result, like the page.
+#[must_use]
+pub fn text_alternative(model: &dyn Model, asks: bool) -> String {
+    let summary = model.summary();
+    if asks {
+        format!("{summary} {}", model.spec().question)
+    } else {
+        format!("{summary} {}", model.outcome().in_full())
+    }
 }
 
 /// Does all the remaining [`Model::work`], as a [`Model::finish_work`] if the outcome depends on all of it.

@@ -1,7 +1,7 @@
 //! The panels of a widget on any surface, without the pointer.
 
 use crate::draw;
-use crate::model::Model;
+use crate::model::{Model, shown_scene};
 use crate::palette::Theme;
 use crate::scene::Scene;
 use crate::surface::{Measure, Px, Surface};
@@ -15,7 +15,7 @@ pub fn picture(
     width_px: f32,
     theme: Theme,
 ) -> f32 {
-    let scene = model.scene();
+    let scene = shown_scene(model);
     let width = width_px - 2.0 * MARGIN;
     let arrangement = view(&scene, width).of_disclosure(&model.disclosure());
     2.0 * MARGIN

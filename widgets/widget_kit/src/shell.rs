@@ -10,7 +10,7 @@ use web_time::{Duration, Instant};
 
 use crate::audit::{label_faults, text_faults};
 use crate::egui_surface::{Textures, color};
-use crate::model::{Activity, Model, Motion};
+use crate::model::{Activity, Model, Motion, shown_scene, text_alternative};
 use crate::palette::{self, Theme};
 use crate::param::ParamError;
 use crate::pointer::{Pointer, TOUCH_REACH_PX};
@@ -77,7 +77,7 @@ impl Shell {
     #[must_use]
     pub fn new(model: Box<dyn Model>, view: View) -> Self {
         Self {
-            scene: model.scene(),
+            scene: shown_scene(model.as_ref()),
             model,
             view,
             theme: Theme::default(),
@@ -184,6 +184,13 @@ impl Shell {
     #[must_use]
     pub fn has_acted(&self) -> bool {
         self.first.is_over
+    }
+
+    /// The text alternative of the picture, with the question until the reader acts or opens everything.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let asks = !self.has_acted() && !self.model.disclosure().is_all();
+        text_alternative(self.model(), asks)
     }
 
     /// Sets whether animations run.
@@ -338,7 +345,7 @@ impl Shell {
     /// Queries the model again if something changed.
     fn refresh(&mut self) {
         if self.stale {
-            self.scene = self.model.scene();
+            self.scene = shown_scene(self.model());
             self.stale = false;
             self.revision += 1;
         }

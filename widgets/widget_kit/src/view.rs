@@ -16,17 +16,6 @@ pub const SIDE_BY_SIDE: f32 = 520.0;
 /// Arranges the panels of a scene at a width; [`Arrangement::by_weight`] suits most.
 pub type View = fn(&Scene, f32) -> Arrangement;
 
-/// Removes the panels that a disclosure hides.
-fn keep_shown(rows: &mut Vec<Row>, disclosure: &Disclosure) {
-    for row in rows.iter_mut() {
-        for column in &mut row.columns {
-            column.slots.retain(|slot| disclosure.has_panel(slot.panel));
-        }
-        row.columns.retain(|column| !column.slots.is_empty());
-    }
-    rows.retain(|row| !row.columns.is_empty());
-}
-
 /// One panel in a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slot {
@@ -109,14 +98,12 @@ pub struct Arrangement {
 }
 
 impl Arrangement {
-    /// The visible part for a disclosure: the panels of the scene, and no plots below.
+    /// The visible part for a disclosure: no plots below the stage unless everything is shown.
     #[must_use]
     pub fn of_disclosure(mut self, disclosure: &Disclosure) -> Self {
-        if disclosure.is_all() {
-            return self;
+        if !disclosure.is_all() {
+            self.below.clear();
         }
-        keep_shown(&mut self.stage, disclosure);
-        self.below.clear();
         self
     }
 
@@ -184,16 +171,21 @@ pub fn place<'a>(
 ) -> (Vec<Placed>, f32) {
     let mut placed = Vec::with_capacity(scene.panels.len());
     let mut top = 0.0;
+    let panel_of = |slot: &Slot| scene.panels.iter().find(|panel| panel.id == slot.panel);
     for row in rows {
-        let shares: f32 = row.columns.iter().map(|column| column.share).sum();
-        let gaps = PANEL_GAP * (row.columns.len().max(1) - 1) as f32;
+        let columns = row.columns.iter();
+        let columns =
+            columns.filter(|column| column.slots.iter().any(|slot| panel_of(slot).is_some()));
+        let columns: Vec<_> = columns.collect();
+        let shares: f32 = columns.iter().map(|column| column.share).sum();
+        let gaps = PANEL_GAP * (columns.len().max(1) - 1) as f32;
         let mut left = 0.0;
         let mut bottom: f32 = top;
-        for column in &row.columns {
+        for column in columns {
             let column_width = (width - gaps) * column.share / shares;
             let mut y = top;
             for slot in &column.slots {
-                let Some(panel) = scene.panels.iter().find(|panel| panel.id == slot.panel) else {
+                let Some(panel) = panel_of(slot) else {
                     continue;
                 };
                 let layout = PanelLayout::new(panel, column_width, slot.height, measure);
