@@ -14,13 +14,11 @@ impl View for RobotView {
     fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
         let slot = |panel, height| Slot { panel, height };
         let is_empty = scene.panels[0].layers.is_empty();
-        let height = if is_empty {
-            // The host's drop zone covers it.
-            PlotHeight::Fixed(220.0)
-        } else if width < SIDE_BY_SIDE {
-            PlotHeight::Natural { most: 520.0 }
-        } else {
-            PlotHeight::Natural { most: 620.0 }
+        let height = match (width < SIDE_BY_SIDE, is_empty) {
+            // The host's picture covers it.
+            (true, true) => PlotHeight::Fixed(400.0),
+            (true, false) => PlotHeight::Natural { most: 520.0 },
+            (false, _) => PlotHeight::Natural { most: 620.0 },
         };
         let map = slot(panel::MAP, height);
         let plots = [panel::FIT, panel::SURE].map(|id| slot(id, PlotHeight::Fixed(130.0)));
