@@ -8,12 +8,11 @@ use crate::w16_10_own_robot::model::panel;
 /// The layout of the widget.
 #[must_use]
 pub fn arrange(scene: &Scene, width: f32) -> Arrangement {
-    let map = if scene.panels[0].layers.is_empty() {
-        // The host's drop zone covers it.
-        Slot::fixed(panel::MAP, 220.0)
-    } else {
-        let most = if width < SIDE_BY_SIDE { 520.0 } else { 620.0 };
-        Slot::natural(panel::MAP, most)
+    let map = match (width < SIDE_BY_SIDE, scene.panels[0].layers.is_empty()) {
+        // The host's picture covers it.
+        (true, true) => Slot::fixed(panel::MAP, 400.0),
+        (true, false) => Slot::natural(panel::MAP, 520.0),
+        (false, _) => Slot::natural(panel::MAP, 620.0),
     };
     let plots = [panel::FIT, panel::SURE].map(|id| Slot::fixed(id, 130.0));
     let below = if width < SIDE_BY_SIDE {
