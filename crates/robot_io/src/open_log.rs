@@ -69,7 +69,8 @@ impl LogFormat {
             advice,
         };
         let found = match (Self::detect(start), &options.columns) {
-            (Self::Carmen | Self::Course | Self::Foreign(_), Some(_)) => Self::Table,
+            // Columns say how to read any text.
+            (found, Some(_)) if !found.is_ros() && found != Self::Json => Self::Table,
             (found, _) => found,
         };
         if let Self::Foreign(kind) = found {
