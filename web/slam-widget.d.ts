@@ -47,8 +47,8 @@ export interface BasinExplorerState {
 export interface TheFullLapState {
   /** The world. The Apartment uses the chapter's estimator, every other world the default one. */
   world: 'apartment' | 'ring' | 'twins' | 'corridor' | 'hall' | 'own';
-  /** What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, or remove something. All on a grid of 5 cm. */
-  edit: 'off' | 'move' | 'wall' | 'way' | 'remove';
+  /** What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, remove something, or set the robot down. All on a grid of 5 cm. */
+  edit: 'off' | 'move' | 'wall' | 'way' | 'remove' | 'robot';
   /** The piece of the flat that the arrows move and Remove deletes. On the map, a press selects it. */
   piece: 'nothing' | 'wall' | 'first-end' | 'second-end' | 'way-point' | 'start' | 'heading';
   /** The number of the wall or of the way point, from 1. 0 to 2000. */
@@ -500,7 +500,7 @@ export interface SlamWidgetProperties {
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold' | undefined;
   more: boolean | undefined;
   world: 'apartment' | 'ring' | 'twins' | 'corridor' | 'hall' | 'own' | 'apartment' | 'ring' | 'apartment' | 'ring' | 'twins' | undefined;
-  edit: 'off' | 'move' | 'wall' | 'way' | 'remove' | undefined;
+  edit: 'off' | 'move' | 'wall' | 'way' | 'remove' | 'robot' | undefined;
   piece: 'nothing' | 'wall' | 'first-end' | 'second-end' | 'way-point' | 'start' | 'heading' | undefined;
   'piece-number': number | undefined;
   pieceNumber: number | undefined;

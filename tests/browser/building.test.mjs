@@ -89,6 +89,38 @@ describe('the building of the own-robot page', () => {
     }, { path: '/own-robot.html?w=16.10', options: still });
   });
 
+  for (const [width, height] of [[1440, 900], [1280, 680], [390, 844]]) {
+    it(`is what the widget opens on, large and with two choices, at ${width}×${height}`, async () => {
+      await visit('', async (tab) => {
+        await h.ready(tab);
+        await h.quiet(tab);
+        const { share, source, isDrawn, controls } = await tab.evaluate(() => {
+          const widget = document.querySelector('slam-widget');
+          const picture = widget.shadowRoot.querySelector('.picture');
+          const buttons = [...widget.shadowRoot.querySelectorAll('.control')].filter((one) => one.checkVisibility());
+          return {
+            share: picture.getBoundingClientRect().height / widget.offsetHeight,
+            source: picture.src,
+            isDrawn: picture.checkVisibility() && picture.naturalWidth > 100,
+            controls: buttons.map((one) => one.querySelector('[data-control]').dataset.control),
+          };
+        });
+        assert.match(source, /building-light\.svg$/);
+        assert.ok(isDrawn && share >= 0.7, `${share} of the height`);
+        assert.deepEqual(controls, ['open', 'sample', 'more']);
+        // Start over shows it again.
+        await tab.evaluate(() => document.querySelector('slam-widget').press('sample'));
+        const waits = (isWaiting) => tab.waitForFunction((is) => {
+          const { shadowRoot } = document.querySelector('slam-widget');
+          return shadowRoot.querySelector('.drop').checkVisibility() === is && shadowRoot.querySelector('.picture').checkVisibility() === is;
+        }, isWaiting);
+        await waits(false);
+        await tab.evaluate(() => document.querySelector('slam-widget').press('defaults'));
+        await waits(true);
+      }, { path: '/own-robot.html?w=16.10', options: { ...still, viewport: { width, height } } });
+    });
+  }
+
   it('gives way to a log that is dropped on it', async () => {
     await opened(async (tab) => {
       await live(tab);

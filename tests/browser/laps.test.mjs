@@ -17,7 +17,7 @@ const reading = (test, { options = {}, server = {}, path = '/index.html', quiet 
   visit('', test, { path, options, quiet, server: { ...server, pages: { ...pages, ...server.pages } } });
 
 /** The same laps computed in Node: by level, front end and with loops. */
-const laps = new wasm.Laps();
+const laps = new wasm.LapOutcomes();
 const errors = LEVELS.map((noise) => {
   const numbers = Array.from({ length: SEEDS }, (_, at) => laps.drive(at + 1, `noise=${noise}`));
   return [0, 4].map((column) => numbers.map((lap) => lap[column]).sort((a, b) => a - b));

@@ -1,5 +1,6 @@
 //! The invariants of ARCHITECTURE.md that neither the compiler nor `clippy.toml` can check.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -249,6 +250,57 @@ fn models_use_neither_egui_nor_the_browser_nor_a_clock() {
             let word = words.iter().find(|word| line.contains(**word));
             assert_eq!(word, None, "{}: {line}", file.display());
         }
+    }
+}
+
+/// Of two modules beside each other at most one uses the other, directly or through others.
+#[test]
+fn modules_beside_each_other_form_no_circle() {
+    for package in packages() {
+        let src = package.folder().join("src");
+        let files = rust_files(&src).into_iter().map(|file| {
+            let name = file.strip_prefix(&src).expect("it lies inside");
+            let name = name.with_extension("").to_string_lossy().into_owned();
+            let name = name.replace(std::path::MAIN_SEPARATOR, "::");
+            (name, text(&file))
+        });
+        let modules: BTreeMap<String, String> = files
+            .filter(|(name, _)| name != "lib" && !name.ends_with("tests"))
+            .collect();
+        let mut uses = BTreeSet::new();
+        for (module, text) in &modules {
+            let code = text.split("mod tests {").next().unwrap_or_default();
+            let code = code
+                .lines()
+                .filter(|line| !line.trim_start().starts_with("//"));
+            let words = code
+                .flat_map(|line| line.split([' ', '(', '<', '&', '[', '{', ';', ',', ')', '>']));
+            for path in words {
+                let user: Vec<&str> = module.split("::").collect();
+                let kept = match path.matches("super::").count() {
+                    0 if path.starts_with("crate::") => 0,
+                    0 => continue,
+                    up => user.len().saturating_sub(up),
+                };
+                let below = path
+                    .split("::")
+                    .filter(|part| !["crate", "super"].contains(part));
+                let used: Vec<&str> = user[..kept].iter().copied().chain(below).collect();
+                let same = user.iter().zip(&used).take_while(|(a, b)| a == b).count();
+                if same < user.len() && same < used.len() {
+                    let [user, used] = [user, used].map(|path| path[..=same].join("::"));
+                    uses.extend(modules.contains_key(&used).then_some((user, used)));
+                }
+            }
+        }
+        // What uses none of the rest is in no circle.
+        let mut before = usize::MAX;
+        while uses.len() < before {
+            before = uses.len();
+            let users: BTreeSet<String> = uses.iter().map(|(user, _)| user.clone()).collect();
+            uses.retain(|(_, used)| users.contains(used));
+        }
+        assert!(uses.is_empty(), "{}: {uses:?}", package.name);
     }
 }
 

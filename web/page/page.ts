@@ -121,7 +121,7 @@ function startDecideFigure(glue: Glue): void {
 function startLapsFigures(): void {
   const lapCore = {
     module: coreModule as () => Promise<WebAssembly.Module>,
-    runner: async () => new (await (core as () => Promise<Glue>)()).Laps(),
+    runner: async () => new (await (core as () => Promise<Glue>)()).LapOutcomes(),
   };
   const [levels, matchers] = ['#laps', '#matcher-laps'].map((id) => document.querySelector<HTMLElement>(id));
   if (levels) new LapsFigure(levels, lapCore, LEVELS_PLAN);

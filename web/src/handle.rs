@@ -196,7 +196,7 @@ impl Widget {
 
     /// The text alternative of the picture.
     pub fn summary(&self) -> String {
-        self.shared.shell.borrow().model().summary()
+        self.shared.shell.borrow().summary()
     }
 
     /// The timeline as JSON, or `null`.

@@ -100,12 +100,12 @@ pub fn matcher_scene(room: &str) -> String {
 
 /// Runs ICP on these sweeps.
 #[wasm_bindgen]
-pub struct Matcher {
+pub struct PageMatcher {
     matcher: matcher::RoomMatcher,
 }
 
 #[wasm_bindgen]
-impl Matcher {
+impl PageMatcher {
     /// The matcher of a room before its first run.
     #[wasm_bindgen(constructor)]
     #[must_use]
@@ -124,12 +124,12 @@ impl Matcher {
 /// Runs one lap after the other.
 #[wasm_bindgen]
 #[derive(Default)]
-pub struct Laps {
+pub struct LapOutcomes {
     outcomes: Outcomes,
 }
 
 #[wasm_bindgen]
-impl Laps {
+impl LapOutcomes {
     /// Creates it before its first lap.
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {

@@ -4,7 +4,7 @@
 //! of the custom element and the tables in the docs.
 
 use serde_json::{Value, json};
-use widget_kit::model::Model;
+use widget_kit::model::{Model, text_alternative};
 use widget_kit::param::{ParamKind, ParamSpec};
 
 /// The schema of one widget; it needs a new model for the description of its initial state.
@@ -34,7 +34,7 @@ pub fn widget(model: &dyn Model) -> Value {
         "presets": presets.collect::<Vec<_>>(),
         "keys": keys.collect::<Vec<_>>(),
         "opening": widget_kit::controls::shown(model),
-        "summary": model.summary(),
+        "summary": text_alternative(model, true),
         "takesFiles": model.takes_files(),
     })
 }

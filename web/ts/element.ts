@@ -495,7 +495,6 @@ export class SlamWidget extends HTMLElement {
     });
     this.#parts.frame.prepend(this.#doctor.element);
     this.#parts.stage.after(this.#loops.element);
-    this.#parts.frame.classList.remove('without-file');
     this.#mapper = mapper;
     return mapper;
   }
@@ -510,6 +509,7 @@ export class SlamWidget extends HTMLElement {
   }
 
   #deliver(deliveries: readonly Delivery[]): void {
+    for (const { kind } of deliveries) if (kind === 'opening' || kind === 'closed') this.#waitForFile(kind === 'closed');
     const panels = [this.#doctor, this.#loops];
     const resized = deliveries.flatMap((delivery) => panels.filter((panel) => panel?.receive(delivery) === true));
     if (resized.length > 0) this.#resized();
@@ -519,6 +519,14 @@ export class SlamWidget extends HTMLElement {
     this.#announce(this.#changes());
     this.#executeOrders();
     this.#lifecycle.wake();
+  }
+
+  /** Shows the picture of what comes of a file, until there is one. */
+  #waitForFile(waits: boolean): void {
+    this.#parts.frame.classList.toggle('without-file', waits);
+    if (!waits) return;
+    this.#pictures.clear(this.#state?.spec.summary ?? '');
+    this.#appearance.showTheme();
   }
 
   /** Executes an action on the widget, which is started if necessary. */

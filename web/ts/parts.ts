@@ -48,7 +48,7 @@ export function build(shadow: ShadowRoot): Parts {
   const whole = create('button', { type: 'button', class: 'whole', hidden: '' });
   whole.textContent = 'Whole map';
   const drop = create('button', { type: 'button', class: 'drop' });
-  drop.innerHTML = '<b>Drop a log of your robot here</b> or choose a file. It stays in this browser.';
+  drop.innerHTML = '<span><b>Drop a log of your robot here</b> or choose a file. It stays in this browser.</span>';
   const bar = create('div', { class: 'bar', part: 'bar', role: 'group' });
   const part = (name: string): HTMLElement => create('div', { class: name, part: name });
   const [transport, first, tools, verdict] = [part('transport'), part('first'), part('tools'), part('verdict')];

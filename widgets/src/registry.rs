@@ -6,7 +6,7 @@ use widget_kit::shell::Shell;
 use widget_kit::spec::WidgetSpec;
 
 macro_rules! widgets {
-    ($($module:ident: $model:ident, $view:ident;)*) => {
+    ($($module:ident: $model:ident;)*) => {
         /// The constant descriptions of all widgets. A program that uses only this list does not link the
         /// estimator.
         pub const SPECS: [&WidgetSpec; [$(stringify!($module)),*].len()] =
@@ -20,24 +20,24 @@ macro_rules! widgets {
         #[cfg(feature = "view")]
         pub const SHELLS: [fn() -> Shell; SPECS.len()] = [$(|| {
             let model = crate::$module::model::$model::default();
-            Shell::new(Box::new(model), Box::new(crate::$module::view::$view))
+            Shell::new(Box::new(model), crate::$module::view::arrange)
         }),*];
     };
 }
 
 widgets! {
-    w16_1_basin_explorer: BasinExplorer, BasinView;
-    w16_2_full_lap: FullLap, FullLapView;
-    w16_3_cost_terraces: CostTerraces, TerracesView;
-    w16_4_control_room: ControlRoom, ControlRoomView;
-    w16_5_pose_graph_toy: PoseGraphToy, ToyView;
-    w16_6_whole_window: WholeWindow, WindowView;
-    w16_7_place_recognition: PlaceRecognition, PlacesView;
-    w16_8_moving_box: MovingBox, BoxView;
-    w16_9_relocalization: Relocalization, RelocalizationView;
-    w16_10_own_robot: OwnRobot, RobotView;
-    w16_11_procrustes: ProcrustesTrace, TraceView;
-    w16_12_jacobians: WrongJacobians, JacobiansView;
+    w16_1_basin_explorer: BasinExplorer;
+    w16_2_full_lap: FullLap;
+    w16_3_cost_terraces: CostTerraces;
+    w16_4_control_room: ControlRoom;
+    w16_5_pose_graph_toy: PoseGraphToy;
+    w16_6_whole_window: WholeWindow;
+    w16_7_place_recognition: PlaceRecognition;
+    w16_8_moving_box: MovingBox;
+    w16_9_relocalization: Relocalization;
+    w16_10_own_robot: OwnRobot;
+    w16_11_procrustes: ProcrustesTrace;
+    w16_12_jacobians: WrongJacobians;
 }
 
 /// The description of the widget of that name, such as `w16.1`.

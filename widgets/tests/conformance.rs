@@ -3,7 +3,7 @@
 use bench_support::timed;
 use egui::{pos2, vec2};
 use widget_kit::invariants::{assert_reports, assert_values};
-use widget_kit::model::{Activity, Model, Motion};
+use widget_kit::model::{Activity, Model, Motion, shown_scene};
 use widget_kit::param::MORE;
 use widget_kit::scene::Layer;
 use widget_kit::shell::Shell;
@@ -379,6 +379,63 @@ fn every_widget_has_a_question_and_a_claim_of_one_line() {
             "{}: {claim}",
             spec.id
         );
+    }
+}
+
+#[test]
+fn no_number_of_a_picture_at_rest_has_three_decimals() {
+    for make in SHELLS {
+        let mut shell = make();
+        shell.finish_work();
+        while shell.model_mut().work().is_busy() {}
+        let name = shell.model().spec().id;
+        for panel in shown_scene(shell.model()).panels {
+            let labels = panel.layers.into_iter().filter_map(|layer| match layer {
+                Layer::Label { text, .. } | Layer::Text { text, .. } => Some(text),
+                _ => None,
+            });
+            let legend = panel.legend.into_iter().map(|entry| entry.label);
+            for words in labels.chain(legend).chain([panel.title]) {
+                let mut parts = words.split('.').skip(1);
+                let is_long = |part: &str| part.bytes().take_while(u8::is_ascii_digit).count() > 2;
+                assert!(!parts.any(is_long), "{name}, {}: {words}", panel.id);
+            }
+        }
+    }
+}
+
+/// The text alternative asks where the page asks, and holds the answer back.
+#[test]
+fn the_text_alternative_asks_until_the_reader_acts() {
+    // Play and a drag may set the same numbers: 25° off, 0.55 m.
+    let is_set = |model: &dyn Model, word: &str| {
+        let mut values = model.values().iter();
+        values.any(|(param, _)| model.values().to_text(param.id) == word)
+    };
+    for make in SHELLS {
+        let mut shell = make();
+        let spec = shell.model().spec();
+        // As in the page, where nobody has acted: all work is done.
+        shell.finish_work();
+        while shell.model_mut().work().is_busy() {}
+        let outcome = shell.model().outcome();
+        let words = shell.summary();
+        assert!(words.ends_with(spec.question), "{}: {words}", spec.id);
+        let told = outcome.in_full();
+        let numbers = |text: &str| -> Vec<String> {
+            let parts = text.split(|letter: char| !(letter.is_ascii_digit() || letter == '.'));
+            let parts = parts.map(|part| part.trim_matches('.').to_owned());
+            parts.filter(|part| part.contains('.')).collect()
+        };
+        for number in numbers(&told) {
+            let is_told = numbers(&words).contains(&number) && !is_set(shell.model(), &number);
+            assert!(!is_told, "{}: {number} of “{told}” in “{words}”", spec.id);
+        }
+        assert!(!words.contains(&outcome.verdict), "{}: {words}", spec.id);
+        shell.act();
+        let words = shell.summary();
+        let outcome = shell.model().outcome().in_full();
+        assert!(words.ends_with(&outcome), "{}: {words}", spec.id);
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! A building is generated from a seed: corridors, rooms with open and closed doors, furniture, glass. A
 //! robot drives through it and takes a scan every few decimetres; its odometry slips, drifts and jumps, beams
-//! pass through glass, people walk by. The estimator sees only the recording. A [`Trial`] runs
+//! pass through glass, people walk by. The estimator sees only the recording. A [`BuildingRun`] runs
 //! [`SlamConfig::for_robot`](ch16_slam2d::slam::SlamConfig::for_robot) on it and compares the keyframes with
 //! the truth.
 //!
@@ -20,4 +20,4 @@ pub use plan::{BuildingConfig, BuildingPlan, Layout, Rooms};
 pub use recording::{Mounting, RecordedFrame, Recorder, Recording};
 pub use robots::Robot;
 pub use story::BuildingStory;
-pub use trial::{Trial, TrialLoops};
+pub use trial::{BuildingRun, TrialLoops};

@@ -1,6 +1,6 @@
 //! A heading error that no scan shows: the scans of a stretch are missing, and the odometry turns by 20° there.
 
-use ch16_lab::buildings::{Kind, Recording, Trial, recorded};
+use ch16_lab::buildings::{BuildingRun, Kind, Recording, recorded};
 use ch16_slam2d::metrics::position_error_m;
 use pr_geom::SE2;
 
@@ -30,7 +30,7 @@ fn loops_correct_a_heading_error_of_20_degrees_over_a_gap() {
     // odometry that half of the scan does not support, the circle turns by 90° and ends 32 m off.
     for (kind, seed, gap_m) in [(Kind::Hallway, 402, 3.0), (Kind::Circle, 401, 6.0)] {
         let (recording, robot) = recorded(kind, seed);
-        let trial = Trial::run(&turned(&recording, 0.2, gap_m), robot, true);
+        let trial = BuildingRun::run(&turned(&recording, 0.2, gap_m), robot, true);
         assert!(trial.worst_m < 0.3, "{kind:?} {seed}: {} m", trial.worst_m);
     }
 }

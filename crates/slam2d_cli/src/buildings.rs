@@ -5,7 +5,7 @@ use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 
 use anyhow::{bail, ensure};
-use ch16_lab::buildings::{Kind, Recording, Robot, Trial, recorded_by};
+use ch16_lab::buildings::{BuildingRun, Kind, Recording, Robot, recorded_by};
 use ch16_lab::lap::NamedChoice;
 use clap::Args;
 use rayon::prelude::*;
@@ -122,7 +122,7 @@ fn row(args: &BuildingsArgs, seed: u32) -> Result<Row, SettingError> {
     for (name, value) in &args.settings {
         robot = Setting::named(name)?.set(&robot, *value)?;
     }
-    let trial = Trial::run(&recording, robot, !args.no_odometry);
+    let trial = BuildingRun::run(&recording, robot, !args.no_odometry);
     Ok(Row {
         seed,
         scans: recording.frames.len(),

@@ -15,7 +15,7 @@ use serde::Serialize;
 pub use self::args::OptimizeArgs;
 use self::robust::InlierCounts;
 use self::solve::solve_repeatedly;
-use self::tried::{Tried, start_name};
+use self::tried::{TriedJson, start_name};
 pub use self::whole_file::{WholeFile, check_file, check_folder, write_whole};
 use crate::in_file::InFile as _;
 use crate::output::{print_json, say};
@@ -34,7 +34,7 @@ struct Summary {
     cost: f64,
     stop: String,
     /// Every start that was tried, in this order.
-    tried: Vec<Tried>,
+    tried: Vec<TriedJson>,
     /// Result of `--robust`; χ² is that of the inliers.
     #[serde(skip_serializing_if = "Option::is_none")]
     robust: Option<InlierCounts>,
@@ -94,7 +94,7 @@ fn solve_file(args: &OptimizeArgs) -> anyhow::Result<(G2oFile, Summary)> {
         chi2: report.chi2,
         cost: report.cost,
         stop: report.stop.to_string(),
-        tried: solved.outcome.tried.iter().map(Tried::from).collect(),
+        tried: solved.outcome.tried.iter().map(TriedJson::from).collect(),
         robust: solved.inliers,
         cpu_ms: solved.best_ms,
         cpu_ms_first: solved.first_ms,

@@ -93,7 +93,7 @@ mod browser {
 
     use wasm_bindgen::prelude::wasm_bindgen;
 
-    use crate::measure::Turns;
+    use crate::measure::PreparedWorkloads;
 
     #[wasm_bindgen]
     extern "C" {
@@ -101,7 +101,7 @@ mod browser {
         fn now() -> f64;
     }
 
-    thread_local!(static TURNS: RefCell<Turns> = RefCell::default());
+    thread_local!(static TURNS: RefCell<PreparedWorkloads> = RefCell::default());
 
     /// Runs a workload for about `budget_ms`. Returns the JSON that the native binary prints.
     #[wasm_bindgen]

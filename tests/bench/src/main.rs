@@ -16,9 +16,9 @@ use std::time::Instant;
 
 use bench_support::skip::{NO_VALGRIND, tell};
 use measured::Measured;
-use page::{Block, write_into};
+use page::{PageBlock, write_into};
 use serde::Serialize;
-use slam2d_bench::measure::{self, Turns};
+use slam2d_bench::measure::{self, PreparedWorkloads};
 
 const USAGE: &str = "\
 slam2d_bench names                       the names of all that is measured, as JSON
@@ -52,7 +52,7 @@ fn main() -> ExitCode {
         }),
         ["registration", slam2d, folder, page] => {
             registration::table(Path::new(slam2d), Path::new(folder))
-                .and_then(|table| publish(Path::new(page), Block::Registration, &table))
+                .and_then(|table| publish(Path::new(page), PageBlock::Registration, &table))
         }
         ["--counts", "check"] => judge_counts(counts::compare),
         ["--counts", "accept"] => judge_counts(counts::accept),
@@ -85,7 +85,7 @@ fn say_json(value: &impl Serialize) -> Result<(), String> {
 }
 
 /// Prints a block and writes it into the page.
-fn publish(page: &Path, block: Block, text: &str) -> Result<(), String> {
+fn publish(page: &Path, block: PageBlock, text: &str) -> Result<(), String> {
     say(text)?;
     write_into(page, block, text)
 }
@@ -94,7 +94,7 @@ fn publish(page: &Path, block: Block, text: &str) -> Result<(), String> {
 fn turns() -> Result<(), String> {
     let start = Instant::now();
     let now_ms = || 1e3 * start.elapsed().as_secs_f64();
-    let mut turns = Turns::default();
+    let mut turns = PreparedWorkloads::default();
     for line in stdin().lines() {
         let line = line.map_err(|error| format!("standard input: {error}"))?;
         let words = line.split_once(' ');
@@ -117,7 +117,7 @@ fn table(turns: &Path, counts: &Path, page: &str) -> Result<(), String> {
     let measured: Measured = measured::read(turns)?;
     let counts = measured::read(counts)?;
     let table = report::table(&measured, &counts);
-    publish(Path::new(page), Block::Workloads, &table)?;
+    publish(Path::new(page), PageBlock::Workloads, &table)?;
     if counts.is_empty() {
         say(&format!("no instructions were counted: {NO_VALGRIND}"))?;
     }

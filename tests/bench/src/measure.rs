@@ -28,7 +28,7 @@ pub struct Turn {
 
 /// The workloads measured so far, each prepared once.
 #[derive(Default)]
-pub struct Turns {
+pub struct PreparedWorkloads {
     ready: BTreeMap<String, Ready>,
 }
 
@@ -40,7 +40,7 @@ struct Ready {
     runs: u32,
 }
 
-impl Turns {
+impl PreparedWorkloads {
     /// Runs a workload for about `budget_ms`; `now_ms` is the clock.
     ///
     /// # Errors
@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn an_unknown_workload_is_reported() {
-        let error = Turns::default().take("nothing", 1.0, &|| 0.0);
+        let error = PreparedWorkloads::default().take("nothing", 1.0, &|| 0.0);
         assert_eq!(error, Err("there is no workload `nothing`".to_owned()));
     }
 }

@@ -6,14 +6,14 @@ use bench_support::generated;
 
 /// A part of `docs/performance.md` that a command writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Block {
+pub enum PageBlock {
     /// Medians, ratios and instruction counts of the workloads.
     Workloads,
     /// Registration of files.
     Registration,
 }
 
-impl Block {
+impl PageBlock {
     fn name(self) -> &'static str {
         match self {
             Self::Workloads => "workloads",
@@ -34,7 +34,7 @@ impl Block {
 ///
 /// # Errors
 /// One sentence if the page cannot be read or written, or lacks the block's marks.
-pub fn write_into(page: &Path, block: Block, text: &str) -> Result<(), String> {
+pub fn write_into(page: &Path, block: PageBlock, text: &str) -> Result<(), String> {
     let text = format!("Measured on {}.\n\n{text}", generated::machine());
     generated::write_into(page, [&block.start(), &block.end()], &text)
 }
@@ -46,7 +46,7 @@ mod tests {
     #[test]
     fn the_document_has_the_marks_of_every_block() {
         let page = include_str!("../../../docs/performance.md");
-        for block in [Block::Workloads, Block::Registration] {
+        for block in [PageBlock::Workloads, PageBlock::Registration] {
             let (start, end) = (block.start(), block.end());
             assert!(
                 page.find(&start) < page.find(&end) && page.contains(&start),

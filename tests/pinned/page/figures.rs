@@ -31,14 +31,14 @@ use std::collections::HashMap;
 use ch16_lab::basin::BasinScene;
 use ch16_lab::lap::{LapRecord, LapRunner};
 
-use sweep::Sweep;
+use sweep::LapSweep;
 
 /// Values of the core by name; slow results are cached.
 #[derive(Default)]
 pub struct Figures {
     laps: HashMap<String, LapRecord>,
     basin: OnceCell<BasinScene>,
-    places: HashMap<String, places::World>,
+    places: HashMap<String, places::GradedWorld>,
     consistency: consistency::Cases,
 }
 
@@ -80,14 +80,14 @@ impl Figures {
             ["lap", run, what @ ..] => lap::value(self.lap(run)?, what),
             ["robots", row, column] => robots::value(row, column),
             ["worlds", what @ ..] => crate::worlds::value(what),
-            ["sweep", what @ ..] => Sweep::shared().value(what),
+            ["sweep", what @ ..] => LapSweep::shared().value(what),
             _ => None,
         }
     }
 
-    fn places(&mut self, world: &str) -> Option<&places::World> {
+    fn places(&mut self, world: &str) -> Option<&places::GradedWorld> {
         if !self.places.contains_key(world) {
-            let graded = places::World::graded(world)?;
+            let graded = places::GradedWorld::graded(world)?;
             self.places.insert(world.to_owned(), graded);
         }
         self.places.get(world)

@@ -1,7 +1,7 @@
 //! The table of the thousand laps that the page links to agrees with the core.
 
 use super::document::source;
-use super::figures::sweep::Sweep;
+use super::figures::sweep::LapSweep;
 
 /// Levels of the odometry noise, and the columns and rows of the table, by the names of figures and of the
 /// file.
@@ -37,7 +37,7 @@ const COUNTS: [(&str, &str, usize, &str); 7] = [
 
 #[test]
 fn the_table_behind_the_link_agrees_with_the_core() {
-    let sweep = Sweep::shared();
+    let sweep = LapSweep::shared();
     let value = |name: &str| sweep.value(&name.split('.').collect::<Vec<_>>());
     let mut lines = vec!["wheel noise,estimate,result,statistic,value,unit".to_owned()];
     for level in LEVELS {

@@ -25,14 +25,14 @@ export interface Lap {
 /** To a worker: first the module, then seeds with the state of w16.2 in each row: `noise=4&matcher=p2l`. */
 export type Order = { module: WebAssembly.Module } | { seed: number; states: readonly string[] };
 
-/** The module's `Laps`. */
+/** The module's `LapOutcomes`. */
 export interface LapRunner {
   drive(seed: number, state: string): ArrayLike<number>;
 }
 
 /** Runs the lap of a seed in a row. */
 export function runLap(runner: LapRunner, seed: number, row: number, state: string): Lap {
-  // The order of the module's `Laps.drive`.
+  // The order of the module's `LapOutcomes.drive`.
   const numbers = Array.from(runner.drive(seed, state));
   const estimate = (from: number): Estimate => {
     const [end = NaN, rms = NaN, middle = NaN, sigma = NaN] = numbers.slice(from, from + 4);

@@ -13,7 +13,7 @@ self.addEventListener('message', ({ data }: MessageEvent<Order>) => {
 async function start(module: WebAssembly.Module): Promise<LapRunner> {
   const glue = createGlue();
   await glue({ module_or_path: module });
-  return new glue.Laps();
+  return new glue.LapOutcomes();
 }
 
 async function runSeed(seed: number, states: readonly string[]): Promise<void> {

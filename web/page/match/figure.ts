@@ -6,7 +6,7 @@ import { pngOfSvg, send } from '../../ts/export';
 import { type Answer, pairLines, placedAt, ROOMS, type Scene, startOf, sweeps, viewBox } from './drawing';
 import { recordOf } from './record';
 
-/** The output of the module's `Matcher.run`. */
+/** The output of the module's `PageMatcher.run`. */
 interface Run {
   /** The initial guess and the pose after each iteration. */
   poses: Pose[];
@@ -16,7 +16,7 @@ interface Run {
   ending: string;
 }
 
-type Matcher = InstanceType<Glue['Matcher']>;
+type Matcher = InstanceType<Glue['PageMatcher']>;
 
 /** Steps of an arrow key: translation, and rotation with Shift. */
 const KEY_M = 0.05;
@@ -261,7 +261,7 @@ export class MatchFigure {
   /** Fetches the core on the reader's first action; a failure can be retried. */
   #loaded(): Promise<[Matcher, Scene]> {
     const { name } = this.#room;
-    this.#loading ??= this.#core().then((glue) => [new glue.Matcher(name), JSON.parse(glue.matcherScene(name)) as Scene]);
+    this.#loading ??= this.#core().then((glue) => [new glue.PageMatcher(name), JSON.parse(glue.matcherScene(name)) as Scene]);
     this.#loading.catch(() => { this.#loading = undefined; });
     return this.#loading;
   }

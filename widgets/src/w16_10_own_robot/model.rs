@@ -23,6 +23,7 @@ mod tables;
 mod texts;
 
 use log_messages::{LocalizedScan, MapperOrder, Stage};
+use widget_kit::disclosure::Disclosure;
 use widget_kit::host_messages::Delivery;
 use widget_kit::model::{
     Activity, Assessment, Handle, Model, Motion, Outcome, Table, TablePlace, Timeline,
@@ -36,7 +37,7 @@ use widget_kit::values::{Changed, Values};
 
 use crate::w16_10_own_robot::spec::{
     DROP, KEYFRAME, KEYS, LOOP, MARKED, MAX_KEYFRAMES, MAX_SCANS, PARAMS, POOR, SCAN, SPEC,
-    STARTS_HERE,
+    STARTS_HERE, WITHOUT_LOG,
 };
 use log_state::LogState;
 
@@ -212,6 +213,14 @@ impl Model for OwnRobot {
         &self.values
     }
 
+    fn disclosure(&self) -> Disclosure {
+        let opening = match self.robot.progress.stage {
+            Stage::Empty => WITHOUT_LOG,
+            _ => SPEC.opening,
+        };
+        Disclosure::visible(opening, &self.values)
+    }
+
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         if self.values.set(SPEC.id, id, value)? == Changed::Yes {
             match id {
@@ -310,6 +319,9 @@ impl Model for OwnRobot {
     }
 
     fn timeline(&self) -> Option<Timeline> {
+        if self.robot.progress.stage == Stage::Empty {
+            return None;
+        }
         let closed = self
             .robot
             .links

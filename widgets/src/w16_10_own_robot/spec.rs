@@ -151,12 +151,19 @@ pub const KEYS: &[(&str, &str)] = &[
     ("ArrowDown", "south"),
 ];
 
+/// The parts shown before a log is opened: nothing else has anything to do.
+pub const WITHOUT_LOG: Opening = Opening {
+    panels: &["map"],
+    params: &[],
+    buttons: &["open", "sample"],
+};
+
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.10",
     title: "Your own robot",
     misconception: "A map that looks right may be wrong.",
-    question: "Is your map right, and which of its loops has no evidence? Open a log, or try the sample.",
+    question: "Is a map right because it looks right? Drop a log of your robot, or watch the sample being mapped.",
     notice: &[
         "The log stays in your browser. It is read there, and nothing of it is sent anywhere.",
         "Loops are sorted by doubt: first those that the rest of the graph contradicts most. Reject one, and the graph is solved again at once.",
@@ -181,7 +188,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         },
         ButtonSpec::new(
             "sample",
-            "The sample",
+            "Watch the sample",
             "Maps a log of the simulator's ring of corridors, and grades it against the truth.",
         ),
         ButtonSpec::new("cancel", "Stop", "Stops reading, and keeps what was read."),

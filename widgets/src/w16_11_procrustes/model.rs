@@ -20,16 +20,11 @@ mod tables;
 mod texts;
 
 use ch16_lab::procrustes::{Handedness, Pairs, Procrustes};
-use widget_kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
-};
-use widget_kit::param::MORE;
-use widget_kit::param::ParamError;
-use widget_kit::playback::SPEED;
-use widget_kit::playback_param::{PlaybackParam, Pressed};
+use widget_kit::model::{Handle, Model, Outcome, Table, Timeline, TimelineMark};
+use widget_kit::playback_param::{PlaybackParam, PlayedValues};
 use widget_kit::scene::Scene;
 use widget_kit::spec::WidgetSpec;
-use widget_kit::values::{Changed, Values};
+use widget_kit::values::Values;
 
 use crate::w16_11_procrustes::spec::{PARAMS, SPEC, TRIED, TURN, WHOLE_TURN_DEG};
 
@@ -74,11 +69,6 @@ impl Default for ProcrustesTrace {
 }
 
 impl ProcrustesTrace {
-    fn follow(&mut self) {
-        self.pairs = settings::pairs(&self.values);
-        self.problem = Procrustes::new(&self.pairs.source, &self.pairs.target);
-    }
-
     /// The selected kind of matrices.
     fn tried(&self) -> Handedness {
         settings::tried(&self.values)
@@ -99,29 +89,20 @@ impl Model for ProcrustesTrace {
         &self.values
     }
 
-    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
-        if self.values.set(SPEC.id, id, value)? == Changed::Yes
-            && ![TURN.id, TRIED.id, SPEED.id, MORE.id].contains(&id)
-        {
-            self.follow();
-        }
-        Ok(())
+    fn played(&mut self) -> Option<PlayedValues<'_>> {
+        Some(PlayedValues {
+            end: Some(WHOLE_TURN_DEG),
+            values: &mut self.values,
+            playback: &mut self.playback,
+            steps_per_s: STEPS_PER_S,
+        })
     }
 
-    fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let last = WHOLE_TURN_DEG;
-        match self.playback.press(&mut self.values, id, last) {
-            Pressed::Transport => {}
-            Pressed::Defaults => self.follow(),
-            Pressed::Other => return press_preset(self, id),
+    fn follow(&mut self, changed: Option<&str>) {
+        if changed.is_none_or(|id| ![TURN.id, TRIED.id].contains(&id)) {
+            self.pairs = settings::pairs(&self.values);
+            self.problem = Procrustes::new(&self.pairs.source, &self.pairs.target);
         }
-        Ok(())
-    }
-
-    fn advance(&mut self, elapsed_s: f64) -> Activity {
-        let last = WHOLE_TURN_DEG;
-        self.playback
-            .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
     }
 
     fn scene(&self) -> Scene {
@@ -166,10 +147,5 @@ impl Model for ProcrustesTrace {
 
     fn reveal(&mut self) {
         self.asks = false;
-    }
-
-    fn set_motion(&mut self, motion: Motion) {
-        let last = WHOLE_TURN_DEG;
-        self.playback.set_motion(&mut self.values, motion, last);
     }
 }

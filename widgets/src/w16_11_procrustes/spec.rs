@@ -16,29 +16,25 @@ pub const REACH_M: f64 = 3.0;
 /// A whole turn, °.
 pub const WHOLE_TURN_DEG: f64 = 360.0;
 
-/// The parameters that move the points of the target along x and y.
-pub(super) static MOVED: [[Param<f64>; 2]; MAX_PAIRS] = [
-    [
-        moved("x1", "target 1: moved in x"),
-        moved("y1", "target 1: moved in y"),
-    ],
-    [
-        moved("x2", "target 2: moved in x"),
-        moved("y2", "target 2: moved in y"),
-    ],
-    [
-        moved("x3", "target 3: moved in x"),
-        moved("y3", "target 3: moved in y"),
-    ],
-    [
-        moved("x4", "target 4: moved in x"),
-        moved("y4", "target 4: moved in y"),
-    ],
-    [
-        moved("x5", "target 5: moved in x"),
-        moved("y5", "target 5: moved in y"),
-    ],
-];
+/// The parameters that move a point of the target along x and y.
+macro_rules! point {
+    ($number:literal) => {
+        [
+            moved(
+                concat!("x", $number),
+                concat!("target ", $number, ": moved in x"),
+            ),
+            moved(
+                concat!("y", $number),
+                concat!("target ", $number, ": moved in y"),
+            ),
+        ]
+    };
+}
+
+/// The parameters of each point.
+pub(super) static MOVED: [[Param<f64>; 2]; MAX_PAIRS] =
+    [point!(1), point!(2), point!(3), point!(4), point!(5)];
 
 const fn moved(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
@@ -79,16 +75,7 @@ params! {
     pub(super) static SEED: Param<u32> = Param::seed("seed of the noise", 1)
         .help("Seed of the range noise of both sweeps, 12 mm along each axis.");
 
-    use MOVED[0][0];
-    use MOVED[0][1];
-    use MOVED[1][0];
-    use MOVED[1][1];
-    use MOVED[2][0];
-    use MOVED[2][1];
-    use MOVED[3][0];
-    use MOVED[3][1];
-    use MOVED[4][0];
-    use MOVED[4][1];
+    use MOVED[0 1 2 3 4][0 1];
 
     pub(super) static TURN: Param<f64> = Param::timeline("turn", "angle tried", WHOLE_TURN_DEG)
         .unit("°")

@@ -23,16 +23,11 @@ mod texts;
 use ch16_lab::jacobians::{Descent, Iterate, RingConfig, descend, optimum, ring};
 use pr_geom::{SE2, math};
 use widget_kit::chart::{dragged_to, grab_now};
-use widget_kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
-};
-use widget_kit::param::MORE;
-use widget_kit::param::ParamError;
-use widget_kit::playback::SPEED;
-use widget_kit::playback_param::{PlaybackParam, Pressed};
+use widget_kit::model::{Handle, Model, Outcome, Table, Timeline, TimelineMark};
+use widget_kit::playback_param::{PlaybackParam, PlayedValues};
 use widget_kit::scene::Scene;
 use widget_kit::spec::WidgetSpec;
-use widget_kit::values::{Changed, Values};
+use widget_kit::values::Values;
 
 use crate::w16_12_jacobians::spec::{
     BIAS, BIAS_STEP_DEG, CURVE, MAX_BIAS_DEG, MAX_STEPS, PARAMS, SPEC, STEPS,
@@ -161,29 +156,19 @@ impl Model for WrongJacobians {
         &self.values
     }
 
-    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
-        if self.values.set(SPEC.id, id, value)? == Changed::Yes
-            && ![STEPS.id, CURVE.id, SPEED.id, MORE.id].contains(&id)
-        {
+    fn played(&mut self) -> Option<PlayedValues<'_>> {
+        Some(PlayedValues {
+            end: Some(self.last() as f64),
+            values: &mut self.values,
+            playback: &mut self.playback,
+            steps_per_s: STEPS_PER_S,
+        })
+    }
+
+    fn follow(&mut self, changed: Option<&str>) {
+        if changed.is_none_or(|id| ![STEPS.id, CURVE.id].contains(&id)) {
             self.solved = Solved::new(&self.values);
         }
-        Ok(())
-    }
-
-    fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let last = self.last() as f64;
-        match self.playback.press(&mut self.values, id, last) {
-            Pressed::Transport => {}
-            Pressed::Defaults => self.solved = Solved::new(&self.values),
-            Pressed::Other => return press_preset(self, id),
-        }
-        Ok(())
-    }
-
-    fn advance(&mut self, elapsed_s: f64) -> Activity {
-        let last = self.last() as f64;
-        self.playback
-            .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
     }
 
     fn scene(&self) -> Scene {
@@ -195,7 +180,7 @@ impl Model for WrongJacobians {
     }
 
     fn summary(&self) -> String {
-        texts::summary(self)
+        texts::SUMMARY.to_owned()
     }
 
     fn timeline(&self) -> Option<Timeline> {
@@ -223,14 +208,7 @@ impl Model for WrongJacobians {
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
         if panel == panel::GRAPHS {
             let end = self.loose_end()?;
-            let off = [at[0] - end[0], at[1] - end[1]];
-            let is_near = (0..2).all(|i| off[i].abs() <= reach[i]);
-            return is_near.then_some(Handle {
-                panel: panel::GRAPHS,
-                id: BIAS.id,
-                offset: off,
-                ..Handle::default()
-            });
+            return Handle::within(panel::GRAPHS, BIAS.id, end, at, reach);
         }
         if panel != panel::CURVE {
             return None;
@@ -246,10 +224,5 @@ impl Model for WrongJacobians {
             self.values
                 .put(&STEPS, dragged_to(handle, at).min(self.last() as f64));
         }
-    }
-
-    fn set_motion(&mut self, motion: Motion) {
-        let last = self.last() as f64;
-        self.playback.set_motion(&mut self.values, motion, last);
     }
 }

@@ -361,11 +361,7 @@ impl Model for FullLap {
     }
 
     fn scene(&self) -> Scene {
-        let mut scene = picture::scene(&self.moment());
-        if self.disclosure() == Disclosure::First(EDITING) {
-            scene.panels.retain(|shown| shown.id == panel::MAP);
-        }
-        scene
+        picture::scene(&self.moment())
     }
 
     fn outcome(&self) -> Outcome {
@@ -373,7 +369,7 @@ impl Model for FullLap {
     }
 
     fn summary(&self) -> String {
-        texts::summary(&self.moment(), self.own_rejected())
+        texts::summary(&self.moment())
     }
 
     fn timeline(&self) -> Option<Timeline> {

@@ -51,6 +51,8 @@ pub enum Tool {
     Way,
     /// Removes the piece under it.
     Remove,
+    /// Sets the robot down, or moves a way point; walls stay.
+    Robot,
 }
 
 /// The kind of the selected part of the graph.
@@ -246,9 +248,10 @@ params! {
             (Some(Tool::Wall), "wall", "pencil"),
             (Some(Tool::Way), "way", "way"),
             (Some(Tool::Remove), "remove", "eraser"),
+            (Some(Tool::Robot), "robot", "robot"),
         ],
     )
-    .help("What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, or remove something. All on a grid of 5 cm.");
+    .help("What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, remove something, or set the robot down. All on a grid of 5 cm.");
 
     pub(super) static PIECE: OneOf<Option<usize>> = one_of!(
         Option<usize>,

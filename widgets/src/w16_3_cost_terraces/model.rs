@@ -204,7 +204,7 @@ impl Model for CostTerraces {
     }
 
     fn summary(&self) -> String {
-        texts::summary(&self.terrains, &self.rests, &self.settings())
+        texts::summary(&self.terrains, &self.settings())
     }
 
     fn timeline(&self) -> Option<Timeline> {

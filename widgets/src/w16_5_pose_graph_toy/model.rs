@@ -24,18 +24,13 @@ mod tables;
 mod texts;
 
 use widget_kit::disclosure::Disclosure;
-use widget_kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
-};
-use widget_kit::param::MORE;
-use widget_kit::param::ParamError;
-use widget_kit::playback::SPEED;
-use widget_kit::playback_param::{PlaybackParam, Pressed};
+use widget_kit::model::{Handle, Model, Outcome, Table, Timeline, TimelineMark};
+use widget_kit::playback_param::{PlaybackParam, PlayedValues};
 use widget_kit::scene::{Axis, Scene};
 use widget_kit::spec::{PLAY, WidgetSpec};
-use widget_kit::values::{Changed, Values};
+use widget_kit::values::Values;
 
-use crate::w16_5_pose_graph_toy::spec::{GRAPH, MAX_POSES, PARAMS, SPEC, STEPS};
+use crate::w16_5_pose_graph_toy::spec::{GRAPH, MAX_POSES, MOVED_IDS, PARAMS, SPEC, STEPS};
 use course::{GraphState, SolverRun};
 use pr_geom::SE2;
 
@@ -54,12 +49,6 @@ const STEPS_PER_S: f64 = 1.5;
 
 /// Part of a beat in which the poses move; then they stand still.
 const MOVING_PART: f64 = 0.6;
-
-/// The controls of each pose.
-const POSE_CONTROLS: [&str; 3 * MAX_POSES] = [
-    "x1", "y1", "turn1", "x2", "y2", "turn2", "x3", "y3", "turn3", "x4", "y4", "turn4", "x5", "y5",
-    "turn5", "x6", "y6", "turn6",
-];
 
 /// The model of the widget.
 pub struct PoseGraphToy {
@@ -84,10 +73,6 @@ impl Default for PoseGraphToy {
 }
 
 impl PoseGraphToy {
-    fn solve(&mut self) {
-        self.course = SolverRun::new(settings::graph(&self.values));
-    }
-
     /// The current step.
     fn step(&self) -> usize {
         self.playback.place(&self.values, self.course.last() as f64) as usize
@@ -126,29 +111,19 @@ impl Model for PoseGraphToy {
         &self.values
     }
 
-    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
-        if self.values.set(SPEC.id, id, value)? == Changed::Yes
-            && ![STEPS.id, SPEED.id, MORE.id].contains(&id)
-        {
-            self.solve();
-        }
-        Ok(())
+    fn played(&mut self) -> Option<PlayedValues<'_>> {
+        Some(PlayedValues {
+            end: Some(self.course.last() as f64),
+            values: &mut self.values,
+            playback: &mut self.playback,
+            steps_per_s: STEPS_PER_S,
+        })
     }
 
-    fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let last = self.course.last() as f64;
-        match self.playback.press(&mut self.values, id, last) {
-            Pressed::Transport => {}
-            Pressed::Defaults => self.solve(),
-            Pressed::Other => return press_preset(self, id),
+    fn follow(&mut self, changed: Option<&str>) {
+        if changed != Some(STEPS.id) {
+            self.course = SolverRun::new(settings::graph(&self.values));
         }
-        Ok(())
-    }
-
-    fn advance(&mut self, elapsed_s: f64) -> Activity {
-        let last = self.course.last() as f64;
-        self.playback
-            .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
     }
 
     fn scene(&self) -> Scene {
@@ -196,22 +171,18 @@ impl Model for PoseGraphToy {
     /// The springs pull the graph to rest.
     fn release(&mut self) {
         self.held_axes = None;
-        let last = self.course.last() as f64;
-        if self.step() == 0 {
-            self.playback.press(&mut self.values, PLAY.id, last);
+        if self.step() == 0
+            && let Some(mut run) = self.played()
+        {
+            run.press(PLAY.id);
         }
     }
 
     fn disclosure(&self) -> Disclosure {
         let poses = self.values.get(&GRAPH).poses();
         match Disclosure::visible(SPEC.opening, &self.values) {
-            Disclosure::All if poses < MAX_POSES => Disclosure::AllBut(&POSE_CONTROLS[3 * poses..]),
+            Disclosure::All if poses < MAX_POSES => Disclosure::AllBut(&MOVED_IDS[3 * poses..]),
             layer => layer,
         }
-    }
-
-    fn set_motion(&mut self, motion: Motion) {
-        let last = self.course.last() as f64;
-        self.playback.set_motion(&mut self.values, motion, last);
     }
 }

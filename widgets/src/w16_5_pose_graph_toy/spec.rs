@@ -30,38 +30,39 @@ pub enum GraphShape {
 }
 
 /// The parameters that move a pose: along x, along y, and its heading.
-pub(super) static MOVED: [[Param<f64>; 3]; MAX_POSES] = [
-    [
-        along("x1", "pose 1: moved in x"),
-        along("y1", "pose 1: moved in y"),
-        turn("turn1", "pose 1: turned"),
-    ],
-    [
-        along("x2", "pose 2: moved in x"),
-        along("y2", "pose 2: moved in y"),
-        turn("turn2", "pose 2: turned"),
-    ],
-    [
-        along("x3", "pose 3: moved in x"),
-        along("y3", "pose 3: moved in y"),
-        turn("turn3", "pose 3: turned"),
-    ],
-    [
-        along("x4", "pose 4: moved in x"),
-        along("y4", "pose 4: moved in y"),
-        turn("turn4", "pose 4: turned"),
-    ],
-    [
-        along("x5", "pose 5: moved in x"),
-        along("y5", "pose 5: moved in y"),
-        turn("turn5", "pose 5: turned"),
-    ],
-    [
-        along("x6", "pose 6: moved in x"),
-        along("y6", "pose 6: moved in y"),
-        turn("turn6", "pose 6: turned"),
-    ],
-];
+macro_rules! pose {
+    ($number:literal) => {
+        [
+            along(
+                concat!("x", $number),
+                concat!("pose ", $number, ": moved in x"),
+            ),
+            along(
+                concat!("y", $number),
+                concat!("pose ", $number, ": moved in y"),
+            ),
+            turn(
+                concat!("turn", $number),
+                concat!("pose ", $number, ": turned"),
+            ),
+        ]
+    };
+}
+
+/// The parameters of each pose.
+pub(super) static MOVED: [[Param<f64>; 3]; MAX_POSES] =
+    [pose!(1), pose!(2), pose!(3), pose!(4), pose!(5), pose!(6)];
+
+/// Their names in order.
+pub(super) const MOVED_IDS: [&str; 3 * MAX_POSES] = {
+    let mut ids = [""; 3 * MAX_POSES];
+    let mut k = 0;
+    while k < ids.len() {
+        ids[k] = MOVED[k / 3][k % 3].spec.id;
+        k += 1;
+    }
+    ids
+};
 
 const fn along(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
@@ -128,24 +129,7 @@ params! {
         .on()
         .help("Measurements are relative: without a fixed pose the whole graph may be anywhere.");
 
-    use MOVED[0][0];
-    use MOVED[0][1];
-    use MOVED[0][2];
-    use MOVED[1][0];
-    use MOVED[1][1];
-    use MOVED[1][2];
-    use MOVED[2][0];
-    use MOVED[2][1];
-    use MOVED[2][2];
-    use MOVED[3][0];
-    use MOVED[3][1];
-    use MOVED[3][2];
-    use MOVED[4][0];
-    use MOVED[4][1];
-    use MOVED[4][2];
-    use MOVED[5][0];
-    use MOVED[5][1];
-    use MOVED[5][2];
+    use MOVED[0 1 2 3 4 5][0 1 2];
 
     pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MAX_STEPS as f64)
         .help("How many steps the solver has done; 0 is the graph before the first one.");

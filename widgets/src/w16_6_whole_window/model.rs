@@ -25,16 +25,12 @@ use ch16_slam2d::icp::IcpWorkspace;
 use ch16_slam2d::search::SearchGoal;
 use pr_geom::{SE2, math};
 use widget_kit::model::{
-    Activity, Assessment, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark,
-    press_preset,
+    Activity, Assessment, Handle, Model, Outcome, Table, Timeline, TimelineMark, advance_played,
 };
-use widget_kit::param::MORE;
-use widget_kit::param::ParamError;
-use widget_kit::playback::SPEED;
-use widget_kit::playback_param::{PlaybackParam, Pressed};
+use widget_kit::playback_param::{PlaybackParam, PlayedValues};
 use widget_kit::scene::Scene;
-use widget_kit::spec::{PLAY, STEP, WidgetSpec};
-use widget_kit::values::{Changed, Values};
+use widget_kit::spec::WidgetSpec;
+use widget_kit::values::Values;
 
 use crate::w16_6_whole_window::spec::{
     DX, DY, HEADING, OFFSET_SPAN_M, PARAMS, PROGRESS, SEED, SPEC,
@@ -103,10 +99,13 @@ impl WholeWindow {
         self.looked_at = None;
     }
 
-    /// Looks at a box: the one under the pointer, or else the one taken up.
+    /// Looks at a box: the one under the pointer, or else the one taken up; at none while it plays.
     fn look_at(&mut self, seen: Option<usize>) {
         let window = &self.search_task.window;
-        let seen = seen.or(window.moments()[self.step()].taken);
+        // While it plays, a curve that changes with each frame is noise.
+        let is_still = !self.playback.is_playing();
+        let taken = window.moments()[self.step()].taken;
+        let seen = seen.or(taken.filter(|_| is_still));
         if seen != self.looked_at.as_ref().map(|looked_at| looked_at.seen) {
             self.looked_at = seen.map(|seen| LookedAt {
                 seen,
@@ -195,64 +194,39 @@ impl Model for WholeWindow {
         &self.values
     }
 
-    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
-        if self.values.set(SPEC.id, id, value)? == Changed::No || [SPEED.id, MORE.id].contains(&id)
-        {
-            return Ok(());
-        }
-        if id == PROGRESS.id {
+    fn played(&mut self) -> Option<PlayedValues<'_>> {
+        let searched = self.boxes_taken();
+        let searching = math::max(searched as f64 / PLAYS_FOR_S, REFINES_PER_S);
+        let is_found = self.search_task.found.is_some();
+        Some(PlayedValues {
+            end: is_found.then_some(self.last() as f64),
+            steps_per_s: if self.place() < searched {
+                searching
+            } else {
+                REFINES_PER_S
+            },
+            values: &mut self.values,
+            playback: &mut self.playback,
+        })
+    }
+
+    fn follow(&mut self, changed: Option<&str>) {
+        if changed == Some(PROGRESS.id) {
             self.look_at(None);
-            return Ok(());
+            return;
         }
-        if id == "seed" {
+        if changed.is_none_or(|id| id == SEED.id) {
             self.scene = BasinScene::with_seed(self.values.get(&SEED));
         }
         self.start_over();
-        Ok(())
-    }
-
-    fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let plays = id == PLAY.id && self.playback.motion() == Motion::Full;
-        if [PLAY.id, STEP.id].contains(&id) && !plays {
-            // The position of the end has to be known.
-            self.finish_work();
-        }
-        let last = self.last() as f64;
-        match self.playback.press(&mut self.values, id, last) {
-            Pressed::Transport => self.look_at(None),
-            Pressed::Defaults => {
-                self.scene = BasinScene::with_seed(self.values.get(&SEED));
-                self.start_over();
-            }
-            Pressed::Other => return press_preset(self, id),
-        }
-        Ok(())
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
-        if self.playback.is_playing() && self.search_task.found.is_none() {
-            // The search is ahead of its playback and ends within a few frames.
-            return Activity::Busy;
-        }
-        let (here, last) = (self.place() as f64, self.last() as f64);
-        let searched = self.boxes_taken() as f64;
-        let rate = if here < searched {
-            math::max(searched / PLAYS_FOR_S, REFINES_PER_S)
-        } else {
-            REFINES_PER_S
-        };
-        let activity = self
-            .playback
-            .advance(&mut self.values, last, elapsed_s, rate);
+        let (here, searched) = (self.place(), self.boxes_taken());
+        let activity = advance_played(self, elapsed_s);
         // ICP has its own speed, from its first iteration on.
-        if here < searched && self.playback.is_playing() && self.place() as f64 > searched {
-            self.values.put(&PROGRESS, searched);
-        }
-        if !self.playback.is_playing() {
-            self.look_at(None);
-        } else if here != self.place() as f64 {
-            // A curve that changes with each frame is noise.
-            self.looked_at = None;
+        if here < searched && self.playback.is_playing() && self.place() > searched {
+            self.values.put(&PROGRESS, searched as f64);
         }
         activity
     }
@@ -338,13 +312,5 @@ impl Model for WholeWindow {
         if seen.is_some() || !self.playback.is_playing() {
             self.look_at(seen);
         }
-    }
-
-    fn set_motion(&mut self, motion: Motion) {
-        if self.playback.is_playing() {
-            self.finish_work();
-        }
-        let last = self.last() as f64;
-        self.playback.set_motion(&mut self.values, motion, last);
     }
 }

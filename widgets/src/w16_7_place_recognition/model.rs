@@ -22,17 +22,15 @@ mod texts;
 
 use ch16_lab::lap::LapConfig;
 use widget_kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, finish_work,
-    press_preset,
+    Activity, Handle, Model, Outcome, Table, Timeline, TimelineMark, finish_work,
 };
-use widget_kit::param::ParamError;
-use widget_kit::playback_param::{PlaybackParam, Pressed};
+use widget_kit::playback_param::{PlaybackParam, PlayedValues};
 use widget_kit::scene::Scene;
 use widget_kit::spec::WidgetSpec;
-use widget_kit::values::{Changed, Values};
+use widget_kit::values::Values;
 
 use crate::w16_7_place_recognition::spec::{
-    CALLED, LAST_OLD, MAX_KEYFRAMES, MOST_ALIKE, NEWEST, OLDER, PARAMS, SPEC, TURN,
+    CALLED, LAST_OLD, MOST_ALIKE, NEWEST, OLDER, PARAMS, SPEC, TURN,
 };
 use lap::{GradingTask, Places};
 
@@ -91,29 +89,12 @@ impl Default for PlaceRecognition {
 }
 
 impl PlaceRecognition {
-    /// Drives another lap if the settings require it.
-    fn follow(&mut self) {
-        let config = settings::config(&self.values);
-        if config != self.config {
-            self.work = Some(GradingTask::new(&config));
-            self.config = config;
-        }
-    }
-
     fn detector(&self) -> usize {
         settings::detector(&self.values)
     }
 
     fn last(&self) -> usize {
         self.places.as_ref().map_or(0, Places::last)
-    }
-
-    /// The end of a run: beyond every position while the lap is being computed.
-    fn end(&self) -> f64 {
-        match self.work {
-            Some(_) => MAX_KEYFRAMES,
-            None => self.last() as f64,
-        }
     }
 
     /// The newest keyframe on screen.
@@ -184,31 +165,22 @@ impl Model for PlaceRecognition {
         &self.values
     }
 
-    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
-        if self.values.set(SPEC.id, id, value)? == Changed::Yes {
-            self.follow();
-        }
-        Ok(())
+    fn played(&mut self) -> Option<PlayedValues<'_>> {
+        Some(PlayedValues {
+            end: self.work.is_none().then_some(self.last() as f64),
+            values: &mut self.values,
+            playback: &mut self.playback,
+            steps_per_s: KEYFRAMES_PER_S,
+        })
     }
 
-    fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let end = self.end();
-        match self.playback.press(&mut self.values, id, end) {
-            Pressed::Transport => {}
-            Pressed::Defaults => self.follow(),
-            Pressed::Other => return press_preset(self, id),
+    /// Drives another lap if the settings require it.
+    fn follow(&mut self, _changed: Option<&str>) {
+        let config = settings::config(&self.values);
+        if config != self.config {
+            self.work = Some(GradingTask::new(&config));
+            self.config = config;
         }
-        Ok(())
-    }
-
-    fn advance(&mut self, elapsed_s: f64) -> Activity {
-        if self.playback.is_playing() && self.work.is_some() {
-            // The lap is ahead of its playback and ends within a few frames.
-            return Activity::Busy;
-        }
-        let last = self.last() as f64;
-        self.playback
-            .advance(&mut self.values, last, elapsed_s, KEYFRAMES_PER_S)
     }
 
     fn work(&mut self) -> Activity {
@@ -275,10 +247,5 @@ impl Model for PlaceRecognition {
 
     fn reveal(&mut self) {
         self.asks = false;
-    }
-
-    fn set_motion(&mut self, motion: Motion) {
-        let end = self.end();
-        self.playback.set_motion(&mut self.values, motion, end);
     }
 }

@@ -22,16 +22,11 @@ mod texts;
 
 use ch16_lab::moving_box::{BoxMethods, BoxScene};
 use ch16_slam2d::icp::{IcpSummary, IcpTrace, IcpWorkspace};
-use widget_kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
-};
-use widget_kit::param::MORE;
-use widget_kit::param::ParamError;
-use widget_kit::playback::SPEED;
-use widget_kit::playback_param::{PlaybackParam, Pressed};
+use widget_kit::model::{Activity, Handle, Model, Outcome, Table, Timeline, TimelineMark};
+use widget_kit::playback_param::{PlaybackParam, PlayedValues};
 use widget_kit::scene::Scene;
 use widget_kit::spec::WidgetSpec;
-use widget_kit::values::{Changed, Values};
+use widget_kit::values::Values;
 
 use crate::w16_8_moving_box::spec::{
     ITERATION, MAX_ITERATIONS, MAX_SHARE, METHOD, MOVED, MOVED_M, MOVED_Y, PARAMS, SHARE, SPEC,
@@ -89,27 +84,6 @@ impl Default for MovingBox {
 }
 
 impl MovingBox {
-    fn follow(&mut self) {
-        let (config, methods) = (
-            settings::config(&self.values),
-            settings::methods(&self.values),
-        );
-        self.scene = BoxScene::new(&config);
-        self.runs = register(&self.scene, &methods, &mut self.workspace);
-        self.curves.follow(methods, config.moved_m);
-    }
-
-    /// The line at the current share.
-    fn grab_share(&self, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        let away = at[0] - self.values.get(&SHARE);
-        (away.abs() <= reach[0]).then_some(Handle {
-            panel: panel::BIAS,
-            id: "share",
-            offset: [away, 0.0],
-            ..Handle::default()
-        })
-    }
-
     /// The method on screen.
     fn method(&self) -> usize {
         self.values.get(&METHOD)
@@ -157,29 +131,26 @@ impl Model for MovingBox {
         &self.values
     }
 
-    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
-        if self.values.set(SPEC.id, id, value)? == Changed::Yes
-            && ![METHOD.spec.id, ITERATION.id, SPEED.id, MORE.id].contains(&id)
-        {
-            self.follow();
-        }
-        Ok(())
+    fn played(&mut self) -> Option<PlayedValues<'_>> {
+        Some(PlayedValues {
+            end: Some(self.last() as f64),
+            values: &mut self.values,
+            playback: &mut self.playback,
+            steps_per_s: STEPS_PER_S,
+        })
     }
 
-    fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let last = self.last() as f64;
-        match self.playback.press(&mut self.values, id, last) {
-            Pressed::Transport => {}
-            Pressed::Defaults => self.follow(),
-            Pressed::Other => return press_preset(self, id),
+    fn follow(&mut self, changed: Option<&str>) {
+        if changed.is_some_and(|id| [METHOD.id, ITERATION.id].contains(&id)) {
+            return;
         }
-        Ok(())
-    }
-
-    fn advance(&mut self, elapsed_s: f64) -> Activity {
-        let last = self.last() as f64;
-        self.playback
-            .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
+        let (config, methods) = (
+            settings::config(&self.values),
+            settings::methods(&self.values),
+        );
+        self.scene = BoxScene::new(&config);
+        self.runs = register(&self.scene, &methods, &mut self.workspace);
+        self.curves.follow(methods, config.moved_m);
     }
 
     fn work(&mut self) -> Activity {
@@ -215,28 +186,24 @@ impl Model for MovingBox {
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        if panel == panel::BIAS {
-            return self.grab_share(at, reach);
+        match panel {
+            panel::BIAS => {
+                let share = self.values.get(&SHARE);
+                Handle::within(panel::BIAS, "share", [share, at[1]], at, reach)
+            }
+            panel::ROOM => {
+                let middle = picture::box_middle(&self.scene);
+                let reach = reach.map(|reach| reach.max(BOX_REACH_M));
+                Handle::within(panel::ROOM, BOX, middle, at, reach)
+            }
+            _ => None,
         }
-        if panel != panel::ROOM {
-            return None;
-        }
-        let middle = picture::box_middle(&self.scene);
-        let offset = [at[0] - middle[0], at[1] - middle[1]];
-        let reaches = |i: usize| offset[i].abs() <= reach[i].max(BOX_REACH_M);
-        (reaches(0) && reaches(1)).then_some(Handle {
-            panel: panel::ROOM,
-            id: BOX,
-            offset,
-            ..Handle::default()
-        })
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
-        let spot = [0, 1].map(|axis| at[axis] - handle.offset[axis]);
-        if spot.iter().any(|at| !at.is_finite()) {
+        let Some(spot) = handle.spot(at) else {
             return;
-        }
+        };
         self.playback.pause();
         // Where the registrations end is the answer to the drag.
         self.values.put(&ITERATION, MAX_ITERATIONS);
@@ -253,11 +220,6 @@ impl Model for MovingBox {
             self.values
                 .put(&SHARE, spot[0].round().clamp(0.0, MAX_SHARE));
         }
-        self.follow();
-    }
-
-    fn set_motion(&mut self, motion: Motion) {
-        let last = self.last() as f64;
-        self.playback.set_motion(&mut self.values, motion, last);
+        self.follow(None);
     }
 }

@@ -23,20 +23,14 @@ mod texts;
 use ch16_lab::relocalization::{LocalizationRun, Moment};
 use pr_geom::SE2;
 use widget_kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, finish_work,
-    press_preset,
+    Activity, Handle, Model, Outcome, Table, Timeline, TimelineMark, finish_work,
 };
-use widget_kit::param::MORE;
-use widget_kit::param::ParamError;
-use widget_kit::playback::SPEED;
-use widget_kit::playback_param::{PlaybackParam, Pressed};
+use widget_kit::playback_param::{PlaybackParam, PlayedValues};
 use widget_kit::scene::Scene;
 use widget_kit::spec::WidgetSpec;
-use widget_kit::values::{Changed, Values};
+use widget_kit::values::Values;
 
-use crate::w16_9_relocalization::spec::{
-    HEADING, MAX_MOMENTS, MOMENT, PARAMS, PLAN_M, SPEC, START_X, START_Y,
-};
+use crate::w16_9_relocalization::spec::{HEADING, MOMENT, PARAMS, PLAN_M, SPEC, START_X, START_Y};
 use known::{Known, Work};
 
 /// Names of the panels.
@@ -77,18 +71,6 @@ impl Default for Relocalization {
 }
 
 impl Relocalization {
-    /// Drives another map, or switches the robot on elsewhere on the known one.
-    fn follow(&mut self) {
-        let known = self
-            .known
-            .as_ref()
-            .filter(|known| known.is_of(&self.values));
-        self.work = Some(match known {
-            Some(known) => Work::run(known, &self.values),
-            None => Work::map(&self.values),
-        });
-    }
-
     fn has_wardrobe(&self) -> bool {
         settings::laps_config(&self.values).wardrobe.is_some()
     }
@@ -119,14 +101,6 @@ impl Relocalization {
         finished.map_or(0, |run| run.moments().len() - 1)
     }
 
-    /// The end of a run: beyond every position while it is being computed.
-    fn end(&self) -> f64 {
-        match self.work {
-            Some(_) => MAX_MOMENTS,
-            None => self.last() as f64,
-        }
-    }
-
     fn place(&self) -> usize {
         self.playback.place(&self.values, self.last() as f64) as usize
     }
@@ -144,7 +118,7 @@ impl Relocalization {
         self.values.put(&START_X, tenth(pose.x(), PLAN_M[0]));
         self.values.put(&START_Y, tenth(pose.y(), PLAN_M[1]));
         self.values.put(&HEADING, heading_deg.clamp(-180.0, 180.0));
-        self.follow();
+        self.follow(None);
     }
 }
 
@@ -157,32 +131,28 @@ impl Model for Relocalization {
         &self.values
     }
 
-    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
-        let is_changed = self.values.set(SPEC.id, id, value)? == Changed::Yes;
-        if is_changed && ![MOMENT.id, SPEED.id, MORE.id].contains(&id) {
-            self.follow();
-        }
-        Ok(())
+    fn played(&mut self) -> Option<PlayedValues<'_>> {
+        Some(PlayedValues {
+            end: self.work.is_none().then_some(self.last() as f64),
+            values: &mut self.values,
+            playback: &mut self.playback,
+            steps_per_s: MOMENTS_PER_S,
+        })
     }
 
-    fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let end = self.end();
-        match self.playback.press(&mut self.values, id, end) {
-            Pressed::Transport => {}
-            Pressed::Defaults => self.follow(),
-            Pressed::Other => return press_preset(self, id),
+    /// Drives another map, or switches the robot on elsewhere on the known one.
+    fn follow(&mut self, changed: Option<&str>) {
+        if changed == Some(MOMENT.id) {
+            return;
         }
-        Ok(())
-    }
-
-    fn advance(&mut self, elapsed_s: f64) -> Activity {
-        if self.playback.is_playing() && self.work.is_some() {
-            // The run is ahead of its playback and ends within a few frames.
-            return Activity::Busy;
-        }
-        let last = self.last() as f64;
-        self.playback
-            .advance(&mut self.values, last, elapsed_s, MOMENTS_PER_S)
+        let known = self
+            .known
+            .as_ref()
+            .filter(|known| known.is_of(&self.values));
+        self.work = Some(match known {
+            Some(known) => Work::run(known, &self.values),
+            None => Work::map(&self.values),
+        });
     }
 
     fn work(&mut self) -> Activity {
@@ -249,13 +219,5 @@ impl Model for Relocalization {
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
         interaction::drag(self, handle, at);
-    }
-
-    fn set_motion(&mut self, motion: Motion) {
-        if self.playback.is_playing() {
-            self.finish_work();
-        }
-        let end = self.end();
-        self.playback.set_motion(&mut self.values, motion, end);
     }
 }

@@ -5,7 +5,7 @@ use log_messages::{
     MapperReport, Stage,
 };
 use widget_kit::host_messages::Delivery;
-use widget_kit::model::{Activity, Assessment, Model};
+use widget_kit::model::{Activity, Assessment, Model, text_alternative};
 use widget_kit::scene::Layer;
 use widgets::w16_10_own_robot::model::OwnRobot;
 
@@ -362,7 +362,7 @@ fn a_selected_loop_is_described_with_its_evidence() {
     let second = "from keyframe 4 to 1: rejected, because 12 points fit, 30 are asked; 0.30 of the scan fits";
     let sentence = robot.outcome().sentence;
     assert!(sentence.contains(second), "{sentence}");
-    assert_eq!(robot.summary().matches(second).count(), 1);
+    assert_eq!(text_alternative(&robot, false).matches(second).count(), 1);
     // A loop of a graph from a file has no registration, and may have no χ².
     let bare = LoopReport {
         share: f64::NAN,

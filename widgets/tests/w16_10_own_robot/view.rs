@@ -5,7 +5,7 @@ use widget_kit::model::Model as _;
 use widget_kit::scene::{Layer, Mark};
 use widgets::registry::find;
 use widgets::w16_10_own_robot::model::OwnRobot;
-use widgets::w16_10_own_robot::view::RobotView;
+use widgets::w16_10_own_robot::view;
 
 use crate::w16_10_own_robot::model::{mapped, progress, report};
 
@@ -68,7 +68,7 @@ fn no_text_overlaps_or_is_cut_off_with_a_map_at_any_width() {
     let mut robot = mapped();
     report(&mut robot, &scan(4, vec![[2.0, 0.0], [2.4, 1.1]]));
     for width in [320.0, 390.0, 560.0, 700.0, 1100.0] {
-        let faults = widget_kit::audit::text_faults(&robot, &RobotView, width);
+        let faults = widget_kit::audit::text_faults(&robot, view::arrange, width);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 }

@@ -101,7 +101,7 @@ fn its_verdicts_are_reported_and_can_be_stepped_through() {
     let table = tables.iter().find(|table| table.id == "where").unwrap();
     let verdicts: Vec<&str> = table.rows.iter().map(|row| row[2].as_str()).collect();
     assert_eq!(verdicts, ["lost", "doubtful", "found", "followed", "lost"]);
-    assert!(robot.summary().contains("tuesday.log"));
+    assert!(robot.outcome().sentence.contains("tuesday.log"));
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn its_path_is_drawn_over_the_map_with_doubtful_parts_dotted() {
             .any(|entry| entry.label == "the other log, localized")
     );
     let faults =
-        widget_kit::audit::text_faults(&robot, &widgets::w16_10_own_robot::view::RobotView, 390.0);
+        widget_kit::audit::text_faults(&robot, widgets::w16_10_own_robot::view::arrange, 390.0);
     assert!(faults.is_empty(), "{faults:#?}");
 }
 

@@ -2,7 +2,7 @@
 
 use ch16_lab::procrustes::{Pairs, Shape};
 use pr_geom::Point2;
-use widget_kit::model::{Activity, Model, Motion};
+use widget_kit::model::{Activity, Handle, Model, Motion};
 use widget_kit::scene::Layer;
 use widgets::w16_11_procrustes::model::{ProcrustesTrace, panel};
 use widgets::w16_11_procrustes::spec::{SPEC, WHOLE_TURN_DEG};
@@ -95,17 +95,14 @@ fn a_point_of_the_target_is_dragged_and_the_answer_follows() {
     assert_eq!(trace.values().number("y2"), -0.3);
     assert!((fact(&trace, "aligned_deg") - before).abs() > 1.0);
     // If the whole target is dragged into its mirror image, the reflection fits best.
-    for (k, id) in ["target1", "target2", "target3", "target4"]
-        .iter()
-        .enumerate()
-    {
-        let handle = widget_kit::model::Handle {
-            panel: panel::POINTS,
-            id,
-            offset: [0.0; 2],
-            ..widget_kit::model::Handle::default()
+    for (index, point) in seen.iter().enumerate() {
+        let offset = [0.0; 2];
+        let handle = Handle {
+            index,
+            offset,
+            ..handle
         };
-        trace.drag(handle, at(Point2::new(-seen[k].x, seen[k].y)));
+        trace.drag(handle, at(Point2::new(-point.x, point.y)));
     }
     assert_eq!(trace.outcome().verdict, "a mirror image fits best");
     trace.drag(handle, [f64::NAN, 0.0]);

@@ -124,3 +124,26 @@ fn without_the_question_there_are_no_marks_and_the_defaults_end_it() {
     assert_eq!(model.outcome(), before);
     assert_eq!(with(&[("edge-p2p", 30.0)]).outcome(), before);
 }
+
+/// The lines are named where they stand, so that the legend keeps its four places for the minima.
+#[test]
+fn the_question_about_the_edge_adds_nothing_to_the_legend() {
+    for scene in [0.0, 1.0] {
+        for mut model in [asked(), swept([0.0, 0.0]), swept([30.0, 40.0])] {
+            model.set("scene", scene).unwrap();
+            model.finish_work();
+            let is_swept = model.values().number("edge") == 2.0;
+            for id in [panel::POINT, panel::PLANE] {
+                let map = panel_of(&model, id);
+                assert!(map.legend.len() <= 4, "{id}: {:?}", map.legend);
+                let is_named = |word: &str| {
+                    let mut layers = map.layers.iter();
+                    layers.any(|layer| matches!(layer, Layer::Label { text, .. } if text == word))
+                };
+                assert_eq!(is_named("swept"), is_swept);
+                let is_marked = model.values().number("edge-p2p") > 0.0;
+                assert_eq!(is_named("your edge"), is_marked);
+            }
+        }
+    }
+}

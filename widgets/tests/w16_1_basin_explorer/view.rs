@@ -5,7 +5,7 @@ use egui_kittest::Harness;
 use widget_kit::shell::Shell;
 use widgets::w16_1_basin_explorer::model::panel;
 
-use crate::support::{drawn_whole, point, value};
+use crate::support::{drawn, drawn_whole, point, value};
 
 fn screen(harness: &Harness<'_, Shell>, panel: &str, at: [f64; 2]) -> Pos2 {
     let [x, y] = harness
@@ -77,4 +77,34 @@ fn the_verdict_follows_the_preset() {
     harness.state_mut().press(off.unwrap().id).unwrap();
     harness.run_steps(2);
     assert_eq!(harness.state().model().outcome().verdict, "quarter turn");
+}
+
+/// The canvas of a phone of 390 by 844 points leaves so much to claim, Play, control and verdict.
+const PHONE_PX: f32 = 356.0;
+const STAGE_PX: f32 = 844.0 - 270.0;
+
+#[test]
+fn the_maps_enter_on_a_phone_without_moving_the_controls_off_the_screen() {
+    let height = |starts: &[f64]| {
+        let mut harness = drawn("w16.1", PHONE_PX, |_| {});
+        for heading in starts {
+            harness
+                .state_mut()
+                .model_mut()
+                .set("heading", *heading)
+                .unwrap();
+            harness.state_mut().model_mut().advance(1.0);
+            harness.run_steps(2);
+        }
+        let shown = harness.state().panel_to_screen(panel::POINT, [0.0; 2]);
+        (harness.state().stage_height(), shown.is_some())
+    };
+    let (alone, has_map) = height(&[]);
+    assert!(!has_map && alone <= STAGE_PX, "{alone}");
+    let (with_map, has_map) = height(&[40.0, 70.0]);
+    assert!(has_map);
+    assert!(
+        (with_map - alone).abs() <= 8.0,
+        "{alone} becomes {with_map}"
+    );
 }

@@ -18,7 +18,7 @@ const SLACK: f32 = 1.0;
 ///
 /// Text widths are those of the widest common font, so a picture without faults has none in narrower fonts.
 #[must_use]
-pub fn text_faults(model: &dyn Model, view: &dyn View, width_px: f32) -> Vec<String> {
+pub fn text_faults(model: &dyn Model, view: View, width_px: f32) -> Vec<String> {
     let mut recorder = Recorder::new();
     let height = picture(&mut recorder, model, view, width_px, Theme::Light);
     recorder.faults(width_px, height)
@@ -34,7 +34,7 @@ pub fn scene_text_faults(scene: &Scene, width_px: f32) -> Vec<String> {
 
 /// Reports every pair of overlapping texts over the data of one panel, at that width.
 #[must_use]
-pub fn label_faults(model: &dyn Model, view: &dyn View, width_px: f32) -> Vec<String> {
+pub fn label_faults(model: &dyn Model, view: View, width_px: f32) -> Vec<String> {
     let mut recorder = Recorder::new();
     picture(&mut recorder, model, view, width_px, Theme::Light);
     let mut faults = Vec::new();

@@ -97,13 +97,7 @@ impl TimeChart<'_> {
 /// Grabs the line at the current step if a press at `at` is within `reach` of it.
 #[must_use]
 pub fn grab_now(panel: &'static str, now: f64, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-    let from_line = at[0] - now;
-    (from_line.abs() <= reach[0]).then_some(Handle {
-        panel,
-        id: "now",
-        offset: [from_line, 0.0],
-        ..Handle::default()
-    })
+    Handle::within(panel, "now", [now, at[1]], at, reach)
 }
 
 /// The step to which the line is dragged, at least 0; the caller limits it to the end of the timeline.

@@ -2,7 +2,7 @@
 //!
 //! The half without egui is for a widget's `model.rs`: [`param`], [`values`], [`spec`], [`model`], [`scene`],
 //! [`chart`], [`controls`], [`plural`], [`disclosure`], [`host_messages`], [`playback`], [`playback_param`], [`invariants`],
-//! [`run`], [`ticks`], [`palette`]. It must not use the other half, because the models are tested headless.
+//! [`run`], [`ticks`], [`timeline`], [`palette`]. It must not use the other half, because the models are tested headless.
 //!
 //! The other half draws, with the feature `view`. [`draw`] renders a scene on any [`surface::Surface`]:
 //! [`egui_surface`] for the live picture, [`svg`] for the static one. [`shell`] handles the [`pointer`]. Texts and controls
@@ -24,6 +24,7 @@ pub mod scene;
 pub mod spec;
 mod table;
 pub mod ticks;
+pub mod timeline;
 pub mod values;
 
 #[cfg(feature = "view")]

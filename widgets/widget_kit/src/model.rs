@@ -2,13 +2,17 @@
 
 use crate::disclosure::Disclosure;
 use crate::host_messages::Delivery;
-use crate::param::{ParamError, printable};
+use crate::param::{MORE, ParamError, printable};
+use crate::playback::SPEED;
+use crate::playback_param::{Moved, PlayedValues};
 use crate::scene::Scene;
 use crate::spec::{PLAY, Preset, STEP, WidgetSpec};
 use crate::ticks::signed;
-use crate::values::Values;
+use crate::values::{Changed, Values};
 
+pub use crate::playback::Motion;
 pub use crate::table::{Table, TableCell, TableColumn, TablePlace};
+pub use crate::timeline::{Assessment, Timeline, TimelineMark};
 
 /// A widget without its drawing: tested headless, drawn by [`crate`]'s view half.
 ///
@@ -26,11 +30,29 @@ pub trait Model {
         Disclosure::visible(self.spec().opening, self.values())
     }
 
+    /// The values and their playback, if [`Model::follow`] is all that a change of them needs: then `set`, `press`,
+    /// `advance` and `set_motion` are given. Another widget implements these.
+    fn played(&mut self) -> Option<PlayedValues<'_>> {
+        None
+    }
+
+    /// Recomputes what depends on a parameter that changed, or on all of them; never called for speed and More.
+    fn follow(&mut self, _changed: Option<&str>) {}
+
     /// Sets one parameter and recomputes what depends on it.
     ///
     /// # Errors
     /// [`ParamError`] if the name is unknown or the value is out of range; the state does not change.
-    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError>;
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        let widget = self.spec().id;
+        let changed = self
+            .played()
+            .map(|played| played.values.set(widget, id, value));
+        if changed.transpose()? == Some(Changed::Yes) && ![SPEED.id, MORE.id].contains(&id) {
+            self.follow(Some(id));
+        }
+        Ok(())
+    }
 
     /// Sets one parameter from the text of a link, an attribute or a message.
     ///
@@ -46,7 +68,13 @@ pub trait Model {
     ///
     /// # Errors
     /// [`ParamError::UnknownButton`]; the state does not change.
-    fn press(&mut self, id: &str) -> Result<(), ParamError>;
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        let moved = self.played().map(|mut played| played.press(id));
+        if follow_moved(self, moved.unwrap_or(Moved::Nothing)) {
+            return Ok(());
+        }
+        press_preset(self, id)
+    }
 
     /// Whether a button has anything to do now; a reader's press of one that has not does nothing.
     fn is_enabled(&self, button: &str) -> bool {
@@ -55,7 +83,9 @@ pub trait Model {
     }
 
     /// Advances the playback by that many seconds.
-    fn advance(&mut self, elapsed_s: f64) -> Activity;
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        advance_played(self, elapsed_s)
+    }
 
     /// Does one small piece (well under a millisecond) of progressive work: busy if it did one, unseen if the
     /// picture did not change, idle if no work was left.
@@ -75,7 +105,7 @@ pub trait Model {
     /// The result in words and numbers.
     fn outcome(&self) -> Outcome;
 
-    /// A text alternative of the picture, for screen readers.
+    /// The picture in words, without its result: see [`text_alternative`].
     fn summary(&self) -> String;
 
     /// The timeline, if the widget has one.
@@ -141,7 +171,10 @@ pub trait Model {
     fn reveal(&mut self) {}
 
     /// Sets whether animations run or jump to their end.
-    fn set_motion(&mut self, _motion: Motion) {}
+    fn set_motion(&mut self, motion: Motion) {
+        let moved = self.played().map(|mut played| played.set_motion(motion));
+        follow_moved(self, moved.unwrap_or(Moved::Nothing));
+    }
 }
 
 /// Whether there is more work.
@@ -163,16 +196,6 @@ impl Activity {
     }
 }
 
-/// Whether animations run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Motion {
-    /// Animations run.
-    #[default]
-    Full,
-    /// The system asks for reduced motion: animations jump to their end.
-    Reduced,
-}
-
 /// Something grabbed by [`Model::grab`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Handle {
@@ -188,17 +211,49 @@ pub struct Handle {
     pub reach: f64,
 }
 
-/// The assessment of an outcome.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Assessment {
-    /// A desirable result.
-    Good,
-    /// A result to beware of.
-    Bad,
-    /// A result that the reader should check.
-    Doubtful,
-    /// Neither.
-    Neutral,
+impl Handle {
+    /// The nearest of several things to a press at `at`, each with its name, its index and its position, if one is
+    /// within reach.
+    #[must_use]
+    pub fn nearest(
+        panel: &'static str,
+        things: impl IntoIterator<Item = (&'static str, usize, [f64; 2])>,
+        at: [f64; 2],
+        reach: [f64; 2],
+    ) -> Option<Self> {
+        let share = |handle: &Self| {
+            let [x, y] = [0, 1].map(|i| (handle.offset[i] / reach[i]).abs());
+            x.max(y)
+        };
+        let handles = things.into_iter().map(|(id, index, [x, y])| Self {
+            panel,
+            id,
+            offset: [at[0] - x, at[1] - y],
+            index,
+            reach: 0.0,
+        });
+        let near = handles.filter(|handle| (0..2).all(|i| handle.offset[i].abs() <= reach[i]));
+        near.min_by(|a, b| share(a).total_cmp(&share(b)))
+    }
+
+    /// A thing, if a press at `at` is within reach of its position.
+    #[must_use]
+    pub fn within(
+        panel: &'static str,
+        id: &'static str,
+        spot: [f64; 2],
+        at: [f64; 2],
+        reach: [f64; 2],
+    ) -> Option<Self> {
+        Self::nearest(panel, [(id, 0, spot)], at, reach)
+    }
+
+    /// Position of the thing with the pointer at `at`; `None` unless it is finite.
+    #[must_use]
+    pub fn spot(&self, at: [f64; 2]) -> Option<[f64; 2]> {
+        let spot = [at[0] - self.offset[0], at[1] - self.offset[1]];
+        (spot[0].is_finite() && spot[1].is_finite()).then_some(spot)
+    }
 }
 
 /// The result of the current state.
@@ -302,35 +357,36 @@ impl Fact {
     }
 }
 
-/// A run that can be scrubbed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Timeline {
-    /// The parameter that holds the position; beyond the last one it means the end.
-    pub param: &'static str,
-    /// Last position; the first is 0.
-    pub last: f64,
-    /// Whether it plays.
-    pub playing: bool,
-    /// Events on the timeline.
-    pub marks: Vec<TimelineMark>,
+/// Recomputes what depends on what a run moved. Returns whether it moved.
+fn follow_moved<M: Model + ?Sized>(model: &mut M, moved: Moved) -> bool {
+    match moved {
+        Moved::Position(param) => model.follow(Some(param)),
+        Moved::Everything => model.follow(None),
+        Moved::Nothing => return false,
+    }
+    true
 }
 
-/// An event on the timeline.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TimelineMark {
-    /// Position.
-    pub at: f64,
-    /// Label: `loop 29 to 7 accepted`.
-    pub label: String,
-    /// Good or bad.
-    pub standing: Assessment,
+/// [`Model::advance`] of the run alone: busy while it plays.
+pub fn advance_played<M: Model + ?Sized>(model: &mut M, elapsed_s: f64) -> Activity {
+    let Some(mut played) = model.played() else {
+        return Activity::Idle;
+    };
+    let is_playing = played.playback.is_playing();
+    let moved = played.advance(elapsed_s);
+    follow_moved(model, moved);
+    if is_playing {
+        Activity::Busy
+    } else {
+        Activity::Idle
+    }
 }
 
 /// Sets a model to the state of a preset.
 ///
 /// # Errors
 /// [`ParamError`] if the preset names an unknown parameter: a bug that tests catch.
-pub fn apply_preset(model: &mut dyn Model, preset: &Preset) -> Result<(), ParamError> {
+pub fn apply_preset<M: Model + ?Sized>(model: &mut M, preset: &Preset) -> Result<(), ParamError> {
     model.press("defaults")?;
     for (id, value) in preset.set {
         model.set(id, *value)?;
@@ -339,6 +395,25 @@ pub fn apply_preset(model: &mut dyn Model, preset: &Preset) -> Result<(), ParamE
         model.press(button)?;
     }
     Ok(())
+}
+
+/// The panels that a widget shows at present.
+#[must_use]
+pub fn shown_scene(model: &dyn Model) -> Scene {
+    let (mut scene, disclosure) = (model.scene(), model.disclosure());
+    scene.panels.retain(|panel| disclosure.has_panel(panel.id));
+    scene
+}
+
+/// The text alternative of the picture for screen readers: it asks the question or gives the result, like the page.
+#[must_use]
+pub fn text_alternative(model: &dyn Model, asks: bool) -> String {
+    let summary = model.summary();
+    if asks {
+        format!("{summary} {}", model.spec().question)
+    } else {
+        format!("{summary} {}", model.outcome().in_full())
+    }
 }
 
 /// Does all the remaining [`Model::work`], as a [`Model::finish_work`] if the outcome depends on all of it.
@@ -352,7 +427,7 @@ pub fn finish_work(model: &mut dyn Model) -> Activity {
 ///
 /// # Errors
 /// [`ParamError::UnknownButton`] if there is none; the state does not change.
-pub fn press_preset(model: &mut dyn Model, id: &str) -> Result<(), ParamError> {
+pub fn press_preset<M: Model + ?Sized>(model: &mut M, id: &str) -> Result<(), ParamError> {
     let spec = model.spec();
     match spec.presets.iter().find(|preset| preset.id == id) {
         Some(preset) => apply_preset(model, preset),

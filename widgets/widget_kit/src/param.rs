@@ -25,7 +25,7 @@ macro_rules! one_of {
 }
 
 /// Declares the parameters of a widget, each once: a static for each, and their list `PARAMS` in the order of their
-/// controls. `use` lists one that is declared elsewhere.
+/// controls. `use` lists one that is declared elsewhere, `use MOVED[0 1][0 1 2]` those of a table row by row.
 ///
 /// ```text
 /// params! {
@@ -39,6 +39,16 @@ macro_rules! params {
     (@list [$($list:expr),*]) => {
         /// The widget's parameters, in the order of their controls.
         pub const PARAMS: &[&$crate::param::ParamSpec] = &[$($list),*];
+    };
+    (@list [$($list:expr),*] use $table:ident[] $columns:tt; $($rest:tt)*) => {
+        $crate::params!(@list [$($list),*] $($rest)*);
+    };
+    (@list [$($list:expr),*] use $table:ident[$row:literal $($rows:literal)*] [$($column:literal)*]; $($rest:tt)*) => {
+        $crate::params!(
+            @list [$($list,)* $(&$table[$row][$column].spec),*]
+            use $table[$($rows)*] [$($column)*];
+            $($rest)*
+        );
     };
     (@list [$($list:expr),*] use $shared:expr; $($rest:tt)*) => {
         $crate::params!(@list [$($list,)* &$shared.spec] $($rest)*);

@@ -1,7 +1,7 @@
 //! The panels of a widget on any surface, without the pointer.
 
 use crate::draw;
-use crate::model::Model;
+use crate::model::{Model, shown_scene};
 use crate::palette::Theme;
 use crate::scene::Scene;
 use crate::surface::{Measure, Px, Surface};
@@ -11,15 +11,13 @@ use crate::view::{Arrangement, MARGIN, View};
 pub fn picture(
     surface: &mut dyn Surface,
     model: &dyn Model,
-    view: &dyn View,
+    view: View,
     width_px: f32,
     theme: Theme,
 ) -> f32 {
-    let scene = model.scene();
+    let scene = shown_scene(model);
     let width = width_px - 2.0 * MARGIN;
-    let arrangement = view
-        .arrange(&scene, width)
-        .of_disclosure(&model.disclosure());
+    let arrangement = view(&scene, width).of_disclosure(&model.disclosure());
     2.0 * MARGIN
         + panels(
             surface,

@@ -2,7 +2,6 @@
 //!
 //! Reduced motion is handled only here: with it a run never plays and its end is shown at once.
 
-use crate::model::Motion;
 use crate::one_of;
 use crate::param::OneOf;
 use crate::spec::{PLAY, RESET, STEP};
@@ -22,6 +21,16 @@ pub static SPEED: OneOf<f64> = one_of!(
 )
 .default("normal")
 .help("How fast the run plays.");
+
+/// Whether animations run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Motion {
+    /// Animations run.
+    #[default]
+    Full,
+    /// The system asks for reduced motion: animations jump to their end.
+    Reduced,
+}
 
 /// A playback: whether it runs, and the elapsed fraction of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

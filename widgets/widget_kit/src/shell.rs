@@ -10,7 +10,7 @@ use web_time::{Duration, Instant};
 
 use crate::audit::{label_faults, text_faults};
 use crate::egui_surface::{Textures, color};
-use crate::model::{Activity, Model, Motion};
+use crate::model::{Activity, Model, Motion, shown_scene, text_alternative};
 use crate::palette::{self, Theme};
 use crate::param::ParamError;
 use crate::pointer::{Pointer, TOUCH_REACH_PX};
@@ -35,7 +35,7 @@ const WORK_AT_REST: Duration = Duration::from_millis(10);
 /// A widget on egui: model, view, and the state between frames.
 pub struct Shell {
     model: Box<dyn Model>,
-    view: Box<dyn View>,
+    view: View,
     theme: Theme,
     /// The model's picture at its last change.
     scene: Scene,
@@ -75,9 +75,9 @@ enum Moving {
 impl Shell {
     /// Creates a widget from its two halves.
     #[must_use]
-    pub fn new(model: Box<dyn Model>, view: Box<dyn View>) -> Self {
+    pub fn new(model: Box<dyn Model>, view: View) -> Self {
         Self {
-            scene: model.scene(),
+            scene: shown_scene(model.as_ref()),
             model,
             view,
             theme: Theme::default(),
@@ -186,6 +186,13 @@ impl Shell {
         self.first.is_over
     }
 
+    /// The text alternative of the picture, with the question until the reader acts or opens everything.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let asks = !self.has_acted() && !self.model.disclosure().is_all();
+        text_alternative(self.model(), asks)
+    }
+
     /// Sets whether animations run.
     pub fn set_motion(&mut self, motion: Motion) {
         self.first.motion = motion;
@@ -260,19 +267,19 @@ impl Shell {
     /// The static picture of the current state.
     #[must_use]
     pub fn picture_svg(&self, width_px: f32, theme: Theme) -> String {
-        picture_svg(self.model.as_ref(), self.view.as_ref(), width_px, theme)
+        picture_svg(self.model.as_ref(), self.view, width_px, theme)
     }
 
     /// Faults of the texts in that picture, see [`crate::audit`].
     #[must_use]
     pub fn text_faults(&self, width_px: f32) -> Vec<String> {
-        text_faults(self.model.as_ref(), self.view.as_ref(), width_px)
+        text_faults(self.model.as_ref(), self.view, width_px)
     }
 
     /// Overlapping texts over the data of that picture.
     #[must_use]
     pub fn label_faults(&self, width_px: f32) -> Vec<String> {
-        label_faults(self.model.as_ref(), self.view.as_ref(), width_px)
+        label_faults(self.model.as_ref(), self.view, width_px)
     }
 
     /// Whether another frame is needed without further input.
@@ -338,7 +345,7 @@ impl Shell {
     /// Queries the model again if something changed.
     fn refresh(&mut self) {
         if self.stale {
-            self.scene = self.model.scene();
+            self.scene = shown_scene(self.model());
             self.stale = false;
             self.revision += 1;
         }

@@ -13,7 +13,7 @@ use crate::view::View;
 
 /// Renders the picture of a widget's current state.
 #[must_use]
-pub fn picture_svg(model: &dyn Model, view: &dyn View, width_px: f32, theme: Theme) -> String {
+pub fn picture_svg(model: &dyn Model, view: View, width_px: f32, theme: Theme) -> String {
     let mut svg = SvgSurface::new(theme);
     let height = picture(&mut svg, model, view, width_px, theme);
     let spec = model.spec();

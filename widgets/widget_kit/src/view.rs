@@ -13,30 +13,8 @@ pub const PANEL_GAP: f32 = 16.0;
 /// Width from which panels are side by side.
 pub const SIDE_BY_SIDE: f32 = 520.0;
 
-/// The layout of a widget's panels. The default suits most widgets.
-pub trait View {
-    /// Arranges the panels of a scene at that width.
-    fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
-        Arrangement::by_weight(scene, width)
-    }
-}
-
-/// Removes the panels that a disclosure hides.
-fn keep_shown(rows: &mut Vec<Row>, disclosure: &Disclosure) {
-    for row in rows.iter_mut() {
-        for column in &mut row.columns {
-            column.slots.retain(|slot| disclosure.has_panel(slot.panel));
-        }
-        row.columns.retain(|column| !column.slots.is_empty());
-    }
-    rows.retain(|row| !row.columns.is_empty());
-}
-
-/// The default view.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct DefaultView;
-
-impl View for DefaultView {}
+/// Arranges the panels of a scene at a width; [`Arrangement::by_weight`] suits most.
+pub type View = fn(&Scene, f32) -> Arrangement;
 
 /// One panel in a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +23,26 @@ pub struct Slot {
     pub panel: &'static str,
     /// Height of its plot.
     pub height: PlotHeight,
+}
+
+impl Slot {
+    /// A plot of that height in pixels.
+    #[must_use]
+    pub const fn fixed(panel: &'static str, px: f32) -> Self {
+        Self {
+            panel,
+            height: PlotHeight::Fixed(px),
+        }
+    }
+
+    /// A plot as high as its axes require, and at most that many pixels.
+    #[must_use]
+    pub const fn natural(panel: &'static str, most: f32) -> Self {
+        Self {
+            panel,
+            height: PlotHeight::Natural { most },
+        }
+    }
 }
 
 /// Panels above each other.
@@ -64,16 +62,29 @@ pub struct Row {
 }
 
 impl Row {
-    /// Panels of equal width side by side.
+    /// Columns side by side, each with its share of the width and its panels from the top.
     #[must_use]
-    pub fn new(slots: &[Slot]) -> Self {
-        let columns = slots.iter().map(|slot| Column {
-            share: 1.0,
-            slots: vec![*slot],
+    pub fn of_columns(columns: &[(f32, &[Slot])]) -> Self {
+        let columns = columns.iter().map(|(share, slots)| Column {
+            share: *share,
+            slots: slots.to_vec(),
         });
         Self {
             columns: columns.collect(),
         }
+    }
+
+    /// Panels of equal width side by side.
+    #[must_use]
+    pub fn new(slots: &[Slot]) -> Self {
+        let columns: Vec<_> = slots.chunks(1).map(|slot| (1.0, slot)).collect();
+        Self::of_columns(&columns)
+    }
+
+    /// A row for each panel.
+    #[must_use]
+    pub fn each(slots: &[Slot]) -> Vec<Self> {
+        slots.chunks(1).map(Self::new).collect()
     }
 }
 
@@ -87,14 +98,12 @@ pub struct Arrangement {
 }
 
 impl Arrangement {
-    /// The visible part for a disclosure: the panels of the scene, and no plots below.
+    /// The visible part for a disclosure: no plots below the stage unless everything is shown.
     #[must_use]
     pub fn of_disclosure(mut self, disclosure: &Disclosure) -> Self {
-        if disclosure.is_all() {
-            return self;
+        if !disclosure.is_all() {
+            self.below.clear();
         }
-        keep_shown(&mut self.stage, disclosure);
-        self.below.clear();
         self
     }
 
@@ -133,15 +142,11 @@ impl Arrangement {
 }
 
 fn default_slot(panel: &Panel, width: f32) -> Slot {
-    let height = match (panel.aspect, panel.weight) {
-        (Aspect::Equal, Weight::Side) => PlotHeight::Natural { most: 260.0 },
-        (Aspect::Equal, _) => PlotHeight::Natural { most: 560.0 },
-        (Aspect::Free, Weight::Side) => PlotHeight::Fixed(130.0),
-        (Aspect::Free, _) => PlotHeight::Fixed((0.6 * width).clamp(180.0, 420.0)),
-    };
-    Slot {
-        panel: panel.id,
-        height,
+    match (panel.aspect, panel.weight) {
+        (Aspect::Equal, Weight::Side) => Slot::natural(panel.id, 260.0),
+        (Aspect::Equal, _) => Slot::natural(panel.id, 560.0),
+        (Aspect::Free, Weight::Side) => Slot::fixed(panel.id, 130.0),
+        (Aspect::Free, _) => Slot::fixed(panel.id, (0.6 * width).clamp(180.0, 420.0)),
     }
 }
 
@@ -166,16 +171,21 @@ pub fn place<'a>(
 ) -> (Vec<Placed>, f32) {
     let mut placed = Vec::with_capacity(scene.panels.len());
     let mut top = 0.0;
+    let panel_of = |slot: &Slot| scene.panels.iter().find(|panel| panel.id == slot.panel);
     for row in rows {
-        let shares: f32 = row.columns.iter().map(|column| column.share).sum();
-        let gaps = PANEL_GAP * (row.columns.len().max(1) - 1) as f32;
+        let columns = row.columns.iter();
+        let columns =
+            columns.filter(|column| column.slots.iter().any(|slot| panel_of(slot).is_some()));
+        let columns: Vec<_> = columns.collect();
+        let shares: f32 = columns.iter().map(|column| column.share).sum();
+        let gaps = PANEL_GAP * (columns.len().max(1) - 1) as f32;
         let mut left = 0.0;
         let mut bottom: f32 = top;
-        for column in &row.columns {
+        for column in columns {
             let column_width = (width - gaps) * column.share / shares;
             let mut y = top;
             for slot in &column.slots {
-                let Some(panel) = scene.panels.iter().find(|panel| panel.id == slot.panel) else {
+                let Some(panel) = panel_of(slot) else {
                     continue;
                 };
                 let layout = PanelLayout::new(panel, column_width, slot.height, measure);

@@ -157,8 +157,11 @@ fn the_series_stay_apart_and_are_taken_for_no_meaning() {
             for meaning in MEANINGS.into_iter().chain([Tone::Revisit, Tone::Ink]) {
                 assert_apart(&[color, tone(theme, meaning)], "a series and a meaning");
             }
-            let ratio = contrast(color, tone(theme, Tone::Paper));
-            assert!(ratio >= 3.0, "{theme:?} {color:?}: {ratio}");
+            // Also over cells that no beam has seen.
+            for ground in [Tone::Paper, Tone::Unseen] {
+                let ratio = contrast(color, tone(theme, ground));
+                assert!(ratio >= 3.0, "{theme:?} {color:?} on {ground:?}: {ratio}");
+            }
         }
     }
 }

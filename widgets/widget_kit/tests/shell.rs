@@ -7,12 +7,13 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use widget_kit::controls::shown;
 use widget_kit::palette::Theme;
+use widget_kit::scene::Scene;
 use widget_kit::shell::Shell;
-use widget_kit::view::DefaultView;
+use widget_kit::view::{Arrangement, Row, Slot};
 use widget_kit::zoom::Look;
 
 fn shell() -> Shell {
-    Shell::new(Box::new(Fake::new()), Box::new(DefaultView))
+    Shell::new(Box::new(Fake::new()), Arrangement::by_weight)
 }
 
 fn harness(width: f32) -> Harness<'static, Shell> {
@@ -423,30 +424,19 @@ fn assert_well_formed(svg: &str) {
 #[test]
 fn no_text_overlaps_or_is_cut_off_at_any_width() {
     for width in [320.0, 340.0, 390.0, 520.0, 560.0, 700.0, 1100.0, 1400.0] {
-        let faults = widget_kit::audit::text_faults(&Fake::new(), &DefaultView, width);
+        let faults = widget_kit::audit::text_faults(&Fake::new(), Arrangement::by_weight, width);
         assert!(faults.is_empty(), "{faults:#?}");
     }
 }
 
 #[test]
 fn the_audit_finds_clipped_and_overlapping_texts() {
-    use widget_kit::layout::PlotHeight;
-    use widget_kit::view::{Arrangement, Row, Slot, View};
-    struct Flat;
-    impl View for Flat {
-        fn arrange(&self, _scene: &widget_kit::scene::Scene, _width: f32) -> Arrangement {
-            // Six pixels are too few for two tick labels above each other.
-            let slot = Slot {
-                panel: "map",
-                height: PlotHeight::Fixed(6.0),
-            };
-            Arrangement {
-                stage: vec![Row::new(&[slot])],
-                ..Arrangement::default()
-            }
-        }
-    }
-    let faults = widget_kit::audit::text_faults(&Fake::new(), &Flat, 60.0);
+    // Six pixels are too few for two tick labels above each other.
+    let flat = |_: &Scene, _: f32| Arrangement {
+        stage: Row::each(&[Slot::fixed("map", 6.0)]),
+        below: Vec::new(),
+    };
+    let faults = widget_kit::audit::text_faults(&Fake::new(), flat, 60.0);
     assert!(
         faults
             .iter()

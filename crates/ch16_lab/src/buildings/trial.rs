@@ -29,7 +29,7 @@ pub struct TrialLoops {
 
 /// The result of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trial {
+pub struct BuildingRun {
     /// Loops that were tried during the drive.
     pub tried: usize,
     /// Loops that were closed.
@@ -46,7 +46,7 @@ pub struct Trial {
     pub nees: Vec<f64>,
 }
 
-impl Trial {
+impl BuildingRun {
     /// Runs the estimator to the end of the recording.
     ///
     /// # Panics
@@ -186,7 +186,7 @@ mod tests {
         let wheels = frames[0].odometry.between(&frames[last].odometry);
         let truth = frames[0].truth.between(&frames[last].truth);
         assert!(position_error_m(&wheels, &truth) > 2.0, "the wheels alone");
-        let trial = Trial::run(&recording, config, true);
+        let trial = BuildingRun::run(&recording, config, true);
         assert_eq!(trial.closed.wrong, 0);
         assert!(trial.closed.right > 5);
         // Six such buildings have 0.024 m in the median, 0.030 m at most.
@@ -198,10 +198,10 @@ mod tests {
     fn keyframes_lie_in_their_ellipsoids_and_no_loop_of_a_lap_is_false() {
         let (mut within, mut all) = (0.0, 0.0);
         for (kind, seeds) in [(Kind::Lap, 60), (Kind::RingLap, 30)] {
-            let trials: Vec<Trial> = (2001..2001 + seeds)
+            let trials: Vec<BuildingRun> = (2001..2001 + seeds)
                 .map(|seed| {
                     let (recording, config) = recorded(kind, seed);
-                    Trial::run(&recording, config, true)
+                    BuildingRun::run(&recording, config, true)
                 })
                 .collect();
             for trial in &trials {

@@ -5,7 +5,7 @@ use core::fmt;
 use super::loop_error::LoopJudgement;
 use super::record::LapTrace;
 use super::report::RecordedLoopAttempt;
-use ch16_slam2d::loops::{Agreement, GateTest, LoopRejection};
+use ch16_slam2d::loops::{GateTest, LoopRejection};
 
 impl fmt::Display for LoopJudgement {
     /// `loop accepted`, `wrong loop accepted` or `loop rejected`.
@@ -55,42 +55,14 @@ impl LapTrace {
             };
         }
         match attempt.verification.rejection {
-            Some(LoopRejection::PoorFit { rmse_m, max_rmse_m }) => format!(
-                "{head}: {gate}, but the sweep fits to {rmse_m:.3} m only, {max_rmse_m:.2} m is asked"
-            ),
-            Some(LoopRejection::FewInliers {
-                inliers,
-                min_inliers,
-            }) => format!("{head}: {gate}, but only {inliers} pairs of {min_inliers}"),
-            Some(LoopRejection::LowScore { score, min_score }) => {
-                format!("{head}: {gate}, but the score is {score:.2} only, {min_score:.2} is asked")
-            }
-            Some(LoopRejection::NoPlace {
-                half_width_m,
-                min_score,
-            }) => {
-                format!("{head}: no place within {half_width_m:.1} m has a score of {min_score:.2}")
-            }
-            Some(LoopRejection::Ambiguous { margin, min_margin }) => format!(
-                "{head}: {gate}, but another place is behind by {margin:.2} only, {min_margin:.2} is asked"
-            ),
-            Some(LoopRejection::NoCovariance(error)) => {
-                format!("{head}: the graph has no covariance to test against, {error}")
-            }
-            Some(LoopRejection::Outlier) => {
-                format!("{head}: {gate}, but the other loops contradict it")
-            }
-            Some(LoopRejection::OptimizationFailed(stop)) => {
-                format!("{head}: {gate}, but with it the graph cannot be optimized, {stop}")
-            }
-            Some(LoopRejection::CostRose { before, after }) => format!(
-                "{head}: {gate}, but the optimization raised the cost from {before:.2} to {after:.2}"
-            ),
             Some(LoopRejection::OutsideGate(_)) => format!("{head}: {gate}"),
+            // Nothing was registered, or nothing was there to test against.
+            Some(why @ (LoopRejection::NoPlace { .. } | LoopRejection::NoCovariance(_))) => {
+                format!("{head}: {why}")
+            }
+            Some(why) => format!("{head}: {gate}, but {why}"),
             None => match attempt.verification.waits {
-                Some(Agreement { agreeing, needed }) => {
-                    format!("{head}: {gate}, but {agreeing} loops agree so far, {needed} are asked")
-                }
+                Some(agreement) => format!("{head}: {gate}, but {agreement}"),
                 None => format!("{head}: {gate}"),
             },
         }
@@ -131,14 +103,14 @@ mod tests {
                     rmse_m: 0.1859,
                     max_rmse_m: 0.16,
                 },
-                "below 7.815, but the sweep fits to 0.186 m only, 0.16 m is asked",
+                "below 7.815, but the inliers' RMSE is 0.186 m, above 0.160 m",
             ),
             (
                 LoopRejection::FewInliers {
                     inliers: 20,
                     min_inliers: 25,
                 },
-                "below 7.815, but only 20 pairs of 25",
+                "below 7.815, but 20 inliers, at least 25 are needed",
             ),
         ] {
             attempt.verification.rejection = Some(rejection);
@@ -153,7 +125,7 @@ mod tests {
         });
         assert_eq!(
             lap.loop_sentence(&attempt),
-            "loop 29 to 7 rejected: no place within 8.2 m has a score of 0.75"
+            "loop 29 to 7 rejected: no pose within 8.2 m has a score of at least 0.75"
         );
         attempt.verification.gate.chi2 = 8.0;
         attempt.verification.rejection =

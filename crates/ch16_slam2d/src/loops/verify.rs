@@ -67,6 +67,25 @@ pub enum LoopRejection {
     },
 }
 
+impl LoopRejection {
+    /// The reason in a word or two, for tables.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::PoorFit { .. } => "RMSE",
+            Self::FewInliers { .. } => "inliers",
+            Self::LowScore { .. } => "score",
+            Self::NoPlace { .. } => "no place",
+            Self::Ambiguous { .. } => "ambiguous",
+            Self::OutsideGate(_) => "gate",
+            Self::NoCovariance(_) => "no covariance",
+            Self::Outlier => "outlier",
+            Self::OptimizationFailed(_) => "no optimum",
+            Self::CostRose { .. } => "cost rose",
+        }
+    }
+}
+
 impl core::fmt::Display for LoopRejection {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {

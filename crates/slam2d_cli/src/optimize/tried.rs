@@ -7,7 +7,7 @@ use serde::Serialize;
 
 /// One start that the solver tried.
 #[derive(Clone, Debug, Serialize)]
-pub struct Tried {
+pub struct TriedJson {
     init: &'static str,
     /// `gn` or `lm`.
     method: &'static str,
@@ -22,7 +22,7 @@ pub struct Tried {
     stop: String,
 }
 
-impl From<&TriedStart> for Tried {
+impl From<&TriedStart> for TriedJson {
     fn from(trial: &TriedStart) -> Self {
         Self {
             init: start_name(trial.start),
@@ -42,7 +42,7 @@ impl From<&TriedStart> for Tried {
     }
 }
 
-impl fmt::Display for Tried {
+impl fmt::Display for TriedJson {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             init,

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use pr_geom::SE2;
 
 use super::drive;
-use super::write::{Body, Message, Scan, Transform};
+use super::write::{Body, FrameTransform, Message, Scan};
 
 /// Start of the drive, s.
 pub const START_S: f64 = 1_700_000_000.0;
@@ -87,7 +87,7 @@ pub fn transform(topic: &str, parent: &str, child: &str, pose: [f64; 3], stamp_s
     Message {
         topic: topic.to_owned(),
         recorded_s: stamp_s,
-        body: Body::Transforms(vec![Transform {
+        body: Body::Transforms(vec![FrameTransform {
             stamp_s,
             parent: parent.to_owned(),
             child: child.to_owned(),

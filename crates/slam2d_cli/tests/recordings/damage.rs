@@ -6,7 +6,7 @@ use robot_io::log_bytes::LogBytes;
 
 use super::base::{START_S, messages, mirrored, truth, turned, without};
 use super::write::{Body, mcap};
-use super::{BY_SCANS_M, Outcome, PER_CHUNK, distance_m, mapped, path, read};
+use super::{BY_SCANS_M, Mapped, PER_CHUNK, distance_m, mapped, path, read};
 
 /// Byte range of the first chunk's records.
 fn first_chunk(bytes: &[u8]) -> std::ops::Range<usize> {
@@ -17,7 +17,7 @@ fn first_chunk(bytes: &[u8]) -> std::ops::Range<usize> {
 }
 
 #[track_caller]
-fn assert_mapped(outcome: &Outcome, least_scans: usize, word: &str) {
+fn assert_mapped(outcome: &Mapped, least_scans: usize, word: &str) {
     let notes = &outcome.notes;
     assert!(
         outcome.path.len() >= least_scans,

@@ -12,7 +12,7 @@ use robot_io::log::LogOptions;
 use robot_io::log_bytes::LogBytes;
 use robot_io::trajectory::Trajectory;
 
-use super::{Outcome, distance_m, mapped, path};
+use super::{Mapped, distance_m, mapped, path};
 
 /// Largest error of a map with odometry, and of one by scans alone, m.
 const WITH_ODOMETRY_M: f64 = 0.1;
@@ -221,7 +221,7 @@ fn the_other_files_of_the_field_are_read_or_rejected_by_name() {
     );
 }
 
-fn mapped_log(bytes: &[u8], name: &str) -> Outcome {
+fn mapped_log(bytes: &[u8], name: &str) -> Mapped {
     mapped(vec![LogBytes::from(bytes)], name, &LogOptions::default())
 }
 

@@ -22,7 +22,7 @@ const NEAR_M: f64 = 0.1;
 const BY_SCANS_M: f64 = 0.15;
 
 /// Result of a recording: the pose of each scan, and the messages for the user.
-pub struct Outcome {
+pub struct Mapped {
     /// Stamps (s) and poses.
     pub path: Vec<(f64, SE2)>,
     /// Sentences, or the error.
@@ -30,9 +30,9 @@ pub struct Outcome {
 }
 
 /// Maps a recording as `slam2d run` does.
-pub fn mapped(parts: Vec<LogBytes<'_>>, name: &str, options: &LogOptions) -> Outcome {
+pub fn mapped(parts: Vec<LogBytes<'_>>, name: &str, options: &LogOptions) -> Mapped {
     let mut run = LogRun::default();
-    let rejected = |notes: String| Outcome {
+    let rejected = |notes: String| Mapped {
         path: Vec::new(),
         notes,
     };
@@ -54,7 +54,7 @@ pub fn mapped(parts: Vec<LogBytes<'_>>, name: &str, options: &LogOptions) -> Out
     let mut notes = reader.notes().sentences(name);
     notes.extend(run.sentences(name));
     let path = run.trajectory();
-    Outcome {
+    Mapped {
         path: path
             .poses()
             .iter()
@@ -94,10 +94,10 @@ pub fn drive() -> Drive {
     Drive::simulate(&DriveConfig::default())
 }
 
-pub fn read(bytes: &[u8], options: &LogOptions) -> Outcome {
+pub fn read(bytes: &[u8], options: &LogOptions) -> Mapped {
     mapped(vec![LogBytes::from(bytes)], "x.mcap", options)
 }
 
-pub fn path(outcome: &Outcome) -> Vec<SE2> {
+pub fn path(outcome: &Mapped) -> Vec<SE2> {
     outcome.path.iter().map(|(_, pose)| *pose).collect()
 }

@@ -20,7 +20,7 @@ pub enum Body {
         child: String,
         pose: [f64; 3],
     },
-    Transforms(Vec<Transform>),
+    Transforms(Vec<FrameTransform>),
     /// Points of a 3-D sensor, in its frame.
     Cloud {
         stamp_s: f64,
@@ -47,7 +47,7 @@ pub struct Scan {
 
 /// Transform of a frame to its parent.
 #[derive(Clone, Debug)]
-pub struct Transform {
+pub struct FrameTransform {
     pub stamp_s: f64,
     pub parent: String,
     pub child: String,

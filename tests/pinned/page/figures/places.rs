@@ -10,12 +10,12 @@ const SEEDS: u32 = 20;
 const CALLED: f64 = 0.3;
 
 /// The grades of all detectors in one world.
-pub struct World {
+pub struct GradedWorld {
     pairs: Vec<PlacePair>,
     curves: Vec<PlaceCurve>,
 }
 
-impl World {
+impl GradedWorld {
     /// Runs the laps of the world of that name.
     pub fn graded(name: &str) -> Option<Self> {
         let world = BuiltInWorld::named(name)?;

@@ -28,7 +28,7 @@ const NOISE: [(&str, f64); 4] = [
 ];
 
 /// The laps of all seeds at all noise factors.
-pub struct Sweep {
+pub struct LapSweep {
     levels: [LapStatistics; 4],
     /// The laps at the largest noise with the exact gate.
     exact_gate: LapStatistics,
@@ -36,10 +36,10 @@ pub struct Sweep {
     canonical: LapOutcome,
 }
 
-impl Sweep {
+impl LapSweep {
     /// The sweep, computed on first use.
     pub fn shared() -> &'static Self {
-        static SWEEP: OnceLock<Sweep> = OnceLock::new();
+        static SWEEP: OnceLock<LapSweep> = OnceLock::new();
         SWEEP.get_or_init(Self::run)
     }
 

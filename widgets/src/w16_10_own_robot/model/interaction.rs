@@ -13,16 +13,11 @@ const NUDGE_M: f64 = 0.05;
 const STILL_M: f64 = 1e-6;
 
 /// The nearest keyframe within reach.
-fn nearest(robot: &OwnRobot, at: [f64; 2], reach: [f64; 2]) -> Option<(usize, [f64; 2])> {
-    let share = |spot: [f64; 2]| {
-        let away = [at[0] - spot[0], at[1] - spot[1]];
-        (away[0] / reach[0]).abs().max((away[1] / reach[1]).abs())
-    };
+fn nearest(robot: &OwnRobot, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
     let keyframes = robot.robot.keyframes.iter().enumerate();
-    let spots = keyframes.map(|(k, keyframe)| (k, [keyframe.pose[0], keyframe.pose[1]]));
-    spots
-        .filter(|(_, spot)| share(*spot) <= 1.0)
-        .min_by(|a, b| share(a.1).total_cmp(&share(b.1)))
+    let things =
+        keyframes.map(|(k, keyframe)| ("keyframe", k, [keyframe.pose[0], keyframe.pose[1]]));
+    Handle::nearest(panel::MAP, things, at, reach)
 }
 
 /// Whether the worker takes changes of the graph.
@@ -45,19 +40,14 @@ pub fn grab(robot: &OwnRobot, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Opt
         }
         _ => return None,
     }
-    let (keyframe, spot) = nearest(robot, at, reach)?;
-    let shown = robot.robot.keyframes[robot.keyframe()].pose;
-    let is_shown = keyframe == robot.keyframe() || spot == [shown[0], shown[1]];
-    Some(Handle {
-        panel: panel::MAP,
-        id: if is_shown && may_edit(robot) {
-            "held"
-        } else {
-            "keyframe"
-        },
-        offset: [at[0] - spot[0], at[1] - spot[1]],
-        ..Handle::default()
-    })
+    let handle = nearest(robot, at, reach)?;
+    let [near, shown] = [handle.index, robot.keyframe()].map(|k| &robot.robot.keyframes[k].pose);
+    let id = if near[..2] == shown[..2] && may_edit(robot) {
+        "held"
+    } else {
+        handle.id
+    };
+    Some(Handle { id, ..handle })
 }
 
 /// Moves the selected keyframe by steps, like a drag.
@@ -104,10 +94,10 @@ pub fn drag(robot: &mut OwnRobot, handle: Handle, at: [f64; 2]) {
             robot.order(MapperOrder::Pin(shown, [x, y, theta]));
         }
         _ => {
-            if let Some((keyframe, _)) = nearest(robot, spot, [f64::MAX; 2]) {
+            if let Some(near) = nearest(robot, spot, [f64::MAX; 2]) {
                 robot.playback.pause();
-                if keyframe != shown {
-                    robot.show(keyframe);
+                if near.index != shown {
+                    robot.show(near.index);
                 }
             }
         }

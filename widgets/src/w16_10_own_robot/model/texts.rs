@@ -287,24 +287,20 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
     facts
 }
 
-/// The text alternative of the picture.
+/// The picture in words.
 pub fn summary(own: &OwnRobot) -> String {
     let robot = &own.robot;
     if robot.keyframes.is_empty() {
-        return format!(
-            "An empty map that waits for the log of a robot. {}",
-            sentence(own)
-        );
+        return "An empty map that waits for the log of a robot.".to_owned();
     }
     let shown = own.keyframe();
     let [x, y, theta] = robot.keyframes[shown].pose;
     let link = own.link().map(|link| evidence(&robot.links[link]));
-    // After a step to this loop the sentence already describes it.
+    // After a step to this loop the result describes it.
     let link = link.filter(|link| *link != robot.answer);
     format!(
-        "A map with the path of the robot. {} Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°. {}",
-        sentence(own),
+        "A map with the path of the robot. Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°.{}",
         theta.to_degrees(),
-        link.unwrap_or_default()
+        link.map_or_else(String::new, |link| format!(" {link}"))
     )
 }

@@ -104,17 +104,12 @@ pub fn summary(trace: &ProcrustesTrace) -> String {
     let targets = trace.pairs.target.iter().enumerate();
     let targets = targets.map(|(k, p)| format!("{} at x {:.2} m, y {:.2} m", k + 1, p.x, p.y));
     let targets: Vec<_> = targets.collect();
-    let map = match trace.problem.unchecked().0 {
-        Handedness::Turn => "turned alike",
-        Handedness::Mirror => "mirrored on the right, its rooms in the other order",
-    };
     format!(
-        "{} pairs of points. Targets: {}. Tried are {}, now at {:.0}°, with a trace of {:.3} m²: {}. Below, a map moved by the best turn and by the best orthogonal matrix, {map}.",
+        "{} pairs of points. Targets: {}. Tried are {}, now at {:.0}°, with a trace of {:.3} m².",
         trace.pairs.len(),
         targets.join("; "),
         plural(trace.tried()),
         trace.values.get(&TURN),
         trace.problem.trace_m2(trace.tried(), theta_rad),
-        outcome(trace).sentence,
     )
 }

@@ -4,13 +4,15 @@ use ch16_lab::basin::{BasinScene, EdgeSearch};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
 use widget_kit::disclosure::Opening;
 use widget_kit::model::{Activity, Assessment, Fact, Outcome};
-use widget_kit::scene::{Layer, LegendEntry, Mark, Stroke, Tone};
+use widget_kit::scene::{Layer, Mark, Stroke, Tone};
 use widget_kit::values::Values;
 
 use super::BasinExplorer;
 use super::settings::{config, variant_name};
 use crate::w16_1_basin_explorer::spec::{EDGE, EDGES, OFFSET_SPAN_M, Phase};
 
+/// Distance of a word from its line, pixels.
+const CLEAR_PX: f32 = 8.0;
 /// Largest error of a right mark, °.
 const RIGHT_DEG: f64 = 5.0;
 
@@ -99,9 +101,12 @@ pub fn layers(explorer: &BasinExplorer, of: IcpVariant) -> Vec<Layer> {
             Tone::Truth,
             2.5,
         ));
+        layers.push(Layer::label([edge, 0.0], "swept".to_owned(), CLEAR_PX));
     }
     if mark > 0.0 {
         layers.push(lines(mark, Stroke::Solid, Tone::Ink));
+        let high = 0.6 * OFFSET_SPAN_M;
+        layers.push(Layer::label([mark, high], "your edge".to_owned(), CLEAR_PX));
     }
     if phase == Phase::Marking {
         layers.extend([-mark, mark].map(|x| Layer::Handle {
@@ -115,23 +120,9 @@ pub fn layers(explorer: &BasinExplorer, of: IcpVariant) -> Vec<Layer> {
             Tone::Truth,
             7.0,
         ));
+        layers.push(Layer::label([0.0; 2], "truth".to_owned(), CLEAR_PX));
     }
     layers
-}
-
-/// The legend of the lines.
-pub fn legend(values: &Values) -> Vec<LegendEntry> {
-    match values.get(&EDGE) {
-        Phase::Off => Vec::new(),
-        Phase::Marking => vec![
-            LegendEntry::line("your edge", Tone::Ink, Stroke::Solid),
-            LegendEntry::mark("the truth", Tone::Truth, Mark::Plus),
-        ],
-        Phase::Swept => vec![
-            LegendEntry::line("your edge", Tone::Ink, Stroke::Solid),
-            LegendEntry::line("the edge, swept", Tone::Truth, Stroke::Dashed),
-        ],
-    }
 }
 
 /// The question and its answer in words; `None` if the question is off.

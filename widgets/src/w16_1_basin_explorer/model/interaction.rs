@@ -1,28 +1,23 @@
 //! Draggable things: the source by its points, its turning handle, a basin map.
 
 use ch16_slam2d::icp::IcpVariant;
-use pr_geom::{Point2, SE2, math};
+use pr_geom::Point2;
 use widget_kit::model::Handle;
 
 use super::basins::start_at;
 use super::{BasinExplorer, panel};
+use crate::pose_handle;
 use crate::w16_1_basin_explorer::spec::{EDGE, EDGES, Phase, VARIANT};
 
-/// Distance of the turning handle from the sensor, m.
-const TURN_ARM_M: f64 = 1.0;
-
-/// Names of the draggable things.
+/// Names of the draggable things beside those of the source.
 mod thing {
-    pub const SOURCE: &str = "source";
-    pub const TURN: &str = "turn";
     pub const START: &str = "start";
     pub const EDGE: &str = "edge";
 }
 
 /// Position of the handle that turns the source, at the current iteration.
 pub fn turn_handle(explorer: &BasinExplorer) -> Point2<f64> {
-    let arm = Point2::new(TURN_ARM_M, 0.0);
-    explorer.shown().pose.transform(arm)
+    pose_handle::turn_handle(&explorer.shown().pose)
 }
 
 /// What is within reach of a spot.
@@ -52,24 +47,20 @@ pub fn grab(
 
 /// The turning handle, or the source by any of its points or its sensor.
 fn grab_source(explorer: &BasinExplorer, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-    let near = |spot: Point2<f64>| {
+    let pose = explorer.shown().pose;
+    let touches = |point: Point2<f64>| {
+        let spot = pose.transform(point);
         (spot.x - at[0]).abs() <= reach[0] && (spot.y - at[1]).abs() <= reach[1]
     };
-    let take = |id, spot: Point2<f64>| Handle {
-        panel: panel::SWEEPS,
-        id,
-        offset: [at[0] - spot.x, at[1] - spot.y],
-        ..Handle::default()
-    };
-    let turn = turn_handle(explorer);
-    if near(turn) {
-        return Some(take(thing::TURN, turn));
-    }
-    let pose = explorer.shown().pose;
-    let sensor = pose.position();
-    let mut points = explorer.scene.source().iter();
-    let touched = near(sensor) || points.any(|p| near(pose.transform(p)));
-    touched.then(|| take(thing::SOURCE, sensor))
+    pose_handle::grab(panel::SWEEPS, &pose, at, reach).or_else(|| {
+        let mut points = explorer.scene.source().iter();
+        points.any(touches).then(|| Handle {
+            panel: panel::SWEEPS,
+            id: pose_handle::PLACE,
+            offset: [at[0] - pose.x(), at[1] - pose.y()],
+            ..Handle::default()
+        })
+    })
 }
 
 /// Moves the grabbed thing; the result is the new start.
@@ -81,26 +72,17 @@ pub fn drag(explorer: &mut BasinExplorer, handle: Handle, at: [f64; 2]) {
         }
         return;
     }
-    let pose = explorer.shown().pose;
-    let spot = [at[0] - handle.offset[0], at[1] - handle.offset[1]];
-    let start = match handle.id {
-        thing::START => {
-            let variant = match handle.panel {
-                panel::PLANE => IcpVariant::PointToPlane,
-                _ => IcpVariant::PointToPoint,
-            };
-            explorer.values.put(&VARIANT, variant);
-            start_at(&explorer.values, at)
-        }
-        thing::TURN => {
-            let theta = math::atan2(spot[1] - pose.y(), spot[0] - pose.x());
-            let pose = SE2::new(pose.x(), pose.y(), theta);
-            explorer.scene.start_of(&pose)
-        }
-        _ => {
-            let pose = SE2::new(spot[0], spot[1], pose.theta());
-            explorer.scene.start_of(&pose)
-        }
+    let start = if handle.id == thing::START {
+        let variant = match handle.panel {
+            panel::PLANE => IcpVariant::PointToPlane,
+            _ => IcpVariant::PointToPoint,
+        };
+        explorer.values.put(&VARIANT, variant);
+        start_at(&explorer.values, at)
+    } else {
+        let spot = [at[0] - handle.offset[0], at[1] - handle.offset[1]];
+        let moved = pose_handle::dragged(&explorer.shown().pose, handle, spot);
+        explorer.scene.start_of(&moved)
     };
     explorer.start_at(start);
 }

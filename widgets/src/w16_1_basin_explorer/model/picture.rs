@@ -38,14 +38,18 @@ const fn wall_gap_m(place: BasinPlace) -> f64 {
     }
 }
 
+/// The whole picture; of the maps that of the chosen variant comes first.
 pub fn scene(explorer: &BasinExplorer) -> Scene {
+    let mut maps = [
+        basin(explorer, panel::POINT, IcpVariant::PointToPoint),
+        basin(explorer, panel::PLANE, IcpVariant::PointToPlane),
+    ];
+    if variant(&explorer.values) == IcpVariant::PointToPlane {
+        maps.reverse();
+    }
+    let [chosen, other] = maps;
     Scene {
-        panels: vec![
-            sweeps(explorer),
-            basin(explorer, panel::POINT, IcpVariant::PointToPoint),
-            basin(explorer, panel::PLANE, IcpVariant::PointToPlane),
-            curve(explorer),
-        ],
+        panels: vec![sweeps(explorer), chosen, other, curve(explorer)],
     }
 }
 
@@ -302,19 +306,16 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
             radius_px: 7.0,
         });
     }
-    let mut legend = edge::legend(&explorer.values);
-    if !covered {
-        // The right minimum is named in the map.
-        let minima = Minimum::at_place(explorer.scene.place()).into_iter();
-        let minima =
-            minima.filter(|minimum| *minimum != Minimum::Right && in_the_map(*minimum) == *minimum);
-        legend.extend(minima.map(|minimum| LegendEntry {
-            label: format!("{} {}", minimum.letter(), minimum.name()),
-            tone: Tone::Class(class(minimum)),
-            mark: None,
-            stroke: None,
-        }));
-    }
+    // The right minimum is named in the map.
+    let minima = Minimum::at_place(explorer.scene.place()).into_iter();
+    let minima =
+        minima.filter(|minimum| *minimum != Minimum::Right && in_the_map(*minimum) == *minimum);
+    let legend = minima.filter(|_| !covered).map(|minimum| LegendEntry {
+        label: format!("{} {}", minimum.letter(), minimum.name()),
+        tone: Tone::Class(class(minimum)),
+        mark: None,
+        stroke: None,
+    });
     let title = if covered {
         format!("Where is the edge, {}?", variant_name(of))
     } else {
@@ -339,12 +340,7 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
             OFFSET_SPAN_M + BASIN_ROOM[1],
         ),
         layers,
-        // One legend for both maps, below the second.
-        legend: if of == IcpVariant::PointToPlane {
-            legend
-        } else {
-            Vec::new()
-        },
+        legend: legend.collect(),
         color_bar: None,
     }
 }

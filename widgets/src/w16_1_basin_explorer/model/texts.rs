@@ -67,10 +67,8 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
 
 pub fn summary(explorer: &BasinExplorer) -> String {
     if explorer.values.get(&EDGE) == Phase::Marking {
-        return format!(
-            "Two basin maps of headings and offsets, covered until the edge of the right basin is marked. {}",
-            outcome(explorer).sentence
-        );
+        return "Two basin maps of headings and offsets, covered until the edge of the right basin is marked."
+            .to_owned();
     }
     let shown = explorer.shown();
     let truth = explorer.scene.truth();
@@ -85,7 +83,7 @@ pub fn summary(explorer: &BasinExplorer) -> String {
     };
     format!(
         "Two laser sweeps of {place}, {} and {} points. At iteration {} of {} the source lies \
-         {:.2} m from where it belongs, with {} pairs and rmse {:.3} m. {}{maps}",
+         {:.2} m from where it belongs, with {} pairs and rmse {:.3} m.{maps}",
         explorer.scene.target().len(),
         explorer.scene.source().len(),
         explorer.iteration(),
@@ -93,7 +91,6 @@ pub fn summary(explorer: &BasinExplorer) -> String {
         error_m(&truth, &shown.pose),
         shown.pairs,
         shown.rmse_m,
-        outcome(explorer).sentence,
     )
 }
 

@@ -257,7 +257,7 @@ impl FullLap {
 
     /// What a press on the map grabs with a tool.
     pub(super) fn grab_flat(&self, tool: Tool, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        let under = self.piece_under(at, reach);
+        let under = self.piece_under(tool, at, reach);
         let new = |id| Handle {
             panel: panel::MAP,
             id,
@@ -274,6 +274,8 @@ impl FullLap {
                 _ => new(PLACE),
             }),
             Tool::Remove => None,
+            // A press beside everything sets it down there.
+            Tool::Robot => Some(under.unwrap_or(PlanElement::Start).handle()),
         }
     }
 
@@ -283,14 +285,15 @@ impl FullLap {
     }
 
     /// The piece under the pointer; the selected one first if several overlap.
-    fn piece_under(&self, at: [f64; 2], reach: [f64; 2]) -> Option<PlanElement> {
+    fn piece_under(&self, tool: Tool, at: [f64; 2], reach: [f64; 2]) -> Option<PlanElement> {
         let sketch = &self.floor_plan.sketch;
-        let chosen = self.piece().filter(|piece| {
+        let accepts = |piece: &PlanElement| tool != Tool::Robot || !piece.is_of_wall();
+        let chosen = self.piece().filter(accepts).filter(|piece| {
             let place = piece.place(sketch);
             let is_near = (0..2).all(|axis| (place[axis] - at[axis]).abs() <= reach[axis]);
             is_near && !matches!(piece, PlanElement::Wall(_))
         });
-        chosen.or_else(|| PlanElement::at(sketch, at, reach))
+        chosen.or_else(|| PlanElement::at(sketch, at, reach, accepts))
     }
 
     /// Continues or starts a stroke. Returns whether the handle is one of the flat's.
@@ -384,7 +387,7 @@ impl FullLap {
     /// A click or a tap with a tool.
     pub(super) fn tap_flat(&mut self, tool: Tool, at: [f64; 2], reach: [f64; 2]) {
         self.end_stroke();
-        let under = self.piece_under(at, reach);
+        let under = self.piece_under(tool, at, reach);
         match tool {
             Tool::Move => self.choose(under),
             Tool::Remove => {
@@ -395,7 +398,7 @@ impl FullLap {
             Tool::Wall if self.floor_plan.note.is_none() => {
                 self.reject("drag from one end of the wall to the other");
             }
-            Tool::Wall | Tool::Way => {}
+            Tool::Wall | Tool::Way | Tool::Robot => {}
         }
     }
 

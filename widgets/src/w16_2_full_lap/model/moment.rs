@@ -1,6 +1,7 @@
 //! The state of the widget at a tick: poses of the graph, interpolated during a loop's animation.
 
 use ch16_lab::lap::{OwnLoop, RecordedEdge, RecordedLoopAttempt};
+use ch16_slam2d::metrics::position_error_m;
 use pr_geom::SE2;
 use pr_sim::{CourseError, Sketch};
 use widget_kit::scene::Bounds;
@@ -25,6 +26,17 @@ pub struct Drawn<'a> {
     pub note: Option<&'a str>,
     /// The visible part of the map during a stroke.
     pub frame: Option<Bounds>,
+}
+
+/// A keyframe so far off at the end of a lap is a wrong place, m.
+const WRONG_PLACE_M: f64 = 1.0;
+
+/// What is wrong with the map of a finished lap.
+pub enum WrongPlace<'a> {
+    /// An accepted loop between two different places.
+    Loop(&'a RecordedLoopAttempt),
+    /// The keyframe farthest off the truth, and its distance in metres.
+    Keyframe(usize, f64),
 }
 
 /// The state at one tick.
@@ -136,6 +148,24 @@ impl<'a> LapState<'a> {
     pub fn edges_with_own(&self) -> impl Iterator<Item = &'a RecordedEdge> + use<'a> {
         let own = self.own.filter(|own| own.is_closed());
         self.edges().chain(own.map(|own| &own.edge))
+    }
+
+    /// The wrong place of the map once the lap is over: a wrong loop, else the keyframe farthest off.
+    pub fn wrong_place(&self) -> Option<WrongPlace<'a>> {
+        if self.tick < self.runs.ticks() {
+            return None;
+        }
+        let graph = &self.runs.graph;
+        let wrong_loop = graph.lap().false_acceptances().next();
+        wrong_loop.map(WrongPlace::Loop).or_else(|| {
+            let nodes = self.nodes.iter().enumerate();
+            let errors = nodes.map(|(node, pose)| {
+                let truth = self.runs.truth(graph.keyframe_tick(node));
+                (node, position_error_m(pose, &truth))
+            });
+            let (node, off_m) = errors.max_by(|a, b| a.1.total_cmp(&b.1))?;
+            (off_m >= WRONG_PLACE_M).then_some(WrongPlace::Keyframe(node, off_m))
+        })
     }
 
     /// Whether nodes moved: a loop was closed in this tick, or the custom one is.

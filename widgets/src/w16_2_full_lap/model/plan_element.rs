@@ -240,8 +240,18 @@ impl PlanElement {
         }
     }
 
-    /// The piece under a point, within `reach` along each axis: points before walls.
-    pub fn at(sketch: &Sketch, at: [f64; 2], reach: [f64; 2]) -> Option<Self> {
+    /// Whether it is a wall or the end of one.
+    pub fn is_of_wall(self) -> bool {
+        matches!(self, Self::Wall(_) | Self::FirstEnd(_) | Self::SecondEnd(_))
+    }
+
+    /// The accepted piece under a point, within `reach` along each axis: points before walls.
+    pub fn at(
+        sketch: &Sketch,
+        at: [f64; 2],
+        reach: [f64; 2],
+        accepts: impl Fn(&Self) -> bool,
+    ) -> Option<Self> {
         let away = |[x, y]: [f64; 2]| math::norm2((x - at[0]) / reach[0], (y - at[1]) / reach[1]);
         let walls = 0..sketch.walls_cm.len();
         let way = (0..sketch.way_points_cm.len()).map(Self::WayPoint);
@@ -250,7 +260,7 @@ impl PlanElement {
         let ends = walls
             .clone()
             .flat_map(|index| [Self::FirstEnd(index), Self::SecondEnd(index)]);
-        let places = way.chain(ends);
+        let places = way.chain(ends).filter(&accepts);
         let near = |pieces: &mut dyn Iterator<Item = (Self, f64)>| {
             pieces
                 .filter(|(_, away)| *away <= 1.0)
@@ -258,10 +268,14 @@ impl PlanElement {
                 .map(|(piece, _)| piece)
         };
         near(&mut places.map(|piece| (piece, away(piece.place(sketch))))).or_else(|| {
-            near(&mut walls.map(|index| {
-                let wall = sketch.walls_cm[index].map(|end| end.map(to_m));
-                (Self::Wall(index), away(nearest_of(wall, at)))
-            }))
+            near(
+                &mut walls
+                    .filter(|index| accepts(&Self::Wall(*index)))
+                    .map(|index| {
+                        let wall = sketch.walls_cm[index].map(|end| end.map(to_m));
+                        (Self::Wall(index), away(nearest_of(wall, at)))
+                    }),
+            )
         })
     }
 }

@@ -3,7 +3,6 @@
 //! They end at the last tick that is shown.
 
 use ch16_lab::lap::{LapSummary, RecordedLoopAttempt, edge_strain};
-use ch16_slam2d::loops::LoopRejection;
 use widget_kit::model::{Table, TablePlace};
 
 use super::moment::LapState;
@@ -116,7 +115,7 @@ fn loops(runs: &Runs, seen: usize) -> Table {
             format!("{:.3}", gates.exact.test.chi2),
             format!("{:.3}", loop_.rmse_m),
             moved.map_or("–".to_owned(), |moved| format!("{moved:.3}")),
-            verdict_with_reason(attempt).to_owned(),
+            verdict_with_reason(attempt),
         ]
     };
     Table::shown(
@@ -171,27 +170,18 @@ fn loop_attempts(runs: &Runs, seen: usize) -> Table {
                 let rms_m = tried.effect.map(|effect| effect.keyframe_rms_m);
                 rms_m.map(|rms_m| rms_m.after).into()
             }),
-            ("verdict", &|tried| verdict_with_reason(tried).into()),
+            ("verdict", &|tried| {
+                verdict_with_reason(tried).as_str().into()
+            }),
         ],
     )
 }
 
-fn verdict_with_reason(attempt: &RecordedLoopAttempt) -> &'static str {
+fn verdict_with_reason(attempt: &RecordedLoopAttempt) -> String {
     match attempt.verification.rejection {
-        None if attempt.verification.waits.is_some() => "waits for others",
-        None => "accepted",
-        Some(LoopRejection::PoorFit { .. }) => "rejected: rmse",
-        Some(LoopRejection::FewInliers { .. }) => "rejected: pairs",
-        Some(LoopRejection::LowScore { .. }) => "rejected: score",
-        Some(LoopRejection::NoPlace { .. }) => "rejected: no place",
-        Some(LoopRejection::Ambiguous { .. }) => "rejected: ambiguous",
-        Some(LoopRejection::OutsideGate(_)) => "rejected: χ²",
-        Some(LoopRejection::NoCovariance(_)) => "rejected: no covariance",
-        Some(
-            LoopRejection::Outlier
-            | LoopRejection::OptimizationFailed(_)
-            | LoopRejection::CostRose { .. },
-        ) => "taken back",
+        None if attempt.verification.waits.is_some() => "waits for others".to_owned(),
+        None => "accepted".to_owned(),
+        Some(why) => format!("rejected: {}", why.name()),
     }
 }
 

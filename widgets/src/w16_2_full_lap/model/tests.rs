@@ -9,7 +9,7 @@ mod reference;
 mod settings;
 mod worlds;
 
-use widget_kit::model::{Assessment, Fact};
+use widget_kit::model::{Assessment, Fact, text_alternative};
 use widget_kit::scene::{Layer, Mark, Stroke, Tone};
 
 use super::*;

@@ -7,7 +7,7 @@ use ch16_slam2d::loops::GateModel;
 use widget_kit::model::{Assessment, Fact, Outcome};
 use widget_kit::plural::plural;
 
-use super::moment::LapState;
+use super::moment::{LapState, WrongPlace};
 use super::runs::Runs;
 
 pub mod floor_plan;
@@ -91,6 +91,13 @@ fn statement(moment: &LapState, rejected: Option<&OwnLoopError>) -> Statement {
     if let Some(rejected) = rejected {
         return neutral("no loop of your own", rejected.to_string());
     }
+    if let Some(wrong) = moment.wrong_place() {
+        return Statement {
+            standing: Assessment::Bad,
+            verdict: wrong_words(&wrong),
+            sentence: lap_sentence(runs),
+        };
+    }
     let lap = runs.graph.lap();
     match moment.attempt {
         Some(attempt) => {
@@ -103,6 +110,14 @@ fn statement(moment: &LapState, rejected: Option<&OwnLoopError>) -> Statement {
         }
         None if tick == runs.ticks() => neutral("lap finished", lap_sentence(runs)),
         None => neutral("on the way", tick_sentence(runs, tick)),
+    }
+}
+
+/// `wrong loop 80 to 12` or `9.3 m off`.
+pub fn wrong_words(wrong: &WrongPlace) -> String {
+    match wrong {
+        WrongPlace::Loop(attempt) => format!("wrong loop {}", ends(attempt)),
+        WrongPlace::Keyframe(_, off_m) => format!("{off_m:.1} m off"),
     }
 }
 
@@ -253,8 +268,8 @@ fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
     ]
 }
 
-/// The text alternative of the picture.
-pub fn summary(moment: &LapState, rejected: Option<&OwnLoopError>) -> String {
+/// The picture in words.
+pub fn summary(moment: &LapState) -> String {
     let (runs, tick) = (moment.runs, moment.tick);
     let truth = runs.truth(tick);
     let way = if runs.is_way_back(tick) {
@@ -262,20 +277,7 @@ pub fn summary(moment: &LapState, rejected: Option<&OwnLoopError>) -> String {
     } else {
         "on its way out"
     };
-    let lap = runs.graph.lap();
-    let loops = moment.loops_tried();
-    let loops: Vec<_> = loops.map(|attempt| lap.loop_sentence(attempt)).collect();
-    let loops = if loops.is_empty() {
-        "No loop was tried so far".to_owned()
-    } else {
-        format!("So far: {}", loops.join("; "))
-    };
     let mut rest = String::new();
-    if let Some(own) = moment.own {
-        rest += &format!(" Then {}.", parts::own_statement(moment, own).sentence);
-    } else if let Some(rejected) = rejected {
-        rest += &format!(" Your own loop: {rejected}.");
-    }
     if moment.has_moved() {
         rest += &format!(
             " A line at {:.0} % of the map's width: left of it the map is as before the loop, right of it as after.",
@@ -285,20 +287,19 @@ pub fn summary(moment: &LapState, rejected: Option<&OwnLoopError>) -> String {
     if let Some(drawn) = &moment.drawn {
         rest += &floor_plan::summary(drawn);
     }
-    if let Some(part) = moment.picked {
-        rest += &format!(
-            " Selected: {}.",
-            parts::part_statement(moment, part).sentence
-        );
-    }
     format!(
-        "{}. The robot is at x {:.1} m, y {:.1} m, {way}; {}. \
-         The pose graph has {} keyframes. {loops}.{rest}",
+        "{}. At tick {tick} of {} the robot is at x {:.1} m, y {:.1} m, {way}. \
+         The pose graph has {}, and {} tried.{rest}",
         place_words(runs),
+        runs.ticks(),
         truth.x(),
         truth.y(),
-        tick_sentence(runs, tick),
-        runs.graph.keyframes_until(tick),
+        plural(runs.graph.keyframes_until(tick), "keyframe"),
+        match moment.loops_tried().count() {
+            0 => "no loop was".to_owned(),
+            1 => "one loop was".to_owned(),
+            more => format!("{more} loops were"),
+        },
     )
 }
 

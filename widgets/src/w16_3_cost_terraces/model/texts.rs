@@ -160,34 +160,24 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &TerraceSettings) -> 
     facts
 }
 
-/// The text alternative of the picture.
-pub fn summary(terrains: &Terrains, rests: &Rests, settings: &TerraceSettings) -> String {
+/// The picture in words.
+pub fn summary(terrains: &Terrains, settings: &TerraceSettings) -> String {
     let place = match settings.place {
         SweepPlace::Room => "a room, over its own points",
         SweepPlace::Corridor => "a corridor without doors, over a map that was measured apart",
         SweepPlace::OwnCorridor => "the Apartment's corridor, over its own points",
     };
     let (icp, ndt) = (&terrains.icp, &terrains.ndt);
-    let [firm, loose] = terrains.information.eigenvalues_per_cm2;
     format!(
-        "Two maps of {cells} by {cells} shifts of a sweep in {place}, up to 1.3 metres from the truth. \
-         ICP's cost goes up to {icp_high:.3} square metres and is lowest at {icp_low}. \
-         NDT's score goes up to {ndt_high:.3} and is highest at {ndt_low}. \
-         At the cross hair the cost is {cost:.4} square metres and the score {score:.3}. \
-         {balls} \
-         At the cross hair {changing} points are about to change their partner, and {bells} bells make up NDT's map. \
-         The information of a shift at the truth is {firm:.2} per square centimetre in its firmest \
-         direction and {loose:.2} in its loosest, which lies at {angle}° from x.",
+        "Two reliefs over {cells} by {cells} shifts of a sweep in {place}, up to 1.3 metres from the truth: \
+         ICP's cost up to {icp_high:.3} square metres, and NDT's score up to {ndt_high:.3}. \
+         At the cross hair the cost is {cost:.4} square metres and the score {score:.3}, and {changing} \
+         points are about to change their partner.",
         cells = settings.cells,
         icp_high = icp.range[1],
-        icp_low = shift(icp.lowest_m),
         ndt_high = -ndt.range[0],
-        ndt_low = shift(ndt.lowest_m),
         cost = icp.at_probe(),
         score = -ndt.at_probe(),
-        balls = outcome(terrains, rests, settings).sentence,
         changing = terrains.pairing_at(settings.probe_m).points.len(),
-        bells = terrains.bells().len(),
-        angle = signed(terrains.information.directions_deg[1], 0),
     )
 }

@@ -29,12 +29,13 @@ pub fn outcome(room: &ControlRoom) -> Outcome {
     }
 }
 
-/// The text alternative of the picture.
+/// The picture in words.
 pub fn summary(room: &ControlRoom) -> String {
     format!(
-        "{} {} The newest sweep is paired with the local map by {} pairs.",
+        "{} At tick {} of {} the newest sweep is paired with the local map by {} pairs.",
         room.grid.words(),
-        tick_sentence(room),
+        room.tick(),
+        room.record.ticks(),
         room.now().map_or(0, |r| r.registration.matched.inliers),
     )
 }

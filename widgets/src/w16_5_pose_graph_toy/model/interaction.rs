@@ -1,10 +1,11 @@
 //! Draggable things: a pose, the tip of its heading, and the middle of the loop's spring.
 
 use pr_geom::{Point2, SE2, Vector2, math};
-use widget_kit::model::Handle;
+use widget_kit::model::{Handle, Model as _};
 
 use super::{PoseGraphToy, panel};
-use crate::w16_5_pose_graph_toy::spec::{GAP, GRAPH, MAX_POSES, MOVED, REACH_M, STEPS, STIFFNESS};
+use crate::pose_handle::{PLACE, TURN, dragged};
+use crate::w16_5_pose_graph_toy::spec::{GAP, GRAPH, MOVED, REACH_M, STEPS, STIFFNESS};
 
 /// Distance of the turning handle from its pose, m.
 const TURN_ARM_M: f64 = 0.3;
@@ -15,10 +16,6 @@ const BOW_PER_DECADE_M: f64 = 0.25;
 
 /// Name of the middle of the loop's spring.
 const KNOB: &str = "knob";
-
-/// Names of the draggable things: each pose, and each heading.
-const POSES: [&str; MAX_POSES] = ["pose1", "pose2", "pose3", "pose4", "pose5", "pose6"];
-const HEADINGS: [&str; MAX_POSES] = ["turn1", "turn2", "turn3", "turn4", "turn5", "turn6"];
 
 /// Position of the handle that turns a pose.
 pub fn turn_handle(pose: &SE2) -> Point2<f64> {
@@ -64,49 +61,26 @@ pub fn grab(toy: &PoseGraphToy, panel: &str, at: [f64; 2], reach: [f64; 2]) -> O
         return None;
     }
     let poses = toy.poses();
-    let places = poses
-        .iter()
-        .zip(POSES)
-        .map(|(pose, id)| (pose.position(), id));
-    let tips = poses
-        .iter()
-        .zip(HEADINGS)
-        .map(|(pose, id)| (turn_handle(pose), id));
-    let knob = core::iter::once((knob(toy), KNOB));
-    let share = |spot: &Point2<f64>| {
-        let away = [at[0] - spot.x, at[1] - spot.y];
-        (away[0] / reach[0]).abs().max((away[1] / reach[1]).abs())
-    };
-    let (spot, id) = places
-        .chain(tips)
-        .chain(knob)
-        .filter(|(spot, _)| share(spot) <= 1.0)
-        .min_by(|(a, _), (b, _)| share(a).total_cmp(&share(b)))?;
-    Some(Handle {
-        panel: panel::GRAPH,
-        id,
-        offset: [at[0] - spot.x, at[1] - spot.y],
-        ..Handle::default()
-    })
+    let poses = poses.iter().enumerate();
+    let things =
+        poses.flat_map(|(k, pose)| [(PLACE, k, pose.position()), (TURN, k, turn_handle(pose))]);
+    let things = things.chain([(KNOB, 0, knob(toy))]);
+    let things = things.map(|(id, k, spot)| (id, k, [spot.x, spot.y]));
+    Handle::nearest(panel::GRAPH, things, at, reach)
 }
 
 /// Moves the grabbed thing; all current poses become the start.
 pub fn drag(toy: &mut PoseGraphToy, handle: Handle, at: [f64; 2]) {
-    let spot = [at[0] - handle.offset[0], at[1] - handle.offset[1]];
-    if !spot.iter().all(|value| value.is_finite()) {
+    let Some(spot) = handle.spot(at) else {
         return;
-    }
+    };
     if handle.id == KNOB {
         draw_tight(toy, spot);
         return;
     }
     let mut poses = toy.poses();
-    let of = |ids: [&str; MAX_POSES]| ids.iter().position(|id| *id == handle.id);
-    if let Some(k) = of(POSES) {
-        poses[k] = SE2::new(spot[0], spot[1], poses[k].theta());
-    } else if let Some(k) = of(HEADINGS) {
-        let arm = [spot[0] - poses[k].x(), spot[1] - poses[k].y()];
-        poses[k] = SE2::new(poses[k].x(), poses[k].y(), math::atan2(arm[1], arm[0]));
+    if let Some(pose) = poses.get_mut(handle.index) {
+        *pose = dragged(pose, handle, spot);
     }
     put(toy, &poses);
 }
@@ -127,5 +101,5 @@ fn put(toy: &mut PoseGraphToy, poses: &[SE2]) {
         );
     }
     toy.values.put(&STEPS, 0.0);
-    toy.solve();
+    toy.follow(None);
 }

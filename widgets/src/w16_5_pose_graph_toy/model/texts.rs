@@ -130,9 +130,8 @@ pub fn summary(toy: &PoseGraphToy) -> String {
         )
     });
     let poses: Vec<_> = poses.collect();
-    let sentence = outcome(toy).sentence;
     format!(
-        "A pose graph of {} poses and {} springs. {}. Now {sentence}.",
+        "A pose graph of {} poses and {} springs. {}.",
         toy.shown().poses.len(),
         toy.course.edges.len(),
         poses.join("; ")

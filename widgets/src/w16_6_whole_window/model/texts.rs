@@ -6,7 +6,6 @@ use pr_geom::SE2;
 use widget_kit::model::{Assessment, Fact, Outcome};
 
 use super::WholeWindow;
-use super::search_task::TURNS;
 
 use crate::w16_6_whole_window::spec::HEADING;
 
@@ -173,30 +172,11 @@ pub fn summary(window: &WholeWindow) -> String {
         format!("the best pose so far scores {:.3}", best.score)
     });
     let waiting = waiting(window);
-    let turns = window
-        .search_task
-        .found
-        .as_ref()
-        .map_or(String::new(), |found| {
-            let scores = TURNS
-                .iter()
-                .zip(&found.rivals)
-                .filter_map(|((name, _), rival)| {
-                    rival.map(|rival| format!("{name} {:.3}", rival.score))
-                });
-            let scores: Vec<_> = scores.collect();
-            if scores.is_empty() {
-                String::new()
-            } else {
-                format!(" Scores of the other turns: {}.", scores.join(", "))
-            }
-        });
     format!(
-        "Two laser sweeps of one room, and a window of {} poses at {} headings. After {} boxes {waiting} wait and {best}. {}{turns}",
+        "Two laser sweeps of one room, and a window of {} poses at {} headings. After {} boxes {waiting} wait and {best}.",
         moment.counts.window,
         window.search_task.window.search().headings(),
-        window.step(),
-        outcome(window).sentence
+        window.step()
     )
 }
 

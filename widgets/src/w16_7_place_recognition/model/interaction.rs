@@ -24,38 +24,30 @@ const PER_KEYFRAME_M: f64 = 0.03;
 /// What a press takes.
 pub fn grab(been: &PlaceRecognition, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
     let places = been.places.as_ref()?;
-    let take = |panel, id, [x, y]: [f64; 2]| Handle {
-        panel,
-        id,
-        offset: [at[0] - x, at[1] - y],
-        ..Handle::default()
-    };
     match panel {
         panel::FLAT => {
-            let robots = [thing::NEW, thing::OLD].into_iter();
-            let near = robots
-                .zip(been.pair()?.into_iter().rev())
-                .find(|(_, node)| {
-                    let robot = places.study.places()[*node].truth;
-                    (at[0] - robot.x()).abs() <= reach[0] && (at[1] - robot.y()).abs() <= reach[1]
-                });
-            let (id, node) = near?;
-            let robot = places.study.places()[node].truth;
-            Some(take(panel::FLAT, id, [robot.x(), robot.y()]))
+            let [old, new] = been.pair()?;
+            let robots = [(thing::NEW, new), (thing::OLD, old)].into_iter();
+            let mut near = robots.filter_map(|(id, node)| {
+                let robot = places.study.places()[node].truth;
+                Handle::within(panel::FLAT, id, [robot.x(), robot.y()], at, reach)
+            });
+            near.next()
         }
         panel::SCORES => {
             let line = been.threshold(been.detector()).max(0.0);
-            let is_near = (at[0] - line).abs() <= reach[0];
-            is_near.then(|| take(panel::SCORES, thing::THRESHOLD, [line, at[1]]))
+            Handle::within(panel::SCORES, thing::THRESHOLD, [line, at[1]], at, reach)
         }
         panel::LOOKS => {
             let turn = super::picture::looks::turn_deg(been)?;
-            Some(take(panel::LOOKS, thing::TURN, [turn, at[1]]))
+            let anywhere = [f64::INFINITY; 2];
+            Handle::within(panel::LOOKS, thing::TURN, [turn, at[1]], at, anywhere)
         }
         // Every spot of the matrix is a pair.
         panel::MATRIX => {
             let [_, new] = super::picture::pair_at(been, at)?;
-            (new > 0).then(|| take(panel::MATRIX, thing::PAIR, at))
+            let pair = Handle::within(panel::MATRIX, thing::PAIR, at, at, reach);
+            pair.filter(|_| new > 0)
         }
         _ => None,
     }
@@ -63,11 +55,9 @@ pub fn grab(been: &PlaceRecognition, panel: &str, at: [f64; 2], reach: [f64; 2])
 
 /// Moves the grabbed thing.
 pub fn drag(been: &mut PlaceRecognition, handle: Handle, at: [f64; 2]) {
-    let spot = [at[0] - handle.offset[0], at[1] - handle.offset[1]];
-    if !spot.iter().all(|value| value.is_finite()) {
-        return;
-    }
-    let Some((places, [old, new])) = been.places.as_ref().zip(been.pair()) else {
+    let (Some(spot), Some(places), Some([old, new])) =
+        (handle.spot(at), been.places.as_ref(), been.pair())
+    else {
         return;
     };
     match handle.id {

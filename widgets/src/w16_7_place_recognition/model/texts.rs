@@ -216,16 +216,9 @@ pub fn summary(been: &PlaceRecognition) -> String {
         return "A lap is driven; then its keyframes are compared pair by pair: by nearness in the graph, by histograms of ranges, and by Scan Context."
             .to_owned();
     };
-    let curves = places
-        .curves
-        .iter()
-        .map(|curve| format!("{} {:.2}", curve.detector.label(), curve.average_precision));
-    let curves: Vec<_> = curves.collect();
     format!(
-        "A lap of {} keyframes, compared pair by pair; keyframe {} is the newest. {} Areas below the curves of precision over recall: {}.",
+        "A lap of {} keyframes, compared pair by pair; keyframe {} is the newest.",
         places.study.places().len(),
         been.newest(),
-        outcome(been).sentence,
-        curves.join(", ")
     )
 }

@@ -24,7 +24,7 @@ impl Shell {
     /// Lays out the panels and handles the pointer on them. Returns them with their height.
     pub(super) fn reserve(&mut self, ui: &Ui, at: [f32; 2], width: f32) -> (Vec<Reserved>, f32) {
         let mut measure = EguiMeasure(ui.painter().clone());
-        let arrangement = self.view.arrange(&self.scene, width);
+        let arrangement = (self.view)(&self.scene, width);
         let mut arrangement = arrangement.of_disclosure(&self.model.disclosure());
         room::fit(&mut arrangement.stage, self.room - 2.0 * MARGIN, |rows| {
             view::place(&self.scene, rows, width, &mut measure)

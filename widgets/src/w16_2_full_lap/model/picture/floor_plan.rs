@@ -97,6 +97,7 @@ pub fn title(drawn: &Drawn) -> String {
         Some(Tool::Wall) => ", drawing walls",
         Some(Tool::Way) => ", placing way points",
         Some(Tool::Remove) => ", removing",
+        Some(Tool::Robot) => ", setting the robot down",
     };
     format!(
         "The flat: {}{hand}",

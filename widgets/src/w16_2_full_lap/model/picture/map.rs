@@ -50,6 +50,7 @@ fn lap(moment: &LapState) -> Vec<Layer> {
     layers.extend(paths(moment));
     layers.extend(graph(moment));
     layers.extend(robots(moment));
+    layers.extend(parts::wrong_place(moment));
     layers.extend(parts::looked_at(moment));
     layers.extend(attempt_now(moment));
     layers.extend(wipe::layers(moment));

@@ -3,11 +3,11 @@
 use ch16_lab::lap::{LapConfig, LapRunner};
 use pr_sim::{Course, Sketch};
 use widget_kit::host_messages::Delivery;
-use widget_kit::model::Handle;
+use widget_kit::model::{Handle, shown_scene};
 
 use super::*;
 use crate::w16_2_full_lap::model::plan_element::PlanElement;
-use crate::w16_2_full_lap::spec::WORLD;
+use crate::w16_2_full_lap::spec::{EDIT, WORLD};
 
 const REACH: [f64; 2] = [0.15, 0.15];
 
@@ -114,6 +114,73 @@ fn ends_walls_way_points_and_the_start_are_moved_by_the_pointer() {
         model.grab("map", [3.0, 7.0], REACH).is_none(),
         "nothing there"
     );
+}
+
+/// The tools of the game: each press or drag changes one kind of thing.
+#[test]
+fn pencil_eraser_robot_and_undo_each_do_only_their_own_thing() {
+    let before = apartment();
+    // Each over the end of a wall, over its middle, and beside everything.
+    for from in [[6.2, 1.4], [5.0, 1.4], [3.0, 7.0]] {
+        let to = [from[0] + 0.3, from[1] + 0.25];
+        let drawn = |tool: &str| {
+            let mut model = at(&[EDIT.to(tool)]);
+            if let Some(handle) = model.grab("map", from, REACH) {
+                model.drag(handle, from);
+                model.drag(handle, to);
+            }
+            model.release();
+            model
+        };
+        let mut pencil = drawn("wall");
+        let after = flat(&pencil);
+        assert_eq!(after.walls_cm[..18], before.walls_cm, "{from:?}");
+        assert_eq!(after.walls_cm.len(), 19, "{from:?}");
+        assert_eq!(after.way_points_cm, before.way_points_cm);
+        assert_eq!(after.start_cm, before.start_cm);
+
+        let mut robot = drawn("robot");
+        let after = flat(&robot);
+        assert_eq!(after.walls_cm, before.walls_cm, "{from:?}");
+        assert_eq!(after.way_points_cm, before.way_points_cm);
+        let to_cm = to.map(|m: f64| (20.0 * m).round() as i32 * 5);
+        assert_eq!(after.start_cm, to_cm, "{from:?}");
+
+        for model in [&mut pencil, &mut robot] {
+            press(model, "take-back");
+            assert_eq!(model.values().number("world"), 0.0, "{from:?}");
+        }
+
+        let mut eraser = drawn("remove");
+        assert_eq!(
+            eraser.values().number("world"),
+            0.0,
+            "a drag erases nothing"
+        );
+        eraser.tap("map", from, REACH);
+        let walls = if from[1] < 2.0 { 17 } else { 18 };
+        let after =
+            Sketch::from_text(&eraser.values().to_text("flat")).unwrap_or_else(|_| apartment());
+        assert_eq!(after.walls_cm.len(), walls, "{from:?}");
+        assert_eq!(after.way_points_cm, before.way_points_cm);
+        assert_eq!(after.start_cm, before.start_cm);
+    }
+}
+
+#[test]
+fn the_robot_tool_drags_a_way_point_and_turns_the_start() {
+    let mut model = at(&[EDIT.to("robot")]);
+    let [x, y] = PlanElement::WayPoint(0).place(&apartment());
+    stroke(&mut model, &[[x, y], [x - 1.0, y]]);
+    assert_ne!(flat(&model).way_points_cm[0], apartment().way_points_cm[0]);
+    assert_eq!(flat(&model).start_cm, apartment().start_cm);
+    let [x, y] = PlanElement::Start.place(&flat(&model));
+    stroke(
+        &mut model,
+        &[PlanElement::Heading.place(&flat(&model)), [x, y + 1.0]],
+    );
+    assert_eq!(flat(&model).heading_deg, 90);
+    assert_eq!(flat(&model).walls_cm, apartment().walls_cm);
 }
 
 #[test]
@@ -352,8 +419,11 @@ fn the_controls_of_the_flat_are_shown_only_during_editing() {
     let disclosure = model.disclosure();
     assert!(disclosure.has_button("take-back") && disclosure.has_param("edit"));
     assert!(!disclosure.has_button("add-wall") && !disclosure.has_button("next"));
-    let panels: Vec<_> = model.scene().panels.iter().map(|shown| shown.id).collect();
-    assert_eq!(panels, ["map"]);
+    let panels = shown_scene(&model).panels;
+    assert_eq!(
+        panels.iter().map(|shown| shown.id).collect::<Vec<_>>(),
+        ["map"]
+    );
     press(&mut model, "edit-flat");
     assert!(!model.disclosure().has_button("add-wall"));
     for (_, button) in model.keys() {

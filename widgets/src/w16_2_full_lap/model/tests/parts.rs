@@ -45,7 +45,7 @@ fn a_tap_on_a_keyframe_shows_its_number_error_and_chi_squared_and_one_beside_it_
     let words = format!("{off_m:.2} m and ");
     assert!(outcome.sentence.contains(&words), "{}", outcome.sentence);
     assert!(
-        model.summary().contains(&outcome.sentence),
+        text_alternative(&model, false).contains(&outcome.in_full()),
         "a reader of screens gets the same"
     );
     let label = format!("12: {off_m:.2} m off");

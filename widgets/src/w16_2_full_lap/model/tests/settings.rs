@@ -241,7 +241,7 @@ fn seed_6_has_a_rejected_loop_that_passes_the_gate() {
     assert_eq!(
         model.outcome().sentence,
         "loop 29 to 7 rejected: chi-squared 4.30 below 7.815, \
-         but the sweep fits to 0.186 m only, 0.16 m is asked"
+         but the inliers' RMSE is 0.186 m, above 0.160 m"
     );
     // "Four keyframes later a better match passes."
     let next = &model.runs.graph.attempts()[1];

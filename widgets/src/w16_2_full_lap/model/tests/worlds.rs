@@ -122,3 +122,47 @@ fn around_the_ring_loops_close_from_the_other_side() {
     assert!(fact(&model, "loops_closed") >= 1.0);
     assert!(fact(&model, "keyframe_rms_m") < 0.5);
 }
+
+/// The ring and the red verdict of a finished lap that is wrong.
+#[test]
+fn a_finished_lap_shows_its_wrong_place_in_a_ring() {
+    let ring = |model: &FullLap| {
+        let layers = model.scene().panels[0].layers.clone();
+        layers.into_iter().find_map(|layer| match layer {
+            Layer::Points {
+                points,
+                mark: Mark::Circle,
+                tone: Tone::Strained,
+                ..
+            } => Some(points),
+            _ => None,
+        })
+    };
+    for (preset, verdict) in [
+        ("twins", "wrong loop "),
+        ("corridor", " m off"),
+        ("hall", " m off"),
+    ] {
+        let mut model = FullLap::default();
+        press(&mut model, preset);
+        let outcome = model.outcome();
+        assert_eq!(outcome.standing, Assessment::Bad, "{preset}");
+        assert!(
+            outcome.verdict.contains(verdict),
+            "{preset}: {}",
+            outcome.verdict
+        );
+        let at = ring(&model).expect(preset);
+        let nodes = shown_nodes(&model);
+        if verdict == " m off" {
+            assert!(nodes.contains(&at[0]), "{preset}");
+        }
+        // On the way nothing is judged yet.
+        set(&mut model, "t", 60.0);
+        assert_eq!(ring(&model), None, "{preset}");
+    }
+    // The chapter's lap is nowhere a metre off.
+    let model = at(&[TICK.to(LAP_TICKS)]);
+    assert_eq!(ring(&model), None);
+    assert_eq!(model.outcome().verdict, "lap finished");
+}
