@@ -99,6 +99,12 @@ it('slides.html lets a class predict: the slide of a question has its premise an
 /** What is wrong with the slide on show: what scrolls, what lies outside, and letters below 24 pixels. */
 const faults = (tab) => tab.evaluate(() => {
   const found = [];
+  const turn = document.querySelector('.turn').getBoundingClientRect();
+  const isUnderButtons = (text) => {
+    const range = document.createRange();
+    range.selectNodeContents(text);
+    return [...range.getClientRects()].some(({ right, top, bottom }) => right > turn.left && top < turn.bottom && bottom > turn.top);
+  };
   const { scrollWidth, scrollHeight } = document.documentElement;
   if (scrollWidth > innerWidth || scrollHeight > innerHeight) found.push(`the page is ${scrollWidth}×${scrollHeight} px`);
   const read = (root) => {
@@ -112,7 +118,9 @@ const faults = (tab) => tab.evaluate(() => {
       const over = [element.scrollWidth - element.clientWidth, element.scrollHeight - element.clientHeight];
       const isBox = style.display !== 'inline' && element.clientWidth > 0;
       if (isBox && over.some((px, axis) => px > 1 && style[['overflowX', 'overflowY'][axis]] !== 'visible')) found.push(`${name} hides ${over} px`);
-      const says = [...element.childNodes].some(({ nodeType, textContent }) => nodeType === Node.TEXT_NODE && textContent.trim() !== '');
+      const texts = [...element.childNodes].filter(({ nodeType, textContent }) => nodeType === Node.TEXT_NODE && textContent.trim() !== '');
+      const says = texts.length > 0;
+      if (texts.some(isUnderButtons)) found.push(`${name} lies under the buttons`);
       if (!says && !['canvas', 'input', 'select'].includes(element.localName)) continue;
       const { left, top, right, bottom, width } = element.getBoundingClientRect();
       if (width > 0 && (left < -1 || top < -1 || right > innerWidth + 1 || bottom > innerHeight + 1)) {
