@@ -115,6 +115,10 @@ describe('the building of the own-robot page', () => {
           return shadowRoot.querySelector('.drop').checkVisibility() === is && shadowRoot.querySelector('.picture').checkVisibility() === is;
         }, isWaiting);
         await waits(false);
+        const offers = (tab, id) => tab.waitForFunction((name) =>
+          document.querySelector('slam-widget').shadowRoot.querySelector(`[data-control="${name}"]`).checkVisibility(), id);
+        await offers(tab, 'play');
+        await offers(tab, 'colour');
         await tab.evaluate(() => document.querySelector('slam-widget').press('defaults'));
         await waits(true);
       }, { path: '/own-robot.html?w=16.10', options: { ...still, viewport: { width, height } } });

@@ -33,7 +33,14 @@ async function answer(frame, exercise, place) {
   await question.getByText(/^(As you predicted|It turns out differently)/).waitFor();
 }
 
-const answers = (tab) => tab.evaluate(() => heard.filter((data) => data?.type === 'answer'));
+/** That many answers, once the page has heard them: a frame in a sandbox may have a process of its own. */
+const answers = async (tab, count) => {
+  const found = await tab.waitForFunction((many) => {
+    const all = heard.filter((data) => data?.type === 'answer');
+    return all.length >= many && all;
+  }, count);
+  return found.jsonValue();
+};
 
 it('embed.html shows one part in a sandbox under the strict policy, and reports the answer to the surrounding page', async () => {
   await framed('?exercise=16.5a&student=Bob', async (tab, frame) => {
@@ -42,7 +49,7 @@ it('embed.html shows one part in a sandbox under the strict policy, and reports 
     assert.equal(await frame.locator('slam-widget').getAttribute('name'), 'w16.2');
     assert.equal(await frame.locator('h1').textContent(), 'Exercise 5: noise, gates, and luck');
     await answer(frame, '16.5a', 0);
-    const [told] = await answers(tab);
+    const [told] = await answers(tab, 1);
     assert.deepEqual([told.slam, told.exercise, told.student, told.attempts], [1, '16.5a', 'Bob', 1]);
     assert.match(told.state, /^noise=3\.25&t=129&seed=\d+$/);
     // The file of answers, though this sandbox saves no files.
@@ -114,7 +121,7 @@ const RUNTIME = `
 it('an exercise reports answers, score and status by SCORM 1.2, and gets the student from it', async () => {
   await framed('?exercise=5', async (tab, frame) => {
     for (const part of ['a', 'b', 'c']) await answer(frame, `16.5${part}`, 0);
-    const told = await answers(tab);
+    const told = await answers(tab, 3);
     const data = await tab.evaluate(() => window.data);
     for (const [k, { exercise, student, correct, right, state }] of told.entries()) {
       const field = (name) => data[`cmi.interactions.${k}.${name}`];

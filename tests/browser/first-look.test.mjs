@@ -86,8 +86,8 @@ describe('the colours that a reader chooses', () => {
 });
 
 describe('what can be pressed', () => {
-  for (const page of h.PAGES) {
-    it(`is at least 24 pixels large: ${page}`, async () => {
+  for (const [page, width] of h.PAGES.flatMap((page) => [[page, 1280], [page, 390]])) {
+    it(`is at least 24 pixels large: ${page}, ${width} px wide`, async () => {
       await at(`/${page}`, async (tab) => {
         await tab.waitForSelector('.reading', { state: 'attached' });
         const small = await tab.evaluate(() => [...document.querySelectorAll('a, button, input, summary')]
@@ -95,7 +95,7 @@ describe('what can be pressed', () => {
           .filter(([one, { width, height }]) => width > 0 && (width < 24 || height < 24) && !one.closest('.skip, label'))
           .map(([one, { width, height }]) => `${one.tagName} ${one.className} “${one.textContent.slice(0, 20)}” ${width.toFixed(0)}×${height.toFixed(0)}`));
         assert.deepEqual(small, []);
-      }, { viewport: { width: 1280, height: 900 } });
+      }, { viewport: { width, height: 900 } });
     });
   }
 });

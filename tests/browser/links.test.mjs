@@ -107,6 +107,7 @@ describe('a link in the text', () => {
       await link(tab, 'last').click();
       await tab.waitForURL(/w=16.2&t=119/);
       await link(tab, '45°').click();
+      await tab.waitForURL(/w=16\.1&/);
       const search = new URL(tab.url()).searchParams;
       assert.deepEqual(Object.fromEntries(search), { theme: 'light', w: '16.1', dx: '0', dy: '0', heading: '45' });
       // The link plays its run meanwhile.

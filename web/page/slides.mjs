@@ -32,9 +32,9 @@ export function slidesPage(pages, scripts, exercises, render) {
 <link rel="icon" href="data:,">
 <link rel="stylesheet" href="katex/katex.css">
 <link rel="stylesheet" href="slides.css">
+<script type="module" src="slides.js"></script>
 <script type="module" src="slam-widget.js"></script>
 <script type="module" src="slam-predict.js"></script>
-<script type="module" src="slides.js"></script>
 </head>
 <body>
 <main>
@@ -87,7 +87,7 @@ ${words}${all.map(render).join('\n')}
 /** The first sentence of a paragraph, without links. */
 function firstSentence(paragraph) {
   const plain = paragraph.replace(/<(\/?)(a|span|button)\b[^>]*>/g, '');
-  return plain.match(/^[\s\S]*?[.?!](?=\s|$)/)?.[0] ?? plain;
+  return plain.match(/^[\s\S]*?(?<! al)[.?!](?=\s|$)/)?.[0] ?? plain;
 }
 
 /** The slide of a script: title, `w16.1 Basin explorer`, goal, misconception, numbered steps with links. */

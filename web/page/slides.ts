@@ -28,7 +28,7 @@ function show(number: number): void {
 /** Leaves a widget the height below the text of its slide. */
 function fitWidget(): void {
   const widget = slides[at]?.querySelector<HTMLElement>(':scope > slam-widget');
-  if (widget) widget.style.maxHeight = `${innerHeight - widget.getBoundingClientRect().top - 8}px`;
+  if (widget) widget.style.maxHeight = `${innerHeight - widget.getBoundingClientRect().top - 4}px`;
 }
 
 /** Gives the pictures what the controls leave, which are higher once they are filled. */
@@ -104,8 +104,8 @@ document.querySelector('[data-notes]')?.addEventListener('click', openNotes);
 addEventListener('keydown', press, { capture: true });
 const showAddress = (): void => show(Number(location.hash.slice(1)) - 1);
 addEventListener('hashchange', showAddress);
-// Before the widgets, which read the height that they have.
-addEventListener('resize', fitWidget, { capture: true });
+// Before the widgets, which read the height that they have: this script stands before theirs.
+addEventListener('resize', fitWidget);
 void watchControls();
 channel.addEventListener('message', ({ data }) => show(Number(data)));
 showAddress();

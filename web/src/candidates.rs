@@ -14,7 +14,7 @@ use widget_kit::svg::scene_svg;
 
 /// Number of right candidates, and of wrong ones.
 const OF_EACH: usize = 5;
-/// Odometry noise of the laps, high enough that registration errs.
+/// Odometry noise of the laps after the canonical one, high enough that registration errs.
 const NOISE: f64 = 2.0;
 /// Half of a picture's side, m.
 const REACH_M: f64 = 4.0;
@@ -31,17 +31,17 @@ struct Candidate {
     error: String,
 }
 
-/// The first candidates of each kind over the seeds, at most one per lap, in the order of the laps.
+/// The canonical lap's first candidate, then the first of each kind over the seeds, at most one per lap.
 fn candidates() -> &'static [Candidate] {
     static FOUND: OnceLock<Vec<Candidate>> = OnceLock::new();
     FOUND.get_or_init(|| {
         let mut runner = LapRunner::new();
         let mut found: Vec<Candidate> = Vec::new();
         let mut missing = [OF_EACH; 2];
-        let mut seed = 1;
+        let noisy = (1..).map(|seed| LapConfig::with_seed_and_noise(seed, NOISE));
+        let mut laps = core::iter::once(LapConfig::default()).chain(noisy);
         while missing != [0, 0] {
-            let record = runner.run(&LapConfig::with_seed_and_noise(seed, NOISE));
-            seed += 1;
+            let record = runner.run(&laps.next().expect("there is another seed"));
             let wanted = record.lap.loop_attempts().find(|attempt| {
                 let kind = usize::from(record.lap.loop_error(attempt).is_false());
                 missing[kind] > 0 && missing[kind] >= missing[1 - kind]
@@ -245,6 +245,14 @@ mod tests {
             .filter(|candidate| candidate.is_right)
             .count();
         assert_eq!(right, OF_EACH);
+        // What the page says of the first one: keyframe 29 of the canonical lap, 22 nodes after keyframe 7.
+        let first = &candidates()[0];
+        assert!(
+            first.is_right && first.says.contains("After 22 nodes"),
+            "{}",
+            first.says
+        );
+        assert!((first.chi2 - 4.236).abs() < 5e-4, "{}", first.chi2);
         // A reader who knows the truth is better than every threshold.
         for threshold in [0.5, 2.0, 7.815, 20.0, 1e6] {
             assert_ne!(accepted_by_gate(threshold), [OF_EACH, 0], "{threshold}");

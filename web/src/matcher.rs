@@ -3,7 +3,7 @@
 //! Poses are `world_from_source`, `[x, y, θ]` in metres and radians, so that the room stands upright.
 
 use ch16_lab::basin::{BasinPlace, BasinScene, HOME_HEADING_DEG, SUCCESS_RADIUS_M};
-use ch16_lab::lap::{BuiltInWorld, NamedChoice as _};
+use ch16_lab::lap::{BuiltInWorld, LapConfig, LapRunner};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
 use pr_geom::SE2;
 use serde_json::{Value, json};
@@ -13,18 +13,30 @@ use crate::story::{pose, short};
 /// Pairing distance of w16.1 at its defaults, m.
 const TAU_M: f64 = 0.7;
 
-/// The rooms after the first: a built-in world and the poses of the two sweeps in it.
+/// Where the canonical lap closes its first loop: the true poses of the old keyframe and of the new one.
+fn first_loop() -> [SE2; 2] {
+    let record = LapRunner::new().run(&LapConfig::default());
+    let first = record
+        .lap
+        .loop_attempts()
+        .find(|attempt| attempt.accepted());
+    let found = first.expect("the canonical lap closes loops").verification;
+    [found.candidate.node, found.from_node].map(|node| record.lap.keyframes[node].truth)
+}
+
+/// The sweeps of a room: the first one's, or from two poses in a built-in world.
 fn room(name: &str) -> BasinScene {
-    let Some(world) = BuiltInWorld::named(name) else {
-        return BasinScene::new();
-    };
     let at = SE2::new;
-    let sensors = match world {
-        // Within reach of one end: only it determines the position along the corridor.
-        BuiltInWorld::Corridor => [at(20.0, 0.8, 0.0), at(20.8, 0.65, 0.15)],
-        BuiltInWorld::Hall => [at(4.5, 3.5, 0.0), at(3.9, 4.3, 0.3)],
+    let (world, sensors) = match name {
+        // Only doors determine the position along it.
+        "corridor" => (BuiltInWorld::Apartment, first_loop()),
+        "hall" => (BuiltInWorld::Hall, [at(4.5, 3.5, 0.0), at(3.9, 4.3, 0.3)]),
         // Before both doors.
-        _ => [at(5.5, 0.8, 0.0), at(6.2, 0.7, 0.15)],
+        "twins" => (
+            BuiltInWorld::TwinRooms,
+            [at(5.5, 0.8, 0.0), at(6.2, 0.7, 0.15)],
+        ),
+        _ => return BasinScene::new(),
     };
     BasinScene::in_world(
         world.course().world(),

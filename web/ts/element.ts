@@ -509,13 +509,13 @@ export class SlamWidget extends HTMLElement {
   }
 
   #deliver(deliveries: readonly Delivery[]): void {
-    for (const { kind } of deliveries) if (kind === 'opening' || kind === 'closed') this.#waitForFile(kind === 'closed');
     const panels = [this.#doctor, this.#loops];
     const resized = deliveries.flatMap((delivery) => panels.filter((panel) => panel?.receive(delivery) === true));
     if (resized.length > 0) this.#resized();
     this.#lifecycle.ask((widget) => {
       for (const delivery of deliveries) deliverTo(widget, delivery);
     });
+    for (const { kind } of deliveries) if (kind === 'opening' || kind === 'closed') this.#waitForFile(kind === 'closed');
     this.#announce(this.#changes());
     this.#executeOrders();
     this.#lifecycle.wake();
@@ -524,6 +524,7 @@ export class SlamWidget extends HTMLElement {
   /** Shows the picture of what comes of a file, until there is one. */
   #waitForFile(waits: boolean): void {
     this.#parts.frame.classList.toggle('without-file', waits);
+    this.#offerControls();
     if (!waits) return;
     this.#pictures.clear(this.#state?.spec.summary ?? '');
     this.#appearance.showTheme();

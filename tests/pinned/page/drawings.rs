@@ -1,8 +1,9 @@
 //! The page's own drawings: consistent with the Apartment, and with the marks of the legend.
 
+use ch16_lab::lap::{LapConfig, LapRunner};
 use pr_sim::World;
 
-use super::document::page_style;
+use super::document::{page_style, source};
 use super::page;
 
 #[test]
@@ -33,6 +34,29 @@ fn the_plan_shows_the_walls_of_the_apartment() {
         assert!(drawn.contains(wall), "{wall:?} is missing in {drawn:?}");
     }
     assert_eq!(drawn.len(), walls.len());
+}
+
+#[test]
+fn the_plan_marks_where_the_lap_starts_and_where_it_closes_its_first_loop() {
+    let record = LapRunner::new().run(&LapConfig::default());
+    let first = record.lap.loop_attempts().next().expect("it closes loops");
+    let nodes = [0, first.verification.from_node];
+    let page = source("index.html");
+    let marked: Vec<Vec<f64>> = page
+        .split("<circle class=\"start\"")
+        .skip(1)
+        .map(|rest| {
+            let attributes = rest.split('"').skip(1).step_by(2).take(2);
+            attributes.map(|value| value.parse().unwrap()).collect()
+        })
+        .collect();
+    let places = nodes.map(|node| record.lap.keyframes[node].truth.translation());
+    assert_eq!(marked.len(), places.len());
+    for (mark, place) in marked.iter().zip(places) {
+        // 1 cm: a fourteenth of the mark.
+        let off_m = (mark[0] - place.x).abs().max((mark[1] - place.y).abs());
+        assert!(off_m < 0.01, "{mark:?} is at {place}");
+    }
 }
 
 #[test]

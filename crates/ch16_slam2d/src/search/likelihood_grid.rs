@@ -167,13 +167,9 @@ impl LikelihoodGrid {
         &self.scores
     }
 
-    /// The cell that contains a point, counted from the lower left corner; may be outside of the grid.
-    pub(super) fn cell(&self, x_m: f64, y_m: f64) -> (i64, i64) {
-        let cell_m = self.config.cell_m;
-        (
-            i64::from(cell_index(x_m, cell_m)) - i64::from(self.first_column),
-            i64::from(cell_index(y_m, cell_m)) - i64::from(self.first_row),
-        )
+    /// Column and row of its lower left cell, counted from the origin.
+    pub(super) fn first_cell(&self) -> [i32; 2] {
+        [self.first_column, self.first_row]
     }
 }
 
@@ -192,8 +188,7 @@ mod tests {
     }
 
     fn score(grid: &LikelihoodGrid, x: f64, y: f64) -> u8 {
-        let (column, row) = grid.cell(x, y);
-        grid.scores()[row as usize * grid.columns() + column as usize]
+        grid.scores()[grid.row_of(y) * grid.columns() + grid.column_of(x)]
     }
 
     #[test]

@@ -12,7 +12,10 @@ use super::{LikelihoodGrid, SearchMap};
 use crate::cloud::PointCloud;
 
 /// Largest distance of a cell from the map's corner; farther ones are clamped, as both are outside.
-const FARTHEST_CELL: i64 = 16_383;
+const FARTHEST_CELL: f64 = 16_383.0;
+
+/// Adding this to a number below 2^51 rounds it to a whole one and leaves that in the lowest bits: 1.5 · 2^52.
+const TO_WHOLE: f64 = 6_755_399_441_055_744.0;
 
 /// Boxes with sides of fewer than `2` to this power cells contain one heading each.
 const FINEST_GROUP: u32 = 2;
@@ -181,20 +184,17 @@ impl Cells {
             columns: Vec::with_capacity(places),
             rows: Vec::with_capacity(places),
         };
+        let cell_m = grid.config().cell_m;
+        let [first_column, first_row] = grid.first_cell().map(f64::from);
         for heading in 0..lattice.headings {
             let rotation = Rotation::new(lattice.heading_rad(heading));
-            for point in points {
-                let (x, y) = rotation.rotate(point.x, point.y);
-                let (column, row) = grid.cell(x + x_m, y + y_m);
-                cells.push([column, row].map(|k| k.clamp(-FARTHEST_CELL, FARTHEST_CELL) as i16));
-            }
+            let turned = || points.iter().map(|point| rotation.rotate(point.x, point.y));
+            let columns = turned().map(|(x, _)| near_cell((x + x_m) / cell_m, first_column));
+            cells.columns.extend(columns);
+            let rows = turned().map(|(_, y)| near_cell((y + y_m) / cell_m, first_row));
+            cells.rows.extend(rows);
         }
         cells
-    }
-
-    fn push(&mut self, [column, row]: [i16; 2]) {
-        self.columns.push(column);
-        self.rows.push(row);
     }
 
     fn slice(&self, range: Range<usize>) -> CellSlice<'_> {
@@ -203,6 +203,20 @@ impl Cells {
             rows: &self.rows[range],
         }
     }
+}
+
+/// Cells from the map's first one to the one that contains a place, clamped.
+///
+/// Like [`cell_index`](crate::cloud::cell_index), in operations that are vectorized.
+#[inline]
+fn near_cell(cells: f64, first: f64) -> i16 {
+    let cells = math::max(
+        math::min(cells, first + FARTHEST_CELL),
+        first - FARTHEST_CELL,
+    );
+    let nearest = (cells + TO_WHOLE) - TO_WHOLE;
+    let floor = nearest - f64::from(u8::from(nearest > cells));
+    (floor - first + TO_WHOLE).to_bits() as i16
 }
 
 impl Plan {
@@ -314,6 +328,22 @@ fn runs(widths: impl Iterator<Item = i32>) -> Vec<Run> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_near_cell_is_the_floor_within_its_limits() {
+        for first in [-40, 0, 7] {
+            for place in [-3e9, -1.0, -0.5, -1e-9, 0.0, 0.5, 1.5, 2.0 - 1e-9, 2.0, 5e9] {
+                let cell = i64::from(crate::cloud::cell_index(place, 1.0)) - i64::from(first);
+                let limit = FARTHEST_CELL as i64;
+                let expected = cell.clamp(-limit, limit);
+                assert_eq!(
+                    i64::from(near_cell(place, f64::from(first))),
+                    expected,
+                    "{place} {first}"
+                );
+            }
+        }
+    }
 
     #[test]
     fn boxes_shrink_from_shape_to_shape_down_to_a_pose() {

@@ -6,6 +6,7 @@ use ch16_lab::lap::{
 };
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::icp::INFORMATION_CAP;
+use ch16_slam2d::slam::Registration;
 use pr_geom::SE2;
 
 use super::loops;
@@ -101,6 +102,7 @@ pub fn value(record: &LapRecord, path: &[&str]) -> Option<f64> {
             let left = lap.summary.keyframe_rms_m / front_end.summary.keyframe_rms_m;
             Some(100.0 * (1.0 - left))
         }
+        ["moved_cm"] => Some(100.0 * moved_m(&record.lap)),
         ["normals_cells"] => {
             let scan = record.config.slam.scan;
             Some(scan.normal_radius_m / scan.cell_m)
@@ -185,6 +187,19 @@ fn driven_percent(lap: &LapTrace) -> Option<f64> {
         .enumerate()
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(100.0 * reach(poses[node], poses[0]) / far)
+}
+
+/// Largest distance by which a registration moved the predicted position, m.
+fn moved_m(lap: &LapTrace) -> f64 {
+    let moved = lap.reports.iter().map(|report| {
+        let Registration {
+            prediction,
+            estimate,
+            ..
+        } = report.registration;
+        (estimate.translation() - prediction.translation()).norm()
+    });
+    moved.fold(0.0, f64::max)
 }
 
 /// Share of the edges whose information is that of the cap.

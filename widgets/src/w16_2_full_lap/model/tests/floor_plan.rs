@@ -175,10 +175,8 @@ fn the_robot_tool_drags_a_way_point_and_turns_the_start() {
     assert_ne!(flat(&model).way_points_cm[0], apartment().way_points_cm[0]);
     assert_eq!(flat(&model).start_cm, apartment().start_cm);
     let [x, y] = PlanElement::Start.place(&flat(&model));
-    stroke(
-        &mut model,
-        &[PlanElement::Heading.place(&flat(&model)), [x, y + 1.0]],
-    );
+    let tip = PlanElement::Heading.place(&flat(&model));
+    stroke(&mut model, &[tip, [x, y + 1.0]]);
     assert_eq!(flat(&model).heading_deg, 90);
     assert_eq!(flat(&model).walls_cm, apartment().walls_cm);
 }

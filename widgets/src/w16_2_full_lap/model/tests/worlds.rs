@@ -4,7 +4,7 @@ use ch16_lab::lap::{BuiltInWorld, LapConfig, LapMatcher, LapRunner, LoopJudgemen
 use ch16_slam2d::chapter::InformationFrame;
 
 use super::*;
-use crate::w16_2_full_lap::spec::MAX_TICKS;
+use crate::w16_2_full_lap::spec::{LAP_TICKS, MAX_TICKS};
 
 #[test]
 fn every_world_has_the_lap_of_the_command_line_and_its_name_in_the_texts() {
@@ -140,7 +140,7 @@ fn a_finished_lap_shows_its_wrong_place_in_a_ring() {
     };
     for (preset, verdict) in [
         ("twins", "wrong loop "),
-        ("corridor", " m off"),
+        ("corridor", "wrong loop "),
         ("hall", " m off"),
     ] {
         let mut model = FullLap::default();
