@@ -273,8 +273,14 @@ fn modules_beside_each_other_form_no_circle() {
             let code = code
                 .lines()
                 .filter(|line| !line.trim_start().starts_with("//"));
-            let words = code
-                .flat_map(|line| line.split([' ', '(', '<', '&', '[', '{', ';', ',', ')', '>']));
+            // A group on one line: `use super::{map, parts};`.
+            let words = code.flat_map(|line| {
+                let (start, names) = line.split_once("::{").unwrap_or(("", line));
+                let start = start.rsplit(' ').next().filter(|start| !start.is_empty());
+                let start = start.map_or(String::new(), |start| format!("{start}::"));
+                let names = names.split(|c: char| !c.is_alphanumeric() && c != '_' && c != ':');
+                names.map(move |name| format!("{start}{name}"))
+            });
             for path in words {
                 let user: Vec<&str> = module.split("::").collect();
                 let kept = match path.matches("super::").count() {

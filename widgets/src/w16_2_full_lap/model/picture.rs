@@ -16,8 +16,8 @@ use widget_kit::scene::Scene;
 use super::moment::LapState;
 
 pub use bounds::shown_bounds as map_bounds;
-pub use map::loop_mark;
 pub use plots::{OVER_TIME, gate_mark};
+pub use shapes::loop_mark;
 pub use strain::{part_of, strain_mark};
 pub use wipe::{divider, shown_nodes};
 

@@ -7,7 +7,7 @@ use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, T
 
 use super::bounds::shown_bounds;
 use super::loop_style::LoopStyle;
-use super::shapes::{arc, xy};
+use super::shapes::{arc, loop_mark, xy};
 use super::{floor_plan, parts, wipe};
 use crate::w16_2_full_lap::model::moment::{Drawn, LapState};
 use crate::w16_2_full_lap::model::panel;
@@ -173,12 +173,6 @@ fn graph(moment: &LapState) -> Vec<Layer> {
     layers.extend(parts::own(moment));
     layers.push(Layer::points(nodes, Mark::Square, Tone::Posterior, 3.0));
     layers
-}
-
-/// Position of a loop's mark: at the top of its arc.
-pub fn loop_mark(moment: &LapState, attempt: &RecordedLoopAttempt) -> [f64; 2] {
-    let arc = arc(moment, attempt);
-    arc[arc.len() / 2]
 }
 
 /// An accepted loop is solid and green, a rejected one dotted, grey and hollow.

@@ -4,8 +4,7 @@ use ch16_lab::lap::{RecordedEdge, edge_strain};
 use widget_kit::scene::{Layer, Mark, Stroke, Tone};
 
 use super::loop_style::LoopStyle;
-use super::map::loop_mark;
-use super::shapes::{arc, xy};
+use super::shapes::{arc, loop_mark, xy};
 use super::wipe::{clipped, divider, shown_nodes};
 use crate::w16_2_full_lap::model::found::{Found, find};
 use crate::w16_2_full_lap::model::moment::{LapState, WrongPlace};

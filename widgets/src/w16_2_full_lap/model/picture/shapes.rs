@@ -28,6 +28,12 @@ pub fn arc(moment: &LapState, attempt: &RecordedLoopAttempt) -> Vec<[f64; 2]> {
         .collect()
 }
 
+/// Position of a loop's mark: at the top of its arc.
+pub fn loop_mark(moment: &LapState, attempt: &RecordedLoopAttempt) -> [f64; 2] {
+    let arc = arc(moment, attempt);
+    arc[arc.len() / 2]
+}
+
 /// Position of a pose.
 pub fn xy(pose: &SE2) -> [f64; 2] {
     [pose.x(), pose.y()]
