@@ -32,7 +32,6 @@ canvas { display: block; width: 100%; touch-action: pan-y pinch-zoom; outline: n
 .stage.waiting canvas { position: absolute; inset: 0; visibility: hidden; }
 .stage.live .picture { display: none; }
 .without-file .stage .picture { display: block; position: absolute; inset: 0; height: 100%; object-fit: contain; background: var(--paper); }
-@media (width < 30rem) { .without-file .stage .picture { object-fit: cover; } }
 progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; accent-color: var(--accent); }
 .note { margin: 0; padding: 0.5rem 0.75rem; border-top: 1px solid var(--line); overflow-wrap: anywhere; }
 .note pre { max-height: 10rem; overflow: auto; white-space: pre-wrap; font-size: 0.75rem; }

@@ -16,7 +16,7 @@ impl View for RobotView {
         let is_empty = scene.panels[0].layers.is_empty();
         let height = match (width < SIDE_BY_SIDE, is_empty) {
             // The host's picture covers it.
-            (true, true) => PlotHeight::Fixed(400.0),
+            (true, true) => PlotHeight::Fixed(440.0),
             (true, false) => PlotHeight::Natural { most: 520.0 },
             (false, _) => PlotHeight::Natural { most: 620.0 },
         };

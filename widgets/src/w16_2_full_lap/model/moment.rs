@@ -31,14 +31,6 @@ pub struct Drawn<'a> {
 /// A keyframe so far off at the end of a lap is a wrong place, m.
 const WRONG_PLACE_M: f64 = 1.0;
 
-/// What is wrong with the map of a finished lap.
-pub enum WrongPlace<'a> {
-    /// An accepted loop between two different places.
-    Loop(&'a RecordedLoopAttempt),
-    /// The keyframe farthest off the truth, and its distance in metres.
-    Keyframe(usize, f64),
-}
-
 /// The state at one tick.
 pub struct LapState<'a> {
     /// The laps.
@@ -150,22 +142,16 @@ impl<'a> LapState<'a> {
         self.edges().chain(own.map(|own| &own.edge))
     }
 
-    /// The wrong place of the map once the lap is over: a wrong loop, else the keyframe farthest off.
-    pub fn wrong_place(&self) -> Option<WrongPlace<'a>> {
-        if self.tick < self.runs.ticks() {
-            return None;
-        }
+    /// The wrong place of the map once the lap is over: the keyframe farthest off the truth, and how far, m.
+    pub fn wrong_place(&self) -> Option<(usize, f64)> {
         let graph = &self.runs.graph;
-        let wrong_loop = graph.lap().false_acceptances().next();
-        wrong_loop.map(WrongPlace::Loop).or_else(|| {
-            let nodes = self.nodes.iter().enumerate();
-            let errors = nodes.map(|(node, pose)| {
-                let truth = self.runs.truth(graph.keyframe_tick(node));
-                (node, position_error_m(pose, &truth))
-            });
-            let (node, off_m) = errors.max_by(|a, b| a.1.total_cmp(&b.1))?;
-            (off_m >= WRONG_PLACE_M).then_some(WrongPlace::Keyframe(node, off_m))
-        })
+        let nodes = self.nodes.iter().enumerate();
+        let errors = nodes.map(|(node, pose)| {
+            let truth = self.runs.truth(graph.keyframe_tick(node));
+            (node, position_error_m(pose, &truth))
+        });
+        let worst = errors.max_by(|a, b| a.1.total_cmp(&b.1));
+        worst.filter(|(_, off_m)| *off_m >= WRONG_PLACE_M && self.tick == self.runs.ticks())
     }
 
     /// Whether nodes moved: a loop was closed in this tick, or the custom one is.

@@ -138,25 +138,14 @@ fn a_finished_lap_shows_its_wrong_place_in_a_ring() {
             _ => None,
         })
     };
-    for (preset, verdict) in [
-        ("twins", "wrong loop "),
-        ("corridor", "wrong loop "),
-        ("hall", " m off"),
-    ] {
+    for preset in ["twins", "corridor", "hall"] {
         let mut model = FullLap::default();
         press(&mut model, preset);
         let outcome = model.outcome();
         assert_eq!(outcome.standing, Assessment::Bad, "{preset}");
-        assert!(
-            outcome.verdict.contains(verdict),
-            "{preset}: {}",
-            outcome.verdict
-        );
+        assert!(outcome.verdict.ends_with(" m off"), "{preset}");
         let at = ring(&model).expect(preset);
-        let nodes = shown_nodes(&model);
-        if verdict == " m off" {
-            assert!(nodes.contains(&at[0]), "{preset}");
-        }
+        assert!(shown_nodes(&model).contains(&at[0]), "{preset}");
         // On the way nothing is judged yet.
         set(&mut model, "t", 60.0);
         assert_eq!(ring(&model), None, "{preset}");
