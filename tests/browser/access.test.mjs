@@ -122,7 +122,7 @@ for (const widget of h.schema) {
         stops.push(stop.control ?? 'tool');
       }
       const order = [...new Set(stops)];
-      assert.equal(order[0], widget.buttons.some(({ id }) => id === 'play') ? 'play' : order[0]);
+      assert.equal(order[0], widget.opening.includes('play') ? 'play' : order[0]);
       assert.deepEqual(order.slice(-2), ['more', 'tool']);
       assert.deepEqual([...order].slice(0, -1).sort(), [...widget.opening].sort());
       await tab.evaluate(() => (document.querySelector('slam-widget').more = true));
