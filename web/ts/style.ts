@@ -20,6 +20,10 @@ export const STYLE = `
 .without-file .drop { display: grid; place-content: end start; position: absolute; inset: 0; padding: 0.75rem; border: 0; border-radius: 0; background: none; }
 .drop span { padding: 0.6rem 1rem; border: 2px dashed var(--accent); border-radius: 8px; background: var(--paper); text-align: left; }
 .drop b { display: block; font-size: 1.25em; }
+@media (width < 30rem) {
+  .without-file .drop { place-content: stretch; padding-top: 54%; }
+  .drop span { align-content: center; text-align: center; }
+}
 .stage { position: relative; overflow: hidden; min-height: 12rem; height: var(--reserved-height); }
 .stage.live { min-height: 0; height: auto; }
 .picture { display: block; width: 100%; height: auto; }

@@ -31,6 +31,14 @@ pub struct Drawn<'a> {
 /// A keyframe so far off at the end of a lap is a wrong place, m.
 const WRONG_PLACE_M: f64 = 1.0;
 
+/// What is wrong with the map of a finished lap.
+pub enum WrongPlace<'a> {
+    /// The keyframe farthest off the truth, and how far, m.
+    Keyframe(usize, f64),
+    /// An accepted loop between two different places.
+    Loop(&'a RecordedLoopAttempt),
+}
+
 /// The state at one tick.
 pub struct LapState<'a> {
     /// The laps.
@@ -142,8 +150,11 @@ impl<'a> LapState<'a> {
         self.edges().chain(own.map(|own| &own.edge))
     }
 
-    /// The wrong place of the map once the lap is over: the keyframe farthest off the truth, and how far, m.
-    pub fn wrong_place(&self) -> Option<(usize, f64)> {
+    /// The wrong place of the map once the lap is over: the keyframe farthest off the truth, else a wrong loop.
+    pub fn wrong_place(&self) -> Option<WrongPlace<'a>> {
+        if self.tick < self.runs.ticks() {
+            return None;
+        }
         let graph = &self.runs.graph;
         let nodes = self.nodes.iter().enumerate();
         let errors = nodes.map(|(node, pose)| {
@@ -151,7 +162,9 @@ impl<'a> LapState<'a> {
             (node, position_error_m(pose, &truth))
         });
         let worst = errors.max_by(|a, b| a.1.total_cmp(&b.1));
-        worst.filter(|(_, off_m)| *off_m >= WRONG_PLACE_M && self.tick == self.runs.ticks())
+        let worst = worst.filter(|(_, off_m)| *off_m >= WRONG_PLACE_M);
+        let worst = worst.map(|(node, off_m)| WrongPlace::Keyframe(node, off_m));
+        worst.or_else(|| graph.lap().false_acceptances().next().map(WrongPlace::Loop))
     }
 
     /// Whether nodes moved: a loop was closed in this tick, or the custom one is.

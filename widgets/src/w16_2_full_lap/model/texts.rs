@@ -7,7 +7,7 @@ use ch16_slam2d::loops::GateModel;
 use widget_kit::model::{Assessment, Fact, Outcome};
 use widget_kit::plural::plural;
 
-use super::moment::LapState;
+use super::moment::{LapState, WrongPlace};
 use super::runs::Runs;
 
 pub mod floor_plan;
@@ -91,10 +91,10 @@ fn statement(moment: &LapState, rejected: Option<&OwnLoopError>) -> Statement {
     if let Some(rejected) = rejected {
         return neutral("no loop of your own", rejected.to_string());
     }
-    if let Some((_, off_m)) = moment.wrong_place() {
+    if let Some(wrong) = moment.wrong_place() {
         return Statement {
             standing: Assessment::Bad,
-            verdict: off_words(off_m),
+            verdict: wrong_words(&wrong),
             sentence: lap_sentence(runs),
         };
     }
@@ -113,9 +113,12 @@ fn statement(moment: &LapState, rejected: Option<&OwnLoopError>) -> Statement {
     }
 }
 
-/// `9.3 m off`.
-pub fn off_words(off_m: f64) -> String {
-    format!("{off_m:.1} m off")
+/// `9.3 m off` or `wrong loop 80 to 12`.
+pub fn wrong_words(wrong: &WrongPlace) -> String {
+    match wrong {
+        WrongPlace::Keyframe(_, off_m) => format!("{off_m:.1} m off"),
+        WrongPlace::Loop(attempt) => format!("wrong loop {}", ends(attempt)),
+    }
 }
 
 fn tick_sentence(runs: &Runs, tick: usize) -> String {

@@ -4,12 +4,13 @@ use ch16_lab::lap::{RecordedEdge, edge_strain};
 use widget_kit::scene::{Layer, Mark, Stroke, Tone};
 
 use super::loop_style::LoopStyle;
+use super::map::loop_mark;
 use super::shapes::{arc, xy};
 use super::wipe::{clipped, divider, shown_nodes};
 use crate::w16_2_full_lap::model::found::{Found, find};
-use crate::w16_2_full_lap::model::moment::LapState;
+use crate::w16_2_full_lap::model::moment::{LapState, WrongPlace};
 use crate::w16_2_full_lap::model::pick::GraphPart;
-use crate::w16_2_full_lap::model::texts::{ends, off_words, part_label};
+use crate::w16_2_full_lap::model::texts::{ends, part_label, wrong_words};
 
 /// Distance of text from its mark, in pixels.
 const CLEAR_PX: f32 = 12.0;
@@ -118,18 +119,25 @@ fn part_layers(moment: &LapState, part: GraphPart, is_picked: bool) -> Vec<Layer
     layers
 }
 
-/// The wrong place of a finished lap in a ring, and a line to where it truly is.
+/// The wrong place of a finished lap in a ring; from a keyframe a line leads to where it truly is.
 pub fn wrong_place(moment: &LapState) -> Vec<Layer> {
-    let Some((node, off_m)) = moment.wrong_place() else {
+    let Some(wrong) = moment.wrong_place() else {
         return Vec::new();
     };
-    let at = xy(&moment.nodes[node]);
-    let truth = moment.runs.truth(moment.runs.graph.keyframe_tick(node));
-    vec![
-        Layer::line(vec![at, xy(&truth)], Stroke::Dashed, STRAINED, 2.0),
-        Layer::points(vec![at], Mark::Circle, STRAINED, RING_PX),
-        Layer::label(at, off_words(off_m), RING_PX),
-    ]
+    let mut layers = Vec::new();
+    let at = match wrong {
+        WrongPlace::Keyframe(node, _) => {
+            let truth = moment.runs.truth(moment.runs.graph.keyframe_tick(node));
+            let at = xy(&moment.nodes[node]);
+            let gap = vec![at, xy(&truth)];
+            layers.push(Layer::line(gap, Stroke::Dashed, STRAINED, 2.0));
+            at
+        }
+        WrongPlace::Loop(attempt) => loop_mark(moment, attempt),
+    };
+    layers.push(Layer::points(vec![at], Mark::Circle, STRAINED, RING_PX));
+    layers.push(Layer::label(at, wrong_words(&wrong), RING_PX));
+    layers
 }
 
 /// The custom loop: like those of the lap, and wider.
