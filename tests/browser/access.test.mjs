@@ -96,11 +96,12 @@ for (const widget of h.schema) {
       // As they stand: the buttons and the slider of the run, the opening control, More, and what it opens.
       const isTimeline = (id) => widget.params.some((param) => param.id === id && param.kind === 'timeline');
       const isButton = (id) => widget.buttons.some((button) => button.id === id);
+      const isPreset = (id) => widget.presets.some((preset) => preset.id === id);
       const rank = (id) => {
-        if (id === 'play') return 0;
         if (id === 'more') return 4;
-        if (!widget.opening.includes(id)) return 5;
-        return isButton(id) ? 1 : isTimeline(id) ? 2 : 3;
+        // Under More the timeline ends its place, and Play begins it.
+        if (!widget.opening.includes(id)) return isPreset(id) ? 5 : isTimeline(id) ? 7 : id === 'play' ? 8 : isButton(id) ? 9 : 6;
+        return id === 'play' ? 0 : isButton(id) ? 1 : isTimeline(id) ? 2 : 3;
       };
       const all = [...widget.presets, ...widget.params, ...widget.buttons].map(({ id }) => id).filter((id) => !hidden.includes(id));
       assert.deepEqual(order, all.sort((a, b) => rank(a) - rank(b)));
@@ -122,7 +123,7 @@ for (const widget of h.schema) {
         stops.push(stop.control ?? 'tool');
       }
       const order = [...new Set(stops)];
-      assert.equal(order[0], widget.buttons.some(({ id }) => id === 'play') ? 'play' : order[0]);
+      assert.equal(order[0], widget.opening.includes('play') ? 'play' : order[0]);
       assert.deepEqual(order.slice(-2), ['more', 'tool']);
       assert.deepEqual([...order].slice(0, -1).sort(), [...widget.opening].sort());
       await tab.evaluate(() => (document.querySelector('slam-widget').more = true));

@@ -47,7 +47,8 @@ export function build(shadow: ShadowRoot): Parts {
   const view = create('div', { class: 'view' });
   const whole = create('button', { type: 'button', class: 'whole', hidden: '' });
   whole.textContent = 'Whole map';
-  const drop = create('button', { type: 'button', class: 'drop' });
+  // Keys have “Open a log”.
+  const drop = create('button', { type: 'button', class: 'drop', tabindex: '-1' });
   drop.innerHTML = '<span><b>Drop a log of your robot here</b> or choose a file. It stays in this browser.</span>';
   const bar = create('div', { class: 'bar', part: 'bar', role: 'group' });
   const part = (name: string): HTMLElement => create('div', { class: name, part: name });

@@ -319,7 +319,7 @@ impl Model for OwnRobot {
     }
 
     fn timeline(&self) -> Option<Timeline> {
-        if self.robot.progress.stage == Stage::Empty {
+        if self.disclosure() == Disclosure::First(WITHOUT_LOG) {
             return None;
         }
         let closed = self

@@ -10,7 +10,7 @@ use crate::w16_10_own_robot::model::panel;
 pub fn arrange(scene: &Scene, width: f32) -> Arrangement {
     let map = match (width < SIDE_BY_SIDE, scene.panels[0].layers.is_empty()) {
         // The host's picture covers it.
-        (true, true) => Slot::fixed(panel::MAP, 400.0),
+        (true, true) => Slot::fixed(panel::MAP, 440.0),
         (true, false) => Slot::natural(panel::MAP, 520.0),
         (false, _) => Slot::natural(panel::MAP, 620.0),
     };

@@ -33,10 +33,10 @@ const WRONG_PLACE_M: f64 = 1.0;
 
 /// What is wrong with the map of a finished lap.
 pub enum WrongPlace<'a> {
+    /// The keyframe farthest off the truth, and how far, m.
+    Keyframe(usize, f64),
     /// An accepted loop between two different places.
     Loop(&'a RecordedLoopAttempt),
-    /// The keyframe farthest off the truth, and its distance in metres.
-    Keyframe(usize, f64),
 }
 
 /// The state at one tick.
@@ -150,22 +150,21 @@ impl<'a> LapState<'a> {
         self.edges().chain(own.map(|own| &own.edge))
     }
 
-    /// The wrong place of the map once the lap is over: a wrong loop, else the keyframe farthest off.
+    /// The wrong place of the map once the lap is over: the keyframe farthest off the truth, else a wrong loop.
     pub fn wrong_place(&self) -> Option<WrongPlace<'a>> {
         if self.tick < self.runs.ticks() {
             return None;
         }
         let graph = &self.runs.graph;
-        let wrong_loop = graph.lap().false_acceptances().next();
-        wrong_loop.map(WrongPlace::Loop).or_else(|| {
-            let nodes = self.nodes.iter().enumerate();
-            let errors = nodes.map(|(node, pose)| {
-                let truth = self.runs.truth(graph.keyframe_tick(node));
-                (node, position_error_m(pose, &truth))
-            });
-            let (node, off_m) = errors.max_by(|a, b| a.1.total_cmp(&b.1))?;
-            (off_m >= WRONG_PLACE_M).then_some(WrongPlace::Keyframe(node, off_m))
-        })
+        let nodes = self.nodes.iter().enumerate();
+        let errors = nodes.map(|(node, pose)| {
+            let truth = self.runs.truth(graph.keyframe_tick(node));
+            (node, position_error_m(pose, &truth))
+        });
+        let worst = errors.max_by(|a, b| a.1.total_cmp(&b.1));
+        let worst = worst.filter(|(_, off_m)| *off_m >= WRONG_PLACE_M);
+        let worst = worst.map(|(node, off_m)| WrongPlace::Keyframe(node, off_m));
+        worst.or_else(|| graph.lap().false_acceptances().next().map(WrongPlace::Loop))
     }
 
     /// Whether nodes moved: a loop was closed in this tick, or the custom one is.

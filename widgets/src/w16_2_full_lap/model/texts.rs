@@ -113,11 +113,11 @@ fn statement(moment: &LapState, rejected: Option<&OwnLoopError>) -> Statement {
     }
 }
 
-/// `wrong loop 80 to 12` or `9.3 m off`.
+/// `9.3 m off` or `wrong loop 80 to 12`.
 pub fn wrong_words(wrong: &WrongPlace) -> String {
     match wrong {
-        WrongPlace::Loop(attempt) => format!("wrong loop {}", ends(attempt)),
         WrongPlace::Keyframe(_, off_m) => format!("{off_m:.1} m off"),
+        WrongPlace::Loop(attempt) => format!("wrong loop {}", ends(attempt)),
     }
 }
 

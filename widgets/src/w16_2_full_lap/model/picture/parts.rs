@@ -125,7 +125,6 @@ pub fn wrong_place(moment: &LapState) -> Vec<Layer> {
     };
     let mut layers = Vec::new();
     let at = match wrong {
-        WrongPlace::Loop(attempt) => loop_mark(moment, attempt),
         WrongPlace::Keyframe(node, _) => {
             let truth = moment.runs.truth(moment.runs.graph.keyframe_tick(node));
             let at = xy(&moment.nodes[node]);
@@ -133,6 +132,7 @@ pub fn wrong_place(moment: &LapState) -> Vec<Layer> {
             layers.push(Layer::line(gap, Stroke::Dashed, STRAINED, 2.0));
             at
         }
+        WrongPlace::Loop(attempt) => loop_mark(moment, attempt),
     };
     layers.push(Layer::points(vec![at], Mark::Circle, STRAINED, RING_PX));
     layers.push(Layer::label(at, wrong_words(&wrong), RING_PX));
