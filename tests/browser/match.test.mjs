@@ -55,23 +55,28 @@ describe('the sweeps that the reader aligns', () => {
           await opened;
           await route.continue();
         });
-        await tab.reload();
-        await tab.waitForSelector('#match.live');
-        const bottom = await tab.locator('.match-buttons').evaluate((row) => row.getBoundingClientRect().bottom + scrollY);
-        assert.ok(bottom <= 2 * viewport.height, `${bottom} px`);
-        await h.quiet(tab);
-        assert.equal(requests, 0, 'the first screen needs no module');
-        await live(tab);
-        const from = await middle(tab, '.match-robot');
-        const before = await off(tab);
-        await drag(tab, from, { x: from.x + 20, y: from.y + 30 });
-        await asked;
-        const after = await off(tab);
-        assert.ok(after.cm < before.cm - 20, `${before.cm} cm, then ${after.cm}`);
-        assert.equal(after.degrees, before.degrees);
-        assert.match(await says(tab), new RegExp(`^By hand: ${after.cm} cm and ${after.degrees}° off`));
-        assert.ok(await tab.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
-        open();
+        try {
+          await tab.reload();
+          await tab.waitForSelector('#match.live');
+          const bottom = await tab.locator('.match-buttons').evaluate((row) => row.getBoundingClientRect().bottom + scrollY);
+          assert.ok(bottom <= 2 * viewport.height, `${bottom} px`);
+          await h.quiet(tab);
+          assert.equal(requests, 0, 'the first screen needs no module');
+          await live(tab);
+          const from = await middle(tab, '.match-robot');
+          const before = await off(tab);
+          await drag(tab, from, { x: from.x + 20, y: from.y + 30 });
+          await asked;
+          const after = await off(tab);
+          assert.ok(after.cm < before.cm - 20, `${before.cm} cm, then ${after.cm}`);
+          assert.equal(after.degrees, before.degrees);
+          assert.match(await says(tab), new RegExp(`^By hand: ${after.cm} cm and ${after.degrees}° off`));
+          assert.ok(await tab.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+        } finally {
+          // A request that is held would hold the next tests, too.
+          open();
+          await tab.unrouteAll({ behavior: 'wait' });
+        }
       }, { viewport });
     });
   }
@@ -184,7 +189,7 @@ describe('the sweeps that the reader aligns', () => {
           await ended(tab);
           assert.match(await says(tab), /^ICP came home in \d+ steps?: \d cm and .* off, after \d+ s\. Your record: \d cm, \d+ s\.$/, room);
           const lines = (await tab.locator('.match-pairs').getAttribute('d')).split('M').length - 1;
-          assert.ok(lines > 100, `${lines} lines in ${room}`);
+          assert.ok(lines > 60, `${lines} lines in ${room}`);
           // The button that took the place of the other one has its focus.
           const next = tab.getByRole('button', { name: 'Next room', exact: true });
           assert.ok(await next.evaluate((button) => button === document.activeElement));
