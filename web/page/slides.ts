@@ -25,10 +25,13 @@ function show(number: number): void {
   }
 }
 
+/** What a picture leaves free: its rows end at whole pixels, and the text above may still grow, px. */
+const SLACK_PX = 24;
+
 /** Leaves a widget the height below the text of its slide. */
 function fitWidget(): void {
   const widget = slides[at]?.querySelector<HTMLElement>(':scope > slam-widget');
-  if (widget) widget.style.maxHeight = `${innerHeight - widget.getBoundingClientRect().top - 4}px`;
+  widget?.style.setProperty('--room', `${innerHeight - widget.getBoundingClientRect().top - SLACK_PX}px`);
 }
 
 /** Gives the pictures what the controls leave, which are higher once they are filled. */
