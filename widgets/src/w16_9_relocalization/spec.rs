@@ -68,7 +68,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     question: "Where does the robot find itself again? Drag it anywhere, then press Play.",
     notice: &[
         "A ghost is a pose that is not ruled out yet, the larger the better it may fit. What is left of them is where the robot may be.",
-        "Where the map was driven, one scan is enough. In a room that it never saw, or in one of two rooms alike, no pose is reported before the robot is out of the door.",
+        "Where the map was driven, one scan is enough. In a room that it never saw, or in one of two rooms alike, no pose is called reliable before the robot is out of the door.",
         "Once it is found, each scan is registered on the map around it, and nothing is searched any more.",
         "The wardrobe was moved overnight. The map still shows it where it stood; after another lap it is gone from there.",
     ],
@@ -116,7 +116,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "twins",
             label: "In one of two rooms alike",
-            help: "Both rooms fit to the millimetre: no pose is reported before the robot is out of the door.",
+            help: "Both rooms fit to the millimetre: no pose is called reliable before the robot is out of the door.",
             set: &[
                 WORLD.to("twins"),
                 START_X.to(6.2),
