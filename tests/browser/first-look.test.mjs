@@ -150,7 +150,9 @@ describe('a widget before the first act', () => {
       await h.ready(tab);
       await h.quiet(tab);
       const timeline = tab.locator('slam-widget .timeline');
-      assert.equal(await timeline.isVisible(), true);
+      assert.equal(await timeline.isVisible(), false);
+      await tab.evaluate(() => { document.querySelector('slam-widget').set('more', true); });
+      await timeline.waitFor();
       for (const part of ['.unit', 'input[type="number"]']) assert.equal(await timeline.locator(part).isVisible(), false, part);
     });
   });

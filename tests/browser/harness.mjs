@@ -269,9 +269,17 @@ export async function bytesOf(download) {
 /** The most frequent colour of a widget, the share of pixels of other colours, and the number of colours. */
 export async function painted(page, selector = 'slam-widget') {
   return page.evaluate(async (css) => {
-    const picture = await document.querySelector(css).snapshot();
+    const widget = document.querySelector(css);
+    // Without a log, another picture stands before the widget's own.
+    const still = widget.shadowRoot.querySelector('.without-file .picture');
+    await still?.decode();
+    const picture = still ?? await widget.snapshot();
     const copy = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
-    copy.drawImage(picture, 0, 0);
+    if (still) {
+      copy.fillStyle = getComputedStyle(still).backgroundColor;
+      copy.fillRect(0, 0, still.width, still.height);
+    }
+    copy.drawImage(picture, 0, 0, picture.width, picture.height);
     const { data } = copy.getImageData(0, 0, picture.width, picture.height);
     const pixels = new Uint32Array(data.buffer);
     const counts = new Map();
