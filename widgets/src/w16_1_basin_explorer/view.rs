@@ -7,7 +7,7 @@ use crate::w16_1_basin_explorer::model::panel;
 
 /// Height of a map beside the sweeps: both maps together are as high as the sweeps alone, so nothing jumps as they
 /// enter.
-const BESIDE_PX: f32 = 115.0;
+const BESIDE_PX: f32 = 109.0;
 /// Height of the sweeps on a phone, alone and above a map: both are equally high with it.
 const PHONE_PX: [f32; 2] = [440.0, 166.0];
 /// Height of a map on a phone.
