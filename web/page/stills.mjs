@@ -30,7 +30,7 @@ export async function drawStills(outDir) {
   await drawStory('building', JSON.parse(building), outDir);
   await drawGallery(core, outDir);
   const { drawing } = await load('match/drawing.ts');
-  const scene = JSON.parse(core.matcherScene('room'));
+  const scene = JSON.parse(new core.PageMatcher('room').scene());
   return {
     sketches: await drawSketches(core, outDir),
     building,

@@ -46,25 +46,6 @@ fn room(name: &str) -> BasinScene {
     )
 }
 
-/// The sweeps of a room as JSON: points of the target in the world, points of the source in its sensor's frame,
-/// `[x0, y0, x1, y1, …]`, the true pose of the source, and how near counts as right, in metres and degrees.
-#[must_use]
-pub fn scene(name: &str) -> Value {
-    let scene = room(name);
-    let world_from_target = scene.world_from_target();
-    let target = scene.target().iter();
-    let target = target.map(|point| world_from_target.transform(point));
-    let source = scene.source().iter();
-    let flat =
-        |points: Vec<[f64; 2]>| -> Vec<Value> { points.into_iter().flatten().map(short).collect() };
-    json!({
-        "target": flat(target.map(|point| [point.x, point.y]).collect()),
-        "source": flat(source.map(|point| [point.x, point.y]).collect()),
-        "truth": pose(&(world_from_target * scene.truth())),
-        "home": [SUCCESS_RADIUS_M, HOME_HEADING_DEG],
-    })
-}
-
 /// Runs ICP on the sweeps of a room, from one guess after the other.
 pub struct RoomMatcher {
     scene: BasinScene,
@@ -79,6 +60,26 @@ impl RoomMatcher {
             scene: room(name),
             workspace: IcpWorkspace::new(),
         }
+    }
+
+    /// The sweeps as JSON: points of the target in the world, points of the source in its sensor's frame,
+    /// `[x0, y0, x1, y1, …]`, the true pose of the source, and how near counts as right, in metres and degrees.
+    #[must_use]
+    pub fn scene(&self) -> Value {
+        let scene = &self.scene;
+        let world_from_target = scene.world_from_target();
+        let target = scene.target().iter();
+        let target = target.map(|point| world_from_target.transform(point));
+        let source = scene.source().iter();
+        let flat = |points: Vec<[f64; 2]>| -> Vec<Value> {
+            points.into_iter().flatten().map(short).collect()
+        };
+        json!({
+            "target": flat(target.map(|point| [point.x, point.y]).collect()),
+            "source": flat(source.map(|point| [point.x, point.y]).collect()),
+            "truth": pose(&(world_from_target * scene.truth())),
+            "home": [SUCCESS_RADIUS_M, HOME_HEADING_DEG],
+        })
     }
 
     /// Point to point from a guess: `{"poses", "rmse", "reach", "ending"}`, the guess and the pose after each iteration,
@@ -134,10 +135,12 @@ mod tests {
 
     #[test]
     fn a_run_begins_at_the_guess_and_the_scene_has_its_truth() {
-        let run = RoomMatcher::new("room").run(&turned(10.0));
+        let mut matcher = RoomMatcher::new("room");
+        let run = matcher.run(&turned(10.0));
         assert_eq!(run["poses"][0], pose(&turned(10.0)));
-        assert_eq!(scene("room")["truth"], pose(&truth()));
-        let points = |name: &str| scene("room")[name].as_array().unwrap().len();
+        let scene = matcher.scene();
+        assert_eq!(scene["truth"], pose(&truth()));
+        let points = |name: &str| scene[name].as_array().unwrap().len();
         assert!(points("target") > 300 && points("source") > 200);
     }
 

@@ -92,13 +92,7 @@ pub fn judge_candidates(answers: &str, width_px: f32, theme: &str) -> String {
     candidates::judged(&answers, width_px, theme_of(theme)).to_string()
 }
 
-/// The two sweeps of a room of the page's matcher as JSON; see [`matcher::scene`].
-#[wasm_bindgen(js_name = matcherScene)]
-pub fn matcher_scene(room: &str) -> String {
-    matcher::scene(room).to_string()
-}
-
-/// Runs ICP on these sweeps.
+/// Two sweeps of a room of the page's matcher, and ICP on them.
 #[wasm_bindgen]
 pub struct PageMatcher {
     matcher: matcher::RoomMatcher,
@@ -113,6 +107,12 @@ impl PageMatcher {
         Self {
             matcher: matcher::RoomMatcher::new(room),
         }
+    }
+
+    /// The sweeps as JSON; see [`matcher::RoomMatcher::scene`].
+    #[must_use]
+    pub fn scene(&self) -> String {
+        self.matcher.scene().to_string()
     }
 
     /// A run from that `world_from_source` as JSON; see [`matcher::RoomMatcher::run`].

@@ -10,7 +10,7 @@ export interface Answer {
   home: [number, number];
 }
 
-/** The output of the module's `matcherScene`. */
+/** The output of the module's `PageMatcher.scene`. */
 export interface Scene extends Answer {
   target: number[];
   source: number[];

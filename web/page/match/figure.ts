@@ -261,7 +261,10 @@ export class MatchFigure {
   /** Fetches the core on the reader's first action; a failure can be retried. */
   #loaded(): Promise<[Matcher, Scene]> {
     const { name } = this.#room;
-    this.#loading ??= this.#core().then((glue) => [new glue.PageMatcher(name), JSON.parse(glue.matcherScene(name)) as Scene]);
+    this.#loading ??= this.#core().then((glue) => {
+      const matcher = new glue.PageMatcher(name);
+      return [matcher, JSON.parse(matcher.scene()) as Scene];
+    });
     this.#loading.catch(() => { this.#loading = undefined; });
     return this.#loading;
   }
