@@ -8,11 +8,16 @@ import * as h from './harness.mjs';
 const visit = h.visitor();
 const SLIDES = { path: '/slides.html', fresh: true };
 
+/** Turns to a slide by its number, from 1; the page follows its address in a later task. */
+const turnToNumber = async (tab, number) => {
+  await tab.evaluate((to) => { location.hash = String(to); }, number);
+  await tab.waitForFunction((to) => document.querySelectorAll('main > section')[to - 1].classList.contains('shown'), number);
+};
 /** Turns to the slide of the first element that matches. */
-const turnTo = (tab, css) => tab.evaluate((selector) => {
+const turnTo = async (tab, css) => turnToNumber(tab, await tab.evaluate((selector) => {
   const slide = document.querySelector(selector).closest('main > section');
-  location.hash = String([...document.querySelectorAll('main > section')].indexOf(slide) + 1);
-}, css);
+  return [...document.querySelectorAll('main > section')].indexOf(slide) + 1;
+}, css));
 const shownTitle = (tab) => tab.evaluate(() => document.querySelector('main > .shown').querySelector('h1').textContent);
 
 it('slides.html has a slide for each widget in the order of the chapter, with links that set it', async () => {
@@ -138,8 +143,7 @@ it('slides.html has each slide on the screen of a projector, nothing cut, in let
     const count = await tab.locator('main > section').count();
     const wrong = [];
     for (let k = 1; k <= count; k++) {
-      await tab.evaluate((number) => { location.hash = String(number); }, k);
-      await tab.waitForFunction((number) => document.querySelectorAll('main > section')[number - 1].classList.contains('shown'), k);
+      await turnToNumber(tab, k);
       const title = await shownTitle(tab);
       const css = 'main > .shown slam-widget';
       const hasWidget = (await tab.locator(css).count()) > 0;
