@@ -31,6 +31,8 @@ for (const { id } of h.schema) {
       assert.equal(await drawn(tab), before);
     });
 
+    // Before a log is open, w16.10 has nothing to play.
+    if (id === 'w16.10') return;
     it('shows the end of a run at once under reduced motion', async () => {
       const { tab } = page;
       const play = (from) => tab.evaluate(async (start) => {
