@@ -99,7 +99,7 @@ pub fn workloads() -> Vec<Workload> {
         drag(
             "frame-w16.12",
             "a frame of w16.12 while its Jacobian is made worse: four solvers to their ends",
-            || Frames::boxed(widget("w16.12"), "bias", [5.0, 6.0]),
+            || Frames::boxed(solved_to_the_end(), "bias", [5.0, 6.0]),
         ),
     ]
 }
@@ -108,6 +108,17 @@ pub fn workloads() -> Vec<Workload> {
 fn widget(name: &str) -> Shell {
     let mut shell = widgets::registry::find(name).expect("a widget of the chapter")();
     shell.act();
+    shell
+}
+
+/// Four solvers after their last steps.
+fn solved_to_the_end() -> Shell {
+    let mut shell = widget("w16.12");
+    let steps = widgets::w16_12_jacobians::spec::MAX_STEPS as f64;
+    shell
+        .model_mut()
+        .set("steps", steps)
+        .expect("the value is in range");
     shell
 }
 

@@ -68,7 +68,6 @@ params! {
     .help("Largest distance of a pose from its optimum, or the difference of χ² from its minimum.");
 
     pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MAX_STEPS as f64)
-        .default(MAX_STEPS as f64)
         .help("How many steps each solver has done; beyond its last one it has converged.");
 
     use SPEED;
@@ -99,28 +98,28 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "four",
             label: "Solve it in four ways",
             help: "From one start, step by step: watch where each of them ends.",
-            set: &[STEPS.to(0.0)],
+            set: &[],
             then: &["play"],
         },
         Preset {
             id: "agree",
             label: "Let all measurements agree",
             help: "Nothing is left at the end, so nothing shows: even the wrong residual ends right.",
-            set: &[BIAS.to(0.0), STEPS.to(0.0)],
+            set: &[BIAS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "left",
             label: "Left for right",
             help: "A Jacobian of the wrong side is right where nothing is left: it ends a millimetre or two beside the optimum.",
-            set: &[WRONG.to("left"), STEPS.to(0.0)],
+            set: &[WRONG.to("left")],
             then: &["play"],
         },
         Preset {
             id: "half",
             label: "Half the contradiction",
             help: "The wrong residual is off by half as much, the approximate Jacobian by a quarter.",
-            set: &[BIAS.to(3.0), STEPS.to(0.0)],
+            set: &[BIAS.to(3.0)],
             then: &["play"],
         },
     ],

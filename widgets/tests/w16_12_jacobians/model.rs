@@ -8,8 +8,10 @@ use widgets::w16_12_jacobians::spec::{MAX_STEPS, SPEC};
 
 use crate::support::fact;
 
+/// At its last step, unless the values name another.
 fn with(values: &[(&str, f64)]) -> WrongJacobians {
     let mut widget = WrongJacobians::default();
+    widget.set("steps", MAX_STEPS as f64).unwrap();
     for (id, value) in values {
         widget.set(id, *value).unwrap();
     }
@@ -51,7 +53,7 @@ fn where_measurements_agree_all_four_end_alike() {
 
 #[test]
 fn each_curve_ends_at_the_value_of_the_table() {
-    let widget = WrongJacobians::default();
+    let widget = with(&[]);
     let panels = widget.scene().panels;
     let curve = panels
         .iter()
@@ -136,7 +138,7 @@ fn all_settings_converge() {
 
 #[test]
 fn before_the_first_step_neither_picture_nor_words_tell_the_end() {
-    let widget = with(&[("steps", 0.0)]);
+    let widget = WrongJacobians::default();
     assert_eq!(widget.outcome().verdict, "before the first step");
     assert!(!widget.outcome().sentence.contains("residual"));
     for panel in widget.scene().panels {
@@ -173,7 +175,7 @@ fn on_the_way_neither_words_nor_numbers_nor_table_tell_the_end() {
     let before = with(&[("steps", last - 1.0)]);
     assert_eq!(before.outcome().verdict, "on the way");
     let widget = with(&[("steps", 1.0)]);
-    let end = WrongJacobians::default();
+    let end = with(&[]);
     for id in ["exact_off_m", "jacobian_off_m", "residual_off_m"] {
         assert!(fact(&widget, id) > fact(&end, id), "{id}");
     }
@@ -185,7 +187,6 @@ fn on_the_way_neither_words_nor_numbers_nor_table_tell_the_end() {
 #[test]
 fn the_chain_is_bent_by_its_loose_end_and_no_mark_is_ahead_of_the_step() {
     let mut widget = WrongJacobians::default();
-    widget.set("steps", 0.0).unwrap();
     assert!(
         widget.timeline().unwrap().marks.is_empty(),
         "a mark gives the answer away"
@@ -200,7 +201,6 @@ fn the_chain_is_bent_by_its_loose_end_and_no_mark_is_ahead_of_the_step() {
     };
     let wanted = {
         let mut other = WrongJacobians::default();
-        other.set("steps", 0.0).unwrap();
         other.set("bias", 2.5).unwrap();
         end(&other)
     };
