@@ -138,6 +138,9 @@ const faults = (tab) => tab.evaluate(() => {
   return found;
 });
 
+/** The smallest labels of a picture by the width of the screen: those of questions have less room. */
+const LEAST_LABEL_PX = { 1280: 13, 1440: 16, 1920: 22 };
+
 it('slides.html has each slide on the screen of a projector, nothing cut, in letters of 24 pixels', async () => {
   await visit('', async (tab) => {
     const count = await tab.locator('main > section').count();
@@ -153,6 +156,10 @@ it('slides.html has each slide on the screen of a projector, nothing cut, in let
         await tab.waitForFunction((wide) => innerWidth === wide, width);
         await h.quiet(tab);
         wrong.push(...(await faults(tab)).map((fault) => `${k} ${title}, ${width}×${height}: ${fault}`));
+        if (hasWidget) {
+          const label = await tab.evaluate((name) => 12 * document.querySelector(name).shadowRoot.querySelector('[data-type]').dataset.type, css);
+          if (label < LEAST_LABEL_PX[width]) wrong.push(`${k} ${title}, ${width}×${height}: labels of ${label} pixels`);
+        }
       }
     }
     assert.deepEqual(wrong, []);

@@ -616,7 +616,8 @@ export class SlamWidget extends HTMLElement {
   }
 
   #fit(widget: Widget): void {
-    fitPicture(widget, this, this.#parts.stage.clientWidth, this.#reservedHeight.room);
+    const { stage } = this.#parts;
+    stage.dataset['type'] = String(fitPicture(widget, this, stage.clientWidth, this.#reservedHeight.room));
   }
 
   // ---- values -------------------------------------------------------------------------------

@@ -14,15 +14,18 @@ export function typeScale(): number {
 const STEP = 0.1;
 
 /**
- * Sets the height that a picture may have, and the size of its text: that of the page. If the picture does not fit, its text
- * shrinks as far as the host's `--least-type` permits, as a multiple of the usual size.
+ * Sets the height that a picture may have, and the size of its text: that of the page, or the host's `--most-type`. If the
+ * picture does not fit, its text shrinks as far as `--least-type` permits; both are multiples of the usual size.
+ *
+ * @returns the size of the text, as a multiple of the usual one.
  */
-export function fitPicture(widget: Widget, host: HTMLElement, widthPx: number, roomPx: number): void {
-  const most = typeScale();
-  const least = Math.min(most, parseFloat(getComputedStyle(host).getPropertyValue('--least-type')) || most);
+export function fitPicture(widget: Widget, host: HTMLElement, widthPx: number, roomPx: number): number {
+  const style = getComputedStyle(host);
+  const most = parseFloat(style.getPropertyValue('--most-type')) || typeScale();
+  const least = Math.min(most, parseFloat(style.getPropertyValue('--least-type')) || most);
   for (let scale = most; ; scale = Math.max(scale - STEP, least)) {
     widget.setTypeScale(scale);
     widget.setRoom(roomPx);
-    if (scale === least || scale * widget.heightAt(widthPx / scale) <= roomPx) return;
+    if (scale === least || scale * widget.heightAt(widthPx / scale) <= roomPx) return scale;
   }
 }
