@@ -139,7 +139,7 @@ const faults = (tab) => tab.evaluate(() => {
 });
 
 /** The smallest labels of a picture by the width of the screen: those of questions have less room. */
-const LEAST_LABEL_PX = { 1280: 13, 1440: 16, 1920: 22 };
+const LEAST_LABEL_PX = { 1280: 13, 1440: 14, 1920: 22 };
 
 it('slides.html has each slide on the screen of a projector, nothing cut, in letters of 24 pixels', async () => {
   await visit('', async (tab) => {

@@ -75,7 +75,9 @@ fn sentence(own: &OwnRobot) -> String {
     let name = &robot.name;
     let done = (100.0 * robot.progress.share).round();
     let progress = match robot.progress.stage {
-        Stage::Empty => "Drop a log, open one, or map the sample.".to_owned(),
+        Stage::Empty => {
+            "Drop a log, open one, or map the sample, a simulated ring of corridors.".to_owned()
+        }
         Stage::Failed if robot.answer.is_empty() => return robot.progress.problem.clone(),
         Stage::Failed => {
             return format!(
