@@ -7,6 +7,7 @@ use egui::{Context, Pos2, RawInput, Rect, vec2};
 use widget_kit::model::finish_work;
 use widget_kit::palette::Theme;
 use widget_kit::shell::Shell;
+use widgets::w16_12_jacobians::spec::MAX_STEPS;
 
 use crate::{Limit, Run, Workload, prepared};
 
@@ -79,7 +80,9 @@ pub fn workloads() -> Vec<Workload> {
         drag(
             "frame-w16.6",
             "a frame of w16.6 while its search is scrubbed",
-            || Frames::boxed(coarse_search(), "progress", [200.0, 201.0]),
+            // The whole window in cells of 10 cm: its searches end soon under the counter, and its picture has the
+            // same structure.
+            || Frames::boxed(widget_at("w16.6", "cell", 0.1), "progress", [200.0, 201.0]),
         ),
         drag(
             "frame-w16.7",
@@ -99,7 +102,13 @@ pub fn workloads() -> Vec<Workload> {
         drag(
             "frame-w16.12",
             "a frame of w16.12 while its Jacobian is made worse: four solvers to their ends",
-            || Frames::boxed(solved_to_the_end(), "bias", [5.0, 6.0]),
+            || {
+                Frames::boxed(
+                    widget_at("w16.12", "steps", MAX_STEPS as f64),
+                    "bias",
+                    [5.0, 6.0],
+                )
+            },
         ),
     ]
 }
@@ -111,23 +120,11 @@ fn widget(name: &str) -> Shell {
     shell
 }
 
-/// Four solvers after their last steps.
-fn solved_to_the_end() -> Shell {
-    let mut shell = widget("w16.12");
-    let steps = widgets::w16_12_jacobians::spec::MAX_STEPS as f64;
-    shell
-        .model_mut()
-        .set("steps", steps)
-        .expect("the value is in range");
-    shell
-}
-
-/// The whole window in cells of 10 cm: its searches end soon under the counter, and its picture has the same
-/// structure.
-fn coarse_search() -> Shell {
-    let mut shell = widget("w16.6");
+/// The same with one parameter set.
+fn widget_at(name: &str, param: &str, value: f64) -> Shell {
+    let mut shell = widget(name);
     let model = shell.model_mut();
-    model.set("cell", 0.1).expect("the value is in range");
+    model.set(param, value).expect("the value is in range");
     shell
 }
 

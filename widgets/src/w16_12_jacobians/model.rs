@@ -78,7 +78,7 @@ impl Solved {
 }
 
 impl Default for WrongJacobians {
-    /// A ring with a contradiction of 6° per edge, after the last step.
+    /// A ring with a contradiction of 6° per edge, before the first step.
     fn default() -> Self {
         let values = Values::defaults(PARAMS);
         Self {
