@@ -2,10 +2,11 @@
 
 use std::cell::{Cell, OnceCell, RefCell};
 use std::rc::Rc;
+use std::time::Duration;
 
 use wasm_bindgen::prelude::*;
 use widget_kit::host_messages::Delivery;
-use widget_kit::model::{Motion, finish_work};
+use widget_kit::model::Motion;
 use widget_kit::palette::Theme;
 use widget_kit::param::{ParamError, ParamSpec};
 use widget_kit::zoom::Look;
@@ -361,10 +362,16 @@ impl Widget {
         self.shared.shell.borrow_mut().finish_work()
     }
 
+    /// Does pending work for about that long. Returns whether there was any.
+    pub fn settle(&self, budget_ms: u32) -> bool {
+        let budget = Duration::from_millis(u64::from(budget_ms));
+        self.shared.shell.borrow_mut().settle(budget)
+    }
+
     /// Finishes all progressive work, for a picture of the final state.
     pub fn finish(&self) {
         let mut shell = self.shared.shell.borrow_mut();
-        finish_work(shell.model_mut());
+        while shell.model_mut().work().is_busy() {}
     }
 
     /// The picture as SVG, for print and for pages that cannot run the widget.

@@ -16,6 +16,9 @@ import type { Visibility } from './visibility';
 /** Contexts that may be lost before the first frame until we give up. */
 const MAX_LOST_CONTEXTS = 3;
 
+/** Duration of a task of the start, ms: input waits for its end. */
+const MAX_TASK_MS = 30;
+
 /** The element left its page while it loaded. */
 export class RemovedError extends LoadError {
   constructor() {
@@ -170,8 +173,7 @@ export class Lifecycle implements Visibility, Drawer {
       const instance = await this.ensureInstance();
       await nextTask();
       // The first frame shows data: the still picture stands until then.
-      this.ask((ready) => ready.finish_work());
-      await nextTask();
+      while (this.ask((ready) => ready.settle(MAX_TASK_MS)) === true) await nextTask();
       if (generation !== this.#generation) return;
       this.#stage = new Stage(stage, instance, widget.title, () => this.fail(new ContextLostError()));
       await this.#stage.start();

@@ -1,7 +1,7 @@
 // Avoids layout shifts: reserves the height of a picture before its first frame and while its canvas is gone.
 
 import type { Parts } from './parts';
-import { typeScale } from './type-scale';
+import { mostType } from './type-scale';
 
 /** The picture's height at each width, in CSS pixels, by ascending width. */
 export type Heights = readonly (readonly [width: number, height: number])[];
@@ -35,7 +35,7 @@ export class ReservedHeight {
   fit(): void {
     const width = this.#stage.clientWidth;
     if (width === 0) return;
-    const scale = typeScale();
+    const scale = mostType(this.#hostStyle);
     const natural = heightAt(this.#heights, width / scale);
     const height = this.#kept?.width === width ? this.#kept.height : natural && scale * natural;
     if (height === undefined) this.free();
@@ -45,13 +45,16 @@ export class ReservedHeight {
   /** The height available to the picture: that of `max-height` or of `--room` without what is around it, else infinite. */
   get room(): number {
     const { frame, rest, controls } = this.#parts;
-    const { host } = this.#stage.getRootNode() as ShadowRoot;
-    const style = getComputedStyle(host);
+    const style = this.#hostStyle;
     const most = [style.maxHeight, style.getPropertyValue('--room')].find((length) => length.endsWith('px'));
     if (most === undefined) return Infinity;
     // In the gap of the canvas they are part of the stage.
     const inGap = controls.style.marginBottom === '' ? 0 : controls.offsetHeight;
     return parseFloat(most) - (frame.offsetHeight - this.#stage.offsetHeight - rest.offsetHeight) - inGap;
+  }
+
+  get #hostStyle(): CSSStyleDeclaration {
+    return getComputedStyle((this.#stage.getRootNode() as ShadowRoot).host);
   }
 
   /** Removes the reservation: the picture gets its natural height. */

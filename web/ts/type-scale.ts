@@ -5,23 +5,24 @@ import type { Widget } from '../pkg/glue.js';
 /** The root's font size of browsers by default, px. */
 const USUAL_ROOT_PX = 16;
 
-/** How much larger the page's text is than usual. */
-export function typeScale(): number {
-  return parseFloat(getComputedStyle(document.documentElement).fontSize) / USUAL_ROOT_PX;
+/** The size of a picture's text where it fits, as a multiple of the usual one: the host's `--most-type`, or that of the page. */
+export function mostType(host: CSSStyleDeclaration): number {
+  const page = getComputedStyle(document.documentElement);
+  return parseFloat(host.getPropertyValue('--most-type')) || parseFloat(page.fontSize) / USUAL_ROOT_PX;
 }
 
 /** Steps by which text shrinks. */
 const STEP = 0.1;
 
 /**
- * Sets the height that a picture may have, and the size of its text: that of the page, or the host's `--most-type`. If the
- * picture does not fit, its text shrinks as far as `--least-type` permits; both are multiples of the usual size.
+ * Sets the height that a picture may have, and the size of its text. If the picture does not fit, its text shrinks as far as
+ * `--least-type` permits, a multiple of the usual size.
  *
  * @returns the size of the text, as a multiple of the usual one.
  */
 export function fitPicture(widget: Widget, host: HTMLElement, widthPx: number, roomPx: number): number {
   const style = getComputedStyle(host);
-  const most = parseFloat(style.getPropertyValue('--most-type')) || typeScale();
+  const most = mostType(style);
   const least = Math.min(most, parseFloat(style.getPropertyValue('--least-type')) || most);
   for (let scale = most; ; scale = Math.max(scale - STEP, least)) {
     widget.setTypeScale(scale);

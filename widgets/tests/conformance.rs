@@ -1,5 +1,7 @@
 //! Requirements for every widget: each test iterates over the registry.
 
+use std::time::Duration;
+
 use bench_support::timed;
 use egui::{pos2, vec2};
 use widget_kit::invariants::{assert_reports, assert_values};
@@ -92,6 +94,20 @@ fn a_widget_starts_in_tasks_of_at_most_a_tenth_of_a_second() {
         ] {
             assert!(ms < LONGEST_TASK_MS, "{}: {what} takes {ms} ms", spec.id);
         }
+    }
+}
+
+#[test]
+fn a_start_in_short_tasks_ends_like_one_in_a_single_task() {
+    for (make, spec) in SHELLS.into_iter().zip(SPECS) {
+        let (mut pieces, mut whole) = (make(), make());
+        let tasks = core::iter::repeat_with(|| pieces.settle(Duration::from_millis(5)));
+        let tasks = tasks.take_while(|did| *did).count();
+        whole.finish_work();
+        let sentence = |shell: &Shell| shell.model().outcome().in_full();
+        assert_eq!(sentence(&pieces), sentence(&whole), "{}", spec.id);
+        // Two laps and a run take far longer than a task.
+        assert!(tasks > 1 || spec.id != "w16.9", "{tasks} tasks");
     }
 }
 

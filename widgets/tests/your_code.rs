@@ -202,7 +202,7 @@ fn pair_lines(model: &BasinExplorer) -> Vec<[[f64; 2]; 2]> {
 fn the_basin_map_by_the_readers_function_has_the_cells_of_ours() {
     let mut ours = BasinExplorer::default();
     ours.set("more", 1.0).unwrap();
-    widget_kit::model::finish_work(&mut ours);
+    while ours.work().is_busy() {}
     let mut yours = BasinExplorer::default();
     yours.set("more", 1.0).unwrap();
     deliver(&mut yours, SEAT, "svd_align", &[]);
@@ -237,7 +237,7 @@ fn the_registration_by_the_readers_rejection_has_the_bits_of_ours() {
         assert!(sentence.contains("your keep_pairs ends"), "{sentence}");
         yours.set("more", 1.0).unwrap();
         serve(&mut yours, &function);
-        widget_kit::model::finish_work(&mut ours);
+        while ours.work().is_busy() {}
         let map = [panel::POINT, panel::PLANE][variant as usize];
         assert_eq!(raster(&yours, map), raster(&ours, map));
         for iteration in 0..4 {

@@ -4,7 +4,6 @@ use std::hint::black_box;
 
 use ch16_slam2d::digest::Digest;
 use egui::{Context, Pos2, RawInput, Rect, vec2};
-use widget_kit::model::finish_work;
 use widget_kit::palette::Theme;
 use widget_kit::shell::Shell;
 use widgets::w16_12_jacobians::spec::MAX_STEPS;
@@ -145,7 +144,7 @@ struct Frames {
 
 impl Frames {
     fn boxed(mut shell: Shell, param: &'static str, values: [f64; 2]) -> Box<dyn Run> {
-        finish_work(shell.model_mut());
+        while shell.model_mut().work().is_busy() {}
         let mut frames = Self {
             shell,
             param,

@@ -230,7 +230,7 @@ impl BasinExplorer {
     }
 
     /// Counts the start as one of the reader's once it has stood still.
-    fn settle(&mut self, elapsed_s: f64) -> Activity {
+    fn count_start(&mut self, elapsed_s: f64) -> Activity {
         let Some(left_s) = self.settles_in_s.filter(|_| !self.is_held) else {
             return Activity::Idle;
         };
@@ -324,9 +324,9 @@ impl Model for BasinExplorer {
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
-        let settling = self.settle(elapsed_s);
+        let counting = self.count_start(elapsed_s);
         if !self.playback.is_playing() {
-            return settling;
+            return counting;
         }
         let rate = STEPS_PER_S * self.values.get(&SPEED);
         let (here, last) = (self.iteration() as f64, self.last() as f64);
@@ -336,9 +336,7 @@ impl Model for BasinExplorer {
     }
 
     fn work(&mut self) -> Activity {
-        if self.values.get(&EDGE) == Phase::Swept
-            && self.edges.work(&self.scene, &mut self.workspace) == Activity::Busy
-        {
+        if self.settle() == Activity::Busy {
             return Activity::Busy;
         }
         if self.paths.work(&self.scene, &mut self.workspace) == Activity::Busy {
@@ -355,14 +353,12 @@ impl Model for BasinExplorer {
         }
     }
 
-    fn finish_work(&mut self) -> Activity {
-        let mut done = Activity::Idle;
-        while self.values.get(&EDGE) == Phase::Swept
-            && self.edges.work(&self.scene, &mut self.workspace) == Activity::Busy
-        {
-            done = Activity::Busy;
+    fn settle(&mut self) -> Activity {
+        if self.values.get(&EDGE) == Phase::Swept {
+            self.edges.work(&self.scene, &mut self.workspace)
+        } else {
+            Activity::Idle
         }
-        done
     }
 
     fn scene(&self) -> Scene {

@@ -352,12 +352,9 @@ impl Model for FullLap {
         }
     }
 
-    fn finish_work(&mut self) -> Activity {
-        let Some(record) = self.laps.finish() else {
-            return Activity::Idle;
-        };
-        self.show(*record);
-        Activity::Busy
+    fn settle(&mut self) -> Activity {
+        self.laps.drop_outdated();
+        self.work()
     }
 
     fn scene(&self) -> Scene {

@@ -30,9 +30,7 @@ mod tables;
 mod terrains;
 mod texts;
 
-use widget_kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Table, Timeline, finish_work, press_preset,
-};
+use widget_kit::model::{Activity, Handle, Model, Motion, Outcome, Table, Timeline, press_preset};
 use widget_kit::param::ParamError;
 use widget_kit::playback::Playback;
 use widget_kit::playback::SPEED;
@@ -189,10 +187,6 @@ impl Model for CostTerraces {
     /// Registers one more of the dropped sweeps.
     fn work(&mut self) -> Activity {
         self.rests.work(&self.terrains)
-    }
-
-    fn finish_work(&mut self) -> Activity {
-        finish_work(self)
     }
 
     fn scene(&self) -> Scene {

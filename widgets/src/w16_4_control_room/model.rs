@@ -275,12 +275,9 @@ impl Model for ControlRoom {
         }
     }
 
-    fn finish_work(&mut self) -> Activity {
-        let Some(record) = self.laps.finish() else {
-            return Activity::Idle;
-        };
-        self.take(*record);
-        Activity::Busy
+    fn settle(&mut self) -> Activity {
+        self.laps.drop_outdated();
+        self.work()
     }
 
     fn scene(&self) -> Scene {

@@ -232,20 +232,18 @@ impl Model for WholeWindow {
     }
 
     fn work(&mut self) -> Activity {
-        if self.search_task.search(&self.scene, &mut self.workspace) == Activity::Busy {
-            self.look_at(None);
-            return Activity::Busy;
+        match self.settle() {
+            Activity::Idle => self.search_task.fill(),
+            busy => busy,
         }
-        self.search_task.fill()
     }
 
-    fn finish_work(&mut self) -> Activity {
-        if self.search_task.is_settled() {
-            return Activity::Idle;
+    fn settle(&mut self) -> Activity {
+        let searched = self.search_task.search(&self.scene, &mut self.workspace);
+        if searched == Activity::Busy {
+            self.look_at(None);
         }
-        while self.search_task.search(&self.scene, &mut self.workspace) == Activity::Busy {}
-        self.look_at(None);
-        Activity::Busy
+        searched
     }
 
     fn scene(&self) -> Scene {

@@ -21,9 +21,7 @@ mod tables;
 mod texts;
 
 use ch16_lab::lap::LapConfig;
-use widget_kit::model::{
-    Activity, Handle, Model, Outcome, Table, Timeline, TimelineMark, finish_work,
-};
+use widget_kit::model::{Activity, Handle, Model, Outcome, Table, Timeline, TimelineMark};
 use widget_kit::playback_param::{PlaybackParam, PlayedValues};
 use widget_kit::scene::Scene;
 use widget_kit::spec::WidgetSpec;
@@ -195,10 +193,6 @@ impl Model for PlaceRecognition {
             Err(work) => self.work = Some(work),
         }
         Activity::Busy
-    }
-
-    fn finish_work(&mut self) -> Activity {
-        finish_work(self)
     }
 
     fn scene(&self) -> Scene {

@@ -157,6 +157,10 @@ impl Model for MovingBox {
         self.curves.work(&mut self.workspace)
     }
 
+    fn settle(&mut self) -> Activity {
+        Activity::Idle
+    }
+
     fn scene(&self) -> Scene {
         picture::scene(self)
     }

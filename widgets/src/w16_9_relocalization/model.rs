@@ -22,9 +22,7 @@ mod texts;
 
 use ch16_lab::relocalization::{LocalizationRun, Moment};
 use pr_geom::SE2;
-use widget_kit::model::{
-    Activity, Handle, Model, Outcome, Table, Timeline, TimelineMark, finish_work,
-};
+use widget_kit::model::{Activity, Handle, Model, Outcome, Table, Timeline, TimelineMark};
 use widget_kit::playback_param::{PlaybackParam, PlayedValues};
 use widget_kit::scene::Scene;
 use widget_kit::spec::WidgetSpec;
@@ -172,10 +170,6 @@ impl Model for Relocalization {
             known::Step::Over(run) => self.run = Some(*run),
         }
         Activity::Busy
-    }
-
-    fn finish_work(&mut self) -> Activity {
-        finish_work(self)
     }
 
     fn scene(&self) -> Scene {

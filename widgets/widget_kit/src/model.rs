@@ -93,10 +93,17 @@ pub trait Model {
         Activity::Idle
     }
 
-    /// Finishes the [`Model::work`] on which the outcome depends, so that numbers and picture match the
-    /// values; purely visual refinement continues later. Idle if there was nothing to do.
-    fn finish_work(&mut self) -> Activity {
-        Activity::Idle
+    /// Does one piece of the [`Model::work`] on which the outcome depends: once idle, numbers and picture match
+    /// the values, and purely visual refinement is left.
+    fn settle(&mut self) -> Activity {
+        self.work()
+    }
+
+    /// Settles to the end. Returns whether there was anything to do.
+    fn finish_work(&mut self) -> bool {
+        let first = self.settle();
+        while self.settle().is_busy() {}
+        first.is_busy()
     }
 
     /// The picture.
@@ -414,13 +421,6 @@ pub fn text_alternative(model: &dyn Model, asks: bool) -> String {
     } else {
         format!("{summary} {}", model.outcome().in_full())
     }
-}
-
-/// Does all the remaining [`Model::work`], as a [`Model::finish_work`] if the outcome depends on all of it.
-pub fn finish_work(model: &mut dyn Model) -> Activity {
-    let first = model.work();
-    while model.work().is_busy() {}
-    first
 }
 
 /// Presses the preset of that name, the fallback of a [`Model::press`].

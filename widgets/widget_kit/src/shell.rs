@@ -136,7 +136,16 @@ impl Shell {
 
     /// Finishes pending work, see [`Model::finish_work`]. Returns whether there was any.
     pub fn finish_work(&mut self) -> bool {
-        let settled = self.model.finish_work().is_busy();
+        self.settle(Duration::MAX)
+    }
+
+    /// Does pending work for about that long, see [`Model::settle`]. Returns whether there was any.
+    pub fn settle(&mut self, budget: Duration) -> bool {
+        let start = Instant::now();
+        let mut settled = false;
+        while start.elapsed() < budget && self.model.settle().is_busy() {
+            settled = true;
+        }
         if settled {
             self.touch();
         }

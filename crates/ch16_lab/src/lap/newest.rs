@@ -107,11 +107,16 @@ impl NewestLap {
         NewestStep::Finished(Box::new(record))
     }
 
-    /// Runs the newest requested lap to its end; `None` if no lap is under way.
-    pub fn finish(&mut self) -> Option<Box<LapRecord>> {
+    /// Drops the lap under way if a newer one was requested, and starts that one.
+    pub fn drop_outdated(&mut self) {
         if let Some(request) = self.waiting.take() {
             self.under_way = Some(request.start(&self.runner));
         }
+    }
+
+    /// Runs the newest requested lap to its end; `None` if no lap is under way.
+    pub fn finish(&mut self) -> Option<Box<LapRecord>> {
+        self.drop_outdated();
         loop {
             match self.step() {
                 NewestStep::Idle => return None,

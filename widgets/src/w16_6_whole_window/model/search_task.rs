@@ -64,13 +64,6 @@ impl SearchTask {
         }
     }
 
-    /// Whether everything except the surface is known.
-    pub fn is_settled(&self) -> bool {
-        self.found
-            .as_ref()
-            .is_some_and(|found| found.pending.is_empty())
-    }
-
     /// One piece of the search, or of those at the other headings; idle once all of them are finished.
     pub fn search(&mut self, scene: &BasinScene, workspace: &mut IcpWorkspace) -> Activity {
         let Some(found) = &mut self.found else {
