@@ -146,6 +146,11 @@ impl Widget {
         self.shared.shell.borrow().has_acted()
     }
 
+    /// Whether the question stands in place of the verdict.
+    pub fn asks(&self) -> bool {
+        self.shared.shell.borrow().asks()
+    }
+
     /// Passes a delivery of the host to the widget: a kind, words, numbers, bytes.
     pub fn deliver(&self, kind: &str, text: &str, numbers: &[f64], bytes: &[u8]) {
         let delivery = Delivery {

@@ -571,16 +571,20 @@ export class SlamWidget extends HTMLElement {
     return this.#state?.texts.get(MORE) !== 'off';
   }
 
-  /** Shows the question until the reader acts, and then the verdict of the picture as drawn; under More its details. */
+  /** Shows the question or the verdict of the picture as drawn; under More its details. */
   #showReadouts(): void {
     const outcome = this.#shownOutcome();
     this.#hasActed ||= this.#lifecycle.ask((widget) => widget.hasActed()) === true;
     this.#parts.whole.hidden = this.#lifecycle.ask((widget) => widget.isZoomed()) !== true;
-    const asks = !this.#hasActed && !this.#isOpen;
-    if (asks) this.#verdict.ask(this.#state?.spec.question ?? '');
+    if (this.#asks) this.#verdict.ask(this.#state?.spec.question ?? '');
     else if (outcome !== undefined) this.#verdict.show(outcome);
     const details = this.#isOpen ? this.#lifecycle.ask((widget) => widget.details()) : undefined;
     if (details !== undefined) this.#details?.show(details);
+  }
+
+  /** Whether the question stands in place of the verdict. */
+  get #asks(): boolean {
+    return this.#lifecycle.ask((widget) => widget.asks()) ?? !(this.#hasActed || this.#isOpen);
   }
 
   /** Finishes pending work before results are read: they belong to the values that are set. */
@@ -605,7 +609,9 @@ export class SlamWidget extends HTMLElement {
   #showTimeline(): void {
     const buttons = this.#lifecycle.ask((_, instance) => instance.buttons());
     if (buttons !== undefined) this.#controls?.showButtons(buttons);
-    this.#controls?.showTimeline(this.#shownTimeline());
+    const timeline = this.#shownTimeline();
+    // The marks tell how the run goes.
+    this.#controls?.showTimeline(timeline && (this.#asks ? { ...timeline, marks: [] } : timeline));
   }
 
   #resized(): void {

@@ -9,7 +9,7 @@ use widget_kit::model::{Activity, Model, Motion, shown_scene};
 use widget_kit::param::MORE;
 use widget_kit::scene::Layer;
 use widget_kit::shell::Shell;
-use widget_kit::spec::Preset;
+use widget_kit::spec::{Judges, Preset};
 use widgets::registry::{MODELS, SHELLS, SPECS, find, names};
 
 use crate::support::{click_at, drawn};
@@ -417,6 +417,23 @@ fn no_number_of_a_picture_at_rest_has_three_decimals() {
                 assert!(!parts.any(is_long), "{name}, {}: {words}", panel.id);
             }
         }
+    }
+}
+
+#[test]
+fn a_verdict_on_a_run_waits_for_its_end() {
+    for make in SHELLS {
+        let mut shell = make();
+        let spec = shell.model().spec();
+        shell.finish_work();
+        shell.act();
+        let plays = |shell: &Shell| shell.model().is_pressed("play");
+        shell.press("play").expect("every widget plays");
+        assert_eq!(shell.asks(), spec.judges == Judges::Run, "{}", spec.id);
+        while shell.asks() && plays(&shell) {
+            shell.model_mut().advance(0.25);
+        }
+        assert!(!shell.asks(), "{}", spec.id);
     }
 }
 

@@ -25,7 +25,7 @@ pub fn panel(ui: &mut Ui, shell: &mut Shell) {
     }
     ui.separator();
     let outcome = shell.model().outcome();
-    if !shell.has_acted() && !shell.model().disclosure().is_all() {
+    if shell.asks() {
         ui.strong(spec.question);
         return;
     }

@@ -318,14 +318,19 @@ fn the_whole_sweep_is_in_view_at_every_heading_and_after_every_drag() {
             assert_eq!(cut_off(&model), 0, "{heading}° at {offset} m");
         }
     }
-    let mut model = with(&[]);
-    let sensor = [1.05, 0.1];
-    let held = model.grab(panel::SWEEPS, sensor, [0.2, 0.2]).unwrap();
-    model.drag(held, [1.2, 0.3]);
     let axes = |model: &BasinExplorer| {
         let sweeps = panel_of(model, panel::SWEEPS);
         (sweeps.x, sweeps.y)
     };
+    let first = axes(&with(&[]));
+    for heading in (-180..=180).step_by(15) {
+        let turned = with(&[("heading", f64::from(heading))]);
+        assert_eq!(axes(&turned), first, "the axes stay at {heading}°");
+    }
+    let mut model = with(&[]);
+    let sensor = [1.05, 0.1];
+    let held = model.grab(panel::SWEEPS, sensor, [0.2, 0.2]).unwrap();
+    model.drag(held, [1.2, 0.3]);
     let during = axes(&model);
     model.release();
     assert_eq!(axes(&model), during, "a sweep stays where it is let go");

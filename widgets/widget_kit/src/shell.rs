@@ -15,6 +15,7 @@ use crate::palette::{self, Theme};
 use crate::param::ParamError;
 use crate::pointer::{Pointer, TOUCH_REACH_PX};
 use crate::scene::{Aspect, Scene, Tone};
+use crate::spec::{Judges, PLAY};
 use crate::surface::PxRect;
 use crate::svg::picture_svg;
 use crate::transform::Transform;
@@ -195,11 +196,19 @@ impl Shell {
         self.first.is_over
     }
 
-    /// The text alternative of the picture, with the question until the reader acts or opens everything.
+    /// Whether the question stands in place of the verdict: until the reader acts, and while a run plays of which the
+    /// verdict is; never with everything open.
+    #[must_use]
+    pub fn asks(&self) -> bool {
+        let plays = self.model.is_pressed(PLAY.id);
+        let is_early = plays && self.model.spec().judges == Judges::Run;
+        (is_early || !self.has_acted()) && !self.model.disclosure().is_all()
+    }
+
+    /// The text alternative of the picture, with the question or the result.
     #[must_use]
     pub fn summary(&self) -> String {
-        let asks = !self.has_acted() && !self.model.disclosure().is_all();
-        text_alternative(self.model(), asks)
+        text_alternative(self.model(), self.asks())
     }
 
     /// Sets whether animations run.

@@ -12,8 +12,11 @@ pub struct WidgetSpec {
     pub title: &'static str,
     /// One sentence on the misconception that the widget removes.
     pub misconception: &'static str,
-    /// What the reader may find out, and how: it stands where the verdict comes, until the reader acts.
+    /// What the reader may find out, and how: it stands where the verdict comes, see
+    /// [`crate::shell::Shell::asks`].
     pub question: &'static str,
+    /// What the verdict is about.
+    pub judges: Judges,
     /// "What to notice", a sentence each.
     pub notice: &'static [&'static str],
     /// The parts that are shown until the reader opens the rest.
@@ -24,6 +27,15 @@ pub struct WidgetSpec {
     pub buttons: &'static [ButtonSpec],
     /// "What to try": buttons that set the state.
     pub presets: &'static [Preset],
+}
+
+/// What a verdict is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Judges {
+    /// The whole run: while one plays, the question stands in place of the verdict.
+    Run,
+    /// The shown moment of the run.
+    Moment,
 }
 
 /// A button with a single action.

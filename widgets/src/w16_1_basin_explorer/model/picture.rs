@@ -3,7 +3,7 @@
 use ch16_lab::basin::{BasinPlace, Minimum, OffsetAxis};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpVariant, Pair};
-use pr_geom::{Point2, SE2};
+use pr_geom::{Point2, SE2, math};
 use widget_kit::chart::{Series, TimeChart};
 use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
@@ -191,21 +191,24 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     }
 }
 
-/// Axes that hold the target, and the source at any heading about its sensor: at the first guess, at the truth
-/// and at the end. They stay while the source is dragged.
+/// Axes that hold the target, the source at any heading about its sensor at the first guess and at the truth, and
+/// the source at the end. They stay while the source is dragged.
 pub fn frame(explorer: &BasinExplorer) -> [Axis; 2] {
     if let Some(held) = &explorer.held_frame {
         return held.clone();
     }
     let BasinExplorer { scene, .. } = explorer;
-    let sensors = [
-        scene.guess(&start(&explorer.values)),
-        scene.truth(),
-        explorer.run.outcome.pose,
-    ];
-    // In steps of half a metre, so that a start beside the last one has the same axes.
-    sweep_bounds(scene, &sensors)
-        .map(|[low, high]| Axis::hidden((2.0 * low).floor() / 2.0, (2.0 * high).ceil() / 2.0))
+    let sensors = [scene.guess(&start(&explorer.values)), scene.truth()];
+    let end = scene.source().transformed(&explorer.run.outcome.pose);
+    let [x, y] = sweep_bounds(scene, &sensors);
+    [(x, 0), (y, 1)].map(|([low, high], axis)| {
+        let ends = end.iter().map(|p| [p.x, p.y][axis]);
+        let (low, high) = ends.fold((low, high), |(low, high), at| {
+            (math::min(low, at), math::max(high, at))
+        });
+        // In steps of half a metre, so that a start beside the last one has the same axes.
+        Axis::hidden((2.0 * low).floor() / 2.0, (2.0 * high).ceil() / 2.0)
+    })
 }
 
 /// The result of the run as a ghost, and the path of the sensor and of some points to it.
