@@ -9,7 +9,7 @@ use widget_kit::model::{Activity, Model, Motion, shown_scene};
 use widget_kit::param::MORE;
 use widget_kit::scene::Layer;
 use widget_kit::shell::Shell;
-use widget_kit::spec::{Judges, Preset};
+use widget_kit::spec::{Awaits, Preset};
 use widgets::registry::{MODELS, SHELLS, SPECS, find, names};
 
 use crate::support::{click_at, drawn};
@@ -427,9 +427,10 @@ fn a_verdict_on_a_run_waits_for_its_end() {
         let spec = shell.model().spec();
         shell.finish_work();
         shell.act();
+        assert_eq!(shell.asks(), spec.awaits == Awaits::End, "{}", spec.id);
         let plays = |shell: &Shell| shell.model().is_pressed("play");
         shell.press("play").expect("every widget plays");
-        assert_eq!(shell.asks(), spec.judges == Judges::Run, "{}", spec.id);
+        assert_eq!(shell.asks(), spec.awaits != Awaits::Nothing, "{}", spec.id);
         while shell.asks() && plays(&shell) {
             shell.model_mut().advance(0.25);
         }
@@ -466,6 +467,10 @@ fn the_text_alternative_asks_until_the_reader_acts() {
         }
         assert!(!words.contains(&outcome.verdict), "{}: {words}", spec.id);
         shell.act();
+        if let Some(run) = shell.model().timeline() {
+            let end = shell.model_mut().set(run.param, run.last);
+            end.expect("a timeline takes its end");
+        }
         let words = shell.summary();
         let outcome = shell.model().outcome().in_full();
         assert!(words.ends_with(&outcome), "{}: {words}", spec.id);

@@ -3,7 +3,7 @@
 use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, Named, OneOf, Param};
 use widget_kit::playback::SPEED;
-use widget_kit::spec::{ButtonSpec, DEFAULTS, Judges, PLAY, Preset, WidgetSpec};
+use widget_kit::spec::{Awaits, ButtonSpec, DEFAULTS, PLAY, Preset, WidgetSpec};
 use widget_kit::{one_of, params};
 
 /// The quantity that colours the path.
@@ -164,7 +164,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "Your own robot",
     misconception: "A map that looks right may be wrong.",
     question: "Is a map right because it looks right? Drop a log of your robot, or watch the sample being mapped.",
-    judges: Judges::Moment,
+    awaits: Awaits::Nothing,
     notice: &[
         "The log stays in your browser. It is read there, and nothing of it is sent anywhere.",
         "Loops are sorted by doubt: first those that the rest of the graph contradicts most. Reject one, and the graph is solved again at once.",

@@ -4,7 +4,7 @@ use ch16_lab::procrustes::{Handedness, Shape};
 use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
-use widget_kit::spec::{DEFAULTS, Judges, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::spec::{Awaits, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use widget_kit::{one_of, params};
 
 /// Pairs of the largest scene.
@@ -91,7 +91,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "Turn or mirror image",
     misconception: "The best fit may be a mirror image.",
     question: "Can the best fit be a mirror image? Drag a corner across the middle.",
-    judges: Judges::Run,
+    awaits: Awaits::Rest,
     notice: &[
         "Over a whole turn the trace is one sinusoid: it has one top, and the alignment knows its place in closed form.",
         "Mirror images have a sinusoid of their own. The higher top of the two is the sum of the singular values, and nothing passes it.",

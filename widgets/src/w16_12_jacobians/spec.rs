@@ -4,7 +4,7 @@ use ch16_lab::jacobians::WrongJacobian;
 use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
-use widget_kit::spec::{DEFAULTS, Judges, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::spec::{Awaits, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use widget_kit::{one_of, params};
 
 /// Largest number of steps.
@@ -80,7 +80,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "One graph, solved in four ways",
     misconception: "To converge is not to reach the minimum.",
     question: "A solver came to rest: is it where χ² is least? Drag the loose end, then press Play.",
-    judges: Judges::Moment,
+    awaits: Awaits::Nothing,
     notice: &[
         "With the exact Jacobian each step takes the distance down by some two powers of ten, until only rounding is left.",
         "The Jacobian that is twice too long goes half the way each time, and still ends at the optimum.",

@@ -5,7 +5,7 @@ use ch16_lab::basin::{BasinPlace, OffsetAxis};
 use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
-use widget_kit::spec::{ButtonSpec, DEFAULTS, Judges, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::spec::{Awaits, ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use widget_kit::{one_of, params};
 
 pub(super) use crate::icp_variant::VARIANT;
@@ -155,7 +155,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "Basin explorer",
     misconception: "A small residual proves nothing.",
     question: "How far may you turn the sweep until registration settles on a false place? Drag it, then let it go.",
-    judges: Judges::Run,
+    awaits: Awaits::Rest,
     notice: &[
         "The room is almost square, so a quarter turn is a minimum too: rmse 0.13 m there, 0.03 m at the truth. After half a turn point to plane fits better than at the truth.",
         "Between the right basin and the quarter turn, point to point settles on a third answer.",

@@ -11,7 +11,7 @@ use widget_kit::param::{MORE, OneOf, Param, optional};
 use widget_kit::playback::SPEED;
 use widget_kit::run::{LOOPS, NOISE, seed};
 use widget_kit::spec::{
-    ButtonSpec, DEFAULTS, Judges, PLAY, Preset, RESET, STEP, WidgetSpec, buttons, count,
+    Awaits, ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec, buttons, count,
 };
 use widget_kit::{one_of, params};
 
@@ -404,7 +404,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "The full lap",
     misconception: "A loop does not right every pose.",
     question: "How far is a lap’s map off at its end, and what do loops correct? Press Play, or drag the timeline.",
-    judges: Judges::Moment,
+    awaits: Awaits::Nothing,
     notice: &[
         "The walls seen on the way out and on the way back stand apart, and one loop brings them together: the map's disagreement falls to about a third over the lap.",
         "The typical error over the keyframes hardly changes, and the largest even grows a little: the corridor comes out almost a metre too short, and no loop sees that.",

@@ -4,7 +4,7 @@ use ch16_lab::terrain::TerrainScene;
 use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
-use widget_kit::spec::{ButtonSpec, DEFAULTS, Judges, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::spec::{Awaits, ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use widget_kit::{one_of, params};
 
 /// Largest shift of the maps from the truth in every direction, m.
@@ -274,7 +274,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "Cost terraces",
     misconception: "False minima are in the cost.",
     question: "Where does the ball roll home, and where does it stick? Drag it, and let go.",
-    judges: Judges::Run,
+    awaits: Awaits::End,
     notice: &[
         "Both reliefs hold the same sweep against the same points; only the measure differs. Dark is low, the light comes from the upper left, and the ball rolls into the dark.",
         "A small τ breaks ICP's bowl into terraces and hollows. A ball rests on the next one, however good the solver; the ground beside the relief shows it, with the pit that it did not reach.",

@@ -5,7 +5,7 @@ use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::run::{LOOPS, NOISE, seed};
-use widget_kit::spec::{ButtonSpec, DEFAULTS, Judges, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::spec::{Awaits, ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use widget_kit::{one_of, params};
 
 /// Ticks of a lap.
@@ -59,7 +59,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "Control room",
     misconception: "A fast front end, a slow back end.",
     question: "Which part works when, and what happens at a loop? Press Play, or press a mark on a lane.",
-    judges: Judges::Moment,
+    awaits: Awaits::Nothing,
     notice: &[
         "The front end works at every tick: it predicts by odometry and corrects by one registration. The threshold τ follows how wrong the predictions were.",
         "The back end works only at keyframes, and its big moment is a loop: then old poses move.",

@@ -3,7 +3,7 @@
 use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
-use widget_kit::spec::{ButtonSpec, DEFAULTS, Judges, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::spec::{Awaits, ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use widget_kit::{one_of, params};
 
 /// Poses of the largest graph.
@@ -144,7 +144,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "Pose-graph toy",
     misconception: "Each measurement gives way a little.",
     question: "Which measurement gives way when the springs disagree? Drag a pose, and let it go.",
-    judges: Judges::Moment,
+    awaits: Awaits::Nothing,
     notice: &[
         "Each edge is a spring at rest where its measurement holds. The dotted line shows what is missing, the number on the spring what it costs.",
         "Pull a pose and let go: every Gauss–Newton step is a beat. Draw the green spring tight, and it grows thick and stiff.",

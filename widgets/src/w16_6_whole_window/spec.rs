@@ -5,7 +5,7 @@ use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, Param};
 use widget_kit::params;
 use widget_kit::playback::SPEED;
-use widget_kit::spec::{ButtonSpec, DEFAULTS, Judges, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::spec::{Awaits, ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Largest offset of a start, m.
 pub const OFFSET_SPAN_M: f64 = 1.5;
@@ -72,7 +72,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "The whole window",
     misconception: "Searching all is not scoring all.",
     question: "Can every pose be searched without scoring every pose? Turn the sweep, then press Play.",
-    judges: Judges::Run,
+    awaits: Awaits::End,
     notice: &[
         "A bar is a box of poses, as high as no pose in it can score. Point at one: the true scores of its poses lie below. Boxes are split, and their bars fall towards them.",
         "ICP races from the same start. It is over first, and it stops in whatever minimum it fell into.",

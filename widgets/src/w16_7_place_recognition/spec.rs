@@ -6,7 +6,7 @@ use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::run;
-use widget_kit::spec::{ButtonSpec, DEFAULTS, Judges, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::spec::{Awaits, ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use widget_kit::{one_of, params};
 
 /// An upper bound of the keyframes of a lap.
@@ -98,7 +98,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "Have I been here?",
     misconception: "To look alike is not to be the same.",
     question: "How much may two views differ and still be called the same place? Drag the line in the plot.",
-    judges: Judges::Run,
+    awaits: Awaits::Rest,
     notice: &[
         "Each dot is a pair of places. What lies left of the line is called the same place, whether it is or not.",
         "In the matrix ink is alike. The stripe that runs down to the right is the way back: places in the order in which they were left.",

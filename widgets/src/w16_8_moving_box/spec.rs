@@ -3,7 +3,7 @@
 use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
-use widget_kit::spec::{DEFAULTS, Judges, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::spec::{Awaits, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use widget_kit::{one_of, params};
 
 pub(super) use crate::icp_variant::VARIANT;
@@ -82,7 +82,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "The moving box",
     misconception: "Least squares has no majority.",
     question: "How far does one moved box pull the robot off? Drag the box.",
-    judges: Judges::Run,
+    awaits: Awaits::Rest,
     notice: &[
         "Drag the box. Its pairs all pull the same way, and the walls give way until their many short pulls balance them.",
         "A few centimetres look like noise, and are none: they do not average out.",

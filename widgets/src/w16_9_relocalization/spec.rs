@@ -6,7 +6,7 @@ use widget_kit::disclosure::Opening;
 use widget_kit::param::{MORE, OneOf, Param};
 use widget_kit::playback::SPEED;
 use widget_kit::run;
-use widget_kit::spec::{ButtonSpec, DEFAULTS, Judges, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::spec::{Awaits, ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use widget_kit::{one_of, params};
 
 /// Sides of the plan, m: no world is larger.
@@ -66,7 +66,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "Come back tomorrow",
     misconception: "A map does not say where the robot is.",
     question: "Where does the robot find itself again? Drag it anywhere, then press Play.",
-    judges: Judges::Moment,
+    awaits: Awaits::Nothing,
     notice: &[
         "A ghost is a pose that is not ruled out yet, the larger the better it may fit. What is left of them is where the robot may be.",
         "Where the map was driven, one scan is enough. In a room that it never saw, or in one of two rooms alike, no pose is called reliable before the robot is out of the door.",

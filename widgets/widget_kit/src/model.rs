@@ -78,8 +78,13 @@ pub trait Model {
 
     /// Whether a button has anything to do now; a reader's press of one that has not does nothing.
     fn is_enabled(&self, button: &str) -> bool {
+        button != STEP.id || !self.is_at_end()
+    }
+
+    /// Whether a run is shown at its end.
+    fn is_at_end(&self) -> bool {
         let at_end = |run: Timeline| self.values().number(run.param) >= run.last;
-        button != STEP.id || !self.timeline().is_some_and(at_end)
+        self.timeline().is_some_and(at_end)
     }
 
     /// Advances the playback by that many seconds.

@@ -15,7 +15,7 @@ use crate::palette::{self, Theme};
 use crate::param::ParamError;
 use crate::pointer::{Pointer, TOUCH_REACH_PX};
 use crate::scene::{Aspect, Scene, Tone};
-use crate::spec::{Judges, PLAY};
+use crate::spec::{Awaits, PLAY};
 use crate::surface::PxRect;
 use crate::svg::picture_svg;
 use crate::transform::Transform;
@@ -196,13 +196,16 @@ impl Shell {
         self.first.is_over
     }
 
-    /// Whether the question stands in place of the verdict: until the reader acts, and while a run plays of which the
-    /// verdict is; never with everything open.
+    /// Whether the question stands in place of the verdict: until the reader acts, and while the verdict waits for a
+    /// run; never with everything open.
     #[must_use]
     pub fn asks(&self) -> bool {
-        let plays = self.model.is_pressed(PLAY.id);
-        let is_early = plays && self.model.spec().judges == Judges::Run;
-        (is_early || !self.has_acted()) && !self.model.disclosure().is_all()
+        let waits = match self.model.spec().awaits {
+            Awaits::Nothing => false,
+            Awaits::Rest => self.model.is_pressed(PLAY.id),
+            Awaits::End => !self.model.is_at_end(),
+        };
+        (waits || !self.has_acted()) && !self.model.disclosure().is_all()
     }
 
     /// The text alternative of the picture, with the question or the result.

@@ -15,8 +15,8 @@ pub struct WidgetSpec {
     /// What the reader may find out, and how: it stands where the verdict comes, see
     /// [`crate::shell::Shell::asks`].
     pub question: &'static str,
-    /// What the verdict is about.
-    pub judges: Judges,
+    /// What of a run the verdict waits for.
+    pub awaits: Awaits,
     /// "What to notice", a sentence each.
     pub notice: &'static [&'static str],
     /// The parts that are shown until the reader opens the rest.
@@ -29,13 +29,15 @@ pub struct WidgetSpec {
     pub presets: &'static [Preset],
 }
 
-/// What a verdict is about.
+/// What of a run a verdict waits for; until then the question stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Judges {
-    /// The whole run: while one plays, the question stands in place of the verdict.
-    Run,
-    /// The shown moment of the run.
-    Moment,
+pub enum Awaits {
+    /// Nothing: it judges the shown moment.
+    Nothing,
+    /// That none plays: the picture of any other moment shows what it judges.
+    Rest,
+    /// Its end: only there the picture shows what it judges.
+    End,
 }
 
 /// A button with a single action.

@@ -11,7 +11,7 @@ use widget_kit::scene::{
     Aspect, Axis, Bounds, ColorBar, Layer, LegendEntry, Mark, Panel, Raster, RasterCell, Scene,
     Stroke, Tone, Weight,
 };
-use widget_kit::spec::{DEFAULTS, Judges, PLAY, Preset, RESET, STEP, WidgetSpec};
+use widget_kit::spec::{Awaits, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use widget_kit::values::{Changed, Values};
 
 const PARAMS: &[&ParamSpec] = &[
@@ -85,7 +85,7 @@ const SPEC: WidgetSpec = WidgetSpec {
     title: "One of everything",
     misconception: "A test that only looks at the code does not see what the reader sees.",
     question: "Where does it go?",
-    judges: Judges::Moment,
+    awaits: Awaits::Nothing,
     notice: &[
         "The thing follows the pointer.",
         "The timeline plays to its end.",
