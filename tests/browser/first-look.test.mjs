@@ -149,8 +149,7 @@ describe('a widget before the first act', () => {
     await visit('<slam-widget name="w16.6"></slam-widget>', async (tab) => {
       await h.ready(tab);
       const seen = () => tab.evaluate(() => {
-        const widget = document.querySelector('slam-widget');
-        const root = widget.shadowRoot;
+        const root = document.querySelector('slam-widget').shadowRoot;
         return [root.querySelector('.verdict .question') !== null, root.querySelectorAll('.marks i').length > 0];
       });
       for (const _ of [1, 2]) {

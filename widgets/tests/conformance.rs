@@ -428,10 +428,9 @@ fn a_verdict_on_a_run_waits_for_its_end() {
         shell.finish_work();
         shell.act();
         assert_eq!(shell.asks(), spec.awaits == Awaits::End, "{}", spec.id);
-        let plays = |shell: &Shell| shell.model().is_pressed("play");
         shell.press("play").expect("every widget plays");
         assert_eq!(shell.asks(), spec.awaits != Awaits::Nothing, "{}", spec.id);
-        while shell.asks() && plays(&shell) {
+        while shell.asks() && shell.model().is_pressed("play") {
             shell.model_mut().advance(0.25);
         }
         assert!(!shell.asks(), "{}", spec.id);

@@ -3,7 +3,7 @@
 use ch16_lab::basin::{BasinPlace, Minimum, OffsetAxis};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpVariant, Pair};
-use pr_geom::{Point2, SE2, math};
+use pr_geom::{Point2, SE2};
 use widget_kit::chart::{Series, TimeChart};
 use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
@@ -199,16 +199,9 @@ pub fn frame(explorer: &BasinExplorer) -> [Axis; 2] {
     }
     let BasinExplorer { scene, .. } = explorer;
     let sensors = [scene.guess(&start(&explorer.values)), scene.truth()];
-    let end = scene.source().transformed(&explorer.run.outcome.pose);
-    let [x, y] = sweep_bounds(scene, &sensors);
-    [(x, 0), (y, 1)].map(|([low, high], axis)| {
-        let ends = end.iter().map(|p| [p.x, p.y][axis]);
-        let (low, high) = ends.fold((low, high), |(low, high), at| {
-            (math::min(low, at), math::max(high, at))
-        });
-        // In steps of half a metre, so that a start beside the last one has the same axes.
-        Axis::hidden((2.0 * low).floor() / 2.0, (2.0 * high).ceil() / 2.0)
-    })
+    // In steps of half a metre, so that a start beside the last one has the same axes.
+    sweep_bounds(scene, &sensors, Some(&explorer.run.outcome.pose))
+        .map(|[low, high]| Axis::hidden((2.0 * low).floor() / 2.0, (2.0 * high).ceil() / 2.0))
 }
 
 /// The result of the run as a ghost, and the path of the sensor and of some points to it.

@@ -97,7 +97,7 @@ fn icp_path(window: &WholeWindow) -> Layer {
 /// Axes that hold the target, and the source at any heading about the truth.
 fn frame(window: &WholeWindow) -> [Axis; 2] {
     let scene = &window.scene;
-    sweep_bounds(scene, &[scene.truth()])
+    sweep_bounds(scene, &[scene.truth()], None)
         .map(|[low, high]| Axis::hidden(low - MARGIN_M, high + MARGIN_M))
 }
 
