@@ -57,7 +57,8 @@ export class FrameGate {
   deviceSize(entry: ResizeObserverEntry): readonly ResizeObserverSize[] {
     const ratio = this.pixelRatio();
     const { width, height } = entry.contentRect;
-    const [exact] = entry.devicePixelContentBoxSize;
+    // No Safari has the property, although TypeScript declares it.
+    const [exact] = (entry as Partial<ResizeObserverEntry>).devicePixelContentBoxSize ?? [];
     // An emulated or reduced ratio is not in the exact size, which otherwise differs by rounding only.
     if (exact !== undefined && Math.abs(exact.inlineSize - width * ratio) < 2) return [exact];
     const [inlineSize, blockSize] = [width * ratio, height * ratio].map(Math.round);
