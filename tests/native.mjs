@@ -14,6 +14,6 @@ export function native(program, ...words) {
   const options = { cwd: ROOT, encoding: /** @type {const} */ ('utf8'), maxBuffer: 1 << 28 };
   const compiled = process.env.SLAM_NATIVE;
   if (compiled !== undefined) return execFileSync(join(compiled, program), words, options);
-  const cargo = ['run', '--quiet', '--package', program === 'states' ? 'slam_web' : 'slam2d_cli'];
+  const cargo = ['run', '--quiet', '--package', program === 'states' ? 'slam_web' : 'slam2d'];
   return execFileSync('cargo', [...cargo, '--bin', program, '--', ...words], options);
 }

@@ -1,8 +1,8 @@
-// The colours of crates/robot_io/palette.json as CSS custom properties.
+// The colours of crates/robots/robot_io/palette.json as CSS custom properties.
 
 import { readFileSync } from 'node:fs';
 
-const PALETTE = JSON.parse(readFileSync(new URL('../crates/robot_io/palette.json', import.meta.url), 'utf8'));
+const PALETTE = JSON.parse(readFileSync(new URL('../crates/robots/robot_io/palette.json', import.meta.url), 'utf8'));
 
 /** The shade of each colour, by name, in the theme `light` or `dark`. */
 export function shades(theme) {

@@ -143,7 +143,7 @@ it('the SCORM package has every file that its manifest and exercises need', asyn
   const folder = mkdtempSync(join(tmpdir(), 'scorm-'));
   try {
     const target = join(folder, 'exercises.zip');
-    execFileSync(process.execPath, [fileURLToPath(new URL('../../web/scorm.mjs', import.meta.url)), h.DIST, target]);
+    execFileSync(process.execPath, [fileURLToPath(new URL('../../teaching/scorm/package.mjs', import.meta.url)), h.DIST, target]);
     const inside = unzipSync(readFileSync(target));
     const manifest = new TextDecoder().decode(inside['imsmanifest.xml']);
     const hrefs = [...manifest.matchAll(/href="([^"?]+)(\?exercise=([^"&]+)[^"]*)?"/g)];

@@ -2,7 +2,7 @@
 //
 //     node tests/browser/large-log.mjs LOG [CANCEL_AT_PERCENT]
 //
-// Takes minutes, and so is no test. `crates/robot_io/recordings/long.py` writes the log. Needs Linux and a finished
+// Takes minutes, and so is no test. `crates/robots/robot_io/recordings/long.py` writes the log. Needs Linux and a finished
 // `cargo xtask build`.
 
 import { readFileSync } from 'node:fs';

@@ -21,7 +21,7 @@ const SQUARE = [
   ...[[0, 0, 0], [4, 0, 1.5707963], [4, 4, 3.1415926], [0, 4, -1.5707963]].map((pose, k) => `VERTEX_SE2 ${k} ${pose.join(' ')}`),
   ...[[0, 1], [1, 2], [2, 3], [3, 0]].map((ends) => `EDGE_SE2 ${ends.join(' ')} 4 0 1.5707963 100 0 0 100 0 100`),
 ].join('\n');
-const RECORDINGS = fileURLToPath(new URL('../../crates/robot_io/recordings/', import.meta.url));
+const RECORDINGS = fileURLToPath(new URL('../../crates/robots/robot_io/recordings/', import.meta.url));
 const LOGS = fileURLToPath(new URL('../../../shared/data/logs/', import.meta.url));
 
 const FIELD = fileURLToPath(new URL('../../../shared/data/field/', import.meta.url));

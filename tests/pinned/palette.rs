@@ -1,4 +1,4 @@
-//! The colours of `crates/robot_io/palette.json` without a meaning in pictures.
+//! The colours of `crates/robots/robot_io/palette.json` without a meaning in pictures.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use super::page::document::{page_style, source};
 /// The shades of each colour, light and dark.
 fn colors() -> BTreeMap<String, [Rgb; 2]> {
     let colors: BTreeMap<String, [String; 2]> =
-        serde_json::from_str(&source("crates/robot_io/palette.json")).expect("it is JSON");
+        serde_json::from_str(&source("crates/robots/robot_io/palette.json")).expect("it is JSON");
     let parse = |shade: String| {
         let number = u32::from_str_radix(&shade[1..], 16).expect("#rrggbb");
         [(number >> 16) as u8, (number >> 8) as u8, number as u8]
@@ -72,7 +72,7 @@ fn the_styles_declare_no_colour_of_their_own_and_use_none_that_is_missing() {
         let is_declared = style.contains(&format!("  --{name}: "));
         assert!(
             colors.contains_key(name) || lengths.contains(&name) || is_declared,
-            "--{name} is no colour of crates/robot_io/palette.json"
+            "--{name} is no colour of crates/robots/robot_io/palette.json"
         );
     }
 }

@@ -1,4 +1,4 @@
-//! What `docs/teaching` says: its figures are those of the page, and its links show what they promise.
+//! What `teaching/guide` says: its figures are those of the page, and its links show what they promise.
 
 use crate::page::document::{Document, companion, source};
 use crate::page::widgets::Widgets;
@@ -6,7 +6,7 @@ use crate::page::widgets::Widgets;
 const PAGES: [&str; 3] = ["widgets", "lectures", "questions"];
 
 fn text(page: &str) -> String {
-    source(&format!("docs/teaching/{page}.md"))
+    source(&format!("teaching/guide/{page}.md"))
 }
 
 /// The page's are compared with the core.

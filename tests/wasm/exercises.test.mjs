@@ -22,7 +22,7 @@ it('gives each question of the page an id', () => {
 });
 
 it('slam2d mark has the questions of the page', () => {
-  const marked = JSON.parse(readFileSync(new URL('../../crates/slam2d_cli/src/mark/exercises.json', import.meta.url), 'utf8'));
+  const marked = JSON.parse(readFileSync(new URL('../../crates/robots/slam2d/src/mark/exercises.json', import.meta.url), 'utf8'));
   assert.deepEqual(marked, readExercises(page), 'run cargo xtask build, which writes the file, and commit it');
 });
 

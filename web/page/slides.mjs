@@ -1,5 +1,5 @@
 // slides.html: the chapter for a class. Each section of the pages has a slide of its formulas and one of a derivation, each
-// of its widgets a slide and each question about a widget another, with the widget. The script of docs/teaching/widgets.md
+// of its widgets a slide and each question about a widget another, with the widget. The script of teaching/guide/widgets.md
 // is the speaker's note.
 
 import { escapeHtml } from '../html.mjs';

@@ -1,6 +1,6 @@
 // After a jump to a widget elsewhere on the page: a button that returns to the sentence.
 
-import { accent } from '../../crates/robot_io/palette.json';
+import { accent } from '../../crates/robots/robot_io/palette.json';
 import { create } from './dom';
 
 const STYLE = `

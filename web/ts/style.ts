@@ -1,6 +1,6 @@
 // The style of the shadow tree. The page sets width and margins of the element.
 
-import { accent, bad, fair, faint, good, ink, measurement, paper, prior, soft } from '../../crates/robot_io/palette.json';
+import { accent, bad, fair, faint, good, ink, measurement, paper, prior, soft } from '../../crates/robots/robot_io/palette.json';
 
 export const STYLE = `
 :host { display: block; position: relative; color-scheme: light; }

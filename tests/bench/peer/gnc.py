@@ -1,7 +1,7 @@
 """Graduated non-convexity beside GTSAM's, on recorded graphs with false loops added.
 
     pip install gtsam
-    cargo build --release -p slam2d_cli
+    cargo build --release -p slam2d
     python3 tests/bench/peer/gnc.py ../shared/data/graphs/{intel,csail,m3500,ring}.g2o
 
 Each graph gets 10, 30 and 50 % of its loops once more as false ones, by five seeds: two poses

@@ -3,7 +3,7 @@
 // The build draws the gallery by it, the page the reader's own flat. One file serves both themes: a picture follows
 // the colour scheme of what holds it.
 
-import palette from '../../../crates/robot_io/palette.json';
+import palette from '../../../crates/robots/robot_io/palette.json';
 
 /** A table of the widget, as it exports it. */
 export interface Csv {

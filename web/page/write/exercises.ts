@@ -1,7 +1,7 @@
 // The functions that a reader writes: signature, help, and tests whose results are sentences with numbers.
 //
 // Points are typed arrays x0, y0, x1, y1, …; a motion is [x, y, θ] in m, m, rad. The expected numbers are by hand, as in
-// exercises/tests.
+// teaching/exercises/tests.
 
 /** One call of the reader's function, and what to say of its result. */
 export interface Trial {

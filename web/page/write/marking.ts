@@ -1,5 +1,5 @@
 // The tests of the written functions for `slam2d mark`, whose engine calls them. The build bundles this into
-// crates/slam2d_cli/src/mark/written.js. Arguments and results pass as text, because the student's code has a realm of its own.
+// crates/robots/slam2d/src/mark/written.js. Arguments and results pass as text, because the student's code has a realm of its own.
 
 import { EXERCISES } from './exercises';
 

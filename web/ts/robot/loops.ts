@@ -11,7 +11,7 @@ export interface LoopsHost {
   decide(request: string): void;
 }
 
-/** `Evidence` of web/robot/src/update.rs. */
+/** `Evidence` of crates/robots/worker/src/update.rs. */
 interface Evidence {
   count: number;
   loops: Loop[];

@@ -2,7 +2,7 @@
 
 /**
  * One part of the worker's state, which replaces an earlier one of its kind: for the widget's model the bytes of a report
- * (crates/log_messages), for the page a text (web/robot/src/update.rs).
+ * (crates/robots/log_messages), for the page a text (crates/robots/worker/src/update.rs).
  */
 export interface Delivery {
   kind: string;

@@ -9,7 +9,7 @@
 //!
 //! # Numbers
 //!
-//! Ring and edges: `crates/ch16_lab/src/jacobians.rs`.
+//! Ring and edges: `crates/chapter/ch16_lab/src/jacobians.rs`.
 //!
 //! # Simplified
 //!

@@ -8,7 +8,7 @@
 //!
 //! # Numbers
 //!
-//! Sensor, thinning and the radius of success: `crates/ch16_lab/src/basin/scene.rs`.
+//! Sensor, thinning and the radius of success: `crates/chapter/ch16_lab/src/basin/scene.rs`.
 //!
 //! # Simplified
 //!

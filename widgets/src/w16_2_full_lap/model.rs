@@ -11,7 +11,7 @@
 //!
 //! # Numbers
 //!
-//! World, laser and odometry: `crates/pr_sim`; the estimator: `SlamConfig::chapter`.
+//! World, laser and odometry: `crates/core/pr_sim`; the estimator: `SlamConfig::chapter`.
 //!
 //! # Simplified
 //!

@@ -13,7 +13,7 @@
 //!
 //! # Numbers
 //!
-//! Scenes, noise and cells: `crates/ch16_lab/src/terrain/scene.rs`.
+//! Scenes, noise and cells: `crates/chapter/ch16_lab/src/terrain/scene.rs`.
 //!
 //! # Simplified
 //!

@@ -7,7 +7,7 @@
 //!
 //! # Numbers
 //!
-//! Scene: `crates/ch16_lab/src/basin/scene.rs`; window and search: `crates/ch16_lab/src/whole_window.rs`.
+//! Scene: `crates/chapter/ch16_lab/src/basin/scene.rs`; window and search: `crates/chapter/ch16_lab/src/whole_window.rs`.
 //!
 //! # Simplified
 //!

@@ -7,7 +7,7 @@
 //!
 //! # Numbers
 //!
-//! The radius of a place and the graded descriptors: `crates/ch16_lab/src/places.rs`.
+//! The radius of a place and the graded descriptors: `crates/chapter/ch16_lab/src/places.rs`.
 //!
 //! # Simplified
 //!

@@ -7,7 +7,7 @@
 //!
 //! # Numbers
 //!
-//! Box, sweeps and noise: `crates/ch16_lab/src/moving_box.rs`.
+//! Box, sweeps and noise: `crates/chapter/ch16_lab/src/moving_box.rs`.
 //!
 //! # Simplified
 //!

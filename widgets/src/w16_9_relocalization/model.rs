@@ -7,7 +7,7 @@
 //!
 //! # Numbers
 //!
-//! Spots and pieces of the search: `crates/ch16_lab/src/relocalization.rs`; the localizer: `LocalizeConfig`.
+//! Spots and pieces of the search: `crates/chapter/ch16_lab/src/relocalization.rs`; the localizer: `LocalizeConfig`.
 //!
 //! # Simplified
 //!

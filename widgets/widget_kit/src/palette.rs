@@ -18,7 +18,7 @@ pub enum Theme {
 
 /// Every colour by its name, `[light, dark]`; the report of a run and the styles of the page and of the element use the
 /// same file. It belongs to the one of them that is published alone.
-const COLORS: &[u8] = include_bytes!("../../../crates/robot_io/palette.json");
+const COLORS: &[u8] = include_bytes!("../../../crates/robots/robot_io/palette.json");
 
 /// The two shades of a colour of the file, looked up at compile time: `"name": ["#rrggbb", "#rrggbb"]`.
 const fn shades(name: &str) -> [Rgb; 2] {
