@@ -11,7 +11,7 @@ export async function writeTypes(schema, path) {
       const doc = [param.help, range(param)].filter(Boolean).join(' ');
       return `  /** ${doc} */\n  ${property(param.id)}: ${type(param)};`;
     });
-    return `/** ${widget.title}: every parameter. */\nexport interface ${stateName(widget)} {\n${fields.join('\n')}\n}\n`;
+    return `/** ${widget.name}: every parameter. */\nexport interface ${stateName(widget)} {\n${fields.join('\n')}\n}\n`;
   });
   const map = schema.map((widget) => `  '${widget.id}': ${stateName(widget)};`);
   const buttons = schema.map((widget) => {
@@ -49,7 +49,7 @@ export async function writeParameterTables(schema, path) {
     );
     return [
       `## ${widget.id} ${widget.title}`,
-      widget.misconception,
+      widget.claim,
       [row(['name', 'on screen', 'values', 'unit', 'default', 'what it does']), row(Array(6).fill('---')), ...params].join('\n'),
       [row(['button', 'on screen', 'what it does']), row(Array(3).fill('---')), ...buttons].join('\n'),
     ].join('\n\n');
@@ -101,7 +101,7 @@ async function writeIfChanged(path, text) {
 const code = (text) => (text === '' ? '' : `\`${text}\``);
 const row = (cells) => `| ${cells.map((cell) => String(cell).replaceAll('|', '\\|')).join(' | ')} |`;
 const property = (id) => (/^[a-z_]\w*$/i.test(id) ? id : `'${id}'`);
-const stateName = (widget) => `${widget.title.replace(/[^A-Za-z]+(.)?/g, (_, c) => (c ?? '').toUpperCase())}State`;
+const stateName = (widget) => `${widget.name.replace(/[^A-Za-z]+(.)?/g, (_, c) => (c ?? '').toUpperCase())}State`;
 
 function type(param) {
   if (param.kind === 'choice') return param.options.map((option) => `'${option.id}'`).join(' | ');

@@ -127,20 +127,22 @@ describe('a handle under the pointer', () => {
 });
 
 describe('a widget before the first act', () => {
-  for (const { id, question } of h.schema) {
-    it(`asks its question, and says a verdict only afterwards: ${id}`, async () => {
+  for (const { id, title, gesture, claim } of h.schema) {
+    it(`asks in its title, and says a verdict only afterwards: ${id}`, async () => {
       await visit(`<slam-widget name="${id}"></slam-widget>`, async (tab) => {
         await h.ready(tab);
         await h.quiet(tab);
         const line = tab.locator('slam-widget .verdict');
-        assert.equal(await line.textContent(), question);
+        assert.equal(await tab.locator('slam-widget .title').textContent(), `${id.slice(1)}${title}`);
+        assert.equal(await line.textContent(), gesture);
         // Without a log there is nothing to judge.
         if (id === 'w16.10') return;
         await tab.evaluate(() => document.querySelector('slam-widget').press('play'));
         await h.quiet(tab);
         const { verdict } = await tab.evaluate(() => document.querySelector('slam-widget').outcome);
         assert.equal(await line.locator('strong').textContent().then((words) => words.slice(2)), verdict);
-        assert.equal(await line.locator('.question').count(), 0);
+        assert.equal(await line.locator('.gesture').count(), 0);
+        assert.equal(await line.locator('.claim').textContent(), claim);
       });
     });
   }
@@ -150,7 +152,7 @@ describe('a widget before the first act', () => {
       await h.ready(tab);
       const seen = () => tab.evaluate(() => {
         const root = document.querySelector('slam-widget').shadowRoot;
-        return [root.querySelector('.verdict .question') !== null, root.querySelectorAll('.marks i').length > 0];
+        return [root.querySelector('.verdict .gesture') !== null, root.querySelectorAll('.marks i').length > 0];
       });
       for (const _ of [1, 2]) {
         assert.deepEqual(await seen(), [true, false]);

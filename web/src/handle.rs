@@ -134,7 +134,7 @@ impl Widget {
         Ok(())
     }
 
-    /// Records that the reader has acted: the verdict takes the place of the question.
+    /// Records that the reader has acted: the verdict takes the place of the gesture.
     pub fn act(&self) {
         self.shared.shell.borrow_mut().act();
         self.shared.request_repaint();
@@ -146,7 +146,7 @@ impl Widget {
         self.shared.shell.borrow().has_acted()
     }
 
-    /// Whether the question stands in place of the verdict.
+    /// Whether the gesture stands in place of the verdict.
     pub fn asks(&self) -> bool {
         self.shared.shell.borrow().asks()
     }

@@ -25,9 +25,10 @@ pub fn widget(model: &dyn Model) -> Value {
         .map(|preset| json!({ "id": preset.id, "label": preset.label, "help": preset.help }));
     json!({
         "id": spec.id,
+        "name": spec.name,
         "title": spec.title,
-        "misconception": spec.misconception,
-        "question": spec.question,
+        "claim": spec.claim,
+        "gesture": spec.gesture,
         "notice": spec.notice,
         "params": spec.params.iter().map(|spec| param(spec)).collect::<Vec<_>>(),
         "buttons": buttons.collect::<Vec<_>>(),

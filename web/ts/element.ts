@@ -49,7 +49,7 @@ export class SlamWidget extends HTMLElement {
   readonly #verdict: VerdictLine;
   #state: State | undefined;
   #isSetUp = false;
-  /** Whether the reader or a program has acted: until then a question stands in place of the verdict. */
+  /** Whether the reader or a program has acted: until then a gesture stands in place of the verdict. */
   #hasActed = false;
   #controls: Controls | undefined;
   #details: DetailList | undefined;
@@ -355,8 +355,8 @@ export class SlamWidget extends HTMLElement {
     parts.rest.append(zoomButtons((view) => this.look(view)), this.#details.element);
     parts.places.tools.append(exportMenu(this, spec.id, parts.status));
     const number = create('span');
-    number.textContent = `${spec.id.replace(/^w/, '')} `;
-    parts.claim.replaceChildren(number, spec.misconception);
+    number.textContent = spec.id.replace(/^w/, '');
+    parts.title.replaceChildren(number, spec.title);
     parts.bar.setAttribute('aria-label', `${spec.title}: controls`);
     parts.frame.setAttribute('aria-label', `Widget ${spec.id.replace(/^w/, '')}: ${spec.title}`);
     parts.summary.textContent = spec.summary;
@@ -571,18 +571,18 @@ export class SlamWidget extends HTMLElement {
     return this.#state?.texts.get(MORE) !== 'off';
   }
 
-  /** Shows the question or the verdict of the picture as drawn; under More its details. */
+  /** Shows the gesture or the verdict of the picture as drawn; under More its details. */
   #showReadouts(): void {
     const outcome = this.#shownOutcome();
     this.#hasActed ||= this.#lifecycle.ask((widget) => widget.hasActed()) === true;
     this.#parts.whole.hidden = this.#lifecycle.ask((widget) => widget.isZoomed()) !== true;
-    if (this.#asks) this.#verdict.ask(this.#state?.spec.question ?? '');
-    else if (outcome !== undefined) this.#verdict.show(outcome);
+    if (this.#asks) this.#verdict.ask(this.#state?.spec.gesture ?? '');
+    else if (outcome !== undefined) this.#verdict.show(outcome, this.#state?.spec.claim ?? '');
     const details = this.#isOpen ? this.#lifecycle.ask((widget) => widget.details()) : undefined;
     if (details !== undefined) this.#details?.show(details);
   }
 
-  /** Whether the question stands in place of the verdict. */
+  /** Whether the gesture stands in place of the verdict. */
   get #asks(): boolean {
     return this.#lifecycle.ask((widget) => widget.asks()) ?? !(this.#hasActed || this.#isOpen);
   }

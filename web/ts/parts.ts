@@ -1,4 +1,4 @@
-// The element's shadow tree: the claim, the picture, Play, the opening control, the verdict, and what More opens.
+// The element's shadow tree: the question, the picture, Play, the opening control, the verdict, and what More opens.
 
 import type { Places } from './controls';
 import { create, stopKeyPropagation } from './dom';
@@ -15,7 +15,7 @@ export const REST = 'rest';
 /** The elements of the shadow tree. */
 export interface Parts {
   frame: HTMLElement;
-  claim: HTMLElement;
+  title: HTMLElement;
   stage: HTMLElement;
   /** Shows a zoomed map completely again. */
   whole: HTMLButtonElement;
@@ -43,7 +43,7 @@ export function build(shadow: ShadowRoot): Parts {
   const picture = create('img', { class: 'picture', alt: '', loading: 'lazy' });
   const progress = create('progress', { max: '1', hidden: '', 'aria-label': 'Loading the widget' });
   const note = create('div', { class: 'note-box', role: 'status' });
-  const claim = create('p', { class: 'claim', part: 'claim' });
+  const title = create('p', { class: 'title', part: 'title' });
   const view = create('div', { class: 'view' });
   const whole = create('button', { type: 'button', class: 'whole', hidden: '' });
   whole.textContent = 'Whole map';
@@ -68,10 +68,10 @@ export function build(shadow: ShadowRoot): Parts {
   const controls = part('controls');
   controls.append(transport, first, tools, verdict);
   bar.append(controls, rest);
-  frame.append(claim, view, note, summary, bar, live);
+  frame.append(title, view, note, summary, bar, live);
   shadow.append(style, frame);
   const places = { transport, first, tools, presets, settings, actions };
-  return { frame, claim, stage, whole, drop, picture, progress, note, bar, controls, places, verdict, rest, summary, live, status };
+  return { frame, title, stage, whole, drop, picture, progress, note, bar, controls, places, verdict, rest, summary, live, status };
 }
 
 /** The error in one sentence, and a button that restarts or reloads. */

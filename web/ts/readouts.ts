@@ -1,4 +1,4 @@
-// The result of a widget in words and numbers: a question or the verdict below the picture, facts, notes and tables under
+// The result of a widget in words and numbers: a gesture or the verdict below the picture, facts, notes and tables under
 // More.
 
 import { create } from './dom';
@@ -14,7 +14,7 @@ export interface Details {
 /** A shape for each standing, in addition to its colour. */
 const SIGNS: Record<Outcome['standing'], string> = { good: '✓', bad: '✗', doubtful: '△', neutral: '○' };
 
-/** Shows the question until the reader acts, and then the verdict: one sentence, and all of them with More. It never gets lower, so that nothing below it jumps. */
+/** Shows the gesture that answers until the reader acts, and then the verdict: one sentence, all of them with More, and what it shows. It never gets lower, so that nothing below it jumps. */
 export class VerdictLine {
   readonly #element: HTMLElement;
   #shown = '';
@@ -23,13 +23,13 @@ export class VerdictLine {
     this.#element = element;
   }
 
-  ask(question: string): void {
-    const line = create('p', { class: 'question' });
-    line.textContent = question;
-    this.#replace(question, line);
+  ask(gesture: string): void {
+    const line = create('p', { class: 'gesture' });
+    line.textContent = gesture;
+    this.#replace(gesture, line);
   }
 
-  show({ standing, verdict, sentence }: Outcome): void {
+  show({ standing, verdict, sentence }: Outcome, claim: string): void {
     const line = create('p');
     const sign = create('span', { 'aria-hidden': 'true' });
     const words = create('strong', { class: standing });
@@ -39,7 +39,7 @@ export class VerdictLine {
     const further = create('span', { class: 'further' });
     further.textContent = sentence.slice(first.length);
     line.append(words, ` ${first}`, further);
-    this.#replace(`${standing} ${verdict} ${sentence}`, line);
+    this.#replace(`${standing} ${verdict} ${sentence}`, line, Object.assign(create('p', { class: 'claim' }), { textContent: claim }));
   }
 
   /** Forgets the height of another width. */
@@ -47,11 +47,11 @@ export class VerdictLine {
     this.#element.style.removeProperty('min-height');
   }
 
-  #replace(shown: string, line: HTMLElement): void {
+  #replace(shown: string, ...lines: HTMLElement[]): void {
     if (this.#shown === shown) return;
     this.#shown = shown;
     const before = this.#element.offsetHeight;
-    this.#element.replaceChildren(line);
+    this.#element.replaceChildren(...lines);
     if (this.#element.offsetHeight < before) this.#element.style.minHeight = `${before}px`;
   }
 }

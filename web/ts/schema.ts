@@ -37,9 +37,13 @@ export interface KeySpec {
 
 export interface WidgetSpec {
   id: string;
+  name: string;
+  /** The question that the widget asks. */
   title: string;
-  misconception: string;
-  question: string;
+  /** What the answer shows. */
+  claim: string;
+  /** The gesture that answers. */
+  gesture: string;
   notice: string[];
   params: ParamSpec[];
   buttons: ButtonSpec[];

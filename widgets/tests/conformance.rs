@@ -384,12 +384,15 @@ fn no_text_overlaps_or_is_cut_off() {
     }
 }
 
-/// No verdict before a trial: a question stands there until the reader acts.
+/// No verdict before a trial: the title asks, and the gesture that answers stands there until the reader acts.
 #[test]
-fn every_widget_has_a_question_and_a_claim_of_one_line() {
+fn every_title_is_a_question_and_every_claim_has_one_line() {
     for spec in SPECS {
-        assert!(spec.question.contains('?'), "{}", spec.id);
-        let claim = spec.misconception;
+        let title = spec.title;
+        let asks_once = title.ends_with('?') && title.matches(['.', '?', '!']).count() == 1;
+        assert!(asks_once && title.len() <= 70, "{}: {title}", spec.id);
+        assert!(!spec.gesture.contains('?'), "{}", spec.id);
+        let claim = spec.claim;
         assert!(
             claim.ends_with('.') && claim.len() <= 46,
             "{}: {claim}",
@@ -437,6 +440,37 @@ fn a_verdict_on_a_run_waits_for_its_end() {
     }
 }
 
+/// What a gesture promises, letting go does.
+#[test]
+fn every_gesture_that_lets_go_plays() {
+    let mut promised = 0;
+    for make in SHELLS {
+        let mut shell = make();
+        let spec = shell.model().spec();
+        if !spec.gesture.contains("let it go") {
+            continue;
+        }
+        promised += 1;
+        shell.finish_work();
+        let scene = shown_scene(shell.model());
+        let model = shell.model_mut();
+        let mut handles = scene.panels.iter().flat_map(|panel| {
+            let places = panel.layers.iter().filter_map(|layer| match layer {
+                Layer::Handle { at, .. } => Some((panel.id, *at)),
+                _ => None,
+            });
+            places.collect::<Vec<_>>()
+        });
+        let held = handles.find_map(|(panel, at)| Some((model.grab(panel, at, [0.1; 2])?, at)));
+        let (handle, [x, y]) = held.unwrap_or_else(|| panic!("{}: no handle", spec.id));
+        model.drag(handle, [x + 0.5, y - 0.3]);
+        model.release();
+        let plays = model.plays_when_let_go(&handle) || model.is_pressed("play");
+        assert!(plays, "{}: {handle:?}", spec.id);
+    }
+    assert_eq!(promised, 7);
+}
+
 /// The text alternative asks where the page asks, and holds the answer back.
 #[test]
 fn the_text_alternative_asks_until_the_reader_acts() {
@@ -453,7 +487,11 @@ fn the_text_alternative_asks_until_the_reader_acts() {
         while shell.model_mut().work().is_busy() {}
         let outcome = shell.model().outcome();
         let words = shell.summary();
-        assert!(words.ends_with(spec.question), "{}: {words}", spec.id);
+        assert!(
+            words.ends_with(&format!("{} {}", spec.title, spec.gesture)),
+            "{}: {words}",
+            spec.id
+        );
         let told = outcome.in_full();
         let numbers = |text: &str| -> Vec<String> {
             let parts = text.split(|letter: char| !(letter.is_ascii_digit() || letter == '.'));

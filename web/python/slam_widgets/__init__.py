@@ -101,13 +101,13 @@ def _range(spec):
 
 
 def _class(widget):
-    """Creates the class of a widget, with its title as name and its parameters as properties."""
-    title = "".join(word[:1].upper() + word[1:] for word in widget["title"].replace("-", " ").split())
+    """Creates the class of a widget, with its name and its parameters as properties."""
+    title = "".join(word[:1].upper() + word[1:] for word in widget["name"].replace("-", " ").split())
     name = _SHORT.get(widget["id"], title.removeprefix("The"))
     ids = {spec["id"].replace("-", "_"): spec["id"] for spec in widget["params"]}
     lines = [f"{attribute}: {_range(_spec(widget['id'], id))}. {_spec(widget['id'], id)['help']}" for attribute, id in ids.items()]
     body = {
-        "__doc__": "\n\n".join([f"{widget['title']} ({widget['id']}). {widget['misconception']}", *lines]),
+        "__doc__": "\n\n".join([f"{widget['name']} ({widget['id']}). {widget['title']}", *lines]),
         "__module__": __name__,
         "_id": widget["id"],
         "_ids": ids,

@@ -161,9 +161,10 @@ pub const WITHOUT_LOG: Opening = Opening {
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.10",
-    title: "Your own robot",
-    misconception: "A map that looks right may be wrong.",
-    question: "Is a map right because it looks right? Drop a log of your robot, or watch the sample being mapped.",
+    name: "Your own robot",
+    title: "Is a map right because it looks right?",
+    claim: "A map that looks right may be wrong.",
+    gesture: "Drop a log of your robot, or watch the sample being mapped.",
     awaits: Awaits::Nothing,
     notice: &[
         "The log stays in your browser. It is read there, and nothing of it is sent anywhere.",

@@ -145,6 +145,10 @@ impl Model for ProcrustesTrace {
         interaction::drag(self, handle, at);
     }
 
+    fn plays_when_let_go(&self, handle: &Handle) -> bool {
+        handle.panel == panel::POINTS
+    }
+
     fn reveal(&mut self) {
         self.asks = false;
     }

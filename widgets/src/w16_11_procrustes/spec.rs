@@ -88,9 +88,10 @@ params! {
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.11",
-    title: "Turn or mirror image",
-    misconception: "The best fit may be a mirror image.",
-    question: "Can the best fit be a mirror image? Drag a corner across the middle.",
+    name: "Turn or mirror image",
+    title: "Can the best fit be a mirror image?",
+    claim: "The best fit may be a mirror image.",
+    gesture: "Drag a corner across the middle, and let it go.",
     awaits: Awaits::Rest,
     notice: &[
         "Over a whole turn the trace is one sinusoid: it has one top, and the alignment knows its place in closed form.",

@@ -30,7 +30,7 @@ use widget_kit::spec::WidgetSpec;
 use widget_kit::values::Values;
 
 use crate::w16_12_jacobians::spec::{
-    BIAS, BIAS_STEP_DEG, CURVE, MAX_BIAS_DEG, MAX_STEPS, PARAMS, SPEC, STEPS,
+    BIAS, BIAS_STEP_DEG, CURVE, LEAST_DRAGGED_DEG, MAX_BIAS_DEG, MAX_STEPS, PARAMS, SPEC, STEPS,
 };
 
 /// Names of the panels.
@@ -129,6 +129,7 @@ impl WrongJacobians {
         };
         let nearest = steps
             .map(|step| step * BIAS_STEP_DEG)
+            .filter(|bias_deg| *bias_deg >= LEAST_DRAGGED_DEG)
             .min_by(|a, b| away(a).total_cmp(&away(b)));
         if let Some(bias_deg) = nearest.filter(|bias_deg| *bias_deg != self.values.get(&BIAS)) {
             self.values.put(&BIAS, bias_deg);
@@ -224,5 +225,9 @@ impl Model for WrongJacobians {
             self.values
                 .put(&STEPS, dragged_to(handle, at).min(self.last() as f64));
         }
+    }
+
+    fn plays_when_let_go(&self, handle: &Handle) -> bool {
+        handle.panel == panel::GRAPHS
     }
 }

@@ -13,6 +13,9 @@ pub const MAX_STEPS: usize = 40;
 /// Largest contradiction of an edge, °.
 pub const MAX_BIAS_DEG: f64 = 10.0;
 
+/// The least contradiction that a drag leaves, °: without one all solvers agree, and there is nothing to see.
+pub const LEAST_DRAGGED_DEG: f64 = 2.0;
+
 /// Step of the contradiction, °.
 pub const BIAS_STEP_DEG: f64 = 0.5;
 
@@ -77,10 +80,11 @@ params! {
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.12",
-    title: "One graph, solved in four ways",
-    misconception: "To converge is not to reach the minimum.",
-    question: "A solver came to rest: is it where χ² is least? Drag the loose end, then press Play.",
-    awaits: Awaits::Nothing,
+    name: "One graph, solved in four ways",
+    title: "A solver came to rest: is it where χ² is least?",
+    claim: "To converge is not to reach the minimum.",
+    gesture: "Drag the loose end, and let it go.",
+    awaits: Awaits::Rest,
     notice: &[
         "With the exact Jacobian each step takes the distance down by some two powers of ten, until only rounding is left.",
         "The Jacobian that is twice too long goes half the way each time, and still ends at the optimum.",

@@ -434,6 +434,10 @@ impl Model for BasinExplorer {
         }
     }
 
+    fn plays_when_let_go(&self, handle: &Handle) -> bool {
+        handle.panel == panel::SWEEPS
+    }
+
     fn set_motion(&mut self, motion: Motion) {
         if let Some(end) = self.playback.set_motion(motion, self.last() as f64) {
             self.values.put(&ITERATION, end);

@@ -152,9 +152,10 @@ params! {
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.1",
-    title: "Basin explorer",
-    misconception: "A small residual proves nothing.",
-    question: "How far may you turn the sweep until registration settles on a false place? Drag it, then let it go.",
+    name: "Basin explorer",
+    title: "How far may you turn a sweep before it settles on a false place?",
+    claim: "A small residual proves nothing.",
+    gesture: "Drag the sweep, then let it go.",
     awaits: Awaits::Rest,
     notice: &[
         "The room is almost square, so a quarter turn is a minimum too: rmse 0.13 m there, 0.03 m at the truth. After half a turn point to plane fits better than at the truth.",

@@ -304,6 +304,11 @@ impl Model for FullLap {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        if id == PLAY.id && self.own.is_dragged() {
+            // The lap goes on without the loop that was dragged, and the words are about the lap again.
+            self.undo();
+            self.own.let_go();
+        }
         let now = self.tick() as f64;
         if let Some(position) = self.playback.press(id, now, self.last()) {
             if position != now {

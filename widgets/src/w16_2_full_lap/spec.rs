@@ -401,9 +401,10 @@ const BUTTONS: &[&[ButtonSpec]] = &[
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.2",
-    title: "The full lap",
-    misconception: "A loop does not right every pose.",
-    question: "How far is a lap’s map off at its end, and what do loops correct? Press Play, or drag the timeline.",
+    name: "The full lap",
+    title: "How far is a lap’s map off at its end, and what do loops correct?",
+    claim: "A loop does not right every pose.",
+    gesture: "Press Play, or drag the timeline.",
     awaits: Awaits::Nothing,
     notice: &[
         "The walls seen on the way out and on the way back stand apart, and one loop brings them together: the map's disagreement falls to about a third over the lap.",

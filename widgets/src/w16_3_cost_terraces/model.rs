@@ -58,8 +58,6 @@ pub struct CostTerraces {
     morph: Morph,
     playback: Playback,
     hover_m: Option<[f64; 2]>,
-    /// Whether the ball is held: it waits at the drop, and rolls when it is let go.
-    held: bool,
 }
 
 impl Default for CostTerraces {
@@ -74,7 +72,6 @@ impl Default for CostTerraces {
             values,
             playback: Playback::default(),
             hover_m: None,
-            held: false,
         }
     }
 }
@@ -237,16 +234,12 @@ impl Model for CostTerraces {
             self.put("probe-y", probe[1]);
             self.playback.pause();
             self.go_to(0.0);
-            self.held = true;
             self.follow();
         }
     }
 
-    fn release(&mut self) {
-        if core::mem::take(&mut self.held) {
-            let start = self.playback.toggle(0.0, END_PERCENT);
-            self.go_to(start);
-        }
+    fn plays_when_let_go(&self, _handle: &Handle) -> bool {
+        true
     }
 
     fn hover(&mut self, panel: &str, at: Option<[f64; 2]>) {

@@ -271,9 +271,10 @@ params! {
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.3",
-    title: "Cost terraces",
-    misconception: "False minima are in the cost.",
-    question: "Where does the ball roll home, and where does it stick? Drag it, and let go.",
+    name: "Cost terraces",
+    title: "Where does the ball roll home, and where does it stick?",
+    claim: "False minima are in the cost.",
+    gesture: "Drag the ball, and let it go.",
     awaits: Awaits::End,
     notice: &[
         "Both reliefs hold the same sweep against the same points; only the measure differs. Dark is low, the light comes from the upper left, and the ball rolls into the dark.",

@@ -56,9 +56,10 @@ params! {
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.4",
-    title: "Control room",
-    misconception: "A fast front end, a slow back end.",
-    question: "Which part works when, and what happens at a loop? Press Play, or press a mark on a lane.",
+    name: "Control room",
+    title: "Which part works when, and what happens at a loop?",
+    claim: "A fast front end, a slow back end.",
+    gesture: "Press Play, or press a mark on a lane.",
     awaits: Awaits::Nothing,
     notice: &[
         "The front end works at every tick: it predicts by odometry and corrects by one registration. The threshold τ follows how wrong the predictions were.",

@@ -141,9 +141,10 @@ params! {
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.5",
-    title: "Pose-graph toy",
-    misconception: "Each measurement gives way a little.",
-    question: "Which measurement gives way when the springs disagree? Drag a pose, and let it go.",
+    name: "Pose-graph toy",
+    title: "Which measurement gives way when the springs disagree?",
+    claim: "Each measurement gives way a little.",
+    gesture: "Drag a pose, and let it go.",
     awaits: Awaits::Nothing,
     notice: &[
         "Each edge is a spring at rest where its measurement holds. The dotted line shows what is missing, the number on the spring what it costs.",

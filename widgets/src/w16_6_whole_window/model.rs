@@ -301,6 +301,10 @@ impl Model for WholeWindow {
         interaction::drag(self, handle, at);
     }
 
+    fn plays_when_let_go(&self, _handle: &Handle) -> bool {
+        true
+    }
+
     fn tap(&mut self, panel: &str, at: [f64; 2], _reach: [f64; 2]) {
         self.look_at(picture::box_at(self, panel, at));
     }

@@ -69,9 +69,10 @@ params! {
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.6",
-    title: "The whole window",
-    misconception: "Searching all is not scoring all.",
-    question: "Can every pose be searched without scoring every pose? Turn the sweep, then press Play.",
+    name: "The whole window",
+    title: "Can every pose be searched without scoring every pose?",
+    claim: "Searching all is not scoring all.",
+    gesture: "Turn the sweep, and let it go.",
     awaits: Awaits::End,
     notice: &[
         "A bar is a box of poses, as high as no pose in it can score. Point at one: the true scores of its poses lie below. Boxes are split, and their bars fall towards them.",

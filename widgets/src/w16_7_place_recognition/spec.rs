@@ -95,9 +95,10 @@ params! {
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.7",
-    title: "Have I been here?",
-    misconception: "To look alike is not to be the same.",
-    question: "How much may two views differ and still be called the same place? Drag the line in the plot.",
+    name: "Have I been here?",
+    title: "How much may two views of one place differ?",
+    claim: "To look alike is not to be the same.",
+    gesture: "Drag the line in the plot.",
     awaits: Awaits::Rest,
     notice: &[
         "Each dot is a pair of places. What lies left of the line is called the same place, whether it is or not.",

@@ -79,9 +79,10 @@ params! {
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.8",
-    title: "The moving box",
-    misconception: "Least squares has no majority.",
-    question: "How far does one moved box pull the robot off? Drag the box.",
+    name: "The moving box",
+    title: "How far does one moved box pull the robot off?",
+    claim: "Least squares has no majority.",
+    gesture: "Drag the box.",
     awaits: Awaits::Rest,
     notice: &[
         "Drag the box. Its pairs all pull the same way, and the walls give way until their many short pulls balance them.",

@@ -214,4 +214,8 @@ impl Model for Relocalization {
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
         interaction::drag(self, handle, at);
     }
+
+    fn plays_when_let_go(&self, _handle: &Handle) -> bool {
+        true
+    }
 }

@@ -63,9 +63,10 @@ params! {
 /// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.9",
-    title: "Come back tomorrow",
-    misconception: "A map does not say where the robot is.",
-    question: "Where does the robot find itself again? Drag it anywhere, then press Play.",
+    name: "Come back tomorrow",
+    title: "Where can the robot work out where it is?",
+    claim: "A map does not say where the robot is.",
+    gesture: "Drag the robot anywhere, and let it go.",
     awaits: Awaits::Nothing,
     notice: &[
         "A ghost is a pose that is not ruled out yet, the larger the better it may fit. What is left of them is where the robot may be.",

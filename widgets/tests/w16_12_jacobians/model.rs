@@ -4,7 +4,7 @@ use widget_kit::invariants::assert_reports;
 use widget_kit::model::{Activity, Assessment, Model};
 use widget_kit::scene::Layer;
 use widgets::w16_12_jacobians::model::{WrongJacobians, panel};
-use widgets::w16_12_jacobians::spec::{MAX_STEPS, SPEC};
+use widgets::w16_12_jacobians::spec::{LEAST_DRAGGED_DEG, MAX_STEPS, SPEC};
 
 use crate::support::fact;
 
@@ -209,6 +209,15 @@ fn the_chain_is_bent_by_its_loose_end_and_no_mark_is_ahead_of_the_step() {
     widget.drag(held, wanted);
     assert_eq!(widget.values().number("bias"), 2.5);
     assert_eq!(end(&widget), wanted);
+    // No drag takes the contradiction away, and with it what there is to see.
+    let agreed = {
+        let mut other = WrongJacobians::default();
+        other.set("bias", 0.0).unwrap();
+        end(&other)
+    };
+    widget.drag(held, agreed);
+    assert_eq!(widget.values().number("bias"), LEAST_DRAGGED_DEG);
+    widget.drag(held, wanted);
     widget.set("steps", 5.0).unwrap();
     assert!(widget.grab("graphs", wanted, [0.1; 2]).is_none());
 }

@@ -38,6 +38,11 @@ fn the_cloud_is_dragged_by_its_sensor_and_turned_by_its_handle() {
         "{}",
         value(&harness, "dx")
     );
+    // Letting go plays.
+    let shell = harness.state_mut();
+    assert!(shell.model().is_pressed("play"));
+    shell.press("reset").unwrap();
+    harness.run_steps(2);
     let handle = screen(
         &harness,
         panel::SWEEPS,

@@ -154,6 +154,11 @@ pub trait Model {
     /// Ends the drag.
     fn release(&mut self) {}
 
+    /// Whether letting go of the thing plays the run, if the drag changed a value.
+    fn plays_when_let_go(&self, _handle: &Handle) -> bool {
+        false
+    }
+
     /// A click or a tap at that point of a panel; `reach` is that of [`Model::grab`].
     fn tap(&mut self, _panel: &str, _at: [f64; 2], _reach: [f64; 2]) {}
 
@@ -179,7 +184,7 @@ pub trait Model {
         Vec::new()
     }
 
-    /// Shows what the picture holds back while it asks its question: the reader has acted.
+    /// Shows what the picture holds back while it asks: the reader has acted.
     fn reveal(&mut self) {}
 
     /// Sets whether animations run or jump to their end.
@@ -422,7 +427,8 @@ pub fn shown_scene(model: &dyn Model) -> Scene {
 pub fn text_alternative(model: &dyn Model, asks: bool) -> String {
     let summary = model.summary();
     if asks {
-        format!("{summary} {}", model.spec().question)
+        let spec = model.spec();
+        format!("{summary} {} {}", spec.title, spec.gesture)
     } else {
         format!("{summary} {}", model.outcome().in_full())
     }

@@ -4,7 +4,9 @@ use egui::{CursorIcon, Event, MultiTouchInfo, PointerButton, Pos2, Response, Sen
 
 use crate::model::{Handle, Model};
 use crate::scene::{Layer, Panel};
+use crate::spec::PLAY;
 use crate::transform::Transform;
+use crate::values::Values;
 use crate::zoom::Zoom;
 
 /// Distance within which a mouse grabs something, pixels.
@@ -18,6 +20,8 @@ pub struct Pointer {
     /// The zoom of each map.
     pub zoom: Zoom,
     held: Option<Held>,
+    /// The values as the reader took hold.
+    before: Option<Values>,
     /// Whether the last press was by touch.
     by_touch: bool,
     hovered: Option<(&'static str, [f64; 2])>,
@@ -116,9 +120,25 @@ impl Pointer {
 
     /// Ends every drag.
     pub fn release(&mut self, model: &mut dyn Model) {
-        if let Some(Held::Thing(_)) = self.held.take() {
+        let before = self.before.take();
+        if let Some(Held::Thing(handle)) = self.held.take() {
             model.release();
+            let is_moved = before.is_some_and(|values| values != *model.values());
+            if is_moved && model.plays_when_let_go(&handle) && !model.is_pressed(PLAY.id) {
+                // Every widget plays.
+                let _ = model.press(PLAY.id);
+            }
         }
+    }
+
+    /// Whether a thing is held that plays the run when it is let go.
+    #[must_use]
+    pub fn holds_back(&self, model: &dyn Model) -> bool {
+        let handle = match &self.held {
+            Some(Held::Thing(handle)) => handle,
+            _ => return false,
+        };
+        model.plays_when_let_go(handle)
     }
 
     /// Handles the pointer over one panel.
@@ -205,6 +225,7 @@ impl Pointer {
         is_touch: bool,
     ) {
         self.by_touch = is_touch;
+        self.before = Some(model.values().clone());
         self.held = match model.grab(panel.id, from, reach(to, is_touch)) {
             Some(handle) => Some(Held::Thing(handle)),
             None if self.zoom.is_zoomed(panel.id) => Some(Held::Map {

@@ -183,7 +183,7 @@ impl Shell {
         self.theme = theme;
     }
 
-    /// Records that the reader has acted: the verdict takes the place of the question, and the picture shows the answer.
+    /// Records that the reader has acted: the verdict takes the place of the gesture, and the picture shows the answer.
     pub fn act(&mut self) {
         self.first.is_over = true;
         self.model.reveal();
@@ -196,13 +196,15 @@ impl Shell {
         self.first.is_over
     }
 
-    /// Whether the question stands in place of the verdict: until the reader acts, and while the verdict waits for a
+    /// Whether the gesture stands in place of the verdict: until the reader acts, and while the verdict waits for a
     /// run; never with everything open.
     #[must_use]
     pub fn asks(&self) -> bool {
         let waits = match self.model.spec().awaits {
             Awaits::Nothing => false,
-            Awaits::Rest => self.model.is_pressed(PLAY.id),
+            Awaits::Rest => {
+                self.model.is_pressed(PLAY.id) || self.pointer.holds_back(self.model.as_ref())
+            }
             Awaits::End => !self.model.is_at_end(),
         };
         (waits || !self.has_acted()) && !self.model.disclosure().is_all()

@@ -8,13 +8,14 @@ use crate::param::ParamSpec;
 pub struct WidgetSpec {
     /// Number in the chapter and name in links: `w16.1`.
     pub id: &'static str,
-    /// Title on screen: `Basin explorer`.
+    /// Short name, of which the types of programs are named: `Basin explorer`.
+    pub name: &'static str,
+    /// Title on screen: the question that the reader answers by a gesture.
     pub title: &'static str,
-    /// One sentence on the misconception that the widget removes.
-    pub misconception: &'static str,
-    /// What the reader may find out, and how: it stands where the verdict comes, see
-    /// [`crate::shell::Shell::asks`].
-    pub question: &'static str,
+    /// One sentence on what the answer shows: it comes with the verdict.
+    pub claim: &'static str,
+    /// The gesture that answers: it stands where the verdict comes, see [`crate::shell::Shell::asks`].
+    pub gesture: &'static str,
     /// What of a run the verdict waits for.
     pub awaits: Awaits,
     /// "What to notice", a sentence each.
@@ -29,7 +30,7 @@ pub struct WidgetSpec {
     pub presets: &'static [Preset],
 }
 
-/// What of a run a verdict waits for; until then the question stands.
+/// What of a run a verdict waits for; until then the gesture stands in its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Awaits {
     /// Nothing: it judges the shown moment.

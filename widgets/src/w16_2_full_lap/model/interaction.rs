@@ -16,6 +16,9 @@ const HOVER_M: f64 = 0.3;
 /// The same radius in a plot, as a share of its axes.
 const HOVER_SHARE: f64 = 0.03;
 
+/// A drag joins no keyframes that are at most so many apart: odometry ties them already.
+const NEIGHBOURS: usize = 3;
+
 /// The handle of a keyframe: dragging it creates a loop.
 const KEYFRAME: &str = "keyframe";
 
@@ -164,7 +167,7 @@ pub fn dragged_ends(moment: &LapState, handle: Handle, at: [f64; 2]) -> Option<[
         .filter(|(_, away)| *away <= reach)
         .min_by(|a, b| a.1.total_cmp(&b.1));
     let (to, _) = near?;
-    // A press with little movement is not a drag.
+    // A press with little movement is not a drag, and one between neighbours is a slip.
     let has_left = from < moment.nodes.len() && away(from) > 0.5 * reach;
-    (to != from && has_left).then_some([from, to])
+    (to.abs_diff(from) > NEIGHBOURS && has_left).then_some([from, to])
 }

@@ -76,6 +76,11 @@ impl Own {
         self.dragged.replace(node) != Some(node)
     }
 
+    /// Whether the reader dragged it.
+    pub fn is_dragged(&self) -> bool {
+        self.dragged.is_some()
+    }
+
     /// Ends the drag.
     pub fn let_go(&mut self) {
         self.dragged = None;

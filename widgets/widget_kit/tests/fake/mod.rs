@@ -82,9 +82,10 @@ const PARAMS: &[&ParamSpec] = &[
 
 const SPEC: WidgetSpec = WidgetSpec {
     id: "w0.0",
-    title: "One of everything",
-    misconception: "A test that only looks at the code does not see what the reader sees.",
-    question: "Where does it go?",
+    name: "One of everything",
+    title: "Where does it go?",
+    claim: "A test that only looks at the code does not see what the reader sees.",
+    gesture: "Drag it.",
     awaits: Awaits::Nothing,
     notice: &[
         "The thing follows the pointer.",
