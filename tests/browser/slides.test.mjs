@@ -62,10 +62,15 @@ it('the arrow keys turn a slide, and a widget that has the focus keeps them', as
 
 it('the speaker’s notes follow the slides in a second window, and turn them', async () => {
   await visit('', async (tab) => {
+    assert.deepEqual(await tab.evaluate(() => [...document.querySelectorAll('main > section')]
+      .filter((slide) => !slide.querySelector('template.note')?.content.textContent.trim()).map((slide) => slide.textContent.slice(0, 40))), []);
+    await tab.keyboard.press('ArrowRight');
     const opened = tab.waitForEvent('popup');
     await tab.keyboard.press('n');
     const notes = await opened;
-    await notes.locator('.speaker .then').waitFor();
+    // It opens at the slide that one is on.
+    await notes.locator('.speaker .now', { hasText: /^2 of / }).waitFor();
+    await tab.keyboard.press('ArrowLeft');
     await turnTo(tab, '.figure slam-widget[name="w16.11"]');
     await tab.keyboard.press('PageDown');
     await tab.keyboard.press('PageUp');

@@ -4,6 +4,7 @@ import { cp, readFile, writeFile } from 'node:fs/promises';
 import path from 'node:path';
 
 import { escapeHtml, withPolicy } from '../html.mjs';
+import { FONT_FOLDERS } from '../page/fonts.mjs';
 import { ROOT, cratesOfModule, npmPackage, npmPackagesIn, rustVersion } from './packages.mjs';
 import { squeezed, withTexts } from './texts.mjs';
 
@@ -39,7 +40,8 @@ export async function partsOfWidgets(metafiles) {
 export async function partsOfPage(metafiles) {
   const katex = await npmPackage(path.join(ROOT, 'web/node_modules/katex'));
   const fonts = { ...katex, name: 'KaTeX fonts', licence: 'OFL-1.1', folder: undefined };
-  return grouped({ 'On the chapter’s page': [katex, fonts, ...(await npmPackagesIn(...metafiles))] });
+  const typefaces = await Promise.all(FONT_FOLDERS.map(npmPackage));
+  return grouped({ 'On the chapter’s page': [katex, fonts, ...typefaces, ...(await npmPackagesIn(...metafiles))] });
 }
 
 function grouped(packagesOf) {

@@ -1,5 +1,5 @@
 // Builds the pages of the companion in one directory: HTML with formulas as HTML and MathML, style, scripts, KaTeX's style
-// and fonts, and the page of licences and notices. Pages load nothing from other hosts.
+// and fonts, typefaces, and the page of licences and notices. Pages load nothing from other hosts.
 //
 //     node web/page/build.mjs <out-dir>
 
@@ -17,6 +17,7 @@ import { escapeHtml, withPolicy } from '../html.mjs';
 import { endWithOneSentence } from '../licences/allowed.mjs';
 import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
 import { colorStyle } from '../palette.mjs';
+import { copyFonts } from './fonts.mjs';
 import { foldExercises, frameExercises, readExercises } from './exercises.mjs';
 import { addGallery } from './gallery.mjs';
 import { addListings } from './listings.mjs';
@@ -51,8 +52,9 @@ const { names, metafiles } = await bundleScripts({
   LAP_STORY_FILE: await writeHashed('lap-story.json', story),
   BUILDING_FILE: await writeHashed('building.json', building),
 }, match.answer);
+const fonts = await copyFonts(outDir);
 names.set('page.css', await copyStyle());
-names.set('slides.css', await writeHashed('slides.css', await style('slides.css')));
+names.set('slides.css', await writeHashed('slides.css', fonts + (await style('slides.css'))));
 const slides = slidesPage(pages, scripts, frames, (html) => renderFormulas(html));
 await writeFile(path.join(outDir, 'slides.html'), withPolicy(withNames(slides)));
 await cp(path.join(here, 'write/your-code.html'), path.join(outDir, 'your-code.html'));
@@ -169,7 +171,7 @@ function unescapeHtml(text) {
 /** Writes the style with the colours, and copies the linked table. Returns the name of the style. */
 async function copyStyle() {
   await cp(path.join(here, 'thousand-laps.csv'), path.join(outDir, 'thousand-laps.csv'));
-  return writeHashed('page.css', colorStyle() + (await style('page.css')));
+  return writeHashed('page.css', colorStyle() + fonts + (await style('page.css')));
 }
 
 /** A style sheet with those that it imports. */

@@ -40,7 +40,8 @@ export function slidesPage(pages, scripts, exercises, render) {
 <main>
 <section class="title"><h1>SLAM in two dimensions</h1>
 <p>The arrow keys turn a slide, N opens the speaker’s notes in a second window.</p>
-<p><a href="index.html">The chapter</a></p></section>
+<p><a href="index.html">The chapter</a></p>
+<template class="note"><p>Each widget asks a question: let the class answer it before you drag.</p></template></section>
 ${slides.join('\n')}
 </main>
 <nav class="turn" aria-label="Slides"><button type="button" data-turn="-1" aria-label="Slide before">←</button><output></output><button type="button" data-turn="1" aria-label="Next slide">→</button><button type="button" data-notes>Notes</button></nav>
@@ -74,9 +75,11 @@ function sections(html) {
 
 /** The slides of a section's formulas and of its derivation, if it has them. */
 function formulas({ title, lead, formulas: own, derivation }, render) {
+  const note = `<template class="note"><p>${render(lead)}</p></template>`;
   const one = (heading, words, all) => `<section class="formulas">
 <h1>${heading}</h1>
 ${words}${all.map(render).join('\n')}
+${note}
 </section>`;
   return [
     ...(own.length === 0 ? [] : [one(title, `<p>${render(firstSentence(lead))}</p>\n`, own)]),
@@ -115,6 +118,7 @@ function questions(widget, exercises) {
 <div class="premise">${intro.replace(/<details\b[\s\S]*?<\/details>/g, '')}</div>
 <div>${html}</div>
 <slam-widget name="${widget}"></slam-widget>
+<template class="note"><p>Let the class commit by a show of hands, then press “Commit and see”.</p>${html.match(/<div data-why>([\s\S]*?)<\/div>/)?.[1] ?? ''}</template>
 </section>`));
 }
 

@@ -66,7 +66,7 @@ function turn(number: number): void {
 }
 
 function openNotes(): void {
-  open('?notes', 'notes', 'popup,width=700,height=600');
+  open(`?notes#${at + 1}`, 'notes', 'popup,width=700,height=600');
 }
 
 /** What a key does; widgets and fields keep the arrow keys. */
