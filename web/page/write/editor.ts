@@ -28,7 +28,7 @@ export function edit(place: HTMLElement, text: string, label: string, changed: (
     state: EditorState.create({
       doc: text,
       extensions: [
-        lineNumbers(), history(), drawSelection(), indentOnInput(), bracketMatching(), highlightActiveLine(),
+        lineNumbers(), history(), drawSelection(), indentOnInput(), EditorView.lineWrapping, bracketMatching(), highlightActiveLine(),
         syntaxHighlighting(defaultHighlightStyle), javascript(), keymap.of([...defaultKeymap, ...historyKeymap]), LOOK,
         EditorView.contentAttributes.of({ 'aria-label': label, spellcheck: 'false', autocapitalize: 'off' }),
         EditorView.updateListener.of((update) => {
