@@ -98,7 +98,7 @@ describe('the laps by each matcher', () => {
   const shown = (tab) => tab.locator(`${figure} canvas`).evaluateAll((strips) => strips.map(({ dataset }) => dataset.median));
   const says = (tab) => tab.locator(`${figure} .laps-says li`).allTextContents();
   const guess = async (tab) => {
-    await tab.locator(figure).getByLabel('Your guess').press('ArrowRight');
+    for (const slider of await tab.locator(figure).getByLabel('Your guess').all()) await slider.press('ArrowRight');
     await tab.waitForFunction((id) => document.querySelectorAll(`${id} canvas[data-median]`).length === 6, figure);
   };
 
@@ -109,10 +109,10 @@ describe('the laps by each matcher', () => {
       const [alone, hidden] = await shown(tab);
       assert.match(alone, /^0\.\d\d$/);
       assert.equal(hidden, undefined);
-      assert.match((await says(tab)).join(), /^By how much .* Set your guess\.$/);
+      assert.match((await says(tab)).join(), /^By how much .* Set a guess for each\.$/);
       await guess(tab);
       assert.match((await shown(tab))[1], /^0\.\d\d$/);
-      assert.match((await says(tab))[0], /^Point to point: median /);
+      assert.match((await says(tab))[0], /^Point-to-point: median /);
     });
   });
 
@@ -128,7 +128,7 @@ describe('the laps by each matcher', () => {
       const medians = await shown(tab);
       assert.equal(medians.length, 6);
       assert.equal(medians[2], rms('matcher=p2l&normals=4.2'));
-      await tab.locator(`${figure} select`).first().selectOption('that error ÷ the graph’s deviation');
+      await tab.locator(`${figure} select`).first().selectOption('that error ÷ the graph’s standard deviation');
       const capped = await says(tab);
       assert.match(capped[2], /^NDT: root mean square \d/);
       await tab.locator(figure).getByLabel('cap on the information').setChecked(false);

@@ -5,8 +5,16 @@ import { describe, it } from 'node:test';
 import * as h from './harness.mjs';
 
 const visit = h.visitor();
-const reading = (test, options = {}) => visit('', test, { path: '/index.html', options });
-const NAMES = ['nearest', 'slide', 'bells', 'ellipse', 'fill', 'start', 'gate', 'agree', 'push', 'incremental', 'ate', 'rule'];
+const ON = {
+  '/index.html': ['pull', 'slide', 'bells', 'ellipse', 'gate', 'attempts', 'agree', 'push', 'steps', 'rule'],
+  '/reference.html': ['nearest', 'fill', 'start', 'ate', 'incremental'],
+};
+const PAGE_OF = Object.fromEntries(Object.entries(ON).flatMap(([path, names]) => names.map((name) => [name, path])));
+const reading = (test, options = {}, path = '/index.html') => visit('', test, { path, options });
+/** Runs on each page with its figures. */
+const onEach = async (test, options) => {
+  for (const [path, names] of Object.entries(ON)) await reading((tab) => test(tab, names), options, path);
+};
 const figure = (tab, name) => tab.locator(`[data-sketch="${name}"]`);
 /** Opens the fold of a figure, if it is in one. */
 const unfold = (tab, name) => tab.evaluate(
@@ -38,7 +46,7 @@ const changed = (tab, name, says) => tab.waitForFunction(
   ([id, old]) => document.querySelector(`[data-sketch="${id}"] .sketch-says`).textContent !== old, [name, says]);
 
 describe('a small figure', () => {
-  for (const name of NAMES) {
+  for (const [name, path] of Object.entries(PAGE_OF)) {
     it(`follows its slider by keyboard, in picture, value and sentence: ${name}`, async () => {
       await reading(async (tab) => {
         const range = await slider(tab, name);
@@ -55,14 +63,14 @@ describe('a small figure', () => {
         await range.press('Home');
         await changed(tab, name, after.says);
         assert.notEqual((await shown(tab, name)).picture, after.picture);
-      });
+      }, {}, path);
     });
   }
 
   for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 844 }]) {
     it(`keeps its height when its slider first moves, ${viewport.width} px wide`, async () => {
-      await reading(async (tab) => {
-        for (const name of NAMES) {
+      await onEach(async (tab, names) => {
+        for (const name of names) {
           const range = await slider(tab, name);
           await range.scrollIntoViewIfNeeded();
           const height = () => figure(tab, name).locator('.sketch-picture').evaluate((box) => box.offsetHeight);
@@ -81,8 +89,8 @@ describe('a small figure', () => {
 
   for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 844 }]) {
     it(`has its value on one line beside its slider, ${viewport.width} px wide`, async () => {
-      await reading(async (tab) => {
-        for (const name of NAMES) {
+      await onEach(async (tab, names) => {
+        for (const name of names) {
           await slider(tab, name);
           const [lines, isBeside] = await figure(tab, name).locator('output').evaluate((value) => {
             const range = document.createRange();
@@ -113,8 +121,8 @@ describe('a small figure', () => {
   });
 
   it('is a still picture with its sentence without scripts', async () => {
-    await reading(async (tab) => {
-      for (const name of NAMES) {
+    await onEach(async (tab, names) => {
+      for (const name of names) {
         await unfold(tab, name);
         await figure(tab, name).scrollIntoViewIfNeeded();
         const picture = figure(tab, name).locator('img');
@@ -127,7 +135,7 @@ describe('a small figure', () => {
 });
 
 describe('the picture of a figure', () => {
-  for (const name of NAMES) {
+  for (const [name, path] of Object.entries(PAGE_OF)) {
     it(`is dragged by its handle, which follows the pointer: ${name}`, async () => {
       await reading(async (tab) => {
         const input = await slider(tab, name);
@@ -155,7 +163,7 @@ describe('the picture of a figure', () => {
         assert.notEqual(value, from.value);
         assert.ok(Math.hypot(x - to.at[0], y - to.at[1]) < 12, `${x}, ${y} is not at the pointer, ${to.at}`);
         assert.ok(span > 0);
-      }, { viewport: { width: 1100, height: 900 } });
+      }, { viewport: { width: 1100, height: 900 } }, path);
     });
   }
 

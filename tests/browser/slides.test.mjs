@@ -77,7 +77,7 @@ it('the speaker’s notes follow the slides in a second window, and turn them', 
     await notes.locator('.speaker .note li', { hasText: 'A sensor upside down' }).waitFor();
     assert.equal(await notes.locator('slam-widget:visible').count(), 0);
     await notes.keyboard.press('ArrowRight');
-    await tab.getByText('Prove that none passes').waitFor();
+    await tab.getByText('Prove that no trace exceeds').waitFor();
     assert.match(await shownTitle(tab), /^Exercise 1/);
     await notes.close();
   }, SLIDES);
@@ -97,7 +97,7 @@ it('slides.html lets a class predict: the slide of a question has its premise an
   await visit('', async (tab) => {
     await turnTo(tab, 'slam-predict[exercise="16.4"]');
     const question = tab.locator('slam-predict[exercise="16.4"]');
-    await tab.locator('section.shown').getByText('From how far does each error still').waitFor();
+    await tab.locator('section.shown').getByText('How large an error does each variant').waitFor();
     await question.getByRole('radio').first().check();
     await question.getByRole('button', { name: 'Commit and see' }).click();
     await question.getByText(/^(As you predicted|It turns out differently)/).waitFor();

@@ -12,6 +12,7 @@ mod drawings;
 mod figures;
 mod gallery;
 mod length;
+mod notation;
 mod printed;
 mod registrations;
 mod thousand_laps;

@@ -5,16 +5,19 @@
 
 mod agree;
 mod ate;
+mod attempts;
 mod bells;
 mod ellipse;
 mod fill;
 mod gate;
 mod incremental;
 mod nearest;
+mod pull;
 mod push;
 mod rule;
 mod slide;
 mod start;
+mod steps;
 
 use serde_json::{Value, json};
 use widget_kit::palette::Theme;
@@ -67,19 +70,22 @@ pub struct SketchSpec {
 const PLACES: f64 = 120.0;
 
 /// All figures, in the order of the page.
-pub const SKETCHES: [SketchSpec; 12] = [
-    nearest::SKETCH,
+pub const SKETCHES: [SketchSpec; 15] = [
+    pull::SKETCH,
     slide::SKETCH,
     bells::SKETCH,
     ellipse::SKETCH,
-    fill::SKETCH,
-    start::SKETCH,
     gate::SKETCH,
+    attempts::SKETCH,
     agree::SKETCH,
     push::SKETCH,
-    incremental::SKETCH,
-    ate::SKETCH,
+    steps::SKETCH,
     rule::SKETCH,
+    nearest::SKETCH,
+    fill::SKETCH,
+    start::SKETCH,
+    ate::SKETCH,
+    incremental::SKETCH,
 ];
 
 /// Looks up a figure by name.

@@ -6,15 +6,17 @@ and accept the loop if both tests pass: it fits, and its innovation is within th
 Formula. The registration starts at the pose predicted by the graph, and the gate tests against that:
 
     T₀ = T_candidate⁻¹ T_node        T̂ = icp(sweep, submap, T₀)
-    ν = log(T₀⁻¹ T̂)
+    ξ = log(T₀⁻¹ T̂)
     S = gap · diag(σ², σ², σ_θ²)        gap = node − candidate, (σ, σ_θ) = config.drift
-    χ² = νᵀ S⁻¹ ν
+    χ² = ξᵀ S⁻¹ ξ
     accepted if rmse ≤ config.max_rmse, inliers ≥ config.min_inliers, and χ² ≤ config.gate
 
 The edge measures T̂. Its information is regularize(icp_information(p, normals, σ, inflate), 1.0, 2500.0) with
-(σ, inflate) = config.trust, the paired points p of the sweep moved by T̂, and the normals of their partners.
+(σ, inflate) = config.trust, the paired points p of the sweep moved by T̂, and the normals of their matches. Mind what it
+is: the chapter's matrix about the centroid of the pairs, in the axes of the candidate. An edge that is exact would have it
+about the robot, in the axes of `node`.
 
-Rules. ICP is point to point, τ = max(config.radius / 2, 0.6), at most 30 iterations: rustslam2d.icp with
+Rules. ICP is point-to-point, τ = max(config.radius / 2, 0.6), at most 30 iterations: rustslam2d.icp with
 variant="point-to-point", max_distance=τ and max_iterations=30. Its result has pose, rmse, inliers, and pairs, the numbers of
 the paired points in sweep and submap.
 

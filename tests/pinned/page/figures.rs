@@ -4,9 +4,11 @@
 //! names with a slash between them are a quotient. So a new sentence needs a new name, seldom new code here.
 
 mod alignment;
+pub mod attempts;
 mod ball;
 pub mod basin;
 mod consistency;
+mod corridor;
 mod drift;
 mod drops;
 mod graph;
@@ -56,9 +58,10 @@ impl Figures {
             ["example", "points", what] => alignment::value(what),
             ["example", "poses", what] => graph::value(what),
             ["basin", what @ ..] => basin::value(self.basin.get_or_init(BasinScene::new), what),
+            ["attempts", what @ ..] => attempts::value(what),
+            ["corridor", what @ ..] => corridor::value(what),
             ["consistency", what @ ..] => self.consistency.value(what),
             ["rule", what] => rule::value(what),
-            ["drift", "longer"] => Some(drift::LONGER_EDGES as f64),
             ["drift", path, edges] => drift::rejected_percent(path, edges),
             ["ndt", "hessian", what] => ndt::hessian(what),
             ["ndt", start, what] => ndt::value(start, what),

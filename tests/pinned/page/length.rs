@@ -1,11 +1,15 @@
 //! The length of the pages without their exercises and references.
 
-use super::document::companion;
+use super::document::{companion, source};
 
 /// Largest number of words, folded text included; a formula counts as one word, code as none.
 const MAX_WORDS: usize = 9_700;
 /// Largest number of words outside of folded text.
 const MAX_SEEN_WORDS: usize = 6_500;
+
+/// The same for the chapter's page alone.
+const MAX_CHAPTER_WORDS: usize = 6_500;
+const MAX_SEEN_CHAPTER_WORDS: usize = 4_200;
 
 /// The source between two positions without the elements in `dropped`, including nested ones.
 fn without(html: &str, dropped: &str) -> String {
@@ -73,6 +77,15 @@ fn the_pages_are_short_without_their_exercises() {
     println!("{all} words without the exercises, {seen} of them unfolded");
     assert!(all <= MAX_WORDS, "{all} words");
     assert!(seen <= MAX_SEEN_WORDS, "{seen} words unfolded");
+    let chapter = without(&source("index.html"), "article");
+    let chapter = without(&chapter.replace("<tex", " formula <tex"), "tex");
+    let (all, seen) = (words(&chapter), words(&without(&chapter, "details")));
+    println!("{all} words of the chapter, {seen} of them unfolded");
+    assert!(all <= MAX_CHAPTER_WORDS, "{all} words in the chapter");
+    assert!(
+        seen <= MAX_SEEN_CHAPTER_WORDS,
+        "{seen} words in the chapter unfolded"
+    );
     let counted = words("<p>A <b>bold</b> word, 0.24&nbsp;m – and <i>one</i></p><p>more.</p>");
     assert_eq!(counted, 8);
 }

@@ -1,4 +1,4 @@
-// A thousand laps as dots: a row for each setting, by the front end alone and with loops. They run in the page while the
+// A thousand laps as dots: a row for each setting, with the front end alone and with loops. They run in the page while the
 // figure is in view.
 
 import { WorkerPool, type Core } from './worker-pool';
@@ -26,8 +26,8 @@ export interface Plan {
   rows: readonly Row[];
   measure(estimate: Estimate): number;
   axis: Axis;
-  /** What the reader believes that loops take off the median, as a share; the laps with loops are hidden while it is asked for. */
-  guess?: number | 'asked';
+  /** What the reader believes that loops take off the median of each row, as a share; the laps with loops are hidden while it is asked for. */
+  guess?: readonly number[] | 'asked';
   /** Where a lap is opened. */
   lastTick: number;
 }
@@ -96,13 +96,14 @@ export class LapsFigure {
     grid.append(text('', 'laps-corner'), ...KINDS.map((kind) => text(head(kind), 'laps-head')));
     this.#laps = rows.map(() => []);
     this.#falseLaps = [];
-    this.#strips = rows.map(({ name, label }) => {
+    this.#strips = rows.map(({ name, label }, row) => {
       const strips = KINDS.map((kind) => new Strip(kind, label, axis, (lap) => this.#plan.measure(lap[kind]), {
         onPoint: (lap) => this.#describe(lap),
         onChoose: (lap) => this.#open(lap),
       }));
       const [alone, loops] = strips;
-      if (typeof guess === 'number' && loops !== undefined) loops.guess = () => (1 - guess) * (alone?.median ?? NaN);
+      const share = guess === 'asked' ? undefined : guess?.[row];
+      if (share !== undefined && loops !== undefined) loops.guess = () => (1 - share) * (alone?.median ?? NaN);
       const beside = text(name, 'laps-level');
       const wrong = text('', 'laps-false');
       beside.append(wrong);
@@ -162,7 +163,7 @@ export class LapsFigure {
     const { measure, axis } = this.#plan;
     const false_ = wrong > 0 ? `, ${wrong} of them false` : '';
     const loops = `, ${measure(withLoops).toFixed(2)}${axis.unit} with ${closed} loop${closed === 1 ? '' : 's'}${false_}`;
-    this.#about.textContent = `Seed ${seed} ${row.at}: ${measure(frontEnd).toFixed(2)}${axis.unit} by the front end alone`
+    this.#about.textContent = `Seed ${seed} ${row.at}: ${measure(frontEnd).toFixed(2)}${axis.unit} with the front end alone`
       + `${this.#isHidden('withLoops') ? '' : loops}.`;
     this.#link.hidden = false;
     this.#link.textContent = 'Drive it';

@@ -13,13 +13,13 @@ interface Quantity {
   says(laps: readonly Lap[]): string;
 }
 
-const MATCHERS = [['p2p', 'Point to point'], ['p2l', 'Point to plane'], ['ndt', 'NDT']] as const;
+const MATCHERS = [['p2p', 'Point-to-point'], ['p2l', 'Point-to-plane'], ['ndt', 'NDT']] as const;
 const WORLDS = [['the Apartment', ''], ['the ring', '&world=ring&information=exact']] as const;
 
 const metres = (value: number): string => `${value.toFixed(2)}\u00a0m`;
 const percent = (before: number, after: number): string => {
   const fall = Math.round(100 * (1 - after / before));
-  return fall < 0 ? `+${-fall}\u00a0%` : `−${fall}\u00a0%`;
+  return fall < 0 ? `+${-fall}%` : `−${fall}%`;
 };
 
 /** Median and tail without loops and with them. */
@@ -37,7 +37,7 @@ const QUANTITIES: readonly Quantity[] = [
   {
     name: 'rms error',
     measure: (estimate) => estimate.rms,
-    axis: { end: 1.5, unit: ' m', labels: ['0', '0.75', '≥ 1.5 m'] },
+    axis: { end: 3, unit: ' m', labels: ['0', '1.5', '≥ 3 m'] },
     says: (laps) => spreads(laps, (estimate) => estimate.rms),
   },
   {
@@ -51,7 +51,7 @@ const QUANTITIES: readonly Quantity[] = [
     },
   },
   {
-    name: 'that error ÷ the graph’s deviation',
+    name: 'that error ÷ the graph’s standard deviation',
     measure: (estimate) => estimate.middle / estimate.sigma,
     axis: { end: 6, unit: '', labels: ['0', '3', '≥ 6'] },
     says(laps) {
@@ -66,9 +66,13 @@ export class MatchersFigure {
   readonly #quantity = choice('Show', QUANTITIES.map(({ name }) => name));
   readonly #world = choice('in', WORLDS.map(([name]) => name));
   readonly #radius = slider('Radius of the normals', { min: 1.5, max: 6, step: 0.1, value: 4.2 }, (cells) => `${cells.toFixed(1)} cells`);
-  readonly #guess = slider('Your guess: loops take off', { min: 0, max: 80, step: 1, value: 0 }, (share) => (share === 0 ? 'none yet' : `${share} %`));
-  /** The guess of the reader, once the slider is released. */
-  #guessed: number | 'asked' = 'asked';
+  readonly #guesses = MATCHERS.map(([, name]) => slider(
+    `Your guess: loops take off ${name}`,
+    { min: 0, max: 80, step: 1, value: 0 },
+    (share) => (share === 0 ? 'none yet' : `${share}%`),
+  ));
+  /** The guesses of the reader, once a slider is released. */
+  #guessed: readonly number[] | 'asked' = 'asked';
   readonly #cap = document.createElement('input');
   readonly #says = document.createElement('ul');
 
@@ -79,7 +83,7 @@ export class MatchersFigure {
     cap.append(this.#cap, ' cap on the information');
     const controls = document.createElement('div');
     controls.className = 'laps-controls';
-    controls.append(this.#quantity.label, this.#world.label, this.#radius.label, cap, this.#guess.label);
+    controls.append(this.#quantity.label, this.#world.label, this.#radius.label, cap, ...this.#guesses.map(({ label }) => label));
     this.#says.className = 'laps-says';
     figure.querySelector('.laps-place')?.before(controls);
     figure.querySelector('.laps-place')?.after(this.#says);
@@ -88,11 +92,14 @@ export class MatchersFigure {
       control.addEventListener('change', () => this.#laps.show(this.#plan()));
     }
     const guess = (): void => {
-      this.#guessed = this.#guess.input.valueAsNumber / 100 || 'asked';
+      const shares = this.#guesses.map(({ input }) => input.valueAsNumber / 100);
+      this.#guessed = shares.every((share) => share > 0) ? shares : 'asked';
       this.#laps.show(this.#plan());
     };
-    this.#guess.input.addEventListener('change', guess);
-    this.#guess.input.addEventListener('input', () => { if (this.#guessed !== 'asked') guess(); });
+    for (const { input } of this.#guesses) {
+      input.addEventListener('change', guess);
+      input.addEventListener('input', () => { if (this.#guessed !== 'asked') guess(); });
+    }
     this.#report();
   }
 
@@ -104,7 +111,7 @@ export class MatchersFigure {
     const [, world] = WORLDS[this.#world.select.selectedIndex] ?? WORLDS[0];
     const { measure, axis } = this.#shown;
     const shared = `normals=${this.#radius.input.value}&cap=${this.#cap.checked ? 'on' : 'off'}${world}`;
-    const rows = MATCHERS.map(([matcher, name]) => ({ name, label: name, at: `by ${name}`, state: `matcher=${matcher}&${shared}` }));
+    const rows = MATCHERS.map(([matcher, name]) => ({ name, label: name, at: `with ${name}`, state: `matcher=${matcher}&${shared}` }));
     return { rows, measure, axis, guess: this.#guessed, lastTick: world === '' ? 129 : 2000 };
   }
 
@@ -112,7 +119,7 @@ export class MatchersFigure {
   #report(): void {
     if (this.#guessed === 'asked') {
       const question = document.createElement('li');
-      question.textContent = 'By how much do loops lower the median of each matcher? Set your guess.';
+      question.textContent = 'By how much do loops lower the median of each matcher? Set a guess for each.';
       this.#says.replaceChildren(question);
       return;
     }

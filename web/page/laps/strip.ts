@@ -3,7 +3,7 @@
 import type { Lap } from './protocol';
 import { spreadOf } from './spread';
 
-/** The estimate of a strip: by the front end alone, or with loops. */
+/** The estimate of a strip: with the front end alone, or with loops. */
 export type Kind = 'frontEnd' | 'withLoops';
 
 /** The axis of a strip. */

@@ -10,6 +10,7 @@ mod config;
 mod consistency;
 mod digest;
 mod drive;
+mod innovations;
 mod judge;
 mod loop_error;
 mod loop_words;
@@ -25,6 +26,7 @@ mod run;
 mod runner;
 mod settings;
 mod soundness;
+mod tested_loops;
 
 use std::sync::Arc;
 
@@ -37,6 +39,7 @@ pub use config::{CANONICAL_SEED, DriveConfig, GridExtent, LAP_TICKS, LapConfig};
 pub use consistency::{HalfWay, LapConsistency};
 pub use digest::lap_digest;
 pub use drive::{Drive, DriveSimulation, DriveTick, SimulatedSweep};
+pub use innovations::StepInnovations;
 pub use judge::Judge;
 pub use loop_error::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopError, LoopJudgement};
 pub use newest::{NewestLap, NewestStep};
@@ -56,6 +59,7 @@ pub use report::{
 pub use run::LapRun;
 pub use runner::LapRunner;
 pub use settings::LapSettings;
+pub use tested_loops::{AcceptedShares, TestedLoop};
 
 use ch16_slam2d::chapter::ChapterParts;
 use ch16_slam2d::graph::PoseGraph;

@@ -65,7 +65,7 @@ pub fn value(scene: &BasinScene, path: &[&str]) -> Option<f64> {
         ["edge_deg"] => edge_deg(scene, name, settings),
         ["from_deg"] => basin_edge(scene, name, settings, -1),
         ["to_deg"] => basin_edge(scene, name, settings, 1),
-        ["quarter_from_deg"] => quarter_from_deg(scene, name),
+        ["quarter_from_deg"] => quarter_from_deg(scene, name, settings),
         ["iterations_least"] => iterations_in_basin(scene, name, settings)?.min(),
         ["iterations_most"] => iterations_in_basin(scene, name, settings)?.max(),
         ["short", "starts"] => Some(whole_degrees().count() as f64),
@@ -115,7 +115,8 @@ fn config(name: &str, settings: Settings) -> Option<IcpConfig> {
     })
 }
 
-/// The standard deviation of the position in its loosest direction, according to a registration.
+/// The standard deviation of the position in its loosest direction, according to a registration whose heading is unknown
+/// as well.
 fn claimed_std_mm(scene: &BasinScene, name: &str, heading_deg: f64) -> Option<f64> {
     /// Range noise of the scene's sensor, m.
     const SIGMA_M: f64 = 0.012;
@@ -123,8 +124,11 @@ fn claimed_std_mm(scene: &BasinScene, name: &str, heading_deg: f64) -> Option<f6
     let found = register(scene, name, OWN, heading_deg)?;
     let pairs = correspondences(scene.source(), scene.map(), found.pose, &config);
     let information = icp_information(&pairs, SIGMA_M, 1.0);
-    let position = information.fixed_view::<2, 2>(0, 0).into_owned();
-    Some(1e3 / position.symmetric_eigenvalues().min().sqrt())
+    let position = information
+        .try_inverse()?
+        .fixed_view::<2, 2>(0, 0)
+        .into_owned();
+    Some(1e3 * position.symmetric_eigenvalues().max().sqrt())
 }
 
 fn registration(found: &BasinOutcome, what: &str) -> Option<f64> {
@@ -143,9 +147,9 @@ fn whole_degrees() -> impl Iterator<Item = i32> {
 
 /// The smallest whole degree from which, as from each larger one up to 90°, a registration ends a quarter
 /// turn off.
-fn quarter_from_deg(scene: &BasinScene, name: &str) -> Option<f64> {
+fn quarter_from_deg(scene: &BasinScene, name: &str, settings: Settings) -> Option<f64> {
     let is_quarter = |degrees: &i32| {
-        register(scene, name, OWN, f64::from(*degrees))
+        register(scene, name, settings, f64::from(*degrees))
             .is_some_and(|found| found.ending == Minimum::QuarterTurn)
     };
     let last_other = (0..=90).rev().find(|degrees| !is_quarter(degrees))?;

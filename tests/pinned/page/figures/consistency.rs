@@ -4,14 +4,18 @@ use std::collections::HashMap;
 
 use ch16_lab::lap::{
     BuiltInWorld, HalfWay, LapConfig, LapConsistency, LapMatcher, LapRunner, NamedChoice as _,
+    StepInnovations,
 };
 use ch16_slam2d::chapter::InformationFrame;
 
 /// Laps of each case, from seed 1 on: the standard deviation of a scatter is 5 % of it.
 const SEEDS: u32 = 100;
 
-/// The front end and the lap with loops, of laps that differ in their seed only.
-type Case = [LapConsistency; 2];
+/// The front end and the lap with loops, of laps that differ in their seed only, and the steps of each front end.
+type Case = ([LapConsistency; 2], Vec<StepInnovations>);
+
+/// A mean beyond so many standard errors is seldom chance.
+const ALARM: f64 = 2.0;
 
 /// The cases that were asked for.
 #[derive(Default)]
@@ -27,7 +31,17 @@ impl Cases {
         if !self.0.contains_key(&name) {
             self.0.insert(name.clone(), case(world, matcher, bound)?);
         }
-        let [front_end, with_loops] = self.0[&name];
+        let ([front_end, with_loops], steps) = &self.0[&name];
+        let mean = |of: fn(&StepInnovations) -> f64| {
+            steps.iter().map(of).sum::<f64>() / steps.len() as f64
+        };
+        match what {
+            "alarm_percent" => {
+                return Some(100.0 * mean(|lap| f64::from(u8::from(lap.t().abs() > ALARM))));
+            }
+            "step_ratio" => return Some(mean(|lap| lap.ratio)),
+            _ => {}
+        }
         let of = match estimate {
             "front_end" => front_end,
             "with_loops" => with_loops,
@@ -47,6 +61,7 @@ fn case(world: &str, matcher: &str, bound: &str) -> Option<Case> {
     let (world, matcher) = (BuiltInWorld::named(world)?, LapMatcher::named(matcher)?);
     let mut runner = LapRunner::new();
     let mut halves: [Vec<HalfWay>; 2] = Default::default();
+    let mut steps = Vec::new();
     for seed in 1..=SEEDS {
         let config = LapConfig::in_world(world, seed, 1.0)
             .with_matcher(matcher)
@@ -58,7 +73,8 @@ fn case(world: &str, matcher: &str, bound: &str) -> Option<Case> {
         });
         halves[0].extend(record.front_end_half_way());
         halves[1].extend(record.half_way());
+        steps.extend(record.front_end.innovations(record.ticks()));
     }
     let [front_end, with_loops] = halves.each_ref().map(|laps| LapConsistency::of(laps));
-    Some([front_end?, with_loops?])
+    Some(([front_end?, with_loops?], steps))
 }

@@ -6,8 +6,6 @@ use ch16_lab::lap::LapConfig;
 /// Draws of a path: the standard deviation of a share is 0.2 %.
 const DRAWS: usize = 40_000;
 const SEED: u32 = 1;
-/// Edges of the longer path in the text.
-pub const LONGER_EDGES: usize = 35;
 
 /// `straight.22`, `back.22`, `still.22`: right closures that the gate rejects, by path and number of edges, %.
 pub fn rejected_percent(path: &str, edges: &str) -> Option<f64> {

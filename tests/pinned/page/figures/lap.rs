@@ -177,7 +177,7 @@ fn turn(lap: &LapTrace, what: &str) -> Option<f64> {
 }
 
 /// Distance between the start and the farthest keyframe, as a share of the true one.
-fn driven_percent(lap: &LapTrace) -> Option<f64> {
+pub fn driven_percent(lap: &LapTrace) -> Option<f64> {
     let poses = lap.poses(lap.summary.ticks);
     let truths = lap.keyframes.iter().map(|keyframe| keyframe.truth);
     let reach = |pose: SE2, start: SE2| (pose.translation() - start.translation()).norm();

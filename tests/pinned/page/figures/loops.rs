@@ -16,6 +16,8 @@ pub fn attempt(attempt: &RecordedLoopAttempt, lap: &LapTrace, what: &str) -> Opt
         "accepted" => f64::from(u8::from(attempt.accepted())),
         "gate_std_m" => gate_std(0),
         "gate_std_deg" => gate_std(2).to_degrees(),
+        "rms_before" => attempt.effect?.keyframe_rms_m.before,
+        "rms_after" => attempt.effect?.keyframe_rms_m.after,
         "max_shift" => attempt.effect?.max_shift_m,
         "error_m" => lap.loop_error(attempt).position_m,
         "error_deg" => lap.loop_error(attempt).heading_deg,

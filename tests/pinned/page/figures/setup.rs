@@ -1,7 +1,7 @@
 //! The set-up in the text: the Apartment, constants of the lap, the gate.
 
 use ch16_lab::basin::BasinScene;
-use ch16_lab::lap::{LAST_KEYFRAMES, LapConfig};
+use ch16_lab::lap::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LAST_KEYFRAMES, LapConfig};
 use ch16_slam2d::chapter::AdaptiveThreshold;
 use ch16_slam2d::chi_squared::{cdf3, gate_threshold};
 use ch16_slam2d::cloud::PointCloud;
@@ -45,6 +45,8 @@ pub fn value(path: &[&str]) -> Option<f64> {
         ["lap", "keyframe_m"] => config.slam.keyframe_distance_m,
         ["lap", "keyframe_rad"] => config.slam.keyframe_turn_rad,
         ["loop", "every_ordinal"] => loops.attempt_every_nodes as f64,
+        ["loop", "false_m"] => FALSE_LOOP_DISTANCE_M,
+        ["loop", "false_deg"] => FALSE_LOOP_TURN_DEG,
         ["loop", "radius_m"] => loops.radius_m,
         ["loop", "min_gap"] => loops.min_gap_nodes as f64,
         ["loop", "max_rmse_m"] => loops.max_rmse_m,

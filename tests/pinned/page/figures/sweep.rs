@@ -6,9 +6,9 @@ use std::ops::RangeInclusive;
 use std::sync::OnceLock;
 use std::thread;
 
-use ch16_lab::lap::{LapConfig, LapRunner, LapSummary};
+use ch16_lab::lap::{AcceptedShares, LapConfig, LapRecord, LapRunner, LapSummary, TestedLoop};
 use ch16_lab::nudge::{NUDGE, NudgeStatistics, farthest_keyframe_m, nudged};
-use ch16_lab::results::{LapOutcome, LapStatistics, ResultColumn, ResultRow};
+use ch16_lab::results::{LapOutcome, LapStatistics, Percentiles, ResultColumn, ResultRow};
 use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::metrics::position_error_m;
 
@@ -29,9 +29,9 @@ const NOISE: [(&str, f64); 4] = [
 
 /// The laps of all seeds at all noise factors.
 pub struct LapSweep {
-    levels: [LapStatistics; 4],
+    levels: [Laps; 4],
     /// The laps at the largest noise with the exact gate.
-    exact_gate: LapStatistics,
+    exact_gate: Laps,
     nudged: NudgeStatistics,
     canonical: LapOutcome,
 }
@@ -55,19 +55,26 @@ impl LapSweep {
                 .flat_map(|worker| worker.join().expect("no lap panics"))
                 .collect()
         });
-        let level = |k: usize| LapStatistics {
-            outcomes: by_seed.iter().map(|laps| laps.outcomes[k]).collect(),
-        };
+        let level = |k: usize| Laps::new(by_seed.iter().map(|laps| &laps.levels[k]));
         Self {
             levels: [0, 1, 2, 3].map(level),
-            exact_gate: LapStatistics {
-                outcomes: by_seed.iter().map(|laps| laps.exact_gate).collect(),
-            },
+            exact_gate: Laps::new(by_seed.iter().map(|laps| &laps.exact_gate)),
             nudged: NudgeStatistics {
                 moved_m: by_seed.iter().filter_map(|laps| laps.moved_m).collect(),
             },
             canonical: LapOutcome::from_record(&LapRunner::new().run(&LapConfig::default())),
         }
+    }
+
+    /// The attempts to close a loop at the canonical noise, in the order of their seeds.
+    pub fn attempts(&self) -> &[TestedLoop] {
+        &self.levels[ONCE].tested
+    }
+
+    /// The rms errors of the front ends at the canonical noise, in the order of their seeds, m.
+    pub fn front_end_rms_m(&self) -> impl Iterator<Item = f64> + '_ {
+        let laps = self.levels[ONCE].statistics.outcomes.iter();
+        laps.map(|lap| lap.front_end.keyframe_rms_m)
     }
 
     /// `once.with_loops.end_error.median`, `double.loops.0`, `seeds`: statistics by name.
@@ -94,21 +101,99 @@ impl LapSweep {
     }
 }
 
-/// Statistics of laps, by name.
-fn of_laps(laps: &LapStatistics, path: &[&str], canonical: &LapOutcome) -> Option<f64> {
-    let percent = |is_true: fn(&LapOutcome) -> bool| 100.0 * laps.share(is_true);
+/// A lap, its attempts to close a loop, and whether its first loop raised the rms error.
+struct Driven {
+    outcome: LapOutcome,
+    tested: Vec<TestedLoop>,
+    first_raised: Option<bool>,
+}
+
+impl Driven {
+    fn new(record: &LapRecord) -> Self {
+        let mut effects = record.lap.loop_attempts().filter_map(|tried| tried.effect);
+        Self {
+            outcome: LapOutcome::from_record(record),
+            tested: record.lap.tested_loops().collect(),
+            first_raised: effects
+                .next()
+                .map(|effect| effect.keyframe_rms_m.after > effect.keyframe_rms_m.before),
+        }
+    }
+}
+
+/// Laps of one setting.
+struct Laps {
+    statistics: LapStatistics,
+    /// The attempts of all laps, in the order of their seeds.
+    tested: Vec<TestedLoop>,
+    first_raised: Vec<bool>,
+}
+
+impl Laps {
+    fn new<'a>(laps: impl Iterator<Item = &'a Driven> + Clone) -> Self {
+        Self {
+            statistics: LapStatistics {
+                outcomes: laps.clone().map(|lap| lap.outcome).collect(),
+            },
+            tested: laps.clone().flat_map(|lap| lap.tested.clone()).collect(),
+            first_raised: laps.filter_map(|lap| lap.first_raised).collect(),
+        }
+    }
+}
+
+/// `true_accepted_percent`, `false_error.median`: attempts to close a loop, by name.
+pub fn of_attempts(tested: &[TestedLoop], path: &[&str]) -> Option<f64> {
+    let [of_true, of_false] = AcceptedShares::of(tested, |tested| tested.accepted).rates();
+    let closed = tested.iter().filter(|tested| tested.accepted);
+    let mut errors_m: Vec<f64> = closed
+        .filter(|tested| tested.error.is_false())
+        .map(|tested| tested.error.position_m)
+        .collect();
+    errors_m.sort_by(f64::total_cmp);
     Some(match *path {
+        ["attempts"] => tested.len() as f64,
+        ["base_percent"] => {
+            let wrong = tested.iter().filter(|tested| tested.error.is_false());
+            100.0 * wrong.count() as f64 / tested.len() as f64
+        }
+        ["true_accepted_percent"] => 100.0 * of_true,
+        ["false_accepted_percent"] => 100.0 * of_false,
+        ["false_error", "median"] => Percentiles::from_values(errors_m)?.median,
+        ["false_error", "worst"] => *errors_m.last()?,
+        _ => return None,
+    })
+}
+
+/// The error that one lap in a hundred exceeds.
+pub fn p99(mut errors: Vec<f64>) -> f64 {
+    errors.sort_by(f64::total_cmp);
+    errors[errors.len() - 1 - errors.len() / 100]
+}
+
+/// Statistics of laps, by name.
+fn of_laps(all: &Laps, path: &[&str], canonical: &LapOutcome) -> Option<f64> {
+    let laps = &all.statistics;
+    let percent = |is_true: fn(&LapOutcome) -> bool| 100.0 * laps.share(is_true);
+    if let Some(value) = of_attempts(&all.tested, path) {
+        return Some(value);
+    }
+    Some(match *path {
+        ["first_loop_raised_percent"] => {
+            let raised = all.first_raised.iter().filter(|raised| **raised).count();
+            100.0 * raised as f64 / all.first_raised.len() as f64
+        }
+        ["rms_grew_with_false_percent"] => grew_percent(laps, true),
+        ["rms_grew_without_false_percent"] => grew_percent(laps, false),
+        ["front_end", "rms", "p99"] => {
+            let laps = laps.outcomes.iter();
+            p99(laps.map(|lap| lap.front_end.keyframe_rms_m).collect())
+        }
         ["loops", count] => 100.0 * laps.loop_shares().get(count.parse::<usize>().ok()?)?,
         ["accepted"] => laps.accepted_loops() as f64,
         ["false_percent"] => 100.0 * laps.false_acceptances() as f64 / laps.accepted_loops() as f64,
         ["false"] => laps.false_acceptances() as f64,
         ["false_runs_percent"] => 100.0 * laps.false_run_share(),
         ["rms_grew_percent"] => percent(|lap| grew(lap, |lap| lap.keyframe_rms_m)),
-        ["rms_grew_false_percent"] => {
-            let grown = |lap: &&LapOutcome| grew(lap, |lap| lap.keyframe_rms_m);
-            let outcomes: Vec<_> = laps.outcomes.iter().filter(grown).copied().collect();
-            100.0 * LapStatistics { outcomes }.false_run_share()
-        }
         [column, row, "below_canonical_percent"] => {
             let (column, row) = (column_of(column)?, row_of(row)?);
             let canonical = canonical.entry(column, row)?;
@@ -127,14 +212,24 @@ fn of_laps(laps: &LapStatistics, path: &[&str], canonical: &LapOutcome) -> Optio
     })
 }
 
+/// The share of the laps with a false closure, or without one, whose rms error the loops raised, %.
+fn grew_percent(laps: &LapStatistics, with_false: bool) -> f64 {
+    let of_kind = laps
+        .outcomes
+        .iter()
+        .filter(|lap| (lap.false_acceptances > 0) == with_false);
+    let outcomes: Vec<_> = of_kind.copied().collect();
+    100.0 * LapStatistics { outcomes }.share(|lap| grew(lap, |lap| lap.keyframe_rms_m))
+}
+
 /// The laps of one seed.
 struct OfSeed {
     /// One for each noise factor.
-    outcomes: [LapOutcome; 4],
+    levels: [Driven; 4],
     /// Movement of the lap at noise ×1 with its start, if it was tried, m.
     moved_m: Option<f64>,
     /// The lap at the largest noise with the exact gate.
-    exact_gate: LapOutcome,
+    exact_gate: Driven,
 }
 
 /// One runner for all: it reuses the simulation of a seed for all noise factors.
@@ -151,9 +246,9 @@ fn laps(seeds: &[u32]) -> Vec<OfSeed> {
             .clone()
             .with_gate(GateModel::ExactMarginal);
         OfSeed {
-            outcomes: records.each_ref().map(LapOutcome::from_record),
+            levels: records.each_ref().map(Driven::new),
             moved_m,
-            exact_gate: LapOutcome::from_record(&runner.run(&exact)),
+            exact_gate: Driven::new(&runner.run(&exact)),
         }
     };
     seeds.iter().map(of_seed).collect()

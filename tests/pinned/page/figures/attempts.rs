@@ -1,0 +1,129 @@
+//! A thousand laps by point-to-plane: recorded attempts to close a loop, and rms errors of the front end.
+//!
+//! `L seed rms_m` begins a lap, and `chi2 position_m heading_deg fits accepted` is an attempt of it.
+
+use std::sync::OnceLock;
+
+use ch16_lab::lap::{LapConfig, LapMatcher, LapRunner, LoopError, TestedLoop};
+
+use super::sweep::{LapSweep, of_attempts, p99};
+use crate::page::document::source;
+
+/// A recorded lap.
+pub struct Recorded {
+    seed: u32,
+    rms_m: f64,
+    tested: Vec<TestedLoop>,
+}
+
+/// The laps of the file.
+pub fn recorded() -> &'static [Recorded] {
+    static RECORDED: OnceLock<Vec<Recorded>> = OnceLock::new();
+    RECORDED.get_or_init(|| {
+        let mut laps: Vec<Recorded> = Vec::new();
+        for line in source("tests/pinned/sweeps/attempts-p2l.txt").lines() {
+            let words: Vec<&str> = line.split(' ').collect();
+            let number = |k: usize| words[k].parse::<f64>().expect("a number");
+            if words[0] == "L" {
+                laps.push(Recorded {
+                    seed: number(1) as u32,
+                    rms_m: number(2),
+                    tested: Vec::new(),
+                });
+                continue;
+            }
+            laps.last_mut()
+                .expect("a lap begins")
+                .tested
+                .push(TestedLoop {
+                    chi2: number(0),
+                    error: LoopError {
+                        position_m: number(1),
+                        heading_deg: number(2),
+                    },
+                    fits: number(3) > 0.0,
+                    accepted: number(4) > 0.0,
+                });
+        }
+        laps
+    })
+}
+
+/// `p2l.true_accepted_percent`, `p2l.rms.p99`, `p2l.worse_percent`.
+pub fn value(path: &[&str]) -> Option<f64> {
+    let ["p2l", what @ ..] = path else {
+        return None;
+    };
+    let laps = recorded();
+    match *what {
+        ["rms", "p99"] => Some(p99(laps.iter().map(|lap| lap.rms_m).collect())),
+        ["worse_percent"] => {
+            let pairs = laps.iter().zip(LapSweep::shared().front_end_rms_m());
+            let worse = pairs.filter(|(lap, point_m)| lap.rms_m > *point_m).count();
+            Some(100.0 * worse as f64 / laps.len() as f64)
+        }
+        _ => {
+            let tested: Vec<TestedLoop> = laps.iter().flat_map(|lap| lap.tested.clone()).collect();
+            of_attempts(&tested, what)
+        }
+    }
+}
+
+/// A number as it is recorded.
+fn as_recorded(tested: &TestedLoop) -> [String; 3] {
+    let TestedLoop { chi2, error, .. } = tested;
+    [
+        format!("{chi2:.2}"),
+        format!("{:.3}", error.position_m),
+        format!("{:.2}", error.heading_deg),
+    ]
+}
+
+#[test]
+fn recorded_laps_by_point_to_plane_are_those_of_the_core() {
+    let laps = recorded();
+    assert_eq!(laps.len(), 1000);
+    let mut runner = LapRunner::new();
+    // Every fortieth: all of them take a minute.
+    for lap in laps.iter().step_by(40) {
+        let config = LapConfig::with_seed_and_noise(lap.seed, 1.0);
+        let record = runner.run(&config.with_matcher(LapMatcher::PointToPlane));
+        let rms_m = record.front_end.summary.keyframe_rms_m;
+        // 1e-4: the last recorded digit.
+        assert!((lap.rms_m - rms_m).abs() < 1e-4, "seed {}", lap.seed);
+        let tested: Vec<_> = record.lap.tested_loops().collect();
+        assert_eq!(tested.len(), lap.tested.len(), "seed {}", lap.seed);
+        for (found, recorded) in tested.iter().zip(&lap.tested) {
+            assert_eq!(
+                as_recorded(found),
+                as_recorded(recorded),
+                "seed {}",
+                lap.seed
+            );
+            assert_eq!(
+                (found.fits, found.accepted),
+                (recorded.fits, recorded.accepted)
+            );
+        }
+    }
+}
+
+/// The points of the page's figure.
+#[test]
+fn the_attempts_of_the_figure_are_those_of_the_sweep() {
+    let lines: String = LapSweep::shared()
+        .attempts()
+        .iter()
+        .map(|tested| {
+            format!(
+                "{} {}\n",
+                as_recorded(tested).join(" "),
+                u8::from(tested.fits)
+            )
+        })
+        .collect();
+    assert!(
+        source("web/src/sketches/attempts.txt") == lines,
+        "web/src/sketches/attempts.txt has other attempts"
+    );
+}
