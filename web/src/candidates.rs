@@ -78,8 +78,8 @@ impl Candidate {
             submap: submap.map(|point| [point.x, point.y]).collect(),
             sweep: moved.map(|point| [point.x, point.y]).collect(),
             says: format!(
-                "It fits to {:.3} m over {} pairs. After {} nodes it lies {:.2} m and {:.1}° from where the graph \
-                 believes it.",
+                "It fits to {:.3} m over {} pairs. After {} nodes it is {:.2} m and {:.1}° from where the graph \
+                 puts it.",
                 loop_.rmse_m,
                 loop_.inliers,
                 loop_.gap(),
@@ -90,7 +90,7 @@ impl Candidate {
             fits: matches!(loop_.rejection, None | Some(LoopRejection::OutsideGate(_))),
             is_right: !error.is_false(),
             error: format!(
-                "{:.2} m and {:.1}° off the truth",
+                "{:.2} m and {:.1}° from the truth",
                 error.position_m,
                 error.heading_deg.abs()
             ),
@@ -180,7 +180,7 @@ pub fn judged(answers: &[bool], width_px: f32, theme: Theme) -> Value {
     let judged_right = right + OF_EACH - wrong;
     json!({
         "right": judged_right,
-        "svg": scene_svg(&scene, "Right and false ones accepted", "candidates", width_px, theme),
+        "svg": scene_svg(&scene, "True and false ones accepted", "candidates", width_px, theme),
         "says": format!(
             "You took {right} of {OF_EACH} right ones and {wrong} of {OF_EACH} false ones. Both tests, at their threshold \
              of {gate_chi2:.3}, take {gate_right} and {gate_wrong}."
@@ -203,11 +203,11 @@ fn curve([right, wrong]: [usize; 2], [gate_right, gate_wrong]: [usize; 2]) -> Pa
     let most = OF_EACH as f64 + 0.5;
     Panel {
         id: "curve",
-        title: "Right and false ones accepted".to_owned(),
+        title: "True and false ones accepted".to_owned(),
         weight: Weight::Main,
         aspect: Aspect::Free,
         x: Axis::new("false ones accepted", -0.5, most),
-        y: Axis::new("right ones accepted", -0.5, most),
+        y: Axis::new("true ones accepted", -0.5, most),
         layers: vec![
             Layer::line(points.collect(), Stroke::Dotted, Tone::Ink, 2.0),
             Layer::points(

@@ -117,8 +117,8 @@ export class BuildingFigure {
 
 /** Describes the estimate; between two of them the error is unknown. */
 export function wordsAt({ worst_cm: [wheels, walls, loops] }: Building, at: number): string {
-  if (at === 0) return `By the wheels alone: up to ${formatError(wheels)} off.`;
-  if (at === 1) return `Each scan laid on the walls before it: up to ${formatError(walls)} off.`;
-  if (at === LOOPS) return `Places known again, loops closed: up to ${formatError(loops)} off.`;
+  if (at === 0) return `With the wheels alone: up to ${formatError(wheels)} out.`;
+  if (at === 1) return `Each scan aligned with the walls before it: up to ${formatError(walls)} out.`;
+  if (at === LOOPS) return `Places recognized, loops closed: up to ${formatError(loops)} out.`;
   return at < 1 ? 'From the wheels to the walls …' : 'From the walls to the loops …';
 }

@@ -133,7 +133,7 @@ fn picture(place: usize, order: &[usize], filled: &[[usize; 2]]) -> Panel {
     let size = NODES as f64;
     Panel {
         id: "fill",
-        title: format!("The matrix, and {} blocks more in its factor", filled.len()),
+        title: format!("The matrix, and {} more blocks in its factor", filled.len()),
         weight: Weight::Main,
         aspect: Aspect::Equal,
         x: Axis::hidden(-5.0, size + 6.0),

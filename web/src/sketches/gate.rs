@@ -67,7 +67,7 @@ fn at(nodes: f64) -> Shown {
             panels: vec![picture(gap, &config), ends(gap, &config)],
         },
         sentence: format!(
-            "After {gap} nodes the gate reaches {reach_m:.2} m, or {reach_deg:.0}°. The loop’s χ² is {:.2}, and {:.3} may be: {word}.",
+            "After {gap} nodes the gate reaches {reach_m:.2} m, or {reach_deg:.0}°. The loop’s χ² is {:.2}, the threshold {:.3}: {word}.",
             tested.chi2, tested.gate_chi2
         ),
     }
@@ -109,13 +109,13 @@ fn picture(gap: usize, config: &LoopConfig) -> Panel {
     Panel {
         id: "gate",
         title: format!(
-            "What {gap} nodes of drift may come to: {} of {DRIFTS} rejected",
+            "Where {gap} nodes of drift can lead: {} of {DRIFTS} rejected",
             beyond.len()
         ),
         weight: Weight::Main,
         aspect: Aspect::Free,
         x: Axis::new("distance from the prediction (m)", 0.0, REACH_M),
-        y: Axis::new("turn away from it (°)", -REACH_DEG, REACH_DEG),
+        y: Axis::new("heading away from it (°)", -REACH_DEG, REACH_DEG),
         layers: vec![
             Layer::points(places(&within), Mark::Dot, Tone::Prior, 2.0),
             Layer::points(places(&beyond), Mark::Triangle, Tone::Prediction, 3.0),
@@ -197,7 +197,9 @@ mod tests {
         assert!(!accepted(1.0));
         assert!(accepted(22.0));
         assert!(
-            at(22.0).sentence.contains("χ² is 4.24, and 7.815 may be"),
+            at(22.0)
+                .sentence
+                .contains("χ² is 4.24, the threshold 7.815"),
             "{}",
             at(22.0).sentence
         );

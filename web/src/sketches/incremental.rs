@@ -39,7 +39,7 @@ pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "incremental",
     title: "A climb, and an error that it finds",
     slider: Slider {
-        label: "error of the wheels, once around",
+        label: "wheel error, once around",
         unit: " m",
         min: 0.0,
         max: LARGEST_M,
@@ -169,9 +169,9 @@ fn at(error_m: f64) -> Shown {
     let [climbed, pushed, solved] =
         [&paths.climbed, &paths.pushed, &paths.solved].map(|path| paths.worst_m(path));
     let ending = if found_m.abs() <= RIGHT_M {
-        format!("{:.2} m off, at the right hill", found_m.abs())
+        format!("{:.2} m out, on the right hill", found_m.abs())
     } else {
-        format!("{found_m:.2} m off, at the next hill, and no mapper reports it")
+        format!("{found_m:.2} m out, on the next hill, and no mapper reports it")
     };
     Shown {
         sentence: format!(
@@ -207,7 +207,7 @@ fn hills(place: &SearchScene, error_m: f64, found_m: f64) -> Panel {
         title: "The climb".to_owned(),
         weight: Weight::Half,
         aspect: Aspect::Free,
-        x: Axis::new("off along the row (m)", -0.6, 1.7),
+        x: Axis::new("offset along the row (m)", -0.6, 1.7),
         y: Axis::new("log-likelihood", -10.5, 1.0),
         layers: vec![
             line(curve(&motion), Stroke::Dashed, Tone::Prediction),

@@ -176,7 +176,7 @@ fn picture(lap: &Between, left: &SE2) -> Panel {
             ),
         ],
         legend: vec![
-            LegendEntry::mark("the map of the way out", Tone::Measurement, Mark::Cross),
+            LegendEntry::mark("outbound map", Tone::Measurement, Mark::Cross),
             LegendEntry::mark("the next sweeps", Tone::Prior, Mark::Circle),
             LegendEntry::mark("the next poses", Tone::Posterior, Mark::Square),
         ],

@@ -49,8 +49,8 @@ fn at(tie: f64) -> Shown {
     ];
     let fall = |[before, after]: &[Vec<f64>; 2]| fall_percent(before[TIP], after[TIP]);
     let sentence = format!(
-        "Tied at {tie} m, the deviation at the tip should fall by {:.0} %. Over {DRIVES} drives the error there falls by \
-         {:.0} %. Of a bias that all edges share, {:.0} % goes.",
+        "Tied at {tie} m, the standard deviation at the tip should fall by {:.0}%. Over {DRIVES} drives the error there falls by \
+         {:.0}%. A bias that all edges share falls by {:.0}%.",
         fall(&predicted),
         fall(&driven),
         fall(&biased).abs()
@@ -83,7 +83,7 @@ fn walk(tie: usize, [before, after]: &[Vec<f64>; 2], driven: &[Vec<f64>; 2]) -> 
         weight: Weight::Main,
         aspect: Aspect::Free,
         x: Axis::new("along the path, out and back (m)", 0.0, EDGES as f64),
-        y: Axis::new("deviation (m)", 0.0, 0.8),
+        y: Axis::new("std. deviation (m)", 0.0, 0.8),
         layers: vec![
             line(before, Stroke::Dashed, Tone::Prior),
             line(after, Stroke::Solid, Tone::Posterior),
@@ -146,7 +146,7 @@ mod tests {
     fn the_sentence_compares_what_is_predicted_with_what_was_driven() {
         let says = at(0.0).sentence;
         assert!(
-            says.contains("fall by 29 %") && says.contains("0 % goes"),
+            says.contains("fall by 29%") && says.ends_with("falls by 0%."),
             "{says}"
         );
         let driven = fall_percent(

@@ -94,8 +94,8 @@ fn at(shift_m: f64) -> Shown {
             panels: vec![picture(&wall, shift_m), costs(&wall, shift_m)],
         },
         sentence: format!(
-            "{shift_m:.2} m along the wall, a pair costs {to_point:.0} cm² point to point, and {to_plane:.0} cm² \
-             point to plane."
+            "{shift_m:.2} m along the wall, a pair costs {to_point:.0} cm² point-to-point and {to_plane:.0} cm² \
+             point-to-plane."
         ),
     }
 }
@@ -172,9 +172,9 @@ fn costs(wall: &Wall, shift_m: f64) -> Panel {
             Layer::points(vec![[shift_m, now[1]]], Mark::Square, Tone::Posterior, 5.0),
         ],
         legend: vec![
-            LegendEntry::marked_line("point to point", Tone::Ink, Mark::Dot, Stroke::Dotted),
+            LegendEntry::marked_line("point-to-point", Tone::Ink, Mark::Dot, Stroke::Dotted),
             LegendEntry::marked_line(
-                "point to plane",
+                "point-to-plane",
                 Tone::Posterior,
                 Mark::Square,
                 Stroke::Solid,
