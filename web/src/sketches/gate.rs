@@ -109,7 +109,7 @@ fn picture(gap: usize, config: &LoopConfig) -> Panel {
     Panel {
         id: "gate",
         title: format!(
-            "Where {gap} nodes of drift can lead: {} of {DRIFTS} rejected",
+            "Drift over {gap} nodes: {} of {DRIFTS} rejected",
             beyond.len()
         ),
         weight: Weight::Main,
