@@ -18,9 +18,10 @@ use nalgebra::Vector3;
 use pr_geom::{SE2, math};
 use serde::{Deserialize, Serialize};
 
+use self::continuity::{Continuity, Pace};
 use self::piece::Piece;
 use self::report::numbered_after;
-pub use self::report::{LeftOut, PieceFate, PieceReport};
+pub use self::report::{BridgedGap, LeftOut, PieceFate, PieceReport};
 use crate::local_map::LocalMapConfig;
 use crate::localize::StartPose;
 use crate::scan::{Frame, FrameError, LaserScan};
@@ -88,11 +89,13 @@ pub struct Pipeline {
     slam: Option<Slam>,
     scans: Vec<ScanPose>,
     last_odometry: Option<SE2>,
+    pace: Pace,
     /// The estimator after the last scan, before its keyframes were linked again.
     before_finish: Option<SlamSnapshot>,
     /// The scans since an interruption, until they are found on the map.
     piece: Option<Box<Piece>>,
     pieces: Vec<PieceReport>,
+    bridged: Vec<BridgedGap>,
     left_out: Vec<LeftOut>,
     /// Whether the map is that of a session, without a scan of this log.
     is_session: bool,
@@ -149,10 +152,19 @@ impl Pipeline {
             odometry: self.motion(recorded),
             scan: recorded.scan.clone(),
         };
-        if let Some(gap_s) = self.interruption_s(recorded, &frame)? {
-            frame.odometry = None;
-            self.begin_piece(recorded, gap_s);
+        let gap_s = self.gap_s(recorded);
+        match self.continuity(recorded, &frame, gap_s)? {
+            Continuity::Predicted => {}
+            Continuity::Found(motion) => {
+                frame.odometry = Some(motion);
+                self.bridged.push(BridgedGap { stamp_s, gap_s });
+            }
+            Continuity::Interrupted => {
+                frame.odometry = None;
+                self.begin_piece(recorded, gap_s);
+            }
         }
+        let last = self.newest_slam().map(|slam| slam.front_end().estimate());
         let report = match &mut self.piece {
             Some(piece) => piece.step(&frame)?,
             None => {
@@ -164,6 +176,15 @@ impl Pipeline {
                 slam.step(&frame)?
             }
         };
+        if gap_s > 0.0 {
+            let last = last.filter(|_| report.closed_loop().is_none());
+            let motion = last.map(|last| last.between(&report.estimate));
+            let score = report
+                .registration
+                .as_ref()
+                .and_then(|found| found.matched.score);
+            self.pace.add(gap_s, motion, score);
+        }
         self.last_odometry = recorded.odometry;
         self.before_finish = None;
         let (first, slam) = match &self.piece {
@@ -190,28 +211,38 @@ impl Pipeline {
         Ok(numbered_after(first, report))
     }
 
-    /// The time since the last scan, s, if this one does not continue it.
-    fn interruption_s(
+    /// The time since the last scan, s; zero before the first one.
+    fn gap_s(&self, recorded: &LogFrame) -> f64 {
+        let last = self.scans.last();
+        last.map_or(0.0, |last| recorded.stamp_s - last.stamp_s)
+    }
+
+    /// The estimator that takes the next scan.
+    fn newest_slam(&self) -> Option<&Slam> {
+        match &self.piece {
+            Some(piece) => Some(&piece.slam),
+            None => self.slam.as_ref(),
+        }
+    }
+
+    /// How this scan follows the last one.
+    fn continuity(
         &self,
         recorded: &LogFrame,
         frame: &Frame,
-    ) -> Result<Option<f64>, FrameError> {
-        let Some(last) = self.scans.last() else {
-            return Ok(None);
-        };
-        let gap_s = recorded.stamp_s - last.stamp_s;
-        let slam = match &self.piece {
-            Some(piece) => Some(&piece.slam),
-            None => self.slam.as_ref(),
-        };
-        let Some(slam) = slam.filter(|_| gap_s > 0.0) else {
-            return Ok(None);
+        gap_s: f64,
+    ) -> Result<Continuity, FrameError> {
+        let Some(slam) = self.newest_slam().filter(|_| gap_s > 0.0) else {
+            return Ok(Continuity::Predicted);
         };
         frame.validate()?;
-        let is_placed = self.start.is_some();
-        let continues =
-            !is_placed && continuity::continues(slam, self.last_odometry, recorded, gap_s);
-        Ok((!continues).then_some(gap_s))
+        if self.start.is_some() {
+            return Ok(Continuity::Interrupted);
+        }
+        let last = self.last_odometry;
+        Ok(continuity::continuity(
+            slam, last, recorded, gap_s, &self.pace,
+        ))
     }
 
     /// Number of keyframes of the map, without those of a piece.
@@ -223,6 +254,12 @@ impl Pipeline {
     #[must_use]
     pub fn pieces(&self) -> &[PieceReport] {
         &self.pieces
+    }
+
+    /// The gaps without odometry after which the robot was found on the map around its last pose, in order.
+    #[must_use]
+    pub fn bridged(&self) -> &[BridgedGap] {
+        &self.bridged
     }
 
     /// What was left out since the last call, in order.

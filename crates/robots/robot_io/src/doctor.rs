@@ -8,13 +8,17 @@ use serde::Serialize;
 use crate::info::LogInfo;
 use crate::log::{LogFrame, LogNotes, LogOption};
 use crate::motion::MotionComparison;
+use crate::plural::plural;
 use crate::remark::{Condition, Part, Remark};
+use crate::stamps::median;
 
 /// A lower share of returns suggests a covered laser or wrong range limits.
 const MIN_VALID: f64 = 0.1;
 /// A longer time between two scans is a pause, s, if it is this many times longer than usual.
 const PAUSE_S: f64 = 10.0;
 const PAUSE_PERIODS: f64 = 20.0;
+/// Without odometry, scans are missing if the time between two is longer than this many usual ones.
+const GAP_PERIODS: f64 = 5.0;
 
 /// Summary of the scans.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -82,6 +86,8 @@ pub struct Checkup {
     last_s: Option<f64>,
     /// The longest time between two scans, s, and the stamp of the second one, s.
     pause: (f64, f64),
+    /// The times between scans without odometry, s, and the stamp of the second one, s.
+    unmeasured: Vec<(f64, f64)>,
 }
 
 impl Checkup {
@@ -91,6 +97,9 @@ impl Checkup {
         let gap_s = frame.stamp_s - self.last_s.replace(frame.stamp_s).unwrap_or(frame.stamp_s);
         if gap_s > self.pause.0 {
             self.pause = (gap_s, frame.stamp_s);
+        }
+        if frame.odometry.is_none() && gap_s > 0.0 {
+            self.unmeasured.push((gap_s, frame.stamp_s));
         }
         let scan = &frame.scan;
         self.beams += scan.ranges_m.len();
@@ -163,7 +172,7 @@ impl Checkup {
         ));
         remarks.extend(mounting_remark(notes, motion));
         remarks.extend(clocks_remark(notes, info));
-        remarks.extend(self.pause_remark());
+        remarks.extend(self.pause_remark().or_else(|| self.gaps_remark()));
         remarks.extend(notes.warnings.iter().cloned());
         let mut diagnosis = Diagnosis {
             name: name.to_owned(),
@@ -190,6 +199,22 @@ impl Checkup {
             );
             Remark::mended(Part::Clocks, text)
         })
+    }
+}
+
+impl Checkup {
+    /// Times without a scan in which nothing measures the motion.
+    fn gaps_remark(&self) -> Option<Remark> {
+        let usual_s = median(self.unmeasured.iter().map(|gap| gap.0).collect())?;
+        let is_gap = |gap: &&(f64, f64)| gap.0 > GAP_PERIODS * usual_s;
+        let gaps = || self.unmeasured.iter().filter(is_gap);
+        let (_, first_s) = gaps().next()?;
+        let longest_s = gaps().fold(0.0, |longest: f64, gap| longest.max(gap.0));
+        let text = format!(
+            "scans are missing {} for up to {longest_s:.1} s, first before {first_s:.2} s, and without odometry nothing measures the motion meanwhile; record odometry, or keep the connection that loses the scans",
+            plural(gaps().count(), "time")
+        );
+        Some(Remark::mended(Part::Clocks, text))
     }
 }
 

@@ -7,7 +7,7 @@ pub use sentences::late_scans;
 
 use ch16_slam2d::local_map::LocalMapConfig;
 use ch16_slam2d::loops::LoopVerification;
-use ch16_slam2d::pipeline::{LeftOut, PieceFate, PieceReport, Pipeline, ScanPose};
+use ch16_slam2d::pipeline::{BridgedGap, LeftOut, PieceFate, PieceReport, Pipeline, ScanPose};
 use ch16_slam2d::scan::{FrameError, LaserScan};
 use ch16_slam2d::slam::{LoopAttempt, Slam, SlamReport, SnapshotError};
 use pr_geom::SE2;
@@ -253,6 +253,12 @@ impl LogRun {
     #[must_use]
     pub fn pieces(&self) -> &[PieceReport] {
         self.pipeline.pieces()
+    }
+
+    /// The gaps without odometry after which the robot was found around its last pose.
+    #[must_use]
+    pub fn bridged(&self) -> &[BridgedGap] {
+        self.pipeline.bridged()
     }
 
     /// Records the results of loops; a pending loop is updated once it is accepted.

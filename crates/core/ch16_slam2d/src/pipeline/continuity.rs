@@ -1,5 +1,7 @@
-//! Whether a scan continues a run: by the odometry, or because it fits where the robot was.
+//! Whether a scan continues a run: by the odometry, because it fits where the robot was, or because the map around that
+//! pose shows where it moved meanwhile.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -7,13 +9,18 @@ use pr_geom::{SE2, math};
 
 use super::LogFrame;
 use crate::cloud::PointCloud;
-use crate::local_map::{LocalMap, RangeProfile};
+use crate::local_map::{LocalMap, MapRegistration, MapRegistrationConfig, RangeProfile};
 use crate::metrics::position_error_m;
 use crate::scan::ScanPreparer;
+use crate::search::SearchWindow;
 use crate::slam::Slam;
 
-/// A shorter time between two scans needs no explanation, s.
+/// After a longer time, odometry near zero may have started again, s.
 const GAP_S: f64 = 10.0;
+/// A time between two scans of at most this many usual ones is no gap.
+const USUAL: f64 = 2.0;
+/// The last times between scans, of which the usual one is the median.
+const RECENT: usize = 31;
 /// Odometry is not followed, and a robot need not stand where it stood, over a longer time, s.
 const LONG_GAP_S: f64 = 120.0;
 /// Odometry within this of zero may have started again, m and rad.
@@ -30,6 +37,69 @@ const FITS: f64 = 0.7;
 const MAX_CONTRADICTING: f64 = 0.05;
 /// Largest correction of a scan that fits, m and rad.
 const SHIFT: (f64, f64) = (0.5, 0.35);
+/// Scores of a search within this of the best one are compared by their registrations, 0 to 1.
+const MARGIN: f64 = 0.2;
+/// Costs that differ by more than this, nats, decide between two poses: odds of 20 to 1.
+const SURE: f64 = 3.0;
+
+/// How a scan follows the last one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Continuity {
+    /// By the motion that odometry, or else constant velocity, predicts.
+    Predicted,
+    /// By this motion, by which it was found on the map around the last pose.
+    Found(SE2),
+    /// Nothing explains how the robot came there.
+    Interrupted,
+}
+
+/// The recording's own pace: what is usual between two scans, and how fast the robot has been.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pace {
+    recent_s: VecDeque<f64>,
+    /// Scores of the last scans on the map, 0 to 1.
+    scores: VecDeque<f64>,
+    /// Fastest motion between two scans, m/s and rad/s.
+    fastest: (f64, f64),
+}
+
+impl Pace {
+    /// Takes the time between two scans, s, the motion if the scan continued the run, and its score on the map.
+    pub fn add(&mut self, gap_s: f64, motion: Option<SE2>, score: Option<f64>) {
+        self.scores.extend(score);
+        if self.scores.len() > RECENT {
+            self.scores.pop_front();
+        }
+        if let Some(motion) = motion.filter(|_| !self.is_gap(gap_s)) {
+            let speed = math::norm2(motion.x(), motion.y()) / gap_s;
+            self.fastest.0 = math::max(self.fastest.0, speed);
+            self.fastest.1 = math::max(self.fastest.1, motion.theta().abs() / gap_s);
+        }
+        self.recent_s.push_back(gap_s);
+        if self.recent_s.len() > RECENT {
+            self.recent_s.pop_front();
+        }
+    }
+
+    /// The worst score of the last scans; 1 before the first one.
+    fn worst_score(&self) -> f64 {
+        self.scores.iter().copied().fold(1.0, math::min)
+    }
+
+    /// Whether scans are missing in a time between two of them.
+    fn is_gap(&self, gap_s: f64) -> bool {
+        let mut recent_s: Vec<f64> = self.recent_s.iter().copied().collect();
+        pr_geom::sort_numbers(&mut recent_s);
+        let usual_s = recent_s.get(recent_s.len() / 2);
+        usual_s.is_some_and(|usual_s| gap_s > USUAL * usual_s)
+    }
+
+    /// How far the robot may have come in that time, m and rad.
+    fn reach(&self, gap_s: f64) -> (f64, f64) {
+        let turn_rad = math::min(self.fastest.1 * gap_s, core::f64::consts::PI);
+        (self.fastest.0 * gap_s, turn_rad)
+    }
+}
 
 /// What the odometry says of the time between two scans.
 enum Odometry {
@@ -50,7 +120,8 @@ impl Odometry {
             math::norm2(pose.x(), pose.y()) <= m && pose.theta().abs() <= rad
         };
         let motion = last.between(&now);
-        if is_within(&now, ZERO) || position_error_m(&last, &now) > MAX_SPEED * gap_s {
+        let may_be_new = gap_s > GAP_S && is_within(&now, ZERO);
+        if may_be_new || position_error_m(&last, &now) > MAX_SPEED * gap_s {
             return Self::Unknown;
         }
         if is_within(&motion, MOVED) {
@@ -61,62 +132,211 @@ impl Odometry {
     }
 }
 
-/// Whether a valid scan, `gap_s` seconds after the last one, continues the run.
+/// How a valid scan, `gap_s` seconds after the last one, continues the run.
 ///
 /// After a gap without explanation the robot may have been carried, or it may be another day.
-pub(super) fn continues(
+pub(super) fn continuity(
     slam: &Slam,
     last_odometry: Option<SE2>,
     recorded: &LogFrame,
     gap_s: f64,
-) -> bool {
-    if gap_s <= GAP_S {
-        return true;
+    pace: &Pace,
+) -> Continuity {
+    let is_short = gap_s <= GAP_S;
+    if is_short && !pace.is_gap(gap_s) {
+        return Continuity::Predicted;
     }
     let odometry = Odometry::between(last_odometry, recorded.odometry, gap_s);
     let is_long = gap_s > LONG_GAP_S;
+    let settings = slam.config().local_map.unwrap_or_default().registration();
+    let reach = pace.reach(gap_s);
     match odometry {
-        Odometry::Moved if !is_long => return true,
-        Odometry::Unknown if is_long => return false,
+        Odometry::Moved if !is_long => return Continuity::Predicted,
+        Odometry::Unknown if is_long => return Continuity::Interrupted,
+        // The registration of each scan searches as far.
+        Odometry::Unknown
+            if is_short && reach.0 <= settings.search_m && reach.1 <= settings.search_rad =>
+        {
+            return Continuity::Predicted;
+        }
         _ => {}
     }
-    let motion = match (odometry, last_odometry, recorded.odometry) {
+    let last = slam.front_end().estimate();
+    let motion = match (&odometry, last_odometry, recorded.odometry) {
         (Odometry::Moved, Some(last), Some(now)) => last.between(&now),
         _ => SE2::identity(),
     };
-    let here = slam.front_end().estimate() * motion;
     // The motion during the gap does not skew the sweep.
     let cloud = ScanPreparer::new().prepare(&recorded.scan, &Vector3::zeros(), &slam.config().scan);
-    fits(slam, &cloud, here)
+    let mut around = Around::new(slam, &cloud, settings);
+    if is_short {
+        around.worst_score = pace.worst_score();
+    }
+    if is_short && matches!(odometry, Odometry::Unknown) {
+        return match around.found(last, reach) {
+            Some(pose) => Continuity::Found(last.between(&pose)),
+            None => Continuity::Interrupted,
+        };
+    }
+    if around.fits(last * motion) {
+        Continuity::Predicted
+    } else {
+        Continuity::Interrupted
+    }
 }
 
-/// Whether a scan fits on the keyframes around a pose, there.
-fn fits(slam: &Slam, scan: &PointCloud, pose: SE2) -> bool {
-    let poses = slam.graph().poses();
-    let mut near: Vec<(f64, usize)> = poses
-        .iter()
-        .zip(0..)
-        .map(|(at, node)| (position_error_m(at, &pose), node))
-        .filter(|(away_m, _)| *away_m <= NEAR.0)
-        .collect();
-    pr_geom::sort_ranked(&mut near);
-    near.truncate(NEAR.1);
-    let scans = near.iter().map(|&(_, node)| &slam.keyframes()[node].scan);
-    let profiles: Vec<Arc<RangeProfile>> = scans
-        .map(|scan| Arc::new(RangeProfile::new(scan)))
-        .collect();
-    let mut map = LocalMap::default();
-    map.rebuild(
-        near.iter()
-            .zip(&profiles)
-            .map(|(&(_, node), profile)| (poses[node], &*slam.keyframes()[node].scan, profile)),
-    );
-    let settings = slam.config().local_map.unwrap_or_default().registration();
-    let stages = [settings.max_correspondence_m, settings.inlier_distance_m];
-    let found = map.register(scan, pose, &stages, None, &settings);
-    let shift = pose.between(&found.registered.pose);
-    math::norm2(shift.x(), shift.y()) <= SHIFT.0
-        && shift.theta().abs() <= SHIFT.1
-        && found.fit.score >= FITS
-        && found.fit.contradicting as f64 <= MAX_CONTRADICTING * scan.len() as f64
+/// A scan, and the map around a pose.
+struct Around<'a> {
+    slam: &'a Slam,
+    scan: &'a PointCloud,
+    settings: MapRegistrationConfig,
+    map: LocalMap,
+    /// A scan whose score is not surely lower fits.
+    worst_score: f64,
+}
+
+impl<'a> Around<'a> {
+    fn new(slam: &'a Slam, scan: &'a PointCloud, settings: MapRegistrationConfig) -> Self {
+        Self {
+            slam,
+            scan,
+            settings,
+            map: LocalMap::default(),
+            worst_score: 1.0,
+        }
+    }
+
+    /// Builds the map of the keyframes within this distance of a pose, at most so many.
+    fn build(&mut self, pose: SE2, (near_m, most): (f64, usize)) {
+        let poses = self.slam.graph().poses();
+        let mut near: Vec<(f64, usize)> = poses
+            .iter()
+            .zip(0..)
+            .map(|(at, node)| (position_error_m(at, &pose), node))
+            .filter(|(away_m, _)| *away_m <= near_m)
+            .collect();
+        pr_geom::sort_ranked(&mut near);
+        near.truncate(most);
+        let keyframes = self.slam.keyframes();
+        let scans = near.iter().map(|&(_, node)| &keyframes[node].scan);
+        let profiles: Vec<Arc<RangeProfile>> = scans
+            .map(|scan| Arc::new(RangeProfile::new(scan)))
+            .collect();
+        self.map.rebuild(
+            near.iter()
+                .zip(&profiles)
+                .map(|(&(_, node), profile)| (poses[node], &*keyframes[node].scan, profile)),
+        );
+    }
+
+    /// Whether a scan fits: well, or as well as those before it, which may be of a place full of people.
+    fn is_good(&self, found: &MapRegistration) -> bool {
+        let cost = |score: f64| self.settings.misfit_cost(self.scan, score);
+        if cost(found.fit.score) <= cost(self.worst_score) + SURE {
+            return true;
+        }
+        let most = MAX_CONTRADICTING * self.scan.len() as f64;
+        found.fit.score >= FITS && found.fit.contradicting as f64 <= most
+    }
+
+    /// Whether the scan fits on the keyframes around a pose, there.
+    fn fits(&mut self, pose: SE2) -> bool {
+        self.build(pose, NEAR);
+        let stages = [
+            self.settings.max_correspondence_m,
+            self.settings.inlier_distance_m,
+        ];
+        let found = self
+            .map
+            .register(self.scan, pose, &stages, None, &self.settings);
+        let shift = pose.between(&found.registered.pose);
+        math::norm2(shift.x(), shift.y()) <= SHIFT.0
+            && shift.theta().abs() <= SHIFT.1
+            && self.is_good(&found)
+    }
+
+    /// The pose at which the scan fits on the keyframes within a reach (m, rad) of a pose; `None` if it fits nowhere, or at
+    /// another pose as well.
+    fn found(&mut self, pose: SE2, reach: (f64, f64)) -> Option<SE2> {
+        self.build(pose, (NEAR.0 + reach.0, usize::MAX));
+        let window = SearchWindow::around(pose, reach.0, reach.1);
+        let searched = self.map.search(self.scan, &window, MARGIN)?;
+        let stages = [self.settings.inlier_distance_m];
+        let mut at = |start: SE2| {
+            self.map
+                .register(self.scan, start, &stages, None, &self.settings)
+        };
+        let best = at(searched.best.pose);
+        let rival = searched.runner_up.map(|rival| at(rival.pose));
+        let is_elsewhere = |rival: &MapRegistration| {
+            let apart = best.registered.pose.between(&rival.registered.pose);
+            math::norm2(apart.x(), apart.y()) > SHIFT.0 || apart.theta().abs() > SHIFT.1
+        };
+        let cost = |found: &MapRegistration| self.settings.misfit_cost(self.scan, found.fit.score);
+        let (best, rival) = match rival.filter(is_elsewhere) {
+            Some(rival) if cost(&rival) < cost(&best) => (rival, Some(best)),
+            rival => (best, rival),
+        };
+        let is_sure = rival.is_none_or(|rival| cost(&best) + SURE < cost(&rival));
+        (is_sure && self.is_good(&best)).then_some(best.registered.pose)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::Pipeline;
+    use crate::slam::test_room::{frame, truth};
+
+    /// Scan `step` of the room at this time, with odometry or without.
+    fn recorded(step: usize, stamp_s: f64, odometry: Option<SE2>) -> LogFrame {
+        LogFrame {
+            stamp_s,
+            odometry,
+            scan: frame(step).scan,
+        }
+    }
+
+    /// The pieces and the bridged gaps after a gap between two of the first scans and another one of the room.
+    fn after_gap(to: usize, gap_s: f64, wheels: impl Fn(usize) -> Option<SE2>) -> (usize, usize) {
+        let mut pipeline = Pipeline::default();
+        for step in 0..20 {
+            let stamp_s = 0.1 * step as f64;
+            pipeline
+                .step(&recorded(step, stamp_s, wheels(step)))
+                .unwrap();
+        }
+        pipeline
+            .step(&recorded(to, 1.9 + gap_s, wheels(19)))
+            .unwrap();
+        (pipeline.pieces().len(), pipeline.bridged().len())
+    }
+
+    #[test]
+    fn a_robot_whose_wheels_stand_continues_only_where_it_stands() {
+        let wheels = |step: usize| Some(truth(0).between(&truth(step)));
+        assert_eq!(after_gap(19, 3.0, wheels), (0, 0));
+        // The far side of the room.
+        assert_eq!(after_gap(45, 3.0, wheels), (1, 0));
+    }
+
+    #[test]
+    fn without_wheels_a_robot_is_searched_for_as_far_as_it_may_have_come() {
+        let (stands, moved) = (after_gap(19, 3.0, |_| None), after_gap(26, 3.0, |_| None));
+        assert_eq!((stands, moved), ((0, 1), (0, 1)));
+    }
+
+    #[test]
+    fn an_even_pace_has_no_gaps_however_slow_it_is() {
+        for period_s in [0.05, 2.0, 8.0] {
+            let mut pace = Pace::default();
+            for _ in 0..5 {
+                pace.add(period_s, Some(SE2::from_xy(0.5 * period_s, 0.0)), Some(0.9));
+            }
+            assert!(!pace.is_gap(1.5 * period_s) && pace.is_gap(2.5 * period_s));
+            let (reach_m, _) = pace.reach(4.0);
+            // 1e-12: rounding.
+            assert!((reach_m - 2.0).abs() < 1e-12);
+        }
+    }
 }

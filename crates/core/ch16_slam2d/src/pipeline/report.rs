@@ -32,6 +32,15 @@ pub struct PieceReport {
     pub fate: PieceFate,
 }
 
+/// A gap between scans in which nothing measured the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BridgedGap {
+    /// Stamp of the first scan after it, s.
+    pub stamp_s: f64,
+    /// Its duration, s.
+    pub gap_s: f64,
+}
+
 /// Keyframes and scans that were left out, by their numbers before.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftOut {

@@ -5,7 +5,7 @@ use ch16_slam2d::pipeline::{PieceFate, PieceReport};
 use super::LogRun;
 use super::robots::robot_sentence;
 use crate::plural::plural;
-use crate::remark::Remark;
+use crate::remark::{Part, Remark};
 
 /// Reason why a log without any return has no map.
 const NOTHING_SEEN: &str = "no beam of any keyframe has a range between the sensor's shortest and longest range; check range_min and range_max in the driver, and whether something covers the laser";
@@ -65,11 +65,45 @@ impl LogRun {
             Some(robot) => robot_sentence(name, robot, piece),
             None => piece_sentence(name, piece, self.session_scans),
         });
-        [other, late, blind, still, lengths, rejected]
+        let bridged = self.bridged_sentence();
+        let bridged = bridged.map(|text| format!("{name}: {text}"));
+        [other, late, blind, still, lengths, rejected, bridged]
             .into_iter()
             .flatten()
             .chain(pieces)
             .collect()
+    }
+
+    /// Remarks on what only mapping shows: the lengths of the paths, and scans that motion cannot explain.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<Remark> {
+        let pieces = self
+            .pieces()
+            .iter()
+            .filter(|piece| self.robot_of(piece).is_none());
+        let pieces = pieces.filter_map(|piece| {
+            let text = piece_sentence("", piece, self.session_scans)?;
+            let text = text.trim_start_matches(": ").to_owned();
+            Some(match piece.fate {
+                PieceFate::Joined(_) => Remark::mended(Part::Clocks, text),
+                _ => Remark::wrong(Part::Clocks, text),
+            })
+        });
+        self.path_remark().into_iter().chain(pieces).collect()
+    }
+
+    /// Sentence on gaps in which nothing measured the motion.
+    fn bridged_sentence(&self) -> Option<String> {
+        let bridged = self.bridged();
+        let first = bridged.first()?;
+        let longest_s = bridged
+            .iter()
+            .fold(0.0, |longest: f64, gap| longest.max(gap.gap_s));
+        Some(format!(
+            "scans are missing {} for up to {longest_s:.1} s, first before {:.2} s, without odometry; the robot was searched for around its last pose, and found. Record odometry, or keep the connection that loses the scans",
+            plural(bridged.len(), "time"),
+            first.stamp_s
+        ))
     }
 
     /// Why there is no map; `None` if there is one, or if no scan was given.

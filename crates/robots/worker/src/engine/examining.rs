@@ -75,9 +75,12 @@ impl<'a> Engine<'a> {
 
     /// Adds to the diagnosis what the map shows about the recording.
     pub(super) fn diagnose_map(&mut self) {
-        let found = self.run.path_remark();
-        if let Some((mut diagnosis, remark)) = self.diagnosis.take().zip(found) {
-            diagnosis.extend([remark]);
+        let found = self.run.remarks();
+        if found.is_empty() {
+            return;
+        }
+        if let Some(mut diagnosis) = self.diagnosis.take() {
+            diagnosis.extend(found);
             self.keep_diagnosis(diagnosis);
         }
     }
