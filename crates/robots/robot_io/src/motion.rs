@@ -8,7 +8,10 @@
 //! | correlation of the turns | near 1 | near −1: the scans are mirrored |
 //! | angle between the displacements | 0 | 180°: the laser faces backward |
 //! | ratio of the displacements | 1 | 1000: millimetres; off by a tenth: wheel size |
+//! | ratio of the turns | 1 | off by a tenth: distance between the wheels |
 //! | lag that maximizes the correlation of the turns | 0 | clock offset of less than a second |
+//!
+//! If the beams of a scan have times, the opposite order of the beams is tried as well.
 //!
 //! This comparison only proposes: scans that cannot be matched alone agree with nothing, and a fault that is not there may
 //! seem to be. A finding needs the agreement of most segments, and then a trial: the part of the log that was compared is
@@ -67,6 +70,9 @@ struct Comparison {
     last_step: Option<SE2>,
     moved_m: f64,
     turned_rad: f64,
+    last_estimate: Option<(f64, SE2)>,
+    /// Largest turn during a sweep, in steps between two beams.
+    skew: f64,
 }
 
 impl Comparison {
@@ -81,6 +87,8 @@ impl Comparison {
             last_step: None,
             moved_m: 0.0,
             turned_rad: 0.0,
+            last_estimate: None,
+            skew: 0.0,
         }
     }
 
@@ -97,6 +105,20 @@ impl Comparison {
             return;
         };
         self.last_s = log.stamp_s;
+        let last = self.last_estimate.replace((log.stamp_s, report.estimate));
+        if let Some((last_s, last)) = last {
+            let turn_rad = last.between(&report.estimate).theta().abs();
+            let in_sweep_rad = turn_rad * log.scan.sweep_s() / (log.stamp_s - last_s);
+            self.skew = self.skew.max(in_sweep_rad / log.scan.angle_step_rad.abs());
+        }
+        let has_moved = self.last_step.is_none_or(|last| {
+            let [x, y, turn] = last.between(&report.estimate).to_array();
+            pr_geom::math::norm2(x, y) >= STEP_M || turn.abs() >= STEP_RAD
+        });
+        if has_moved {
+            self.last_step = Some(report.estimate);
+            self.steps_s.push(log.stamp_s);
+        }
         let Some(body) = log.odometry else {
             self.began = None;
             return;
@@ -106,14 +128,6 @@ impl Comparison {
             by_scans: report.estimate.theta(),
             by_odometry: body.theta(),
         });
-        let has_moved = self.last_step.is_none_or(|last| {
-            let [x, y, turn] = last.between(&report.estimate).to_array();
-            pr_geom::math::norm2(x, y) >= STEP_M || turn.abs() >= STEP_RAD
-        });
-        if has_moved {
-            self.last_step = Some(report.estimate);
-            self.steps_s.push(log.stamp_s);
-        }
         let now = (report.estimate, body);
         let Some(began) = self.began else {
             self.began = Some(now);

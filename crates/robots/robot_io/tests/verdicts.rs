@@ -74,6 +74,8 @@ fn words(motion: &MotionComparison) -> Vec<&'static str> {
         Finding::Still { .. } => "still",
         Finding::Unlike { .. } => "unlike",
         Finding::Late { .. } => "late",
+        Finding::TurnScale { .. } => "turns",
+        Finding::Backward => "backward",
     };
     motion.faults().iter().map(word).collect()
 }

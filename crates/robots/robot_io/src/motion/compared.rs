@@ -36,6 +36,8 @@ const CONFIRMED_RAD: f64 = 10.0 * PI / 180.0;
 const ELSEWHERE_RAD: f64 = 25.0 * PI / 180.0;
 /// A scale that differs from 1 by more is reported.
 const SCALE_OFF: f64 = 0.08;
+/// The same for turns: wheels that scrub turn less evenly than they roll.
+const TURNS_OFF: f64 = 2.0 * SCALE_OFF;
 /// Units of length, in metres, and their names.
 const UNITS: [(f64, &str); 4] = [
     (1e-3, "millimetres"),
@@ -121,6 +123,13 @@ impl MotionComparison {
             } else if correlation < 0.5 {
                 motion.propose(Finding::Unlike { correlation });
             }
+        }
+        let is_alike = motion
+            .correlation
+            .is_some_and(|correlation| correlation >= AGREE);
+        let is_off = |ratio: &f64| (ratio - 1.0).abs() > TURNS_OFF;
+        if let Some(ratio) = motion.turn_scale.filter(is_off).filter(|_| is_alike) {
+            motion.propose(Finding::TurnScale { ratio });
         }
         let mirror = if is_mirrored { -1.0 } else { 1.0 };
         if motion.moved_m >= MIN_M {
@@ -225,6 +234,14 @@ impl MotionComparison {
         }
     }
 
+    /// Tries the opposite order of the beams in time, if the robot turned by more than the step between two beams (a
+    /// `skew` of 1) during a sweep.
+    pub(super) fn compare_sweeps(&mut self, skew: f64) {
+        if skew > 1.0 {
+            self.propose(Finding::Backward);
+        }
+    }
+
     /// Drops the findings about odometry that is not used, or that the user trusts.
     pub(super) fn keep_mounting(&mut self) {
         self.findings.retain(|(finding, _)| finding.is_of_laser());
@@ -251,7 +268,10 @@ impl MotionComparison {
             }
             let Some((index, costs)) = worst else { break };
             let (finding, _) = self.findings.remove(index);
-            self.suggestions.push(Suggestion { finding, costs });
+            // The order of the beams is always tried: nothing suggests it.
+            if finding != Finding::Backward {
+                self.suggestions.push(Suggestion { finding, costs });
+            }
         }
         let is_late = |(finding, _): &(Finding, _)| matches!(finding, Finding::Late { .. });
         if !self.findings.iter().any(is_late) {
@@ -281,7 +301,7 @@ impl MotionComparison {
     /// What corrects the frames of a laser at `mount`.
     pub(super) fn repairs(&self, mount: LaserMount, is_mount_fixed: bool) -> Repairs {
         let mut faults = self.faults();
-        faults.retain(|fault| !(fault.is_left() || is_mount_fixed && fault.is_of_laser()));
+        faults.retain(|fault| !(fault.is_left() || is_mount_fixed && fault.is_of_mount()));
         Repairs::of(&faults, mount)
     }
 
@@ -296,9 +316,11 @@ impl MotionComparison {
 /// Correlation of the turns by scans and by odometry, and those by odometry per turn by scans; a mirror image is tried
 /// as well.
 fn compare_turns(stretches: &[Stretch]) -> Option<(f64, f64)> {
+    // Few segments of a long path turn: among all of them, turns that differ would be the outliers.
     let turns = |mirror: f64| {
         let both = stretches.iter();
         let both = both.map(|stretch| (stretch.sensor.theta(), stretch.body.theta()));
+        let both = both.filter(|(scans, body)| scans.abs().max(body.abs()) > MIN_TURN_RAD);
         let both = without_outliers(both.collect(), |(scans, body)| {
             (scans - mirror * body).abs()
         });
@@ -347,4 +369,38 @@ fn length(motion: &SE2) -> f64 {
 
 fn size(displacement: &Complex<f64>) -> f64 {
     math::norm2(displacement.re, displacement.im)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A path of straight segments with a few that turn, whose turns by odometry are scaled.
+    fn stretches(factor: f64) -> Vec<Stretch> {
+        let turns = (0..160).map(|k| if k % 32 < 3 { 0.3 } else { 0.001 });
+        turns
+            .map(|turn| Stretch {
+                sensor: SE2::new(0.3, 0.0, turn),
+                body: SE2::new(0.3, 0.0, factor * turn),
+            })
+            .collect()
+    }
+
+    #[test]
+    fn turns_that_are_few_are_compared_and_their_scale_is_found() {
+        let found =
+            |factor: f64| MotionComparison::from_stretches(&stretches(factor), SE2::identity());
+        assert_eq!(found(1.0).faults(), []);
+        assert!(found(1.0).confirms_mounting());
+        let [Finding::TurnScale { ratio }] = found(1.6).faults()[..] else {
+            panic!("{:?}", found(1.6).faults())
+        };
+        assert!((ratio - 1.6).abs() < 1e-9);
+        // A tenth is within what tyres do, and a mirror image is another fault.
+        assert_eq!(found(1.05).faults(), []);
+        assert!(matches!(
+            found(-1.0).faults()[..],
+            [Finding::Mirrored { .. }]
+        ));
+    }
 }

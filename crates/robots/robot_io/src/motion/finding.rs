@@ -44,6 +44,13 @@ pub enum Finding {
         /// Its length per metre by scans.
         ratio: f64,
     },
+    /// Odometry overestimates or underestimates turns.
+    TurnScale {
+        /// Its turn per turn by scans.
+        ratio: f64,
+    },
+    /// The beam that is listed last was measured first.
+    Backward,
     /// Odometry stands still while scans move.
     Still {
         /// Path length by scans, m.
@@ -64,6 +71,11 @@ pub enum Finding {
 impl Finding {
     /// Whether it is about the laser rather than the odometry.
     pub(super) fn is_of_laser(&self) -> bool {
+        self.is_of_mount() || matches!(self, Self::Backward)
+    }
+
+    /// Whether it is about the mounting of the laser.
+    pub(super) fn is_of_mount(&self) -> bool {
         matches!(self, Self::Mirrored { .. } | Self::Turned { .. })
     }
 

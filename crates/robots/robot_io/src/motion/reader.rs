@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::repairs::Repairs;
+use super::repairs::{Repairs, TurnedPath};
 use super::trial::Trial;
 use super::{Comparison, MotionComparison, OdometryUse};
 use crate::laser_mount::LaserMount;
@@ -70,6 +70,7 @@ pub struct ComparedReader<'a> {
     known: Option<MotionComparison>,
     motion: Option<MotionComparison>,
     repairs: Repairs,
+    path: TurnedPath,
     late: Option<Late>,
     /// The frame after the last one, or why there is none.
     ahead: Option<Result<LogFrame, LogError>>,
@@ -89,6 +90,7 @@ impl<'a> ComparedReader<'a> {
             known: None,
             motion: None,
             repairs: Repairs::default(),
+            path: TurnedPath::default(),
             late: None,
             ahead: None,
             notes: LogNotes::default(),
@@ -164,10 +166,14 @@ impl<'a> ComparedReader<'a> {
             ..stated
         };
         let found = self.known.take().or_else(|| {
-            let compared = comparison.filter(|_| has_odometry)?;
-            let mut motion =
-                MotionComparison::from_stretches(&compared.stretches, stated.body_from_sensor);
-            motion.compare_turns(&compared.headings);
+            let compared = comparison?;
+            let mut motion = MotionComparison::default();
+            if has_odometry {
+                motion =
+                    MotionComparison::from_stretches(&compared.stretches, stated.body_from_sensor);
+                motion.compare_turns(&compared.headings);
+            }
+            motion.compare_sweeps(compared.skew);
             if matches!(self.odometry, OdometryUse::Force | OdometryUse::Ignore) {
                 motion.keep_mounting();
             }
@@ -199,11 +205,11 @@ impl<'a> ComparedReader<'a> {
     /// The next frame, before odometry's lag is corrected.
     fn next_mended(&mut self) -> Result<Option<LogFrame>, LogError> {
         if let Some(frame) = self.waiting.pop_front() {
-            return Ok(Some(self.repairs.apply(frame)));
+            return Ok(Some(self.repairs.apply(frame, &mut self.path)));
         }
         let frame = self.next_recorded();
         self.copy_notes();
-        Ok(frame?.map(|frame| self.repairs.apply(frame)))
+        Ok(frame?.map(|frame| self.repairs.apply(frame, &mut self.path)))
     }
 
     fn copy_notes(&mut self) {

@@ -22,6 +22,18 @@ impl MotionComparison {
                     Part::Odometry,
                     format!("{text}; it was converted. Publish metres"),
                 ),
+                Finding::TurnScale { .. } => Remark::mended(
+                    Part::Odometry,
+                    format!(
+                        "{text}; its turns were scaled by that. Correct the distance between the wheels in the driver"
+                    ),
+                ),
+                Finding::Backward => Remark::mended(
+                    Part::Sensor,
+                    format!(
+                        "{text}; their times were reversed. List the beams in the order in which they are measured, with the sign of angle_increment that belongs to it"
+                    ),
+                ),
                 Finding::Still { .. } => Remark::mended(
                     Part::Odometry,
                     format!("{text}; it is ignored and scans are matched alone. Check its topic"),
@@ -42,7 +54,7 @@ impl MotionComparison {
                 ),
             };
             match finding {
-                Finding::Unit { .. } | Finding::Still { .. } => {
+                Finding::Unit { .. } | Finding::TurnScale { .. } | Finding::Still { .. } => {
                     remark.with_option(OdometryUse::Force.option())
                 }
                 Finding::Scale { .. } | Finding::Unlike { .. } => remark.with_option(NO_ODOMETRY),
@@ -120,6 +132,12 @@ fn sentence(finding: &Finding) -> String {
             "odometry is in {name}: it moves {:.0} per metre by scans",
             1.0 / metres
         ),
+        Finding::TurnScale { ratio } => {
+            format!("odometry turns by {ratio:.2}° per degree by scans")
+        }
+        Finding::Backward => {
+            "the beams are listed against the sense in which the sensor turns: the last one was measured first".to_owned()
+        }
         Finding::Scale { ratio } => format!("odometry measures {ratio:.2} m per metre by scans"),
         Finding::Still { moved_m } => {
             format!("odometry stands still while the scans move by {moved_m:.1} m")
@@ -155,7 +173,8 @@ fn suggest(suggestion: &Suggestion, mount: LaserMount) -> Remark {
             (Part::Mounting, Some(mended.option()))
         }
         Finding::Late { .. } => (Part::Clocks, None),
-        Finding::Unit { .. } => (Part::Odometry, None),
+        Finding::Unit { .. } | Finding::TurnScale { .. } => (Part::Odometry, None),
+        Finding::Backward => (Part::Sensor, None),
         Finding::Scale { .. } | Finding::Still { .. } | Finding::Unlike { .. } => {
             (Part::Odometry, Some(NO_ODOMETRY.to_owned()))
         }

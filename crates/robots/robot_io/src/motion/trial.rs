@@ -8,10 +8,11 @@
 use ch16_slam2d::local_map::{LocalMapConfig, MotionPrior, PriorTail};
 use ch16_slam2d::scan::Frame;
 use ch16_slam2d::slam::{LoopClosure, Slam, SlamConfig};
+use nalgebra::Vector3;
 use pr_geom::{SE2, math};
 
 use super::Costs;
-use super::repairs::Repairs;
+use super::repairs::{Repairs, TurnedPath};
 use crate::log::LogFrame;
 use crate::odometry_poses::OdometryPoses;
 use crate::stamps::median;
@@ -60,12 +61,18 @@ impl Trial {
         let mut slam = Slam::new(SlamConfig::from_local_map(robot));
         slam.set_loop_closure(LoopClosure::Off);
         let mut last_odometry = None;
+        let mut path = TurnedPath::default();
         let frames = self.frames.iter().map(|frame| {
             let mut frame = frame.clone();
             if let Some(late_s) = repairs.late_s {
                 frame.odometry = self.odometry.at(frame.stamp_s + late_s);
             }
-            let frame = repairs.apply(frame);
+            if !repairs.drops_odometry {
+                let from_s = frame.stamp_s + repairs.late_s.unwrap_or(0.0);
+                let velocity = self.velocity(from_s, frame.scan.sweep_s());
+                frame.scan.velocity = velocity.map(|velocity| repairs.velocity(velocity));
+            }
+            let frame = repairs.apply(frame, &mut path);
             let motion = last_odometry.zip(frame.odometry);
             last_odometry = frame.odometry;
             let frame = Frame {
@@ -80,6 +87,15 @@ impl Trial {
         // A frame that cannot be used costs nothing, in every trial.
         let cost = |scan: &Option<PosedScan>| scan.map_or(0.0, |scan| scan.cost(&learned));
         scans.iter().map(cost).collect()
+    }
+
+    /// Velocity of the body during a sweep, by odometry.
+    fn velocity(&self, from_s: f64, sweep_s: f64) -> Option<Vector3<f64>> {
+        let (first, last) = (
+            self.odometry.at(from_s)?,
+            self.odometry.at(from_s + sweep_s)?,
+        );
+        (sweep_s > 0.0).then(|| first.between(&last).log() / sweep_s)
     }
 
     /// Whether `with` is cheaper than `without`, scan by scan.
