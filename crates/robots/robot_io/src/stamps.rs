@@ -3,6 +3,7 @@
 //! | fault | correction |
 //! |---|---|
 //! | stamp of zero | the time of recording, shifted by the clocks' median offset |
+//! | one stamp for all messages | the time of recording |
 //! | stamp far from its neighbours | the same, or interpolated if no time was recorded |
 //! | clock that steps (reset of simulated time, NTP) | later stamps are shifted back by the step |
 //! | equal stamps, as in a log with six digits | spread evenly up to the next stamp |
@@ -43,6 +44,8 @@ pub struct MendedStamps {
     pub stamps_s: Vec<f64>,
     /// Number of messages without a stamp.
     pub unset: usize,
+    /// The stamp that all messages have, s, if their times of recording show that it is not theirs.
+    pub only_s: Option<f64>,
     /// Number of messages whose stamp was far from its neighbours.
     pub outliers: usize,
     /// Number of messages with the stamp of the one before.
@@ -69,11 +72,15 @@ impl MendedStamps {
         } else {
             recorded_s
         };
+        let only_s = only_stamp_s(stamps_s).filter(|_| !recorded_s.is_empty());
+        let no_stamps = vec![f64::NAN; stamps_s.len()];
+        let stamps_s = only_s.map_or(stamps_s, |_| &no_stamps[..]);
         let mut work = Work::new(stamps_s, recorded_s);
         work.find_outliers();
         let steps = work.remove_steps();
         let unset = work.is_unset.iter().filter(|&&unset| unset).count();
         let outliers = work.is_good.iter().filter(|&&good| !good).count() - unset;
+        let unset = if only_s.is_some() { 0 } else { unset };
         work.fill();
         let equal = spread_equal(&mut work.stamps_s);
         let swapped = swapped(&work.stamps_s);
@@ -82,6 +89,7 @@ impl MendedStamps {
             ahead_s: ahead_s(&work.stamps_s, recorded_s),
             stamps_s: work.stamps_s,
             unset,
+            only_s,
             outliers,
             equal,
             steps,
@@ -108,7 +116,9 @@ impl MendedStamps {
     /// Whether nothing was corrected.
     #[must_use]
     pub fn is_unchanged(&self) -> bool {
-        self.unset + self.outliers + self.equal == 0 && self.steps.is_empty()
+        self.unset + self.outliers + self.equal == 0
+            && self.only_s.is_none()
+            && self.steps.is_empty()
     }
 }
 
@@ -347,6 +357,13 @@ fn spread_equal(stamps_s: &mut [f64]) -> usize {
         from += count;
     }
     equal
+}
+
+/// The stamp that all messages have, if there are more than two.
+fn only_stamp_s(stamps_s: &[f64]) -> Option<f64> {
+    let first = stamps_s.first().copied().filter(|first| *first > 0.0)?;
+    let is_same = stamps_s.len() > 2 && stamps_s.iter().all(|stamp_s| *stamp_s == first);
+    is_same.then_some(first)
 }
 
 /// Number of stamps below the maximum of those before them.

@@ -15,6 +15,11 @@ impl MendedStamps {
                 self.unset
             ));
         }
+        if let Some(only_s) = self.only_s {
+            remarks.push(format!(
+                "all {all} {messages} have the same stamp, {only_s:.2} s; their times of recording are used. Stamp each message when it is measured"
+            ));
+        }
         if self.outliers > 0 {
             remarks.push(format!(
                 "{} of {all} {messages} have a stamp far from their neighbours'; it was replaced using the time of recording and the neighbours",

@@ -115,3 +115,24 @@ fn coarse_stamps_are_spread_in_their_order() {
     let expected: Vec<f64> = (0..30).map(|k| 100.0 + 0.1 * f64::from(k)).collect();
     assert_near(&mended, &expected, 1e-9);
 }
+
+#[test]
+fn one_stamp_for_all_messages_is_replaced_by_their_times_of_recording() {
+    let (stamps, recorded) = stream(60);
+    let same = vec![stamps[0]; 60];
+    let mended = MendedStamps::new(&same, &recorded);
+    assert_near(&mended, &recorded, 1e-9);
+    assert_eq!(
+        (mended.only_s, mended.unset, mended.equal),
+        (Some(stamps[0]), 0, 0)
+    );
+    let said = &mended.remarks("scans")[0].text;
+    assert!(
+        said.starts_with("all 60 scans have the same stamp, 100.00 s"),
+        "{said}"
+    );
+    // Without times of recording, they can only be spread.
+    assert_eq!(MendedStamps::new(&same, &[]).only_s, None);
+    // A duplicate is no fault.
+    assert_eq!(MendedStamps::new(&same[..2], &recorded[..2]).only_s, None);
+}
