@@ -23,6 +23,8 @@ pub struct OdometryMessage {
     pub child: String,
     /// Pose of the body in the odometry frame.
     pub pose: Isometry3<f64>,
+    /// Whether its orientation was set: 0,0,0,0 is none.
+    pub is_oriented: bool,
 }
 
 /// One transform of `tf2_msgs/TFMessage`.
@@ -34,6 +36,8 @@ pub struct TransformMessage {
     pub child: String,
     /// Pose of the child in its parent.
     pub transform: Isometry3<f64>,
+    /// Whether its rotation was set: 0,0,0,0 is none.
+    pub is_oriented: bool,
 }
 
 /// The header of a message.
@@ -87,10 +91,12 @@ fn scan_without_ranges(fields: &mut WireReader<'_>) -> Result<(Header, ScanField
 pub fn odometry(fields: &mut WireReader<'_>) -> Result<OdometryMessage, WireError> {
     let header = header(fields)?;
     let child = fields.name("child_frame_id")?;
+    let (pose, is_oriented) = pose(fields)?;
     Ok(OdometryMessage {
         header,
         child: child.trim_start_matches('/').to_owned(),
-        pose: pose(fields)?,
+        pose,
+        is_oriented,
     })
 }
 
@@ -102,17 +108,19 @@ pub fn transforms(fields: &mut WireReader<'_>) -> Result<Vec<TransformMessage>, 
     for _ in 0..count {
         let header = header(fields)?;
         let child = fields.name("child_frame_id")?;
+        let (transform, is_oriented) = pose(fields)?;
         all.push(TransformMessage {
             header,
             child: child.trim_start_matches('/').to_owned(),
-            transform: pose(fields)?,
+            transform,
+            is_oriented,
         });
     }
     Ok(all)
 }
 
-/// Position and quaternion.
-fn pose(fields: &mut WireReader<'_>) -> Result<Isometry3<f64>, WireError> {
+/// Position and quaternion, and whether the quaternion was set.
+fn pose(fields: &mut WireReader<'_>) -> Result<(Isometry3<f64>, bool), WireError> {
     let mut numbers = [0.0; 7];
     for (slot, name) in numbers
         .iter_mut()
@@ -122,11 +130,12 @@ fn pose(fields: &mut WireReader<'_>) -> Result<Isometry3<f64>, WireError> {
     }
     let [x, y, z, qx, qy, qz, qw] = numbers;
     let quaternion = Quaternion::new(qw, qx, qy, qz);
-    let rotation = if quaternion.norm_squared() > 1e-12 {
+    let is_oriented = quaternion.norm_squared() > 1e-12;
+    let rotation = if is_oriented {
         UnitQuaternion::new_normalize(quaternion)
     } else {
-        // All zero: the rotation was never set.
         UnitQuaternion::identity()
     };
-    Ok(Isometry3::from_parts(Translation3::new(x, y, z), rotation))
+    let pose = Isometry3::from_parts(Translation3::new(x, y, z), rotation);
+    Ok((pose, is_oriented))
 }

@@ -8,6 +8,7 @@ mod robots;
 use nalgebra::Isometry3;
 
 use super::survey::{SCANS, ScanStream, Survey};
+use super::transforms::is_ground;
 use crate::laser_mount::LaserMount;
 use crate::lines::listed;
 use crate::log::{LogNotes, LogOffer, LogOption, LogOptions};
@@ -109,7 +110,12 @@ impl Plan {
         plan.scans.push(planned(topic, stream, &clocks[0], &found));
         plan.name_other_publishers(topic, stream);
         let of_mount = |text| Remark::mended(Part::Mounting, text);
-        plan.warnings.extend(found.warning.clone().map(of_mount));
+        let is_in_ground = !found.is_known && is_fixed(&stream.frame, ground);
+        plan.warnings.extend(if is_in_ground {
+            Some(in_fixed_frame(topic, &stream.frame))
+        } else {
+            found.warning.clone().map(of_mount)
+        });
         for (other, stream) in &chosen[1..] {
             let other_mount = mounts::find(survey, &found.body, &stream.frame, ground, options);
             let is_asked_for = options.scan_topic.is_some();
@@ -141,6 +147,7 @@ impl Plan {
             let remarks = clock.remarks(&format!("scans of {}", scans.topic));
             plan.warnings.extend(remarks);
         }
+        plan.warnings.extend(odometry::without_headings(survey));
         if let Some(odometry) = &odometry {
             plan.warnings.extend(
                 odometry
@@ -281,6 +288,21 @@ impl Plan {
             format!("it has {}", listed(names.iter().take(20).cloned()))
         }
     }
+}
+
+/// Whether a frame does not move with the robot.
+fn is_fixed(frame: &str, ground: Option<&str>) -> bool {
+    !frame.is_empty() && (ground == Some(frame) || is_ground(frame))
+}
+
+/// Scans that were already moved by a pose of the robot.
+fn in_fixed_frame(topic: &str, frame: &str) -> Remark {
+    Remark::wrong(
+        Part::Mounting,
+        format!(
+            "{topic} is in {frame}, which does not move with the robot: its points were already moved by a pose of the robot, so they do not show where the sensor was. Record the topic that the sensor's driver publishes, in the sensor's frame"
+        ),
+    )
 }
 
 fn planned(

@@ -136,6 +136,8 @@ pub struct BodyPoses {
     pub poses: Vec<SE2>,
     /// Whether the poses differ.
     pub moves: bool,
+    /// Number of messages without an orientation; their poses are left out.
+    pub without_heading: usize,
     /// Keeps every n-th message.
     every: usize,
     seen: usize,
@@ -228,7 +230,11 @@ impl Survey {
                             order,
                             ..BodyPoses::default()
                         });
-                        track.add(transform.header.stamp_s, message.recorded_s, pose);
+                        if transform.is_oriented {
+                            track.add(transform.header.stamp_s, message.recorded_s, pose);
+                        } else {
+                            track.without_heading += 1;
+                        }
                     }
                 }
                 Ok(())
@@ -318,7 +324,11 @@ impl Survey {
                 order,
                 ..BodyPoses::default()
             });
-        track.add(parsed.header.stamp_s, message.recorded_s, pose);
+        if parsed.is_oriented {
+            track.add(parsed.header.stamp_s, message.recorded_s, pose);
+        } else {
+            track.without_heading += 1;
+        }
         Ok(())
     }
 }

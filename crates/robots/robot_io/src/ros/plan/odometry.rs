@@ -4,6 +4,7 @@ use super::TRANSFORMS;
 use crate::lines::listed;
 use crate::log::LogOptions;
 use crate::odometry_poses::{OdometryPoses, jumps_remark};
+use crate::plural::plural;
 use crate::remark::{NO_ODOMETRY, Part, Remark};
 use crate::ros::survey::{BodyPoses, Survey};
 use crate::stamps::MendedStamps;
@@ -50,7 +51,8 @@ pub fn chosen<'a>(
         .filter(|(topic, track, is_transform)| {
             let is_wanted = wanted.is_none_or(|wanted| wanted == topic);
             // A transform with one message is static, whatever its name.
-            is_wanted && (!is_transform || track.moves || track.poses.len() > 2)
+            let is_static = *is_transform && !track.moves && track.poses.len() <= 2;
+            is_wanted && !is_static && !track.poses.is_empty()
         });
     let scored = candidates.map(|(topic, track, is_transform)| {
         let clock = MendedStamps::new(&track.stamps_s, &track.recorded_s);
@@ -81,6 +83,34 @@ pub fn chosen<'a>(
             format!("there are other odometry sources: {others}; choose with --odom-topic or --odom-frame")
         }),
     })
+}
+
+/// Remarks on sources of odometry whose poses have no orientation.
+pub fn without_headings(survey: &Survey) -> Vec<Remark> {
+    let topics = survey.odometry.iter();
+    let topics = topics.map(|(topic, track)| (topic.as_str(), track));
+    let transforms = survey.tracks.values().map(|track| (TRANSFORMS, track));
+    let unset = topics
+        .chain(transforms)
+        .filter(|(_, track)| track.without_heading > 0);
+    let remarks = unset.map(|(topic, track)| {
+        let poses = plural(track.without_heading, "pose");
+        let source = format!("{topic} from {} to {}", track.above, track.body);
+        if track.poses.is_empty() {
+            Remark::wrong(
+                Part::Odometry,
+                format!(
+                    "the orientation of every pose of {source} is 0,0,0,0, so the robot's heading is unknown; this odometry is not used. Publish the orientation as a unit quaternion"
+                ),
+            )
+        } else {
+            Remark::mended(
+                Part::Odometry,
+                format!("{poses} of {source} have the orientation 0,0,0,0 and were skipped"),
+            )
+        }
+    });
+    remarks.take(5).collect()
 }
 
 /// Whether the moving body carries the laser.
