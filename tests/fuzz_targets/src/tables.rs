@@ -8,7 +8,7 @@ use crate::logs;
 use crate::sentences::assert_sentence;
 
 /// First lines, or the start of the first line, of each form.
-const HEADS: [&str; 7] = [
+const HEADS: [&str; 12] = [
     "time,x,y,heading,angle_min,angle_increment,ranges0,ranges1,ranges2\n",
     "angle,distance,quality\n",
     "time_us;angle_deg;range_mm\n",
@@ -16,6 +16,11 @@ const HEADS: [&str; 7] = [
     "1,0,laser,-1.0,1.0,1.0,0.0,0.1,0.1,30.0,",
     "S  theta: 0.50 Dist: 00234.00 Q: 47\n",
     "O 0 0 0 1\n",
+    "time,angle_min,angle_increment,ranges,intensities\n",
+    "NaN,-1.0,-0.5,0.0,0.5,1.0\n",
+    "0.0,1500,47,0.0\n3.0,1507,47,0.0\n",
+    "VERTEX2 0 0 0 0\nROBOTLASER1 0 -1.5 3.1 0.5 12 0.1 0 ",
+    "ODOMETRY 0 1 1 0 0 ",
 ];
 /// Integers of a row of BreezySLAM.
 const OF_BREEZY: usize = 706;

@@ -8,10 +8,11 @@ use std::io::BufRead;
 use ch16_slam2d::scan::LaserScan;
 
 use crate::foreign::Foreign;
-use crate::lines::{LineEnd, next_line};
+use crate::lines::{LineEnd, excerpt, next_line};
 use crate::log::{BrokenRecord, FilePosition, LogError, LogFrame, LogNotes, LogReader};
 use crate::range_unit::in_metres;
 use crate::remark::{Part, Remark};
+use crate::table_layout::guess;
 
 /// Parser of a format's lines, in order.
 pub trait LineFormat: Default {
@@ -59,6 +60,8 @@ pub struct LineReader<R, F> {
     format: F,
     frames: usize,
     is_done: bool,
+    /// The first lines of a file that may be of no known form.
+    start: Vec<String>,
 }
 
 impl<R: BufRead, F: LineFormat> LineReader<R, F> {
@@ -79,7 +82,16 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
             format,
             frames: 0,
             is_done: false,
+            start: Vec::new(),
         }
+    }
+
+    /// Keeps the first lines with text, until there is a frame.
+    fn keep_start(&mut self) {
+        let is_kept = self.frames == 0 && self.start.len() < guess::LINES;
+        let text = std::str::from_utf8(&self.line).ok().filter(|_| is_kept);
+        let text = text.map(str::trim).filter(|text| !text.is_empty());
+        self.start.extend(text.map(str::to_owned));
     }
 
     /// Converts ranges that can only be in millimetres.
@@ -101,6 +113,16 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
         }
         if let Some(by_content) = self.format.foreign() {
             let by_name = Foreign::named(&name).map(|kind| (kind.found, kind.advice));
+            let is_text = |line: &&String| !line.chars().any(|c| c.is_control() && c != '\t');
+            if by_name.is_none()
+                && let Some(line) = self.start.first().filter(is_text)
+            {
+                return LogError::UnknownText {
+                    line: format!("‘{}’", excerpt(line)),
+                    advice: guess::advice(&self.start),
+                    name,
+                };
+            }
             let (found, advice) = by_name.unwrap_or(by_content);
             return LogError::Foreign {
                 name,
@@ -144,6 +166,7 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
             };
             self.notes.lines += 1;
             self.notes.bytes += bytes;
+            self.keep_start();
             let position = FilePosition::Line(self.notes.lines);
             let taken = if end == LineEnd::TooLong {
                 Err("a line must be shorter than 4 MB".to_owned())

@@ -69,6 +69,16 @@ pub fn printable(field: &str) -> String {
     clipped(field, 24)
 }
 
+/// The start of a line, for messages.
+pub fn excerpt(line: &str) -> String {
+    let start = clipped(line, 48);
+    if start.len() < line.len() {
+        format!("{start}…")
+    } else {
+        start
+    }
+}
+
 /// A name from a file, of a topic, type or frame. ROS 2 allows 255 characters.
 pub fn name(text: &str) -> String {
     clipped(text, 255)

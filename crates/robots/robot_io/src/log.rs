@@ -250,6 +250,18 @@ pub enum LogError {
         /// What to do.
         advice: &'static str,
     },
+    /// The file is text of no known form.
+    #[error(
+        "{name} is not a CARMEN log; give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1. Its first line is {line}; {advice}"
+    )]
+    UnknownText {
+        /// The log's name.
+        name: String,
+        /// The start of its first line, quoted.
+        line: String,
+        /// How its columns may be read.
+        advice: String,
+    },
     /// A requested topic or frame does not exist.
     #[error("{name} has no {option} {wanted}; {advice}")]
     Missing {

@@ -1,5 +1,7 @@
 //! What the columns of a table are: by the header of the file, by its form, or by the user.
 
+pub(crate) mod guess;
+
 use std::str::FromStr;
 
 use crate::lines::printable;
@@ -57,6 +59,10 @@ pub struct TableLayout {
     pub is_clockwise: bool,
     /// First angle and step of scans whose rows state none, rad.
     pub angles_rad: Option<[f64; 2]>,
+    /// First and last angle of scans whose rows state none, rad.
+    pub view_rad: Option<[f64; 2]>,
+    /// Whether the first row has the angles of the beams.
+    pub begins_with_angles: bool,
 }
 
 /// Beams of the URG-04LX in a log of BreezySLAM, and the words before them.
@@ -80,6 +86,7 @@ impl TableLayout {
             .or_else(|| Self::of_sdk(text))
             .or_else(|| Self::of_echo(text))
             .or_else(|| Self::of_breezy(text))
+            .or_else(|| Self::of_angles(text))
     }
 
     /// By a header.
@@ -100,6 +107,13 @@ impl TableLayout {
             columns.iter().filter(|c| c.0 == wanted).count()
         };
         // A bag's own stamp is better than the time of recording before it.
+        // `rostopic echo -p` prints every time in nanoseconds, also that of a simulation, which is small.
+        if names.iter().any(|name| name.starts_with("field.")) {
+            let times = columns.iter_mut();
+            times
+                .filter(|column| column.0 == ColumnMeaning::Time)
+                .for_each(|column| column.1 = Some(1e-9));
+        }
         if of(ColumnMeaning::Time, &columns) > 1 {
             let best = names.iter().position(|name| name.ends_with("header.stamp"));
             let best = best.or_else(|| columns.iter().position(|c| c.0 == ColumnMeaning::Time));
@@ -115,7 +129,7 @@ impl TableLayout {
         (is_of_beams != is_of_scans).then(|| Self {
             is_clockwise: is_of_beams && of(ColumnMeaning::Quality, &columns) > 0,
             columns,
-            angles_rad: None,
+            ..Self::default()
         })
     }
 
@@ -131,7 +145,7 @@ impl TableLayout {
                 (ColumnMeaning::Quality, Some(1.0)),
             ],
             is_clockwise: true,
-            angles_rad: None,
+            ..Self::default()
         })
     }
 
@@ -161,9 +175,36 @@ impl TableLayout {
             columns.push((ColumnMeaning::Ranges, Some(1e-3)));
             Self {
                 columns,
-                is_clockwise: false,
                 angles_rad: Some(BREEZY_ANGLES.map(f64::to_radians)),
+                ..Self::default()
             }
+        })
+    }
+
+    /// By a first row of evenly spaced angles behind a word that is no number; the rows below are times and ranges.
+    fn of_angles(text: &str) -> Option<Self> {
+        let mut words = words(text);
+        if words.next().and_then(number).is_some_and(f64::is_finite) {
+            return None;
+        }
+        let angles: Option<Vec<f64>> = words.map(number).collect();
+        let angles = angles?;
+        let (first, last) = (*angles.first()?, *angles.last()?);
+        let step = (last - first) / (angles.len() as f64 - 1.0);
+        let is_even = angles
+            .windows(2)
+            .all(|two| (two[1] - two[0] - step).abs() < 0.05 * step.abs());
+        // A turn in radians has fewer than seven of them, and a table of angles in degrees more.
+        let unit = if first.abs().max(last.abs()) > 7.0 {
+            1.0_f64.to_radians()
+        } else {
+            1.0
+        };
+        (angles.len() > 3 && is_even).then(|| Self {
+            columns: vec![(ColumnMeaning::Time, None), (ColumnMeaning::Ranges, None)],
+            angles_rad: Some([unit * first, unit * step]),
+            begins_with_angles: true,
+            ..Self::default()
         })
     }
 
@@ -179,7 +220,9 @@ impl TableLayout {
             .enumerate()
             .filter(|(at, _)| is_range(at))
             .peekable();
-        ranges.peek().is_some() && ranges.all(|(_, word)| word.is_empty() || number(word).is_some())
+        let is_numbers =
+            |word: &str| list(word).all(|item| is_missing(item) || number(item).is_some());
+        ranges.peek().is_some() && ranges.all(|(_, word)| is_numbers(word))
     }
 
     /// Number of readings that the header names.
@@ -214,7 +257,12 @@ impl FromStr for TableLayout {
     type Err = String;
 
     /// Names of columns, separated by commas; `-` is not read, and `ranges` at the end stands for all that follow.
+    /// `ranges@-90:90` states the first and the last angle, degrees.
     fn from_str(text: &str) -> Result<Self, String> {
+        let (text, view_rad) = match text.split_once('@') {
+            Some((text, view)) => (text, Some(view_of(view)?)),
+            None => (text, None),
+        };
         let columns: Vec<Scaled> = text.split(',').map(|name| column(name.trim())).collect();
         for (name, (column, _)) in text.split(',').zip(&columns) {
             if *column == ColumnMeaning::Other && !matches!(name.trim(), "-" | "frame_id") {
@@ -228,20 +276,96 @@ impl FromStr for TableLayout {
         if has(ColumnMeaning::Ranges) == (has(ColumnMeaning::Angle) && has(ColumnMeaning::Range)) {
             return Err("name either ranges, or angle and range".to_owned());
         }
+        if view_rad.is_some() && columns.last().is_none_or(|c| c.0 != ColumnMeaning::Ranges) {
+            return Err(
+                "angles stand behind ranges, which is the last column, such as time,ranges@-90:90"
+                    .to_owned(),
+            );
+        }
         Ok(Self {
             columns,
+            view_rad,
             ..Self::default()
         })
     }
 }
 
-/// The words of a row, without quotes and the brackets of a list: empty ones count between commas, not between spaces.
-/// A comma beside semicolons or tabs is the decimal sign.
+/// The first and the last angle of `-90:90`, in rad.
+fn view_of(text: &str) -> Result<[f64; 2], String> {
+    let angles = text.split_once(':').and_then(|(first, last)| {
+        let angle = |text: &str| {
+            text.trim()
+                .parse::<f64>()
+                .ok()
+                .filter(|deg| deg.is_finite())
+        };
+        Some([angle(first)?, angle(last)?])
+    });
+    angles
+        .filter(|[first, last]| first != last && (last - first).abs() <= 360.0)
+        .map(|angles| angles.map(f64::to_radians))
+        .ok_or_else(|| {
+            "the first and the last angle stand behind ranges in degrees, such as ranges@-90:90"
+                .to_owned()
+        })
+}
+
+/// The words of a row, without quotes and outer brackets: empty ones count between commas, not between spaces. A comma
+/// beside semicolons or tabs is the decimal sign. A list in quotes or brackets is one word.
 pub fn words(text: &str) -> impl Iterator<Item = &str> {
-    let separator = ['\t', ';', ','].into_iter().find(|c| text.contains(*c));
-    text.split(separator.unwrap_or(' '))
-        .map(|word| word.trim_matches([' ', '"', '\'', '[', ']']))
-        .filter(move |word| separator.is_some() || !word.is_empty())
+    let is_outside = outside_of_lists(text);
+    let separates = |c: char| text.match_indices(c).any(|(at, _)| is_outside[at]);
+    let separator = ['\t', ';', ','].into_iter().find(|c| separates(*c));
+    let wanted = separator.unwrap_or(' ');
+    let mut at = 0;
+    text.split(move |c: char| {
+        let is_end = c == wanted && is_outside[at];
+        at += c.len_utf8();
+        is_end
+    })
+    .map(|word| word.trim_matches([' ', '"', '\'', '[', ']', '(', ')']))
+    .filter(move |word| separator.is_some() || !word.is_empty())
+}
+
+/// For each byte, whether it is outside of quotes and brackets; all are if one of them is not closed.
+fn outside_of_lists(text: &str) -> Vec<bool> {
+    let (mut depth, mut is_quoted, mut is_balanced) = (0_usize, false, true);
+    let mut outside = Vec::with_capacity(text.len());
+    for byte in text.bytes() {
+        match byte {
+            b'"' => is_quoted = !is_quoted,
+            b'[' | b'(' if !is_quoted => depth += 1,
+            b']' | b')' if !is_quoted => {
+                is_balanced &= depth > 0;
+                depth = depth.saturating_sub(1);
+            }
+            _ => {}
+        }
+        outside.push(depth == 0 && !is_quoted);
+    }
+    if depth > 0 || is_quoted || !is_balanced {
+        outside.fill(true);
+    }
+    outside
+}
+
+/// The items of a word: one, or those of a list such as `[1.5, 1.6]`, `(1.5 1.6)` or `array('f', [1.5, 1.6])`.
+pub fn list(word: &str) -> impl Iterator<Item = &str> {
+    let is_one = number(word).is_some();
+    let inner = word.rsplit(['[', '(']).next().unwrap_or(word);
+    let separator = [';', ',']
+        .into_iter()
+        .find(|c| !is_one && inner.contains(*c));
+    let wanted = separator.unwrap_or(' ');
+    inner
+        .split(wanted)
+        .map(|item| item.trim_matches([' ', '"', '\'', ']', ')']))
+        .filter(move |item| is_one || separator.is_some() || !item.is_empty())
+}
+
+/// Whether an item of a list stands for a reading that is missing.
+pub fn is_missing(item: &str) -> bool {
+    item.is_empty() || matches!(item, "None" | "null" | "-")
 }
 
 /// The number of a word, with a point or a comma before its decimals.

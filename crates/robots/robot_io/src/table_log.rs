@@ -96,6 +96,28 @@ impl TableRows {
                 missing += usize::from(column == ColumnMeaning::Ranges);
                 continue;
             }
+            if column == ColumnMeaning::Ranges {
+                for item in table_layout::list(word) {
+                    if table_layout::is_missing(item) {
+                        missing += 1;
+                        continue;
+                    }
+                    let range = table_layout::number(item).ok_or_else(|| {
+                        format!(
+                            "word {} must be a number, not ‘{}’",
+                            at + 1,
+                            printable(item)
+                        )
+                    })?;
+                    let beams = fields.ranges_m.len() + std::mem::take(&mut missing);
+                    if beams >= MAX_BEAMS {
+                        return Err(format!("a scan has more than {MAX_BEAMS} ranges"));
+                    }
+                    fields.ranges_m.resize(beams, f64::NAN);
+                    fields.ranges_m.push(factor.unwrap_or(1.0) * range);
+                }
+                continue;
+            }
             let number = table_layout::number(word).ok_or_else(|| {
                 let what = if column == ColumnMeaning::Time {
                     "a number of seconds"
@@ -106,7 +128,7 @@ impl TableRows {
             })?;
             let value = factor.unwrap_or(1.0) * number;
             match column {
-                ColumnMeaning::Other => {}
+                ColumnMeaning::Other | ColumnMeaning::Ranges => {}
                 ColumnMeaning::Time => {
                     time_s = Some(factor.unwrap_or_else(|| second(number)) * number)
                 }
@@ -125,14 +147,6 @@ impl TableRows {
                 ColumnMeaning::ScanTime => fields.scan_time = value,
                 ColumnMeaning::RangeMin => fields.range_min = value,
                 ColumnMeaning::RangeMax => fields.range_max = value,
-                ColumnMeaning::Ranges if fields.ranges_m.len() + missing < MAX_BEAMS => {
-                    let beams = fields.ranges_m.len() + std::mem::take(&mut missing);
-                    fields.ranges_m.resize(beams, f64::NAN);
-                    fields.ranges_m.push(value);
-                }
-                ColumnMeaning::Ranges => {
-                    return Err(format!("a scan has more than {MAX_BEAMS} ranges"));
-                }
             }
         }
         // A separator at the end of the row is none; a reading with a name is one.
@@ -218,6 +232,10 @@ impl LineFormat for TableRows {
         if text.is_empty() || is_comment {
             return Ok(None);
         }
+        if self.layout.begins_with_angles && !self.has_rows {
+            self.has_rows = true;
+            return Ok(None);
+        }
         let row = match self.row(text) {
             Err(_) if !self.has_rows && is_header(text) => return Ok(None),
             other => other?,
@@ -262,9 +280,16 @@ impl TableRows {
             fields.angle_max = f64::NAN;
             return Ok(());
         }
+        if let Some([first, last]) = self.layout.view_rad {
+            let steps = fields.ranges_m.len() as f64 - 1.0;
+            fields.angle_min = first;
+            fields.angle_increment = (last - first) / steps.max(1.0);
+            fields.angle_max = f64::NAN;
+            return Ok(());
+        }
         if fields.angle_increment == 0.0 && fields.angle_min == fields.angle_max {
             return Err(
-                "a scan must have angle_min and angle_increment; add both columns to the table"
+                "a scan must have angle_min and angle_increment; add both columns to the table, or state the first and the last angle, in degrees, with --columns …,ranges@-90:90"
                     .to_owned(),
             );
         }

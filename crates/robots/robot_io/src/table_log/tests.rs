@@ -228,3 +228,91 @@ fn a_sweep_with_one_time_may_pass_the_bearing_where_counting_begins() {
         3
     );
 }
+
+#[test]
+fn a_scan_in_one_cell_has_all_its_beams() {
+    let header = "time,frame,angle_min,angle_increment,ranges,intensities";
+    for list in [
+        "\"[1.5, 2.0, None, 3.5]\"",
+        "\"(1.5, 2.0, , 3.5)\"",
+        "\"1.5 2.0 nan 3.5\"",
+        "[1.5 2.0 nan 3.5]",
+        "\"array('f', [1.5, 2.0, nan, 3.5])\"",
+    ] {
+        let row = |stamp: u32| format!("{stamp},laser,-1,0.5,{list},\"[47, 47, 47, 47]\"\n");
+        let frames = read(&format!("{header}\n{}{}", row(1), row(2)));
+        assert_eq!(frames.len(), 2, "{list}");
+        let ranges = &frames[1].scan.ranges_m;
+        assert_eq!(
+            (ranges.len(), ranges[0], ranges[3]),
+            (4, 1.5, 3.5),
+            "{list}"
+        );
+        assert!(ranges[2].is_nan(), "{list}");
+    }
+}
+
+#[test]
+fn the_times_of_a_simulation_are_nanoseconds_as_all_that_rostopic_prints() {
+    let row = |ns: u64| format!("{ns},{ns},-1,0.5,1,2,3,4,5\n");
+    let names: Vec<String> = (0..5).map(|beam| format!("field.ranges{beam}")).collect();
+    let header = "%time,field.header.stamp,field.angle_min,field.angle_increment";
+    let rows: String = (0..4)
+        .map(|k| row(124_600_000_000 + 200_000_000 * k))
+        .collect();
+    let frames = read(&format!("{header},{}\n{rows}", names.join(",")));
+    let stamps: Vec<f64> = frames.iter().map(|frame| frame.stamp_s).collect();
+    // 1e-9 s: a nanosecond.
+    assert!(
+        (stamps[0] - 124.6).abs() < 1e-9 && (stamps[3] - 125.2).abs() < 1e-9,
+        "{stamps:?}"
+    );
+}
+
+#[test]
+fn angles_come_from_the_first_row_or_from_the_columns() {
+    let rows = "1.0,1.5,2.0,-1,3.0,3.5\n1.2,1.5,2.0,-1,3.0,3.5\n";
+    let by_row = read(&format!("NaN,-1.0,-0.5,0.0,0.5,1.0\n{rows}"));
+    let view = 1.0_f64.to_degrees();
+    let options = LogOptions {
+        columns: Some(format!("time,ranges@-{view}:{view}").parse().unwrap()),
+        ..LogOptions::default()
+    };
+    for frames in [by_row, read_with(rows, &options).0] {
+        assert_eq!(frames.len(), 2);
+        let scan = &frames[1].scan;
+        assert_eq!(frames[1].stamp_s, 1.2);
+        // 1e-12 rad: degrees and back.
+        assert!((scan.bearing_rad(0) + 1.0).abs() < 1e-12);
+        assert!((scan.bearing_rad(4) - 1.0).abs() < 1e-12);
+        assert!(!scan.is_return(scan.ranges_m[2]) && scan.is_return(scan.ranges_m[3]));
+    }
+    for wrong in [
+        "time,ranges@90",
+        "time,ranges@0:0",
+        "angle,range@-1:1",
+        "time,ranges@a:b",
+    ] {
+        let parsed: Result<crate::table_layout::TableLayout, String> = wrong.parse();
+        assert!(parsed.unwrap_err().contains("ranges@-90:90") || wrong.starts_with("angle"));
+    }
+}
+
+#[test]
+fn a_table_of_no_known_form_is_answered_with_its_columns() {
+    let rows = (0..40).map(|k| format!("{:.2},{:05}.00,47,0.0\n", 3 * k, 1500 + k * k));
+    let text: String = rows.collect();
+    let mut reader = LogFormat::open(text.as_bytes(), "x.csv", &LogOptions::default()).unwrap();
+    let error = reader.next_frame().unwrap_err().to_string();
+    let columns = "angle_deg,range_mm,quality,time";
+    assert!(error.contains("‘0.00,01500.00,47,0.0’"), "{error}");
+    assert!(
+        error.contains(&format!("pass --columns {columns} ")),
+        "{error}"
+    );
+    let options = LogOptions {
+        columns: Some(columns.parse().unwrap()),
+        ..LogOptions::default()
+    };
+    assert_eq!(read_with(&text, &options).0[0].scan.ranges_m.len(), 40);
+}

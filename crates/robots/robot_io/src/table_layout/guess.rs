@@ -1,0 +1,170 @@
+//! What the columns of a table without known names may be, as a proposal for the user to check.
+
+use super::{column, list, number, words};
+use crate::table_layout::ColumnMeaning;
+
+/// Number of lines that are looked at.
+pub const LINES: usize = 12;
+/// A row of a beam has fewer columns.
+const MOST_OF_BEAM: usize = 8;
+/// Evenly spaced angles of this step or more are degrees: beams are less than 7° apart.
+const STEP_DEG: f64 = 0.12;
+/// No laser of a robot sees farther, m: longer ranges are millimetres.
+const FARTHEST_M: f64 = 150.0;
+/// Largest quality that drivers state.
+const MOST_QUALITY: f64 = 255.0;
+
+/// How the lines may be read, as the end of a sentence.
+pub fn advice(lines: &[String]) -> String {
+    match proposal(lines) {
+        Some(columns) => {
+            let count = lines.first().map_or(0, |line| words(line).count());
+            let angles = if columns.contains('@') {
+                ", with the first and the last angle of the laser, in degrees,"
+            } else {
+                ""
+            };
+            format!(
+                "if its {count} columns are what they seem to be, pass --columns {columns}{angles} and check the map"
+            )
+        }
+        None => "if it is a table, name its columns with --columns, such as time_s,ranges_m@-90:90 or angle_deg,range_mm".to_owned(),
+    }
+}
+
+/// The value of `--columns` that may fit; `None` if the lines are no rows of numbers.
+fn proposal(lines: &[String]) -> Option<String> {
+    let numbers = |line: &String| -> Option<Vec<f64>> {
+        let items = words(line).flat_map(|word| list(word).map(number).collect::<Vec<_>>());
+        items.collect()
+    };
+    let names: Option<Vec<&str>> = lines
+        .first()
+        .filter(|line| words(line).all(|word| number(word).is_none()))
+        .map(|line| words(line).collect());
+    let rows = &lines[usize::from(names.is_some())..];
+    let rows: Option<Vec<Vec<f64>>> = rows.iter().map(numbers).collect();
+    let rows = rows.filter(|rows| rows.len() > 1)?;
+    let count = rows.iter().map(Vec::len).min()?;
+    if count < 2 {
+        return None;
+    }
+    if count < MOST_OF_BEAM {
+        return beam(&rows, count, names.as_deref());
+    }
+    Some(scan(&rows))
+}
+
+/// Columns of rows that are beams.
+fn beam(rows: &[Vec<f64>], count: usize, names: Option<&[&str]>) -> Option<String> {
+    let of = |at: usize| rows.iter().map(move |row| row[at]);
+    let steps = |at: usize| rows.windows(2).map(move |two| two[1][at] - two[0][at]);
+    let angle = (0..count).find(|&at| {
+        let step = steps(at).next().unwrap_or(0.0);
+        let is_even = steps(at).all(|other| (other - step).abs() < 0.2 * step.abs());
+        step != 0.0 && is_even && of(at).all(|value| value.abs() <= 360.0)
+    })?;
+    let spread = |at: &usize| {
+        let (low, high) = of(*at).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        high - low
+    };
+    let others = (0..count).filter(|at| *at != angle);
+    let range = others.max_by(|a, b| spread(a).total_cmp(&spread(b)))?;
+    let step = steps(angle).next().unwrap_or(0.0).abs();
+    let column = |at: usize| {
+        if at == angle {
+            let is_deg = step >= STEP_DEG;
+            return if is_deg { "angle_deg" } else { "angle_rad" };
+        }
+        if at == range {
+            return unit(of(at).fold(0.0, f64::max), ["range_m", "range_mm"]);
+        }
+        if let Some((ColumnMeaning::Other, _)) = names
+            .and_then(|names| names.get(at))
+            .map(|name| column(name))
+        {
+            return "-";
+        }
+        let is_quality =
+            of(at).all(|value| value.fract() == 0.0 && (1.0..=MOST_QUALITY).contains(&value));
+        let is_later = steps(at).all(|step| step >= 0.0);
+        match (is_quality, is_later) {
+            (true, _) => "quality",
+            (false, true) => "time",
+            (false, false) => "-",
+        }
+    };
+    Some((0..count).map(column).collect::<Vec<_>>().join(","))
+}
+
+/// Columns of rows that are scans.
+fn scan(rows: &[Vec<f64>]) -> String {
+    // The number of ranges stands before them, or only a time does.
+    let is_count = |at: &usize| {
+        rows.iter()
+            .all(|row| row[*at] == (row.len() - at - 1) as f64)
+    };
+    let first = rows.iter().map(Vec::len).min().unwrap_or(0);
+    let counted = (0..first.saturating_sub(MOST_OF_BEAM / 2)).find(is_count);
+    let is_later = |at: usize| rows.windows(2).all(|two| two[1][at] > two[0][at]);
+    let before = counted.map_or(usize::from(is_later(0)), |at| at + 1);
+    let names = (0..before).map(|at| if at == 0 && is_later(0) { "time" } else { "-" });
+    let longest = rows
+        .iter()
+        .flat_map(|row| &row[before..])
+        .copied()
+        .fold(0.0, f64::max);
+    let ranges = unit(longest, ["ranges_m@-90:90", "ranges_mm@-90:90"]);
+    names.chain([ranges]).collect::<Vec<_>>().join(",")
+}
+
+/// The name in metres or in millimetres, by the largest value.
+fn unit(largest: f64, [metres, millimetres]: [&'static str; 2]) -> &'static str {
+    if largest > FARTHEST_M {
+        millimetres
+    } else {
+        metres
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::TableLayout;
+    use super::*;
+
+    fn proposed(rows: impl Iterator<Item = String>) -> Option<String> {
+        let lines: Vec<String> = rows.take(LINES).collect();
+        let columns = proposal(&lines)?;
+        // What is proposed is accepted.
+        columns.parse::<TableLayout>().unwrap();
+        Some(columns)
+    }
+
+    #[test]
+    fn beams_and_scans_without_names_are_recognized_by_their_numbers() {
+        let beams = (0..20).map(|k| format!("{:.2},{:05}.00,47,0.0", 3 * k, 1500 + 7 * k * k));
+        assert_eq!(proposed(beams).unwrap(), "angle_deg,range_mm,quality,time");
+        let metres = (0..20).map(|k| {
+            format!(
+                "{} {}",
+                0.0087 * f64::from(k),
+                1.5 + 0.01 * f64::from(k * k)
+            )
+        });
+        assert_eq!(proposed(metres).unwrap(), "angle_rad,range_m");
+        let ranges =
+            |k: i32| (0..61).map(move |beam| format!(" {}", 2.0 + 0.01 * f64::from(beam + k)));
+        let counted = (0..5).map(|k| format!("{k} 61{}", ranges(k).collect::<String>()));
+        assert_eq!(proposed(counted).unwrap(), "time,-,ranges_m@-90:90");
+        let timed = (0..5).map(|k| format!("{k}{}", ranges(k).collect::<String>()));
+        assert_eq!(proposed(timed).unwrap(), "time,ranges_m@-90:90");
+    }
+
+    #[test]
+    fn prose_has_no_columns() {
+        let prose = ["a line of text", "and another one"];
+        assert_eq!(proposed(prose.iter().map(|line| (*line).to_owned())), None);
+    }
+}
