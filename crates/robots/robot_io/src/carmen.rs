@@ -6,6 +6,7 @@
 //! | `ROBOTLASER1 type start fov step max … n r… m e… laser_pose robot_pose tv rv … ipc_time host logger_time` | ranges with their geometry |
 //! | `RAWLASER1 type start fov step max … n r… m e… ipc_time host logger_time` | the same without poses |
 //! | `ODOM x y θ tv rv acceleration ipc_time host logger_time` | pose by odometry |
+//! | `VERTEX2 id x y θ`, `VERTEX_SE2 …` | in a graph with scans: the pose of the scan after it, as odometry |
 //! | `PARAM name value …` | mounting, longest range and field of view of the front laser |
 //!
 //! Reads the first kind of scan that comes with odometry and counts the others. A raw scan waits for the next ODOM line
@@ -21,6 +22,8 @@ mod sensor;
 mod write;
 
 pub use write::write_carmen;
+
+use pr_geom::SE2;
 
 use crate::line_log::{LineFormat, LineReader};
 use crate::lines::printable;
@@ -49,6 +52,8 @@ pub struct Carmen {
     front: FrontLaser,
     chosen: Option<Source>,
     raw: RawScans,
+    /// The pose of the last vertex, in a graph that has scans.
+    vertex: Option<SE2>,
     known_lines: usize,
 }
 
@@ -89,7 +94,10 @@ impl LineFormat for Carmen {
                 Ok(None)
             }
             "ROBOTLASER1" => {
-                let frame = laser_message(&mut fields, true, frames)?;
+                let mut frame = laser_message(&mut fields, true, frames)?;
+                if let Some(vertex) = self.vertex.take() {
+                    frame.odometry = Some(vertex);
+                }
                 count();
                 Ok(self.choose(Source::RobotLaser).then_some(frame))
             }
@@ -108,6 +116,18 @@ impl LineFormat for Carmen {
                 let (stamp_s, pose) = odometry_message(&mut fields, scans)?;
                 count();
                 self.raw.add_odometry(stamp_s, pose);
+                Ok(None)
+            }
+            "VERTEX2" | "VERTEX_SE2" => {
+                fields.number("id")?;
+                let vertex = fields.pose(["x", "y", "theta"])?;
+                count();
+                if notes.about.is_empty() {
+                    notes
+                        .about
+                        .push("a graph with scans: its vertices are taken as odometry".to_owned());
+                }
+                self.vertex = Some(vertex);
                 Ok(None)
             }
             "PARAM" => {

@@ -69,7 +69,7 @@ const fn kind(
 const FROM_ITS_RECORDING: &str = "pass the recording that it was made from";
 
 /// All kinds; the first one that fits is taken.
-static KINDS: [Foreign; 30] = [
+static KINDS: [Foreign; 34] = [
     kind(
         "a Git LFS pointer, not the file itself",
         "fetch the file with git lfs pull",
@@ -152,7 +152,8 @@ static KINDS: [Foreign; 30] = [
         )
     },
     Foreign {
-        is: GraphFile::begins,
+        // A graph that carries its scans is a log.
+        is: |start| GraphFile::begins(start) && !contains(start, b"\nROBOTLASER1 "),
         ..kind(
             "a pose graph, not a log of scans",
             "optimize it with slam2d optimize",
@@ -240,6 +241,45 @@ static KINDS: [Foreign; 30] = [
         ],
         &["pcap", "pcapng"],
     ),
+    kind(
+        "what an RPLidar sends on its serial port",
+        "record the topic of its driver, or save the output of the SDK's ultra_simple, lines of theta: … Dist: … Q: …",
+        &[b"\xa5\x5a"],
+        &[],
+    ),
+    kind(
+        "a log of Player",
+        "write its laser lines as CSV with a header such as time,x,y,heading,angle_min,angle_increment,ranges",
+        &[b"## Player version"],
+        &[],
+    ),
+    Foreign {
+        is: |start| {
+            contains(
+                &start[..start.len().min(4096)],
+                b"sensor_msgs.msg.LaserScan(",
+            )
+        },
+        ..kind(
+            "messages as rclpy prints them",
+            "record the topic with ros2 bag record, or print it with ros2 topic echo --csv --full-length",
+            &[],
+            &[],
+        )
+    },
+    Foreign {
+        is: |start| {
+            let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+            let inner = start.trim_ascii_start().strip_prefix(b"[");
+            inner.is_some_and(|inner| inner.trim_ascii_start().starts_with(b"{"))
+        },
+        ..kind(
+            "a list in JSON, not an object a line",
+            "write an object a line with jq, with the field names of docs/recordings.md: jq -c '.[] | {stamp_s: .timestamp, odometry: [.x, .y, .theta], first_angle_rad: -3.14159, angle_step_rad: 0.0174533, ranges_m: .ranges}'",
+            &[],
+            &[],
+        )
+    },
     kind(
         "an array of NumPy",
         "write it as CSV with a header such as time,x,y,heading,angle_min,angle_increment,ranges",

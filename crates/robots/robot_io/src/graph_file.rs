@@ -6,6 +6,9 @@
 //!   I_xx I_xy I_xt I_yy I_yt I_tt                 I_xx I_xy I_yy I_tt I_xt I_yt
 //! ```
 //!
+//! iSAM's `ODOMETRY from to dx dy dtheta R_xx R_xy R_xt R_yy R_yt R_tt` is read as well: its R is the upper triangular
+//! square root of the information, I = RᵀR.
+//!
 //! On the left g2o, which [`pr_optim::g2o`] reads; on the right TORO, with another order of the
 //! information. JSON has the same numbers by name.
 //! Source: Grisetti, Stachniss, "TORO: tree-based network optimizer", the description of its files.
@@ -92,7 +95,8 @@ impl GraphFile {
     /// Whether a file with these first bytes is a graph of g2o or TORO.
     #[must_use]
     pub fn begins(first_bytes: &[u8]) -> bool {
-        first_bytes.starts_with(b"VERTEX") || first_bytes.starts_with(b"EDGE")
+        let starts: [&[u8]; 3] = [b"VERTEX", b"EDGE", b"ODOMETRY "];
+        starts.iter().any(|start| first_bytes.starts_with(start))
     }
 
     /// Converts a problem; `id_of` maps nodes to ids.

@@ -1,5 +1,8 @@
 //! Stamped poses, and the TUM format: `stamp x y z qx qy qz qw` on each line, separated by blanks or commas.
 //!
+//! A first line of names is skipped, as is a line that repeats the one before. Some programs write `qw` first: a line of
+//! names says so, or else that robots stand upright.
+//!
 //! Also reads EuRoC's ground truth: `stamp,x,y,z,qw,qx,qy,qz` with integer nanoseconds, followed by more columns.
 //! Source: Burri et al., "The EuRoC micro aerial vehicle datasets", 2016.
 
@@ -89,14 +92,18 @@ impl Trajectory {
     /// If a line is malformed or not later than the one before, or there is no line.
     pub fn read_tum(source: impl BufRead, name: &str) -> Result<Self, TextError> {
         let mut poses: Vec<StampedPose> = Vec::new();
+        let mut rotations: Vec<[f64; 4]> = Vec::new();
         let mut numbers = NumberLines::new(source, name, TUM_LINE);
-        while let Some([stamp, x, y, _, a, b, c, d]) = numbers.next_line()? {
-            let is_euroc = numbers.has_commas && stamp >= MIN_STAMP_NS;
-            let (stamp_s, [qx, qy, qz, qw]) = if is_euroc {
-                (stamp * 1e-9, [b, c, d, a])
-            } else {
-                (stamp, [a, b, c, d])
-            };
+        let mut is_euroc = false;
+        let mut last_numbers = None;
+        while let Some([stamp, x, y, z, a, b, c, d]) = numbers.next_line()? {
+            if last_numbers.replace([stamp, x, y, z, a, b, c, d])
+                == Some([stamp, x, y, z, a, b, c, d])
+            {
+                continue;
+            }
+            is_euroc |= numbers.has_commas && stamp >= MIN_STAMP_NS;
+            let stamp_s = if is_euroc { stamp * 1e-9 } else { stamp };
             if stamp == OVERFLOWN && poses.last().is_some_and(|last| last.stamp_s == OVERFLOWN) {
                 let problem = "the stamps are all 2147483647: they overflowed 32 bits; write them with 64 bits";
                 return Err(numbers.reject(problem.to_owned()));
@@ -106,14 +113,11 @@ impl Trajectory {
                     numbers.reject("the stamp is not later than the one before it".to_owned())
                 );
             }
-            // Yaw of a quaternion of any length.
-            let norm = qx * qx + qy * qy + qz * qz + qw * qw;
-            if norm < 1e-12 {
+            if a * a + b * b + c * c + d * d < 1e-12 {
                 return Err(numbers.reject("the quaternion is zero".to_owned()));
             }
-            let sin = 2.0 * (qw * qz + qx * qy);
-            let cos = qw * qw + qx * qx - qy * qy - qz * qz;
-            let pose = SE2::new(x, y, math::atan2(sin, cos));
+            rotations.push([a, b, c, d]);
+            let pose = SE2::from_xy(x, y);
             let stamped = plausible_stamp_s(stamp_s).and_then(|stamp_s| {
                 let pose = plausible_pose(pose)?;
                 Ok(StampedPose { stamp_s, pose })
@@ -121,6 +125,12 @@ impl Trajectory {
             poses.push(stamped.map_err(|problem| numbers.reject(problem))?);
         }
         numbers.at_least_one(poses.len())?;
+        let is_w_first = numbers
+            .names_w_first()
+            .unwrap_or_else(|| is_euroc || 10.0 * tilt(&rotations, true) < tilt(&rotations, false));
+        for (at, rotation) in poses.iter_mut().zip(&rotations) {
+            at.pose = SE2::new(at.pose.x(), at.pose.y(), yaw(rotation, is_w_first));
+        }
         Ok(Self { poses })
     }
 
@@ -194,6 +204,38 @@ impl Trajectory {
     }
 }
 
+/// The parts x, y, z and w of four numbers.
+fn quaternion(numbers: &[f64; 4], is_w_first: bool) -> [f64; 4] {
+    let [a, b, c, d] = *numbers;
+    if is_w_first {
+        [b, c, d, a]
+    } else {
+        [a, b, c, d]
+    }
+}
+
+/// Yaw of a quaternion of any length, rad.
+fn yaw(numbers: &[f64; 4], is_w_first: bool) -> f64 {
+    let [qx, qy, qz, qw] = quaternion(numbers, is_w_first);
+    let sin = 2.0 * (qw * qz + qx * qy);
+    let cos = qw * qw + qx * qx - qy * qy - qz * qz;
+    math::atan2(sin, cos)
+}
+
+/// Mean tilt of rotations: squared sine of half the angle between the body's and the world's upward axis.
+fn tilt(rotations: &[[f64; 4]], is_w_first: bool) -> f64 {
+    let tilts = rotations.iter().map(|numbers| {
+        let [qx, qy, qz, qw] = quaternion(numbers, is_w_first);
+        let level = qz * qz + qw * qw;
+        let tilted = qx * qx + qy * qy;
+        tilted / (tilted + level)
+    });
+    tilts.sum::<f64>() / rotations.len().max(1) as f64
+}
+
+/// Numbers in a line of KITTI's poses.
+const KITTI: usize = 12;
+
 /// Reads lines with a fixed count of finite numbers.
 pub(crate) struct NumberLines<'a, R> {
     source: R,
@@ -203,6 +245,8 @@ pub(crate) struct NumberLines<'a, R> {
     number: usize,
     /// Whether the last line has commas.
     has_commas: bool,
+    /// The line of names, if there is one.
+    names: Option<String>,
 }
 
 impl<'a, R: BufRead> NumberLines<'a, R> {
@@ -214,7 +258,14 @@ impl<'a, R: BufRead> NumberLines<'a, R> {
             line: Vec::new(),
             number: 0,
             has_commas: false,
+            names: None,
         }
+    }
+
+    /// Whether the line of names has `qw` before `qx`; `None` if it does not say.
+    fn names_w_first(&self) -> Option<bool> {
+        let names = self.names.as_ref()?.to_ascii_lowercase();
+        Some(names.find("qw")? < names.find("qx")?)
     }
 
     pub(crate) fn reject(&self, problem: String) -> TextError {
@@ -255,13 +306,25 @@ impl<'a, R: BufRead> NumberLines<'a, R> {
             let text = std::str::from_utf8(&self.line)
                 .map_err(|_| self.reject("the line is not UTF-8 text".to_owned()))?;
             let text = text.trim_start_matches('\u{feff}').trim();
+            let separates = |c: char| c.is_ascii_whitespace() || c == ',';
+            let words = || text.split(separates).filter(|word| !word.is_empty());
+            let is_names = self.names.is_none()
+                && words().count() >= N
+                && words().all(|word| word.parse::<f64>().is_err());
+            if is_names {
+                self.names = Some(text.to_owned());
+                continue;
+            }
             if text.is_empty() || text.starts_with('#') {
                 continue;
             }
+            if self.expected == TUM_LINE && words().count() == KITTI {
+                let problem = "it has the twelve numbers of KITTI's poses, which have no stamps; write the stamps with them, as evo's kitti_poses_and_timestamps_to_trajectory.py does";
+                return Err(self.reject(problem.to_owned()));
+            }
             let names = self.expected.split(' ');
             self.has_commas = text.contains(',');
-            let separates = |c: char| c.is_ascii_whitespace() || c == ',';
-            let mut words = text.split(separates).filter(|word| !word.is_empty());
+            let mut words = words();
             let mut numbers = [0.0; N];
             for (slot, name) in numbers.iter_mut().zip(names) {
                 *slot = finite(words.next(), name).map_err(|problem| self.reject(problem))?;
@@ -285,6 +348,26 @@ mod tests {
             pose: SE2::new(x, y, theta),
         });
         Trajectory::new(stamped.collect())
+    }
+
+    #[test]
+    fn names_repeated_lines_and_quaternions_with_w_first_are_read() {
+        let tum = "1 0.5 0 0 0 0 0.6 0.8\n2 1 0 0 0 0 0 1\n";
+        let plain = read(tum).unwrap();
+        for text in [
+            "timestamp,x,y,z,qx,qy,qz,qw\n1,0.5,0,0,0,0,0.6,0.8\n2,1,0,0,0,0,0,1\n",
+            "timestamp,x,y,z,qw,qx,qy,qz\n1,0.5,0,0,0.8,0,0,0.6\n2,1,0,0,1,0,0,0\n",
+            "1 0.5 0 0 0.8 0 0 0.6\n2 1 0 0 1 0 0 0\n",
+            "1 0.5 0 0 0 0 0.6 0.8\n1 0.5 0 0 0 0 0.6 0.8\n2 1 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n",
+        ] {
+            assert_eq!(read(text).unwrap(), plain, "{text}");
+        }
+        let other = read("1 0.5 0 0 0 0 0.6 0.8\n1 0.6 0 0 0 0 0.6 0.8\n").unwrap_err();
+        assert!(other.to_string().contains("not later"), "{other}");
+        let kitti = read("1 0 0 1.5 0 1 0 1.5 0 0 1 0\n")
+            .unwrap_err()
+            .to_string();
+        assert!(kitti.contains("KITTI"), "{kitti}");
     }
 
     #[test]

@@ -214,12 +214,31 @@ fn a_truncated_last_line_is_no_broken_line() {
 }
 
 #[test]
+fn the_vertices_of_a_graph_with_scans_are_its_odometry() {
+    let scan = |stamp: u32| {
+        format!("ROBOTLASER1 0 -1.5 3 1 12 0.1 0 4 1 2 3 4 0 0 0 0 0 0 0 0 0 0 0 0 {stamp} h 0\n")
+    };
+    let text = format!(
+        "VERTEX2 0 1 2 0.5\n{}VERTEX2 1 2 2 0.5\n{}EDGE2 0 1 1 0 0 1 0 1 1 0 0\n",
+        scan(1),
+        scan(2)
+    );
+    let (frames, notes) = read(text).unwrap();
+    let poses: Vec<Option<SE2>> = frames.iter().map(|frame| frame.odometry).collect();
+    assert_eq!(
+        poses,
+        [Some(SE2::new(1.0, 2.0, 0.5)), Some(SE2::new(2.0, 2.0, 0.5))]
+    );
+    assert_eq!((notes.records["EDGE2"], notes.about.len()), (1, 1));
+}
+
+#[test]
 fn what_holds_no_scan_is_rejected_in_one_sentence() {
     for (text, expected) in [
         ("", "x.clf is empty; give a recorded log"),
         (
             "Dear reader,\nthis is no log.\n",
-            "x.clf is not a CARMEN log; give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1",
+            "x.clf is not a CARMEN log; give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1. Its first line is ‘Dear reader,’; if it is a table, name its columns with --columns, such as time_s,ranges_m@-90:90 or angle_deg,range_mm",
         ),
         (
             "ODOM 0 0 0 0 0 0 1 h 1\n",

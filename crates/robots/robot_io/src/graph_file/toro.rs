@@ -1,4 +1,4 @@
-//! Converts records of TORO to records of g2o.
+//! Converts records of TORO and iSAM to records of g2o.
 
 use std::borrow::Cow;
 
@@ -12,12 +12,12 @@ pub struct AsG2o<'a> {
     pub remark: Option<String>,
 }
 
-/// Converts every TORO record of a text to g2o, line by line; other lines are unchanged.
+/// Converts every TORO or iSAM record of a text to g2o, line by line; other lines are unchanged.
 #[must_use]
 pub fn as_g2o(bytes: &[u8]) -> AsG2o<'_> {
     let is_toro = |line: &[u8]| {
         let line = line.trim_ascii_start();
-        [&b"VERTEX2"[..], b"EDGE2"].iter().any(|name| {
+        [&b"VERTEX2"[..], b"EDGE2", b"ODOMETRY"].iter().any(|name| {
             line.starts_with(name) && line.get(name.len()).is_some_and(u8::is_ascii_whitespace)
         })
     };
@@ -76,13 +76,37 @@ fn is_information(line: &str, order: [usize; 6]) -> bool {
     eigenvalues.iter().all(|&value| value >= -1e-9 * size)
 }
 
-/// A TORO record as a g2o record; a wrong number of fields is passed on.
+/// The information of an iSAM record by its square root; `None` if a word is no number.
+fn squared(root: &[&str]) -> Option<String> {
+    let numbers: Result<Vec<f64>, _> = root.iter().map(|word| word.parse()).collect();
+    let [xx, xy, xt, yy, yt, tt] = numbers.ok()?[..] else {
+        return None;
+    };
+    let root = Matrix3::new(xx, xy, xt, 0.0, yy, yt, 0.0, 0.0, tt);
+    let i = root.transpose() * root;
+    let upper = [
+        i[(0, 0)],
+        i[(0, 1)],
+        i[(0, 2)],
+        i[(1, 1)],
+        i[(1, 2)],
+        i[(2, 2)],
+    ];
+    Some(upper.map(|entry| entry.to_string()).join(" "))
+}
+
+/// A record of TORO or iSAM as a g2o record; a wrong number of fields is passed on.
 fn toro_line(line: &str, is_g2o_order: bool) -> String {
     let words: Vec<&str> = line.split_whitespace().collect();
     match words[..] {
         ["EDGE2", from, to, x, y, theta, xx, xy, yy, tt, xt, yt] if !is_g2o_order => {
             format!("EDGE_SE2 {from} {to} {x} {y} {theta} {xx} {xy} {xt} {yy} {yt} {tt}")
         }
+        ["ODOMETRY", from, to, x, y, theta, ref root @ ..] => {
+            let information = squared(root).unwrap_or_else(|| root.join(" "));
+            format!("EDGE_SE2 {from} {to} {x} {y} {theta} {information}")
+        }
+        ["ODOMETRY", ref rest @ ..] => format!("EDGE_SE2 {}", rest.join(" ")),
         ["EDGE2", ref rest @ ..] => format!("EDGE_SE2 {}", rest.join(" ")),
         [_, ref rest @ ..] => format!("VERTEX_SE2 {}", rest.join(" ")),
         [] => String::new(),
@@ -92,6 +116,15 @@ fn toro_line(line: &str, is_g2o_order: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_information_of_isam_is_the_square_of_its_root() {
+        let text = as_g2o(b"ODOMETRY 0 1 1 0 0.5 2 1 0 3 0 10\nLANDMARK 1 0 2 1 10 0 10\n").text;
+        assert_eq!(
+            String::from_utf8_lossy(&text),
+            "EDGE_SE2 0 1 1 0 0.5 4 2 0 10 0 100\nLANDMARK 1 0 2 1 10 0 10\n"
+        );
+    }
 
     #[test]
     fn the_order_of_the_information_is_the_definite_one() {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use robot_io::evaluate::{Alignment, truth_errors};
 use robot_io::graph_file::GraphFile;
+use robot_io::log_format::LogFormat;
 use robot_io::run::LogRun;
 use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
@@ -110,7 +111,7 @@ fn error_m(run: &LogRun, log: &Path) -> Option<f64> {
 /// Result and largest error of a recording, and what was said about it.
 fn outcome(log: &Path, run: LogRun, topics: &TopicArgs) -> [String; 3] {
     let bytes = fs::read(log).unwrap_or_default();
-    if GraphFile::begins(&bytes) {
+    if GraphFile::begins(&bytes) && LogFormat::detect(&bytes) != LogFormat::Carmen {
         let name = log.display().to_string();
         return match GraphFile::read(&bytes, &name) {
             Ok(graph) => {
