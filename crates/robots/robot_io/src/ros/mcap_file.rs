@@ -4,6 +4,7 @@
 //! a record inside a chunk, which costs memory or overflows; the format is small.
 
 mod chunk;
+mod foxglove;
 mod records;
 
 use std::io::BufRead;

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::foxglove;
 use crate::lines::printable;
 use crate::ros::container::{ContainerError, Recorded, kind_of};
 use crate::ros::wire::{Wire, WireError, WireReader};
@@ -122,6 +123,23 @@ impl Records {
         };
         let wire = match &channel.wire {
             Ok(wire) => *wire,
+            Err(encoding) if channel.kind == foxglove::LASER_SCAN => {
+                let Some(scan) = foxglove::as_ros1(encoding, fields.rest()) else {
+                    return Ok(None);
+                };
+                let named = |problem| {
+                    let topic = printable(&channel.topic);
+                    ContainerError::Skipped(format!("{} on {topic}: {problem}", channel.kind))
+                };
+                self.has_ros = true;
+                return Ok(Some(Recorded {
+                    topic: channel.topic.clone(),
+                    kind: foxglove::AS_KIND.to_owned(),
+                    wire: Wire::Ros1,
+                    bytes: scan.map_err(named)?,
+                    recorded_s: recorded_ns as f64 * 1e-9,
+                }));
+            }
             Err(encoding) => {
                 let named = || (channel.topic.clone(), encoding.clone());
                 self.other.get_or_insert_with(named);
