@@ -28,7 +28,7 @@ impl LogFormat {
         Self::open_parts(vec![bytes.into()], name, options)
     }
 
-    /// Opens a log of several files in order: a recording of ROS 2 may be split.
+    /// Opens a log of several files: a recording of ROS may be split.
     ///
     /// # Errors
     /// Those of [`open`](Self::open), and if several files are not a recording of ROS.

@@ -1,4 +1,4 @@
-//! Files of a rosbag2 folder, by its `metadata.yaml`.
+//! Files of a recording in a folder: by rosbag2's `metadata.yaml`, or the parts of `rosbag record --split`.
 
 use crate::remark::{Part, Remark};
 
@@ -31,12 +31,17 @@ pub fn listed_files(metadata: &str) -> Vec<String> {
 /// Whether a file name is that of a ROS 2 recording, compressed or not.
 #[must_use]
 pub fn is_recording(name: &str) -> bool {
+    ends_with(name, &[".mcap", ".db3"])
+}
+
+/// Whether a file name has one of these extensions, compressed or not.
+fn ends_with(name: &str, extensions: &[&str]) -> bool {
     let lower = name.to_ascii_lowercase();
     let plain = PACKED
         .iter()
         .find_map(|end| lower.strip_suffix(end))
         .unwrap_or(&lower);
-    [".mcap", ".db3"].iter().any(|end| plain.ends_with(end))
+    extensions.iter().any(|end| plain.ends_with(end))
 }
 
 /// The files of a recording.
@@ -62,11 +67,15 @@ pub fn in_order(metadata: Option<&str>, names: &[String]) -> Result<InOrder, Str
     };
     let all = (0..names.len()).filter(|&k| is_recording(&names[k]));
     let mut all: Vec<usize> = all.collect();
+    if all.is_empty() {
+        all.extend((0..names.len()).filter(|&k| ends_with(&names[k], &[".bag"])));
+    }
     by_name(&mut all);
     if listed.is_empty() {
+        let remarks = missing_part(all.iter().map(|&k| names[k].as_str()));
         return Ok(InOrder {
             files: all,
-            remarks: Vec::new(),
+            remarks: remarks.into_iter().collect(),
         });
     }
     let find = |listed: &String| {
@@ -122,9 +131,71 @@ pub fn in_order(metadata: Option<&str>, names: &[String]) -> Result<InOrder, Str
     Ok(InOrder { files, remarks })
 }
 
+/// A remark on the first number that is missing among those at the end of the parts' names.
+fn missing_part<'a>(names: impl Iterator<Item = &'a str>) -> Option<Remark> {
+    let number = |name: &str| {
+        let stem = name.split_once('.').map_or(name, |(stem, _)| stem);
+        let digits = stem.len() - stem.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+        let is_part = stem[..stem.len() - digits].ends_with(['_', '-']);
+        stem[stem.len() - digits..]
+            .parse::<u32>()
+            .ok()
+            .filter(|_| is_part)
+    };
+    let numbered: Option<Vec<(u32, &str)>> =
+        names.map(|name| Some((number(name)?, name))).collect();
+    let numbered = numbered?;
+    // Numbers that jump everywhere are dates, not parts.
+    let follows = |two: &&[(u32, &str)]| two[0].0.checked_add(1) == Some(two[1].0);
+    let pairs = numbered.windows(2);
+    let follow = pairs.clone().filter(follows).count();
+    let mut breaks = pairs.filter(|two| !follows(two));
+    let gap = breaks.next()?;
+    let [(last, before), (next, after)] = [gap[0], gap[1]];
+    let is_one = breaks.next().is_none() && next > last && (follow > 0 || next - last == 2);
+    is_one.then(|| {
+        Remark::wrong(
+            Part::File,
+            format!(
+                "a part of the recording is missing: {after} follows {before}; copy the parts between them into the folder"
+            ),
+        )
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_parts_of_a_split_bag_are_in_order_and_a_missing_one_is_named() {
+        let ordered = |names: &[&str]| {
+            let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+            let order = in_order(None, &names).unwrap();
+            let said: Vec<String> = order
+                .remarks
+                .into_iter()
+                .map(|remark| remark.text)
+                .collect();
+            (order.files, said.join(" "))
+        };
+        let parts = ["run_10.bag", "run_9.bag", "notes.txt", "run_8.bag"];
+        assert_eq!(ordered(&parts), (vec![3, 1, 0], String::new()));
+        let (files, said) = ordered(&["run_2023-11-14-22_0.bag", "run_2023-11-14-23_2.bag"]);
+        assert_eq!(files, [0, 1]);
+        assert!(
+            said.contains("run_2023-11-14-23_2.bag follows run_2023-11-14-22_0.bag"),
+            "{said}"
+        );
+        for dates in [
+            ["a_20231114.bag", "a_20240102.bag"],
+            ["first.bag", "second.bag"],
+        ] {
+            assert_eq!(ordered(&dates).1, "");
+        }
+        // A recording that was converted is not read twice.
+        assert_eq!(ordered(&["run_0.bag", "run_0.mcap"]).0, [1]);
+    }
 
     #[test]
     fn a_recording_of_several_files_is_read_in_the_order_of_its_metadata_or_its_numbers() {

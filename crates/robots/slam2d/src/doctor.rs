@@ -18,8 +18,11 @@ use crate::output::{print_json, say};
 /// mapped.
 #[derive(Args, Clone, Debug)]
 pub struct DoctorArgs {
-    /// The log, or the folder of a ROS 2 recording.
+    /// The log, or the folder of a ROS recording.
     log: PathBuf,
+    /// Further parts of the same recording, such as those of rosbag record --split.
+    #[arg(value_name = "PART")]
+    parts: Vec<PathBuf>,
     #[command(flatten)]
     topics: TopicArgs,
     #[command(flatten)]
@@ -34,7 +37,8 @@ pub struct DoctorArgs {
 /// # Errors
 /// If the log cannot be read at all.
 pub fn run(args: &DoctorArgs) -> anyhow::Result<ExitCode> {
-    let (mut reader, mut progress) = open_compared(&args.log, &args.topics, args.odometry)?;
+    let topics = args.topics.clone().of_parts(&args.parts);
+    let (mut reader, mut progress) = open_compared(&args.log, &topics, args.odometry)?;
     let mut checkup = Checkup::default();
     let mut run = LogRun::default();
     while let Some(frame) = reader.next_frame()? {
@@ -47,7 +51,7 @@ pub fn run(args: &DoctorArgs) -> anyhow::Result<ExitCode> {
     let name = args.log.file_name().unwrap_or(args.log.as_os_str());
     let motion = reader.motion().cloned().unwrap_or_default();
     let mut diagnosis = checkup.finish(&name.to_string_lossy(), reader.notes(), &motion);
-    diagnosis.extend(run.path_remark());
+    diagnosis.extend(run.remarks());
     if args.json {
         print_json(&diagnosis);
     } else {

@@ -18,6 +18,9 @@ use crate::session_file::is_session;
 pub struct InfoArgs {
     /// The log, the session, or the folder of a run.
     log: PathBuf,
+    /// Further parts of the same recording, such as those of rosbag record --split.
+    #[arg(value_name = "PART")]
+    parts: Vec<PathBuf>,
     #[command(flatten)]
     topics: TopicArgs,
     /// Print one JSON object.
@@ -42,7 +45,8 @@ pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
     if is_session(&args.log) {
         return session_info::run(&args.log, args.json);
     }
-    let (mut reader, mut progress) = open_log(&args.log, &args.topics)?;
+    let (mut reader, mut progress) =
+        open_log(&args.log, &args.topics.clone().of_parts(&args.parts))?;
     let mut info = LogInfo::default();
     while let Some(frame) = reader.next_frame()? {
         info.add(&frame);

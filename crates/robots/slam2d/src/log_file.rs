@@ -10,11 +10,11 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use robot_io::footprint::Footprint;
 use robot_io::laser_mount::LaserMount;
-use robot_io::log::{LogFrame, LogOptions, LogReader, with_remarks};
+use robot_io::log::{LogError, LogFrame, LogNotes, LogOptions, LogReader, with_remarks};
 use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::log_format::LogFormat;
 use robot_io::motion::{ComparedReader, OdometryUse};
-use robot_io::remark::Remark;
+use robot_io::remark::{Part, Remark};
 use robot_io::rosbag2;
 use robot_io::table_layout::TableLayout;
 
@@ -60,6 +60,9 @@ pub struct TopicArgs {
     /// Whether all robots of the recording are read.
     #[arg(skip)]
     pub all_robots: bool,
+    /// Further parts of the recording.
+    #[arg(skip)]
+    parts: Vec<PathBuf>,
 }
 
 /// How the odometry of a log is taken.
@@ -107,6 +110,14 @@ impl TopicArgs {
         }
     }
 
+    /// The options for a recording with these further parts.
+    pub fn of_parts(self, parts: &[PathBuf]) -> Self {
+        Self {
+            parts: parts.to_vec(),
+            ..self
+        }
+    }
+
     /// The options with these topics of scans.
     pub fn of_scans(&self, topics: &str) -> Self {
         Self {
@@ -149,10 +160,15 @@ pub fn open(path: &Path) -> anyhow::Result<BufReader<File>> {
 /// # Errors
 /// If it cannot be opened or is not a log.
 pub fn open_log(path: &Path, topics: &TopicArgs) -> anyhow::Result<(Box<dyn LogReader>, Progress)> {
-    let (parts, remarks, progress) = parts(path)?;
+    let files = files_of(path, &topics.parts)?;
     let name = path.display().to_string();
-    let reader = LogFormat::open_parts(parts, &name, &topics.options())?;
-    Ok((with_remarks(reader, remarks), progress))
+    let reader = LogFormat::open_parts(files.parts, &name, &topics.options())?;
+    let reader = Box::new(WatchedReader {
+        inner: with_remarks(reader, files.remarks),
+        sizes: files.sizes,
+        notes: LogNotes::default(),
+    });
+    Ok((reader, files.progress))
 }
 
 /// Reads all frames of a log.
@@ -189,14 +205,31 @@ pub fn open_compared(
     Ok((reader.with_odometry(odometry), progress))
 }
 
-/// The files of a log, remarks on them, and a progress bar.
-fn parts(path: &Path) -> anyhow::Result<(Vec<LogBytes<'static>>, Vec<Remark>, Progress)> {
-    let (files, remarks) = log_files(path)?;
-    let sizes = files
+/// The files of a log.
+struct LogFiles {
+    parts: Vec<LogBytes<'static>>,
+    /// Remarks on them.
+    remarks: Vec<Remark>,
+    /// Their sizes when they were opened, bytes.
+    sizes: Vec<(PathBuf, u64)>,
+    progress: Progress,
+}
+
+/// The files of a log and of its further parts.
+fn files_of(path: &Path, further: &[PathBuf]) -> anyhow::Result<LogFiles> {
+    let (mut files, mut remarks) = log_files(path)?;
+    for part in further {
+        let (of_part, about_part) = log_files(part)?;
+        files.extend(of_part);
+        remarks.extend(about_part);
+    }
+    let size = |file: &PathBuf| file.metadata().map_or(0, |about| about.len());
+    let sizes: Vec<(PathBuf, u64)> = files
         .iter()
-        .map(|file| file.metadata().map_or(0, |about| about.len()));
+        .map(|file| (file.clone(), size(file)))
+        .collect();
     // A log is read twice: for the survey and for its scans.
-    let progress = Progress::new(2 * sizes.sum::<u64>());
+    let progress = Progress::new(2 * sizes.iter().map(|(_, bytes)| bytes).sum::<u64>());
     let mut parts = Vec::new();
     for file in files {
         let mut beside = file.clone().into_os_string();
@@ -208,8 +241,56 @@ fn parts(path: &Path) -> anyhow::Result<(Vec<LogBytes<'static>>, Vec<Remark>, Pr
         }
         parts.push(part);
     }
-    Ok((parts, remarks, progress))
+    Ok(LogFiles {
+        parts,
+        remarks,
+        sizes,
+        progress,
+    })
 }
+
+/// A reader of files that may still be written: what they have grown by is said at their end.
+struct WatchedReader {
+    inner: Box<dyn LogReader>,
+    sizes: Vec<(PathBuf, u64)>,
+    notes: LogNotes,
+}
+
+impl WatchedReader {
+    /// A remark on the first file that has grown since it was opened.
+    fn growth(&self) -> Option<Remark> {
+        self.sizes.iter().find_map(|(file, bytes)| {
+            let now = file.metadata().ok().filter(|about| about.is_file())?.len();
+            let text = format!(
+                "{} has grown by {} bytes while it was read, as if it is still being recorded; what was written meanwhile may be missing. Run again after the recording has ended",
+                file.display(),
+                now.checked_sub(*bytes).filter(|more| *more > 0)?
+            );
+            Some(Remark::mended(Part::File, text))
+        })
+    }
+}
+
+impl LogReader for WatchedReader {
+    fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
+        let frame = self.inner.next_frame();
+        self.notes.clone_from(self.inner.notes());
+        if matches!(frame, Ok(None)) {
+            let growth = self.growth();
+            self.notes.warnings.extend(growth);
+        }
+        frame
+    }
+
+    fn notes(&self) -> &LogNotes {
+        &self.notes
+    }
+}
+
+/// Bytes of a pipe that are looked at before the rest is read.
+const START: u64 = 1 << 16;
+/// Most bytes of a pipe: they are kept in memory.
+const MAX_PIPED: u64 = 1 << 30;
 
 /// The bytes of a file, opened again for each pass; a pipe is read into memory.
 fn bytes_of(path: PathBuf, bar: &ProgressBar) -> anyhow::Result<LogBytes<'static>> {
@@ -217,7 +298,20 @@ fn bytes_of(path: PathBuf, bar: &ProgressBar) -> anyhow::Result<LogBytes<'static
     let is_file = file.get_ref().metadata().is_ok_and(|about| about.is_file());
     if !is_file {
         let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).in_file(&path)?;
+        file.by_ref()
+            .take(START)
+            .read_to_end(&mut bytes)
+            .in_file(&path)?;
+        if !matches!(LogFormat::detect(&bytes), LogFormat::Foreign(_)) {
+            file.take(MAX_PIPED)
+                .read_to_end(&mut bytes)
+                .in_file(&path)?;
+        }
+        ensure!(
+            bytes.len() as u64 <= MAX_PIPED,
+            "{} gives more than 1 GB; save it to a file, and pass that",
+            path.display()
+        );
         return Ok(LogBytes::from(bytes));
     }
     let bar = bar.clone();
@@ -230,7 +324,7 @@ fn bytes_of(path: PathBuf, bar: &ProgressBar) -> anyhow::Result<LogBytes<'static
     }))
 }
 
-/// The files of a recording: one, or those of a rosbag2 folder.
+/// The files of a recording: one, or those of a folder of parts.
 fn log_files(path: &Path) -> anyhow::Result<(Vec<PathBuf>, Vec<Remark>)> {
     if !path.is_dir() {
         return Ok((vec![path.to_owned()], Vec::new()));
@@ -256,7 +350,7 @@ fn log_files(path: &Path) -> anyhow::Result<(Vec<PathBuf>, Vec<Remark>)> {
     let files: Vec<PathBuf> = files.collect();
     ensure!(
         !files.is_empty(),
-        "{} is a folder without a ROS 2 recording; pass a log, or a folder with .mcap or .db3 files",
+        "{} is a folder without a recording of ROS; pass a log, or a folder with .mcap, .db3 or .bag files",
         path.display()
     );
     Ok((files, order.remarks))
@@ -322,5 +416,31 @@ impl Read for Counted {
 impl Seek for Counted {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.source.seek(to)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+
+    use super::*;
+
+    #[test]
+    fn a_log_that_grows_while_it_is_read_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.clf");
+        let line = |k: u32| format!("FLASER 3 1 1 1 0.{k} 0 0 0.{k} 0 0 {k} h {k}\n");
+        fs::write(&path, (1..9).map(line).collect::<String>()).unwrap();
+        let said = |grows: bool| {
+            let (mut reader, _) = open_log(&path, &TopicArgs::default()).unwrap();
+            if grows {
+                let mut file = fs::OpenOptions::new().append(true).open(&path).unwrap();
+                file.write_all(line(9).as_bytes()).unwrap();
+            }
+            while reader.next_frame().unwrap().is_some() {}
+            reader.notes().sentences("x").join(" ")
+        };
+        assert_eq!(said(false), "");
+        assert!(said(true).contains("still being recorded"));
     }
 }

@@ -33,6 +33,9 @@ use crate::tick_costs::{TickCosts, TickSummary};
 pub struct RunArgs {
     /// The log.
     log: PathBuf,
+    /// Further parts of the same recording, such as those of rosbag record --split.
+    #[arg(value_name = "PART")]
+    parts: Vec<PathBuf>,
     #[command(flatten)]
     topics: TopicArgs,
     #[command(flatten)]
@@ -113,7 +116,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     }
     let (mut run, mut recorder, laser_before) = start(args)?;
     let topics = args.topics.resuming_with(laser_before);
-    let topics = topics.of_all_robots(args.all_robots);
+    let topics = topics.of_all_robots(args.all_robots).of_parts(&args.parts);
     let mut robots = Robots::open(&args.log, &topics, args.odometry)?;
     let mut broken = None;
     let mut costs = TickCosts::default();

@@ -24,7 +24,9 @@ pub fn is_session(path: &Path) -> bool {
         return path.join(FILE_NAME).is_file();
     }
     let named = path.extension().is_some_and(|end| end == "slam2d");
-    named || open(path).is_ok_and(|mut file| file.fill_buf().is_ok_and(Session::begins))
+    // What is read from a pipe is gone.
+    let may_look = path.is_file();
+    named || may_look && open(path).is_ok_and(|mut file| file.fill_buf().is_ok_and(Session::begins))
 }
 
 /// Reads a session and returns it with its size in bytes.

@@ -66,6 +66,27 @@ impl<'a> RosFiles<'a> {
         }
     }
 
+    /// Sorts the files by the time of their first message; keeps the order if one has none.
+    pub fn sort_by_time(&mut self) {
+        let first_s = |part: &LogBytes<'a>| {
+            let mut messages = Self::new(vec![part.clone()]).messages();
+            let first = messages.next_message().ok().flatten()?;
+            Some(first.recorded_s).filter(|recorded_s| recorded_s.is_finite())
+        };
+        if self.parts.len() < 2 {
+            return;
+        }
+        let timed: Option<Vec<(f64, LogBytes<'a>)>> = self
+            .parts
+            .iter()
+            .map(|part| Some((first_s(part)?, part.clone())))
+            .collect();
+        if let Some(mut timed) = timed {
+            timed.sort_by(|a, b| a.0.total_cmp(&b.0));
+            self.parts = timed.into_iter().map(|(_, part)| part).collect();
+        }
+    }
+
     /// Iterates over their messages from the start.
     pub fn messages(&self) -> Messages<'a> {
         Messages {

@@ -83,6 +83,7 @@ impl<'a> RosReader<'a> {
 
     /// Surveys the recording and selects from it.
     fn survey(&mut self) -> Result<Reading<'a>, LogError> {
+        self.files.sort_by_time();
         let (mut survey, mut messages) = self.look_through()?;
         if messages.has_late_topics() {
             // Damage hid topics; now that they are known, the messages around it can be read.
