@@ -327,3 +327,131 @@ fn graphs_with_few_vertices_are_placed_by_their_edges() {
         assert_rejected(&["optimize", &path], "the graph is three-dimensional");
     }
 }
+
+/// Each recording with its options: largest error (m), and what `run` and `doctor` say of its fault.
+const FAULTS: [(&str, &[&str], f64, &str); 9] = [
+    ("lifted/lifted_7m", &[], 0.1, "as if the robot was carried"),
+    (
+        "lifted/lifted_far_noodo",
+        &[],
+        0.15,
+        "as if the robot was carried",
+    ),
+    ("gaps_no_wheels/gaps_3s", &[], 0.15, "scans are missing"),
+    ("quaternion_zero/quaternion_zero", &[], 0.15, "is 0,0,0,0"),
+    (
+        "one_stamp/one_stamp_for_all",
+        &[],
+        0.1,
+        "have the same stamp",
+    ),
+    ("turns_scaled/turns_x1.6", &[], 0.1, "odometry turns by 1.6"),
+    (
+        "beams_backward_in_time/rev",
+        &[],
+        0.1,
+        "the last one was measured first",
+    ),
+    (
+        "beams_backward_in_time/rev",
+        &["--no-odometry"],
+        0.15,
+        "the last one was measured first",
+    ),
+    ("foxglove/laser_scan_protobuf", &[], 0.1, ""),
+];
+
+#[test]
+fn faults_that_strangers_had_are_mended_and_named() {
+    for (name, options, most_m, word) in FAULTS {
+        let (Some(log), Some(truth)) = (
+            field(&format!("{name}.mcap")),
+            field(&format!("{name}.truth.tum")),
+        ) else {
+            return;
+        };
+        let mut arguments = vec!["run", &log, "--truth", &truth, "--align", "se2", "--json"];
+        arguments.extend(options);
+        let output = slam2d(&arguments);
+        let said = String::from_utf8_lossy(&output.stderr);
+        let run: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let error_m = run["truth"]["ate"]["max"].as_f64().unwrap();
+        assert!(error_m <= most_m, "{name}: {error_m} m: {said}");
+        assert!(said.contains(word), "{name}: {said}");
+        let mut arguments = vec!["doctor", &log];
+        arguments.extend(options);
+        let output = slam2d(&arguments);
+        let diagnosis = String::from_utf8_lossy(&output.stdout);
+        assert!(diagnosis.contains(word), "{name}: {diagnosis}");
+    }
+}
+
+#[test]
+fn the_parts_of_a_split_bag_are_one_recording() {
+    let (Some(folder), Some(truth)) = (
+        field("split_ros1/drive"),
+        field("split_ros1/drive.truth.tum"),
+    ) else {
+        return;
+    };
+    let mut parts: Vec<String> = fs::read_dir(&folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path().display().to_string())
+        .collect();
+    parts.sort();
+    // In any order.
+    parts.reverse();
+    let mut scans = Vec::new();
+    for logs in [vec![folder.clone()], parts] {
+        let mut arguments: Vec<&str> = vec!["run"];
+        arguments.extend(logs.iter().map(String::as_str));
+        arguments.extend(["--truth", &truth, "--align", "se2", "--json"]);
+        let output = slam2d(&arguments);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let run: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert!(run["truth"]["ate"]["max"].as_f64().unwrap() < 0.1, "{said}");
+        scans.push(run["scans"].as_u64().unwrap());
+    }
+    assert_eq!(scans[0], scans[1]);
+}
+
+#[test]
+fn tables_and_trajectories_of_strangers_are_read_or_answered() {
+    for name in [
+        "csv/list_round.csv",
+        "csv/list_square.csv",
+        "csv/sim_time_rostopic_p.csv",
+        "csv/angles_in_the_first_row.csv",
+    ] {
+        let Some(log) = field(name) else { return };
+        let info = json(&["info", &log, "--json"]);
+        assert_eq!(info["most_beams"].as_u64().unwrap(), 120, "{name}: {info}");
+    }
+    let of = |name: &str| field(name).unwrap();
+    assert_rejected(
+        &["info", &of("csv/degrees_mm_no_header.csv")],
+        "pass --columns angle_deg,range_mm,quality,time",
+    );
+    assert_rejected(&["info", &of("csv/poses_and_scans.json")], "jq -c");
+    assert_rejected(&["info", &of("csv/odometry_laser.log")], "‘Odometry 1.5");
+    let est = of("evaluate/est.tum");
+    for truth in ["gt.tum", "gt_header.csv", "gt_each_line_twice.tum"] {
+        let errors = json(&[
+            "evaluate",
+            &est,
+            "--truth",
+            &of(&format!("evaluate/{truth}")),
+            "--json",
+        ]);
+        // 0.02 m: the estimate's noise is 0.014 m.
+        assert!(
+            errors["ate"]["rmse"].as_f64().unwrap() < 0.02,
+            "{truth}: {errors}"
+        );
+    }
+    assert_rejected(
+        &["evaluate", &est, "--truth", &of("evaluate/gt_kitti.txt")],
+        "KITTI",
+    );
+}
