@@ -349,7 +349,7 @@ const FAULTS: [(&str, &[&str], f64, &str); 9] = [
     (
         "beams_backward_in_time/rev",
         &[],
-        0.1,
+        0.15,
         "the last one was measured first",
     ),
     (
