@@ -112,7 +112,7 @@ fn given_logs() -> Option<Vec<String>> {
 }
 
 /// Recordings below the folder with the reference data, and what is wrong with each.
-const FIELD: [(&str, &[&str]); 10] = [
+const FIELD: [(&str, &[&str]); 12] = [
     ("field/base/base.mcap", &[]),
     ("field/lidars/two_topics.mcap", &[]),
     ("field/mount/backward_untold.mcap", &["turned"]),
@@ -123,7 +123,12 @@ const FIELD: [(&str, &[&str]); 10] = [
     ("field/odom/starts_half_way_odom.mcap", &[]),
     ("field/odom/tf_stamps_zero.mcap", &[]),
     ("field/odom/tf_static_below_odom.mcap", &[]),
+    ("field/turns_scaled/turns_x1.6.mcap", &["turns"]),
+    ("field/beams_backward_in_time/rev.mcap", &["backward"]),
 ];
+
+/// A log with one scan per metre, which cannot be matched without odometry: its mounting cannot be checked.
+const SPARSE: &str = "logs/csail.clf";
 
 /// What is wrong with a given log: the odometry of the mine's is 0.16 s early, also backwards.
 fn fault_of_log(name: &str) -> &'static [&'static str] {
@@ -154,7 +159,7 @@ fn the_verdict_is_the_same_whichever_scan_a_recording_starts_with() {
             assert_eq!(motion.suggestions(), [], "{name} from {start}");
             assert_eq!(
                 motion.confirms_mounting(),
-                is_mounted,
+                is_mounted && name != SPARSE,
                 "{name} from {start}: {motion:?}"
             );
         }

@@ -180,6 +180,7 @@ mod tests {
                 Translation3::new(x, 0.0, 0.3),
                 UnitQuaternion::new_normalize(Quaternion::new(qw, qx, qy, qz)),
             ),
+            is_oriented: true,
         }
     }
 
