@@ -1,8 +1,8 @@
 """A sweep of laps on a Dask cluster: each task drives one shard, and another worker takes that of a killed one.
 
-    python examples/sweep_dask.py --slam2d target/release/slam2d --output parts -- --seeds 1..=1000 --noise 1
+    python examples/sweep_dask.py --ch16 target/release/ch16 --output parts -- --seeds 1..=1000 --noise 1
 
-What stands after `--` goes to `slam2d sweep` as it is. `--scheduler ADDRESS` takes a cluster that runs; without it
+What stands after `--` goes to `ch16 sweep` as it is. `--scheduler ADDRESS` takes a cluster that runs; without it
 two workers are started on this machine. The workers need the program and the folder of the parts, at the same paths.
 """
 
@@ -46,7 +46,7 @@ def main(arguments):
         split = arguments.index("--")
         own, options = arguments[:split], arguments[split + 1 :]
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--slam2d", default="slam2d", help="the program")
+    parser.add_argument("--ch16", default="ch16", help="the program")
     parser.add_argument("--output", default="parts", help="the folder of the parts")
     parser.add_argument("--shards", type=int, default=8, help="into how many parts the seeds are split")
     parser.add_argument("--scheduler", help="the address of a cluster that runs")
@@ -59,10 +59,10 @@ def main(arguments):
         sys.exit("sweep_dask.py needs Dask: pip install 'dask[distributed]'")
     cluster = None if own.scheduler else LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
     with Client(own.scheduler or cluster) as client:
-        files = sweep(client, own.slam2d, options, own.shards, own.output)
+        files = sweep(client, own.ch16, options, own.shards, own.output)
     if cluster is not None:
         cluster.close()
-    merge = [own.slam2d, "sweep", "--merge", *map(str, files)] + (["--json"] if own.json else [])
+    merge = [own.ch16, "sweep", "--merge", *map(str, files)] + (["--json"] if own.json else [])
     return subprocess.run(merge).returncode
 
 

@@ -14,6 +14,5 @@ export function native(program, ...words) {
   const options = { cwd: ROOT, encoding: /** @type {const} */ ('utf8'), maxBuffer: 1 << 28 };
   const compiled = process.env.SLAM_NATIVE;
   if (compiled !== undefined) return execFileSync(join(compiled, program), words, options);
-  const cargo = ['run', '--quiet', '--package', program === 'states' ? 'slam_web' : 'slam2d'];
-  return execFileSync('cargo', [...cargo, '--bin', program, '--', ...words], options);
+  return execFileSync('cargo', ['run', '--quiet', '--bin', program, '--', ...words], options);
 }

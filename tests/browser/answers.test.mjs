@@ -1,4 +1,4 @@
-// The reader's answers: personal tasks, stored only on request, and saved as a file that `slam2d mark` marks as the page
+// The reader's answers: personal tasks, stored only on request, and saved as a file that `ch16-mark` marks as the page
 // does.
 
 import assert from 'node:assert/strict';
@@ -41,7 +41,7 @@ async function marked(tab) {
   try {
     const file = join(folder, download.suggestedFilename());
     writeFileSync(file, text);
-    return { file: JSON.parse(text), name: download.suggestedFilename(), sheet: JSON.parse(native('slam2d', 'mark', file, '--json')) };
+    return { file: JSON.parse(text), name: download.suggestedFilename(), sheet: JSON.parse(native('ch16-mark', file, '--json')) };
   } finally {
     rmSync(folder, { recursive: true });
   }

@@ -209,7 +209,7 @@ describe('a custom flat', () => {
       const folder = mkdtempSync(join(tmpdir(), 'flat-'));
       try {
         writeFileSync(join(folder, 'flat.json'), json);
-        const lap = JSON.parse(native('slam2d', 'lap', '--world', join(folder, 'flat.json'), '--information', 'chapter', '--json'));
+        const lap = JSON.parse(native('ch16', 'lap', '--world', join(folder, 'flat.json'), '--information', 'chapter', '--json'));
         assert.equal(lap.keyframes, facts.keyframes);
         assert.equal(lap.keyframe_rms_m, facts.keyframe_rms_m);
         assert.equal(lap.odometry_end_error_m, facts.odometry_error_m);

@@ -29,7 +29,7 @@ fn sweeps() -> impl Iterator<Item = (BuiltInWorld, LapMatcher, InformationFrame)
     })
 }
 
-/// The output of `slam2d sweep` for the laps in `world` with `matcher` and the information in `frame`.
+/// The output of `ch16 sweep` for the laps in `world` with `matcher` and the information in `frame`.
 fn recorded(world: &str, matcher: &str, frame: &str) -> Option<Value> {
     let known = sweeps().any(|(w, m, f)| [w.name(), m.name(), f.name()] == [world, matcher, frame]);
     let file = format!("tests/pinned/sweeps/{world}-{matcher}-{frame}.json");

@@ -21,8 +21,8 @@ it('gives each question of the page an id', () => {
   assert.deepEqual(choices[2], { choice: 'twice', from: 1, to: 2 });
 });
 
-it('slam2d mark has the questions of the page', () => {
-  const marked = JSON.parse(readFileSync(new URL('../../crates/robots/slam2d/src/mark/exercises.json', import.meta.url), 'utf8'));
+it('ch16-mark has the questions of the page', () => {
+  const marked = JSON.parse(readFileSync(new URL('../../teaching/mark/src/exercises.json', import.meta.url), 'utf8'));
   assert.deepEqual(marked, readExercises(page), 'run cargo xtask build, which writes the file, and commit it');
 });
 

@@ -8,7 +8,7 @@ import { afterEachPreset, schema, wasm } from './module.mjs';
 describe('a lap', () => {
   for (const [seed, noise] of [[12648430, 1], [6, 1], [1, 0.25], [2, 2], [4, 4]]) {
     it(`of seed ${seed} at noise ×${noise} has the same digest of all poses`, () => {
-      const lap = JSON.parse(native('slam2d', 'lap', '--seed', `${seed}`, '--noise', `${noise}`, '--json'));
+      const lap = JSON.parse(native('ch16', 'lap', '--seed', `${seed}`, '--noise', `${noise}`, '--json'));
       assert.match(lap.digest, /^[0-9a-f]{16}$/);
       assert.equal(wasm.lapDigest(seed, noise), lap.digest);
     });
@@ -17,7 +17,7 @@ describe('a lap', () => {
   it('by the estimator for logs has the same digest of all poses, and a different one than by the chapter\'s', () => {
     const words = ['--seed', '12648430', '--noise', '2', '--front-end', 'local-map', '--json'];
     const digest = wasm.lapDigest(12648430, 2, true);
-    assert.equal(digest, JSON.parse(native('slam2d', 'lap', ...words)).digest);
+    assert.equal(digest, JSON.parse(native('ch16', 'lap', ...words)).digest);
     assert.notEqual(digest, wasm.lapDigest(12648430, 2));
   });
 

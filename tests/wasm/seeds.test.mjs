@@ -1,4 +1,4 @@
-// The page derives a student's seeds as `slam2d mark` does: both are compared with the same numbers.
+// The page derives a student's seeds as `ch16-mark` does: both are compared with the same numbers.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';

@@ -39,8 +39,8 @@ const pages = await readPages(root);
 const places = placesOf(pages);
 const source = pages.map(({ html }) => html).join('');
 const exercises = readExercises(source);
-// `slam2d mark` marks by the same questions.
-await writeFile(path.join(root, 'crates/robots/slam2d/src/mark/exercises.json'), `${JSON.stringify(exercises, null, 1)}\n`);
+// `ch16-mark` marks by the same questions.
+await writeFile(path.join(root, 'teaching/mark/src/exercises.json'), `${JSON.stringify(exercises, null, 1)}\n`);
 const frames = frameExercises(source, (html) => renderFormulas(html, 'mathml'));
 await writeFile(path.join(outDir, 'exercises.json'), JSON.stringify(frames));
 const scripts = await readFile(path.join(root, 'teaching/guide/widgets.md'), 'utf8');
@@ -224,9 +224,9 @@ async function bundleScripts(stories, matchAnswer) {
   const early = await bundle('early.ts', {}, 'iife');
   const slides = await bundle('slides.ts', {});
   // A stable name: the page imports it when a reader opens an editor.
-  // `slam2d mark` runs the same tests. Readable, because it is committed.
+  // `ch16-mark` runs the same tests. Readable, because it is committed.
   const marking = await bundle('write/marking.ts', {}, 'iife', undefined, false);
-  await writeFile(path.join(root, 'crates/robots/slam2d/src/mark/written.js'), marking.text);
+  await writeFile(path.join(root, 'teaching/mark/src/written.js'), marking.text);
   const core = await bundle('write/core-worker.ts', { 'import.meta.url': '""' }, 'iife', '__slamCore');
   const writing = await bundle('write/write-yourself.ts', {
     WRITE_WORKER_FILE: JSON.stringify(`./${await writeHashed('write-worker.js', core.text)}`),

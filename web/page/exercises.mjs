@@ -1,4 +1,4 @@
-// The questions of the chapter as data, for frames and for `slam2d mark`. Their source is the page.
+// The questions of the chapter as data, for frames and for `ch16-mark`. Their source is the page.
 
 /** Chapter, exercise and part: `16.5a`; or a name instead of the number: `16.flat-ground`. */
 const ID = /^\d+\.(\d+[a-z]?|[a-z]+(-[a-z]+)*)$/;

@@ -53,7 +53,7 @@ mod tests {
     #[test]
     fn the_canonical_lap_has_the_figures_of_the_results_table() {
         let numbers = of("noise=1");
-        // `cargo run --bin slam2d -- lap`: its table, to its four digits.
+        // `cargo run --bin ch16 -- lap`: its table, to its four digits.
         for (place, known) in [
             (0, 0.7334),
             (1, 0.6444),

@@ -30,7 +30,7 @@ pub fn after_each_preset(name: &str) -> Result<String, JsError> {
     Ok(state::after_each_preset(maker))
 }
 
-/// The digest of a lap's poses and metrics, 16 hexadecimal digits like the output of `slam2d lap`; with
+/// The digest of a lap's poses and metrics, 16 hexadecimal digits like the output of `ch16 lap`; with
 /// `on_local_map` that of the estimator for recorded logs.
 #[wasm_bindgen(js_name = lapDigest)]
 pub fn lap_digest(seed: u32, noise_factor: f64, on_local_map: Option<bool>) -> String {

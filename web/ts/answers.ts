@@ -1,5 +1,5 @@
 // The reader's answers: collected from the events of <slam-predict>, kept in the browser on request, and saved as a file
-// for `slam2d mark`.
+// for `ch16-mark`.
 
 import type { Prediction } from '../slam-predict';
 

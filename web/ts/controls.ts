@@ -3,7 +3,7 @@
 
 import { create } from './dom';
 import type { ButtonStates, Timeline } from './instance';
-import { REST } from './parts';
+import { REST, type Places } from './parts';
 import { rangeOf } from './ranges';
 import type { ButtonSpec, ParamSpec, WidgetSpec } from './schema';
 import { toLabel } from './values';
@@ -21,16 +21,6 @@ export interface ControlHost {
   press(id: string): void;
   /** Finishes the computation on which the length of the run depends, and shows it. */
   finishRun(): void;
-}
-
-/** Where controls stand. */
-export interface Places {
-  transport: HTMLElement;
-  first: HTMLElement;
-  tools: HTMLElement;
-  presets: HTMLElement;
-  settings: HTMLElement;
-  actions: HTMLElement;
 }
 
 interface ParamControl {

@@ -1,6 +1,5 @@
 // The element's shadow tree: the question, the picture, Play, the opening control, the verdict, and what More opens.
 
-import type { Places } from './controls';
 import { create, stopKeyPropagation } from './dom';
 import { copyText } from './export';
 import { CrashError } from './instance';
@@ -11,6 +10,16 @@ import { STYLE } from './style';
 export const SUMMARY = 'summary';
 /** Id of what More opens. */
 export const REST = 'rest';
+
+/** Where controls stand. */
+export interface Places {
+  transport: HTMLElement;
+  first: HTMLElement;
+  tools: HTMLElement;
+  presets: HTMLElement;
+  settings: HTMLElement;
+  actions: HTMLElement;
+}
 
 /** The elements of the shadow tree. */
 export interface Parts {

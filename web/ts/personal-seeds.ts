@@ -1,6 +1,6 @@
 // Personal tasks: a separate seed for each student and exercise, because neighbours should get different laps.
 //
-// `slam2d mark` derives the same seeds; tests/reference/student-seeds.json pins both.
+// `ch16-mark` derives the same seeds; tests/reference/student-seeds.json pins both.
 
 /** Seeds to try until one of the choices is right. */
 export const MAX_ATTEMPTS = 100;

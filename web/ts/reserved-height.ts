@@ -1,10 +1,8 @@
 // Avoids layout shifts: reserves the height of a picture before its first frame and while its canvas is gone.
 
 import type { Parts } from './parts';
+import type { Heights } from './schema';
 import { mostType } from './type-scale';
-
-/** The picture's height at each width, in CSS pixels, by ascending width. */
-export type Heights = readonly (readonly [width: number, height: number])[];
 
 export class ReservedHeight {
   readonly #parts: Parts;

@@ -1,7 +1,9 @@
 // The parameter lists of the widgets, which the build exports from the core.
 
 import schemas from '../pkg/schema.json';
-import type { Heights } from './reserved-height';
+
+/** The picture's height at each width, in CSS pixels, by ascending width. */
+export type Heights = readonly (readonly [width: number, height: number])[];
 
 export interface OptionSpec {
   id: string;

@@ -1,4 +1,4 @@
-// The registration of `slam2d register` on nanoflann's k-d tree, for the table of the benchmark:
+// The registration of `ch16 register` on nanoflann's k-d tree, for the table of the benchmark:
 // the same files, increments and rule for stopping; only who finds the nearest neighbour differs.
 //
 //   nanoflann MAP.csv SCAN.csv p2l|p2p TAU REPEATS

@@ -1,6 +1,6 @@
-//! The clouds of the registration table as files for `slam2d register`.
+//! The clouds of the registration table as files for `ch16 register`.
 //!
-//! `slam2d register` starts from the identity, so a scan's file contains its points at the initial guess. The
+//! `ch16 register` starts from the identity, so a scan's file contains its points at the initial guess. The
 //! numbers are written so that reading restores the same bits.
 
 use std::fmt::Write as _;

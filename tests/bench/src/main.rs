@@ -29,7 +29,7 @@ slam2d_bench count                       instructions of one repetition of each 
 slam2d_bench table TURNS.json COUNTS.json PAGE.md
                                          print the table of the workloads, from what measure.mjs
                                          printed, and write it into a page
-slam2d_bench clouds FOLDER               write the clouds of the registration table, for slam2d register
+slam2d_bench clouds FOLDER               write the clouds of the registration table, for ch16 register
 slam2d_bench registration SLAM2D FOLDER PAGE.md
                                          write the clouds, register them with the program SLAM2D and
                                          with nanoflann, where a C++ compiler finds it,
@@ -50,8 +50,8 @@ fn main() -> ExitCode {
             let mut names = files.iter().map(|file| file.display().to_string());
             names.try_for_each(|name| say(&name))
         }),
-        ["registration", slam2d, folder, page] => {
-            registration::table(Path::new(slam2d), Path::new(folder))
+        ["registration", ch16, folder, page] => {
+            registration::table(Path::new(ch16), Path::new(folder))
                 .and_then(|table| publish(Path::new(page), PageBlock::Registration, &table))
         }
         ["--counts", "check"] => judge_counts(counts::compare),

@@ -1,4 +1,4 @@
-//! The registration table: `slam2d register` on generated clouds, beside nanoflann's k-d tree.
+//! The registration table: `ch16 register` on generated clouds, beside nanoflann's k-d tree.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -65,7 +65,7 @@ fn rows() -> [[Row; 2]; 2] {
     ]
 }
 
-/// The output of `slam2d register --json` and of the driver, as far as the table needs it.
+/// The output of `ch16 register --json` and of the driver, as far as the table needs it.
 #[derive(Deserialize)]
 struct Found {
     /// The version of the driver's library.
@@ -101,12 +101,12 @@ impl Found {
     }
 }
 
-/// Writes the clouds into `folder`, registers them with `slam2d` and, if a C++ compiler finds it, with
+/// Writes the clouds into `folder`, registers them with `ch16` and, if a C++ compiler finds it, with
 /// nanoflann, and returns the table.
 ///
 /// # Errors
 /// One sentence if a file cannot be written or a command fails.
-pub fn table(slam2d: &Path, folder: &Path) -> Result<String, String> {
+pub fn table(ch16: &Path, folder: &Path) -> Result<String, String> {
     clouds::write(folder)?;
     let driver = build_driver(folder);
     let mut version = None;
@@ -115,7 +115,7 @@ pub fn table(slam2d: &Path, folder: &Path) -> Result<String, String> {
         for row in rows {
             let (mut ours, mut peer) = (None, None);
             for _ in 0..ROUNDS {
-                let found = register(slam2d, folder, clouds, row.method.0)?;
+                let found = register(ch16, folder, clouds, row.method.0)?;
                 ours = Some(found.fastest(ours));
                 if let Some(driver) = &driver {
                     let found = register_peer(driver, folder, clouds, row.method.0)?;
@@ -169,14 +169,14 @@ fn register_peer(
     answer(command, &driver.display().to_string())
 }
 
-fn register(slam2d: &Path, folder: &Path, clouds: &Clouds, method: &str) -> Result<Found, String> {
-    let mut command = Command::new(slam2d);
+fn register(ch16: &Path, folder: &Path, clouds: &Clouds, method: &str) -> Result<Found, String> {
+    let mut command = Command::new(ch16);
     command
         .arg("register")
         .args([clouds.map_file, clouds.scan_file].map(|file| folder.join(file)))
         .args(["--method", method, "--tau", &TAU_M.to_string()])
         .args(["--repeat", &REPEATS.to_string(), "--json"]);
-    answer(command, &format!("{} register", slam2d.display()))
+    answer(command, &format!("{} register", ch16.display()))
 }
 
 /// The JSON that a command prints.

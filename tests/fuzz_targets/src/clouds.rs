@@ -1,4 +1,4 @@
-//! Point clouds as CSV: the input of `slam2d register`, and the registration of it.
+//! Point clouds as CSV: the input of `ch16 register`, and the registration of it.
 
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{IcpConfig, IcpVariant};

@@ -1,5 +1,5 @@
-// The tests of the written functions for `slam2d mark`, whose engine calls them. The build bundles this into
-// crates/robots/slam2d/src/mark/written.js. Arguments and results pass as text, because the student's code has a realm of its own.
+// The tests of the written functions for `ch16-mark`, whose engine calls them. The build bundles this into
+// teaching/mark/src/written.js. Arguments and results pass as text, because the student's code has a realm of its own.
 
 import { EXERCISES } from './exercises';
 

@@ -1,4 +1,4 @@
-//! The comparison without its picture; reference values from `slam2d places`.
+//! The comparison without its picture; reference values from `ch16 places`.
 
 use ch16_lab::lap::{LapConfig, LapDetector, LapMatcher, NamedChoice};
 use ch16_lab::places::{place_curves, place_pairs};

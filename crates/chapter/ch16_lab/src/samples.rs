@@ -1,6 +1,6 @@
 //! Reproducible clouds and a graph for benchmarks and examples.
 //!
-//! The benchmarks, the table of workloads and the files for `slam2d register` share these data. Everything is
+//! The benchmarks, the table of workloads and the files for `ch16 register` share these data. Everything is
 //! seen by the simulator's LiDAR in the Apartment, with range noise of 0.02 m.
 
 use pr_geom::SE2;

@@ -1,6 +1,6 @@
 //! Laps at configurations drawn from the documented ranges: none panics, every result is finite.
 //!
-//! `slam2d sweep --random --seeds 1..=10000` drives more of them.
+//! `ch16 sweep --random --seeds 1..=10000` drives more of them.
 
 use ch16_lab::lap::{LapRunner, random_config};
 

@@ -4,6 +4,7 @@
 pub mod cpu_clock;
 pub mod generated;
 pub mod process;
+pub mod program;
 pub mod skip;
 
 pub use cpu_clock::{CpuClock, timed};

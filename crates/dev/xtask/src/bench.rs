@@ -22,9 +22,9 @@ pub fn bench(json: Option<&Path>) -> anyhow::Result<()> {
     site::build(Speed::SmallAndFast)?;
     let mut compile = cargo();
     compile.args(["build", "--quiet", "--release", "--bins"]);
-    compile.args(["--package=slam2d_bench", "--package=slam2d"]);
+    compile.args(["--package=slam2d_bench", "--package=ch16"]);
     compile.arg("--target-dir").arg(root().join("target"));
-    run("Compiling slam2d and slam2d_bench", &mut compile)?;
+    run("Compiling ch16 and slam2d_bench", &mut compile)?;
     let options = [
         "--target=web",
         "--out-dir=../../../target/bench-web",
@@ -34,7 +34,7 @@ pub fn bench(json: Option<&Path>) -> anyhow::Result<()> {
     run("Compiling the workloads to WebAssembly", &mut wasm)?;
 
     let release = |name: &str| root().join("target/release").join(name);
-    let (ours, slam2d) = (release("slam2d_bench"), release("slam2d"));
+    let (ours, ch16) = (release("slam2d_bench"), release("ch16"));
     let figures = root().join("target/bench-web");
     let (turns, instructions) = (
         figures.join("turns.json"),
@@ -66,7 +66,7 @@ pub fn bench(json: Option<&Path>) -> anyhow::Result<()> {
     let clouds = root().join("target/bench-clouds");
     table(
         "Registration compared with nanoflann",
-        program(&ours).arg("registration").args([&slam2d, &clouds]),
+        program(&ours).arg("registration").args([&ch16, &clouds]),
     )?;
     for (what, script) in [
         (

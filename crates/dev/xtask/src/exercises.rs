@@ -195,9 +195,7 @@ impl Report {
         let mut ordered = plan.order().into_iter().map(|at| EXERCISES[at]);
         let next = ordered.find(|one| !passes(one) && self.waits_for(one.0).is_none());
         let Some((exercise, hint)) = next else {
-            println!(
-                "\nSee them drive: cargo run -p slam2d --features exercises -- lap --exercises"
-            );
+            println!("\nSee them drive: cargo run -p ch16 --features exercises -- lap --exercises");
             return;
         };
         println!("\nNext: teaching/exercises/src/{exercise}.rs\nHint: {hint}");
@@ -343,7 +341,7 @@ pub enum Lints {
     Denied,
 }
 
-/// The command of the tests named `exercises`: those of the exercises and of `slam2d lap --exercises`.
+/// The command of the tests named `exercises`: those of the exercises and of `ch16 lap --exercises`.
 fn all_tests(features: &str, lints: Lints) -> anyhow::Result<Command> {
     let mut tests = cargo();
     if lints == Lints::Denied {
@@ -372,13 +370,13 @@ fn all_tests(features: &str, lints: Lints) -> anyhow::Result<Command> {
 /// # Errors
 /// The first check that fails.
 pub fn check(lints: Lints) -> anyhow::Result<()> {
-    let solved = "exercises/solutions,slam2d/exercise_solutions";
+    let solved = "exercises/solutions,ch16/exercise_solutions";
     run(
         "Solutions of the exercises",
         all_tests(solved, lints)?.arg("--quiet"),
     )?;
     println!("\n── Exercises as they are");
-    let output = all_tests("slam2d/exercises", lints)?
+    let output = all_tests("ch16/exercises", lints)?
         .stderr(Stdio::piped())
         .output();
     let output = output.context("cargo cannot be started")?;
@@ -395,7 +393,7 @@ pub fn check(lints: Lints) -> anyhow::Result<()> {
     // Tests of the command are in no module.
     let of_command = report.tests.iter().filter(|(name, _)| !name.contains("::"));
     for (name, passed) in of_command {
-        ensure!(*passed, "slam2d lap --exercises: {name} fails");
+        ensure!(*passed, "ch16 lap --exercises: {name} fails");
     }
     let written = EXERCISES.iter().filter(|(name, _)| !is_untouched(name));
     println!(

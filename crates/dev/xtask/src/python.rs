@@ -184,7 +184,7 @@ impl Environment {
 }
 
 /// `cargo xtask test python`: tests the installed package `rustslam2d` and the notebooks that use it. `programs` contains
-/// the command `slam2d`, with which results are compared bit by bit.
+/// the commands with which results are compared bit by bit.
 ///
 /// # Errors
 /// The step that failed.

@@ -190,16 +190,19 @@ fn check_generated() -> anyhow::Result<()> {
         .context("commit what `cargo xtask build` writes: the files above are out of date")
 }
 
+/// The programs that other parts of the suite run.
+const PROGRAMS: [&str; 5] = ["slam2d", "ch16", "ch16-mark", "states", "slam2d_bench"];
+
 /// Compiles the programs that are counted or compared with the module in Node: with the whole workspace and a bench,
 /// because the crates then have the same features as for the tests and are compiled once.
 fn compile_programs() -> anyhow::Result<()> {
     let mut compile = cargo();
     linting(&mut compile)?
         .args(["build", "--quiet", "--bench=timings"])
-        .args(["--bin=slam2d", "--bin=states", "--bin=slam2d_bench"])
+        .args(PROGRAMS.map(|name| format!("--bin={name}")))
         .arg("--target-dir")
         .arg(root().join("target"));
-    run("Compiling slam2d, states and slam2d_bench", &mut compile)
+    run(&format!("Compiling {}", PROGRAMS.join(", ")), &mut compile)
 }
 
 fn programs() -> PathBuf {
@@ -220,7 +223,7 @@ fn browser_tests(chromium: &Path, only: &[String]) -> Command {
     let mut node = program("node");
     node.arg("tests/browser/run.mjs").env("CHROMIUM", chromium);
     // Earlier pieces have compiled it; without them the test that needs it does.
-    if programs().join("slam2d").exists() {
+    if PROGRAMS.iter().all(|name| programs().join(name).exists()) {
         node.env("SLAM_NATIVE", programs());
     }
     if !only.is_empty() {

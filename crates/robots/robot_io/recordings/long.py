@@ -1,6 +1,6 @@
 """Writes a long log of a given size, to measure the memory that a large file takes.
 
-    slam2d buildings --kind ring --seeds 145 --log drive.clf
+    slam2d-dev buildings --kind ring --seeds 145 --log drive.clf
     slam2d convert drive.clf drive.jsonl
     python3 crates/robots/robot_io/recordings/long.py drive.jsonl long.clf --megabytes 500
     venv/bin/python crates/robots/robot_io/recordings/long.py drive.jsonl long.mcap --megabytes 500

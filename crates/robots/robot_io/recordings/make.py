@@ -1,6 +1,6 @@
 """Writes the fixtures next to it with independent writers: PyPI `rosbags` and `mcap`.
 
-    slam2d lap --frames lap.jsonl
+    ch16 lap --frames lap.jsonl
     python3 -m venv venv && venv/bin/pip install rosbags==0.11.9 mcap==1.6.0
     venv/bin/python crates/robots/robot_io/recordings/make.py lap.jsonl
 

@@ -124,6 +124,24 @@ impl FrameLine {
     }
 }
 
+/// Writes frames with their true poses, a line each.
+///
+/// # Errors
+/// If `target` fails.
+pub fn write_frames(
+    frames: impl IntoIterator<Item = (LogFrame, SE2)>,
+    target: &mut impl Write,
+) -> io::Result<()> {
+    for (frame, truth) in frames {
+        let line = FrameLine {
+            truth: Some(truth.to_array()),
+            ..FrameLine::from(&frame)
+        };
+        line.write(&mut *target)?;
+    }
+    target.flush()
+}
+
 /// Reads a log of JSON lines.
 pub type JsonLogReader<R> = LineReader<R, JsonLines>;
 

@@ -12,10 +12,10 @@ use robot_io::json_log::FrameLine;
 use robot_io::trajectory::{StampedPose, Trajectory};
 use serde::Serialize;
 
-use crate::in_file::InFile as _;
-use crate::log_file::{TopicArgs, open, open_log};
-use crate::optimize::{WholeFile, write_whole};
 use crate::session_file::{is_session, read_session};
+use command_line::in_file::InFile as _;
+use command_line::log_file::{TopicArgs, open, open_log};
+use command_line::whole_file::{WholeFile, write_whole};
 
 /// Convert a log, a pose graph or a trajectory to another format, chosen by the file name extensions.
 ///

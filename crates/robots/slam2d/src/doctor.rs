@@ -9,8 +9,8 @@ use robot_io::log::LogReader;
 use robot_io::remark::Condition;
 use robot_io::run::LogRun;
 
-use crate::log_file::{OdometryArgs, TopicArgs, open_compared};
-use crate::output::{print_json, say};
+use command_line::log_file::{OdometryArgs, TopicArgs, open_compared};
+use command_line::output::{print_json, say};
 
 /// Check a recording: print sensor, odometry, mounting, clocks and file, each with ✓, ! or ✗.
 ///

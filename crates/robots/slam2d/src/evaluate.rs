@@ -8,8 +8,8 @@ use robot_io::log::LogReader;
 use robot_io::trajectory::{StampedPose, Trajectory};
 
 use crate::grade::ReferenceArgs;
-use crate::log_file::{OdometryArgs, TopicArgs, open, open_compared};
-use crate::output::print_json;
+use command_line::log_file::{OdometryArgs, TopicArgs, open, open_compared};
+use command_line::output::print_json;
 
 /// Evaluate a trajectory against reference relations or the true trajectory.
 #[derive(Args, Clone, Debug)]

@@ -9,8 +9,8 @@ use robot_io::relations::{Relation, read_relations};
 use robot_io::trajectory::{StampedPose, Trajectory};
 use serde::Serialize;
 
-use crate::log_file::open;
-use crate::output::say;
+use command_line::log_file::open;
+use command_line::output::say;
 
 /// Reference of the evaluation.
 #[derive(Args, Clone, Debug)]

@@ -9,9 +9,9 @@ use clap::Args;
 use robot_io::info::LogInfo;
 use serde::Serialize;
 
-use crate::log_file::{TopicArgs, open_log};
-use crate::output::{print_json, say};
 use crate::session_file::is_session;
+use command_line::log_file::{TopicArgs, open_log};
+use command_line::output::{print_json, say};
 
 /// Print a summary of a recorded log or a session: scans, beams, odometry, stamps, and unreadable records.
 #[derive(Args, Clone, Debug)]

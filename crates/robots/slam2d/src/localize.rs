@@ -15,12 +15,12 @@ use robot_io::run::late_scans;
 use serde::Serialize;
 
 use crate::grade::{Grade, ReferenceArgs};
-use crate::in_file::InFile as _;
-use crate::interrupt::{self, Interrupt};
-use crate::log_file::{OdometryArgs, TopicArgs, open_compared};
-use crate::optimize::{check_file, write_whole};
-use crate::output::{print_json, say};
 use crate::session_file::read_session;
+use command_line::in_file::InFile as _;
+use command_line::interrupt::{self, Interrupt};
+use command_line::log_file::{OdometryArgs, TopicArgs, open_compared};
+use command_line::output::{print_json, say};
+use command_line::whole_file::{check_file, write_whole};
 
 /// Localize a log on the map of a session: print poses, their uncertainty, and when the robot was lost.
 #[derive(Args, Clone, Debug)]

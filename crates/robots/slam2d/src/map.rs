@@ -12,13 +12,13 @@ use robot_io::map_image::{
     MapError, MapImage, MapMode, build_map, build_session_map, finest_map, map_with_free_space,
 };
 
-use crate::in_file::InFile as _;
-use crate::log_file::open;
-use crate::numbers;
-use crate::optimize::WholeFile;
-use crate::output::say;
 use crate::run_folder::KEYFRAMES;
 use crate::session_file::read_session;
+use command_line::in_file::InFile as _;
+use command_line::log_file::open;
+use command_line::numbers;
+use command_line::output::say;
+use command_line::whole_file::WholeFile;
 
 /// Write the map of a run as an image with a YAML file, for Nav2's map_server.
 #[derive(Args, Clone, Debug)]

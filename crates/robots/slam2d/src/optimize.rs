@@ -4,7 +4,6 @@ mod args;
 mod robust;
 mod solve;
 mod tried;
-mod whole_file;
 
 use anyhow::bail;
 use pr_optim::g2o::G2oFile;
@@ -16,9 +15,9 @@ pub use self::args::OptimizeArgs;
 use self::robust::InlierCounts;
 use self::solve::solve_repeatedly;
 use self::tried::{TriedJson, start_name};
-pub use self::whole_file::{WholeFile, check_file, check_folder, write_whole};
-use crate::in_file::InFile as _;
-use crate::output::{print_json, say};
+use command_line::in_file::InFile as _;
+use command_line::output::{print_json, say};
+use command_line::whole_file::write_whole;
 
 /// What `--json` prints.
 #[derive(Clone, Debug, Serialize)]

@@ -13,20 +13,20 @@ use robot_io::run::LogRun;
 use robot_io::settings::Setting;
 use serde::Serialize;
 
-use crate::buildings::setting;
 use crate::grade::{Grade, ReferenceArgs};
-use crate::in_file::InFile as _;
-use crate::interrupt::{self, Interrupt};
 use crate::localize::Init;
-use crate::log_file::{OdometryArgs, TopicArgs};
-use crate::numbers;
-use crate::optimize::check_folder;
-use crate::output::{print_json, say};
-use crate::robots::Robots;
 use crate::run_folder::{CUT_SHORT, folder_of_part};
 use crate::run_output::{Results, write_folder};
 use crate::session_file::read_session;
 use crate::tick_costs::{TickCosts, TickSummary};
+use command_line::in_file::InFile as _;
+use command_line::interrupt::{self, Interrupt};
+use command_line::log_file::{OdometryArgs, TopicArgs};
+use command_line::numbers;
+use command_line::output::{print_json, say};
+use command_line::robots::Robots;
+use command_line::setting::setting;
+use command_line::whole_file::check_folder;
 
 /// Map a recorded log, and evaluate the trajectory if a reference is given.
 #[derive(Args, Clone, Debug)]

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::ensure;
 use robot_io::session::{FILE_NAME, MAX_BYTES, Session, SessionError};
 
-use crate::log_file::open;
+use command_line::log_file::open;
 
 /// The session file of a path: the file itself, or the one in the folder of a run.
 pub fn session_path(path: &Path) -> PathBuf {

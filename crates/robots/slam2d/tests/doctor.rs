@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::logs::{corridor, corridor_with, text};
+use crate::corridor::{corridor, corridor_with, text};
 use crate::support::{assert_rejected, slam2d};
 
 #[test]

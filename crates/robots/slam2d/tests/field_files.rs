@@ -64,25 +64,6 @@ fn a_hall_of_two_hectares_has_a_map_of_the_size_asked_for() {
 }
 
 #[test]
-fn one_command_maps_every_file_with_its_error_or_a_sentence() {
-    let Some(folder) = field("") else {
-        return;
-    };
-    let output = slam2d(&["recordings", "--field", &folder]);
-    let table = String::from_utf8(output.stdout).unwrap();
-    let page = fs::read_to_string("../../../docs/recordings.md").unwrap();
-    for row in table.trim().lines() {
-        assert!(page.contains(row), "not in docs/recordings.md: {row}");
-        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
-        assert!(
-            cells[2] != "rejected" || cells[4].contains("; "),
-            "no remedy: {row}"
-        );
-    }
-    assert!(table.lines().count() > 30, "{table}");
-}
-
-#[test]
 fn sweeps_that_fill_the_period_are_mapped_like_instantaneous_ones() {
     for (name, scans) in [
         ("rest_sweep0", 80),

@@ -3,43 +3,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::corridor::{corridor, text, write};
+use crate::simulated::building_log;
 use crate::support::{assert_rejected, json, slam2d};
+use ch16_lab::buildings::Kind;
 use robot_io::settings::SETTINGS;
 use serde_json::Value;
 use tempfile::TempDir;
-
-/// A log of a robot that drives along x in a hall 6 m wide, 0.1 m per scan, with odometry that is a tenth too long.
-pub fn corridor(folder: &TempDir, scans: usize) -> PathBuf {
-    corridor_with(folder, scans, 1.1)
-}
-
-/// The same with odometry that is too long by this factor.
-pub fn corridor_with(folder: &TempDir, scans: usize, scale: f64) -> PathBuf {
-    let mut text = String::new();
-    for scan in 0..scans {
-        let x = 0.1 * scan as f64;
-        text.push_str("FLASER 90");
-        for beam in 0..90 {
-            let bearing = f64::to_radians(-90.0 + 2.0 * f64::from(beam));
-            let side = 3.0 / bearing.sin().abs();
-            let end = (9.0 - x) / bearing.cos();
-            text.push_str(&format!(" {:.4}", side.min(end)));
-        }
-        let odometry = format!("{:.4} 0 0", scale * x);
-        text.push_str(&format!(" {odometry} {odometry} {} h 0\n", 100 + scan));
-    }
-    write(folder, "corridor.clf", &text)
-}
-
-fn write(folder: &TempDir, name: &str, text: &str) -> PathBuf {
-    let path = folder.path().join(name);
-    fs::write(&path, text).unwrap();
-    path
-}
-
-pub fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
 
 #[test]
 fn a_log_is_mapped_and_graded_against_relations() {
@@ -113,16 +83,7 @@ fn failed_window_searches_have_neither_score_nor_chi2() {
     let folder = TempDir::new().unwrap();
     let log = folder.path().join("alike.log");
     let log = text(&log);
-    let drawn = slam2d(&[
-        "buildings",
-        "--kind",
-        "alike",
-        "--seeds",
-        "101",
-        "--log",
-        log,
-    ]);
-    assert!(drawn.status.success());
+    building_log(Kind::Alike, 101, Path::new(log));
     let run = json(&["run", log, "--json"]);
     let tried = run["quality"]["tried"].as_array().unwrap();
     let in_vain: Vec<&Value> = tried
@@ -329,31 +290,5 @@ fn the_page_of_parameters_names_exactly_those_that_there_are_with_what_they_do_a
         assert_eq!(row[1], parameter.about);
         let unit = row[2].split_once(' ').map_or("", |(_, unit)| unit);
         assert_eq!(unit, parameter.unit, "{}", parameter.name);
-    }
-}
-
-#[test]
-fn a_folder_of_logs_is_mapped_under_every_disturbance() {
-    let folder = TempDir::new().unwrap();
-    corridor(&folder, 40);
-    // From the first scan to the 25th the robot drove 2.4 m.
-    write(&folder, "corridor.relations", "106 130 2.4 0 0 0 0 0\n");
-    let folder = text(folder.path());
-    let outcomes = json(&["logs", folder, "--disturbed", "--json"]);
-    let outcomes = outcomes.as_array().unwrap();
-    assert_eq!(outcomes.len(), 13);
-    for outcome in outcomes {
-        let within = outcome["within_95"].as_f64().unwrap();
-        // One relation is inside or outside.
-        assert!(within == 0.0 || within == 1.0, "{outcome}");
-    }
-    let named = |name: &str| {
-        let mut outcomes = outcomes.iter();
-        outcomes.find(|outcome| outcome["disturbance"] == name)
-    };
-    // The end of the corridor is in view; the odometry is off by 0.24 m, and by 0.36 m with wheels 5 % too long.
-    for name in ["none", "reversed", "wheels +5 %", "scans alone"] {
-        let outcome = named(name).unwrap();
-        assert!(outcome["error_m"].as_f64().unwrap() < 0.1, "{outcome}");
     }
 }

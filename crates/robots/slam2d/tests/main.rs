@@ -1,16 +1,13 @@
 //! Tests of the command line: one binary, one module for each kind of call.
 
 mod commands;
-mod dask;
+mod corridor;
 mod doctor;
-mod estimators;
 mod field_files;
 mod files;
 mod logs;
-mod mark;
 mod optimize;
 mod recordings;
 mod sessions;
-mod shards;
+mod simulated;
 mod support;
-mod worlds;

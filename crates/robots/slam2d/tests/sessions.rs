@@ -4,11 +4,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use bench_support::skip::skip;
+use ch16_lab::buildings::Kind;
+use ch16_lab::lap::BuiltInWorld;
 use pr_geom::SE2;
 use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
 use tempfile::TempDir;
 
+use crate::simulated::{building_log, lap_log};
 use crate::support::{assert_rejected, json, slam2d};
 
 /// The simulator's lap as a log, whole and in two halves.
@@ -20,7 +23,7 @@ impl Lap {
     fn new() -> Self {
         let folder = TempDir::new().unwrap();
         let lap = Self { folder };
-        json(&["lap", "--frames", &lap.file("whole.jsonl"), "--json"]);
+        lap_log(BuiltInWorld::Apartment, &lap.path("whole.jsonl"));
         let text = fs::read_to_string(lap.file("whole.jsonl")).unwrap();
         let lines: Vec<&str> = text.lines().collect();
         let (first, second) = lines.split_at(lines.len() / 2);
@@ -222,18 +225,9 @@ fn the_log_of_another_building_is_found_nowhere() {
     let folder = TempDir::new().unwrap();
     let file = |name: &str| folder.path().join(name).display().to_string();
     // Two of the same kind: corridors of equal width and length, with different doors and furniture.
-    for seed in ["301", "302"] {
+    for seed in [301, 302] {
         let log = file(&format!("{seed}.log"));
-        let drawn = slam2d(&[
-            "buildings",
-            "--kind",
-            "hallway",
-            "--seeds",
-            seed,
-            "--log",
-            &log,
-        ]);
-        assert!(drawn.status.success());
+        building_log(Kind::Hallway, seed, Path::new(&log));
         let text = fs::read_to_string(&log).unwrap();
         let start: Vec<&str> = text.lines().take(90).collect();
         fs::write(file(&format!("start-{seed}.log")), start.join("\n")).unwrap();
@@ -249,33 +243,6 @@ fn the_log_of_another_building_is_found_nowhere() {
         (&0.into(), &0.into())
     );
     assert!(other["lost"].as_u64().unwrap() > 0);
-}
-
-#[test]
-fn repeated_laps_print_lines_and_write_a_session() {
-    let folder = TempDir::new().unwrap();
-    let session = folder.path().join("laps.slam2d").display().to_string();
-    let run = json(&["laps", "2", "--session", &session, "--json"]);
-    let laps = run["laps"].as_array().unwrap();
-    assert_eq!(laps.len(), 2);
-    let info = json(&["info", &session, "--json"]);
-    assert_eq!(info["keyframes"], laps[1]["nodes"]);
-    assert_eq!(info["edges"], laps[1]["edges"]);
-    assert_eq!(info["bytes"], laps[1]["bytes"]);
-    for (arguments, expected) in [
-        (vec!["laps", "0"], "not within 1 to 10000"),
-        (vec!["laps", "--session", "x"], "not provided"),
-        (
-            vec!["laps", "2", "--wardrobe", "1", "--world", "ring"],
-            "--wardrobe applies to the Apartment only",
-        ),
-        (
-            vec!["laps", "2", "--wardrobe", "3"],
-            "is beyond the 2 laps; use a lap up to 2",
-        ),
-    ] {
-        assert_rejected(&arguments, expected);
-    }
 }
 
 /// A recording of a day in `../shared/data/field`, and its true poses.
@@ -370,14 +337,7 @@ fn a_robot_that_was_carried_during_a_pause_is_found_on_the_map() {
 #[test]
 fn a_day_in_another_building_is_mapped_alone() {
     let lap = Lap::new();
-    json(&[
-        "lap",
-        "--world",
-        "ring",
-        "--frames",
-        &lap.file("ring.jsonl"),
-        "--json",
-    ]);
+    lap_log(BuiltInWorld::Ring, &lap.path("ring.jsonl"));
     let text = fs::read_to_string(lap.file("ring.jsonl")).unwrap();
     let later = text.lines().map(|line| {
         let mut frame: serde_json::Value = serde_json::from_str(line).unwrap();

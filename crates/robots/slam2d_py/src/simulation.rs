@@ -11,7 +11,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
 use pr_geom::SE2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use robot_io::json_log::FrameLine;
+use robot_io::json_log::write_frames;
 
 use crate::arrays;
 use crate::callables::Callables;
@@ -131,7 +131,7 @@ pub fn simulate(
 
 #[pymethods]
 impl Drive {
-    /// Writes the drive as a log, lines of JSON with the truth beside each scan: what `slam2d lap --frames` writes.
+    /// Writes the drive as a log, lines of JSON with the truth beside each scan: what `ch16 lap --frames` writes.
     ///
     /// Raises OSError if the file cannot be written.
     fn write_log(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
@@ -166,12 +166,9 @@ impl Drive {
 
 fn write_log(drive: &Simulated, path: &Path) -> std::io::Result<()> {
     let mut file = BufWriter::new(File::create(path)?);
-    for (tick, frame) in drive.log_frames().enumerate() {
-        let line = FrameLine {
-            truth: Some(drive.truth(tick).to_array()),
-            ..FrameLine::from(&frame)
-        };
-        line.write(&mut file)?;
-    }
-    file.flush()
+    let frames = drive.log_frames().enumerate();
+    write_frames(
+        frames.map(|(tick, frame)| (frame, drive.truth(tick))),
+        &mut file,
+    )
 }

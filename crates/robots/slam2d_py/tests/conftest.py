@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 import rustslam2d as rs
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[4]
 
 
 def skip(name, reason):
@@ -21,13 +21,12 @@ def skip(name, reason):
     pytest.skip(reason)
 
 
-@pytest.fixture(scope="session")
-def slam2d():
-    """Runs the command, and returns what it prints."""
+def command(name):
+    """A function that runs a command of the workspace, and returns what it prints."""
     folder = Path(os.environ.get("SLAM_NATIVE", ROOT / "target/debug"))
-    program = folder / ("slam2d.exe" if os.name == "nt" else "slam2d")
+    program = folder / (f"{name}.exe" if os.name == "nt" else name)
     if not program.is_file():
-        skip("the command beside the package", f"{program} is not there; cargo build --bin slam2d makes it")
+        skip("the command beside the package", f"{program} is not there; cargo build --bin {name} makes it")
 
     def run(*arguments):
         return subprocess.run([program, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
@@ -36,9 +35,21 @@ def slam2d():
 
 
 @pytest.fixture(scope="session")
-def lap(slam2d):
+def slam2d():
+    """The command of robots."""
+    return command("slam2d")
+
+
+@pytest.fixture(scope="session")
+def ch16():
+    """The command of the chapter's experiments."""
+    return command("ch16")
+
+
+@pytest.fixture(scope="session")
+def lap(ch16):
     """The canonical lap as the command prints it."""
-    return json.loads(slam2d("lap", "--json"))
+    return json.loads(ch16("lap", "--json"))
 
 
 @pytest.fixture(scope="session")

@@ -25,11 +25,11 @@ def test_the_lap_has_the_bits_of_the_command(lap, drive, driven):
     ]
 
 
-def test_without_loops_the_front_end_is_alone(slam2d, drive):
+def test_without_loops_the_front_end_is_alone(ch16, drive):
     slam = rs.Slam.chapter(sensor=drive.sensor, start=drive.truth[0], loops=False)
     for frame in zip(drive.ranges, drive.odometry, drive.stamps):
         slam.step(*frame)
-    alone = json.loads(slam2d("lap", "--no-loops", "--json"))
+    alone = json.loads(ch16("lap", "--no-loops", "--json"))
     assert np.array_equal(slam.poses, alone["keyframe_poses"])
 
 

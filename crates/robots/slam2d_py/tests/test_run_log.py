@@ -19,8 +19,8 @@ def run(log):
     return rs.Pipeline(log).run()
 
 
-def test_the_log_has_the_bytes_of_the_commands(slam2d, log, tmp_path):
-    slam2d("lap", "--frames", tmp_path / "lap.jsonl")
+def test_the_log_has_the_bytes_of_the_commands(ch16, log, tmp_path):
+    ch16("lap", "--frames", tmp_path / "lap.jsonl")
     assert (tmp_path / "lap.jsonl").read_bytes() == log.read_bytes()
 
 

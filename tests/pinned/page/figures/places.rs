@@ -1,4 +1,4 @@
-//! Place recognition over the laps of `slam2d places`: precision and recall.
+//! Place recognition over the laps of `ch16 places`: precision and recall.
 
 use ch16_lab::lap::{BuiltInWorld, LapConfig, LapDetector, LapMatcher, NamedChoice};
 use ch16_lab::places::{GRADED, PlaceCurve, PlacePair, place_curves, place_pairs};

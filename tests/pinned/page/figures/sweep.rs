@@ -1,6 +1,6 @@
 //! Laps that differ only in their seed, at four noise factors: the variation of the canonical run.
 //!
-//! The same laps as the defaults of `slam2d sweep`, and the same statistics of the core.
+//! The same laps as the defaults of `ch16 sweep`, and the same statistics of the core.
 
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;

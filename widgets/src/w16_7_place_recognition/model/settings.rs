@@ -7,7 +7,7 @@ use widget_kit::values::Values;
 
 use crate::w16_7_place_recognition::spec::{DETECTOR, SEED, WORLD};
 
-/// The lap: with NDT and without loops, like `slam2d places`.
+/// The lap: with NDT and without loops, like `ch16 places`.
 pub fn config(values: &Values) -> LapConfig {
     LapConfig::in_world(values.get(&WORLD), values.get(&SEED), values.get(&NOISE))
         .with_matcher(LapMatcher::Ndt)

@@ -139,7 +139,7 @@ fn with_defaults(recording: Recording) -> (Recording, LocalMapConfig) {
     (recording, config)
 }
 
-/// The drive of `slam2d lap` with this seed.
+/// The drive of `ch16 lap` with this seed.
 fn lap(world: BuiltInWorld, seed: u32) -> Recording {
     let drive = DriveConfig {
         seed,

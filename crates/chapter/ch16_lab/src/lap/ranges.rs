@@ -1,6 +1,6 @@
 //! The range of every number of a [`LapConfig`], and laps drawn from all ranges at once.
 //!
-//! Within these ranges a lap runs to its end with finite results, accurate or not: `slam2d sweep --random`
+//! Within these ranges a lap runs to its end with finite results, accurate or not: `ch16 sweep --random`
 //! drives laps at configurations drawn here. Beyond them there is no guarantee.
 
 use core::f64::consts::{PI, TAU};

@@ -1,6 +1,6 @@
 """Writes the trajectories, and the values of evo that the tests compare with.
 
-    slam2d lap --seed 7 --world ring --json > lap.json
+    ch16 lap --seed 7 --world ring --json > lap.json
     pip install evo==1.38.1
     python crates/robots/robot_io/tests/evo/make.py lap.json
 

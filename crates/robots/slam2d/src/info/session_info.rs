@@ -8,8 +8,8 @@ use robot_io::session::{Session, VERSION};
 use robot_io::settings::SETTINGS;
 use serde::Serialize;
 
-use crate::output::{print_json, say};
 use crate::session_file::read_session;
+use command_line::output::{print_json, say};
 
 #[derive(Serialize)]
 struct SessionJson {

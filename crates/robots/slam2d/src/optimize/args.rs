@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use pr_optim::{RobustKernel, Start};
 
 use super::robust::RobustName;
-use crate::numbers;
+use command_line::numbers;
 
 /// Optimize a pose graph: g2o in, g2o out.
 #[derive(Args, Clone, Debug)]

@@ -1,0 +1,4 @@
+//! Tests of the command line.
+
+mod mark;
+mod support;
