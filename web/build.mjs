@@ -13,9 +13,10 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 import { gzipSync } from 'node:zlib';
 import * as esbuild from 'esbuild';
 
+import { oldestBrowsers } from './browsers.mjs';
 import { writeModels, writeParameterTables, writeTypes } from './generate.mjs';
 import { heightTable } from './heights.mjs';
-import { withPolicy } from './html.mjs';
+import { POLICY } from './html.mjs';
 import { endWithOneSentence } from './licences/allowed.mjs';
 import { partsOfWidgets, writePackageNotices } from './licences/notices.mjs';
 import { brotli, withBuildId, withoutNames } from './wasm-file.mjs';
@@ -127,7 +128,7 @@ async function bundle() {
     target: 'es2022',
     minify: profile === 'web',
     sourcemap: profile === 'web' ? false : 'inline',
-    define: { WASM_FILE: JSON.stringify(`./${wasmFile}`) },
+    define: { WASM_FILE: JSON.stringify(`./${wasmFile}`), BROWSERS: JSON.stringify(oldestBrowsers()), POLICY: JSON.stringify(POLICY) },
     write: false,
     metafile: true,
     legalComments: 'none',
@@ -161,7 +162,8 @@ async function bundle() {
     });
     metafiles.push(metafile);
   }
-  await writeFile(join(dist, 'embed.html'), withPolicy(await readFile(join(WEB, 'embed.html'), 'utf8')));
+  const embed = await readFile(join(WEB, 'embed.html'), 'utf8');
+  await writeFile(join(dist, 'embed.html'), embed.replace('{browsers}', oldestBrowsers()));
   for (const types of ['slam-widget.d.ts', 'slam-predict.d.ts', 'slam-anywidget.d.ts']) {
     await cp(join(WEB, types), join(dist, types));
   }
@@ -178,7 +180,7 @@ async function writeNotices(metafiles) {
 /** Writes the manifest of the npm package, which is `dist/`: `npm pack ./dist`. */
 async function writePackage() {
   const source = JSON.parse(await readFile(join(WEB, 'package.json'), 'utf8'));
-  for (const key of ['//', 'private', 'engines', 'scripts', 'devDependencies']) delete source[key];
+  for (const key of ['//', 'private', 'engines', 'browserslist', 'scripts', 'devDependencies']) delete source[key];
   await writeFile(join(dist, 'package.json'), `${JSON.stringify(source, null, 2)}\n`);
 }
 

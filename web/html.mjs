@@ -2,7 +2,7 @@
  * What a page may load: only what a page with widgets needs, from its own site; fonts are those of the formulas, frames
  * those of the examples and of the reader's code. In a sandbox, without an origin, a worker starts from data.
  */
-const POLICY = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob: data:; connect-src 'self'; img-src 'self' data:; "
+export const POLICY = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob: data:; connect-src 'self'; img-src 'self' data:; "
   + "style-src 'self' 'unsafe-inline'; font-src 'self'; frame-src 'self'; base-uri 'none'; form-action 'none'";
 /** The tag that pages opened from the disk have to lose. */
 export const POLICY_TAG = `<meta http-equiv="Content-Security-Policy" content="${POLICY}">\n`;

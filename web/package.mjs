@@ -10,6 +10,7 @@ import { basename, dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 import * as esbuild from 'esbuild';
+import { oldestBrowsers } from './browsers.mjs';
 
 const WEB = dirname(fileURLToPath(import.meta.url));
 
@@ -82,6 +83,7 @@ async function standaloneModule() {
     minify: true,
     // Names of embedded files. No URL is ever fetched.
     define: {
+      BROWSERS: JSON.stringify(oldestBrowsers()),
       WASM_FILE: '"program"',
       ROBOT_WASM_FILE: '"robot"',
       ROBOT_WORKER_FILE: '"worker"',

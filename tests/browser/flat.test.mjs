@@ -240,6 +240,15 @@ describe('the game', () => {
     });
   }
 
+  it('offers no tool over a picture that cannot be drawn on', async () => {
+    const head = "<head><script>HTMLCanvasElement.prototype.getContext = () => null</script>";
+    const page = readFileSync(join(h.DIST, 'break.html'), 'utf8').replace('<head>', head);
+    await visit('', async (tab) => {
+      await tab.locator('slam-widget .failure').waitFor();
+      assert.equal(await tab.locator('.game-tools button:not([disabled])').count(), 0);
+    }, { path: '/break.html', quiet: false, server: { pages: { '/break.html': page } } });
+  });
+
   it('takes a tool in hand, and drives the robot when asked to', async () => {
     await visit('', async (tab) => {
       await h.ready(tab);

@@ -297,6 +297,23 @@ it('a widget shows the picture and one sentence without WebAssembly', async () =
   await on(ONE, (tab) => fallsBack(tab, /no WebAssembly/), { head: '<script>delete window.WebAssembly</script>' });
 });
 
+describe('a start that is broken', () => {
+  const BROKEN = {
+    'an observer that throws': [
+      "Object.defineProperty(ResizeObserverEntry.prototype, 'contentRect', { get() { throw new TypeError('no rectangle'); } })",
+      /TypeError: no rectangle\. It needs Chrome \d+, Firefox \d+ or Safari [\d.]+, or a later version\./,
+    ],
+    'a missing observer': ['delete window.IntersectionObserver', /IntersectionObserver is not defined\. It needs Chrome/],
+    'a refused shader': ['WebGL2RenderingContext.prototype.getShaderParameter = () => false', /cannot run here: Error starting glow painter.*It needs Chrome/],
+    'refused memory': ["WebAssembly.instantiate = () => Promise.reject(new RangeError('could not allocate'))", /gives it no memory; close other tabs/],
+  };
+  for (const [what, [script, reason]] of Object.entries(BROKEN)) {
+    it(`by ${what} leaves the picture and one sentence with cause and remedy`, async () => {
+      await on(ONE, (tab) => fallsBack(tab, reason), { head: `<script>${script}</script>`, quiet: false });
+    });
+  }
+});
+
 it('a widget shows the picture and one sentence without WebGL 2', async () => {
   const other = await h.launch(['--disable-3d-apis']);
   try {

@@ -49,6 +49,21 @@ describe('the picture', () => {
   }
 });
 
+it('a timeline beside other buttons fits its frame on narrow screens', async () => {
+  const body = ['w16.5', 'w16.6', 'w16.8'].map((id) => `<slam-widget name="${id}"></slam-widget>`).join('');
+  await visit(body, async (tab) => {
+    for (const width of [390, 450, 500]) {
+      await tab.setViewportSize({ width, height: 900 });
+      const wide = await tab.evaluate(() => [...document.querySelectorAll('slam-widget')].flatMap(({ name, shadowRoot }) => {
+        const frame = shadowRoot.querySelector('.frame').getBoundingClientRect();
+        return [...shadowRoot.querySelectorAll('.transport *')].filter((one) => one.closest('.hidden') === null
+          && one.getClientRects().length > 0 && one.getBoundingClientRect().right > frame.right + 0.5).map((one) => `${name}: ${one.className}`);
+      }));
+      assert.deepEqual(wide, [], `${width} px`);
+    }
+  });
+});
+
 describe('the verdict', () => {
   for (const [width, height] of [[1440, 900], [1280, 680], [390, 844]]) {
     for (const page of h.PAGES.filter((file) => h.widgetsOf(file).length > 0)) {

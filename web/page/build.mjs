@@ -13,6 +13,7 @@ import { fileURLToPath } from 'node:url';
 import { build } from 'esbuild';
 import katex from 'katex';
 
+import { oldestBrowsers } from '../browsers.mjs';
 import { escapeHtml, withPolicy } from '../html.mjs';
 import { endWithOneSentence } from '../licences/allowed.mjs';
 import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
@@ -102,7 +103,7 @@ function addPictures(html, source) {
       <source media="(prefers-color-scheme: dark)" srcset="pictures/${id}-dark.svg">
       <img src="pictures/${id}-light.svg" ${sizeOf(`${id}-light.svg`)} alt="${escapeHtml(spec.summary)}" loading="lazy">
     </picture>
-    <p>This is a still picture of “${escapeHtml(spec.title)}”: the widget needs JavaScript and WebAssembly.</p>
+    <p>This is a still picture of “${escapeHtml(spec.title)}”: the widget needs JavaScript and WebAssembly, in ${oldestBrowsers()} or later.</p>
   ${close}`;
   });
 }

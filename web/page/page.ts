@@ -22,6 +22,7 @@ import type { Answer } from './match/drawing';
 import { MatchFigure } from './match/figure';
 import type { SlamWidget } from '../ts/main';
 import { reveal } from '../ts/reveal';
+import { replaceMissingPopovers } from './popovers';
 import { SketchFigure, type SketchSchema } from './sketch';
 import { chosenTheme, keepTheme, showTheme, type ThemeChoice } from './theme-choice';
 
@@ -41,6 +42,7 @@ const PREFETCH_MARGIN = '100% 0px';
 declare const PLACES: Places;
 
 redirectOldAddress(PLACES);
+replaceMissingPopovers();
 openAddressedExercise();
 addEventListener('hashchange', openAddressedExercise);
 trackReading();
@@ -70,9 +72,18 @@ function listenToEditors(): void {
   for (const details of document.querySelectorAll<HTMLDetailsElement>('details[data-write]')) {
     details.addEventListener('toggle', () => {
       // @ts-expect-error: a separate bundle.
-      if (details.open) void import('./write-yourself.js').then(({ open }: { open(place: HTMLElement): void }) => open(details));
+      if (details.open) void import('./write-yourself.js').then(({ open }: { open(place: HTMLElement): void }) => open(details), () => sayNoEditor(details));
     });
   }
+}
+
+/** Says that the editor did not load, once. */
+function sayNoEditor(details: HTMLDetailsElement): void {
+  if (details.querySelector('.no-editor') !== null) return;
+  const line = document.createElement('p');
+  line.className = 'no-editor';
+  line.textContent = 'The editor could not be loaded. Check your connection, and reload the page.';
+  details.append(line);
 }
 
 function startMatchFigure(): void {

@@ -37,7 +37,8 @@ function fitWidget(): void {
 /** Gives the pictures what the controls leave, which are higher once they are filled. */
 async function watchControls(): Promise<void> {
   await customElements.whenDefined('slam-widget');
-  const bars = new ResizeObserver(() => dispatchEvent(new Event('resize')));
+  // Not within the observer's call: what it causes is another change of size.
+  const bars = new ResizeObserver(() => requestAnimationFrame(() => dispatchEvent(new Event('resize'))));
   for (const { shadowRoot } of document.querySelectorAll('slam-widget')) {
     const bar = shadowRoot?.querySelector('[part="bar"]');
     if (bar) bars.observe(bar);

@@ -64,7 +64,7 @@ export function student(): string {
 }
 
 export function setStudent(name: string): void {
-  current = name.trim().toWellFormed();
+  current = name.trim().replace(/\p{Surrogate}/gu, '\uFFFD');
   changed();
 }
 

@@ -2,7 +2,7 @@
 
 import { createGlue, type Glue } from '../pkg/glue.js';
 import { observerOf, windowOf, type FrameSource } from './glue-scope';
-import { forgetModule, loadModule, StaleError } from './module';
+import { forgetModule, loadModule, startProblem } from './module';
 
 /** The compiled module, for example for a worker. */
 export function coreModule(progress: (share: number) => void = () => {}): Promise<WebAssembly.Module> {
@@ -16,8 +16,8 @@ export async function core(frames?: FrameSource, progress?: (share: number) => v
   try {
     await glue({ module_or_path: module });
     return glue;
-  } catch {
+  } catch (error) {
     forgetModule();
-    throw new StaleError();
+    throw startProblem(error);
   }
 }

@@ -86,6 +86,14 @@ export class SlamWidget extends HTMLElement {
     // An element that moves within its page, or was set up before, keeps its state.
     if (!this.#isSetUp) this.#setUp();
     upgradeProperties(this);
+    try {
+      this.#connect();
+    } catch (error) {
+      this.#lifecycle.fail(error);
+    }
+  }
+
+  #connect(): void {
     this.#unwatch = [
       ...this.#appearance.watch(),
       listen(window, 'error', () => this.#lifecycle.checkCrash()),
@@ -421,6 +429,10 @@ export class SlamWidget extends HTMLElement {
         this.#showReadouts();
       },
       rested: () => this.#notifier.rested(),
+      late: (cause) => this.#notifier.late(cause, () => {
+        this.#lifecycle.suspend();
+        this.#lifecycle.restart();
+      }),
       leaving: () => {
         this.#showReadouts();
         this.#appearance.drawPicture();
@@ -483,7 +495,7 @@ export class SlamWidget extends HTMLElement {
     const label = 'A log, or a reference for it';
     const mapper = new LogMapper({
       deliver: (deliveries) => this.#deliver(deliveries),
-      choose: (accept, chosen) => chooseFiles(this.#parts.frame, { accept, label, several: true }, chosen),
+      choose: (chosen) => chooseFiles(this.#parts.frame, { label, several: true }, chosen),
     });
     this.#doctor = new DoctorScreen({
       choose: (option) => mapper.choose(option?.replace(/^--/, '')),

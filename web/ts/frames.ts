@@ -15,7 +15,7 @@ export class FrameGate {
   canvas: HTMLCanvasElement | undefined;
   /** Called after each frame; returns whether another one is needed at once. */
   afterFrame: () => boolean = () => false;
-  /** Called if a frame throws, which only a panic does. */
+  /** Called if a frame throws, or the observer of its size. */
   onCrash: (error: unknown) => void = () => {};
 
   #waiting: Callback | undefined;
@@ -69,6 +69,10 @@ export class FrameGate {
         blockSize: { value: blockSize },
       }) as ResizeObserverSize,
     ];
+  }
+
+  failed(error: unknown): void {
+    this.onCrash(error);
   }
 
   /** Allows drawing. */

@@ -7,6 +7,8 @@ export interface FrameSource {
   cancel(): void;
   pixelRatio(): number;
   deviceSize(entry: ResizeObserverEntry): readonly ResizeObserverSize[];
+  /** Called with an exception of eframe's, which would otherwise end in the console only. */
+  failed(error: unknown): void;
 }
 
 export function windowOf(frames: FrameSource): Window {
@@ -32,10 +34,14 @@ export function observerOf(frames: FrameSource): typeof ResizeObserver {
   return class extends ResizeObserver {
     constructor(callback: ResizeObserverCallback) {
       super((entries, observer) => {
-        for (const entry of entries) {
-          Object.defineProperty(entry, 'devicePixelContentBoxSize', { value: frames.deviceSize(entry) });
+        try {
+          for (const entry of entries) {
+            Object.defineProperty(entry, 'devicePixelContentBoxSize', { value: frames.deviceSize(entry) });
+          }
+          callback(entries, observer);
+        } catch (error) {
+          frames.failed(error);
         }
-        callback(entries, observer);
       });
     }
   };

@@ -4,7 +4,7 @@ import type { Widget } from '../pkg/glue.js';
 import { core } from './core';
 import { nextTask } from './dom';
 import { FrameGate } from './frames';
-import { forgetModule, StaleError } from './module';
+import { forgetModule, startProblem } from './module';
 
 export interface Outcome {
   standing: 'good' | 'bad' | 'doubtful' | 'neutral';
@@ -61,9 +61,9 @@ export class Instance {
     await nextTask();
     try {
       return new Instance(new glue.Widget(name), frames);
-    } catch {
+    } catch (error) {
       forgetModule();
-      throw new StaleError();
+      throw startProblem(error);
     }
   }
 

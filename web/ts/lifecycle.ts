@@ -8,7 +8,8 @@ import { claim, retryWaiting, release, type Drawer } from './contexts';
 import { CrashError, Instance } from './instance';
 import { placeControls } from './controls-place';
 import { nextTask } from './dom';
-import { LoadError } from './module';
+import { ARRIVAL_MS, LateStart } from './late-start';
+import { LoadError, UnexpectedError } from './module';
 import type { Parts } from './parts';
 import { Stage } from './stage';
 import type { Visibility } from './visibility';
@@ -45,6 +46,8 @@ export interface LifecycleHost {
   drew(canvas: HTMLCanvasElement): void;
   /** Progressive work is finished. */
   rested(): void;
+  /** The start gets no further, but goes on; undefined once it does, or has ended. */
+  late(sentence: string | undefined): void;
   /** Called before the instance is disposed: the last moment to take a picture. */
   leaving(): void;
   /** The widget failed, and waits for `restart`. */
@@ -65,6 +68,7 @@ export class Lifecycle implements Visibility, Drawer {
   #isInView = false;
   #hasFailed = false;
   #isBusy = false;
+  readonly #lateStart: LateStart;
   /** The instance's frame counter after the last drawn frame. */
   #drawnFrames = 0;
   /** Height of the controls that the instance knows. */
@@ -75,6 +79,7 @@ export class Lifecycle implements Visibility, Drawer {
   constructor(parts: Parts, host: LifecycleHost) {
     this.#parts = parts;
     this.#host = host;
+    this.#lateStart = new LateStart((sentence) => host.late(sentence));
   }
 
   /** Whether a canvas is on the page. */
@@ -170,11 +175,15 @@ export class Lifecycle implements Visibility, Drawer {
     const generation = this.#generation;
     try {
       stage.classList.add('waiting');
+      this.#lateStart.step('its program does not arrive', ARRIVAL_MS);
       const instance = await this.ensureInstance();
+      instance.frames.onCrash = (error) => this.fail(instance.crash() ?? error);
+      this.#lateStart.step('its program does not end its first step');
       await nextTask();
       // The first frame shows data: the still picture stands until then.
       while (this.ask((ready) => ready.settle(MAX_TASK_MS)) === true) await nextTask();
       if (generation !== this.#generation) return;
+      this.#lateStart.step('the browser draws no frame');
       this.#stage = new Stage(stage, instance, widget.title, () => this.fail(new ContextLostError()));
       await this.#stage.start();
       await nextTask();
@@ -192,6 +201,7 @@ export class Lifecycle implements Visibility, Drawer {
 
   #end(): void {
     this.#generation += 1;
+    this.#lateStart.end();
     if (this.#parts.stage.classList.contains('live')) this.#host.leaving();
     this.#stage?.dispose();
     this.#stage = undefined;
@@ -233,14 +243,17 @@ export class Lifecycle implements Visibility, Drawer {
       this.#instance = undefined;
     }
     this.suspend();
-    this.#host.failed(error instanceof Error ? error : new LoadError(String(error)));
+    this.#host.failed(error instanceof CrashError || error instanceof LoadError ? error : new UnexpectedError(error));
   }
 
   async #create(name: string): Promise<Instance> {
     const generation = this.#generation;
     const { progress } = this.#parts;
     progress.hidden = false;
-    const instance = await Instance.create(name, (share) => (progress.value = share));
+    const instance = await Instance.create(name, (share) => {
+      progress.value = share;
+      this.#lateStart.restart();
+    });
     await nextTask();
     if (generation !== this.#generation) {
       instance.dispose();
@@ -258,7 +271,6 @@ export class Lifecycle implements Visibility, Drawer {
     this.#drawnFrames = 0;
     this.#gap = 0;
     instance.frames.afterFrame = () => this.#afterFrame(instance, stage, startedAt);
-    instance.frames.onCrash = (error) => this.fail(instance.crash() ?? error);
     instance.frames.open();
   }
 
@@ -302,6 +314,7 @@ export class Lifecycle implements Visibility, Drawer {
 
   #showLive(startedAt: number): void {
     this.#parts.progress.hidden = true;
+    this.#lateStart.end();
     this.#parts.stage.classList.replace('waiting', 'live');
     this.#lostContexts = 0;
     this.#openOrClose();

@@ -5,7 +5,23 @@ import { fetchAsset } from './assets';
 /** Set by the build: the name of the wasm file contains a hash of its content. */
 declare const WASM_FILE: string;
 
+/** Set by the build: the oldest browsers, as in a sentence. */
+declare const BROWSERS: string;
+
 export class LoadError extends Error {}
+
+/** What nobody foresaw, such as a function that the browser lacks: its own words, and what to do. */
+export class UnexpectedError extends LoadError {
+  constructor(cause: unknown) {
+    super(`${String(cause)}. It needs ${BROWSERS}, or a later version`);
+  }
+}
+
+/** The module does not start: another build, or no memory for it. */
+export function startProblem(error: unknown): LoadError {
+  const isOutOfMemory = error instanceof RangeError || /memory/i.test(String(error));
+  return isOutOfMemory ? new LoadError('the browser gives it no memory; close other tabs, and try again') : new StaleError();
+}
 
 /** The module is complete, but from another build than this script. */
 export class StaleError extends LoadError {
@@ -96,17 +112,18 @@ export class ModuleFile {
       throw new LoadError(`the program could not be fetched (${response.status})`);
     }
     const onShare = (share: number): void => this.#reportProgress(share);
-    const counted = new Response(withProgress(response.body, expectedLength(response), timeout, onShare), {
+    const module = new Response(withProgress(response.body, expectedLength(response), timeout, onShare), {
       // Overrides the server's type: the magic number already rejects anything but wasm.
       headers: { 'Content-Type': 'application/wasm' },
     });
     try {
-      return await WebAssembly.compileStreaming(counted);
+      if (typeof WebAssembly.compileStreaming === 'function') return await WebAssembly.compileStreaming(module);
+      return await WebAssembly.compile(await module.arrayBuffer());
     } catch (error) {
       if (error instanceof EvalError || String(error).includes('Content Security Policy')) {
         throw new LoadError("the page's security policy lacks 'wasm-unsafe-eval'");
       }
-      throw new LoadError('the program arrived incomplete or is too new for this browser');
+      throw new LoadError(`the program arrived incomplete, or the browser is older than ${BROWSERS}`);
     }
   }
 

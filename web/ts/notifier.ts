@@ -3,7 +3,7 @@
 import { updateEntry, type Linked, setAddressed } from './address';
 import { CrashError, type Outcome, type Timeline } from './instance';
 import type { Notes } from './notes';
-import { failureBox, type Parts } from './parts';
+import { failureBox, lateBox, type Parts } from './parts';
 import type { Value } from './values';
 
 /** Debounces the result: a drag changes a value with every frame. */
@@ -35,6 +35,7 @@ export class Notifier {
   #isFromAttributes = false;
   /** Whether values settled before the widget had run: the result follows its first run. */
   #isResultPending = false;
+  #lateBox: HTMLElement | undefined;
   /** Time of the last announcement, or of the first change since the last result. */
   #announcedAt = 0;
 
@@ -116,6 +117,20 @@ export class Notifier {
     note.append(box);
     const kind = error instanceof CrashError ? 'crash' : 'load';
     this.#emit('slam-error', { kind, message: error.message });
+  }
+
+  /** Says over the still picture why nothing is drawn, while the start goes on; removes it without a cause. */
+  late(cause: string | undefined, restart: () => void): void {
+    const { note, frame } = this.#parts;
+    this.#lateBox?.remove();
+    this.#lateBox = undefined;
+    if (cause === undefined) return;
+    const box = lateBox(cause, () => {
+      frame.focus({ preventScroll: true });
+      restart();
+    });
+    this.#lateBox = box;
+    note.append(box);
   }
 
   /** Drops pending results, because the element left its page. */

@@ -101,6 +101,18 @@ export function failureBox(error: Error, onAgain: () => void): HTMLElement {
   return box;
 }
 
+/** Why there is no frame after ten seconds, and a button that starts anew. */
+export function lateBox(cause: string, onAgain: () => void): HTMLElement {
+  const box = create('div', { class: 'failure late' });
+  const sentence = create('p');
+  sentence.textContent = `This widget draws nothing yet: ${cause}. The picture shows the initial state; the controls below work once it draws.`;
+  const again = create('button', { type: 'button' });
+  again.textContent = 'Start again';
+  again.addEventListener('click', onAgain);
+  box.append(sentence, again);
+  return box;
+}
+
 /** Details of a crash for a bug report. */
 function crashDetails(text: string): HTMLElement {
   const element = create('details');

@@ -113,7 +113,7 @@ button[aria-disabled='true'] { color: var(--soft); border-color: var(--line); cu
 .slider .rail { order: 1; flex: 1 0 100%; }
 .rail { position: relative; display: flex; flex: 1 1 6rem; }
 .unit { white-space: nowrap; }
-.timeline { flex: 1 1 13rem; flex-wrap: nowrap; }
+.timeline { flex: 1 1 13rem; flex-wrap: nowrap; min-width: min-content; }
 .timeline > :not(.rail) { flex: none; order: 1; }
 .timeline .name { color: var(--soft); }
 .empty :is(.unit, input[type='number']) { visibility: hidden; }

@@ -20,7 +20,7 @@ export function executeTextOrder(order: string, host: TextFileHost): boolean {
   const [head = '', ...lines] = order.split('\n');
   const [name, argument = ''] = head.split(' ');
   if (name === 'open-text') {
-    const wanted = { accept: argument, label: 'A world as JSON', several: false };
+    const wanted = { label: 'A world as JSON', several: false };
     chooseFiles(host.frame, wanted, ([file]) => void (file && takeTextFile(file, host)));
   } else if (name === 'save-text') {
     saveBlob(new Blob([lines.join('\n')], { type: 'application/json' }), argument);

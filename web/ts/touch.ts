@@ -84,15 +84,10 @@ export class TouchGate {
     if (first === undefined) this.#widget.letGo();
     // eframe presses where the finger is that it follows, and keeps following that finger while it is down. A finger far
     // outside makes it let go.
-    const offscreen = new Touch({
-      identifier: UNUSED_ID,
-      target: this.#canvas,
-      clientX: OFFSCREEN_PX,
-      clientY: OFFSCREEN_PX,
-    });
+    const [clientX, clientY] = [OFFSCREEN_PX, OFFSCREEN_PX];
+    const offscreen = { identifier: UNUSED_ID, target: this.#canvas, clientX, clientY, pageX: clientX, pageY: clientY, force: 0 };
     for (const changedTouches of [[], first === undefined ? [second] : [first, second]]) {
-      const options = { touches: [offscreen], changedTouches, bubbles: true, cancelable: true };
-      this.#canvas.dispatchEvent(new TouchEvent('touchstart', options));
+      this.#canvas.dispatchEvent(touchStart([offscreen], changedTouches));
     }
   }
 
@@ -137,12 +132,28 @@ export class TouchGate {
     this.#canvas.dispatchEvent(
       new PointerEvent('pointerdown', { pointerType: 'touch', clientX, clientY, buttons: 1, bubbles: true }),
     );
-    const options = { touches, targetTouches: touches, changedTouches: touches, bubbles: true, cancelable: true };
-    this.#canvas.dispatchEvent(new TouchEvent('touchstart', options));
+    this.#canvas.dispatchEvent(touchStart(touches, touches));
   }
 
   #forget(): void {
     clearTimeout(this.#pending?.timer);
     this.#pending = undefined;
+  }
+}
+
+/** What eframe reads of a touch. */
+type AnyTouch = Pick<Touch, 'identifier' | 'target' | 'clientX' | 'clientY' | 'pageX' | 'pageY' | 'force'>;
+
+/** The event of a touch that begins. Where a script cannot construct one, an event with the same properties stands for it. */
+function touchStart(touches: readonly AnyTouch[], changedTouches: readonly AnyTouch[]): Event {
+  const how = { bubbles: true, cancelable: true };
+  try {
+    const real = (touch: AnyTouch): Touch => (touch instanceof Touch ? touch : new Touch(touch));
+    const [all, changed] = [touches.map(real), changedTouches.map(real)];
+    return new TouchEvent('touchstart', { ...how, touches: all, targetTouches: all, changedTouches: changed });
+  } catch {
+    const lists = Object.entries({ touches, targetTouches: touches, changedTouches });
+    const asBrowsers = (list: readonly AnyTouch[]): object => Object.assign([...list], { item: (at: number) => list[at] ?? null });
+    return Object.defineProperties(new Event('touchstart', how), Object.fromEntries(lists.map(([name, list]) => [name, { value: asBrowsers(list) }])));
   }
 }

@@ -1,7 +1,7 @@
 // The first figure of own-robot.html: odometry's scribble becomes a map. The hidden widget below takes its place once the
 // reader drops or picks a log, or maps the sample.
 
-import { chooseFiles, LOGS, acceptDrops } from '../../ts/robot/files';
+import { chooseFiles, acceptDrops } from '../../ts/robot/files';
 import type { Ink } from '../lap/drawing';
 import { canvasSurface, contextOf, readInks, watchColors } from '../lap/surfaces';
 import { type Building, draw, LOOPS, formatError } from './drawing';
@@ -72,7 +72,7 @@ export class BuildingFigure {
     const take = (files: File[]): void => change((mapper) => mapper.openFile(files));
     acceptDrops(picture, take);
     const choose = this.#figure.querySelector('[data-building="open"]');
-    choose?.addEventListener('click', () => chooseFiles(picture, { accept: LOGS, label: 'A log of your robot', several: true }, take));
+    choose?.addEventListener('click', () => chooseFiles(picture, { label: 'A log of your robot', several: true }, take));
     const sample = this.#figure.querySelector('[data-building="sample"]');
     sample?.addEventListener('click', () => change((mapper) => void mapper.press('sample')));
   }

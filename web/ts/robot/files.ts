@@ -2,13 +2,7 @@
 
 import { create } from '../dom';
 
-/** File types of recordings in the dialog; the `.yaml` describes one of several files. */
-export const SCANS = '.yaml,.log,.clf,.mcap,.db3,.db3-wal,.bag,.jsonl,.csv,.txt,.dat,.gz,.zst,.zstd';
-/** With those of pose graphs and sessions. */
-export const LOGS = `${SCANS},.g2o,.graph,.toro,.slam2d`;
-
 export interface DialogOptions {
-  accept: string;
   label: string;
   several: boolean;
 }
@@ -70,10 +64,13 @@ async function filesOf(entries: readonly (FileSystemEntry | null)[]): Promise<Fi
   return Promise.all(found);
 }
 
-/** Opens the file dialog. Its hidden field stays until files are chosen, or until the next dialog. */
-export function chooseFiles(frame: HTMLElement, { accept, label, several }: DialogOptions, chosen: (files: File[]) => void): void {
+/**
+ * Opens the file dialog. Its hidden field stays until files are chosen, or until the next dialog. The dialog offers every
+ * file: of a list of extensions iOS knows few, and greys out the files of all others.
+ */
+export function chooseFiles(frame: HTMLElement, { label, several }: DialogOptions, chosen: (files: File[]) => void): void {
   frame.querySelector('input[type=file]')?.remove();
-  const field = create('input', { type: 'file', accept, hidden: '', 'aria-label': label });
+  const field = create('input', { type: 'file', hidden: '', 'aria-label': label });
   field.multiple = several;
   field.addEventListener('change', () => {
     const files = [...(field.files ?? [])];

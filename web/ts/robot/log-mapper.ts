@@ -5,8 +5,7 @@ import type { Widget } from '../../pkg/glue.js';
 import { saveBlob } from '../export';
 import { assetUrl, fetchAsset } from '../assets';
 import { LoadError, ModuleFile, StaleError } from '../module';
-import { LOGS, SCANS } from './files';
-import { textDelivery, type Delivery, type Order, type Report } from './protocol';
+import { textDelivery, type Delivery, type LogFile, type Order, type Report } from './protocol';
 
 /** Set by the build: the module that maps logs, its worker, and the samples. */
 declare const ROBOT_WASM_FILE: string;
@@ -43,7 +42,7 @@ export interface LogMapperHost {
   /** Passes deliveries to the widget, if it runs. */
   deliver(deliveries: readonly Delivery[]): void;
   /** Opens the file dialog. */
-  choose(accept: string, chosen: (files: File[]) => void): void;
+  choose(chosen: (files: File[]) => void): void;
 }
 
 export class LogMapper {
@@ -93,16 +92,16 @@ export class LogMapper {
     switch (name) {
       case 'open':
         // A reference that the reader picks here still grades the present map.
-        this.#host.choose(LOGS, (files) => this.take(files, 'map'));
+        this.#host.choose((files) => this.take(files, 'map'));
         break;
       case 'reference':
-        this.#host.choose(REFERENCES.join(), (files) => this.take(files, 'grade'));
+        this.#host.choose((files) => this.take(files, 'grade'));
         break;
       case 'sample':
         void this.#openSample();
         break;
       case 'locate':
-        this.#host.choose(SCANS, (files) => this.#localize(files, words));
+        this.#host.choose((files) => this.#localize(files, words));
         break;
       case 'locate-sample':
         void this.#localizeSample(words);
@@ -259,7 +258,10 @@ export class LogMapper {
   #sendLocalization(): void {
     if (this.#localization === undefined) return;
     const { files, start } = this.#localization;
-    this.#send({ locate: files, options: this.#optionLines, start });
+    const generation = this.#generation;
+    void sendable(files).then((locate) => {
+      if (generation === this.#generation) this.#send({ locate, options: this.#optionLines, start });
+    }, () => this.#publish([textDelivery('answer', `${nameOf(files)} cannot be read any more; it may have moved or changed.`)]));
   }
 
   async #localizeSample(start: readonly string[]): Promise<void> {
@@ -288,7 +290,7 @@ export class LogMapper {
     try {
       const module = await program.load(() => {});
       if (generation !== this.#generation) return;
-      const worker = await startWorker();
+      const [worker, sent] = await Promise.all([startWorker(), sendable(files)]);
       if (generation !== this.#generation) {
         worker.terminate();
         return;
@@ -301,7 +303,7 @@ export class LogMapper {
         if (generation === this.#generation) this.#fail(NO_WORKER);
       });
       this.#worker = worker;
-      this.#send({ module, files, options: this.#optionLines, edits: this.#edits });
+      this.#send({ module, files: sent, options: this.#optionLines, edits: this.#edits });
       for (const order of this.#waiting.splice(0)) this.#send(order);
       if (this.#reference !== undefined) void this.#sendReference(this.#reference);
     } catch (error) {
@@ -433,6 +435,12 @@ async function startWorker(): Promise<Worker> {
       ? `data:text/javascript,${encodeURIComponent(text)}`
       : URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
   return new Worker(script, { type: 'module' });
+}
+
+/** What a worker can read: one of another origin, as in a sandbox or beside a page from the disk, cannot read the page's files. */
+function sendable(files: readonly File[]): Promise<LogFile[]> {
+  const withBytes = async (file: File): Promise<LogFile> => ({ name: file.name, size: file.size, bytes: await file.arrayBuffer() });
+  return Promise.all(files.map((file) => (self.origin === 'null' ? withBytes(file) : file)));
 }
 
 function fetchWithoutTimeout(name: string): Promise<Response> {

@@ -11,12 +11,15 @@ export interface Delivery {
   bytes?: Uint8Array;
 }
 
+/** A file of a log: the browser's, or its bytes for a worker that may not read the page's. */
+export type LogFile = File | { name: string; size: number; bytes: ArrayBuffer };
+
 /** To the worker. */
 export type Order =
   /** The first message: the program, the files of the log, its options, one per line, and changes to repeat. */
-  | { module: WebAssembly.Module; files: File[]; options: string; edits: string }
+  | { module: WebAssembly.Module; files: LogFile[]; options: string; edits: string }
   /** A log to localize on the map, starting near `[x, y, θ]`, or anywhere if `start` is empty. */
-  | { locate: File[]; options: string; start: number[] }
+  | { locate: LogFile[]; options: string; start: number[] }
   /** A request of the widget that is for the worker, unread. */
   | { order: string }
   | { pause: boolean }

@@ -2,7 +2,7 @@
 // in time slices, and handles orders in between.
 
 import init, { LogMapper } from '../../pkg-robot/slam_robot.js';
-import { textDelivery, type Delivery, type Order, type Report } from './protocol';
+import { textDelivery, type Delivery, type LogFile, type Order, type Report } from './protocol';
 
 /** Length of a time slice. */
 const SLICE_MS = 40;
@@ -37,15 +37,16 @@ self.addEventListener('message', ({ data }: MessageEvent<Order>) => {
 });
 
 /** Names and sizes of files, and a function that reads a range of one. */
-function readable(files: File[]): [string[], Float64Array, (which: number, from: number, to: number) => Uint8Array] {
+function readable(files: LogFile[]): [string[], Float64Array, (which: number, from: number, to: number) => Uint8Array] {
   const reader = new FileReaderSync();
   const read = (which: number, from: number, to: number): Uint8Array => {
-    return new Uint8Array(reader.readAsArrayBuffer((files[which] as File).slice(from, to)));
+    const file = files[which] as LogFile;
+    return new Uint8Array(file instanceof Blob ? reader.readAsArrayBuffer(file.slice(from, to)) : file.bytes.slice(from, to));
   };
   return [files.map(({ name }) => name), Float64Array.from(files, ({ size }) => size), read];
 }
 
-async function open(module: WebAssembly.Module, files: File[], options: string, edits: string): Promise<void> {
+async function open(module: WebAssembly.Module, files: LogFile[], options: string, edits: string): Promise<void> {
   try {
     await init({ module_or_path: module });
     robot = new LogMapper(...readable(files), options);
@@ -102,7 +103,7 @@ function save(from: LogMapper, name: string): void {
   }
 }
 
-function locate(on: LogMapper, log: File[], options: string, start: number[]): void {
+function locate(on: LogMapper, log: LogFile[], options: string, start: number[]): void {
   try {
     on.locate(...readable(log), options, Float64Array.from(start));
     if (isPaused) setPaused(false);
