@@ -57,6 +57,31 @@ fn a_folder_of_logs_is_mapped_under_every_disturbance() {
 }
 
 #[test]
+fn a_folder_of_logs_is_driven_forward_and_back() {
+    let folder = TempDir::new().unwrap();
+    corridor(&folder, 40);
+    // From the first scan to the 25th the robot drove 2.4 m.
+    write(&folder, "corridor.relations", "106 130 2.4 0 0 0 0 0\n");
+    let folder = text(folder.path());
+    let rows = json(&["logs", folder, "--repeat", "4", "--json"]);
+    let [once, often, noisy_once, noisy] = rows.as_array().unwrap().as_slice() else {
+        panic!("{rows}");
+    };
+    let scans = |row: &serde_json::Value| row["scans"].as_u64().unwrap();
+    assert_eq!((scans(once), scans(often)), (40, 160));
+    assert!(scans(noisy_once) < 40 && scans(noisy) < 160);
+    for row in [once, often, noisy_once, noisy] {
+        for error_m in row["error_m"].as_array().unwrap() {
+            // As under the other disturbances; null if a noisy drive lost one of the two scans.
+            assert!(error_m.as_f64().is_none_or(|m| m < 0.1), "{row}");
+        }
+    }
+    for error_m in often["error_m"].as_array().unwrap() {
+        assert!(error_m.as_f64().is_some(), "{often}");
+    }
+}
+
+#[test]
 fn one_command_maps_every_file_with_its_error_or_a_sentence() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data/field");
     if !folder.exists() {

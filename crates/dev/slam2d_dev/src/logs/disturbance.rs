@@ -118,7 +118,7 @@ impl Disturbance {
             }
             Self::Stray => {
                 let mut rng = Rng::new(seed);
-                scans(&mut |scan| stray(scan, &mut rng))
+                scans(&mut |scan| stray(scan, STRAY, &mut rng))
             }
         }
     }
@@ -149,13 +149,13 @@ impl Disturbance {
 }
 
 /// Time that runs backward between the first and the last scan.
-struct Mirror {
+pub(super) struct Mirror {
     first_s: f64,
     last_s: f64,
 }
 
 impl Mirror {
-    fn of(frames: &[LogFrame]) -> Self {
+    pub(super) fn of(frames: &[LogFrame]) -> Self {
         let stamp_s = |frame: Option<&LogFrame>| frame.map_or(0.0, |frame| frame.stamp_s);
         Self {
             first_s: stamp_s(frames.first()),
@@ -163,35 +163,60 @@ impl Mirror {
         }
     }
 
-    fn stamp_s(&self, stamp_s: f64) -> f64 {
+    pub(super) fn stamp_s(&self, stamp_s: f64) -> f64 {
         self.first_s + (self.last_s - stamp_s)
+    }
+
+    /// Time from the first to the last scan, s.
+    pub(super) fn lasts_s(&self) -> f64 {
+        self.last_s - self.first_s
     }
 }
 
 /// The same scans with odometry that is `scale` times too long, and `noise` times as noisy again.
 pub fn worse_odometry(frames: &[LogFrame], scale: f64, noise: f64, seed: u32) -> Vec<LogFrame> {
-    let mut rng = Rng::new(seed);
-    let mut last: Option<(SE2, SE2)> = None;
+    let mut worn = WornOdometry::new(scale, noise, seed);
     let mut worsened = frames.to_vec();
     for frame in &mut worsened {
-        let Some(measured) = frame.odometry else {
-            continue;
-        };
-        let worse = last.map_or(measured, |(before, worse)| {
+        frame.odometry = frame.odometry.map(|measured| worn.next(measured));
+    }
+    worsened
+}
+
+/// Makes worse odometry of measured one, pose by pose.
+pub(super) struct WornOdometry {
+    scale: f64,
+    noise: f64,
+    rng: Rng,
+    /// The last measured pose, and the worse one.
+    last: Option<(SE2, SE2)>,
+}
+
+impl WornOdometry {
+    pub(super) fn new(scale: f64, noise: f64, seed: u32) -> Self {
+        Self {
+            scale,
+            noise,
+            rng: Rng::new(seed),
+            last: None,
+        }
+    }
+
+    pub(super) fn next(&mut self, measured: SE2) -> SE2 {
+        let worse = self.last.map_or(measured, |(before, worse)| {
             let motion = before.between(&measured);
-            let driven_m = noise * math::norm2(motion.x(), motion.y());
+            let driven_m = self.noise * math::norm2(motion.x(), motion.y());
             let (across_m, turned_rad) = (NOISE.0 * driven_m, NOISE.1 * driven_m);
             worse
                 * SE2::new(
-                    scale * motion.x() + rng.normal(0.0, across_m),
-                    scale * motion.y() + rng.normal(0.0, across_m),
-                    motion.theta() + rng.normal(0.0, turned_rad),
+                    self.scale * motion.x() + self.rng.normal(0.0, across_m),
+                    self.scale * motion.y() + self.rng.normal(0.0, across_m),
+                    motion.theta() + self.rng.normal(0.0, turned_rad),
                 )
         });
-        last = Some((measured, worse));
-        frame.odometry = Some(worse);
+        self.last = Some((measured, worse));
+        worse
     }
-    worsened
 }
 
 /// Keeps the beams about the middle one.
@@ -214,11 +239,11 @@ fn sparse(scan: &mut LaserScan) {
     scan.ranges_m = scan.ranges_m.iter().copied().step_by(SPARSE).collect();
 }
 
-/// Shortens a tenth of the returns.
-fn stray(scan: &mut LaserScan, rng: &mut Rng) {
+/// Shortens this share of the returns.
+pub(super) fn stray(scan: &mut LaserScan, share: f64, rng: &mut Rng) {
     for beam in 0..scan.ranges_m.len() {
         let range_m = scan.ranges_m[beam];
-        if scan.is_return(range_m) && rng.unit() < STRAY {
+        if scan.is_return(range_m) && rng.unit() < share {
             scan.ranges_m[beam] = rng.uniform(scan.range_min_m, range_m);
         }
     }
