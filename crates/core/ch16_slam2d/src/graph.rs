@@ -19,7 +19,7 @@ mod marginalize;
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
-use pr_optim::robust::{GncSettings, InlierSelection, select_inliers};
+use pr_optim::robust::{InlierSelection, LOOP_CHI2, select_added};
 use pr_optim::{Between, FactorUse, Method, OptimizeError, Optimizer, Problem, Report, Settings};
 use serde::{Deserialize, Serialize};
 
@@ -349,7 +349,7 @@ impl PoseGraph {
         step.map_or(f64::NAN, |step| step.largest_step)
     }
 
-    /// Selects the inlier edges if any loop may be false: see [`select_inliers`].
+    /// Selects the inlier edges if any loop may be false, from the present poses: see [`select_added`].
     ///
     /// # Errors
     /// If the normal equations cannot be solved.
@@ -363,7 +363,7 @@ impl PoseGraph {
             jacobians: JacobianModel::Exact,
             ..Settings::default()
         };
-        select_inliers(&self.problem, &trusted, solver, &GncSettings::default())
+        select_added(&self.problem, &trusted, solver, LOOP_CHI2)
     }
 
     /// The same graph with only the edges for which `keep` is true.

@@ -4,7 +4,8 @@
 //! Three methods use more evidence:
 //!
 //! - [`select_inliers`] accepts loops in the order of the path, as a robot meets them, and tests each by the exact
-//!   covariance of all others; if the result is ambiguous, it runs [`Gnc`] as well.
+//!   covariance of all others; if the result is ambiguous, it runs [`Gnc`] as well. [`select_added`] continues from the
+//!   poses of a solved graph.
 //! - [`Gnc`] starts with a nearly convex cost and deforms it step by step into one that either keeps or rejects a
 //!   measurement.
 //! - [`consistent_set`] searches the largest set of loops that are consistent with each other along the trusted
@@ -23,7 +24,7 @@ mod path;
 
 pub use consistency::{ConsistencySettings, consistent_set};
 pub use gnc::{Gnc, GncLoss, GncOutcome, GncRound, GncSettings, GncStop};
-pub use inliers::{InlierSelection, InlierStart, select_consistent, select_inliers};
+pub use inliers::{InlierSelection, InlierStart, select_added, select_consistent, select_inliers};
 
 use crate::factor::Between;
 use crate::problem::Problem;

@@ -23,7 +23,7 @@ const BARS: [f64; 4] = [0.0, 0.5, 0.8, 1.0];
 /// A loop is nearly rejected if removing it lowers χ² by this share of the cost of an outlier.
 const NEARLY: f64 = 0.25;
 
-/// Largest number of nearly rejected loops that are removed for a trial.
+/// [`Search::trials`] of a graph that was never solved.
 const TRIALS: usize = 8;
 
 /// Start of a selection.
@@ -37,6 +37,8 @@ pub enum InlierStart {
     GraduatedNonConvexity,
     /// The pairwise consistent loops.
     PairwiseConsistency,
+    /// The present poses of a solved graph.
+    PresentPoses,
 }
 
 /// The selected inliers and their solution.
@@ -139,6 +141,36 @@ pub fn select_consistent(
     cheapest(selections)
 }
 
+/// [`select_inliers`] after measurements were added to a solved graph, from its present poses.
+///
+/// The selection starts once with all loops and once without those added since the poses were solved
+/// ([`Problem::optimized_factors`]); each is refined, and the lower cost wins. Following the path again, or removing
+/// nearly rejected loops for a trial, takes solves of the whole graph that repeat what earlier selections found.
+///
+/// # Errors
+/// If neither start leads to solvable normal equations and a finite cost.
+///
+/// # Panics
+/// If `trusted` does not have one entry for each measurement.
+pub fn select_added(
+    problem: &Problem,
+    trusted: &[bool],
+    solver: Settings,
+    max_chi2: f64,
+) -> Result<InlierSelection, OptimizeError> {
+    let search = Search {
+        trials: 0,
+        ..Search::new(problem, trusted, solver, max_chi2)
+    };
+    let solved = problem.optimized_factors();
+    let selections = [true, false].map(|is_added| {
+        let starts_in = |k: usize| is_added || trusted[k] || k < solved;
+        let inliers = (0..trusted.len()).map(starts_in).collect();
+        search.improved(problem.poses().to_vec(), inliers, InlierStart::PresentPoses)
+    });
+    cheapest(selections)
+}
+
 /// Decrease of the cost if a loop is flipped between inlier and outlier, to first order.
 #[derive(Clone, Copy, Debug)]
 struct Gain {
@@ -152,6 +184,8 @@ struct Search<'a> {
     trusted: &'a [bool],
     solver: Settings,
     max_chi2: f64,
+    /// Largest number of nearly rejected loops that are removed for a trial.
+    trials: usize,
 }
 
 impl<'a> Search<'a> {
@@ -162,6 +196,7 @@ impl<'a> Search<'a> {
             trusted,
             solver,
             max_chi2,
+            trials: TRIALS,
         }
     }
 
@@ -282,7 +317,7 @@ impl<'a> Search<'a> {
         let nearly = order_by(gains.len(), &|k| -gains[k].value)
             .into_iter()
             .filter(|&k| !self.trusted[k] && selection.inliers[k] && is_nearly(&gains[k]));
-        for k in nearly.take(TRIALS) {
+        for k in nearly.take(self.trials) {
             let mut inliers = selection.inliers.clone();
             inliers[k] = false;
             let next = self.solved(optimizer, &selection.poses, inliers, selection.start)?;

@@ -412,3 +412,37 @@ fn a_graph_with_an_interrupted_path_is_solved_by_gnc() {
     assert_eq!(selection.start, InlierStart::GraduatedNonConvexity);
     assert!(selection.inliers[last_true - 1..].iter().all(|b| !*b));
 }
+
+#[test]
+fn loops_added_to_a_solved_graph_are_selected_from_its_poses() {
+    for (share, seed) in [(0.0, 1), (0.3, 3), (0.5, 4)] {
+        let (spoilt, last_true) = graph(share, seed);
+        let mut grown = solved(&with_factors(&spoilt, |k| k < last_true));
+        assert_eq!(grown.optimized_factors(), last_true);
+        for factor in &spoilt.factors()[last_true..] {
+            grown.add_factor(*factor);
+        }
+        let found = select_added(&grown, &trusted(&grown), exact(), LOOP_CHI2).unwrap();
+        assert_eq!(found.start, InlierStart::PresentPoses);
+        assert_eq!(found.inliers, selection(&spoilt).inliers, "{share}");
+    }
+}
+
+#[test]
+fn a_false_loop_of_a_solved_graph_goes_when_true_ones_are_added() {
+    let (spoilt, last_true) = graph(0.03, 2);
+    let (factors, steps) = (spoilt.factors(), spoilt.node_count() - 1);
+    assert_eq!(factors.len(), last_true + 1, "one false loop");
+    let mut grown = with_factors(&spoilt, |k| k < steps || k == last_true);
+    grown = solved(&grown);
+    assert!(
+        apart_m(&grown, &spoilt) > 0.1,
+        "the false loop bends nothing"
+    );
+    for factor in &factors[steps..last_true] {
+        grown.add_factor(*factor);
+    }
+    let found = select_added(&grown, &trusted(&grown), exact(), LOOP_CHI2).unwrap();
+    let dropped = (0..factors.len()).filter(|&k| !found.inliers[k]);
+    assert_eq!(dropped.collect::<Vec<_>>(), [steps], "the only loop before");
+}

@@ -99,5 +99,6 @@ fn name_of(start: InlierStart) -> &'static str {
         InlierStart::Backwards => "path-back",
         InlierStart::GraduatedNonConvexity => "gnc",
         InlierStart::PairwiseConsistency => "pairs",
+        InlierStart::PresentPoses => "poses",
     }
 }
