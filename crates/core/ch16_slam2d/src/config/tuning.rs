@@ -54,7 +54,9 @@ pub(crate) const SEARCH_RAD: f64 = 1.6;
 /// A correction that moves no node farther (m + rad) waits for the next larger one. Not measured.
 pub(crate) const LEAST_CORRECTION: f64 = 0.05;
 
-/// Loops are searched at every this many keyframes: more often costs time and closes no more.
+/// Loops are searched at every this many keyframes: more often costs time and closes no more. At 12 the error of aces with
+/// 90° of view is 0.18 m in place of 0.10, because three loops rarely lie close enough to confirm each other; 12 only after
+/// a search that closed one moves edmonton by 0.08 m.
 pub(crate) const EVERY_KEYFRAMES: usize = 3;
 /// Number of newest keyframes registered together. No effect.
 pub(crate) const BUNDLE: usize = 8;
