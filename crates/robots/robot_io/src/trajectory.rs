@@ -308,7 +308,8 @@ impl<'a, R: BufRead> NumberLines<'a, R> {
             let text = text.trim_start_matches('\u{feff}').trim();
             let separates = |c: char| c.is_ascii_whitespace() || c == ',';
             let words = || text.split(separates).filter(|word| !word.is_empty());
-            let is_names = self.names.is_none()
+            let is_names = self.expected == TUM_LINE
+                && self.names.is_none()
                 && words().count() >= N
                 && words().all(|word| word.parse::<f64>().is_err());
             if is_names {

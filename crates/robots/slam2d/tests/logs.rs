@@ -201,7 +201,7 @@ fn files_that_cannot_be_used_end_in_one_line() {
         (vec!["run", "/absent"], "/absent: "),
         (
             vec!["run", text(&in_folder)],
-            "is a folder without a ROS 2 recording; pass a log",
+            "is a folder without a recording of ROS; pass a log",
         ),
         (vec!["run", text(&empty)], "is empty; give a recorded log"),
         (vec!["info", text(&prose)], "is not a CARMEN log; give one"),

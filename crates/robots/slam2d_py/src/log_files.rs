@@ -57,7 +57,7 @@ pub fn parts(path: &Path) -> PyResult<(Vec<LogBytes<'static>>, Vec<Remark>, Read
         remarks = order.remarks;
         if files.is_empty() {
             return Err(LogError::new_err(format!(
-                "{} is a folder without a recording of ROS 2; give a log, or a folder with files that end in .mcap or .db3",
+                "{} is a folder without a recording of ROS; give a log, or a folder with files that end in .mcap, .db3 or .bag",
                 path.display()
             )));
         }

@@ -98,7 +98,7 @@ def test_a_file_that_is_no_log_is_rejected_in_a_sentence(tmp_path):
     for path, said in [
         (empty, f"{empty} is empty; give a recorded log"),
         (trajectory, f"{trajectory} is a trajectory, not a log of scans; pass a log; slam2d evaluate evaluates a trajectory"),
-        (tmp_path, f"{tmp_path} is a folder without a recording of ROS 2; give a log, or a folder with files that end in .mcap or .db3"),
+        (tmp_path, f"{tmp_path} is a folder without a recording of ROS; give a log, or a folder with files that end in .mcap, .db3 or .bag"),
     ]:
         for read in (rs.Pipeline(path).run, rs.Pipeline(path).frames):
             with pytest.raises(rs.LogError) as rejected:
