@@ -362,11 +362,13 @@ fn is_page(start: &[u8]) -> bool {
         })
 }
 
-/// Whether the first line that is not a comment has the eight numbers of a stamped pose, or up to twice as many more as
-/// EuRoC's.
+/// Whether the first line that is neither a comment nor the names of a quaternion's parts has the eight numbers of a stamped
+/// pose, or up to twice as many more as EuRoC's.
 fn is_trajectory(start: &[u8]) -> bool {
     let mut lines = start.split(|&byte| byte == b'\n');
-    let line = lines.find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"));
+    let is_names = |line: &[u8]| contains(line, b"qw") && contains(line, b"qx");
+    let line = lines
+        .find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#") && !is_names(line));
     let Some(Ok(line)) = line.map(std::str::from_utf8) else {
         return false;
     };

@@ -35,7 +35,7 @@ fn recordings(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
         .filter(|path| path.join(README).exists())
     {
         for path in entries(folder)? {
-            let is_group = path.is_dir() && !path.join(METADATA).exists();
+            let is_group = path.is_dir() && !path.join(METADATA).exists() && !is_split(&path);
             found.extend(if is_group {
                 entries(&path)?
             } else {
@@ -53,6 +53,12 @@ fn entries(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     paths.sort();
     Ok(paths)
+}
+
+/// Whether a folder has the parts of one bag.
+fn is_split(folder: &Path) -> bool {
+    let is_bag = |path: &PathBuf| path.extension().is_some_and(|end| end == "bag");
+    entries(folder).is_ok_and(|files| files.len() > 1 && files.iter().all(is_bag))
 }
 
 fn is_truth(path: &Path) -> bool {
