@@ -8,8 +8,8 @@ const MAX_WORDS: usize = 9_700;
 const MAX_SEEN_WORDS: usize = 6_500;
 
 /// The same for the chapter's page alone.
-const MAX_CHAPTER_WORDS: usize = 6_500;
-const MAX_SEEN_CHAPTER_WORDS: usize = 4_100;
+const MAX_CHAPTER_WORDS: usize = 6_850;
+const MAX_SEEN_CHAPTER_WORDS: usize = 4_560;
 
 /// The source between two positions without the elements in `dropped`, including nested ones.
 fn without(html: &str, dropped: &str) -> String {

@@ -90,7 +90,7 @@ fn at(ticks: f64) -> Shown {
     }
 }
 
-/// Ink for the biased one, as its line is solid; the others in their own tones.
+/// The colour of a matcher.
 fn tone(which: usize) -> Tone {
     Tone::Series(which as u8)
 }

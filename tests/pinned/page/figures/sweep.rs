@@ -157,6 +157,11 @@ pub fn of_attempts(tested: &[TestedLoop], path: &[&str]) -> Option<f64> {
             100.0 * wrong.count() as f64 / tested.len() as f64
         }
         ["true_accepted_percent"] => 100.0 * of_true,
+        ["gate_rejects_percent"] => {
+            let gate = LapConfig::default().slam.chapter.loops.gate_chi2;
+            let [passed, _] = AcceptedShares::of(tested, |tested| tested.chi2 <= gate).rates();
+            100.0 * (1.0 - passed)
+        }
         ["false_accepted_percent"] => 100.0 * of_false,
         ["false_error", "median"] => Percentiles::from_values(errors_m)?.median,
         ["false_error", "worst"] => *errors_m.last()?,
