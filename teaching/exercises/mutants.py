@@ -120,7 +120,7 @@ EXERCISES = {
         ("pairs.len() >= cfg.min_pairs", "pairs.len() > cfg.min_pairs"),
         ("increment * pose", "pose * increment"),
         ("vec![pose]", "vec![]"),
-        ("increment.step_size() < cfg.tolerance", "increment.translation().norm() < cfg.tolerance"),
+        ("increment.step_size() < cfg.tolerance", "increment.log().xy().norm() < cfg.tolerance"),
         ("increment.step_size() < cfg.tolerance", "increment.step_size() < 1e-4"),
         ("f64::INFINITY", "0.0"),
         ("(IcpVariant::PointToPlane, Some(n)) =>", "(IcpVariant::PointToPlane, Some(n)) if false =>"),

@@ -28,7 +28,8 @@ pub fn listing(cloud: &cloud::PointCloud) -> PointCloud {
 /// The nodes of the graph just before the loop that was closed in `tick`; the tests of a loop need no edges.
 pub fn nodes_before_loop(record: &LapRecord, tick: usize) -> PoseGraph {
     let (poses, _) = record.lap.loop_motion(tick).expect("a loop was closed");
-    let mut graph = PoseGraph::new(poses[0].into());
+    let mut graph = PoseGraph::new();
+    graph.add_fixed_node(poses[0].into());
     for pose in &poses[1..] {
         graph.add_node((*pose).into());
     }

@@ -1,6 +1,6 @@
 //! 4. The graph, by a dense matrix.
 
-use ch16_listings::{EdgeKind, PoseEdge, PoseGraph, SE2};
+use ch16_listings::{EdgeKind, PoseGraph, SE2};
 use ch16_slam2d::graph;
 use exercises::{optimize, optimize_once};
 use nalgebra::{Matrix3, Vector2, Vector3};
@@ -13,23 +13,19 @@ fn at(x: f64) -> SE2 {
     SE2::new(Vector2::new(x, 0.0), 0.0)
 }
 
-fn edge(z: SE2, omega: Matrix3<f64>) -> PoseEdge {
-    PoseEdge {
-        z,
-        omega,
-        kind: EdgeKind::Odometry,
-    }
-}
-
 /// The chapter's worked example: χ² falls from 0.36 to 0.12, and each edge takes a third of the error.
 #[test]
 fn a_loop_error_spreads_evenly_around_the_cycle() {
-    let mut chain = PoseGraph::new(at(0.0));
-    let (first, second) = (chain.fixed, chain.add_node(at(1.0)));
-    let third = chain.add_node(at(2.0));
-    chain.add_edge(first, second, edge(at(1.0), Matrix3::identity()));
-    chain.add_edge(second, third, edge(at(1.0), Matrix3::identity()));
-    chain.add_edge(first, third, edge(at(2.6), Matrix3::identity()));
+    let mut chain = PoseGraph::new();
+    let first = chain.add_fixed_node(at(0.0));
+    let (second, third) = (chain.add_node(at(1.0)), chain.add_node(at(2.0)));
+    for (i, j, x) in [
+        (first, second, 1.0),
+        (second, third, 1.0),
+        (first, third, 2.6),
+    ] {
+        chain.add_edge(i, j, at(x), Matrix3::identity(), EdgeKind::Odometry);
+    }
     assert!((chain.chi2() - 0.36).abs() < 1e-12);
     let steps = optimize(&mut chain, 10, 1e-6, f64::INFINITY);
     assert_eq!(
@@ -58,16 +54,14 @@ fn rings(nodes: usize, fixed: usize) -> (PoseGraph, graph::PoseGraph) {
         })
         .collect();
     let guesses: Vec<SE2> = truth.iter().map(|pose| noisy(*pose)).collect();
-    let mut ours = PoseGraph::new(guesses[0]);
-    ours.fixed = NodeIndex::new(fixed);
+    let mut ours = PoseGraph::new();
     let mut core = graph::PoseGraph::new();
     for (k, guess) in guesses.iter().enumerate() {
-        if k > 0 {
-            ours.add_node(*guess);
-        }
         if k == fixed {
+            ours.add_fixed_node(*guess);
             core.add_fixed_node((*guess).into());
         } else {
+            ours.add_node(*guess);
             core.add_node((*guess).into());
         }
     }
@@ -76,7 +70,8 @@ fn rings(nodes: usize, fixed: usize) -> (PoseGraph, graph::PoseGraph) {
     for (i, j) in chain.chain(chords) {
         let z = noisy(truth[i].inverse() * truth[j]);
         let omega = Matrix3::new(400.0, 30.0, 5.0, 30.0, 200.0, -8.0, 5.0, -8.0, 900.0);
-        ours.add_edge(NodeIndex::new(i), NodeIndex::new(j), edge(z, omega));
+        let (from, to) = (NodeIndex::new(i), NodeIndex::new(j));
+        ours.add_edge(from, to, z, omega, EdgeKind::Odometry);
         core.add_edge(i, j, z.into(), omega, EdgeKind::Odometry);
     }
     (ours, core)
@@ -139,7 +134,9 @@ fn a_matrix_that_is_not_positive_definite_moves_nothing() {
     ours.add_edge(
         NodeIndex::new(0),
         NodeIndex::new(3),
-        edge(at(1.0), -1e4 * Matrix3::identity()),
+        at(1.0),
+        -1e4 * Matrix3::identity(),
+        EdgeKind::Odometry,
     );
     let before: Vec<SE2> = ours.graph.node_weights().copied().collect();
     assert!(optimize_once(&mut ours, f64::INFINITY).is_nan());

@@ -1,6 +1,6 @@
 //! 2. The step across the walls.
 
-use ch16_listings::{Correspondence, SE2};
+use ch16_listings::{Correspondence, SE2, Translation};
 use ch16_slam2d::icp;
 use exercises::point_to_plane_step;
 use nalgebra::{Point2, Vector2};

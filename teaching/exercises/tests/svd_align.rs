@@ -1,6 +1,6 @@
 //! 1. The closed form.
 
-use ch16_listings::SE2;
+use ch16_listings::{SE2, Translation};
 use ch16_slam2d::icp;
 use exercises::svd_align;
 use nalgebra::{Point2, Vector2, Vector3};

@@ -2,7 +2,7 @@
 
 use ch16_lab::basin::BasinScene;
 use ch16_lab::moving_box::{BoxConfig, BoxMethods, BoxScene};
-use ch16_listings::{IcpConfig, IcpVariant, PointCloud, SE2, VoxelMap, associate};
+use ch16_listings::{IcpConfig, IcpVariant, PointCloud, SE2, Translation, VoxelMap, associate};
 use ch16_slam2d::icp::{self, IcpWorkspace};
 use exercises::icp;
 use nalgebra::{Point2, Vector2};

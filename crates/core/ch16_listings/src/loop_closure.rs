@@ -4,8 +4,8 @@ use nalgebra::{Vector2, Vector3};
 use petgraph::graph::NodeIndex;
 
 use crate::{
-    EdgeKind, IcpConfig, PointCloud, PoseEdge, PoseGraph, SE2, VoxelMap, associate, icp,
-    icp_information, regularize,
+    EdgeKind, IcpConfig, PointCloud, PoseEdge, PoseGraph, SE2, Translation, VoxelMap, associate,
+    icp, icp_information, regularize,
 };
 use ch16_slam2d::chi_squared::CHAPTER_GATE;
 

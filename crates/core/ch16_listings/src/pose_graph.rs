@@ -26,21 +26,25 @@ pub struct PoseEdge {
 }
 
 /// Poses and the measurements between them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct PoseGraph {
     /// An edge keeps the order of its ends: it measures its target in the frame of its source.
     pub graph: UnGraph<SE2, PoseEdge>,
-    /// The fixed node: it fixes the gauge and adds no information.
+    /// The fixed node: it fixes the gauge and adds no information. The first one, unless another is added as such.
     pub fixed: NodeIndex,
 }
 
 impl PoseGraph {
-    /// A graph of one fixed node.
+    /// An empty graph.
     #[must_use]
-    pub fn new(first: SE2) -> Self {
-        let mut graph = UnGraph::new_undirected();
-        let fixed = graph.add_node(first);
-        Self { graph, fixed }
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds the node that fixes the gauge.
+    pub fn add_fixed_node(&mut self, pose: SE2) -> NodeIndex {
+        self.fixed = self.graph.add_node(pose);
+        self.fixed
     }
 
     /// Adds a node at its initial guess.
@@ -48,9 +52,16 @@ impl PoseGraph {
         self.graph.add_node(pose)
     }
 
-    /// Adds the measured pose `edge.z` of `j` in the frame of `i`.
-    pub fn add_edge(&mut self, i: NodeIndex, j: NodeIndex, edge: PoseEdge) {
-        self.graph.add_edge(i, j, edge);
+    /// Adds the measured pose `z` of `j` in the frame of `i`, with its information `omega`.
+    pub fn add_edge(
+        &mut self,
+        i: NodeIndex,
+        j: NodeIndex,
+        z: SE2,
+        omega: Matrix3<f64>,
+        kind: EdgeKind,
+    ) {
+        self.graph.add_edge(i, j, PoseEdge { z, omega, kind });
     }
 
     /// The present pose of a node.
@@ -75,10 +86,12 @@ impl PoseGraph {
         squares.sum()
     }
 
-    /// Gauss–Newton until the largest correction is below `tolerance`; returns the number of steps.
-    pub fn optimize(&mut self, max_iters: usize, tolerance: f64, huber: f64) -> usize {
+    /// Gauss–Newton without a kernel until the largest correction is below `tolerance`; returns the number of steps.
+    ///
+    /// The ridge shortens a step by 1e-9 of it, and the next one makes up for that: it costs the result no digit.
+    pub fn optimize(&mut self, max_iters: usize, tolerance: f64) -> usize {
         for step in 1..=max_iters {
-            let largest = self.optimize_once(huber);
+            let largest = self.optimize_once(f64::INFINITY);
             if largest.is_nan() || largest < tolerance {
                 return step;
             }

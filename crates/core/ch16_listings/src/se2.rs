@@ -21,10 +21,10 @@ impl SE2 {
         Self::default()
     }
 
-    /// Translation part, m.
+    /// A translation by `(x, y)`, m, without rotation; [`Translation`] gives that of a pose.
     #[must_use]
-    pub fn translation(&self) -> Vector2<f64> {
-        self.0.translation()
+    pub fn translation(x: f64, y: f64) -> Self {
+        Self(pr_geom::SE2::new(x, y, 0.0))
     }
 
     /// Heading in (−π, π], rad.
@@ -73,6 +73,18 @@ impl SE2 {
     #[must_use]
     pub fn step_size(&self) -> f64 {
         self.0.step_size()
+    }
+}
+
+/// The translation of a pose. A trait, because [`SE2::translation`] has the name.
+pub trait Translation {
+    /// Translation part, m.
+    fn translation(&self) -> Vector2<f64>;
+}
+
+impl Translation for SE2 {
+    fn translation(&self) -> Vector2<f64> {
+        self.0.translation()
     }
 }
 

@@ -189,7 +189,8 @@ fn rings(nodes: usize) -> (PoseGraph, graph::PoseGraph) {
         let noise = Vector3::from([0.05, 0.05, 0.03].map(|sigma| rng.normal(0.0, sigma)));
         motion * SE2::exp(&noise)
     };
-    let mut listing = PoseGraph::new(SE2::identity());
+    let mut listing = PoseGraph::new();
+    listing.add_fixed_node(SE2::identity());
     let mut core = graph::PoseGraph::new();
     core.add_fixed_node(prelude::SE2::identity());
     let mut truth = vec![SE2::identity()];
@@ -204,11 +205,7 @@ fn rings(nodes: usize) -> (PoseGraph, graph::PoseGraph) {
     for (i, j, kind) in chain.chain(chords) {
         let z = noisy(truth[i].inverse() * truth[j]);
         let omega = Matrix3::new(400.0, 30.0, 5.0, 30.0, 200.0, -8.0, 5.0, -8.0, 900.0);
-        listing.add_edge(
-            NodeIndex::new(i),
-            NodeIndex::new(j),
-            PoseEdge { z, omega, kind },
-        );
+        listing.add_edge(NodeIndex::new(i), NodeIndex::new(j), z, omega, kind);
         core.add_edge(i, j, z.into(), omega, kind);
     }
     (listing, core)
@@ -249,7 +246,8 @@ fn verdicts_after(drift: f64) -> Vec<bool> {
             angle - core::f64::consts::TAU * (k as f64 / 24.0).round(),
         )
     };
-    let mut graph = PoseGraph::new(place(0, 0.0));
+    let mut graph = PoseGraph::new();
+    graph.add_fixed_node(place(0, 0.0));
     let mut sweeps = Vec::new();
     for k in 0..nodes {
         let truth = place(k, if k < 24 { 0.0 } else { 0.05 });

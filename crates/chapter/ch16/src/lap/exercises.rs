@@ -10,8 +10,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use anyhow::{Context as _, anyhow, bail};
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner};
 use ch16_listings::{
-    Correspondence, IcpConfig, IcpVariant, LoopConfig, PointCloud, PoseEdge, PoseGraph,
-    VerifiedLoop, VoxelMap, associate,
+    Correspondence, IcpConfig, IcpVariant, LoopConfig, PointCloud, PoseGraph, VerifiedLoop,
+    VoxelMap, associate,
 };
 use ch16_slam2d::chapter::{ChapterParts, DetectorKind};
 use ch16_slam2d::cloud;
@@ -125,7 +125,8 @@ impl LoopDetector for TheirLoops {
                 alike.into_iter().map(candidate).collect()
             }
         };
-        let mut graph = PoseGraph::new(query.poses()[0].into());
+        let mut graph = PoseGraph::new();
+        graph.add_fixed_node(query.poses()[0].into());
         for pose in &query.poses()[1..] {
             graph.add_node((*pose).into());
         }
@@ -248,19 +249,21 @@ fn solved_again(record: &LapRecord) -> Option<f64> {
     let edges = record.lap.edges(record.ticks());
     edges.iter().find(|edge| edge.kind == EdgeKind::Loop)?;
     let slam = &record.config.slam;
-    let mut graph = PoseGraph::new(record.config.drive.start.into());
+    let mut graph = PoseGraph::new();
+    graph.add_fixed_node(record.config.drive.start.into());
     let node = |k: usize| (k as u32).into();
     for edge in edges {
         if edge.kind == EdgeKind::Odometry {
             let before = graph.pose(node(edge.from));
             graph.add_node(before * edge.measurement.into());
         }
-        let measured = PoseEdge {
-            z: edge.measurement.into(),
-            omega: edge.information,
-            kind: edge.kind,
-        };
-        graph.add_edge(node(edge.from), node(edge.to), measured);
+        graph.add_edge(
+            node(edge.from),
+            node(edge.to),
+            edge.measurement.into(),
+            edge.information,
+            edge.kind,
+        );
     }
     exercises::optimize(
         &mut graph,
