@@ -19,7 +19,7 @@ use crate::lap_options::{NoiseArgs, TrialArgs};
 use command_line::choice::choice;
 use command_line::in_file::InFile as _;
 use command_line::output::{print_json, say};
-use report::{GraphLapJson, LapJson, TickJson, print_errors};
+use report::{AttemptJson, GraphLapJson, LapJson, TickJson, print_errors};
 
 /// Simulate the lap in the Apartment or another world, and estimate it.
 #[derive(Args, Clone, Debug)]
@@ -125,7 +125,7 @@ fn json(record: &LapRecord, args: &LapArgs) -> impl Serialize {
         estimator: args.estimator().name(),
         digest: format!("{:016x}", record.digest()),
         summary: GraphLapJson::from(lap),
-        events: lap.loop_attempts().copied().collect(),
+        events: lap.loop_attempts().map(AttemptJson::new).collect(),
         keyframe_poses: poses.to_vec(),
         keyframe_truth: lap.keyframes.iter().map(|k| k.truth).collect(),
         keyframe_errors_m: lap.keyframe_errors_m(record.ticks()).collect(),

@@ -99,12 +99,18 @@ fn the_gate_with_the_graphs_own_covariance_lets_pass_what_the_path_gate_turns_aw
         let asked = [&["lap", "--seed", "2", "--noise", "3", "--json"][..], gate].concat();
         json(&asked)
     };
+    // Of the attempts, those accepted; a rejected one has a reason and no effect.
     let accepted = |lap: &Value| {
         let events = lap["events"].as_array().unwrap();
-        events
-            .iter()
-            .filter(|event| event["effect"].is_object())
-            .count()
+        assert!(!events.is_empty());
+        let accepted = events.iter().filter(|event| {
+            let is_accepted = event["accepted"].as_bool().unwrap();
+            assert_eq!(event["effect"].is_object(), is_accepted);
+            let reason = event["reason"].as_str().unwrap_or_default();
+            assert_eq!(reason.is_empty(), is_accepted, "{event}");
+            is_accepted
+        });
+        accepted.count()
     };
     let default = lap(&[]);
     let (path, exact) = (lap(&["--gate", "path"]), lap(&["--gate", "exact"]));

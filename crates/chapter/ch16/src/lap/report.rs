@@ -1,6 +1,6 @@
 //! What all estimators of a lap report.
 
-use ch16_lab::lap::{GraphSummary, LapSummary, LapTrace, TickReport};
+use ch16_lab::lap::{GraphSummary, LapSummary, LapTrace, RecordedLoopAttempt, TickReport};
 use pr_geom::SE2;
 use serde::Serialize;
 
@@ -38,6 +38,27 @@ impl From<&LapTrace> for GraphLapJson {
         Self {
             summary: lap.summary,
             graph: lap.graph_summary,
+        }
+    }
+}
+
+/// An attempt to close a loop, with its verdict.
+#[derive(Serialize)]
+pub struct AttemptJson {
+    #[serde(flatten)]
+    attempt: RecordedLoopAttempt,
+    accepted: bool,
+    /// Why it was not accepted, in words.
+    reason: Option<String>,
+}
+
+impl AttemptJson {
+    /// The verdict of an attempt.
+    pub fn new(attempt: &RecordedLoopAttempt) -> Self {
+        Self {
+            attempt: *attempt,
+            accepted: attempt.accepted(),
+            reason: attempt.verification.reason(),
         }
     }
 }

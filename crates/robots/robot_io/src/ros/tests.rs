@@ -96,7 +96,9 @@ fn assert_same_beams(frame: &LogFrame, expected: &LogFrame, name: &str) {
 #[test]
 fn a_cloud_of_one_ring_has_the_points_of_its_scan() {
     let (clouds, _) = read(fixture("cloud.mcap"), "cloud.mcap").unwrap();
-    for (cloud, expected) in clouds.iter().zip(&simulated()) {
+    let simulated = simulated();
+    assert_eq!(clouds.len(), simulated.len());
+    for (cloud, expected) in clouds.iter().zip(&simulated) {
         let points = |frame: &LogFrame| -> Vec<(f64, f64)> {
             let scan = &frame.scan;
             let beams = scan.ranges_m.iter().enumerate();
