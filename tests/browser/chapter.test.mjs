@@ -171,8 +171,8 @@ describe('the chapter', () => {
   });
 
   for (const [choice, shade] of [
-    ['light', 'rgb(255, 255, 255)'],
-    ['dark', 'rgb(20, 24, 31)'],
+    ['light', 'rgb(253, 252, 249)'],
+    ['dark', 'rgb(15, 19, 23)'],
   ]) {
     it(`turns ${choice} by its button, whatever the system prefers, and its widgets follow`, async () => {
       const colorScheme = choice === 'light' ? 'dark' : 'light';

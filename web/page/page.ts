@@ -159,10 +159,10 @@ function letOpenWidgetsScroll(): void {
 /** The game: tools, and a card for a flat that the reader has drawn. */
 function startFlatGame(): void {
   const lap = document.querySelector<SlamWidget>('slam-widget[name="w16.2"]');
-  const [game, gallery, says] = ['.game', '.gallery', '.game-says'].map((css) => document.querySelector<HTMLElement>(css));
-  if (lap === null || !game || !gallery || !says) return;
+  const [game, gallery, says, off] = ['.game', '.gallery', '.game-says', '.game-off'].map((css) => document.querySelector<HTMLElement>(css));
+  if (lap === null || !game || !gallery || !says || !off) return;
   startGame(game, lap);
-  watchOwnFlat(lap, gallery, says);
+  watchOwnFlat(lap, gallery, says, off);
 }
 
 /** Shows the reading progress as a thin bar, and the current section in the contents list. */

@@ -188,11 +188,11 @@ fn raster(model: &BasinExplorer, panel: &str) -> Arc<[RasterCell]> {
     raster.expect("the map is shown")
 }
 
-/// The first segments of the sweeps: from each point to its partner.
+/// The threads of the sweeps: from each point to its partner.
 fn pair_lines(model: &BasinExplorer) -> Vec<[[f64; 2]; 2]> {
     let layers = panel_of(model, panel::SWEEPS).layers;
     let lines = layers.into_iter().find_map(|layer| match layer {
-        Layer::Segments { segments, .. } => Some(segments),
+        Layer::Threads { threads, .. } => Some(threads),
         _ => None,
     });
     lines.expect("the pairs are drawn")

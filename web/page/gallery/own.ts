@@ -14,11 +14,20 @@ const HOME_M = 0.5;
 /** What `slam-result` tells. */
 interface Result {
   readonly name: string;
-  readonly outcome: { readonly facts: Facts };
+  readonly outcome: { readonly verdict: string; readonly sentence: string; readonly facts: Facts };
 }
 
-/** Shows the score, and the card before the gallery, whenever a lap of a drawn flat is seen to its end. */
-export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement, says: HTMLElement): void {
+/** What `slam-change` tells. */
+interface Change {
+  readonly parameter: string;
+  readonly outcome?: Result['outcome'];
+}
+
+/** The verdict on a flat with a goal out of reach, or a start in a wall. */
+const UNDRIVEABLE = 'cannot be driven';
+
+/** Counts the error while a lap runs, shows the score at its end, and for a drawn flat a card before the gallery. */
+export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement, says: HTMLElement, off: HTMLElement): void {
   const card = document.createElement('aside');
   card.className = 'card own-card';
   card.setAttribute('aria-label', 'Your flat');
@@ -26,25 +35,36 @@ export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement, says: HTM
   gallery.before(card);
   let asked = 0;
   let record = 0;
-  const show = async ({ facts }: Result['outcome']): Promise<void> => {
+  const count = ({ verdict, facts }: Result['outcome']): void => {
+    off.hidden = verdict === UNDRIVEABLE || Number(widget.value['t']) === 0;
+    off.textContent = `${metresOff(facts).toFixed(1)} m off`;
+  };
+  const show = async (outcome: Result['outcome']): Promise<void> => {
+    const { facts } = outcome;
     const { value, timeline } = widget;
-    const isOver = timeline !== null && Number(value['t']) >= timeline.last;
+    const isDriveable = outcome.verdict !== UNDRIVEABLE;
+    const isOver = isDriveable && timeline !== null && Number(value['t']) >= timeline.last;
     asked += 1;
     const ask = asked;
     const isShown = value['world'] === 'own' && value['flat'] !== '' && isOver;
+    count(outcome);
     const svg = isShown ? drawing(await widget.tables(), facts, CELL_PX) : '';
     // Another result may have come meanwhile.
     if (ask !== asked) return;
     card.hidden = !isShown;
-    says.textContent = '';
-    says.classList.toggle('unnoticed', isShown && isUnnoticed(facts));
-    if (!isShown) return;
+    says.textContent = isDriveable ? '' : withCapital(outcome.sentence);
+    says.classList.toggle('unnoticed', !isDriveable || (isOver && isUnnoticed(facts)));
+    if (!isOver) return;
     const points = score(facts);
     record = Math.max(record, points);
     const [title, words] = [`Score ${points.toFixed(1)}, best ${record.toFixed(1)}`, sentence(facts)];
-    says.textContent = `${title}. ${words}`;
-    fill(card, widget, svg, title, words);
+    says.textContent = `${title}. ${words} ${hint(facts)}`;
+    if (isShown) fill(card, widget, svg, title, words);
   };
+  widget.addEventListener('slam-change', (event) => {
+    const { parameter, outcome } = (event as CustomEvent<Change>).detail;
+    if (parameter === 't' && outcome !== undefined) count(outcome);
+  });
   widget.addEventListener('slam-result', (event) => void show((event as CustomEvent<Result>).detail.outcome));
 }
 
@@ -58,6 +78,17 @@ function sentence(facts: Facts): string {
   const isHome = metresOff(facts) < HOME_M;
   const lead = isHome ? 'Not broken yet: the robot' : 'The robot';
   return `${lead} ${off.startsWith('ends') ? '' : 'is '}${off}${agrees === '' ? '' : `, and its ${agrees}`}.`;
+}
+
+/** How to make it worse. */
+function hint(facts: Facts): string {
+  if (!isUnnoticed(facts)) return 'The map shows it, which scores nothing: let the robot see no place twice.';
+  if (metresOff(facts) < HOME_M) return 'Make it worse: rub out doors and corners, so that the walls look alike all along.';
+  return 'Make it worse: make the smooth walls longer.';
+}
+
+function withCapital(words: string): string {
+  return `${words.charAt(0).toUpperCase()}${words.slice(1)}`;
 }
 
 function fill(card: HTMLElement, widget: SlamWidget, svg: string, points: string, words: string): void {

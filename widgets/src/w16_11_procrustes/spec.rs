@@ -100,7 +100,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "A mirrored map fits its points as well as any. It has its doors on the wrong side: compare the two flats.",
     ],
     opening: Opening {
-        panels: &["points", "trace", "map-turn", "map-unchecked"],
+        panels: &["points"],
         params: &["shape"],
         buttons: &["play"],
     },

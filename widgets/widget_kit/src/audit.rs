@@ -115,6 +115,8 @@ impl Surface for Recorder {
 
     fn polygon(&mut self, _points: &[Px], _fill: Rgb) {}
 
+    fn fan(&mut self, _from: Px, _rim: &[Px], _fill: Rgb, _opacity: [f32; 2]) {}
+
     fn circle(&mut self, _center: Px, _radius: f32, _fill: Option<Rgb>, _ring: Option<Pen>) {}
 
     fn rect(&mut self, _rect: PxRect, _fill: Rgb) {}

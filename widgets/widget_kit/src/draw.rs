@@ -5,6 +5,7 @@ mod frame;
 mod labels;
 mod layers;
 mod marks;
+mod plan;
 
 use crate::layout::PanelLayout;
 use crate::palette::Theme;

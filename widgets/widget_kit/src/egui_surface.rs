@@ -160,6 +160,19 @@ impl Surface for EguiSurface<'_> {
             .add(Shape::convex_polygon(path, color(fill), Stroke::NONE));
     }
 
+    fn fan(&mut self, from: Px, rim: &[Px], fill: Rgb, [inner, outer]: [f32; 2]) {
+        let mut mesh = egui::Mesh::default();
+        mesh.colored_vertex(pos(from), color(fill).gamma_multiply(inner));
+        let outer = color(fill).gamma_multiply(outer);
+        for (corner, at) in (1_u32..).zip(rim) {
+            mesh.colored_vertex(pos(*at), outer);
+            if corner > 1 {
+                mesh.add_triangle(0, corner - 1, corner);
+            }
+        }
+        self.painter.add(mesh);
+    }
+
     fn circle(&mut self, center: Px, radius: f32, fill: Option<Rgb>, ring: Option<Pen>) {
         let fill = fill.map_or(Color32::TRANSPARENT, color);
         let ring = ring.map_or(Stroke::NONE, |pen| Stroke::new(pen.width, color(pen.color)));

@@ -59,6 +59,11 @@ fn numbers_are_finite(layer: &Layer) -> bool {
         Layer::Points { points, .. } => finite(points.as_flattened()),
         Layer::Line { .. } => true,
         Layer::Segments { segments, .. } => finite(segments.as_flattened().as_flattened()),
+        Layer::Walls(walls) => finite(walls.as_flattened().as_flattened()),
+        Layer::Seen { from, points, .. } => finite(from) && finite(points.as_flattened()),
+        Layer::Threads { threads, reach } => {
+            finite(threads.as_flattened().as_flattened()) && reach.is_finite()
+        }
         Layer::Pose { pose, .. } => finite(pose),
         Layer::Handle { at, .. } | Layer::Text { at, .. } | Layer::Label { at, .. } => finite(at),
         Layer::Ellipse {

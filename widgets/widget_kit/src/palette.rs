@@ -105,6 +105,47 @@ pub fn tone(theme: Theme, tone: Tone) -> Rgb {
     shades[theme as usize]
 }
 
+/// The floor of a plan.
+#[must_use]
+pub fn floor(theme: Theme) -> Rgb {
+    const SHADES: [Rgb; 2] = shades("floor");
+    SHADES[theme as usize]
+}
+
+/// The walls of a plan.
+#[must_use]
+pub fn wall(theme: Theme) -> Rgb {
+    const SHADES: [Rgb; 2] = shades("wall");
+    SHADES[theme as usize]
+}
+
+/// The line around the walls of a plan.
+#[must_use]
+pub fn wall_edge(theme: Theme) -> Rgb {
+    const SHADES: [Rgb; 2] = shades("wall-edge");
+    SHADES[theme as usize]
+}
+
+/// The colour of a correspondence by its length, 0…1.
+#[must_use]
+pub fn thread(theme: Theme, share: f32) -> Rgb {
+    const SHADES: [[Rgb; 2]; 5] = [
+        shades("thread-1"),
+        shades("thread-2"),
+        shades("thread-3"),
+        shades("thread-4"),
+        shades("thread-5"),
+    ];
+    let last = SHADES.len() - 1;
+    let place = share.clamp(0.0, 1.0) * last as f32;
+    let below = (place as usize).min(last - 1);
+    mix(
+        SHADES[below][theme as usize],
+        SHADES[below + 1][theme as usize],
+        place - below as f32,
+    )
+}
+
 /// The colour of interactive controls.
 #[must_use]
 pub fn accent(theme: Theme) -> Rgb {

@@ -128,7 +128,25 @@ pub enum Layer {
         /// Width in pixels.
         width_px: f32,
     },
-    /// A pose: its mark with a short line along the heading.
+    /// Walls of a plan by their middle lines, drawn with their thickness on a floor.
+    Walls(Vec<[[f64; 2]; 2]>),
+    /// What a sensor sees: the area between it and its returns.
+    Seen {
+        /// Position of the sensor.
+        from: [f64; 2],
+        /// The returns.
+        points: Vec<[f64; 2]>,
+        /// Meaning.
+        tone: Tone,
+    },
+    /// Correspondences, coloured by their length.
+    Threads {
+        /// Pairs of points.
+        threads: Vec<[[f64; 2]; 2]>,
+        /// The length of the warmest colour.
+        reach: f64,
+    },
+    /// A pose: a robot seen from above. That with a square is there, those with other marks are ghosts.
     Pose {
         /// `[x, y, θ]`, metres and radians.
         pose: [f64; 3],
@@ -136,7 +154,7 @@ pub enum Layer {
         mark: Mark,
         /// Meaning.
         tone: Tone,
-        /// Radius in pixels.
+        /// Half of its smallest width, in pixels.
         radius_px: f32,
     },
     /// A draggable handle: drawn larger, with a ring.

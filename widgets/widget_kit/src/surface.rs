@@ -176,6 +176,9 @@ pub trait Surface: Measure {
     /// A filled convex polygon.
     fn polygon(&mut self, points: &[Px], fill: Rgb);
 
+    /// The triangles between a point and a line around it, with the opacity of the fill at the point and at the line.
+    fn fan(&mut self, from: Px, rim: &[Px], fill: Rgb, opacity: [f32; 2]);
+
     /// A disc, a ring, or both.
     fn circle(&mut self, center: Px, radius: f32, fill: Option<Rgb>, ring: Option<Pen>);
 

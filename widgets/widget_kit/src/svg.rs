@@ -176,6 +176,14 @@ impl Surface for SvgSurface {
         self.path(&look, &format!("{}Z", outline(points)));
     }
 
+    /// With one opacity, because an SVG has no colours at corners.
+    fn fan(&mut self, from: Px, rim: &[Px], fill: Rgb, [inner, outer]: [f32; 2]) {
+        let opacity = 0.5 * (inner + outer);
+        let look = format!("fill=\"{}\" fill-opacity=\"{opacity:.2}\"", css(fill));
+        let corners: Vec<Px> = core::iter::once(from).chain(rim.iter().copied()).collect();
+        self.element(format_args!("<path {look} d=\"{}Z\"/>", outline(&corners)));
+    }
+
     fn circle(&mut self, [x, y]: Px, radius: f32, fill: Option<Rgb>, ring: Option<Pen>) {
         let look = format!(
             "fill=\"{}\" {}",

@@ -13,6 +13,23 @@ use crate::w16_11_procrustes::spec::{TURN, WHOLE_TURN_DEG};
 
 /// Smallest half width of the view of the points, m.
 const MIN_REACH_M: f64 = 2.4;
+/// A pair of this length has the warmest thread, m.
+const LONG_M: f64 = 1.5;
+/// An R in one line, which shows whether it is mirrored, in halves of its height.
+const LETTER: [[f64; 2]; 10] = [
+    [-0.5, -1.0],
+    [-0.5, 1.0],
+    [0.15, 1.0],
+    [0.5, 0.8],
+    [0.6, 0.5],
+    [0.5, 0.2],
+    [0.15, 0.0],
+    [-0.5, 0.0],
+    [0.05, 0.0],
+    [0.6, -1.0],
+];
+/// Half the height of the R, m.
+const LETTER_M: f64 = 0.45;
 /// Degrees between two points of a curve.
 const CURVE_STEP_DEG: u32 = 4;
 
@@ -49,6 +66,43 @@ fn mark(kind: Handedness) -> Mark {
     }
 }
 
+/// The R that is painted on the source, under a matrix.
+fn letter(trace: &ProcrustesTrace, kind: Handedness, theta_rad: f64) -> Vec<[f64; 2]> {
+    let middle = trace.problem.source_mean;
+    let put = |[x, y]: [f64; 2]| {
+        let at = Point2::new(middle.x + LETTER_M * x, middle.y + LETTER_M * y);
+        let moved = trace.problem.moved(kind, theta_rad, at);
+        [moved.x, moved.y]
+    };
+    LETTER.map(put).to_vec()
+}
+
+/// The best of all matrices and its R, once the reader has acted and nothing turns any more.
+fn winner(trace: &ProcrustesTrace) -> Vec<Layer> {
+    if trace.asks || trace.playback.is_playing() {
+        return Vec::new();
+    }
+    let (kind, best) = trace.problem.unchecked();
+    let best = best.theta_rad;
+    let source = trace.pairs.source.iter();
+    let moved = source.map(|p| trace.problem.moved(kind, best, *p));
+    let name = match kind {
+        Handedness::Turn => "best fit: a turn",
+        Handedness::Mirror => "best fit: mirrored",
+    };
+    let letter = letter(trace, kind, best);
+    vec![
+        Layer::line(
+            moved.map(|p| [p.x, p.y]).collect(),
+            Stroke::Dashed,
+            tone(kind),
+            2.0,
+        ),
+        Layer::line(letter.clone(), Stroke::Solid, tone(kind), 2.5),
+        Layer::label(letter[3], name.to_owned(), 14.0),
+    ]
+}
+
 fn points(trace: &ProcrustesTrace) -> Panel {
     let (problem, kind) = (&trace.problem, trace.tried());
     let moved: Vec<[f64; 2]> = (trace.pairs.source.iter())
@@ -63,19 +117,28 @@ fn points(trace: &ProcrustesTrace) -> Panel {
     };
     let pairs = moved.iter().zip(&target).map(|(p, q)| [*p, *q]);
     let mut layers = vec![
-        Layer::segments(pairs.collect(), Stroke::Dotted, Tone::Ink, 1.25),
-        line(&target, Stroke::Solid, Tone::Measurement, 1.25),
-        line(&moved, Stroke::Solid, tone(kind), 1.75),
-        Layer::points(moved.clone(), mark(kind), tone(kind), 4.5),
+        line(&target, Stroke::Dotted, Tone::Measurement, 1.5),
+        Layer::Threads {
+            threads: pairs.collect(),
+            reach: LONG_M,
+        },
     ];
+    layers.extend(winner(trace));
+    layers.extend([
+        line(
+            &letter(trace, kind, trace.theta_rad()),
+            Stroke::Solid,
+            tone(kind),
+            6.0,
+        ),
+        line(&moved, Stroke::Solid, tone(kind), 2.0),
+        Layer::points(moved.clone(), mark(kind), tone(kind), 4.5),
+    ]);
     layers.extend(target.iter().map(|at| Layer::Handle {
         at: *at,
         tone: Tone::Measurement,
         label: "drag the point of the target",
     }));
-    layers.extend(
-        (target.iter().enumerate()).map(|(k, at)| Layer::label(*at, (k + 1).to_string(), 9.0)),
-    );
     // In steps of half a metre, so that a drag seldom moves the axes.
     let mean = problem.target_mean;
     let middle = [mean.x, mean.y].map(|value| (2.0 * value).round() / 2.0);
@@ -85,12 +148,7 @@ fn points(trace: &ProcrustesTrace) -> Panel {
     let axis = |i: usize| Axis::hidden(middle[i] - reach, middle[i] + reach);
     Panel {
         id: panel::POINTS,
-        title: format!(
-            "At {:.0}°: trace {:.2} m²",
-            trace.values.get(&TURN),
-            problem.trace_m2(kind, trace.theta_rad())
-        )
-        .replace('-', "−"),
+        title: String::new(),
         weight: Weight::Main,
         aspect: Aspect::Equal,
         x: axis(0),

@@ -1,6 +1,6 @@
 //! The panels: the two sweeps, the two basin maps, the curve over the iterations.
 
-use ch16_lab::basin::{BasinPlace, Minimum, OffsetAxis};
+use ch16_lab::basin::{BasinScene, Minimum, OffsetAxis};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpVariant, Pair};
 use pr_geom::{Point2, SE2};
@@ -17,26 +17,20 @@ use super::settings::{axis, start, variant, variant_name};
 use super::texts::error_m;
 use super::{BasinExplorer, panel};
 use crate::sweep_bounds::sweep_bounds;
-use crate::w16_1_basin_explorer::spec::{EDGE, OFFSET_SPAN_M, Phase};
+use crate::w16_1_basin_explorer::spec::{EDGE, OFFSET_SPAN_M, Phase, TAU};
 
 /// One point in this many leaves a trail.
 const POINTS_PER_TRAIL: usize = 11;
 
 /// Radius of the mark of a sensor, pixels.
 const SENSOR_PX: f32 = 6.0;
+/// Distance of a robot's word from its center, pixels.
+const ROBOT_CLEAR_PX: f32 = 16.0;
 /// Distance of a handle's word from its center, pixels.
 const HANDLE_CLEAR_PX: f32 = 12.0;
 
 /// Margin around a basin map, so that a mark at its edge is complete, ° and m.
 const BASIN_ROOM: [f64; 2] = [12.0, 0.15];
-
-/// Neighbouring points of a sweep farther apart than this are on different walls or posts, m.
-const fn wall_gap_m(place: BasinPlace) -> f64 {
-    match place {
-        BasinPlace::Room => 0.6,
-        BasinPlace::Fence => 0.2,
-    }
-}
 
 /// The whole picture; of the maps that of the chosen variant comes first.
 pub fn scene(explorer: &BasinExplorer) -> Scene {
@@ -63,16 +57,13 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     let source = scene.source().transformed(&pose);
 
     let mut layers = vec![
-        Layer::line(
-            outline(
-                &scene.source().transformed(&scene.truth()),
-                wall_gap_m(scene.place()),
-            ),
-            Stroke::Dashed,
-            Tone::Truth,
-            1.5,
-        ),
-        points(scene.target(), Mark::Cross, Tone::Measurement, 3.0),
+        walls(scene),
+        Layer::Seen {
+            from: [pose.x(), pose.y()],
+            points: positions(&source),
+            tone: Tone::Posterior,
+        },
+        points(scene.target(), Mark::Dot, Tone::Measurement, 2.6),
     ];
     let guess = scene.guess(&start(&explorer.values));
     if iteration > 0 {
@@ -92,25 +83,10 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
         points(&ended, Mark::Dot, Tone::Series(1), 1.6)
     }));
     layers.extend([
-        points(&source, Mark::Square, Tone::Posterior, 2.6),
-        // Above the points, because a pair may be shorter than a mark is wide.
-        Layer::segments(
-            links
-                .iter()
-                .map(|pair| {
-                    [
-                        [pair.source.x, pair.source.y],
-                        [pair.target.x, pair.target.y],
-                    ]
-                })
-                .collect(),
-            Stroke::Solid,
-            Tone::Ink,
-            1.25,
-        ),
-        Layer::points(lonely(&source, &links), Mark::Circle, Tone::Series(0), 5.0),
+        threads(&links, explorer.values.get(&TAU)),
+        points(&source, Mark::Dot, Tone::Posterior, 2.8),
+        Layer::points(lonely(&source, &links), Mark::Circle, Tone::Series(0), 4.5),
         sensor(SE2::identity(), Mark::Cross, Tone::Measurement),
-        sensor(scene.truth(), Mark::Plus, Tone::Truth),
         sensor(guess, Mark::Circle, Tone::Prior),
         Layer::segments(
             vec![[[pose.x(), pose.y()], [turn.x, turn.y]]],
@@ -131,12 +107,22 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
         "turn".to_owned(),
         HANDLE_CLEAR_PX,
     ));
-    let truth = scene.truth();
     layers.push(Layer::label(
-        [truth.x(), truth.y()],
-        "truth".to_owned(),
-        SENSOR_PX,
+        [0.0; 2],
+        "first sweep".to_owned(),
+        ROBOT_CLEAR_PX,
     ));
+    // The truth comes with the verdict.
+    if iteration == explorer.last() {
+        let truth = scene.truth();
+        layers.push(sensor(truth, Mark::Plus, Tone::Truth));
+        let at = [truth.x(), truth.y()];
+        layers.push(Layer::label(at, "truth".to_owned(), ROBOT_CLEAR_PX));
+    } else if explorer.previews_end() {
+        let end = explorer.run.outcome.pose;
+        let at = [end.x(), end.y()];
+        layers.push(Layer::label(at, "ends here".to_owned(), ROBOT_CLEAR_PX));
+    }
     let [x, y] = frame(explorer);
     let entry = |label: &str, tone, mark, stroke| LegendEntry {
         label: label.to_owned(),
@@ -144,23 +130,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
         mark,
         stroke,
     };
-    let mut legend = vec![
-        entry("target", Tone::Measurement, Some(Mark::Cross), None),
-        entry("source", Tone::Posterior, Some(Mark::Square), None),
-    ];
-    if ours.is_none() {
-        legend.push(entry("no pair", Tone::Series(0), Some(Mark::Circle), None));
-    }
-    if iteration > 0 {
-        legend.push(entry("start", Tone::Prior, Some(Mark::Circle), None));
-    } else if explorer.previews_end() {
-        legend.push(entry(
-            "end",
-            Tone::Posterior,
-            Some(Mark::Dot),
-            Some(Stroke::Dotted),
-        ));
-    }
+    let mut legend = Vec::new();
     if ours.is_some() {
         let ours = entry("where ours ends", Tone::Series(1), Some(Mark::Dot), None);
         legend.push(ours);
@@ -169,17 +139,12 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     Panel {
         id: panel::SWEEPS,
         title: match explorer.driver() {
-            // One line, so that nothing moves as a function takes its seat.
             Some(yours) => format!(
                 "Your {}, {progress}: rmse {:.1} cm",
                 yours.orders.function.name(),
                 100.0 * shown.rmse_m
             ),
-            None => format!(
-                "Iteration {progress}: {} pairs, rmse {:.1} cm",
-                shown.pairs,
-                100.0 * shown.rmse_m
-            ),
+            None => String::new(),
         },
         weight: Weight::Main,
         aspect: Aspect::Equal,
@@ -204,6 +169,21 @@ pub fn frame(explorer: &BasinExplorer) -> [Axis; 2] {
         .map(|[low, high]| Axis::hidden((2.0 * low).floor() / 2.0, (2.0 * high).ceil() / 2.0))
 }
 
+/// The walls of the scene.
+fn walls(scene: &BasinScene) -> Layer {
+    let walls = scene.walls().iter();
+    Layer::Walls(walls.map(|wall| wall.map(|end| [end.x, end.y])).collect())
+}
+
+/// The pairs as threads, the warmest as long as a pair may be.
+fn threads(pairs: &[Pair], reach: f64) -> Layer {
+    let ends = |pair: &Pair| [pair.source, pair.target].map(|end| [end.x, end.y]);
+    Layer::Threads {
+        threads: pairs.iter().map(ends).collect(),
+        reach,
+    }
+}
+
 /// The result of the run as a ghost, and the path of the sensor and of some points to it.
 fn preview(explorer: &BasinExplorer) -> Vec<Layer> {
     let trace = &explorer.run.trace;
@@ -218,11 +198,17 @@ fn preview(explorer: &BasinExplorer) -> Vec<Layer> {
     let trails = some
         .chain(core::iter::once(sensor))
         .map(|of| Layer::line(way(of), Stroke::Dotted, Tone::Posterior, 1.25));
-    let ghost = points(&source.transformed(&end), Mark::Dot, Tone::Posterior, 1.3);
+    let ghost = points(
+        &source.transformed(&end),
+        Mark::Circle,
+        Tone::Posterior,
+        1.6,
+    );
     trails
         .chain([
             Layer::points(way(sensor), Mark::Dot, Tone::Posterior, 2.0),
             ghost,
+            self::sensor(end, Mark::Circle, Tone::Posterior),
         ])
         .collect()
 }
@@ -240,11 +226,15 @@ fn lonely(source: &PointCloud, pairs: &[Pair]) -> Vec<[f64; 2]> {
 /// The points of a cloud.
 fn points(cloud: &PointCloud, mark: Mark, tone: Tone, radius_px: f32) -> Layer {
     Layer::Points {
-        points: cloud.iter().map(|p| [p.x, p.y]).collect(),
+        points: positions(cloud),
         mark,
         tone,
         radius_px,
     }
+}
+
+fn positions(cloud: &PointCloud) -> Vec<[f64; 2]> {
+    cloud.iter().map(|point| [point.x, point.y]).collect()
 }
 
 /// Pose of a sensor.
@@ -255,20 +245,6 @@ fn sensor(pose: SE2, mark: Mark, tone: Tone) -> Layer {
         tone,
         radius_px: SENSOR_PX,
     }
-}
-
-/// A sweep as lines along its walls, with gaps between different ones.
-fn outline(cloud: &PointCloud, gap_m: f64) -> Vec<[f64; 2]> {
-    let mut line: Vec<[f64; 2]> = Vec::with_capacity(cloud.len() + 8);
-    for p in cloud.iter() {
-        if let Some([x, y]) = line.last()
-            && (p.x - x).abs().max((p.y - y).abs()) > gap_m
-        {
-            line.push([f64::NAN; 2]);
-        }
-        line.push([p.x, p.y]);
-    }
-    line
 }
 
 fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {

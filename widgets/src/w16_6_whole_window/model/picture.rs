@@ -30,19 +30,25 @@ fn sweeps(window: &WholeWindow) -> Panel {
     let guess = window.guess();
     let pose = window.shown_pose();
     let turn = turn_handle(&guess);
-    let mut layers = vec![points(scene.target(), Mark::Cross, Tone::Measurement, 3.0)];
+    let walls = scene.walls().iter();
+    let walls = walls.map(|wall| wall.map(|end| [end.x, end.y])).collect();
+    let best = scene.source().transformed(&pose);
+    let mut layers = vec![
+        Layer::Walls(walls),
+        Layer::Seen {
+            from: position(&pose),
+            points: best.iter().map(|point| [point.x, point.y]).collect(),
+            tone: Tone::Posterior,
+        },
+        points(scene.target(), Mark::Cross, Tone::Measurement, 3.0),
+    ];
     if let Some(icp) = icp_now(window) {
         let sweep = scene.source().transformed(&icp);
         layers.push(points(&sweep, Mark::Dot, Tone::Series(2), 1.6));
         layers.push(icp_path(window));
     }
     layers.extend([
-        points(
-            &scene.source().transformed(&pose),
-            Mark::Square,
-            Tone::Posterior,
-            2.6,
-        ),
+        points(&best, Mark::Square, Tone::Posterior, 2.6),
         sensor(scene.truth(), Mark::Plus, Tone::Truth),
         sensor(guess, Mark::Circle, Tone::Prior),
         Layer::segments(

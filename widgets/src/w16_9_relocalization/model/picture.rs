@@ -26,14 +26,8 @@ fn map(back: &Relocalization) -> Panel {
     let mut layers = Vec::new();
     if let Some(known) = &back.known {
         let walls = known.tomorrow.world.walls().iter();
-        layers.push(Layer::segments(
-            walls
-                .map(|wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]])
-                .collect(),
-            Stroke::Solid,
-            Tone::Faint,
-            3.0,
-        ));
+        let ends = walls.map(|wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]]);
+        layers.push(Layer::Walls(ends.collect()));
         let points = known.map.points().iter().map(|p| [p.x, p.y]).collect();
         layers.push(Layer::points(points, Mark::Dot, Tone::Ink, 1.4));
         if back.has_wardrobe() {

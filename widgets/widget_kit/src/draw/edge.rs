@@ -1,6 +1,7 @@
 //! Draws marks at the edge of a plot completely, such as a ring at the end of an axis.
 
-use super::layers::{HANDLE_RADIUS, is_finite};
+use super::layers::HANDLE_RADIUS;
+use super::marks::is_finite;
 use crate::scene::Layer;
 use crate::transform::Transform;
 

@@ -1,9 +1,10 @@
 //! Everything around a panel's layers: background, grid, ticks, names, colour bar, legend.
 
 use super::marks::mark;
+use super::plan;
 use crate::layout::{PanelLayout, TICK, swatch, x_ticks, y_ticks};
 use crate::palette::{Theme, level_color, mix, tone};
-use crate::scene::{ColorBar, LegendEntry, Mark, Panel, Stroke, Tone};
+use crate::scene::{Aspect, ColorBar, LegendEntry, Mark, Panel, Stroke, Tone};
 use crate::surface::{Align, Pen, Px, PxRect, Surface, TextSize};
 use crate::ticks::signed;
 use crate::transform::Transform;
@@ -50,7 +51,11 @@ pub fn front(
         let at = [origin[0], origin[1] + y];
         surface.text(at, Align::Left, line, TextSize::Body, ink);
     }
-    border(surface, to.plot(), Pen::solid(quiet, 1.0));
+    if plan::is_plan(panel) {
+        plan::scale_bar(surface, to, theme);
+    } else if panel.x.is_drawn() || panel.aspect == Aspect::Free {
+        border(surface, to.plot(), Pen::solid(quiet, 1.0));
+    }
     ticks(surface, panel, layout, origin, to, theme);
     if let (Some(bar), Some(y)) = (&panel.color_bar, layout.color_bar_y) {
         color_bar(surface, bar, [origin[0], origin[1] + y], theme);

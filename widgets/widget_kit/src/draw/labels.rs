@@ -1,6 +1,7 @@
 //! Places text near points without overlaps.
 
-use super::layers::{is_finite, words};
+use super::layers::words;
+use super::marks::is_finite;
 use crate::palette::{self, Theme};
 use crate::scene::{Layer, Panel, Tone};
 use crate::surface::{Pen, Px, PxRect, Surface, TextSize};

@@ -1,6 +1,7 @@
 //! The layers of a panel.
 
-use super::marks::mark;
+use super::marks::{is_finite, mark};
+use super::plan;
 use crate::palette::{Rgb, Theme, readable_on, tone};
 use crate::scene::{Layer, Mark, Stroke, Tone};
 use crate::surface::{Align, Haloed, Pen, Px, Surface, TextSize};
@@ -51,6 +52,21 @@ pub fn layer(surface: &mut dyn Surface, layer: &Layer, to: &Transform, theme: Th
                 surface.line(&[to.to_px(*a), to.to_px(*b)], pen);
             }
         }
+        Layer::Walls(walls) => plan::walls(surface, walls, to, theme),
+        Layer::Seen {
+            from,
+            points,
+            tone: meaning,
+        } => {
+            if is_finite(from) {
+                let returns = points.iter().filter(|at| is_finite(at));
+                let returns = returns.map(|at| to.to_px(*at)).collect();
+                plan::seen(surface, to.to_px(*from), returns, tone(theme, *meaning));
+            }
+        }
+        Layer::Threads { threads, reach } => {
+            plan::threads(surface, threads, *reach, to, theme);
+        }
         Layer::Pose {
             pose,
             mark: shape,
@@ -58,13 +74,7 @@ pub fn layer(surface: &mut dyn Surface, layer: &Layer, to: &Transform, theme: Th
             radius_px,
         } => {
             if pose.iter().all(|value| value.is_finite()) {
-                let color = tone(theme, *meaning);
-                let at = to.to_px([pose[0], pose[1]]);
-                let length = 2.4 * radius_px;
-                let (sin, cos) = pose[2].sin_cos();
-                let tip = [at[0] + length * cos as f32, at[1] - length * sin as f32];
-                surface.line(&[at, tip], Pen::solid(color, 2.0));
-                mark(surface, at, *shape, *radius_px, color);
+                plan::robot(surface, *pose, *shape, *meaning, *radius_px, to, theme);
             }
         }
         Layer::Handle {
@@ -90,7 +100,9 @@ pub fn layer(surface: &mut dyn Surface, layer: &Layer, to: &Transform, theme: Th
                 })
                 .filter(|px| px.iter().all(|value| value.is_finite()))
                 .collect();
-            if points.len() > 1 {
+            let middle = to.to_px(*center);
+            if points.len() > 1 && middle.iter().all(|value| value.is_finite()) {
+                plan::unsure(surface, middle, &points, pen.color);
                 surface.line(&points, pen);
             }
         }
@@ -135,8 +147,4 @@ fn pen(theme: Theme, meaning: Tone, width: f32, stroke: Stroke) -> Pen {
         width,
         stroke,
     }
-}
-
-pub fn is_finite(at: &[f64; 2]) -> bool {
-    at[0].is_finite() && at[1].is_finite()
 }

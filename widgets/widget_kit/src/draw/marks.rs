@@ -45,3 +45,8 @@ pub fn mark(surface: &mut dyn Surface, at: Px, mark: Mark, radius: f32, color: R
         }
     }
 }
+
+/// Whether a point can be drawn.
+pub fn is_finite(at: &[f64; 2]) -> bool {
+    at[0].is_finite() && at[1].is_finite()
+}

@@ -1,7 +1,7 @@
 //! Two sweeps of one location and the registration from a start.
 
-use pr_geom::SE2;
-use pr_sim::{Lidar, LidarConfig, Rng, World};
+use pr_geom::{Point2, SE2};
+use pr_sim::{Lidar, LidarConfig, Rng, Wall, World};
 use serde::Serialize;
 
 use super::{BasinOutcome, BasinPlace, fence};
@@ -81,6 +81,7 @@ pub struct BasinScene {
     map: NearestTable,
     source: PointCloud,
     truth: SE2,
+    walls: Vec<[Point2<f64>; 2]>,
 }
 
 impl Default for BasinScene {
@@ -138,6 +139,14 @@ impl BasinScene {
             target,
             source,
             truth: world_from_target.between(&world_from_source),
+            walls: {
+                let target_from_world = world_from_target.inverse();
+                let ends = |wall: &Wall| [wall.start, wall.end];
+                let walls = world.walls().iter().map(ends);
+                walls
+                    .map(|wall| wall.map(|end| target_from_world.transform(end)))
+                    .collect()
+            },
         }
     }
 
@@ -174,6 +183,12 @@ impl BasinScene {
     #[must_use]
     pub fn map(&self) -> &NearestTable {
         &self.map
+    }
+
+    /// The walls in the frame of the target's sensor, as pictures draw them.
+    #[must_use]
+    pub fn walls(&self) -> &[[Point2<f64>; 2]] {
+        &self.walls
     }
 
     /// Points of the source in its sensor's frame.

@@ -87,15 +87,10 @@ fn title(moment: &LapState) -> String {
 /// The walls of the drawing, even before the lap has followed.
 fn walls(moment: &LapState) -> Layer {
     let ends = |wall: &Wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]];
-    Layer::segments(
-        match &moment.drawn {
-            Some(drawn) => floor_plan::walls(drawn),
-            None => moment.runs.world().walls().iter().map(ends).collect(),
-        },
-        Stroke::Solid,
-        Tone::Ink,
-        1.0,
-    )
+    Layer::Walls(match &moment.drawn {
+        Some(drawn) => floor_plan::walls(drawn),
+        None => moment.runs.world().walls().iter().map(ends).collect(),
+    })
 }
 
 /// Names in the middle of each room, where no sweep has points.

@@ -46,7 +46,7 @@ fn a_drawn_wall_is_shown_at_once_and_the_lap_follows() {
     assert_eq!(model.values().get(&WORLD), None);
     assert_eq!(model.piece(), Some(PlanElement::Wall(18)));
     let walls = |model: &FullLap| match &model.scene().panels[0].layers[0] {
-        Layer::Segments { segments, .. } => segments.len(),
+        Layer::Walls(walls) => walls.len(),
         layer => panic!("{layer:?}"),
     };
     assert_eq!(walls(&model), 19);

@@ -17,12 +17,7 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
         weight: Weight::Main,
         x: Axis::hidden(bounds.min.x - MARGIN_M, bounds.max.x + MARGIN_M),
         y: Axis::hidden(bounds.min.y - MARGIN_M, bounds.max.y + MARGIN_M),
-        layers: vec![Layer::segments(
-            world.walls().iter().map(wall).collect(),
-            Stroke::Solid,
-            Tone::Ink,
-            2.5,
-        )],
+        layers: vec![Layer::Walls(world.walls().iter().map(wall).collect())],
         ..empty(panel::FLAT, "A robot drives through the flat and back")
     };
     let Some((places, pair)) = been.places.as_ref().zip(been.pair()) else {
@@ -44,12 +39,13 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
         let place = &study.places()[node];
         let at = [place.truth.x(), place.truth.y()];
         let seen = place.scan.transformed(&place.truth);
-        let rays = seen.iter().map(|hit| [at, [hit.x, hit.y]]).collect();
-        let hits = seen.iter().map(|hit| [hit.x, hit.y]).collect();
+        let hits: Vec<_> = seen.iter().map(|hit| [hit.x, hit.y]).collect();
         let mark = [Mark::Cross, Mark::Square][k];
-        panel
-            .layers
-            .push(Layer::segments(rays, Stroke::Solid, tone, 0.4));
+        panel.layers.push(Layer::Seen {
+            from: at,
+            points: hits.clone(),
+            tone,
+        });
         on_top.extend([
             Layer::points(hits, mark, tone, 2.4),
             Layer::Handle {
