@@ -12,8 +12,8 @@ export const STYLE = `
 .frame.dark { --paper: ${paper[1]}; --ink: ${ink[1]}; --soft: ${soft[1]}; --line: ${faint[1]}; --accent: ${accent[1]};
   --good: ${good[1]}; --fair: ${fair[1]}; --bad: ${bad[1]}; --older: ${prior[1]}; --newer: ${measurement[1]};
   color-scheme: dark; }
-.title { margin: 0; padding: 0.5rem 0.75rem 0.25rem; font: 600 1.375rem/1.2 var(--text-font, inherit); text-wrap: balance; }
-.title span { display: block; color: var(--soft); font: 0.875rem/1.3 var(--label-font, system-ui); }
+.title { margin: 0; padding: 0.5rem 0.75rem 0.25rem; font: 600 1.25rem/1.2 var(--text-font, inherit); text-wrap: balance; }
+.title span { margin-inline-end: 0.5rem; color: var(--soft); font: 0.875rem/1 var(--label-font, system-ui); }
 .view { position: relative; }
 .whole { position: absolute; top: 0.5rem; right: 0.75rem; }
 .drop { display: none; }
@@ -77,11 +77,11 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
   .controls { grid-template: "transport transport transport" "first verdict tools" / 35% minmax(0, 1fr) auto; }
   .verdict { min-height: 5.6em; }
 }
-@container (width >= 50rem) { .verdict { min-height: 4.2em; } }
+@container (width >= 50rem) { .verdict { min-height: 5.6em; } }
 @container (width < 30rem) {
   .transport .name { position: absolute; clip-path: inset(50%); }
 }
-@media (width < 30rem) { .title { font-size: 1.125rem; } .title span { display: none; } }
+@media (width < 30rem) { .title { font-size: 1.0625rem; } .title span { display: none; } }
 .transport, .presets, .actions, .zoom { display: flex; flex-wrap: wrap; gap: 0.25rem 0.5rem; align-items: center; }
 .tools { display: flex; flex-direction: column; gap: 0.25rem; }
 .tools .control button, .menu summary { width: 100%; }
