@@ -97,9 +97,9 @@ impl Trajectory {
         let mut is_euroc = false;
         let mut last_numbers = None;
         while let Some([stamp, x, y, z, a, b, c, d]) = numbers.next_line()? {
-            if last_numbers.replace([stamp, x, y, z, a, b, c, d])
-                == Some([stamp, x, y, z, a, b, c, d])
-            {
+            let line = [stamp, x, y, z, a, b, c, d];
+            let is_repeated = last_numbers.replace(line) == Some(line);
+            if is_repeated && stamp != OVERFLOWN {
                 continue;
             }
             is_euroc |= numbers.has_commas && stamp >= MIN_STAMP_NS;

@@ -198,7 +198,7 @@ fn recordings_of_other_systems_are_rejected_by_their_encoding() {
     };
     let text = |text: &str| [&(text.len() as u32).to_le_bytes()[..], text.as_bytes()].concat();
     let magic = b"\x89MCAP0\r\n".to_vec();
-    let kind = [text("foxglove.LaserScan"), text("jsonschema"), text("{}")].concat();
+    let kind = [text("foxglove.SceneUpdate"), text("jsonschema"), text("{}")].concat();
     let channel = [text("/scan"), text("json"), text("")].concat();
     // By the MCAP specification: header, schema 1, its channel 0, a message, end of data, footer.
     let bytes = [

@@ -305,7 +305,7 @@ fn a_table_of_no_known_form_is_answered_with_its_columns() {
     let mut reader = LogFormat::open(text.as_bytes(), "x.csv", &LogOptions::default()).unwrap();
     let error = reader.next_frame().unwrap_err().to_string();
     let columns = "angle_deg,range_mm,quality,time";
-    assert!(error.contains("‘0.00,01500.00,47,0.0’"), "{error}");
+    assert!(error.contains("‘0,01500.00,47,0.0’"), "{error}");
     assert!(
         error.contains(&format!("pass --columns {columns} ")),
         "{error}"
