@@ -1,4 +1,4 @@
-// node teaching/scorm/package.mjs DIST FILE [best|first|last]: a SCORM 1.2 package of the exercises, one shareable content object for each;
+// node teaching/scorm/package.mjs DIST FILE [first|best|last]: a SCORM 1.2 package of the exercises, one shareable content object for each;
 // the last argument says which of several answers to a question counts.
 //
 // Each object is embed.html with the exercise in its address; web/ts/scorm.ts reports the answers.
@@ -14,9 +14,9 @@ const FILES = /^(embed\.html|exercises\.json|slam-[\w-]+\.js|slam_web-\w+\.wasm|
 
 const SCHEMAS = fileURLToPath(new URL('schemas', import.meta.url));
 
-const [dist, target, counts = 'best'] = process.argv.slice(2);
-if (dist === undefined || target === undefined || !['best', 'first', 'last'].includes(counts)) {
-  throw new Error('usage: node teaching/scorm/package.mjs DIST FILE [best|first|last]');
+const [dist, target, counts = 'first'] = process.argv.slice(2);
+if (dist === undefined || target === undefined || !['first', 'best', 'last'].includes(counts)) {
+  throw new Error('usage: node teaching/scorm/package.mjs DIST FILE [first|best|last]');
 }
 
 const files = (await readdir(dist, { recursive: true })).map((name) => name.replaceAll('\\', '/')).filter((name) => FILES.test(name)).sort();

@@ -25,7 +25,8 @@ export async function showExercise(main: HTMLElement, id: string): Promise<strin
   const response = await fetch(new URL('./exercises.json', import.meta.url)).catch(() => undefined);
   if (response?.ok !== true) throw new Error('The exercises could not be loaded: exercises.json is missing beside embed.html.');
   const { exercise, questions } = find((await response.json()) as Exercise[], id);
-  const reports = connect(window, questions.map((question) => question.exercise), countsOf(location.search));
+  const counts = countsOf(location.search);
+  const reports = connect(window, questions.map((question) => question.exercise), counts);
   // @ts-expect-error: a separate bundle.
   await import('./slam-predict.js');
   const article = document.createElement('article');
@@ -36,7 +37,15 @@ export async function showExercise(main: HTMLElement, id: string): Promise<strin
   title.textContent = exercise.title;
   article.prepend(title);
   if (reports !== undefined) {
-    for (const question of article.querySelectorAll('slam-predict')) question.setAttribute('student', reports.student);
+    for (const question of article.querySelectorAll('slam-predict')) {
+      question.setAttribute('student', reports.student);
+      const cameTrue = reports.results.get(question.getAttribute('exercise') ?? '');
+      const note = document.createElement('p');
+      note.textContent = cameTrue === undefined
+        ? `${COUNTED[counts]} counts.`
+        : `You have answered this question, and what counts ${cameTrue ? 'came true' : 'did not come true'}. ${COUNTED[counts]} counts.`;
+      question.before(note);
+    }
     document.addEventListener('slam-predict', ({ detail, target }) => {
       const choices = [...(target as HTMLElement).querySelectorAll<HTMLElement>('[data-choice]')];
       reports.answered(detail, choices.map((choice) => choice.dataset['choice'] ?? ''));
@@ -55,10 +64,12 @@ export async function showExercise(main: HTMLElement, id: string): Promise<strin
   return exercise.title;
 }
 
-/** Which of several answers counts: `&counts=first`, `last`, or the best. */
+const COUNTED: Record<Counts, string> = { best: 'Your best answer', first: 'Your first answer', last: 'Your last answer' };
+
+/** Which of several answers counts: `&counts=best`, `last`, or the first. */
 function countsOf(query: string): Counts {
   const counts = new URLSearchParams(query).get('counts');
-  return counts === 'first' || counts === 'last' ? counts : 'best';
+  return counts === 'best' || counts === 'last' ? counts : 'first';
 }
 
 /** Finds the questions for an id, with or without chapter and part. */

@@ -2,8 +2,8 @@
 //
 // The system provides an object `API` in an ancestor window (SCORM 1.2 Run-Time Environment, section 3.3). Every answer
 // is an interaction. The lesson is complete once each question has an answer; the score is the share of correct
-// predictions among the best, the first or the last answers. What counts so far is kept in `cmi.suspend_data`, so a
-// student who leaves and comes back keeps it.
+// predictions among the first answers, because each answer shows what happens; a setting takes the best or the last ones.
+// What counts so far is kept in `cmi.suspend_data`, so a student who leaves and comes back keeps it.
 
 import type { Prediction } from '../slam-predict';
 
@@ -27,13 +27,15 @@ export type Counts = 'best' | 'first' | 'last';
 export interface ScormSession {
   /** The student's id in the system. */
   student: string;
+  /** The questions answered so far, and whether the answer that counts came true. */
+  results: ReadonlyMap<string, boolean>;
   answered(prediction: Prediction, choices: string[]): void;
   end(): void;
 }
 
 /** Starts a session for these questions; undefined if there is no API. `now` is the time in ms. */
 export function connect(
-  start: Window, questions: string[], counts: Counts = 'best', now: () => number = Date.now,
+  start: Window, questions: string[], counts: Counts = 'first', now: () => number = Date.now,
 ): ScormSession | undefined {
   const api = findApi(start);
   if (api === undefined || api.LMSInitialize('') !== 'true') return undefined;
@@ -49,6 +51,7 @@ export function connect(
   }
   return {
     student: api.LMSGetValue('cmi.core.student_id').trim(),
+    results,
     answered: (prediction, choices) => {
       const { exercise, correct } = prediction;
       if (exercise === null) return;
