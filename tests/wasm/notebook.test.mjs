@@ -41,11 +41,13 @@ for wrong in (lambda: Basin(headin=60), lambda: slam_widgets.SlamWidget(name="w9
 print(json.dumps({
     "ids": list(WIDGETS), "value": basin.value, "default": basin.dx, "rejected": rejected,
     "link": Basin.from_link("?w=16.1&heading=25&variant=point-to-plane&other=1").value,
-    "doc": Basin.__doc__,
+    "doc": Basin.__doc__, "names": [made.__name__ for made in WIDGETS.values()],
+    "usable": [getattr(slam_widgets, made.__name__, None) is made and made.__name__.isidentifier() for made in WIDGETS.values()],
 }))`], { env: { ...process.env, PYTHONPATH: site }, encoding: 'utf8' });
-    const { ids, value, default: dx, rejected, link, doc } = JSON.parse(said);
+    const { ids, value, default: dx, rejected, link, doc, names, usable } = JSON.parse(said);
     const schema = JSON.parse(readFileSync(join(dist, 'schema.json'), 'utf8'));
     assert.deepEqual(ids, schema.map((widget) => widget.id));
+    assert.ok(usable.every(Boolean), names.join(' '));
     assert.deepEqual(value, { heading: 60, tau: 1.2 });
     assert.equal(dx, schema[0].params.find((param) => param.id === 'dx').default);
     assert.deepEqual(link, { heading: 25, variant: 'point-to-plane' });

@@ -98,7 +98,7 @@ function slide(text) {
   const [, name, title] = text.match(/^(w\S+) (.*)$/m);
   const [, misconception] = text.match(/^\*\*Misconception\.\*\* ([\s\S]*?)\n\n/m);
   const [, goal] = text.match(/^\*\*Goal\.\*\* ([\s\S]*?)\n\n/m);
-  const links = [...text.matchAll(/\[([^\]]+)\]\([a-z-]+\.html(\?w=[^)]+)\)/g)];
+  const links = [...text.matchAll(/\[([^\]]+)\]\([a-z./-]+\.html(\?w=[^)]+)\)/g)];
   const steps = text.split(/^\d+\. /m).slice(1).map((step) => `<li>${inLine(step)}</li>`);
   const first = new URLSearchParams(links[0]?.[2] ?? '');
   const state = [...first].filter(([id]) => id !== 'w').map(([id, value]) => ` ${id}="${escapeHtml(value)}"`).join('');

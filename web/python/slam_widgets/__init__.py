@@ -6,6 +6,7 @@ attributes: `value` has all of them, and `outcome` the result. Names with a hyph
 """
 
 import json
+import re
 from importlib.resources import files
 from pathlib import Path
 from urllib.parse import parse_qsl
@@ -102,7 +103,7 @@ def _range(spec):
 
 def _class(widget):
     """Creates the class of a widget, with its name and its parameters as properties."""
-    title = "".join(word[:1].upper() + word[1:] for word in widget["name"].replace("-", " ").split())
+    title = "".join(word[:1].upper() + word[1:] for word in re.findall(r"\w+", widget["name"]))
     name = _SHORT.get(widget["id"], title.removeprefix("The"))
     ids = {spec["id"].replace("-", "_"): spec["id"] for spec in widget["params"]}
     lines = [f"{attribute}: {_range(_spec(widget['id'], id))}. {_spec(widget['id'], id)['help']}" for attribute, id in ids.items()]
