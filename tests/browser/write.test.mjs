@@ -125,10 +125,43 @@ it('every page carries its policy, and the frame of the code runs none outside a
         frame.src = `${frame.src}?again`;
       });
       for (const frame of frames) frame.contentWindow.postMessage({ text: 'postMessage({ ran: true })' }, '*');
-      while (!heard.some(([, keys]) => keys.includes('ran'))) await new Promise(requestAnimationFrame);
+      while (!heard.some(([, keys]) => keys.includes('worker'))) await new Promise(requestAnimationFrame);
       return heard;
     });
-    assert.deepEqual(told, [[1, ['started']], [1, ['ran']]]);
+    assert.deepEqual(told, [[1, ['started']], [1, ['worker']]]);
+  });
+});
+
+it('functions are judged as by `slam2d mark`: right, wrong, noisy, slow and malicious ones', async () => {
+  const corpus = JSON.parse(readFileSync(new URL('../reference/written-functions.json', import.meta.url), 'utf8'));
+  for (const name of NAMES) {
+    const of = corpus.filter((one) => one.function === name);
+    if (of.length > 0) await writing(name, async (tab) => {
+      for (const { kind, code, passes } of of) {
+        await type(tab, code);
+        const sentences = await run(tab);
+        assert.equal(/^All [1-9]\d* tests pass: /.test(sentences[0]), passes, `${kind}: ${sentences.join('\n')}`);
+        if (!passes) assert.match(sentences[0], /^✗ /, kind);
+        if (kind === 'wrong: async') assert.match(sentences[0], /a promise: leave out async/);
+      }
+    }, { quiet: false });
+  }
+});
+
+it('a run notes the help that was taken, 4 once the solution was shown', async () => {
+  await writing('gate', async (tab) => {
+    await tab.evaluate(() => {
+      globalThis.noted = [];
+      document.addEventListener('slam-code', ({ detail }) => globalThis.noted.push(detail.help));
+    });
+    await run(tab);
+    await tab.getByRole('button', { name: /^Help/ }).click();
+    await run(tab);
+    for (let step = 1; step < 4; step += 1) await tab.getByRole('button', { name: /^Help/ }).click();
+    const solution = await tab.locator('.cm-content').innerText();
+    await type(tab, `${solution}\n// mine`);
+    await run(tab);
+    assert.deepEqual(await tab.evaluate(() => globalThis.noted), [0, 1, 4]);
   });
 });
 

@@ -24,6 +24,8 @@ interface Written {
   code: string;
   attempts: number;
   time: string;
+  /** Steps of help taken before any of the runs; 4 if the page had shown its solution. Earlier versions did not count. */
+  help?: number;
 }
 
 /** The stored value. */
@@ -51,10 +53,11 @@ document.addEventListener('slam-predict', ({ detail }: CustomEvent<Prediction>) 
 });
 
 document.addEventListener('slam-code', (event) => {
-  const { name, code } = (event as CustomEvent<{ name: string; code: string }>).detail;
+  const { name, code, help } = (event as CustomEvent<{ name: string; code: string; help: number }>).detail;
   const functions = functionsOf(current);
-  const attempts = (functions.get(name)?.attempts ?? 0) + 1;
-  functions.set(name, { function: name, code, attempts, time: new Date().toISOString() });
+  const before = functions.get(name);
+  const attempts = (before?.attempts ?? 0) + 1;
+  functions.set(name, { function: name, code, attempts, time: new Date().toISOString(), help: Math.max(before?.help ?? 0, help) });
   changed();
 });
 
@@ -108,7 +111,8 @@ export async function answerFile(): Promise<{ name: string; text: string }> {
 function canonical(name: string, answers: Answer[], functions: Written[]): string {
   const rows = answers.map(({ exercise, widget, state, prediction, result, attempts, time }) =>
     [exercise, widget, state, prediction, result, attempts, time]);
-  const codes = functions.map((one) => [one.function, one.code, one.attempts, one.time]);
+  const codes = functions.map(({ function: of, code, attempts, time, help }) =>
+    [of, code, attempts, time, ...(help === undefined ? [] : [help])]);
   return JSON.stringify([SCHEMA, name, ...rows, ...codes]);
 }
 

@@ -24,33 +24,58 @@ const LINES_BEFORE = 1;
 /** To the worker: calls of the function, the program of the widgets, or an order for it. */
 export type Request = { calls: unknown[][] } | { program: ArrayBuffer } | { order: string };
 
+/** A name that the reader's code cannot guess: of what the worker's text keeps from it, and of what is no message of its own. */
+function newKey(): string {
+  return `slam_${[...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, '0')).join('')}`;
+}
+
+/**
+ * A result as far as a test reads it: numbers, texts and truth values, also in an array of arrays, or `{chi2, accepted}`.
+ * `slam2d mark` reads the same.
+ */
+const PLAIN = `(function plain(value, depth) {
+  if (value === null || ['number', 'boolean', 'string'].includes(typeof value)) return value;
+  if (depth === 0 || !['object', 'function'].includes(typeof value)) return undefined;
+  if (typeof value.then === 'function') throw new Error('a promise: leave out async');
+  const length = value.length;
+  if (typeof value === 'object' && typeof length === 'number') {
+    const items = [];
+    for (let k = 0; k < length && k < 1000; k += 1) items[k] = plain(value[k], depth - 1);
+    return items;
+  }
+  return { chi2: plain(value.chi2, 0), accepted: plain(value.accepted, 0) };
+})`.replaceAll('\n', ' ');
+
 /** The text of the worker. It takes its messages before the reader's code runs, which may replace globals. */
-function workerText(code: string, name: string, core: string): string {
-  const before = `'use strict'; const __slam = ((post, on) => ({ post, on }))(self.postMessage.bind(self), self.addEventListener.bind(self));`;
+function workerText(code: string, name: string, core: string, key: string): string {
+  const before = `'use strict'; const ${key} = ((send, on) => ({ post: (told) => send({ key: '${key}', ...told }), on, plain: ${PLAIN} }))(self.postMessage.bind(self), self.addEventListener.bind(self));`;
   const after = `
 ;${core}
-;(() => {
+;(({ post, on, plain }) => {
   const name = ${JSON.stringify(name)};
   const written = typeof ${name} === 'function' ? ${name} : undefined;
   const attempt = (run) => {
-    try { __slam.post({ result: run() }); }
-    catch (error) { __slam.post({ error: String(error), stack: String(error && error.stack) }); }
+    try { post({ result: run() }); }
+    catch (error) { post({ error: String(error), stack: String(error && error.stack) }); }
   };
   let execute;
-  __slam.on('message', async ({ data }) => {
-    if (written === undefined) { __slam.post({ missing: name }); return; }
-    for (const given of data.calls ?? []) attempt(() => written(...given));
+  on('message', async ({ data }) => {
+    if (written === undefined) { post({ missing: name }); return; }
+    for (const given of data.calls ?? []) attempt(() => plain(written(...given), 2));
     if (data.program !== undefined) execute = await __slamCore.start(data.program, name, written);
-    if (data.order !== undefined) attempt(() => execute(data.order, () => __slam.post({ working: true })));
-    __slam.post({ done: true });
+    if (data.order !== undefined) attempt(() => execute(data.order, () => post({ working: true })));
+    post({ done: true });
   });
-  __slam.post({ ready: true });
-})();`;
+  post({ ready: true });
+})(${key});`;
   return `${before}\n${code}\n${after}`;
 }
 
 /** The page of the frame, which has a policy of its own: that of the page that shows it allows no such script. */
 const FRAME = 'your-code.html';
+
+/** What the frame says, or passes on from the worker, in which the reader's code may post anything. */
+type Heard = { worker: Told & { key?: string } } | Told;
 
 interface Told {
   started?: boolean;
@@ -78,10 +103,13 @@ interface Pending {
 export class Sandbox {
   readonly #frame = document.createElement('iframe');
   readonly #code: string;
+  readonly #key = newKey();
   #pending: Pending | undefined;
   #timer: ReturnType<typeof setTimeout> | undefined;
-  readonly #hear = ({ source, data }: MessageEvent<Told>): void => {
-    if (source === this.#frame.contentWindow) this.#heard(data);
+  readonly #hear = ({ source, data }: MessageEvent<Heard>): void => {
+    if (source !== this.#frame.contentWindow) return;
+    if (!('worker' in data)) this.#heard(data);
+    else if (data.worker?.key === this.#key) this.#heard(data.worker);
   };
 
   private constructor(code: string) {
@@ -104,7 +132,7 @@ export class Sandbox {
     document.body.append(frame);
     await started;
     const ready = sandbox.#wait(PATIENCE_MS);
-    frame.contentWindow?.postMessage({ text: workerText(code, name, core) }, '*');
+    frame.contentWindow?.postMessage({ text: workerText(code, name, core, sandbox.#key) }, '*');
     await ready;
     return sandbox;
   }

@@ -45,13 +45,16 @@ export function open(details: HTMLElement): void {
     run.disabled = true;
     editor.mark();
     results.replaceChildren(sentence('Your function is being called …'));
-    document.dispatchEvent(new CustomEvent('slam-code', { detail: { name: exercise.name, code: editor.text() } }));
+    const help = isSolution(editor.text(), exercise) ? 4 : taken;
+    document.dispatchEvent(new CustomEvent('slam-code', { detail: { name: exercise.name, code: editor.text(), help } }));
     void test(editor.text(), exercise).then(({ sentences, line }) => {
       results.replaceChildren(...sentences);
       if (line !== undefined) editor.mark(line.number, line.message);
       run.disabled = false;
     });
   });
+  /** Steps of help that the reader took. */
+  let taken = 0;
   let shownHelp = 0;
   const help = button('Help (1 of 4)', () => {
     const step = exercise.help[shownHelp];
@@ -59,8 +62,9 @@ export function open(details: HTMLElement): void {
       results.append(sentence(step));
     } else {
       editor.replace(exercise.solution);
-      results.append(sentence('This is a solution. Undo brings yours back.'));
+      results.append(sentence('This is a solution. Undo brings yours back. Saved answers note that it was shown.'));
     }
+    taken = shownHelp + 1;
     shownHelp = Math.min(shownHelp + 1, exercise.help.length);
     help.textContent = shownHelp < exercise.help.length ? `Help (${shownHelp + 1} of 4)` : 'Help (4 of 4): the solution';
   });
@@ -133,7 +137,10 @@ async function test(code: string, exercise: Exercise): Promise<Tested> {
     let line: Tested['line'];
     for (const [k, trial] of exercise.trials.entries()) {
       const answer = called[k];
-      if (answer === undefined) continue;
+      if (answer === undefined) {
+        faults.push(sentence(`✗ ${trial.name}: your function gave no answer.`));
+        continue;
+      }
       if ('error' in answer) {
         const at = answer.line === undefined ? '' : ` in line ${answer.line}`;
         faults.push(sentence(`✗ ${trial.name}: your function ended with ${answer.error}${at}.`));
@@ -152,6 +159,12 @@ async function test(code: string, exercise: Exercise): Promise<Tested> {
     const found: Tested = { sentences: [sentence(`✗ ${at}${error.message}`)] };
     return error.line === undefined ? found : { ...found, line: { number: error.line, message: error.message } };
   }
+}
+
+/** Whether the code is the solution but for spaces, as after a reload. */
+function isSolution(code: string, exercise: Exercise): boolean {
+  const letters = (text: string): string => text.replaceAll(/\s/g, '');
+  return letters(code) === letters(exercise.solution);
 }
 
 function stored(exercise: Exercise): string | undefined {

@@ -55,8 +55,15 @@ fn numbers(value: &JsValue) -> Option<Vec<f64>> {
 
 /// A motion `[x, y, θ]`.
 fn motion(value: &JsValue) -> Result<[f64; 3], String> {
-    let motion = numbers(value).and_then(|numbers| numbers.try_into().ok());
-    motion.ok_or_else(|| "has to return three numbers, [x, y, θ]".to_owned())
+    let motion: Option<[f64; 3]> = numbers(value).and_then(|numbers| numbers.try_into().ok());
+    let motion = motion.ok_or("has to return three numbers, [x, y, θ]")?;
+    if motion.iter().all(|number| number.is_finite()) {
+        return Ok(motion);
+    }
+    let [x, y, theta] = motion;
+    Err(format!(
+        "returned [{x}, {y}, {theta}]: each has to be a finite number"
+    ))
 }
 
 /// The pairs, of `count`, that are not among the kept ones.
@@ -77,14 +84,17 @@ fn dropped(value: &JsValue, count: usize) -> Result<Vec<usize>, String> {
     Ok(dropped.map(|(index, _)| index).collect())
 }
 
-/// The χ² of `{chi2, accepted}`, whose verdict has to be that of χ² ≤ limit.
-fn chi2(value: &JsValue, limit: f64) -> Result<f64, String> {
+/// The χ² of `{chi2, accepted}`, whose verdict has to be that of χ² ≤ limit; only an innovation that is no number has none.
+fn chi2(value: &JsValue, innovation: &Vector3<f64>, limit: f64) -> Result<f64, String> {
     let field = |name: &str| Reflect::get(value, &JsValue::from_str(name)).ok();
     let chi2 = field("chi2").and_then(|found| found.as_f64());
     let accepted = field("accepted").and_then(|found| found.as_bool());
     let (Some(chi2), Some(accepted)) = (chi2, accepted) else {
         return Err("has to return an object {chi2, accepted}".to_owned());
     };
+    if chi2.is_nan() && innovation.iter().all(|part| part.is_finite()) {
+        return Err("returned χ² NaN for an innovation of three numbers".to_owned());
+    }
     if accepted == (chi2 <= limit) {
         return Ok(chi2);
     }
@@ -128,7 +138,10 @@ impl InnovationGate for Called {
             &Array::of2(&config.drift_sigma_m.into(), &config.drift_sigma_rad.into()),
             &config.gate_chi2.into(),
         );
-        call(&arguments, |value| chi2(value, config.gate_chi2)).unwrap_or(f64::NAN)
+        call(&arguments, |value| {
+            chi2(value, innovation, config.gate_chi2)
+        })
+        .unwrap_or(f64::NAN)
     }
 }
 
