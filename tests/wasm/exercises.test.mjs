@@ -14,10 +14,11 @@ const first = /<slam-predict exercise="16\.1"/;
 it('gives each question of the page an id', () => {
   const exercises = readExercises(page);
   assert.equal(exercises.length, page.match(/<slam-predict/g).length);
-  const { choices, ...rest } = exercises.find(({ exercise }) => exercise === '16.5a');
+  const { choices, varies, ...rest } = exercises.find(({ exercise }) => exercise === '16.5a');
   assert.deepEqual(rest, {
-    exercise: '16.5a', widget: 'w16.2', state: 'noise=4&t=129', fact: 'front_end_error_m', unit: ' m', varies: 'noise=3.25,3.5,3.75,4',
+    exercise: '16.5a', widget: 'w16.2', state: 'noise=4&t=129', fact: 'front_end_error_m', unit: ' m',
   });
+  assert.match(varies, /^noise seed: 3\.5 1, /);
   assert.deepEqual(choices[2], { choice: 'twice', from: 1, to: 2 });
 });
 

@@ -16,16 +16,21 @@ export function seedOf(student: string, exercise: string, attempt: number): numb
   return (hash ^ (hash >>> 16)) >>> 0;
 }
 
-/** The value of a student's task by `varies="noise=3,4"`: one of them. Undefined if nothing but the seed varies. */
-export function ownValue(varies: string, student: string, exercise: string): { id: string; value: string } | undefined {
-  const [, id, values] = /^([\w-]+)=(.+)$/.exec(varies) ?? [];
-  if (id === undefined || values === undefined) return undefined;
-  const all = values.split(',');
-  const value = all[seedOf(student, exercise, 0) % all.length];
-  return value === undefined ? undefined : { id, value };
+/**
+ * The parameters of a student's task by `varies="noise seed: 3.25 12, 3.5 7"`: names, and the values of each task, of which
+ * a hash deals one. Undefined if there are no tasks to deal.
+ */
+export function ownTask(varies: string, student: string, exercise: string): Map<string, string> | undefined {
+  const [, names = '', tasks] = /^([^:]+):(.+)$/.exec(varies) ?? [];
+  if (tasks === undefined) return undefined;
+  const all = tasks.split(',');
+  const values = all[seedOf(student, exercise, 0) % all.length]?.trim().split(/\s+/) ?? [];
+  return new Map(names.trim().split(/\s+/).map((name, k) => [name, values[k] ?? '']));
 }
 
-/** A state with a value in place of its own. */
-export function withValue(state: string, { id, value }: { id: string; value: string }): string {
-  return state.split('&').map((pair) => (pair.startsWith(`${id}=`) ? `${id}=${value}` : pair)).join('&');
+/** A state with these values: in place of its own, or after them. */
+export function withValues(state: string, values: Map<string, string>): string {
+  const pairs = new Map(state.split('&').map((pair) => pair.split('=', 2) as [string, string]));
+  for (const [name, value] of values) pairs.set(name, value);
+  return [...pairs].map(([name, value]) => `${name}=${value}`).join('&');
 }

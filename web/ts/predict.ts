@@ -12,14 +12,14 @@
 // `<li data-choice="smaller" data-to="0.02">`, or `data-from` inclusive and `data-to` exclusive.
 //
 // For a student (attribute `student`, or `?student=` of the page), an exercise whose widget has a seed becomes a personal
-// task, unless `varies="no"` says that most seeds have the same answer. `varies="noise=3,4"` gives it one of these values, too,
-// and the question says which.
+// task, unless `varies="no"` says that most seeds have the same answer. `varies="noise seed: 3 12, 4 7"` lists the tasks instead, of
+// which no answer has more than a third; the question says which noise it has.
 
 // @ts-expect-error: a separate bundle.
 import './slam-widget.js';
 import { attemptsAt, changes, student } from './answers';
 import { stopKeyPropagation, withCode } from './dom';
-import { MAX_ATTEMPTS, ownValue, seedOf, withValue } from './personal-seeds';
+import { MAX_ATTEMPTS, ownTask, seedOf, withValues } from './personal-seeds';
 import './slam-answers';
 import { showBackButton } from './back-button';
 import type { SlamWidget } from './element';
@@ -95,12 +95,13 @@ export class SlamPredict extends HTMLElement {
   /** Tells a student what is personal about the task; the choices then have their ranges, because the text is the chapter's. */
   #showTask(): void {
     const person = this.#person();
-    const own = person === '' ? undefined : ownValue(this.getAttribute('varies') ?? '', person, this.getAttribute('exercise') ?? '');
+    const own = person === '' ? undefined : ownTask(this.getAttribute('varies') ?? '', person, this.getAttribute('exercise') ?? '');
     const sentences = [];
     if (own !== undefined) {
-      const chapter = new URLSearchParams(this.getAttribute('state') ?? '').get(own.id);
-      sentences.push(`Your task has the ${own.id} ${own.value} and a seed of its own.`);
-      sentences.push(`The numbers in the text belong to the chapter’s, with the ${own.id} ${chapter}.`);
+      const state = new URLSearchParams(this.getAttribute('state') ?? '');
+      const [name = '', value] = [...own].find(([id]) => state.has(id)) ?? [];
+      sentences.push(`Your task has the ${name} ${value} and a seed of its own.`);
+      sentences.push(`The numbers in the text belong to the chapter’s, with the ${name} ${state.get(name)}.`);
       if (this.hasAttribute('fact')) sentences.push('Choose by the ranges.');
     } else if (person !== '' && this.#isSame()) {
       sentences.push('Everyone has this task: another seed would hardly change its answer.');
@@ -177,20 +178,23 @@ export class SlamPredict extends HTMLElement {
     this.#answer?.focus({ preventScroll: true });
   }
 
-  /** Runs the question. A personal task has the student's first seed for which one of the choices is right. */
+  /** Runs the question. A personal task is one of a list, or has the first seed for which one of the choices is right. */
   async #result(widget: SlamWidget, exercise: string, person: string): Promise<Result> {
     const state = this.getAttribute('state') ?? '';
     await setState(widget, state);
     const isFixed = this.#isSame() || widget.get('seed') === undefined || new URLSearchParams(state).has('seed');
     if (exercise === '' || person === '' || isFixed) return { state, outcome: outcomeOf(widget) };
-    const value = ownValue(this.getAttribute('varies') ?? '', person, exercise);
-    const own = value === undefined ? state : withValue(state, value);
-    if (value !== undefined) widget.set(value.id, value.value);
+    const own = ownTask(this.getAttribute('varies') ?? '', person, exercise);
+    if (own !== undefined) {
+      const personal = withValues(state, own);
+      await setState(widget, personal);
+      return { state: personal, outcome: outcomeOf(widget) };
+    }
     for (let attempt = 0; attempt < MAX_ATTEMPTS; attempt += 1) {
       const seed = seedOf(person, exercise, attempt);
       widget.set('seed', seed);
       const outcome = outcomeOf(widget);
-      if (this.#right(outcome) !== null) return { state: `${own}&seed=${seed}`, outcome };
+      if (this.#right(outcome) !== null) return { state: `${state}&seed=${seed}`, outcome };
     }
     await setState(widget, state);
     return { state, outcome: outcomeOf(widget) };
