@@ -132,7 +132,7 @@ it('every page carries its policy, and the frame of the code runs none outside a
   });
 });
 
-it('functions are judged as by `slam2d mark`: right, wrong, noisy, slow and malicious ones', async () => {
+it('functions are judged as by `ch16-mark`: right, wrong, noisy, slow and malicious ones', async () => {
   const corpus = JSON.parse(readFileSync(new URL('../reference/written-functions.json', import.meta.url), 'utf8'));
   for (const name of NAMES) {
     const of = corpus.filter((one) => one.function === name);

@@ -7,10 +7,10 @@
 //! ```
 //!
 //! Functions that the reader wrote may follow: `"code": [{"function": "gate", "code": "function gate…", "attempts": 3,
-//! "time": "…"}]`.
+//! "time": "…", "help": 0}]`.
 //!
 //! The digest is the SHA-256 of `["slam2d-answers/1","Ann",["16.5a","w16.2",…,1,"2026-…"],…]` as compact JSON, with
-//! `["gate","function gate…",3,"2026-…"]` for a function. It detects accidental changes, but no forgery: the algorithm is public.
+//! `["gate","function gate…",3,"2026-…",0]` for a function. It detects accidental changes, but no forgery: the algorithm is public.
 
 use std::collections::HashSet;
 use std::fs::File;
@@ -55,7 +55,12 @@ pub struct Written {
     pub attempts: u32,
     /// Moment of the last one, by the student's clock.
     pub time: String,
+    /// Steps of help that the student took, [`SOLUTION_SHOWN`] at most; earlier pages did not count them.
+    pub help: Option<u32>,
 }
+
+/// The last step of help: the page shows its solution.
+pub const SOLUTION_SHOWN: u32 = 4;
 
 /// The last answer to one exercise.
 #[derive(Clone, Debug, Deserialize)]
@@ -141,12 +146,14 @@ impl StudentAnswers {
             ])
         }));
         rows.extend(self.code.iter().map(|written| {
-            serde_json::json!([
-                written.function,
-                written.code,
-                written.attempts,
-                written.time,
-            ])
+            let mut row = vec![
+                serde_json::json!(written.function),
+                serde_json::json!(written.code),
+                serde_json::json!(written.attempts),
+                serde_json::json!(written.time),
+            ];
+            row.extend(written.help.map(serde_json::Value::from));
+            serde_json::Value::Array(row)
         }));
         serde_json::Value::Array(rows).to_string()
     }

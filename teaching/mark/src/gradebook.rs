@@ -4,11 +4,11 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
-use anyhow::ensure;
+use anyhow::{bail, ensure};
 
 use crate::answers::without_bom;
 use crate::exercise::{self, AnswerMark};
-use crate::{Sheet, csv_cell, written};
+use crate::{Sheet, csv_cell, one_line, written};
 use command_line::in_file::InFile as _;
 use command_line::output::say;
 
@@ -28,8 +28,8 @@ pub enum Columns {
 const CANVAS: [&str; 5] = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section"];
 /// The columns by which Moodle finds a student.
 const MOODLE: [&str; 3] = ["Username", "ID number", "Email address"];
-/// The columns of any roster that may hold what a student typed as name or token.
-const IDENTIFIERS: [&str; 11] = [
+/// The columns of any roster that may hold what a student typed as name or token, in English and in German.
+const IDENTIFIERS: [&str; 16] = [
     "Student",
     "Name",
     "ID",
@@ -41,47 +41,94 @@ const IDENTIFIERS: [&str; 11] = [
     "Email",
     "Token",
     "Full name",
+    "ID-Nummer",
+    "Anmeldename",
+    "E-Mail-Adresse",
+    "Matrikelnummer",
+    "Vollständiger Name",
 ];
 
 /// The students of a course.
 #[derive(Clone, Debug)]
 pub struct Roster {
     head: Vec<String>,
-    rows: Vec<Vec<String>>,
+    rows: Vec<Row>,
     /// Columns that identify a student.
     identifiers: Vec<usize>,
 }
 
+/// A student of a course.
+#[derive(Clone, Debug)]
+struct Row {
+    /// Its number in the table, from 1; quoted cells may hold lines, so it is no line of the file.
+    number: usize,
+    cells: Vec<String>,
+}
+
 impl Roster {
-    /// Reads a table of CSV whose first line names the columns, as Canvas and Moodle export it.
+    /// Reads a table of CSV whose first line names the columns, as Canvas and Moodle export it, with commas, semicolons
+    /// or tabs. `by` names the only column that identifies a student.
     ///
     /// # Errors
     /// If it cannot be read or no column identifies a student.
-    pub fn read(path: &Path) -> anyhow::Result<Self> {
+    pub fn read(path: &Path, by: Option<&str>) -> anyhow::Result<Self> {
         let bytes = fs::read(path).in_file(path)?;
-        let text = String::from_utf8_lossy(without_bom(&bytes)).into_owned();
-        let mut rows = table(&text).into_iter();
+        let Ok(text) = str::from_utf8(without_bom(&bytes)) else {
+            bail!(
+                "{} is not UTF-8; save it as “CSV UTF-8”, so that every name stays as it is",
+                path.display()
+            );
+        };
+        let separator = separator(text);
+        let mut rows = table(text, separator).into_iter();
         let head = rows.next().unwrap_or_default();
-        let is_identifier = |name: &String| {
-            let known = |known: &&str| known.eq_ignore_ascii_case(name.trim());
-            IDENTIFIERS.iter().any(known)
+        let is_identifier = |name: &String| match by {
+            Some(by) => name.trim() == by.trim(),
+            None => IDENTIFIERS.iter().any(|known| is_same(known, name)),
         };
         let columns = head.iter().enumerate();
         let identifiers: Vec<usize> = columns
             .filter(|(_, name)| is_identifier(name))
             .map(|(column, _)| column)
             .collect();
+        let is_one = identifiers.len() == 1 || (by.is_none() && !identifiers.is_empty());
         ensure!(
-            !identifiers.is_empty(),
-            "{} has no column that identifies a student; name one of its columns {}",
+            is_one,
+            "{} has {}; its columns, with {} between them, are {}; name the one that holds the names or tokens by --by COLUMN",
             path.display(),
-            IDENTIFIERS.join(", ")
+            match by {
+                Some(by) => format!("not one column {}", by.trim()),
+                None => "no column that identifies a student".to_owned(),
+            },
+            name_of(separator),
+            head.iter()
+                .map(|name| name.trim())
+                .collect::<Vec<_>>()
+                .join(" | ")
         );
-        // Canvas exports the points possible as if they were a student.
-        let rows = rows.filter(|row| {
-            let first = row.first().map_or("", |cell| cell.trim());
-            first != "Points Possible" && row.iter().any(|cell| !cell.trim().is_empty())
-        });
+        let canvas_id = head.iter().position(|name| name.trim() == CANVAS[1]);
+        let canvas_id = canvas_id.filter(|_| head.iter().any(|name| name.trim() == CANVAS[3]));
+        let is_filled = |cells: &[String], column: usize| {
+            cells
+                .get(column)
+                .is_some_and(|cell| !cell.trim().is_empty())
+        };
+        let is_student = |cells: &[String]| match canvas_id {
+            // Canvas exports the points possible, and whether grades are posted by hand, as if they were students.
+            Some(id) => is_filled(cells, id),
+            None => {
+                let first = cells.first().map_or("", |cell| cell.trim());
+                let mut known = identifiers.iter();
+                first != "Points Possible" && known.any(|&column| is_filled(cells, column))
+            }
+        };
+        let rows = rows
+            .enumerate()
+            .filter(|(_, cells)| is_student(cells))
+            .map(|(at, cells)| Row {
+                number: at + 2,
+                cells,
+            });
         Ok(Self {
             rows: rows.collect(),
             identifiers,
@@ -89,40 +136,71 @@ impl Roster {
         })
     }
 
-    /// The only row of which an identifier is this name or token.
-    fn row_of(&self, student: &str) -> Option<usize> {
-        let is_it = |row: &Vec<String>| {
-            let mut cells = self
-                .identifiers
-                .iter()
-                .filter_map(|&column| row.get(column));
-            cells.any(|cell| cell.trim() == student)
+    /// The rows of which an identifier is this name or token; without one, those in which it is but for the case.
+    fn rows_of(&self, student: &str) -> Vec<usize> {
+        let of = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
+            let has = |row: &Row| {
+                let cells = self.identifiers.iter().filter_map(|&at| row.cells.get(at));
+                cells.into_iter().any(|cell| is_it(cell))
+            };
+            let rows = self.rows.iter().enumerate();
+            rows.filter(|(_, row)| has(row)).map(|(at, _)| at).collect()
         };
-        let mut found = self.rows.iter().enumerate().filter(|(_, row)| is_it(row));
-        let (at, _) = found.next()?;
-        found.next().is_none().then_some(at)
+        let exact = of(&|cell| cell.trim() == student.trim());
+        if exact.is_empty() {
+            of(&|cell| is_same(cell, student))
+        } else {
+            exact
+        }
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.head.iter().any(|head| head.trim() == name)
     }
 
     fn cell(&self, row: usize, name: &str) -> &str {
         let column = self.head.iter().position(|head| head.trim() == name);
-        let cell = column.and_then(|column| self.rows[row].get(column));
+        let cell = column.and_then(|column| self.rows[row].cells.get(column));
         cell.map_or("", String::as_str)
     }
+
+    /// The columns that identify a student, for Moodle, which maps any of them.
+    fn moodle_columns(&self) -> Vec<String> {
+        let english: Vec<&str> = MOODLE.into_iter().filter(|name| self.has(name)).collect();
+        if english.is_empty() {
+            let names = self.identifiers.iter().map(|&at| self.head[at].trim());
+            return names.map(str::to_owned).collect();
+        }
+        english.into_iter().map(str::to_owned).collect()
+    }
+}
+
+/// Whether two names or tokens are the same but for case and spaces around them.
+fn is_same(one: &str, other: &str) -> bool {
+    one.trim().to_lowercase() == other.trim().to_lowercase()
 }
 
 /// Prints the gradebook and returns the problems, a sentence each: files of one student, and students without a row.
 pub fn print(sheets: &[Sheet], roster: Option<&Roster>, columns: Columns) -> Vec<String> {
     let mut problems = Vec::new();
     let mut of_student: HashMap<&str, &Sheet> = HashMap::new();
-    let mut order = Vec::new();
+    let mut order: Vec<&str> = Vec::new();
     for sheet in sheets {
         let student = sheet.identity();
         if let Some(first) = of_student.get(student) {
-            problems.push(format!(
-                "{} and {} are both of {student}; the first one counts, so keep the right one",
-                first.file, sheet.file
-            ));
+            problems.push(both_of(first, sheet, &one_line(student)));
             continue;
+        }
+        // A roster knows whether these are two students.
+        let twin = order.iter().find(|known| is_same(known, student));
+        if let (Some(&twin), None) = (twin, roster) {
+            problems.push(format!(
+                "{} is of {} and {} of {}; if that is one student, keep the right one",
+                of_student[twin].file,
+                one_line(twin),
+                sheet.file,
+                one_line(student)
+            ));
         }
         of_student.insert(student, sheet);
         order.push(student);
@@ -132,10 +210,7 @@ pub fn print(sheets: &[Sheet], roster: Option<&Roster>, columns: Columns) -> Vec
         (Columns::Plain, Some(roster)) => roster.head.clone(),
         (Columns::Canvas, _) => CANVAS.map(str::to_owned).to_vec(),
         (Columns::Moodle, None) => vec![MOODLE[1].to_owned()],
-        (Columns::Moodle, Some(roster)) => {
-            let has = |name: &&str| roster.head.iter().any(|head| head.trim() == *name);
-            MOODLE.into_iter().filter(has).map(str::to_owned).collect()
-        }
+        (Columns::Moodle, Some(roster)) => roster.moodle_columns(),
     };
     let title = |question: &str| match columns {
         Columns::Plain => question.to_owned(),
@@ -153,20 +228,26 @@ pub fn print(sheets: &[Sheet], roster: Option<&Roster>, columns: Columns) -> Vec
         Some(roster) => {
             let mut answered: HashMap<usize, &Sheet> = HashMap::new();
             for student in order {
-                let Some(row) = roster.row_of(student) else {
-                    problems.push(format!(
-                        "{}: {student} is in no row of the roster, or in several",
-                        of_student[student].file
-                    ));
+                let sheet = of_student[student];
+                let found = roster.rows_of(student);
+                let &[row] = found.as_slice() else {
+                    let numbers: Vec<String> = found
+                        .iter()
+                        .map(|&row| roster.rows[row].number.to_string())
+                        .collect();
+                    let place = match numbers.as_slice() {
+                        [] => "in no row of the roster".to_owned(),
+                        rows => format!("in the rows {} of the roster", rows.join(" and ")),
+                    };
+                    let student = one_line(student);
+                    problems.push(format!("{}: {student} is {place}", sheet.file));
                     continue;
                 };
-                if let Some(first) = answered.insert(row, of_student[student]) {
-                    problems.push(format!(
-                        "{} and {} are both of row {} of the roster; the second one counts, so keep the right one",
-                        first.file,
-                        of_student[student].file,
-                        row + 2
-                    ));
+                if let Some(first) = answered.get(&row) {
+                    let place = format!("row {} of the roster", roster.rows[row].number);
+                    problems.push(both_of(first, sheet, &place));
+                } else {
+                    answered.insert(row, sheet);
                 }
             }
             for row in 0..roster.rows.len() {
@@ -190,6 +271,13 @@ pub fn print(sheets: &[Sheet], roster: Option<&Roster>, columns: Columns) -> Vec
         }
     }
     problems
+}
+
+fn both_of(first: &Sheet, second: &Sheet, whom: &str) -> String {
+    format!(
+        "{} and {} are both of {whom}; the first one counts, so keep the right one",
+        first.file, second.file
+    )
 }
 
 /// The questions, and the functions if a student wrote one.
@@ -224,8 +312,37 @@ fn line(cells: &[String]) {
     say!("{}", cells.join(","));
 }
 
-/// The rows of a table of CSV (RFC 4180).
-fn table(text: &str) -> Vec<Vec<String>> {
+/// What separates the cells of the first line: the separator that stands there most often outside of quotes.
+fn separator(text: &str) -> char {
+    let mut is_quoted = false;
+    let mut counts = [(',', 0), (';', 0), ('\t', 0)];
+    for letter in text.chars() {
+        is_quoted ^= letter == '"';
+        if letter == '\n' && !is_quoted {
+            break;
+        }
+        for (_, count) in counts
+            .iter_mut()
+            .filter(|(one, _)| *one == letter && !is_quoted)
+        {
+            *count += 1;
+        }
+    }
+    // Of equals the first: a table of one column has none.
+    let best = counts.iter().rev().max_by_key(|(_, count)| *count);
+    best.map_or(',', |(letter, _)| *letter)
+}
+
+fn name_of(separator: char) -> &'static str {
+    match separator {
+        ';' => "semicolons",
+        '\t' => "tabs",
+        _ => "commas",
+    }
+}
+
+/// The rows of a table of CSV (RFC 4180) with this separator.
+fn table(text: &str, separator: char) -> Vec<Vec<String>> {
     let (mut rows, mut row, mut cell) = (Vec::new(), Vec::new(), String::new());
     let mut is_quoted = false;
     let mut letters = text.chars().peekable();
@@ -236,7 +353,7 @@ fn table(text: &str) -> Vec<Vec<String>> {
                 letters.next();
             }
             '"' => is_quoted = !is_quoted,
-            ',' if !is_quoted => row.push(core::mem::take(&mut cell)),
+            letter if letter == separator && !is_quoted => row.push(core::mem::take(&mut cell)),
             '\r' if !is_quoted => {}
             '\n' if !is_quoted => {
                 row.push(core::mem::take(&mut cell));
@@ -257,8 +374,21 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_first_line_shows_the_separator() {
+        for (text, expected) in [
+            ("a,b;c,d\n;;;;;\n", ','),
+            ("\"a,b,c\";d\n,,,,\n", ';'),
+            ("a\tb,c\td\n", '\t'),
+            ("Token\ns1;s2;s3\n", ','),
+        ] {
+            assert_eq!(separator(text), expected, "{text}");
+        }
+    }
+
+    #[test]
     fn cells_may_hold_commas_quotes_and_lines() {
-        let rows = table("Student,ID\r\n\"Lee, \"\"Ann\"\"\",7\n\"two\nlines\",\n");
+        let text = "Student,ID\r\n\"Lee, \"\"Ann\"\"\",7\n\"two\nlines\",\n";
+        let rows = table(text, separator(text));
         assert_eq!(
             rows,
             [["Student", "ID"], ["Lee, \"Ann\"", "7"], ["two\nlines", ""]]

@@ -35,6 +35,9 @@ struct MarkArgs {
     /// With --csv, the students of the course: a table that Canvas or Moodle exported. Rows have its order.
     #[arg(long, requires = "csv", value_name = "ROSTER.csv")]
     roster: Option<PathBuf>,
+    /// The column of the roster that holds what the students gave as name or token; otherwise any that usually does.
+    #[arg(long, requires = "roster", value_name = "COLUMN")]
+    by: Option<String>,
     /// With --csv, whose column names it has.
     #[arg(long, requires = "csv", value_enum, default_value_t = Columns::Plain)]
     columns: Columns,
@@ -64,17 +67,29 @@ fn main() -> ExitCode {
 /// Marks every file that can be read, in order.
 ///
 /// # Errors
-/// If a file cannot be read; the others are marked.
+/// If a file cannot be read or was edited; all that can be read are marked.
 fn run(args: &MarkArgs) -> anyhow::Result<()> {
-    let roster = args.roster.as_deref().map(Roster::read).transpose()?;
+    let by = args.by.as_deref();
+    let roster = args.roster.as_deref().map(|path| Roster::read(path, by));
+    let roster = roster.transpose()?;
     let sheets: Vec<_> = args.files.par_iter().map(|path| sheet_of(path)).collect();
     if args.long && sheets.iter().any(Result::is_ok) {
         say!("{}", CSV_HEAD);
     }
     let files = sheets.len();
     let mut unusable = 0;
+    let mut problems = Vec::new();
     let mut graded = Vec::new();
     for sheet in sheets {
+        if let Ok(sheet) = sheet.as_ref()
+            && !sheet.intact
+        {
+            problems.push(format!(
+                "{} was changed after the page saved it, its digest is broken; ask {} for the file as it was saved",
+                sheet.file,
+                one_line(sheet.identity())
+            ));
+        }
         match sheet {
             Ok(sheet) if args.json => print_json(&sheet),
             Ok(sheet) if args.long => sheet.print_csv(),
@@ -88,15 +103,17 @@ fn run(args: &MarkArgs) -> anyhow::Result<()> {
         }
     }
     if args.csv && !args.long {
-        let problems = gradebook::print(&graded, roster.as_ref(), args.columns);
-        for problem in &problems {
-            eprintln!("ch16-mark: {problem}");
-        }
-        if unusable == 0 && !problems.is_empty() {
-            bail!("the gradebook has {} problems", problems.len());
-        }
+        problems.extend(gradebook::print(&graded, roster.as_ref(), args.columns));
+    }
+    for problem in &problems {
+        eprintln!("ch16-mark: {problem}");
     }
     ensure!(unusable == 0, "{unusable} of {files} files are not marked");
+    match problems.len() {
+        0 => {}
+        1 => bail!("all files are marked; look at the one above first"),
+        several => bail!("all files are marked; look at the {several} lines above first"),
+    }
     Ok(())
 }
 
@@ -144,9 +161,6 @@ impl Sheet {
             self.exercises,
             self.right
         );
-        if !self.intact {
-            say!("  the digest is broken: the file was changed after the page saved it");
-        }
         for answer in &self.answers {
             let right = match (&answer.right, &answer.result) {
                 (Some(right), Some(result)) if right != result => {

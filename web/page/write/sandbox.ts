@@ -31,7 +31,7 @@ function newKey(): string {
 
 /**
  * A result as far as a test reads it: numbers, texts and truth values, also in an array of arrays, or `{chi2, accepted}`.
- * `slam2d mark` reads the same.
+ * `ch16-mark` reads the same.
  */
 const PLAIN = `(function plain(value, depth) {
   if (value === null || ['number', 'boolean', 'string'].includes(typeof value)) return value;
