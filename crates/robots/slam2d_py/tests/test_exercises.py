@@ -1,4 +1,4 @@
-"""The exercises in Python: solutions pass, untouched stubs fail, and printing earns nothing."""
+"""The exercises in Python: solutions pass, untouched stubs fail, and no forgery earns anything."""
 
 import json
 import re
@@ -51,6 +51,102 @@ def test_what_a_file_prints_or_how_it_exits_earns_nothing(code, added):
     results, message = exercises.run("svd_align", FOLDER, code)
     assert not (results and all(results.values())) and message
     assert exercises.state("svd_align", code, results) == "fails"
+
+
+#: Wrong functions that try to pass: by the report, by pytest, by the tests, by given.py, by a module, by a value.
+FORGERIES = {
+    "the report named in argv": """
+import os, sys
+path = next((a.split("=", 1)[1] for a in sys.argv if a.startswith("--junitxml=")), None)
+if path: open(path, "w").write('<testsuite><testcase name="test_x"/></testsuite>')
+os._exit(0)""",
+    "every file and stream in reach": """
+import glob, json, os
+names = ["test_it_gives_what_the_core_gives"]
+line = json.dumps({"results": dict.fromkeys(names, True), "message": None})
+for path in glob.glob("/proc/%d/fd/1" % os.getppid()):
+    try: open(path, "w").write(line + "\\n")
+    except OSError: pass
+for fd in range(3, 64):
+    try: os.write(fd, line.encode())
+    except OSError: pass
+print(line)
+os._exit(0)""",
+    "pytest": """
+import _pytest.runner, _pytest.reports, pytest
+_pytest.reports.TestReport.passed = property(lambda self: True)
+_pytest.runner.runtestprotocol = lambda item, **more: []
+def residual(*given): return [0, 0, 0]
+def jacobians(z): return [[0] * 3] * 3, [[0] * 3] * 3""",
+    "numpy and the core": """
+import numpy as np, rustslam2d as rs
+np.abs = lambda value: np.zeros(3)
+np.ndarray.max = rs.between = lambda *given: np.zeros(3)
+def residual(*given): return np.full(3, 9.0)
+def jacobians(z): return np.full((3, 3), 9.0), np.full((3, 3), 9.0)""",
+    "a value that is equal to all": """
+class Equal(float):
+    def __eq__(self, other): return True
+    def __lt__(self, other): return True
+    def __abs__(self): return self
+    def __sub__(self, other): return self
+def residual(*given): return [Equal(9)] * 3
+def jacobians(z): return Equal(9), Equal(9)""",
+    "a value that runs code where it is read": """
+class Run:
+    def __reduce__(self): return exec, ("import os; os._exit(0)",)
+def residual(*given): return Run()
+def jacobians(z): return Run(), Run()""",
+    "importing what passes": "from solved import *",
+}
+
+
+@pytest.mark.parametrize("forgery", FORGERIES)
+def test_a_forged_report_fails(code, forgery):
+    shutil.copy(code / "residual.py", code / "solved.py")
+    (code / "residual.py").write_text(FORGERIES[forgery])
+    for name in ("given", "conftest", "sitecustomize", "pytest"):
+        (code / f"{name}.py").write_text("import os; os._exit(0)")
+    results, message = exercises.run("residual", FOLDER, code)
+    assert len(results) == 5 and not all(results.values()) and message, results
+
+
+def test_a_loop_without_end_is_ended(code, monkeypatch):
+    (code / "svd_align.py").write_text("def svd_align(src, dst):\n    while True:\n        pass\n")
+    monkeypatch.setattr(exercises, "LIMIT_S", 5)
+    results, message = exercises.run("svd_align", FOLDER, code)
+    assert len(results) == 5 and not any(results.values())
+    assert "it was ended after 5 s: is there a loop without end?" in message
+
+
+def test_an_argument_that_the_code_changes_is_changed_for_the_test(code):
+    text = (code / "gauss_newton.py").read_text("utf-8")
+    (code / "gauss_newton.py").write_text(text.replace("def optimize(", "def kept(", 1) + """
+
+def optimize(poses, *others):
+    found = kept(poses, *others)
+    poses += 1.0
+    return found
+""")
+    results, message = exercises.run("gauss_newton", FOLDER, code)
+    assert "have to stay as they are" in message, message
+
+
+@pytest.mark.parametrize(
+    ("name", "place", "instead", "told"),
+    [
+        ("range_histogram", "BINS - 1).astype", "BINS).astype", "counts in the last bin, 63"),
+        ("residual", "rs.compose(rs.inverse(from_), to)", "rs.compose(to, rs.inverse(from_))", "its factors in this order"),
+        ("gauss_newton", "rs.compose(pose, rs.exp(step))", "rs.compose(rs.exp(step), pose)", "not exp(δ) T"),
+        ("trimmed_icp", "rs.compose(step, pose)", "rs.compose(pose, step)", "not compose(pose, step)"),
+    ],
+)
+def test_the_first_failure_names_the_fault(code, name, place, instead, told):
+    text = (code / f"{name}.py").read_text("utf-8")
+    assert place in text
+    (code / f"{name}.py").write_text(text.replace(place, instead, 1))
+    _, message = exercises.run(name, FOLDER, code)
+    assert told in message, message
 
 
 def test_the_next_one_is_that_of_the_plan_and_what_waits_is_passed_over(capsys, code):

@@ -31,6 +31,14 @@ def test_a_loop_error_spreads_evenly_around_the_cycle():
     assert steps == 2, f"it is linear: one step, and one to confirm convergence; it took {steps}"
 
 
+def test_a_step_acts_on_the_right():
+    # By hand: the node is turned by 90°, and one step brings it to where the edge measured it.
+    measured, start = np.array([0.1, 0.0, np.pi / 2]), np.array([[0.0, 0.0, 0.0], [0.0, 0.0, np.pi / 2]])
+    found, _ = optimize_once(start, [(0, 1, measured, np.eye(3))], 0, np.inf)
+    what = "after a step δ a pose has to be T exp(δ), compose(pose, exp(step)), and not exp(δ) T: the pose"
+    assert_same_pose(found[1], measured, 1e-8, what)
+
+
 def ring(nodes, seed=6):
     """A ring of poses with noise on every edge, and chords across it."""
     rng = np.random.default_rng(seed)

@@ -24,7 +24,8 @@ def test_the_distance_is_that_of_chi_squared():
 def test_a_turn_changes_nothing_and_a_return_beyond_the_last_bin_counts_in_it():
     points = seen([0.05, 0.1, 2.0, 5.99, 7.5])
     shares = range_histogram(points, 6.0)
-    assert np.shape(shares) == (64,)
+    assert np.shape(shares) == (64,), (
+        f"the histogram has the shape {np.shape(shares)}, expected (64,): a range of max_range or more counts in the last bin, 63")
     # Bins of 6 m / 64 = 0.094 m.
     for bin, share in ((0, 0.2), (1, 0.2), (21, 0.2), (63, 0.4)):
         assert shares[bin] == pytest.approx(share, abs=1e-12), f"bin {bin}"

@@ -29,11 +29,12 @@ def test_the_error_is_the_logarithm():
 
 def test_it_is_zero_if_the_poses_say_what_was_measured_and_depends_on_their_relation_alone():
     for from_, z, world, to in random_poses(7, 200).reshape(-1, 4, 3):
-        assert_near(residual(from_, rs.compose(from_, z), z), np.zeros(3), 1e-12, "the error of what was measured")
+        as_measured = residual(from_, rs.compose(from_, z), z)
+        assert_near(as_measured, np.zeros(3), 1e-12, "if Tⱼ = Tᵢ Z, the error log(Z⁻¹ Tᵢ⁻¹ Tⱼ), its factors in this order,")
         here, there = residual(from_, to, z), residual(rs.compose(world, from_), rs.compose(world, to), z)
         # Turned by almost π a logarithm may jump to −π.
         apart = rs.between(rs.exp(here), rs.exp(there))
-        assert np.abs(apart).max() < 1e-9, f"the error is {here}, and elsewhere {there}"
+        assert np.abs(apart).max() < 1e-9, f"the error is {here}, and {there} after both poses moved together by {world}"
 
 
 def test_the_jacobians_of_a_quarter_turn():

@@ -16,6 +16,16 @@ def clouds():
 
 
 @pytest.mark.parametrize("variant", ["point-to-point", "point-to-plane"])
+def test_an_increment_is_a_motion_in_the_frame_of_the_target(clouds, variant):
+    source, target, truth = clouds
+    guess = rs.compose(truth, (-1, 0.5, -0.6))
+    core = rs.icp(source, target, init=guess, variant=variant, max_distance=1.5, max_iterations=1)
+    found = icp(source, target, guess, normals=rs.normals(target), variant=variant, max_distance=1.5, max_iterations=1)
+    what = "after an increment the pose has to be compose(step, pose), and not compose(pose, step): the pose"
+    assert_same_pose(found.pose, core.pose, 1e-9, what)
+
+
+@pytest.mark.parametrize("variant", ["point-to-point", "point-to-plane"])
 @pytest.mark.parametrize("off", [(0, 0, 0), (0.3, -0.2, 0.1), (0, 0, 1.6), (-1, 0.5, -0.6)])
 def test_without_trimming_every_registration_ends_where_the_core_ends(clouds, variant, off):
     source, target, truth = clouds
