@@ -8,6 +8,7 @@ use std::time::{Duration, SystemTime};
 use std::{fmt, fs};
 
 use anyhow::{Context as _, bail, ensure};
+use proc_macro2::{TokenStream, TokenTree};
 
 use crate::run::{cargo, root, run};
 use crate::tools::linting;
@@ -146,6 +147,14 @@ impl Report {
         })
     }
 
+    /// Adds tests that fail, each with this message.
+    fn fail(&mut self, names: &[String], message: &str) {
+        for name in names {
+            self.tests.push((name.clone(), false));
+            self.messages.insert(name.clone(), message.to_owned());
+        }
+    }
+
     fn of<'a>(&'a self, exercise: &'a str) -> impl Iterator<Item = (&'a str, bool)> + Clone {
         self.tests.iter().filter_map(move |(name, passed)| {
             let test = name.strip_prefix(exercise)?.strip_prefix("::")?;
@@ -265,7 +274,44 @@ fn test_program(arguments: &[&str]) -> Command {
     tests
 }
 
-/// Runs the tests on the student's functions; `None` if they do not compile or end the test program.
+/// What an exercise has no use for: with these a file could end the test program, or write the log that judges it.
+const FORBIDDEN: [&str; 8] = [
+    "process",
+    "fs",
+    "env",
+    "net",
+    "unsafe",
+    "extern",
+    "include",
+    "include_str",
+];
+
+/// The first word of a source that an exercise may not have, or the attribute `path`. Comments are no tokens.
+fn forbidden(source: TokenStream) -> Option<&'static str> {
+    let mut is_attribute = false;
+    source.into_iter().find_map(|token| match token {
+        TokenTree::Group(group) => {
+            let names_path = group.stream().to_string().starts_with("path");
+            if core::mem::take(&mut is_attribute) && names_path {
+                return Some("path");
+            }
+            forbidden(group.stream())
+        }
+        TokenTree::Ident(ident) => {
+            let name = ident.to_string();
+            let name = name.strip_prefix("r#").unwrap_or(&name);
+            FORBIDDEN.into_iter().find(|word| *word == name)
+        }
+        TokenTree::Punct(punct) => {
+            is_attribute = punct.as_char() == '#';
+            None
+        }
+        TokenTree::Literal(_) => None,
+    })
+}
+
+/// Runs the tests on the student's functions, each exercise in a process of its own: one that ends it hides no other.
+/// `None` if they do not compile.
 fn run_tests() -> anyhow::Result<Option<Report>> {
     const NO_CARGO: &str = "cargo cannot be started";
     let listed = test_program(&["--list"]).output().context(NO_CARGO)?;
@@ -279,12 +325,42 @@ fn run_tests() -> anyhow::Result<Option<Report>> {
     let names: Vec<String> = names.map(str::to_owned).collect();
     let log = root().join(format!("target/exercises-{}.log", std::process::id()));
     let log_name = log.display().to_string();
-    let mut tests = test_program(&["--color", "never", "--logfile", &log_name]);
-    let output = tests.output().context(NO_CARGO)?;
-    let written = fs::read_to_string(&log).unwrap_or_default();
-    let _ = fs::remove_file(&log);
-    let report = Report::read(&String::from_utf8_lossy(&output.stdout));
-    Ok(report.and_then(|report| report.with_log(&written, &names, output.status.success())))
+    let mut all = Report {
+        tests: Vec::new(),
+        messages: HashMap::new(),
+    };
+    for (exercise, _) in EXERCISES {
+        let filter = format!("{exercise}::");
+        let own = names.iter().filter(|name| name.starts_with(&filter));
+        let own: Vec<String> = own.cloned().collect();
+        let text = fs::read_to_string(source(exercise)).unwrap_or_default();
+        // What is no Rust does not compile, and never comes here.
+        if let Some(word) = forbidden(text.parse().unwrap_or_default()) {
+            let file = format!("teaching/exercises/src/{exercise}.rs");
+            all.fail(
+                &own,
+                &format!("{file} names `{word}`: no exercise needs it, so its tests do not run"),
+            );
+            continue;
+        }
+        let arguments = [&filter, "--color", "never", "--logfile", &log_name];
+        let output = test_program(&arguments).output().context(NO_CARGO)?;
+        let written = fs::read_to_string(&log).unwrap_or_default();
+        let _ = fs::remove_file(&log);
+        let report = Report::read(&String::from_utf8_lossy(&output.stdout));
+        let is_success = output.status.success();
+        match report.and_then(|report| report.with_log(&written, &own, is_success)) {
+            Some(report) => {
+                all.tests.extend(report.tests);
+                all.messages.extend(report.messages);
+            }
+            None => all.fail(
+                &own,
+                "the test program ended before its tests: does the code end the process, or call itself without end?",
+            ),
+        }
+    }
+    Ok(Some(all))
 }
 
 /// The command.
@@ -485,6 +561,46 @@ test result: FAILED. 2 passed; 1 failed
         assert_eq!(EXERCISES[lab[1]].0, "trimmed_icp");
         lab.sort_unstable();
         assert_eq!(lab, Plan::List.order());
+    }
+
+    #[test]
+    fn a_file_may_not_reach_for_the_process_or_for_files() {
+        for (source, word) in [
+            ("fn f() { std::process::exit(0) }", Some("process")),
+            ("use std::{r#fs as files, mem};", Some("fs")),
+            ("use std as s; fn f() { s::env::args(); }", Some("env")),
+            (
+                "let a = ('\"', r\"\\\", \"//\"); unsafe { f() }",
+                Some("unsafe"),
+            ),
+            (
+                "macro_rules! m { () => { include!(\"x\") } }",
+                Some("include"),
+            ),
+            ("# [ path = \"x.rs\" ] mod x;", Some("path")),
+            (
+                "// The process of a net\nlet path = [path, \"process\"]; /* env */",
+                None,
+            ),
+        ] {
+            assert_eq!(forbidden(source.parse().unwrap()), word, "{source}");
+        }
+        for folder in ["src", "solutions/src"] {
+            for file in fs::read_dir(root().join("teaching/exercises").join(folder)).unwrap() {
+                let path = file.unwrap().path();
+                let text = fs::read_to_string(&path).unwrap();
+                assert_eq!(forbidden(text.parse().unwrap()), None, "{}", path.display());
+            }
+        }
+    }
+
+    #[test]
+    fn an_exercise_that_ends_its_process_fails_alone() {
+        let mut report = Report::read(PRINTED).unwrap();
+        report.fail(&["trimmed_icp::a".to_owned()], "it ended");
+        assert_eq!(report.state("residual"), State::Passes);
+        assert_ne!(report.state("trimmed_icp"), State::Passes);
+        assert_eq!(report.messages["trimmed_icp::a"], "it ended");
     }
 
     #[test]
