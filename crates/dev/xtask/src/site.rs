@@ -126,15 +126,7 @@ pub fn package() -> anyhow::Result<()> {
         "Packing the npm archive and the Python wheel",
         program("node").args(["web/package.mjs", "dist", "target/packages"]),
     )?;
-    // One wheel for this system, from the tree as it is.
-    let mut wheel = program(&python);
-    wheel.args(["-m", "pip", "wheel", "--quiet", "--no-deps"]);
-    wheel.args(["--wheel-dir", "target/packages", "crates/robots/slam2d_py"]);
-    run(
-        "Compiling and packing the Python package rustslam2d",
-        &mut wheel,
-    )
-    .context("it needs pip, and once the network, for maturin")?;
+    wheel(&python)?;
     run(
         "Packing the exercises for learning management systems",
         program("node").args(["teaching/scorm/package.mjs", "dist", SCORM]),
@@ -142,6 +134,38 @@ pub fn package() -> anyhow::Result<()> {
     run(
         "Packing the site for a folder without a server",
         program("node").args(["web/offline.mjs", "dist", OFFLINE]),
+    )
+}
+
+/// A wheel for systems like this one, from the tree as it is; on Linux for glibc 2.17 and later, by the linker of Zig.
+fn wheel(python: &str) -> anyhow::Result<()> {
+    let folder = root().join("target/python/maturin");
+    let inside = if cfg!(windows) {
+        "Scripts/python.exe"
+    } else {
+        "bin/python"
+    };
+    let inside = folder.join(inside);
+    run(
+        "Making an environment for maturin",
+        program(python).args(["-m", "venv"]).arg(&folder),
+    )?;
+    let mut install = program(&inside);
+    install.args(["-m", "pip", "install", "--quiet", "maturin>=1.7,<2"]);
+    let mut build = program(&inside);
+    build.args(["-m", "maturin", "build", "--release", "--locked"]);
+    build.args(["--manifest-path", "crates/robots/slam2d_py/Cargo.toml"]);
+    build.args(["--out", "target/packages"]);
+    if cfg!(target_os = "linux") {
+        install.arg("ziglang");
+        let target = format!("{}-unknown-linux-gnu", env::consts::ARCH);
+        build.args(["--zig", "--compatibility", "manylinux2014", "--target"]);
+        build.arg(target);
+    }
+    run("Installing maturin", &mut install).context("it needs once the network")?;
+    run(
+        "Compiling and packing the Python package rustslam2d",
+        &mut build,
     )
 }
 
