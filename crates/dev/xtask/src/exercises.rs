@@ -343,7 +343,7 @@ fn run_tests() -> anyhow::Result<Option<Report>> {
             );
             continue;
         }
-        let arguments = [&filter, "--color", "never", "--logfile", &log_name];
+        let arguments = [filter.as_str(), "--color", "never", "--logfile", &log_name];
         let output = test_program(&arguments).output().context(NO_CARGO)?;
         let written = fs::read_to_string(&log).unwrap_or_default();
         let _ = fs::remove_file(&log);
