@@ -361,6 +361,10 @@ mod tests {
             ("const other = 1;", "there is no function gate"),
             ("function gate( {", "the code ended with"),
             ("async function gate() {}", "a promise: leave out async"),
+            (
+                "const all = []; function gate() { for (;;) all.push(new Array(1e6).fill(1)); }",
+                "",
+            ),
         ] {
             let told = marked("gate", code).note.unwrap();
             assert!(told.contains(note), "{code}: {told}");
