@@ -1,7 +1,7 @@
 //! Simulated drives: frames as a robot would record them, and the truth.
 
 use std::fs::File;
-use std::io::{BufWriter, Write as _};
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use ch16_lab::lap::{
