@@ -1,7 +1,7 @@
 //! The project's commands: `cargo xtask serve`, `build`, `test` and others.
 //!
 //! Each command first installs what it needs through cargo, npm or apt. If that is not possible, its error message says
-//! how to get it. Tools go to `target/tools`; only the wasm target and Chromium go elsewhere, through rustup and apt.
+//! how to get it. Tools go to `target/tools`; only the wasm target and the browsers go elsewhere, through rustup and apt.
 
 mod bench;
 mod exercises;

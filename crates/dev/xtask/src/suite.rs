@@ -34,7 +34,7 @@ pub enum Piece {
     Node,
     /// The package for Python as a wheel, and the notebooks that use it
     Python,
-    /// The site in Chromium
+    /// The site in Chromium, and its three engines in one list of tests
     Browser,
 }
 
@@ -66,6 +66,7 @@ pub fn test(pieces: &[Piece]) -> anyhow::Result<()> {
     }
     let chromium = if pieces.contains(&Piece::Browser) {
         tools::ensure_node_modules("tests/browser")?;
+        tools::ensure_engines()?;
         Some(tools::ensure_chromium_for_tests()?)
     } else {
         None
@@ -241,6 +242,7 @@ pub fn soak(rounds: u32, go_on: bool, only: &[String]) -> anyhow::Result<()> {
         bail!("dist/ does not contain a site: `cargo xtask build` makes one");
     }
     tools::ensure_node_modules("tests/browser")?;
+    tools::ensure_engines()?;
     let chromium = tools::ensure_chromium_for_tests()?;
     for _ in 0..thread::available_parallelism()?.get() {
         thread::spawn(|| {

@@ -7,7 +7,7 @@ use std::{env, fs};
 
 use anyhow::{Context as _, bail};
 
-use crate::run::{cargo, output, program, root, run};
+use crate::run::{cargo, is_set, output, program, root, run};
 
 /// The compilation target of browsers.
 pub const TARGET: &str = "wasm32-unknown-unknown";
@@ -224,6 +224,59 @@ fn find_chromium(packages: &[&str]) -> Option<PathBuf> {
         .chain(&elsewhere)
         .flat_map(|name| folders.iter().map(move |folder| folder.join(name)))
         .find(|path| path.is_file())
+}
+
+/// Debian's packages of the engines besides Chromium, of their screen, and of their software renderer.
+const ENGINES: [&str; 5] = [
+    "firefox-esr",
+    "webkit2gtk-driver",
+    "xvfb",
+    "libpci3",
+    "libgl1-mesa-dri",
+];
+
+/// Installs Firefox and WebKit for the tests through apt-get, as root on Debian.
+///
+/// # Errors
+/// How to get them on a build machine. Elsewhere a sentence says it, and the tests that need them are skipped.
+pub fn ensure_engines() -> anyhow::Result<()> {
+    if missing_engines().is_empty() {
+        return Ok(());
+    }
+    let mut install = program("apt-get");
+    // With what the packages recommend: WebKit without its plugins was not tried.
+    install.args(["install", "--yes"]).args(ENGINES);
+    let installed = run(
+        "Updating the package lists",
+        program("apt-get").arg("update"),
+    )
+    .and_then(|()| run("Installing Firefox and WebKit", &mut install));
+    let missing = missing_engines();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let how = format!(
+        "the tests in Firefox and WebKit need {}: `sudo apt-get install {}`",
+        missing.join(", "),
+        ENGINES.join(" ")
+    );
+    if is_set("CI") {
+        return installed.context(how.clone()).and_then(|()| bail!("{how}"));
+    }
+    println!("── Skipped: {how}");
+    Ok(())
+}
+
+/// Those of the packages that are not installed; all of them where there is no dpkg.
+fn missing_engines() -> Vec<&'static str> {
+    let is_installed = |package: &&str| {
+        let mut query = program("dpkg-query");
+        query.args(["--show", "--showformat=${db:Status-Status}", package]);
+        output(&mut query).as_deref() == Some("installed")
+    };
+    let mut missing = ENGINES.to_vec();
+    missing.retain(|package| !is_installed(package));
+    missing
 }
 
 #[cfg(test)]

@@ -1,0 +1,83 @@
+// What the tests ask of a page in any engine: scripts in the page that wait for a state, and clicks by a real pointer.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+
+/** The script that records a page's errors; the server puts it before everything else. */
+export const WATCH = '/engine-watch.js';
+export const WATCH_TEXT = readFileSync(fileURLToPath(new URL('watch.js', import.meta.url)), 'utf8');
+
+/** A page as text, with the recorder of its errors first. */
+export function watched(html) {
+  return html.replace(/<head>|<meta charset/, (first) => (first === '<head>' ? `${first}<script src="${WATCH}"></script>` : `<script src="${WATCH}"></script>${first}`));
+}
+
+/** Calls a function in the page with arguments of JSON. */
+export function ask(page, call, ...given) {
+  return page.evaluate(`(${call})(...${JSON.stringify(given)})`);
+}
+
+/** Ends a hang, and decides nothing else. */
+const HANG_MS = 150_000;
+
+/** Waits until a function in the page returns something; returns that. */
+export function until(page, condition, ...given) {
+  return page.evaluate(`(async () => {
+    const condition = ${condition};
+    const end = Date.now() + ${HANG_MS};
+    for (;;) {
+      if (Date.now() > end) throw new Error('not in time: ' + ${JSON.stringify(String(condition))} + ${JSON.stringify(JSON.stringify(given))});
+      const found = await condition(...${JSON.stringify(given)});
+      if (found) return found;
+      await new Promise((resolve) => setTimeout(resolve, 40));
+    }
+  })()`);
+}
+
+/** Waits until a page has loaded and knows the element. */
+export function loaded(page) {
+  return until(page, () => document.readyState === 'complete' && customElements.get('slam-widget') !== undefined);
+}
+
+/** Waits until a widget shows its first frame; fails with the sentence that stands in its place. */
+export async function live(page, id) {
+  const state = await until(page, (name) => {
+    const widget = document.querySelector(`slam-widget[name="${name}"]`);
+    const { shadowRoot } = widget;
+    return shadowRoot.querySelector('.failure:not(.late) p')?.textContent ?? (shadowRoot.querySelector('.stage.live') !== null && 'live');
+  }, id);
+  assert.equal(state, 'live', id);
+}
+
+/** Clicks what a function in the page finds, with the pointer, once it rests and nothing covers it. */
+export async function click(page, find, ...given) {
+  const [x, y] = await until(page, `(...given) => {
+    const found = (${find})(...given);
+    if (!found) return false;
+    found.scrollIntoView({ block: 'center' });
+    const { left, top, width, height } = found.getBoundingClientRect();
+    const [x, y] = [left + width / 2, top + height / 2];
+    const isResting = window.lastClick?.found === found && window.lastClick.x === x && window.lastClick.y === y;
+    window.lastClick = { found, x, y };
+    return isResting && width > 0 && found.contains(found.getRootNode().elementFromPoint(x, y)) && [x, y];
+  }`, ...given);
+  await page.move(x, y);
+  await page.down();
+  await page.up();
+}
+
+/** Clicks a control of a widget by its id. */
+export function clickControl(page, widget, control) {
+  return click(page, (name, id) => document.querySelector(`slam-widget[name="${name}"]`).shadowRoot.querySelector(`button[data-control="${id}"]`), widget, control);
+}
+
+/** Clicks the button with that text. */
+export function clickButton(page, text) {
+  return click(page, (wanted) => [...document.querySelectorAll('button')].find(({ textContent }) => textContent.startsWith(wanted)), text);
+}
+
+/** The errors of a page. */
+export function troublesOf(page) {
+  return ask(page, () => window.troubles);
+}

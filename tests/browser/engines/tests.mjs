@@ -1,0 +1,302 @@
+// The tests that run in every engine: what differs between browsers, and nothing that one of them proves for all.
+
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+import { after, before, describe, it } from 'node:test';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+import * as h from '../harness.mjs';
+import { skip } from '../../skip.mjs';
+import { WATCH, WATCH_TEXT, ask, clickButton, clickControl, live, loaded, troublesOf, until, watched } from './page.mjs';
+
+const { unzipSync } = createRequire(new URL('../../../web/package.json', import.meta.url))('fflate');
+
+/** A page with `body`, and one with it in a sandbox. */
+const WIDGETS = h.schema.map(({ id }) => `<div style="padding-bottom: 80vh"><slam-widget name="${id}" more="on"></slam-widget></div>`).join('');
+const PAGES = {
+  '/widgets.html': h.bare(WIDGETS, '<style>body { margin: 0 } slam-widget { max-width: 900px }</style>'),
+  '/sandbox.html': `<!doctype html><meta charset="utf-8"><title>Sandbox</title><body>
+    <iframe sandbox="allow-scripts" style="width: 900px; height: 850px; border: 0"></iframe></body>`,
+  '/write.html': h.bare(`<details open data-write="gate"><summary>Write it yourself</summary></details>
+    <script type="module">import { open } from './write-yourself.js'; open(document.querySelector('details'));</script>`),
+  '/clean.html': '<!doctype html><meta charset="utf-8"><title>Another page</title><a href="widgets.html">Back</a>',
+};
+
+/** Serves the site; each page records its errors, the server the files that it has not. */
+async function serve(missing) {
+  const answer = (pathname, response) => {
+    if (pathname === WATCH) {
+      response.setHeader('Content-Type', 'text/javascript');
+      response.end(WATCH_TEXT);
+      return true;
+    }
+    const isPage = pathname.endsWith('.html') && pathname !== '/your-code.html';
+    if (!isPage) {
+      response.on('finish', () => response.statusCode === 404 && pathname !== '/favicon.ico' && missing.push(pathname));
+      return false;
+    }
+    response.setHeader('Content-Type', 'text/html; charset=utf-8');
+    response.end(watched(PAGES[pathname] ?? readFileSync(join(h.DIST, pathname), 'utf8')));
+    return true;
+  };
+  return h.serve({ answer });
+}
+
+/** Declares the tests for an engine: `open` starts it, `problem` says why it cannot. */
+export function testIn(name, open, problem) {
+  describe(name, () => {
+    let page;
+    let server;
+    const missing = [];
+    const why = problem();
+
+    before(async () => {
+      if (why !== undefined) return;
+      server = await serve(missing);
+      page = await open();
+      await page.resize(1100, 900);
+    });
+    after(async () => {
+      await page?.close();
+      await server?.close();
+    });
+    const test = (title, run) => it(title, async (context) => {
+      if (why !== undefined) {
+        skip(context, `${name} ${why}`);
+        return;
+      }
+      missing.length = 0;
+      await run(context);
+      assert.deepEqual(missing, []);
+    });
+    const visit = async (path) => {
+      await page.goto(`${server.url}${path}`);
+      await loaded(page);
+    };
+    const isClean = async () => assert.deepEqual(await troublesOf(page), []);
+
+    test('every page starts without an error, a violation of its policy, or a missing file', async () => {
+      for (const file of [...h.PAGES, 'slides.html', 'embed.html']) {
+        await page.goto(`${server.url}/${file}${file === 'embed.html' ? '?w=16.1' : ''}`);
+        await loaded(page);
+        const first = await ask(page, () => [...document.querySelectorAll('slam-widget')]
+          .find((widget) => widget.getBoundingClientRect().height > 0 && widget.getBoundingClientRect().top < innerHeight)?.name);
+        if (first) await live(page, first);
+        assert.deepEqual(await troublesOf(page), [], file);
+      }
+    });
+
+    test('every widget starts, follows the pointer and the keyboard, plays, and recovers from a lost context', async (context) => {
+      await visit('/widgets.html');
+      for (const widget of h.schema) {
+        await context.test(widget.id, async () => {
+          await ask(page, (id) => document.querySelector(`slam-widget[name="${id}"]`).scrollIntoView(), widget.id);
+          await live(page, widget.id);
+          await followsKeyboard(page, widget);
+          await followsPointer(page, widget);
+          await plays(page, widget);
+          await recovers(page, widget.id);
+        });
+      }
+      await isClean();
+    });
+
+    test('the sample of w16.10 is mapped, and its session saved', async () => {
+      await visit('/own-robot.html?w=16.10');
+      await live(page, 'w16.10');
+      await mapsSample(page);
+      await ask(page, () => document.querySelector('slam-widget').press('save'));
+      await until(page, () => window.saved.some(({ size }) => size > 1000));
+      await isClean();
+    });
+
+    test('a frame in a sandbox runs a widget, and maps the sample', async () => {
+      await page.goto(`${server.url}/sandbox.html`);
+      const told = await ask(page, async (src) => {
+        const frame = document.querySelector('iframe');
+        const heard = [];
+        const hear = (type, goal) => new Promise((resolve) => {
+          addEventListener('message', ({ data }) => {
+            if (data?.slam !== 1) return;
+            if (data.type === 'error') resolve(data.message);
+            if (data.type === type && goal(data)) resolve(type);
+          });
+        });
+        const ready = hear('ready', () => true);
+        frame.src = src;
+        heard.push(await ready);
+        const mapped = hear('result', ({ outcome }) => outcome.facts.keyframes > 5);
+        frame.contentWindow.postMessage({ slam: 1, type: 'press', button: 'sample' }, '*');
+        heard.push(await mapped);
+        return heard;
+      }, '/embed.html?w=16.10');
+      assert.deepEqual(told, ['ready', 'result']);
+    });
+
+    test('a reader\u2019s code is tested: right, wrong, with a syntax error, and without end', async () => {
+      await page.goto(`${server.url}/write.html`);
+      await until(page, () => document.querySelector('.cm-content') !== null);
+      for (const [code, answer] of [
+        ['function gate(innovation, gap) { return 1; }', /^✗ .*expected/],
+        ['function gate(innovation) {\n  return (1;\n}', /^✗ Line 2: .*(SyntaxError|Unexpected|missing)/],
+        ['function gate() { for (;;); }', /no answer for 1 s/],
+      ]) {
+        const line = await runCode(page, code);
+        assert.match(line, answer, code);
+      }
+      for (let step = 0; step < 4; step += 1) await clickButton(page, 'Help');
+      assert.match(await runCode(page), /^All \d tests pass/);
+    });
+
+    test('Back returns to a page whose widgets run', async () => {
+      await visit('/index.html?w=16.1&heading=30');
+      await ask(page, () => document.querySelector('slam-widget[name="w16.1"]').scrollIntoView());
+      await live(page, 'w16.1');
+      await page.goto(`${server.url}/clean.html`);
+      await page.back();
+      await loaded(page);
+      await ask(page, () => document.querySelector('slam-widget[name="w16.1"]').scrollIntoView());
+      await live(page, 'w16.1');
+      assert.equal(await ask(page, () => document.querySelector('slam-widget[name="w16.1"]').heading), 30);
+      await isClean();
+    });
+
+    test('the offline site opens from the disk, runs a widget, and maps the sample', async () => {
+      const folder = mkdtempSync(join(tmpdir(), 'engines-'));
+      try {
+        const zip = join(folder, 'site.zip');
+        execFileSync(process.execPath, [fileURLToPath(new URL('../../../web/offline.mjs', import.meta.url)), h.DIST, zip]);
+        for (const [file, bytes] of Object.entries(unzipSync(readFileSync(zip)))) {
+          const path = join(folder, file);
+          mkdirSync(dirname(path), { recursive: true });
+          writeFileSync(path, file.endsWith('.html') ? watched(Buffer.from(bytes).toString()).replace(WATCH, WATCH.slice(1)) : bytes);
+        }
+        writeFileSync(join(folder, WATCH.slice(1)), WATCH_TEXT);
+        await page.goto(`${pathToFileURL(folder).href}/own-robot.html?w=16.10`);
+        await loaded(page);
+        await live(page, 'w16.10');
+        await mapsSample(page);
+        await isClean();
+        await page.goto('about:blank');
+      } finally {
+        rmSync(folder, { recursive: true });
+      }
+    });
+  });
+}
+
+/** Presses the sample of w16.10 and waits for its map. */
+async function mapsSample(page) {
+  await ask(page, () => void document.querySelector('slam-widget').press('sample'));
+  const end = await until(page, () => {
+    const { outcome } = document.querySelector('slam-widget');
+    return outcome && (outcome.facts.keyframes > 5 || /cannot|stopped/.test(outcome.sentence)) && outcome;
+  });
+  assert.ok(end.facts.keyframes > 5, end.sentence);
+}
+
+/** Runs code in the editor, or what is there; returns the first sentence. A busy machine may take a second to start a worker. */
+async function runCode(page, code) {
+  for (;;) {
+    const line = await runOnce(page, code);
+    if (code?.includes('for (;;)') || !line.includes('no answer for 1 s')) return line;
+  }
+}
+
+async function runOnce(page, code) {
+  if (code !== undefined) {
+    await ask(page, (text) => {
+      const content = document.querySelector('.cm-content');
+      const { view } = content.cmView ?? content.cmTile;
+      view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: text } });
+    }, code);
+  }
+  await clickButton(page, 'Run');
+  return until(page, () => {
+    const text = document.querySelector('.write-results p')?.textContent;
+    return !document.querySelector('.write-controls button').disabled && text !== 'Your function is being called …' && text;
+  });
+}
+
+/** Values of a widget, as one text. */
+const state = (id) => JSON.stringify(document.querySelector(`slam-widget[name="${id}"]`).value);
+
+/** Waits until the values of a widget differ from earlier ones. */
+function changed(page, id, earlier) {
+  return until(page, `(id, earlier) => (${state})(id) !== earlier`, id, earlier);
+}
+
+/** An arrow key moves the first slider that is shown, and a drag of its thumb. */
+async function followsKeyboard(page, { id }) {
+  const earlier = await ask(page, state, id);
+  const found = await ask(page, (name) => {
+    const { shadowRoot } = document.querySelector(`slam-widget[name="${name}"]`);
+    const range = [...shadowRoot.querySelectorAll('input[type=range]')].find((one) => one.getClientRects().length > 0 && Number(one.max) > Number(one.min));
+    range?.focus();
+    return range && (range.value === range.max ? 'ArrowLeft' : 'ArrowRight');
+  }, id);
+  if (!found) return;
+  await page.press(found);
+  await changed(page, id, earlier);
+}
+
+/** A drag of something in the picture changes a value, or moves the view. */
+async function followsPointer(page, { id }) {
+  const spot = await ask(page, (name) => {
+    const widget = document.querySelector(`slam-widget[name="${name}"]`);
+    widget.scrollIntoView();
+    const box = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
+    for (let y = 8; y < Math.min(box.height, innerHeight - box.top - 60); y += 6) {
+      for (let x = 60; x < box.width - 60; x += 6) {
+        if ([0, 3, -3].every((d) => widget.dragsAt(x + d, y) && widget.dragsAt(x, y + d))) return [box.left + x, box.top + y];
+      }
+    }
+    return null;
+  }, id);
+  if (spot === null) return;
+  const earlier = await ask(page, state, id);
+  const frames = await ask(page, (name) => document.querySelector(`slam-widget[name="${name}"]`).frames, id);
+  const [x, y] = spot;
+  await page.move(x, y);
+  await page.down();
+  for (const step of [6, 14, 24, 36]) await page.move(x + step, y + step / 3);
+  await until(page, `(id, earlier, frames) => (${state})(id) !== earlier || document.querySelector('slam-widget[name="' + id + '"]').frames > frames + 2`, id, earlier, frames);
+  await page.up();
+}
+
+/** Play moves the run on. */
+async function plays(page, { id, buttons }) {
+  if (!['play', 'reset'].every((needed) => buttons.some((button) => button.id === needed))) return;
+  const isOffered = await ask(page, (name) => document.querySelector(`slam-widget[name="${name}"]`).shadowRoot.querySelector('button[data-control="play"]')?.getClientRects().length > 0, id);
+  if (!isOffered) return;
+  await ask(page, (name) => document.querySelector(`slam-widget[name="${name}"]`).press('reset'), id);
+  const earlier = await ask(page, state, id);
+  await clickControl(page, id, 'play');
+  await changed(page, id, earlier);
+  await until(page, async (name) => {
+    const widget = document.querySelector(`slam-widget[name="${name}"]`);
+    if (widget.shadowRoot.querySelector('button[data-control="play"]').textContent !== 'Pause') return true;
+    await widget.press('play');
+    return false;
+  }, id);
+}
+
+/** A new canvas takes the place of one whose context is lost, with the same values. */
+async function recovers(page, id) {
+  const earlier = await ask(page, (name) => {
+    const widget = document.querySelector(`slam-widget[name="${name}"]`);
+    const canvas = widget.shadowRoot.querySelector('canvas');
+    window.lost = canvas;
+    const values = JSON.stringify(widget.value);
+    canvas.getContext('webgl2').getExtension('WEBGL_lose_context').loseContext();
+    return values;
+  }, id);
+  await until(page, (name) => {
+    const canvas = document.querySelector(`slam-widget[name="${name}"]`).shadowRoot.querySelector('.stage.live canvas');
+    return canvas !== null && canvas !== window.lost;
+  }, id);
+  assert.equal(await ask(page, state, id), earlier);
+}
