@@ -140,8 +140,8 @@ impl Roster {
     fn rows_of(&self, student: &str) -> Vec<usize> {
         let of = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
             let has = |row: &Row| {
-                let cells = self.identifiers.iter().filter_map(|&at| row.cells.get(at));
-                cells.into_iter().any(|cell| is_it(cell))
+                let mut cells = self.identifiers.iter().filter_map(|&at| row.cells.get(at));
+                cells.any(|cell| is_it(cell))
             };
             let rows = self.rows.iter().enumerate();
             rows.filter(|(_, row)| has(row)).map(|(at, _)| at).collect()
