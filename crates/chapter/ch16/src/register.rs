@@ -134,6 +134,18 @@ fn why(stop: &StopReason) -> String {
             "too few pairs within tau: {pairs}, {min_pairs} are needed; \
              move the scan closer to the map, or use a larger --tau"
         ),
+        StopReason::TooFewNormals {
+            normals,
+            pairs,
+            min_normals,
+        } => format!(
+            "not registered: {normals} of {pairs} pairs have a normal, {min_normals} are needed; \
+             give the map more points or its normals, or use --method p2p"
+        ),
+        StopReason::TooFewInliers { .. } => format!("not converged: {stop}"),
+        StopReason::Unobservable { .. } => {
+            format!("not converged: {stop}; along it the pose is that of the start")
+        }
         StopReason::NotFinite => {
             "the next step overflows; move the points closer to the origin".to_owned()
         }

@@ -8,6 +8,10 @@
 //! ICP finds the minimum of the basin of convergence in which it starts. It cannot detect a local minimum:
 //! a small `rmse` means that the pairs agree, not that they are correct.
 //!
+//! A result claims only what pairs measured. Point to plane uses the pairs with a normal; without them the pose
+//! is the guess, and a direction that no pair measures keeps that of the guess: [`StopReason`] says so, and
+//! [`StopReason::converged`] is false.
+//!
 //! [`icp`] runs to the end. [`Icp`] runs one iteration at a time, and does not allocate if its
 //! [`IcpWorkspace`] is kept between registrations.
 
@@ -20,6 +24,7 @@ mod stepper;
 
 pub use align::{RigidAlignment, closed_form, point_to_plane_step, svd_align};
 pub use config::{IcpConfig, IcpVariant, huber_weight};
+pub(crate) use information::weighted_information;
 pub use information::{
     INFORMATION_CAP, INFORMATION_RIDGE, centroid, icp_information, icp_information_along,
     move_information, regularize,

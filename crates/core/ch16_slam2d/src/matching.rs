@@ -14,7 +14,7 @@ mod ndt_matcher;
 mod search_matcher;
 
 pub use icp_matcher::IcpMatcher;
-pub use information::{TrustConfig, match_information};
+pub use information::{TrustConfig, match_information, result_information};
 pub use information_frame::{InformationFrame, chapter_information};
 pub use kind::MatcherKind;
 pub use matcher::{

@@ -6,3 +6,4 @@ mod examples;
 mod listings;
 mod nearest;
 mod reasons;
+mod support;

@@ -2,4 +2,5 @@
 
 mod evo;
 mod recorded;
+mod support;
 mod verdicts;

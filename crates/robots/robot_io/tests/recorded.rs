@@ -15,7 +15,7 @@ use robot_io::log_format::LogFormat;
 use robot_io::relations::read_relations;
 use robot_io::run::LogRun;
 
-fn open(name: &str) -> Option<BufReader<File>> {
+pub fn open(name: &str) -> Option<BufReader<File>> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data/logs");
     File::open(folder.join(name)).ok().map(BufReader::new)
 }

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace, StopReason};
-use ch16_slam2d::matching::{NdtMatcherConfig, TrustConfig, match_information};
+use ch16_slam2d::matching::{NdtMatcherConfig, TrustConfig, result_information};
 use ch16_slam2d::ndt::{NdtConfig, NdtMap, NdtStop, ndt_align};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pr_geom::SE2;
@@ -48,10 +48,11 @@ pub struct IcpResult {
     /// Increments made.
     #[pyo3(get)]
     pub iterations: usize,
-    /// Whether the increments became small.
+    /// Whether the increments became small, and enough pairs measure every direction.
     #[pyo3(get)]
     pub converged: bool,
-    /// Why it ended: small-step, iteration-limit, too-few-pairs or not-finite.
+    /// Why it ended: small-step, iteration-limit, too-few-pairs, too-few-normals, too-few-inliers (of the kernel),
+    /// unobservable-direction or not-finite.
     #[pyo3(get)]
     pub stop: String,
 }
@@ -158,7 +159,7 @@ pub fn icp(
         let found = interruptible(&source, &map, init, &config)?;
         Ok::<_, PyErr>((found, map))
     })?;
-    let information = match_information(&found.pairs, &found.pose, &trust);
+    let information = result_information(&found, &config, &trust);
     let covariance = information.try_inverse();
     let pairs = found.pairs.iter().flat_map(|pair| {
         let target = map.source_index(pair.target_index);
@@ -183,6 +184,9 @@ pub fn icp(
             StopReason::SmallStep { .. } => "small-step",
             StopReason::IterationLimit { .. } => "iteration-limit",
             StopReason::TooFewPairs { .. } => "too-few-pairs",
+            StopReason::TooFewNormals { .. } => "too-few-normals",
+            StopReason::TooFewInliers { .. } => "too-few-inliers",
+            StopReason::Unobservable { .. } => "unobservable-direction",
             StopReason::NotFinite => "not-finite",
         }
         .to_owned(),
@@ -266,7 +270,7 @@ pub struct NdtResult {
     /// Number of iterations.
     #[pyo3(get)]
     pub iterations: usize,
-    /// Why it ended: small-gradient, no-better-step or iteration-limit.
+    /// Why it ended: small-gradient, no-better-step, iteration-limit, too-few-points (in cells) or unobservable-direction.
     #[pyo3(get)]
     pub stop: String,
 }
@@ -346,6 +350,8 @@ impl Ndt {
                 NdtStop::SmallGradient { .. } => "small-gradient",
                 NdtStop::NoBetterStep { .. } => "no-better-step",
                 NdtStop::IterationLimit { .. } => "iteration-limit",
+                NdtStop::TooFewPoints { .. } => "too-few-points",
+                NdtStop::Unobservable => "unobservable-direction",
             }
             .to_owned(),
         })

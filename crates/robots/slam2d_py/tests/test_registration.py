@@ -73,6 +73,15 @@ def test_a_corridor_leaves_a_direction_free():
     corridor = np.concatenate([np.stack([along, 0 * along], 1), np.stack([along, 2 + 0 * along], 1)])
     found = rs.icp(corridor, corridor)
     assert found.covariance is None and found.information[0, 0] == 0.0 < found.information[1, 1]
+    assert (found.converged, found.stop) == (False, "unobservable-direction")
+
+
+def test_without_normals_point_to_plane_claims_nothing():
+    columns, rows = np.meshgrid(np.arange(6.0), np.arange(6.0))
+    coarse = np.stack([columns.ravel(), rows.ravel()], axis=1)
+    found = rs.icp(coarse + 0.2, coarse)
+    assert (found.converged, found.stop, found.covariance) == (False, "too-few-normals", None)
+    assert not found.information.any() and np.array_equal(found.pose, (0, 0, 0))
 
 
 def test_ndt_climbs_to_where_the_cloud_lies(room):
@@ -116,4 +125,5 @@ def test_empty_clouds_end_without_pairs():
     nothing = np.zeros((0, 2))
     assert rs.icp(nothing, SQUARE).stop == "too-few-pairs"
     assert rs.icp(SQUARE, nothing).stop == "too-few-pairs"
-    assert rs.Ndt(nothing).align(SQUARE).score == 0.0
+    away = rs.Ndt(nothing).align(SQUARE)
+    assert (away.score, away.stop) == (0.0, "too-few-points")

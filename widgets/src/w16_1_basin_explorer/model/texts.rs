@@ -105,6 +105,9 @@ fn stop_words(stop: &StopReason) -> &'static str {
         StopReason::SmallStep { .. } => "converged after",
         StopReason::IterationLimit { .. } => "stopped at the limit of",
         StopReason::TooFewPairs { .. } => "stopped for too few pairs after",
+        StopReason::TooFewNormals { .. } => "stopped for too few normals after",
+        StopReason::TooFewInliers { .. } => "stopped for too few inliers after",
+        StopReason::Unobservable { .. } => "stopped with an unobservable direction after",
         StopReason::NotFinite => "stopped at a non-finite value after",
     }
 }

@@ -1,10 +1,14 @@
 //! The two increments: the best rigid motion for given pairs.
 
-use nalgebra::{Matrix3, Point2, Vector2, Vector3};
+use nalgebra::{Matrix3, Point2, SymmetricEigen, Vector2, Vector3};
 use pr_geom::{Rotation, SE2, math};
 
 /// Pairs with normals that a point-to-plane step needs: one for every degree of freedom.
-const MIN_NORMALS: usize = 3;
+pub(super) const MIN_NORMALS: usize = 3;
+/// Most sweeps of the eigenvalue decomposition that names a direction.
+const MAX_SWEEPS: usize = 100;
+/// `tr(R H)` of a pair, m², up to which no rotation is measured: the points lie within a micrometre of their centroid.
+const MIN_TRACE_M2: f64 = 1e-12;
 
 /// The rigid motion that aligns paired points, and the bound that it reaches.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,12 +19,16 @@ pub struct RigidAlignment {
     /// The largest `tr(R H)` over all rotations, m²: the cost is `Σ‖p‖² + Σ‖q‖² − 2 tr(R H)` about
     /// the centroids, so no rotation has a lower cost.
     pub trace_bound: f64,
+    /// Whether the pairs measure the rotation. Those of one point, or of a cloud and its mirror image, fit as well at
+    /// every heading, and the heading of `pose` is arbitrary.
+    pub measures_rotation: bool,
 }
 
 /// The motion that minimizes `Σ ‖R p_k + t − q_k‖²` over paired points.
 ///
 /// Equals the solution by the singular value decomposition of `H = Σ (p_k − p̄)(q_k − q̄)ᵀ`, without
-/// reflections; in the plane it has a closed form, see [`closed_form`]. No pairs give the identity.
+/// reflections; in the plane it has a closed form, see [`closed_form`], which also returns whether the pairs measure
+/// the rotation: coincident points do not, and keep the heading. No pairs give the identity.
 ///
 /// Source: Arun, Huang & Blostein 1987.
 ///
@@ -75,6 +83,7 @@ pub fn point_to_plane_step(
             weight: 1.0,
         })
     }))
+    .pose
 }
 
 #[derive(Clone, Copy)]
@@ -111,6 +120,7 @@ pub(super) fn point_to_point(pairs: impl Iterator<Item = PointPair> + Clone) -> 
         return RigidAlignment {
             pose: SE2::identity(),
             trace_bound: 0.0,
+            measures_rotation: false,
         };
     }
     let (px, py, qx, qy) = (px / total, py / total, qx / total, qy / total);
@@ -128,14 +138,16 @@ pub(super) fn point_to_point(pairs: impl Iterator<Item = PointPair> + Clone) -> 
     }
     let theta = math::atan2(cross, dot);
     let (rx, ry) = Rotation::new(theta).rotate(px, py);
+    let trace_bound = math::norm2(cross, dot);
     RigidAlignment {
         pose: SE2::new(qx - rx, qy - ry, theta),
-        trace_bound: math::norm2(cross, dot),
+        trace_bound,
+        measures_rotation: trace_bound > MIN_TRACE_M2 * total,
     }
 }
 
 #[inline]
-pub(super) fn point_to_plane(pairs: impl Iterator<Item = PlanePair>) -> SE2 {
+pub(super) fn point_to_plane(pairs: impl Iterator<Item = PlanePair>) -> PlaneStep {
     let (mut count, mut cx, mut cy) = (0_usize, 0.0, 0.0);
     let mut hessian = PlaneHessian::default();
     let (mut gx, mut gy, mut gw) = (0.0, 0.0, 0.0);
@@ -153,22 +165,98 @@ pub(super) fn point_to_plane(pairs: impl Iterator<Item = PlanePair>) -> SE2 {
         gw += weighted * lever;
     }
     if count < MIN_NORMALS {
-        return SE2::identity();
+        return PlaneStep::none(count);
     }
     let (cx, cy) = (cx / count as f64, cy / count as f64);
     hessian.turn_about(cx, cy);
     gw -= cx * gy - cy * gx;
-    let mut damped = hessian.matrix();
+    let measured = hessian.matrix();
+    let mut damped = measured;
     let ridge = 1e-4 * damped.trace() / 3.0 + 1e-12;
     for k in 0..3 {
         damped[(k, k)] += ridge;
     }
     let Some(factor) = damped.cholesky() else {
-        return SE2::identity();
+        return PlaneStep::none(count);
     };
     let step = factor.solve(&Vector3::new(-gx, -gy, -gw));
     let (rx, ry) = Rotation::new(step.z).rotate(cx, cy);
-    SE2::new(cx + step.x - rx, cy + step.y - ry, step.z)
+    PlaneStep {
+        pose: SE2::new(cx + step.x - rx, cy + step.y - ry, step.z),
+        normals: count,
+        measured,
+        ridge,
+    }
+}
+
+/// An increment, and what its pairs measured.
+pub(super) enum Solved {
+    Points(RigidAlignment),
+    Planes(PlaneStep),
+    Custom(SE2),
+}
+
+impl Solved {
+    pub fn pose(&self) -> SE2 {
+        match self {
+            Self::Points(found) => found.pose,
+            Self::Planes(step) => step.pose,
+            Self::Custom(pose) => *pose,
+        }
+    }
+
+    /// Pairs with a normal, if it is by them.
+    pub fn normals(&self) -> Option<usize> {
+        match self {
+            Self::Planes(step) => Some(step.normals),
+            Self::Points(_) | Self::Custom(_) => None,
+        }
+    }
+
+    /// A motion `(t_x, t_y, ω)` about the centroid that the pairs do not measure, of unit length.
+    pub fn unobservable(&self) -> Option<[f64; 3]> {
+        match self {
+            Self::Points(found) => (!found.measures_rotation).then_some([0.0, 0.0, 1.0]),
+            Self::Planes(step) => step.unobservable(),
+            Self::Custom(_) => None,
+        }
+    }
+}
+
+/// A point-to-plane step, and the system that it solved.
+pub(super) struct PlaneStep {
+    pub pose: SE2,
+    /// Pairs with a normal.
+    pub normals: usize,
+    /// `Σ w J Jᵀ` about the centroid, without the ridge.
+    measured: Matrix3<f64>,
+    ridge: f64,
+}
+
+impl PlaneStep {
+    fn none(normals: usize) -> Self {
+        Self {
+            pose: SE2::identity(),
+            normals,
+            measured: Matrix3::zeros(),
+            ridge: 1.0,
+        }
+    }
+
+    /// The motion that the pairs measure least, if the ridge holds it and not the pairs.
+    fn unobservable(&self) -> Option<[f64; 3]> {
+        let excess = self.measured - Matrix3::identity() * self.ridge;
+        if excess.cholesky().is_some() {
+            return None;
+        }
+        // Scaled, because squares of numbers near the largest overflow; without a solution the rotation stands for all.
+        let scaled = self.measured / math::max(self.measured.amax(), f64::MIN_POSITIVE);
+        let eigen = SymmetricEigen::try_new(scaled, f64::EPSILON, MAX_SWEEPS);
+        Some(eigen.map_or([0.0, 0.0, 1.0], |eigen| {
+            let least = eigen.eigenvectors.column(eigen.eigenvalues.imin());
+            [least[0], least[1], least[2]]
+        }))
+    }
 }
 
 /// `Σ w J Jᵀ` for rows `J = (n_x, n_y, lever)`.

@@ -34,12 +34,24 @@ pub fn icp_information_along(
     covariance_scale: f64,
     axes_theta: f64,
 ) -> Matrix3<f64> {
+    weighted_information(pairs, sigma, covariance_scale, axes_theta, |_| 1.0)
+}
+
+/// [`icp_information_along`] with the rows of each pair times its weight.
+pub(crate) fn weighted_information(
+    pairs: &[Pair],
+    sigma: f64,
+    covariance_scale: f64,
+    axes_theta: f64,
+    weight_of: impl Fn(&Pair) -> f64,
+) -> Matrix3<f64> {
     let centroid = centroid(pairs);
     let axes = Rotation::new(axes_theta);
     let mut hessian = PlaneHessian::default();
     let weight = 1.0 / (sigma * sigma * covariance_scale);
     for pair in pairs {
         let arm = pair.source - centroid;
+        let weight = weight * weight_of(pair);
         let mut add = |direction: Vector2<f64>| {
             let (nx, ny) = axes.unrotate(direction.x, direction.y);
             let lever = arm.x * direction.y - arm.y * direction.x;

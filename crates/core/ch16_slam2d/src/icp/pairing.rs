@@ -3,7 +3,7 @@
 use nalgebra::{Point2, Vector2};
 use pr_geom::{SE2, math};
 
-use super::align::{PlanePair, PointPair, point_to_plane, point_to_point};
+use super::align::{PlanePair, PointPair, Solved, point_to_plane, point_to_point};
 use super::{Accepted, IcpConfig, IcpVariant, PairRejection, Trimmed, huber_weight};
 use crate::cloud::{NearestMap, PointCloud, QueryCache};
 
@@ -228,12 +228,12 @@ impl IcpWorkspace {
         self.sum_of_squares_m2 = self.pairs.iter().map(RawPair::square_m2).sum();
     }
 
-    /// The increment by the last pairs.
-    pub(super) fn increment(&self, config: &IcpConfig) -> SE2 {
+    /// The increment by the last pairs, and what they measured.
+    pub(super) fn increment(&self, config: &IcpConfig) -> Solved {
         let width_m = config.huber_width_m;
         match config.variant {
             IcpVariant::PointToPoint => {
-                point_to_point(self.pairs.iter().map(|pair| PointPair {
+                let found = point_to_point(self.pairs.iter().map(|pair| PointPair {
                     source: pair.source,
                     target: pair.target,
                     weight: if width_m.is_finite() {
@@ -241,12 +241,12 @@ impl IcpWorkspace {
                     } else {
                         1.0
                     },
-                }))
-                .pose
+                }));
+                Solved::Points(found)
             }
             IcpVariant::PointToPlane => {
                 let with_normals = self.pairs.iter().filter(|pair| pair.has_normal());
-                point_to_plane(with_normals.map(|pair| {
+                let step = point_to_plane(with_normals.map(|pair| {
                     let residual_m = pair.plane_residual_m();
                     PlanePair {
                         source: pair.source,
@@ -254,9 +254,20 @@ impl IcpWorkspace {
                         normal: pair.normal,
                         weight: huber_weight(residual_m.abs(), width_m),
                     }
-                }))
+                }));
+                Solved::Planes(step)
             }
         }
+    }
+
+    /// Number of the last pairs that the increment uses with full weight: their residual is within the kernel's width.
+    pub(super) fn full_weights(&self, config: &IcpConfig) -> usize {
+        let width_m = config.huber_width_m;
+        let is_full = |pair: &&RawPair| {
+            let is_used = config.variant == IcpVariant::PointToPoint || pair.has_normal();
+            is_used && pair.square_m2() <= width_m * width_m
+        };
+        self.pairs.iter().filter(is_full).count()
     }
 
     /// Root mean square residual of the last pairs, m; infinite without pairs.

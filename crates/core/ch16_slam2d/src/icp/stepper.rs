@@ -1,8 +1,9 @@
 //! The loop of ICP, one iteration at a time or to the end.
 
-use pr_geom::SE2;
+use pr_geom::{SE2, math};
 use serde::Serialize;
 
+use super::align::Solved;
 use super::{IcpConfig, IcpTrace, IcpWorkspace, Pair, PairRejection};
 use crate::cloud::{NearestMap, PointCloud};
 
@@ -29,16 +30,59 @@ pub enum StopReason {
         /// [`IcpConfig::min_pairs`].
         min_pairs: usize,
     },
+    /// The increments became small, but too few of the pairs have a normal: the others exert no force in point to plane.
+    TooFewNormals {
+        /// Pairs with a normal at the last pose.
+        normals: usize,
+        /// All pairs there.
+        pairs: usize,
+        /// [`IcpConfig::min_normals`].
+        min_normals: usize,
+    },
+    /// The increments became small, but the kernel takes nearly all pairs for outliers.
+    TooFewInliers {
+        /// Pairs with a residual up to the kernel's width.
+        inliers: usize,
+        /// [`IcpConfig::min_pairs`].
+        min_pairs: usize,
+        /// [`IcpConfig::huber_width_m`].
+        width_m: f64,
+    },
+    /// The increments became small, but the pairs do not measure a direction, as along a corridor: along it the pose
+    /// is that of the guess. The other directions converged.
+    Unobservable {
+        /// The motion `(t_x, t_y, ω)` that is not measured, about the centroid of the pairs, of unit length.
+        direction: [f64; 3],
+    },
     /// The next increment is not finite, as for points 1e200 m away; the pose is unchanged.
     NotFinite,
 }
 
 impl StopReason {
-    /// Whether the increments became small.
+    /// Whether the increments became small, and the pairs measure every direction.
     #[must_use]
     pub fn converged(&self) -> bool {
         matches!(self, Self::SmallStep { .. })
     }
+
+    /// Whether enough pairs support the pose; otherwise it claims nothing, and is the guess if there were none.
+    #[must_use]
+    pub fn is_supported(&self) -> bool {
+        matches!(
+            self,
+            Self::SmallStep { .. } | Self::IterationLimit { .. } | Self::Unobservable { .. }
+        )
+    }
+}
+
+/// Names the motion `(t_x, t_y, ω)` that is not measured.
+fn name_motion([x, y, turn]: [f64; 3]) -> String {
+    if turn.abs() > math::norm2(x, y) {
+        return "rotation".to_owned();
+    }
+    // A direction and its opposite are the same.
+    let degrees = math::atan2(y, x).to_degrees().rem_euclid(180.0);
+    format!("motion along {degrees:.0}° of the map")
 }
 
 impl core::fmt::Display for StopReason {
@@ -52,6 +96,25 @@ impl core::fmt::Display for StopReason {
             }
             Self::TooFewPairs { pairs, min_pairs } => {
                 write!(f, "{pairs} pairs, at least {min_pairs} are needed")
+            }
+            Self::TooFewNormals {
+                normals,
+                pairs,
+                min_normals,
+            } => write!(
+                f,
+                "{normals} of {pairs} pairs have a normal, at least {min_normals} are needed"
+            ),
+            Self::TooFewInliers {
+                inliers,
+                min_pairs,
+                width_m,
+            } => write!(
+                f,
+                "{inliers} pairs within the kernel's {width_m} m, at least {min_pairs} are needed"
+            ),
+            Self::Unobservable { direction } => {
+                write!(f, "no pair measures {}", name_motion(*direction))
             }
             Self::NotFinite => write!(f, "the next increment is not finite"),
         }
@@ -242,14 +305,17 @@ impl<'a, M: NearestMap> Icp<'a, M> {
         if self.workspace.trace.len() > max_iterations {
             return Some(StopReason::IterationLimit { max_iterations });
         }
+        let min_pairs = min_pairs.max(1);
+        let too_few = |pairs| StopReason::TooFewPairs { pairs, min_pairs };
         let pairs = self.workspace.pair_count();
         if pairs < min_pairs {
-            return Some(StopReason::TooFewPairs { pairs, min_pairs });
+            return Some(too_few(pairs));
         }
-        let increment = match self.increment {
-            Some(rule) => rule.increment(&self.pairs().collect::<Vec<_>>()),
+        let solved = match self.increment {
+            Some(rule) => Solved::Custom(rule.increment(&self.pairs().collect::<Vec<_>>())),
             None => self.workspace.increment(&self.config),
         };
+        let increment = solved.pose();
         let next = increment * self.current.pose;
         if !next.to_array().iter().all(|number| number.is_finite()) {
             return Some(StopReason::NotFinite);
@@ -257,7 +323,34 @@ impl<'a, M: NearestMap> Icp<'a, M> {
         self.associate_at(next);
         let step = increment.step_size();
         if step < tolerance {
-            return Some(StopReason::SmallStep { step, tolerance });
+            let pairs = self.workspace.pair_count();
+            let width_m = self.config.huber_width_m;
+            let is_weighted = width_m.is_finite() && self.increment.is_none();
+            let inliers = match is_weighted {
+                true => self.workspace.full_weights(&self.config),
+                false => pairs,
+            };
+            let min_normals = self.config.min_normals();
+            let normals = solved.normals().filter(|normals| *normals < min_normals);
+            return Some(if pairs < min_pairs {
+                too_few(pairs)
+            } else if let Some(normals) = normals {
+                StopReason::TooFewNormals {
+                    normals,
+                    pairs,
+                    min_normals,
+                }
+            } else if inliers < min_pairs {
+                StopReason::TooFewInliers {
+                    inliers,
+                    min_pairs,
+                    width_m,
+                }
+            } else if let Some(direction) = solved.unobservable() {
+                StopReason::Unobservable { direction }
+            } else {
+                StopReason::SmallStep { step, tolerance }
+            });
         }
         (self.workspace.trace.len() > max_iterations)
             .then_some(StopReason::IterationLimit { max_iterations })

@@ -3,7 +3,9 @@
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
-use crate::icp::{Pair, centroid, icp_information, move_information};
+use crate::icp::{
+    IcpConfig, IcpResult, Pair, centroid, icp_information, move_information, weighted_information,
+};
 
 /// Information of a pair, `1/(σ² · covariance_scale)`, and the bound of their sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +35,27 @@ pub fn match_information(
     move_information(
         &icp_information(pairs, trust.sigma_m, trust.covariance_scale),
         &middle_from_body,
+    )
+}
+
+/// The information of a result of ICP about its pose: that of the rows that its last increment used, by their weights.
+///
+/// Zero if the pose is no result of them; see [`StopReason::is_supported`](crate::icp::StopReason::is_supported).
+#[must_use]
+pub fn result_information(
+    found: &IcpResult,
+    config: &IcpConfig,
+    trust: &TrustConfig,
+) -> Matrix3<f64> {
+    if !found.stop.is_supported() {
+        return Matrix3::zeros();
+    }
+    let middle = centroid(&found.pairs);
+    let (sigma_m, scale) = (trust.sigma_m, trust.covariance_scale);
+    let weight = |pair: &Pair| config.weight(pair);
+    move_information(
+        &weighted_information(&found.pairs, sigma_m, scale, 0.0, weight),
+        &SE2::from_xy(middle.x, middle.y).between(&found.pose),
     )
 }
 

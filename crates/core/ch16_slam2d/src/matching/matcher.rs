@@ -62,8 +62,23 @@ pub enum MatchStop {
         /// Number of scored poses.
         poses: usize,
     },
+    /// No pose of the window reaches the smallest score, or the target has no grid to search: the pose is the guess.
+    NotFound,
     /// Stop reason of a custom matcher.
     Other(&'static str),
+}
+
+impl MatchStop {
+    /// Whether the pose is a result of the scan in any direction; otherwise it is the guess.
+    #[must_use]
+    pub fn is_supported(&self) -> bool {
+        match self {
+            Self::Icp(stop) => stop.is_supported(),
+            Self::Ndt(stop) => stop.is_supported(),
+            Self::Searched { .. } | Self::Other(_) => true,
+            Self::NotFound => false,
+        }
+    }
 }
 
 impl core::fmt::Display for MatchStop {
@@ -72,6 +87,7 @@ impl core::fmt::Display for MatchStop {
             Self::Icp(stop) => write!(f, "ICP: {stop}"),
             Self::Ndt(stop) => write!(f, "NDT: {stop}"),
             Self::Searched { poses } => write!(f, "the window was searched: {poses} poses scored"),
+            Self::NotFound => write!(f, "no pose of the window fits"),
             Self::Other(stop) => write!(f, "{stop}"),
         }
     }

@@ -106,10 +106,10 @@ impl Matcher for SearchMatcher {
 
     fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> Match {
         let Some(search) = self.search(source, request) else {
-            return self.icp.fit(source, request.guess, request.tau_m);
+            return not_found(self.icp.fit(source, request.guess, request.tau_m));
         };
         let Some(found) = search.run() else {
-            return self.icp.fit(source, request.guess, 0.0);
+            return not_found(self.icp.fit(source, request.guess, 0.0));
         };
         let near = MatchRequest {
             guess: found.best.pose,
@@ -129,6 +129,12 @@ impl Matcher for SearchMatcher {
         };
         answer
     }
+}
+
+/// The fit at the guess, which no search supports.
+fn not_found(mut at_guess: Match) -> Match {
+    at_guess.summary.stop = MatchStop::NotFound;
+    at_guess
 }
 
 impl From<ScoredPose> for RunnerUp {
@@ -205,8 +211,10 @@ mod tests {
         let mut search = SearchMatcher::new(SearchMatcherConfig::default(), &MAP);
         let alone = search.register(&corner(), &request).summary;
         assert_eq!((alone.pose, alone.inliers), (request.guess, 0));
+        assert!(!alone.stop.is_supported());
         search.set_target(&[Point2::new(0.0, 0.0)].into_iter().collect());
         let poor = search.register(&corner(), &request).summary;
         assert_eq!((poor.score, poor.inliers), (None, 0));
+        assert_eq!(poor.stop, MatchStop::NotFound);
     }
 }

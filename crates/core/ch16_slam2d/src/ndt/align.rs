@@ -12,6 +12,10 @@ const RIDGE: f64 = 1e-9;
 const MIN_DAMPING: f64 = 1e-6;
 /// Smaller terms are left out of gradient and Hessian.
 const MIN_TERM: f64 = 1e-9;
+/// A point is in a cell if it scores more there: within 3σ of the mean.
+const IN_CELL: f64 = 0.011;
+/// Share of the Hessian's mean diagonal up to which a direction is rounding.
+const ROUNDING: f64 = 1e-10;
 
 /// The settings of [`ndt_align`]; the defaults are the chapter's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +28,8 @@ pub struct NdtConfig {
     pub initial_damping: f64,
     /// Dampings tried for one step, each six times the previous one.
     pub max_tries: usize,
+    /// With fewer points in cells the run ends without a result; at least 1.
+    pub min_points: usize,
 }
 
 impl Default for NdtConfig {
@@ -33,6 +39,7 @@ impl Default for NdtConfig {
             gradient_tolerance: 1e-6,
             initial_damping: 1e-4,
             max_tries: 10,
+            min_points: 16,
         }
     }
 }
@@ -40,7 +47,7 @@ impl Default for NdtConfig {
 /// Why an NDT registration ended, with the measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NdtStop {
-    /// The gradient is below the tolerance: a maximum, or a pose without near cells.
+    /// The gradient is below the tolerance: a maximum.
     SmallGradient {
         /// `‖g_xy‖ + |g_θ|`.
         gradient: f64,
@@ -57,6 +64,30 @@ pub enum NdtStop {
         /// [`NdtConfig::max_iterations`].
         max_iterations: usize,
     },
+    /// Too few points lie in cells: the score there is flat, or that of a few points.
+    TooFewPoints {
+        /// Points within 3σ of a cell's mean at the last pose.
+        points: usize,
+        /// [`NdtConfig::min_points`].
+        min_points: usize,
+    },
+    /// A maximum, but the score does not change in a direction, as for points that coincide.
+    Unobservable,
+}
+
+impl NdtStop {
+    /// Whether the pose is a maximum that the points in cells measure in every direction. [`Self::NoBetterStep`] may be
+    /// one, or the border of a cell.
+    #[must_use]
+    pub fn converged(&self) -> bool {
+        matches!(self, Self::SmallGradient { .. })
+    }
+
+    /// Whether the pose is a result of the points in any direction; otherwise it is no better than the guess.
+    #[must_use]
+    pub fn is_supported(&self) -> bool {
+        !matches!(self, Self::TooFewPoints { .. })
+    }
 }
 
 impl core::fmt::Display for NdtStop {
@@ -72,6 +103,11 @@ impl core::fmt::Display for NdtStop {
             Self::IterationLimit { max_iterations } => {
                 write!(f, "limit of {max_iterations} iterations")
             }
+            Self::TooFewPoints { points, min_points } => write!(
+                f,
+                "{points} points in cells, at least {min_points} are needed"
+            ),
+            Self::Unobservable => write!(f, "the score does not change in a direction"),
         }
     }
 }
@@ -150,6 +186,8 @@ pub struct NdtAlign<'a> {
 struct Slope {
     gradient: Vector3<f64>,
     hessian: Matrix3<f64>,
+    /// Points in cells.
+    points: usize,
 }
 
 impl<'a> NdtAlign<'a> {
@@ -200,14 +238,19 @@ impl<'a> NdtAlign<'a> {
         }
         self.iterations += 1;
         let at_pose = self.slope.take();
-        let Slope { gradient, hessian } =
-            at_pose.unwrap_or_else(|| score_with_slope(self.cloud, self.map, &self.pose).1);
+        let Slope {
+            gradient,
+            hessian,
+            points,
+        } = at_pose.unwrap_or_else(|| score_with_slope(self.cloud, self.map, &self.pose).1);
         let size = twist_size(&gradient);
         if size < tolerance {
-            return Some(NdtStop::SmallGradient {
-                gradient: size,
+            let gradient = size;
+            let level = NdtStop::SmallGradient {
+                gradient,
                 tolerance,
-            });
+            };
+            return Some(self.supported(points, &hessian, level));
         }
         for tried in 0..max_tries {
             let mut damped = hessian;
@@ -239,23 +282,37 @@ impl<'a> NdtAlign<'a> {
             }
             self.damping *= 6.0;
         }
-        Some(NdtStop::NoBetterStep {
-            damping: self.damping,
-        })
+        let damping = self.damping;
+        Some(self.supported(points, &hessian, NdtStop::NoBetterStep { damping }))
+    }
+
+    /// `stop`, if the points in cells measure every direction.
+    fn supported(&self, points: usize, hessian: &Matrix3<f64>, stop: NdtStop) -> NdtStop {
+        let min_points = self.config.min_points.max(1);
+        let floor = RIDGE + ROUNDING * hessian.trace();
+        if points < min_points {
+            NdtStop::TooFewPoints { points, min_points }
+        } else if (hessian - Matrix3::identity() * floor).cholesky().is_none() {
+            NdtStop::Unobservable
+        } else {
+            stop
+        }
     }
 }
 
 /// The score of [`NdtMap::score`] and its derivatives, in one pass over the cloud.
 fn score_with_slope(cloud: &PointCloud, map: &NdtMap, pose: &SE2) -> (f64, Slope) {
     let Rotation { cos, sin } = pose.rotation();
-    let mut score = 0.0;
+    let (mut score, mut points) = (0.0, 0);
     let (mut gx, mut gy, mut gw) = (0.0, 0.0, 0.0);
     let (mut xx, mut xy, mut yy, mut xw, mut yw, mut ww) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     for (&px, &py) in cloud.xs().iter().zip(cloud.ys()) {
         let (rx, ry) = (cos * px - sin * py, sin * px + cos * py);
         let (x, y) = (rx + pose.x(), ry + pose.y());
+        let mut is_in_cell = false;
         for (gaussian, e) in map.scores_around(x, y) {
             score += e;
+            is_in_cell |= e > IN_CELL;
             if e < MIN_TERM {
                 continue;
             }
@@ -274,10 +331,12 @@ fn score_with_slope(cloud: &PointCloud, map: &NdtMap, pose: &SE2) -> (f64, Slope
             yw += e * uy;
             ww += e * (uy * rx - ux * ry);
         }
+        points += usize::from(is_in_cell);
     }
     let slope = Slope {
         gradient: Vector3::new(gx, gy, gw),
         hessian: Matrix3::new(xx, xy, xw, xy, yy, yw, xw, yw, ww),
+        points,
     };
     (score, slope)
 }

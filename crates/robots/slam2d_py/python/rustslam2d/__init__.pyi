@@ -57,7 +57,17 @@ class IcpResult:
     @property
     def converged(self) -> bool: ...
     @property
-    def stop(self) -> Literal["small-step", "iteration-limit", "too-few-pairs", "not-finite"]: ...
+    def stop(
+        self,
+    ) -> Literal[
+        "small-step",
+        "iteration-limit",
+        "too-few-pairs",
+        "too-few-normals",
+        "too-few-inliers",
+        "unobservable-direction",
+        "not-finite",
+    ]: ...
 
 def icp(
     source: ArrayLike,
@@ -87,7 +97,11 @@ class NdtResult:
     @property
     def iterations(self) -> int: ...
     @property
-    def stop(self) -> Literal["small-gradient", "no-better-step", "iteration-limit"]: ...
+    def stop(
+        self,
+    ) -> Literal[
+        "small-gradient", "no-better-step", "iteration-limit", "too-few-points", "unobservable-direction"
+    ]: ...
 
 class Ndt:
     def __init__(self, points: ArrayLike, *, cell: float = 0.6, min_points: int = 4) -> None: ...
