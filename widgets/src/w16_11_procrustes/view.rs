@@ -12,11 +12,15 @@ pub fn arrange(_scene: &Scene, width: f32) -> Arrangement {
     let [points, trace, map] = if is_wide {
         [440.0, 180.0, 260.0]
     } else {
-        [330.0, 140.0, 170.0]
+        [520.0, 140.0, 170.0]
     };
     let maps = [panel::MAP_TURN, panel::MAP_UNCHECKED].map(|panel| Slot::natural(panel, map));
     Arrangement {
-        stage: Row::each(&[Slot::natural(panel::POINTS, points)]),
+        stage: Row::each(&[if is_wide {
+            Slot::natural(panel::POINTS, points)
+        } else {
+            Slot::fixed(panel::POINTS, points)
+        }]),
         below: vec![
             Row::new(&[Slot::fixed(panel::TRACE, trace)]),
             Row::new(&maps),

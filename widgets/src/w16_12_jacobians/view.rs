@@ -12,10 +12,14 @@ pub fn arrange(_scene: &Scene, width: f32) -> Arrangement {
     let [graphs, curve] = if is_wide {
         [440.0, 290.0]
     } else {
-        [340.0, 240.0]
+        [500.0, 240.0]
     };
     Arrangement {
-        stage: Row::each(&[Slot::natural(panel::GRAPHS, graphs)]),
+        stage: Row::each(&[if is_wide {
+            Slot::natural(panel::GRAPHS, graphs)
+        } else {
+            Slot::fixed(panel::GRAPHS, graphs)
+        }]),
         below: Row::each(&[Slot::fixed(panel::CURVE, curve)]),
     }
 }

@@ -9,7 +9,7 @@ use crate::w16_1_basin_explorer::model::panel;
 /// enter.
 const BESIDE_PX: f32 = 109.0;
 /// Height of the sweeps on a phone, alone and above a map: both are equally high with it.
-const PHONE_PX: [f32; 2] = [440.0, 166.0];
+const PHONE_PX: [f32; 2] = [500.0, 226.0];
 /// Height of a map on a phone.
 const BELOW_PX: f32 = 112.0;
 
