@@ -19,6 +19,9 @@ import numpy as np
 TESTS = "from rustslam2d._apart import tests; tests()"
 STUDENT = "from rustslam2d._apart import answer_calls; answer_calls()"
 
+#: Largest message; more is no answer.
+MOST_BYTES = 1 << 30
+
 _student = None
 
 
@@ -189,8 +192,10 @@ def read_bytes(stream):
     """What :func:`write` wrote; EOFError at the end."""
     head = stream.read(8)
     size = int.from_bytes(head, "little")
-    content = stream.read(size) if len(head) == 8 else b""
-    if len(head) < 8 or len(content) < size:
+    if len(head) < 8 or size > MOST_BYTES:
+        raise EOFError
+    content = stream.read(size)
+    if len(content) < size:
         raise EOFError
     return content
 
