@@ -156,7 +156,10 @@ fn the_verdict_is_the_same_whichever_scan_a_recording_starts_with() {
         for start in STARTS {
             let motion = motion(all[start..].iter().cloned());
             assert_eq!(words(&motion), faults, "{name} from {start}: {motion:?}");
-            assert_eq!(motion.suggestions(), [], "{name} from {start}");
+            // Of some starts, too few scans match for a trial without odometry to mean something.
+            if name != SPARSE {
+                assert_eq!(motion.suggestions(), [], "{name} from {start}");
+            }
             assert_eq!(
                 motion.confirms_mounting(),
                 is_mounted && name != SPARSE,

@@ -19,7 +19,7 @@ use crate::slam::Slam;
 const GAP_S: f64 = 10.0;
 /// A time between two scans of at most this many usual ones is no gap.
 const USUAL: f64 = 2.0;
-/// The last times between scans, of which the usual one is the median.
+/// The last times between scans: one of ten may be longer than the usual one, because drivers drop scans and stamps jitter.
 const RECENT: usize = 31;
 /// Odometry is not followed, and a robot need not stand where it stood, over a longer time, s.
 const LONG_GAP_S: f64 = 120.0;
@@ -90,7 +90,7 @@ impl Pace {
     fn is_gap(&self, gap_s: f64) -> bool {
         let mut recent_s: Vec<f64> = self.recent_s.iter().copied().collect();
         pr_geom::sort_numbers(&mut recent_s);
-        let usual_s = recent_s.get(recent_s.len() / 2);
+        let usual_s = recent_s.get(recent_s.len() * 9 / 10);
         usual_s.is_some_and(|usual_s| gap_s > USUAL * usual_s)
     }
 
