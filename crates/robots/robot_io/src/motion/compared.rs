@@ -69,6 +69,10 @@ pub struct MotionComparison {
     pub scale: Option<f64>,
     /// Turn by odometry per turn by scans.
     pub turn_scale: Option<f64>,
+    /// Whether three of four turns are out of scale to the same side: noise scatters them about 1, a wrong distance between
+    /// the wheels does not.
+    #[serde(skip)]
+    is_turn_scale_off: bool,
     /// Median distance between both per metre, m.
     pub drift_m_per_m: Option<f64>,
     /// Lag of odometry behind the scans, s; `None` if there is none or the turns do not show it.
@@ -112,7 +116,10 @@ impl MotionComparison {
             }
         }
         if motion.turned_rad >= MIN_RAD {
-            (motion.correlation, motion.turn_scale) = compare_turns(stretches).unzip();
+            let turns = compare_turns(stretches);
+            motion.correlation = turns.as_ref().map(|turns| turns.correlation);
+            motion.turn_scale = turns.as_ref().map(|turns| turns.ratio);
+            motion.is_turn_scale_off = turns.is_some_and(|turns| turns.is_off);
         }
         let is_mirrored = motion
             .correlation
@@ -127,8 +134,8 @@ impl MotionComparison {
         let is_alike = motion
             .correlation
             .is_some_and(|correlation| correlation >= AGREE);
-        let is_off = |ratio: &f64| (ratio - 1.0).abs() > TURNS_OFF;
-        if let Some(ratio) = motion.turn_scale.filter(is_off).filter(|_| is_alike) {
+        let is_off = is_alike && motion.is_turn_scale_off;
+        if let Some(ratio) = motion.turn_scale.filter(|_| is_off) {
             motion.propose(Finding::TurnScale { ratio });
         }
         let mirror = if is_mirrored { -1.0 } else { 1.0 };
@@ -313,9 +320,17 @@ impl MotionComparison {
     }
 }
 
-/// Correlation of the turns by scans and by odometry, and those by odometry per turn by scans; a mirror image is tried
-/// as well.
-fn compare_turns(stretches: &[Stretch]) -> Option<(f64, f64)> {
+/// Turns by odometry and by scans.
+struct Turns {
+    /// Correlation; a mirror image is tried as well.
+    correlation: f64,
+    /// Median of those by odometry per turn by scans.
+    ratio: f64,
+    /// Whether the quartile of the ratios on the side of 1 is out of scale.
+    is_off: bool,
+}
+
+fn compare_turns(stretches: &[Stretch]) -> Option<Turns> {
     // Few segments of a long path turn: among all of them, turns that differ would be the outliers.
     let turns = |mirror: f64| {
         let both = stretches.iter();
@@ -339,7 +354,16 @@ fn compare_turns(stretches: &[Stretch]) -> Option<(f64, f64)> {
         .iter()
         .filter(|stretch| stretch.sensor.theta().abs() > MIN_TURN_RAD);
     let ratios = turning.map(|stretch| stretch.body.theta() / stretch.sensor.theta());
-    Some((correlation, median(ratios.collect())?))
+    let mut ratios: Vec<f64> = ratios.collect();
+    ratios.sort_by(f64::total_cmp);
+    let low = ratios.len() / 4;
+    let high = ratios.len().checked_sub(1 + low)?;
+    let is_off = *ratios.get(low)? > 1.0 + TURNS_OFF || *ratios.get(high)? < 1.0 - TURNS_OFF;
+    Some(Turns {
+        correlation,
+        ratio: median(ratios)?,
+        is_off,
+    })
 }
 
 /// Direction from displacements by scans to those by odometry, as a unit number, and how concentrated it is, 0 to 1.
