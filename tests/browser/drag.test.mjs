@@ -80,7 +80,8 @@ for (const [name, parameter] of [['w16.2', 'noise'], ['w16.8', 'share'], ['w16.1
       });
     });
 
-    it('shows the same picture as a widget that starts with that value', async () => {
+    // Letting go of w16.1 plays, so its picture is another one than at a start.
+    if (name !== 'w16.1') it('shows the same picture as a widget that starts with that value', async () => {
       await on(name, async (tab) => {
         const { x, y, width } = await sliderRail(tab, parameter);
         await h.quiet(tab);
