@@ -13,7 +13,7 @@ export const STYLE = `
   --good: ${good[1]}; --fair: ${fair[1]}; --bad: ${bad[1]}; --older: ${prior[1]}; --newer: ${measurement[1]};
   color-scheme: dark; }
 .title { margin: 0; padding: 0.5rem 0.75rem 0.25rem; font: 600 1.25rem/1.2 var(--text-font, inherit); text-wrap: balance; }
-.title span { margin-inline-end: 0.5rem; color: var(--soft); font: 0.875rem/1 var(--label-font, system-ui); }
+.title span { margin-inline-end: 0.5rem; color: var(--soft); font: 0.9375rem/1 var(--label-font, system-ui); }
 .view { position: relative; }
 .whole { position: absolute; top: 0.5rem; right: 0.75rem; }
 .drop { display: none; }
