@@ -15,6 +15,8 @@ const OLDEST = oldestVersions();
 const EXCEPTIONS = {
   'AbortSignal.timeout': 'Chrome before 124 gives its error another name, which nobody reads',
   ClipboardItem: 'eframe copies pictures with it, which no widget does',
+  Touch: 'Safari on a Mac cannot construct one: touchStart in web/ts/touch.ts sends an event with the same properties',
+  TouchEvent: 'the same',
   'Symbol.dispose': 'wasm-bindgen asks for it first',
   ':popover-open': 'web/page/popovers.ts shows the lines of the notation',
   '@property': 'an embedded widget keeps its own height',
