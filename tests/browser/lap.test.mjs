@@ -81,7 +81,8 @@ describe('the lap under the title', () => {
         });
         const total = weights.reduce((sum, [, bytes]) => sum + bytes, 0);
         assert.ok(total > 50_000 && total <= 300_000, `${total} bytes: ${weights.join(' ')}`);
-        assert.deepEqual([...asked].filter((path) => /\.wasm$|pictures\/w16/.test(path)), []);
+        // The stills of the first two widgets are near enough to be fetched ahead; their bytes are in the sum above.
+        assert.deepEqual([...asked].filter((path) => /\.wasm$|pictures\/w16\.(?!1-|11-)/.test(path)), []);
       }, { viewport }, { server: { answer } });
     }
   });
