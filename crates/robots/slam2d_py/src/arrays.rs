@@ -10,11 +10,14 @@ use numpy::{
     PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyReadonlyArrayDyn,
     PyUntypedArrayMethods as _,
 };
-use pr_geom::SE2;
+use pr_geom::{Rotation, SE2, math};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict, PyString};
 
 use crate::errors::ArrayError;
+
+/// Largest error of a number of a homogeneous matrix: float32 rounds to 1e-7.
+const MATRIX_TOLERANCE: f64 = 1e-6;
 
 /// A Python value as an array of float64 of any shape.
 fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
@@ -24,15 +27,42 @@ fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArr
         )));
     }
     let py = value.py();
+    let rejected = || ArrayError::new_err(format!("{name} cannot be read as an array of numbers"));
+    let numpy = py.import("numpy")?;
+    let array = numpy.call_method1("asarray", (value,));
+    let array = array.map_err(|_| rejected())?;
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    // numpy would drop the imaginary parts with a warning, and read numbers from text.
+    let held = match kind.as_str() {
+        "c" => "complex numbers",
+        "S" | "U" => "text",
+        "O" if holds_text(&array)? => "text",
+        "b" | "i" | "u" | "f" | "O" => "",
+        _ => return Err(rejected()),
+    };
+    if !held.is_empty() {
+        return Err(ArrayError::new_err(format!(
+            "{name} holds {held}, and has to hold real numbers"
+        )));
+    }
     let options = PyDict::new(py);
     options.set_item("dtype", "float64")?;
-    let numpy = py.import("numpy")?;
-    let array = numpy.call_method("asarray", (value,), Some(&options));
-    let rejected = || ArrayError::new_err(format!("{name} cannot be read as an array of numbers"));
+    let array = numpy.call_method("asarray", (array,), Some(&options));
     array
         .map_err(|_| rejected())?
         .extract()
         .map_err(|_| rejected())
+}
+
+/// Whether an array of objects holds text.
+fn holds_text(array: &Bound<'_, PyAny>) -> PyResult<bool> {
+    for element in array.getattr("flat")?.try_iter()? {
+        let element = element?;
+        if element.is_instance_of::<PyString>() || element.is_instance_of::<PyBytes>() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 fn wrong_shape(name: &str, wanted: &str, shape: &[usize]) -> PyErr {
@@ -110,15 +140,62 @@ pub fn relations(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; 5]>
     })
 }
 
-/// Reads a pose or a motion, an array of shape (3,).
+/// Reads a pose or a motion: an array of shape (3,), or a homogeneous matrix of shape (3, 3) or (4, 4).
 pub fn pose(name: &str, value: &Bound<'_, PyAny>) -> PyResult<SE2> {
     let numbers = numbers(name, value)?;
     let view = numbers.as_array();
-    if view.shape() != [3] {
-        return Err(wrong_shape(name, "(3,)", view.shape()));
-    }
     all_finite(name, view.iter())?;
-    Ok(SE2::new(view[[0]], view[[1]], view[[2]]))
+    let (size, shape) = match view.shape() {
+        [3] => return Ok(SE2::new(view[[0]], view[[1]], view[[2]])),
+        [3, 3] => (3, "3×3"),
+        [4, 4] => (4, "4×4"),
+        other => return Err(wrong_shape(name, "(3,), (3, 3) or (4, 4)", other)),
+    };
+    let at = |row: usize, column: usize| view[[row, column]];
+    let last = size - 1;
+    let pose = SE2::new(at(0, last), at(1, last), math::atan2(at(1, 0), at(0, 0)));
+    let expected = homogeneous(&pose, size);
+    let differs = |(k, number): (usize, &f64)| (number - expected[k]).abs() > MATRIX_TOLERANCE;
+    if view.iter().enumerate().any(differs) {
+        return Err(ArrayError::new_err(format!(
+            "{name} is a {shape} matrix, but no motion of the plane: a rotation by one angle, a position, and zeros and \
+             ones elsewhere"
+        )));
+    }
+    Ok(pose)
+}
+
+/// The homogeneous matrix of a pose, by rows.
+fn homogeneous(pose: &SE2, size: usize) -> Vec<f64> {
+    let Rotation { cos, sin } = pose.rotation();
+    let last = size - 1;
+    let mut matrix = vec![0.0; size * size];
+    for k in 2..size {
+        matrix[k * size + k] = 1.0;
+    }
+    matrix[..2].copy_from_slice(&[cos, -sin]);
+    matrix[size..size + 2].copy_from_slice(&[sin, cos]);
+    matrix[last] = pose.x();
+    matrix[size + last] = pose.y();
+    matrix
+}
+
+/// The pose of a result as a homogeneous matrix, shape (3, 3).
+pub fn matrix_of<'py>(pose: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    sized_matrix_of(pose, 3)
+}
+
+/// The pose of a result as a homogeneous matrix of space, shape (4, 4).
+pub fn matrix_3d_of<'py>(pose: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    sized_matrix_of(pose, 4)
+}
+
+fn sized_matrix_of<'py>(
+    at: &Bound<'py, PyAny>,
+    size: usize,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let matrix = homogeneous(&pose("the pose", at)?, size);
+    PyArray1::from_vec(at.py(), matrix).reshape([size, size])
 }
 
 /// A pose; the given default for Python's `None`.

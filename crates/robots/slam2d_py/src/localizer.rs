@@ -1,7 +1,5 @@
 //! Localization on a map that stays.
 
-use std::fs::File;
-use std::io::{BufReader, Read as _};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -9,12 +7,12 @@ use ch16_slam2d::localize::{KnownMap, LocalizeConfig, StartPose};
 use ch16_slam2d::scan::Frame;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use robot_io::session::{FILE_NAME, MAX_BYTES, Session};
 
 use crate::arrays;
-use crate::errors::{FrameError, LogError, SlamError, os_error};
+use crate::errors::{FrameError, SlamError};
 use crate::reduced::{self, Reduced};
 use crate::sensor::Sensor;
+use crate::sessions::session;
 use crate::slam::Slam;
 
 /// Localization on a map that stays, one scan at a time.
@@ -53,6 +51,22 @@ reduced::restorable! {
 
 #[pymethods]
 impl Fix {
+    /// The pose as a homogeneous matrix, shape (3, 3); None if the robot is lost.
+    #[getter]
+    fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let pose = self.pose.as_ref();
+        pose.map(|pose| arrays::matrix_of(pose.bind(py).as_any()))
+            .transpose()
+    }
+
+    /// The pose as a homogeneous matrix of space, shape (4, 4); None if the robot is lost.
+    #[getter]
+    fn matrix_3d<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let pose = self.pose.as_ref();
+        pose.map(|pose| arrays::matrix_3d_of(pose.bind(py).as_any()))
+            .transpose()
+    }
+
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         reduced::by_attributes(slf)
     }
@@ -66,19 +80,6 @@ impl Fix {
             pose.as_deref().unwrap_or("None")
         ))
     }
-}
-
-/// Reads a session from its file, or from the folder of a run.
-fn session(path: PathBuf) -> PyResult<Session> {
-    let path = if path.is_dir() {
-        path.join(FILE_NAME)
-    } else {
-        path
-    };
-    let file = File::open(&path).map_err(|error| os_error(&path, &error))?;
-    let file = BufReader::new(file).take(MAX_BYTES + 1);
-    let session = Session::read(file, &path.display().to_string());
-    session.map_err(|error| LogError::new_err(error.to_string()))
 }
 
 #[pymethods]

@@ -21,6 +21,7 @@ use crate::arrays;
 use crate::errors::{
     ArrayError, ChoiceError, GraphError, OptimizeError, count, index, no_choice, os_error, within,
 };
+use crate::interrupts::Listener;
 use crate::reduced::{self, Reduced};
 
 /// First damping of method "lm", relative to the diagonal.
@@ -343,9 +344,13 @@ impl PoseGraph {
             let chi2_initial = graph.problem.chi2();
             let mut solved = graph.problem.clone();
             let mut optimizer = Optimizer::new(settings);
-            let session =
+            let mut session =
                 SolveSession::new(&mut optimizer, &mut solved, *start).map_err(py_error)?;
-            let outcome = session.run();
+            let mut listener = Listener::default();
+            while session.step() {
+                listener.listen()?;
+            }
+            let outcome = session.finish();
             if let StopReason::Failed { error } = outcome.report.stop {
                 return Err(py_error(error));
             }

@@ -1,7 +1,5 @@
 //! Scan registration: ICP and NDT.
 
-use std::time::{Duration, Instant};
-
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace, StopReason};
 use ch16_slam2d::matching::{NdtMatcherConfig, TrustConfig, result_information};
@@ -12,6 +10,7 @@ use pyo3::prelude::*;
 
 use crate::arrays;
 use crate::errors::{ChoiceError, count, no_choice, within};
+use crate::interrupts::Listener;
 use crate::reduced::{self, Reduced};
 
 /// Width of a map cell as a share of the largest distance: a query then sees a handful of cells.
@@ -24,10 +23,11 @@ pub struct IcpResult {
     #[pyo3(get)]
     pub pose: Py<PyArray1<f64>>,
     /// Covariance of the pose, shape (3, 3), of perturbations on its right in the order x, y, θ: m², m·rad, rad².
-    /// None if the pairs leave a direction free.
+    /// None if the pairs leave a direction free, or if there are too few of them.
     #[pyo3(get)]
     pub covariance: Option<Py<PyArray2<f64>>>,
-    /// The inverse of the covariance, shape (3, 3).
+    /// The inverse of the covariance, shape (3, 3): of the pairs that the last increment used, by their weights; zero if
+    /// the pose is no result of them.
     #[pyo3(get)]
     pub information: Py<PyArray2<f64>>,
     /// The initial guess and the pose after each increment, shape (iterations + 1, 3).
@@ -55,14 +55,31 @@ pub struct IcpResult {
     /// unobservable-direction or not-finite.
     #[pyo3(get)]
     pub stop: String,
+    /// The motion x, y, θ that no pair measures, about the centroid of the pairs, of length 1, shape (3,); None if the
+    /// pairs measure all. Along it, the pose is that of the guess.
+    #[pyo3(get)]
+    pub unobservable: Option<Py<PyArray1<f64>>>,
 }
 
 reduced::restorable! {
-    IcpResult { pose, covariance, information, trace, trace_rmse, pairs, rmse, inliers, iterations, converged, stop }
+    IcpResult { pose, covariance, information, trace, trace_rmse, pairs, rmse, inliers, iterations, converged, stop,
+        unobservable }
 }
 
 #[pymethods]
 impl IcpResult {
+    /// The pose as a homogeneous matrix, shape (3, 3).
+    #[getter]
+    fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        arrays::matrix_of(self.pose.bind(py).as_any())
+    }
+
+    /// The pose as a homogeneous matrix of space, shape (4, 4), as small_gicp, kiss-icp and open3d use them.
+    #[getter]
+    fn matrix_3d<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        arrays::matrix_3d_of(self.pose.bind(py).as_any())
+    }
+
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         reduced::by_attributes(slf)
     }
@@ -79,9 +96,6 @@ impl IcpResult {
     }
 }
 
-/// Longest time without listening to Ctrl-C.
-const LISTEN_EVERY: Duration = Duration::from_millis(50);
-
 /// The variants of ICP by their names.
 const VARIANTS: [(&str, IcpVariant); 2] = [
     ("point-to-plane", IcpVariant::PointToPlane),
@@ -95,12 +109,13 @@ const VARIANTS: [(&str, IcpVariant); 2] = [
 ///
 /// source: points, shape (n, 2), m.
 /// target: points of the map, shape (m, 2), m.
-/// init: initial guess of target_from_source, shape (3,): x and y in m, θ in rad; the identity without it.
+/// init: initial guess of target_from_source, shape (3,): x and y in m, θ in rad; or a homogeneous matrix, shape (3, 3) or
+///     (4, 4); the identity without it.
 /// variant: "point-to-plane" (Chen & Medioni 1992) or "point-to-point" (Besl & McKay 1992).
 /// max_distance: points farther from the map have no pair, m.
 /// max_iterations: the most increments.
 /// tolerance: an increment smaller than this ends it, m and rad added.
-/// min_pairs: with fewer pairs it ends.
+/// min_pairs: with fewer pairs it ends, and point to plane with fewer than twice as many that have a normal.
 /// trim: share of the pairs to drop, the longest first.
 /// huber_width: residual beyond which a pair weighs less, m.
 /// normal_radius: radius within which target points give each other normals, m.
@@ -160,7 +175,11 @@ pub fn icp(
         Ok::<_, PyErr>((found, map))
     })?;
     let information = result_information(&found, &config, &trust);
-    let covariance = information.try_inverse();
+    let unobservable = match found.stop {
+        StopReason::Unobservable { direction } => Some(direction),
+        _ => None,
+    };
+    let covariance = information.try_inverse().filter(|_| unobservable.is_none());
     let pairs = found.pairs.iter().flat_map(|pair| {
         let target = map.source_index(pair.target_index);
         [pair.source_index as i64, target as i64]
@@ -190,6 +209,8 @@ pub fn icp(
             StopReason::NotFinite => "not-finite",
         }
         .to_owned(),
+        unobservable: unobservable
+            .map(|direction| PyArray1::from_vec(py, direction.to_vec()).unbind()),
     })
 }
 
@@ -202,16 +223,13 @@ fn interruptible(
 ) -> PyResult<ch16_slam2d::icp::IcpResult> {
     let mut workspace = IcpWorkspace::new();
     let mut icp = Icp::new(source, map, init, config, &mut workspace);
-    let mut listened = Instant::now();
+    let mut listener = Listener::default();
     let (last, stop) = loop {
         let step = icp.step();
         if let Some(stop) = step.stop {
             break (step.trace, stop);
         }
-        if listened.elapsed() > LISTEN_EVERY {
-            Python::attach(|py| py.check_signals())?;
-            listened = Instant::now();
-        }
+        listener.listen()?;
     };
     Ok(ch16_slam2d::icp::IcpResult {
         pose: last.pose,
@@ -270,17 +288,33 @@ pub struct NdtResult {
     /// Number of iterations.
     #[pyo3(get)]
     pub iterations: usize,
-    /// Why it ended: small-gradient, no-better-step, iteration-limit, too-few-points (in cells) or unobservable-direction.
+    /// Whether it is at a maximum that points in cells measure in every direction.
+    #[pyo3(get)]
+    pub converged: bool,
+    /// Why it ended: small-gradient, no-better-step (a maximum, or the border of a cell), iteration-limit,
+    /// too-few-points (in cells) or unobservable-direction.
     #[pyo3(get)]
     pub stop: String,
 }
 
 reduced::restorable! {
-    NdtResult { pose, trace, score, iterations, stop }
+    NdtResult { pose, trace, score, iterations, converged, stop }
 }
 
 #[pymethods]
 impl NdtResult {
+    /// The pose as a homogeneous matrix, shape (3, 3).
+    #[getter]
+    fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        arrays::matrix_of(self.pose.bind(py).as_any())
+    }
+
+    /// The pose as a homogeneous matrix of space, shape (4, 4), as small_gicp, kiss-icp and open3d use them.
+    #[getter]
+    fn matrix_3d<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        arrays::matrix_3d_of(self.pose.bind(py).as_any())
+    }
+
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         reduced::by_attributes(slf)
     }
@@ -324,7 +358,8 @@ impl Ndt {
     /// Registers `source` on the map by damped Gauss–Newton; the score never falls.
     ///
     /// source: points, shape (n, 2), m.
-    /// init: initial guess of map_from_source, shape (3,); the identity without it.
+    /// init: initial guess of map_from_source, shape (3,), or a homogeneous matrix, shape (3, 3) or (4, 4); the identity
+    ///     without it.
     #[pyo3(signature = (source, *, init=None, max_iterations=NdtConfig::default().max_iterations as f64),
         text_signature = "($self, source, *, init=None, max_iterations=25)")]
     fn align(
@@ -346,6 +381,7 @@ impl Ndt {
             trace: arrays::of_poses(py, found.trace)?.unbind(),
             score: found.score,
             iterations: found.iterations,
+            converged: found.stop.converged(),
             stop: match found.stop {
                 NdtStop::SmallGradient { .. } => "small-gradient",
                 NdtStop::NoBetterStep { .. } => "no-better-step",

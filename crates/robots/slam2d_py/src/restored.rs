@@ -9,10 +9,10 @@ use crate::localizer::Fix;
 use crate::pose_graph::{OptimizeReport, PoseGraph};
 use crate::reduced::Restorable as _;
 use crate::registration::{IcpResult, NdtResult};
-use crate::run_log::LogResult;
+use crate::run_log::{LogResult, Pipeline};
 use crate::sensor::Sensor;
 use crate::simulation::Drive;
-use crate::slam::SlamStep;
+use crate::slam::{Slam, SlamStep};
 
 /// Restores a pickled object.
 #[pyfunction]
@@ -24,6 +24,8 @@ pub fn _restored<'py>(
     let call = |made: Bound<'py, PyAny>| made.call((), Some(fields));
     match class {
         "Sensor" => call(py.get_type::<Sensor>().into_any()),
+        "Pipeline" => call(py.get_type::<Pipeline>().into_any()),
+        "Slam" => call(py.get_type::<Slam>().getattr("_from_bytes")?),
         "GridMap" => call(py.get_type::<GridMap>().into_any()),
         "PoseGraph" => call(py.get_type::<PoseGraph>().getattr("from_g2o")?),
         "Drive" => call(

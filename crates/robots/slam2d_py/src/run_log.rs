@@ -1,6 +1,7 @@
 //! Maps a recorded log with the estimator.
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use ch16_slam2d::slam::Slam;
 use nalgebra::Matrix3;
@@ -18,7 +19,7 @@ use robot_io::recorder::RunRecorder;
 use robot_io::run::LogRun;
 
 use crate::arrays;
-use crate::errors::{LogError, within};
+use crate::errors::{ChoiceError, LogError, no_choice, within};
 use crate::grid_map::GridMap;
 use crate::log_files::{self, ReadTo};
 use crate::pose_graph::PoseGraph;
@@ -37,16 +38,26 @@ const SHARE_OF_SCANS: f64 = 0.75;
 ///
 /// log: the file, or the folder of a recording of ROS 2.
 /// config: settings by name, as `settings()` lists them.
-/// odometry: False ignores the odometry and uses scans alone.
+/// odometry: "check" compares it with the scans, "force" takes it as it is, "mirrored" exchanges left and right and compares,
+///     "none" uses scans alone; True is "check", False "none".
 /// scan_topic, odom_topic, odom_frame, body_frame: the one to use if a recording of ROS has several.
+/// laser: mounting of the laser, which overrides the recording, as `slam2d run --laser` takes it: "0.1,0,180" is metres
+///     forward and to the left, and degrees; with ",flipped" if it is upside down.
+/// heights: use the points of a 3-D sensor between these heights above the body's origin, (low, high), m.
+/// min_range: shorter ranges are no points, m.
+/// footprint: the rectangle that the robot covers, whose readings are no points: back, right, front and left end, m.
+/// columns: columns of a table without a header, "time_us,angle_deg,range_mm".
 ///
-/// Raises SettingError for a name or a value that the estimator does not have.
+/// Raises OSError if the log cannot be opened, SettingError for a name or a value that the estimator does not have,
+/// ChoiceError for an argument out of its range.
 #[pyclass(frozen, module = "rustslam2d")]
 pub struct Pipeline {
     log: PathBuf,
     chosen: Chosen,
     odometry: OdometryUse,
     options: LogOptions,
+    /// Its arguments, for pickling.
+    keywords: Py<PyDict>,
 }
 
 /// Result of `Pipeline.run`.
@@ -141,26 +152,69 @@ struct Found {
 #[pymethods]
 impl Pipeline {
     #[new]
-    #[pyo3(signature = (log, config=None, *, odometry=true, scan_topic=None, odom_topic=None, odom_frame=None,
-        body_frame=None))]
+    #[pyo3(signature = (log, config=None, *, odometry=None, scan_topic=None, odom_topic=None, odom_frame=None,
+        body_frame=None, laser=None, heights=None, min_range=None, footprint=None, columns=None),
+        text_signature = "(log, config=None, *, odometry='check', scan_topic=None, odom_topic=None, odom_frame=None, \
+            body_frame=None, laser=None, heights=None, min_range=None, footprint=None, columns=None)")]
+    // Keyword arguments of Python.
+    #[expect(clippy::too_many_arguments)]
     fn new(
+        py: Python<'_>,
         log: PathBuf,
-        config: Option<&Bound<'_, PyDict>>,
-        odometry: bool,
+        config: Option<Bound<'_, PyDict>>,
+        odometry: Option<Bound<'_, PyAny>>,
         scan_topic: Option<String>,
         odom_topic: Option<String>,
         odom_frame: Option<String>,
         body_frame: Option<String>,
+        laser: Option<String>,
+        heights: Option<(f64, f64)>,
+        min_range: Option<f64>,
+        footprint: Option<(f64, f64, f64, f64)>,
+        columns: Option<String>,
     ) -> PyResult<Self> {
+        // A log that is not there is reported here, and not an hour later by the run.
+        log_files::parts(&log)?;
+        let keywords = PyDict::new(py);
+        keywords.set_item("log", &log)?;
+        keywords.set_item("config", &config)?;
+        for (name, value) in [
+            ("scan_topic", &scan_topic),
+            ("odom_topic", &odom_topic),
+            ("odom_frame", &odom_frame),
+            ("body_frame", &body_frame),
+            ("laser", &laser),
+            ("columns", &columns),
+        ] {
+            keywords.set_item(name, value)?;
+        }
+        let odometry = odometry_use(odometry.as_ref())?;
+        keywords.set_item("odometry", odometry.name())?;
+        keywords.set_item("heights", heights)?;
+        keywords.set_item("min_range", min_range)?;
+        keywords.set_item("footprint", footprint)?;
+        if let Some((low, high)) = heights
+            && !(low < high && low.is_finite() && high.is_finite())
+        {
+            return Err(ChoiceError::new_err(format!(
+                "heights has to be two numbers, the lower one first, not ({low}, {high})"
+            )));
+        }
+        let footprint =
+            footprint.map(|(back, right, front, left)| format!("{back},{right},{front},{left}"));
         Ok(Self {
             log,
-            chosen: settings::chosen(config)?,
-            odometry: if odometry {
-                OdometryUse::Check
-            } else {
-                OdometryUse::Ignore
-            },
+            chosen: settings::chosen(config.as_ref())?,
+            odometry,
+            keywords: keywords.unbind(),
             options: LogOptions {
+                laser: parsed("laser", laser.as_deref())?,
+                heights_m: heights,
+                min_range_m: min_range
+                    .map(|range_m| within("min_range", range_m, 0.0, 1e6, " m"))
+                    .transpose()?,
+                footprint: parsed("footprint", footprint.as_deref())?,
+                columns: parsed("columns", columns.as_deref())?,
                 scan_topic,
                 odometry_topic: odom_topic,
                 odometry_frame: odom_frame,
@@ -238,6 +292,11 @@ impl Pipeline {
         Ok((sensor, steps))
     }
 
+    /// A pickled pipeline reads the log again, by its path.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduced::by_keywords("Pipeline", slf.get().keywords.bind(slf.py()).clone())
+    }
+
     fn __repr__(&self) -> String {
         format!("Pipeline({:?})", self.log.display().to_string())
     }
@@ -249,7 +308,8 @@ impl Pipeline {
         let name = self.log.display().to_string();
         let (parts, of_files, read) = log_files::parts(&self.log)?;
         let reader = LogFormat::open_parts(parts, &name, &self.options).map_err(to_error)?;
-        let reader = ComparedReader::new(with_remarks(reader, of_files), false);
+        let is_given = self.options.laser.is_some();
+        let reader = ComparedReader::new(with_remarks(reader, of_files), is_given);
         Ok((reader.with_odometry(self.odometry), read))
     }
 
@@ -338,6 +398,32 @@ impl Pipeline {
     }
 }
 
+/// How the odometry is taken: by its name, or a truth value.
+fn odometry_use(wanted: Option<&Bound<'_, PyAny>>) -> PyResult<OdometryUse> {
+    let Some(wanted) = wanted else {
+        return Ok(OdometryUse::Check);
+    };
+    if let Ok(is_used) = wanted.cast::<PyBool>() {
+        return Ok(if is_used.is_true() {
+            OdometryUse::Check
+        } else {
+            OdometryUse::Ignore
+        });
+    }
+    let name: String = wanted.str()?.extract()?;
+    let found = OdometryUse::ALL.into_iter().find(|one| one.name() == name);
+    found.ok_or_else(|| no_choice("odometry", &name, &OdometryUse::ALL.map(OdometryUse::name)))
+}
+
+/// An option as the command reads it.
+fn parsed<T: FromStr<Err = String>>(name: &str, text: Option<&str>) -> PyResult<Option<T>> {
+    let read = |text: &str| {
+        let found = text.parse();
+        found.map_err(|problem| ChoiceError::new_err(format!("{name}: {problem}, not {text:?}")))
+    };
+    text.map(read).transpose()
+}
+
 fn to_error(error: robot_io::log::LogError) -> PyErr {
     LogError::new_err(error.to_string())
 }
@@ -365,7 +451,7 @@ impl Progress {
         if wanted.bind(py).is_callable() {
             return Ok(Self::Function(wanted));
         }
-        Err(crate::errors::ChoiceError::new_err(
+        Err(ChoiceError::new_err(
             "progress has to be True, False or a function of the scans and the share",
         ))
     }

@@ -1,5 +1,7 @@
 //! The estimator, one scan at a time.
 
+use std::fs;
+use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ThreadId};
 
@@ -10,17 +12,19 @@ use numpy::{PyArray1, PyArray2, PyArray3};
 use pr_geom::SE2;
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt as _;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use robot_io::graph_file::GraphFile;
 use robot_io::map_image::MapBuilder;
+use robot_io::session::Session;
 
 use crate::arrays;
 use crate::callables::{Callables, Raised};
-use crate::errors::{FrameError, OptimizeError, SlamError, index, within};
+use crate::errors::{FrameError, LogError, OptimizeError, SlamError, index, os_error, within};
 use crate::grid_map::GridMap;
 use crate::pose_graph::PoseGraph;
 use crate::reduced::{self, Reduced};
 use crate::sensor::Sensor;
+use crate::sessions::session;
 use crate::settings::{self, Chosen};
 
 /// SLAM for a planar laser, one scan at a time.
@@ -82,6 +86,18 @@ reduced::restorable! {
 
 #[pymethods]
 impl SlamStep {
+    /// The pose as a homogeneous matrix, shape (3, 3).
+    #[getter]
+    fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        arrays::matrix_of(self.pose.bind(py).as_any())
+    }
+
+    /// The pose as a homogeneous matrix of space, shape (4, 4).
+    #[getter]
+    fn matrix_3d<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        arrays::matrix_3d_of(self.pose.bind(py).as_any())
+    }
+
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         reduced::by_attributes(slf)
     }
@@ -181,6 +197,54 @@ impl Slam {
     pub fn drive(&self, py: Python<'_>, frame: Frame) -> PyResult<SlamStep> {
         let report = self.take(py, frame.scan, frame.odometry, Some(frame.stamp_s))?;
         SlamStep::from_report(py, report)
+    }
+
+    /// The session of the estimator as a file.
+    fn session_bytes(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
+        let estimator = self.lock(py)?;
+        let slam = estimator.slam().filter(|slam| slam.frames() > 0);
+        let slam = slam.ok_or_else(|| {
+            SlamError::new_err("the estimator has no session yet: it has taken no scan")
+        })?;
+        if slam.config().local_map.is_none() {
+            return Err(SlamError::new_err(
+                "the chapter's estimator is neither saved nor pickled: its parts may be your functions; run it again on \
+                 the same scans, which gives the same bits, or use Slam(sensor=...)",
+            ));
+        }
+        let session = Session {
+            snapshot: slam.snapshot(),
+            mapped: None,
+            scan_poses: Vec::new(),
+            sensor: Some(self.sensor.get().scan(Vec::new())),
+            last_odometry: None,
+        };
+        Ok(session.to_bytes())
+    }
+
+    /// The estimator of a session.
+    fn from_session(
+        py: Python<'_>,
+        session: &Session,
+        sensor: Option<Py<Sensor>>,
+    ) -> PyResult<Self> {
+        let sensor = match (sensor, &session.sensor) {
+            (Some(sensor), _) => sensor,
+            (None, Some(scan)) => Py::new(py, Sensor::from_scan(scan))?,
+            (None, None) => {
+                return Err(SlamError::new_err(
+                    "the session has no laser; give its geometry by sensor",
+                ));
+            }
+        };
+        let slam = ch16_slam2d::slam::Slam::restore(&session.snapshot);
+        let slam = slam.map_err(|error| LogError::new_err(error.to_string()))?;
+        let scans = session.posed_scans().map(|(_, scan)| scan).collect();
+        let estimator = Estimator::Running(Box::new(slam));
+        Ok(Self {
+            scans: Mutex::new(scans),
+            ..Self::with(sensor, estimator, Raised::default())
+        })
     }
 
     fn stepper(&self) -> MutexGuard<'_, Option<ThreadId>> {
@@ -425,6 +489,49 @@ impl Slam {
             map.finish().map_err(|error| error.to_string())
         });
         Ok(GridMap::new(&image.map_err(SlamError::new_err)?))
+    }
+
+    /// Saves the estimator as a session: `Slam.load` and `slam2d run --resume` continue it, `Localizer` localizes on its map.
+    ///
+    /// path: the file; one that is there is replaced.
+    ///
+    /// Raises SlamError if there is nothing to save yet, or if it is the chapter's, whose parts may be your functions.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let bytes = self.session_bytes(py)?;
+        // A session that is there is replaced once the new one is whole.
+        let mut part = path.clone().into_os_string();
+        part.push(".part");
+        let written =
+            py.detach(|| fs::write(&part, &bytes).and_then(|()| fs::rename(&part, &path)));
+        written.map_err(|error| os_error(&path, &error))
+    }
+
+    /// The estimator of a session: a file that `save` or `slam2d run -o` wrote, or the folder of that run.
+    ///
+    /// sensor: the geometry of the laser; without it that of the session.
+    ///
+    /// It continues with the next scan. Scans of the session are thinned, so a map that is drawn from them is, too.
+    /// Raises OSError if the file cannot be read, LogError if it is no session, SlamError if it has no laser.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, sensor=None))]
+    fn load(py: Python<'_>, path: PathBuf, sensor: Option<Py<Sensor>>) -> PyResult<Self> {
+        let session = py.detach(|| session(path))?;
+        Self::from_session(py, &session, sensor)
+    }
+
+    /// The estimator of the bytes of a session.
+    #[staticmethod]
+    fn _from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        let session = Session::from_bytes(bytes, "the pickled estimator");
+        let session = session.map_err(|error| LogError::new_err(error.to_string()))?;
+        Self::from_session(py, &session, None)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let py = slf.py();
+        let fields = PyDict::new(py);
+        fields.set_item("bytes", PyBytes::new(py, &slf.get().session_bytes(py)?))?;
+        reduced::by_keywords("Slam", fields)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

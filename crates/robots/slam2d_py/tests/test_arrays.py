@@ -74,3 +74,24 @@ def test_motions_make_a_group():
     assert np.allclose(rs.exp((0.0, 0.0, 3 * np.pi)), (0.0, 0.0, np.pi))
     with pytest.raises(rs.ArrayError, match=r"a has to have the shape \(3,\), not \(2,\)"):
         rs.compose((1, 2), b)
+
+
+@pytest.mark.parametrize(
+    ("bad", "held"),
+    [
+        (np.ones((9, 2)) * 1j, "complex numbers"),
+        (np.array([["1", "2"]] * 9), "text"),
+        ([["1", 2.0]] * 9, "text"),
+        (np.array([["1", 2.0]] * 9, dtype=object), "text"),
+    ],
+)
+def test_complex_numbers_and_text_are_rejected_in_a_sentence(bad, held):
+    with pytest.raises(rs.ArrayError, match=f"source holds {held}, and has to hold real numbers"):
+        rs.icp(bad, np.ones((9, 2)))
+
+
+def test_dates_are_rejected_and_other_real_types_are_read():
+    with pytest.raises(rs.ArrayError, match="cannot be read"):
+        rs.transform((0, 0, 0), np.full((9, 2), "2026-01-01", dtype="datetime64[D]"))
+    for kind in (bool, np.uint8, np.float32, object):
+        assert np.array_equal(rs.transform((0, 0, 0), np.ones((2, 2), dtype=kind)), np.ones((2, 2)))

@@ -74,6 +74,63 @@ def test_a_corridor_leaves_a_direction_free():
     found = rs.icp(corridor, corridor)
     assert found.covariance is None and found.information[0, 0] == 0.0 < found.information[1, 1]
     assert (found.converged, found.stop) == (False, "unobservable-direction")
+    assert np.allclose(np.abs(found.unobservable), (1, 0, 0), atol=1e-6)
+    assert rs.icp(corridor, corridor, variant="point-to-point").unobservable is None
+
+
+@pytest.mark.parametrize("variant", ["point-to-plane", "point-to-point"])
+@pytest.mark.parametrize("spacing", [0.02, 0.1, 0.25, 0.4, 0.8, 2.0, 9.0])
+def test_no_wrong_pose_of_an_ever_coarser_room_claims_anything(room, variant, spacing):
+    _, first = np.unique(np.floor(room / spacing), axis=0, return_index=True)
+    target = room[np.sort(first)]
+    found = rs.icp(rs.transform(rs.inverse(POSE), target), target, variant=variant, max_iterations=200)
+    if found.converged:
+        assert np.allclose(found.pose, POSE, atol=0.05), found
+    if found.stop in ("too-few-pairs", "too-few-normals"):
+        assert np.array_equal(found.pose, (0, 0, 0)) and found.covariance is None and not found.information.any()
+    if variant == "point-to-plane" and spacing > 0.3:
+        assert found.stop == "too-few-normals"
+        radius = 3 * spacing
+        wider = rs.icp(rs.transform(rs.inverse(POSE), target), target, normal_radius=radius)
+        assert spacing > 0.5 or wider.stop != "too-few-normals", wider
+
+
+def test_a_kernel_weights_the_information_and_may_refuse_all(room):
+    source = rs.transform(rs.inverse(POSE), room) + np.random.default_rng(1).normal(0, 0.02, room.shape)
+    wide, narrow = (rs.icp(source, room, huber_width=width, max_iterations=300) for width in (1.0, 0.005))
+    assert narrow.converged and narrow.information[0, 0] < 0.8 * wide.information[0, 0]
+    none = rs.icp(source, room, huber_width=1e-9, max_iterations=1000)
+    assert not none.converged and none.stop in ("too-few-inliers", "iteration-limit")
+
+
+def test_coincident_points_measure_no_rotation():
+    place = np.full((20, 2), 1.5)
+    found = rs.icp(place + 0.1, place, variant="point-to-point")
+    assert (found.converged, found.stop) == (False, "unobservable-direction")
+    assert np.allclose(found.unobservable, (0, 0, 1)) and found.covariance is None
+
+
+def test_ndt_without_points_in_cells_has_not_converged(room):
+    assert rs.Ndt(room).align(room + 50.0).stop == "too-few-points"
+    assert not rs.Ndt(room[::20], min_points=8).align(room).converged
+    assert rs.Ndt(room).align(rs.transform(rs.inverse(POSE), room), max_iterations=300).stop != "too-few-points"
+
+
+def test_matrices_go_in_and_out(room):
+    source = rs.transform(rs.inverse(POSE), room)
+    found = rs.icp(source, room, init=POSE)
+    assert np.allclose(found.matrix[:2, :2] @ found.matrix[:2, :2].T, np.eye(2)) and found.matrix[0, 2] == found.pose[0]
+    space = np.eye(4)
+    space[:2, :2], space[:2, 3] = found.matrix[:2, :2], found.matrix[:2, 2]
+    assert np.array_equal(found.matrix_3d, space)
+    for matrix in (found.matrix, space, space.astype(np.float32)):
+        assert np.allclose(rs.icp(source, room, init=matrix, max_iterations=0).pose, found.pose, atol=1e-6)
+        assert np.allclose(rs.Ndt(room).align(source, init=matrix, max_iterations=0).pose, found.pose, atol=1e-6)
+    for wrong in (np.diag([1.0, -1, 1]), 2 * np.eye(3), np.diag([1.0, 1, 1, 0]), space + [[0, 0, 0.1, 0]] * 4):
+        with pytest.raises(rs.ArrayError, match="no motion of the plane"):
+            rs.icp(source, room, init=wrong)
+    with pytest.raises(rs.ArrayError, match=r"\(3,\), \(3, 3\) or \(4, 4\), not \(2, 2\)"):
+        rs.icp(source, room, init=np.eye(2))
 
 
 def test_without_normals_point_to_plane_claims_nothing():
