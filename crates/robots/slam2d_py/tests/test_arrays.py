@@ -50,7 +50,7 @@ def test_an_array_that_is_read_is_not_written(drive):
         (1.0, "points has to have the shape (n, 2), not ()"),
         ([[1.0, np.nan]], "points holds what is no finite number"),
         ([[1.0, np.inf]], "points holds what is no finite number"),
-        ("walls", "points cannot be read as an array of numbers"),
+        ("walls", "points holds text, and has to hold real numbers"),
         ([[1, 2], [3]], "points cannot be read as an array of numbers"),
         (None, "points has to have the shape (n, 2), not ()"),
     ],
@@ -72,7 +72,7 @@ def test_motions_make_a_group():
     # A quarter of a circle with the radius 2.
     assert np.allclose(rs.exp((np.pi, 0.0, np.pi / 2)), (2.0, 2.0, np.pi / 2))
     assert np.allclose(rs.exp((0.0, 0.0, 3 * np.pi)), (0.0, 0.0, np.pi))
-    with pytest.raises(rs.ArrayError, match=r"a has to have the shape \(3,\), not \(2,\)"):
+    with pytest.raises(rs.ArrayError, match=r"a has to have the shape \(3,\), \(3, 3\) or \(4, 4\), not \(2,\)"):
         rs.compose((1, 2), b)
 
 

@@ -85,13 +85,14 @@ def test_no_wrong_pose_of_an_ever_coarser_room_claims_anything(room, variant, sp
     target = room[np.sort(first)]
     found = rs.icp(rs.transform(rs.inverse(POSE), target), target, variant=variant, max_iterations=200)
     if found.converged:
-        assert np.allclose(found.pose, POSE, atol=0.05), found
+        # Point to point may be at rest one point further along each wall.
+        apart = spacing if variant == "point-to-point" else 0.0
+        assert np.allclose(found.pose, POSE, atol=max(0.05, apart)), found
     if found.stop in ("too-few-pairs", "too-few-normals"):
-        assert np.array_equal(found.pose, (0, 0, 0)) and found.covariance is None and not found.information.any()
-    if variant == "point-to-plane" and spacing > 0.3:
-        assert found.stop == "too-few-normals"
-        radius = 3 * spacing
-        wider = rs.icp(rs.transform(rs.inverse(POSE), target), target, normal_radius=radius)
+        assert found.covariance is None and not found.information.any()
+    if spacing > 2 or (variant == "point-to-plane" and spacing > 0.3):
+        assert found.stop == ("too-few-pairs" if spacing > 1 else "too-few-normals"), found
+        wider = rs.icp(rs.transform(rs.inverse(POSE), target), target, normal_radius=3 * spacing)
         assert spacing > 0.5 or wider.stop != "too-few-normals", wider
 
 
