@@ -36,7 +36,7 @@ def test_a_gate_decides_alone_and_is_given_the_graph_as_it_is(driven):
     ("function", "error", "said"),
     [
         (lambda *_, **__: 1 / 0, ZeroDivisionError, "division by zero"),
-        (lambda *_, **__: (1, 2), rs.ArrayError, r"the pose that icp returned has to have the shape \(3,\), not \(2,\)"),
+        (lambda *_, **__: (1, 2), rs.ArrayError, r"the pose that icp returned has to have the shape \(3,\), \(3, 3\) or \(4, 4\), not \(2,\)"),
         (lambda *_, **__: (1, 2, np.nan), rs.ArrayError, "the pose that icp returned holds what is no finite number"),
         (lambda source: 0, TypeError, "unexpected keyword argument 'normals'"),
     ],

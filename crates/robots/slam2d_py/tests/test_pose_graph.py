@@ -88,7 +88,7 @@ def test_ids_of_a_file_stay_and_new_nodes_come_after_them():
         ((1, 1, (1, 0, 0), EYE), rs.GraphError, "an edge from node 1 to itself"),
         ((0, 1, (1, 0, 0), -EYE), rs.GraphError, "the information matrix is not positive semi-definite"),
         ((0, 1, (1, 0, 0), np.triu(np.ones((3, 3)))), rs.ArrayError, "information is not symmetric"),
-        ((0, 1, (1, 0), EYE), rs.ArrayError, "measurement has to have the shape (3,), not (2,)"),
+        ((0, 1, (1, 0), EYE), rs.ArrayError, "measurement has to have the shape (3,), (3, 3) or (4, 4), not (2,)"),
         ((0, 1, (1, 0, 0), EYE[:2]), rs.ArrayError, "information has to have the shape (3, 3), not (2, 3)"),
     ],
 )
