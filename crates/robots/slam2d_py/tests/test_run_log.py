@@ -100,7 +100,7 @@ def test_a_file_that_is_no_log_is_rejected_in_a_sentence(tmp_path):
         (trajectory, f"{trajectory} is a trajectory, not a log of scans; pass a log; slam2d evaluate evaluates a trajectory"),
         (tmp_path, f"{tmp_path} is a folder without a recording of ROS; give a log, or a folder with files that end in .mcap, .db3 or .bag"),
     ]:
-        for read in (rs.Pipeline(path).run, rs.Pipeline(path).frames):
+        for read in (lambda: rs.Pipeline(path).run(), lambda: rs.Pipeline(path).frames()):
             with pytest.raises(rs.LogError) as rejected:
                 read()
             assert str(rejected.value) == said

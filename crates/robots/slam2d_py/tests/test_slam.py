@@ -52,7 +52,7 @@ def test_settings_are_those_of_the_core(drive, mapped):
     ],
 )
 def test_a_wrong_setting_is_rejected_in_the_words_of_the_core(drive, config, said):
-    for reject in (lambda: rs.Slam(config, sensor=drive.sensor), lambda: rs.Pipeline("log", config)):
+    for reject in (lambda: rs.Slam(config, sensor=drive.sensor), lambda: rs.Pipeline(__file__, config)):
         with pytest.raises(rs.SettingError) as rejected:
             reject()
         assert str(rejected.value) == said
