@@ -51,7 +51,7 @@ it('embed.html shows one part in a sandbox under the strict policy, and reports 
     await answer(frame, '16.5a', 0);
     const [told] = await answers(tab, 1);
     assert.deepEqual([told.slam, told.exercise, told.student, told.attempts], [1, '16.5a', 'Bob', 1]);
-    assert.match(told.state, /^noise=3\.25&t=129&seed=\d+$/);
+    assert.match(told.state, /^noise=3\.75&t=129&seed=\d+$/);
     // The file of answers, though this sandbox saves no files.
     await frame.getByText('1 exercise answered. A reload forgets them, unless you keep or save them.').waitFor();
     await frame.getByRole('button', { name: 'Save my answers' }).click();

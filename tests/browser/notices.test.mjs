@@ -7,7 +7,7 @@ import * as h from './harness.mjs';
 
 const visit = h.visitor();
 const reading = (test, options) =>
-  visit('', test, { path: '/notices.html', server: { policy: h.STRICT_POLICY }, options });
+  visit('', test, { path: '/notices.html', server: { policy: `${h.STRICT_POLICY}; font-src 'self'` }, options });
 
 describe('the page of notices', () => {
   for (const colorScheme of ['light', 'dark']) {

@@ -12,7 +12,7 @@ export const STYLE = `
 .frame.dark { --paper: ${paper[1]}; --ink: ${ink[1]}; --soft: ${soft[1]}; --line: ${faint[1]}; --accent: ${accent[1]};
   --good: ${good[1]}; --fair: ${fair[1]}; --bad: ${bad[1]}; --older: ${prior[1]}; --newer: ${measurement[1]};
   color-scheme: dark; }
-.title { margin: 0; padding: 0.5rem 0.75rem 0.25rem; font: 600 1.25rem/1.2 var(--text-font, inherit); text-wrap: balance; }
+.title { margin: 0; padding: 0.3rem 0.75rem 0.1rem; font: 600 1.125rem/1.2 var(--text-font, inherit); text-wrap: balance; }
 .title span { margin-inline-end: 0.5rem; color: var(--soft); font: 0.9375rem/1 var(--label-font, system-ui); }
 .view { position: relative; }
 .whole { position: absolute; top: 0.5rem; right: 0.75rem; }

@@ -118,8 +118,16 @@ impl Pointer {
         self.handle
     }
 
-    /// Ends every drag.
-    pub fn release(&mut self, model: &mut dyn Model) {
+    /// Ends every drag that is cancelled; nothing plays.
+    pub fn cancel(&mut self, model: &mut dyn Model) {
+        self.before = None;
+        if let Some(Held::Thing(_)) = self.held.take() {
+            model.release();
+        }
+    }
+
+    /// Ends a drag where the reader lets go.
+    fn release(&mut self, model: &mut dyn Model) {
         let before = self.before.take();
         if let Some(Held::Thing(handle)) = self.held.take() {
             model.release();
@@ -321,7 +329,7 @@ impl Pointer {
         if self.panel_held() != Some(panel.id) {
             return Touched::No;
         }
-        self.release(model);
+        self.cancel(model);
         Touched::Yes
     }
 

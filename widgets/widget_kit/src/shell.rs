@@ -283,7 +283,7 @@ impl Shell {
 
     /// Ends all drags after a cancelled touch.
     pub fn release_drags(&mut self) {
-        self.pointer.release(self.model.as_mut());
+        self.pointer.cancel(self.model.as_mut());
         self.touch();
     }
 
