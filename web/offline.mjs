@@ -15,6 +15,8 @@ import { writeZip } from './zip.mjs';
 const FETCHED = /\.(wasm|json|log|tum)$|worker-\w+\.js$|^slam-robot-\w+\.js$/;
 /** Files of the npm package, and examples that need a server. */
 const EXCLUDED = /^(examples\/|package\.json$|.*\.d\.ts$|slam-anywidget\.js$)/;
+/** Preloaded files, which a page from the disk cannot fetch. */
+const PRELOAD = /<link rel="preload"[^>]*>\n/g;
 const MODULE = /<script type="module" src="([^"]+)"[^>]*><\/script>\n?/g;
 
 const [from, target] = process.argv.slice(2);
@@ -63,5 +65,5 @@ async function convert(name) {
   contents[script] = Buffer.from(outputFiles[0].contents);
   const tags = `<script defer src="offline-files.js"></script>\n<script defer src="${script}"></script>\n`;
   // A file has no origin whose scripts a policy could allow.
-  contents[name] = Buffer.from(html.replace(POLICY_TAG, '').replace(MODULE, '').replace('</head>', `${tags}</head>`));
+  contents[name] = Buffer.from(html.replace(POLICY_TAG, '').replace(PRELOAD, '').replace(MODULE, '').replace('</head>', `${tags}</head>`));
 }
