@@ -52,7 +52,7 @@ describe('the picture', () => {
 it('a timeline beside other buttons fits its frame on narrow screens', async () => {
   const body = ['w16.5', 'w16.6', 'w16.8'].map((id) => `<slam-widget name="${id}"></slam-widget>`).join('');
   await visit(body, async (tab) => {
-    for (const width of [390, 450, 500]) {
+    for (const width of [390, 450, 500, 540, 560, 620]) {
       await tab.setViewportSize({ width, height: 900 });
       const wide = await tab.evaluate(() => [...document.querySelectorAll('slam-widget')].flatMap(({ name, shadowRoot }) => {
         const frame = shadowRoot.querySelector('.frame').getBoundingClientRect();

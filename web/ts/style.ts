@@ -112,12 +112,13 @@ button[aria-disabled='true'] { color: var(--soft); border-color: var(--line); cu
 .text .value { flex: 1 1 8rem; }
 .slider .rail { order: 1; flex: 1 0 100%; }
 .rail { position: relative; display: flex; flex: 1 1 6rem; }
+.timeline .rail { min-width: 5rem; }
 .unit { white-space: nowrap; }
 .timeline { flex: 1 1 13rem; flex-wrap: nowrap; min-width: min-content; }
-.timeline > :not(.rail) { flex: none; order: 1; }
+.timeline > :not(.rail) { flex: none; order: 1; min-width: max-content; }
 .timeline .name { color: var(--soft); }
 .empty :is(.unit, input[type='number']) { visibility: hidden; }
-input[type='range'] { flex: 1; min-width: 3rem; min-height: 1.625rem; margin: 0; accent-color: var(--accent); }
+input[type='range'] { flex: 1; width: 0; min-width: 3rem; min-height: 1.625rem; margin: 0; accent-color: var(--accent); }
 .marks { position: absolute; inset: 0 8px; pointer-events: none; }
 .marks i { position: absolute; left: calc(var(--at) * 100%); width: 2px; height: 0.5rem; top: calc(50% - 0.25rem); background: var(--soft); }
 .marks .good { top: 0; background: var(--good); }

@@ -115,6 +115,7 @@ export function testIn(name, open, problem) {
 
     test('a frame in a sandbox runs a widget, and maps the sample', async () => {
       await page.goto(`${server.url}/sandbox.html`);
+      await until(page, () => document.querySelector('iframe') !== null);
       const told = await ask(page, async (src) => {
         const frame = document.querySelector('iframe');
         const heard = [];
