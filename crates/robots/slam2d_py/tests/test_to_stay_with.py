@@ -144,6 +144,8 @@ def test_ctrl_c_ends_optimize_and_the_poses_stay(interrupt):
 
 
 def test_ctrl_c_ends_a_run(log):
+    # A shell starts background jobs with SIGINT ignored.
+    usual = signal.signal(signal.SIGINT, signal.default_int_handler)
     calls = []
 
     def progress(scans, share):
@@ -151,6 +153,9 @@ def test_ctrl_c_ends_a_run(log):
         if len(calls) == 2:
             signal.raise_signal(signal.SIGINT)
 
-    with pytest.raises(KeyboardInterrupt):
-        rs.Pipeline(log).run(progress=progress)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            rs.Pipeline(log).run(progress=progress)
+    finally:
+        signal.signal(signal.SIGINT, usual)
     assert calls[-1] < 1.0
