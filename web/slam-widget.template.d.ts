@@ -149,7 +149,11 @@ export interface ParamSpec {
 export interface WidgetSpec {
   id: WidgetName;
   title: string;
-  misconception: string;
+  name: string;
+  /** Shown with the verdict. */
+  claim: string;
+  /** Shown until the verdict comes. */
+  gesture: string;
   notice: string[];
   params: ParamSpec[];
   buttons: { id: string; label: string; help: string }[];

@@ -10,7 +10,6 @@ use widget_kit::spec::ButtonSpec;
 pub fn panel(ui: &mut Ui, shell: &mut Shell) {
     let spec = shell.model().spec();
     ui.heading(spec.title);
-    ui.label(spec.misconception);
     ui.separator();
     for id in shown(shell.model()) {
         if let Some(preset) = spec.presets.iter().find(|preset| preset.id == id) {
@@ -26,7 +25,7 @@ pub fn panel(ui: &mut Ui, shell: &mut Shell) {
     ui.separator();
     let outcome = shell.model().outcome();
     if shell.asks() {
-        ui.strong(spec.question);
+        ui.strong(spec.gesture);
         return;
     }
     ui.strong(&outcome.verdict);
@@ -215,19 +214,19 @@ mod tests {
     }
 
     #[test]
-    fn a_question_stands_there_until_the_first_press() {
+    fn a_gesture_stands_there_until_the_first_press() {
         let shell = find("w16.5").unwrap()();
-        let question = shell.model().spec().question;
+        let gesture = shell.model().spec().gesture;
         let mut harness = Harness::builder()
             .with_size(vec2(400.0, 2000.0))
             .build_ui_state(panel, shell);
         harness.run_steps(2);
-        assert!(harness.query_by_label(question).is_some());
+        assert!(harness.query_by_label(gesture).is_some());
         harness
             .get_by_role_and_label(Role::Button, "One step")
             .click();
         harness.run_steps(2);
-        assert!(harness.query_by_label(question).is_none());
+        assert!(harness.query_by_label(gesture).is_none());
         let verdict = harness.state().model().outcome().verdict;
         assert!(harness.query_by_label(&verdict).is_some());
     }
