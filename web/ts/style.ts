@@ -116,7 +116,7 @@ button[aria-disabled='true'] { color: var(--soft); border-color: var(--line); cu
 .unit { white-space: nowrap; }
 .timeline { flex: 1 1 13rem; flex-wrap: nowrap; min-width: min-content; }
 .timeline > :not(.rail) { flex: none; order: 1; }
-.timeline .value { min-width: max-content; }
+.timeline > :is(.name, .value) { min-width: max-content; }
 .timeline .name { color: var(--soft); }
 .empty :is(.unit, input[type='number']) { visibility: hidden; }
 input[type='range'] { flex: 1; width: 0; min-width: 3rem; min-height: 1.625rem; margin: 0; accent-color: var(--accent); }
