@@ -129,8 +129,9 @@ impl Pointer {
     /// Ends a drag where the reader lets go.
     fn release(&mut self, model: &mut dyn Model) {
         let before = self.before.take();
-        if let Some(Held::Thing(handle)) = self.held.take() {
-            model.release();
+        let held = self.held;
+        self.cancel(model);
+        if let Some(Held::Thing(handle)) = held {
             let is_moved = before.is_some_and(|values| values != *model.values());
             if is_moved && model.plays_when_let_go(&handle) && !model.is_pressed(PLAY.id) {
                 // Every widget plays.
