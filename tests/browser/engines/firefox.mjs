@@ -5,6 +5,7 @@ import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import WebSocket from 'ws';
+import { LAST_RESORT_MS } from '../chromium.mjs';
 import { HOW, ended, openDisplay, pathOf } from './display.mjs';
 import { actions } from './keys.mjs';
 
@@ -20,6 +21,9 @@ const PREFERENCES = {
   'app.update.disabledForTesting': true,
 };
 
+/** Time after which a page that was being left is asked again, ms. */
+const ASK_AGAIN_MS = 2000;
+
 /** Opens Firefox with one page. */
 export async function openFirefox() {
   const display = await openDisplay();
@@ -34,15 +38,23 @@ export async function openFirefox() {
   await session.send('session.new', { capabilities: {} });
   const { contexts: [{ context }] } = await session.send('browsingContext.getTree', {});
   const act = (sources) => session.send('input.performActions', { context, actions: sources });
+  const evaluate = async (source, patience_ms) => {
+    const expression = `Promise.resolve(${source}).then((value) => JSON.stringify(value === undefined ? null : value))`;
+    const { type, result, exceptionDetails } = await session.send('script.evaluate', { expression, target: { context }, awaitPromise: true }, patience_ms);
+    if (type === 'exception') throw new Error(exceptionDetails.text);
+    return JSON.parse(result.value);
+  };
+  // Firefox may say too early that it has left a page, and a page that it leaves never answers.
+  const leave = async (command, params) => {
+    await evaluate('void (window.isLeft = true)');
+    await session.send(command, { context, ...params });
+    const isLeft = () => evaluate('window.isLeft !== true', ASK_AGAIN_MS).catch(() => false);
+    while (!(await isLeft()));
+  };
   return {
-    goto: (url) => session.send('browsingContext.navigate', { context, url, wait: 'complete' }),
-    back: () => session.send('browsingContext.traverseHistory', { context, delta: -1 }),
-    evaluate: async (source) => {
-      const expression = `Promise.resolve(${source}).then((value) => JSON.stringify(value === undefined ? null : value))`;
-      const { type, result, exceptionDetails } = await session.send('script.evaluate', { expression, target: { context }, awaitPromise: true });
-      if (type === 'exception') throw new Error(exceptionDetails.text);
-      return JSON.parse(result.value);
-    },
+    goto: (url) => leave('browsingContext.navigate', { url, wait: 'complete' }),
+    back: () => leave('browsingContext.traverseHistory', { delta: -1 }),
+    evaluate,
     move: (x, y) => act(actions.move(x, y)),
     down: () => act(actions.down()),
     up: () => act(actions.up()),
@@ -90,7 +102,6 @@ async function connect(address) {
   socket.on('message', (text) => {
     const { id, type, result, error, message } = JSON.parse(text);
     const waiting = pending.get(id);
-    pending.delete(id);
     if (type === 'success') waiting?.resolve(result);
     else if (type === 'error') waiting?.reject(new Error(`${error}: ${message}`));
   });
@@ -100,11 +111,21 @@ async function connect(address) {
   socket.on('close', fail);
   let last = 0;
   return {
-    send: (method, params) => new Promise((resolve, reject) => {
+    send: async (method, params, patience_ms = LAST_RESORT_MS) => {
       last += 1;
-      pending.set(last, { resolve, reject });
-      socket.send(JSON.stringify({ id: last, method, params }));
-    }),
+      const id = last;
+      let timer;
+      try {
+        return await new Promise((resolve, reject) => {
+          timer = setTimeout(() => reject(new Error(`${method}: no answer for ${patience_ms / 1000} s`)), patience_ms);
+          pending.set(id, { resolve, reject });
+          socket.send(JSON.stringify({ id, method, params }));
+        });
+      } finally {
+        clearTimeout(timer);
+        pending.delete(id);
+      }
+    },
     close: () => socket.close(),
   };
 }
