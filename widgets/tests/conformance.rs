@@ -6,7 +6,8 @@ use bench_support::timed;
 use egui::{pos2, vec2};
 use widget_kit::invariants::{assert_reports, assert_values};
 use widget_kit::model::{Activity, Model, Motion, shown_scene};
-use widget_kit::param::MORE;
+use widget_kit::param::{MORE, ParamKind, ParamSpec};
+use widget_kit::playback::SPEED;
 use widget_kit::scene::Layer;
 use widget_kit::shell::Shell;
 use widget_kit::spec::{Awaits, Preset};
@@ -182,6 +183,83 @@ fn no_line_has_a_gap_without_missing_data() {
             }
         }
     }
+}
+
+/// Pieces of visual refinement before the picture is compared.
+const WORKED: usize = 50;
+
+/// Whether a value of the parameter changes picture, result or tables, in the present state of the model.
+fn changes_what_is_shown(model: &mut dyn Model, param: &ParamSpec) -> bool {
+    let shown = |model: &mut dyn Model| {
+        model.finish_work();
+        // Enough for the first paths of w16.1; its maps refine for minutes.
+        (0..WORKED).for_each(|_| {
+            model.work();
+        });
+        format!(
+            "{:?} {:?} {:?}",
+            model.scene(),
+            model.outcome(),
+            model.tables()
+        )
+    };
+    let before = shown(model);
+    let now = model.values().number(param.id);
+    let (min, max) = param.range();
+    let found = [min, max, (min + max) / 2.0].into_iter().any(|value| {
+        model.set(param.id, value).expect("a value in range");
+        shown(model) != before
+    });
+    model.set(param.id, now).expect("the value it had");
+    found
+}
+
+/// A parameter that is declared and never read would be a control without effect.
+#[test]
+fn each_parameter_changes_what_is_shown() {
+    let mut idle = Vec::new();
+    for make in MODELS {
+        let spec = make().spec();
+        // The picture of w16.10 is that of a reader's log, which it does not have here.
+        if spec.id == "w16.10" {
+            continue;
+        }
+        let presets = spec.presets.iter().map(|preset| preset.id);
+        let states: Vec<&str> = core::iter::once("defaults").chain(presets).collect();
+        let mut others = vec![Vec::new()];
+        if spec.id == "w16.2" {
+            // The number of a thing needs the kind of thing, and a piece of the flat the editor.
+            others.extend([
+                vec![("pick", 1.0)],
+                vec![("edit", 1.0)],
+                vec![("edit", 1.0), ("piece", 1.0)],
+            ]);
+        }
+        let starts = states
+            .iter()
+            .flat_map(|state| others.iter().map(move |other| (state, other)));
+        let has_effect = |param: &ParamSpec| {
+            starts.clone().any(|(state, other)| {
+                let mut model = make();
+                model.set_motion(Motion::Reduced);
+                model.press(state).expect("the widget has it");
+                for (id, value) in other.iter().chain([&(MORE.id, 1.0)]) {
+                    model.set(id, *value).expect("a value in range");
+                }
+                changes_what_is_shown(model.as_mut(), param) || {
+                    model.press("play").expect("every widget plays");
+                    changes_what_is_shown(model.as_mut(), param)
+                }
+            })
+        };
+        for param in spec.params {
+            let is_text = matches!(param.kind, ParamKind::Text { .. });
+            if ![SPEED.id, MORE.id].contains(&param.id) && !is_text && !has_effect(param) {
+                idle.push((spec.id, param.id));
+            }
+        }
+    }
+    assert!(idle.is_empty(), "without effect: {idle:?}");
 }
 
 /// All results and texts; unknown facts are NaN, so the comparison uses text.
