@@ -19,7 +19,7 @@
 //! - [`settings`]: the parameters of the estimator by name.
 //! - [`localize`]: localizes a log on the map of a session.
 //! - [`evidence`]: evidence of loops and scans that a run keeps.
-//! - [`own_body`] and [`near_readings`]: remove readings of the robot's own body.
+//! - [`own_body`] and [`near_readings`]: remove readings of the robot's own body, and of the floor before a laser that leans.
 //! - [`quality`]: reliability of each keyframe and loop, and what is doubtful.
 //! - [`trajectory`]: stamped poses, and the TUM format in both directions.
 //! - [`relations`]: reference relative poses between two times.

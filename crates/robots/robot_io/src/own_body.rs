@@ -1,146 +1,80 @@
-//! The robot's own body in the view of its laser: a post or a tower that the same beams see at the same range wherever
-//! the robot is.
+//! What travels with the robot in the view of its laser: a post or a tower of its own, which the same beams see at the same
+//! range wherever the robot is; and the floor before a laser that leans, a straight line that is fixed in its frame.
 //!
-//! Two explanations of every near reading are tried on pairs of places that odometry tells apart: the beam sees the body,
+//! Two explanations of every reading are tried on pairs of places that odometry tells apart: the beam sees what travels,
 //! so it has the same range at the second place; or it sees the world, so another beam there meets the same point. A beam
 //! is cut out only where the first holds and the second fails. Beside a wall that the robot drives along both hold, and
-//! nothing is cut.
+//! nothing is cut. Something nearer may hide the floor, and nothing is seen beyond it, also while the robot turns.
 //!
-//! Without odometry, the beams that always see the same range are left out of the scans, and these are matched alone: that
-//! gives the places, and the same trial decides.
+//! Without odometry, the beams that always see the same range, and the line beyond which nothing is ever seen, are left out
+//! of the scans, and these are matched alone: that gives the places, and the same trial decides.
+
+mod line;
+mod trial;
 
 use std::collections::VecDeque;
 
 use ch16_slam2d::scan::{Frame, LaserScan};
 use ch16_slam2d::slam::{LoopClosure, Slam, SlamConfig};
-use pr_geom::{Point2, SE2, math};
+use pr_geom::math;
 
+use self::line::Line;
+use self::trial::Trial;
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::remark::{Part, Remark};
-use crate::stamps::median;
 
 /// Farther readings are not the robot's, m.
 const FARTHEST_M: f64 = 1.5;
-/// Places differ by this, m or rad.
-const APART: f64 = 0.3;
-/// Pairs of places for a decision, and the number after which no more are looked for.
-const FEWEST_PAIRS: usize = 10;
-const ENOUGH_PAIRS: usize = 60;
-/// The body stays where it is within this, m.
+/// What travels with the robot stays where it is within this, m, and this share of its distance: the error of ranges.
 const BODY_M: f64 = 0.04;
-/// A point of the world is met again within this, m, and this share of its distance: odometry drifts.
-const WORLD_M: f64 = 0.08;
-const WORLD_SHARE: f64 = 0.05;
-/// Share of pairs in which a beam must see the body, and in which the world must fail to explain that.
-const SEES_BODY: f64 = 0.9;
-const NO_WORLD: f64 = 0.5;
-/// Share of all readings that the world must explain: else odometry tells nothing.
-const EXPLAINED: f64 = 0.3;
+const BODY_SHARE: f64 = 0.01;
+/// Share of readings that must agree that something travels with the robot.
+const FIXED: f64 = 0.9;
+/// Share of a beam's readings that may be farther than the floor, before the floor is looked for without odometry.
+const FARTHER: f64 = 0.05;
 /// Most scans and beams that are kept for the decision.
 const MAX_SCANS: usize = 2000;
 const MAX_ALONE: usize = 600;
 const MAX_BEAMS: usize = 1 << 21;
 
-/// How often each beam was explained.
-#[derive(Debug, Default)]
-struct Trial {
-    /// The scan at the last place.
-    last: Option<(SE2, LaserScan)>,
-    pairs: usize,
-    /// For each beam: pairs in which it saw the body, those in which the world failed to explain it, and the sum of ranges.
-    beams: Vec<(usize, usize, f64)>,
-    readings: usize,
-    explained: usize,
+/// How far from its range something is seen again that travels with the robot, m.
+fn fixed_m(range_m: f64) -> f64 {
+    BODY_M + BODY_SHARE * range_m
 }
 
-impl Trial {
-    /// Compares a scan with that of the last place; false if the beams have changed.
-    fn add(&mut self, body: Option<SE2>, scan: &LaserScan) -> bool {
-        let Some(odometry) = body else {
-            return true;
-        };
-        let Some((before, old)) = &self.last else {
-            self.beams = vec![(0, 0, 0.0); scan.ranges_m.len()];
-            self.last = Some((odometry, scan.clone()));
-            return true;
-        };
-        if old.ranges_m.len() != scan.ranges_m.len()
-            || old.first_angle_rad != scan.first_angle_rad
-            || old.angle_step_rad != scan.angle_step_rad
-        {
-            return false;
-        }
-        let moved = before.between(&odometry);
-        if math::norm2(moved.x(), moved.y()) < APART && moved.theta().abs() < APART {
-            return true;
-        }
-        let mount = scan.body_from_sensor;
-        let then_from_now = (mount.inverse() * moved.inverse()) * mount;
-        for (beam, &range_m) in old.ranges_m.iter().enumerate() {
-            if !old.is_return(range_m) {
-                continue;
-            }
-            let (sin, cos) = math::sin_cos(old.bearing_rad(beam));
-            let point = then_from_now.transform(Point2::new(range_m * cos, range_m * sin));
-            let is_met = is_met(scan, point);
-            self.readings += 1;
-            self.explained += usize::from(is_met == Some(true));
-            let now_m = scan.ranges_m[beam];
-            if range_m < FARTHEST_M && scan.is_return(now_m) && (now_m - range_m).abs() < BODY_M {
-                let (body, no_world, sum_m) = &mut self.beams[beam];
-                *body += 1;
-                *no_world += usize::from(is_met == Some(false));
-                *sum_m += range_m;
-            }
-        }
-        self.pairs += 1;
-        self.last = Some((odometry, scan.clone()));
-        true
-    }
-
+/// What is cut out of all scans.
+#[derive(Clone, Debug, Default)]
+struct Cut {
     /// Range up to which readings of each beam are cut out, m; empty if no beam sees the body.
-    fn limits_m(&self) -> Vec<f64> {
-        let pairs = self.pairs as f64;
-        let is_told = self.explained as f64 >= EXPLAINED * self.readings as f64;
-        if self.pairs < FEWEST_PAIRS || !is_told {
-            return Vec::new();
-        }
-        let limit = |&(body, no_world, sum_m): &(usize, usize, f64)| {
-            let is_body = body as f64 >= SEES_BODY * pairs && no_world as f64 >= NO_WORLD * pairs;
-            if is_body {
-                sum_m / body as f64 + BODY_M
-            } else {
-                0.0
+    limits_m: Vec<f64>,
+    floor: Option<Line>,
+}
+
+impl Cut {
+    fn is_empty(&self) -> bool {
+        self.limits_m.is_empty() && self.floor.is_none()
+    }
+
+    fn apply(&self, scan: &mut LaserScan) {
+        for (range_m, limit_m) in scan.ranges_m.iter_mut().zip(&self.limits_m) {
+            if *range_m <= *limit_m {
+                *range_m = f64::NAN;
             }
-        };
-        let limits_m: Vec<f64> = self.beams.iter().map(limit).collect();
-        if limits_m.iter().all(|limit_m| *limit_m == 0.0) {
-            return Vec::new();
         }
-        limits_m
+        for beam in 0..scan.ranges_m.len() {
+            if self.floor.is_some_and(|floor| floor.is_met_by(scan, beam)) {
+                scan.ranges_m[beam] = f64::NAN;
+            }
+        }
     }
 }
 
-/// Whether a scan meets this point in the sensor's frame; `None` if no beam looks there.
-fn is_met(scan: &LaserScan, point: Point2<f64>) -> Option<bool> {
-    let range_m = math::norm2(point.x, point.y);
-    let turn = math::atan2(point.y, point.x) - scan.first_angle_rad;
-    let turn = turn * scan.angle_step_rad.signum();
-    let beam =
-        (turn.rem_euclid(core::f64::consts::TAU) / scan.angle_step_rad.abs()).round() as usize;
-    let near = beam.saturating_sub(1)..=beam + 1;
-    let mut readings = near.filter_map(|beam| scan.ranges_m.get(beam)).peekable();
-    readings.peek()?;
-    let tolerance_m = WORLD_M + WORLD_SHARE * range_m;
-    Some(readings.any(|reading_m| (reading_m - range_m).abs() < tolerance_m))
-}
-
-/// Removes readings of the robot's own body.
+/// Removes readings of what travels with the robot.
 pub struct BodyReader<'a> {
     inner: Box<dyn LogReader + 'a>,
     waiting: VecDeque<LogFrame>,
-    limits_m: Option<Vec<f64>>,
-    remark: Option<Remark>,
+    cut: Option<Cut>,
+    remarks: Vec<Remark>,
     notes: LogNotes,
 }
 
@@ -151,17 +85,17 @@ impl<'a> BodyReader<'a> {
         Self {
             inner,
             waiting: VecDeque::new(),
-            limits_m: None,
-            remark: None,
+            cut: None,
+            remarks: Vec::new(),
             notes: LogNotes::default(),
         }
     }
 
-    /// Reads the first scans and finds the body.
-    fn find(&mut self) -> Result<Vec<f64>, LogError> {
+    /// Reads the first scans and finds what travels with the robot.
+    fn find(&mut self) -> Result<Cut, LogError> {
         let mut trial = Trial::default();
         let mut beams = 0;
-        while self.waiting.len() < MAX_SCANS && beams < MAX_BEAMS && trial.pairs < ENOUGH_PAIRS {
+        while self.waiting.len() < MAX_SCANS && beams < MAX_BEAMS && !trial.is_enough() {
             let frame = match self.inner.next_frame() {
                 Ok(Some(frame)) => frame,
                 Ok(None) => break,
@@ -175,7 +109,7 @@ impl<'a> BodyReader<'a> {
             let is_first = self.waiting.is_empty();
             self.waiting.push_back(frame);
             if !is_same_sensor {
-                return Ok(Vec::new());
+                return Ok(Cut::default());
             }
             if !has_odometry && is_first {
                 return self.find_alone();
@@ -188,7 +122,7 @@ impl<'a> BodyReader<'a> {
     }
 
     /// The same without odometry, after the first scan was read.
-    fn find_alone(&mut self) -> Result<Vec<f64>, LogError> {
+    fn find_alone(&mut self) -> Result<Cut, LogError> {
         let mut beams = 0;
         while self.waiting.len() < MAX_ALONE && beams < MAX_BEAMS {
             // An error recurs once these frames are consumed.
@@ -200,16 +134,13 @@ impl<'a> BodyReader<'a> {
         }
         let steady = steady(&self.waiting);
         let mut trial = Trial::default();
-        if !steady.contains(&true) {
-            return Ok(Vec::new());
+        if steady.is_empty() {
+            return Ok(Cut::default());
         }
         let mut slam: Option<Slam> = None;
         for LogFrame { stamp_s, scan, .. } in &self.waiting {
             let mut without = scan.clone();
-            let ranges = without.ranges_m.iter_mut().zip(&steady);
-            for (range_m, _) in ranges.filter(|(_, steady)| **steady) {
-                *range_m = f64::NAN;
-            }
+            steady.apply(&mut without);
             let slam = slam.get_or_insert_with(|| {
                 let mut slam = Slam::new(SlamConfig::for_robot(&without));
                 slam.set_loop_closure(LoopClosure::Off);
@@ -221,43 +152,87 @@ impl<'a> BodyReader<'a> {
                 scan: without,
             };
             let body = slam.step(&frame).ok().map(|report| report.estimate);
-            if trial.pairs >= ENOUGH_PAIRS || !trial.add(body, scan) {
+            if trial.is_enough() || !trial.add(body, scan) {
                 break;
             }
         }
         Ok(self.decided(&trial))
     }
 
-    fn decided(&mut self, trial: &Trial) -> Vec<f64> {
-        let limits_m = trial.limits_m();
-        if let (Some((_, scan)), false) = (&trial.last, limits_m.is_empty()) {
-            self.remark = Some(remark(scan, &limits_m));
+    fn decided(&mut self, trial: &Trial) -> Cut {
+        let cut = trial.cut();
+        if let (Some(scan), false) = (trial.last(), cut.limits_m.is_empty()) {
+            self.remarks.push(body_remark(scan, &cut.limits_m));
         }
-        limits_m
+        self.remarks.extend(cut.floor.as_ref().map(floor_remark));
+        cut
     }
 }
 
-/// Beams that see the same near range in nearly all scans; empty if the beams change.
-fn steady(frames: &VecDeque<LogFrame>) -> Vec<bool> {
-    let count = frames.front().map_or(0, |first| first.scan.ranges_m.len());
-    let is_changed = |frame: &LogFrame| frame.scan.ranges_m.len() != count;
-    if frames.iter().any(is_changed) {
-        return Vec::new();
-    }
-    let is_steady = |beam: usize| {
-        let scans = || frames.iter().map(|frame| &frame.scan);
-        let seen = scans().filter(|scan| scan.is_return(scan.ranges_m[beam]));
-        let usual_m = median(seen.map(|scan| scan.ranges_m[beam]).collect());
-        usual_m.is_some_and(|usual_m| {
-            let same = scans().filter(|scan| (scan.ranges_m[beam] - usual_m).abs() < BODY_M);
-            usual_m < FARTHEST_M && same.count() as f64 >= SEES_BODY * frames.len() as f64
-        })
+/// What may travel with the robot: beams that see the same near range in nearly all scans, and a line beyond which none
+/// sees; nothing if the beams change.
+fn steady(frames: &VecDeque<LogFrame>) -> Cut {
+    let Some(first) = frames.front().map(|frame| &frame.scan) else {
+        return Cut::default();
     };
-    (0..count).map(is_steady).collect()
+    let is_changed = |frame: &LogFrame| frame.scan.ranges_m.len() != first.ranges_m.len();
+    if frames.iter().any(is_changed) {
+        return Cut::default();
+    }
+    let mut limits_m = Vec::new();
+    let mut points = Vec::new();
+    for beam in 0..first.ranges_m.len() {
+        let scans = frames.iter().map(|frame| &frame.scan);
+        let mut seen_m: Vec<f64> = scans
+            .filter(|scan| scan.is_return(scan.ranges_m[beam]))
+            .map(|scan| scan.ranges_m[beam])
+            .collect();
+        seen_m.sort_by(f64::total_cmp);
+        let at = |share: f64| seen_m.get((share * seen_m.len() as f64) as usize).copied();
+        let (Some(usual_m), Some(last_m)) = (at(0.5), at(1.0 - FARTHER)) else {
+            limits_m.push(0.0);
+            continue;
+        };
+        let near = |range_m: f64, within_m: f64| {
+            let is_near = |seen_m: &&f64| (**seen_m - range_m).abs() < within_m;
+            seen_m.iter().filter(is_near).count() as f64
+        };
+        let same = near(usual_m, BODY_M);
+        let is_steady = usual_m < FARTHEST_M && same >= FIXED * frames.len() as f64;
+        limits_m.push(if is_steady { f64::INFINITY } else { 0.0 });
+        let on = near(last_m, fixed_m(last_m));
+        let beyond = seen_m
+            .iter()
+            .filter(|seen_m| **seen_m >= last_m + fixed_m(last_m));
+        if !is_steady && on >= FIXED * (on + beyond.count() as f64) {
+            let (sin, cos) = math::sin_cos(first.bearing_rad(beam));
+            points.push([last_m * cos, last_m * sin]);
+        }
+    }
+    if !limits_m.contains(&f64::INFINITY) {
+        limits_m.clear();
+    }
+    Cut {
+        limits_m,
+        floor: Line::of(&points),
+    }
 }
 
-/// What was cut out.
-fn remark(scan: &LaserScan, limits_m: &[f64]) -> Remark {
+/// That the floor was cut out.
+fn floor_remark(floor: &Line) -> Remark {
+    Remark::mended(
+        Part::Sensor,
+        format!(
+            "a straight line {:.2} m from the laser, toward {:.0}°, travels with the robot, and nothing is seen beyond it: the laser leans and sees the floor there. It was cut out; level the laser",
+            floor.distance_m,
+            // Not −0.
+            floor.direction_rad.to_degrees().round() + 0.0
+        ),
+    )
+}
+
+/// That the body was cut out.
+fn body_remark(scan: &LaserScan, limits_m: &[f64]) -> Remark {
     let cut = || (0..limits_m.len()).filter(|&beam| limits_m[beam] > 0.0);
     let width = cut().count() as f64 * scan.angle_step_rad.abs().to_degrees();
     let near_m = cut()
@@ -279,24 +254,20 @@ fn remark(scan: &LaserScan, limits_m: &[f64]) -> Remark {
 
 impl LogReader for BodyReader<'_> {
     fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
-        if self.limits_m.is_none() {
+        if self.cut.is_none() {
             let found = self.find();
             self.notes.clone_from(self.inner.notes());
-            self.limits_m = Some(found?);
+            self.cut = Some(found?);
         }
         let frame = match self.waiting.pop_front() {
             Some(frame) => Ok(Some(frame)),
             None => self.inner.next_frame(),
         };
         self.notes.clone_from(self.inner.notes());
-        self.notes.warnings.extend(self.remark.clone());
+        self.notes.warnings.extend(self.remarks.iter().cloned());
         let mut frame = frame?;
-        if let (Some(frame), Some(limits_m)) = (&mut frame, &self.limits_m) {
-            for (range_m, limit_m) in frame.scan.ranges_m.iter_mut().zip(limits_m) {
-                if *range_m <= *limit_m {
-                    *range_m = f64::NAN;
-                }
-            }
+        if let (Some(frame), Some(cut)) = (&mut frame, &self.cut) {
+            cut.apply(&mut frame.scan);
         }
         Ok(frame)
     }

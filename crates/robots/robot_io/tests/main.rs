@@ -3,4 +3,5 @@
 mod evo;
 mod recorded;
 mod support;
+mod travelling;
 mod verdicts;

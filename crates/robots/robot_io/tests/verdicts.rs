@@ -20,9 +20,9 @@ const MOST_SCANS: usize = 2100;
 const STARTS: [usize; 5] = [0, 1, 2, 3, 5];
 
 /// Frames that were read before.
-struct Frames {
-    frames: VecDeque<LogFrame>,
-    notes: LogNotes,
+pub struct Frames {
+    pub frames: VecDeque<LogFrame>,
+    pub notes: LogNotes,
 }
 
 impl LogReader for Frames {
@@ -40,7 +40,7 @@ fn data() -> PathBuf {
 }
 
 /// The first scans of a recording below the folder with the reference data.
-fn frames(name: &str) -> Vec<LogFrame> {
+pub fn frames(name: &str) -> Vec<LogFrame> {
     let bytes = fs::read(data().join(name)).unwrap();
     let mut reader =
         LogFormat::open(LogBytes::from(&bytes[..]), name, &LogOptions::default()).unwrap();
@@ -81,7 +81,7 @@ fn words(motion: &MotionComparison) -> Vec<&'static str> {
 }
 
 /// Every `every`-th beam.
-fn thinned(frame: &LogFrame, every: usize) -> LogFrame {
+pub fn thinned(frame: &LogFrame, every: usize) -> LogFrame {
     let mut frame = frame.clone();
     let ranges = frame.scan.ranges_m.iter().step_by(every);
     frame.scan.ranges_m = ranges.copied().collect();
@@ -91,7 +91,7 @@ fn thinned(frame: &LogFrame, every: usize) -> LogFrame {
 }
 
 /// The recording from its end to its start.
-fn reversed(frames: &[LogFrame]) -> Vec<LogFrame> {
+pub fn reversed(frames: &[LogFrame]) -> Vec<LogFrame> {
     let last_s = frames.last().map_or(0.0, |frame| frame.stamp_s);
     let turned = frames.iter().rev().map(|frame| LogFrame {
         stamp_s: last_s - frame.stamp_s,
@@ -100,7 +100,7 @@ fn reversed(frames: &[LogFrame]) -> Vec<LogFrame> {
     turned.collect()
 }
 
-fn given_logs() -> Option<Vec<String>> {
+pub fn given_logs() -> Option<Vec<String>> {
     let mut names: Vec<String> = fs::read_dir(data().join("logs"))
         .ok()?
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -112,7 +112,7 @@ fn given_logs() -> Option<Vec<String>> {
 }
 
 /// Recordings below the folder with the reference data, and what is wrong with each.
-const FIELD: [(&str, &[&str]); 12] = [
+pub const FIELD: [(&str, &[&str]); 12] = [
     ("field/base/base.mcap", &[]),
     ("field/lidars/two_topics.mcap", &[]),
     ("field/mount/backward_untold.mcap", &["turned"]),

@@ -2,19 +2,29 @@ use core::f64::consts::{PI, TAU};
 
 use super::*;
 
-/// Readings in a room of 10 m × 6 m, with a post of 0.3 m over the last third of the beams if there is one.
+/// What travels with the robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Travels {
+    Nothing,
+    /// A post at 0.3 m over the last third of the beams.
+    Post,
+    /// The floor, 2 m ahead of a laser that leans.
+    Floor,
+}
+
+/// Readings in a room of 10 m × 6 m.
 struct Room {
     frames: VecDeque<LogFrame>,
     notes: LogNotes,
 }
 
 impl Room {
-    fn new(poses: impl Iterator<Item = SE2>, has_post: bool, has_odometry: bool) -> Box<Self> {
+    fn new(poses: impl Iterator<Item = SE2>, travels: Travels, has_odometry: bool) -> Box<Self> {
         let beams = 120;
         let step = TAU / f64::from(beams);
         let frame = |(number, pose): (usize, SE2)| {
             let range_m = |beam: i32| {
-                if has_post && beam >= 80 {
+                if travels == Travels::Post && beam >= 80 {
                     return 0.3;
                 }
                 let (sin, cos) = math::sin_cos(pose.theta() - PI + f64::from(beam) * step);
@@ -24,7 +34,13 @@ impl Room {
                     -pose.x()
                 };
                 let across = if sin > 0.0 { 6.0 - pose.y() } else { -pose.y() };
-                (along / cos).min(across / sin)
+                let ahead = math::cos(-PI + f64::from(beam) * step);
+                let floor_m = if travels == Travels::Floor && ahead > 0.1 {
+                    2.0 / ahead
+                } else {
+                    f64::INFINITY
+                };
+                (along / cos).min(across / sin).min(floor_m)
             };
             LogFrame {
                 stamp_s: number as f64,
@@ -81,21 +97,63 @@ fn around() -> impl Iterator<Item = SE2> {
     })
 }
 
+/// 1 m beside the walls, also around the corners: what is to the right has the same range everywhere.
+fn along_all_walls() -> impl Iterator<Item = SE2> {
+    let sides = [
+        (1.0, 1.0, 0, 8.0),
+        (9.0, 1.0, 1, 4.0),
+        (9.0, 5.0, 2, 8.0),
+        (1.0, 5.0, 3, 4.0),
+    ];
+    sides.into_iter().flat_map(|(x, y, quarter, length_m)| {
+        let heading = f64::from(quarter) * PI / 2.0;
+        let start = SE2::new(x, y, heading);
+        let steps = (length_m / 0.2) as i32;
+        let straight = (0..steps).map(move |k| start * SE2::new(0.2 * f64::from(k), 0.0, 0.0));
+        let corner = start * SE2::new(length_m, 0.0, 0.0);
+        straight.chain((0..5).map(move |k| corner * SE2::new(0.0, 0.0, PI / 10.0 * f64::from(k))))
+    })
+}
+
+#[test]
+fn the_floor_before_a_leaning_laser_is_cut_out_and_said_with_and_without_odometry() {
+    for has_odometry in [true, false] {
+        let room = Room::new(around(), Travels::Floor, has_odometry);
+        let expected = room.frames.back().map(|frame| {
+            let beams = frame.scan.ranges_m.iter().enumerate();
+            let on = beams.filter(|(beam, range_m)| {
+                let ahead_m = *range_m * math::cos(frame.scan.bearing_rad(*beam));
+                (ahead_m - 2.0).abs() < 1e-9
+            });
+            on.count()
+        });
+        let (last, remarks) = cut(room);
+        assert_eq!(remarks, 1, "{has_odometry}");
+        // A beam or two on a wall end near the line.
+        let off = last.checked_sub(expected.unwrap());
+        assert!(off.is_some_and(|off| off <= 2), "{has_odometry}: {last}");
+    }
+}
+
 #[test]
 fn a_body_in_view_is_cut_out_and_said_with_and_without_odometry() {
     for has_odometry in [true, false] {
-        assert_eq!(cut(Room::new(around(), true, has_odometry)), (40, 1));
+        assert_eq!(
+            cut(Room::new(around(), Travels::Post, has_odometry)),
+            (40, 1)
+        );
     }
 }
 
 #[test]
 fn a_wall_beside_the_way_and_a_robot_at_rest_lose_nothing() {
     for has_odometry in [true, false] {
-        let room = |poses: &[SE2]| Room::new(poses.iter().copied(), false, has_odometry);
+        let room = |poses: &[SE2]| Room::new(poses.iter().copied(), Travels::Nothing, has_odometry);
         let at_rest = [SE2::new(0.4, 0.4, 0.0); 300];
         for poses in [
             around().collect(),
             along_a_wall().collect(),
+            along_all_walls().collect(),
             at_rest.to_vec(),
         ] {
             assert_eq!(cut(room(&poses)), (0, 0), "{has_odometry}: {:?}", poses[1]);
