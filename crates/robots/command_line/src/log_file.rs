@@ -1,7 +1,7 @@
 //! Opens a recorded log, and reads it with progress on standard error.
 
 use std::fs::{self, File};
-use std::io::{self, BufReader, IsTerminal, Read, Seek, SeekFrom, stderr};
+use std::io::{self, BufRead, BufReader, IsTerminal, Read, Seek, SeekFrom, stderr};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -127,6 +127,12 @@ impl TopicArgs {
         }
     }
 
+    /// The topics of scans that are asked for.
+    pub fn scan_topics(&self) -> impl Iterator<Item = &str> {
+        let asked = self.scan_topic.iter();
+        asked.flat_map(|topics| topics.split(',').map(str::trim))
+    }
+
     fn options(&self) -> LogOptions {
         LogOptions {
             scan_topic: self.scan_topic.clone(),
@@ -197,13 +203,31 @@ pub fn open_compared(
     odometry: OdometryArgs,
 ) -> anyhow::Result<(ComparedReader<'static>, Progress)> {
     let (reader, progress) = open_log(path, topics)?;
+    Ok((compared(reader, topics, odometry), progress))
+}
+
+/// Reads a recording of MCAP while it is made, compared as in [`open_compared`]; errors contain `name`.
+pub fn open_live(
+    stream: impl BufRead + 'static,
+    name: &str,
+    topics: &TopicArgs,
+    odometry: OdometryArgs,
+) -> ComparedReader<'static> {
+    let reader = LogFormat::open_live(stream, name, &topics.options());
+    compared(reader, topics, odometry)
+}
+
+fn compared(
+    reader: Box<dyn LogReader>,
+    topics: &TopicArgs,
+    odometry: OdometryArgs,
+) -> ComparedReader<'static> {
     let reader = ComparedReader::new(reader, topics.laser.is_some());
-    let odometry = if odometry.no_odometry {
+    reader.with_odometry(if odometry.no_odometry {
         OdometryUse::Ignore
     } else {
         odometry.odometry
-    };
-    Ok((reader.with_odometry(odometry), progress))
+    })
 }
 
 /// The files of a log.

@@ -42,6 +42,11 @@ pub fn cell_m(text: &str) -> Result<f64, String> {
     within(text, 0.01..=1.0, " m")
 }
 
+/// A time to wait in seconds.
+pub fn wait_s(text: &str) -> Result<f64, String> {
+    within(text, 0.0..=86_400.0, " s")
+}
+
 /// A number of laps.
 pub fn laps(text: &str) -> Result<usize, String> {
     let range = 1..=10_000;

@@ -114,6 +114,65 @@ impl OdometryPoses {
     }
 }
 
+/// Poses of odometry as they come: after a jump they continue the path, as in [`OdometryPoses::new`], by the speeds so far.
+pub struct LivePoses {
+    poses: OdometryPoses,
+    moved_back: SE2,
+}
+
+impl LivePoses {
+    /// Creates without poses; `period_s` is the usual time between two.
+    pub fn new(period_s: f64) -> Self {
+        Self {
+            poses: OdometryPoses {
+                slack_s: SLACK_S.max(1.5 * period_s),
+                gap_s: LONGEST_GAP_S.max(LONGEST_GAP_PERIODS * period_s),
+                ..OdometryPoses::default()
+            },
+            moved_back: SE2::identity(),
+        }
+    }
+
+    /// The poses so far.
+    pub fn poses(&self) -> &OdometryPoses {
+        &self.poses
+    }
+
+    /// Adds a pose; skips one that is not later than the one before.
+    pub fn push(&mut self, stamp_s: f64, pose: SE2) {
+        if let Some(&(last_s, last)) = self.poses.poses.back()
+            && stamp_s > last_s
+        {
+            let unmoved = self.moved_back.inverse() * last;
+            let (moved, speed) = step(&[(last_s, unmoved), (stamp_s, pose)]);
+            if moved > JUMP && speed > JUMP_SPEEDS * self.usual_speed().max(MIN_SPEED) {
+                self.moved_back = last * pose.inverse();
+            }
+        }
+        self.poses.push(stamp_s, self.moved_back * pose);
+    }
+
+    /// Speed that nine of ten steps so far do not exceed, m/s.
+    fn usual_speed(&self) -> f64 {
+        let poses: Vec<(f64, SE2)> = self.poses.poses.iter().copied().collect();
+        usual_speed(&poses).unwrap_or(0.0)
+    }
+}
+
+/// Length (m) and speed (m/s) of the step between two poses.
+fn step(two: &[(f64, SE2)]) -> (f64, f64) {
+    let motion = two[0].1.between(&two[1].1);
+    let moved = math::norm2(motion.x(), motion.y());
+    (moved, moved / (two[1].0 - two[0].0).max(MIN_APART_S))
+}
+
+/// Speed that nine of ten steps do not exceed, m/s, which is independent of the unit of length; `None` without a step.
+fn usual_speed(poses: &[(f64, SE2)]) -> Option<f64> {
+    let mut speeds: Vec<f64> = poses.windows(2).map(|two| step(two).1).collect();
+    sort_numbers(&mut speeds);
+    speeds.get(speeds.len() * 9 / 10).copied()
+}
+
 /// Remark on odometry that jumped at these stamps (s), if there are any.
 pub fn jumps_remark(jumps: &[f64]) -> Option<Remark> {
     let first_s = jumps.first()?;
@@ -127,15 +186,7 @@ pub fn jumps_remark(jumps: &[f64]) -> Option<Remark> {
 /// Shifts the poses after each jump to continue the path; returns the stamps of the jumps, s. The poses are in the
 /// order of time.
 pub fn remove_jumps(poses: &mut [(f64, SE2)]) -> Vec<f64> {
-    let step = |two: &[(f64, SE2)]| {
-        let motion = two[0].1.between(&two[1].1);
-        let moved = math::norm2(motion.x(), motion.y());
-        (moved, moved / (two[1].0 - two[0].0).max(MIN_APART_S))
-    };
-    let mut speeds: Vec<f64> = poses.windows(2).map(|two| step(two).1).collect();
-    sort_numbers(&mut speeds);
-    // Nine of ten steps are slower; independent of the unit of length.
-    let Some(&usual) = speeds.get(speeds.len() * 9 / 10) else {
+    let Some(usual) = usual_speed(poses) else {
         return Vec::new();
     };
     let mut jumps = Vec::new();
@@ -181,6 +232,14 @@ mod tests {
         assert_eq!(jumps.len(), 1);
         // 29 steps before and 29 after it.
         assert!((odometry.at(5.9).unwrap().x() - 10.8).abs() < 1e-9);
+    }
+
+    #[test]
+    fn poses_that_come_one_by_one_continue_the_path_too() {
+        let pose = |k: u32| SE2::from_xy(5.0 + 0.1 * f64::from(k % 30), 0.0);
+        let mut live = LivePoses::new(0.1);
+        (0..60).for_each(|k| live.push(0.1 * f64::from(k), pose(k)));
+        assert!((live.poses().at(5.9).unwrap().x() - 10.8).abs() < 1e-9);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::log_format::LogFormat;
 use crate::mounted_reader::MountedReader;
 use crate::near_readings::without_near_readings;
 use crate::restamped::restamped;
-use crate::ros::RosReader;
+use crate::ros::{LiveReader, RosReader};
 use crate::table_layout::TableLayout;
 use crate::table_log::{TableReader, TableRows};
 
@@ -26,6 +26,17 @@ impl LogFormat {
         options: &LogOptions,
     ) -> Result<Box<dyn LogReader + 'a>, LogError> {
         Self::open_parts(vec![bytes.into()], name, options)
+    }
+
+    /// Opens a recording while it is made: `stream` is MCAP, and its reads wait for what comes next.
+    #[must_use]
+    pub fn open_live<'a>(
+        stream: impl BufRead + 'a,
+        name: &str,
+        options: &LogOptions,
+    ) -> Box<dyn LogReader + 'a> {
+        let reader = Box::new(LiveReader::new(stream, name, options));
+        without_near_readings(reader, options.min_range_m, options.footprint)
     }
 
     /// Opens a log of several files: a recording of ROS may be split.

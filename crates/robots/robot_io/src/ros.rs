@@ -3,7 +3,8 @@
 //! A container yields messages with topic, type and bytes: `mcap_file`, `sqlite_file` or `bag_file`. A recording
 //! is read twice. A `survey` collects topics, transforms, odometry and the stamps of scans. A
 //! `plan` selects among them, aligns the clocks and determines the mounting. Then a
-//! `cursor` for each laser yields its scans in the order of time.
+//! `cursor` for each laser yields its scans in the order of time. A recording that is still being made is read once:
+//! `live`.
 //!
 //! | type | use |
 //! |---|---|
@@ -27,17 +28,22 @@ mod cursor;
 mod decompress;
 mod file;
 mod file_bytes;
+mod live;
 mod mcap_file;
+mod mcap_writer;
 mod messages;
 mod plan;
 mod point_cloud;
 mod reader;
+mod scan_decoder;
 mod scan_fields;
 mod sqlite_file;
 mod survey;
 mod transforms;
 mod wire;
 
+pub use live::{LiveReader, MessageUse};
+pub use mcap_writer::{McapWriter, Topic};
 pub use reader::RosReader;
 pub(crate) use scan_fields::ScanFields;
 

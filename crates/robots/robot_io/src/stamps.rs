@@ -21,7 +21,7 @@ const MIN_OFF_S: f64 = 0.5;
 /// The same in periods of the stream.
 const MIN_OFF_PERIODS: f64 = 8.0;
 /// Smaller steps back are swapped messages, s.
-const MIN_STEP_S: f64 = 1.0;
+pub const MIN_STEP_S: f64 = 1.0;
 /// Smallest step that the time of recording can show, s, and in multiples of the jitter.
 const MIN_STEP_BY_RECORD_S: f64 = 0.15;
 const JITTERS: f64 = 8.0;

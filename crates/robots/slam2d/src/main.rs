@@ -7,8 +7,10 @@ mod doctor;
 mod evaluate;
 mod grade;
 mod info;
+mod live;
 mod localize;
 mod map;
+mod mapping;
 mod moved;
 mod optimize;
 mod run_folder;
@@ -22,7 +24,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use command_line::program;
 
-/// Maps the recorded log of a robot, localizes on the map, and evaluates the result.
+/// Maps the recorded log of a robot, or a robot while it drives, localizes on the map, and evaluates the result.
 #[derive(Debug, Parser)]
 #[command(name = "slam2d", version)]
 struct Cli {
@@ -35,6 +37,7 @@ enum Command {
     Doctor(doctor::DoctorArgs),
     Info(info::InfoArgs),
     Run(run_log::RunArgs),
+    Live(live::LiveArgs),
     Localize(localize::LocalizeArgs),
     Map(map::MapArgs),
     Convert(convert::ConvertArgs),
@@ -54,6 +57,7 @@ fn run(command: &Command) -> anyhow::Result<ExitCode> {
         Command::Doctor(args) => return doctor::run(args),
         Command::Info(args) => info::run(args)?,
         Command::Run(args) => return run_log::run(args),
+        Command::Live(args) => return live::run(args),
         Command::Localize(args) => return localize::run(args),
         Command::Map(args) => map::run(args)?,
         Command::Convert(args) => convert::run(args)?,

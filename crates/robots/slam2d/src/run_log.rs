@@ -3,30 +3,12 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::bail;
-use bench_support::{process, timed};
 use clap::Args;
-use robot_io::laser_mount::LaserMount;
-use robot_io::quality::Quality;
-use robot_io::recorder::RunRecorder;
-use robot_io::run::LogRun;
-use robot_io::settings::Setting;
-use serde::Serialize;
-
-use crate::grade::{Grade, ReferenceArgs};
-use crate::localize::Init;
-use crate::run_folder::{CUT_SHORT, folder_of_part};
-use crate::run_output::{Results, write_folder};
-use crate::session_file::read_session;
-use crate::tick_costs::{TickCosts, TickSummary};
-use command_line::in_file::InFile as _;
-use command_line::interrupt::{self, Interrupt};
+use command_line::interrupt::Interrupt;
 use command_line::log_file::{OdometryArgs, TopicArgs};
-use command_line::numbers;
-use command_line::output::{print_json, say};
 use command_line::robots::Robots;
-use command_line::setting::setting;
-use command_line::whole_file::check_folder;
+
+use crate::mapping::{Ended, Mapping, MappingArgs};
 
 /// Map a recorded log, and evaluate the trajectory if a reference is given.
 #[derive(Args, Clone, Debug)]
@@ -40,67 +22,11 @@ pub struct RunArgs {
     topics: TopicArgs,
     #[command(flatten)]
     odometry: OdometryArgs,
-    /// Write the results to this folder. They replace those of an older run all together at the end; a run that is cut
-    /// short replaces no whole result and goes to the folder interrupted in it.
-    #[arg(short = 'o', long, value_name = "DIR")]
-    output: Option<PathBuf>,
-    /// Side of a cell of the map, m.
-    #[arg(long, default_value = "0.05", value_parser = numbers::cell_m, allow_hyphen_values = true)]
-    resolution: f64,
     /// Map the robots of a recording into one map, one after the other, if its scans are those of several.
     #[arg(long, conflicts_with_all = ["scan_topic", "odom_topic", "odom_frame", "body_frame"])]
     all_robots: bool,
-    /// Set a parameter of the estimator; docs/robots.md lists them.
-    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
-    settings: Vec<(String, f64)>,
-    /// Continue this session, or that of a run's folder, with its parameters. The log is the rest of its recording, or
-    /// another day: then the robot is first searched for on the session's map.
-    #[arg(long = "continue", value_name = "SESSION", conflicts_with = "settings")]
-    session: Option<PathBuf>,
-    /// Pose of the first scan on the session's map: x,y,deg in metres and degrees, or anywhere.
-    #[arg(
-        long,
-        value_name = "x,y,deg|anywhere",
-        requires = "session",
-        allow_hyphen_values = true
-    )]
-    init: Option<Init>,
-    /// Mark free space in the map along beams without a return, up to the sensor's limit (REP 117).
-    #[arg(long)]
-    free_space: bool,
     #[command(flatten)]
-    reference: ReferenceArgs,
-    /// Print one JSON object.
-    #[arg(long)]
-    json: bool,
-}
-
-/// What `--json` prints.
-#[derive(Serialize)]
-struct RunJson {
-    scans: usize,
-    keyframes: usize,
-    loops_tried: usize,
-    loops_accepted: usize,
-    /// CPU time of the process, s.
-    cpu_s: f64,
-    /// Peak memory of the process, MB; null if the system does not report it.
-    peak_mb: Option<f64>,
-    /// Time per scan: median, 99 %, worst, and those of the first and the last tenth; null with fewer than ten scans.
-    ticks: Option<TickSummary>,
-    /// Whether Ctrl-C, SIGTERM or an unreadable log ended the run early.
-    interrupted: bool,
-    /// Folder of the results.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    folder: Option<PathBuf>,
-    /// What should be checked, one sentence each.
-    doubts: Vec<String>,
-    /// Every keyframe with its covariance, and every loop with its evidence.
-    quality: Quality,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    relations: Option<Grade>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    truth: Option<Grade>,
+    mapping: MappingArgs,
 }
 
 /// Runs the estimator on the log and prints the result; the exit code tells whether it reached the end of the log.
@@ -109,186 +35,33 @@ struct RunJson {
 /// If a file cannot be used. What was mapped before is written.
 pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let name = args.log.display().to_string();
-    let reference = args.reference.read()?;
     let interrupt = Interrupt::watch();
-    if let Some(folder) = &args.output {
-        check_folder(folder).in_file(folder)?;
-    }
-    let (mut run, mut recorder, laser_before) = start(args)?;
-    let topics = args.topics.resuming_with(laser_before);
+    let mut mapping = Mapping::start(&args.mapping)?;
+    let topics = args.topics.resuming_with(mapping.laser_before);
     let topics = topics.of_all_robots(args.all_robots).of_parts(&args.parts);
     let mut robots = Robots::open(&args.log, &topics, args.odometry)?;
-    let mut broken = None;
-    let mut costs = TickCosts::default();
-    let mut is_interrupted = true;
+    let mut ended = Ended {
+        is_interrupted: true,
+        ..Ended::default()
+    };
     while !interrupt.came() {
-        match robots.next_frame(&mut run) {
+        match robots.next_frame(&mut mapping.run) {
             Ok(Some(frame)) => {
-                let (report, ms) = timed(|| run.step(frame.clone()));
-                costs.push(ms);
-                if let Some(report) = report {
-                    recorder.add(&frame, &report);
-                }
-                robots.report(run.scans());
+                mapping.step(frame);
+                robots.report(mapping.run.scans());
             }
             Ok(None) => {
-                is_interrupted = false;
+                ended.is_interrupted = false;
                 break;
             }
-            Err(error) if run.scans() == 0 => return Err(error),
+            Err(error) if mapping.run.scans() == 0 => return Err(error),
             Err(error) => {
-                broken = Some(error);
+                ended.broken = Some(error);
                 break;
             }
         }
     }
-    run.finish();
-    recorder.forget_left_out(&run);
-    let (mut remarks, about) = robots.end(!is_interrupted);
-    if run.scans() == 0 && run.late() > 0 {
-        bail!(
-            "{name}: no scan is later than the session's last one; pass the rest of that recording, or run the log without --continue"
-        );
-    }
-    remarks.extend(run.sentences(&name));
-    for remark in &remarks {
-        eprintln!("slam2d: {remark}");
-    }
-    if let Some(problem) = run.no_map() {
-        bail!("{name}: no scan could be used: {problem}");
-    }
-    if run.scans() == 0 {
-        bail!("{name}: it was interrupted before its first scan");
-    }
-    let trajectory = run.trajectory();
-    let grade = reference
-        .as_ref()
-        .map(|reference| reference.grade(&trajectory))
-        .transpose();
-    let mut quality = run.quality();
-    if is_interrupted {
-        let cause = match &broken {
-            Some(_) => "the log cannot be read further",
-            None => "it was interrupted",
-        };
-        let doubt = format!(
-            "{CUT_SHORT} after {} scans: {cause}; the rest of the log is missing",
-            run.scans()
-        );
-        quality.doubts.insert(0, doubt);
-    }
-    let mut folder = args.output.clone();
-    if let Some(wanted) = folder.as_mut().filter(|_| is_interrupted) {
-        let of_part = folder_of_part(wanted);
-        if of_part != *wanted {
-            eprintln!(
-                "slam2d: {} keeps the result of a whole run; what was mapped now goes to {}",
-                wanted.display(),
-                of_part.display()
-            );
-        }
-        *wanted = of_part;
-    }
-    if let Some(folder) = &folder {
-        remarks.extend(about);
-        let title = args.log.file_name().unwrap_or(args.log.as_os_str());
-        let title = title.to_string_lossy();
-        let results = Results {
-            log: &title,
-            run: &run,
-            quality: &quality,
-            recorder: &recorder,
-            remarks: &remarks,
-            cell_m: args.resolution,
-            has_free_space: args.free_space,
-            is_whole: !is_interrupted,
-        };
-        if let Some(sentence) = write_folder(folder, &results)? {
-            eprintln!("slam2d: {name}: {sentence}");
-        }
-    }
-    // Write the results before reporting any later error.
-    let grade = grade?;
-    if let Some(error) = broken {
-        return Err(error);
-    }
-    let of = |wanted: bool| grade.filter(|grade| wanted == matches!(grade, Grade::Relations(_)));
-    let doubts = std::mem::take(&mut quality.doubts);
-    let result = RunJson {
-        scans: run.scans(),
-        keyframes: run.slam().map_or(0, |slam| slam.keyframes().len()),
-        loops_tried: run.loops().len(),
-        loops_accepted: run.loops().iter().filter(|tried| tried.accepted).count(),
-        cpu_s: process::cpu_s(),
-        peak_mb: process::peak_mb(),
-        ticks: costs.summary(),
-        interrupted: is_interrupted,
-        folder,
-        doubts,
-        quality,
-        relations: of(true),
-        truth: of(false),
-    };
-    if args.json {
-        print_json(&result);
-    } else {
-        print_text(&result);
-    }
-    Ok(if is_interrupted {
-        interrupt::EXIT_CODE.into()
-    } else {
-        ExitCode::SUCCESS
-    })
-}
-
-/// A new run, or one that continues a session, and the session's mounting of the laser.
-fn start(args: &RunArgs) -> anyhow::Result<(LogRun, RunRecorder, Option<LaserMount>)> {
-    let Some(path) = &args.session else {
-        let mut run = LogRun::default();
-        for (name, value) in &args.settings {
-            let setting = Setting::named(name)?;
-            setting.check(*value)?;
-            run = run.with_setting(setting, *value);
-        }
-        return Ok((run, RunRecorder::default(), None));
-    };
-    let (session, _) = read_session(path)?;
-    let mut run = LogRun::resume(&session).in_file(path)?;
-    if let Some(Init(start)) = args.init {
-        run = run.starting_at(start);
-    }
-    let mount = session.sensor.as_ref().map(|sensor| LaserMount {
-        body_from_sensor: sensor.body_from_sensor,
-        is_flipped: false,
-    });
-    Ok((run, RunRecorder::resume(&session), mount))
-}
-
-fn print_text(result: &RunJson) {
-    say!("scans            {}", result.scans);
-    say!("keyframes        {}", result.keyframes);
-    say!(
-        "loops            {} tested, {} accepted",
-        result.loops_tried,
-        result.loops_accepted
-    );
-    say!("CPU              {:.2} s", result.cpu_s);
-    if let Some(peak_mb) = result.peak_mb {
-        say!("memory           {peak_mb:.0} MB at most");
-    }
-    if let Some(ticks) = result.ticks {
-        say!(
-            "a scan           {:.2} ms in the first tenth, {:.2} ms in the last (medians); 99 % within {:.1} ms, worst {:.1} ms",
-            ticks.first.median_ms,
-            ticks.last.median_ms,
-            ticks.p99_ms,
-            ticks.worst_ms
-        );
-    }
-    for doubt in &result.doubts {
-        say!("doubt            {doubt}");
-    }
-    if let Some(grade) = result.relations.or(result.truth) {
-        grade.print();
-    }
+    (ended.remarks, ended.about) = robots.end(!ended.is_interrupted);
+    let title = args.log.file_name().unwrap_or(args.log.as_os_str());
+    mapping.end(&name, &title.to_string_lossy(), ended)
 }

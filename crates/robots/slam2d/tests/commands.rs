@@ -35,7 +35,7 @@ fn help_goes_to_standard_output() {
     assert!(output.status.success());
     let text = String::from_utf8(output.stdout).unwrap();
     for command in [
-        "doctor", "info", "run", "localize", "map", "convert", "evaluate", "optimize",
+        "doctor", "info", "run", "live", "localize", "map", "convert", "evaluate", "optimize",
     ] {
         assert!(text.contains(command), "{command} is not in\n{text}");
     }

@@ -11,11 +11,12 @@ use std::io::BufRead;
 
 use super::container::{Container, ContainerError, MAX_BYTES, Recorded};
 use super::file_bytes::FileBytes;
+pub use foxglove::LASER_SCAN;
 pub use records::Records;
 use records::{HEAD_BYTES, head, op};
 
 /// First and last bytes of a file.
-const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+pub const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
 /// Messages of an MCAP file, in the order of the file.
 pub struct McapFile<R> {

@@ -5,6 +5,8 @@ mod odometry;
 mod offers;
 mod robots;
 
+pub use odometry::OdometrySource;
+
 use nalgebra::Isometry3;
 
 use super::survey::{SCANS, ScanStream, Survey};
@@ -51,6 +53,12 @@ pub struct Plan {
     pub scans: Vec<PlannedScans>,
     /// The body's poses by odometry.
     pub odometry: Option<OdometryPoses>,
+    /// Their source.
+    pub source: Option<OdometrySource>,
+    /// Offset that was added to the stamps of scans, s.
+    pub scans_by_s: f64,
+    /// Whether the mounting of the first laser is known.
+    pub is_mounted: bool,
     /// Choices for options.
     pub offers: Vec<LogOffer>,
     /// An option that requests a name which does not exist.
@@ -107,6 +115,7 @@ impl Plan {
             ));
         }
         plan.about.push(mounts::sentence(&found));
+        plan.is_mounted = found.is_known;
         plan.scans.push(planned(topic, stream, &clocks[0], &found));
         plan.name_other_publishers(topic, stream);
         let of_mount = |text| Remark::mended(Part::Mounting, text);
@@ -170,6 +179,8 @@ impl Plan {
     fn align_clocks(&mut self, odometry: &odometry::SelectedOdometry<'_>, clock: &MendedStamps) {
         let aligned = odometry::aligned(odometry, clock);
         let by_s = aligned.scans_by_s;
+        self.scans_by_s = by_s;
+        self.source = Some(odometry.source(aligned.odometry_by_s));
         for scans in &mut self.scans {
             scans
                 .stamps_s

@@ -39,6 +39,11 @@ pub const SCANS: [&str; 3] = [
 /// Message type of odometry.
 pub const ODOMETRY: &str = "nav_msgs/Odometry";
 
+/// Whether a message type is that of transforms.
+pub fn is_transforms(kind: &str) -> bool {
+    matches!(kind, "tf2_msgs/TFMessage" | "tf/tfMessage")
+}
+
 /// The scans of a topic.
 #[derive(Clone, Debug, Default)]
 pub struct ScanStream {
@@ -175,7 +180,7 @@ fn thin<T>(all: &mut Vec<T>) {
 }
 
 /// Content of a recording.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Survey {
     /// Number of messages by topic and type.
     pub counts: BTreeMap<(String, String), usize>,
@@ -206,7 +211,7 @@ impl Survey {
         }
         match message.kind.as_str() {
             ODOMETRY => self.add_odometry(message).map_err(named),
-            "tf2_msgs/TFMessage" | "tf/tfMessage" => {
+            kind if is_transforms(kind) => {
                 let all = reader(message)
                     .and_then(|mut fields| transforms(&mut fields).map_err(|e| e.to_string()))
                     .map_err(named)?;

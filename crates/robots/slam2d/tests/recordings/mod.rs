@@ -1,8 +1,11 @@
 //! Recordings with one typical fault each, and the required result.
 
 mod base;
+mod connected;
 mod damage;
 mod field;
+mod live;
+mod robot;
 mod robots;
 mod variants;
 mod write;

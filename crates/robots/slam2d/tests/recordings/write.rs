@@ -113,7 +113,8 @@ impl Cdr {
 }
 
 impl Message {
-    fn kind(&self) -> &'static str {
+    /// Type of the message.
+    pub fn kind(&self) -> &'static str {
         match &self.body {
             Body::Scan(scan) if scan.has_echoes => "sensor_msgs/msg/MultiEchoLaserScan",
             Body::Scan(_) => "sensor_msgs/msg/LaserScan",
@@ -123,7 +124,8 @@ impl Message {
         }
     }
 
-    fn bytes(&self) -> Vec<u8> {
+    /// The message in CDR.
+    pub fn bytes(&self) -> Vec<u8> {
         let mut cdr = Cdr(vec![0, 1, 0, 0]);
         match &self.body {
             Body::Scan(scan) => {

@@ -85,6 +85,40 @@ pub fn chosen<'a>(
     })
 }
 
+/// A source of odometry by its names, and its clock.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OdometrySource {
+    /// Topic, or [`TRANSFORMS`] if the poses are transforms.
+    pub topic: String,
+    /// Whether the poses are transforms.
+    pub is_transform: bool,
+    /// Parent frame.
+    pub above: String,
+    /// Moving frame.
+    pub body: String,
+    /// Whether the poses differ.
+    pub moves: bool,
+    /// Usual time between two poses, s.
+    pub period_s: f64,
+    /// Offset added to the stamps, s.
+    pub by_s: f64,
+}
+
+impl SelectedOdometry<'_> {
+    /// The source, whose stamps are shifted by this, s.
+    pub fn source(&self, by_s: f64) -> OdometrySource {
+        OdometrySource {
+            topic: self.topic.clone(),
+            is_transform: self.is_transform,
+            above: self.track.above.clone(),
+            body: self.track.body.clone(),
+            moves: self.track.moves,
+            period_s: self.clock.period_s,
+            by_s,
+        }
+    }
+}
+
 /// Remarks on sources of odometry whose poses have no orientation.
 pub fn without_headings(survey: &Survey) -> Vec<Remark> {
     let topics = survey.odometry.iter();
@@ -183,6 +217,8 @@ pub struct Aligned {
     pub poses: OdometryPoses,
     /// Offset added to the scans' stamps, s.
     pub scans_by_s: f64,
+    /// Offset added to the odometry's stamps, s.
+    pub odometry_by_s: f64,
     /// Remarks on the correction.
     pub remarks: Vec<Remark>,
 }
@@ -232,6 +268,7 @@ pub fn aligned(odometry: &SelectedOdometry<'_>, scans: &MendedStamps) -> Aligned
     Aligned {
         poses,
         scans_by_s,
+        odometry_by_s,
         remarks,
     }
 }

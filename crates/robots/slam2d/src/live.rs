@@ -1,0 +1,197 @@
+//! `slam2d live`: maps a robot while it drives.
+//!
+//! A thread listens to the robot's server, records what it reads as MCAP, and passes the same bytes to the reader of
+//! [`LogFormat::open_live`](robot_io::log_format::LogFormat::open_live): from there on, a robot and a file are the same.
+
+mod connection;
+mod listener;
+mod protocol;
+mod queue;
+
+use std::fs::{self, File};
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::{anyhow, bail};
+use clap::Args;
+use command_line::in_file::InFile as _;
+use command_line::interrupt::Interrupt;
+use command_line::log_file::{OdometryArgs, TopicArgs, open_live};
+use command_line::numbers;
+use robot_io::log::LogReader as _;
+
+use self::connection::{Address, Connection};
+use self::listener::{DriveEnd, Heard, Listener};
+use crate::mapping::{Ended, Mapping, MappingArgs};
+
+/// Name of the recording in the folder of the results.
+const RECORDING: &str = "recording.mcap";
+/// Time between two reports of progress.
+const EVERY: Duration = Duration::from_secs(10);
+
+/// Map a robot while it drives: connect to its foxglove_bridge. Ctrl-C ends the drive. The folder then has the results
+/// of slam2d run, and the drive as recording.mcap.
+#[derive(Args, Clone, Debug)]
+pub struct LiveArgs {
+    /// The address of the robot's foxglove_bridge, such as ws://robot:8765.
+    #[arg(value_name = "ADDRESS")]
+    url: String,
+    #[command(flatten)]
+    topics: TopicArgs,
+    #[command(flatten)]
+    odometry: OdometryArgs,
+    /// How long to wait for the first scan, and for the robot to come back after the connection was lost, s.
+    #[arg(long, value_name = "SECONDS", default_value = "30", value_parser = numbers::wait_s, allow_hyphen_values = true)]
+    wait: f64,
+    #[command(flatten)]
+    mapping: MappingArgs,
+}
+
+/// Maps the robot until Ctrl-C or the end of the connection, and prints the result.
+///
+/// # Errors
+/// If the robot is not there, has no scans, or a file cannot be used.
+pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
+    let address = Address::new(&args.url)?;
+    let Some(folder) = &args.mapping.output else {
+        bail!("slam2d live needs a folder for the recording and the results: -o DIR");
+    };
+    let interrupt = Interrupt::watch();
+    let mut mapping = Mapping::start(&args.mapping)?;
+    let recording = folder.join(RECORDING);
+    if recording.exists() {
+        bail!(
+            "{} is the recording of an earlier drive; pass another folder, or map it with slam2d run",
+            recording.display()
+        );
+    }
+    let connection = Connection::open(&address)?;
+    fs::create_dir_all(folder).in_file(folder)?;
+    let file = File::create_new(&recording).in_file(&recording)?;
+    let (feeder, feed) = queue::stream();
+    let is_ended = Arc::<AtomicBool>::default();
+    let asked = args.topics.scan_topics().map(str::to_owned).collect();
+    let listener = Listener::new(address, BufWriter::with_capacity(1 << 16, file), feeder)
+        .of_scans(asked)
+        .waiting(Duration::from_secs_f64(args.wait))
+        .until(interrupt, Arc::clone(&is_ended));
+    let listening = thread::spawn(move || listener.listen(connection));
+    let topics = args.topics.resuming_with(mapping.laser_before);
+    let mut reader = open_live(feed, &args.url, &topics, args.odometry);
+    let mut reported = Instant::now();
+    let problem = loop {
+        match reader.next_frame() {
+            Ok(Some(frame)) => mapping.step(frame),
+            Ok(None) => break None,
+            Err(problem) => break Some(problem),
+        }
+        if reported.elapsed() >= EVERY {
+            reported = Instant::now();
+            eprintln!("slam2d: {} scans", mapping.run.scans());
+        }
+    };
+    is_ended.store(true, Ordering::Relaxed);
+    let heard = listening.join().expect("the listener does not panic");
+    if heard.scans == 0 {
+        forget(&recording, folder);
+    }
+    if let Some(problem) = problem {
+        return Err(without_frames(&args.url, &heard).unwrap_or_else(|| problem.into()));
+    }
+    let mut ended = Ended {
+        remarks: reader.notes().sentences(&args.url),
+        about: reader.notes().about.clone(),
+        ..Ended::default()
+    };
+    ended.remarks.extend(remarks(&args.url, &recording, &heard));
+    ended.broken = match heard.end {
+        DriveEnd::Recording(error) => Some(anyhow!("{}: {error}", recording.display())),
+        DriveEnd::TooLong(why) => Some(anyhow!("{}: {why}; the drive ended there", args.url)),
+        _ => None,
+    };
+    ended.is_interrupted = ended.broken.is_some();
+    mapping.end(&args.url, &args.url, ended)
+}
+
+/// Removes a recording without scans, and its folder if that is empty.
+fn forget(recording: &PathBuf, folder: &Path) {
+    let _ = fs::remove_file(recording);
+    let _ = fs::remove_dir(folder);
+}
+
+/// Why a drive has no scan, if the connection shows it.
+fn without_frames(url: &str, heard: &Heard) -> Option<anyhow::Error> {
+    if heard.scans > 0 {
+        return None;
+    }
+    let topics = heard.topics.iter().take(20);
+    let topics: Vec<String> = topics
+        .map(|(topic, kind)| format!("{topic} ({kind})"))
+        .collect();
+    let topics = if topics.is_empty() {
+        "it has no topics".to_owned()
+    } else {
+        format!("it has {}", topics.join(", "))
+    };
+    Some(match &heard.end {
+        DriveEnd::NoScans => anyhow!(
+            "{url}: no scan came; {topics}. Start the driver of the laser, choose with --scan-topic, or wait longer with --wait"
+        ),
+        DriveEnd::NotBack(why) => {
+            anyhow!("{url}: the connection was lost before the first scan ({why}); {topics}")
+        }
+        DriveEnd::Asked => anyhow!("{url}: it was interrupted before its first scan; {topics}"),
+        DriveEnd::TooLong(why) => anyhow!("{url}: {why}"),
+        DriveEnd::Recording(error) => anyhow!("{url}: the recording cannot be written: {error}"),
+    })
+}
+
+/// Sentences on what the network did.
+fn remarks(url: &str, recording: &Path, heard: &Heard) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let recording = recording.display();
+    for gap in &heard.gaps {
+        remarks.push(format!(
+            "{url}: the connection was lost for {:.1} s; what the robot saw meanwhile is missing",
+            gap.as_secs_f64()
+        ));
+    }
+    if heard.dropped > 0 {
+        remarks.push(format!(
+            "{url}: {} of {} scans came faster than this computer maps them and were left out; they are in {recording}: slam2d run maps all of them",
+            heard.dropped, heard.scans
+        ));
+    }
+    if let DriveEnd::NotBack(why) = &heard.end {
+        remarks.push(format!(
+            "{url}: the connection was lost ({why}) and did not come back; the drive ends there"
+        ));
+    }
+    remarks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn dropped_scans_and_gaps_are_said() {
+        let heard = Heard {
+            scans: 1200,
+            dropped: 34,
+            gaps: vec![Duration::from_millis(2500)],
+            topics: BTreeMap::new(),
+            end: DriveEnd::Asked,
+        };
+        let said = remarks("ws://r:1", Path::new("d/recording.mcap"), &heard);
+        assert!(said[0].contains("lost for 2.5 s"), "{said:?}");
+        assert!(said[1].contains("34 of 1200 scans came faster"), "{said:?}");
+        assert!(said[1].contains("d/recording.mcap"), "{said:?}");
+    }
+}

@@ -1,0 +1,245 @@
+//! A connection to a server of Foxglove's WebSocket protocol, such as foxglove_bridge.
+
+use std::io::{self, ErrorKind};
+use std::net::{TcpStream, ToSocketAddrs as _};
+use std::time::{Duration, Instant};
+
+use thiserror::Error;
+use tungstenite::client::client_with_config;
+use tungstenite::http::Uri;
+use tungstenite::protocol::WebSocketConfig;
+use tungstenite::{
+    Bytes, ClientRequestBuilder, Error as SocketError, HandshakeError, Message, WebSocket,
+};
+
+use super::protocol::SUBPROTOCOLS;
+
+/// A robot that does not answer within this is not there.
+const ANSWER: Duration = Duration::from_secs(5);
+/// A read waits this long, so that Ctrl-C is seen.
+const POLL: Duration = Duration::from_millis(100);
+/// After this time without a message the server is asked whether it is there, and after the second it is gone.
+const QUIET: Duration = Duration::from_secs(3);
+const GONE: Duration = Duration::from_secs(10);
+/// Longest message: a cloud of a million points.
+const MAX_MESSAGE: usize = 1 << 25;
+
+/// Why there is no connection.
+#[derive(Debug, Error)]
+pub enum ConnectError {
+    /// Not an address.
+    #[error("{0} is not the address of a robot; pass one such as ws://robot:8765")]
+    Address(String),
+    /// TLS is asked for.
+    #[error(
+        "{0} asks for an encrypted connection, which slam2d does not make; forward the port with ssh -L 8765:localhost:8765 robot, and pass ws://localhost:8765"
+    )]
+    Encrypted(String),
+    /// The name is unknown.
+    #[error("{url}: there is no computer {host}: {source}; check the name, or pass its IP address")]
+    Name {
+        /// The address.
+        url: String,
+        /// Its host.
+        host: String,
+        /// The system's error.
+        source: io::Error,
+    },
+    /// Nobody listens there.
+    #[error(
+        "{url}: no connection: {source}; start foxglove_bridge on the robot, and check address and port"
+    )]
+    Refused {
+        /// The address.
+        url: String,
+        /// The system's error.
+        source: io::Error,
+    },
+    /// Somebody else listens there.
+    #[error(
+        "{url} is not a server of Foxglove's WebSocket protocol: {found}; start foxglove_bridge on the robot and pass its port, 8765 unless it was set"
+    )]
+    Other {
+        /// The address.
+        url: String,
+        /// What it answers.
+        found: String,
+    },
+}
+
+/// The address of a server.
+#[derive(Clone, Debug)]
+pub struct Address {
+    /// As the user wrote it.
+    pub url: String,
+    uri: Uri,
+    host: String,
+    port: u16,
+}
+
+impl Address {
+    /// Parses `ws://host:port`; without a port it is 80, as for every address of this form.
+    ///
+    /// # Errors
+    /// If it is none, or asks for TLS.
+    pub fn new(url: &str) -> Result<Self, ConnectError> {
+        let wrong = || ConnectError::Address(url.to_owned());
+        let uri: Uri = url.parse().map_err(|_| wrong())?;
+        match uri.scheme_str() {
+            Some("ws") => {}
+            Some("wss") => return Err(ConnectError::Encrypted(url.to_owned())),
+            _ => return Err(wrong()),
+        }
+        let host = uri.host().filter(|host| !host.is_empty());
+        let host = host.ok_or_else(wrong)?;
+        // IPv6 addresses are in brackets.
+        let host = host.trim_matches(['[', ']']).to_owned();
+        let port = uri.port_u16().unwrap_or(80);
+        let url = url.to_owned();
+        Ok(Self {
+            url,
+            uri,
+            host,
+            port,
+        })
+    }
+}
+
+/// Why a connection ended.
+#[derive(Debug, Error)]
+pub enum Lost {
+    /// A message is longer than any that is read.
+    #[error("the server sent a message of {0} bytes, and {MAX_MESSAGE} are the most that is taken")]
+    TooLong(usize),
+    /// The server is silent.
+    #[error("the server is silent")]
+    Silent,
+    /// The connection broke or was closed.
+    #[error("{0}")]
+    Broken(String),
+}
+
+/// An open connection.
+pub struct Connection {
+    socket: WebSocket<TcpStream>,
+    /// When the last message came.
+    pub heard: Instant,
+    is_asked: bool,
+}
+
+impl Connection {
+    /// Connects to a server.
+    ///
+    /// # Errors
+    /// If it is not there, or speaks another protocol.
+    pub fn open(address: &Address) -> Result<Self, ConnectError> {
+        let url = || address.url.clone();
+        let refused = |source| ConnectError::Refused { url: url(), source };
+        let all = (&address.host[..], address.port).to_socket_addrs();
+        let all = all.map_err(|source| ConnectError::Name {
+            url: url(),
+            host: address.host.clone(),
+            source,
+        })?;
+        let mut failed = io::Error::from(ErrorKind::AddrNotAvailable);
+        let mut stream = None;
+        for one in all {
+            match TcpStream::connect_timeout(&one, ANSWER) {
+                Ok(open) => {
+                    stream = Some(open);
+                    break;
+                }
+                Err(error) => failed = error,
+            }
+        }
+        let Some(stream) = stream else {
+            return Err(refused(failed));
+        };
+        stream.set_read_timeout(Some(ANSWER)).map_err(refused)?;
+        stream.set_write_timeout(Some(ANSWER)).map_err(refused)?;
+        let mut request = ClientRequestBuilder::new(address.uri.clone());
+        for name in SUBPROTOCOLS {
+            request = request.with_sub_protocol(name);
+        }
+        let config = WebSocketConfig::default()
+            .max_message_size(Some(MAX_MESSAGE))
+            .max_frame_size(Some(MAX_MESSAGE));
+        let other = |found: String| ConnectError::Other { url: url(), found };
+        let (socket, _) =
+            client_with_config(request, stream, Some(config)).map_err(|error| match error {
+                HandshakeError::Interrupted(_) => other("it does not answer".to_owned()),
+                HandshakeError::Failure(SocketError::Http(answer)) => {
+                    other(format!("it answers HTTP {}", answer.status()))
+                }
+                HandshakeError::Failure(SocketError::Protocol(
+                    tungstenite::error::ProtocolError::SecWebSocketSubProtocolError(_),
+                )) => other("it has another subprotocol, as rosbridge does".to_owned()),
+                HandshakeError::Failure(error) => other(error.to_string()),
+            })?;
+        let stream = socket.get_ref();
+        stream.set_read_timeout(Some(POLL)).map_err(refused)?;
+        Ok(Self {
+            socket,
+            heard: Instant::now(),
+            is_asked: false,
+        })
+    }
+
+    /// Sends a text.
+    ///
+    /// # Errors
+    /// If the connection is lost.
+    pub fn send(&mut self, text: String) -> Result<(), Lost> {
+        self.socket.send(Message::text(text)).map_err(lost)
+    }
+
+    /// The next message, or `None` if none has come for a while.
+    ///
+    /// # Errors
+    /// If the connection is lost.
+    pub fn next(&mut self) -> Result<Option<Message>, Lost> {
+        match self.socket.read() {
+            Ok(message) => {
+                (self.heard, self.is_asked) = (Instant::now(), false);
+                match message {
+                    Message::Close(_) => Err(Lost::Broken("the server closed it".to_owned())),
+                    message => Ok(Some(message)),
+                }
+            }
+            Err(SocketError::Io(error)) if is_wait(&error) => {
+                let quiet = self.heard.elapsed();
+                if quiet > GONE {
+                    return Err(Lost::Silent);
+                }
+                if quiet > QUIET && !self.is_asked {
+                    self.is_asked = true;
+                    self.socket
+                        .send(Message::Ping(Bytes::new()))
+                        .map_err(lost)?;
+                }
+                Ok(None)
+            }
+            Err(error) => Err(lost(error)),
+        }
+    }
+}
+
+/// Whether a read ended because its time was over or a signal came.
+fn is_wait(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
+    )
+}
+
+fn lost(error: SocketError) -> Lost {
+    match error {
+        SocketError::Capacity(tungstenite::error::CapacityError::MessageTooLong {
+            size, ..
+        }) => Lost::TooLong(size),
+        SocketError::ConnectionClosed | SocketError::AlreadyClosed => {
+            Lost::Broken("the server closed it".to_owned())
+        }
+        error => Lost::Broken(error.to_string()),
+    }
+}

@@ -1,0 +1,212 @@
+//! `slam2d live` and a robot's server: the same map as that of the file, and what networks do.
+
+use std::fs;
+use std::io::{Read as _, Write as _};
+use std::net::TcpListener;
+use std::process::Output;
+use std::thread;
+
+use super::base::messages;
+use super::robot::{Robot, Topics, topics};
+use super::write::mcap;
+use crate::support::{assert_rejected, slam2d};
+use tungstenite::{Bytes, Message as Frame};
+
+/// Time for a first scan and a lost connection, s.
+const WAIT: &str = "2";
+
+/// The output of `slam2d live` into a new folder, with this server at the other end, and the folder.
+fn drive(
+    options: &[&str],
+    serve: impl FnOnce(TcpListener) + Send + 'static,
+) -> (Output, tempfile::TempDir) {
+    let server = TcpListener::bind("127.0.0.1:0").unwrap();
+    let url = format!("ws://{}", server.local_addr().unwrap());
+    let serving = thread::spawn(move || serve(server));
+    let folder = tempfile::tempdir().unwrap();
+    let to = folder.path().join("run");
+    let arguments = ["live", &url, "-o", to.to_str().unwrap()];
+    let output = slam2d(&[&arguments[..], options].concat());
+    serving.join().expect("the server saw what it expects");
+    (output, folder)
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn trajectory(folder: &tempfile::TempDir, run: &str) -> String {
+    fs::read_to_string(folder.path().join(run).join("trajectory.tum")).unwrap()
+}
+
+#[test]
+fn a_robot_that_is_mapped_while_it_drives_has_the_map_of_its_recording() {
+    let all = messages();
+    let file = mcap(&all, 40);
+    let (output, folder) = drive(&["--wait", WAIT], move |server| {
+        let mut robot = Robot::accept(&server);
+        let topics = topics(&all);
+        robot.advertise(&topics, 5);
+        robot.subscribed(topics.len());
+        robot.play(&all);
+        drop(server);
+        robot.close();
+    });
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(said(&output).contains("reads /scan (sensor_msgs/msg/LaserScan)"));
+    let path = folder.path().join("file.mcap");
+    fs::write(&path, file).unwrap();
+    let recording = folder.path().join("run/recording.mcap");
+    for (log, into) in [(path, "of_file"), (recording, "of_recording")] {
+        let into = folder.path().join(into);
+        let run = slam2d(&["run", log.to_str().unwrap(), "-o", into.to_str().unwrap()]);
+        assert!(run.status.success());
+    }
+    let live = trajectory(&folder, "run");
+    assert!(live.lines().count() > 100);
+    assert_eq!(live, trajectory(&folder, "of_file"));
+    assert_eq!(live, trajectory(&folder, "of_recording"));
+    // Another drive does not overwrite the recording.
+    let to = folder.path().join("run");
+    let again = ["live", "ws://localhost:1", "-o", to.to_str().unwrap()];
+    assert_rejected(&again, "is the recording of an earlier drive");
+}
+
+#[test]
+fn a_connection_that_is_lost_comes_back_and_the_gap_is_named() {
+    let (output, folder) = drive(&["--wait", WAIT], |server| {
+        let all = messages();
+        let topics = topics(&all);
+        let (before, after) = all.split_at(all.len() / 2);
+        for (part, first) in [(before, 1), (after, 70)] {
+            let mut robot = Robot::accept(&server);
+            robot.advertise(&topics, first);
+            robot.subscribed(topics.len());
+            robot.play(part);
+            robot.close();
+        }
+    });
+    let said = said(&output);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("connected again"), "{said}");
+    assert!(said.contains("the connection was lost for"), "{said}");
+    assert!(said.contains("the drive ends there"), "{said}");
+    let scans = messages();
+    let scans = scans.iter().filter(|message| message.topic == "/scan");
+    let mapped = trajectory(&folder, "run");
+    let mapped = mapped.lines().filter(|line| !line.starts_with('#'));
+    assert_eq!(mapped.count(), scans.count());
+}
+
+#[test]
+fn only_what_is_read_is_subscribed_to_also_if_it_appears_later() {
+    let other = |topic: &str, kind| (topic.to_owned(), kind);
+    let (output, _) = drive(&["--wait", WAIT, "--scan-topic", "/scan"], move |server| {
+        let all = messages();
+        let mut robot = Robot::accept(&server);
+        let early: Topics = vec![
+            other("/camera", "sensor_msgs/msg/Image"),
+            other("/points", "sensor_msgs/msg/PointCloud2"),
+            other("/rear", "sensor_msgs/msg/LaserScan"),
+            other("/odom", "nav_msgs/msg/Odometry"),
+        ];
+        robot.advertise(&early, 1);
+        assert_eq!(robot.subscribed(1), ["/odom"]);
+        let late: Topics = vec![
+            other("/scan", "sensor_msgs/msg/LaserScan"),
+            other("/tf_static", "tf2_msgs/msg/TFMessage"),
+        ];
+        robot.advertise(&late, 10);
+        assert_eq!(robot.subscribed(3), ["/odom", "/scan", "/tf_static"]);
+        robot.play(&all);
+        drop(server);
+        robot.close();
+    });
+    assert!(output.status.success(), "{}", said(&output));
+}
+
+#[test]
+fn a_robot_without_scans_lists_what_it_has_and_leaves_no_folder() {
+    let (output, folder) = drive(&["--wait", WAIT], |server| {
+        let mut robot = Robot::accept(&server);
+        robot.advertise(&vec![("/odom".to_owned(), "nav_msgs/msg/Odometry")], 1);
+        robot.subscribed(1);
+        while robot.socket.read().is_ok() {}
+    });
+    let said = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("no scan came; it has /odom (nav_msgs/msg/Odometry). Start the driver"),
+        "{said}"
+    );
+    assert!(!folder.path().join("run").exists());
+}
+
+#[test]
+fn a_server_that_sends_too_much_ends_the_drive_with_what_was_mapped() {
+    let (output, folder) = drive(&["--wait", WAIT], |server| {
+        let all = messages();
+        let mut robot = Robot::accept(&server);
+        let topics = topics(&all);
+        robot.advertise(&topics, 1);
+        robot.subscribed(topics.len());
+        robot.play(&all);
+        let large = Frame::Binary(Bytes::from(vec![1; 100 << 20]));
+        // The client hangs up while this is sent.
+        let _ = robot.socket.send(large);
+    });
+    let said = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("the server sent a message of 104857600 bytes"),
+        "{said}"
+    );
+    let quality = fs::read_to_string(folder.path().join("run/quality.json")).unwrap();
+    assert!(quality.contains("the run was cut short"));
+    assert!(trajectory(&folder, "run").lines().count() > 100);
+}
+
+#[test]
+fn other_servers_and_none_are_rejected_in_one_sentence() {
+    let server = TcpListener::bind("127.0.0.1:0").unwrap();
+    let url = format!("ws://{}", server.local_addr().unwrap());
+    drop(server);
+    let folder = tempfile::tempdir().unwrap();
+    let to = folder.path().to_str().unwrap();
+    for (url, expected) in [
+        (
+            &url[..],
+            "start foxglove_bridge on the robot, and check address and port",
+        ),
+        ("robot:8765", "is not the address of a robot"),
+        ("http://robot:8765", "pass one such as ws://robot:8765"),
+        ("wss://robot:8765", "ssh -L 8765:localhost:8765"),
+    ] {
+        assert_rejected(&["live", url, "-o", to], expected);
+    }
+    assert_rejected(&["live", &url], "-o DIR");
+    assert_rejected(&["live", &url, "-o", to, "--wait", "-1"], "not within 0");
+    let (output, _) = drive(&[], |server| {
+        let (mut stream, _) = server.accept().unwrap();
+        let _ = stream.read(&mut [0; 4096]).unwrap();
+        stream
+            .write_all(b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n")
+            .unwrap();
+    });
+    assert!(
+        said(&output).contains("it answers HTTP 400"),
+        "{}",
+        said(&output)
+    );
+    let (output, _) = drive(&[], |server| {
+        let (stream, _) = server.accept().unwrap();
+        // rosbridge has no subprotocol.
+        let _ = tungstenite::accept(stream).unwrap();
+    });
+    assert!(
+        said(&output).contains("another subprotocol"),
+        "{}",
+        said(&output)
+    );
+    assert_eq!(output.status.code(), Some(2));
+}
