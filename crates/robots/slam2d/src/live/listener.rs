@@ -152,7 +152,10 @@ impl<W: Write> Listener<W> {
                 Some(lost @ Lost::TooLong(_)) => return Ok(DriveEnd::TooLong(lost.to_string())),
                 Some(lost) => {
                     self.recording.flush()?;
-                    match self.connect_again(&lost, connection.heard) {
+                    let heard = connection.heard;
+                    // A server may take one client at a time.
+                    drop(connection);
+                    match self.connect_again(&lost, heard) {
                         Ok(again) => connection = again,
                         Err(end) => return Ok(end),
                     }

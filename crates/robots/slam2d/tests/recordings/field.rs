@@ -21,7 +21,7 @@ const BY_SCANS_M: f64 = 0.15;
 const START_S: f64 = 1_700_000_000.0;
 
 /// Each recording: largest error (m), least number of scans, and a word of the remark.
-pub const VERDICTS: [(&str, f64, usize, &str); 22] = [
+const VERDICTS: [(&str, f64, usize, &str); 22] = [
     ("base/base.mcap", WITH_ODOMETRY_M, 240, ""),
     (
         "containers/index_length_lies.bag",
