@@ -91,12 +91,22 @@ function startMatchFigure(): void {
   if (figure !== null) new MatchFigure(figure, MATCH_ANSWER, core as () => Promise<Glue>);
 }
 
+/** The content of a file; undefined if it does not arrive as a whole, for instance because the reader leaves the page. */
+async function readJson<T>(file: URL): Promise<T | undefined> {
+  try {
+    const response = await fetch(file);
+    return response.ok ? ((await response.json()) as T) : undefined;
+  } catch {
+    return undefined;
+  }
+}
+
 /** Starts a replay; if its data are unavailable, the still picture stays. */
 async function startReplay<T>(name: string, file: string, play: (figure: HTMLElement, story: T) => unknown): Promise<void> {
   const figure = document.querySelector<HTMLElement>(name);
   if (figure === null) return;
-  const response = await fetch(new URL(file, import.meta.url)).catch(() => undefined);
-  if (response?.ok === true) play(figure, (await response.json()) as T);
+  const story = await readJson<T>(new URL(file, import.meta.url));
+  if (story !== undefined) play(figure, story);
 }
 
 /** Calls back once, when the first of the elements comes near the viewport. */

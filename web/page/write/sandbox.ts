@@ -15,7 +15,7 @@ export class NotRun extends Error {
 
 /** Longest time without an answer, ms. */
 const PATIENCE_MS = 1000;
-/** Longest time until the frame or the program has started, ms: a strict policy of the page stops its script. */
+/** Longest time until the frame, the worker or the program has started, ms: a strict policy of the page stops a script. */
 const START_MS = 5000;
 
 /** Lines before the reader's first line in the text of the worker. */
@@ -48,7 +48,7 @@ const PLAIN = `(function plain(value, depth) {
 
 /** The text of the worker. It takes its messages before the reader's code runs, which may replace globals. */
 function workerText(code: string, name: string, core: string, key: string): string {
-  const before = `'use strict'; const ${key} = ((send, on) => ({ post: (told) => send({ key: '${key}', ...told }), on, plain: ${PLAIN} }))(self.postMessage.bind(self), self.addEventListener.bind(self));`;
+  const before = `'use strict'; const ${key} = ((send, on) => ({ post: (told) => send({ key: '${key}', ...told }), on, plain: ${PLAIN} }))(self.postMessage.bind(self), self.addEventListener.bind(self)); ${key}.post({ running: true });`;
   const after = `
 ;${core}
 ;(({ post, on, plain }) => {
@@ -80,6 +80,7 @@ type Heard = { worker: Told & { key?: string } } | Told;
 interface Told {
   started?: boolean;
   rejected?: boolean;
+  running?: boolean;
   ready?: boolean;
   working?: boolean;
   done?: boolean;
@@ -131,7 +132,7 @@ export class Sandbox {
     const started = sandbox.#wait(START_MS);
     document.body.append(frame);
     await started;
-    const ready = sandbox.#wait(PATIENCE_MS);
+    const ready = sandbox.#wait(START_MS);
     frame.contentWindow?.postMessage({ text: workerText(code, name, core, sandbox.#key) }, '*');
     await ready;
     return sandbox;
@@ -179,6 +180,8 @@ export class Sandbox {
   #heard(told: Told): void {
     const pending = this.#pending;
     if (pending === undefined) return;
+    // A busy machine starts a worker late; from here on it is the reader's code that takes the time.
+    if (told.running === true) pending.patience_ms = PATIENCE_MS;
     this.#wind();
     if (told.rejected === true) {
       this.#fail(rejected());
@@ -190,7 +193,7 @@ export class Sandbox {
       clearTimeout(this.#timer);
       this.#pending = undefined;
       pending.resolve(pending.answers);
-    } else if (told.working !== true) {
+    } else if (told.working !== true && told.running !== true) {
       pending.answers.push(told.error === undefined ? { result: told.result } : { error: told.error, line: lineIn(told.stack ?? '', this.#code) });
     }
   }
