@@ -1,6 +1,8 @@
 // The reader's function drives the widgets: written by the keyboard, called in a worker, seen in the picture.
 
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { it } from 'node:test';
 import * as clock from './clock.mjs';
 import * as h from './harness.mjs';
@@ -238,4 +240,28 @@ it('in a frame without an origin the editor runs, and its function drives', asyn
     await inner.getByLabel('Keep my code in this browser').click();
     await inner.getByText('This browser does not let the page store anything.').waitFor();
   }, { fresh: true, path: '/outer.html', server: { pages: { '/outer.html': outer } }, options: { stepMs: clock.SMOOTH_MS } });
+});
+
+it('a program that does not arrive, or may not start, is reported with its cause and what to do', async () => {
+  const tries = async (sentence, server) => {
+    await beside('svd_align', async (tab) => {
+      await press(tab, 'Drive the registration of w16.1 with it');
+      await says(tab, sentence);
+      await says(tab, 'Ours drives again.');
+    }, { quiet: false, server });
+  };
+  for (const missing of ['/write-worker-', '/slam_robot-']) {
+    await tries('The program that calls your code did not arrive (status 404). Check the connection and press the button again.', {
+      answer: (path, response) => {
+        if (!path.startsWith(missing)) return false;
+        response.statusCode = 404;
+        response.end();
+        return true;
+      },
+    });
+  }
+  const html = readFileSync(join(h.DIST, 'your-code.html'), 'utf8');
+  await tries(/The program of the widgets does not start beside your code \(.+\)\. Close other tabs/, {
+    pages: { '/your-code.html': html.replace(" 'wasm-unsafe-eval'", '') },
+  });
 });

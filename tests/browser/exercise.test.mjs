@@ -73,6 +73,21 @@ it('embed.html shows every part of an exercise, each widget once, and satisfies 
   }, { path: '/embed.html?exercise=5', fresh: true });
 });
 
+it('embed.html says if the exercises arrive in part', async () => {
+  await visit('', async (tab) => {
+    await tab.getByText('exercises.json arrived incomplete. Reload the page.').waitFor();
+  }, {
+    path: '/embed.html?exercise=5', fresh: true, quiet: false,
+    server: {
+      answer: (path, response) => {
+        const isCut = path === '/exercises.json';
+        if (isCut) response.end('[{"name": "16.5",');
+        return isCut;
+      },
+    },
+  });
+});
+
 it('embed.html lists the exercises if the address names an unknown one', async () => {
   await visit('', async (tab) => {
     await tab.getByText('There is no exercise `99`; there are 16.1, 16.2, 16.3').waitFor();

@@ -108,6 +108,36 @@ it('a page whose policy forbids code says so', async () => {
   }, { quiet: false, server: { policy: `${h.STRICT_POLICY.replace("script-src 'self'", "script-src 'self' 'unsafe-inline'")}; frame-src 'self'` } });
 });
 
+/** The frame of the code with another class of workers; a page sees each request for one in `window.asked`. */
+const withWorkers = (members) => {
+  const html = readFileSync(join(h.DIST, 'your-code.html'), 'utf8');
+  const script = `<script>self.Worker = class { static Real = Worker; constructor(url) { this.url = url; parent.postMessage({ worker: null }, '*'); } ${members} };</script>`;
+  return { quiet: false, head: "<script>addEventListener('message', ({ data }) => (window.asked ||= data.worker === null))</script>", server: { pages: { '/your-code.html': html.replace('<script>', `${script}<script>`) } } };
+};
+
+it('a worker that starts late runs the code, which has its second from then on', async () => {
+  await writing('gate', async (tab) => {
+    await tab.getByRole('button', { name: 'Run', exact: true }).click();
+    await tab.waitForFunction(() => window.asked);
+    await tab.evaluate(() => window.frameClock.pass(3000));
+    await tab.evaluate(() => document.querySelector('iframe[title^="Your code"]').contentWindow.postMessage({ request: 'begin' }, '*'));
+    await tab.getByRole('status').getByText(/^✗ A known innovation: expected/).waitFor();
+  }, withWorkers(`postMessage(message) {
+    if (message !== 'begin') { this.real.postMessage(message); return; }
+    this.real = new this.constructor.Real(this.url);
+    this.real.onmessage = (event) => this.onmessage(event);
+  }`));
+});
+
+it('a worker that never starts is reported as such, with what to do', async () => {
+  await writing('gate', async (tab) => {
+    await tab.getByRole('button', { name: 'Run', exact: true }).click();
+    await tab.waitForFunction(() => window.asked);
+    await tab.evaluate(() => window.frameClock.skip(5000));
+    await tab.getByRole('status').getByText('✗ The browser has not started your code for 5 s. Close other tabs and press the button again, or reload the page.', { exact: true }).waitFor();
+  }, withWorkers('postMessage() {}'));
+});
+
 it('every page carries its policy, and the frame of the code runs none outside a sandbox', async () => {
   for (const page of [...h.PAGES, 'slides.html', 'notices.html']) {
     const html = readFileSync(join(h.DIST, page), 'utf8');

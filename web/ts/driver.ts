@@ -13,8 +13,8 @@ const FETCH_TIMEOUT_MS = 60_000;
 
 /** The bytes of the core: a sandboxed frame cannot be given a compiled module. */
 export async function coreBytes(): Promise<ArrayBuffer> {
-  const response = await fetchAsset(ROBOT_WASM_FILE, false, AbortSignal.timeout(FETCH_TIMEOUT_MS));
-  if (!response.ok) throw new Error(`the program could not be fetched (${response.status})`);
+  const response = await fetchAsset(ROBOT_WASM_FILE, false, AbortSignal.timeout?.(FETCH_TIMEOUT_MS));
+  if (!response.ok) throw new Error(`status ${response.status}`);
   return response.arrayBuffer();
 }
 

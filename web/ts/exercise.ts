@@ -19,12 +19,10 @@ interface Question {
 
 /**
  * Shows an exercise, `16.5` or `5`, or one part of it, `16.5a`. Returns its title.
- * @throws {Error} with a sentence, if there is no such exercise or exercises.json cannot be loaded.
+ * @throws {Error} with a sentence, if there is no such exercise or exercises.json does not arrive.
  */
 export async function showExercise(main: HTMLElement, id: string): Promise<string> {
-  const response = await fetch(new URL('./exercises.json', import.meta.url)).catch(() => undefined);
-  if (response?.ok !== true) throw new Error('The exercises could not be loaded: exercises.json is missing beside embed.html.');
-  const { exercise, questions } = find((await response.json()) as Exercise[], id);
+  const { exercise, questions } = find(await loadExercises(), id);
   const counts = countsOf(location.search);
   const reports = connect(window, questions.map((question) => question.exercise), counts);
   // @ts-expect-error: a separate bundle.
@@ -62,6 +60,16 @@ export async function showExercise(main: HTMLElement, id: string): Promise<strin
   // A learning management system takes the answers itself.
   if (reports === undefined) main.append(document.createElement('slam-answers'));
   return exercise.title;
+}
+
+async function loadExercises(): Promise<Exercise[]> {
+  const response = await fetch(new URL('./exercises.json', import.meta.url)).catch(() => undefined);
+  if (response?.ok !== true) throw new Error('The exercises could not be loaded: exercises.json is missing beside embed.html.');
+  try {
+    return (await response.json()) as Exercise[];
+  } catch {
+    throw new Error('The exercises could not be loaded: exercises.json arrived incomplete. Reload the page.');
+  }
 }
 
 const COUNTED: Record<Counts, string> = { best: 'Your best answer', first: 'Your first answer', last: 'Your last answer' };

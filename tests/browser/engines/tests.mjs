@@ -196,15 +196,8 @@ async function mapsSample(page) {
   assert.ok(end.facts.keyframes > 5, end.sentence);
 }
 
-/** Runs code in the editor, or what is there; returns the first sentence. A busy machine may take a second to start a worker. */
+/** Runs code in the editor, or what is there; returns the first sentence. */
 async function runCode(page, code) {
-  for (;;) {
-    const line = await runOnce(page, code);
-    if (code?.includes('for (;;)') || !line.includes('no answer for 1 s')) return line;
-  }
-}
-
-async function runOnce(page, code) {
   if (code !== undefined) {
     await ask(page, (text) => {
       const content = document.querySelector('.cm-content');

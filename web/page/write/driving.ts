@@ -16,6 +16,20 @@ const DRIVES: Record<string, readonly [string, string][]> = {
   gate: [['w16.2', 'the loops of w16.2']],
 };
 
+/** The script of the core for the worker. */
+async function workerScript(): Promise<string> {
+  const response = await fetch(new URL(WRITE_WORKER_FILE, import.meta.url));
+  if (!response.ok) throw new Error(`status ${response.status}`);
+  return response.text();
+}
+
+/** The core without egui. */
+async function coreProgram(): Promise<ArrayBuffer> {
+  // @ts-expect-error: a separate bundle, which contains the module.
+  const { coreBytes } = (await import('./slam-widget.js')) as { coreBytes(): Promise<ArrayBuffer> };
+  return coreBytes();
+}
+
 /** A widget of this page that a function can drive. */
 export interface Seat {
   widget: SlamWidget;
@@ -52,11 +66,11 @@ export class Driving implements Driver {
    * @throws {NotRun} with a sentence, if it cannot start.
    */
   static async start(code: string, name: string, seat: Seat, failed: (why: NotRun) => void): Promise<Driving> {
-    // @ts-expect-error: a separate bundle, which contains the module.
-    const { coreBytes } = (await import('./slam-widget.js')) as { coreBytes(): Promise<ArrayBuffer> };
-    const script = await fetch(new URL(WRITE_WORKER_FILE, import.meta.url));
-    const sandbox = await Sandbox.start(code, name, await script.text());
-    await sandbox.ask({ program: await coreBytes() });
+    const [script, program] = await Promise.all([workerScript(), coreProgram()]).catch((why: unknown) => {
+      throw new NotRun(`The program that calls your code did not arrive (${why instanceof Error ? why.message : String(why)}). Check the connection and press the button again.`);
+    });
+    const sandbox = await Sandbox.start(code, name, script);
+    await sandbox.ask({ program });
     const driving = new Driving(name, seat, sandbox, failed);
     await seat.widget.drive(driving);
     return driving;

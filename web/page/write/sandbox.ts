@@ -1,5 +1,5 @@
 // Runs a reader's function where it can do no harm: in a worker inside a sandboxed frame, without an origin, and whose
-// policy allows no connection. The worker is ended if it gives no answer for a second.
+// policy allows no connection. The worker is ended if the code gives no answer for a second.
 //
 // The code is the text of the worker itself, not of an eval: a syntax error then has its line.
 
@@ -13,10 +13,12 @@ export class NotRun extends Error {
   }
 }
 
-/** Longest time without an answer, ms. */
+/** Longest time without an answer of running code, ms. */
 const PATIENCE_MS = 1000;
-/** Longest time until the frame, the worker or the program has started, ms: a strict policy of the page stops a script. */
+/** Longest time until the frame, the worker or the program has started, ms: a busy machine is late. */
 const START_MS = 5000;
+/** Longest time until a worker that runs takes up a request, ms. */
+const TAKE_UP_MS = 3000;
 
 /** Lines before the reader's first line in the text of the worker. */
 const LINES_BEFORE = 1;
@@ -61,8 +63,11 @@ function workerText(code: string, name: string, core: string, key: string): stri
   let execute;
   on('message', async ({ data }) => {
     if (written === undefined) { post({ missing: name }); return; }
+    if (data.program !== undefined) {
+      try { execute = await __slamCore.start(data.program, name, written); }
+      catch (error) { post({ unstarted: String(error) }); return; }
+    } else post({ running: true });
     for (const given of data.calls ?? []) attempt(() => plain(written(...given), 2));
-    if (data.program !== undefined) execute = await __slamCore.start(data.program, name, written);
     if (data.order !== undefined) attempt(() => execute(data.order, () => post({ working: true })));
     post({ done: true });
   });
@@ -80,12 +85,14 @@ type Heard = { worker: Told & { key?: string } } | Told;
 interface Told {
   started?: boolean;
   rejected?: boolean;
+  /** From here on it is the reader's code that takes the time. */
   running?: boolean;
   ready?: boolean;
   working?: boolean;
   done?: boolean;
   missing?: string;
   broken?: string;
+  unstarted?: string;
   line?: number;
   result?: unknown;
   error?: string;
@@ -96,6 +103,8 @@ interface Told {
 interface Pending {
   answers: Called[];
   patience_ms: number;
+  /** The reason if nothing is heard for so long. */
+  late(patience_ms: number): NotRun;
   resolve(answers: Called[]): void;
   reject(why: NotRun): void;
 }
@@ -129,10 +138,10 @@ export class Sandbox {
     frame.setAttribute('sandbox', 'allow-scripts');
     frame.src = new URL(FRAME, document.baseURI).href;
     addEventListener('message', sandbox.#hear);
-    const started = sandbox.#wait(START_MS);
+    const started = sandbox.#wait(START_MS, rejected);
     document.body.append(frame);
     await started;
-    const ready = sandbox.#wait(START_MS);
+    const ready = sandbox.#wait(START_MS, unstarted);
     frame.contentWindow?.postMessage({ text: workerText(code, name, core, sandbox.#key) }, '*');
     await ready;
     return sandbox;
@@ -143,7 +152,7 @@ export class Sandbox {
    * @throws {NotRun} with a sentence; the worker is then ended.
    */
   ask(request: Request): Promise<Called[]> {
-    const answered = this.#wait('program' in request ? START_MS : PATIENCE_MS);
+    const answered = 'program' in request ? this.#wait(START_MS, unstarted) : this.#wait(TAKE_UP_MS, slow);
     this.#frame.contentWindow?.postMessage({ request }, '*');
     return answered;
   }
@@ -157,18 +166,18 @@ export class Sandbox {
     this.#pending = undefined;
   }
 
-  #wait(patience_ms: number): Promise<Called[]> {
+  /** Waits for what begins now; `late` is the reason if it does not. */
+  #wait(patience_ms: number, late: Pending['late']): Promise<Called[]> {
     return new Promise((resolve, reject) => {
-      this.#pending = { answers: [], patience_ms, resolve, reject };
-      this.#wind();
+      this.#pending = { answers: [], patience_ms, late, resolve, reject };
+      this.#wind(this.#pending);
     });
   }
 
   /** Ends the worker if nothing is heard for too long. */
-  #wind(): void {
-    const { patience_ms = PATIENCE_MS } = this.#pending ?? {};
+  #wind({ patience_ms, late }: Pending): void {
     clearTimeout(this.#timer);
-    this.#timer = setTimeout(() => this.#fail(patience_ms === START_MS ? rejected() : slow()), patience_ms);
+    this.#timer = setTimeout(() => this.#fail(late(patience_ms)), patience_ms);
   }
 
   #fail(why: NotRun): void {
@@ -180,13 +189,14 @@ export class Sandbox {
   #heard(told: Told): void {
     const pending = this.#pending;
     if (pending === undefined) return;
-    // A busy machine starts a worker late; from here on it is the reader's code that takes the time.
-    if (told.running === true) pending.patience_ms = PATIENCE_MS;
-    this.#wind();
+    if (told.running === true) Object.assign(pending, { patience_ms: PATIENCE_MS, late: slow });
+    this.#wind(pending);
     if (told.rejected === true) {
       this.#fail(rejected());
     } else if (told.missing !== undefined) {
       this.#fail(new NotRun(`There is no function ${told.missing}. Keep its name.`));
+    } else if (told.unstarted !== undefined) {
+      this.#fail(new NotRun(`The program of the widgets does not start beside your code (${told.unstarted}). ${AGAIN}`));
     } else if (told.broken !== undefined) {
       this.#fail(new NotRun(told.broken.replace(/^Uncaught /, ''), lineOf(told.line, this.#code)));
     } else if (told.done === true || told.ready === true || told.started === true) {
@@ -216,8 +226,14 @@ function rejected(): NotRun {
   return new NotRun('The policy of this page does not let code run here. Open the chapter’s own page.');
 }
 
-function slow(): NotRun {
-  return new NotRun(`There was no answer for ${PATIENCE_MS / 1000} s, and your code was ended. Is there a loop without end?`);
+const AGAIN = 'Close other tabs and press the button again, or reload the page.';
+
+function unstarted(patience_ms: number): NotRun {
+  return new NotRun(`The browser has not started your code for ${patience_ms / 1000} s. ${AGAIN}`);
+}
+
+function slow(patience_ms: number): NotRun {
+  return new NotRun(`There was no answer for ${patience_ms / 1000} s, and your code was ended. Is there a loop without end?`);
 }
 
 /** A line of the worker's text as a line of the code. */
