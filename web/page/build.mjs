@@ -222,7 +222,7 @@ async function bundleScripts(stories, matchAnswer) {
     LAPS_WORKER_FILE: JSON.stringify(`./${workerFile}`),
   });
   // A classic script in the head, which the browser runs before it paints.
-  const early = await bundle('early.ts', {}, 'iife');
+  const early = await bundle('early.ts', { BROWSERS: JSON.stringify(oldestBrowsers()) }, 'iife');
   const slides = await bundle('slides.ts', {});
   // A stable name: the page imports it when a reader opens an editor.
   // `ch16-mark` runs the same tests. Readable, because it is committed.

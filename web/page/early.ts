@@ -2,5 +2,22 @@
 
 import { chosenTheme, showTheme } from './theme-choice';
 
+/** Set by the build: the oldest browsers, as in a sentence. */
+declare const BROWSERS: string;
+
+/** What the oldest browsers of the project have, and older ones lack. */
+const NEEDED: readonly (readonly [object, string])[] = [
+  [Array.prototype, 'findLast'], [HTMLElement.prototype, 'inert'], [window, 'BroadcastChannel'], [window, 'DecompressionStream'],
+];
+
+if (!NEEDED.every(([owner, name]) => name in owner)) {
+  addEventListener('DOMContentLoaded', () => {
+    const line = document.createElement('p');
+    line.className = 'older';
+    line.setAttribute('role', 'status');
+    line.textContent = `This browser is older than the page needs: some figures stand still. Everything works in ${BROWSERS}, or a later version.`;
+    document.querySelector('.bar')?.after(line);
+  });
+}
 document.documentElement.dataset['script'] = 'on';
 showTheme(chosenTheme());

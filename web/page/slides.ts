@@ -1,7 +1,7 @@
 // Turns the slides of slides.html, and keeps the window of the speaker's notes on the same slide.
 
-/** The messages between the windows: the number of the slide. */
-const channel = new BroadcastChannel('slides');
+/** The messages between the windows: the number of the slide. Without them each window turns by itself. */
+const channel = 'BroadcastChannel' in window ? new BroadcastChannel('slides') : undefined;
 const slides = [...document.querySelectorAll<HTMLElement>('main > section')];
 const hasNotes = new URLSearchParams(location.search).has('notes');
 const count = document.querySelector<HTMLElement>('.turn output');
@@ -58,7 +58,7 @@ function showNotes(): void {
 /** Turns to a slide in all windows. */
 function turn(number: number): void {
   show(number);
-  channel.postMessage(at);
+  channel?.postMessage(at);
   if (hasNotes) return;
   // A screen reader reads the new slide from its heading.
   const heading = slides[at]?.querySelector<HTMLElement>('h1');
@@ -111,5 +111,5 @@ addEventListener('hashchange', showAddress);
 // Before the widgets, which read the height that they have: this script stands before theirs.
 addEventListener('resize', fitWidget);
 void watchControls();
-channel.addEventListener('message', ({ data }) => show(Number(data)));
+channel?.addEventListener('message', ({ data }) => show(Number(data)));
 showAddress();

@@ -14,14 +14,14 @@ function embeddedPath(address: string | URL): string | undefined {
 }
 
 const originalFetch = globalThis.fetch;
-globalThis.fetch = (input, init) => {
+globalThis.fetch = async (input, init) => {
   const path = input instanceof Request ? undefined : embeddedPath(input);
   if (path === undefined) return originalFetch(input, init);
-  if (path.endsWith('.js')) return Promise.resolve(new Response(files[path]));
+  if (path.endsWith('.js')) return new Response(files[path]);
   const packed = Uint8Array.from(atob(files[path] ?? ''), (digit) => digit.charCodeAt(0));
   const body = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
   const type = TYPES[path.split('.').at(-1) ?? ''] ?? 'text/plain';
-  return Promise.resolve(new Response(body, { headers: { 'Content-Type': type } }));
+  return new Response(body, { headers: { 'Content-Type': type } });
 };
 
 globalThis.Worker = class extends Worker {

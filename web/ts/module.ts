@@ -105,7 +105,9 @@ export class ModuleFile {
     let response: Response;
     try {
       response = await fetchAsset(this.#name, this.#isRetry, timeout.signal);
-    } catch {
+    } catch (error) {
+      // A function that the browser lacks, where files are embedded.
+      if (error instanceof ReferenceError) throw error;
       throw new LoadError('the program could not be fetched');
     }
     if (!response.ok || response.body === null) {

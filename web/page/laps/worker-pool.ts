@@ -42,7 +42,8 @@ export class WorkerPool {
   setActive(isActive: boolean): void {
     this.#isActive = isActive && !this.#isClosed;
     if (!this.#isActive) return;
-    if (!this.#hasStarted) void this.#start();
+    // Without the program the figure stays as it is, and the widgets report why.
+    if (!this.#hasStarted) void this.#start().catch(() => this.close());
     else this.#schedule();
   }
 
@@ -87,7 +88,7 @@ export class WorkerPool {
   #schedule(): void {
     if (!this.#isActive) return;
     if (this.#workers.length === 0) {
-      this.#mainThread ??= this.#runOnMainThread().finally(() => (this.#mainThread = undefined));
+      this.#mainThread ??= this.#runOnMainThread().catch(() => this.close()).finally(() => (this.#mainThread = undefined));
       return;
     }
     for (let worker = this.#idle.pop(); worker !== undefined; worker = this.#idle.pop()) {
