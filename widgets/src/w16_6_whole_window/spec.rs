@@ -72,7 +72,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     name: "The whole window",
     title: "Can every pose be searched without scoring every pose?",
     claim: "Searching all is not scoring all.",
-    gesture: "Turn the sweep, and let it go.",
+    gesture: "Turn the sweep by its ring, and let it go.",
     awaits: Awaits::End,
     notice: &[
         "A bar is a box of poses, as high as no pose in it can score. Point at one: the true scores of its poses lie below. Boxes are split, and their bars fall towards them.",
@@ -82,7 +82,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "The search is as fine as its cells. ICP does the rest, from a start that it can use.",
     ],
     opening: Opening {
-        panels: &["sweeps", "places"],
+        panels: &["sweeps"],
         params: &["heading"],
         buttons: &["play", "step", "reset"],
     },
