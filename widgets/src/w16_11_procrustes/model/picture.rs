@@ -12,7 +12,7 @@ use super::{ProcrustesTrace, panel};
 use crate::w16_11_procrustes::spec::{TURN, WHOLE_TURN_DEG};
 
 /// Smallest half width of the view of the points, m.
-const MIN_REACH_M: f64 = 2.4;
+const MIN_REACH_M: f64 = 1.8;
 /// A pair of this length has the warmest thread, m.
 const LONG_M: f64 = 1.5;
 /// An R in one line, which shows whether it is mirrored, in halves of its height.
@@ -98,7 +98,7 @@ fn winner(trace: &ProcrustesTrace) -> Vec<Layer> {
             tone(kind),
             2.0,
         ),
-        Layer::line(letter.clone(), Stroke::Solid, tone(kind), 2.5),
+        Layer::line(letter.clone(), Stroke::Solid, tone(kind), 4.0),
         Layer::label(letter[3], name.to_owned(), 14.0),
     ]
 }
@@ -123,14 +123,14 @@ fn points(trace: &ProcrustesTrace) -> Panel {
             reach: LONG_M,
         },
     ];
+    layers.push(line(
+        &letter(trace, kind, trace.theta_rad()),
+        Stroke::Solid,
+        tone(kind),
+        6.0,
+    ));
     layers.extend(winner(trace));
     layers.extend([
-        line(
-            &letter(trace, kind, trace.theta_rad()),
-            Stroke::Solid,
-            tone(kind),
-            6.0,
-        ),
         line(&moved, Stroke::Solid, tone(kind), 2.0),
         Layer::points(moved.clone(), mark(kind), tone(kind), 4.5),
     ]);
