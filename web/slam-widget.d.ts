@@ -377,7 +377,7 @@ export interface TurnOrMirrorImageState {
 
 /** One graph, solved in four ways: every parameter. */
 export interface OneGraphSolvedInFourWaysState {
-  /** How much odometry contradicts the loop: at 0 all measurements agree. 0 to 10 °. */
+  /** How much odometry contradicts the loop. 2 to 10 °. */
   bias: number;
   /** Twice the exact one, or that of a perturbation on the other side of the pose. */
   wrong: 'twice' | 'left';
@@ -424,7 +424,7 @@ export interface WidgetButtons {
   'w16.9': 'play' | 'step' | 'reset' | 'defaults' | 'room' | 'corridor' | 'forget' | 'twins';
   'w16.10': 'open' | 'play' | 'sample' | 'cancel' | 'doubt' | 'previous' | 'next' | 'turn' | 'mark' | 'add' | 'west' | 'east' | 'north' | 'south' | 'unpin' | 'reference' | 'locate' | 'locate-sample' | 'change' | 'other' | 'save' | 'defaults' | 'sure' | 'error' | 'where';
   'w16.11': 'play' | 'step' | 'reset' | 'defaults' | 'corners' | 'two-points' | 'bare-wall' | 'upside-down';
-  'w16.12': 'play' | 'step' | 'reset' | 'defaults' | 'four' | 'agree' | 'left' | 'half';
+  'w16.12': 'play' | 'step' | 'reset' | 'defaults' | 'four' | 'left' | 'half';
 }
 
 /** The type of a parameter's value in JavaScript. */

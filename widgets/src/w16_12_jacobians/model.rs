@@ -30,7 +30,7 @@ use widget_kit::spec::WidgetSpec;
 use widget_kit::values::Values;
 
 use crate::w16_12_jacobians::spec::{
-    BIAS, BIAS_STEP_DEG, CURVE, LEAST_DRAGGED_DEG, MAX_BIAS_DEG, MAX_STEPS, PARAMS, SPEC, STEPS,
+    BIAS, BIAS_STEP_DEG, CURVE, LEAST_BIAS_DEG, MAX_BIAS_DEG, MAX_STEPS, PARAMS, SPEC, STEPS,
 };
 
 /// Names of the panels.
@@ -118,7 +118,7 @@ impl WrongJacobians {
 
     /// Bends the chain until its loose end is as near to a spot as it gets.
     fn bend(&mut self, at: [f64; 2]) {
-        let steps = (0..=(MAX_BIAS_DEG / BIAS_STEP_DEG) as u32).map(f64::from);
+        let steps = ((MAX_BIAS_DEG - LEAST_BIAS_DEG) / BIAS_STEP_DEG) as u32;
         let away = |bias_deg: &f64| {
             let config = RingConfig {
                 turn_bias_rad: bias_deg.to_radians(),
@@ -127,9 +127,8 @@ impl WrongJacobians {
             let [x, y] = last_position(ring(&config).poses());
             math::norm2(x - at[0], y - at[1])
         };
-        let nearest = steps
-            .map(|step| step * BIAS_STEP_DEG)
-            .filter(|bias_deg| *bias_deg >= LEAST_DRAGGED_DEG)
+        let nearest = (0..=steps)
+            .map(|step| LEAST_BIAS_DEG + f64::from(step) * BIAS_STEP_DEG)
             .min_by(|a, b| away(a).total_cmp(&away(b)));
         if let Some(bias_deg) = nearest.filter(|bias_deg| *bias_deg != self.values.get(&BIAS)) {
             self.values.put(&BIAS, bias_deg);

@@ -13,8 +13,8 @@ pub const MAX_STEPS: usize = 40;
 /// Largest contradiction of an edge, °.
 pub const MAX_BIAS_DEG: f64 = 10.0;
 
-/// The least contradiction that a drag leaves, °: without one all solvers agree, and there is nothing to see.
-pub const LEAST_DRAGGED_DEG: f64 = 2.0;
+/// Least contradiction of an edge, °: without one all solvers agree, and there is nothing to see.
+pub const LEAST_BIAS_DEG: f64 = 2.0;
 
 /// Step of the contradiction, °.
 pub const BIAS_STEP_DEG: f64 = 0.5;
@@ -32,12 +32,12 @@ params! {
     pub(super) static BIAS: Param<f64> = Param::slider(
         "bias",
         "missing turn per edge",
-        [0.0, MAX_BIAS_DEG],
+        [LEAST_BIAS_DEG, MAX_BIAS_DEG],
         BIAS_STEP_DEG,
     )
     .unit("°")
     .default(6.0)
-    .help("How much odometry contradicts the loop: at 0 all measurements agree.");
+    .help("How much odometry contradicts the loop.");
 
     pub(super) static WRONG: OneOf<WrongJacobian> = one_of!(
         WrongJacobian,
@@ -81,15 +81,15 @@ params! {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.12",
     name: "One graph, solved in four ways",
-    title: "A solver came to rest: is it where χ² is least?",
-    claim: "To converge is not to reach the minimum.",
+    title: "A solver has stopped: is this the minimum of χ²?",
+    claim: "Converged does not mean minimum.",
     gesture: "Drag the loose end, and let it go.",
     awaits: Awaits::Rest,
     notice: &[
         "With the exact Jacobian each step takes the distance down by some two powers of ten, until only rounding is left.",
         "The Jacobian that is twice too long goes half the way each time, and still ends at the optimum.",
         "The approximate one ends beside it by the square of the contradiction: a centimetre, where the wrong residual is two decimetres off.",
-        "Without a contradiction all four end at the same place. A test on clean data does not find a wrong residual.",
+        "The less the measurements contradict each other, the closer the wrong residual ends. A test on clean data does not find it.",
     ],
     opening: Opening {
         panels: &["graphs"],
@@ -104,13 +104,6 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             label: "Solve it in four ways",
             help: "From one start, step by step: watch where each of them ends.",
             set: &[],
-            then: &["play"],
-        },
-        Preset {
-            id: "agree",
-            label: "Let all measurements agree",
-            help: "Nothing is left at the end, so nothing shows: even the wrong residual ends right.",
-            set: &[BIAS.to(0.0)],
             then: &["play"],
         },
         Preset {

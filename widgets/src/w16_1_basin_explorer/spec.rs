@@ -154,7 +154,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.1",
     name: "Basin explorer",
     title: "How far may you turn a sweep before it settles on a false place?",
-    claim: "A small residual proves nothing.",
+    claim: "The start decides; a good fit proves nothing.",
     gesture: "Drag the sweep, then let it go.",
     awaits: Awaits::Rest,
     notice: &[

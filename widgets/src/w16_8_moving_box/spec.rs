@@ -81,7 +81,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.8",
     name: "The moving box",
     title: "How far does one moved box pull the robot off?",
-    claim: "Least squares has no majority.",
+    claim: "It depends on the weight that its pairs keep.",
     gesture: "Drag the box.",
     awaits: Awaits::Rest,
     notice: &[

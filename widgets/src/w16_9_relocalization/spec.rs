@@ -65,7 +65,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.9",
     name: "Come back tomorrow",
     title: "Where can the robot work out where it is?",
-    claim: "A map does not say where the robot is.",
+    claim: "It can wherever only one place fits its scan.",
     gesture: "Drag the robot anywhere, and let it go.",
     awaits: Awaits::Nothing,
     notice: &[

@@ -6,7 +6,7 @@ use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::texts::SAME_END_M;
+use super::texts::{SAME_END_M, ends_at_the_optimum};
 use super::{NAMES, WrongJacobians, panel};
 
 use crate::w16_12_jacobians::spec::{CURVE, Curve};
@@ -19,6 +19,8 @@ const TONES: [Tone; 4] = [
     Tone::Series(3),
 ];
 const MARKS: [Mark; 4] = [Mark::Square, Mark::Circle, Mark::Triangle, Mark::Cross];
+/// Widths of the chains and radii of their marks, px: of chains that coincide each shows beside the next one.
+const SIZES: [[f32; 2]; 4] = [[12.0, 9.0], [7.5, 7.0], [4.0, 4.5], [1.75, 4.5]];
 /// Margin around the poses, m.
 const MARGIN_M: f64 = 0.4;
 /// The curves end at this power of ten: smaller values are rounding.
@@ -68,20 +70,25 @@ fn graphs(widget: &WrongJacobians) -> Panel {
     let best = places(&widget.solved.optimum);
     let far = best[best.len() / 2];
     let mut layers = vec![line(best, Stroke::Dotted, Tone::Ink, 2.0)];
-    let mut chain = |solver: usize, tone, mark| {
+    let mut chain = |solver: usize, tone, mark, [width_px, radius_px]: [f32; 2]| {
         let now = places(&widget.shown(solver).poses);
-        layers.push(line(now.clone(), Stroke::Solid, tone, 1.75));
-        layers.push(Layer::points(now, mark, tone, 4.0));
+        layers.push(line(now.clone(), Stroke::Solid, tone, width_px));
+        layers.push(Layer::points(now, mark, tone, radius_px));
     };
     if widget.step() == 0 {
         // One start, not four graphs over each other.
-        chain(0, Tone::Ink, Mark::Square);
+        chain(0, Tone::Ink, Mark::Square, [1.75, 4.0]);
     } else {
-        for (solver, (tone, mark)) in TONES.into_iter().zip(MARKS).enumerate() {
-            chain(solver, tone, mark);
+        let looks = TONES.into_iter().zip(MARKS).zip(SIZES);
+        for (solver, ((tone, mark), size)) in looks.enumerate() {
+            chain(solver, tone, mark, size);
         }
     }
-    layers.push(Layer::label(far, "optimum".to_owned(), 10.0));
+    if widget.is_over() {
+        layers.extend(ends(widget, far));
+    } else {
+        layers.push(Layer::label(far, "optimum".to_owned(), 10.0));
+    }
     if let Some(at) = widget.loose_end() {
         layers.push(Layer::Handle {
             at,
@@ -108,6 +115,25 @@ fn graphs(widget: &WrongJacobians) -> Panel {
         legend,
         color_bar: None,
     }
+}
+
+/// Who ended at the optimum, and who elsewhere, each with its χ².
+fn ends(widget: &WrongJacobians, optimum: [f64; 2]) -> Vec<Layer> {
+    let is_there = |solver: &usize| ends_at_the_optimum(widget, *solver);
+    let (there, elsewhere): (Vec<_>, Vec<_>) = (0..NAMES.len()).partition(is_there);
+    let least = widget.solved.least_chi2;
+    let words = format!("{} at the optimum: χ² {least:.1}", there.len());
+    let mut labels = vec![Layer::label(optimum, words, 14.0)];
+    labels.extend(elsewhere.into_iter().filter_map(|solver| {
+        let end = widget.shown(solver);
+        let off_m =
+            |(pose, best): &(&SE2, &SE2)| math::norm2(pose.x() - best.x(), pose.y() - best.y());
+        let ends = end.poses.iter().zip(&widget.solved.optimum);
+        let (farthest, _) = ends.max_by(|a, b| off_m(a).total_cmp(&off_m(b)))?;
+        let words = format!("{}: χ² {:.1}", NAMES[solver], end.chi2);
+        Some(Layer::label([farthest.x(), farthest.y()], words, 10.0))
+    }));
+    labels
 }
 
 /// Decades of the distance from the least one drawn, each with its unit.

@@ -11,7 +11,8 @@ pub const SAME_END_M: f64 = EDGE_STD.0;
 /// The solver whose residual is wrong.
 const RESIDUAL: usize = 3;
 
-fn ends_at_the_optimum(widget: &WrongJacobians, solver: usize) -> bool {
+/// Whether a solver converges to the optimum.
+pub fn ends_at_the_optimum(widget: &WrongJacobians, solver: usize) -> bool {
     let run = &widget.solved.runs[solver];
     run.rests && run.end().off_m < SAME_END_M
 }
