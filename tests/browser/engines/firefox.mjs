@@ -44,11 +44,15 @@ export async function openFirefox() {
     if (type === 'exception') throw new Error(exceptionDetails.text);
     return JSON.parse(result.value);
   };
-  // Firefox may say too early that it has left a page, and a page that it leaves never answers.
+  // Firefox may say too early that it has left a page, and a page that it leaves never answers. A page to which Back returns
+  // may still have the mark of an earlier leave.
+  let leaves = 0;
   const leave = async (command, params) => {
-    await evaluate('void (window.isLeft = true)');
+    leaves += 1;
+    const mark = leaves;
+    await evaluate(`void (window.leaves = ${mark})`);
     await session.send(command, { context, ...params });
-    const isLeft = () => evaluate('window.isLeft !== true', ASK_AGAIN_MS).catch(() => false);
+    const isLeft = () => evaluate(`window.leaves !== ${mark}`, ASK_AGAIN_MS).catch(() => false);
     while (!(await isLeft()));
   };
   return {
