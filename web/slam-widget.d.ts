@@ -5,37 +5,37 @@ export type WidgetName = 'w16.1' | 'w16.2' | 'w16.3' | 'w16.4' | 'w16.5' | 'w16.
 
 /** Basin explorer: every parameter. */
 export interface BasinExplorerState {
-  /** How far the first guess is turned away from the truth. -180 to 180 °. */
+  /** How far the first guess is turned from the truth. -180 to 180 °. */
   heading: number;
-  /** How far the first guess is moved away from the truth. -1.5 to 1.5 m. */
+  /** How far the first guess is from the truth. -1.5 to 1.5 m. */
   dx: number;
-  /** How far the first guess is moved away from the truth. -1.5 to 1.5 m. */
+  /** How far the first guess is from the truth. -1.5 to 1.5 m. */
   dy: number;
   /** What the two sweeps see: room A, almost a square, or a row of equal posts 0.5 m apart. */
   scene: 'room' | 'fence';
   /** Distance between paired points, or distance along the wall's normal. */
   variant: 'point-to-point' | 'point-to-plane';
-  /** A point farther than this from the target has no pair. 0.1 to 1.6 m. */
+  /** A point further than this from the target is unmatched. 0.1 to 1.6 m. */
   tau: number;
   /** After this many iterations a registration stops, converged or not. */
   limit: '30' | '200';
-  /** Trimming drops this share of the pairs in each iteration, the longest first; 0 keeps all. 0 to 0.7. */
+  /** Trimming drops this share of the pairs in each iteration, longest first; 0 keeps them all. 0 to 0.7. */
   trim: number;
   /** Longer pairs have less weight; at 1.6 m all pairs have equal weight. 0.02 to 1.6 m. */
   huber: number;
   /** The vertical axis of the basin maps; the other offset comes from its slider. */
   axis: 'dx' | 'dy';
-  /** Draws over the basin map the paths from starts all over it, iteration by iteration. */
+  /** Draws paths from starts all over the basin map, iteration by iteration. */
   paths: boolean;
-  /** Asks how far a guess at the right position may be turned and still converge to the truth; while you mark it, the maps are covered. */
+  /** Asks how far a guess at the right position may be turned and still converge to the truth. The maps stay covered until you have marked it. */
   edge: 'off' | 'mark' | 'swept';
-  /** Your mark of the edge, on either side of the truth; 0 is none. 0 to 180 °. */
+  /** Where you mark the edge, on either side of the truth; 0 is no mark. 0 to 180 °. */
   'edge-p2p': number;
-  /** Your mark of the edge, on either side of the truth; 0 is none. 0 to 180 °. */
+  /** Where you mark the edge, on either side of the truth; 0 is no mark. 0 to 180 °. */
   'edge-p2l': number;
   /** Seed of the range noise of both sweeps; 457 is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** Which iteration is shown; 0 is the first guess, and beyond the last one is the end. 0 to 200. */
+  /** Which iteration is shown; 0 is the first guess, and past the last is the end. 0 to 200. */
   iteration: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -45,15 +45,15 @@ export interface BasinExplorerState {
 
 /** The full lap: every parameter. */
 export interface TheFullLapState {
-  /** The world. The Apartment uses the chapter's estimator, every other world the default one. */
+  /** The world. The Apartment uses the chapter's estimator, every other world the default. */
   world: 'apartment' | 'ring' | 'twins' | 'corridor' | 'hall' | 'own';
-  /** What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, remove something, or set the robot down. All on a grid of 5 cm. */
+  /** What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, remove something, or set the robot down. Everything snaps to a grid of 5 cm. */
   edit: 'off' | 'move' | 'wall' | 'way' | 'remove' | 'robot';
-  /** The piece of the flat that the arrows move and Remove deletes. On the map, a press selects it. */
+  /** The piece that the arrows move and Remove deletes. Press a piece on the map to select it. */
   piece: 'nothing' | 'wall' | 'first-end' | 'second-end' | 'way-point' | 'start' | 'heading';
   /** The number of the wall or of the way point, from 1. 0 to 2000. */
   'piece-number': number;
-  /** Walls, start and way points of your own flat to the centimetre, as in links. It makes the world your own flat. At most 33000 letters, digits, - and _. */
+  /** Walls, start and way points of your own floor plan to the centimetre, as in links. Setting it makes this the world. At most 33000 letters, digits, - and _. */
   flat: string;
   /** Multiplies the variances of the wheel odometry: 1 is the chapter's robot. 0.25 to 4. */
   noise: number;
@@ -61,39 +61,39 @@ export interface TheFullLapState {
   loops: boolean;
   /** Another seed is another lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** Quantile of χ² with 3 degrees of freedom: 0.95 is χ² up to 7.815. So many true loops pass if the robot does not move, fewer after a drive. 0.9 to 0.999. */
+  /** Quantile of χ² with 3 degrees of freedom; 0.95 is χ² up to 7.815. This share of true loops passes if the robot stands still, less after a drive. 0.9 to 0.999. */
   gate: number;
-  /** Path: the chapter's, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. An outline contains the positions that pass at the registered heading. */
+  /** Path: the chapter's gate, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. The outline shows which positions pass at the registered heading. */
   'gate-model': 'path' | 'exact';
-  /** What registers each sweep, in the front end and for loops: the chapter's ICP, point to point, or point to plane, or the normal distributions transform. */
+  /** What registers each sweep, in the front end and for loops: the chapter's ICP, point-to-point or point-to-plane, or the normal distributions transform. */
   matcher: 'p2p' | 'p2l' | 'ndt';
-  /** The frame of an edge's information. As the chapter's figures were computed, it is turned by a heading of the world; exactly, it is that of the edge's target, the newer of its ends. */
+  /** The frame of an edge's information. For the chapter's figures, it is turned by a heading in the world; the exact frame is that of the edge's target, the newer end. */
   information: 'chapter' | 'exact';
-  /** A point's normal comes from its neighbours within this radius, in cells of 12 cm. 0 is the matcher's own: 2.5, and 4.2 for point to plane. 0 to 8 cells. */
+  /** A point's normal comes from its neighbours within this radius, in cells of 12 cm. 0 is the matcher's default: 2.5, or 4.2 for point-to-plane. 0 to 8 cells. */
   normals: number;
-  /** Whether the information of an edge is scaled down to 2500 at most, a deviation of 2 cm and of 0.02 rad. */
+  /** Whether the information of an edge is capped at 2500, a standard deviation of 2 cm or 0.02 rad. */
   cap: boolean;
-  /** A beam that hits no wall reports the maximum range. Kept as points, a common mistake, these make a wall that moves with the robot. */
+  /** A beam that hits no wall reports the maximum range. Keeping these as points is a common mistake. They form a wall that moves with the robot. */
   misses: boolean;
-  /** The part of the graph whose numbers are shown. On the map, a click or a tap selects it, and one beside everything selects nothing. */
+  /** The part of the graph whose numbers are shown. Click or tap it on the map to select it, or an empty spot to select none. */
   pick: 'nothing' | 'keyframe' | 'edge' | 'loop';
-  /** The number of the keyframe; of the keyframe where the edge begins; of the newer keyframe of the loop. 0 to 999. */
+  /** The number of the keyframe, of the edge's first keyframe, or of the loop's newer one. 0 to 999. */
   number: number;
-  /** A loop between any two keyframes. Registered: the registration of their sweeps, from their poses in the graph. The truth: what no robot knows. “The same place”: both at one position, right or wrong. */
+  /** A loop between any two keyframes. Registered: their sweeps, registered from their poses in the graph. The truth: what no robot knows. “The same place”: both at one position, rightly or wrongly. */
   own: 'none' | 'registered' | 'truth' | 'same-place';
   /** One end of your own loop. On the map, drag from the selected keyframe to any other. 0 to 999. */
   'own-from': number;
   /** The other end of your own loop. 0 to 999. */
   'own-to': number;
-  /** Whether the tests may reject your own loop: fit, pairs and gate if it is registered, the gate if it is asserted. */
+  /** Whether the tests may reject your own loop: fit, pairs and gate if it is registered, only the gate if it is asserted. */
   'own-gate': boolean;
-  /** The robust kernel of your own loop: plain least squares, Huber's kernel from 1.345 standard deviations on, or dynamic covariance scaling from χ² 10 on. */
+  /** The robust kernel of your own loop: plain least squares, Huber's kernel from 1.345 standard deviations, or dynamic covariance scaling from a χ² of 10. */
   kernel: 'quadratic' | 'huber' | 'dcs';
-  /** At a closed loop: left of the line the map before it, right of it the map after it. The line's place, as a share of the map's width. 0 to 1. */
+  /** At a closed loop, the map before it is left of the line, and the map after it is right. The line's position is a share of the map's width. 0 to 1. */
   wipe: number;
-  /** The moment shown; a tick is a quarter of a second, the marks are loops, and beyond the end means the end. 0 to 2000. */
+  /** The moment shown. A tick is a quarter of a second, the marks are loops, and values past the end mean the end. 0 to 2000. */
   t: number;
-  /** Draws the whole lap into the plots, including what comes after the moment shown. */
+  /** Plots the whole lap, including what comes after the moment shown. */
   future: boolean;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -103,19 +103,19 @@ export interface TheFullLapState {
 
 /** Cost terraces: every parameter. */
 export interface CostTerracesState {
-  /** ICP's cost or NDT's score of the same sweep on the same points; the relief morphs from one to the other. */
+  /** ICP's cost or NDT's score, for the same sweep on the same points. The relief morphs from one to the other. */
   measure: 'icp' | 'ndt';
   /** Room A on its own points; a corridor without doors on a map with independent noise; the Apartment's corridor, with its doors, on its own points. */
   scene: 'room' | 'corridor' | 'own-corridor';
-  /** ICP pairs a point with the nearest map point within τ; a point without a pair costs τ². 0.1 to 1.6 m. */
+  /** ICP pairs a point with the nearest map point within τ; an unmatched point costs τ². 0.1 to 1.6 m. */
   tau: number;
   /** NDT fits one Gaussian to the map points of each cell of this width. 0.3 to 1.2 m. */
   'ndt-cell': number;
-  /** The sweep is turned by this much about the sensor before it is shifted. -180 to 180 °. */
+  /** How far the sweep is turned about the sensor before it is shifted. -180 to 180 °. */
   heading: number;
   /** The relief is sampled at this many shifts along each axis. 49 to 161. */
   cells: number;
-  /** By rank, every colour covers equally many cells, which shows low steps on high ground. */
+  /** By rank, every colour covers the same number of cells, so low steps show even on high ground. */
   colours: 'value' | 'rank';
   /** Seed of the range noise of the sweep; 1472 is the chapter's. 0 to 4294967295. */
   seed: number;
@@ -123,11 +123,11 @@ export interface CostTerracesState {
   'probe-x': number;
   /** Position of the cross hair and start of the ball, north of the truth. -1.3 to 1.3 m. */
   'probe-y': number;
-  /** Number of sweeps with independent noise that are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m. 0 to 100. */
+  /** How many sweeps, each with its own noise, are dropped up to 0.3 m from the truth and registered point-to-plane with a τ of 0.6 m. 0 to 100. */
   drops: number;
-  /** Number of points, in the order of the beams, that give a row (n_x, n_y, p × n) of the point-to-plane step; at the right end, all. 0 to 120. */
+  /** How many points, in beam order, contribute a row (n_x, n_y, p × n) to the point-to-plane step; at the right end, all. 0 to 120. */
   rows: number;
-  /** Adds the row (1, 0, 0) with the weight 1/σ²; 0 adds none. 0 to 0.5 m. */
+  /** Adds the row (1, 0, 0) with weight 1/σ²; 0 adds none. 0 to 0.5 m. */
   odometry: number;
   /** How much of its path the ball has rolled, in steps of its descent. 0 to 100. */
   t: number;
@@ -145,9 +145,9 @@ export interface ControlRoomState {
   loops: boolean;
   /** Another seed is another lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** The operation whose data of this tick are described; a press on a mark of the lanes selects it. */
+  /** The operation whose data at this tick are described. Press a mark on a lane to select it. */
   lane: 'predict' | 'register' | 'keyframe' | 'candidate' | 'fit' | 'gate' | 'optimize' | 'repaint';
-  /** The moment shown; a tick is a quarter of a second, and the marks are loops. 0 to 129. */
+  /** The moment shown. A tick is a quarter of a second, and the marks are loops. 0 to 129. */
   t: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -157,53 +157,53 @@ export interface ControlRoomState {
 
 /** Pose-graph toy: every parameter. */
 export interface PoseGraphToyState {
-  /** Information of the loop, relative to each edge of odometry: a stiffer spring gives way less. 0.1 to 10 ×. */
+  /** Information of the loop, relative to an odometry edge. A stiffer spring gives way less. 0.1 to 10 ×. */
   stiffness: number;
   /** The chapter's three poses on a line, four around a square, or a ring of six whose ends do not meet. */
   graph: 'line' | 'square' | 'ring';
-  /** How much farther ahead of the first pose the loop sees the last one than odometry does. -1.5 to 1.5 m. */
+  /** How much further ahead of the first pose the loop puts the last one than odometry does. -1.5 to 1.5 m. */
   gap: number;
-  /** Information of each edge of odometry. 0.1 to 10 ×. */
+  /** Information of each odometry edge. 0.1 to 10 ×. */
   odometry: number;
-  /** Measurements are relative: without a fixed pose the whole graph may be anywhere. */
+  /** Measurements are relative. Unless a pose is fixed, the whole graph may be anywhere. */
   pinned: boolean;
-  /** How far the pose is moved from odometry, before the first step. -3 to 3 m. */
+  /** How far the pose is moved from its odometry position before the first step. -3 to 3 m. */
   x1: number;
-  /** How far the pose is moved from odometry, before the first step. -3 to 3 m. */
+  /** How far the pose is moved from its odometry position before the first step. -3 to 3 m. */
   y1: number;
-  /** How far the pose is turned from odometry, before the first step. -180 to 180 °. */
+  /** How far the pose is turned from its odometry heading before the first step. -180 to 180 °. */
   turn1: number;
-  /** How far the pose is moved from odometry, before the first step. -3 to 3 m. */
+  /** How far the pose is moved from its odometry position before the first step. -3 to 3 m. */
   x2: number;
-  /** How far the pose is moved from odometry, before the first step. -3 to 3 m. */
+  /** How far the pose is moved from its odometry position before the first step. -3 to 3 m. */
   y2: number;
-  /** How far the pose is turned from odometry, before the first step. -180 to 180 °. */
+  /** How far the pose is turned from its odometry heading before the first step. -180 to 180 °. */
   turn2: number;
-  /** How far the pose is moved from odometry, before the first step. -3 to 3 m. */
+  /** How far the pose is moved from its odometry position before the first step. -3 to 3 m. */
   x3: number;
-  /** How far the pose is moved from odometry, before the first step. -3 to 3 m. */
+  /** How far the pose is moved from its odometry position before the first step. -3 to 3 m. */
   y3: number;
-  /** How far the pose is turned from odometry, before the first step. -180 to 180 °. */
+  /** How far the pose is turned from its odometry heading before the first step. -180 to 180 °. */
   turn3: number;
-  /** How far the pose is moved from odometry, before the first step. -3 to 3 m. */
+  /** How far the pose is moved from its odometry position before the first step. -3 to 3 m. */
   x4: number;
-  /** How far the pose is moved from odometry, before the first step. -3 to 3 m. */
+  /** How far the pose is moved from its odometry position before the first step. -3 to 3 m. */
   y4: number;
-  /** How far the pose is turned from odometry, before the first step. -180 to 180 °. */
+  /** How far the pose is turned from its odometry heading before the first step. -180 to 180 °. */
   turn4: number;
-  /** How far the pose is moved from odometry, before the first step. -3 to 3 m. */
+  /** How far the pose is moved from its odometry position before the first step. -3 to 3 m. */
   x5: number;
-  /** How far the pose is moved from odometry, before the first step. -3 to 3 m. */
+  /** How far the pose is moved from its odometry position before the first step. -3 to 3 m. */
   y5: number;
-  /** How far the pose is turned from odometry, before the first step. -180 to 180 °. */
+  /** How far the pose is turned from its odometry heading before the first step. -180 to 180 °. */
   turn5: number;
-  /** How far the pose is moved from odometry, before the first step. -3 to 3 m. */
+  /** How far the pose is moved from its odometry position before the first step. -3 to 3 m. */
   x6: number;
-  /** How far the pose is moved from odometry, before the first step. -3 to 3 m. */
+  /** How far the pose is moved from its odometry position before the first step. -3 to 3 m. */
   y6: number;
-  /** How far the pose is turned from odometry, before the first step. -180 to 180 °. */
+  /** How far the pose is turned from its odometry heading before the first step. -180 to 180 °. */
   turn6: number;
-  /** How many steps the solver has done; 0 is the graph before the first one. 0 to 20. */
+  /** How many steps the solver has taken; 0 is the graph before the first. 0 to 20. */
   steps: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -213,21 +213,21 @@ export interface PoseGraphToyState {
 
 /** The whole window: every parameter. */
 export interface TheWholeWindowState {
-  /** How far the start is turned away from the truth: ICP depends on it, the search does not. -180 to 180 °. */
+  /** How far the start is turned from the truth. ICP depends on it; the search does not. -180 to 180 °. */
   heading: number;
-  /** How far the start, which is the window's center, is moved away from the truth. -1.5 to 1.5 m. */
+  /** How far the start, the centre of the window, is from the truth. -1.5 to 1.5 m. */
   dx: number;
-  /** How far the start, which is the window's center, is moved away from the truth. -1.5 to 1.5 m. */
+  /** How far the start, the centre of the window, is from the truth. -1.5 to 1.5 m. */
   dy: number;
   /** How far from the start the search looks, along x and along y. 0.5 to 3 m. */
   window: number;
-  /** How far from the start's heading the search looks; 180 is the whole turn. 30 to 180 °. */
+  /** How far from the start's heading the search looks; 180 covers every heading. 30 to 180 °. */
   turn: number;
   /** The resolution of the search; the map is blurred accordingly. 0.05 to 0.2 m. */
   cell: number;
   /** Seed of the range noise of both sweeps; 457 is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** How many boxes the search has expanded; the iterations of ICP follow the last one. 0 to 200000. */
+  /** How many boxes the search has expanded; ICP's iterations follow the last. 0 to 200000. */
   progress: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -237,21 +237,21 @@ export interface TheWholeWindowState {
 
 /** Have I been here?: every parameter. */
 export interface HaveIBeenHereState {
-  /** Share of the most similar pairs that are called the same: a threshold for every detector at once. 0 to 60 %. */
+  /** The share of pairs, most similar first, that are called the same place: one threshold for every detector. 0 to 60 %. */
   called: number;
-  /** By the estimated poses, by the histogram of ranges, or by rings and sectors. */
+  /** From the estimated poses, from range histograms, or from rings and sectors. */
   detector: 'nearby' | 'histogram' | 'context';
   /** The world of the lap. */
   world: 'apartment' | 'ring';
-  /** The older keyframe that is compared with the newest one; −1 is the most similar one. -1 to 120. */
+  /** The older keyframe compared with the newest; −1 is the most similar one. -1 to 120. */
   old: number;
-  /** How far the newer view is turned away from the heading at which Scan Context fits best. -180 to 180 °. */
+  /** How far the newer view is turned from the heading where Scan Context fits best. -180 to 180 °. */
   turn: number;
   /** Another seed is another lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
   /** Multiplies the variances of the wheel odometry: 1 is the chapter's robot. 0.25 to 4. */
   noise: number;
-  /** The newest keyframe so far; beyond the last one it is the whole lap. 0 to 400. */
+  /** The newest keyframe so far; past the last, it is the whole lap. 0 to 400. */
   new: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -261,25 +261,25 @@ export interface HaveIBeenHereState {
 
 /** The moving box: every parameter. */
 export interface TheMovingBoxState {
-  /** Whose pairs are drawn: all of them, without the longest ones, or the long ones with less weight. */
+  /** Which registration's pairs are drawn: all of them, all but the longest, or the long ones with less weight. */
   method: 'plain' | 'trimmed' | 'huber';
-  /** Which share of the points of both sweeps lies on the box that was moved. 0 to 60 %. */
+  /** The share of both sweeps' points that is on the moved box. 0 to 60 %. */
   share: number;
   /** How far the box was moved between the sweeps, away from the sensor along x. 0 to 0.8 m. */
   moved: number;
   /** How far the box was moved between the sweeps along y. -1.2 to 0.5 m. */
   'moved-y': number;
-  /** Which share of the pairs trimming drops in each iteration, the longest first. 0 to 70 %. */
+  /** The share of the pairs that trimming drops in each iteration, longest first. 0 to 70 %. */
   dropped: number;
   /** Pairs longer than this pull with the same force, however long they are. 0.01 to 0.3 m. */
   huber: number;
-  /** A point farther than this from the target has no pair: a gate is a kernel, too. 0.1 to 1.6 m. */
+  /** A point further than this from the target is unmatched: a gate is a kernel, too. 0.1 to 1.6 m. */
   tau: number;
   /** Distance between paired points, or distance along the wall's normal. */
   variant: 'point-to-point' | 'point-to-plane';
   /** Seed of the range noise of the sweeps above; the curves have their own hundred seeds. 0 to 4294967295. */
   seed: number;
-  /** Which iteration is shown of all three; beyond its last one a registration has converged. 0 to 30. */
+  /** The iteration shown, for all three; past its last, a registration has converged. 0 to 30. */
   iteration: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -289,19 +289,19 @@ export interface TheMovingBoxState {
 
 /** Come back tomorrow: every parameter. */
 export interface ComeBackTomorrowState {
-  /** The map has one lap before that night, and this many after it. 0 to 2. */
+  /** The map was made from one lap before that night, and this many after it. 0 to 2. */
   laps: number;
-  /** Where the robot is put overnight, on the plan. The robot does not know it. 0 to 12 m. */
+  /** Where on the plan the robot is put overnight. The robot does not know. 0 to 12 m. */
   x: number;
-  /** Where the robot is put overnight, on the plan. The robot does not know it. 0 to 9 m. */
+  /** Where on the plan the robot is put overnight. The robot does not know. 0 to 9 m. */
   y: number;
-  /** Heading of the robot when it is switched on. The robot does not know it. -180 to 180 °. */
+  /** The robot's heading when it is switched on. The robot does not know. -180 to 180 °. */
   heading: number;
   /** The world. Only the Apartment has the wardrobe. */
   world: 'apartment' | 'ring' | 'twins';
   /** Another seed is another lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** Which moment is shown: boxes of a search, and scans. 0 to 4000. */
+  /** The moment shown, counted in boxes of a search and in scans. 0 to 4000. */
   moment: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -311,21 +311,21 @@ export interface ComeBackTomorrowState {
 
 /** Your own robot: every parameter. */
 export interface YourOwnRobotState {
-  /** Time, the share of each scan that fits, the standard deviation by the graph, or the error against a reference that you give. */
+  /** Time, the share of each scan that fits, the graph's standard deviation, or the error against your reference. */
   colour: 'time' | 'fit' | 'sigma' | 'error';
-  /** Which loops the map shows: none, those of the graph, or the rejected ones as well. */
+  /** Which loops the map shows: none, the accepted ones, or the rejected ones as well. */
   links: 'none' | 'closed' | 'all';
-  /** The loop whose evidence is shown; 0 is the one that fits the graph least. 0 to 999999. */
+  /** The loop whose evidence is shown; 0 fits the graph least. 0 to 999999. */
   loop: number;
-  /** One end of a loop that you add; the other is the keyframe shown. 0 to 999999. */
+  /** One end of a loop you add; the other is the keyframe shown. 0 to 999999. */
   marked: number;
-  /** Keyframes with a smaller share of fitting points have a ring on the map, and “Next doubt” stops there. 0 to 1. */
+  /** Keyframes with a smaller share of fitting points are ringed on the map, and “Next doubt” stops there. 0 to 1. */
   poor: number;
-  /** Map for Nav2, trajectory as TUM, graph as g2o, a report with pictures, the session for continuing later, or the poses of another log’s robot. */
+  /** The map for Nav2, the trajectory as TUM, the graph as g2o, a report with pictures, the session, to continue later, or the poses of the other log’s robot. */
   file: 'map-pgm' | 'map-yaml' | 'map-png' | 'trajectory' | 'graph' | 'report' | 'session' | 'where';
   /** Where the other log begins on this map: anywhere, or within 1.5 m and 34° of the keyframe shown. */
   start: 'anywhere' | 'here';
-  /** The scan of the other log whose pose is shown; beyond the end, the last one. 0 to 99999999. */
+  /** The scan of the other log whose pose is shown; past the end, the last scan. 0 to 99999999. */
   scan: number;
   /** Whether a dropped log is mapped, or its robot is localized on the current map. */
   drop: 'map' | 'where';
@@ -341,33 +341,33 @@ export interface YourOwnRobotState {
 
 /** Turn or mirror image: every parameter. */
 export interface TurnOrMirrorImageState {
-  /** Points of two sweeps in pairs; for the last one the sensor hangs upside down the second time. */
+  /** Paired points of two sweeps. In the last scene, the sensor hangs upside down for the second one. */
   shape: 'corners' | 'two' | 'wall' | 'upside-down';
-  /** The source is rotated, or first mirrored and then rotated: together these are all orthogonal matrices. */
+  /** The source is rotated, or mirrored and then rotated. Together these are all the orthogonal matrices. */
   tried: 'turns' | 'mirrors';
   /** Seed of the range noise of both sweeps, 12 mm along each axis. 0 to 4294967295. */
   seed: number;
-  /** How far the point is dragged from its observed position; only points of the scene count. -3 to 3 m. */
+  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
   x1: number;
-  /** How far the point is dragged from its observed position; only points of the scene count. -3 to 3 m. */
+  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
   y1: number;
-  /** How far the point is dragged from its observed position; only points of the scene count. -3 to 3 m. */
+  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
   x2: number;
-  /** How far the point is dragged from its observed position; only points of the scene count. -3 to 3 m. */
+  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
   y2: number;
-  /** How far the point is dragged from its observed position; only points of the scene count. -3 to 3 m. */
+  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
   x3: number;
-  /** How far the point is dragged from its observed position; only points of the scene count. -3 to 3 m. */
+  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
   y3: number;
-  /** How far the point is dragged from its observed position; only points of the scene count. -3 to 3 m. */
+  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
   x4: number;
-  /** How far the point is dragged from its observed position; only points of the scene count. -3 to 3 m. */
+  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
   y4: number;
-  /** How far the point is dragged from its observed position; only points of the scene count. -3 to 3 m. */
+  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
   x5: number;
-  /** How far the point is dragged from its observed position; only points of the scene count. -3 to 3 m. */
+  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
   y5: number;
-  /** By how much the source is turned, after the mirror if there is one. 0 to 360 °. */
+  /** How far the source is rotated, after the mirror if there is one. 0 to 360 °. */
   turn: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -379,7 +379,7 @@ export interface TurnOrMirrorImageState {
 export interface OneGraphSolvedInFourWaysState {
   /** How much odometry contradicts the loop. 2 to 10 °. */
   bias: number;
-  /** Twice the exact one, or that of a perturbation on the other side of the pose. */
+  /** Twice the exact Jacobian, or the Jacobian of a perturbation on the other side of the pose. */
   wrong: 'twice' | 'left';
   /** Standard deviation of the noise that is added to each pose before the first step. 0 to 0.3 m, rad. */
   scatter: number;
@@ -387,7 +387,7 @@ export interface OneGraphSolvedInFourWaysState {
   seed: number;
   /** Largest distance of a pose from its optimum, or the difference of χ² from its minimum. */
   curve: 'distance' | 'chi2';
-  /** How many steps each solver has done; beyond its last one it has converged. 0 to 40. */
+  /** How many steps each solver has taken; past its last, it has converged. 0 to 40. */
   steps: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';

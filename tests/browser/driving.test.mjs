@@ -93,7 +93,7 @@ it('a step typed by the keyboard drives w16.1 beside ours and maps its basin, an
     await isFull();
     const theirMap = await cells();
     await press(tab, 'Let ours drive the registration of w16.1 again');
-    await said(tab, W1, 'From 65° off, point to point ends');
+    await said(tab, W1, 'From 65° off, point-to-point ends');
     await tab.locator(W1).scrollIntoViewIfNeeded();
     await isFull();
     const [a, b] = [theirMap, await cells()].map((csv) => csv.split('\n'));
@@ -154,7 +154,7 @@ it('a rejection of pairs typed by the keyboard drives w16.1 beside ours, and the
     const theirs = await said(tab, W1, 'your keep_pairs ends');
     assertNear(theirs, ours, ['error_m', 'error_deg', 'rmse_m', 'pairs', 'iterations']);
     await press(tab, 'Let ours drive the registration of w16.1 again');
-    await said(tab, W1, 'point to point ends');
+    await said(tab, W1, 'point-to-point ends');
     // The longest instead of the shortest.
     await type(tab, KEEP.replace('lengths[a] - lengths[b]', 'lengths[b] - lengths[a]'));
     await press(tab, 'Drive the registration of w16.1 with it');
@@ -202,7 +202,7 @@ it('a wrong function is told its fault and may drive, an error names its line, a
       await type(tab, code);
       await press(tab, drive);
       await says(tab, sentence);
-      await said(tab, W1, 'point to point ends');
+      await said(tab, W1, 'point-to-point ends');
       await tab.getByRole('button', { name: drive, exact: true, disabled: false }).waitFor();
     }
   });

@@ -54,9 +54,9 @@ it('the arrow keys turn a slide, and a widget that has the focus keeps them', as
     await h.ready(tab, '.figure slam-widget[name="w16.1"]');
     await tab.locator('.figure slam-widget[name="w16.1"]').getByRole('slider').first().focus();
     await tab.keyboard.press('ArrowRight');
-    assert.equal(await shownTitle(tab), 'How far may you turn a sweep before it settles on a false place?');
+    assert.equal(await shownTitle(tab), 'How far can you turn a sweep before it settles in a false minimum?');
     await tab.keyboard.press('PageDown');
-    assert.notEqual(await shownTitle(tab), 'How far may you turn a sweep before it settles on a false place?');
+    assert.notEqual(await shownTitle(tab), 'How far can you turn a sweep before it settles in a false minimum?');
   }, SLIDES);
 });
 

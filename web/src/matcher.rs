@@ -82,7 +82,7 @@ impl RoomMatcher {
         })
     }
 
-    /// Point to point from a guess: `{"poses", "rmse", "reach", "ending"}`, the guess and the pose after each iteration,
+    /// Point-to-point from a guess: `{"poses", "rmse", "reach", "ending"}`, the guess and the pose after each iteration,
     /// the final rmse and the pairing distance in metres, and the name of the minimum.
     pub fn run(&mut self, world_from_source: &SE2) -> Value {
         let world_from_target = self.scene.world_from_target();

@@ -10,8 +10,8 @@ pub static VARIANT: OneOf<IcpVariant> = one_of!(
     "variant",
     "error that ICP reduces",
     &[
-        (IcpVariant::PointToPoint, "point-to-point", "point to point"),
-        (IcpVariant::PointToPlane, "point-to-plane", "point to plane"),
+        (IcpVariant::PointToPoint, "point-to-point", "point-to-point"),
+        (IcpVariant::PointToPlane, "point-to-plane", "point-to-plane"),
     ],
 )
 .help("Distance between paired points, or distance along the wall's normal.");

@@ -18,7 +18,7 @@ associate moves the source by the pose and pairs each point with the nearest of 
 
 Rules. Pairs exactly as long as the last one kept may also stay. `trace` holds the guess and the pose after each increment;
 `inliers` and `rmse` are of the last pairs. The rmse is that of the residual that the variant minimizes: distances, or
-n · (p − q) for point to plane if the pair has a normal. Without pairs it is infinite.
+n · (p − q) for point-to-plane if the pair has a normal. Without pairs it is infinite.
 
 See it drive. rustslam2d.simulate(icp=icp) registers every scan of a lap with it.
 """

@@ -42,7 +42,7 @@ const NOT_BUILT: &str = "not timed: a C++ compiler or nanoflann is missing";
 /// Largest difference of two poses that count as the same optimum, m and rad.
 const SAME_POSE: f64 = 1e-6;
 
-const METHODS: [(&str, &str); 2] = [("p2l", "point to plane"), ("p2p", "point to point")];
+const METHODS: [(&str, &str); 2] = [("p2l", "point-to-plane"), ("p2p", "point-to-point")];
 
 /// The rows of each pair of clouds, in the order of [`clouds::all`].
 fn rows() -> [[Row; 2]; 2] {
@@ -240,11 +240,11 @@ mod tests {
         };
         assert_eq!(
             line(&large, &found(&sample, 0.0), Some(&peer), &sample),
-            "| 720 points on a map of 5,000 | point to plane | 7 | 0.0 mm | 100 µs | 200 µs | 0.50 |"
+            "| 720 points on a map of 5,000 | point-to-plane | 7 | 0.0 mm | 100 µs | 200 µs | 0.50 |"
         );
         assert_eq!(
             line(&small, &found(&sample, 0.002), None, &sample),
-            "| 180 on 180 points, with the build | point to plane | 7 | 2.0 mm | 120 µs | not timed: a C++ compiler or nanoflann is missing | – |"
+            "| 180 on 180 points, with the build | point-to-plane | 7 | 2.0 mm | 120 µs | not timed: a C++ compiler or nanoflann is missing | – |"
         );
         let elsewhere = line(&small, &found(&sample, 0.002), Some(&peer), &sample);
         assert!(

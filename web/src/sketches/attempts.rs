@@ -15,7 +15,7 @@ const MOST_M: f64 = 0.6;
 
 pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "attempts",
-    title: "The attempts to close a loop of a thousand laps",
+    title: "Every attempt to close a loop, over a thousand laps",
     slider: Slider {
         label: "accept χ² up to",
         unit: "",
@@ -106,7 +106,7 @@ fn picture(gate: f64) -> Panel {
     let across = |y: f64| [[0.0, y], [MOST_CHI2, y]];
     Panel {
         id: "attempts",
-        title: "What is true, against what the robot sees".to_owned(),
+        title: "The true error, against what the robot sees".to_owned(),
         weight: Weight::Main,
         aspect: Aspect::Free,
         x: Axis::new("χ²", 0.0, MOST_CHI2),

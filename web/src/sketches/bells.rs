@@ -71,8 +71,7 @@ fn at(cell_m: f64) -> Shown {
             panels: vec![picture(cell_m, &target, &map), curve(&map, &sweep)],
         },
         sentence: format!(
-            "With cells of {cell_m:.1} m the room is {bells} bells, and half the score is gone {width:.2} m beside the \
-             truth."
+            "With cells of {cell_m:.1} m the room has {bells} bells, and half the score is gone {width:.2} m from the truth."
         ),
     }
 }
@@ -117,7 +116,7 @@ fn picture(cell_m: f64, target: &PointCloud, map: &NdtMap) -> Panel {
     ));
     Panel {
         id: "bells",
-        title: "The map: a bell a cell".to_owned(),
+        title: "The map: one bell per cell".to_owned(),
         weight: Weight::Half,
         aspect: Aspect::Equal,
         x: Axis::new("x (m)", -2.4, 2.6),

@@ -27,7 +27,7 @@ const ENLARGED: f64 = 20.0;
 
 pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "ellipse",
-    title: "What a sweep knows of its place",
+    title: "What a sweep knows of its pose",
     slider: Slider {
         label: "metres driven",
         unit: " m",
@@ -66,7 +66,7 @@ struct Known {
     root: [[f64; 2]; 2],
 }
 
-/// Registers a sweep with one from the same pose, point to plane, at the truth.
+/// Registers a sweep with one from the same pose, point-to-plane, at the truth.
 fn known(world_from_body: &SE2) -> Known {
     let mut rng = Rng::new(16);
     let mut before = samples::sweep(world_from_body, BEAMS, &mut rng);
@@ -75,7 +75,7 @@ fn known(world_from_body: &SE2) -> Known {
     let config = IcpConfig::default();
     let map = DenseMap::from_cloud(&before, config.tau_m, usize::MAX);
     let mut pairs = correspondences(&now, &map, SE2::identity(), &config);
-    // Point to plane ignores points without a normal.
+    // Point-to-plane ignores points without a normal.
     pairs.retain(|pair| pair.normal.is_some());
     let trust = SlamConfig::chapter().chapter.odometry_trust;
     let information = match_information(&pairs, &SE2::identity(), &trust);
@@ -135,7 +135,7 @@ fn at(driven_m: f64) -> Shown {
         legend: vec![
             LegendEntry::mark("what the sweep sees", Tone::Measurement, Mark::Cross),
             LegendEntry::mark("robot", Tone::Posterior, Mark::Square),
-            LegendEntry::line("what it knows of its place", Tone::Posterior, Stroke::Solid),
+            LegendEntry::line("what it knows of its pose", Tone::Posterior, Stroke::Solid),
         ],
         color_bar: None,
     };
@@ -144,8 +144,7 @@ fn at(driven_m: f64) -> Shown {
             panels: vec![panel],
         },
         sentence: format!(
-            "After {driven_m:.1} m the sweep knows its place to {along:.1} cm along the corridor, and to {across:.1} cm \
-             across."
+            "After {driven_m:.1} m the sweep fixes its position to {along:.1} cm along the corridor, and to {across:.1} cm across."
         ),
     }
 }

@@ -20,7 +20,7 @@ pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "fill",
     title: "The order of elimination",
     slider: Slider {
-        label: "the keyframe of all loops is eliminated as number",
+        label: "position of the loops’ keyframe in the elimination order",
         unit: "",
         min: 1.0,
         max: NODES as f64,
@@ -103,8 +103,7 @@ fn at(place: f64) -> Shown {
     let filled = filled(&order);
     Shown {
         sentence: format!(
-            "Eliminated as number {place}, it makes {} blocks fill in. The order that the solver chooses, by approximate \
-             minimum degree, makes {}.",
+            "Eliminated as number {place}, it makes {} blocks fill in. The solver’s own order, approximate minimum degree, makes {}.",
             filled.len(),
             self::filled(&solvers_order()).len()
         ),

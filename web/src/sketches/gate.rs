@@ -24,7 +24,7 @@ pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "gate",
     title: "A gate that grows with the path",
     slider: Slider {
-        label: "nodes since the place was seen",
+        label: "nodes since the last visit",
         unit: "",
         min: 1.0,
         max: 60.0,
@@ -115,7 +115,7 @@ fn picture(gap: usize, config: &LoopConfig) -> Panel {
         weight: Weight::Main,
         aspect: Aspect::Free,
         x: Axis::new("distance from the prediction (m)", 0.0, REACH_M),
-        y: Axis::new("heading away from it (°)", -REACH_DEG, REACH_DEG),
+        y: Axis::new("heading error (°)", -REACH_DEG, REACH_DEG),
         layers: vec![
             Layer::points(places(&within), Mark::Dot, Tone::Prior, 2.0),
             Layer::points(places(&beyond), Mark::Triangle, Tone::Prediction, 3.0),

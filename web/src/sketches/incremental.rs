@@ -37,7 +37,7 @@ const CLIMB: ClimbConfig = ClimbConfig {
 
 pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "incremental",
-    title: "A climb, and an error that it finds",
+    title: "A climb, and the error it finds",
     slider: Slider {
         label: "wheel error, once around",
         unit: " m",
@@ -175,8 +175,7 @@ fn at(error_m: f64) -> Shown {
     };
     Shown {
         sentence: format!(
-            "The wheels are {error_m:.2} m off, the climb ends {ending}. Farthest off is a pose by {climbed:.2} m where \
-             nothing before is moved, by {pushed:.2} m where the error is sent backwards, by {solved:.2} m in the graph."
+            "The wheels are {error_m:.2} m off, the climb ends {ending}. The worst pose is {climbed:.2} m out if no earlier pose moves, {pushed:.2} m if the error is sent backwards, and {solved:.2} m in the graph."
         ),
         scene: Scene {
             panels: vec![hills(&place, error_m, found_m), map(&paths)],

@@ -24,7 +24,7 @@ const NEAR_M: f64 = 1.25;
 
 pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "nearest",
-    title: "One query in a map that grows",
+    title: "One query in a growing map",
     slider: Slider {
         label: "sweeps in the map",
         unit: "",
@@ -217,8 +217,7 @@ fn at(sweeps: f64) -> Shown {
     let (_, asked) = grown.tree.nearest(QUERY);
     Shown {
         sentence: format!(
-            "{sweeps}, {points} points. The query compares with the {compared} of nine cells. In the tree it compares \
-             with {asked}, but a leaf hangs {levels} levels down, where {fewest} would do.",
+            "{sweeps}, {points} points. The query compares with the {compared} points of nine cells. In the tree it compares with {asked}, but some leaf is {levels} levels down, where {fewest} would do.",
             sweeps = plural(count, "sweep"),
             points = grown.tree.points.len(),
             compared = compared.len(),

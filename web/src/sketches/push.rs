@@ -17,7 +17,7 @@ pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "push",
     title: "The sweeps after a loop",
     slider: Slider {
-        label: "correction that the front end gets",
+        label: "correction given to the front end",
         unit: " %",
         min: 0.0,
         max: 100.0,
@@ -123,8 +123,7 @@ fn at(percent: f64) -> Shown {
             panels: vec![picture(lap, &left)],
         },
         sentence: format!(
-            "With {percent:.0} % of the correction the next sweeps disagree with the way out by {:.3} m. The next loop \
-             contradicts the graph by χ² {:.2}, and {verdict}.",
+            "With {percent:.0} % of the correction, the next sweeps disagree with the outbound leg by {:.3} m. The next loop contradicts the graph with a χ² of {:.2}, and {verdict}.",
             lap.disagreement_m(&left),
             gate.chi2
         ),

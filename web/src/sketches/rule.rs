@@ -50,7 +50,7 @@ fn at(tie: f64) -> Shown {
     let fall = |[before, after]: &[Vec<f64>; 2]| fall_percent(before[TIP], after[TIP]);
     let sentence = format!(
         "Tied at {tie} m, the standard deviation at the tip should fall by {:.0}%. Over {DRIVES} drives the error there falls by \
-         {:.0}%. A bias that all edges share falls by {:.0}%.",
+         {:.0}%. A bias shared by all edges falls by {:.0}%.",
         fall(&predicted),
         fall(&driven),
         fall(&biased).abs()
@@ -109,7 +109,7 @@ fn walk(tie: usize, [before, after]: &[Vec<f64>; 2], driven: &[Vec<f64>; 2]) -> 
 fn bias([before, after]: &[Vec<f64>; 2]) -> Panel {
     Panel {
         id: "bias",
-        title: "A bias that all share".to_owned(),
+        title: "A bias all edges share".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Free,
         x: Axis::new("along the path (m)", 0.0, EDGES as f64),

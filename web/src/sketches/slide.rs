@@ -73,7 +73,7 @@ impl Wall {
         correspondences(&self.sweep, &self.map, SE2::from_xy(shift_m, 0.0), &config)
     }
 
-    /// The mean squared distance, point to point and point to plane, cm².
+    /// The mean squared distance, point-to-point and point-to-plane, cm².
     fn costs(&self, shift_m: f64) -> [f64; 2] {
         let pairs = self.pairs(shift_m);
         let mean = |square: fn(&Pair) -> f64| {
@@ -188,7 +188,7 @@ fn costs(wall: &Wall, shift_m: f64) -> Panel {
 mod tests {
     use super::*;
 
-    /// The claim of the section: the position along a wall is unconstrained, but point to point constrains
+    /// The claim of the section: the position along a wall is unconstrained, but point-to-point constrains
     /// it.
     #[test]
     fn sliding_has_no_cost_point_to_plane_and_a_periodic_one_point_to_point() {

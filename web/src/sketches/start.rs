@@ -62,8 +62,7 @@ fn at(twist_deg: f64) -> Shown {
         [&from_guess, &from_relaxed].map(|solved| (solved.chi2(), Certificate::of(solved)));
     Shown {
         sentence: format!(
-            "From a guess wound up by {twist_deg:.0}°, Gauss–Newton rests at χ² {:.1}, {}. From the chordal start it rests at \
-             {:.1}, {}.",
+            "From a guess wound up by {twist_deg:.0}°, Gauss–Newton stops at χ² {:.1}, {}. From the chordal start it stops at {:.1}, {}.",
             given.0,
             verdict(&given.1),
             chordal.0,

@@ -56,7 +56,7 @@ params! {
             (Colour::Error, "error", "error"),
         ],
     )
-    .help("Time, the share of each scan that fits, the standard deviation by the graph, or the error against a reference that you give.");
+    .help("Time, the share of each scan that fits, the graph's standard deviation, or the error against your reference.");
 
     pub(super) static LOOPS: OneOf<ShownLoops> = one_of!(
         ShownLoops,
@@ -69,18 +69,18 @@ params! {
         ],
     )
     .default("closed")
-    .help("Which loops the map shows: none, those of the graph, or the rejected ones as well.");
+    .help("Which loops the map shows: none, the accepted ones, or the rejected ones as well.");
 
     pub(super) static LOOP: Param<usize> = Param::typed("loop", "loop of the list", MAX_KEYFRAMES)
-        .help("The loop whose evidence is shown; 0 is the one that fits the graph least.");
+        .help("The loop whose evidence is shown; 0 fits the graph least.");
 
     pub(super) static MARKED: Param<usize> = Param::typed("marked", "marked keyframe", MAX_KEYFRAMES)
-        .help("One end of a loop that you add; the other is the keyframe shown.");
+        .help("One end of a loop you add; the other is the keyframe shown.");
 
     pub(super) static POOR: Param<f64> =
         Param::slider("poor", "look into scans that fit less than", [0.0, 1.0], 0.05)
             .default(0.5)
-            .help("Keyframes with a smaller share of fitting points have a ring on the map, and “Next doubt” stops there.");
+            .help("Keyframes with a smaller share of fitting points are ringed on the map, and “Next doubt” stops there.");
 
     pub(super) static FILE: OneOf<&'static str> = one_of!(
         &'static str,
@@ -97,7 +97,7 @@ params! {
             ("where.tum", "where", "where.tum"),
         ],
     )
-    .help("Map for Nav2, trajectory as TUM, graph as g2o, a report with pictures, the session for continuing later, or the poses of another log’s robot.");
+    .help("The map for Nav2, the trajectory as TUM, the graph as g2o, a report with pictures, the session, to continue later, or the poses of the other log’s robot.");
 
     // Whether the other log starts at the keyframe shown.
     pub(super) static STARTS_HERE: OneOf<bool> = one_of!(
@@ -113,16 +113,16 @@ params! {
 
     pub(super) static SCAN: Param<usize> = Param::typed("scan", "scan of the other log", MAX_SCANS)
         .default(MAX_SCANS)
-        .help("The scan of the other log whose pose is shown; beyond the end, the last one.");
+        .help("The scan of the other log whose pose is shown; past the end, the last scan.");
 
     // What the page does with a log that is dropped, as it is named to the page.
     pub(super) static DROP: OneOf<&'static str> = one_of!(
         &'static str,
         "drop",
-        "a log that you drop",
+        "a dropped log",
         &[
             ("map", "map", "becomes the map"),
-            ("where", "where", "is looked for on it"),
+            ("where", "where", "is localized on it"),
         ],
     )
     .help("Whether a dropped log is mapped, or its robot is localized on the current map.");
@@ -167,9 +167,9 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     gesture: "Drop a log of your robot, or watch the sample being mapped.",
     awaits: Awaits::Nothing,
     notice: &[
-        "The log stays in your browser. It is read there, and nothing of it is sent anywhere.",
-        "Loops are sorted by doubt: first those that the rest of the graph contradicts most. Reject one, and the graph is solved again at once.",
-        "A scan that fits badly is a place to look at: glass, people, or a pose that is wrong.",
+        "The log stays in your browser. It is read there, and none of it is sent anywhere.",
+        "Loops are sorted by how strongly the rest of the graph contradicts them. Reject one, and the graph is solved again at once.",
+        "Look where a scan fits badly: glass, people, or a wrong pose.",
         "A graph with small standard deviations may be wrong. Only an external reference shows the error.",
     ],
     opening: Opening {
@@ -182,16 +182,16 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         ButtonSpec::new(
             "open",
             "Open a log…",
-            "Opens a log of CARMEN, ROS 1 or ROS 2, a saved session, or a pose graph; you can drop it on the picture as well. It stays in this browser.",
+            "Opens a CARMEN, ROS 1 or ROS 2 log, a saved session, or a pose graph. You can also drop it on the picture. It stays in this browser.",
         ),
         ButtonSpec {
-            help: "Maps the sample if no log is open, pauses or resumes a log that is being read, and plays the path of one that is mapped.",
+            help: "Maps the sample if no log is open, pauses or resumes a log that is being read, and plays the path of a mapped one.",
             ..PLAY
         },
         ButtonSpec::new(
             "sample",
             "Watch the sample",
-            "Maps a log of the simulator's ring of corridors, and grades it against the truth.",
+            "Maps a log from the simulator's ring of corridors, and grades it against the truth.",
         ),
         ButtonSpec::new("cancel", "Stop", "Stops reading, and keeps what was read."),
         ButtonSpec::new(
@@ -204,7 +204,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             "Previous loop",
             "Shows the previous loop in the list.",
         ),
-        ButtonSpec::new("next", "Next loop", "Shows the next loop of the list."),
+        ButtonSpec::new("next", "Next loop", "Shows the next loop in the list."),
         ButtonSpec::new(
             "turn",
             "Reject or close",
@@ -218,7 +218,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         ButtonSpec::new(
             "add",
             "Close with mark",
-            "Registers the keyframe shown on the surroundings of the marked one, and closes the loop if it passes its tests.",
+            "Registers the keyframe shown on the map around the marked one, and closes the loop if it passes the tests.",
         ),
         ButtonSpec::new(
             "west",
@@ -240,31 +240,31 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             "Down",
             "Moves the keyframe shown 5 cm down; also the arrow key.",
         ),
-        ButtonSpec::new("unpin", "Let go", "Releases the keyframes that you moved."),
+        ButtonSpec::new("unpin", "Let go", "Releases the keyframes you moved."),
         ButtonSpec::new(
             "reference",
             "Grade…",
-            "Opens a file of relations or of true poses, and compares the path with it.",
+            "Opens a file of relations or true poses, and compares the path with it.",
         ),
         ButtonSpec::new(
             "locate",
             "Where am I?…",
-            "Opens another log of the same location, and localizes its robot on this map.",
+            "Opens another log of the same place, and localizes its robot on this map.",
         ),
         ButtonSpec::new(
             "locate-sample",
             "Another day",
-            "Localizes the robot of the sample’s other day on this map: it is switched on halfway round.",
+            "Localizes the sample’s robot on this map on another day, switched on halfway round.",
         ),
         ButtonSpec::new(
             "change",
             "Next verdict",
-            "Goes to the next scan of the other log at which the robot is found or lost.",
+            "Goes to the next scan of the other log where the robot is found or lost.",
         ),
         ButtonSpec::new(
             "other",
             "Take another",
-            "Maps the recording again with its next topic or frame.",
+            "Maps the recording again, with its next topic or frame.",
         ),
         ButtonSpec::new("save", "Save", "Saves the selected file."),
         ButtonSpec {
@@ -277,21 +277,21 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "sure",
             label: "How sure is the graph?",
-            help: "The sample, coloured by the standard deviation of each keyframe: it grows away from the start, and loops limit it.",
+            help: "The sample, coloured by each keyframe's standard deviation. It grows with distance from the start, and loops limit it.",
             set: &[COLOUR.to("sigma")],
             then: &["sample"],
         },
         Preset {
             id: "error",
             label: "How wrong is it?",
-            help: "The sample, coloured by its error against the truth, which comes with it.",
+            help: "The sample, coloured by its error against the truth.",
             set: &[COLOUR.to("error")],
             then: &["sample"],
         },
         Preset {
             id: "where",
             label: "Where am I, another day?",
-            help: "The sample, and on its map the robot of another day, which is switched on halfway round and localizes itself.",
+            help: "The sample's map, on another day. The robot is switched on halfway round and localizes itself.",
             set: &[],
             then: &["sample", "locate-sample"],
         },

@@ -40,7 +40,7 @@ const fn moved(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
         .unit("m")
         .help(
-            "How far the point is dragged from its observed position; only points of the scene count.",
+            "How far the point is dragged from its observed position; only points in the scene count.",
         )
 }
 
@@ -58,7 +58,7 @@ params! {
     )
     .default("upside-down")
     .help(
-        "Points of two sweeps in pairs; for the last one the sensor hangs upside down the second time.",
+        "Paired points of two sweeps. In the last scene, the sensor hangs upside down for the second one.",
     );
 
     pub(super) static TRIED: OneOf<Handedness> = one_of!(
@@ -70,7 +70,7 @@ params! {
             (Handedness::Mirror, "mirrors", "mirror images"),
         ],
     )
-    .help("The source is rotated, or first mirrored and then rotated: together these are all orthogonal matrices.");
+    .help("The source is rotated, or mirrored and then rotated. Together these are all the orthogonal matrices.");
 
     pub(super) static SEED: Param<u32> = Param::seed("seed of the noise", 1)
         .help("Seed of the range noise of both sweeps, 12 mm along each axis.");
@@ -79,7 +79,7 @@ params! {
 
     pub(super) static TURN: Param<f64> = Param::timeline("turn", "angle tried", WHOLE_TURN_DEG)
         .unit("°")
-        .help("By how much the source is turned, after the mirror if there is one.");
+        .help("How far the source is rotated, after the mirror if there is one.");
 
     use SPEED;
     use MORE;
@@ -91,13 +91,13 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     name: "Turn or mirror image",
     title: "Can the best fit be a mirror image?",
     claim: "The best fit may be a mirror image.",
-    gesture: "Drag a corner across the middle, and let it go.",
+    gesture: "Drag a corner across the middle, then let it go.",
     awaits: Awaits::Rest,
     notice: &[
-        "Over a whole turn the trace is one sinusoid: it has one top, and the alignment knows its place in closed form.",
-        "Mirror images have a sinusoid of their own. The higher top of the two is the sum of the singular values, and nothing passes it.",
-        "On two points, and on a straight line, both tops are equally high. Along a bare wall noise decides between them.",
-        "A mirrored map fits its points as well as any. It has its doors on the wrong side: compare the two flats.",
+        "Over a full turn the trace is one sinusoid. It has one peak, and the closed form gives its angle.",
+        "Mirror images have their own sinusoid. The higher of the two peaks is the sum of the singular values, and no trace exceeds it.",
+        "For two points, or points on a line, both peaks are equally high. Along a bare wall, noise decides.",
+        "A mirrored map fits its points as well as any, but its doors are on the wrong side. Compare the two floor plans.",
     ],
     opening: Opening {
         panels: &["points"],
@@ -110,28 +110,28 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "corners",
             label: "Turn four corners",
-            help: "The trace climbs to its bound at one angle, and falls again: the mirror images stay far below.",
+            help: "The trace climbs to its bound at one angle and falls again. The mirror images stay far below.",
             set: &[SHAPE.to("corners")],
             then: &["play"],
         },
         Preset {
             id: "two-points",
             label: "Two points only",
-            help: "Turn and mirror image reach the same bound: two points cannot tell left from right.",
+            help: "Rotation and mirror image reach the same bound, because two points cannot tell left from right.",
             set: &[SHAPE.to("two")],
             then: &["play"],
         },
         Preset {
             id: "bare-wall",
             label: "A bare wall",
-            help: "The wall fixes the line, and noise decides the side: here the mirror image fits a little better.",
+            help: "The wall fixes the line, and noise picks the side. Here the mirror image fits a little better.",
             set: &[SHAPE.to("wall"), SEED.to(2), TRIED.to("mirrors")],
             then: &["play"],
         },
         Preset {
             id: "upside-down",
             label: "Hang the sensor upside down",
-            help: "A mirror image fits without a rest, and hides the mistake. The best turn leaves a cost that shows it.",
+            help: "A mirror image fits perfectly and hides the mistake. The best rotation leaves a cost that shows it.",
             set: &[SHAPE.to("upside-down"), TRIED.to("mirrors")],
             then: &["play"],
         },

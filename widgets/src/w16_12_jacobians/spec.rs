@@ -48,7 +48,7 @@ params! {
             (WrongJacobian::LeftForRight, "left", "left for right"),
         ],
     )
-    .help("Twice the exact one, or that of a perturbation on the other side of the pose.");
+    .help("Twice the exact Jacobian, or the Jacobian of a perturbation on the other side of the pose.");
 
     pub(super) static SCATTER: Param<f64> =
         Param::slider("scatter", "start thrown off by", [0.0, 0.3], 0.05)
@@ -71,7 +71,7 @@ params! {
     .help("Largest distance of a pose from its optimum, or the difference of χ² from its minimum.");
 
     pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MAX_STEPS as f64)
-        .help("How many steps each solver has done; beyond its last one it has converged.");
+        .help("How many steps each solver has taken; past its last, it has converged.");
 
     use SPEED;
     use MORE;
@@ -83,12 +83,12 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     name: "One graph, solved in four ways",
     title: "A solver has stopped: is this the minimum of χ²?",
     claim: "Converged does not mean minimum.",
-    gesture: "Drag the loose end, and let it go.",
+    gesture: "Drag the loose end, then let it go.",
     awaits: Awaits::Rest,
     notice: &[
-        "With the exact Jacobian each step takes the distance down by some two powers of ten, until only rounding is left.",
-        "The Jacobian that is twice too long goes half the way each time, and still ends at the optimum.",
-        "The approximate one ends beside it by the square of the contradiction: a centimetre, where the wrong residual is two decimetres off.",
+        "With the exact Jacobian each step cuts the distance by about two powers of ten, until only rounding is left.",
+        "With a Jacobian twice too long, each step goes half the way. It still ends at the optimum.",
+        "With the approximate Jacobian, the error grows with the square of the contradiction. It ends a centimetre out, and the wrong residual two decimetres.",
         "The less the measurements contradict each other, the closer the wrong residual ends. A test on clean data does not find it.",
     ],
     opening: Opening {
@@ -102,21 +102,21 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "four",
             label: "Solve it in four ways",
-            help: "From one start, step by step: watch where each of them ends.",
+            help: "All from one start, step by step. Watch where each one ends.",
             set: &[],
             then: &["play"],
         },
         Preset {
             id: "left",
             label: "Left for right",
-            help: "A Jacobian of the wrong side is right where nothing is left: it ends a millimetre or two beside the optimum.",
+            help: "A Jacobian for the wrong side is right only where the residual is zero. It ends a millimetre or two from the optimum.",
             set: &[WRONG.to("left")],
             then: &["play"],
         },
         Preset {
             id: "half",
             label: "Half the contradiction",
-            help: "The wrong residual is off by half as much, the approximate Jacobian by a quarter.",
+            help: "The wrong residual is out by half as much, the approximate Jacobian by a quarter.",
             set: &[BIAS.to(3.0)],
             then: &["play"],
         },

@@ -40,21 +40,21 @@ pub enum Phase {
 
 /// The reader's marks of the edge of the basin, for both errors.
 pub(super) static EDGES: [Param<f64>; 2] = [
-    edge("edge-p2p", "your edge, point to point"),
-    edge("edge-p2l", "your edge, point to plane"),
+    edge("edge-p2p", "your edge, point-to-point"),
+    edge("edge-p2l", "your edge, point-to-plane"),
 ];
 
 const fn edge(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [0.0, 180.0], 1.0)
         .unit("°")
-        .help("Your mark of the edge, on either side of the truth; 0 is none.")
+        .help("Where you mark the edge, on either side of the truth; 0 is no mark.")
 }
 
 const fn offset(id: &'static str, label: &'static str, default: f64) -> Param<f64> {
     Param::slider(id, label, [-OFFSET_SPAN_M, OFFSET_SPAN_M], 0.05)
         .unit("m")
         .default(default)
-        .help("How far the first guess is moved away from the truth.")
+        .help("How far the first guess is from the truth.")
 }
 
 params! {
@@ -62,7 +62,7 @@ params! {
         Param::slider("heading", "heading error", [-180.0, 180.0], 1.0)
             .unit("°")
             .default(25.0)
-            .help("How far the first guess is turned away from the truth.");
+            .help("How far the first guess is turned from the truth.");
 
     pub(super) static DX: Param<f64> = offset("dx", "Δx of the guess", 0.55);
 
@@ -84,7 +84,7 @@ params! {
     pub(super) static TAU: Param<f64> = Param::slider("tau", "pairing distance τ", [0.1, 1.6], 0.05)
         .unit("m")
         .default(0.7)
-        .help("A point farther than this from the target has no pair.");
+        .help("A point further than this from the target is unmatched.");
 
     pub(super) static LIMIT: OneOf<usize> = one_of!(
         usize,
@@ -99,7 +99,7 @@ params! {
 
     pub(super) static TRIM: Param<f64> =
         Param::slider("trim", "share of pairs dropped", [0.0, 0.7], 0.05).help(
-            "Trimming drops this share of the pairs in each iteration, the longest first; 0 keeps all.",
+            "Trimming drops this share of the pairs in each iteration, longest first; 0 keeps them all.",
         );
 
     pub(super) static HUBER: Param<f64> =
@@ -120,7 +120,7 @@ params! {
     .help("The vertical axis of the basin maps; the other offset comes from its slider.");
 
     pub(super) static PATHS: Param<bool> = Param::switch("paths", "paths of other starts")
-        .help("Draws over the basin map the paths from starts all over it, iteration by iteration.");
+        .help("Draws paths from starts all over the basin map, iteration by iteration.");
 
     pub(super) static EDGE: OneOf<Phase> = one_of!(
         Phase,
@@ -128,11 +128,11 @@ params! {
         "the basin's edge",
         &[
             (Phase::Off, "off", "is not asked for"),
-            (Phase::Marking, "mark", "is for you to mark"),
+            (Phase::Marking, "mark", "is yours to mark"),
             (Phase::Swept, "swept", "is swept"),
         ],
     )
-    .help("Asks how far a guess at the right position may be turned and still converge to the truth; while you mark it, the maps are covered.");
+    .help("Asks how far a guess at the right position may be turned and still converge to the truth. The maps stay covered until you have marked it.");
 
     use EDGES[0];
     use EDGES[1];
@@ -142,7 +142,7 @@ params! {
 
     pub(super) static ITERATION: Param<f64> =
         Param::timeline("iteration", "iteration", ITERATION_LIMITS[1] as f64).help(
-            "Which iteration is shown; 0 is the first guess, and beyond the last one is the end.",
+            "Which iteration is shown; 0 is the first guess, and past the last is the end.",
         );
 
     use SPEED;
@@ -153,17 +153,17 @@ params! {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.1",
     name: "Basin explorer",
-    title: "How far may you turn a sweep before it settles on a false place?",
+    title: "How far can you turn a sweep before it settles in a false minimum?",
     claim: "The start decides; a good fit proves nothing.",
     gesture: "Drag the sweep, then let it go.",
     awaits: Awaits::Rest,
     notice: &[
-        "The room is almost square, so a quarter turn is a minimum too: rmse 0.13 m there, 0.03 m at the truth. After half a turn point to plane fits better than at the truth.",
-        "Between the right basin and the quarter turn, point to point settles on a third answer.",
-        "A row of equal posts has a minimum at each spacing: bands on the map, and no residual tells them apart.",
-        "Point to plane needs fewer iterations, and its right basin is wider with no offset.",
-        "The verdict uses the truth. A robot has only rmse and pairs, and a wrong pose can have the smaller rmse.",
-        "A run that has used up its iterations has not reached a minimum. With 200 the right basin is a little wider.",
+        "The room is almost square, so the quarter turn is a minimum as well, with an rmse of 0.13 m against 0.03 m at the truth. At the half turn, point-to-plane fits better than at the truth.",
+        "Between the right basin and the quarter turn, point-to-point settles on a third answer.",
+        "A row of equal posts has a minimum at every spacing, seen as bands on the map. No residual tells them apart.",
+        "Point-to-plane needs fewer iterations. With no offset, its right basin is also wider.",
+        "The verdict uses the truth. A robot has only the rmse and the pairs, and a wrong pose can have the smaller rmse.",
+        "A run that stops at its iteration limit has not reached a minimum. With 200 iterations the right basin is a little wider.",
     ],
     opening: Opening {
         panels: &["sweeps", "basin-point-to-point", "basin-point-to-plane"],
@@ -176,14 +176,14 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "near",
             label: "Start 25° off",
-            help: "Inside the right basin: the sweeps come together.",
+            help: "Inside the right basin, the sweeps come together.",
             set: &[ITERATION.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "quarter-turn",
             label: "Start 60° off",
-            help: "The same room: on its way to the quarter turn its iterations run out.",
+            help: "The same room. It runs out of iterations on the way to the quarter turn.",
             set: &[HEADING.to(60.0), DX.to(0.0), DY.to(0.0), ITERATION.to(0.0)],
             then: &["play"],
         },
@@ -196,8 +196,8 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         },
         Preset {
             id: "between-plane",
-            label: "45°, point to plane",
-            help: "The same start with the other error: now it finds the truth.",
+            label: "45°, point-to-plane",
+            help: "The same start with the other residual. Now it finds the truth.",
             set: &[
                 HEADING.to(45.0),
                 DX.to(0.0),
@@ -210,14 +210,14 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "half-turn",
             label: "Start upside down",
-            help: "Half a turn fits as well, and better than the quarter turn.",
+            help: "The half turn fits too, and better than the quarter turn.",
             set: &[HEADING.to(180.0), DX.to(0.0), DY.to(0.0), ITERATION.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "fence",
             label: "Stand before a picket fence",
-            help: "Equal posts fit again after each spacing: it settles one post off, and fits as well as at home. The map has a band for each.",
+            help: "Equal posts fit again after each spacing. It settles one post off and fits as well as at the truth. Each post has its band on the map.",
             set: &[
                 SCENE.to("fence"),
                 HEADING.to(0.0),
@@ -230,7 +230,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "mark-edge",
             label: "Where is the edge?",
-            help: "The maps are covered: mark on each how far a guess may be turned and still converge to the truth, then sweep the edge.",
+            help: "The maps are covered. Mark on each how far a guess may be turned and still converge to the truth, then sweep the edge.",
             set: &[
                 HEADING.to(0.0),
                 DX.to(0.0),
@@ -243,7 +243,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "short-sighted",
             label: "Short-sighted τ",
-            help: "With τ of 0.2 m most points find no pair, and the cloud hardly moves.",
+            help: "With a τ of 0.2 m most points are unmatched, and the cloud barely moves.",
             set: &[TAU.to(0.2), ITERATION.to(0.0)],
             then: &["play"],
         },

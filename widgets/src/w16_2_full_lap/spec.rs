@@ -88,7 +88,7 @@ pub const LOOP_BUTTONS: &[ButtonSpec] = &[
     ButtonSpec::new(
         "next",
         "Next loop",
-        "Go to the next loop; after the last one, to the first.",
+        "Go to the next loop; from the last, back to the first.",
     ),
 ];
 
@@ -169,22 +169,22 @@ const FLAT_BUTTONS: &[ButtonSpec] = &[
     ButtonSpec::new(
         "turn-here",
         "Seen again from here",
-        "From the selected way point on, known locations are seen again: the map from there is compared with the one before.",
+        "From the selected way point on, the robot revisits known places. The map from there on is compared with the map before.",
     ),
     ButtonSpec::new(
         "take-back",
         "Undo edit",
-        "Undoes the last change of the flat; also Ctrl+Z.",
+        "Undoes the last change to the floor plan; also Ctrl+Z.",
     ),
     ButtonSpec::new(
         "do-again",
         "Redo edit",
-        "Repeats the change that was undone last; also Ctrl+Y.",
+        "Redoes the last undone change; also Ctrl+Y.",
     ),
     ButtonSpec::new(
         "open-flat",
         "Open a flat",
-        "Opens a world from a JSON file, as slam2d --world reads it.",
+        "Opens a world from a JSON file that slam2d --world reads.",
     ),
     ButtonSpec::new(
         "save-flat",
@@ -236,7 +236,7 @@ params! {
             ["own", "your own flat"],
         ),
     )
-    .help("The world. The Apartment uses the chapter's estimator, every other world the default one.");
+    .help("The world. The Apartment uses the chapter's estimator, every other world the default.");
 
     pub(super) static EDIT: OneOf<Option<Tool>> = one_of!(
         Option<Tool>,
@@ -251,7 +251,7 @@ params! {
             (Some(Tool::Robot), "robot", "robot"),
         ],
     )
-    .help("What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, remove something, or set the robot down. All on a grid of 5 cm.");
+    .help("What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, remove something, or set the robot down. Everything snaps to a grid of 5 cm.");
 
     pub(super) static PIECE: OneOf<Option<usize>> = one_of!(
         Option<usize>,
@@ -267,7 +267,7 @@ params! {
             (Some(5), "heading", "its heading"),
         ],
     )
-    .help("The piece of the flat that the arrows move and Remove deletes. On the map, a press selects it.");
+    .help("The piece that the arrows move and Remove deletes. Press a piece on the map to select it.");
 
     pub(super) static PIECE_NUMBER: Param<usize> =
         Param::typed("piece-number", "number of the piece", MAX_PIECES)
@@ -275,7 +275,7 @@ params! {
             .help("The number of the wall or of the way point, from 1.");
 
     pub(super) static FLAT: Param<String> = Param::text("flat", "your flat as text", MAX_FLAT)
-        .help("Walls, start and way points of your own flat to the centimetre, as in links. It makes the world your own flat.");
+        .help("Walls, start and way points of your own floor plan to the centimetre, as in links. Setting it makes this the world.");
 
     use NOISE;
     use LOOPS;
@@ -284,7 +284,7 @@ params! {
 
     pub(super) static GATE: Param<f64> = Param::slider("gate", "gate quantile", [0.90, 0.999], 0.001)
         .default(CHAPTER_QUANTILE)
-        .help("Quantile of χ² with 3 degrees of freedom: 0.95 is χ² up to 7.815. So many true loops pass if the robot does not move, fewer after a drive.");
+        .help("Quantile of χ² with 3 degrees of freedom; 0.95 is χ² up to 7.815. This share of true loops passes if the robot stands still, less after a drive.");
 
     pub(super) static GATE_MODEL: OneOf<GateModel> = one_of!(
         GateModel,
@@ -295,7 +295,7 @@ params! {
             (GateModel::ExactMarginal, "exact", "exact"),
         ],
     )
-    .help("Path: the chapter's, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. An outline contains the positions that pass at the registered heading.");
+    .help("Path: the chapter's gate, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. The outline shows which positions pass at the registered heading.");
 
     pub(super) static MATCHER: OneOf<LapMatcher> = one_of!(
         LapMatcher,
@@ -303,7 +303,7 @@ params! {
         "matcher",
         LapMatcher::NAMED,
     )
-    .help("What registers each sweep, in the front end and for loops: the chapter's ICP, point to point, or point to plane, or the normal distributions transform.");
+    .help("What registers each sweep, in the front end and for loops: the chapter's ICP, point-to-point or point-to-plane, or the normal distributions transform.");
 
     pub(super) static INFORMATION: OneOf<InformationFrame> = one_of!(
         InformationFrame,
@@ -311,18 +311,18 @@ params! {
         "information",
         InformationFrame::NAMED,
     )
-    .help("The frame of an edge's information. As the chapter's figures were computed, it is turned by a heading of the world; exactly, it is that of the edge's target, the newer of its ends.");
+    .help("The frame of an edge's information. For the chapter's figures, it is turned by a heading in the world; the exact frame is that of the edge's target, the newer end.");
 
     pub(super) static NORMALS: Param<f64> = Param::slider("normals", "radius of the normals", [0.0, 8.0], 0.1)
         .unit("cells")
-        .help("A point's normal comes from its neighbours within this radius, in cells of 12 cm. 0 is the matcher's own: 2.5, and 4.2 for point to plane.");
+        .help("A point's normal comes from its neighbours within this radius, in cells of 12 cm. 0 is the matcher's default: 2.5, or 4.2 for point-to-plane.");
 
     pub(super) static CAP: Param<bool> = Param::switch("cap", "cap on the information")
         .on()
-        .help("Whether the information of an edge is scaled down to 2500 at most, a deviation of 2 cm and of 0.02 rad.");
+        .help("Whether the information of an edge is capped at 2500, a standard deviation of 2 cm or 0.02 rad.");
 
     pub(super) static MISSES: Param<bool> = Param::switch("misses", "keep beams that hit no wall")
-        .help("A beam that hits no wall reports the maximum range. Kept as points, a common mistake, these make a wall that moves with the robot.");
+        .help("A beam that hits no wall reports the maximum range. Keeping these as points is a common mistake. They form a wall that moves with the robot.");
 
     pub(super) static PICK: OneOf<Picked> = one_of!(
         Picked,
@@ -335,10 +335,10 @@ params! {
             (Picked::Loop, "loop", "a loop"),
         ],
     )
-    .help("The part of the graph whose numbers are shown. On the map, a click or a tap selects it, and one beside everything selects nothing.");
+    .help("The part of the graph whose numbers are shown. Click or tap it on the map to select it, or an empty spot to select none.");
 
     pub(super) static NUMBER: Param<usize> = Param::typed("number", "number", MAX_NODES)
-        .help("The number of the keyframe; of the keyframe where the edge begins; of the newer keyframe of the loop.");
+        .help("The number of the keyframe, of the edge's first keyframe, or of the loop's newer one.");
 
     pub(super) static OWN: OneOf<Option<Claim>> = one_of!(
         Option<Claim>,
@@ -346,7 +346,7 @@ params! {
         "your own loop",
         &optional::<_, { Claim::NAMED.len() + 1 }>(Claim::NAMED, 0, ["none", "none"]),
     )
-    .help("A loop between any two keyframes. Registered: the registration of their sweeps, from their poses in the graph. The truth: what no robot knows. “The same place”: both at one position, right or wrong.");
+    .help("A loop between any two keyframes. Registered: their sweeps, registered from their poses in the graph. The truth: what no robot knows. “The same place”: both at one position, rightly or wrongly.");
 
     pub(super) static OWN_FROM: Param<usize> =
         Param::typed("own-from", "your loop: from keyframe", MAX_NODES)
@@ -361,9 +361,9 @@ params! {
             .help("The other end of your own loop.");
 
     pub(super) static OWN_GATE: Param<bool> =
-        Param::switch("own-gate", "your loop has to pass the gate")
+        Param::switch("own-gate", "your loop must pass the gate")
             .on()
-            .help("Whether the tests may reject your own loop: fit, pairs and gate if it is registered, the gate if it is asserted.");
+            .help("Whether the tests may reject your own loop: fit, pairs and gate if it is registered, only the gate if it is asserted.");
 
     pub(super) static KERNEL: OneOf<OwnKernel> = one_of!(
         OwnKernel,
@@ -371,18 +371,18 @@ params! {
         "kernel of your loop",
         OwnKernel::NAMED,
     )
-    .help("The robust kernel of your own loop: plain least squares, Huber's kernel from 1.345 standard deviations on, or dynamic covariance scaling from χ² 10 on.");
+    .help("The robust kernel of your own loop: plain least squares, Huber's kernel from 1.345 standard deviations, or dynamic covariance scaling from a χ² of 10.");
 
     pub(super) static WIPE: Param<f64> = Param::slider("wipe", "before and after", [0.0, 1.0], 0.01)
         .default(0.45)
-        .help("At a closed loop: left of the line the map before it, right of it the map after it. The line's place, as a share of the map's width.");
+        .help("At a closed loop, the map before it is left of the line, and the map after it is right. The line's position is a share of the map's width.");
 
     pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", MAX_TICKS)
         .default(FIRST_LOOP_TICK)
-        .help("The moment shown; a tick is a quarter of a second, the marks are loops, and beyond the end means the end.");
+        .help("The moment shown. A tick is a quarter of a second, the marks are loops, and values past the end mean the end.");
 
     pub(super) static FUTURE: Param<bool> = Param::switch("future", "show what is to come")
-        .help("Draws the whole lap into the plots, including what comes after the moment shown.");
+        .help("Plots the whole lap, including what comes after the moment shown.");
 
     use SPEED;
     use MORE;
@@ -403,16 +403,16 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.2",
     name: "The full lap",
     title: "How far is a lap’s map off at its end, and what do loops correct?",
-    claim: "A loop does not right every pose.",
+    claim: "A loop does not correct every pose.",
     gesture: "Press Play, or drag the timeline.",
     awaits: Awaits::Nothing,
     notice: &[
-        "The walls seen on the way out and on the way back stand apart, and one loop brings them together: the map's disagreement falls to about a third over the lap.",
-        "The typical error over the keyframes hardly changes, and the largest even grows a little: the corridor comes out almost a metre too short, and no loop sees that.",
+        "The walls seen on the outbound and return legs are apart, and one loop brings them together. Over the lap, the map's disagreement falls to about a third.",
+        "The typical error over the keyframes barely changes, and the largest even grows a little. The corridor comes out almost a metre too short, and no loop can see that.",
         "A loop moves poses that the robot left long ago. A filter that keeps only the newest pose could not.",
-        "Click a keyframe, and drag from it to another: your own loop. A wrong one is paid for by every edge between its ends, each a little; a kernel gives it little weight.",
+        "Click a keyframe, and drag from it to another to add your own loop. If it is wrong, every edge between its ends pays a little. A kernel gives it little weight.",
         "A small χ² is not enough: the sweep must also fit the old walls to 0.16 m, with at least 25 pairs.",
-        "The exact gate adds up the covariances of the edges, and is no closer to the truth. Over seeds 1 to 50 at four times the noise the chapter's closes 78 loops, 3 of them wrong; the exact one closes 123, 7 of them wrong: more of both. Wrong is more than 0.3 m or 5° off the truth.",
+        "The exact gate adds up the covariances of the edges, and is no closer to the truth. Over seeds 1 to 50 at four times the noise, the chapter's gate closes 78 loops, 3 of them wrong. The exact gate closes 123, 7 of them wrong. Wrong means more than 0.3 m or 5° from the truth.",
     ],
     opening: Opening {
         panels: &["map"],
@@ -425,28 +425,28 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "first-loop",
             label: "Watch the first loop",
-            help: "Node 29 recognises the corridor at node 7. The robot's own error falls, the error over all keyframes rises.",
+            help: "Node 29 recognizes the corridor at node 7. The robot's own error falls; the error over all keyframes rises.",
             set: &[TICK.to(FIRST_LOOP_TICK)],
             then: &["at"],
         },
         Preset {
             id: "rejected",
             label: "Seed 6: a loop is rejected",
-            help: "The χ² is below the gate, but the sweep fits the old walls badly; four keyframes later a better match passes.",
+            help: "The χ² is below the threshold, but the sweep fits the old walls badly. Four keyframes later a better match passes.",
             set: &[SEED.to(6), TICK.to(90.0)],
             then: &[],
         },
         Preset {
             id: "no-loops",
             label: "Switch the loops off",
-            help: "The front end alone: the same sweeps, and a map whose two passes end 0.24 m apart instead of 0.08 m.",
+            help: "The front end alone, with the same sweeps. The map's two passes end 0.24 m apart instead of 0.08 m.",
             set: &[LOOPS.to(false), TICK.to(LAP_TICKS)],
             then: &[],
         },
         Preset {
             id: "noisy",
             label: "Four times the noise",
-            help: "Odometry ends almost 5 m off, the front end holds, and the last loop closes in the last tick.",
+            help: "Odometry ends almost 5 m out, the front end holds, and the last loop closes in the last tick.",
             set: &[NOISE.to(4.0), TICK.to(LAP_TICKS)],
             then: &[],
         },
@@ -460,14 +460,14 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "locked-out",
             label: "Right loops, locked out",
-            help: "Seed 2 at three times the noise drifts more than the gate allows for: it rejects three right loops, and the drift goes on.",
+            help: "Seed 2 at three times the noise drifts more than the gate allows for. The gate rejects three true loops, and the drift goes on.",
             set: &[SEED.to(2), NOISE.to(3.0), TICK.to(LAP_TICKS)],
             then: &[],
         },
         Preset {
             id: "let-in",
             label: "The same lap, exact gate",
-            help: "The chapter's gate rejects the first loop for its heading alone. The edges are less sure of the heading: the exact gate lets all three loops in, and the lap ends more than a metre closer.",
+            help: "The chapter's gate rejects the first loop for its heading alone. The edges are less sure of the heading, so the exact gate accepts all three loops, and the lap ends more than a metre closer.",
             set: &[
                 SEED.to(2),
                 NOISE.to(3.0),
@@ -479,7 +479,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "wrong-loop",
             label: "A wrong loop, forced in",
-            help: "“Keyframes 40 and 12 are the same place” is a lie of 6 m. Past the gate it folds the map: the history moves by up to 3.8 m, and every edge between the two is strained.",
+            help: "“Keyframes 40 and 12 are the same place” is a lie of 6 m. Without the gate, it folds the map. The history moves by up to 3.8 m, and every edge between the two is strained.",
             set: &[
                 OWN.to("same-place"),
                 OWN_FROM.to(40),
@@ -493,7 +493,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "tamed-loop",
             label: "The same lie, tamed",
-            help: "Dynamic covariance scaling gives a loop that is far off next to no weight: no pose moves.",
+            help: "Dynamic covariance scaling gives a loop that is far out next to no weight. No pose moves.",
             set: &[
                 OWN.to("same-place"),
                 OWN_FROM.to(40),
@@ -507,7 +507,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "true-loop",
             label: "A true loop that the gate rejects",
-            help: "From keyframe 25, on the way back, to the start, as it truly is: the typical error over the keyframes falls from 0.59 m to 0.14 m. The gate rejects it, at χ² 13.0: drift does not explain it.",
+            help: "A loop with the true relative pose, from keyframe 25 on the return leg to the start. The typical error over the keyframes falls from 0.59 m to 0.14 m. At a χ² of 13.0 the gate rejects it, because drift does not explain it.",
             set: &[
                 OWN.to("truth"),
                 OWN_FROM.to(25),
@@ -520,7 +520,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "ring",
             label: "A ring that closes",
-            help: "Around a block and back to the start from the other side, by point to plane: the chain is held at both ends.",
+            help: "Around a block and back to the start from the other side, point-to-plane. The chain is held at both ends.",
             set: &[
                 WORLD.to("ring"),
                 MATCHER.to("p2l"),
@@ -532,7 +532,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "twins",
             label: "Two rooms alike",
-            help: "The second room looks like the first, and after such a long path the gate is wide enough: the robot closes a wrong loop, and the two rooms become one.",
+            help: "The second room looks like the first, and after such a long path the gate is wide enough. The robot closes a wrong loop, and the two rooms become one.",
             set: &[
                 WORLD.to("twins"),
                 INFORMATION.to("exact"),
@@ -543,7 +543,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "corridor",
             label: "A bare corridor",
-            help: "Along it the laser measures nothing, and point to point holds each sweep back: the map agrees with itself, and the corridor is a fraction of its length.",
+            help: "Lengthwise, the laser measures nothing, and point-to-point drags each sweep back. The map agrees with itself, and the corridor is a fraction of its true length.",
             set: &[
                 WORLD.to("corridor"),
                 INFORMATION.to("exact"),
@@ -554,7 +554,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "hall",
             label: "A round hall",
-            help: "The wall fixes the position and leaves the heading open: by point to plane the robot is on the far side of the hall at the end, and the map agrees with itself to three centimetres.",
+            help: "The wall fixes the position and leaves the heading open. With point-to-plane the robot ends on the far side of the hall, and the map agrees with itself to three centimetres.",
             set: &[
                 WORLD.to("hall"),
                 MATCHER.to("p2l"),
@@ -566,21 +566,21 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "phantom-wall",
             label: "Keep beams that hit no wall",
-            help: "The most common mistake: readings at the maximum range become points, and these travel with the robot and hold it back. The typical error over the keyframes grows from 0.59 m to 0.89 m; the lap ends nearer, and the map agrees with itself.",
+            help: "The most common mistake. Readings at the maximum range become points, which travel with the robot and drag it back. The typical error over the keyframes grows from 0.59 m to 0.89 m, though the lap ends closer and the map agrees with itself.",
             set: &[MISSES.to(true), TICK.to(LAP_TICKS)],
             then: &[],
         },
         Preset {
             id: "bells",
-            label: "The same lap by NDT",
-            help: "The same sweeps, matched to bells in place of points: the lap ends 0.04 m off instead of 0.24 m.",
+            label: "The same lap with NDT",
+            help: "The same sweeps, matched to Gaussians instead of points. The lap ends 0.04 m out instead of 0.24 m.",
             set: &[MATCHER.to("ndt"), TICK.to(LAP_TICKS)],
             then: &[],
         },
         Preset {
             id: "sliding",
-            label: "The same lap by planes",
-            help: "The same sweeps, each point free to slide along its wall: the lap ends 0.05 m off instead of 0.24 m.",
+            label: "The same lap, point-to-plane",
+            help: "The same sweeps, with each point free to slide along its wall. The lap ends 0.05 m out instead of 0.24 m.",
             set: &[MATCHER.to("p2l"), TICK.to(LAP_TICKS)],
             then: &[],
         },

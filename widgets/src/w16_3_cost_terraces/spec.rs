@@ -85,7 +85,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "wide-hill",
         label: "Widen the NDT cell to 0.8 m",
-        help: "The bells grow longer and fewer, and NDT's ball comes home from where ICP's rolls farther away.",
+        help: "The bells grow longer and fewer. NDT's ball comes home from where ICP's rolls further away.",
         set: &[
             ("tau", 0.6),
             ("colours", 0.0),
@@ -98,7 +98,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "wide-tau",
         label: "Widen τ to 1.6 m",
-        help: "No point is without a pair now. ICP's ball comes home from here, NDT's does not.",
+        help: "Every point is matched now. ICP's ball comes home from here; NDT's does not.",
         set: &[
             ("tau", 1.6),
             ("colours", 0.0),
@@ -110,7 +110,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "corridor",
         label: "Stand in the corridor",
-        help: "Both valleys run along the walls without end. The balls find the middle of the valley and stay where they were dropped along it.",
+        help: "Both valleys run along the walls without end. The balls roll to the middle, and stay where they were along the wall.",
         set: &[
             ("scene", 1.0),
             ("tau", 0.6),
@@ -123,7 +123,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "wrong-wall",
         label: "Drop it across the corridor",
-        help: "From here the south wall looks like the north wall. Both balls settle on the wrong one.",
+        help: "From here the south wall looks like the north wall, and both balls settle on the wrong one.",
         set: &[
             ("scene", 1.0),
             ("tau", 0.6),
@@ -136,7 +136,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "own-corridor",
         label: "Match the corridor with itself",
-        help: "The sweep knows its own noise and its doors again, and the cost is lowest at the truth. No second sweep would be so sure.",
+        help: "The sweep recognizes its own noise and its doors, and the cost is lowest at the truth. A second sweep would not be so sure.",
         set: &[
             ("scene", 2.0),
             ("tau", 0.6),
@@ -149,28 +149,28 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "drop-room",
         label: "Drop 100 sweeps in the room",
-        help: "They rest in a round heap with a standard deviation of a millimetre, about that of the information.",
+        help: "They settle in a round heap with a standard deviation of a millimetre, about what the information predicts.",
         set: &[("tau", 0.6), ("colours", 0.0)],
         then: &["drop-100"],
     },
     Preset {
         id: "drop-corridor",
         label: "Drop 100 sweeps in the corridor",
-        help: "They rest in a streak along the walls, much longer than the needle of the information.",
+        help: "They settle in a streak along the walls, much longer than the information predicts.",
         set: &[("scene", 1.0), ("tau", 0.6), ("colours", 0.0)],
         then: &["drop-100"],
     },
     Preset {
         id: "one-row",
         label: "Take the corridor's rows one by one",
-        help: "One row, then more with the slider of rows: the second row that differs makes the rank two, and no other ever makes it three.",
+        help: "Start with one row, and add more with the slider. The second distinct row makes the rank two, and no other ever makes it three.",
         set: &[("scene", 1.0), ("rows", 1.0)],
         then: &[],
     },
     Preset {
         id: "turned",
         label: "Turn the sweep by 20°",
-        help: "No shift undoes a turn. The lowest cost rises, and NDT's lowest cell leaves the truth.",
+        help: "No shift undoes a rotation. The lowest cost rises, and NDT's lowest cell leaves the truth.",
         set: &[("tau", 0.6), ("colours", 0.0), ("heading", 20.0)],
         then: &["play"],
     },
@@ -186,7 +186,7 @@ params! {
             (ReliefMeasure::Ndt, "ndt", "NDT"),
         ],
     )
-    .help("ICP's cost or NDT's score of the same sweep on the same points; the relief morphs from one to the other.");
+    .help("ICP's cost or NDT's score, for the same sweep on the same points. The relief morphs from one to the other.");
 
     pub(super) static SCENE: OneOf<SweepPlace> = one_of!(
         SweepPlace,
@@ -204,7 +204,7 @@ params! {
         .unit("m")
         .default(0.15)
         .help(
-            "ICP pairs a point with the nearest map point within τ; a point without a pair costs τ².",
+            "ICP pairs a point with the nearest map point within τ; an unmatched point costs τ².",
         );
 
     pub(super) static NDT_CELL: Param<f64> = Param::slider("ndt-cell", "NDT cell", [0.3, 1.2], 0.05)
@@ -215,7 +215,7 @@ params! {
     pub(super) static HEADING: Param<f64> =
         Param::slider("heading", "heading offset", [-180.0, 180.0], 1.0)
             .unit("°")
-            .help("The sweep is turned by this much about the sensor before it is shifted.");
+            .help("How far the sweep is turned about the sensor before it is shifted.");
 
     pub(super) static CELLS: Param<f64> = Param::slider("cells", "cells a side", CELLS_OF_A_SIDE, 8.0)
         .default(49.0)
@@ -231,7 +231,7 @@ params! {
         ],
     )
     .default("rank")
-    .help("By rank, every colour covers equally many cells, which shows low steps on high ground.");
+    .help("By rank, every colour covers the same number of cells, so low steps show even on high ground.");
 
     pub(super) static SEED: Param<u32> = Param::seed("seed of the sweep", TerrainScene::SEED)
         .help("Seed of the range noise of the sweep; 1472 is the chapter's.");
@@ -250,16 +250,16 @@ params! {
 
     pub(super) static DROPS: Param<usize> =
         Param::slider("drops", "sweeps dropped", [0.0, MAX_DROPS], 1.0)
-            .help("Number of sweeps with independent noise that are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m.");
+            .help("How many sweeps, each with its own noise, are dropped up to 0.3 m from the truth and registered point-to-plane with a τ of 0.6 m.");
 
     pub(super) static ROWS: Param<f64> = Param::slider("rows", "rows of H", [0.0, MAX_ROWS], 1.0)
         .default(MAX_ROWS)
-        .help("Number of points, in the order of the beams, that give a row (n_x, n_y, p × n) of the point-to-plane step; at the right end, all.");
+        .help("How many points, in beam order, contribute a row (n_x, n_y, p × n) to the point-to-plane step; at the right end, all.");
 
     pub(super) static ODOMETRY: Param<f64> =
-        Param::slider("odometry", "σ of a row of odometry", [0.0, 0.5], 0.01)
+        Param::slider("odometry", "σ of an odometry row", [0.0, 0.5], 0.01)
             .unit("m")
-            .help("Adds the row (1, 0, 0) with the weight 1/σ²; 0 adds none.");
+            .help("Adds the row (1, 0, 0) with weight 1/σ²; 0 adds none.");
 
     pub(super) static ROLLED: Param<f64> = Param::timeline("t", "% rolled", END_PERCENT)
         .help("How much of its path the ball has rolled, in steps of its descent.");
@@ -274,15 +274,15 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     name: "Cost terraces",
     title: "Where does the ball roll home, and where does it stick?",
     claim: "False minima are in the cost.",
-    gesture: "Drag the ball, and let it go.",
+    gesture: "Drag the ball, then let it go.",
     awaits: Awaits::End,
     notice: &[
-        "Both reliefs hold the same sweep against the same points; only the measure differs. Dark is low, the light comes from the upper left, and the ball rolls into the dark.",
-        "A small τ breaks ICP's bowl into terraces and hollows. A ball rests on the next one, however good the solver; the ground beside the relief shows it, with the pit that it did not reach.",
-        "At each crease of the cost a point gets another partner, or none: the slope jumps, not the height. Those that are about to change light up.",
-        "NDT has no such creases: each point feels the whole bell of its cell. But thin walls make thin bells. Its valley is narrow, and the plain around it has dents of its own; wider cells help.",
-        "A wide τ lets ICP reach farther than NDT. Neither measure wins everywhere.",
-        "In the corridor both valleys run along x without an end. A hundred sweeps rest in a streak there and in a round heap in the room; the ellipse is what the information promises.",
+        "Both reliefs compare the same sweep with the same points; only the measure differs. Dark is low, and the ball rolls into the dark.",
+        "A small τ breaks ICP's bowl into terraces and hollows. The ball rests in the nearest one, however good the solver. The profile beside the relief shows it, and the pit it did not reach.",
+        "At each crease a point changes its match, or loses it, so the slope jumps and the height does not. Points about to change light up.",
+        "NDT has no such creases, because each point feels the whole bell of its cell. But thin walls make thin bells, so the valley is narrow and the plain around it has dents of its own. Wider cells help.",
+        "A wide τ lets ICP reach further than NDT. Neither measure wins everywhere.",
+        "In the corridor both valleys run along x without end. A hundred sweeps settle in a streak there, and in a round heap in the room. The ellipse is what the information promises.",
     ],
     opening: Opening {
         panels: &["relief", "path"],

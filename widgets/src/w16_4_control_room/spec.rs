@@ -18,7 +18,7 @@ const BEFORE_THE_LOOP: f64 = 91.0;
 const NEXT_EVENT: ButtonSpec = ButtonSpec {
     id: "next-event",
     label: "Next event",
-    help: "Go to the next keyframe, loop test or way point; after the last one, to the first.",
+    help: "Go to the next keyframe, loop test or way point; from the last, back to the first.",
 };
 
 params! {
@@ -43,11 +43,11 @@ params! {
         ],
     )
     .default("register")
-    .help("The operation whose data of this tick are described; a press on a mark of the lanes selects it.");
+    .help("The operation whose data at this tick are described. Press a mark on a lane to select it.");
 
     pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", LAP_TICKS)
         .default(BEFORE_THE_LOOP)
-        .help("The moment shown; a tick is a quarter of a second, and the marks are loops.");
+        .help("The moment shown. A tick is a quarter of a second, and the marks are loops.");
 
     use SPEED;
     use MORE;
@@ -62,12 +62,12 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     gesture: "Press Play, or press a mark on a lane.",
     awaits: Awaits::Nothing,
     notice: &[
-        "The front end works at every tick: it predicts by odometry and corrects by one registration. The threshold τ follows how wrong the predictions were.",
-        "The back end works only at keyframes, and its big moment is a loop: then old poses move.",
-        "The grid stores no poses. After an accepted loop it is thrown away and drawn again from every keyframe's sweep.",
-        "A cell takes the ink of these words where it is likely occupied, and the colour of the paper where it is likely free, on light paper as on dark. Of the tinted rest nothing was seen.",
-        "Each lane is one thing that the system does. The upper two run at every tick, the rest waits for a keyframe. A press on a mark goes there and shows its data.",
-        "Walls blur where two passes disagree. At the first loop they sharpen: the cells that are more than 90 % likely to be occupied go from 110 to 156.",
+        "The front end runs at every tick. It predicts from odometry and corrects with one registration. The threshold τ follows how wrong the predictions were.",
+        "The back end runs only at keyframes. Its big moment is a loop, when old poses move.",
+        "The grid stores no poses. After an accepted loop it is discarded and redrawn from every keyframe's sweep.",
+        "A cell that is likely occupied has the colour of this text, and a free one that of the page. Tinted cells were never seen.",
+        "Each lane is one operation. The upper two run at every tick; the rest wait for a keyframe. Press a mark to go there and see its data.",
+        "Walls blur where two passes disagree. At the first loop they sharpen, and the cells more than 90 % likely to be occupied go from 110 to 156.",
     ],
     opening: Opening {
         panels: &["map", "lanes"],
@@ -80,7 +80,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "watch",
             label: "Watch the whole run",
-            help: "From the first sweep to the end of the lap, over three loops.",
+            help: "From the first sweep to the end of the lap, with three loops on the way.",
             set: &[TICK.to(0.0)],
             then: &["play"],
         },
@@ -101,21 +101,21 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "noisy",
             label: "Four times the noise",
-            help: "The threshold τ opens up from 0.77 m to 1.51 m: predictions are worse, so pairs are looked for farther away.",
+            help: "The threshold τ opens up from 0.77 m to 1.51 m. Predictions are worse, so matches are sought further away.",
             set: &[NOISE.to(4.0), TICK.to(60.0)],
             then: &[],
         },
         Preset {
             id: "wrong-loop",
             label: "A wrong loop gets in",
-            help: "Seed 6 at twice the noise: the first loop passes every test, and is 0.36 m off. Only the truth shows it, and no robot has that.",
+            help: "With seed 6 at twice the noise, the first loop passes every test and is 0.36 m out. Only the truth shows it, and no robot has that.",
             set: &[SEED.to(6), NOISE.to(2.0), TICK.to(92.0)],
             then: &[],
         },
         Preset {
             id: "open",
             label: "No loops",
-            help: "Without loops nothing ever moves a pose again. The two passes end 0.24 m apart instead of 0.08 m, and 104 cells are surely occupied instead of 175.",
+            help: "Without loops, no pose ever moves again. The two passes end 0.24 m apart instead of 0.08 m, and 104 cells are surely occupied instead of 175.",
             set: &[LOOPS.to(false), TICK.to(LAP_TICKS)],
             then: &[],
         },

@@ -67,13 +67,13 @@ pub(super) const MOVED_IDS: [&str; 3 * MAX_POSES] = {
 const fn along(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
         .unit("m")
-        .help("How far the pose is moved from odometry, before the first step.")
+        .help("How far the pose is moved from its odometry position before the first step.")
 }
 
 const fn turn(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-180.0, 180.0], 1.0)
         .unit("°")
-        .help("How far the pose is turned from odometry, before the first step.")
+        .help("How far the pose is turned from its odometry heading before the first step.")
 }
 
 /// The step button: one iteration of the solver.
@@ -93,7 +93,7 @@ params! {
     .unit("×")
     .default(1.0)
     .help(
-        "Information of the loop, relative to each edge of odometry: a stiffer spring gives way less.",
+        "Information of the loop, relative to an odometry edge. A stiffer spring gives way less.",
     );
 
     pub(super) static GRAPH: OneOf<GraphShape> = one_of!(
@@ -117,22 +117,22 @@ params! {
     )
     .unit("m")
     .default(CHAPTER_GAP_M)
-    .help("How much farther ahead of the first pose the loop sees the last one than odometry does.");
+    .help("How much further ahead of the first pose the loop puts the last one than odometry does.");
 
     pub(super) static ODOMETRY: Param<f64> =
         Param::slider("odometry", "stiffness of odometry", [0.1, 10.0], 0.1)
             .unit("×")
             .default(1.0)
-            .help("Information of each edge of odometry.");
+            .help("Information of each odometry edge.");
 
     pub(super) static PINNED: Param<bool> = Param::switch("pinned", "pin the first pose")
         .on()
-        .help("Measurements are relative: without a fixed pose the whole graph may be anywhere.");
+        .help("Measurements are relative. Unless a pose is fixed, the whole graph may be anywhere.");
 
     use MOVED[0 1 2 3 4 5][0 1 2];
 
     pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MAX_STEPS as f64)
-        .help("How many steps the solver has done; 0 is the graph before the first one.");
+        .help("How many steps the solver has taken; 0 is the graph before the first.");
 
     use SPEED;
     use MORE;
@@ -147,11 +147,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     gesture: "Drag a pose, and let it go.",
     awaits: Awaits::Nothing,
     notice: &[
-        "Each edge is a spring at rest where its measurement holds. The dotted line shows what is missing, the number on the spring what it costs.",
-        "Pull a pose and let go: every Gauss–Newton step is a beat. Draw the green spring tight, and it grows thick and stiff.",
-        "On a line one step is the answer, from anywhere: the problem is linear. Headings make it bend, and then it takes a few.",
-        "The disagreement does not vanish. It is shared out, and a stiff spring takes less of it.",
-        "Without a pin nothing changes but the place: χ² knows only differences, so the whole graph floats.",
+        "Each edge is a spring, at rest where its measurement is met. The dotted line shows how far it is from that, and the number what that costs.",
+        "Pull a pose and let go. Each beat is one Gauss–Newton step. Draw the green spring tight, and it grows thick and stiff.",
+        "On a line the problem is linear, and one step from anywhere is enough. Headings make it nonlinear, and it takes a few.",
+        "The disagreement does not vanish. The springs share it, and a stiff one takes less.",
+        "Without a pin the whole graph floats, because χ² depends only on differences.",
     ],
     opening: Opening {
         panels: &["graph", "steps"],
@@ -164,7 +164,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "three-poses",
             label: "The chapter's three poses",
-            help: "One step takes χ² from 0.36 to 0.12: each of the three edges gives way by 0.2 m.",
+            help: "One step takes χ² from 0.36 to 0.12. Each of the three edges gives way by 0.2 m.",
             set: &[GRAPH.to("line")],
             then: &["step"],
         },
@@ -178,21 +178,21 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "unpinned",
             label: "Unpin the gauge",
-            help: "The last pose is put 1 m too far, and nothing is held: χ² falls to 0.12 all the same, with all poses elsewhere.",
+            help: "The last pose starts 1 m too far, and none is pinned. χ² still falls to 0.12, with every pose somewhere else.",
             set: &[GRAPH.to("line"), PINNED.to(false), MOVED[2][0].to(1.0)],
             then: &["step"],
         },
         Preset {
             id: "square",
             label: "A square that does not close",
-            help: "Four sides and a loop that sees the end elsewhere: the whole square gives way a little.",
+            help: "Four sides, and a loop that puts the end somewhere else. The whole square gives way a little.",
             set: &[GRAPH.to("square"), STEPS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "tangled",
             label: "A tangled ring",
-            help: "One pose is thrown far off and turned: headings bend the problem, and it takes a few steps.",
+            help: "One pose is thrown far off and turned. Headings make the problem nonlinear, so it takes a few steps.",
             set: &[
                 GRAPH.to("ring"),
                 MOVED[3][0].to(1.5),

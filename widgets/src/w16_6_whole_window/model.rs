@@ -122,7 +122,7 @@ impl WholeWindow {
         (self.place() > 0).then_some(raced)
     }
 
-    /// The start of ICP, which is the center of the window.
+    /// The start of ICP, which is the centre of the window.
     fn guess(&self) -> SE2 {
         self.scene.guess(&self.search_task.window.config().start)
     }

@@ -16,7 +16,7 @@ const MAX_STEPS: f64 = 200_000.0;
 const fn offset(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-OFFSET_SPAN_M, OFFSET_SPAN_M], 0.05)
         .unit("m")
-        .help("How far the start, which is the window's center, is moved away from the truth.")
+        .help("How far the start, the centre of the window, is from the truth.")
 }
 
 /// The step button: one box.
@@ -35,7 +35,7 @@ params! {
     )
     .unit("°")
     .default(75.0)
-    .help("How far the start is turned away from the truth: ICP depends on it, the search does not.");
+    .help("How far the start is turned from the truth. ICP depends on it; the search does not.");
 
     pub(super) static DX: Param<f64> = offset("dx", "Δx of the start");
 
@@ -49,7 +49,7 @@ params! {
     pub(super) static TURN: Param<f64> = Param::slider("turn", "headings ±", [30.0, 180.0], 15.0)
         .unit("°")
         .default(180.0)
-        .help("How far from the start's heading the search looks; 180 is the whole turn.");
+        .help("How far from the start's heading the search looks; 180 covers every heading.");
 
     pub(super) static CELL: Param<f64> = Param::slider("cell", "cell", [0.05, 0.2], 0.01)
         .unit("m")
@@ -60,7 +60,7 @@ params! {
         .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
 
     pub(super) static PROGRESS: Param<f64> = Param::timeline("progress", "boxes taken up", MAX_STEPS)
-        .help("How many boxes the search has expanded; the iterations of ICP follow the last one.");
+        .help("How many boxes the search has expanded; ICP's iterations follow the last.");
 
     use SPEED;
     use MORE;
@@ -71,15 +71,15 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.6",
     name: "The whole window",
     title: "Can every pose be searched without scoring every pose?",
-    claim: "Searching all is not scoring all.",
+    claim: "You can search a pose without scoring it.",
     gesture: "Turn the sweep by its ring, and let it go.",
     awaits: Awaits::End,
     notice: &[
-        "A bar is a box of poses, as high as no pose in it can score. Point at one: the true scores of its poses lie below. Boxes are split, and their bars fall towards them.",
-        "ICP races from the same start. It is over first, and it stops in whatever minimum it fell into.",
-        "Whatever falls below the best pose so far is dropped unseen, and takes the ink of these words. That is why it is exact.",
-        "The half turn is the runner-up. The quarter turn, which traps ICP, is far behind: the search counts the points that fit nowhere.",
-        "The search is as fine as its cells. ICP does the rest, from a start that it can use.",
+        "Each bar is a box of poses, and its height is a score that no pose in the box can exceed. Point at one to see their true scores, all below. As boxes split, the bars fall towards them.",
+        "ICP races from the same start. It finishes first, in whatever minimum it fell into.",
+        "A box whose bound is below the best pose so far is dropped unseen, and turns the colour of this text. The bound is never too low, so the search is exact.",
+        "The half turn is the runner-up. The quarter turn, which traps ICP, is far behind, because the search counts the points that fit nowhere.",
+        "The search is only as fine as its cells. ICP does the rest, from a start it can use.",
     ],
     opening: Opening {
         panels: &["sweeps"],
@@ -92,35 +92,35 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "quarter-turn",
             label: "Start 75° off",
-            help: "ICP alone falls into the quarter turn. The search comes home.",
+            help: "ICP alone falls into the quarter turn. The search finds the truth.",
             set: &[PROGRESS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "upside-down",
             label: "Start upside down",
-            help: "ICP alone stays upside down, and fits well. For the search the half turn is the runner-up.",
+            help: "ICP alone stays upside down, and fits well. For the search, the half turn is only the runner-up.",
             set: &[HEADING.to(180.0), PROGRESS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "wide",
             label: "Four times the window",
-            help: "±3 m in place of ±1.5 m: four times the poses, and not twice the work.",
+            help: "±3 m instead of ±1.5 m: four times the poses, less than twice the work.",
             set: &[WINDOW.to(3.0), PROGRESS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "without-home",
             label: "A window without home",
-            help: "Only ±60° around a start 75° off: home is not in it, and the search reports that no place fits.",
+            help: "Only ±60° around a start that is 75° off. The truth is outside the window, and the search reports that no place fits.",
             set: &[TURN.to(60.0), PROGRESS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "coarse",
             label: "Coarse cells",
-            help: "Cells of 0.2 m blur the room: the quarter turn fits almost as well as the half turn.",
+            help: "Cells of 0.2 m blur the room, and the quarter turn fits almost as well as the half turn.",
             set: &[CELL.to(0.2), PROGRESS.to(0.0)],
             then: &["play"],
         },

@@ -38,7 +38,7 @@ params! {
     .unit("%")
     .default(15.0)
     .help(
-        "Share of the most similar pairs that are called the same: a threshold for every detector at once.",
+        "The share of pairs, most similar first, that are called the same place: one threshold for every detector.",
     );
 
     pub(super) static DETECTOR: OneOf<usize> = one_of!(
@@ -52,7 +52,7 @@ params! {
         ],
     )
     .default("context")
-    .help("By the estimated poses, by the histogram of ranges, or by rings and sectors.");
+    .help("From the estimated poses, from range histograms, or from rings and sectors.");
 
     pub(super) static WORLD: OneOf<BuiltInWorld> = one_of!(
         BuiltInWorld,
@@ -69,7 +69,7 @@ params! {
         1.0,
     )
     .default(18.0)
-    .help("The older keyframe that is compared with the newest one; −1 is the most similar one.");
+    .help("The older keyframe compared with the newest; −1 is the most similar one.");
 
     pub(super) static TURN: Param<f64> = Param::slider(
         "turn",
@@ -78,7 +78,7 @@ params! {
         SECTOR_DEG,
     )
     .unit("°")
-    .help("How far the newer view is turned away from the heading at which Scan Context fits best.");
+    .help("How far the newer view is turned from the heading where Scan Context fits best.");
 
     pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
 
@@ -86,7 +86,7 @@ params! {
 
     pub(super) static NEWEST: Param<f64> = Param::timeline("new", "keyframe", MAX_KEYFRAMES)
         .default(MAX_KEYFRAMES)
-        .help("The newest keyframe so far; beyond the last one it is the whole lap.");
+        .help("The newest keyframe so far; past the last, it is the whole lap.");
 
     use SPEED;
     use MORE;
@@ -97,15 +97,15 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.7",
     name: "Have I been here?",
     title: "How much may two views of one place differ?",
-    claim: "To look alike is not to be the same.",
+    claim: "Places that look alike may be different.",
     gesture: "Drag the line in the plot.",
     awaits: Awaits::Rest,
     notice: &[
-        "Each dot is a pair of places. What lies left of the line is called the same place, whether it is or not.",
-        "In the matrix ink is alike. The stripe that runs down to the right is the way back: places in the order in which they were left.",
-        "In the corridor all histograms look alike: a range has no direction.",
-        "Scan Context knows directions. Slide one view over the other: they differ least at the heading between them.",
-        "A looser threshold finds more of the true pairs, and calls more false ones. No point of the curve is free.",
+        "Each dot is a pair of places. Pairs left of the line are called the same place, rightly or wrongly.",
+        "In the matrix, dark means alike. The stripe down to the right is the return leg, which revisits the places in reverse order.",
+        "In the corridor all histograms look alike, because a range has no direction.",
+        "Scan Context keeps directions. Slide one view over the other: they differ least at the rotation between them.",
+        "A looser threshold finds more true pairs and calls more false ones. No point on the curve is free.",
     ],
     opening: Opening {
         panels: &["flat", "scores", "looks"],
@@ -118,14 +118,14 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "lap",
             label: "Drive the lap",
-            help: "Each new keyframe is compared with all older ones, and a column is added.",
+            help: "Each new keyframe is compared with all older ones, which adds a column.",
             set: &[OLDER.to(MOST_ALIKE), NEWEST.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "ring",
             label: "A ring of corridors",
-            help: "Four corridors that look alike: every look-alike is a trap here.",
+            help: "Four corridors look alike, and each is a trap for the others.",
             set: &[WORLD.to("ring"), OLDER.to(MOST_ALIKE)],
             then: &[],
         },

@@ -28,13 +28,13 @@ params! {
             (2, "huber", "with Huber"),
         ],
     )
-    .help("Whose pairs are drawn: all of them, without the longest ones, or the long ones with less weight.");
+    .help("Which registration's pairs are drawn: all of them, all but the longest, or the long ones with less weight.");
 
     pub(super) static SHARE: Param<f64> =
         Param::slider("share", "points on the box", [0.0, MAX_SHARE], 1.0)
             .unit("%")
             .default(20.0)
-            .help("Which share of the points of both sweeps lies on the box that was moved.");
+            .help("The share of both sweeps' points that is on the moved box.");
 
     pub(super) static MOVED: Param<f64> = Param::slider("moved", "box moved along x", MOVED_M[0], 0.05)
         .unit("m")
@@ -50,7 +50,7 @@ params! {
         Param::slider("dropped", "trimmed: pairs dropped", [0.0, 70.0], 5.0)
             .unit("%")
             .default(25.0)
-            .help("Which share of the pairs trimming drops in each iteration, the longest first.");
+            .help("The share of the pairs that trimming drops in each iteration, longest first.");
 
     pub(super) static HUBER: Param<f64> = Param::slider("huber", "Huber width", [0.01, 0.3], 0.01)
         .unit("m")
@@ -60,7 +60,7 @@ params! {
     pub(super) static TAU: Param<f64> = Param::slider("tau", "pairing distance τ", [0.1, 1.6], 0.05)
         .unit("m")
         .default(0.7)
-        .help("A point farther than this from the target has no pair: a gate is a kernel, too.");
+        .help("A point further than this from the target is unmatched: a gate is a kernel, too.");
 
     use VARIANT;
 
@@ -69,7 +69,7 @@ params! {
 
     pub(super) static ITERATION: Param<f64> = Param::timeline("iteration", "iteration", MAX_ITERATIONS)
         .help(
-            "Which iteration is shown of all three; beyond its last one a registration has converged.",
+            "The iteration shown, for all three; past its last, a registration has converged.",
         );
 
     use SPEED;
@@ -85,11 +85,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     gesture: "Drag the box.",
     awaits: Awaits::Rest,
     notice: &[
-        "Drag the box. Its pairs all pull the same way, and the walls give way until their many short pulls balance them.",
-        "A few centimetres look like noise, and are none: they do not average out.",
-        "Trimming drops the longest pairs, and the longest are mostly those of the box. It gives way last, and slowly.",
-        "Huber's kernel never drops a pair. It holds a small box back; one with half of the points leads it farther away than plain.",
-        "A short τ does the same work as trimming, until the start is farther off than τ.",
+        "Drag the box. Its pairs all pull the same way, and the sweep moves until the many short pulls of the walls balance them.",
+        "A few centimetres look like noise, but they are a bias and do not average out.",
+        "Trimming drops the longest pairs, which are mostly on the box. It gives way last, and slowly.",
+        "Huber's kernel never drops a pair. It resists a small box; with half of the points on the box it ends further out than plain.",
+        "A short τ does the same work as trimming, until the start is further out than τ.",
     ],
     opening: Opening {
         panels: &["room", "bias"],
@@ -102,28 +102,28 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "fifth",
             label: "A fifth of the points",
-            help: "The exercise: plain is pulled after the box, trimmed and Huber hardly.",
+            help: "The exercise. Plain follows the box; trimmed and Huber barely move.",
             set: &[],
             then: &["play"],
         },
         Preset {
             id: "most",
             label: "More than trimming drops",
-            help: "At half of the points the box has more pairs than a quarter: who degrades most gracefully?",
+            help: "With half of the points on the box, dropping a quarter of the pairs is not enough. Which degrades most gracefully?",
             set: &[SHARE.to(50.0)],
             then: &["play"],
         },
         Preset {
             id: "none",
             label: "No box",
-            help: "Without a box all three agree, and trimming has thrown good pairs away.",
+            help: "Without a box all three agree, and trimming has only thrown good pairs away.",
             set: &[SHARE.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "gate",
             label: "A short τ",
-            help: "With τ of 0.2 m the box has few partners, and plain is as good as the others.",
+            help: "With a τ of 0.2 m the box has few matches, and plain is as good as the others.",
             set: &[TAU.to(0.2)],
             then: &["play"],
         },

@@ -19,7 +19,7 @@ const fn place(id: &'static str, label: &'static str, max: f64, default: f64) ->
     Param::slider(id, label, [0.0, max], 0.1)
         .unit("m")
         .default(default)
-        .help("Where the robot is put overnight, on the plan. The robot does not know it.")
+        .help("Where on the plan the robot is put overnight. The robot does not know.")
 }
 
 /// The step button: one moment.
@@ -32,7 +32,7 @@ const ONE_MOMENT: ButtonSpec = ButtonSpec {
 params! {
     pub(super) static LAPS: Param<usize> =
         Param::slider("laps", "laps since the wardrobe moved", [0.0, 2.0], 1.0)
-            .help("The map has one lap before that night, and this many after it.");
+            .help("The map was made from one lap before that night, and this many after it.");
 
     pub(super) static START_X: Param<f64> = place("x", "switched on at x", PLAN_M[0], 4.4);
 
@@ -41,7 +41,7 @@ params! {
     pub(super) static HEADING: Param<f64> =
         Param::slider("heading", "heading there", [-180.0, 180.0], 5.0)
             .unit("°")
-            .help("Heading of the robot when it is switched on. The robot does not know it.");
+            .help("The robot's heading when it is switched on. The robot does not know.");
 
     pub(super) static WORLD: OneOf<BuiltInWorld> = one_of!(
         BuiltInWorld,
@@ -54,7 +54,7 @@ params! {
     pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
 
     pub(super) static MOMENT: Param<f64> = Param::timeline("moment", "moment", MAX_MOMENTS)
-        .help("Which moment is shown: boxes of a search, and scans.");
+        .help("The moment shown, counted in boxes of a search and in scans.");
 
     use SPEED;
     use MORE;
@@ -66,13 +66,13 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     name: "Come back tomorrow",
     title: "Where can the robot work out where it is?",
     claim: "It can wherever only one place fits its scan.",
-    gesture: "Drag the robot anywhere, and let it go.",
+    gesture: "Drag the robot anywhere, then let it go.",
     awaits: Awaits::Nothing,
     notice: &[
-        "A ghost is a pose that is not ruled out yet, the larger the better it may fit. What is left of them is where the robot may be.",
-        "Where the map was driven, one scan is enough. In a room that it never saw, or in one of two rooms alike, no pose is called reliable before the robot is out of the door.",
-        "Once it is found, each scan is registered on the map around it, and nothing is searched any more.",
-        "The wardrobe was moved overnight. The map still shows it where it stood; after another lap it is gone from there.",
+        "A ghost is a pose not yet ruled out; the better it may still fit, the larger it is. The ghosts left are where the robot may be.",
+        "Where the mapping robot drove, one scan is enough. In a room it never entered, or in one of two identical rooms, no pose is called reliable until the robot is out of the door.",
+        "Once the robot is found, each scan is registered on the map around it, and the search ends.",
+        "The wardrobe was moved overnight. The map still shows it in the old place; after another lap it is gone from there.",
     ],
     opening: Opening {
         panels: &["map", "scores"],
@@ -85,7 +85,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "room",
             label: "Switched on in a room",
-            help: "The lap never entered it, so the robot reports that it does not know, and drives out of the door.",
+            help: "The lap never entered it, so the robot reports that it is unsure, and drives out of the door.",
             set: &[
                 WORLD.to("apartment"),
                 START_X.to(2.6),
@@ -98,7 +98,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "corridor",
             label: "Switched on in the corridor",
-            help: "Here the map was driven: one scan is enough, among millions of poses.",
+            help: "The mapping lap came through here. One scan is enough, among millions of poses.",
             set: &[
                 WORLD.to("apartment"),
                 START_X.to(4.4),
@@ -111,14 +111,14 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "forget",
             label: "One more lap",
-            help: "The wardrobe is gone from where it stood: newer scans have looked through it.",
+            help: "The wardrobe is gone from its old place, because newer scans looked through it.",
             set: &[WORLD.to("apartment"), LAPS.to(1)],
             then: &[],
         },
         Preset {
             id: "twins",
-            label: "In one of two rooms alike",
-            help: "Both rooms fit to the millimetre: no pose is called reliable before the robot is out of the door.",
+            label: "In one of two identical rooms",
+            help: "Both rooms fit to the millimetre. No pose is called reliable until the robot is out of the door.",
             set: &[
                 WORLD.to("twins"),
                 START_X.to(6.2),

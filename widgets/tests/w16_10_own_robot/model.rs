@@ -191,7 +191,7 @@ fn a_contradicting_loop_is_reported_and_shown_first() {
         (Assessment::Doubtful, "1 of 1 loop to look into")
     );
     assert!(outcome.sentence.contains("one loop contradicts the graph"));
-    assert!(outcome.sentence.contains("nothing of it is sent anywhere"));
+    assert!(outcome.sentence.contains("none of it is sent anywhere"));
     let fact = |id: &str| {
         outcome
             .facts

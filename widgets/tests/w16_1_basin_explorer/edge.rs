@@ -74,14 +74,14 @@ fn both_marks_are_compared_with_the_sweep_in_words() {
         ("both edges are right", Assessment::Good)
     );
     assert!(
-        right.sentence.contains("as you marked; point to plane"),
+        right.sentence.contains("as you marked; point-to-plane"),
         "{}",
         right.sentence
     );
-    assert!(right.sentence.contains("5° too many"), "{}", right.sentence);
+    assert!(right.sentence.contains("5° too far"), "{}", right.sentence);
     let one = swept([point - 6.0, plane]).outcome();
     assert_eq!(one.verdict, "one edge is right");
-    assert!(one.sentence.contains("6° too few"), "{}", one.sentence);
+    assert!(one.sentence.contains("6° short"), "{}", one.sentence);
     let none = swept([0.0, 180.0]).outcome();
     assert_eq!(
         (none.verdict.as_str(), none.standing),

@@ -76,7 +76,7 @@ fn the_readers_starts_come_first_in_the_colours_of_their_ends() {
     for _ in 0..4 {
         assert_eq!(model.work(), Activity::Busy);
     }
-    // Right, another false minimum, quarter turn, half turn; point to plane comes home from 45°.
+    // Right, another false minimum, quarter turn, half turn; point-to-plane comes home from 45°.
     assert_eq!(tried(&model, panel::POINT), [0, 3, 1, 2]);
     assert_eq!(tried(&model, panel::PLANE), [0, 0, 1, 2]);
     // The picture of a complete map depends on no history.

@@ -126,7 +126,7 @@ fn the_claims_to_notice_are_right() {
     assert_eq!(format!("{:.2}", rmse(25.0, 0.0).0), "0.03");
     assert!(
         rmse(25.0, 1.0).1 < rmse(25.0, 0.0).1,
-        "point to plane needs fewer iterations"
+        "point-to-plane needs fewer iterations"
     );
     let half_turn = rmse(180.0, 0.0).0;
     assert!(
@@ -183,7 +183,7 @@ fn the_points_without_a_pair_are_marked() {
             _ => None,
         })
     };
-    // "Eleven lonely points" at the half turn of point to plane, none at the truth.
+    // "Eleven lonely points" at the half turn of point-to-plane, none at the truth.
     let start = [
         ("dx", 0.0),
         ("dy", 0.0),

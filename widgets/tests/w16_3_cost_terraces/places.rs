@@ -117,15 +117,15 @@ fn at_a_ridge_the_partner_that_changes_lights_up() {
 #[test]
 fn the_pointer_over_a_map_moves_the_sweep_that_is_paired() {
     let mut model = with(&[("tau", 0.6)]);
-    assert_eq!(panel(&model, "sweep").title, "Partners at the cross hair");
+    assert_eq!(panel(&model, "sweep").title, "Matches at the cross hair");
     assert_ne!(lit(&model), (0, 0));
     model.hover("relief", Some([0.0, 0.0]));
-    assert_eq!(panel(&model, "sweep").title, "Partners under the pointer");
+    assert_eq!(panel(&model, "sweep").title, "Matches under the pointer");
     assert_eq!(lit(&model), (0, 0));
     model.hover("relief", None);
     // While the ball rolls, its partners are shown.
     model.set("t", 50.0).unwrap();
-    assert_eq!(panel(&model, "sweep").title, "Partners at the ball");
+    assert_eq!(panel(&model, "sweep").title, "Matches at the ball");
 }
 
 /// Longer half axes of the ellipses of one standard deviation, m.

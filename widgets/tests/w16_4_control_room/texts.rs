@@ -78,7 +78,7 @@ fn a_wrong_loop_that_passes_every_test_is_reported_as_wrong() {
     let expected = "wrong loop 29 to 7 accepted, chi-squared 4.93 below 7.815, history moved 0.32 m: \
          its measurement is 0.36 m and 1.7° off the truth";
     assert!(sentence.starts_with(expected), "{sentence}");
-    assert_promised("wrong-loop", "0.36 m off");
+    assert_promised("wrong-loop", "0.36 m out");
     let first = &room.timeline().unwrap().marks[0];
     assert_eq!(first.standing, Assessment::Bad);
     assert_eq!(first.at, room.values().number("t"), "it is the first loop");

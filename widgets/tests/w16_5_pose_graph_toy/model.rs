@@ -71,7 +71,7 @@ fn without_a_fixed_pose_the_graph_has_the_same_cost_elsewhere() {
         assert!((fact(toy, "chi2") - 0.12).abs() < 1e-6);
     }
     assert!((fact(&free, "last_x_m") - fact(&pinned, "last_x_m")).abs() > 0.1);
-    assert!(free.outcome().sentence.contains("nothing is pinned"));
+    assert!(free.outcome().sentence.contains("no pose is pinned"));
 }
 
 #[test]

@@ -91,11 +91,11 @@ pub(crate) mod tests {
                 options: &[
                     Choice {
                         id: "point-to-point",
-                        label: "point to point",
+                        label: "point-to-point",
                     },
                     Choice {
                         id: "point-to-plane",
-                        label: "point to plane",
+                        label: "point-to-plane",
                     },
                 ],
             },

@@ -43,7 +43,7 @@ fn the_grid_holds_every_wall_that_a_lap_through_forty_metres_has_seen() {
 
 #[test]
 fn an_estimate_that_leaves_the_plan_takes_the_map_with_it() {
-    // Point to point ends metres off the ring, outside of its outer wall.
+    // Point-to-point ends metres off the ring, outside of its outer wall.
     let mut config = LapConfig::in_world(BuiltInWorld::Ring, 1, 1.0);
     let runner = &mut LapRunner::new();
     let grown = runner.run(&config);

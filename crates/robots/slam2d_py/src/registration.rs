@@ -115,7 +115,7 @@ const VARIANTS: [(&str, IcpVariant); 2] = [
 /// max_distance: points farther from the map have no pair, m.
 /// max_iterations: the most increments.
 /// tolerance: an increment smaller than this ends it, m and rad added.
-/// min_pairs: with fewer pairs it ends, and point to plane with fewer than twice as many that have a normal.
+/// min_pairs: with fewer pairs it ends, and point-to-plane with fewer than twice as many that have a normal.
 /// trim: share of the pairs to drop, the longest first.
 /// huber_width: residual beyond which a pair weighs less, m.
 /// normal_radius: radius within which target points give each other normals, m.

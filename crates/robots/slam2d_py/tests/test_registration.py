@@ -85,7 +85,7 @@ def test_no_wrong_pose_of_an_ever_coarser_room_claims_anything(room, variant, sp
     target = room[np.sort(first)]
     found = rs.icp(rs.transform(rs.inverse(POSE), target), target, variant=variant, max_iterations=200)
     if found.converged:
-        # Point to point may be at rest one point further along each wall.
+        # Point-to-point may be at rest one point further along each wall.
         apart = spacing if variant == "point-to-point" else 0.0
         assert np.allclose(found.pose, POSE, atol=max(0.05, apart)), found
     if found.stop in ("too-few-pairs", "too-few-normals"):

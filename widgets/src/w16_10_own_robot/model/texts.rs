@@ -9,7 +9,7 @@ use super::OwnRobot;
 use super::log_state::LogState;
 
 /// The privacy statement about the reader's file.
-const STAYS: &str = "The file stays in this browser; nothing of it is sent anywhere.";
+const STAYS: &str = "The file stays in this browser; none of it is sent anywhere.";
 
 /// The current result.
 pub fn outcome(own: &OwnRobot) -> Outcome {
@@ -93,7 +93,7 @@ fn sentence(own: &OwnRobot) -> String {
             plural(robot.keyframes.len(), "keyframe"),
             plural(robot.progress.closed, "loop")
         ),
-        Stage::Finishing => format!("{name}: {done:.0} % done, the last loops are closed."),
+        Stage::Finishing => format!("{name}: {done:.0} % done, closing the last loops."),
         Stage::Solving => format!(
             "{name} is solved: {}.",
             plural(robot.keyframes.len(), "pose")

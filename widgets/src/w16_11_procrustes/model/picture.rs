@@ -137,7 +137,7 @@ fn points(trace: &ProcrustesTrace) -> Panel {
     layers.extend(target.iter().map(|at| Layer::Handle {
         at: *at,
         tone: Tone::Measurement,
-        label: "drag the point of the target",
+        label: "drag the target point",
     }));
     // In steps of half a metre, so that a drag seldom moves the axes.
     let mean = problem.target_mean;

@@ -50,7 +50,7 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
     let here = problem.trace_m2(trace.tried(), trace.theta_rad());
     let winner = problem.winner();
     let consequence = match winner {
-        Winner::Turn => "An unchecked decomposition finds the turn, too",
+        Winner::Turn => "An unchecked decomposition finds the rotation, too",
         Winner::Mirror => "An unchecked decomposition mirrors the map",
         Winner::Tie => "An unchecked decomposition may return either",
     };
@@ -63,7 +63,7 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
         standing,
         verdict: verdict(winner).to_owned(),
         sentence: format!(
-            "the trace reaches {:.2} m² by a turn, {:.2} m² by a mirror image. {consequence}",
+            "the trace reaches {:.2} m² with a rotation, {:.2} m² with a mirror image. {consequence}",
             turn.trace_m2, mirror.trace_m2,
         ),
         facts: vec![

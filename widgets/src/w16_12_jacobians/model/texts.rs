@@ -47,7 +47,7 @@ pub fn outcome(widget: &WrongJacobians) -> Outcome {
         return Outcome {
             standing: Assessment::Neutral,
             verdict: "before the first step".to_owned(),
-            sentence: "All four start from the same poses: play, or make a step".to_owned(),
+            sentence: "All four start from the same poses. Press Play, or take a step".to_owned(),
             facts: facts(widget),
         };
     }

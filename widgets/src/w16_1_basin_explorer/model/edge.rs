@@ -156,7 +156,7 @@ fn question(values: &Values) -> Outcome {
         }
         .to_owned(),
         sentence: format!(
-            "From how far may a guess at the right place be turned, to either side, and registration still comes home? {}. Then press Sweep the edge.",
+            "How far may a guess at the right place be turned, to either side, and still converge to the truth? {}. Then press Sweep the edge.",
             parts.join("; ")
         ),
         facts: Vec::new(),
@@ -183,8 +183,8 @@ fn answer(explorer: &BasinExplorer) -> Outcome {
         match gap {
             _ if mark == 0.0 => format!("{home}, and you marked none"),
             0.0 => format!("{home}, as you marked"),
-            _ if gap > 0.0 => format!("{home}, and you marked {mark:.0}°, {gap:.0}° too many"),
-            _ => format!("{home}, and you marked {mark:.0}°, {:.0}° too few", -gap),
+            _ if gap > 0.0 => format!("{home}, and you marked {mark:.0}°, {gap:.0}° too far"),
+            _ => format!("{home}, and you marked {mark:.0}°, {:.0}° short", -gap),
         }
     });
     let parts: Vec<_> = parts.collect();
@@ -197,18 +197,18 @@ fn answer(explorer: &BasinExplorer) -> Outcome {
         verdict: verdict.to_owned(),
         sentence: format!("{}.", parts.join("; ")),
         facts: vec![
-            Fact::new("edge_p2p_deg", "edge, point to point", known(0), "°", 0),
-            Fact::new("edge_p2l_deg", "edge, point to plane", known(1), "°", 0),
+            Fact::new("edge_p2p_deg", "edge, point-to-point", known(0), "°", 0),
+            Fact::new("edge_p2l_deg", "edge, point-to-plane", known(1), "°", 0),
             Fact::new(
                 "mark_p2p_deg",
-                "your edge, point to point",
+                "your edge, point-to-point",
                 marks[0],
                 "°",
                 0,
             ),
             Fact::new(
                 "mark_p2l_deg",
-                "your edge, point to plane",
+                "your edge, point-to-plane",
                 marks[1],
                 "°",
                 0,

@@ -292,7 +292,7 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
         format!("Where is the edge, {}?", variant_name(of))
     } else {
         match explorer.mapped_by(of) {
-            Some(yours) => format!("Where it ends by your {yours}"),
+            Some(yours) => format!("Where your {yours} ends"),
             None => format!("Where it ends, {}", variant_name(of)),
         }
     };

@@ -38,8 +38,8 @@ pub fn other_variant(variant: IcpVariant) -> IcpVariant {
 /// Label of a variant.
 pub fn variant_name(variant: IcpVariant) -> &'static str {
     match variant {
-        IcpVariant::PointToPoint => "point to point",
-        IcpVariant::PointToPlane => "point to plane",
+        IcpVariant::PointToPoint => "point-to-point",
+        IcpVariant::PointToPlane => "point-to-plane",
     }
 }
 

@@ -82,8 +82,8 @@ fn basins(explorer: &BasinExplorer) -> Table {
         "heading (°)",
         "Δx (m)",
         "Δy (m)",
-        "point to point",
-        "point to plane",
+        "point-to-point",
+        "point-to-plane",
     ];
     Table::exported(
         "basins",

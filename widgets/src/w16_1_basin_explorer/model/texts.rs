@@ -82,8 +82,7 @@ pub fn summary(explorer: &BasinExplorer) -> String {
         ""
     };
     format!(
-        "Two laser sweeps of {place}, {} and {} points. At iteration {} of {} the source lies \
-         {:.2} m from where it belongs, with {} pairs and rmse {:.3} m.{maps}",
+        "Two laser sweeps of {place}, {} and {} points. At iteration {} of {} the source is {:.2} m from where it belongs, with {} pairs and an rmse of {:.3} m.{maps}",
         explorer.scene.target().len(),
         explorer.scene.source().len(),
         explorer.iteration(),

@@ -75,7 +75,7 @@ impl FullLap {
     fn take(&mut self, sketch: Sketch) {
         let text = sketch.to_text();
         if let Err(error) = self.values.set_text(SPEC.id, "flat", &text) {
-            panic!("the edited flat is invalid: {error}");
+            panic!("the edited floor plan is invalid: {error}");
         }
         self.values.put(&WORLD, None);
         self.floor_plan.become_of(sketch);
@@ -223,7 +223,7 @@ impl FullLap {
     fn mark_revisit_start(&mut self) {
         let Some(index) = self.chosen_way_point() else {
             self.reject(
-                "no way point is selected: select the one from which on known locations are seen again",
+                "no way point is selected: select where the robot starts to revisit known places",
             );
             return;
         };

@@ -132,7 +132,7 @@ pub fn add_wall(sketch: &mut Sketch, wall: [PlaceCm; 2]) -> Result<usize, String
     if sketch.walls_cm.len() >= limits::WALLS {
         let most = limits::WALLS;
         return Err(format!(
-            "a flat has at most {most} walls: remove one before you draw another"
+            "a floor plan has at most {most} walls: remove one before you draw another"
         ));
     }
     sketch.walls_cm.push(wall);

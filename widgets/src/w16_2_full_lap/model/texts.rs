@@ -240,12 +240,12 @@ fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
         Fact::count("loop_pairs", "last loop: pairs", pairs),
         Fact::metres(
             "loop_error_m",
-            "last loop: off the truth",
+            "last loop: position error",
             of(&|attempt| error(attempt).position_m),
         ),
         Fact::new(
             "loop_turn_deg",
-            "last loop: turned off the truth",
+            "last loop: heading error",
             of(&|attempt| error(attempt).heading_deg),
             "°",
             1,
@@ -280,7 +280,7 @@ pub fn summary(moment: &LapState) -> String {
     let mut rest = String::new();
     if moment.has_moved() {
         rest += &format!(
-            " A line at {:.0} % of the map's width: left of it the map is as before the loop, right of it as after.",
+            " A line at {:.0} % of the map's width: left of it is the map before the loop, right of it the map after.",
             100.0 * moment.wipe
         );
     }

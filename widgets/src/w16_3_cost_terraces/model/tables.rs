@@ -121,7 +121,7 @@ fn dropped(rests: &Rests) -> Table {
     });
     Table::exported(
         "rests",
-        "Rests of the dropped sweeps",
+        "Where the dropped sweeps settle",
         &[
             "sweep",
             "dropped Δx (m)",
@@ -150,7 +150,7 @@ fn partners(terrains: &Terrains, settings: &TerraceSettings) -> Table {
     });
     Table::exported(
         "partners",
-        "Partners at the cross hair",
+        "Matches at the cross hair",
         &[
             "pair",
             "point x (m)",

@@ -134,7 +134,7 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &TerraceSettings) -> 
         Fact::count("rows_rank", "their rank", constraints.rank as f64),
         Fact::count(
             "partners_changing",
-            "partners about to change",
+            "matches about to change",
             terrains.pairing_at(settings.probe_m).points.len() as f64,
         ),
         Fact::count("bells", "NDT's bells", terrains.bells().len() as f64),
@@ -142,8 +142,8 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &TerraceSettings) -> 
     ];
     if let Some(null) = constraints.null {
         facts.extend([
-            Fact::new("null_x", "no row holds: shift along x", null.x, "m", 3),
-            Fact::new("null_y", "no row holds: shift along y", null.y, "m", 3),
+            Fact::new("null_x", "unconstrained: shift along x", null.x, "m", 3),
+            Fact::new("null_y", "unconstrained: shift along y", null.y, "m", 3),
             Fact::new("null_turn", "no row holds: turn", null.z, "rad", 3),
         ]);
     }
@@ -153,8 +153,8 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &TerraceSettings) -> 
     if scatter.count > 1 {
         let [x, y] = scatter.deviation_m.map(|m| 100.0 * m);
         facts.extend([
-            Fact::new("rests_std_x_cm", "their rests scatter along x", x, "cm", 2),
-            Fact::new("rests_std_y_cm", "their rests scatter along y", y, "cm", 2),
+            Fact::new("rests_std_x_cm", "final positions scatter along x", x, "cm", 2),
+            Fact::new("rests_std_y_cm", "final positions scatter along y", y, "cm", 2),
         ]);
     }
     facts
@@ -164,15 +164,14 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &TerraceSettings) -> 
 pub fn summary(terrains: &Terrains, settings: &TerraceSettings) -> String {
     let place = match settings.place {
         SweepPlace::Room => "a room, over its own points",
-        SweepPlace::Corridor => "a corridor without doors, over a map that was measured apart",
+        SweepPlace::Corridor => "a corridor without doors, over a map with independent noise",
         SweepPlace::OwnCorridor => "the Apartment's corridor, over its own points",
     };
     let (icp, ndt) = (&terrains.icp, &terrains.ndt);
     format!(
         "Two reliefs over {cells} by {cells} shifts of a sweep in {place}, up to 1.3 metres from the truth: \
          ICP's cost up to {icp_high:.3} square metres, and NDT's score up to {ndt_high:.3}. \
-         At the cross hair the cost is {cost:.4} square metres and the score {score:.3}, and {changing} \
-         points are about to change their partner.",
+         At the cross hair the cost is {cost:.4} square metres and the score {score:.3}, and {changing} points are about to change their match.",
         cells = settings.cells,
         icp_high = icp.range[1],
         ndt_high = -ndt.range[0],

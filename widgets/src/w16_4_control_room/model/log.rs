@@ -56,7 +56,7 @@ pub fn events(record: &LapRecord) -> Vec<Event> {
                 "front end",
                 lane::REGISTER,
                 format!(
-                    "only {} pairs: the prediction stands",
+                    "only {} pairs, so the prediction is kept",
                     report.registration.matched.inliers
                 ),
             );
@@ -99,7 +99,7 @@ fn loop_events(lap: &LapTrace, attempt: &RecordedLoopAttempt) -> Vec<Event> {
         return vec![tested];
     }
     let keyframes = attempt.verification.from_node + 1;
-    let drawn = format!("grid drawn again from {keyframes} keyframes");
+    let drawn = format!("grid redrawn from {keyframes} keyframes");
     vec![tested, event("map", drawn, Assessment::Neutral, false)]
 }
 

@@ -32,7 +32,7 @@ pub fn outcome(room: &ControlRoom) -> Outcome {
 /// The picture in words.
 pub fn summary(room: &ControlRoom) -> String {
     format!(
-        "{} At tick {} of {} the newest sweep is paired with the local map by {} pairs.",
+        "{} At tick {} of {} the newest sweep has {} matches in the local map.",
         room.grid.words(),
         room.tick(),
         room.record.ticks(),
@@ -49,7 +49,7 @@ fn lane_sentence(room: &ControlRoom) -> Option<String> {
 
 fn tick_sentence(room: &ControlRoom) -> String {
     let Some(report) = room.now() else {
-        return "The run stands at its start, with one sweep sensed.".to_owned();
+        return "The run is at its start, with one sweep taken.".to_owned();
     };
     format!(
         "Tick {} of {}: keyframe {}, the estimate is {:.2} m off, odometry {:.2} m.",

@@ -60,7 +60,7 @@ pub fn outcome(toy: &PoseGraphToy) -> Outcome {
     let floats = if is_pinned(toy) {
         ""
     } else {
-        "; nothing is pinned, and χ² is the same wherever the whole graph stands"
+        "; no pose is pinned, and χ² is the same wherever the graph is"
     };
     let mut facts = vec![
         Fact::new("chi2", "χ²", shown.chi2, "", 3),

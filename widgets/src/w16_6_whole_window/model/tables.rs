@@ -103,7 +103,7 @@ fn boxes(window: &WholeWindow) -> Table {
     });
     Table::exported(
         "boxes",
-        "Every box that was taken up",
+        "Every box expanded",
         &head,
         rows.collect(),
     )

@@ -58,7 +58,7 @@ pub fn outcome(window: &WholeWindow) -> Outcome {
         ending(alone)
     );
     let work = format!(
-        "The search makes {} sums over the points in place of {}",
+        "The search makes {} sums over the points instead of {}",
         grouped(counts.scored()),
         grouped(counts.window)
     );
@@ -69,14 +69,14 @@ pub fn outcome(window: &WholeWindow) -> Outcome {
                 format!(", {margin:.3} ahead of the next place")
             });
             format!(
-                "{work}; its best pose scores {:.3}{ahead}, and ICP from there ends {}.",
+                "{work}. Its best pose scores {:.3}{ahead}, and ICP from there ends {}.",
                 result.best.score,
                 ending(&refined.outcome)
             )
         }
-        (Some(_), ..) => format!("{work}, and no pose of the window scores half or more."),
+        (Some(_), ..) => format!("{work}, and no pose in the window scores half or more."),
         // As long as the text that follows, so that the page below does not move.
-        (None, ..) => "The search takes up the box of poses with the largest bound, splits it, and drops every box whose bound is below the best score; then ICP starts from the best pose."
+        (None, ..) => "The search splits the box of poses with the largest bound, and drops every box whose bound is below the best score. Then ICP starts from the best pose."
             .to_owned(),
     };
     Outcome {
@@ -134,21 +134,21 @@ fn facts(window: &WholeWindow) -> Vec<Fact> {
         ),
         Fact::new(
             "margin",
-            "the next place is behind by",
+            "margin over the next place",
             or_none(result.and_then(|result| result.margin())),
             "",
             3,
         ),
         Fact::new(
             "quarter_behind",
-            "the quarter turn is behind by",
+            "margin over the quarter turn",
             behind(&[0, 1]),
             "",
             3,
         ),
         Fact::new(
             "half_behind",
-            "the half turn is behind by",
+            "margin over the half turn",
             behind(&[2]),
             "",
             3,

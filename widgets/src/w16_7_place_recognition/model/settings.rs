@@ -24,6 +24,6 @@ pub fn distance_label(detector: usize) -> &'static str {
     match GRADED[detector] {
         LapDetector::Histogram => "χ² distance of the histograms",
         LapDetector::Context => "distance of the contexts",
-        _ => "distance in deviations of the drift",
+        _ => "distance in standard deviations of the drift",
     }
 }

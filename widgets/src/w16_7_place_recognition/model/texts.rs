@@ -39,11 +39,11 @@ pub fn verdict(been: &PlaceRecognition) -> &'static str {
 pub fn outcome(been: &PlaceRecognition) -> Outcome {
     let sentence = match grade(been) {
         // As long as the text that follows, so that the page below does not move.
-        None => "The lap is driven, and its keyframes are compared pair by pair: which of them show the same place, by what is near, by histograms of ranges, and by Scan Context. Then every threshold is graded by the truth, beside a guess and beside a perfect detector."
+        None => "The lap is driven, and its keyframes are compared pair by pair: which show the same place, according to nearness, range histograms and Scan Context. Then every threshold is graded against the truth, beside a guess and a perfect detector."
             .to_owned(),
         Some((places, grade)) => {
             let called = format!(
-                "By {}, {} pairs are called the same place, and {} of them are; {} are not found.",
+                "According to {}, {} pairs are the same place, and {} of them are; {} are missed.",
                 GRADED[been.detector()].label(),
                 grade.called,
                 grade.right,
@@ -51,7 +51,7 @@ pub fn outcome(been: &PlaceRecognition) -> Outcome {
             );
             let beside = match grade.point(0.0) {
                 Some(point) => format!(
-                    " That is a precision of {:.2}, where a guess has {:.2} and a perfect detector {:.2}.",
+                    " That is a precision of {:.2}, against {:.2} for a guess and {:.2} for a perfect detector.",
                     point.precision,
                     places.chance(),
                     places.perfect(grade.called)
@@ -213,7 +213,7 @@ fn facts(been: &PlaceRecognition) -> Vec<Fact> {
 
 pub fn summary(been: &PlaceRecognition) -> String {
     let Some(places) = &been.places else {
-        return "A lap is driven; then its keyframes are compared pair by pair: by nearness in the graph, by histograms of ranges, and by Scan Context."
+        return "A lap is driven; then its keyframes are compared pair by pair: by nearness in the graph, by range histogram, and by Scan Context."
             .to_owned();
     };
     format!(

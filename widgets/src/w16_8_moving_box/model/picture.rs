@@ -82,7 +82,7 @@ fn room(moving: &MovingBox) -> Panel {
         legend: vec![
             LegendEntry::line("pull of a pair on the box", ON_BOX, Stroke::Solid),
             LegendEntry::line("of a pair on a wall", TONES[method], Stroke::Solid),
-            LegendEntry::mark("the true place of the sensor", Tone::Truth, Mark::Plus),
+            LegendEntry::mark("the true position of the sensor", Tone::Truth, Mark::Plus),
         ],
         color_bar: None,
     }
@@ -209,7 +209,7 @@ fn bias(moving: &MovingBox) -> Panel {
     )];
     if moving.is_before() {
         let middle = [0.5 * MAX_SHARE, 0.5 * y.max];
-        layers.push(Layer::question(middle, "who is pulled off, and how far?"));
+        layers.push(Layer::question(middle, "which is pulled off, and how far?"));
     } else {
         for (k, line) in lines.into_iter().enumerate() {
             layers.push(Layer::points(line.clone(), MARKS[k], TONES[k], 3.0));

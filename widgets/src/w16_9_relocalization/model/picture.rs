@@ -66,7 +66,7 @@ fn map(back: &Relocalization) -> Panel {
         y: axis(PLAN_M[1]),
         layers,
         legend: vec![
-            LegendEntry::mark("switched on here, to be put", Tone::Prior, Mark::Circle),
+            LegendEntry::mark("where it will be switched on", Tone::Prior, Mark::Circle),
             LegendEntry::mark("it may be here", GHOST, Mark::Circle),
             LegendEntry::mark("best place, with the scan", Tone::Posterior, Mark::Square),
         ],

@@ -70,19 +70,19 @@ pub fn verdict(ending: Ending) -> &'static str {
 pub fn outcome(back: &Relocalization) -> Outcome {
     let ending = so_far(back);
     let sentence = match (ending, back.finished()) {
-        (Ending::Unknown, _) => "The robot is switched on, and nobody has told it where. It compares what it sees with the whole saved map: each ghost is a pose that may be right, and those that cannot win disappear.".to_owned(),
+        (Ending::Unknown, _) => "The robot is switched on, and not told where. It compares what it sees with the whole saved map. Each ghost is a pose that may be right, and ghosts that cannot win disappear.".to_owned(),
         (Ending::Found, Some((_, run))) => found_words(run),
-        (Ending::WrongPose, _) => "The robot is localized at a wrong pose, and drives on. A place that looks the same is enough for that, if no other scan contradicts it.".to_owned(),
+        (Ending::WrongPose, _) => "The robot is localized at a wrong pose, and drives on. It takes only a place that looks the same, and no later scan to contradict it.".to_owned(),
         (Ending::Ambiguous, Some((_, run))) => format!(
-            "After {} scans the best place of the map and the next one still fit about equally well. The robot reports that it does not know: another path, or another heading, would resolve it.",
+            "After {} scans the two best places on the map still fit about equally well. The robot reports that it is unsure. A different path or heading would resolve it.",
             run.reports().len()
         ),
         (Ending::Lost, Some((_, run))) => format!(
-            "After {} scans no place of the map fits well enough. The robot reports that it is lost: what it sees is not on the saved map.",
+            "After {} scans no place on the map fits well enough. The robot reports that it is lost, because what it sees is not on the saved map.",
             run.reports().len()
         ),
         // As long as the text that follows, so that the page below does not move.
-        _ => "A lap is driven and its map is saved. Then the robot is switched on where you put it, on another day: it searches the whole map for its pose, box by box.".to_owned(),
+        _ => "A lap is driven and its map is saved. On another day, the robot is switched on where you put it, and searches the whole map for its pose, box by box.".to_owned(),
     };
     Outcome {
         standing: standing(ending),
@@ -104,7 +104,7 @@ fn found_words(run: &LocalizationRun) -> String {
         more => format!("after {} scans", more + 1),
     };
     format!(
-        "Found {scans}, {:.2} m off the truth: {margin}. From there on {} of {} scans follow it, each registered on the map around it.",
+        "Found {scans}, {:.2} m from the truth: {margin}. Then {} of {} scans track it, each registered on the map around it.",
         run.error_m(found).unwrap_or(f64::NAN),
         localized_after(run, found),
         run.reports().len() - found - 1
@@ -147,7 +147,7 @@ fn facts(back: &Relocalization) -> Vec<Fact> {
         ),
         Fact::new(
             "first_margin",
-            "the next place was behind by",
+            "margin over the next place",
             number(first.and_then(|f| f.margin())),
             "",
             3,
@@ -159,7 +159,7 @@ fn facts(back: &Relocalization) -> Vec<Fact> {
         ),
         Fact::count(
             "window",
-            "poses of the whole map",
+            "poses on the whole map",
             number(first.map(|f| f.counts.window as f64)),
         ),
         Fact::count(
@@ -201,7 +201,7 @@ pub fn now(back: &Relocalization) -> String {
         let state = if is_saved {
             "The robot is switched on"
         } else {
-            "The map is driven and saved"
+            "The lap is driven and its map saved"
         };
         return state.to_owned();
     };

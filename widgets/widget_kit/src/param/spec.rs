@@ -7,7 +7,7 @@ use super::error::{ParamError, printable};
 pub struct Choice {
     /// Name in links and in JavaScript: `point-to-plane`.
     pub id: &'static str,
-    /// Name on screen: `point to plane`.
+    /// Name on screen: `point-to-plane`.
     pub label: &'static str,
 }
 

@@ -122,8 +122,8 @@ impl LapMatcher {
 
 impl NamedChoice for LapMatcher {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
-        (Self::PointToPoint, "p2p", "point to point"),
-        (Self::PointToPlane, "p2l", "point to plane"),
+        (Self::PointToPoint, "p2p", "point-to-point"),
+        (Self::PointToPlane, "p2l", "point-to-plane"),
         (Self::Ndt, "ndt", "NDT"),
     ];
 }
@@ -286,7 +286,7 @@ impl LapConfig {
 
     /// Replaces the matcher of the front end and of the loops.
     ///
-    /// Point to plane gets the default's normals. With the chapter's, which only weight edges there, it
+    /// Point-to-plane gets the default's normals. With the chapter's, which only weight edges there, it
     /// slides along the corridor, and half of the laps close no loop.
     #[must_use]
     pub fn with_matcher(mut self, matcher: LapMatcher) -> Self {

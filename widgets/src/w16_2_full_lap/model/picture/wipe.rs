@@ -93,7 +93,7 @@ pub fn layers(moment: &LapState) -> Vec<Layer> {
         Layer::Handle {
             at: [x, top - HANDLE_M],
             tone: Tone::Ink,
-            label: "drag: left of the line is before the loop, right of it after",
+            label: "drag: before the loop on the left, after it on the right",
         },
     ]
 }

@@ -100,7 +100,7 @@ fn keys_join_two_keyframes_and_undo_reverts_each_change() {
         model
             .outcome()
             .sentence
-            .ends_with("look at another keyframe and press Tie again")
+            .ends_with("select another keyframe and press Tie again")
     );
     assert_eq!(
         model.values().number("own-from"),
@@ -140,7 +140,7 @@ fn an_impossible_loop_is_explained_and_the_lap_stays() {
     let before = shown_nodes(&model);
     for (from, to, words) in [
         (7.0, 7.0, "both ends of your loop are keyframe 7"),
-        (999.0, 3.0, "keyframe 999 is not yet there"),
+        (999.0, 3.0, "keyframe 999 does not exist yet"),
     ] {
         set(&mut model, "own", 1.0);
         set(&mut model, "own-from", from);

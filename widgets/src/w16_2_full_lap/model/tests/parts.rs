@@ -136,7 +136,7 @@ fn a_part_that_does_not_exist_yet_is_reported_without_numbers() {
         model
             .outcome()
             .sentence
-            .starts_with("keyframe 40 is not yet there at tick 20")
+            .starts_with("keyframe 40 does not exist yet at tick 20")
     );
     assert!(fact(&model, "looked_at_error_m").is_nan());
     set(&mut model, "pick", 3.0);

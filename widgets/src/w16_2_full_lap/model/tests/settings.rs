@@ -179,7 +179,7 @@ fn every_matcher_has_the_end_error_that_its_preset_claims() {
         let off = end_error(&model);
         assert_promised(
             preset,
-            &format!("ends {off:.2} m off instead of {chapter:.2} m"),
+            &format!("ends {off:.2} m out instead of {chapter:.2} m"),
         );
     }
 }
@@ -328,7 +328,7 @@ fn the_corners_of_the_settings_have_a_picture_at_every_tick() {
     }
 }
 
-/// The points that move with the robot are the cause: point to plane finds no normals there, and is not held back.
+/// The points that move with the robot are the cause: point-to-plane finds no normals there, and is not held back.
 #[test]
 fn beams_that_hit_no_wall_hold_point_to_point_back_and_no_number_of_the_robot_shows_it() {
     assert_promised("phantom-wall", "from 0.59 m to 0.89 m");

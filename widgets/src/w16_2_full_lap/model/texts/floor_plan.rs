@@ -33,7 +33,7 @@ pub fn statement(drawn: &Drawn, lap: Statement) -> Statement {
         return Statement {
             standing: Assessment::Bad,
             verdict: "cannot be driven".to_owned(),
-            sentence: format!("{piece}this flat cannot be driven: {problem}"),
+            sentence: format!("{piece}this floor plan cannot be driven: {problem}"),
         };
     }
     match (drawn.tool, piece) {
@@ -67,14 +67,14 @@ pub fn piece_words(sketch: &Sketch, piece: PlanElement) -> String {
         PlanElement::WayPoint(index) => {
             let place = at(sketch.way_points_cm[index]);
             let turn = if sketch.turn == Some(index) {
-                ", from which on known locations are seen again"
+                ", from which the robot revisits known places"
             } else {
                 ""
             };
             format!("way point {number} of {count}, at {place} m{turn}")
         }
         PlanElement::Start => format!("the start, at {} m", at(sketch.start_cm)),
-        PlanElement::Heading => format!("the start looks to {}°", sketch.heading_deg),
+        PlanElement::Heading => format!("the start faces {}°", sketch.heading_deg),
     }
 }
 
@@ -83,7 +83,7 @@ pub fn summary(drawn: &Drawn) -> String {
     let counts = counts(drawn.sketch);
     let mut words = match drawn.tool {
         None => format!(" The flat has {counts}."),
-        Some(_) => format!(" The flat is being edited: {counts}."),
+        Some(_) => format!(" The floor plan is being edited: {counts}."),
     };
     if let Some(piece) = drawn.piece {
         words += &format!(" Chosen: {}.", piece_words(drawn.sketch, piece));

@@ -67,7 +67,7 @@ pub fn part_statement(moment: &LapState, part: GraphPart) -> Statement {
             let edges = if count == 1 { "edge" } else { "edges" };
             let tied = match moment.tied {
                 Some(from) if from == node => {
-                    "; your own loop begins here: look at another keyframe and press Tie again"
+                    "; your own loop begins here: select another keyframe and press Tie again"
                         .to_owned()
                 }
                 Some(from) => format!("; press Tie for a loop from keyframe {from} to here"),
@@ -76,7 +76,7 @@ pub fn part_statement(moment: &LapState, part: GraphPart) -> Statement {
             neutral(
                 format!("keyframe {node}"),
                 format!(
-                    "keyframe {node} of tick {taken}: {error_m:.2} m and {error_deg:.1}° off the truth, its {count} {edges} cost χ² {chi2:.2}{tied}"
+                    "keyframe {node} of tick {taken}: {error_m:.2} m and {error_deg:.1}° from the truth, its {count} {edges} cost χ² {chi2:.2}{tied}"
                 ),
             )
         }
@@ -85,7 +85,7 @@ pub fn part_statement(moment: &LapState, part: GraphPart) -> Statement {
             neutral(
                 format!("edge {} to {}", edge.from, edge.to),
                 format!(
-                    "edge {} to {}: measured {error_m:.3} m and {error_deg:.2}° off the truth, χ² {chi2:.2}, {}",
+                    "edge {} to {}: measured {error_m:.3} m and {error_deg:.2}° from the truth, χ² {chi2:.2}, {}",
                     edge.from,
                     edge.to,
                     left(&strain)
@@ -104,7 +104,7 @@ pub fn part_statement(moment: &LapState, part: GraphPart) -> Statement {
             let off = if judgement == LoopJudgement::FalseAcceptance {
                 String::new()
             } else {
-                format!("; measured {error_m:.2} m and {error_deg:.1}° off the truth")
+                format!("; measured {error_m:.2} m and {error_deg:.1}° from the truth")
             };
             Statement {
                 standing: standing(judgement),
@@ -123,12 +123,12 @@ pub fn part_statement(moment: &LapState, part: GraphPart) -> Statement {
         ),
         (GraphPart::Loop(node), None) => neutral(
             "no such loop".to_owned(),
-            format!("no loop was tried at keyframe {node} until tick {tick}"),
+            format!("no loop has been tried at keyframe {node} by tick {tick}"),
         ),
         (GraphPart::Keyframe(number) | GraphPart::Edge(number), None) => neutral(
             "not yet there".to_owned(),
             format!(
-                "keyframe {} is not yet there at tick {tick}: keyframe {} is the newest so far",
+                "keyframe {} does not exist yet at tick {tick}; keyframe {} is the newest",
                 if matches!(part, GraphPart::Edge(_)) {
                     number + 1
                 } else {
@@ -279,7 +279,7 @@ pub fn facts(moment: &LapState) -> Vec<Fact> {
     vec![
         Fact::metres(
             "looked_at_error_m",
-            "looked at: off the truth",
+            "selected: position error",
             looked_at.error_m,
         ),
         Fact::new("looked_at_chi2", "looked at: χ²", looked_at.chi2, "", 3),

@@ -47,9 +47,9 @@ pub fn pairs(terrains: &Terrains, moment: PictureState) -> Panel {
         Layer::points(points, Mark::Triangle, Tone::Series(0), 4.5),
     ]);
     let title = match moment.looked {
-        Looked::CrossHair => "Partners at the cross hair",
-        Looked::Ball => "Partners at the ball",
-        Looked::Pointer(_) => "Partners under the pointer",
+        Looked::CrossHair => "Matches at the cross hair",
+        Looked::Ball => "Matches at the ball",
+        Looked::Pointer(_) => "Matches under the pointer",
     };
     panel(
         "sweep",

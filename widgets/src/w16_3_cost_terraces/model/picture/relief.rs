@@ -29,7 +29,7 @@ pub fn panel(
             )
         }
         Looked::CrossHair | Looked::Ball => {
-            format!("How well each shift fits, by {}", name(moment.measure))
+            format!("How well each shift fits: {}", name(moment.measure))
         }
     };
     let path = &landscape.ball.path_m;

@@ -48,7 +48,7 @@ pub fn panel(terrains: &Terrains) -> Panel {
         vec![
             LegendEntry::line("normals", Tone::Ink, Stroke::Solid),
             LegendEntry::marked_line("last row", Tone::Series(0), Mark::Triangle, Stroke::Solid),
-            LegendEntry::line("no row holds this", Tone::Series(1), Stroke::Solid),
+            LegendEntry::line("unconstrained", Tone::Series(1), Stroke::Solid),
             LegendEntry::line("± 1 σ along x", Tone::Posterior, Stroke::Solid),
         ],
     )

@@ -47,7 +47,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
     Panel {
         id: panel::BOUNDS,
         title: format!(
-            "{} poses, {} looked at",
+            "{} poses, {} scored",
             grouped(moment.counts.window),
             grouped(moment.counts.scored())
         ),
@@ -59,7 +59,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
         legend: vec![
             LegendEntry::line("box that waits", Tone::Series(0), Stroke::Solid),
             LegendEntry::line(
-                "box looked into, over its true scores",
+                "box inspected, over its true scores",
                 Tone::Series(3),
                 Stroke::Solid,
             ),

@@ -18,7 +18,7 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
         x: Axis::hidden(bounds.min.x - MARGIN_M, bounds.max.x + MARGIN_M),
         y: Axis::hidden(bounds.min.y - MARGIN_M, bounds.max.y + MARGIN_M),
         layers: vec![Layer::Walls(world.walls().iter().map(wall).collect())],
-        ..empty(panel::FLAT, "A robot drives through the flat and back")
+        ..empty(panel::FLAT, "A robot drives through the Apartment and back")
     };
     let Some((places, pair)) = been.places.as_ref().zip(been.pair()) else {
         return panel;

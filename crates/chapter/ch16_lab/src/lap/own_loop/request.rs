@@ -98,7 +98,7 @@ pub enum OwnLoopError {
         node: usize,
     },
     /// An end does not exist at that tick.
-    #[error("keyframe {node} is not yet there: keyframe {newest} is the newest so far")]
+    #[error("keyframe {node} does not exist yet; keyframe {newest} is the newest")]
     NotYet {
         /// The end.
         node: usize,

@@ -163,12 +163,12 @@ fn ends_that_cannot_be_are_rejected_in_a_sentence() {
         (
             [40, 3],
             92,
-            "keyframe 40 is not yet there: keyframe 29 is the newest so far",
+            "keyframe 40 does not exist yet; keyframe 29 is the newest",
         ),
         (
             [3, 999],
             129,
-            "keyframe 999 is not yet there: keyframe 40 is the newest so far",
+            "keyframe 999 does not exist yet; keyframe 40 is the newest",
         ),
     ] {
         let request = OwnLoopRequest {
