@@ -100,11 +100,11 @@ export class SlamPredict extends HTMLElement {
     if (own !== undefined) {
       const state = new URLSearchParams(this.getAttribute('state') ?? '');
       const [name = '', value] = [...own].find(([id]) => state.has(id)) ?? [];
-      sentences.push(`Your task has the ${name} ${value} and a seed of its own.`);
-      sentences.push(`The numbers in the text belong to the chapter’s, with the ${name} ${state.get(name)}.`);
+      sentences.push(`Your task has the ${name} ${value} and its own seed.`);
+      sentences.push(`The numbers in the text belong to the chapter’s task, with the ${name} ${state.get(name)}.`);
       if (this.hasAttribute('fact')) sentences.push('Choose by the ranges.');
     } else if (person !== '' && this.#isSame()) {
-      sentences.push('Everyone has this task: another seed would hardly change its answer.');
+      sentences.push('Everyone has this task, because a different seed would barely change the answer.');
     }
     this.#task.textContent = sentences.join(' ');
     this.#task.hidden = sentences.length === 0;

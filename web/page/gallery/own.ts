@@ -82,8 +82,8 @@ function sentence(facts: Facts): string {
 
 /** How to make it worse. */
 function hint(facts: Facts): string {
-  if (!isUnnoticed(facts)) return 'The map shows it, which scores nothing: let the robot see no place twice.';
-  if (metresOff(facts) < HOME_M) return 'Make it worse: rub out doors and corners, so that the walls look alike all along.';
+  if (!isUnnoticed(facts)) return 'The map shows it, which scores nothing. Do not let the robot see any place twice.';
+  if (metresOff(facts) < HOME_M) return 'Make it worse: rub out doors and corners, so that the walls look the same everywhere.';
   return 'Make it worse: make the smooth walls longer.';
 }
 

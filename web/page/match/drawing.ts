@@ -30,9 +30,9 @@ export interface Room {
 
 export const ROOMS: readonly [Room, ...Room[]] = [
   { name: 'room', hint: 'A room.', view: [-1.9, 5.2, 7.2], off: [-0.6, 0.75, 48] },
-  { name: 'corridor', hint: 'The corridor where the lap closes its first loop: only its doors say how far along you are.', view: [3.4, 8, 7.2], off: [-1.2, 0.3, 12] },
-  { name: 'hall', hint: 'A round hall of 36 walls: a turn by one wall fits as well.', view: [-0.2, 7.2, 7.4], off: [-0.9, 0.8, 35] },
-  { name: 'twins', hint: 'Two rooms alike: one door farther it fits nearly as well.', view: [2.4, 5.2, 7.2], off: [-1.3, 0.2, 8] },
+  { name: 'corridor', hint: 'The corridor where the lap closes its first loop. Only its doors show how far along you are.', view: [3.4, 8, 7.2], off: [-1.2, 0.3, 12] },
+  { name: 'hall', hint: 'A round hall of 36 walls. Turned by one wall, it fits just as well.', view: [-0.2, 7.2, 7.4], off: [-0.9, 0.8, 35] },
+  { name: 'twins', hint: 'Two identical rooms. One door further on, it fits nearly as well.', view: [2.4, 5.2, 7.2], off: [-1.3, 0.2, 8] },
 ];
 /** Radius of the ring that turns the source. */
 const RING_M = 1.3;

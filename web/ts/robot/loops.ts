@@ -43,7 +43,7 @@ export class LoopsToLookInto {
 
   constructor(host: LoopsHost) {
     this.#host = host;
-    this.#legend.textContent = 'Blue is the older visit and green the newer one, laid on each other as the loop lays them.';
+    this.#legend.textContent = 'Blue is the older visit and green the newer one, overlaid as the loop claims.';
     this.element.append(this.#heading, this.#legend, this.#list, this.#more);
     stopKeyPropagation(this.element);
   }

@@ -178,7 +178,7 @@ fn answer(explorer: &BasinExplorer) -> Outcome {
     let parts = searches.iter().zip(VARIANTS).zip(marks);
     let parts = parts.map(|((search, variant), mark)| {
         let edge = reached(search);
-        let home = format!("{} comes home from up to {edge:.0}°", variant_name(variant));
+        let home = format!("{} converges from up to {edge:.0}°", variant_name(variant));
         let gap = mark - edge;
         match gap {
             _ if mark == 0.0 => format!("{home}, and you marked none"),
