@@ -66,7 +66,7 @@ fn map(back: &Relocalization) -> Panel {
         y: axis(PLAN_M[1]),
         layers,
         legend: vec![
-            LegendEntry::mark("where it will be switched on", Tone::Prior, Mark::Circle),
+            LegendEntry::mark("start, where it is switched on", Tone::Prior, Mark::Circle),
             LegendEntry::mark("it may be here", GHOST, Mark::Circle),
             LegendEntry::mark("best place, with the scan", Tone::Posterior, Mark::Square),
         ],
