@@ -168,7 +168,7 @@ fn dropped_boxes_turn_black_and_stay_and_the_poses_looked_at_are_counted() {
     );
     let end = with(&[("progress", 200_000.0)]);
     let title = panel_of(&end, panel::BOUNDS).title;
-    assert_eq!(title, "1,652,124 poses, 1,116 looked at");
+    assert_eq!(title, "1,652,124 poses, 1,116 scored");
 }
 
 /// The number of poses of ICP's path on the positions.

@@ -72,7 +72,7 @@ fn a_precision_stands_beside_that_of_a_guess_and_of_a_perfect_detector() {
         );
         let sentence = been.outcome().sentence;
         assert!(
-            sentence.contains(&format!("a guess has {guess:.2}")),
+            sentence.contains(&format!("{guess:.2} for a guess")),
             "{sentence}"
         );
     }

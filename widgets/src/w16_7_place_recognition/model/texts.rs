@@ -43,7 +43,7 @@ pub fn outcome(been: &PlaceRecognition) -> Outcome {
             .to_owned(),
         Some((places, grade)) => {
             let called = format!(
-                "According to {}, {} pairs are the same place, and {} of them are; {} are missed.",
+                "With {}, {} pairs are called the same place, and {} of them are; {} are missed.",
                 GRADED[been.detector()].label(),
                 grade.called,
                 grade.right,

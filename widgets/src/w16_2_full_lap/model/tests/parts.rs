@@ -143,7 +143,7 @@ fn a_part_that_does_not_exist_yet_is_reported_without_numbers() {
     set(&mut model, "number", 29.0);
     assert_eq!(
         model.outcome().sentence,
-        "no loop was tried at keyframe 29 until tick 20"
+        "no loop has been tried at keyframe 29 by tick 20"
     );
     set(&mut model, "t", 92.0);
     assert_eq!(model.outcome().verdict, "loop 29 to 7");
