@@ -68,7 +68,7 @@ it('a wrong function is told which number was expected, which came, and what it 
 it('a loop without end is stopped, errors name their line, and a missing function is named', async () => {
   await writing('gate', async (tab) => {
     await type(tab, 'function gate() {\n  for (;;) {}\n}');
-    assert.deepEqual(await run(tab), ['✗ There was no answer for 1 s, and your code was stopped. Is there an endless loop?']);
+    assert.deepEqual(await run(tab), ['✗ There was no answer for 1 s, and your code was ended. Is there a loop without end?']);
     await type(tab, 'for (;;) {}');
     assert.match((await run(tab))[0], /no answer for 1 s/);
     await type(tab, 'function gate(innovation) {\n  const [x] = innovation;\n  return y;\n}');
