@@ -153,8 +153,20 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &TerraceSettings) -> 
     if scatter.count > 1 {
         let [x, y] = scatter.deviation_m.map(|m| 100.0 * m);
         facts.extend([
-            Fact::new("rests_std_x_cm", "final positions scatter along x", x, "cm", 2),
-            Fact::new("rests_std_y_cm", "final positions scatter along y", y, "cm", 2),
+            Fact::new(
+                "rests_std_x_cm",
+                "final positions scatter along x",
+                x,
+                "cm",
+                2,
+            ),
+            Fact::new(
+                "rests_std_y_cm",
+                "final positions scatter along y",
+                y,
+                "cm",
+                2,
+            ),
         ]);
     }
     facts

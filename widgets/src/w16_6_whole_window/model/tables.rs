@@ -101,10 +101,5 @@ fn boxes(window: &WholeWindow) -> Table {
         );
         Some(row)
     });
-    Table::exported(
-        "boxes",
-        "Every box expanded",
-        &head,
-        rows.collect(),
-    )
+    Table::exported("boxes", "Every box expanded", &head, rows.collect())
 }
