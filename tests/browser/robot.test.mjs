@@ -610,6 +610,21 @@ describe('a reader’s log', () => {
     }, { quiet: false, server: { policy } });
   });
 
+  it('reports in a sentence that its program does not arrive', async () => {
+    const answer = (path, response) => {
+      const isProgram = /^\/slam_robot-.*\.wasm$/.test(path);
+      if (isProgram) {
+        response.statusCode = 404;
+        response.end();
+      }
+      return isProgram;
+    };
+    await page(async (tab) => {
+      await press(tab, 'sample');
+      await says(tab, /The log cannot be mapped: the program could not be fetched \(404\)\./);
+    }, { quiet: false, server: { answer } });
+  });
+
   it('maps the Intel log', async (context) => {
     const log = join(LOGS, 'intel.clf');
     if (!existsSync(log)) return skip(context, 'recorded logs: see docs/testing.md');

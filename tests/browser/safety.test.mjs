@@ -314,6 +314,10 @@ describe('a start that is broken', () => {
   }
 });
 
+it('a widget starts without the exact size of its canvas, which no Safari has', async () => {
+  await on(ONE, (tab) => h.ready(tab), { head: '<script>delete ResizeObserverEntry.prototype.devicePixelContentBoxSize</script>' });
+});
+
 it('a widget shows the picture and one sentence without WebGL 2', async () => {
   const other = await h.launch(['--disable-3d-apis']);
   try {
@@ -368,6 +372,19 @@ describe('a cached slam-widget.js whose core is gone', () => {
       await h.ready(tab);
       assert.equal(await tab.getByText('A still picture.').isVisible(), false);
     });
+  });
+
+  it('leaves the same if it has the wrong type', async () => {
+    const body = '<slam-widget name="w16.2"><img src="/pictures/w16.2-light.svg" alt="The lap"><p>A still picture.</p></slam-widget>';
+    const ofWrongType = (path, response) => {
+      const isScript = /^\/slam-widget-\w+\.js$/.test(path);
+      if (isScript) {
+        response.setHeader('Content-Type', 'text/plain');
+        createReadStream(join(h.DIST, path)).pipe(response);
+      }
+      return isScript;
+    };
+    await on(body, showsItsContent, { server: { answer: ofWrongType }, quiet: false });
   });
 
   it('leaves a sentence in a frame', async () => {
