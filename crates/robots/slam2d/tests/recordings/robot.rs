@@ -38,6 +38,8 @@ impl Robot {
     /// Waits for a client; chooses the subprotocol that it offers first.
     pub fn accept(server: &TcpListener) -> Self {
         let (stream, _) = server.accept().unwrap();
+        // The type that the library asks for.
+        #[expect(clippy::result_large_err)]
         let choose = |request: &Request, mut answer: Response| -> Result<Response, ErrorResponse> {
             let offered = request.headers()["Sec-WebSocket-Protocol"]
                 .to_str()
