@@ -7,6 +7,7 @@ export default async function* events(source) {
     if (data.details?.type === 'suite') continue;
     yield `${JSON.stringify({
       name: data.name,
+      nesting: data.nesting,
       passed: type === 'test:pass',
       skipped: data.skip ?? false,
       ms: data.details?.duration_ms ?? 0,

@@ -1,14 +1,16 @@
-// Runs the browser tests: `node tests/browser/run.mjs [--only manners,drag] [--jobs 2]`.
+// Runs the browser tests: `node tests/browser/run.mjs [--only manners,drag] [--jobs 2] [--write docs/testing.md]`.
 //
 // All files share one Chromium. Two files run at a time; those with measurements that others could disturb run alone. The
-// output of a failing file is printed.
+// output of a failing file is printed. With --write, the table of the engines' tests goes into that document.
 
 import { spawn } from 'node:child_process';
 import { mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { writeGeneratedBlock } from '../../web/generated-block.mjs';
 import { launchServer } from './chromium.mjs';
+import { ENGINES, engineTable } from './engines/table.mjs';
 
 const HERE = fileURLToPath(new URL('.', import.meta.url));
 /** These count frames, or depend on the garbage collector. */
@@ -27,7 +29,7 @@ for (const signal of ['SIGINT', 'SIGTERM']) {
   });
 }
 
-const { only, jobs } = readArguments(process.argv.slice(2));
+const { only, jobs, document } = readArguments(process.argv.slice(2));
 const folder = mkdtempSync(join(tmpdir(), 'slam-browser-'));
 const chromium = await launchServer();
 const started = performance.now();
@@ -39,12 +41,13 @@ try {
   rmSync(folder, { recursive: true });
 }
 report(results);
+if (document !== undefined) await writeGeneratedBlock(document, 'engines', engineTable(results));
 process.exitCode = results.every(({ failed, code }) => failed === 0 && code === 0) ? 0 : 1;
 
 /** Parses the arguments; exits with one line if one is wrong. */
 function readArguments(args) {
   const known = readdirSync(HERE).map((file) => file.match(/^(.+)\.test\.mjs$/)?.[1]).filter(Boolean).sort();
-  const found = { only: known, jobs: 2 };
+  const found = { only: known, jobs: 2, document: undefined };
   for (let at = 0; at < args.length; at += 2) {
     const [option, value = ''] = args.slice(at, at + 2);
     if (option === '--only') {
@@ -53,10 +56,14 @@ function readArguments(args) {
       if (unknown.length > 0) reject(`there is no ${unknown.join(', ')}; there are ${known.join(', ')}`);
     } else if (option === '--jobs' && /^[1-9]\d*$/.test(value)) {
       found.jobs = Number(value);
+    } else if (option === '--write' && value !== '') {
+      found.document = value;
     } else {
-      reject(`run.mjs takes --only NAME,NAME and --jobs NUMBER, not \`${[option, value].join(' ').trim()}\``);
+      reject(`run.mjs takes --only NAME,NAME, --jobs NUMBER and --write DOCUMENT, not \`${[option, value].join(' ').trim()}\``);
     }
   }
+  const lacking = Object.keys(ENGINES).filter((name) => !found.only.includes(name));
+  if (found.document !== undefined && lacking.length > 0) reject(`--write needs the tests of every engine, also ${lacking.join(', ')}`);
   return found;
 }
 

@@ -78,14 +78,16 @@ export function testIn(name, open, problem) {
     };
     const isClean = async () => assert.deepEqual(await troublesOf(page), []);
 
-    test('every page starts without an error, a violation of its policy, or a missing file', async () => {
+    test('every page starts without an error, a violation of its policy, or a missing file', async (context) => {
       for (const file of [...h.PAGES, 'slides.html', 'embed.html']) {
-        await page.goto(`${server.url}/${file}${file === 'embed.html' ? '?w=16.1' : ''}`);
-        await loaded(page);
-        const first = await ask(page, () => [...document.querySelectorAll('slam-widget')]
-          .find((widget) => widget.getBoundingClientRect().height > 0 && widget.getBoundingClientRect().top < innerHeight)?.name);
-        if (first) await live(page, first);
-        assert.deepEqual(await troublesOf(page), [], file);
+        await context.test(file, async () => {
+          await page.goto(`${server.url}/${file}${file === 'embed.html' ? '?w=16.1' : ''}`);
+          await loaded(page);
+          const first = await ask(page, () => [...document.querySelectorAll('slam-widget')]
+            .find((widget) => widget.getBoundingClientRect().height > 0 && widget.getBoundingClientRect().top < innerHeight)?.name);
+          if (first) await live(page, first);
+          assert.deepEqual(await troublesOf(page), []);
+        });
       }
     });
 
