@@ -1,5 +1,7 @@
 use core::f64::consts::{PI, TAU};
 
+use pr_geom::SE2;
+
 use super::*;
 
 /// What travels with the robot.
