@@ -17,7 +17,7 @@ const scrolled = (tab) => tab.evaluate(() => Math.round(scrollY));
 describe('a link in the text', () => {
   it('changes the scene beside it without a jump, on a wide screen', async () => {
     await reading(async (tab) => {
-      for (const [id, words] of [['w16.1', '75°'], ['w16.1', 'Turned right round'], ['w16.3', 'large ones'], ['w16.2', 'last']]) {
+      for (const [id, words] of [['w16.1', '75°'], ['w16.1', 'Turn the sweep by 180°'], ['w16.3', 'large ones'], ['w16.2', 'last']]) {
         await link(tab, words).scrollIntoViewIfNeeded();
         await tab.evaluate((css) => document.querySelector(css).scrollIntoView({ block: 'nearest' }), widget(id));
         await link(tab, words).evaluate((a) => a.scrollIntoView({ block: 'center' }));
