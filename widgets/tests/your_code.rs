@@ -210,7 +210,7 @@ fn the_basin_map_by_the_readers_function_has_the_cells_of_ours() {
     assert_eq!(raster(&yours, panel::POINT), raster(&ours, panel::POINT));
     assert_eq!(
         panel_of(&yours, panel::POINT).title,
-        "Where it ends by your svd_align"
+        "Where your svd_align ends"
     );
     // Other settings empty it, and it is filled again.
     yours.set("tau", 1.4).unwrap();

@@ -50,21 +50,29 @@ export async function live(page, id) {
   assert.equal(state, 'live', id);
 }
 
-/** Clicks what a function in the page finds, with the pointer, once it rests and nothing covers it. */
+/** Clicks what a function in the page finds, with the pointer, once it rests and nothing covers it; again if it moved away. */
 export async function click(page, find, ...given) {
-  const [x, y] = await until(page, `(...given) => {
-    const found = (${find})(...given);
-    if (!found) return false;
-    found.scrollIntoView({ block: 'center' });
-    const { left, top, width, height } = found.getBoundingClientRect();
-    const [x, y] = [left + width / 2, top + height / 2];
-    const isResting = window.lastClick?.found === found && window.lastClick.x === x && window.lastClick.y === y;
-    window.lastClick = { found, x, y };
-    return isResting && width > 0 && found.contains(found.getRootNode().elementFromPoint(x, y)) && [x, y];
-  }`, ...given);
-  await page.move(x, y);
-  await page.down();
-  await page.up();
+  for (;;) {
+    const [x, y] = await until(page, `(...given) => {
+      const found = (${find})(...given);
+      if (!found) return false;
+      found.scrollIntoView({ block: 'center' });
+      const { left, top, width, height } = found.getBoundingClientRect();
+      const [x, y] = [left + width / 2, top + height / 2];
+      const isResting = window.lastClick?.found === found && window.lastClick.x === x && window.lastClick.y === y;
+      window.lastClick = { found, x, y };
+      if (!isResting || width === 0 || !found.contains(found.getRootNode().elementFromPoint(x, y))) return false;
+      document.addEventListener('click', (event) => {
+        window.lastClick = { hit: event.composedPath().includes(found) };
+      }, { capture: true, once: true });
+      return [x, y];
+    }`, ...given);
+    await page.move(x, y);
+    await page.down();
+    await page.up();
+    const hit = await until(page, () => window.lastClick.hit !== undefined && [window.lastClick.hit]);
+    if (hit[0]) return;
+  }
 }
 
 /** Clicks a control of a widget by its id. */
