@@ -62,8 +62,15 @@ export async function click(page, find, ...given) {
       const isResting = window.lastClick?.found === found && window.lastClick.x === x && window.lastClick.y === y;
       window.lastClick = { found, x, y };
       if (!isResting || width === 0 || !found.contains(found.getRootNode().elementFromPoint(x, y))) return false;
-      document.addEventListener('click', (event) => {
-        window.lastClick = { hit: event.composedPath().includes(found) };
+      // WebKit tells of no click if the target moved between press and release.
+      document.addEventListener('mouseup', () => {
+        let hit = false;
+        const note = (event) => { hit = event.composedPath().includes(found); };
+        document.addEventListener('click', note, true);
+        setTimeout(() => {
+          document.removeEventListener('click', note, true);
+          window.lastClick = { hit };
+        });
       }, { capture: true, once: true });
       return [x, y];
     }`, ...given);
