@@ -10,7 +10,7 @@ mod queue;
 
 use std::fs::{self, File};
 use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -119,7 +119,7 @@ pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
 }
 
 /// Removes a recording without scans, and its folder if that is empty.
-fn forget(recording: &PathBuf, folder: &Path) {
+fn forget(recording: &Path, folder: &Path) {
     let _ = fs::remove_file(recording);
     let _ = fs::remove_dir(folder);
 }

@@ -7,7 +7,7 @@ use std::process::Output;
 use std::thread;
 
 use super::base::messages;
-use super::robot::{Robot, Topics, topics};
+use super::robot::{Robot, topics};
 use super::write::mcap;
 use crate::support::{assert_rejected, slam2d};
 use tungstenite::{Bytes, Message as Frame};
@@ -104,7 +104,7 @@ fn only_what_is_read_is_subscribed_to_also_if_it_appears_later() {
     let (output, _) = drive(&["--wait", WAIT, "--scan-topic", "/scan"], move |server| {
         let all = messages();
         let mut robot = Robot::accept(&server);
-        let early: Topics = vec![
+        let early = [
             other("/camera", "sensor_msgs/msg/Image"),
             other("/points", "sensor_msgs/msg/PointCloud2"),
             other("/rear", "sensor_msgs/msg/LaserScan"),
@@ -112,7 +112,7 @@ fn only_what_is_read_is_subscribed_to_also_if_it_appears_later() {
         ];
         robot.advertise(&early, 1);
         assert_eq!(robot.subscribed(1), ["/odom"]);
-        let late: Topics = vec![
+        let late = [
             other("/scan", "sensor_msgs/msg/LaserScan"),
             other("/tf_static", "tf2_msgs/msg/TFMessage"),
         ];
@@ -129,7 +129,7 @@ fn only_what_is_read_is_subscribed_to_also_if_it_appears_later() {
 fn a_robot_without_scans_lists_what_it_has_and_leaves_no_folder() {
     let (output, folder) = drive(&["--wait", WAIT], |server| {
         let mut robot = Robot::accept(&server);
-        robot.advertise(&vec![("/odom".to_owned(), "nav_msgs/msg/Odometry")], 1);
+        robot.advertise(&[("/odom".to_owned(), "nav_msgs/msg/Odometry")], 1);
         robot.subscribed(1);
         while robot.socket.read().is_ok() {}
     });
@@ -188,7 +188,7 @@ fn other_servers_and_none_are_rejected_in_one_sentence() {
     assert_rejected(&["live", &url, "-o", to, "--wait", "-1"], "not within 0");
     let (output, _) = drive(&[], |server| {
         let (mut stream, _) = server.accept().unwrap();
-        let _ = stream.read(&mut [0; 4096]).unwrap();
+        assert!(stream.read(&mut [0; 4096]).unwrap() > 0);
         stream
             .write_all(b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n")
             .unwrap();
@@ -201,7 +201,7 @@ fn other_servers_and_none_are_rejected_in_one_sentence() {
     let (output, _) = drive(&[], |server| {
         let (stream, _) = server.accept().unwrap();
         // rosbridge has no subprotocol.
-        let _ = tungstenite::accept(stream).unwrap();
+        drop(tungstenite::accept(stream).unwrap());
     });
     assert!(
         said(&output).contains("another subprotocol"),

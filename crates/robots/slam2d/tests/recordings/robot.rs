@@ -10,12 +10,12 @@ use tungstenite::{Bytes, Message as Frame, WebSocket, accept_hdr};
 
 use super::write::Message;
 
-/// Topics with their types; the channel of each is its index and `first`.
-pub type Topics = Vec<(String, &'static str)>;
+/// A topic with its type.
+pub type Topic = (String, &'static str);
 
 /// The topics of messages.
-pub fn topics(all: &[Message]) -> Topics {
-    let mut topics: Topics = Vec::new();
+pub fn topics(all: &[Message]) -> Vec<Topic> {
+    let mut topics: Vec<Topic> = Vec::new();
     for message in all {
         let topic = (message.topic.clone(), message.kind());
         if !topics.contains(&topic) {
@@ -62,7 +62,7 @@ impl Robot {
     }
 
     /// Advertises topics, the channel of the first being `first`.
-    pub fn advertise(&mut self, topics: &Topics, first: u64) {
+    pub fn advertise(&mut self, topics: &[Topic], first: u64) {
         let channels = topics.iter().zip(first..).map(|((topic, kind), id)| {
             self.channels.insert(topic.clone(), id);
             json!({"id": id, "topic": topic, "encoding": "cdr", "schemaName": kind, "schema": ""})
