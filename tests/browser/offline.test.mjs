@@ -1,28 +1,20 @@
 // The site as a zip: its pages open from a folder, without any server.
 
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { dirname, join } from 'node:path';
+import { join } from 'node:path';
 import { after, before, it } from 'node:test';
-import { fileURLToPath, pathToFileURL } from 'node:url';
+import { pathToFileURL } from 'node:url';
 import * as h from './harness.mjs';
+import { unpackOffline } from './unpacked.mjs';
 
-const { unzipSync } = createRequire(new URL('../../web/package.json', import.meta.url))('fflate');
 let folder;
 let browser;
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'offline-'));
-  const zip = join(folder, 'site.zip');
-  execFileSync(process.execPath, [fileURLToPath(new URL('../../web/offline.mjs', import.meta.url)), h.DIST, zip]);
-  for (const [name, bytes] of Object.entries(unzipSync(readFileSync(zip)))) {
-    const file = join(folder, 'site', name);
-    mkdirSync(dirname(file), { recursive: true });
-    writeFileSync(file, bytes);
-  }
+  unpackOffline(join(folder, 'site.zip'), join(folder, 'site'));
   browser = await h.launch();
 });
 after(async () => {

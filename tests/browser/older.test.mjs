@@ -2,20 +2,18 @@
 // starts.
 
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { mkdtempSync, readFileSync, readdirSync, rmSync, statSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { dirname, join } from 'node:path';
+import { join } from 'node:path';
 import { describe, it } from 'node:test';
-import { fileURLToPath, pathToFileURL } from 'node:url';
+import { pathToFileURL } from 'node:url';
 import { SMOOTH_MS } from './clock.mjs';
 import * as h from './harness.mjs';
 import { draggingSpot } from './spots.mjs';
 import { fingers } from './touch.mjs';
+import { unpackOffline } from './unpacked.mjs';
 import { oldestBrowsers } from '../../web/browsers.mjs';
 
-const { unzipSync } = createRequire(new URL('../../web/package.json', import.meta.url))('fflate');
 const visit = h.visitor();
 const ONE = '<slam-widget name="w16.1"></slam-widget>';
 
@@ -104,12 +102,7 @@ describe('a browser without', () => {
     const folder = mkdtempSync(join(tmpdir(), 'older-'));
     const browser = await h.launch();
     try {
-      const zip = join(folder, 'site.zip');
-      execFileSync(process.execPath, [fileURLToPath(new URL('../../web/offline.mjs', import.meta.url)), h.DIST, zip]);
-      for (const [name, bytes] of Object.entries(unzipSync(readFileSync(zip)))) {
-        mkdirSync(dirname(join(folder, name)), { recursive: true });
-        writeFileSync(join(folder, name), bytes);
-      }
+      unpackOffline(join(folder, 'site.zip'), folder);
       const tab = await browser.newPage();
       await tab.addInitScript(() => delete window.DecompressionStream);
       await tab.goto(`${pathToFileURL(folder).href}/own-robot.html?w=16.10`);

@@ -1,18 +1,15 @@
 // The tests that run in every engine: what differs between browsers, and nothing that one of them proves for all.
 
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { dirname, join } from 'node:path';
+import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { fileURLToPath, pathToFileURL } from 'node:url';
+import { pathToFileURL } from 'node:url';
 import * as h from '../harness.mjs';
 import { skip } from '../../skip.mjs';
+import { unpackOffline } from '../unpacked.mjs';
 import { WATCH, WATCH_TEXT, ask, clickButton, clickControl, live, loaded, troublesOf, until, watched } from './page.mjs';
-
-const { unzipSync } = createRequire(new URL('../../../web/package.json', import.meta.url))('fflate');
 
 /** A page with `body`, and one with it in a sandbox. */
 const WIDGETS = h.schema.map(({ id }) => `<div style="padding-bottom: 80vh"><slam-widget name="${id}" more="on"></slam-widget></div>`).join('');
@@ -167,13 +164,8 @@ export function testIn(name, open, problem) {
     test('the offline site opens from the disk, runs a widget, and maps the sample', async () => {
       const folder = mkdtempSync(join(tmpdir(), 'engines-'));
       try {
-        const zip = join(folder, 'site.zip');
-        execFileSync(process.execPath, [fileURLToPath(new URL('../../../web/offline.mjs', import.meta.url)), h.DIST, zip]);
-        for (const [file, bytes] of Object.entries(unzipSync(readFileSync(zip)))) {
-          const path = join(folder, file);
-          mkdirSync(dirname(path), { recursive: true });
-          writeFileSync(path, file.endsWith('.html') ? watched(Buffer.from(bytes).toString()).replace(WATCH, WATCH.slice(1)) : bytes);
-        }
+        unpackOffline(join(folder, 'site.zip'), folder, (file, bytes) =>
+          file.endsWith('.html') ? watched(Buffer.from(bytes).toString()).replace(WATCH, WATCH.slice(1)) : bytes);
         writeFileSync(join(folder, WATCH.slice(1)), WATCH_TEXT);
         await page.goto(`${pathToFileURL(folder).href}/own-robot.html?w=16.10`);
         await loaded(page);
