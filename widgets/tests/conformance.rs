@@ -10,7 +10,7 @@ use widget_kit::param::{MORE, ParamKind, ParamSpec};
 use widget_kit::playback::SPEED;
 use widget_kit::scene::Layer;
 use widget_kit::shell::Shell;
-use widget_kit::spec::{Awaits, Preset};
+use widget_kit::spec::{Awaits, Preset, WidgetSpec};
 use widgets::registry::{MODELS, SHELLS, SPECS, find, names};
 
 use crate::support::{click_at, drawn};
@@ -224,8 +224,7 @@ fn each_parameter_changes_what_is_shown() {
         if spec.id == "w16.10" {
             continue;
         }
-        let presets = spec.presets.iter().map(|preset| preset.id);
-        let states: Vec<&str> = core::iter::once("defaults").chain(presets).collect();
+        let states = pressed_states(spec);
         let mut others = vec![Vec::new()];
         if spec.id == "w16.2" {
             // The number of a thing needs the kind of thing, and a piece of the flat the editor.
@@ -302,7 +301,7 @@ fn a_press_of_a_button_with_nothing_to_do_changes_no_state() {
     for make in SHELLS {
         let mut shell = make();
         let spec = shell.model().spec();
-        for state in pressed_states(&shell) {
+        for state in pressed_states(shell.model().spec()) {
             shell.model_mut().press(state).expect("the widget has it");
             shell.finish_work();
             shell.take_requests();
@@ -406,8 +405,8 @@ fn a_step_goes_to_the_next_position() {
 }
 
 /// The states one press away: the start, and each preset.
-fn pressed_states(shell: &Shell) -> Vec<&'static str> {
-    let presets = shell.model().spec().presets.iter();
+fn pressed_states(spec: &'static WidgetSpec) -> Vec<&'static str> {
+    let presets = spec.presets.iter();
     core::iter::once("defaults")
         .chain(presets.map(|preset| preset.id))
         .collect()
@@ -447,7 +446,7 @@ fn no_text_overlaps_or_is_cut_off() {
     for make in SHELLS {
         let mut shell = make();
         let name = shell.model().spec().id;
-        for state in pressed_states(&shell) {
+        for state in pressed_states(shell.model().spec()) {
             shell.model_mut().press(state).expect("the widget has it");
             shell.finish_work();
             for more in [0.0, 1.0] {
@@ -618,7 +617,7 @@ fn no_opening_layer_is_higher_than_two_screens_of_a_phone() {
     for make in SHELLS {
         let mut shell = make();
         let name = shell.model().spec().id;
-        for state in pressed_states(&shell) {
+        for state in pressed_states(shell.model().spec()) {
             shell.model_mut().press(state).expect("the widget has it");
             shell.finish_work();
             let height = height_on_a_phone(&ctx, &mut shell);
