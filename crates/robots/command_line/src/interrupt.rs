@@ -1,11 +1,20 @@
 //! Ctrl-C, SIGTERM and SIGHUP: the first ends the work early, a second one ends the process.
 
-use std::process::exit;
+use std::process::{ExitCode, exit};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Exit code of work that was cut short, as shells have it for Ctrl-C.
-pub const EXIT_CODE: u8 = 130;
+const EXIT_CODE: u8 = 130;
+
+/// The exit code of work that was done, or cut short.
+pub fn exit_code(is_interrupted: bool) -> ExitCode {
+    if is_interrupted {
+        EXIT_CODE.into()
+    } else {
+        ExitCode::SUCCESS
+    }
+}
 
 /// Whether a signal asked the command to end.
 #[derive(Clone, Debug, Default)]

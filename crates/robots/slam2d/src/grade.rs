@@ -62,6 +62,14 @@ pub enum Grade {
     Truth(TruthReport),
 }
 
+/// The grade as JSON has it: against relations, and against the truth.
+pub fn by_reference(grade: Option<Grade>) -> (Option<Grade>, Option<Grade>) {
+    match grade {
+        Some(Grade::Relations(_)) => (grade, None),
+        Some(Grade::Truth(_)) | None => (None, grade),
+    }
+}
+
 impl ReferenceArgs {
     /// Reads the reference, if one is given.
     ///

@@ -14,7 +14,7 @@ use robot_io::log::LogReader;
 use robot_io::run::late_scans;
 use serde::Serialize;
 
-use crate::grade::{Grade, ReferenceArgs};
+use crate::grade::{Grade, ReferenceArgs, by_reference};
 use crate::session_file::read_session;
 use command_line::in_file::InFile as _;
 use command_line::interrupt::{self, Interrupt};
@@ -164,7 +164,7 @@ pub fn run(args: &LocalizeArgs) -> anyhow::Result<ExitCode> {
         .as_ref()
         .map(|reference| reference.grade(&trajectory))
         .transpose()?;
-    let of = |wanted: bool| grade.filter(|grade| wanted == matches!(grade, Grade::Relations(_)));
+    let (relations, truth) = by_reference(grade);
     let reports = run.reports();
     let count = |verdict| {
         reports
@@ -183,8 +183,8 @@ pub fn run(args: &LocalizeArgs) -> anyhow::Result<ExitCode> {
         first_found_s: localized.map(|first| first.stamp_s),
         cpu_s: process::cpu_s(),
         peak_mb: process::peak_mb(),
-        relations: of(true),
-        truth: of(false),
+        relations,
+        truth,
         poses: reports,
     };
     if args.json {
@@ -192,11 +192,7 @@ pub fn run(args: &LocalizeArgs) -> anyhow::Result<ExitCode> {
     } else {
         print_text(&result);
     }
-    Ok(if is_interrupted {
-        interrupt::EXIT_CODE.into()
-    } else {
-        ExitCode::SUCCESS
-    })
+    Ok(interrupt::exit_code(is_interrupted))
 }
 
 /// Prints a line for each change of the verdict, and the totals.

@@ -14,7 +14,7 @@ use robot_io::run::LogRun;
 use robot_io::settings::Setting;
 use serde::Serialize;
 
-use crate::grade::{Grade, Reference, ReferenceArgs};
+use crate::grade::{Grade, Reference, ReferenceArgs, by_reference};
 use crate::localize::Init;
 use crate::run_folder::{CUT_SHORT, folder_of_part};
 use crate::run_output::{Results, write_folder};
@@ -232,8 +232,7 @@ impl<'a> Mapping<'a> {
         if let Some(error) = broken {
             return Err(error);
         }
-        let of =
-            |wanted: bool| grade.filter(|grade| wanted == matches!(grade, Grade::Relations(_)));
+        let (relations, truth) = by_reference(grade);
         let doubts = std::mem::take(&mut quality.doubts);
         let result = RunJson {
             scans: run.scans(),
@@ -247,19 +246,15 @@ impl<'a> Mapping<'a> {
             folder,
             doubts,
             quality,
-            relations: of(true),
-            truth: of(false),
+            relations,
+            truth,
         };
         if args.json {
             print_json(&result);
         } else {
             print_text(&result);
         }
-        Ok(if is_interrupted {
-            interrupt::EXIT_CODE.into()
-        } else {
-            ExitCode::SUCCESS
-        })
+        Ok(interrupt::exit_code(is_interrupted))
     }
 }
 
