@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 
 use ch16_slam2d::scan::{Frame, LaserScan};
 use ch16_slam2d::slam::{LoopClosure, Slam, SlamConfig};
-use pr_geom::math;
+use pr_geom::{math, sort_numbers};
 
 use self::line::Line;
 use self::trial::Trial;
@@ -61,9 +61,11 @@ impl Cut {
                 *range_m = f64::NAN;
             }
         }
-        for beam in 0..scan.ranges_m.len() {
-            if self.floor.is_some_and(|floor| floor.is_met_by(scan, beam)) {
-                scan.ranges_m[beam] = f64::NAN;
+        if let Some(floor) = &self.floor {
+            for beam in 0..scan.ranges_m.len() {
+                if floor.is_met_by(scan, beam) {
+                    scan.ranges_m[beam] = f64::NAN;
+                }
             }
         }
     }
@@ -187,7 +189,7 @@ fn steady(frames: &VecDeque<LogFrame>) -> Cut {
             .filter(|scan| scan.is_return(scan.ranges_m[beam]))
             .map(|scan| scan.ranges_m[beam])
             .collect();
-        seen_m.sort_by(f64::total_cmp);
+        sort_numbers(&mut seen_m);
         let at = |share: f64| seen_m.get((share * seen_m.len() as f64) as usize).copied();
         let (Some(usual_m), Some(last_m)) = (at(0.5), at(1.0 - FARTHER)) else {
             limits_m.push(0.0);
