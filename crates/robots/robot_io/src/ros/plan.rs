@@ -9,7 +9,7 @@ pub use odometry::OdometrySource;
 
 use nalgebra::Isometry3;
 
-use super::survey::{SCANS, ScanStream, Survey};
+use super::survey::{POINT_CLOUD, SCANS, ScanStream, Survey};
 use super::transforms::is_ground;
 use crate::laser_mount::LaserMount;
 use crate::lines::listed;
@@ -345,7 +345,7 @@ fn chosen_scans<'a>(survey: &'a Survey, options: &LogOptions) -> Vec<(&'a str, &
         return found.unwrap_or_default();
     }
     // Lasers before clouds, which may come from a camera.
-    let is_cloud = |stream: &ScanStream| SCANS[stream.kind] == "sensor_msgs/PointCloud2";
+    let is_cloud = |stream: &ScanStream| SCANS[stream.kind] == POINT_CLOUD;
     usable.sort_by_key(|(_, stream)| (is_cloud(stream), stream.order));
     let most = usable
         .iter()

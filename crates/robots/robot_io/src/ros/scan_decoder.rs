@@ -7,7 +7,7 @@ use super::container::Recorded;
 use super::messages::{header, laser_scan, multi_echo_scan};
 use super::plan::PlannedScans;
 use super::point_cloud::{cloud_points, point_cloud};
-use super::survey::{SCANS, is_repeated, reader};
+use super::survey::{POINT_CLOUD, SCANS, is_repeated, reader};
 
 /// Beam spacing of a cloud that is cut to a height band, rad: half a degree.
 const CLOUD_STEP_RAD: f64 = 0.0087;
@@ -63,7 +63,7 @@ impl ScanDecoder {
 
     fn scan(&mut self, message: &Recorded) -> Result<LaserScan, String> {
         let mut fields = reader(message)?;
-        if message.kind == "sensor_msgs/PointCloud2" {
+        if message.kind == POINT_CLOUD {
             if let Some((low_m, high_m)) = self.heights_m {
                 let points = cloud_points(&mut fields)?;
                 let body_from_sensor = self.scans.body_from_sensor;

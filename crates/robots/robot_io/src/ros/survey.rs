@@ -34,8 +34,10 @@ const STILL: f64 = 1e-3;
 pub const SCANS: [&str; 3] = [
     "sensor_msgs/LaserScan",
     "sensor_msgs/MultiEchoLaserScan",
-    "sensor_msgs/PointCloud2",
+    POINT_CLOUD,
 ];
+/// Message type of clouds.
+pub const POINT_CLOUD: &str = "sensor_msgs/PointCloud2";
 /// Message type of odometry.
 pub const ODOMETRY: &str = "nav_msgs/Odometry";
 
@@ -343,10 +345,8 @@ fn scan_header(message: &Recorded, options: &LogOptions) -> Result<Header, Strin
     let mut fields = reader(message)?;
     let in_words = |problem: super::wire::WireError| problem.to_string();
     match message.kind.as_str() {
-        "sensor_msgs/PointCloud2" if options.heights_m.is_some() => {
-            header(&mut fields).map_err(in_words)
-        }
-        "sensor_msgs/PointCloud2" => point_cloud(&mut fields).map(|(header, _)| header),
+        POINT_CLOUD if options.heights_m.is_some() => header(&mut fields).map_err(in_words),
+        POINT_CLOUD => point_cloud(&mut fields).map(|(header, _)| header),
         kind => {
             let read = if kind == SCANS[0] {
                 laser_scan

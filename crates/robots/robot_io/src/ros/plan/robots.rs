@@ -2,7 +2,7 @@
 
 use super::{MIN_SHARE, PlannedScans};
 use crate::log::LogOptions;
-use crate::ros::survey::{SCANS, ScanStream, Survey};
+use crate::ros::survey::{POINT_CLOUD, SCANS, ScanStream, Survey};
 
 /// The topics of the lasers of each robot whose scans are not read, separated by commas; none if the user chose topics.
 pub fn others(survey: &Survey, options: &LogOptions, read: &[PlannedScans]) -> Vec<String> {
@@ -20,7 +20,7 @@ pub fn others(survey: &Survey, options: &LogOptions, read: &[PlannedScans]) -> V
     let lasers = survey
         .scans
         .iter()
-        .filter(|(_, stream)| stream.is_usable && SCANS[stream.kind] != "sensor_msgs/PointCloud2");
+        .filter(|(_, stream)| stream.is_usable && SCANS[stream.kind] != POINT_CLOUD);
     let mut lasers: Vec<_> = lasers.collect();
     lasers.sort_by_key(|(_, stream)| stream.order);
     let most = lasers.iter().map(|(_, stream)| stream.stamps_s.len()).max();
