@@ -182,8 +182,10 @@ impl Slam {
         let tried = self.loop_closer.conclude(&mut self.mapper, &self.config);
         pending.add(self.frames.saturating_sub(1), tried);
         self.close_loop(&mut pending);
-        let correction = self.mapper.optimize_pending();
-        self.front_end.correct(&correction);
+        let optimized = self.mapper.optimize_pending();
+        if let Ok(correction) = &optimized {
+            self.front_end.correct(correction);
+        }
         let links = match self.config.loop_closure {
             LoopClosure::On => self.loop_closer.finder.link_all(&mut self.mapper),
             LoopClosure::Off => Vec::new(),
@@ -191,6 +193,8 @@ impl Slam {
         Conclusion {
             tried: pending.loop_attempts,
             links,
+            // The links replace the loops, and may be solvable without them.
+            unsolved: optimized.err().filter(|_| self.mapper.has_pending()),
         }
     }
 

@@ -92,6 +92,7 @@ impl Quality {
         tried: &[TriedLoop],
         links: &[LoopVerification],
         poor: &[PoorFit],
+        unsolved: Option<&LoopRejection>,
     ) -> Self {
         let Some(slam) = slam else {
             return Self::default();
@@ -125,7 +126,9 @@ impl Quality {
             });
         }
         quality.refuted_paths = refuted_paths(&tests);
-        quality.doubts = doubts::sentences(&quality, &doubts::violated(slam, tried), poor);
+        quality.doubts = unsolved.map(doubts::unsolved).into_iter().collect();
+        let others = doubts::sentences(&quality, &doubts::violated(slam, tried), poor);
+        quality.doubts.extend(others);
         quality
     }
 

@@ -6,7 +6,7 @@ mod sentences;
 pub use sentences::late_scans;
 
 use ch16_slam2d::local_map::LocalMapConfig;
-use ch16_slam2d::loops::LoopVerification;
+use ch16_slam2d::loops::{LoopRejection, LoopVerification};
 use ch16_slam2d::pipeline::{BridgedGap, LeftOut, PieceFate, PieceReport, Pipeline, ScanPose};
 use ch16_slam2d::scan::{FrameError, LaserScan};
 use ch16_slam2d::slam::{LoopAttempt, Slam, SlamReport, SnapshotError};
@@ -38,6 +38,8 @@ pub struct LogRun {
     held: Vec<LoopAttempt>,
     links: Vec<LoopVerification>,
     poor: Vec<PoorFit>,
+    /// Why the map does not follow its newest loops.
+    unsolved: Option<LoopRejection>,
     lengths: PathLengths,
     late: usize,
     /// Number of scans without a return before the first one that sees something.
@@ -72,6 +74,7 @@ impl LogRun {
             held: Vec::new(),
             links: Vec::new(),
             poor: Vec::new(),
+            unsolved: None,
             lengths: PathLengths::default(),
             late: 0,
             blind: 0,
@@ -220,6 +223,7 @@ impl LogRun {
         self.note_held();
         if let Some(concluded) = concluded {
             self.links = concluded.links;
+            self.unsolved = concluded.unsolved;
             self.note(&concluded.tried);
         }
     }
@@ -350,6 +354,7 @@ impl LogRun {
             &self.loops,
             &self.links,
             &self.poor,
+            self.unsolved.as_ref(),
         )
     }
 

@@ -378,18 +378,23 @@ impl Mapper {
         Some(selection.inliers[selection.inliers.len() - added..].to_vec())
     }
 
-    /// Optimizes pending loops; returns the motion of the newest node.
-    pub(super) fn optimize_pending(&mut self) -> SE2 {
+    /// Optimizes pending loops; returns the motion of the newest node. A graph that cannot be solved is unchanged.
+    pub(super) fn optimize_pending(&mut self) -> Result<SE2, LoopRejection> {
         let Some(newest) = self.keyframes.len().checked_sub(1) else {
-            return SE2::identity();
+            return Ok(SE2::identity());
         };
         let before = self.graph.poses().to_vec();
-        if self.graph.optimized_edges() < self.graph.edge_count() {
-            // A graph that cannot be solved is unchanged.
-            let _ = self.optimize(0, &before);
+        if self.has_pending() {
+            let optimized = self.optimize(0, &before);
             self.chi2 = self.graph.chi2();
+            optimized?;
         }
-        self.graph.pose(newest) * before[newest].inverse()
+        Ok(self.graph.pose(newest) * before[newest].inverse())
+    }
+
+    /// Whether the poses do not follow the newest loops.
+    pub(super) fn has_pending(&self) -> bool {
+        self.graph.optimized_edges() < self.graph.edge_count()
     }
 
     /// Covariance of every keyframe relative to the first one, in the body's frame: x and y in m, θ in rad.

@@ -4,7 +4,7 @@ use pr_geom::SE2;
 use serde::Serialize;
 
 use super::registrar::Registration;
-use crate::loops::LoopVerification;
+use crate::loops::{LoopRejection, LoopVerification};
 
 /// Effect of closing a loop.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +58,8 @@ pub struct Conclusion {
     pub tried: Vec<LoopAttempt>,
     /// The links of keyframes with earlier visits; the accepted ones are now the loops of the graph.
     pub links: Vec<LoopVerification>,
+    /// Why the poses do not follow the newest loops: the graph could not be optimized.
+    pub unsolved: Option<LoopRejection>,
 }
 
 /// Report of one frame.

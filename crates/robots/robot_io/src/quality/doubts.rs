@@ -1,6 +1,7 @@
 //! Doubts about a map: uncertain keyframes, loops and path segments that the rest contradicts, and scans with a poor
 //! fit.
 
+use ch16_slam2d::loops::LoopRejection;
 use ch16_slam2d::slam::Slam;
 use pr_geom::{math, sort_numbers};
 
@@ -51,6 +52,15 @@ pub(super) fn violated(slam: &Slam, tried: &[TriedLoop]) -> Vec<ViolatedLoop> {
     });
     all.filter(|it| it.off_m > VIOLATION.0 || it.off_deg > VIOLATION.1)
         .collect()
+}
+
+/// The doubt about a map that could not be optimized at the end of its run.
+pub(super) fn unsolved(reason: &LoopRejection) -> String {
+    let reason = match reason {
+        LoopRejection::OptimizationFailed(stop) => stop.to_string(),
+        other => other.to_string(),
+    };
+    format!("the last optimization failed, so the map does not follow its newest loops: {reason}")
 }
 
 /// One sentence per doubt, the worst of a kind first, at most ten of a kind.
@@ -147,8 +157,41 @@ fn poor_fits(poor: &[PoorFit]) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use ch16_slam2d::graph::EdgeKind;
+    use ch16_slam2d::scan::LaserScan;
+    use pr_geom::{Matrix3, SE2};
+
     use super::super::GATE_CHI2;
     use super::*;
+    use crate::log::LogFrame;
+    use crate::run::LogRun;
+
+    #[test]
+    fn a_failed_last_optimization_is_the_first_doubt() {
+        let doubts = |information: f64| {
+            let mut run = LogRun::default();
+            for k in 0..20 {
+                run.step(LogFrame {
+                    stamp_s: f64::from(k),
+                    odometry: Some(SE2::new(0.0, 0.0, 0.2 * f64::from(k))),
+                    scan: LaserScan {
+                        angle_step_rad: 0.05,
+                        ranges_m: vec![3.0; 120],
+                        ..LaserScan::default()
+                    },
+                });
+            }
+            let graph = run.slam_mut().unwrap().graph_mut();
+            let (measured, information) = (graph.pose(2), Matrix3::identity() * information);
+            graph.add_edge(0, 2, measured, information, EdgeKind::Odometry);
+            run.finish();
+            run.quality().doubts
+        };
+        let failed = "the last optimization failed, so the map does not follow its newest loops: ";
+        // The normal equations of a negative information have no minimum.
+        assert!(doubts(-1e9)[0].starts_with(failed));
+        assert!(!doubts(1e3).iter().any(|doubt| doubt.starts_with(failed)));
+    }
 
     #[test]
     fn poor_fits_and_contradicted_loops_and_paths_are_doubted() {
