@@ -270,15 +270,8 @@ export async function bytesOf(download) {
 export async function painted(page, selector = 'slam-widget') {
   return page.evaluate(async (css) => {
     const widget = document.querySelector(css);
-    // Without a log, another picture stands before the widget's own.
-    const still = widget.shadowRoot.querySelector('.without-file .picture');
-    await still?.decode();
-    const picture = still ?? await widget.snapshot();
+    const picture = await widget.snapshot();
     const copy = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
-    if (still) {
-      copy.fillStyle = getComputedStyle(still).backgroundColor;
-      copy.fillRect(0, 0, still.width, still.height);
-    }
     copy.drawImage(picture, 0, 0, picture.width, picture.height);
     const { data } = copy.getImageData(0, 0, picture.width, picture.height);
     const pixels = new Uint32Array(data.buffer);

@@ -10,8 +10,6 @@ import type { Pictures } from './pictures';
 import { themeOf, watchTheme, type Theme } from './theme';
 
 const reducedMotion = globalThis.matchMedia?.('(prefers-reduced-motion: reduce)');
-/** The picture of what comes of a log: the building of own-robot.html. */
-const FINISHED_MAP = 'building';
 /** Minimum width of a picture. */
 const MIN_WIDTH_PX = 320;
 
@@ -72,8 +70,7 @@ export class Appearance {
     this.#parts.frame.classList.toggle('dark', theme === 'dark');
     this.#lifecycle.ask((widget) => widget.setTheme(theme));
     this.#lifecycle.wake();
-    if (this.#waits) this.#pictures.showStart(FINISHED_MAP, theme);
-    else if (!this.#lifecycle.hasInstance && this.#widget !== undefined) this.#pictures.showStart(this.#widget, theme);
+    if (!this.#lifecycle.hasInstance && this.#widget !== undefined) this.#pictures.showStart(this.#widget, theme);
   }
 
   /** Handles a frame that was just drawn. */
@@ -81,14 +78,8 @@ export class Appearance {
     this.#pinnedPicture.drew(canvas);
   }
 
-  /** Whether the widget waits for a file of the reader: another picture stands for its own. */
-  get #waits(): boolean {
-    return this.#parts.frame.classList.contains('without-file');
-  }
-
   /** The picture of the current state, drawn by the widget itself. */
   drawPicture(theme: Theme = themeOf(this.#host)): void {
-    if (this.#waits) return;
     const width = Math.max(this.#host.clientWidth, MIN_WIDTH_PX);
     const svg = this.#lifecycle.ask((widget) => widget.picture(width, theme));
     if (svg !== undefined) this.#pictures.showDrawn(svg, this.#host.summary);

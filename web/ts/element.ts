@@ -533,13 +533,10 @@ export class SlamWidget extends HTMLElement {
     this.#lifecycle.wake();
   }
 
-  /** Shows the picture of what comes of a file, until there is one. */
+  /** Shows the drop zone over the picture, until there is a file. */
   #waitForFile(waits: boolean): void {
     this.#parts.frame.classList.toggle('without-file', waits);
     this.#offerControls();
-    if (!waits) return;
-    this.#pictures.clear(this.#state?.spec.summary ?? '');
-    this.#appearance.showTheme();
   }
 
   /** Executes an action on the widget, which is started if necessary. */

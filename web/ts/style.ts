@@ -17,13 +17,9 @@ export const STYLE = `
 .view { position: relative; }
 .whole { position: absolute; top: 0.5rem; right: 0.75rem; }
 .drop { display: none; }
-.without-file .drop { display: grid; place-content: end start; position: absolute; inset: 0; padding: 0.75rem; border: 0; border-radius: 0; background: none; }
-.drop span { padding: 0.6rem 1rem; border: 2px dashed var(--accent); border-radius: 8px; background: var(--paper); text-align: left; }
+.without-file .drop { display: grid; place-content: center; position: absolute; inset: 0; padding: 0.75rem; border: 0; border-radius: 0; background: none; }
+.drop span { max-width: 13rem; padding: 0.6rem 1rem; border: 2px dashed var(--accent); border-radius: 8px; background: var(--paper); }
 .drop b { display: block; font-size: 1.25em; }
-@media (width < 30rem) {
-  .without-file .drop { place-content: stretch; padding-top: 54%; }
-  .drop span { align-content: center; text-align: center; }
-}
 .stage { position: relative; overflow: hidden; min-height: 12rem; height: var(--reserved-height); }
 .stage.live { min-height: 0; height: auto; }
 .picture { display: block; width: 100%; height: auto; }
@@ -35,7 +31,6 @@ canvas { display: block; width: 100%; touch-action: pan-y pinch-zoom; outline: n
   border-bottom: 2px solid var(--accent); border-radius: 0 0 8px 8px; box-shadow: 0 3px 10px #0005; touch-action: auto; }
 .stage.waiting canvas { position: absolute; inset: 0; visibility: hidden; }
 .stage.live .picture { display: none; }
-.without-file .stage .picture { display: block; position: absolute; inset: 0; height: 100%; object-fit: contain; background: var(--paper); }
 progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; accent-color: var(--accent); }
 .note { margin: 0; padding: 0.5rem 0.75rem; border-top: 1px solid var(--line); overflow-wrap: anywhere; }
 .note pre { max-height: 10rem; overflow: auto; white-space: pre-wrap; font-size: 0.75rem; }

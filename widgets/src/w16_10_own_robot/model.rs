@@ -22,6 +22,8 @@ pub(super) mod settings;
 mod tables;
 mod texts;
 
+use core::cell::OnceCell;
+
 use log_messages::{LocalizedScan, MapperOrder, Stage};
 use widget_kit::disclosure::Disclosure;
 use widget_kit::host_messages::Delivery;
@@ -31,7 +33,7 @@ use widget_kit::model::{
 };
 use widget_kit::param::ParamError;
 use widget_kit::playback::{Playback, SPEED};
-use widget_kit::scene::Scene;
+use widget_kit::scene::{Layer, Scene};
 use widget_kit::spec::{DEFAULTS, WidgetSpec};
 use widget_kit::values::{Changed, Values};
 
@@ -68,6 +70,8 @@ pub struct OwnRobot {
     robot: LogState,
     playback: Playback,
     requests: Vec<Request>,
+    /// The picture before a log is opened, once it is drawn.
+    invitation: OnceCell<Vec<Layer>>,
 }
 
 impl Default for OwnRobot {
@@ -85,6 +89,7 @@ impl OwnRobot {
             robot: LogState::default(),
             playback: Playback::default(),
             requests: Vec::new(),
+            invitation: OnceCell::new(),
         }
     }
 

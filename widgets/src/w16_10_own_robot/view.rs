@@ -7,13 +7,9 @@ use crate::w16_10_own_robot::model::panel;
 
 /// The layout of the widget.
 #[must_use]
-pub fn arrange(scene: &Scene, width: f32) -> Arrangement {
-    let map = match (width < SIDE_BY_SIDE, scene.panels[0].layers.is_empty()) {
-        // The host's picture covers it.
-        (true, true) => Slot::fixed(panel::MAP, 440.0),
-        (true, false) => Slot::natural(panel::MAP, 520.0),
-        (false, _) => Slot::natural(panel::MAP, 620.0),
-    };
+pub fn arrange(_: &Scene, width: f32) -> Arrangement {
+    let most_px = if width < SIDE_BY_SIDE { 520.0 } else { 620.0 };
+    let map = Slot::natural(panel::MAP, most_px);
     let plots = [panel::FIT, panel::SURE].map(|id| Slot::fixed(id, 130.0));
     let below = if width < SIDE_BY_SIDE {
         Row::each(&plots)

@@ -1,6 +1,7 @@
 //! The panels: the map with path and loops, and the plots over the keyframes.
 
 mod charts;
+mod invitation;
 mod visitor;
 
 use log_messages::Stage;
@@ -39,7 +40,10 @@ pub fn scene(robot: &OwnRobot) -> Scene {
 fn map(own: &OwnRobot) -> Panel {
     let robot = &own.robot;
     let is_empty = robot.keyframes.is_empty();
-    let bounds = bounds(robot);
+    let bounds = match robot.progress.stage {
+        Stage::Empty => invitation::BOUNDS,
+        _ => bounds(robot),
+    };
     let axis = |i: usize| {
         // Metres mean something only on a map.
         let label = if is_empty { "" } else { ["x (m)", "y (m)"][i] };
@@ -48,7 +52,7 @@ fn map(own: &OwnRobot) -> Panel {
     let mut layers: Vec<Layer> = robot.map.iter().cloned().map(Layer::Raster).collect();
     let mut color_bar = None;
     if is_empty {
-        layers.extend(invitation(robot));
+        layers.extend(without_map(own));
     } else {
         layers.extend(links(own));
         let (shades, bar) = way(own);
@@ -60,7 +64,7 @@ fn map(own: &OwnRobot) -> Panel {
     Panel {
         id: panel::MAP,
         title: match robot.progress.stage {
-            Stage::Empty => "Your map".to_owned(),
+            Stage::Empty => "A log of your robot becomes a map".to_owned(),
             _ => format!("Map of {}", short(&robot.name)),
         },
         weight: Weight::Main,
@@ -168,18 +172,14 @@ fn bounds(robot: &LogState) -> Bounds {
     }
 }
 
-/// Text while there is no map; without a log the host's drop zone stands for the picture.
-fn invitation(robot: &LogState) -> Option<Layer> {
-    let text = match robot.progress.stage {
-        Stage::Empty => return None,
+/// What stands for a map until there is one: an invitation, or words.
+fn without_map(own: &OwnRobot) -> Vec<Layer> {
+    let words = match own.robot.progress.stage {
+        Stage::Empty => return own.invitation.get_or_init(invitation::layers).clone(),
         Stage::Failed => "There is no map yet.",
         _ => "The log is read.",
     };
-    Some(Layer::Text {
-        at: EMPTY.middle(),
-        text: text.to_owned(),
-        tone: Tone::Ink,
-    })
+    vec![Layer::question(EMPTY.middle(), words)]
 }
 
 fn at(robot: &LogState, keyframe: usize) -> Option<[f64; 2]> {
