@@ -7,9 +7,14 @@ use crate::w16_10_own_robot::model::panel;
 
 /// The layout of the widget.
 #[must_use]
-pub fn arrange(_: &Scene, width: f32) -> Arrangement {
-    let most_px = if width < SIDE_BY_SIDE { 520.0 } else { 620.0 };
-    let map = Slot::natural(panel::MAP, most_px);
+pub fn arrange(scene: &Scene, width: f32) -> Arrangement {
+    let mut panels = scene.panels.iter();
+    let is_mapped = panels.any(|shown| shown.id == panel::MAP && shown.x.is_drawn());
+    let map = match (width < SIDE_BY_SIDE, is_mapped) {
+        (true, false) => Slot::fixed(panel::MAP, 440.0),
+        (true, true) => Slot::natural(panel::MAP, 520.0),
+        (false, _) => Slot::natural(panel::MAP, 620.0),
+    };
     let plots = [panel::FIT, panel::SURE].map(|id| Slot::fixed(id, 130.0));
     let below = if width < SIDE_BY_SIDE {
         Row::each(&plots)

@@ -59,8 +59,8 @@ pub fn layers() -> Vec<Layer> {
         ),
         Layer::pose(wheels.to_array(), Mark::Triangle, Tone::Prediction, 6.0),
         Layer::pose(robot.to_array(), Mark::Square, Tone::Posterior, 6.0),
-        Layer::label(position(&wheels), "by its wheels".to_owned(), 14.0),
-        Layer::label(position(&robot), "by its laser".to_owned(), 14.0),
+        Layer::label(position(&wheels), "by its wheels alone".to_owned(), 14.0),
+        Layer::label(position(&robot), "where it is".to_owned(), 14.0),
     ]
 }
 
