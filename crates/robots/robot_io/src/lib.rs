@@ -17,6 +17,7 @@
 //! - [`run`]: runs [`Slam`](ch16_slam2d::slam::Slam) on a log, frame by frame.
 //! - [`session`]: the complete state of a run in one file.
 //! - [`settings`]: the parameters of the estimator by name.
+//! - [`live`]: a robot that drives, heard over a network.
 //! - [`localize`]: localizes a log on the map of a session.
 //! - [`evidence`]: evidence of loops and scans that a run keeps.
 //! - [`own_body`] and [`near_readings`]: remove readings of the robot's own body, and of the floor before a laser that leans.
@@ -42,6 +43,7 @@ pub mod info;
 pub mod json_log;
 pub mod laser_mount;
 pub mod line_log;
+pub mod live;
 pub mod localize;
 pub mod log;
 pub mod log_bytes;

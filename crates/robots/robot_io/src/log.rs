@@ -274,6 +274,9 @@ pub enum LogError {
         /// The names that exist.
         advice: String,
     },
+    /// More of a recording that is being made has to come first; then the next call goes on.
+    #[error("nothing more has come yet")]
+    Waiting,
     /// The file has records but no usable scan.
     #[error("{name} has no usable scan: {detail}")]
     NoScans {

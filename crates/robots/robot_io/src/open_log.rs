@@ -28,7 +28,9 @@ impl LogFormat {
         Self::open_parts(vec![bytes.into()], name, options)
     }
 
-    /// Opens a recording while it is made: `stream` is MCAP, and its reads wait for what comes next.
+    /// Opens a recording while it is made: `stream` is MCAP, and its reads wait for what comes next, or fail with
+    /// [`WouldBlock`](std::io::ErrorKind::WouldBlock) between two records: then there is no frame yet, and
+    /// [`LogError::Waiting`].
     #[must_use]
     pub fn open_live<'a>(
         stream: impl BufRead + 'a,

@@ -13,6 +13,7 @@ mod line;
 mod trial;
 
 use std::collections::VecDeque;
+use std::mem;
 
 use ch16_slam2d::scan::{Frame, LaserScan};
 use ch16_slam2d::slam::{LoopClosure, Slam, SlamConfig};
@@ -75,6 +76,8 @@ impl Cut {
 pub struct BodyReader<'a> {
     inner: Box<dyn LogReader + 'a>,
     waiting: VecDeque<LogFrame>,
+    /// What the frames that wait show.
+    trial: Trial,
     cut: Option<Cut>,
     remarks: Vec<Remark>,
     notes: LogNotes,
@@ -87,26 +90,31 @@ impl<'a> BodyReader<'a> {
         Self {
             inner,
             waiting: VecDeque::new(),
+            trial: Trial::default(),
             cut: None,
             remarks: Vec::new(),
             notes: LogNotes::default(),
         }
     }
 
-    /// Reads the first scans and finds what travels with the robot.
+    /// Reads the first scans and finds what travels with the robot; goes on where it had to wait for a scan.
     fn find(&mut self) -> Result<Cut, LogError> {
-        let mut trial = Trial::default();
-        let mut beams = 0;
-        while self.waiting.len() < MAX_SCANS && beams < MAX_BEAMS && !trial.is_enough() {
+        let first = self.waiting.front();
+        if first.is_some_and(|first| first.odometry.is_none()) {
+            return self.find_alone();
+        }
+        let mut beams = beams_of(&self.waiting);
+        while self.waiting.len() < MAX_SCANS && beams < MAX_BEAMS && !self.trial.is_enough() {
             let frame = match self.inner.next_frame() {
                 Ok(Some(frame)) => frame,
                 Ok(None) => break,
+                Err(LogError::Waiting) => return Err(LogError::Waiting),
                 Err(error) if self.waiting.is_empty() => return Err(error),
                 // The error recurs once these frames are consumed.
                 Err(_) => break,
             };
             beams += frame.scan.ranges_m.len().max(1);
-            let is_same_sensor = trial.add(frame.odometry, &frame.scan);
+            let is_same_sensor = self.trial.add(frame.odometry, &frame.scan);
             let has_odometry = frame.odometry.is_some();
             let is_first = self.waiting.is_empty();
             self.waiting.push_back(frame);
@@ -120,16 +128,19 @@ impl<'a> BodyReader<'a> {
                 break;
             }
         }
+        let trial = mem::take(&mut self.trial);
         Ok(self.decided(&trial))
     }
 
     /// The same without odometry, after the first scan was read.
     fn find_alone(&mut self) -> Result<Cut, LogError> {
-        let mut beams = 0;
+        let mut beams = beams_of(&self.waiting);
         while self.waiting.len() < MAX_ALONE && beams < MAX_BEAMS {
-            // An error recurs once these frames are consumed.
-            let Ok(Some(frame)) = self.inner.next_frame() else {
-                break;
+            let frame = match self.inner.next_frame() {
+                Ok(Some(frame)) => frame,
+                Err(LogError::Waiting) => return Err(LogError::Waiting),
+                // An error recurs once these frames are consumed.
+                Ok(None) | Err(_) => break,
             };
             beams += frame.scan.ranges_m.len().max(1);
             self.waiting.push_back(frame);
@@ -169,6 +180,12 @@ impl<'a> BodyReader<'a> {
         self.remarks.extend(cut.floor.as_ref().map(floor_remark));
         cut
     }
+}
+
+/// Beams of all these frames, at least one each.
+pub(crate) fn beams_of(frames: &VecDeque<LogFrame>) -> usize {
+    let beams = frames.iter().map(|frame| frame.scan.ranges_m.len().max(1));
+    beams.sum()
 }
 
 /// What may travel with the robot: beams that see the same near range in nearly all scans, and a line beyond which none

@@ -5,8 +5,6 @@
 
 mod connection;
 mod listener;
-mod protocol;
-mod queue;
 
 use std::fs::{self, File};
 use std::io::BufWriter;
@@ -23,14 +21,16 @@ use command_line::in_file::InFile as _;
 use command_line::interrupt::Interrupt;
 use command_line::log_file::{OdometryArgs, TopicArgs, open_live};
 use command_line::numbers;
+use robot_io::live::drive::{Drive, DriveEnd};
+use robot_io::live::network::Host;
+use robot_io::live::queue;
+use robot_io::live::{RECORDING, WAIT_S};
 use robot_io::log::LogReader as _;
 
 use self::connection::{Address, Connection};
-use self::listener::{DriveEnd, Heard, Listener};
+use self::listener::Listener;
 use crate::mapping::{Ended, Mapping, MappingArgs};
 
-/// Name of the recording in the folder of the results.
-const RECORDING: &str = "recording.mcap";
 /// Time between two reports of progress.
 const EVERY: Duration = Duration::from_secs(10);
 
@@ -46,7 +46,7 @@ pub struct LiveArgs {
     #[command(flatten)]
     odometry: OdometryArgs,
     /// How long to wait for the first scan, and for the robot to come back after the connection was lost, s.
-    #[arg(long, value_name = "SECONDS", default_value = "30", value_parser = numbers::wait_s, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", default_value_t = WAIT_S, value_parser = numbers::wait_s, allow_hyphen_values = true)]
     wait: f64,
     #[command(flatten)]
     mapping: MappingArgs,
@@ -73,11 +73,11 @@ pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
     let connection = Connection::open(&address)?;
     fs::create_dir_all(folder).in_file(folder)?;
     let file = File::create_new(&recording).in_file(&recording)?;
-    let (feeder, feed) = queue::stream();
+    let (feeder, feed) = queue::stream(true);
     let is_ended = Arc::<AtomicBool>::default();
     let asked = args.topics.scan_topics().map(str::to_owned).collect();
-    let listener = Listener::new(address, BufWriter::with_capacity(1 << 16, file), feeder)
-        .of_scans(asked)
+    let drive = Drive::new(feeder, asked);
+    let listener = Listener::new(address, BufWriter::with_capacity(1 << 16, file), drive)
         .waiting(Duration::from_secs_f64(args.wait))
         .until(interrupt, Arc::clone(&is_ended));
     let listening = thread::spawn(move || listener.listen(connection));
@@ -101,14 +101,17 @@ pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
         forget(&recording, folder);
     }
     if let Some(problem) = problem {
-        return Err(without_frames(&args.url, &heard).unwrap_or_else(|| problem.into()));
+        let shown = heard.without_scans(&args.url, Host::Command);
+        return Err(shown.map_or_else(|| problem.into(), |shown| anyhow!(shown)));
     }
     let mut ended = Ended {
         remarks: reader.notes().sentences(&args.url),
         about: reader.notes().about.clone(),
         ..Ended::default()
     };
-    ended.remarks.extend(remarks(&args.url, &recording, &heard));
+    let recorded = recording.display().to_string();
+    let remarks = heard.remarks(&args.url, &recorded, Host::Command);
+    ended.remarks.extend(remarks);
     ended.broken = match heard.end {
         DriveEnd::Recording(error) => Some(anyhow!("{}: {error}", recording.display())),
         DriveEnd::TooLong(why) => Some(anyhow!("{}: {why}; the drive ended there", args.url)),
@@ -122,76 +125,4 @@ pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
 fn forget(recording: &Path, folder: &Path) {
     let _ = fs::remove_file(recording);
     let _ = fs::remove_dir(folder);
-}
-
-/// Why a drive has no scan, if the connection shows it.
-fn without_frames(url: &str, heard: &Heard) -> Option<anyhow::Error> {
-    if heard.scans > 0 {
-        return None;
-    }
-    let topics = heard.topics.iter().take(20);
-    let topics: Vec<String> = topics
-        .map(|(topic, kind)| format!("{topic} ({kind})"))
-        .collect();
-    let topics = if topics.is_empty() {
-        "it has no topics".to_owned()
-    } else {
-        format!("it has {}", topics.join(", "))
-    };
-    Some(match &heard.end {
-        DriveEnd::NoScans => anyhow!(
-            "{url}: no scan came; {topics}. Start the driver of the laser, choose with --scan-topic, or wait longer with --wait"
-        ),
-        DriveEnd::NotBack(why) => {
-            anyhow!("{url}: the connection was lost before the first scan ({why}); {topics}")
-        }
-        DriveEnd::Asked => anyhow!("{url}: it was interrupted before its first scan; {topics}"),
-        DriveEnd::TooLong(why) => anyhow!("{url}: {why}"),
-        DriveEnd::Recording(error) => anyhow!("{url}: the recording cannot be written: {error}"),
-    })
-}
-
-/// Sentences on what the network did.
-fn remarks(url: &str, recording: &Path, heard: &Heard) -> Vec<String> {
-    let mut remarks = Vec::new();
-    let recording = recording.display();
-    for gap in &heard.gaps {
-        remarks.push(format!(
-            "{url}: the connection was lost for {:.1} s; what the robot saw meanwhile is missing",
-            gap.as_secs_f64()
-        ));
-    }
-    if heard.dropped > 0 {
-        remarks.push(format!(
-            "{url}: {} of {} scans came faster than this computer maps them and were left out; they are in {recording}: slam2d run maps all of them",
-            heard.dropped, heard.scans
-        ));
-    }
-    if let DriveEnd::NotBack(why) = &heard.end {
-        remarks.push(format!(
-            "{url}: the connection was lost ({why}) and did not come back; the drive ends there"
-        ));
-    }
-    remarks
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::collections::BTreeMap;
-
-    #[test]
-    fn dropped_scans_and_gaps_are_said() {
-        let heard = Heard {
-            scans: 1200,
-            dropped: 34,
-            gaps: vec![Duration::from_millis(2500)],
-            topics: BTreeMap::new(),
-            end: DriveEnd::Asked,
-        };
-        let said = remarks("ws://r:1", Path::new("d/recording.mcap"), &heard);
-        assert!(said[0].contains("lost for 2.5 s"), "{said:?}");
-        assert!(said[1].contains("34 of 1200 scans came faster"), "{said:?}");
-        assert!(said[1].contains("d/recording.mcap"), "{said:?}");
-    }
 }

@@ -8,7 +8,7 @@ use super::{Comparison, MotionComparison, OdometryUse};
 use crate::laser_mount::LaserMount;
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::odometry_poses::OdometryPoses;
-use crate::own_body::BodyReader;
+use crate::own_body::{BodyReader, beams_of};
 use crate::remark::Remark;
 
 /// Most scans that are compared, and most beams together: they are kept in memory.
@@ -66,6 +66,8 @@ pub struct ComparedReader<'a> {
     is_mount_fixed: bool,
     odometry: OdometryUse,
     waiting: VecDeque<LogFrame>,
+    /// What the frames that wait show.
+    comparison: Option<Comparison>,
     /// Result of an earlier comparison.
     known: Option<MotionComparison>,
     motion: Option<MotionComparison>,
@@ -87,6 +89,7 @@ impl<'a> ComparedReader<'a> {
             is_mount_fixed,
             odometry: OdometryUse::Check,
             waiting: VecDeque::new(),
+            comparison: None,
             known: None,
             motion: None,
             repairs: Repairs::default(),
@@ -125,15 +128,15 @@ impl<'a> ComparedReader<'a> {
         self.waiting.len() + late
     }
 
-    /// Reads and compares the first scans.
+    /// Reads and compares the first scans; goes on where it had to wait for one.
     fn compare(&mut self) -> Result<(), LogError> {
-        let mut comparison: Option<Comparison> = None;
-        let mut beams = 0;
-        let mut has_odometry = false;
+        let mut beams = beams_of(&self.waiting);
+        let mut has_odometry = self.waiting.iter().any(|frame| frame.odometry.is_some());
         while self.waiting.len() < MAX_SCANS && beams < MAX_BEAMS {
             let frame = match self.next_recorded() {
                 Ok(Some(frame)) => frame,
                 Ok(None) => break,
+                Err(LogError::Waiting) => return Err(LogError::Waiting),
                 Err(error) if self.waiting.is_empty() => return Err(error),
                 // The error recurs once these frames are consumed.
                 Err(_) => break,
@@ -144,7 +147,9 @@ impl<'a> ComparedReader<'a> {
                 self.waiting.push_back(frame);
                 break;
             }
-            let comparing = comparison.get_or_insert_with(|| Comparison::new(&frame));
+            let comparing = self
+                .comparison
+                .get_or_insert_with(|| Comparison::new(&frame));
             comparing.add(&frame);
             let is_enough = comparing.is_enough();
             self.waiting.push_back(frame);
@@ -165,6 +170,7 @@ impl<'a> ComparedReader<'a> {
             is_flipped: recorded.is_flipped,
             ..stated
         };
+        let comparison = self.comparison.take();
         let found = self.known.take().or_else(|| {
             let compared = comparison?;
             let mut motion = MotionComparison::default();
@@ -251,7 +257,12 @@ impl LogReader for ComparedReader<'_> {
             return Ok(None);
         };
         if frame.scan.beam_interval_s > 0.0 && frame.odometry.is_some() {
-            self.ahead = self.next_compared().transpose();
+            let next = self.next_compared();
+            if let Err(LogError::Waiting) = next {
+                self.ahead = Some(Ok(frame));
+                return Err(LogError::Waiting);
+            }
+            self.ahead = next.transpose();
             if let Some(Ok(next)) = &self.ahead {
                 frame.scan.velocity = frame.velocity_until(next);
             }

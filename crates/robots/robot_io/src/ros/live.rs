@@ -10,7 +10,7 @@
 mod clock;
 mod started;
 
-use std::io::BufRead;
+use std::io::{BufRead, ErrorKind};
 
 use self::started::Started;
 use super::container::{Container as _, ContainerError, Recorded, kind_of};
@@ -74,7 +74,8 @@ pub struct LiveReader<'a> {
 }
 
 impl<'a> LiveReader<'a> {
-    /// Creates from a stream of MCAP, whose reads wait for what comes next; errors contain `name`.
+    /// Creates from a stream of MCAP, whose reads wait for what comes next, or fail with [`ErrorKind::WouldBlock`] between
+    /// two records; errors contain `name`.
     #[must_use]
     pub fn new(stream: impl BufRead + 'a, name: &str, options: &LogOptions) -> Self {
         Self {
@@ -91,8 +92,8 @@ impl<'a> LiveReader<'a> {
         }
     }
 
-    /// Reads the next message.
-    fn advance(&mut self) {
+    /// Reads the next message; false if none has come yet.
+    fn advance(&mut self) -> bool {
         let message = self.messages.next_message();
         self.notes.bytes = self.messages.offset();
         match message {
@@ -103,6 +104,10 @@ impl<'a> LiveReader<'a> {
                 self.skip(problem);
                 self.is_over = true;
             }
+            // Nothing of a record has come: the writer passes whole ones.
+            Err(ContainerError::Io(problem)) if problem.kind() == ErrorKind::WouldBlock => {
+                return false;
+            }
             Err(ContainerError::Io(problem)) => {
                 self.skip(problem.to_string());
                 self.is_over = true;
@@ -111,6 +116,7 @@ impl<'a> LiveReader<'a> {
         if self.is_over && self.started.is_none() {
             self.start();
         }
+        true
     }
 
     /// The poses of the odometry in use.
@@ -252,7 +258,9 @@ impl LogReader for LiveReader<'_> {
                     _ => Err(self.problem()),
                 };
             }
-            self.advance();
+            if !self.advance() {
+                return Err(LogError::Waiting);
+            }
         }
     }
 

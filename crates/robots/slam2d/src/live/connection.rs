@@ -4,15 +4,15 @@ use std::io::{self, ErrorKind};
 use std::net::{TcpStream, ToSocketAddrs as _};
 use std::time::{Duration, Instant};
 
-use thiserror::Error;
+use robot_io::live::MAX_MESSAGE;
+use robot_io::live::network::{ConnectError, Lost, NO_ANSWER, OTHER_SUBPROTOCOL};
+use robot_io::live::protocol::SUBPROTOCOLS;
 use tungstenite::client::client_with_config;
 use tungstenite::http::Uri;
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{
     Bytes, ClientRequestBuilder, Error as SocketError, HandshakeError, Message, WebSocket,
 };
-
-use super::protocol::SUBPROTOCOLS;
 
 /// A robot that does not answer within this is not there.
 const ANSWER: Duration = Duration::from_secs(5);
@@ -21,51 +21,6 @@ const POLL: Duration = Duration::from_millis(100);
 /// After this time without a message the server is asked whether it is there, and after the second it is gone.
 const QUIET: Duration = Duration::from_secs(3);
 const GONE: Duration = Duration::from_secs(10);
-/// Longest message: a cloud of a million points.
-const MAX_MESSAGE: usize = 1 << 25;
-
-/// Why there is no connection.
-#[derive(Debug, Error)]
-pub enum ConnectError {
-    /// Not an address.
-    #[error("{0} is not the address of a robot; pass one such as ws://robot:8765")]
-    Address(String),
-    /// TLS is asked for.
-    #[error(
-        "{0} asks for an encrypted connection, which slam2d does not make; forward the port with ssh -L 8765:localhost:8765 robot, and pass ws://localhost:8765"
-    )]
-    Encrypted(String),
-    /// The name is unknown.
-    #[error("{url}: there is no computer {host}: {source}; check the name, or pass its IP address")]
-    Name {
-        /// The address.
-        url: String,
-        /// Its host.
-        host: String,
-        /// The system's error.
-        source: io::Error,
-    },
-    /// Nobody listens there.
-    #[error(
-        "{url}: no connection: {source}; start foxglove_bridge on the robot, and check address and port"
-    )]
-    Refused {
-        /// The address.
-        url: String,
-        /// The system's error.
-        source: io::Error,
-    },
-    /// Somebody else listens there.
-    #[error(
-        "{url} is not a server of Foxglove's WebSocket protocol: {found}; start foxglove_bridge on the robot and pass its port, 8765 unless it was set"
-    )]
-    Other {
-        /// The address.
-        url: String,
-        /// What it answers.
-        found: String,
-    },
-}
 
 /// The address of a server.
 #[derive(Clone, Debug)]
@@ -105,20 +60,6 @@ impl Address {
     }
 }
 
-/// Why a connection ended.
-#[derive(Debug, Error)]
-pub enum Lost {
-    /// A message is longer than any that is read.
-    #[error("the server sent a message of {0} bytes, and {MAX_MESSAGE} are the most that is taken")]
-    TooLong(usize),
-    /// The server is silent.
-    #[error("the server is silent")]
-    Silent,
-    /// The connection broke or was closed.
-    #[error("{0}")]
-    Broken(String),
-}
-
 /// An open connection.
 pub struct Connection {
     socket: WebSocket<TcpStream>,
@@ -134,12 +75,15 @@ impl Connection {
     /// If it is not there, or speaks another protocol.
     pub fn open(address: &Address) -> Result<Self, ConnectError> {
         let url = || address.url.clone();
-        let refused = |source| ConnectError::Refused { url: url(), source };
+        let refused = |source: io::Error| ConnectError::Refused {
+            url: url(),
+            why: source.to_string(),
+        };
         let all = (&address.host[..], address.port).to_socket_addrs();
         let all = all.map_err(|source| ConnectError::Name {
             url: url(),
             host: address.host.clone(),
-            source,
+            why: source.to_string(),
         })?;
         let mut failed = io::Error::from(ErrorKind::AddrNotAvailable);
         let mut stream = None;
@@ -167,13 +111,13 @@ impl Connection {
         let other = |found: String| ConnectError::Other { url: url(), found };
         let (socket, _) =
             client_with_config(request, stream, Some(config)).map_err(|error| match error {
-                HandshakeError::Interrupted(_) => other("it does not answer".to_owned()),
+                HandshakeError::Interrupted(_) => other(NO_ANSWER.to_owned()),
                 HandshakeError::Failure(SocketError::Http(answer)) => {
                     other(format!("it answers HTTP {}", answer.status()))
                 }
                 HandshakeError::Failure(SocketError::Protocol(
                     tungstenite::error::ProtocolError::SecWebSocketSubProtocolError(_),
-                )) => other("it has another subprotocol, as rosbridge does".to_owned()),
+                )) => other(OTHER_SUBPROTOCOL.to_owned()),
                 HandshakeError::Failure(error) => other(error.to_string()),
             })?;
         let stream = socket.get_ref();
@@ -202,7 +146,7 @@ impl Connection {
             Ok(message) => {
                 (self.heard, self.is_asked) = (Instant::now(), false);
                 match message {
-                    Message::Close(_) => Err(Lost::Broken("the server closed it".to_owned())),
+                    Message::Close(_) => Err(Lost::Closed),
                     message => Ok(Some(message)),
                 }
             }
@@ -237,9 +181,7 @@ fn lost(error: SocketError) -> Lost {
         SocketError::Capacity(tungstenite::error::CapacityError::MessageTooLong {
             size, ..
         }) => Lost::TooLong(size),
-        SocketError::ConnectionClosed | SocketError::AlreadyClosed => {
-            Lost::Broken("the server closed it".to_owned())
-        }
+        SocketError::ConnectionClosed | SocketError::AlreadyClosed => Lost::Closed,
         error => Lost::Broken(error.to_string()),
     }
 }

@@ -2,8 +2,10 @@
 
 use std::fs;
 
-use robot_io::log::{LogFrame, LogOption, LogOptions, LogReader};
+use robot_io::live::queue;
+use robot_io::log::{LogError, LogFrame, LogOption, LogOptions, LogReader};
 use robot_io::log_format::LogFormat;
+use robot_io::motion::ComparedReader;
 
 use super::PER_CHUNK;
 use super::base::{START_S, as_transforms, messages, scans, shift_stamps, transform, without};
@@ -72,6 +74,57 @@ fn the_recordings_of_the_field_without_faults_have_the_same_frames_live() {
     }
     for name in CLEAN {
         assert_same_as_the_file(&fs::read(folder().join(name)).unwrap(), name);
+    }
+}
+
+/// The records of a recording, with its first bytes and its last ones.
+fn records(bytes: &[u8]) -> Vec<&[u8]> {
+    const MAGIC: usize = 8;
+    let (mut from, mut at) = (0, MAGIC);
+    let mut records = Vec::new();
+    while at + MAGIC < bytes.len() {
+        let length = bytes[at + 1..at + 9].try_into().unwrap();
+        at += 9 + usize::try_from(u64::from_le_bytes(length)).unwrap();
+        let is_last = at + MAGIC == bytes.len();
+        let end = if is_last { bytes.len() } else { at };
+        records.push(&bytes[from..end]);
+        from = end;
+    }
+    records
+}
+
+#[test]
+fn a_reader_that_is_called_at_each_record_has_the_same_frames() {
+    let all = messages();
+    let mut bare = all.clone();
+    without(&mut bare, "/odom");
+    for all in [all, bare] {
+        let bytes = mcap(&all, 1);
+        let options = LogOptions::default();
+        let compared = |reader| Box::new(ComparedReader::new(reader, false));
+        let (expected, notes) = read_all(compared(LogFormat::open_live(&bytes[..], "x", &options)));
+        let (feeder, feed) = queue::stream(false);
+        let mut reader = compared(LogFormat::open_live(feed, "x", &options));
+        let (mut frames, mut waits) = (Vec::new(), 0);
+        let records = records(&bytes);
+        let (last, earlier) = records.split_last().unwrap();
+        for record in earlier {
+            feeder.add(record.to_vec());
+            loop {
+                match reader.next_frame() {
+                    Ok(Some(frame)) => frames.push(frame),
+                    Err(LogError::Waiting) => break waits += 1,
+                    other => panic!("{other:?}"),
+                }
+            }
+        }
+        assert_eq!(waits, earlier.len());
+        feeder.add(last.to_vec());
+        drop(feeder);
+        let (rest, notes_at_the_end) = read_all(reader);
+        frames.extend(rest);
+        assert_eq!(format!("{frames:?}"), format!("{expected:?}"));
+        assert_eq!(notes_at_the_end, notes);
     }
 }
 

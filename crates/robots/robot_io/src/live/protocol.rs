@@ -5,9 +5,10 @@
 //! same messages.
 
 use data_encoding::BASE64;
-use robot_io::ros::Topic;
 use serde::Deserialize;
 use serde_json::json;
+
+use crate::ros::Topic;
 
 /// Names of the protocol, the present one first.
 pub const SUBPROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
@@ -53,6 +54,7 @@ pub struct Channel {
 
 impl Channel {
     /// The topic as it is recorded.
+    #[must_use]
     pub fn topic(&self) -> Topic {
         let schema = self.schema.as_deref().unwrap_or_default();
         let stated = self.schema_encoding.as_deref();
@@ -84,12 +86,14 @@ impl Channel {
 }
 
 /// The request for the messages of a topic.
+#[must_use]
 pub fn subscribe(subscription: u32, channel: u64) -> String {
     let one = json!({ "id": subscription, "channelId": channel });
     json!({ "op": "subscribe", "subscriptions": [one] }).to_string()
 }
 
 /// Subscription, time (ns) and bytes of a message; `None` if the binary message is another one.
+#[must_use]
 pub fn message_data(binary: &[u8]) -> Option<(u32, u64, &[u8])> {
     let (&kind, rest) = binary.split_first()?;
     let (subscription, rest) = rest.split_first_chunk()?;

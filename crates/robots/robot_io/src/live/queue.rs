@@ -1,9 +1,9 @@
 //! The stream between the connection and the estimator, which holds a bounded number of scans and bytes.
 
-use std::io::{self, BufRead, Read};
+use std::io::{self, BufRead, ErrorKind, Read};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 
 /// Most scans that wait for the estimator: 100 s at ten a second.
 const MAX_SCANS: usize = 1000;
@@ -29,10 +29,13 @@ pub struct Feed {
     load: Arc<Load>,
     current: Vec<u8>,
     at: usize,
+    waits: bool,
 }
 
-/// A new stream.
-pub fn stream() -> (Feeder, Feed) {
+/// A new stream. Its reads wait for what comes next; if not `waits`, a read for which nothing has come fails with
+/// [`ErrorKind::WouldBlock`] and takes nothing.
+#[must_use]
+pub fn stream(waits: bool) -> (Feeder, Feed) {
     let (sender, receiver) = channel();
     let load = Arc::<Load>::default();
     let feed = Feed {
@@ -40,6 +43,7 @@ pub fn stream() -> (Feeder, Feed) {
         load: Arc::clone(&load),
         current: Vec::new(),
         at: 0,
+        waits,
     };
     (Feeder { sender, load }, feed)
 }
@@ -53,6 +57,7 @@ impl Feeder {
     }
 
     /// Adds a message unless too many scans or bytes wait; returns whether it was added.
+    #[must_use]
     pub fn offer(&self, bytes: Vec<u8>, is_scan: bool) -> bool {
         let is_full = is_scan && self.load.scans.load(Ordering::Relaxed) >= MAX_SCANS;
         if is_full || self.load.bytes.load(Ordering::Relaxed) + bytes.len() > MAX_BYTES {
@@ -76,11 +81,17 @@ impl Read for Feed {
 }
 
 impl BufRead for Feed {
-    /// Waits for the next bytes; none follow once the connection's end is dropped.
+    /// The next bytes; none follow once the connection's end is dropped.
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
         while self.at == self.current.len() {
-            let Ok((is_scan, bytes)) = self.receiver.recv() else {
-                return Ok(&[]);
+            let next = match self.waits {
+                true => self.receiver.recv().map_err(TryRecvError::from),
+                false => self.receiver.try_recv(),
+            };
+            let (is_scan, bytes) = match next {
+                Ok(next) => next,
+                Err(TryRecvError::Empty) => return Err(ErrorKind::WouldBlock.into()),
+                Err(TryRecvError::Disconnected) => return Ok(&[]),
             };
             let scans = usize::from(is_scan);
             self.load.scans.fetch_sub(scans, Ordering::Relaxed);
@@ -101,7 +112,7 @@ mod tests {
 
     #[test]
     fn scans_are_dropped_while_too_many_wait_and_odometry_is_not() {
-        let (feeder, mut feed) = stream();
+        let (feeder, mut feed) = stream(true);
         assert!((0..MAX_SCANS).all(|_| feeder.offer(vec![7], true)));
         assert!(!feeder.offer(vec![7], true));
         assert!(feeder.offer(vec![8], false));
@@ -116,8 +127,20 @@ mod tests {
     }
 
     #[test]
+    fn a_read_that_need_not_wait_says_so_until_the_end() {
+        let (feeder, mut feed) = stream(false);
+        let mut one = [0];
+        let failed = feed.read_exact(&mut one).unwrap_err();
+        assert_eq!(failed.kind(), ErrorKind::WouldBlock);
+        assert!(feeder.offer(vec![7], true));
+        feed.read_exact(&mut one).unwrap();
+        drop(feeder);
+        assert_eq!((one, feed.read(&mut one).unwrap()), ([7], 0));
+    }
+
+    #[test]
     fn bytes_that_wait_are_bounded_whatever_they_are() {
-        let (feeder, _feed) = stream();
+        let (feeder, _feed) = stream(true);
         let large = || vec![0; MAX_BYTES / 2];
         assert!(feeder.offer(large(), false) && feeder.offer(large(), false));
         assert!(!feeder.offer(vec![0], false));
