@@ -5,11 +5,13 @@
 export const POLICY = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob: data:; connect-src 'self'; img-src 'self' data:; "
   + "style-src 'self' 'unsafe-inline'; font-src 'self'; frame-src 'self'; base-uri 'none'; form-action 'none'";
 /** The tag that pages opened from the disk have to lose. */
-export const POLICY_TAG = `<meta http-equiv="Content-Security-Policy" content="${POLICY}">\n`;
+export const POLICY_TAG = /<meta http-equiv="Content-Security-Policy" content="[^"]*">\n/;
 
-/** A page with its policy, as the first thing that it loads. */
+/** A page with its policy, as the first thing that it loads. Where a reader connects to a robot, the policy opens WebSockets. */
 export function withPolicy(html) {
-  return html.replace('<meta charset="utf-8">\n', (charset) => charset + POLICY_TAG);
+  const policy = / name="w16\.10"[^>]* connects/.test(html) ? POLICY.replace("connect-src 'self'", "connect-src 'self' ws: wss:") : POLICY;
+  const tag = `<meta http-equiv="Content-Security-Policy" content="${policy}">\n`;
+  return html.replace('<meta charset="utf-8">\n', (charset) => charset + tag);
 }
 
 /** Escapes a text for HTML and XML, including attributes. */

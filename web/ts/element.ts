@@ -27,6 +27,7 @@ import { unwatchVisibility, watchVisibility } from './visibility';
 import { answersTo, type Driver, isForDriver, seat } from './driver';
 import { LogMapper, deliverTo, type FileUse } from './robot/log-mapper';
 import { DoctorScreen, type Diagnosis } from './robot/doctor';
+import { ConnectionPanel } from './robot/connection';
 import { acceptDrops, chooseFiles } from './robot/files';
 import { LoopsToLookInto } from './robot/loops';
 import { executeTextOrder, takeTextFile, type TextFileHost } from './text-files';
@@ -61,6 +62,8 @@ export class SlamWidget extends HTMLElement {
   #driver: Driver | undefined;
   #doctor: DoctorScreen | undefined;
   #loops: LoopsToLookInto | undefined;
+  /** Offered by pages whose policy opens connections: `connects`. */
+  #connection: ConnectionPanel | undefined;
 
   constructor() {
     super();
@@ -359,6 +362,9 @@ export class SlamWidget extends HTMLElement {
         this.#showTimeline();
       },
     });
+    this.#connection?.element.remove();
+    this.#connection = undefined;
+    if (spec.takesFiles && this.hasAttribute('connects')) this.#offerConnection();
     this.#details = new DetailList(spec);
     parts.rest.append(zoomButtons((view) => this.look(view)), this.#details.element);
     parts.places.tools.append(exportMenu(this, spec.id, parts.status));
@@ -505,10 +511,26 @@ export class SlamWidget extends HTMLElement {
       show: (loop) => this.#tryToSet('loop', loop),
       decide: (order) => mapper.order(order),
     });
-    this.#parts.frame.prepend(this.#doctor.element);
+    if (this.#connection === undefined) this.#parts.frame.prepend(this.#doctor.element);
+    else this.#connection.element.after(this.#doctor.element);
     this.#parts.stage.after(this.#loops.element);
     this.#mapper = mapper;
     return mapper;
+  }
+
+  #offerConnection(): void {
+    const mapper = (): LogMapper => this.#openMapper();
+    this.#connection = new ConnectionPanel({
+      connect: (address) => void this.#act((widget) => {
+        this.#hasActed = true;
+        widget.act();
+        mapper().listen(address);
+      }),
+      stop: () => mapper().order('cancel'),
+      choose: (laser) => mapper().choose(`scan-topic ${laser}`),
+      save: (file) => mapper().order(`save ${file}`),
+    });
+    this.#parts.frame.prepend(this.#connection.element);
   }
 
   #closeMapper(): void {
@@ -521,7 +543,7 @@ export class SlamWidget extends HTMLElement {
   }
 
   #deliver(deliveries: readonly Delivery[]): void {
-    const panels = [this.#doctor, this.#loops];
+    const panels = [this.#doctor, this.#loops, this.#connection];
     const resized = deliveries.flatMap((delivery) => panels.filter((panel) => panel?.receive(delivery) === true));
     if (resized.length > 0) this.#resized();
     this.#lifecycle.ask((widget) => {

@@ -43,6 +43,13 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .doctor .sign { font-weight: 700; color: var(--good); }
 .doctor .mended .sign { color: var(--fair); }
 .doctor .wrong .sign { color: var(--bad); }
+.connection { padding: 0 0.75rem; overflow-wrap: anywhere; }
+.connection summary { cursor: pointer; font-weight: 600; font-size: 0.875rem; line-height: 1.5rem; }
+.connection form, .connection label { display: flex; flex-wrap: wrap; gap: 0.35rem 0.75rem; align-items: center; }
+.connection [hidden] { display: none; }
+.connection input { flex: 1 1 12rem; min-width: 0; max-width: 24rem; }
+.connection form, .connection p { margin: 0.35rem 0; }
+.connection p:empty { display: none; }
 .doctor p { margin: 0.4rem 0; }
 .doctor p:empty { display: none; }
 .doctor form { display: flex; flex-wrap: wrap; gap: 0.35rem 0.75rem; align-items: center; }
@@ -146,7 +153,7 @@ thead tr { border-bottom: 1px solid var(--line); }
 .hidden { position: absolute; width: 1px; height: 1px; margin: -1px; overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
 [hidden] { display: none !important; }
 @media print {
-  .transport, .first, .tools, .rest, .whole, .drop, progress, .note, .loops { display: none; }
+  .transport, .first, .tools, .rest, .whole, .drop, progress, .note, .loops, .connection { display: none; }
   .controls { top: 0 !important; margin-bottom: 0 !important; }
   .verdict p { display: block; }
   .stage, .stage .picture { height: auto !important; min-height: 0; }

@@ -75,6 +75,8 @@ export class BuildingFigure {
     choose?.addEventListener('click', () => chooseFiles(picture, { label: 'A log of your robot', several: true }, take));
     const sample = this.#figure.querySelector('[data-building="sample"]');
     sample?.addEventListener('click', () => change((mapper) => void mapper.press('sample')));
+    const connect = this.#figure.querySelector('[data-building="connect"]');
+    connect?.addEventListener('click', () => change(askForAddress));
   }
 
   #start(): void {
@@ -113,6 +115,11 @@ export class BuildingFigure {
     const context = contextOf(this.#canvas, height);
     if (context !== undefined) draw(this.#story, this.#at, canvasSurface(context, readInks(this.#figure, INKS)), width, height);
   }
+}
+
+function askForAddress({ shadowRoot }: Mapper): void {
+  shadowRoot?.querySelector('.connection details')?.setAttribute('open', '');
+  shadowRoot?.querySelector<HTMLInputElement>('.connection input')?.focus();
 }
 
 /** Describes the estimate; between two of them the error is unknown. */

@@ -1,10 +1,12 @@
-// Maps a reader's log for w16.10: keeps the files and the worker, and passes orders and deliveries between widget and
+// Maps a reader's log for w16.10, or a robot that drives: keeps the files or the connection, and the worker, and passes orders and deliveries between widget and
 // worker. It survives the widget's instance; a new instance gets the latest deliveries again.
 
 import type { Widget } from '../../pkg/glue.js';
 import { saveBlob } from '../export';
 import { assetUrl, fetchAsset } from '../assets';
 import { LoadError, ModuleFile, StaleError } from '../module';
+import { Recording } from './recording';
+import { RobotSocket } from './robot-socket';
 import { textDelivery, type Delivery, type LogFile, type Order, type Report } from './protocol';
 
 /** Set by the build: the module that maps logs, its worker, and the samples. */
@@ -20,6 +22,8 @@ const SESSION = '.slam2d';
 const MAX_REFERENCE_BYTES = 1 << 28;
 const NO_NUMBERS = new Float64Array();
 const NO_BYTES = new Uint8Array();
+/** The recording of a drive: `RECORDING` of crates/robots/robot_io/src/live.rs. */
+const RECORDING = 'recording.mcap';
 /** Retries of a log after a crash. */
 const MAX_RETRIES = 1;
 
@@ -52,6 +56,10 @@ export class LogMapper {
   #worker: Worker | undefined;
   /** The log: one file, or several of one recording. */
   #files: File[] = [];
+  /** The address of the robot that drives; its recording takes its place when the drive ends. */
+  #address: string | undefined;
+  #socket: RobotSocket | undefined;
+  #recording: Recording | undefined;
   #reference: File | undefined;
   /** A reference that waits for its log. */
   #earlyReference: File | undefined;
@@ -124,14 +132,17 @@ export class LogMapper {
         this.#host.deliver([textDelivery('closed', '')]);
         break;
       case 'save':
-        this.#send({ save: words.join(' ') });
+        if (words.join(' ') === RECORDING && this.#recording !== undefined) saveBlob(this.#recording.file(), RECORDING);
+        else this.#send({ save: words.join(' ') });
         break;
       case 'pause':
       case 'resume':
         this.#send({ pause: name === 'pause' });
         break;
       case 'cancel':
-        this.#send({ cancel: true });
+        // What the robot sent until now is mapped to its end.
+        if (this.#address !== undefined) this.#stopListening();
+        else this.#send({ cancel: true });
         break;
       default:
         this.#send({ order });
@@ -166,6 +177,33 @@ export class LogMapper {
     this.#openFiles(files, reference);
   }
 
+  /** Maps a robot while it drives, and drops the present map. */
+  listen(address: string): void {
+    this.#reset();
+    this.#startListening(address);
+  }
+
+  #startListening(address: string): void {
+    this.#files = [];
+    this.#reference = undefined;
+    this.#address = address;
+    this.#recording = new Recording(RECORDING);
+    void this.#start([]);
+  }
+
+  #stopListening(): void {
+    this.#socket?.close();
+    this.#send({ network: 'asked', seconds: 0 });
+    this.#endDrive();
+  }
+
+  /** The connection is closed for good: from now on, the recording is a log like any other. */
+  #endDrive(): void {
+    this.#address = undefined;
+    this.#socket?.close();
+    this.#socket = undefined;
+  }
+
   /** Returns a saved file by its name; rejects with a sentence if there is no data for it. */
   file(name: string): Promise<File> {
     return new Promise((take, reject) => {
@@ -191,6 +229,7 @@ export class LogMapper {
     this.#worker?.terminate();
     this.#worker = undefined;
     this.#waiting = [];
+    this.#endDrive();
   }
 
   /** Crashes the program on purpose, to test the recovery. */
@@ -203,6 +242,7 @@ export class LogMapper {
     this.close();
     this.#isOpen = true;
     this.#options.clear();
+    this.#recording = undefined;
     this.#forgetMap();
   }
 
@@ -215,7 +255,8 @@ export class LogMapper {
 
   /** Sets an option, such as `scan-topic /front`, or resets all, and maps the same log again. */
   choose(option: string | undefined): void {
-    const files = this.#files;
+    const address = this.#address;
+    const files = this.#log;
     if (files.length === 0) {
       this.#publish([textDelivery('answer', 'Open a log first.')]);
       return;
@@ -228,7 +269,13 @@ export class LogMapper {
       this.#options.set(name, value.join(' '));
     }
     this.#forgetMap();
-    void this.#start(files);
+    if (address === undefined) void this.#start(files);
+    else this.#startListening(address);
+  }
+
+  /** The files of the log: of a drive, its recording so far. */
+  get #log(): File[] {
+    return this.#recording === undefined ? this.#files : [this.#recording.file()];
   }
 
   /** The options of the present map, as on the command line. */
@@ -286,7 +333,8 @@ export class LogMapper {
     this.#mustLocalize = this.#localization !== undefined;
     this.#isMapFinished = false;
     this.#latest.clear();
-    this.#publish([textDelivery('opening', nameOf(files))]);
+    const address = this.#address;
+    this.#publish([textDelivery('opening', address ?? nameOf(files))]);
     try {
       const module = await program.load(() => {});
       if (generation !== this.#generation) return;
@@ -303,7 +351,8 @@ export class LogMapper {
         if (generation === this.#generation) this.#fail(NO_WORKER);
       });
       this.#worker = worker;
-      this.#send({ module, files: sent, options: this.#optionLines, edits: this.#edits });
+      const options = this.#optionLines;
+      this.#send(address === undefined ? { module, files: sent, options, edits: this.#edits } : { module, listen: address, options });
       for (const order of this.#waiting.splice(0)) this.#send(order);
       if (this.#reference !== undefined) void this.#sendReference(this.#reference);
     } catch (error) {
@@ -325,8 +374,13 @@ export class LogMapper {
   }
 
   #receive(report: Report): void {
-    if ('deliveries' in report) {
+    if ('listening' in report) this.#connect(report.patienceMs);
+    else if ('requests' in report) this.#request(report.requests);
+    else if ('recorded' in report) this.#recording?.add(report.recorded as Uint8Array<ArrayBuffer>);
+    else if ('deliveries' in report) {
       this.#publish(report.deliveries);
+      const drive = report.deliveries.findLast(({ kind }) => kind === 'drive');
+      if (drive !== undefined && !(JSON.parse(drive.text) as { is_driving: boolean }).is_driving) this.#endDrive();
       this.#edits = report.deliveries.findLast(({ kind }) => kind === 'edits')?.text ?? this.#edits;
       if (report.isMapped === true) this.#continueOnMap();
     } else if ('saved' in report) {
@@ -345,15 +399,29 @@ export class LogMapper {
     }
   }
 
+  #connect(patienceMs: number): void {
+    if (this.#address === undefined) return;
+    this.#socket = new RobotSocket(this.#address, patienceMs, {
+      heard: (heard) => this.#worker?.postMessage({ heard } satisfies Order, typeof heard === 'string' ? [] : [heard]),
+      network: (network, seconds) => this.#send({ network, seconds }),
+    });
+  }
+
+  #request(texts: readonly string[]): void {
+    for (const text of texts) this.#socket?.send(text);
+  }
+
   #crashed(): void {
     this.#crashes += 1;
-    if (this.#crashes <= MAX_RETRIES && this.#files.length > 0) {
+    const files = this.#log;
+    if (this.#crashes <= MAX_RETRIES && files.length > 0) {
+      // Of a drive, what came is mapped again.
       this.close();
-      void this.#start(this.#files);
+      void this.#start(files);
       this.#publish([textDelivery('answer', 'The mapping stopped because of an error in its program, and was restarted.')]);
       return;
     }
-    const megabytes = Math.ceil(this.#files.reduce((sum, { size }) => sum + size, 0) / 1e6);
+    const megabytes = Math.ceil(files.reduce((sum, { size }) => sum + size, 0) / 1e6);
     this.#fail(
       `The program that maps the log stopped again (the file has ${megabytes} MB); ` +
         'it may need more memory than the browser allows. Try slam2d run on the command line.',

@@ -1,7 +1,7 @@
-// The worker that maps a log. The first message has the program and the files, later ones the reader's orders. It works
+// The worker that maps a log. The first message has the program and the files, or the address of a robot; later ones have what it says and the reader's orders. It works
 // in time slices, and handles orders in between.
 
-import init, { LogMapper } from '../../pkg-robot/slam_robot.js';
+import init, { LogMapper, patienceMs } from '../../pkg-robot/slam_robot.js';
 import { textDelivery, type Delivery, type LogFile, type Order, type Report } from './protocol';
 
 /** Length of a time slice. */
@@ -16,9 +16,13 @@ declare class FileReaderSync {
   readAsArrayBuffer(blob: Blob): ArrayBuffer;
 }
 
+/** The first message. */
+type Start = Extract<Order, { module: WebAssembly.Module }>;
+
 let robot: LogMapper | undefined;
 let isPaused = false;
 let isScheduled = false;
+let isReportDue = false;
 let busyUntil = 0;
 let reportedAt = 0;
 const waiting: Order[] = [];
@@ -31,7 +35,7 @@ nextSlice.port1.onmessage = (): void => {
 };
 
 self.addEventListener('message', ({ data }: MessageEvent<Order>) => {
-  if ('module' in data) void open(data.module, data.files, data.options, data.edits);
+  if ('module' in data) void open(data);
   else if (robot === undefined) waiting.push(data);
   else guard(() => execute(data));
 });
@@ -46,11 +50,16 @@ function readable(files: LogFile[]): [string[], Float64Array, (which: number, fr
   return [files.map(({ name }) => name), Float64Array.from(files, ({ size }) => size), read];
 }
 
-async function open(module: WebAssembly.Module, files: LogFile[], options: string, edits: string): Promise<void> {
+async function open(start: Start): Promise<void> {
   try {
-    await init({ module_or_path: module });
-    robot = new LogMapper(...readable(files), options);
-    robot.repeat(edits);
+    await init({ module_or_path: start.module });
+    if ('listen' in start) {
+      robot = LogMapper.listen(start.listen, start.options);
+      post({ listening: true, patienceMs: patienceMs() });
+    } else {
+      robot = new LogMapper(...readable(start.files), start.options);
+      robot.repeat(start.edits);
+    }
   } catch (error) {
     // A plain Error is about the file, any subclass is a crash.
     if (error instanceof Error && error.constructor === Error) post({ failed: error.message });
@@ -73,7 +82,11 @@ function guard(act: () => void): void {
 
 function execute(order: Order): void {
   if (robot === undefined || 'module' in order) return;
-  if ('save' in order) save(robot, order.save);
+  if ('heard' in order) hear(robot, order.heard);
+  else if ('network' in order) {
+    robot.network(order.network, order.seconds);
+    reportChanges(robot);
+  } else if ('save' in order) save(robot, order.save);
   else if ('reference' in order) grade(robot, order.reference, order.name);
   else if ('locate' in order) locate(robot, order.locate, order.options, order.start);
   else if ('pause' in order) setPaused(order.pause);
@@ -87,6 +100,13 @@ function execute(order: Order): void {
     reportChanges(robot);
   }
   schedule();
+}
+
+function hear(by: LogMapper, message: string | ArrayBuffer): void {
+  if (typeof message === 'string') by.hearText(message);
+  else by.hearBytes(new Uint8Array(message));
+  const requests = by.requests();
+  if (requests.length > 0) post({ requests });
 }
 
 function setPaused(isOn: boolean): void {
@@ -151,12 +171,28 @@ function work(): void {
   const end = performance.now() + SLICE_MS;
   let isMore = true;
   while (isMore && performance.now() < end) isMore = robot.step();
-  if (!isMore || performance.now() - reportedAt > REPORT_MS) reportChanges(robot);
+  const sinceMs = performance.now() - reportedAt;
+  // A robot that drives has little to do at a time, but often.
+  if (sinceMs > REPORT_MS || (!isMore && !robot.isDriving())) reportChanges(robot);
+  else if (!isMore) reportLater(REPORT_MS - sinceMs);
   if (isMore) schedule();
+}
+
+function reportLater(ms: number): void {
+  if (isReportDue) return;
+  isReportDue = true;
+  setTimeout(() => {
+    isReportDue = false;
+    guard(() => {
+      if (robot !== undefined) reportChanges(robot);
+    });
+  }, ms);
 }
 
 function reportChanges(what: LogMapper): void {
   reportedAt = performance.now();
+  const recorded = what.recorded();
+  if (recorded.length > 0) post({ recorded }, [recorded.buffer]);
   const deliveries = what.updates() as Delivery[];
   const buffers = deliveries.flatMap(({ bytes }) => (bytes === undefined ? [] : [bytes.buffer]));
   post({ deliveries, isMapped: what.isMapped() }, buffers);

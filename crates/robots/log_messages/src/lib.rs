@@ -50,7 +50,7 @@ impl Stage {
 pub struct MapperProgress {
     /// Its stage.
     pub stage: Stage,
-    /// Finished share of the work.
+    /// Finished share of the work; NaN while a robot drives.
     pub share: f64,
     /// Number of processed scans.
     pub scans: usize,

@@ -1,15 +1,19 @@
 //! Interface of the worker to JavaScript: files and orders in, updates out.
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::time::Duration;
 
 use ch16_slam2d::localize::StartPose;
-use js_sys::{Array, Function, Object, Reflect, Uint8Array};
+use js_sys::{Array, Function, JsString, Object, Reflect, Uint8Array};
 use log_messages::MapperOrder;
 use pr_geom::SE2;
+use robot_io::live::drive::DriveEnd;
+use robot_io::live::network::Lost;
+use robot_io::live::{MAX_MESSAGE, WAIT_S};
 use robot_io::log_bytes::LogBytes;
 use wasm_bindgen::prelude::*;
 
-use crate::engine::Engine;
+use crate::engine::{Engine, NoConnection};
 use crate::given::{Choices, Given, GivenFile};
 use crate::sample;
 use crate::update::Update;
@@ -89,6 +93,83 @@ impl LogMapper {
             .and_then(|given| Engine::open(given, &Choices::read(chosen)?));
         let engine = opened.map_err(|message| JsError::new(&message))?;
         Ok(Self { engine })
+    }
+
+    /// Maps a robot at this address while it drives; `chosen` as for files. The page connects, and tells what comes.
+    ///
+    /// # Errors
+    /// If a line is not an option; the message is one sentence.
+    pub fn listen(url: &str, chosen: &str) -> Result<Self, JsError> {
+        let choices = Choices::read(chosen).map_err(|message| JsError::new(&message))?;
+        let engine = Engine::listen(url, &choices);
+        Ok(Self { engine })
+    }
+
+    /// A text of the robot's server.
+    #[wasm_bindgen(js_name = hearText)]
+    pub fn hear_text(&mut self, text: &JsString) {
+        if self.is_taken(text.length()) {
+            self.engine.hear_text(&String::from(text));
+        }
+    }
+
+    /// A binary message of the robot's server.
+    #[wasm_bindgen(js_name = hearBytes)]
+    pub fn hear_bytes(&mut self, bytes: &Uint8Array) {
+        if self.is_taken(bytes.length()) {
+            self.engine.hear_bytes(&bytes.to_vec());
+        }
+    }
+
+    /// Whether a message of this length is taken; one that is too long ends the drive, before it is copied.
+    fn is_taken(&mut self, length: u32) -> bool {
+        let length = length as usize;
+        if length > MAX_MESSAGE {
+            let end = DriveEnd::TooLong(Lost::TooLong(length).to_string());
+            self.engine.end_with(end);
+        }
+        length <= MAX_MESSAGE
+    }
+
+    /// What happened to the connection: `refused`, `unanswered`, `subprotocol` or `address` before there was one;
+    /// `lost` or `silent`; `back` after that many seconds; `asked`, `no-scans`, `not-back` or `never-heard` at the end.
+    pub fn network(&mut self, event: &str, seconds: f64) {
+        let gone = match event {
+            "silent" | "never-heard" => Lost::Silent,
+            _ => Lost::Closed,
+        };
+        match event {
+            "address" => self.engine.is_not_there(NoConnection::Address),
+            "refused" => self.engine.is_not_there(NoConnection::Refused),
+            "unanswered" => self.engine.is_not_there(NoConnection::Silent),
+            "subprotocol" => self.engine.is_not_there(NoConnection::OtherSubprotocol),
+            "lost" | "silent" => self.engine.lose(&gone),
+            "back" => {
+                let gap = Duration::try_from_secs_f64(seconds);
+                self.engine.regain(gap.unwrap_or_default());
+            }
+            "no-scans" => self.engine.end_without_scans(),
+            "not-back" | "never-heard" => {
+                self.engine.end_with(DriveEnd::NotBack(gone.to_string()));
+            }
+            _ => self.engine.end_with(DriveEnd::Asked),
+        }
+    }
+
+    /// Whether more of the robot may come.
+    #[wasm_bindgen(js_name = isDriving)]
+    pub fn is_driving(&self) -> bool {
+        self.engine.is_driving()
+    }
+
+    /// Requests to the robot's server since the last call.
+    pub fn requests(&mut self) -> Vec<String> {
+        self.engine.take_requests()
+    }
+
+    /// Bytes of the recording since the last call.
+    pub fn recorded(&mut self) -> Vec<u8> {
+        self.engine.take_recorded()
     }
 
     /// Localizes another log on the map; `start` is `[x, y, θ]`, m and rad, or empty if the initial pose
@@ -206,6 +287,13 @@ fn to_js(update: &Update) -> JsValue {
     set("text", &JsValue::from_str(&update.json()));
     set("bytes", &Uint8Array::from(bytes.as_slice()));
     object.into()
+}
+
+/// How long the page waits for the first scan, and for a lost connection, ms.
+#[wasm_bindgen(js_name = patienceMs)]
+#[must_use]
+pub fn patience_ms() -> f64 {
+    1e3 * WAIT_S
 }
 
 /// The sample log, its true trajectory, and the log of another day.

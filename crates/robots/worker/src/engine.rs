@@ -5,6 +5,7 @@
 //! size costs no memory. The engine reads no clock: the caller decides how long a time slice is.
 
 mod checking;
+mod driving;
 mod edits;
 mod examining;
 mod orders;
@@ -18,7 +19,7 @@ use log_messages::{MapperOrder, MapperReport, Stage};
 use pr_geom::SE2;
 use robot_io::doctor::Diagnosis;
 use robot_io::graph_file::GraphFile;
-use robot_io::log::LogReader;
+use robot_io::log::{LogError, LogReader};
 use robot_io::recorder::RunRecorder;
 use robot_io::run::LogRun;
 use robot_io::session::{self, Session};
@@ -32,6 +33,8 @@ use crate::links::Link;
 use crate::localization::Localization;
 use crate::picture::MapPicture;
 use crate::update::Update;
+use driving::Driving;
+pub use driving::NoConnection;
 use examining::Examination;
 
 /// Current work.
@@ -86,6 +89,8 @@ pub struct Engine<'a> {
     image: &'static str,
     /// Another log on this map.
     localization: Option<Localization<'a>>,
+    /// The robot that drives, or has driven.
+    driving: Option<Driving>,
     has_scans: bool,
     /// Number of scans of an opened session.
     scans_before: usize,
@@ -178,6 +183,7 @@ impl<'a> Engine<'a> {
             has_scans: matches!(work, Work::Examining(_)),
             scans_before: 0,
             localization: None,
+            driving: None,
             work,
             run: LogRun::default(),
             recorder: RunRecorder::default(),
@@ -222,7 +228,7 @@ impl<'a> Engine<'a> {
     pub fn step(&mut self) -> bool {
         match core::mem::replace(&mut self.work, Work::Idle) {
             Work::Examining(examination) => self.examine(examination),
-            Work::Reading(reader) => self.read(reader),
+            Work::Reading(reader) => return self.read(reader),
             Work::Finishing => self.close_last_loops(),
             Work::Solving(solving) => self.solve(solving),
             Work::Checking => self.check(),
@@ -235,7 +241,8 @@ impl<'a> Engine<'a> {
         true
     }
 
-    fn read(&mut self, mut reader: Box<dyn LogReader + 'a>) {
+    /// Reads the next scan; returns false if it has to come first, and nothing is to be painted.
+    fn read(&mut self, mut reader: Box<dyn LogReader + 'a>) -> bool {
         match reader.next_frame() {
             Ok(Some(frame)) => {
                 let is_first = self.run.scans() == 0;
@@ -261,8 +268,13 @@ impl<'a> Engine<'a> {
                 self.work = Work::Reading(reader);
             }
             Ok(None) => self.end_of_log(reader.as_ref(), None),
+            Err(LogError::Waiting) => {
+                self.work = Work::Reading(reader);
+                return self.paint();
+            }
             Err(problem) => self.end_of_log(reader.as_ref(), Some(problem.to_string())),
         }
+        true
     }
 
     /// Ends the log: links what was read, or reports why there are no scans.
@@ -270,11 +282,15 @@ impl<'a> Engine<'a> {
         let notes = reader.notes();
         self.send_offers(&notes.offers);
         self.remarks.clone_from(&notes.about);
-        let sentences = notes.sentences(&self.name);
+        let mut sentences = notes.sentences(&self.name);
+        let drive = self.end_of_drive();
+        let problem = problem.map(|problem| drive.without_scans.unwrap_or(problem));
         // A map of a part of the file must not look complete.
         let is_cut = notes.truncated.is_some() || notes.ended_early.is_some();
         let missing = problem.as_ref().or(sentences.first().filter(|_| is_cut));
+        let missing = missing.or(drive.remarks.last().filter(|_| drive.is_cut));
         let missing = missing.map_or(String::new(), |missing| format!("{missing}."));
+        sentences.extend(drive.remarks);
         self.remarks.extend(sentences);
         let unused = self.run.no_map();
         let unused = unused.map(|why| format!("{}: no scan could be used: {why}", self.name));

@@ -13,6 +13,8 @@ pub enum Update {
     Diagnosis(Box<Diagnosis>),
     /// For the page: the loops to look into.
     Evidence(Evidence),
+    /// For the page: the robot that drives.
+    Drive(DriveReport),
     /// For the page: the reader's changes so far, with which a new worker repeats them.
     Edits(Vec<MapperOrder>),
 }
@@ -25,6 +27,7 @@ impl Update {
             Self::Report(report) => report.kind(),
             Self::Diagnosis(_) => "diagnosis",
             Self::Evidence(_) => "evidence",
+            Self::Drive(_) => "drive",
             Self::Edits(_) => "edits",
         }
     }
@@ -36,10 +39,26 @@ impl Update {
             Self::Report(_) => Ok(String::new()),
             Self::Diagnosis(diagnosis) => serde_json::to_string(diagnosis),
             Self::Evidence(evidence) => serde_json::to_string(evidence),
+            Self::Drive(drive) => serde_json::to_string(drive),
             Self::Edits(edits) => serde_json::to_string(edits),
         }
         .expect("plain numbers, strings and lists")
     }
+}
+
+/// What came of a robot that drives.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DriveReport {
+    /// Topics that are read.
+    pub reads: Vec<String>,
+    /// Topics of laser scans that there are.
+    pub lasers: Vec<String>,
+    /// Number of scans that came, that were mapped, and that came too fast.
+    pub scans: [usize; 3],
+    /// What the network did last, in a sentence.
+    pub said: String,
+    /// Whether more may come.
+    pub is_driving: bool,
 }
 
 /// The loops in the graph that the rest contradicts.

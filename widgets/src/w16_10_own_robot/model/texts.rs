@@ -73,7 +73,12 @@ fn to_look_into(robot: &LogState) -> usize {
 fn sentence(own: &OwnRobot) -> String {
     let robot = &own.robot;
     let name = &robot.name;
-    let done = (100.0 * robot.progress.share).round();
+    // A robot that drives has no end in sight.
+    let done = if robot.progress.share.is_nan() {
+        "driving".to_owned()
+    } else {
+        format!("{:.0} % done", (100.0 * robot.progress.share).round())
+    };
     let progress = match robot.progress.stage {
         Stage::Empty => {
             "Drop a log, open one, or map the sample, a simulated ring of corridors.".to_owned()
@@ -88,12 +93,12 @@ fn sentence(own: &OwnRobot) -> String {
         }
         Stage::Opening => format!("{name} is opened."),
         Stage::Reading => format!(
-            "{name}: {done:.0} % done, {}, {}, {} closed.",
+            "{name}: {done}, {}, {}, {} closed.",
             plural(robot.progress.scans, "scan"),
             plural(robot.keyframes.len(), "keyframe"),
             plural(robot.progress.closed, "loop")
         ),
-        Stage::Finishing => format!("{name}: {done:.0} % done, closing the last loops."),
+        Stage::Finishing => format!("{name}: {done}, closing the last loops."),
         Stage::Solving => format!(
             "{name} is solved: {}.",
             plural(robot.keyframes.len(), "pose")

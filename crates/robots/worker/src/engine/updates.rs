@@ -51,6 +51,11 @@ impl Engine<'_> {
             let other = localization.report(poses_of(&self.run));
             updates.extend(other.map(|other| Update::Report(MapperReport::OtherLog(other))));
         }
+        let drive = self
+            .driving
+            .as_ref()
+            .map(|driving| driving.report(self.run.scans()));
+        updates.extend(drive.map(Update::Drive));
         updates.append(&mut self.waiting);
         updates
     }
@@ -62,6 +67,7 @@ impl Engine<'_> {
             Work::Examining(examination) => {
                 share = EXAMINED_SHARE * self.share_read(&examination.reader);
             }
+            Work::Reading(_) if self.is_driving() => share = f64::NAN,
             Work::Reading(reader) => {
                 let rest = READING_SHARE - EXAMINED_SHARE;
                 share = EXAMINED_SHARE + rest * self.share_read(reader.as_ref());
