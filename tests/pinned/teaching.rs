@@ -29,7 +29,7 @@ fn holds(page: &str, number: &str) -> bool {
     html.is_ok_and(|html| html.contains(&format!("<slam-widget name=\"w{number}\"")))
 }
 
-/// `[words](../../index.html?w=16.1&heading=60), says “quarter turn”`.
+/// `[words](../../index.html?w=16.1&heading=60): the verdict is “quarter turn”`.
 #[test]
 fn every_link_of_a_script_sets_its_widget_and_has_the_verdict_that_it_says() {
     let script = text("widgets");
@@ -47,7 +47,7 @@ fn every_link_of_a_script_sets_its_widget_and_has_the_verdict_that_it_says() {
         let after: Vec<&str> = after.split_whitespace().take(12).collect();
         let after = after.join(" ");
         let said = after
-            .strip_prefix(", says “")
+            .strip_prefix(": the verdict is “")
             .and_then(|said| said.split_once('”'));
         if let Some((said, _)) = said {
             verdicts += 1;
