@@ -109,20 +109,25 @@ const opening = ({ id }) => {
 const WIDE = [{ width: 1440, height: 900 }, { width: 1100, height: 900 }, { width: 1280, height: 800 }];
 
 describe('a widget on a low screen', () => {
-  for (const { id } of h.schema.filter(({ buttons }) => buttons.some((button) => button.id === 'play'))) {
-    it(`shows its picture and Play together: ${id}`, async () => {
-      const viewport = { width: 1280, height: 680 };
-      await chapter(`${h.pageOf(id)}?w=${id.slice(1)}`, async (tab) => {
-        await h.ready(tab, named(id));
-        await tab.evaluate((css) => document.querySelector(css).scrollIntoView(), named(id));
-        await h.quiet(tab);
-        const [top, bottom] = await tab.evaluate((css) => {
-          const element = document.querySelector(css);
-          const { top } = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
-          const play = element.shadowRoot.querySelector('[data-control="play"]').getBoundingClientRect();
-          return [top + element.sceneBox()[1], play.bottom];
-        }, named(id));
-        assert.ok(top >= 0 && bottom <= viewport.height, `from ${top} to ${bottom}`);
+  const viewport = { width: 1280, height: 680 };
+  const plays = ({ buttons }) => buttons.some((button) => button.id === 'play');
+  for (const path of new Set(h.schema.filter(plays).map(({ id }) => h.pageOf(id)))) {
+    it(`shows its picture and Play together: ${path}`, async () => {
+      await chapter(path, async (tab) => {
+        for (const { id } of h.schema.filter((spec) => plays(spec) && h.pageOf(spec.id) === path)) {
+          await h.unfold(tab, named(id));
+          await tab.evaluate((css) => document.querySelector(css).scrollIntoView(), named(id));
+          await h.ready(tab, named(id));
+          await tab.evaluate((css) => document.querySelector(css).scrollIntoView(), named(id));
+          await h.quiet(tab);
+          const [top, bottom] = await tab.evaluate((css) => {
+            const element = document.querySelector(css);
+            const { top } = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
+            const play = element.shadowRoot.querySelector('[data-control="play"]').getBoundingClientRect();
+            return [top + element.sceneBox()[1], play.bottom];
+          }, named(id));
+          assert.ok(top >= 0 && bottom <= viewport.height, `${id} from ${top} to ${bottom}`);
+        }
       }, { options: { deviceScaleFactor, viewport } });
     });
   }
@@ -166,16 +171,18 @@ describe('a widget beside its text', () => {
   }
 
   for (const [width, height] of [[1440, 900], [390, 844]]) {
-    it(`leaves the controls in place when More opens, ${width} px wide`, async () => {
-      for (const page of h.PAGES.filter((file) => file !== 'break.html' && h.widgetsOf(file).length > 0)) {
-        // On a phone the maps of w16.1 are a part of its picture, which enters with the second start or with More.
-        for (const id of h.widgetsOf(page).filter((name) => name !== 'w16.1' || width > 500)) {
-          await chapter(`/${page}?w=${id.slice(1)}`, async (tab) => {
+    for (const page of h.PAGES.filter((file) => file !== 'break.html' && h.widgetsOf(file).length > 0)) {
+      it(`leaves the controls in place when More opens: ${page}, ${width} px wide`, async () => {
+        await chapter(h.addressOf(page), async (tab) => {
+          // On a phone the maps of w16.1 are a part of its picture, which enters with the second start or with More.
+          for (const id of h.widgetsOf(page).filter((name) => name !== 'w16.1' || width > 500)) {
             const css = named(id);
+            await h.unfold(tab, css);
+            await tab.evaluate((name) => document.querySelector(name).scrollIntoView(), css);
             await h.ready(tab, css);
             await h.quiet(tab);
             const more = tab.locator(`${css} button[data-control="more"]`);
-            if (await more.count() === 0) return;
+            if (await more.count() === 0) continue;
             const top = () => tab.evaluate((name) => {
               const { shadowRoot } = document.querySelector(name);
               const [control, frame] = ['#control-more', '.frame'].map((one) => shadowRoot.querySelector(one).getBoundingClientRect());
@@ -186,10 +193,10 @@ describe('a widget beside its text', () => {
             await h.quiet(tab);
             // 1.5: the height of a canvas is a whole number of pixels.
             assert.ok(Math.abs((await top()) - closed) <= 1.5, `${id}: ${closed} and ${await top()}`);
-          }, { options: { deviceScaleFactor, viewport: { width, height } } });
-        }
-      }
-    });
+          }
+        }, { options: { deviceScaleFactor, viewport: { width, height } } });
+      });
+    }
   }
 
   it('opens More below the picture, without a move of the picture and without a scroller of its own', async () => {

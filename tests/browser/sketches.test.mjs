@@ -9,7 +9,6 @@ const ON = {
   '/index.html': ['pull', 'slide', 'bells', 'ellipse', 'gate', 'attempts', 'agree', 'push', 'steps', 'rule'],
   '/reference.html': ['nearest', 'fill', 'start', 'ate', 'incremental'],
 };
-const PAGE_OF = Object.fromEntries(Object.entries(ON).flatMap(([path, names]) => names.map((name) => [name, path])));
 const reading = (test, options = {}, path = '/index.html') => visit('', test, { path, options });
 /** Runs on each page with its figures. */
 const onEach = async (test, options) => {
@@ -46,52 +45,37 @@ const changed = (tab, name, says) => tab.waitForFunction(
   ([id, old]) => document.querySelector(`[data-sketch="${id}"] .sketch-says`).textContent !== old, [name, says]);
 
 describe('a small figure', () => {
-  for (const [name, path] of Object.entries(PAGE_OF)) {
-    it(`follows its slider by keyboard, in picture, value and sentence: ${name}`, async () => {
-      await reading(async (tab) => {
-        const range = await slider(tab, name);
-        await figure(tab, name).scrollIntoViewIfNeeded();
-        const before = await shown(tab, name);
-        assert.ok(before.says.length > 30);
-        await range.press('End');
-        await changed(tab, name, before.says);
-        await drawn(tab, name);
-        const after = await shown(tab, name);
-        assert.notEqual(after.value, before.value);
-        assert.equal(after.spoken, after.value);
-        assert.match(after.picture, /<title>/);
-        await range.press('Home');
-        await changed(tab, name, after.says);
-        assert.notEqual((await shown(tab, name)).picture, after.picture);
-      }, {}, path);
+  for (const [path, names] of Object.entries(ON)) {
+    describe(path, () => {
+      const page = visit.once('', { path });
+      for (const name of names) {
+        it(`follows its slider by keyboard, in picture, value and sentence: ${name}`, async () => {
+          const { tab } = page;
+          const range = await slider(tab, name);
+          await figure(tab, name).scrollIntoViewIfNeeded();
+          const before = await shown(tab, name);
+          assert.ok(before.says.length > 30);
+          await range.press('End');
+          await changed(tab, name, before.says);
+          await drawn(tab, name);
+          const after = await shown(tab, name);
+          assert.notEqual(after.value, before.value);
+          assert.equal(after.spoken, after.value);
+          assert.match(after.picture, /<title>/);
+          await range.press('Home');
+          await changed(tab, name, after.says);
+          assert.notEqual((await shown(tab, name)).picture, after.picture);
+        });
+      }
     });
   }
 
   for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 844 }]) {
-    it(`keeps its height when its slider first moves, ${viewport.width} px wide`, async () => {
+    it(`keeps its height when its slider first moves, and its value on one line beside it, ${viewport.width} px wide`, async () => {
       await onEach(async (tab, names) => {
         for (const name of names) {
           const range = await slider(tab, name);
           await range.scrollIntoViewIfNeeded();
-          const height = () => figure(tab, name).locator('.sketch-picture').evaluate((box) => box.offsetHeight);
-          const before = await height();
-          assert.ok(before > 100, `${name}: ${before}`);
-          const { says } = await shown(tab, name);
-          await range.press('ArrowRight');
-          await drawn(tab, name);
-          await changed(tab, name, says);
-          assert.ok(Math.abs((await height()) - before) <= 2, `${name}: ${before} px, then ${await height()}`);
-        }
-        assert.ok(await tab.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
-      }, { viewport });
-    });
-  }
-
-  for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 844 }]) {
-    it(`has its value on one line beside its slider, ${viewport.width} px wide`, async () => {
-      await onEach(async (tab, names) => {
-        for (const name of names) {
-          await slider(tab, name);
           const [lines, isBeside] = await figure(tab, name).locator('output').evaluate((value) => {
             const range = document.createRange();
             range.selectNodeContents(value);
@@ -102,7 +86,16 @@ describe('a small figure', () => {
           });
           assert.equal(lines, 1, name);
           assert.ok(isBeside, `${name}: the value stands alone on its line`);
+          const height = () => figure(tab, name).locator('.sketch-picture').evaluate((box) => box.offsetHeight);
+          const before = await height();
+          assert.ok(before > 100, `${name}: ${before}`);
+          const { says } = await shown(tab, name);
+          await range.press('ArrowRight');
+          await drawn(tab, name);
+          await changed(tab, name, says);
+          assert.ok(Math.abs((await height()) - before) <= 2, `${name}: ${before} px, then ${await height()}`);
         }
+        assert.ok(await tab.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
       }, { viewport });
     });
   }
@@ -135,35 +128,39 @@ describe('a small figure', () => {
 });
 
 describe('the picture of a figure', () => {
-  for (const [name, path] of Object.entries(PAGE_OF)) {
-    it(`is dragged by its handle, which follows the pointer: ${name}`, async () => {
-      await reading(async (tab) => {
-        const input = await slider(tab, name);
-        await figure(tab, name).evaluate((at) => at.scrollIntoView({ block: 'center', behavior: 'instant' }));
-        // Where the handle is to go: its place at another value.
-        const places = [];
-        for (const share of [0.25, 0.75]) {
-          await input.evaluate((range, part) => {
-            range.value = String(Number(range.min) + part * (Number(range.max) - Number(range.min)));
-            range.dispatchEvent(new Event('input', { bubbles: true }));
-          }, share);
+  for (const [path, names] of Object.entries(ON)) {
+    describe(path, () => {
+      const page = visit.once('', { path, options: { viewport: { width: 1100, height: 900 } } });
+      for (const name of names) {
+        it(`is dragged by its handle, which follows the pointer: ${name}`, async () => {
+          const { tab } = page;
+          const input = await slider(tab, name);
+          await figure(tab, name).evaluate((at) => at.scrollIntoView({ block: 'center', behavior: 'instant' }));
+          // Where the handle is to go: its place at another value.
+          const places = [];
+          for (const share of [0.25, 0.75]) {
+            await input.evaluate((range, part) => {
+              range.value = String(Number(range.min) + part * (Number(range.max) - Number(range.min)));
+              range.dispatchEvent(new Event('input', { bubbles: true }));
+            }, share);
+            await h.quiet(tab);
+            places.push({ at: await ring(tab, name), value: Number(await input.inputValue()) });
+          }
+          const [to, from] = places;
+          await tab.mouse.move(...from.at);
+          await tab.mouse.down();
+          // Along the way in between, as a reader does.
+          const span = Number(await input.evaluate(({ min, max }) => max - min));
+          await tab.mouse.move(...to.at, { steps: 12 });
           await h.quiet(tab);
-          places.push({ at: await ring(tab, name), value: Number(await input.inputValue()) });
-        }
-        const [to, from] = places;
-        await tab.mouse.move(...from.at);
-        await tab.mouse.down();
-        // Along the way in between, as a reader does.
-        const span = Number(await input.evaluate(({ min, max }) => max - min));
-        await tab.mouse.move(...to.at, { steps: 12 });
-        await h.quiet(tab);
-        const value = Number(await input.inputValue());
-        const [x, y] = await ring(tab, name);
-        await tab.mouse.up();
-        assert.notEqual(value, from.value);
-        assert.ok(Math.hypot(x - to.at[0], y - to.at[1]) < 12, `${x}, ${y} is not at the pointer, ${to.at}`);
-        assert.ok(span > 0);
-      }, { viewport: { width: 1100, height: 900 } }, path);
+          const value = Number(await input.inputValue());
+          const [x, y] = await ring(tab, name);
+          await tab.mouse.up();
+          assert.notEqual(value, from.value);
+          assert.ok(Math.hypot(x - to.at[0], y - to.at[1]) < 12, `${x}, ${y} is not at the pointer, ${to.at}`);
+          assert.ok(span > 0);
+        });
+      }
     });
   }
 

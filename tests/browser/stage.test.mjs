@@ -8,6 +8,9 @@ import { grabbingSpot } from './spots.mjs';
 const visit = h.visitor();
 const named = (id) => `slam-widget[name="${id}"]`;
 
+/** A wide screen, a low one, a phone. */
+const SCREENS = [{ width: 1440, height: 900 }, { width: 1280, height: 680 }, { width: 390, height: 844 }];
+
 /** Least share of a widget's height that its picture has at rest. */
 const LEAST_SHARE = 0.7;
 
@@ -27,25 +30,27 @@ const measured = (tab, css) => tab.evaluate((name) => {
 }, css);
 
 describe('the picture', () => {
-  for (const [width, height] of [[1440, 900], [1280, 800], [1280, 680], [390, 844]]) {
-    // Without a log own-robot.html shows no widget.
-    for (const page of h.PAGES.filter((file) => h.widgetsOf(file).length > 0 && file !== 'own-robot.html')) {
-      it(`has at least ${100 * LEAST_SHARE} % of the height of each widget at rest: ${page} at ${width}×${height}`, async () => {
-        await visit('', async (tab) => {
-          const low = [];
+  // Without a log own-robot.html shows no widget.
+  for (const page of h.PAGES.filter((file) => h.widgetsOf(file).length > 0 && file !== 'own-robot.html')) {
+    it(`has at least ${100 * LEAST_SHARE} % of the height of each widget at rest: ${page}`, async () => {
+      await visit('', async (tab) => {
+        const low = [];
+        for (const viewport of [...SCREENS, { width: 1280, height: 800 }]) {
+          await tab.setViewportSize(viewport);
           for (const id of h.widgetsOf(page)) {
             await h.unfold(tab, named(id));
             await tab.locator(named(id)).scrollIntoViewIfNeeded();
             await h.ready(tab, named(id));
             await h.quiet(tab);
             const { share, high, over } = await measured(tab, named(id));
-            assert.deepEqual(over, [], `${id}: controls on the picture`);
-            if (share < LEAST_SHARE) low.push(`${id}: ${(100 * share).toFixed(0)} % of ${high} px`);
+            const where = `${id} at ${viewport.width}×${viewport.height}`;
+            assert.deepEqual(over, [], `${where}: controls on the picture`);
+            if (share < LEAST_SHARE) low.push(`${where}: ${(100 * share).toFixed(0)} % of ${high} px`);
           }
-          assert.deepEqual(low, []);
-        }, { path: `/${page}`, options: { viewport: { width, height }, deviceScaleFactor: 1 } });
-      });
-    }
+        }
+        assert.deepEqual(low, []);
+      }, { path: `/${page}`, options: { viewport: SCREENS[0], deviceScaleFactor: 1 } });
+    });
   }
 });
 
@@ -65,48 +70,51 @@ it('a timeline beside other buttons fits its frame on narrow screens', async () 
 });
 
 describe('the verdict', () => {
-  for (const [width, height] of [[1440, 900], [1280, 680], [390, 844]]) {
-    for (const page of h.PAGES.filter((file) => h.widgetsOf(file).length > 0)) {
-      it(`is not cut, neither at the end of a run nor after a drag: ${page} at ${width}×${height}`, async () => {
-        await visit('', async (tab) => {
-          const cut = [];
-          for (const id of h.widgetsOf(page)) {
-            const css = named(id);
-            const keep = async (when) => {
+  for (const page of h.PAGES.filter((file) => h.widgetsOf(file).length > 0)) {
+    it(`is cut on no screen, neither at the end of a run nor after a drag: ${page}`, async () => {
+      await visit('', async (tab) => {
+        const cut = [];
+        for (const id of h.widgetsOf(page)) {
+          const css = named(id);
+          const keep = async (when) => {
+            for (const viewport of SCREENS.toReversed()) {
+              await tab.setViewportSize(viewport);
+              await tab.evaluate((name) => document.querySelector(name).scrollIntoView({ block: 'start' }), css);
+              await h.ready(tab, css);
               await h.quiet(tab);
               const [words, hidden] = await tab.evaluate((name) => {
                 const line = document.querySelector(name).shadowRoot.querySelector('.verdict p');
                 return [line.textContent, line.scrollHeight - line.clientHeight];
               }, css);
-              if (hidden > 1) cut.push(`${id} ${when}: ${hidden} px of “${words}”`);
-            };
-            await h.unfold(tab, css);
-            await tab.locator(css).scrollIntoViewIfNeeded();
-            await h.ready(tab, css);
-            await h.quiet(tab);
-            await keep('at rest');
-            if (id === 'w16.10') {
-              await tab.evaluate((name) => document.querySelector(name).press('sample'), css);
-              await tab.waitForFunction((name) => document.querySelector(name).outcome.facts.done_percent === 100, css);
-              await keep('with a log');
-              continue;
+              if (hidden > 1) cut.push(`${id} ${when} at ${viewport.width}×${viewport.height}: ${hidden} px of “${words}”`);
             }
-            await tab.evaluate((name) => document.querySelector(name).press('play'), css);
-            await keep('after its run');
-            await tab.evaluate((name) => document.querySelector(name).press('defaults'), css);
-            await tab.evaluate((name) => document.querySelector(name).scrollIntoView({ block: 'start' }), css);
-            await h.quiet(tab);
-            const [x, y] = await grabbingSpot(tab, css);
-            await tab.mouse.move(x, y);
-            await tab.mouse.down();
-            await tab.mouse.move(x + 40, y + 25, { steps: 4 });
-            await tab.mouse.up();
-            await keep('after a drag');
+          };
+          await h.unfold(tab, css);
+          await tab.locator(css).scrollIntoViewIfNeeded();
+          await h.ready(tab, css);
+          await keep('at rest');
+          if (id === 'w16.10') {
+            await tab.evaluate((name) => document.querySelector(name).press('sample'), css);
+            await tab.waitForFunction((name) => document.querySelector(name).outcome.facts.done_percent === 100, css);
+            await keep('with a log');
+            continue;
           }
-          assert.deepEqual(cut, []);
-        }, { path: h.addressOf(page), options: { viewport: { width, height }, deviceScaleFactor: 1 } });
-      });
-    }
+          await tab.evaluate((name) => document.querySelector(name).press('play'), css);
+          await h.quiet(tab);
+          await keep('after its run');
+          await tab.evaluate((name) => document.querySelector(name).press('defaults'), css);
+          await h.quiet(tab);
+          const [x, y] = await grabbingSpot(tab, css);
+          await tab.mouse.move(x, y);
+          await tab.mouse.down();
+          await tab.mouse.move(x + 40, y + 25, { steps: 4 });
+          await tab.mouse.up();
+          await h.quiet(tab);
+          await keep('after a drag');
+        }
+        assert.deepEqual(cut, []);
+      }, { path: h.addressOf(page), options: { viewport: SCREENS[0], deviceScaleFactor: 1 } });
+    });
   }
 });
 
@@ -144,24 +152,16 @@ describe('the controls', () => {
         assert.equal(new Set(ids).size, ids.length);
         assert.ok(spec.opening.every((id) => ids.includes(id)), String(ids));
         assert.ok(seen.every(([, isBelow]) => isBelow), JSON.stringify(seen));
-      });
-    });
-  }
-
-  it('show the last number of each timeline whole', async () => {
-    for (const { id, params } of h.schema) {
-      const timeline = params.find(({ kind }) => kind === 'timeline');
-      if (timeline === undefined || id === 'w16.10') continue;
-      await visit(`<slam-widget name="${id}"></slam-widget>`, async (tab) => {
-        await h.ready(tab);
+        const timeline = spec.params.find(({ kind }) => kind === 'timeline');
+        if (timeline === undefined || spec.id === 'w16.10') return;
         await tab.evaluate((last) => document.querySelector('slam-widget').set(...last), [timeline.id, timeline.max]);
         await h.quiet(tab);
         const number = tab.locator('.transport input[type="number"]');
         const [value, hidden] = await number.evaluate((field) => [field.value, field.scrollWidth - field.clientWidth]);
-        assert.ok(value.length > 0 && hidden <= 0, `${id}: ${hidden} px of ${value} are hidden`);
+        assert.ok(value.length > 0 && hidden <= 0, `${hidden} px of ${value}, the last number of the timeline, are hidden`);
       });
-    }
-  });
+    });
+  }
 
   it('follow the size of the page’s text, and so does the picture', async () => {
     const heights = [];
