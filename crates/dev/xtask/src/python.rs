@@ -4,6 +4,7 @@ use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread::available_parallelism;
 use std::{env, fs};
 
 use anyhow::{Context as _, bail};
@@ -209,10 +210,11 @@ pub fn test(
         let reason = "dist/ holds no site; `cargo xtask build` makes one";
         skip("the widgets in the notebooks", reason, skipped)?;
     }
+    let cores = format!("--numprocesses={}", available_parallelism()?);
     for (what, arguments) in [
         (
             "Tests of the Python package",
-            &["crates/robots/slam2d_py/tests"][..],
+            &[&cores, "--dist=worksteal", "crates/robots/slam2d_py/tests"][..],
         ),
         (
             "Notebooks",
