@@ -9,7 +9,7 @@ mod picture;
 use std::collections::BTreeMap;
 use std::fmt::{Display, Write as _};
 
-use crate::map_image::MapImage;
+use crate::map_image::{MapError, MapImage};
 use crate::plural::plural;
 use crate::quality::{LinkQuality, Quality};
 
@@ -74,8 +74,8 @@ pub struct LogReport<'a> {
     pub quality: &'a Quality,
     /// Time (s) and χ² of the graph after each keyframe.
     pub chi2_over_time: &'a [[f64; 2]],
-    /// The map, if there is one.
-    pub map: Option<&'a MapImage>,
+    /// The map, or why there is none.
+    pub map: Result<&'a MapImage, &'a MapError>,
     /// Sentences about the log and its evaluation, one paragraph each.
     pub remarks: &'a [String],
 }
@@ -123,7 +123,13 @@ impl LogReport<'_> {
             push_line(&mut page, format_args!("</ul>"));
         }
         push_line(&mut page, format_args!("<h2>The map</h2>"));
-        page.push_str(&picture::map(quality, self.map));
+        if let Err(problem) = self.map {
+            push_line(
+                &mut page,
+                format_args!("<p>No walls are drawn: {problem}.</p>"),
+            );
+        }
+        page.push_str(&picture::map(quality, self.map.ok()));
         push_line(
             &mut page,
             format_args!(
@@ -296,7 +302,7 @@ mod tests {
             scans: 3,
             quality: &quality,
             chi2_over_time: &[[10.0, 0.0], [11.0, 4.0]],
-            map: None,
+            map: Err(&MapError::Nothing),
             remarks: &["<b>bold</b>".to_owned()],
         };
         let page = report.html();
@@ -333,11 +339,14 @@ mod tests {
             scans: 0,
             quality: &Quality::default(),
             chi2_over_time: &[],
-            map: None,
+            map: Err(&MapError::Nothing),
             remarks: &[],
         }
         .html();
         assert!(page.contains("No location was revisited"));
+        assert!(
+            page.contains("<p>No walls are drawn: no scan has a point, so the map is empty.</p>")
+        );
         assert!(!page.contains("NaN") && !page.contains("inf"));
     }
 }

@@ -17,7 +17,7 @@ use crate::log::LogFrame;
 use crate::path_lengths::PathLengths;
 use crate::quality::Quality;
 use crate::session::{MappedGraph, Session, selected_scan_poses};
-use crate::settings::Setting;
+use crate::settings::{Setting, SettingError};
 use crate::trajectory::{StampedPose, Trajectory};
 
 /// Scans with a lower score are reported.
@@ -86,11 +86,18 @@ impl LogRun {
         }
     }
 
-    /// Sets a parameter, if the value is valid.
-    #[must_use]
-    pub fn with_setting(mut self, setting: &'static Setting, value: f64) -> Self {
+    /// Sets a parameter.
+    ///
+    /// # Errors
+    /// If the value is out of range.
+    pub fn with_setting(
+        mut self,
+        setting: &'static Setting,
+        value: f64,
+    ) -> Result<Self, SettingError> {
+        setting.check(value)?;
         self.settings.push((setting, value));
-        self
+        Ok(self)
     }
 
     /// Continues a session. If the first scan is the one after the session's last, the result is that of an
@@ -143,7 +150,7 @@ impl LogRun {
         if self.pipeline.slam().is_none() && !self.settings.is_empty() {
             let mut robot = LocalMapConfig::for_scan(&log.scan);
             for (setting, value) in &self.settings {
-                robot = setting.set(&robot, *value).unwrap_or(robot);
+                setting.apply(&mut robot, *value);
             }
             self.pipeline = std::mem::take(&mut self.pipeline).with_config(robot);
         }

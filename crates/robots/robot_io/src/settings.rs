@@ -23,13 +23,19 @@ pub enum SettingError {
     #[error("the estimator has no parameter {0}; it has {names}", names = names())]
     Unknown(String),
     /// The value is out of range.
-    #[error("{name} must be a finite non-negative number, not {value}")]
+    #[error("{name} must be {least} and at most {MOST}, not {value}", least = least(*is_length))]
     Range {
         /// The parameter.
         name: &'static str,
         /// The rejected value.
         value: f64,
+        /// Whether it is a length, which has to be positive.
+        is_length: bool,
     },
+}
+
+fn least(is_length: bool) -> &'static str {
+    if is_length { "positive" } else { "0 or more" }
 }
 
 /// Largest plausible value.
@@ -112,24 +118,24 @@ impl Setting {
     /// Checks whether a value is valid.
     ///
     /// # Errors
-    /// If the value is negative or not finite.
+    /// If the value is negative, a length of zero, or beyond any plausible one.
     pub fn check(&self, value: f64) -> Result<(), SettingError> {
-        let name = self.name;
-        if value.is_finite() && value >= 0.0 {
-            Ok(())
-        } else {
-            Err(SettingError::Range { name, value })
-        }
+        in_range(self.name, self.unit, value)
+    }
+
+    /// Sets a checked value.
+    pub(crate) fn apply(&self, config: &mut LocalMapConfig, value: f64) {
+        *(self.field)(config) = value;
     }
 
     /// Sets the value in a copy of the configuration.
     ///
     /// # Errors
-    /// If the value is negative or not finite.
+    /// Those of [`Setting::check`].
     pub fn set(&self, config: &LocalMapConfig, value: f64) -> Result<LocalMapConfig, SettingError> {
         self.check(value)?;
         let mut copy = *config;
-        *(self.field)(&mut copy) = value;
+        self.apply(&mut copy, value);
         Ok(copy)
     }
 }
@@ -138,19 +144,25 @@ impl Setting {
 ///
 /// # Errors
 /// If a number is out of range; the message names the first.
-pub(crate) fn checked(config: LocalMapConfig) -> Result<LocalMapConfig, String> {
+pub(crate) fn checked(config: LocalMapConfig) -> Result<LocalMapConfig, SettingError> {
     let radius = ("scan_normal_radius_m", "m", config.scan_normal_radius_m);
     let settings = SETTINGS
         .iter()
         .map(|setting| (setting.name, setting.unit, setting.value(&config)));
     for (name, unit, value) in settings.chain([radius]) {
-        let is_length = unit == "m" && !name.contains('.');
-        let is_in_range = (0.0..=MOST).contains(&value) && !(is_length && value == 0.0);
-        if !is_in_range {
-            return Err(format!("{name} cannot be {value}"));
-        }
+        in_range(name, unit, value)?;
     }
     Ok(config)
+}
+
+fn in_range(name: &'static str, unit: &str, value: f64) -> Result<(), SettingError> {
+    let is_length = unit == "m" && !name.contains('.');
+    let is_in_range = (0.0..=MOST).contains(&value) && !(is_length && value == 0.0);
+    is_in_range.then_some(()).ok_or(SettingError::Range {
+        name,
+        value,
+        is_length,
+    })
 }
 
 #[cfg(test)]
@@ -202,10 +214,13 @@ mod tests {
         );
         let distance = Setting::named("keyframe_distance_m").unwrap();
         assert!(distance.set(&LocalMapConfig::default(), f64::NAN).is_err());
+        // A session with such a value could not be opened.
+        assert!(distance.set(&LocalMapConfig::default(), 0.0).is_err());
+        assert!(distance.set(&LocalMapConfig::default(), 1e7).is_err());
         let error = distance.set(&LocalMapConfig::default(), -1.0).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "keyframe_distance_m must be a finite non-negative number, not -1"
+            "keyframe_distance_m must be positive and at most 1000000, not -1"
         );
     }
 }

@@ -263,9 +263,7 @@ fn start(args: &MappingArgs) -> anyhow::Result<(LogRun, RunRecorder, Option<Lase
     let Some(path) = &args.session else {
         let mut run = LogRun::default();
         for (name, value) in &args.settings {
-            let setting = Setting::named(name)?;
-            setting.check(*value)?;
-            run = run.with_setting(setting, *value);
+            run = run.with_setting(Setting::named(name)?, *value)?;
         }
         return Ok((run, RunRecorder::default(), None));
     };

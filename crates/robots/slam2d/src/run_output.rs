@@ -96,7 +96,7 @@ pub fn write_folder(folder: &Path, results: &Results<'_>) -> anyhow::Result<Opti
         }
         Err(problem) => Some(format!("no map was written: {problem}")),
     };
-    let map = finest_map(REPORT_CELL_M, draw).ok();
+    let map = finest_map(REPORT_CELL_M, draw);
     let mut remarks = results.remarks.to_vec();
     remarks.extend(said.clone());
     let html = LogReport {

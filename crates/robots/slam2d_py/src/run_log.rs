@@ -19,7 +19,7 @@ use robot_io::recorder::RunRecorder;
 use robot_io::run::LogRun;
 
 use crate::arrays;
-use crate::errors::{ChoiceError, LogError, no_choice, within};
+use crate::errors::{ChoiceError, LogError, SettingError, no_choice, within};
 use crate::grid_map::GridMap;
 use crate::log_files::{self, ReadTo};
 use crate::pose_graph::PoseGraph;
@@ -332,7 +332,9 @@ impl Pipeline {
         let (mut reader, read) = self.reader()?;
         let mut run = LogRun::default();
         for (setting, value) in &self.chosen {
-            run = run.with_setting(setting, *value);
+            run = run
+                .with_setting(setting, *value)
+                .map_err(|error| SettingError::new_err(error.to_string()))?;
         }
         let mut recorder = RunRecorder::default();
         let mut broken = None;
@@ -381,8 +383,11 @@ impl Pipeline {
             build_map
         };
         // An area too large for cells of this size has a coarser map.
-        let map = finest_map(cell_m, |cell_m| draw(&lines, cell_m)).ok();
-        remarks.extend(map.as_ref().and_then(|map| map.coarser_than(cell_m)));
+        let map = finest_map(cell_m, |cell_m| draw(&lines, cell_m));
+        remarks.extend(match &map {
+            Ok(map) => map.coarser_than(cell_m),
+            Err(problem) => Some(format!("there is no map: {problem}")),
+        });
         let slam = run.slam();
         let trajectory = run.trajectory();
         let poses = trajectory.poses().iter();
@@ -390,7 +395,7 @@ impl Pipeline {
             trajectory: poses.map(|at| (at.stamp_s, at.pose)).collect(),
             keyframes: slam.map_or_else(Vec::new, |slam| slam.graph().poses().to_vec()),
             covariances: covariances.collect(),
-            map,
+            map: map.ok(),
             graph: slam.map(Slam::graph).map(GraphFile::from_pose_graph),
             quality,
             remarks,

@@ -47,7 +47,7 @@ def test_settings_are_those_of_the_core(drive, mapped):
     [
         ({"reach": 1.0}, f"the estimator has no parameter reach; it has {', '.join(rs.settings())}"),
         ({"loops": {"reach": 1}}, f"the estimator has no parameter loops.reach; it has {', '.join(rs.settings())}"),
-        ({"keyframe_distance_m": -1.0}, "keyframe_distance_m must be a finite non-negative number, not -1"),
+        ({"keyframe_distance_m": -1.0}, "keyframe_distance_m must be positive and at most 1000000, not -1"),
         ({"keyframe_distance_m": "far"}, "keyframe_distance_m has to be a number"),
     ],
 )

@@ -61,7 +61,9 @@ pub fn read(bytes: &[u8]) -> Result<Session, String> {
         .map_err(|problem| format!("its parameters: {problem}"))?;
     let config = SlamConfig {
         start: body.start,
-        ..SlamConfig::from_local_map(crate::settings::checked(robot)?)
+        ..SlamConfig::from_local_map(
+            crate::settings::checked(robot).map_err(|error| error.to_string())?,
+        )
     };
     let radius_m = config.scan.normal_radius_m;
     let restored = |scan: StoredScan| scan.restored(radius_m).map(Arc::new);

@@ -120,7 +120,7 @@ fn pending_loops_are_saved_and_stay_pending() {
         let new = LogRun::default();
         let settings = settings.iter();
         let mut run = settings.fold(new, |run, (setting, value)| {
-            run.with_setting(setting, *value)
+            run.with_setting(setting, *value).unwrap()
         });
         go_on(&mut run, 120, steps);
         run
@@ -225,7 +225,7 @@ fn a_session_with_other_parameters_is_rejected_by_their_name() {
         (
             "\"keyframe_distance_m\":0.65",
             "\"keyframe_distance_m\":-0.1",
-            "keyframe_distance_m cannot be -0.1",
+            "keyframe_distance_m must be positive and at most 1000000, not -0.1",
         ),
     ] {
         let mut other = bytes.clone();
@@ -366,7 +366,7 @@ fn foreign_files_are_distinguished_from_damaged_sessions() {
 fn every_parameter_is_written_and_read() {
     for setting in SETTINGS {
         let value = setting.value(&LocalMapConfig::default()) + 1.0;
-        let mut run = LogRun::default().with_setting(setting, value);
+        let mut run = LogRun::default().with_setting(setting, value).unwrap();
         // Few enough points to be stored exactly.
         run.step(frame(0, 120)).unwrap();
         let session = Session::from_bytes(&saved(&run), "x").unwrap();

@@ -351,7 +351,7 @@ impl<'a> Engine<'a> {
     fn report(&mut self) -> String {
         let quality = self.quality();
         let lines = self.recorder.map_lines(&self.run);
-        let map = finest_map(REPORT_CELL_M, |cell_m| build_map(&lines, cell_m)).ok();
+        let map = finest_map(REPORT_CELL_M, |cell_m| build_map(&lines, cell_m));
         let mut remarks = self.remarks.clone();
         remarks.extend(self.grade().map(|grade| match grade {
             Ok(grade) => grade.words,
