@@ -11,7 +11,7 @@ use crate::matcher;
 use crate::outcomes::Outcomes;
 use widgets::registry;
 
-use crate::{candidates, schema, sketches, state, story};
+use crate::{candidates, schema, state, story};
 
 /// The schema of every widget, a JSON array.
 #[wasm_bindgen(js_name = widgetSchemas)]

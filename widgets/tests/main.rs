@@ -1,6 +1,7 @@
 //! Integration tests of the widgets: requirements for all of them, and the rules of each one. One binary.
 
 mod conformance;
+mod side_panel;
 mod support;
 mod w16_10_own_robot;
 mod w16_11_procrustes;

@@ -3,8 +3,7 @@
 use egui::{PopupAnchor, Tooltip};
 use widget_kit::palette::Theme;
 use widget_kit::shell::Shell;
-
-use crate::panel::panel;
+use widget_kit::side_panel::side_panel;
 
 /// Width of the side panel, points.
 const PANEL: f32 = 340.0;
@@ -40,7 +39,7 @@ impl eframe::App for Window {
         egui::Panel::right("controls")
             .exact_size(PANEL)
             .show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| panel(ui, &mut self.shell));
+                egui::ScrollArea::vertical().show(ui, |ui| side_panel(ui, &mut self.shell));
             });
         egui::ScrollArea::vertical()
             .auto_shrink(false)

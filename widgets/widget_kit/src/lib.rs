@@ -6,7 +6,7 @@
 //!
 //! The other half draws, with the feature `view`. [`draw`] renders a scene on any [`surface::Surface`]:
 //! [`egui_surface`] for the live picture, [`svg`] for the static one. [`shell`] handles the [`pointer`]. Texts and controls
-//! are the host's.
+//! are the host's; [`side_panel`] is for a host without a page.
 
 pub mod chart;
 pub mod controls;
@@ -52,3 +52,5 @@ pub mod egui_surface;
 pub mod pointer;
 #[cfg(feature = "view")]
 pub mod shell;
+#[cfg(feature = "view")]
+pub mod side_panel;

@@ -50,7 +50,7 @@ enum Command {
     },
     /// Lint and test the crate that benchmarks other solvers.
     Peers,
-    /// Lint and test the program that opens a widget in a desktop window.
+    /// Lint the program that opens a widget in a desktop window.
     Desktop,
     /// Repeat the browser tests while other work keeps every core busy.
     Soak {
@@ -95,8 +95,8 @@ fn main() -> ExitCode {
         Command::Build => site::build(Speed::SmallAndFast),
         Command::Package => site::package(),
         Command::Test { pieces, quick } => suite::test(&suite::chosen(pieces, quick)),
-        Command::Peers => suite::test_apart("solver_peers"),
-        Command::Desktop => suite::test_apart("slam_desktop"),
+        Command::Peers => suite::test_peers(),
+        Command::Desktop => suite::lint_desktop(),
         Command::Soak {
             rounds,
             go_on,

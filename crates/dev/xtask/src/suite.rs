@@ -280,21 +280,33 @@ pub fn record_counts() -> anyhow::Result<()> {
     run("Recording the instruction counts", &mut count)
 }
 
-/// Lints and tests a package that the suite leaves out, because its dependencies take a minute or more to compile and
-/// no other package depends on it.
+/// `cargo xtask peers`: lints and tests the solvers of others, which the suite leaves out, because they take minutes to
+/// compile and no other package depends on them.
 ///
 /// # Errors
 /// The step that failed.
-pub fn test_apart(package: &str) -> anyhow::Result<()> {
+pub fn test_peers() -> anyhow::Result<()> {
     for (what, options) in [
         ("Lints of", &["--no-run", "--all-targets"][..]),
         ("Tests of", &[]),
     ] {
         let mut command = cargo();
-        linting(&mut command)?.args(["test", "--quiet", "--package", package]);
-        run(&format!("{what} {package}"), command.args(options))?;
+        linting(&mut command)?.args(["test", "--quiet", "--package=solver_peers"]);
+        run(&format!("{what} solver_peers"), command.args(options))?;
     }
     Ok(())
+}
+
+/// `cargo xtask desktop`: lints the window of the desktop without compiling what it opens, whose tests the suite runs.
+///
+/// # Errors
+/// A warning or an error in it.
+pub fn lint_desktop() -> anyhow::Result<()> {
+    let mut lint = cargo();
+    lint.args(["clippy", "--quiet", "--package=slam_desktop"])
+        .args(["--", "-D", "warnings"])
+        .env("CARGO_INCREMENTAL", "0");
+    run("Linting the desktop window", &mut lint)
 }
 
 fn summary(skipped: &str) -> String {

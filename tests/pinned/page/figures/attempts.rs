@@ -123,7 +123,7 @@ fn the_attempts_of_the_figure_are_those_of_the_sweep() {
         })
         .collect();
     assert!(
-        source("web/src/sketches/attempts.txt") == lines,
-        "web/src/sketches/attempts.txt has other attempts"
+        source("widgets/sketches/src/attempts.txt") == lines,
+        "widgets/sketches/src/attempts.txt has other attempts"
     );
 }

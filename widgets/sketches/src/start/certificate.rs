@@ -239,7 +239,7 @@ impl Form {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sketches::start::wound::tests::{knot, optimum};
+    use crate::start::wound::tests::{knot, optimum};
     use pr_geom::Rng;
 
     #[test]
