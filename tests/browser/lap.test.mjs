@@ -112,7 +112,7 @@ describe('the lap under the title', () => {
       assert.ok(lengthS > 9 && lengthS < 12, `${lengthS} s`);
       await tab.waitForFunction(() => document.querySelector('.lap-controls button').textContent === 'Play again');
       assert.equal(await tick(tab), 129);
-      assert.deepEqual(await tab.evaluate(() => acts), ['Wheels drive through walls.', 'Walls double.', 'The loop snaps.']);
+      assert.deepEqual(await tab.evaluate(() => acts), ['Wheels drive through walls.', 'Walls appear double.', 'The loop snaps.']);
       await h.quiet(tab);
     }, {}, { server: { pages: { '/index.html': noting } } });
   });
@@ -135,14 +135,14 @@ describe('the lap under the title', () => {
     await reading(async (tab) => {
       await live(tab);
       await h.quiet(tab);
-      assert.match(await act(tab), /^Walls double/);
+      assert.match(await act(tab), /^Walls appear double/);
       assert.equal(await button(tab).textContent(), 'Play');
       const rested = await tick(tab);
       assert.equal(rested, 92);
       await slider(tab).focus();
       for (let press = 0; press < 20; press += 1) await tab.keyboard.press('ArrowLeft');
       assert.ok((await tick(tab)) < rested);
-      assert.match(await slider(tab).getAttribute('aria-valuetext'), /^Walls double, tick \d+$/);
+      assert.match(await slider(tab).getAttribute('aria-valuetext'), /^Walls appear double, tick \d+$/);
       await tab.keyboard.press('End');
       assert.equal(await tick(tab), 129);
       // It plays from there: the clock is stopped until the test has read the position.
