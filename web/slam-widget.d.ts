@@ -93,6 +93,8 @@ export interface TheFullLapState {
   wipe: number;
   /** The moment shown. A tick is a quarter of a second, the marks are loops, and values past the end mean the end. 0 to 2000. */
   t: number;
+  /** The layers of the map. Wheels alone: the robot by its odometry, and in truth. The map: the walls that the sweeps saw. Then the graph with its loops, the truth, and everything, with the front end alone. */
+  show: 'wheels' | 'map' | 'loops' | 'truth' | 'all';
   /** Plots the whole lap, including what comes after the moment shown. */
   future: boolean;
   /** How fast the run plays. */
@@ -527,6 +529,7 @@ export interface SlamWidgetProperties {
   kernel: 'quadratic' | 'huber' | 'dcs' | undefined;
   wipe: number | undefined;
   t: number | undefined;
+  show: 'wheels' | 'map' | 'loops' | 'truth' | 'all' | undefined;
   future: boolean | undefined;
   measure: 'icp' | 'ndt' | undefined;
   'ndt-cell': number | undefined;

@@ -101,7 +101,7 @@ describe('a widget', () => {
 
 /** The tested first controls of a widget: its parameter, Play and More. */
 const opening = ({ id }) => {
-  const control = { 'w16.1': 'heading', 'w16.2': 'loops', 'w16.3': 'measure', 'w16.4': 'noise' }[id];
+  const control = { 'w16.1': 'heading', 'w16.2': 'show', 'w16.3': 'measure', 'w16.4': 'noise' }[id];
   return control === undefined ? [] : [control, 'play', 'more'];
 };
 

@@ -57,7 +57,7 @@ use widget_kit::values::{Changed, Values};
 
 use crate::reader_orders::Orders;
 use crate::w16_2_full_lap::spec::{
-    EDIT, EDIT_FLAT, EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WIPE, WORLD,
+    EDIT, EDIT_FLAT, EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SHOW, SPEC, TICK, WIPE, WORLD,
 };
 use floor_plan::FloorPlan;
 use moment::LapState;
@@ -237,6 +237,7 @@ impl FullLap {
             hovered: self.hovered,
             tied: self.own.tied,
             wipe: self.values.get(&WIPE),
+            layers: self.values.get(&SHOW),
             drawn: drawing::drawn(self),
             ..LapState::new(&self.runs, self.tick(), share, seen_until, own)
         }
@@ -279,7 +280,7 @@ impl Model for FullLap {
             // A lap under way may be longer than the one on screen.
             "t" if self.laps.is_running() && value > self.last() => self.refresh_own(),
             "t" => self.go_to(self.tick()),
-            "speed" | "more" | "future" | "pick" | "number" | "wipe" => {}
+            "speed" | "more" | "future" | "pick" | "number" | "wipe" | "show" => {}
             "world" => self.world_chosen(before.get(&WORLD)),
             "edit" | "piece" | "piece-number" => {
                 self.end_stroke();

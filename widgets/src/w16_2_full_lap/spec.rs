@@ -55,6 +55,21 @@ pub enum Tool {
     Robot,
 }
 
+/// The layers of the map: one idea at a time, or all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layers {
+    /// Where odometry and the truth put the robot.
+    Wheels,
+    /// The walls that the sweeps saw.
+    Map,
+    /// The map, and the graph with its loops.
+    Loops,
+    /// Those, and the truth.
+    Truth,
+    /// All, with odometry and the front end alone.
+    All,
+}
+
 /// The kind of the selected part of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Picked {
@@ -381,6 +396,21 @@ params! {
         .default(FIRST_LOOP_TICK)
         .help("The moment shown. A tick is a quarter of a second, the marks are loops, and values past the end mean the end.");
 
+    pub(super) static SHOW: OneOf<Layers> = one_of!(
+        Layers,
+        "show",
+        "show",
+        &[
+            (Layers::Wheels, "wheels", "wheels alone"),
+            (Layers::Map, "map", "the map"),
+            (Layers::Loops, "loops", "map and loops"),
+            (Layers::Truth, "truth", "what is left"),
+            (Layers::All, "all", "everything"),
+        ],
+    )
+    .default("loops")
+    .help("The layers of the map. Wheels alone: the robot by its odometry, and in truth. The map: the walls that the sweeps saw. Then the graph with its loops, the truth, and everything, with the front end alone.");
+
     pub(super) static FUTURE: Param<bool> = Param::switch("future", "show what is to come")
         .help("Plots the whole lap, including what comes after the moment shown.");
 
@@ -416,7 +446,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     ],
     opening: Opening {
         panels: &["map"],
-        params: &["loops"],
+        params: &["show"],
         buttons: &["play", "edit-flat"],
     },
     params: PARAMS,
@@ -447,7 +477,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "noisy",
             label: "Four times the noise",
             help: "Odometry ends almost 5 m out, the front end holds, and the last loop closes in the last tick.",
-            set: &[NOISE.to(4.0), TICK.to(LAP_TICKS)],
+            set: &[NOISE.to(4.0), TICK.to(LAP_TICKS), SHOW.to("all")],
             then: &[],
         },
         Preset {
@@ -548,6 +578,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
                 WORLD.to("corridor"),
                 INFORMATION.to("exact"),
                 TICK.to(CORRIDOR_TICKS),
+                SHOW.to("truth"),
             ],
             then: &[],
         },
@@ -560,6 +591,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
                 MATCHER.to("p2l"),
                 INFORMATION.to("exact"),
                 TICK.to(HALL_TICKS),
+                SHOW.to("truth"),
             ],
             then: &[],
         },

@@ -9,6 +9,7 @@ use super::moment::LapState;
 use super::panel;
 use super::pick::GraphPart;
 use super::picture;
+use crate::w16_2_full_lap::spec::Layers;
 
 /// Radius within which the map reacts to a hovering pointer, m.
 const HOVER_M: f64 = 0.3;
@@ -56,6 +57,8 @@ pub fn hovered(moment: &LapState, name: &str, at: [f64; 2]) -> Option<GraphPart>
 fn places(moment: &LapState, name: &str) -> Vec<(GraphPart, [f64; 2])> {
     let nodes = &moment.nodes;
     match name {
+        // What is not shown cannot be pressed.
+        panel::MAP if matches!(moment.layers, Layers::Wheels | Layers::Map) => Vec::new(),
         panel::MAP => {
             let shown = picture::shown_nodes(moment);
             let at = |node: usize| shown[node];

@@ -9,7 +9,7 @@ use widget_kit::scene::Bounds;
 use super::pick::GraphPart;
 use super::plan_element::PlanElement;
 use super::runs::Runs;
-use crate::w16_2_full_lap::spec::Tool;
+use crate::w16_2_full_lap::spec::{Layers, Tool};
 
 /// The drawing of the reader's own flat, or of a world that is being edited.
 #[derive(Clone, Copy)]
@@ -33,8 +33,8 @@ const WRONG_PLACE_M: f64 = 1.0;
 
 /// What is wrong with the map of a finished lap.
 pub enum WrongPlace<'a> {
-    /// The keyframe farthest off the truth, and how far, m.
-    Keyframe(usize, f64),
+    /// A keyframe, the one farthest off the truth, and how far, m.
+    Keyframe(f64),
     /// An accepted loop between two different places.
     Loop(&'a RecordedLoopAttempt),
 }
@@ -65,6 +65,8 @@ pub struct LapState<'a> {
     pub tied: Option<usize>,
     /// Where the map changes from before the loop to after it, as a share of its width.
     pub wipe: f64,
+    /// The layers of the map.
+    pub layers: Layers,
     /// The drawing of the reader's own flat.
     pub drawn: Option<Drawn<'a>>,
 }
@@ -118,6 +120,7 @@ impl<'a> LapState<'a> {
             hovered: None,
             tied: None,
             wipe: 0.0,
+            layers: Layers::All,
             drawn: None,
         }
     }
@@ -150,8 +153,8 @@ impl<'a> LapState<'a> {
         self.edges().chain(own.map(|own| &own.edge))
     }
 
-    /// The wrong place of the map once the lap is over: the keyframe farthest off the truth, else a wrong loop.
-    pub fn wrong_place(&self) -> Option<WrongPlace<'a>> {
+    /// The keyframe farthest off the truth once the lap is over, and how far, m.
+    pub fn farthest(&self) -> Option<(usize, f64)> {
         if self.tick < self.runs.ticks() {
             return None;
         }
@@ -161,10 +164,17 @@ impl<'a> LapState<'a> {
             let truth = self.runs.truth(graph.keyframe_tick(node));
             (node, position_error_m(pose, &truth))
         });
-        let worst = errors.max_by(|a, b| a.1.total_cmp(&b.1));
-        let worst = worst.filter(|(_, off_m)| *off_m >= WRONG_PLACE_M);
-        let worst = worst.map(|(node, off_m)| WrongPlace::Keyframe(node, off_m));
-        worst.or_else(|| graph.lap().false_acceptances().next().map(WrongPlace::Loop))
+        errors.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The wrong place of the map once the lap is over: the keyframe farthest off the truth, else a wrong loop.
+    pub fn wrong_place(&self) -> Option<WrongPlace<'a>> {
+        let (_, off_m) = self.farthest()?;
+        if off_m >= WRONG_PLACE_M {
+            return Some(WrongPlace::Keyframe(off_m));
+        }
+        let wrong = self.runs.graph.lap().false_acceptances().next();
+        wrong.map(WrongPlace::Loop)
     }
 
     /// Whether nodes moved: a loop was closed in this tick, or the custom one is.

@@ -2,6 +2,7 @@
 
 mod both_gates;
 mod floor_plan;
+mod layers;
 mod own;
 mod parts;
 mod playing;

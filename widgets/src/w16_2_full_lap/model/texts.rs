@@ -9,6 +9,7 @@ use widget_kit::plural::plural;
 
 use super::moment::{LapState, WrongPlace};
 use super::runs::Runs;
+use crate::w16_2_full_lap::spec::Layers;
 
 pub mod floor_plan;
 pub mod parts;
@@ -116,7 +117,7 @@ fn statement(moment: &LapState, rejected: Option<&OwnLoopError>) -> Statement {
 /// `9.3 m off` or `wrong loop 80 to 12`.
 pub fn wrong_words(wrong: &WrongPlace) -> String {
     match wrong {
-        WrongPlace::Keyframe(_, off_m) => format!("{off_m:.1} m off"),
+        WrongPlace::Keyframe(off_m) => format!("{off_m:.1} m off"),
         WrongPlace::Loop(attempt) => format!("wrong loop {}", ends(attempt)),
     }
 }
@@ -278,12 +279,19 @@ pub fn summary(moment: &LapState) -> String {
         "on its way out"
     };
     let mut rest = String::new();
-    if moment.has_moved() {
+    if moment.has_moved() && moment.layers != Layers::Wheels {
         rest += &format!(
             " A line at {:.0} % of the map's width: left of it is the map before the loop, right of it the map after.",
             100.0 * moment.wipe
         );
     }
+    rest += match moment.layers {
+        Layers::Wheels => " Only the truth and the odometry are shown.",
+        Layers::Map => " Only the map and the path are shown.",
+        Layers::Loops => "",
+        Layers::Truth => " The truth is shown as well.",
+        Layers::All => " The truth, the odometry and the front end alone are shown as well.",
+    };
     if let Some(drawn) = &moment.drawn {
         rest += &floor_plan::summary(drawn);
     }

@@ -11,6 +11,8 @@ use super::shapes::{arc, loop_mark, xy};
 use super::{floor_plan, parts, wipe};
 use crate::w16_2_full_lap::model::moment::{Drawn, LapState};
 use crate::w16_2_full_lap::model::panel;
+use crate::w16_2_full_lap::model::runs::Runs;
+use crate::w16_2_full_lap::spec::Layers;
 
 /// The world at a tick.
 pub fn map(moment: &LapState) -> Panel {
@@ -44,15 +46,25 @@ pub fn map(moment: &LapState) -> Panel {
     }
 }
 
-/// The estimates and the truth.
+/// The estimates and the truth, as far as the reader wants to see them.
 fn lap(moment: &LapState) -> Vec<Layer> {
-    let mut layers = Vec::from(map_points(moment));
-    layers.extend(paths(moment));
-    layers.extend(graph(moment));
-    layers.extend(robots(moment));
-    layers.extend(parts::wrong_place(moment));
-    layers.extend(parts::looked_at(moment));
-    layers.extend(attempt_now(moment));
+    let mut layers = Vec::new();
+    let has_map = moment.layers != Layers::Wheels;
+    let has_loops = has_map && moment.layers != Layers::Map;
+    if has_map {
+        layers.extend(map_points(moment));
+    }
+    let others = others(moment);
+    layers.extend(others.iter().map(|other| path(moment, other)));
+    if has_map {
+        layers.extend(graph(moment, has_loops));
+    }
+    layers.extend(robots(moment, others));
+    if has_loops {
+        layers.extend(parts::off(moment));
+        layers.extend(parts::looked_at(moment));
+        layers.extend(attempt_now(moment));
+    }
     layers.extend(wipe::layers(moment));
     layers
 }
@@ -129,43 +141,70 @@ fn map_points(moment: &LapState) -> [Layer; 2] {
     ]
 }
 
-fn paths(moment: &LapState) -> [Layer; 3] {
-    let until = 0..=moment.tick;
-    let path = |pose_at: &dyn Fn(usize) -> SE2, stroke, tone| {
-        Layer::line(
-            until.clone().map(|tick| xy(&pose_at(tick))).collect(),
-            stroke,
-            tone,
-            1.75,
-        )
-    };
-    [
-        path(&|tick| moment.runs.truth(tick), Stroke::Dashed, Tone::Truth),
-        path(
-            &|tick| moment.runs.dead_reckoning(tick),
-            Stroke::Solid,
-            Tone::Prediction,
-        ),
-        path(
-            &|tick| moment.runs.front_end.estimate(tick),
-            Stroke::Solid,
-            Tone::Prior,
-        ),
-    ]
+/// Where something other than the graph puts the robot.
+struct Other {
+    name: &'static str,
+    pose_at: fn(&Runs, usize) -> SE2,
+    stroke: Stroke,
+    mark: Mark,
+    tone: Tone,
+    radius_px: f32,
+}
+
+const TRUTH: Other = Other {
+    name: "truth",
+    pose_at: Runs::truth,
+    stroke: Stroke::Dashed,
+    mark: Mark::Plus,
+    tone: Tone::Truth,
+    radius_px: 7.0,
+};
+const ODOMETRY: Other = Other {
+    name: "odometry",
+    pose_at: Runs::dead_reckoning,
+    stroke: Stroke::Solid,
+    mark: Mark::Triangle,
+    tone: Tone::Prediction,
+    radius_px: 6.0,
+};
+const FRONT_END: Other = Other {
+    name: "front end alone",
+    pose_at: |runs, tick| runs.front_end.estimate(tick),
+    stroke: Stroke::Solid,
+    mark: Mark::Circle,
+    tone: Tone::Prior,
+    radius_px: 6.0,
+};
+
+/// What is shown beside the graph.
+fn others(moment: &LapState) -> &'static [Other] {
+    match moment.layers {
+        Layers::Wheels => &[TRUTH, ODOMETRY],
+        Layers::Map | Layers::Loops => &[],
+        Layers::Truth => &[TRUTH],
+        Layers::All => &[TRUTH, ODOMETRY, FRONT_END],
+    }
+}
+
+fn path(moment: &LapState, other: &Other) -> Layer {
+    let at = (0..=moment.tick).map(|tick| xy(&(other.pose_at)(moment.runs, tick)));
+    Layer::line(at.collect(), other.stroke, other.tone, 1.75)
 }
 
 /// Nodes, the factors between neighbours, and the factors of the loops closed so far.
-fn graph(moment: &LapState) -> Vec<Layer> {
+fn graph(moment: &LapState, has_loops: bool) -> Vec<Layer> {
     let line = wipe::divider(moment);
     let nodes = moment.nodes.iter().map(xy);
     let nodes: Vec<_> = nodes.filter(|at| !wipe::is_before(line, *at)).collect();
     let mut layers = parts::edges(moment);
-    layers.extend(moment.loops_tried().flat_map(|attempt| {
-        let arc = arc(moment, attempt);
-        let top = arc[arc.len() / 2];
-        loop_layers(attempt, arc, top)
-    }));
-    layers.extend(parts::own(moment));
+    if has_loops {
+        layers.extend(moment.loops_tried().flat_map(|attempt| {
+            let arc = arc(moment, attempt);
+            let top = arc[arc.len() / 2];
+            loop_layers(attempt, arc, top)
+        }));
+        layers.extend(parts::own(moment));
+    }
     layers.push(Layer::points(nodes, Mark::Square, Tone::Posterior, 3.0));
     layers
 }
@@ -189,42 +228,20 @@ fn attempt_now(moment: &LapState) -> Vec<Layer> {
 }
 
 /// The robot's current pose by each estimate, named where the legend does not.
-fn robots(moment: &LapState) -> Vec<Layer> {
-    let tick = moment.tick;
-    let others = [
-        (moment.runs.truth(tick), Mark::Plus, Tone::Truth, 7.0),
-        (
-            moment.runs.dead_reckoning(tick),
-            Mark::Triangle,
-            Tone::Prediction,
-            6.0,
-        ),
-        (
-            moment.runs.front_end.estimate(tick),
-            Mark::Circle,
-            Tone::Prior,
-            6.0,
-        ),
-    ];
+fn robots(moment: &LapState, others: &[Other]) -> Vec<Layer> {
+    let pose = |other: &Other| (other.pose_at)(moment.runs, moment.tick);
+    let robot = |pose: SE2, mark, tone, px| Layer::pose(pose.to_array(), mark, tone, px);
     let mut layers: Vec<_> = others
         .iter()
-        .map(|(pose, mark, tone, radius_px)| Layer::pose(pose.to_array(), *mark, *tone, *radius_px))
+        .map(|other| robot(pose(other), other.mark, other.tone, other.radius_px))
         .collect();
-    layers.push(Layer::pose(
-        moment.estimate.to_array(),
-        Mark::Square,
-        Tone::Posterior,
-        6.0,
-    ));
+    if moment.layers != Layers::Wheels {
+        layers.push(robot(moment.estimate, Mark::Square, Tone::Posterior, 6.0));
+    }
     // At the start all are at one place.
-    if tick > 0 && !moment.drawn.as_ref().is_some_and(is_planned) {
-        let names = ["truth", "odometry", "front end alone"];
-        layers.extend(
-            others
-                .iter()
-                .zip(names)
-                .map(|((pose, ..), name)| Layer::label(xy(pose), name.to_owned(), 8.0)),
-        );
+    if moment.tick > 0 && !moment.drawn.as_ref().is_some_and(is_planned) {
+        let name = |other: &Other| Layer::label(xy(&pose(other)), other.name.to_owned(), 8.0);
+        layers.extend(others.iter().map(name));
     }
     layers
 }
@@ -237,19 +254,27 @@ fn legend(moment: &LapState) -> Vec<LegendEntry> {
     if moment.drawn.as_ref().is_some_and(is_planned) {
         legend.push(floor_plan::legend());
     }
+    // The robots have their names beside them.
+    if moment.layers == Layers::Wheels {
+        return legend;
+    }
+    let has_loops = moment.layers != Layers::Map;
     if parts::is_any_past_the_gate(moment) {
         let label = "strained: χ² past the gate";
         legend.push(LegendEntry::line(label, parts::STRAINED, Stroke::Solid));
     }
-    if moment.loops_tried().any(|attempt| !attempt.accepted()) || moment.own.is_some() {
+    let is_any_rejected = moment.loops_tried().any(|attempt| !attempt.accepted());
+    if has_loops && (is_any_rejected || moment.own.is_some()) {
         legend.push(LoopStyle::REJECTED.entry("loop rejected"));
     }
     legend.extend([
         LegendEntry::marked_line("pose graph", Tone::Posterior, Mark::Square, Stroke::Solid),
         LegendEntry::mark("map, way out", Tone::Outbound, Mark::Dot),
         LegendEntry::mark("map, way back", Tone::Revisit, Mark::Cross),
-        LoopStyle::ACCEPTED.entry("loop accepted"),
     ]);
+    if has_loops {
+        legend.push(LoopStyle::ACCEPTED.entry("loop accepted"));
+    }
     legend.truncate(MOST_ENTRIES);
     legend
 }

@@ -118,24 +118,28 @@ fn part_layers(moment: &LapState, part: GraphPart, is_picked: bool) -> Vec<Layer
     layers
 }
 
-/// The wrong place of a finished lap in a ring; from a keyframe a line leads to where it truly is.
-pub fn wrong_place(moment: &LapState) -> Vec<Layer> {
-    let Some(wrong) = moment.wrong_place() else {
-        return Vec::new();
-    };
+/// What a finished lap is off: from the keyframe farthest off, a line to where it truly is. A wrong place has a ring.
+pub fn off(moment: &LapState) -> Vec<Layer> {
+    let wrong = moment.wrong_place();
     let mut layers = Vec::new();
-    let at = match wrong {
-        WrongPlace::Keyframe(node, _) => {
+    let (at, words) = match (&wrong, moment.farthest()) {
+        (Some(WrongPlace::Loop(attempt)), _) => (
+            loop_mark(moment, attempt),
+            wrong_words(&WrongPlace::Loop(attempt)),
+        ),
+        (_, Some((node, off_m))) => {
             let truth = moment.runs.truth(moment.runs.graph.keyframe_tick(node));
             let at = xy(&moment.nodes[node]);
             let gap = vec![at, xy(&truth)];
             layers.push(Layer::line(gap, Stroke::Dashed, STRAINED, 2.0));
-            at
+            (at, wrong_words(&WrongPlace::Keyframe(off_m)))
         }
-        WrongPlace::Loop(attempt) => loop_mark(moment, attempt),
+        (_, None) => return layers,
     };
-    layers.push(Layer::points(vec![at], Mark::Circle, STRAINED, RING_PX));
-    layers.push(Layer::label(at, wrong_words(&wrong), RING_PX));
+    if wrong.is_some() {
+        layers.push(Layer::points(vec![at], Mark::Circle, STRAINED, RING_PX));
+    }
+    layers.push(Layer::label(at, words, RING_PX));
     layers
 }
 

@@ -5,6 +5,7 @@ use widget_kit::scene::{Layer, Mark, Stroke, Tone};
 use super::bounds::shown_bounds;
 use super::shapes::xy;
 use crate::w16_2_full_lap::model::moment::LapState;
+use crate::w16_2_full_lap::spec::Layers;
 
 /// Distance of a word from the line, as a share of the map's width.
 const WORD_SHARE: f64 = 0.09;
@@ -18,8 +19,7 @@ const HANDLE_M: f64 = 1.4;
 /// Position of the line, if a loop was closed in this tick or a custom one is, m.
 pub fn divider(moment: &LapState) -> Option<f64> {
     let bounds = shown_bounds(moment);
-    moment
-        .has_moved()
+    (moment.has_moved() && moment.layers != Layers::Wheels)
         .then(|| bounds.min[0] + moment.wipe * bounds.size()[0])
 }
 
