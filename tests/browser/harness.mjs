@@ -214,6 +214,13 @@ export function unfold(page, selector) {
   return page.locator(selector).evaluate((element) => element.closest('details')?.setAttribute('open', ''));
 }
 
+/** Removes the figures that drive a thousand laps once they are in view: a test that waits for quiet waits for them, too. */
+export function withoutLaps(page) {
+  return page.evaluate(() => {
+    for (const figure of document.querySelectorAll('figure.laps')) figure.remove();
+  });
+}
+
 /** Waits until a widget has drawn its first frame. */
 export function ready(page, selector = 'slam-widget') {
   return page.waitForFunction((css) => document.querySelector(css)?.state === 'running'

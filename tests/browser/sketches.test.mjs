@@ -1,7 +1,7 @@
 // The small figures beside the text: a slider, and a picture and a sentence that follow it.
 
 import assert from 'node:assert/strict';
-import { describe, it } from 'node:test';
+import { before, describe, it } from 'node:test';
 import * as h from './harness.mjs';
 
 const visit = h.visitor();
@@ -131,6 +131,7 @@ describe('the picture of a figure', () => {
   for (const [path, names] of Object.entries(ON)) {
     describe(path, () => {
       const page = visit.once('', { path, options: { viewport: { width: 1100, height: 900 } } });
+      before(() => h.withoutLaps(page.tab));
       for (const name of names) {
         it(`is dragged by its handle, which follows the pointer: ${name}`, async () => {
           const { tab } = page;

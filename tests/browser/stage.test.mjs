@@ -35,6 +35,7 @@ describe('the picture', () => {
     it(`has at least ${100 * LEAST_SHARE} % of the height of each widget at rest: ${page}`, async () => {
       await visit('', async (tab) => {
         const low = [];
+        await h.withoutLaps(tab);
         for (const viewport of [...SCREENS, { width: 1280, height: 800 }]) {
           await tab.setViewportSize(viewport);
           for (const id of h.widgetsOf(page)) {
@@ -74,6 +75,7 @@ describe('the verdict', () => {
     it(`is cut on no screen, neither at the end of a run nor after a drag: ${page}`, async () => {
       await visit('', async (tab) => {
         const cut = [];
+        await h.withoutLaps(tab);
         for (const id of h.widgetsOf(page)) {
           const css = named(id);
           const keep = async (when) => {
