@@ -174,6 +174,7 @@ describe('a widget beside its text', () => {
     for (const page of h.PAGES.filter((file) => file !== 'break.html' && h.widgetsOf(file).length > 0)) {
       it(`leaves the controls in place when More opens: ${page}, ${width} px wide`, async () => {
         await chapter(h.addressOf(page), async (tab) => {
+          await h.withoutLaps(tab);
           // On a phone the maps of w16.1 are a part of its picture, which enters with the second start or with More.
           for (const id of h.widgetsOf(page).filter((name) => name !== 'w16.1' || width > 500)) {
             const css = named(id);
