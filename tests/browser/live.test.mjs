@@ -157,10 +157,9 @@ describe('a robot that drives', () => {
 
   it('is out of reach for a page that came by https, which says the ways out', async () => {
     await beside({}, async (tab, robot) => {
-      const types = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm', '.json': 'application/json' };
       await tab.route('https://slam.test/**', (route) => {
         const { pathname } = new URL(route.request().url());
-        return route.fulfill({ path: join(h.DIST, pathname), contentType: types[extname(pathname)] ?? 'application/octet-stream' });
+        return route.fulfill({ path: join(h.DIST, pathname), contentType: h.TYPES[extname(pathname)] ?? 'application/octet-stream' });
       });
       tab.home = 'https://slam.test';
       await tab.goto('https://slam.test/own-robot.html?w=16.10');
@@ -170,7 +169,8 @@ describe('a robot that drives', () => {
       await says(tab, /lets a page that came by https reach only wss:\/\/ addresses.*offline zip.*http:\/\/localhost/);
       await connect(tab, robot.url);
       await says(tab, /Connecting to ws:\/\/127|Reads/);
-      await tab.unroute('https://slam.test/**');
+      // Requests are still answered.
+      await tab.unrouteAll({ behavior: 'wait' });
     }, { fresh: true });
   });
 
