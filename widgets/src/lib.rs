@@ -8,6 +8,7 @@ mod pose_handle;
 mod reader_orders;
 pub mod registry;
 mod sweep_bounds;
+mod xy;
 
 pub mod w16_10_own_robot;
 pub mod w16_11_procrustes;

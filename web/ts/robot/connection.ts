@@ -2,6 +2,7 @@
 
 import { create, stopKeyPropagation } from '../dom';
 import type { Delivery } from './protocol';
+import { RECORDING } from './recording';
 
 export interface ConnectionHost {
   connect(address: string): void;
@@ -9,7 +10,7 @@ export interface ConnectionHost {
   stop(): void;
   /** Reads another laser: the drive starts again with it. */
   choose(laser: string): void;
-  save(what: 'recording.mcap' | 'session.slam2d'): void;
+  save(what: typeof RECORDING | 'session.slam2d'): void;
 }
 
 /** `DriveReport` of crates/robots/worker/src/update.rs. */
@@ -48,7 +49,7 @@ export class ConnectionPanel {
   constructor(host: ConnectionHost) {
     this.#host = host;
     this.#stop = this.#button('Stop', () => host.stop());
-    this.#recording = this.#button('Save the recording', () => host.save('recording.mcap'));
+    this.#recording = this.#button('Save the recording', () => host.save(RECORDING));
     this.#session = this.#button('Save the session', () => host.save('session.slam2d'));
     this.#connect.textContent = 'Connect';
     const form = create('form', { novalidate: '' });

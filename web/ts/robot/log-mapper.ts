@@ -1,11 +1,11 @@
-// Maps a reader's log for w16.10, or a robot that drives: keeps the files or the connection, and the worker, and passes orders and deliveries between widget and
-// worker. It survives the widget's instance; a new instance gets the latest deliveries again.
+// Maps a reader's log for w16.10, or a robot that drives: keeps the files or the connection, and the worker, and passes
+// orders and deliveries between widget and worker. It survives the widget's instance; a new instance gets the latest deliveries again.
 
 import type { Widget } from '../../pkg/glue.js';
 import { saveBlob } from '../export';
 import { assetUrl, fetchAsset } from '../assets';
 import { LoadError, ModuleFile, StaleError } from '../module';
-import { Recording } from './recording';
+import { RECORDING, Recording } from './recording';
 import { RobotSocket } from './robot-socket';
 import { textDelivery, type Delivery, type LogFile, type Order, type Report } from './protocol';
 
@@ -22,8 +22,6 @@ const SESSION = '.slam2d';
 const MAX_REFERENCE_BYTES = 1 << 28;
 const NO_NUMBERS = new Float64Array();
 const NO_BYTES = new Uint8Array();
-/** The recording of a drive: `RECORDING` of crates/robots/robot_io/src/live.rs. */
-const RECORDING = 'recording.mcap';
 /** Retries of a log after a crash. */
 const MAX_RETRIES = 1;
 
@@ -187,7 +185,7 @@ export class LogMapper {
     this.#files = [];
     this.#reference = undefined;
     this.#address = address;
-    this.#recording = new Recording(RECORDING);
+    this.#recording = new Recording();
     void this.#start([]);
   }
 

@@ -1,17 +1,14 @@
 // The recording of a robot's drive, as the worker writes it. The browser may keep what is in a blob on disk.
 
+/** Its file: `RECORDING` of crates/robots/robot_io/src/live.rs. */
+export const RECORDING = 'recording.mcap';
 /** Pieces of this many bytes together become a blob. */
 const BLOB_BYTES = 1 << 22;
 
 export class Recording {
-  readonly #name: string;
   #parts: BlobPart[] = [];
   #loose: Uint8Array<ArrayBuffer>[] = [];
   #looseBytes = 0;
-
-  constructor(name: string) {
-    this.#name = name;
-  }
 
   add(bytes: Uint8Array<ArrayBuffer>): void {
     this.#loose.push(bytes);
@@ -24,6 +21,6 @@ export class Recording {
 
   /** All so far. */
   file(): File {
-    return new File([...this.#parts, ...this.#loose], this.#name);
+    return new File([...this.#parts, ...this.#loose], RECORDING);
   }
 }

@@ -1,5 +1,5 @@
-// The worker that maps a log. The first message has the program and the files, or the address of a robot; later ones have what it says and the reader's orders. It works
-// in time slices, and handles orders in between.
+// The worker that maps a log. The first message has the program and the files, or the address of a robot; later ones have
+// what it says and the reader's orders. It works in time slices, and handles orders in between.
 
 import init, { LogMapper, patienceMs } from '../../pkg-robot/slam_robot.js';
 import { textDelivery, type Delivery, type LogFile, type Order, type Report } from './protocol';

@@ -129,12 +129,13 @@ fn test_piece(piece: Piece, tools: &Tools) -> anyhow::Result<()> {
         }
         Piece::Exercises => exercises::check(exercises::Lints::Denied),
         Piece::Lints => {
-            let mut lint = cargo();
-            lint.args(["clippy", "--quiet", "--target", TARGET])
-                .args(["--package=slam_web", "--package=slam_robot"])
-                .args(["--", "-D", "warnings"])
-                .env("CARGO_INCREMENTAL", "0");
-            run("Linting code for WebAssembly only", &mut lint)?;
+            let modules = [
+                "--package=slam_web",
+                "--package=slam_robot",
+                "--target",
+                TARGET,
+            ];
+            run("Linting code for WebAssembly only", &mut lint(&modules))?;
             let mut scripts = program(tools::npm());
             scripts.args(["run", "--silent", "lint"]);
             run("Linting scripts", scripts.current_dir(root().join("web")))
@@ -302,11 +303,20 @@ pub fn test_peers() -> anyhow::Result<()> {
 /// # Errors
 /// A warning or an error in it.
 pub fn lint_desktop() -> anyhow::Result<()> {
+    run(
+        "Linting the desktop window",
+        &mut lint(&["--package=slam_desktop"]),
+    )
+}
+
+/// Lints what no other piece compiles; warnings are errors.
+fn lint(what: &[&str]) -> Command {
     let mut lint = cargo();
-    lint.args(["clippy", "--quiet", "--package=slam_desktop"])
+    lint.args(["clippy", "--quiet"])
+        .args(what)
         .args(["--", "-D", "warnings"])
         .env("CARGO_INCREMENTAL", "0");
-    run("Linting the desktop window", &mut lint)
+    lint
 }
 
 fn summary(skipped: &str) -> String {

@@ -13,6 +13,8 @@ use widget_kit::scene::{
 
 use super::ControlRoom;
 
+use crate::xy::xy;
+
 pub use plots::OVER_TIME;
 
 /// Half the side of the close-up, in metres.
@@ -190,8 +192,4 @@ fn positions(cloud: &PointCloud) -> Vec<[f64; 2]> {
 
 fn robot(pose: &SE2, mark: Mark, tone: Tone) -> Layer {
     Layer::pose(pose.to_array(), mark, tone, 6.0)
-}
-
-fn xy(pose: &SE2) -> [f64; 2] {
-    [pose.x(), pose.y()]
 }

@@ -15,6 +15,7 @@ use super::interaction::turn_handle;
 use super::texts::now;
 use super::{WholeWindow, panel};
 use crate::sweep_bounds::sweep_bounds;
+use crate::xy::xy;
 
 /// Space around the sweeps, m.
 const MARGIN_M: f64 = 0.1;
@@ -36,7 +37,7 @@ fn sweeps(window: &WholeWindow) -> Panel {
     let mut layers = vec![
         Layer::Walls(walls),
         Layer::Seen {
-            from: position(&pose),
+            from: xy(&pose),
             points: best.iter().map(|point| [point.x, point.y]).collect(),
             tone: Tone::Posterior,
         },
@@ -52,7 +53,7 @@ fn sweeps(window: &WholeWindow) -> Panel {
         sensor(scene.truth(), Mark::Plus, Tone::Truth),
         sensor(guess, Mark::Circle, Tone::Prior),
         Layer::segments(
-            vec![[position(&guess), [turn.x, turn.y]]],
+            vec![[xy(&guess), [turn.x, turn.y]]],
             Stroke::Solid,
             Tone::Prior,
             1.5,
@@ -62,7 +63,7 @@ fn sweeps(window: &WholeWindow) -> Panel {
             tone: Tone::Prior,
             label: "turn the start; drag its sensor to move it",
         },
-        Layer::label(position(&scene.truth()), "truth".to_owned(), 8.0),
+        Layer::label(xy(&scene.truth()), "truth".to_owned(), 8.0),
     ]);
     if window.raced().is_some() {
         layers.push(sensor(pose, Mark::Square, Tone::Posterior));
@@ -96,7 +97,7 @@ fn icp_now(window: &WholeWindow) -> Option<SE2> {
 fn icp_path(window: &WholeWindow) -> Layer {
     let path = &window.search_task.alone.path;
     let done = path.iter().take(window.raced().map_or(0, |step| step + 1));
-    let positions = done.map(position).collect();
+    let positions = done.map(xy).collect();
     Layer::line(positions, Stroke::Solid, Tone::Series(2), 2.0)
 }
 
@@ -105,11 +106,6 @@ fn frame(window: &WholeWindow) -> [Axis; 2] {
     let scene = &window.scene;
     sweep_bounds(scene, &[scene.truth()], None)
         .map(|[low, high]| Axis::hidden(low - MARGIN_M, high + MARGIN_M))
-}
-
-/// Position of a sensor.
-pub fn position(pose: &SE2) -> [f64; 2] {
-    [pose.x(), pose.y()]
 }
 
 /// Pose of a sensor.

@@ -6,6 +6,8 @@ use pr_geom::SE2;
 use pr_sim::Course;
 use widget_kit::scene::{Bounds, Layer, Mark, Stroke, Tone};
 
+use crate::xy::xy;
+
 /// Way points driven to: three of the ring's four corridors.
 const WAY_POINTS: usize = 3;
 /// Ticks between two sweeps of the map.
@@ -30,7 +32,7 @@ pub fn layers() -> Vec<Layer> {
         cloud.iter().map(|p| [p.x, p.y]).collect::<Vec<_>>()
     };
     let path = |pose: &dyn Fn(usize) -> SE2, stroke, tone, width_px| {
-        let at = (0..=last).map(|tick| position(&pose(tick)));
+        let at = (0..=last).map(|tick| xy(&pose(tick)));
         Layer::line(at.collect(), stroke, tone, width_px)
     };
     let walls = course.world().walls().iter();
@@ -39,7 +41,7 @@ pub fn layers() -> Vec<Layer> {
     vec![
         Layer::Walls(walls.collect()),
         Layer::Seen {
-            from: position(&robot),
+            from: xy(&robot),
             points: seen(last),
             tone: Tone::Measurement,
         },
@@ -59,11 +61,7 @@ pub fn layers() -> Vec<Layer> {
         ),
         Layer::pose(wheels.to_array(), Mark::Triangle, Tone::Prediction, 6.0),
         Layer::pose(robot.to_array(), Mark::Square, Tone::Posterior, 6.0),
-        Layer::label(position(&wheels), "by its wheels alone".to_owned(), 14.0),
-        Layer::label(position(&robot), "where it is".to_owned(), 14.0),
+        Layer::label(xy(&wheels), "by its wheels alone".to_owned(), 14.0),
+        Layer::label(xy(&robot), "where it is".to_owned(), 14.0),
     ]
-}
-
-fn position(pose: &SE2) -> [f64; 2] {
-    [pose.x(), pose.y()]
 }

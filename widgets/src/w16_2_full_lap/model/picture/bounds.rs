@@ -4,9 +4,9 @@ use ch16_lab::lap::BuiltInWorld;
 use pr_geom::math;
 use widget_kit::scene::Bounds;
 
-use super::shapes::xy;
 use crate::w16_2_full_lap::model::floor_plan::extent;
 use crate::w16_2_full_lap::model::moment::LapState;
+use crate::xy::xy;
 
 /// Margin around the world, m.
 const MARGIN_M: f64 = 0.4;

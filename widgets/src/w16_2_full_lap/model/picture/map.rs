@@ -7,12 +7,13 @@ use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, T
 
 use super::bounds::shown_bounds;
 use super::loop_style::LoopStyle;
-use super::shapes::{arc, loop_mark, xy};
+use super::shapes::{arc, loop_mark};
 use super::{floor_plan, parts, wipe};
 use crate::w16_2_full_lap::model::moment::{Drawn, LapState};
 use crate::w16_2_full_lap::model::panel;
 use crate::w16_2_full_lap::model::runs::Runs;
 use crate::w16_2_full_lap::spec::Layers;
+use crate::xy::xy;
 
 /// The world at a tick.
 pub fn map(moment: &LapState) -> Panel {

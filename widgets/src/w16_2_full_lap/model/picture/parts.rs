@@ -4,12 +4,13 @@ use ch16_lab::lap::{RecordedEdge, edge_strain};
 use widget_kit::scene::{Layer, Mark, Stroke, Tone};
 
 use super::loop_style::LoopStyle;
-use super::shapes::{arc, loop_mark, xy};
+use super::shapes::{arc, loop_mark};
 use super::wipe::{clipped, divider, shown_nodes};
 use crate::w16_2_full_lap::model::found::{Found, find};
 use crate::w16_2_full_lap::model::moment::{LapState, WrongPlace};
 use crate::w16_2_full_lap::model::pick::GraphPart;
 use crate::w16_2_full_lap::model::texts::{ends, part_label, wrong_words};
+use crate::xy::xy;
 
 /// Distance of text from its mark, in pixels.
 const CLEAR_PX: f32 = 12.0;

@@ -1,9 +1,10 @@
 //! Shapes of the graph's parts on the map.
 
 use ch16_lab::lap::RecordedLoopAttempt;
-use pr_geom::{SE2, math};
+use pr_geom::math;
 
 use crate::w16_2_full_lap::model::moment::LapState;
+use crate::xy::xy;
 
 /// Lowest and highest arc of a loop, m; in between its height is the distance of its ends.
 const ARC_HEIGHT_M: [f64; 2] = [0.7, 1.2];
@@ -32,9 +33,4 @@ pub fn arc(moment: &LapState, attempt: &RecordedLoopAttempt) -> Vec<[f64; 2]> {
 pub fn loop_mark(moment: &LapState, attempt: &RecordedLoopAttempt) -> [f64; 2] {
     let arc = arc(moment, attempt);
     arc[arc.len() / 2]
-}
-
-/// Position of a pose.
-pub fn xy(pose: &SE2) -> [f64; 2] {
-    [pose.x(), pose.y()]
 }

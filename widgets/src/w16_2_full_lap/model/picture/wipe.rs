@@ -3,9 +3,9 @@
 use widget_kit::scene::{Layer, Mark, Stroke, Tone};
 
 use super::bounds::shown_bounds;
-use super::shapes::xy;
 use crate::w16_2_full_lap::model::moment::LapState;
 use crate::w16_2_full_lap::spec::Layers;
+use crate::xy::xy;
 
 /// Distance of a word from the line, as a share of the map's width.
 const WORD_SHARE: f64 = 0.09;
