@@ -264,7 +264,8 @@ describe('the chapter', () => {
           .map((element) => element.getBoundingClientRect().top + scrollY)
           .sort((a, b) => a - b);
       });
-      assert.ok(places.length > 40, `${places.length} numbers`);
+      // The chapter prints few numbers, but none found would mean that the selector is wrong.
+      assert.ok(places.length > 20, `${places.length} numbers`);
       const crowded = places.filter((top, k) => places[k + 10] < top + 900).map(Math.round);
       assert.deepEqual(crowded, [], 'a screen that begins there has eleven');
     }, { viewport: { width: 1440, height: 900 } });

@@ -3,13 +3,13 @@
 use super::document::{companion, source};
 
 /// Largest number of words, folded text included; a formula counts as one word, code as none.
-const MAX_WORDS: usize = 9_700;
+const MAX_WORDS: usize = 9_400;
 /// Largest number of words outside of folded text.
-const MAX_SEEN_WORDS: usize = 6_500;
+const MAX_SEEN_WORDS: usize = 5_750;
 
 /// The same for the chapter's page alone.
-const MAX_CHAPTER_WORDS: usize = 6_850;
-const MAX_SEEN_CHAPTER_WORDS: usize = 4_560;
+const MAX_CHAPTER_WORDS: usize = 6_500;
+const MAX_SEEN_CHAPTER_WORDS: usize = 4_000;
 
 /// The source between two positions without the elements in `dropped`, including nested ones.
 fn without(html: &str, dropped: &str) -> String {
