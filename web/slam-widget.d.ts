@@ -11,7 +11,7 @@ export interface BasinExplorerState {
   dx: number;
   /** How far the first guess is from the truth. -1.5 to 1.5 m. */
   dy: number;
-  /** What the two sweeps see: room A, almost a square, or a row of equal posts 0.5 m apart. */
+  /** What the two sweeps see: room A, which is almost square, or a row of equal posts 0.5 m apart. */
   scene: 'room' | 'fence';
   /** Distance between paired points, or distance along the wall's normal. */
   variant: 'point-to-point' | 'point-to-plane';
@@ -27,15 +27,15 @@ export interface BasinExplorerState {
   axis: 'dx' | 'dy';
   /** Draws paths from starts all over the basin map, iteration by iteration. */
   paths: boolean;
-  /** Asks how far a guess at the right position may be turned and still converge to the truth. The maps stay covered until you have marked it. */
+  /** Asks how far a guess at the right position can be turned and still converge to the truth. The maps stay covered until you have marked it. */
   edge: 'off' | 'mark' | 'swept';
-  /** Where you mark the edge, on either side of the truth; 0 is no mark. 0 to 180 °. */
+  /** Your mark for the edge, on either side of the truth; 0 means no mark. 0 to 180 °. */
   'edge-p2p': number;
-  /** Where you mark the edge, on either side of the truth; 0 is no mark. 0 to 180 °. */
+  /** Your mark for the edge, on either side of the truth; 0 means no mark. 0 to 180 °. */
   'edge-p2l': number;
   /** Seed of the range noise of both sweeps; 457 is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** Which iteration is shown; 0 is the first guess, and past the last is the end. 0 to 200. */
+  /** The iteration shown; 0 is the first guess, and values past the last mean the end. 0 to 200. */
   iteration: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -59,15 +59,15 @@ export interface TheFullLapState {
   noise: number;
   /** Whether a keyframe near an old one is matched against it. */
   loops: boolean;
-  /** Another seed is another lap with the same robot; the default is the chapter's. 0 to 4294967295. */
+  /** A different seed gives a different lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** Quantile of χ² with 3 degrees of freedom; 0.95 is χ² up to 7.815. This share of true loops passes if the robot stands still, less after a drive. 0.9 to 0.999. */
+  /** Quantile of χ² with 3 degrees of freedom; 0.95 means χ² up to 7.815. This share of true loops passes if the robot stands still, a smaller one after a drive. 0.9 to 0.999. */
   gate: number;
   /** Path: the chapter's gate, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. The outline shows which positions pass at the registered heading. */
   'gate-model': 'path' | 'exact';
   /** What registers each sweep, in the front end and for loops: the chapter's ICP, point-to-point or point-to-plane, or the normal distributions transform. */
   matcher: 'p2p' | 'p2l' | 'ndt';
-  /** The frame of an edge's information. For the chapter's figures, it is turned by a heading in the world; the exact frame is that of the edge's target, the newer end. */
+  /** The frame of an edge's information. For the chapter's figures, it is turned by a heading in the world; the exact frame is the frame of the edge's target, its newer end. */
   information: 'chapter' | 'exact';
   /** A point's normal comes from its neighbours within this radius, in cells of 12 cm. 0 is the matcher's default: 2.5, or 4.2 for point-to-plane. 0 to 8 cells. */
   normals: number;
@@ -89,11 +89,11 @@ export interface TheFullLapState {
   'own-gate': boolean;
   /** The robust kernel of your own loop: plain least squares, Huber's kernel from 1.345 standard deviations, or dynamic covariance scaling from a χ² of 10. */
   kernel: 'quadratic' | 'huber' | 'dcs';
-  /** At a closed loop, the map before it is left of the line, and the map after it is right. The line's position is a share of the map's width. 0 to 1. */
+  /** At a closed loop, the map before it is shown left of the line, and the map after it right of the line. The line's position is a share of the map's width. 0 to 1. */
   wipe: number;
   /** The moment shown. A tick is a quarter of a second, the marks are loops, and values past the end mean the end. 0 to 2000. */
   t: number;
-  /** The layers of the map. Wheels alone: the robot by its odometry, and in truth. The map: the walls that the sweeps saw. Then the graph with its loops, the truth, and everything, with the front end alone. */
+  /** The layers of the map. Wheels alone: where odometry and the truth put the robot. The map: the walls that the sweeps saw. Then the graph with its loops, the truth, and everything, with the front end alone. */
   show: 'wheels' | 'map' | 'loops' | 'truth' | 'all';
   /** Plots the whole lap, including what comes after the moment shown. */
   future: boolean;
@@ -145,9 +145,9 @@ export interface ControlRoomState {
   noise: number;
   /** Whether a keyframe near an old one is matched against it. */
   loops: boolean;
-  /** Another seed is another lap with the same robot; the default is the chapter's. 0 to 4294967295. */
+  /** A different seed gives a different lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** The operation whose data at this tick are described. Press a mark on a lane to select it. */
+  /** The operation that is described at this tick. Press a mark on a lane to select it. */
   lane: 'predict' | 'register' | 'keyframe' | 'candidate' | 'fit' | 'gate' | 'optimize' | 'repaint';
   /** The moment shown. A tick is a quarter of a second, and the marks are loops. 0 to 129. */
   t: number;
@@ -163,11 +163,11 @@ export interface PoseGraphToyState {
   stiffness: number;
   /** The chapter's three poses on a line, four around a square, or a ring of six whose ends do not meet. */
   graph: 'line' | 'square' | 'ring';
-  /** How much further ahead of the first pose the loop puts the last one than odometry does. -1.5 to 1.5 m. */
+  /** How much further ahead the loop puts the last pose, seen from the first, than odometry does. -1.5 to 1.5 m. */
   gap: number;
   /** Information of each odometry edge. 0.1 to 10 ×. */
   odometry: number;
-  /** Measurements are relative. Unless a pose is fixed, the whole graph may be anywhere. */
+  /** Measurements are relative. Unless a pose is fixed, the whole graph can be anywhere. */
   pinned: boolean;
   /** How far the pose is moved from its odometry position before the first step. -3 to 3 m. */
   x1: number;
@@ -241,7 +241,7 @@ export interface TheWholeWindowState {
 export interface HaveIBeenHereState {
   /** The share of pairs, most similar first, that are called the same place: one threshold for every detector. 0 to 60 %. */
   called: number;
-  /** From the estimated poses, from range histograms, or from rings and sectors. */
+  /** Compares estimated poses, range histograms, or rings and sectors. */
   detector: 'nearby' | 'histogram' | 'context';
   /** The world of the lap. */
   world: 'apartment' | 'ring';
@@ -249,11 +249,11 @@ export interface HaveIBeenHereState {
   old: number;
   /** How far the newer view is turned from the heading where Scan Context fits best. -180 to 180 °. */
   turn: number;
-  /** Another seed is another lap with the same robot; the default is the chapter's. 0 to 4294967295. */
+  /** A different seed gives a different lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
   /** Multiplies the variances of the wheel odometry: 1 is the chapter's robot. 0.25 to 4. */
   noise: number;
-  /** The newest keyframe so far; past the last, it is the whole lap. 0 to 400. */
+  /** The newest keyframe so far; values past the last mean the whole lap. 0 to 400. */
   new: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -265,7 +265,7 @@ export interface HaveIBeenHereState {
 export interface TheMovingBoxState {
   /** Which registration's pairs are drawn: all of them, all but the longest, or the long ones with less weight. */
   method: 'plain' | 'trimmed' | 'huber';
-  /** The share of both sweeps' points that is on the moved box. 0 to 60 %. */
+  /** The share of points on the moved box, in both sweeps. 0 to 60 %. */
   share: number;
   /** How far the box was moved between the sweeps, away from the sensor along x. 0 to 0.8 m. */
   moved: number;
@@ -275,13 +275,13 @@ export interface TheMovingBoxState {
   dropped: number;
   /** Pairs longer than this pull with the same force, however long they are. 0.01 to 0.3 m. */
   huber: number;
-  /** A point further than this from the target is unmatched: a gate is a kernel, too. 0.1 to 1.6 m. */
+  /** A point further than this from the target is unmatched. A gate is a kernel, too. 0.1 to 1.6 m. */
   tau: number;
   /** Distance between paired points, or distance along the wall's normal. */
   variant: 'point-to-point' | 'point-to-plane';
   /** Seed of the range noise of the sweeps above; the curves have their own hundred seeds. 0 to 4294967295. */
   seed: number;
-  /** The iteration shown, for all three; past its last, a registration has converged. 0 to 30. */
+  /** The iteration shown, for all three; a registration with fewer iterations has converged. 0 to 30. */
   iteration: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -301,7 +301,7 @@ export interface ComeBackTomorrowState {
   heading: number;
   /** The world. Only the Apartment has the wardrobe. */
   world: 'apartment' | 'ring' | 'twins';
-  /** Another seed is another lap with the same robot; the default is the chapter's. 0 to 4294967295. */
+  /** A different seed gives a different lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
   /** The moment shown, counted in boxes of a search and in scans. 0 to 4000. */
   moment: number;
@@ -317,13 +317,13 @@ export interface YourOwnRobotState {
   colour: 'time' | 'fit' | 'sigma' | 'error';
   /** Which loops the map shows: none, the accepted ones, or the rejected ones as well. */
   links: 'none' | 'closed' | 'all';
-  /** The loop whose evidence is shown; 0 fits the graph least. 0 to 999999. */
+  /** The loop whose evidence is shown; 0 fits the graph worst. 0 to 999999. */
   loop: number;
   /** One end of a loop you add; the other is the keyframe shown. 0 to 999999. */
   marked: number;
   /** Keyframes with a smaller share of fitting points are ringed on the map, and “Next doubt” stops there. 0 to 1. */
   poor: number;
-  /** The map for Nav2, the trajectory as TUM, the graph as g2o, a report with pictures, the session, to continue later, or the poses of the other log’s robot. */
+  /** The map for Nav2, the trajectory as TUM, the graph as g2o, a report with pictures, the session (to continue later), or the poses of the other log’s robot. */
   file: 'map-pgm' | 'map-yaml' | 'map-png' | 'trajectory' | 'graph' | 'report' | 'session' | 'where';
   /** Where the other log begins on this map: anywhere, or within 1.5 m and 34° of the keyframe shown. */
   start: 'anywhere' | 'here';
@@ -331,7 +331,7 @@ export interface YourOwnRobotState {
   scan: number;
   /** Whether a dropped log is mapped, or its robot is localized on the current map. */
   drop: 'map' | 'where';
-  /** What “Take another” changes if a recording has several: the topic of the scans or of the odometry, its frame, or the frame of the body. */
+  /** What “Take another” changes if a recording has several: the scan topic, the odometry topic, the odometry frame, or the body frame. */
   option: 'scan-topic' | 'odom-topic' | 'odom-frame' | 'body-frame';
   /** The keyframe whose scan is drawn over the map. 0 to 999999. */
   keyframe: number;
@@ -389,7 +389,7 @@ export interface OneGraphSolvedInFourWaysState {
   seed: number;
   /** Largest distance of a pose from its optimum, or the difference of χ² from its minimum. */
   curve: 'distance' | 'chi2';
-  /** How many steps each solver has taken; past its last, it has converged. 0 to 40. */
+  /** How many steps each solver has taken; a solver that needs fewer has converged. 0 to 40. */
   steps: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';

@@ -12,7 +12,7 @@
 //!
 //! # Simplified
 //!
-//! Both sweeps are of one room without furniture that moves, and each is taken at one instant. Range noise is normal and
+//! Both sweeps are of one room without moving furniture, and each is taken at one instant. Range noise is normal and
 //! independent from beam to beam; no beam misses.
 
 mod basins;

@@ -47,7 +47,7 @@ pub(super) static EDGES: [Param<f64>; 2] = [
 const fn edge(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [0.0, 180.0], 1.0)
         .unit("°")
-        .help("Where you mark the edge, on either side of the truth; 0 is no mark.")
+        .help("Your mark for the edge, on either side of the truth; 0 means no mark.")
 }
 
 const fn offset(id: &'static str, label: &'static str, default: f64) -> Param<f64> {
@@ -77,7 +77,7 @@ params! {
             (BasinPlace::Fence, "fence", "picket fence"),
         ],
     )
-    .help("What the two sweeps see: room A, almost a square, or a row of equal posts 0.5 m apart.");
+    .help("What the two sweeps see: room A, which is almost square, or a row of equal posts 0.5 m apart.");
 
     use VARIANT;
 
@@ -127,12 +127,12 @@ params! {
         "edge",
         "the basin's edge",
         &[
-            (Phase::Off, "off", "is not asked for"),
-            (Phase::Marking, "mark", "is yours to mark"),
-            (Phase::Swept, "swept", "is swept"),
+            (Phase::Off, "off", "off"),
+            (Phase::Marking, "mark", "mark it yourself"),
+            (Phase::Swept, "swept", "swept"),
         ],
     )
-    .help("Asks how far a guess at the right position may be turned and still converge to the truth. The maps stay covered until you have marked it.");
+    .help("Asks how far a guess at the right position can be turned and still converge to the truth. The maps stay covered until you have marked it.");
 
     use EDGES[0];
     use EDGES[1];
@@ -142,7 +142,7 @@ params! {
 
     pub(super) static ITERATION: Param<f64> =
         Param::timeline("iteration", "iteration", ITERATION_LIMITS[1] as f64).help(
-            "Which iteration is shown; 0 is the first guess, and past the last is the end.",
+            "The iteration shown; 0 is the first guess, and values past the last mean the end.",
         );
 
     use SPEED;
@@ -160,7 +160,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "The room is almost square, so the quarter turn is a minimum as well, with an rmse of 0.13 m against 0.03 m at the truth. At the half turn, point-to-plane fits better than at the truth.",
         "Between the right basin and the quarter turn, point-to-point settles on a third answer.",
-        "A row of equal posts has a minimum at every spacing, seen as bands on the map. No residual tells them apart.",
+        "A row of equal posts has a minimum at every spacing, which shows as bands on the map. No residual tells them apart.",
         "Point-to-plane needs fewer iterations. With no offset, its right basin is also wider.",
         "The verdict uses the truth. A robot has only the rmse and the pairs, and a wrong pose can have the smaller rmse.",
         "A run that stops at its iteration limit has not reached a minimum. With 200 iterations the right basin is a little wider.",
@@ -183,21 +183,21 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "quarter-turn",
             label: "Start 60° off",
-            help: "The same room. It runs out of iterations on the way to the quarter turn.",
+            help: "The same room. ICP runs out of iterations on the way to the quarter turn.",
             set: &[HEADING.to(60.0), DX.to(0.0), DY.to(0.0), ITERATION.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "between",
             label: "Start 45° off",
-            help: "Between the two basins: neither the truth nor the quarter turn.",
+            help: "From between the two basins, ICP finds neither the truth nor the quarter turn.",
             set: &[HEADING.to(45.0), DX.to(0.0), DY.to(0.0), ITERATION.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "between-plane",
             label: "45°, point-to-plane",
-            help: "The same start with the other residual. Now it finds the truth.",
+            help: "The same start with the other residual. Now ICP finds the truth.",
             set: &[
                 HEADING.to(45.0),
                 DX.to(0.0),
@@ -216,8 +216,8 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         },
         Preset {
             id: "fence",
-            label: "Stand before a picket fence",
-            help: "Equal posts fit again after each spacing. It settles one post off and fits as well as at the truth. Each post has its band on the map.",
+            label: "Face a picket fence",
+            help: "Equal posts fit again after each spacing. The sweep settles one post off and fits as well as at the truth. Each post has its own band on the map.",
             set: &[
                 SCENE.to("fence"),
                 HEADING.to(0.0),
@@ -230,7 +230,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "mark-edge",
             label: "Where is the edge?",
-            help: "The maps are covered. Mark on each how far a guess may be turned and still converge to the truth, then sweep the edge.",
+            help: "The maps are covered. Mark on each how far a guess can be turned and still converge to the truth, then sweep the edge.",
             set: &[
                 HEADING.to(0.0),
                 DX.to(0.0),

@@ -122,7 +122,7 @@ const GRAPH_BUTTONS: &[ButtonSpec] = &[
     ButtonSpec::new(
         "tie",
         "Tie",
-        "Starts your own loop at the selected keyframe; select another one and press it again.",
+        "Starts your own loop at the selected keyframe; select another one and press Tie again.",
     ),
     ButtonSpec::new("undo", "Undo", "Undoes the last change of your own loop."),
 ];
@@ -183,8 +183,8 @@ const FLAT_BUTTONS: &[ButtonSpec] = &[
     ),
     ButtonSpec::new(
         "turn-here",
-        "Seen again from here",
-        "From the selected way point on, the robot revisits known places. The map from there on is compared with the map before.",
+        "Revisit starts here",
+        "From the selected way point on, the robot revisits known places. The map from there on is compared with the map up to there.",
     ),
     ButtonSpec::new(
         "take-back",
@@ -299,7 +299,7 @@ params! {
 
     pub(super) static GATE: Param<f64> = Param::slider("gate", "gate quantile", [0.90, 0.999], 0.001)
         .default(CHAPTER_QUANTILE)
-        .help("Quantile of χ² with 3 degrees of freedom; 0.95 is χ² up to 7.815. This share of true loops passes if the robot stands still, less after a drive.");
+        .help("Quantile of χ² with 3 degrees of freedom; 0.95 means χ² up to 7.815. This share of true loops passes if the robot stands still, a smaller one after a drive.");
 
     pub(super) static GATE_MODEL: OneOf<GateModel> = one_of!(
         GateModel,
@@ -326,7 +326,7 @@ params! {
         "information",
         InformationFrame::NAMED,
     )
-    .help("The frame of an edge's information. For the chapter's figures, it is turned by a heading in the world; the exact frame is that of the edge's target, the newer end.");
+    .help("The frame of an edge's information. For the chapter's figures, it is turned by a heading in the world; the exact frame is the frame of the edge's target, its newer end.");
 
     pub(super) static NORMALS: Param<f64> = Param::slider("normals", "radius of the normals", [0.0, 8.0], 0.1)
         .unit("cells")
@@ -390,7 +390,7 @@ params! {
 
     pub(super) static WIPE: Param<f64> = Param::slider("wipe", "before and after", [0.0, 1.0], 0.01)
         .default(0.45)
-        .help("At a closed loop, the map before it is left of the line, and the map after it is right. The line's position is a share of the map's width.");
+        .help("At a closed loop, the map before it is shown left of the line, and the map after it right of the line. The line's position is a share of the map's width.");
 
     pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", MAX_TICKS)
         .default(FIRST_LOOP_TICK)
@@ -409,7 +409,7 @@ params! {
         ],
     )
     .default("loops")
-    .help("The layers of the map. Wheels alone: the robot by its odometry, and in truth. The map: the walls that the sweeps saw. Then the graph with its loops, the truth, and everything, with the front end alone.");
+    .help("The layers of the map. Wheels alone: where odometry and the truth put the robot. The map: the walls that the sweeps saw. Then the graph with its loops, the truth, and everything, with the front end alone.");
 
     pub(super) static FUTURE: Param<bool> = Param::switch("future", "show what is to come")
         .help("Plots the whole lap, including what comes after the moment shown.");
@@ -432,7 +432,7 @@ const BUTTONS: &[&[ButtonSpec]] = &[
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.2",
     name: "The full lap",
-    title: "How far is a lap’s map off at its end, and what do loops correct?",
+    title: "How far off is a lap’s map at the end, and what do loops correct?",
     claim: "A loop does not correct every pose.",
     gesture: "Press Play, or drag the timeline.",
     awaits: Awaits::Nothing,
@@ -523,7 +523,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "tamed-loop",
             label: "The same lie, tamed",
-            help: "Dynamic covariance scaling gives a loop that is far out next to no weight. No pose moves.",
+            help: "Dynamic covariance scaling gives almost no weight to a loop that is far out. No pose moves.",
             set: &[
                 OWN.to("same-place"),
                 OWN_FROM.to(40),
@@ -573,7 +573,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "corridor",
             label: "A bare corridor",
-            help: "Lengthwise, the laser measures nothing, and point-to-point drags each sweep back. The map agrees with itself, and the corridor is a fraction of its true length.",
+            help: "Along the corridor, the laser measures nothing, and point-to-point drags each sweep back. The map agrees with itself, but the corridor is a fraction of its true length.",
             set: &[
                 WORLD.to("corridor"),
                 INFORMATION.to("exact"),

@@ -9,7 +9,7 @@
 //! # Computed
 //!
 //! At every shift of the grid the truncated cost of ICP (the mean over the points of min(d², τ²)) and the score of NDT, by
-//! the core's own lookups; no value is interpolated. The balls are descended by the core as well.
+//! the core's own lookups; no value is interpolated. The core computes the descent of the balls as well.
 //!
 //! # Numbers
 //!
@@ -17,7 +17,7 @@
 //!
 //! # Simplified
 //!
-//! The heading is fixed at the truth, so a cost of three variables is shown as one of two. ICP's cost keeps no pairs from
+//! The heading is fixed at the truth, so a cost of three variables is shown as a cost of two. ICP's cost keeps no pairs from
 //! one step to the next. Except in the long corridor the cloud is shifted over its own points, so map and sweep share
 //! their noise.
 

@@ -85,7 +85,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "wide-hill",
         label: "Widen the NDT cell to 0.8 m",
-        help: "The bells grow longer and fewer. NDT's ball comes home from where ICP's rolls further away.",
+        help: "The bells become longer and fewer. NDT's ball comes home from a start where ICP's rolls further away.",
         set: &[
             ("tau", 0.6),
             ("colours", 0.0),
@@ -110,7 +110,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "corridor",
         label: "Stand in the corridor",
-        help: "Both valleys run along the walls without end. The balls roll to the middle, and stay where they were along the wall.",
+        help: "Both valleys run along the walls and never end. The balls roll to the middle, but do not move along the wall.",
         set: &[
             ("scene", 1.0),
             ("tau", 0.6),
@@ -163,7 +163,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "one-row",
         label: "Take the corridor's rows one by one",
-        help: "Start with one row, and add more with the slider. The second distinct row makes the rank two, and no other ever makes it three.",
+        help: "Start with one row, and add more with the slider. The second distinct row makes the rank two, and no further row makes it three.",
         set: &[("scene", 1.0), ("rows", 1.0)],
         then: &[],
     },
@@ -217,7 +217,7 @@ params! {
             .unit("°")
             .help("How far the sweep is turned about the sensor before it is shifted.");
 
-    pub(super) static CELLS: Param<f64> = Param::slider("cells", "cells a side", CELLS_OF_A_SIDE, 8.0)
+    pub(super) static CELLS: Param<f64> = Param::slider("cells", "cells per side", CELLS_OF_A_SIDE, 8.0)
         .default(49.0)
         .help("The relief is sampled at this many shifts along each axis.");
 
@@ -282,7 +282,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "At each crease a point changes its match, or loses it, so the slope jumps and the height does not. Points about to change light up.",
         "NDT has no such creases, because each point feels the whole bell of its cell. But thin walls make thin bells, so the valley is narrow and the plain around it has dents of its own. Wider cells help.",
         "A wide τ lets ICP reach further than NDT. Neither measure wins everywhere.",
-        "In the corridor both valleys run along x without end. A hundred sweeps settle in a streak there, and in a round heap in the room. The ellipse is what the information promises.",
+        "In the corridor both valleys run along x and never end. A hundred sweeps settle in a streak there, and in a round heap in the room. The ellipse is what the information promises.",
     ],
     opening: Opening {
         panels: &["relief", "path"],

@@ -14,7 +14,7 @@
 //!
 //! # Simplified
 //!
-//! As for w16.2. All parts run one after the other within a tick; on a robot the back end usually has a thread of its own.
+//! As for w16.2. All parts run one after the other within a tick; on a robot the back end usually has its own thread.
 
 mod grid;
 mod history;

@@ -43,7 +43,7 @@ params! {
         ],
     )
     .default("register")
-    .help("The operation whose data at this tick are described. Press a mark on a lane to select it.");
+    .help("The operation that is described at this tick. Press a mark on a lane to select it.");
 
     pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", LAP_TICKS)
         .default(BEFORE_THE_LOOP)
@@ -65,9 +65,9 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "The front end runs at every tick. It predicts from odometry and corrects with one registration. The threshold τ follows how wrong the predictions were.",
         "The back end runs only at keyframes. Its big moment is a loop, when old poses move.",
         "The grid stores no poses. After an accepted loop it is discarded and redrawn from every keyframe's sweep.",
-        "A cell that is likely occupied has the colour of this text, and a free one that of the page. Tinted cells were never seen.",
-        "Each lane is one operation. The upper two run at every tick; the rest wait for a keyframe. Press a mark to go there and see its data.",
-        "Walls blur where two passes disagree. At the first loop they sharpen, and the cells more than 90 % likely to be occupied go from 110 to 156.",
+        "Cells that are likely occupied have the colour of this text, and free cells the colour of the page. Tinted cells were never seen.",
+        "Each lane is one operation. The top two run at every tick; the rest wait for a keyframe. Press a mark to go there and see its data.",
+        "Walls blur where two passes disagree. At the first loop they sharpen, and the number of cells more than 90% likely to be occupied rises from 110 to 156.",
     ],
     opening: Opening {
         panels: &["map", "lanes"],
@@ -93,7 +93,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         },
         Preset {
             id: "rebuilt",
-            label: "The grid drawn again",
+            label: "The grid redrawn",
             help: "One tick and one loop later the passes disagree by 0.08 m, and the walls are sharper.",
             set: &[TICK.to(92.0)],
             then: &[],

@@ -49,7 +49,7 @@ fn the_first_loop_brings_the_passes_together_and_sharpens_the_walls() {
     assert_promised("blurred", &apart(&before));
     assert_promised("rebuilt", &apart(&at));
     let sure = |room: &ControlRoom| fact(room, "sure_cells");
-    let sharpen = format!("go from {} to {}.", sure(&before), sure(&at));
+    let sharpen = format!("rises from {} to {}.", sure(&before), sure(&at));
     assert!(
         SPEC.notice.iter().any(|note| note.ends_with(&sharpen)),
         "{sharpen}"

@@ -103,9 +103,9 @@ fn stop_words(stop: &StopReason) -> &'static str {
     match stop {
         StopReason::SmallStep { .. } => "converged after",
         StopReason::IterationLimit { .. } => "stopped at the limit of",
-        StopReason::TooFewPairs { .. } => "stopped for too few pairs after",
-        StopReason::TooFewNormals { .. } => "stopped for too few normals after",
-        StopReason::TooFewInliers { .. } => "stopped for too few inliers after",
+        StopReason::TooFewPairs { .. } => "stopped with too few pairs after",
+        StopReason::TooFewNormals { .. } => "stopped with too few normals after",
+        StopReason::TooFewInliers { .. } => "stopped with too few inliers after",
         StopReason::Unobservable { .. } => "stopped with an unobservable direction after",
         StopReason::NotFinite => "stopped at a non-finite value after",
     }

@@ -274,14 +274,14 @@ pub fn summary(moment: &LapState) -> String {
     let (runs, tick) = (moment.runs, moment.tick);
     let truth = runs.truth(tick);
     let way = if runs.is_way_back(tick) {
-        "where it has been before"
+        "on its return leg"
     } else {
-        "on its way out"
+        "on its outbound leg"
     };
     let mut rest = String::new();
     if moment.has_moved() && moment.layers != Layers::Wheels {
         rest += &format!(
-            " A line at {:.0} % of the map's width: left of it is the map before the loop, right of it the map after.",
+            " A line at {:.0}% of the map's width separates the map before the loop, on the left, from the map after it.",
             100.0 * moment.wipe
         );
     }

@@ -38,13 +38,13 @@ pub fn all(terrains: &Terrains, rests: &Rests, settings: &TerraceSettings) -> Ve
         ),
         way(
             "icp-ball",
-            "Way of ICP's ball",
+            "Path of ICP's ball",
             "cost (m²)",
             &terrains.icp.ball,
         ),
         way(
             "ndt-ball",
-            "Way of NDT's ball",
+            "Path of NDT's ball",
             "−score",
             &terrains.ndt.ball,
         ),

@@ -74,7 +74,7 @@ fn rest(ball: &BallPath) -> String {
         End::Rests if ball.is_home() => format!("arrives after {steps} steps"),
         End::Rests => format!("stops {distance:.2} m from the truth after {steps} steps"),
         End::OutOfSteps => {
-            format!("still rolls {distance:.2} m from the truth after {steps} steps")
+            format!("is still rolling {distance:.2} m from the truth after {steps} steps")
         }
     }
 }
@@ -144,7 +144,7 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &TerraceSettings) -> 
         facts.extend([
             Fact::new("null_x", "unconstrained: shift along x", null.x, "m", 3),
             Fact::new("null_y", "unconstrained: shift along y", null.y, "m", 3),
-            Fact::new("null_turn", "no row holds: turn", null.z, "rad", 3),
+            Fact::new("null_turn", "unconstrained: heading", null.z, "rad", 3),
         ]);
     }
     if let Some(along_m) = constraints.along_m {

@@ -99,7 +99,7 @@ impl GridView {
             count("keyframes", "keyframes", self.source.keyframes),
             count("loops", "loops closed, grids redrawn", self.source.loops),
             count("occupied_cells", "occupied cells", grid.occupied_cells()),
-            count("sure_cells", "occupied, over 90 % sure", self.sure_cells()),
+            count("sure_cells", "occupied, over 90% sure", self.sure_cells()),
             count("free_cells", "free cells", grid.free_cells()),
         ]
     }

@@ -270,8 +270,8 @@ fn legend(moment: &LapState) -> Vec<LegendEntry> {
     }
     legend.extend([
         LegendEntry::marked_line("pose graph", Tone::Posterior, Mark::Square, Stroke::Solid),
-        LegendEntry::mark("map, way out", Tone::Outbound, Mark::Dot),
-        LegendEntry::mark("map, way back", Tone::Revisit, Mark::Cross),
+        LegendEntry::mark("map, outbound", Tone::Outbound, Mark::Dot),
+        LegendEntry::mark("map, return", Tone::Revisit, Mark::Cross),
     ]);
     if has_loops {
         legend.push(LoopStyle::ACCEPTED.entry("loop accepted"));

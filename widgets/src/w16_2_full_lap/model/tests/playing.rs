@@ -286,7 +286,7 @@ fn left_of_the_line_the_map_is_that_before_the_loop_and_right_of_it_that_after()
     model.drag(held, [low + 0.25 * (high - low) + 0.05, 2.0]);
     assert_eq!(model.values().number("wipe"), 0.25);
     assert!(
-        model.summary().contains("A line at 25 %"),
+        model.summary().contains("A line at 25%"),
         "{}",
         model.summary()
     );

@@ -86,7 +86,7 @@ pub fn summary(drawn: &Drawn) -> String {
         Some(_) => format!(" The floor plan is being edited: {counts}."),
     };
     if let Some(piece) = drawn.piece {
-        words += &format!(" Chosen: {}.", piece_words(drawn.sketch, piece));
+        words += &format!(" Selected: {}.", piece_words(drawn.sketch, piece));
     }
     if let Some(problem) = drawn.problem {
         words +=

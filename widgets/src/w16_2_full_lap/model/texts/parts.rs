@@ -240,7 +240,7 @@ pub fn own_statement(moment: &LapState, own: &OwnLoop) -> Statement {
             };
             format!(
                 "your loop {} {claim}, {how}, chi-squared {:.2} {side} {:.3}: history moved {:.2} m. \
-                 It is {:.2} m and {:.1}° off the truth. \
+                 It is {:.2} m and {:.1}° from the truth. \
                  χ² of the graph goes from {:.1} to {:.1}: {keeps:.1} stay in your loop, {:.1} are in the other edges. \
                  The rms error over the keyframes goes from {:.2} m to {:.2} m",
                 ends(&own.attempt),
