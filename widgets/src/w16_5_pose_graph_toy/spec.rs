@@ -117,7 +117,7 @@ params! {
     )
     .unit("m")
     .default(CHAPTER_GAP_M)
-    .help("How much further ahead of the first pose the loop puts the last one than odometry does.");
+    .help("How much further ahead the loop puts the last pose, seen from the first, than odometry does.");
 
     pub(super) static ODOMETRY: Param<f64> =
         Param::slider("odometry", "stiffness of odometry", [0.1, 10.0], 0.1)
@@ -127,7 +127,7 @@ params! {
 
     pub(super) static PINNED: Param<bool> = Param::switch("pinned", "pin the first pose")
         .on()
-        .help("Measurements are relative. Unless a pose is fixed, the whole graph may be anywhere.");
+        .help("Measurements are relative. Unless a pose is fixed, the whole graph can be anywhere.");
 
     use MOVED[0 1 2 3 4 5][0 1 2];
 
@@ -147,8 +147,8 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     gesture: "Drag a pose, and let it go.",
     awaits: Awaits::Nothing,
     notice: &[
-        "Each edge is a spring, at rest where its measurement is met. The dotted line shows how far it is from that, and the number what that costs.",
-        "Pull a pose and let go. Each beat is one Gauss–Newton step. Draw the green spring tight, and it grows thick and stiff.",
+        "Each edge is a spring, at rest when its measurement is met. The dotted line shows how far it is from rest, and the number shows the cost.",
+        "Pull a pose and let go. Each beat is one Gauss–Newton step. Pull the green spring tight, and it grows thick and stiff.",
         "On a line the problem is linear, and one step from anywhere is enough. Headings make it nonlinear, and it takes a few.",
         "The disagreement does not vanish. The springs share it, and a stiff one takes less.",
         "Without a pin the whole graph floats, because χ² depends only on differences.",
@@ -170,15 +170,15 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         },
         Preset {
             id: "stiff",
-            label: "A loop that is sure",
-            help: "Ten times as stiff, the loop keeps almost its whole length, and odometry gives way.",
+            label: "A confident loop",
+            help: "A loop ten times as stiff keeps almost its whole length, and odometry gives way.",
             set: &[GRAPH.to("line"), STIFFNESS.to(10.0)],
             then: &["step"],
         },
         Preset {
             id: "unpinned",
             label: "Unpin the gauge",
-            help: "The last pose starts 1 m too far, and none is pinned. χ² still falls to 0.12, with every pose somewhere else.",
+            help: "The last pose starts 1 m too far out, and no pose is pinned. χ² still falls to 0.12, but every pose ends somewhere else.",
             set: &[GRAPH.to("line"), PINNED.to(false), MOVED[2][0].to(1.0)],
             then: &["step"],
         },
@@ -192,7 +192,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "tangled",
             label: "A tangled ring",
-            help: "One pose is thrown far off and turned. Headings make the problem nonlinear, so it takes a few steps.",
+            help: "One pose starts far out and turned. Headings make the problem nonlinear, so it takes a few steps.",
             set: &[
                 GRAPH.to("ring"),
                 MOVED[3][0].to(1.5),

@@ -3,7 +3,7 @@
 //! # Computed
 //!
 //! Branch and bound over every heading and offset of the window (`ch16_slam2d::search`) on the two sweeps of w16.1, and ICP
-//! from the same start beside it. Each box shows its upper bound of the score.
+//! from the same start for comparison. Each box shows its upper bound of the score.
 //!
 //! # Numbers
 //!
@@ -11,7 +11,7 @@
 //!
 //! # Simplified
 //!
-//! As for w16.1. The search proves the best pose of its lattice, not that the pose is right.
+//! As for w16.1. The search proves which pose of its lattice is best, not that this pose is right.
 
 mod interaction;
 mod picture;

@@ -59,7 +59,7 @@ params! {
     pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
         .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
 
-    pub(super) static PROGRESS: Param<f64> = Param::timeline("progress", "boxes taken up", MAX_STEPS)
+    pub(super) static PROGRESS: Param<f64> = Param::timeline("progress", "boxes expanded", MAX_STEPS)
         .help("How many boxes the search has expanded; ICP's iterations follow the last.");
 
     use SPEED;
@@ -77,7 +77,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "Each bar is a box of poses, and its height is a score that no pose in the box can exceed. Point at one to see their true scores, all below. As boxes split, the bars fall towards them.",
         "ICP races from the same start. It finishes first, in whatever minimum it fell into.",
-        "A box whose bound is below the best pose so far is dropped unseen, and turns the colour of this text. The bound is never too low, so the search is exact.",
+        "A box whose bound is below the best score so far is dropped unseen, and turns the colour of this text. The bound is never too low, so the search is exact.",
         "The half turn is the runner-up. The quarter turn, which traps ICP, is far behind, because the search counts the points that fit nowhere.",
         "The search is only as fine as its cells. ICP does the rest, from a start it can use.",
     ],
@@ -112,7 +112,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         },
         Preset {
             id: "without-home",
-            label: "A window without home",
+            label: "A window without the truth",
             help: "Only ±60° around a start that is 75° off. The truth is outside the window, and the search reports that no place fits.",
             set: &[TURN.to(60.0), PROGRESS.to(0.0)],
             then: &["play"],

@@ -44,7 +44,7 @@ params! {
     pub(super) static DETECTOR: OneOf<usize> = one_of!(
         usize,
         "detector",
-        "alike by",
+        "compared by",
         &[
             (0, "nearby", "nearness"),
             (1, "histogram", "ranges"),
@@ -52,7 +52,7 @@ params! {
         ],
     )
     .default("context")
-    .help("From the estimated poses, from range histograms, or from rings and sectors.");
+    .help("Compares estimated poses, range histograms, or rings and sectors.");
 
     pub(super) static WORLD: OneOf<BuiltInWorld> = one_of!(
         BuiltInWorld,
@@ -86,7 +86,7 @@ params! {
 
     pub(super) static NEWEST: Param<f64> = Param::timeline("new", "keyframe", MAX_KEYFRAMES)
         .default(MAX_KEYFRAMES)
-        .help("The newest keyframe so far; past the last, it is the whole lap.");
+        .help("The newest keyframe so far; values past the last mean the whole lap.");
 
     use SPEED;
     use MORE;

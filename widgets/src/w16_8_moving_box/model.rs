@@ -2,7 +2,7 @@
 //!
 //! # Computed
 //!
-//! ICP on two sweeps of room A between which a box moved, with all pairs, with rejected ones and with Huber's weights; and
+//! ICP on two sweeps of room A between which a box moved, with all pairs, with the longest rejected, and with Huber's weights; and
 //! the bias of each over the share of points on the box.
 //!
 //! # Numbers
@@ -11,7 +11,7 @@
 //!
 //! # Simplified
 //!
-//! The box takes a chosen share of the points, by denser beams on it; a real box takes its solid angle. It jumps between
+//! Denser beams on the box give it a chosen share of the points; a real box takes its solid angle. It jumps between
 //! the sweeps and rests during each.
 
 mod curves;

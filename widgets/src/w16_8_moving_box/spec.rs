@@ -34,7 +34,7 @@ params! {
         Param::slider("share", "points on the box", [0.0, MAX_SHARE], 1.0)
             .unit("%")
             .default(20.0)
-            .help("The share of both sweeps' points that is on the moved box.");
+            .help("The share of points on the moved box, in both sweeps.");
 
     pub(super) static MOVED: Param<f64> = Param::slider("moved", "box moved along x", MOVED_M[0], 0.05)
         .unit("m")
@@ -60,7 +60,7 @@ params! {
     pub(super) static TAU: Param<f64> = Param::slider("tau", "pairing distance τ", [0.1, 1.6], 0.05)
         .unit("m")
         .default(0.7)
-        .help("A point further than this from the target is unmatched: a gate is a kernel, too.");
+        .help("A point further than this from the target is unmatched. A gate is a kernel, too.");
 
     use VARIANT;
 
@@ -69,7 +69,7 @@ params! {
 
     pub(super) static ITERATION: Param<f64> = Param::timeline("iteration", "iteration", MAX_ITERATIONS)
         .help(
-            "The iteration shown, for all three; past its last, a registration has converged.",
+            "The iteration shown, for all three; a registration with fewer iterations has converged.",
         );
 
     use SPEED;
@@ -88,7 +88,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "Drag the box. Its pairs all pull the same way, and the sweep moves until the many short pulls of the walls balance them.",
         "A few centimetres look like noise, but they are a bias and do not average out.",
         "Trimming drops the longest pairs, which are mostly on the box. It gives way last, and slowly.",
-        "Huber's kernel never drops a pair. It resists a small box; with half of the points on the box it ends further out than plain.",
+        "Huber's kernel never drops a pair. It resists a small box; with half of the points on the box it ends further out than plain ICP.",
         "A short τ does the same work as trimming, until the start is further out than τ.",
     ],
     opening: Opening {
@@ -102,7 +102,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "fifth",
             label: "A fifth of the points",
-            help: "The exercise. Plain follows the box; trimmed and Huber barely move.",
+            help: "The exercise. Plain ICP follows the box; trimmed and Huber barely move.",
             set: &[],
             then: &["play"],
         },
@@ -123,7 +123,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "gate",
             label: "A short τ",
-            help: "With a τ of 0.2 m the box has few matches, and plain is as good as the others.",
+            help: "With a τ of 0.2 m the box has few matches, and plain ICP is as good as the others.",
             set: &[TAU.to(0.2)],
             then: &["play"],
         },

@@ -11,7 +11,7 @@
 //!
 //! # Simplified
 //!
-//! The map is that of a lap with its own errors. Between the days at most one wardrobe has moved.
+//! The map comes from a lap and has that lap's errors. Between the days at most one wardrobe has moved.
 
 mod interaction;
 mod known;

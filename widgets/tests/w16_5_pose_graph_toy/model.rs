@@ -37,7 +37,7 @@ fn one_step_takes_the_chapters_three_poses_from_0_36_to_0_12() {
     assert_eq!(toy.timeline().unwrap().last, 1.0);
     let sentence = toy.outcome().sentence;
     assert!(
-        sentence.ends_with("every spring has the same part, 0.040"),
+        sentence.ends_with("every spring has the same share, 0.040"),
         "{sentence}"
     );
 }

@@ -84,7 +84,7 @@ fn graph(toy: &PoseGraphToy) -> Panel {
     layers.push(Layer::Handle {
         at: knob(toy).into(),
         tone: Tone::Measurement,
-        label: "draw the spring tight: stiffer; let it hang: softer",
+        label: "pull the spring tight: stiffer; let it hang: softer",
     });
     layers.extend(poses.iter().enumerate().map(|(k, pose)| {
         let pinned = k == 0 && toy.values.get(&PINNED);

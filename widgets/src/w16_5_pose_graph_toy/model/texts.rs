@@ -104,11 +104,11 @@ fn worst(toy: &PoseGraphToy) -> String {
         "most of it"
     } else {
         match shown.edge_chi2.iter().filter(alike).count() {
-            1 => "the largest part",
+            1 => "the largest share",
             count if count == shown.edge_chi2.len() => {
-                return format!("; every spring has the same part, {chi2:.3}");
+                return format!("; every spring has the same share, {chi2:.3}");
             }
-            count => return format!("; {count} springs have the largest part, {chi2:.3} each"),
+            count => return format!("; {count} springs have the largest share, {chi2:.3} each"),
         }
     };
     format!(

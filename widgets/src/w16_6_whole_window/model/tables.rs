@@ -43,7 +43,7 @@ fn turns(window: &WholeWindow) -> Table {
         });
     Table::shown(
         "turns",
-        "The turns of the room",
+        "The room's rotations",
         &["best pose at", "score", "behind", "off (°)"],
         rows.collect(),
     )

@@ -56,7 +56,7 @@ fn detectors(been: &PlaceRecognition) -> Table {
         "detectors",
         "The detectors at this threshold",
         &[
-            "alike by",
+            "compared by",
             "called",
             "right",
             "precision",

@@ -200,7 +200,7 @@ fn bias(moving: &MovingBox) -> Panel {
         .flatten()
         .map(|at| at[1])
         .fold(MIN_TOP_MM, f64::max);
-    let y = axis_from_zero("bias of the translation (mm)", highest);
+    let y = axis_from_zero("translation bias (mm)", highest);
     let mut layers = vec![Layer::line(
         vec![[share, 0.0], [share, y.max]],
         Stroke::Solid,
@@ -218,7 +218,7 @@ fn bias(moving: &MovingBox) -> Panel {
     }
     let progress = if curves.progress() < 1.0 {
         format!(
-            ", {:.0} % of {SEEDS} seeds",
+            ", {:.0}% of {SEEDS} seeds",
             (100.0 * curves.progress()).floor()
         )
     } else {

@@ -57,7 +57,7 @@ pub fn outcome(moving: &MovingBox) -> Outcome {
         standing: standing(moving),
         verdict: verdict(moving).to_owned(),
         sentence: format!(
-            "With {share:.0} % of the points on the box they end out by {}. Plain has an rmse of {rmse:.3} m.",
+            "With {share:.0}% of the points on the box, the errors are {}. Plain ICP has an rmse of {rmse:.3} m.",
             parts.join(", ")
         ),
         facts: facts(moving),

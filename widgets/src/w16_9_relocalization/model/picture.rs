@@ -231,7 +231,7 @@ fn scores(back: &Relocalization) -> Panel {
         legend: vec![
             LegendEntry::mark("best place of a search", Tone::Posterior, Mark::Square),
             LegendEntry::mark("next place", Tone::Series(1), Mark::Triangle),
-            LegendEntry::line("follows its place", Tone::Measurement, Stroke::Solid),
+            LegendEntry::line("tracks its pose", Tone::Measurement, Stroke::Solid),
         ],
         color_bar: None,
     }

@@ -215,7 +215,7 @@ pub fn now(back: &Relocalization) -> String {
         (Some(report), _) => {
             let state = match report.verdict {
                 Verdict::Found => "found",
-                Verdict::Tracking => "follows its place",
+                Verdict::Tracking => "tracks its pose",
                 Verdict::Doubtful => "in doubt",
                 Verdict::Lost => "lost",
             };

@@ -57,7 +57,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
         y: Axis::new("score", 0.0, 1.04),
         layers,
         legend: vec![
-            LegendEntry::line("box that waits", Tone::Series(0), Stroke::Solid),
+            LegendEntry::line("waiting box", Tone::Series(0), Stroke::Solid),
             LegendEntry::line(
                 "box inspected, over its true scores",
                 Tone::Series(3),

@@ -71,7 +71,7 @@ pub fn panel(been: &PlaceRecognition) -> Panel {
         ..empty(
             panel::SCORES,
             if been.asks {
-                "Each dot is a pair of views: which are one place?"
+                "Each dot is a pair of views: which show one place?"
             } else {
                 "Left of the line: called the same place"
             },
