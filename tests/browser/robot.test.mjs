@@ -233,7 +233,7 @@ describe('a reader’s log', () => {
       });
       await tab.waitForFunction(() => {
         const { textContent } = document.querySelector('slam-widget').shadowRoot.querySelector('[aria-live]');
-        return /^long\.log: \d+ % done/.test(textContent);
+        return /^long\.log: \d+% done/.test(textContent);
       });
       await tab.evaluate(() => frameClock.hold(false));
       await press(tab, 'cancel');
@@ -405,7 +405,7 @@ describe('a reader’s log', () => {
       await says(tab, /early\.log needs a map/);
       // The preset maps the sample and localizes the other day's robot on it.
       await press(tab, 'where');
-      await says(tab, /^(mapped|[^:]*to look into): .*The robot of ring-another-day\.log is found at its scan \d+: of \d+ scans/);
+      await says(tab, /^(mapped|[^:]*to look into): .*The robot of ring-another-day\.log is found at scan \d+: of \d+ scans/);
       const { facts } = await outcome(tab);
       const scans = OTHER_DAY.trim().split('\n').length;
       assert.equal(facts.where_localized + facts.where_doubtful + facts.where_lost, scans);
@@ -432,7 +432,7 @@ describe('a reader’s log', () => {
       await says(tab, /was removed from the graph/);
       await widget(tab, (it) => it.crashForTest('worker'));
       await says(tab, /was restarted/);
-      await says(tab, /^(mapped|[^:]*to look into): .*is found at its scan \d+: of/);
+      await says(tab, /^(mapped|[^:]*to look into): .*is found at scan \d+: of/);
 
       // A file that is not a log changes no result.
       await giveBytes(tab, 'empty.log', Buffer.alloc(0), 'where');

@@ -143,7 +143,7 @@ fn curve(map: &NdtMap, sweep: &PointCloud) -> Panel {
         weight: Weight::Half,
         aspect: Aspect::Free,
         x: Axis::new("shift along x (m)", -FARTHEST_M, FARTHEST_M),
-        y: Axis::new("score a beam", 0.0, 1.4),
+        y: Axis::new("score per beam", 0.0, 1.4),
         layers: vec![Layer::line(
             points.collect(),
             Stroke::Solid,

@@ -27,7 +27,7 @@ const ENLARGED: f64 = 20.0;
 
 pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "ellipse",
-    title: "What a sweep knows of its pose",
+    title: "What a sweep knows about its pose",
     slider: Slider {
         label: "metres driven",
         unit: " m",
@@ -135,7 +135,11 @@ fn at(driven_m: f64) -> Shown {
         legend: vec![
             LegendEntry::mark("what the sweep sees", Tone::Measurement, Mark::Cross),
             LegendEntry::mark("robot", Tone::Posterior, Mark::Square),
-            LegendEntry::line("what it knows of its pose", Tone::Posterior, Stroke::Solid),
+            LegendEntry::line(
+                "what it knows about its pose",
+                Tone::Posterior,
+                Stroke::Solid,
+            ),
         ],
         color_bar: None,
     };

@@ -103,7 +103,7 @@ fn at(place: f64) -> Shown {
     let filled = filled(&order);
     Shown {
         sentence: format!(
-            "Eliminated as number {place}, it makes {} blocks fill in. The solver’s own order, approximate minimum degree, makes {}.",
+            "Eliminated as number {place}, it fills in {} blocks. The solver’s own order, approximate minimum degree, fills in {}.",
             filled.len(),
             self::filled(&solvers_order()).len()
         ),

@@ -89,7 +89,7 @@ fn at(drive_m: f64) -> Shown {
             panels: vec![wall(drive_m, &pairs), sum(&pairs)],
         },
         sentence: format!(
-            "Driven {drive_m:.2} m and predicted exactly, the sweep is moved by {step_cm:.1} cm along the wall: {back} of {} \
+            "After {drive_m:.2} m and an exact prediction, the sweep is moved {step_cm:.1} cm along the wall: {back} of {} \
              arrows point backwards. Point-to-plane moves it by zero.",
             pairs.len()
         ),

@@ -123,7 +123,7 @@ fn at(percent: f64) -> Shown {
             panels: vec![picture(lap, &left)],
         },
         sentence: format!(
-            "With {percent:.0} % of the correction, the next sweeps disagree with the outbound leg by {:.3} m. The next loop contradicts the graph with a χ² of {:.2}, and {verdict}.",
+            "With {percent:.0}% of the correction, the next sweeps disagree with the outbound leg by {:.3} m. The next loop contradicts the graph with a χ² of {:.2}, and {verdict}.",
             lap.disagreement_m(&left),
             gate.chi2
         ),

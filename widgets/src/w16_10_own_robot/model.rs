@@ -7,7 +7,7 @@
 //!
 //! # Numbers
 //!
-//! Those of `slam2d run` with the same file: docs/robots.md.
+//! As for `slam2d run` with the same file: docs/robots.md.
 //!
 //! # Simplified
 //!

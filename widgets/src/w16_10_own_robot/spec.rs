@@ -72,7 +72,7 @@ params! {
     .help("Which loops the map shows: none, the accepted ones, or the rejected ones as well.");
 
     pub(super) static LOOP: Param<usize> = Param::typed("loop", "loop of the list", MAX_KEYFRAMES)
-        .help("The loop whose evidence is shown; 0 fits the graph least.");
+        .help("The loop whose evidence is shown; 0 fits the graph worst.");
 
     pub(super) static MARKED: Param<usize> = Param::typed("marked", "marked keyframe", MAX_KEYFRAMES)
         .help("One end of a loop you add; the other is the keyframe shown.");
@@ -97,7 +97,7 @@ params! {
             ("where.tum", "where", "where.tum"),
         ],
     )
-    .help("The map for Nav2, the trajectory as TUM, the graph as g2o, a report with pictures, the session, to continue later, or the poses of the other log’s robot.");
+    .help("The map for Nav2, the trajectory as TUM, the graph as g2o, a report with pictures, the session (to continue later), or the poses of the other log’s robot.");
 
     // Whether the other log starts at the keyframe shown.
     pub(super) static STARTS_HERE: OneOf<bool> = one_of!(
@@ -133,7 +133,7 @@ params! {
         "of a recording",
         RECORDING_OPTIONS,
     )
-    .help("What “Take another” changes if a recording has several: the topic of the scans or of the odometry, its frame, or the frame of the body.");
+    .help("What “Take another” changes if a recording has several: the scan topic, the odometry topic, the odometry frame, or the body frame.");
 
     pub(super) static KEYFRAME: Param<usize> = Param::timeline("keyframe", "keyframe", MAX_KEYFRAMES)
         .default(MAX_KEYFRAMES)
@@ -151,7 +151,7 @@ pub const KEYS: &[(&str, &str)] = &[
     ("ArrowDown", "south"),
 ];
 
-/// The parts shown before a log is opened: nothing else has anything to do.
+/// The parts shown before a log is opened; no other part has anything to do.
 pub const WITHOUT_LOG: Opening = Opening {
     panels: &["map"],
     params: &[],
@@ -170,7 +170,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "The log stays in your browser. It is read there, and none of it is sent anywhere.",
         "Loops are sorted by how strongly the rest of the graph contradicts them. Reject one, and the graph is solved again at once.",
         "Look where a scan fits badly: glass, people, or a wrong pose.",
-        "A graph with small standard deviations may be wrong. Only an external reference shows the error.",
+        "A graph with small standard deviations may still be wrong. Only an external reference shows the error.",
     ],
     opening: Opening {
         panels: &["map"],
@@ -254,7 +254,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         ButtonSpec::new(
             "locate-sample",
             "Another day",
-            "Localizes the sample’s robot on this map on another day, switched on halfway round.",
+            "Localizes the sample’s robot on this map on another day. It is switched on halfway round.",
         ),
         ButtonSpec::new(
             "change",

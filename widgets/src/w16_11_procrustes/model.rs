@@ -11,7 +11,7 @@
 //!
 //! # Simplified
 //!
-//! At most five pairs, given: which point belongs to which is not estimated.
+//! At most five pairs, all given; correspondences are not estimated.
 
 mod interaction;
 mod picture;

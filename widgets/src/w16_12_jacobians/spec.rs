@@ -31,7 +31,7 @@ pub enum Curve {
 params! {
     pub(super) static BIAS: Param<f64> = Param::slider(
         "bias",
-        "missing turn per edge",
+        "missing rotation per edge",
         [LEAST_BIAS_DEG, MAX_BIAS_DEG],
         BIAS_STEP_DEG,
     )
@@ -44,7 +44,7 @@ params! {
         "wrong",
         "the wrong Jacobian is",
         &[
-            (WrongJacobian::TwiceTooLong, "twice", "twice too long"),
+            (WrongJacobian::TwiceTooLong, "twice", "twice as long"),
             (WrongJacobian::LeftForRight, "left", "left for right"),
         ],
     )
@@ -71,7 +71,7 @@ params! {
     .help("Largest distance of a pose from its optimum, or the difference of χ² from its minimum.");
 
     pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MAX_STEPS as f64)
-        .help("How many steps each solver has taken; past its last, it has converged.");
+        .help("How many steps each solver has taken; a solver that needs fewer has converged.");
 
     use SPEED;
     use MORE;
@@ -87,9 +87,9 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     awaits: Awaits::Rest,
     notice: &[
         "With the exact Jacobian each step cuts the distance by about two powers of ten, until only rounding is left.",
-        "With a Jacobian twice too long, each step goes half the way. It still ends at the optimum.",
+        "With a Jacobian twice as long as it should be, each step goes only halfway. It still ends at the optimum.",
         "With the approximate Jacobian, the error grows with the square of the contradiction. It ends a centimetre out, and the wrong residual two decimetres.",
-        "The less the measurements contradict each other, the closer the wrong residual ends. A test on clean data does not find it.",
+        "The less the measurements contradict each other, the closer to the optimum the wrong residual ends. A test on clean data does not find it.",
     ],
     opening: Opening {
         panels: &["graphs"],
@@ -102,7 +102,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "four",
             label: "Solve it in four ways",
-            help: "All from one start, step by step. Watch where each one ends.",
+            help: "All start from the same poses, step by step. Watch where each one ends.",
             set: &[],
             then: &["play"],
         },
@@ -116,7 +116,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "half",
             label: "Half the contradiction",
-            help: "The wrong residual is out by half as much, the approximate Jacobian by a quarter.",
+            help: "The wrong residual ends half as far out, and the approximate Jacobian a quarter as far.",
             set: &[BIAS.to(3.0)],
             then: &["play"],
         },

@@ -356,7 +356,7 @@ fn arrow_keys_move_the_selected_keyframe_like_a_drag() {
 #[test]
 fn a_selected_loop_is_described_with_its_evidence() {
     let mut robot = mapped();
-    let first = "The loop of the list goes from keyframe 3 to 0: closed; 0.80 of the scan fits, 0.020 m off; χ² 20.0 of 16.3.";
+    let first = "The listed loop goes from keyframe 3 to 0: closed; 0.80 of the scan fits, 0.020 m off; χ² 20.0 of 16.3.";
     assert!(robot.summary().ends_with(first), "{}", robot.summary());
     robot.press("next").unwrap();
     let second = "from keyframe 4 to 1: rejected, because 12 points fit, 30 are asked; 0.30 of the scan fits";

@@ -15,6 +15,7 @@ pub static LOOPS: Param<bool> = Param::switch("loops", "loop closure")
 /// The seed of the lap; the caller passes the chapter's seed, because this crate does not depend on the core.
 #[must_use]
 pub const fn seed(chapters: u32) -> Param<u32> {
-    Param::seed("seed", chapters)
-        .help("Another seed is another lap with the same robot; the default is the chapter's.")
+    Param::seed("seed", chapters).help(
+        "A different seed gives a different lap with the same robot; the default is the chapter's.",
+    )
 }

@@ -77,7 +77,7 @@ fn sentence(own: &OwnRobot) -> String {
     let done = if robot.progress.share.is_nan() {
         "driving".to_owned()
     } else {
-        format!("{:.0} % done", (100.0 * robot.progress.share).round())
+        format!("{:.0}% done", (100.0 * robot.progress.share).round())
     };
     let progress = match robot.progress.stage {
         Stage::Empty => {
@@ -105,7 +105,7 @@ fn sentence(own: &OwnRobot) -> String {
         ),
         Stage::Checking | Stage::Done => finished(robot),
     };
-    let held = if robot.paused { " It is held." } else { "" };
+    let held = if robot.paused { " It is paused." } else { "" };
     let answer = match robot.answer.as_str() {
         "" => String::new(),
         answer => format!(" {answer}"),
@@ -132,16 +132,16 @@ fn visitor(own: &OwnRobot) -> String {
     };
     let [.., doubtful, lost] = other.counts;
     let first = if let Some(first) = other.first {
-        format!("is found at its scan {first}")
+        format!("is found at scan {first}")
     } else if other.is_over {
-        "is found nowhere on this map".to_owned()
+        "is not found on this map".to_owned()
     } else {
         "is not found yet".to_owned()
     };
     let done = if other.is_over {
         String::new()
     } else {
-        format!(", {:.0} % done", (100.0 * other.share).floor())
+        format!(", {:.0}% done", (100.0 * other.share).floor())
     };
     let scans = other.localized() + doubtful + lost;
     let [x, y, theta] = shown.pose;
@@ -229,7 +229,7 @@ pub fn evidence(link: &LoopReport) -> String {
         String::new()
     };
     format!(
-        "The loop of the list goes from keyframe {} to {}: {}{why}{fits}{chi2}.",
+        "The listed loop goes from keyframe {} to {}: {}{why}{fits}{chi2}.",
         link.new,
         link.old,
         verdict(link)
@@ -298,7 +298,7 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
 pub fn summary(own: &OwnRobot) -> String {
     let robot = &own.robot;
     if robot.keyframes.is_empty() {
-        return "An empty map that waits for the log of a robot.".to_owned();
+        return "An empty map, waiting for a robot's log.".to_owned();
     }
     let shown = own.keyframe();
     let [x, y, theta] = robot.keyframes[shown].pose;

@@ -87,7 +87,7 @@ fn winner(trace: &ProcrustesTrace) -> Vec<Layer> {
     let source = trace.pairs.source.iter();
     let moved = source.map(|p| trace.problem.moved(kind, best, *p));
     let name = match kind {
-        Handedness::Turn => "best fit: a turn",
+        Handedness::Turn => "best fit: rotated",
         Handedness::Mirror => "best fit: mirrored",
     };
     let letter = letter(trace, kind, best);

@@ -70,7 +70,13 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
             Fact::new("trace_m2", "trace of the matrix tried", here, "m²", 3),
             Fact::new("bound_m2", "bound: s₁ + s₂", first + second, "m²", 3),
             Fact::new("difference_m2", "s₁ − s₂", first - second, "m²", 3),
-            Fact::new("turn_trace_m2", "best turn: trace", turn.trace_m2, "m²", 3),
+            Fact::new(
+                "turn_trace_m2",
+                "best rotation: trace",
+                turn.trace_m2,
+                "m²",
+                3,
+            ),
             Fact::new(
                 "mirror_trace_m2",
                 "best mirror image: trace",
@@ -80,7 +86,7 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
             ),
             Fact::new(
                 "turn_cost_m2",
-                "best turn: cost",
+                "best rotation: cost",
                 cost(Handedness::Turn),
                 "m²",
                 4,
@@ -105,7 +111,7 @@ pub fn summary(trace: &ProcrustesTrace) -> String {
     let targets = targets.map(|(k, p)| format!("{} at x {:.2} m, y {:.2} m", k + 1, p.x, p.y));
     let targets: Vec<_> = targets.collect();
     format!(
-        "{} pairs of points. Targets: {}. Tried are {}, now at {:.0}°, with a trace of {:.3} m².",
+        "{} pairs of points. Targets: {}. It tries {}, now at {:.0}°, with a trace of {:.3} m².",
         trace.pairs.len(),
         targets.join("; "),
         plural(trace.tried()),

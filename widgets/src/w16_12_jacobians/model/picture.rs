@@ -175,7 +175,7 @@ fn curve(widget: &WrongJacobians) -> Panel {
     let y = if is_distance {
         Axis {
             max: highest.ceil().max(10.0) + 0.5,
-            ..Axis::from_names("distance, a decade a line", decades())
+            ..Axis::from_names("distance, a decade per line", decades())
         }
     } else {
         Axis::new(
@@ -205,7 +205,7 @@ fn curve(widget: &WrongJacobians) -> Panel {
         if widget.step() == 0 {
             for (at, text) in [
                 ([0.5 * last, same - 0.45], "noise of one edge"),
-                ([0.5 * last, 0.5 * (low + same)], "play: who ends where?"),
+                ([0.5 * last, 0.5 * (low + same)], "play: which ends where?"),
             ] {
                 layers.push(Layer::Text {
                     at,
