@@ -34,7 +34,7 @@ pub struct TrialArgs {
     /// Reference that the front end registers scans on; a local map also has its own loop search.
     #[arg(long, value_parser = choice(LapFrontEnd::NAMED))]
     front_end: Option<LapFrontEnd>,
-    /// Matcher of loops only; default: that of the front end.
+    /// Matcher of loops only; default: the front end's.
     #[arg(long, value_parser = choice(LoopMatcher::NAMED))]
     loop_matcher: Option<LoopMatcher>,
     /// Detector of loop candidates; default: distance in the graph.
@@ -46,11 +46,11 @@ pub struct TrialArgs {
     /// World: apartment, ring, twins, corridor, hall, or a .json file.
     #[arg(long, default_value = "apartment")]
     world: WorldArg,
-    /// Frame of the edges' information; default: that of the chapter's figures in the
+    /// Frame of the edges' information; default: the frame of the chapter's figures in the
     /// Apartment, the exact one elsewhere.
     #[arg(long, value_parser = choice(InformationFrame::NAMED))]
     information: Option<InformationFrame>,
-    /// Leave the information of edges as the pairs give it: the default bounds it at a standard deviation of 2 cm.
+    /// Leave the information of edges as the pairs give it; by default it is bounded at a standard deviation of 2 cm.
     #[arg(long)]
     no_information_cap: bool,
 }

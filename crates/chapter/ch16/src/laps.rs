@@ -35,7 +35,7 @@ pub struct LapsArgs {
     /// Place a wardrobe in the Apartment and move it before this lap.
     #[arg(long, value_name = "LAP", value_parser = numbers::laps)]
     wardrobe: Option<usize>,
-    /// Disable map pruning: the map only grows.
+    /// Disable map pruning, so the map only grows.
     #[arg(long)]
     keep_all: bool,
     /// Print one JSON object.

@@ -144,7 +144,7 @@ fn why(stop: &StopReason) -> String {
         ),
         StopReason::TooFewInliers { .. } => format!("not converged: {stop}"),
         StopReason::Unobservable { .. } => {
-            format!("not converged: {stop}; along it the pose is that of the start")
+            format!("not converged: {stop}; along it the pose stays at the start")
         }
         StopReason::NotFinite => {
             "the next step overflows; move the points closer to the origin".to_owned()

@@ -39,7 +39,7 @@ fn shards_put_together_print_what_one_process_prints_to_the_last_digit() {
     );
     assert_rejected(
         &["sweep", "--merge", &second],
-        "3 of 6 seeds are missing, the first is 1; give the file of their part as well",
+        "3 of 6 seeds are missing, the first is 1; pass the file of their part as well",
     );
 }
 
@@ -73,7 +73,7 @@ fn parts_that_do_not_belong_together_are_rejected_in_one_sentence() {
     fs::write(&bent, "x,y\n1,2\n").unwrap();
     assert_rejected(
         &["sweep", "--merge", bent_path],
-        "give a file that ch16 sweep --shard wrote",
+        "pass a file that ch16 sweep --shard wrote",
     );
     assert_rejected(&["sweep", "--merge", "no-such-file"], "no-such-file");
     assert_rejected(

@@ -44,10 +44,10 @@ pub struct TopicArgs {
     /// Use the points of a 3-D sensor between these heights above the body's origin, m.
     #[arg(long, value_name = "LOW,HIGH", value_parser = heights, allow_hyphen_values = true)]
     heights: Option<(f64, f64)>,
-    /// Take shorter ranges as no returns, m.
+    /// Treat shorter ranges as no returns, m.
     #[arg(long, value_name = "METRES", value_parser = numbers::range_m, allow_hyphen_values = true)]
     min_range: Option<f64>,
-    /// Take readings on the robot as no returns: back, right, front and left end of the rectangle that it covers, in
+    /// Treat readings on the robot as no returns: back, right, front and left end of the rectangle that it covers, in
     /// metres from the body's origin.
     #[arg(long, value_name = "B,R,F,L", allow_hyphen_values = true)]
     footprint: Option<Footprint>,
@@ -69,7 +69,7 @@ pub struct TopicArgs {
 /// How the odometry of a log is taken.
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub struct OdometryArgs {
-    /// How the odometry is taken: checked against the scans, as it is, checked with left and right exchanged, or not at
+    /// How the odometry is used: checked against the scans, as it is, checked with left and right exchanged, or not at
     /// all.
     #[arg(
         long,
@@ -77,7 +77,7 @@ pub struct OdometryArgs {
         default_value = "check"
     )]
     odometry: OdometryUse,
-    /// Ignore odometry and match scans alone: the same as --odometry none.
+    /// Ignore odometry and match scans alone; same as --odometry none.
     #[arg(long, conflicts_with = "odometry")]
     no_odometry: bool,
 }
@@ -287,7 +287,7 @@ impl WatchedReader {
         self.sizes.iter().find_map(|(file, bytes)| {
             let now = file.metadata().ok().filter(|about| about.is_file())?.len();
             let text = format!(
-                "{} has grown by {} bytes while it was read, as if it is still being recorded; what was written meanwhile may be missing. Run again after the recording has ended",
+                "{} grew by {} bytes while it was being read, as if it is still being recorded; what was written meanwhile may be missing. Run again after the recording has ended",
                 file.display(),
                 now.checked_sub(*bytes).filter(|more| *more > 0)?
             );
@@ -334,7 +334,7 @@ fn bytes_of(path: PathBuf, bar: &ProgressBar) -> anyhow::Result<LogBytes<'static
         }
         ensure!(
             bytes.len() as u64 <= MAX_PIPED,
-            "{} gives more than 1 GB; save it to a file, and pass that",
+            "{} delivers more than 1 GB; save it to a file, and pass that",
             path.display()
         );
         return Ok(LogBytes::from(bytes));
@@ -393,7 +393,7 @@ impl Progress {
 
     fn new(bytes: u64) -> Self {
         let bar = ProgressBar::with_draw_target(Some(bytes), ProgressDrawTarget::stderr());
-        let style = ProgressStyle::with_template("{wide_bar} {percent} %  {msg}  {eta} left")
+        let style = ProgressStyle::with_template("{wide_bar} {percent}%  {msg}  {eta} left")
             .expect("the template is well formed");
         bar.set_style(style);
         let now = Instant::now();

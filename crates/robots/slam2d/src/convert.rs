@@ -19,7 +19,7 @@ use command_line::whole_file::{WholeFile, write_whole};
 
 /// Convert a log, a pose graph or a trajectory to another format, chosen by the file name extensions.
 ///
-/// Logs, everything that slam2d run reads, become .clf, .jsonl, or .tum with the odometry. Pose graphs
+/// Logs (everything that slam2d run reads) become .clf, .jsonl, or .tum with the odometry. Pose graphs
 /// (.g2o .graph .toro .json) become .g2o, .graph, .toro or .json. Trajectories (.tum) become .json.
 /// Sessions (.slam2d) become .g2o, .graph, .toro or .json, or .tum with the keyframes.
 #[derive(Args, Clone, Debug)]

@@ -14,13 +14,13 @@ use command_line::output::{print_json, say};
 
 /// Check a recording: print sensor, odometry, mounting, clocks and file, each with ✓, ! or ✗.
 ///
-/// The exit code is 0 if all is right, 1 if something was repaired or needs attention, and 2 if the recording cannot be
+/// The exit code is 0 if everything is right, 1 if something was repaired or needs attention, and 2 if the recording cannot be
 /// mapped.
 #[derive(Args, Clone, Debug)]
 pub struct DoctorArgs {
     /// The log, or the folder of a ROS recording.
     log: PathBuf,
-    /// Further parts of the same recording, such as those of rosbag record --split.
+    /// Further parts of the same recording, such as the files of rosbag record --split.
     #[arg(value_name = "PART")]
     parts: Vec<PathBuf>,
     #[command(flatten)]

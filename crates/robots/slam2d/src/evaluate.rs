@@ -18,7 +18,7 @@ pub struct EvaluateArgs {
     trajectory: PathBuf,
     #[command(flatten)]
     reference: ReferenceArgs,
-    /// The log that it was made from: its odometry propagates the poses to the scans in between.
+    /// The log it was made from, whose odometry propagates the poses to the scans in between.
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
     #[command(flatten)]

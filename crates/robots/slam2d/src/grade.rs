@@ -102,7 +102,7 @@ impl Reference {
                     let stamp_s =
                         |pose: Option<&StampedPose>| pose.map_or(0.0, |pose| pose.stamp_s);
                     bail!(
-                        "none of the {} relations lies within the times of the trajectory, {} s to {} s; use the same clock for both",
+                        "none of the {} relations is within the times of the trajectory, {} s to {} s; use the same clock for both",
                         relations.len(),
                         stamp_s(trajectory.poses().first()),
                         stamp_s(trajectory.poses().last())
@@ -110,7 +110,7 @@ impl Reference {
                 }
                 if errors.outside > 0 {
                     eprintln!(
-                        "slam2d: {} of {} relations lie outside the trajectory's times and are ignored",
+                        "slam2d: {} of {} relations are outside the trajectory's times and are ignored",
                         errors.outside,
                         relations.len()
                     );
@@ -137,7 +137,7 @@ impl Grade {
                     ("rotation²", "°²", report.rot2),
                 ] {
                     say!(
-                        "{name:<16} {:.4} ± {:.4} {unit}, median {:.4}, 95 % below {:.4}",
+                        "{name:<16} {:.4} ± {:.4} {unit}, median {:.4}, 95% below {:.4}",
                         spread.mean,
                         spread.std,
                         spread.median,

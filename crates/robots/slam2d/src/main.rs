@@ -24,7 +24,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use command_line::program;
 
-/// Maps the recorded log of a robot, or a robot while it drives, localizes on the map, and evaluates the result.
+/// Maps a robot's recorded log, or a robot while it drives, localizes on the map, and evaluates the result.
 #[derive(Debug, Parser)]
 #[command(name = "slam2d", version)]
 struct Cli {

@@ -30,8 +30,8 @@ use command_line::whole_file::check_folder;
 /// What a run of the estimator is given, from a log or from a robot.
 #[derive(Args, Clone, Debug)]
 pub struct MappingArgs {
-    /// Write the results to this folder. They replace those of an older run all together at the end; a run that is cut
-    /// short replaces no whole result and goes to the folder interrupted in it.
+    /// Write the results to this folder. They replace an older run's results all at once at the end; a run that is cut
+    /// short replaces no complete result and goes to its subfolder interrupted.
     #[arg(short = 'o', long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// Side of a cell of the map, m.
@@ -40,8 +40,8 @@ pub struct MappingArgs {
     /// Set a parameter of the estimator; docs/robots.md lists them.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
     settings: Vec<(String, f64)>,
-    /// Continue this session, or that of a run's folder, with its parameters. The log is the rest of its recording, or
-    /// another day: then the robot is first searched for on the session's map.
+    /// Continue this session, or the session in a run's folder, with its parameters. The log is the rest of its recording, or
+    /// a recording of another day, whose robot is first searched for on the session's map.
     #[arg(long = "continue", value_name = "SESSION", conflicts_with = "settings")]
     session: Option<PathBuf>,
     /// Pose of the first scan on the session's map: x,y,deg in metres and degrees, or anywhere.
@@ -204,7 +204,7 @@ impl<'a> Mapping<'a> {
             let of_part = folder_of_part(wanted);
             if of_part != *wanted {
                 eprintln!(
-                    "slam2d: {} keeps the result of a whole run; what was mapped now goes to {}",
+                    "slam2d: {} keeps the result of a complete run; the new result goes to {}",
                     wanted.display(),
                     of_part.display()
                 );
@@ -293,7 +293,7 @@ fn print_text(result: &RunJson) {
     }
     if let Some(ticks) = result.ticks {
         say!(
-            "a scan           {:.2} ms in the first tenth, {:.2} ms in the last (medians); 99 % within {:.1} ms, worst {:.1} ms",
+            "a scan           {:.2} ms in the first tenth, {:.2} ms in the last (medians); 99% within {:.1} ms, worst {:.1} ms",
             ticks.first.median_ms,
             ticks.last.median_ms,
             ticks.p99_ms,

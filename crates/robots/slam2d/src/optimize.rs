@@ -69,7 +69,7 @@ fn solve_file(args: &OptimizeArgs) -> anyhow::Result<(G2oFile, Summary)> {
     if !chi2_initial.is_finite() {
         bail!(
             "{}: line {}: eᵀΩe of this edge is too large for a number: \
-             its vertices lie too far apart, or its information is too large",
+             its vertices are too far apart, or its information is too large",
             path.display(),
             file.line_of_factor(worst_factor(&file))
         );
@@ -147,7 +147,7 @@ fn print_summary(summary: &Summary, args: &OptimizeArgs) {
     say!("chi2 initial  {:.6}", summary.chi2_initial);
     say!("chi2          {:.6}", summary.chi2);
     if args.kernel.0 != RobustKernel::None {
-        say!("cost          {:.6}, by the kernel", summary.cost);
+        say!("cost          {:.6}, with the kernel", summary.cost);
     }
     if let Some(InlierCounts { loops, inliers, .. }) = summary.robust {
         say!("inliers      {inliers} of {loops} loops");

@@ -15,14 +15,14 @@ use crate::mapping::{Ended, Mapping, MappingArgs};
 pub struct RunArgs {
     /// The log.
     log: PathBuf,
-    /// Further parts of the same recording, such as those of rosbag record --split.
+    /// Further parts of the same recording, such as the files of rosbag record --split.
     #[arg(value_name = "PART")]
     parts: Vec<PathBuf>,
     #[command(flatten)]
     topics: TopicArgs,
     #[command(flatten)]
     odometry: OdometryArgs,
-    /// Map the robots of a recording into one map, one after the other, if its scans are those of several.
+    /// Map all robots of a recording into one map, one after the other, if it has scans of several.
     #[arg(long, conflicts_with_all = ["scan_topic", "odom_topic", "odom_frame", "body_frame"])]
     all_robots: bool,
     #[command(flatten)]

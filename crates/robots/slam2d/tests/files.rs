@@ -38,7 +38,7 @@ fn the_content_of_a_ros_recording_is_summarized() {
         assert_eq!(info["records"]["/scan sensor_msgs/LaserScan"], 24);
         assert_eq!(info["records"]["/odom nav_msgs/Odometry"], 48);
         let about = info["about"].as_array().unwrap();
-        assert_eq!(about[0], "scans are those of /scan, in frame laser");
+        assert_eq!(about[0], "scans come from /scan, in frame laser");
     }
     assert_rejected(
         &["info", &recording("tf.mcap"), "--scan-topic", "/front"],
@@ -213,7 +213,7 @@ fn impossible_conversions_list_the_possible_ones() {
         (
             text(&empty),
             &out,
-            "empty.mcap is empty; give a recorded log",
+            "empty.mcap is empty; use a recorded log",
         ),
         (
             text(&half),

@@ -203,15 +203,15 @@ fn files_that_cannot_be_used_end_in_one_line() {
             vec!["run", text(&in_folder)],
             "is a folder without a recording of ROS; pass a log",
         ),
-        (vec!["run", text(&empty)], "is empty; give a recorded log"),
-        (vec!["info", text(&prose)], "is not a CARMEN log; give one"),
+        (vec!["run", text(&empty)], "is empty; use a recorded log"),
+        (vec!["info", text(&prose)], "is not a CARMEN log; use one"),
         (
             vec!["run", log, "--relations", text(&prose)],
             "line 1: t1 must be a finite number",
         ),
         (
             vec!["run", log, "--relations", text(&far)],
-            "none of the 1 relations lies within",
+            "none of the 1 relations is within",
         ),
         (
             vec!["evaluate", text(&tum)],

@@ -352,9 +352,8 @@ fn a_day_in_another_building_is_mapped_alone() {
     let run = slam2d(&["run", &log, "--continue", &map, "-o", &out]);
     let said = String::from_utf8(run.stderr).unwrap();
     assert!(
-        said.contains(
-            "was not found on the session's map: the results are those of this log alone"
-        ) && said.contains("--init x,y,deg"),
+        said.contains("was not found on the session's map: the results cover this log alone")
+            && said.contains("--init x,y,deg"),
         "{said}"
     );
     let count = |name: &str| lines(&lap.path(name)).len();

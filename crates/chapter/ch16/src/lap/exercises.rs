@@ -278,7 +278,7 @@ impl ExerciseLap {
     /// Prints the exercises in use, and their results.
     pub fn print(&self) {
         say!("steered by your functions:");
-        say!("  trimmed_icp      every scan and every loop is registered by it");
+        say!("  trimmed_icp      registers every scan and every loop");
         if self.by_histogram {
             say!("  range_histogram  proposes loops");
         }

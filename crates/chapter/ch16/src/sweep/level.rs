@@ -94,9 +94,9 @@ impl Level {
             "  {:<12} {:<38} {:>8} {:>8} {:>8}",
             "",
             "",
-            "5 %",
+            "5%",
             "median",
-            "95 %"
+            "95%"
         );
         for entry in &self.entries {
             say!(
@@ -207,10 +207,10 @@ fn row_title(row: ResultRow) -> &'static str {
 fn print_loops(level: &Level) {
     let [none, one, two, more] = level.loop_shares.map(|share| 100.0 * share);
     say!(
-        "  accepted loops: 0 in {none:.1} %, 1 in {one:.1} %, 2 in {two:.1} %, 3 or more in {more:.1} %"
+        "  accepted loops: 0 in {none:.1}%, 1 in {one:.1}%, 2 in {two:.1}%, 3 or more in {more:.1}%"
     );
     say!(
-        "  false acceptances: {} of {} loops, in {:.1} % of the runs",
+        "  false acceptances: {} of {} loops, in {:.1}% of the runs",
         level.false_acceptances,
         level.accepted_loops,
         100.0 * level.false_run_share

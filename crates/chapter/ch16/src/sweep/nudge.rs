@@ -37,7 +37,7 @@ pub fn print(args: &SweepArgs, trial: &LapOptions) {
     for level in &levels {
         say!(
             "noise ×{}: {} of {} laps change by more than {:e} m, the farthest by {:.3} m, where \
-             the start is moved by {:e} of itself",
+             the start is moved by a relative {:e}",
             level.noise,
             level.changed,
             level.runs,

@@ -130,7 +130,7 @@ pub fn merge(args: &SweepArgs) -> anyhow::Result<(SweepArgs, Vec<Vec<LapOutcome>
         let text = fs::read(path).in_file(path)?;
         let ShardFile { sweep, laps } = serde_json::from_slice(&text).map_err(|error| {
             anyhow!(
-                "{}: {error}; give a file that ch16 sweep --shard wrote",
+                "{}: {error}; pass a file that ch16 sweep --shard wrote",
                 path.display()
             )
         })?;
@@ -157,7 +157,7 @@ pub fn merge(args: &SweepArgs) -> anyhow::Result<(SweepArgs, Vec<Vec<LapOutcome>
         .collect();
     ensure!(
         missing.is_empty(),
-        "{} of {} seeds are missing, the first is {}; give the file of their part as well",
+        "{} of {} seeds are missing, the first is {}; pass the file of their part as well",
         missing.len(),
         Seeds { first, last }.count(),
         missing[0]

@@ -92,7 +92,7 @@ impl NamedChoice for Robot {
         (
             Self::Oversized,
             "oversized",
-            "odometry that measures 10 % too much",
+            "odometry that measures 10% too much",
         ),
         (
             Self::Ahead,

@@ -165,7 +165,7 @@ impl NamedChoice for LoopMatcher {
             LapMatcher::NAMED[2].1,
             LapMatcher::NAMED[2].2,
         ),
-        (Self::Search, "search", "search of a window"),
+        (Self::Search, "search", "window search"),
     ];
 }
 
@@ -185,7 +185,7 @@ pub enum LapDetector {
 impl NamedChoice for LapDetector {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Nearby, "nearby", "near in the graph"),
-        (Self::Histogram, "histogram", "histogram of ranges"),
+        (Self::Histogram, "histogram", "range histogram"),
         (Self::Context, "context", "Scan Context"),
     ];
 }
@@ -256,7 +256,7 @@ impl NamedChoice for LapFrontEnd {
 
 impl NamedChoice for InformationFrame {
     const NAMED: &'static [(Self, &'static str, &'static str)] = &[
-        (Self::Chapter, "chapter", "as the chapter's figures"),
+        (Self::Chapter, "chapter", "as in the chapter's figures"),
         (Self::Exact, "exact", "at the edge's target"),
     ];
 }

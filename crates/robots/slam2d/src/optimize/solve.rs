@@ -139,7 +139,7 @@ fn solve_session(
 /// `most` is the limit of iterations, which the actual number replaces after the first solve.
 fn progress_bar(most: u64) -> ProgressBar {
     let style = ProgressStyle::with_template(
-        "{wide_bar} {percent} %, {pos} of at most {len} iterations, {msg} ({elapsed})",
+        "{wide_bar} {percent}%, {pos} of at most {len} iterations, {msg} ({elapsed})",
     )
     .expect("the template is well formed");
     ProgressBar::new(most).with_style(style)
