@@ -436,7 +436,7 @@ describe('a reader’s log', () => {
 
       // A file that is not a log changes no result.
       await giveBytes(tab, 'empty.log', Buffer.alloc(0), 'where');
-      await says(tab, /empty\.log is empty; give a recorded log/);
+      await says(tab, /empty\.log is empty; use a recorded log/);
       await giveBytes(tab, 'x.slam2d', Buffer.from('SLAM2D\r\n'), 'where');
       await says(tab, /x\.slam2d is a saved session, not a log of scans/);
       assert.match((await outcome(tab)).sentence, /The robot of ring-another-day\.log is found/);
@@ -491,7 +491,7 @@ describe('a reader’s log', () => {
   it('reports broken, empty, foreign and truncated files in a sentence, and maps the next one', async () => {
     await page(async (tab) => {
       for (const [name, text, said] of [
-        ['empty.log', '', /no map: empty\.log is empty; give a recorded log/],
+        ['empty.log', '', /no map: empty\.log is empty; use a recorded log/],
         ['packed.log', '\u001f\u008b', /no map: packed\.log/],
         ['photo.png', '\u0089PNG\u0000\u0001', /no map: photo\.png is a map or a picture, not a log of scans/],
         ['broken.g2o', 'VERTEX_SE2 0 zero\n', /no map: broken\.g2o.*line 1/],

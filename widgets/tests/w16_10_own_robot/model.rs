@@ -376,10 +376,10 @@ fn a_selected_loop_is_described_with_its_evidence() {
 fn requests_without_a_map_are_answered() {
     let mut robot = mapped();
     tell(&mut robot, "answer", "The loop 3 to 0 is in the graph.");
-    tell(&mut robot, "failed", "x.log is empty; give a recorded log");
+    tell(&mut robot, "failed", "x.log is empty; use a recorded log");
     assert_eq!(
         robot.outcome().sentence,
-        "x.log is empty; give a recorded log"
+        "x.log is empty; use a recorded log"
     );
     tell(
         &mut robot,
@@ -388,7 +388,7 @@ fn requests_without_a_map_are_answered() {
     );
     assert_eq!(
         robot.outcome().sentence,
-        "x.log is empty; give a recorded log. truth.tum waits for a log to be opened."
+        "x.log is empty; use a recorded log. truth.tum waits for a log to be opened."
     );
 }
 
@@ -492,11 +492,11 @@ fn another_file_replaces_the_first_and_an_invalid_one_is_reported() {
     tell(
         &mut robot,
         "failed",
-        "other.bag is empty; give a recorded log",
+        "other.bag is empty; use a recorded log",
     );
     let outcome = robot.outcome();
     assert_eq!(outcome.standing, Assessment::Bad);
-    assert_eq!(outcome.sentence, "other.bag is empty; give a recorded log");
+    assert_eq!(outcome.sentence, "other.bag is empty; use a recorded log");
 }
 
 #[test]

@@ -123,9 +123,9 @@ impl LineFormat for Carmen {
                 let vertex = fields.pose(["x", "y", "theta"])?;
                 count();
                 if notes.about.is_empty() {
-                    notes
-                        .about
-                        .push("a graph with scans: its vertices are taken as odometry".to_owned());
+                    notes.about.push(
+                        "a graph with scans, whose vertices are taken as odometry".to_owned(),
+                    );
                 }
                 self.vertex = Some(vertex);
                 Ok(None)
@@ -170,7 +170,7 @@ impl LineFormat for Carmen {
     fn foreign(&self) -> Option<(&'static str, &'static str)> {
         (self.known_lines == 0).then_some((
             "not a CARMEN log",
-            "give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1",
+            "use one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1",
         ))
     }
 }

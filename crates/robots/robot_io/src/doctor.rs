@@ -195,7 +195,7 @@ impl Checkup {
         let usual_s = (self.info.duration_s - gap_s) / self.info.scans.max(1) as f64;
         (gap_s > PAUSE_S && gap_s > PAUSE_PERIODS * usual_s).then(|| {
             let text = format!(
-                "there is no scan for {gap_s:.0} s before {at_s:.2} s; if the robot was carried meanwhile, what follows is mapped on its own until it is found on the map"
+                "there is no scan for {gap_s:.0} s before {at_s:.2} s; if the robot was carried meanwhile, what follows is mapped separately until it is found on the map"
             );
             Remark::mended(Part::Clocks, text)
         })
@@ -240,7 +240,7 @@ fn sensor_remark(sensor: &SensorSummary) -> Remark {
         .range_max_m
         .map_or("no limit".to_owned(), |range_m| format!("{range_m:.1} m"));
     let text = format!(
-        "{} scans of {} beams over {:.0}°, from {:.2} m to {reach}, {:.1} scans per second; {:.0} % of the beams have a return",
+        "{} scans of {} beams over {:.0}°, from {:.2} m to {reach}, {:.1} scans per second; {:.0}% of the beams have a return",
         sensor.scans,
         sensor.beams,
         sensor.field_of_view_deg,
@@ -317,7 +317,7 @@ fn mounting_remark(notes: &LogNotes, motion: &MotionComparison) -> Option<Remark
         (Some(_), Some(correlation)) => Remark::mended(
             Part::Mounting,
             format!(
-                "{mount} cannot be checked: the paths of scans matched alone and of odometry differ too much (correlation of the turns {correlation:.2}, {:.0} cm per metre apart)",
+                "{mount} cannot be checked, because the paths of scans matched alone and of odometry differ too much (correlation of the turns {correlation:.2}, {:.0} cm per metre apart)",
                 100.0 * motion.drift_m_per_m.unwrap_or_default()
             ),
         ),

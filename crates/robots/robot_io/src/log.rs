@@ -235,7 +235,7 @@ pub enum LogError {
         source: io::Error,
     },
     /// The file is empty.
-    #[error("{name} is empty; give a recorded log")]
+    #[error("{name} is empty; use a recorded log")]
     Empty {
         /// The log's name.
         name: String,
@@ -252,7 +252,7 @@ pub enum LogError {
     },
     /// The file is text of no known form.
     #[error(
-        "{name} is not a CARMEN log; give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1. Its first line is {line}; {advice}"
+        "{name} is not a CARMEN log; use one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1. Its first line is {line}; {advice}"
     )]
     UnknownText {
         /// The log's name.

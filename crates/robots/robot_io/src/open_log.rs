@@ -169,7 +169,7 @@ mod tests {
     #[test]
     fn empty_and_foreign_files_are_rejected_in_one_sentence() {
         for (bytes, expected) in [
-            (&b""[..], "x.log is empty; give a recorded log"),
+            (&b""[..], "x.log is empty; use a recorded log"),
             (
                 b"\x1f\x8b\x08",
                 "x.log has no usable scan: it is compressed by gzip or zstd and cannot be decompressed: unexpected end of file; copy it again from its source",

@@ -50,7 +50,7 @@ impl PathLengths {
         };
         (longer_m >= MIN_M && longer_m > DIFFERENT * shorter_m).then(|| {
             let text = format!(
-                "the path is {on_map_m:.1} m long on the map and {by_odometry_m:.1} m by odometry; one of them is wrong: compare with a map made with {NO_ODOMETRY}"
+                "the path is {on_map_m:.1} m long on the map and {by_odometry_m:.1} m by odometry; one of them is wrong; compare with a map made with {NO_ODOMETRY}"
             );
             Remark::wrong(Part::Odometry, text).with_option(NO_ODOMETRY)
         })

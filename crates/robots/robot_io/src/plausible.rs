@@ -20,7 +20,7 @@ pub fn plausible_stamp_s(stamp_s: f64) -> Result<f64, String> {
         Ok(stamp_s)
     } else {
         Err(format!(
-            "a time must lie within {LONGEST_S:e} s of zero, and is {stamp_s:e} s"
+            "a time must be within {LONGEST_S:e} s of zero, and is {stamp_s:e} s"
         ))
     }
 }
@@ -40,7 +40,7 @@ pub fn plausible_pose(pose: SE2) -> Result<SE2, String> {
         Ok(pose)
     } else {
         Err(format!(
-            "a pose must lie within {:.0} km of its origin, and is at {x:e} m, {y:e} m",
+            "a pose must be within {:.0} km of its origin, and is at {x:e} m, {y:e} m",
             FARTHEST_M / 1e3
         ))
     }
@@ -58,7 +58,7 @@ mod tests {
         for x in [1e300, f64::INFINITY, f64::NAN] {
             let error = plausible_pose(SE2::new(x, 0.0, 0.0)).unwrap_err();
             assert!(
-                error.starts_with("a pose must lie within 41000 km"),
+                error.starts_with("a pose must be within 41000 km"),
                 "{error}"
             );
         }
@@ -71,10 +71,7 @@ mod tests {
         assert_eq!(plausible_stamp_s(-1.0), Ok(-1.0));
         for stamp_s in [1.7e15, f64::NAN] {
             let error = plausible_stamp_s(stamp_s).unwrap_err();
-            assert!(
-                error.starts_with("a time must lie within 1e12 s"),
-                "{error}"
-            );
+            assert!(error.starts_with("a time must be within 1e12 s"), "{error}");
         }
     }
 }

@@ -278,7 +278,7 @@ impl FromStr for TableLayout {
         }
         if view_rad.is_some() && columns.last().is_none_or(|c| c.0 != ColumnMeaning::Ranges) {
             return Err(
-                "angles stand behind ranges, which is the last column, such as time,ranges@-90:90"
+                "angles come after ranges, which is the last column, such as time,ranges@-90:90"
                     .to_owned(),
             );
         }
@@ -305,7 +305,7 @@ fn view_of(text: &str) -> Result<[f64; 2], String> {
         .filter(|[first, last]| first != last && (last - first).abs() <= 360.0)
         .map(|angles| angles.map(f64::to_radians))
         .ok_or_else(|| {
-            "the first and the last angle stand behind ranges in degrees, such as ranges@-90:90"
+            "the first and the last angle come after ranges, in degrees, such as ranges@-90:90"
                 .to_owned()
         })
 }

@@ -199,7 +199,7 @@ impl TableRows {
         };
         if self.frames == 0 {
             notes.about.push(format!(
-                "rows are beams, and a scan ends where their bearing goes back; bearings count {}",
+                "rows are beams, and a scan ends where their bearing jumps back; bearings count {}",
                 if self.layout.is_clockwise {
                     "clockwise, as RPLidar does; if the map is mirrored, pass --laser 0,0,0,flipped"
                 } else {

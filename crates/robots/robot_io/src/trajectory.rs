@@ -416,7 +416,7 @@ mod tests {
             ),
             ("1 0 0 0 0 0 0\n", "t.tum: line 1: qw is missing"),
             ("1 0 0 0 0 0 0 0\n", "line 1: the quaternion is zero"),
-            ("1 1e9 0 0 0 0 0 1\n", "line 1: a pose must lie within"),
+            ("1 1e9 0 0 0 0 0 1\n", "line 1: a pose must be within"),
             (
                 "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n",
                 "line 2: the stamp is not later than",

@@ -467,7 +467,7 @@ impl Progress {
             py.check_signals()?;
             match self {
                 Self::Nowhere => Ok(()),
-                Self::Stderr => say(py, &format!("\r{scans} scans, {:3.0} %", 100.0 * share)),
+                Self::Stderr => say(py, &format!("\r{scans} scans, {:3.0}%", 100.0 * share)),
                 Self::Function(function) => function.call1(py, (scans, share)).map(drop),
             }
         })

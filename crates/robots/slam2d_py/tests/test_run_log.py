@@ -73,7 +73,7 @@ def test_progress_comes_as_numbers_or_on_standard_error(log, capsys):
     assert max(abs(share - 0.75 * scans / 130) for scans, share in told[:-1]) < 0.1, told
     capsys.readouterr()
     rs.Pipeline(log).run(progress=True)
-    assert "130 scans, 100 %" in capsys.readouterr().err
+    assert "130 scans, 100%" in capsys.readouterr().err
     rs.Pipeline(log).run(progress=False)
     assert capsys.readouterr().err == ""
     with pytest.raises(rs.ChoiceError, match="progress has to be True, False or a function"):
@@ -96,7 +96,7 @@ def test_a_file_that_is_no_log_is_rejected_in_a_sentence(tmp_path):
     trajectory = tmp_path / "trajectory.tum"
     trajectory.write_text("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n")
     for path, said in [
-        (empty, f"{empty} is empty; give a recorded log"),
+        (empty, f"{empty} is empty; use a recorded log"),
         (trajectory, f"{trajectory} is a trajectory, not a log of scans; pass a log; slam2d evaluate evaluates a trajectory"),
         (tmp_path, f"{tmp_path} is a folder without a recording of ROS; give a log, or a folder with files that end in .mcap, .db3 or .bag"),
     ]:
@@ -130,10 +130,10 @@ def test_errors_against_truth_and_relations():
     ("keywords", "error", "said"),
     [
         ({}, rs.ChoiceError, "give either truth=(stamps, poses) or relations"),
-        ({"truth": ([10.0, 11.0], np.zeros((2, 3)))}, rs.EvaluationError, "0 stamps of the trajectory lie within 0.01 s of"),
+        ({"truth": ([10.0, 11.0], np.zeros((2, 3)))}, rs.EvaluationError, "0 stamps of the trajectory are within 0.01 s of"),
         ({"truth": ([1.0, 0.0], np.zeros((2, 3)))}, rs.ArrayError, "the truth's stamps has to ascend"),
         ({"truth": ([1.0], np.zeros((2, 3)))}, rs.ArrayError, "the truth's stamps has 1 entries, and the truth's poses has 2"),
-        ({"relations": [(8.0, 9.0, 0, 0, 0)]}, rs.EvaluationError, "none of the 1 relations lies within the times"),
+        ({"relations": [(8.0, 9.0, 0, 0, 0)]}, rs.EvaluationError, "none of the 1 relations is within the times"),
         ({"relations": [(8.0, 9.0)]}, rs.ArrayError, "relations has to have the shape (n, 5), not (1, 2)"),
         ({"relations": [(8.0, 9.0, 0, 0, 0)], "align": "sim3"}, rs.ChoiceError, "align has to be one of none, se2"),
     ],

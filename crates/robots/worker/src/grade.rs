@@ -51,7 +51,7 @@ impl DroppedReference {
                 let report = relation_errors(trajectory, relations).report();
                 if report.n == 0 {
                     return Err(format!(
-                        "{name}: none of its {} relations lies within the times of the trajectory; use the same clock for both",
+                        "{name}: none of its {} relations is within the times of the trajectory; use the same clock for both",
                         relations.len()
                     ));
                 }

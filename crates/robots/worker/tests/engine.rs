@@ -465,7 +465,7 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
 
     assert_eq!(
         open(b"", "x.log").err().unwrap(),
-        "x.log is empty; give a recorded log"
+        "x.log is empty; use a recorded log"
     );
     assert!(
         open(b"\x1f\x8b\x08", "x.gz")

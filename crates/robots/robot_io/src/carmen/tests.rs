@@ -235,10 +235,10 @@ fn the_vertices_of_a_graph_with_scans_are_its_odometry() {
 #[test]
 fn what_holds_no_scan_is_rejected_in_one_sentence() {
     for (text, expected) in [
-        ("", "x.clf is empty; give a recorded log"),
+        ("", "x.clf is empty; use a recorded log"),
         (
             "Dear reader,\nthis is no log.\n",
-            "x.clf is not a CARMEN log; give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1. Its first line is ‘Dear reader,’; if it is a table, name its columns with --columns, such as time_s,ranges_m@-90:90 or angle_deg,range_mm",
+            "x.clf is not a CARMEN log; use one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1. Its first line is ‘Dear reader,’; if it is a table, name its columns with --columns, such as time_s,ranges_m@-90:90 or angle_deg,range_mm",
         ),
         (
             "ODOM 0 0 0 0 0 0 1 h 1\n",
@@ -258,7 +258,7 @@ fn what_holds_no_scan_is_rejected_in_one_sentence() {
         ),
         (
             "FLASER 2 1 2 0 0 0 1e300 0 0 1 h 1\n",
-            "x.clf has no usable scan: line 1: a pose must lie within 41000 km of its origin, and is at 1e300 m, 0e0 m",
+            "x.clf has no usable scan: line 1: a pose must be within 41000 km of its origin, and is at 1e300 m, 0e0 m",
         ),
     ] {
         let error = read(text).unwrap_err().to_string();

@@ -33,7 +33,7 @@ pub enum Alignment {
 pub enum TruthProblem {
     /// Too few stamps match.
     #[error(
-        "{matched} stamps of the trajectory lie within {MAX_DIFFERENCE_S} s of the truth's, but two are needed; use the same clock for both"
+        "{matched} stamps of the trajectory are within {MAX_DIFFERENCE_S} s of the truth's, but two are needed; use the same clock for both"
     )]
     NoCommonStamps {
         /// Number of stamps that match.

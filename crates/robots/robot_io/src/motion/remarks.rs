@@ -31,7 +31,7 @@ impl MotionComparison {
                 Finding::Backward => Remark::mended(
                     Part::Sensor,
                     format!(
-                        "{text}; their times were reversed. List the beams in the order in which they are measured, with the sign of angle_increment that belongs to it"
+                        "{text}; their times were reversed. List the beams in the order in which they are measured, with the matching sign of angle_increment"
                     ),
                 ),
                 Finding::Still { .. } => Remark::mended(
@@ -49,7 +49,7 @@ impl MotionComparison {
                 Finding::Late { .. } => Remark::mended(
                     Part::Clocks,
                     format!(
-                        "{text}; it was shifted by that. Synchronize both clocks by NTP, and stamp each message when it is measured"
+                        "{text}; it was shifted by that. Synchronize both clocks with NTP, and stamp each message when it is measured"
                     ),
                 ),
             };
@@ -146,7 +146,7 @@ fn sentence(finding: &Finding) -> String {
             "the turns of scans matched alone and of odometry differ (correlation {correlation:.2})"
         ),
         Finding::Late { by_s } => format!(
-            "odometry is {:.2} s {} relative to the scans, by the turns of both",
+            "odometry is {:.2} s {} relative to the scans, judging by the turns of both",
             by_s.abs(),
             if *by_s > 0.0 { "late" } else { "early" }
         ),
@@ -180,7 +180,7 @@ fn suggest(suggestion: &Suggestion, mount: LaserMount) -> Remark {
         }
     };
     let text = format!(
-        "scans matched alone suggest that {}, but a map of the first {} scans is not surely better in both halves with that repaired ({:.1} nats a scan, {:.1} without): nothing was changed",
+        "scans matched alone suggest that {}, but a map of the first {} scans is not clearly better in both halves after that repair ({:.1} nats per scan, {:.1} without), so nothing was changed",
         sentence(finding),
         costs.scans,
         costs.with,

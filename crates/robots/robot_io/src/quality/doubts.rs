@@ -98,7 +98,7 @@ fn uncertain_keyframes(keyframes: &[KeyframeQuality]) -> Vec<String> {
         let worst_m = run.iter().map(|k| keyframes[*k].sigma_m());
         let worst_m = worst_m.fold(0.0, f64::max);
         format!(
-            "keyframes {first} to {last} may be up to {:.2} m off (95 %); the median keyframe {:.2} m",
+            "keyframes {first} to {last} may be up to {:.2} m off (95%); the median keyframe {:.2} m",
             RADIUS_95 * worst_m,
             RADIUS_95 * median_m
         )
@@ -150,7 +150,7 @@ fn poor_fits(poor: &[PoorFit]) -> Vec<String> {
     poor.sort_by(|a, b| a.score.total_cmp(&b.score));
     let poor = poor.iter().map(|poor| {
         let (stamp_s, share) = (poor.stamp_s, 100.0 * poor.score);
-        format!("only {share:.0} % of the scan at {stamp_s:.3} s fits the map")
+        format!("only {share:.0}% of the scan at {stamp_s:.3} s fits the map")
     });
     poor.collect()
 }
@@ -237,13 +237,13 @@ mod tests {
         assert_eq!(
             sentences(&quality, &violated, &[poor]),
             [
-                "keyframes 3 to 4 may be up to 1.22 m off (95 %); the median keyframe 0.05 m",
+                "keyframes 3 to 4 may be up to 1.22 m off (95%); the median keyframe 0.05 m",
                 "the loop from keyframe 9 to 2 contradicts the rest of the graph: chi-squared 40.0 above 16.3",
                 "the path from keyframe 7 to 11 contradicts the rest of the graph: chi-squared 84.4 above 16.3",
                 "the path from keyframe 4 to 5 contradicts the rest of the graph: chi-squared 20.0 above 16.3",
                 "the loop from keyframe 30 to 4 was accepted, but the map violates it by 2.35 m and 90°",
                 "the loop from keyframe 31 to 4 was accepted, but the map violates it by 0.50 m and 90°",
-                "only 31 % of the scan at 12.500 s fits the map",
+                "only 31% of the scan at 12.500 s fits the map",
             ]
         );
     }
@@ -259,7 +259,7 @@ mod tests {
         assert_eq!(doubts(0.2), Vec::<String>::new());
         assert_eq!(
             doubts(0.21),
-            ["keyframes 0 to 3 may be up to 0.51 m off (95 %); the median keyframe 0.51 m"]
+            ["keyframes 0 to 3 may be up to 0.51 m off (95%); the median keyframe 0.51 m"]
         );
     }
 

@@ -106,11 +106,10 @@ impl Plan {
         } else {
             format!("in frame {}", stream.frame)
         };
-        plan.about
-            .push(format!("scans are those of {topic}, {frame}"));
+        plan.about.push(format!("scans come from {topic}, {frame}"));
         if let Some(odometry) = &odometry {
             plan.about.push(format!(
-                "odometry is that of {}, from {} to {}",
+                "odometry comes from {}, {} to {}",
                 odometry.topic, odometry.track.above, odometry.track.body
             ));
         }
@@ -223,7 +222,7 @@ impl Plan {
             format!("{frame} ({})", plural(*count, "scan"))
         });
         let text = format!(
-            "{topic} has scans of several publishers: those in frame {} are read, and those in {} are not{}; let each publish on a topic of its own",
+            "{topic} has scans of several publishers: those in frame {} are read, and those in {} are not{}; let each publish on its own topic",
             stream.frame,
             listed(others),
             stream
@@ -254,7 +253,7 @@ impl Plan {
             let all = if self.robots.is_empty() {
                 ""
             } else {
-                "; if they are those of another robot, slam2d run --all-robots maps all robots into one map"
+                "; if they belong to another robot, slam2d run --all-robots maps all robots into one map"
             };
             let text = format!(
                 "there are also scans on {}, which are not read; choose with {}{all}",

@@ -123,8 +123,8 @@ fn choices_and_alternatives_are_reported() {
     let about = notes.about.join("; ");
     assert_eq!(
         about,
-        "scans are those of /scan, in frame laser; \
-         odometry is that of /tf, from odom to base_link; \
+        "scans come from /scan, in frame laser; \
+         odometry comes from /tf, odom to base_link; \
          the laser is at 0.100 m, 0.000 m, 0.00° on base_link; \
          frame base_link is a child of odom; frame laser is a child of base_link"
     );

@@ -50,7 +50,7 @@ pub(super) fn robot_sentence(name: &str, robot: &str, piece: &PieceReport) -> Op
                 _ => (piece.scans, "of it"),
             };
             Some(format!(
-                "{name}: the robot of {robot} was not found on the map: the {} {which} were left out. Map it alone with --scan-topic {robot}, or record a drive through a place of both",
+                "{name}: the robot of {robot} was not found on the map: the {} {which} were left out. Map it alone with --scan-topic {robot}, or record a drive through an area of both",
                 plural(count, "scan")
             ))
         }

@@ -42,8 +42,7 @@ impl LogRun {
                 )
             });
             format!(
-                "{name}: its beams {other}, and those of the session {known}; the parameters remain those of the \
-                 session's scanner"
+                "{name}: its beams {other}, and the session's {known}; the session's parameters are kept"
             )
         });
         let rejected = self
@@ -53,7 +52,7 @@ impl LogRun {
         let still = self.still_odometry(name);
         let blind = (self.blind > 0).then(|| {
             format!(
-                "{name}: {} without a return before the first one that sees something {} skipped, because without odometry nothing tells how the robot moved",
+                "{name}: {} without a return before the first one that sees something {} skipped, because without odometry nothing shows how the robot moved",
                 plural(self.blind, "scan"),
                 if self.blind == 1 { "was" } else { "were" }
             )
@@ -157,7 +156,7 @@ fn piece_sentence(name: &str, piece: &PieceReport, session_scans: usize) -> Opti
             plural(scans, "scan")
         )),
         (PieceFate::Kept, true) => Some(format!(
-            "{after}, and the robot was not found on {map}: the results are those of this log alone. Give its first pose on that map with --init x,y,deg, or record a drive through a part of it"
+            "{after}, and the robot was not found on {map}: the results cover this log alone. Give its first pose on that map with --init x,y,deg, or record a drive through a part of it"
         )),
         (fate, _) => {
             let (left_out, which) = match fate {
@@ -165,7 +164,7 @@ fn piece_sentence(name: &str, piece: &PieceReport, session_scans: usize) -> Opti
                 _ => (piece.scans, "after"),
             };
             Some(format!(
-                "{after}, and the robot was not found on {map}: the {} {which} the gap were left out. Map both parts as two logs, or record a drive through a place of both",
+                "{after}, and the robot was not found on {map}: the {} {which} the gap were left out. Map both parts as two logs, or record a drive through an area of both",
                 plural(left_out, "scan")
             ))
         }

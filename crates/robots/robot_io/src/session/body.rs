@@ -74,7 +74,7 @@ pub fn read(bytes: &[u8]) -> Result<Session, String> {
     let snapshot = &mut session.snapshot;
     snapshot.config = config;
     if body.keyframe_scans.len() != snapshot.keyframes.len() {
-        return Err("it has another number of scans than of keyframes".to_owned());
+        return Err("its numbers of scans and keyframes differ".to_owned());
     }
     for (keyframe, scan) in snapshot.keyframes.iter_mut().zip(body.keyframe_scans) {
         keyframe.scan = restored(scan)?;

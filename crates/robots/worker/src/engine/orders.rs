@@ -68,7 +68,7 @@ impl<'a> Engine<'a> {
         }
         self.may_edit().map_err(|_| {
             format!(
-                "{} has to wait: the map is not complete; try again once the log is read.",
+                "{} needs a finished map. Try again once the log is read.",
                 given.name
             )
         })?;

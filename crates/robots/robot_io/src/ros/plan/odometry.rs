@@ -236,11 +236,11 @@ pub fn aligned(odometry: &SelectedOdometry<'_>, scans: &MendedStamps) -> Aligned
         } else {
             odometry_by_s = offset_s;
         }
-        let whose = if is_scans_off { "scans" } else { "odometry" };
+        let whose = if is_scans_off { "scan" } else { "odometry" };
         remarks.push(Remark::mended(
             Part::Clocks,
             format!(
-                "the clocks of scans and odometry differ by {:.1} s, by the time of recording; that of the {whose} was shifted. Synchronize both computers' clocks by NTP",
+                "the clocks of scans and odometry differ by {:.1} s, judging by the time of recording; the {whose} clock was shifted. Synchronize both computers' clocks with NTP",
                 offset_s.abs()
             ),
         ));
@@ -252,7 +252,7 @@ pub fn aligned(odometry: &SelectedOdometry<'_>, scans: &MendedStamps) -> Aligned
             remarks.push(Remark::wrong(
                 Part::Clocks,
                 format!(
-                    "the clocks of scans and odometry differ by {:.0} s, and the recording does not show which is right; synchronize both computers' clocks by NTP and record again, or use scans alone with {NO_ODOMETRY}",
+                    "the clocks of scans and odometry differ by {:.0} s, and the recording does not show which is right; synchronize both computers' clocks with NTP and record again, or use scans alone with {NO_ODOMETRY}",
                     apart_s.abs()
                 ),
             )
