@@ -442,7 +442,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "A loop moves poses that the robot left long ago. A filter that keeps only the newest pose could not.",
         "Click a keyframe, and drag from it to another to add your own loop. If it is wrong, every edge between its ends pays a little. A kernel gives it little weight.",
         "A small χ² is not enough: the sweep must also fit the old walls to 0.16 m, with at least 25 pairs.",
-        "The exact gate adds up the covariances of the edges, and is no closer to the truth. Over seeds 1 to 50 at four times the noise, the chapter's gate closes 78 loops, 3 of them wrong. The exact gate closes 123, 7 of them wrong. Wrong means more than 0.3 m or 5° from the truth.",
+        "The exact gate adds up the covariances of the edges, and is no closer to the truth. Over seeds 1 to 50 at four times the noise, the chapter's gate closes 78 loops, 3 of them false. The exact gate closes 123, 7 of them false. False means more than 0.3 m or 5° from the truth.",
     ],
     opening: Opening {
         panels: &["map"],
@@ -489,7 +489,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         },
         Preset {
             id: "locked-out",
-            label: "Right loops, locked out",
+            label: "True loops, locked out",
             help: "Seed 2 at three times the noise drifts more than the gate allows for. The gate rejects three true loops, and the drift goes on.",
             set: &[SEED.to(2), NOISE.to(3.0), TICK.to(LAP_TICKS)],
             then: &[],
@@ -508,7 +508,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         },
         Preset {
             id: "wrong-loop",
-            label: "A wrong loop, forced in",
+            label: "A false loop, forced in",
             help: "“Keyframes 40 and 12 are the same place” is a lie of 6 m. Without the gate, it folds the map. The history moves by up to 3.8 m, and every edge between the two is strained.",
             set: &[
                 OWN.to("same-place"),
@@ -562,7 +562,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "twins",
             label: "Two rooms alike",
-            help: "The second room looks like the first, and after such a long path the gate is wide enough. The robot closes a wrong loop, and the two rooms become one.",
+            help: "The second room looks like the first, and after such a long path the gate is wide enough. The robot closes a false loop, and the two rooms become one.",
             set: &[
                 WORLD.to("twins"),
                 INFORMATION.to("exact"),

@@ -73,10 +73,10 @@ fn a_wrong_loop_that_passes_every_test_is_reported_as_wrong() {
     let room = after("wrong-loop");
     let outcome = room.outcome();
     assert_eq!(outcome.standing, Assessment::Bad);
-    assert_eq!(outcome.verdict, "wrong loop accepted");
+    assert_eq!(outcome.verdict, "false loop accepted");
     let sentence = outcome.sentence;
-    let expected = "wrong loop 29 to 7 accepted, chi-squared 4.93 below 7.815, history moved 0.32 m: \
-         its measurement is 0.36 m and 1.7° off the truth";
+    let expected = "false loop 29 to 7 accepted, chi-squared 4.93 below 7.815, history moved 0.32 m: \
+         its measurement is 0.36 m and 1.7° from the truth";
     assert!(sentence.starts_with(expected), "{sentence}");
     assert_promised("wrong-loop", "0.36 m out");
     let first = &room.timeline().unwrap().marks[0];

@@ -167,7 +167,7 @@ impl<'a> LapState<'a> {
         errors.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// The wrong place of the map once the lap is over: the keyframe farthest off the truth, else a wrong loop.
+    /// The wrong place of the map once the lap is over: the keyframe farthest off the truth, else a false loop.
     pub fn wrong_place(&self) -> Option<WrongPlace<'a>> {
         let (_, off_m) = self.farthest()?;
         if off_m >= WRONG_PLACE_M {

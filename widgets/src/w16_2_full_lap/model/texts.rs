@@ -114,11 +114,11 @@ fn statement(moment: &LapState, rejected: Option<&OwnLoopError>) -> Statement {
     }
 }
 
-/// `9.3 m off` or `wrong loop 80 to 12`.
+/// `9.3 m off` or `false loop 80 to 12`.
 pub fn wrong_words(wrong: &WrongPlace) -> String {
     match wrong {
         WrongPlace::Keyframe(off_m) => format!("{off_m:.1} m off"),
-        WrongPlace::Loop(attempt) => format!("wrong loop {}", ends(attempt)),
+        WrongPlace::Loop(attempt) => format!("false loop {}", ends(attempt)),
     }
 }
 
@@ -190,7 +190,7 @@ fn moment_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
         ),
         Fact::count(
             "false_loops",
-            "of these, wrong",
+            "of these, false",
             runs.false_loops_until(tick) as f64,
         ),
         Fact::new("gate_chi2", "gate χ²", runs.gate_chi2(), "", 3),

@@ -8,11 +8,11 @@ use super::report::RecordedLoopAttempt;
 use ch16_slam2d::loops::{GateTest, LoopRejection};
 
 impl fmt::Display for LoopJudgement {
-    /// `loop accepted`, `wrong loop accepted` or `loop rejected`.
+    /// `loop accepted`, `false loop accepted` or `loop rejected`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Right => "loop accepted",
-            Self::FalseAcceptance => "wrong loop accepted",
+            Self::FalseAcceptance => "false loop accepted",
             Self::Rejected => "loop rejected",
         })
     }
@@ -28,7 +28,7 @@ impl LapTrace {
         let loop_ = &attempt.verification;
         let (name, verdict) = match self.judge(attempt) {
             LoopJudgement::Right => ("loop", "accepted"),
-            LoopJudgement::FalseAcceptance => ("wrong loop", "accepted"),
+            LoopJudgement::FalseAcceptance => ("false loop", "accepted"),
             LoopJudgement::Rejected => ("loop", "rejected"),
         };
         let (new, old) = (loop_.from_node, loop_.candidate.node);
@@ -49,7 +49,7 @@ impl LapTrace {
             let error = self.loop_error(attempt);
             return if error.is_false() {
                 let (off_m, off_deg) = (error.position_m, error.heading_deg);
-                format!("{moved}: its measurement is {off_m:.2} m and {off_deg:.1}° off the truth")
+                format!("{moved}: its measurement is {off_m:.2} m and {off_deg:.1}° from the truth")
             } else {
                 moved
             };
@@ -92,8 +92,8 @@ mod tests {
         attempt.verification.registered = lap.loop_truth(&attempt) * SE2::from_xy(0.0, 0.456);
         assert_eq!(
             lap.loop_sentence(&attempt),
-            "wrong loop 29 to 7 accepted, chi-squared 4.24 below 7.815, history moved 0.24 m: \
-             its measurement is 0.46 m and 0.0° off the truth"
+            "false loop 29 to 7 accepted, chi-squared 4.24 below 7.815, history moved 0.24 m: \
+             its measurement is 0.46 m and 0.0° from the truth"
         );
         attempt = right;
         attempt.effect = None;

@@ -141,7 +141,7 @@ fn the_exact_gate_closes_more_loops_wrong_ones_among_them() {
     }
     let [[path, path_wrong], [exact, exact_wrong]] = closed;
     let note = format!(
-        "closes {path} loops, {path_wrong} of them wrong. The exact gate closes {exact}, {exact_wrong} of them wrong. Wrong means more than {FALSE_LOOP_DISTANCE_M} m or {FALSE_LOOP_TURN_DEG}° from the truth."
+        "closes {path} loops, {path_wrong} of them false. The exact gate closes {exact}, {exact_wrong} of them false. False means more than {FALSE_LOOP_DISTANCE_M} m or {FALSE_LOOP_TURN_DEG}° from the truth."
     );
     assert!(
         SPEC.notice.iter().any(|words| words.contains(&note)),

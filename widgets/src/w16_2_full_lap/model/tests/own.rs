@@ -17,7 +17,7 @@ fn the_settings_define_the_loop_and_the_picture_shows_where_its_error_goes() {
     set(&mut model, "wipe", 0.0);
     let words = model.outcome();
     assert_eq!(words.standing, Assessment::Bad);
-    assert_eq!(words.verdict, "your wrong loop accepted");
+    assert_eq!(words.verdict, "your false loop accepted");
     assert!(
         words.sentence.contains("let past the gate"),
         "{}",

@@ -214,16 +214,16 @@ fn a_wrong_loop_is_reported_as_wrong_everywhere() {
     let model = at(&[("seed", 6.0), ("noise", 2.0), ("t", 92.0)]);
     let outcome = model.outcome();
     assert_eq!(outcome.standing, Assessment::Bad);
-    assert_eq!(outcome.verdict, "wrong loop accepted");
+    assert_eq!(outcome.verdict, "false loop accepted");
     assert_eq!(
         outcome.sentence,
-        "wrong loop 29 to 7 accepted, chi-squared 4.93 below 7.815, history moved 0.32 m: \
-         its measurement is 0.36 m and 1.7° off the truth"
+        "false loop 29 to 7 accepted, chi-squared 4.93 below 7.815, history moved 0.32 m: \
+         its measurement is 0.36 m and 1.7° from the truth"
     );
     assert!(fact(&model, "loop_error_m") > 0.3);
     let mark = &model.timeline().unwrap().marks[0];
     assert_eq!(mark.standing, Assessment::Bad);
-    assert_eq!(mark.label, "wrong loop 29 to 7 accepted");
+    assert_eq!(mark.label, "false loop 29 to 7 accepted");
     let Scene { panels } = model.scene();
     let named = panels[0]
         .layers

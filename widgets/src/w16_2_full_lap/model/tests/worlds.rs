@@ -139,7 +139,7 @@ fn a_finished_lap_shows_its_wrong_place_in_a_ring() {
         })
     };
     for (preset, words) in [
-        ("twins", "wrong loop "),
+        ("twins", "false loop "),
         ("corridor", " m off"),
         ("hall", " m off"),
     ] {

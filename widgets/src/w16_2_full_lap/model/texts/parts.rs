@@ -219,7 +219,7 @@ pub fn own_statement(moment: &LapState, own: &OwnLoop) -> Statement {
     let judgement = lap.judge(&own.attempt);
     let verdict = match judgement {
         LoopJudgement::Right => "your loop accepted",
-        LoopJudgement::FalseAcceptance => "your wrong loop accepted",
+        LoopJudgement::FalseAcceptance => "your false loop accepted",
         LoopJudgement::Rejected => "your loop rejected",
     };
     let claim = match own.request.claim {

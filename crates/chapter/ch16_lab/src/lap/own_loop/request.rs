@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::super::choices::NamedChoice;
 
 /// Width of Huber's kernel, a Mahalanobis norm: 95 % of the efficiency of plain least squares on Gaussian
-/// noise (Huber 1964). The lap's own width, 12, is too large to reduce a wrong loop.
+/// noise (Huber 1964). The lap's own width, 12, is too large to reduce a false loop.
 const HUBER_WIDTH: f64 = 1.345;
 
 /// φ of dynamic covariance scaling, a squared Mahalanobis norm.
