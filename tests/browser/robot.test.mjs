@@ -121,7 +121,7 @@ describe('a reader’s log', () => {
       await says(tab, /^held:/);
       await press(tab, 'play');
       await isMapped(tab);
-      await says(tab, /off the truth/);
+      await says(tab, /from the truth/);
       const { facts } = await outcome(tab);
       assert.ok(facts.scans > 100 && facts.keyframes > 40 && facts.loops > 0, JSON.stringify(facts));
       assert.ok(facts.error_m < 0.1, String(facts.error_m));
@@ -153,7 +153,7 @@ describe('a reader’s log', () => {
       // Of a list of extensions iOS knows few, and greys out logs.
       assert.equal(await chooser.element().getAttribute('accept'), null);
       await chooser.setFiles(join(h.DIST, 'samples', 'ring-truth.tum'));
-      await says(tab, /(mapped|to look into): second\.log.*off the truth/);
+      await says(tab, /(mapped|to look into): second\.log.*from the truth/);
       await give(tab, 'third.log', SAMPLE.split('\n').slice(0, 80).join('\n'));
       await says(tab, /(mapped|to look into): third\.log: 80 scans/);
     });

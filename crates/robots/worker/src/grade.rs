@@ -72,7 +72,7 @@ impl DroppedReference {
                 let onto = onto_truth(trajectory, truth, Alignment::Se2).map_err(named)?;
                 let ate = report.ate;
                 let words = format!(
-                    "{} poses: RMSE {:.3} m, at most {:.3} m off the truth",
+                    "{} poses: RMSE {:.3} m, at most {:.3} m from the truth",
                     report.n, ate.rmse, ate.max
                 );
                 let off = |pose: &StampedPose| {
