@@ -6,7 +6,7 @@ Task. src[k] and dst[k] are the same point in two frames, with noise. Find the m
 
 Formula (Arun, Huang, Blostein 1987; Umeyama 1991). With the means p̄ and q̄
 
-    H = Σ (pₖ − p̄)(qₖ − q̄)ᵀ = U Σ Vᵀ
+    W = Σ (pₖ − p̄)(qₖ − q̄)ᵀ = U D Vᵀ
     R = V diag(1, det(V Uᵀ)) Uᵀ        t = q̄ − R p̄
 
 The determinant turns a reflection into the best rotation. numpy.linalg.svd returns U, the singular values and Vᵀ. In the

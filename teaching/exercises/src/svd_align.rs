@@ -10,7 +10,7 @@
 //! **Formula** (Arun, Huang, Blostein 1987; Umeyama 1991). With the means p̄ and q̄
 //!
 //! ```text
-//! H = Σ (pₖ − p̄)(qₖ − q̄)ᵀ = U Σ Vᵀ
+//! W = Σ (pₖ − p̄)(qₖ − q̄)ᵀ = U D Vᵀ
 //! R = V diag(1, det(V Uᵀ)) Uᵀ        t = q̄ − R p̄
 //! ```
 //!

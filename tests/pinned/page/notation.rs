@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use super::document::{companion, source};
 
 /// Commands that are symbols with a meaning; all others are operators, brackets, accents and layout.
-const GREEK: [&str; 13] = [
-    "theta", "omega", "tau", "sigma", "mu", "chi", "delta", "xi", "kappa", "ell", "Omega", "Sigma",
-    "Delta",
+const GREEK: [&str; 14] = [
+    "theta", "omega", "tau", "sigma", "mu", "chi", "delta", "xi", "kappa", "rho", "ell", "Omega",
+    "Sigma", "Delta",
 ];
 
 /// The letters and Greek letters of all formulas in `html`.

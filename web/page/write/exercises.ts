@@ -298,7 +298,7 @@ function gate(innovation, gap, drift, limit) {
       fault: verdict(NaN, false, 'A registration without pairs has no innovation; NaN ≤ limit is false, and NaN > limit as well.') },
   ],
   help: [
-    'S = gap · diag(σ², σ², σ_θ²), and χ² = νᵀ S⁻¹ ν: S is diagonal, so it is a sum of three quotients.',
+    'S = gap · diag(σ², σ², σ_θ²), and χ² = ξᵀ S⁻¹ ξ: S is diagonal, so it is a sum of three quotients.',
     'A loop is accepted if χ² ≤ limit; write it so that NaN is rejected.',
     'const chi2 = (x² + y²) / (gap σ²) + θ² / (gap σ_θ²).',
   ],

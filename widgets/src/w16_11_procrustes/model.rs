@@ -2,7 +2,7 @@
 //!
 //! # Computed
 //!
-//! The trace tr(M H) of every rotation and every reflection about the centroids of the pairs, and the best of each
+//! The trace tr(M W) of every rotation and every reflection about the centroids of the pairs, and the best of each
 //! (`ch16_lab::procrustes`).
 //!
 //! # Numbers

@@ -1,17 +1,17 @@
 //! The orthogonal matrix that aligns paired points best: the trace over all candidates.
 //!
-//! About the centroids the cost of a matrix is `Σ‖p‖² + Σ‖q‖² − 2 tr(M H)` with `H = Σ p qᵀ`, so the best
+//! About the centroids the cost of a matrix is `Σ‖p‖² + Σ‖q‖² − 2 tr(M W)` with `W = Σ p qᵀ`, so the best
 //! matrix has the largest trace. In the plane the orthogonal matrices are two circles, the rotations `R(θ)`
 //! and the reflections `R(θ) diag(1, −1)`, and on each of them the trace is one sinusoid:
 //!
 //! ```text
-//! tr(R(θ) H)             = a cos(θ − θ_a),   a = hypot(h_xx + h_yy, h_xy − h_yx)
-//! tr(R(θ) diag(1,−1) H)  = b cos(θ − θ_b),   b = hypot(h_xx − h_yy, h_xy + h_yx)
+//! tr(R(θ) W)             = a cos(θ − θ_a),   a = hypot(w_xx + w_yy, w_xy − w_yx)
+//! tr(R(θ) diag(1,−1) W)  = b cos(θ − θ_b),   b = hypot(w_xx − w_yy, w_xy + w_yx)
 //! ```
 //!
-//! The singular values of `H` are `(a + b)/2` and `|a − b|/2`. Their sum bounds every trace, and the larger
-//! of `a` and `b` reaches it. If `det H < 0` that is the reflection, and the best rotation reaches only `s₁ −
-//! s₂`: the last singular value counts against it. If `H` has rank 1 both reach the bound.
+//! The singular values of `W` are `(a + b)/2` and `|a − b|/2`. Their sum bounds every trace, and the larger
+//! of `a` and `b` reaches it. If `det W < 0` that is the reflection, and the best rotation reaches only `s₁ −
+//! s₂`: the last singular value counts against it. If `W` has rank 1 both reach the bound.
 //!
 //! Sources: Schönemann 1966; Arun, Huang & Blostein 1987; Umeyama 1991.
 
@@ -53,11 +53,11 @@ impl Handedness {
 /// The kind with the larger trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Winner {
-    /// A rotation: `det H > 0`.
+    /// A rotation: `det W > 0`.
     Turn,
-    /// A reflection: `det H < 0`.
+    /// A reflection: `det W < 0`.
     Mirror,
-    /// Both, because `H` has rank 1 at most: two points, or a straight line.
+    /// Both, because `W` has rank 1 at most: two points, or a straight line.
     Tie,
 }
 
@@ -66,14 +66,14 @@ pub enum Winner {
 pub struct Best {
     /// Its angle, rad.
     pub theta_rad: f64,
-    /// `tr(M H)`, m².
+    /// `tr(M W)`, m².
     pub trace_m2: f64,
 }
 
 /// Paired points about their centroids.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Procrustes {
-    /// `H = Σ (p − p̄)(q − q̄)ᵀ`, m².
+    /// `W = Σ (p − p̄)(q − q̄)ᵀ`, m².
     pub moments: Matrix2<f64>,
     /// Mean of the source, m.
     pub source_mean: Point2<f64>,
@@ -109,7 +109,7 @@ impl Procrustes {
         }
     }
 
-    /// `tr(M H)` of the matrix of that kind and angle, m².
+    /// `tr(M W)` of the matrix of that kind and angle, m².
     #[must_use]
     pub fn trace_m2(&self, kind: Handedness, theta_rad: f64) -> f64 {
         (kind.matrix(theta_rad) * self.moments).trace()
@@ -135,7 +135,7 @@ impl Procrustes {
         }
     }
 
-    /// The singular values of `H`, the larger one first, m².
+    /// The singular values of `W`, the larger one first, m².
     #[must_use]
     pub fn singular_values_m2(&self) -> [f64; 2] {
         let [turn, mirror] = Handedness::ALL.map(|kind| self.best(kind).trace_m2);

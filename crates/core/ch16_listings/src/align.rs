@@ -8,7 +8,7 @@ use crate::{Correspondence, SE2};
 const MIN_ROWS: usize = 3;
 
 /// The motion that minimizes `Σ ‖R p + t − q‖²`, by the singular value decomposition of
-/// `H = Σ (p − p̄)(q − q̄)ᵀ = U Σ Vᵀ`: `R = V diag(1, det(V Uᵀ)) Uᵀ`.
+/// `W = Σ (p − p̄)(q − q̄)ᵀ = U D Vᵀ`: `R = V diag(1, det(V Uᵀ)) Uᵀ`.
 ///
 /// The determinant keeps reflections out (Umeyama 1991). No pairs give the identity.
 ///
@@ -24,12 +24,12 @@ pub fn svd_align(src: &[Point2<f64>], dst: &[Point2<f64>]) -> SE2 {
         points.iter().map(|p| p.coords).sum::<Vector2<f64>>() / points.len() as f64
     };
     let (p_mean, q_mean) = (mean(src), mean(dst));
-    let h: Matrix2<f64> = src
+    let w: Matrix2<f64> = src
         .iter()
         .zip(dst)
         .map(|(p, q)| (p.coords - p_mean) * (q.coords - q_mean).transpose())
         .sum();
-    let svd = h.svd(true, true);
+    let svd = w.svd(true, true);
     let (Some(u), Some(v_t)) = (svd.u, svd.v_t) else {
         return SE2::identity();
     };

@@ -3,8 +3,8 @@
 //!
 //! A [`LoopDetector`] proposes, [`verify_loop`] registers and tests; the two are independent. Three tests guard
 //! the graph, because one false loop ruins it: the registration has to fit (`rmse`), enough points have to be
-//! paired (`inliers`), and the innovation `ν = log(T₀⁻¹ T̂)` between the graph's relative pose T₀ and the
-//! registered T̂ has to lie within the possible drift of the odometry between the two nodes: `νᵀ S⁻¹ ν ≤ χ²`.
+//! paired (`inliers`), and the innovation `ξ = log(T₀⁻¹ T̂)` between the graph's relative pose T₀ and the
+//! registered T̂ has to lie within the possible drift of the odometry between the two nodes: `ξᵀ S⁻¹ ξ ≤ χ²`.
 //!
 //! The gate cannot distinguish two poses that are both within the drift, and it rejects a true loop if the drift
 //! was larger than assumed.

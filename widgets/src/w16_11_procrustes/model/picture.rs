@@ -228,7 +228,7 @@ fn curves(trace: &ProcrustesTrace) -> Panel {
         aspect: Aspect::Free,
         // The handle is whole at either end.
         x: Axis::new("angle tried (°)", -10.0, WHOLE_TURN_DEG + 10.0),
-        y: Axis::new("tr(M H) (m²)", -top, top),
+        y: Axis::new("tr(M W) (m²)", -top, top),
         layers,
         legend: vec![
             LegendEntry::marked_line(

@@ -66,8 +66,8 @@ impl Gate {
     /// The positions that the gate accepts at the registered heading: the measured one is inside exactly if
     /// the gate accepts it. `None` if that heading is rejected at every position.
     ///
-    /// With the innovation split into position ρ and heading θ and S⁻¹ into blocks P, c and h, the gate `νᵀ
-    /// S⁻¹ ν ≤ g` reads `(ρ − ρ₀)ᵀ P (ρ − ρ₀) ≤ g − (h − cᵀ P⁻¹ c) θ²` with `ρ₀ = −P⁻¹ c θ`. It is a section
+    /// With the innovation split into position ρ and heading θ and S⁻¹ into blocks P, c and h, the gate `ξᵀ
+    /// S⁻¹ ξ ≤ g` reads `(ρ − ρ₀)ᵀ P (ρ − ρ₀) ≤ g − (h − cᵀ P⁻¹ c) θ²` with `ρ₀ = −P⁻¹ c θ`. It is a section
     /// of the ellipsoid at θ, smaller than its projection. `exp` maps ρ to a displacement, linearly at a
     /// given θ.
     pub fn region(&self, loop_: &LoopVerification) -> Option<Region> {

@@ -26,7 +26,7 @@ pub struct RigidAlignment {
 
 /// The motion that minimizes `Σ ‖R p_k + t − q_k‖²` over paired points.
 ///
-/// Equals the solution by the singular value decomposition of `H = Σ (p_k − p̄)(q_k − q̄)ᵀ`, without
+/// Equals the solution by the singular value decomposition of `W = Σ (p_k − p̄)(q_k − q̄)ᵀ`, without
 /// reflections; in the plane it has a closed form, see [`closed_form`], which also returns whether the pairs measure
 /// the rotation: coincident points do not, and keep the heading. No pairs give the identity.
 ///

@@ -8,7 +8,7 @@ use super::LoopConfig;
 /// Result of the χ² gate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GateTest {
-    /// `νᵀ Ω ν`.
+    /// `ξᵀ Ω ξ`.
     pub chi2: f64,
     /// The largest value that passes.
     pub gate_chi2: f64,
