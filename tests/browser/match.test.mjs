@@ -17,7 +17,7 @@ const off = async (tab) => {
 };
 const says = (tab) => tab.locator('#match-says').textContent();
 /** Waits until ICP has reported its result. */
-const ended = (tab) => tab.waitForFunction(() => /^ICP (came|stopped)/.test(document.querySelector('#match-says').textContent));
+const ended = (tab) => tab.waitForFunction(() => /^ICP (found|stopped)/.test(document.querySelector('#match-says').textContent));
 const press = (tab, name) => tab.getByRole('button', { name, exact: true }).click();
 const middle = (tab, selector) => tab.locator(selector).evaluate((part) => {
   const { left, top, width, height } = part.getBoundingClientRect();
@@ -99,13 +99,13 @@ describe('the sweeps that the reader aligns', () => {
       await live(tab);
       await layOn(tab);
       assert.deepEqual(await off(tab), { cm: 0, degrees: 0 });
-      assert.match(await says(tab), /^By hand: .* That is home/);
+      assert.match(await says(tab), /^By hand: .* That is the right place/);
       for (let step = 0; step < 5; step += 1) await tab.keyboard.press('Shift+ArrowUp');
       for (let step = 0; step < 6; step += 1) await tab.keyboard.press('ArrowLeft');
       assert.deepEqual(await off(tab), { cm: 30, degrees: 10 });
       await press(tab, 'Let ICP take over');
       await ended(tab);
-      assert.match(await says(tab), /^ICP came home in \d+ steps/);
+      assert.match(await says(tab), /^ICP found the right place in \d+ steps/);
       const end = await off(tab);
       assert.ok(end.cm < 12 && end.degrees < 3, JSON.stringify(end));
       assert.equal(await tab.locator('.match-left').getAttribute('visibility'), 'visible');
@@ -187,7 +187,7 @@ describe('the sweeps that the reader aligns', () => {
           await layOn(tab, room);
           await tab.getByRole('button', { name: 'Let ICP take over', exact: true }).press('Enter');
           await ended(tab);
-          assert.match(await says(tab), /^ICP came home in \d+ steps?: \d cm and .* off, after \d+ s\. Your record: \d cm, \d+ s\.$/, room);
+          assert.match(await says(tab), /^ICP found the right place in \d+ steps?: \d cm and .* off, after \d+ s\. Your record: \d cm, \d+ s\.$/, room);
           const lines = (await tab.locator('.match-pairs').getAttribute('d')).split('M').length - 1;
           assert.ok(lines > 60, `${lines} lines in ${room}`);
           // The button that took the place of the other one has its focus.

@@ -316,14 +316,14 @@ export class MatchFigure {
   }
 
   #announcePose(): void {
-    const hint = this.#isHome() ? 'That is home: the walls are sharp. Can ICP do better?' : 'Closer, or let ICP take over.';
+    const hint = this.#isHome() ? 'That is the right place: the walls are sharp. Can ICP do better?' : 'Closer, or let ICP take over.';
     this.#announce(`By hand: ${this.#errorText()} off. ${hint}`);
   }
 
   #summaryOfWin({ poses }: Run, seconds: number): string {
     const cm = Math.round(100 * this.#error().metres);
     const best = recordOf(this.#room.name, { seconds, cm });
-    return `ICP came home in ${counted(poses.length - 1)}: ${this.#errorText()} off, after ${seconds} s. Your record: ${best.cm} cm, ${best.seconds} s.`;
+    return `ICP found the right place in ${counted(poses.length - 1)}: ${this.#errorText()} off, after ${seconds} s. Your record: ${best.cm} cm, ${best.seconds} s.`;
   }
 
   #summary({ poses, rmse, ending }: Run): string {
