@@ -192,7 +192,7 @@ it('a wrong function is told its fault and may drive, an error names its line, a
     const theirs = await said(tab, W1, 'your svd_align ends');
     assert.ok(Math.abs(theirs.facts.error_deg - 25) < 0.1, `${theirs.facts.error_deg}`);
     const faults = [
-      ['function svd_align(src, dst) {\n  for (;;) {}\n}', 'There was no answer for 1 s, and your code was ended. Is there a loop without end? Ours drives again.'],
+      ['function svd_align(src, dst) {\n  for (;;) {}\n}', 'There was no answer for 1 s, and your code was stopped. Is there an infinite loop? Ours drives again.'],
       ['function svd_align(src, dst) {\n  return [srk[0], 0, 0];\n}', 'Line 2: Your function ended with ReferenceError: srk is not defined. Ours drives again.'],
       ['function svd_align(src, dst) {}', 'svd_align has to return three numbers, [x, y, θ]. Ours drives again.'],
       ['const other = 1;', 'There is no function svd_align. Keep its name. Ours drives again.'],
@@ -251,7 +251,7 @@ it('a program that does not arrive, or may not start, is reported with its cause
     }, { quiet: false, server });
   };
   for (const missing of ['/write-worker-', '/slam_robot-']) {
-    await tries('The program that calls your code did not arrive (status 404). Check the connection and press the button again.', {
+    await tries('The program that calls your code could not be fetched (status 404). Check the connection and press the button again.', {
       answer: (path, response) => {
         if (!path.startsWith(missing)) return false;
         response.statusCode = 404;

@@ -59,7 +59,7 @@ it('a wrong function is told which number was expected, which came, and what it 
       return src.length === 0 ? [0, 0, 0] : [mean(dst, 0) - mean(src, 0), mean(dst, 1) - mean(src, 1), 0];
     }`);
     const sentences = await run(tab);
-    assert.match(sentences[0], /^✗ A known motion: expected \(2\.0000 m, 1\.0000 m, 36\.870°\), and \(2\.0000 m, 1\.0000 m, 0\.000°\) came/);
+    assert.match(sentences[0], /^✗ A known motion: expected \(2\.0000 m, 1\.0000 m, 36\.870°\), but got \(2\.0000 m, 1\.0000 m, 0\.000°\)/);
     assert.ok(sentences.some((one) => /^✗ Mirrored points: .*the sign of the determinant/.test(one)), sentences.join('\n'));
     assert.ok(sentences.includes('✓ A corridor: as expected.') && sentences.includes('✓ No pairs: as expected.'));
   });
@@ -68,7 +68,7 @@ it('a wrong function is told which number was expected, which came, and what it 
 it('a loop without end is stopped, errors name their line, and a missing function is named', async () => {
   await writing('gate', async (tab) => {
     await type(tab, 'function gate() {\n  for (;;) {}\n}');
-    assert.deepEqual(await run(tab), ['✗ There was no answer for 1 s, and your code was ended. Is there a loop without end?']);
+    assert.deepEqual(await run(tab), ['✗ There was no answer for 1 s, and your code was stopped. Is there an infinite loop?']);
     await type(tab, 'for (;;) {}');
     assert.match((await run(tab))[0], /no answer for 1 s/);
     await type(tab, 'function gate(innovation) {\n  const [x] = innovation;\n  return y;\n}');

@@ -15,7 +15,7 @@ if (!NEEDED.every(([owner, name]) => name in owner)) {
     const line = document.createElement('p');
     line.className = 'older';
     line.setAttribute('role', 'status');
-    line.textContent = `This browser is older than the page needs: some figures stand still. Everything works in ${BROWSERS}, or a later version.`;
+    line.textContent = `This browser is older than the page needs: some figures do not move. Everything works in ${BROWSERS}, or a later version.`;
     document.querySelector('.bar')?.after(line);
   });
 }

@@ -13,10 +13,10 @@
   function motion(expected, tolerance, meaning) {
     return (result) => {
       const found = numbers(result, 3);
-      if (found === void 0) return `expected ${written(expected)} as an array [x, y, \u03B8], and ${shown(result)} came. Return three numbers.`;
+      if (found === void 0) return `expected ${written(expected)} as an array [x, y, \u03B8], but got ${shown(result)}. Return three numbers.`;
       const turn = Math.abs(Math.atan2(Math.sin((found[2] ?? 0) - expected[2]), Math.cos((found[2] ?? 0) - expected[2])));
       const apart = Math.hypot((found[0] ?? 0) - expected[0], (found[1] ?? 0) - expected[1]) + turn;
-      return apart <= tolerance ? void 0 : `expected ${written(expected)}, and ${written(found)} came. ${meaning}`;
+      return apart <= tolerance ? void 0 : `expected ${written(expected)}, but got ${written(found)}. ${meaning}`;
     };
   }
   function shown(value) {
@@ -42,7 +42,7 @@
   var ALIGN = {
     name: "svd_align",
     stub: `// The motion [x, y, \u03B8] that minimizes \u03A3 \u2016R(\u03B8) p\u2096 + t \u2212 q\u2096\u2016\xB2.
-// src, dst: Float64Array x0, y0, x1, y1, \u2026; point k of both belongs together.
+// src, dst: Float64Array x0, y0, x1, y1, \u2026; points k of both belong together.
 function svd_align(src, dst) {
   return [0, 0, 0];
 }
@@ -51,7 +51,7 @@ function svd_align(src, dst) {
       {
         name: "A known motion",
         arguments: [flat(CIRCLE), flat(moved(CIRCLE, [2, 1, Math.atan2(0.6, 0.8)]))],
-        fault: motion([2, 1, Math.atan2(0.6, 0.8)], 1e-9, "Four points on a circle were turned and shifted by this.")
+        fault: motion([2, 1, Math.atan2(0.6, 0.8)], 1e-9, "Four points on a circle were turned and shifted by this motion.")
       },
       {
         name: "A shift after a turn",
@@ -61,21 +61,21 @@ function svd_align(src, dst) {
       {
         name: "Mirrored points",
         arguments: [flat(THIN), flat(THIN.map(([x = 0, y = 0]) => [x, -y]))],
-        fault: motion([0, 0, THIN_TURN], 1e-9, "No turn fits; without the sign of the determinant the result is a reflection.")
+        fault: motion([0, 0, THIN_TURN], 1e-9, "No rotation fits; without the sign of the determinant the result is a reflection.")
       },
       {
         name: "A corridor",
         arguments: [flat(WALLS), flat(WALLS.map(([x = 0, y = 0]) => [x + 0.5, y]))],
-        fault: motion([0.5, 0, 0], 1e-9, "Given pairs tell the shift along the walls; it is the search for pairs that cannot.")
+        fault: motion([0.5, 0, 0], 1e-9, "Known pairs determine the shift along the walls; searching for pairs does not.")
       },
       {
         name: "No pairs",
         arguments: [new Float64Array(0), new Float64Array(0)],
-        fault: motion([0, 0, 0], 0, "A mean of no points is NaN, so they need a rule.")
+        fault: motion([0, 0, 0], 0, "The mean of no points is NaN, so this case needs a rule.")
       }
     ],
     help: [
-      "Subtract both means first. Then only a turn is left to find, and t follows from the means.",
+      "Subtract both means first. Then only a rotation is left to find, and t follows from the means.",
       "Of centred pairs sum c = \u03A3 (p\u2093 q_y \u2212 p_y q\u2093) and d = \u03A3 (p\u2093 q\u2093 + p_y q_y). The cost is one sinusoid in \u03B8.",
       "\u03B8 = Math.atan2(c, d); x and y are q\u0304 \u2212 R(\u03B8) p\u0304."
     ],
@@ -115,7 +115,7 @@ function svd_align(src, dst) {
   function undoes(off, at, meaning) {
     return (result) => {
       const found = numbers(result, 3);
-      if (found === void 0) return `expected an array [x, y, \u03B8], and ${shown(result)} came.`;
+      if (found === void 0) return `expected an array [x, y, \u03B8], but got ${shown(result)}.`;
       const shifted = moved(CORNER_POINTS, off).map(([x = 0, y = 0]) => [x + at[0], y + at[1]]);
       const back = moved(shifted, found);
       const left = Math.max(...back.map(([x = 0, y = 0], k) => Math.hypot(x - (CORNER_POINTS[k]?.[0] ?? 0) - at[0], y - (CORNER_POINTS[k]?.[1] ?? 0) - at[1])));
@@ -126,7 +126,7 @@ function svd_align(src, dst) {
   var PLANE = {
     name: "point_to_plane_step",
     stub: `// One Gauss\u2013Newton step on \u03A3 (n\u2096 \xB7 (p\u2096 \u2212 q\u2096))\xB2: the motion [x, y, \u03B8] of the new pose step \u2218 pose.
-// src: points moved by the present pose; dst: their partners; normals: unit normals of these, NaN where there is none.
+// src: points moved by the present pose; dst: their matches; normals: unit normals of these, NaN where there is none.
 // All are Float64Array x0, y0, x1, y1, \u2026
 function point_to_plane_step(src, dst, normals) {
   return [0, 0, 0];
@@ -136,12 +136,12 @@ function point_to_plane_step(src, dst, normals) {
       {
         name: "A known motion",
         arguments: cornerSeen(OFF, [0, 0]),
-        fault: undoes(OFF, [0, 0], "Two walls that meet tell all three numbers.")
+        fault: undoes(OFF, [0, 0], "Two walls that meet determine all three numbers.")
       },
       {
         name: "Far from the origin",
         arguments: cornerSeen(OFF, [1e3, -2e3]),
-        fault: undoes(OFF, [1e3, -2e3], "Turn about the centroid: about the origin each turn would be a shift as well.")
+        fault: undoes(OFF, [1e3, -2e3], "Rotate about the centroid; about the origin, each rotation would also be a shift.")
       },
       {
         name: "Mirrored normals",
@@ -151,7 +151,7 @@ function point_to_plane_step(src, dst, normals) {
       {
         name: "A corridor",
         arguments: [flat(WALL), flat(WALL.map(([x = 0]) => [x + 0.5, 0])), flat([[0, 1], [0, 1], [0, 1]])],
-        fault: motion([0, ACROSS, 0], 1e-9, "No normal sees the way along the wall: the ridge gives it no step.")
+        fault: motion([0, ACROSS, 0], 1e-9, "No normal points along the wall, so the ridge allows no step there.")
       },
       {
         name: "No pairs",
@@ -211,7 +211,7 @@ function point_to_plane_step(src, dst, normals) {
     return (result) => {
       const found = numbers(result, expected.length);
       if (found?.every((one, k) => one === expected[k]) === true) return void 0;
-      return `expected the numbers [${expected.join(", ")}], and ${shown(result)} came. ${meaning}`;
+      return `expected the numbers [${expected.join(", ")}], but got ${shown(result)}. ${meaning}`;
     };
   }
   var REJECT = {
@@ -226,17 +226,17 @@ function keep_pairs(lengths, trim) {
       {
         name: "A box that moved",
         arguments: [Float64Array.of(0.1, 0.5, 0.2, 0.4), 0.25],
-        fault: kept([0, 2, 3], "The longest pair lies on the box and goes.")
+        fault: kept([0, 2, 3], "The longest pair is on the box and is dropped.")
       },
       {
         name: "A share of three",
         arguments: [Float64Array.of(0.3, 0.1, 0.2), 0.5],
-        fault: kept([1, 2], "Of 1.5 pairs 2 are kept: round up.")
+        fault: kept([1, 2], "Of 1.5 pairs, 2 are kept. Round up.")
       },
       {
         name: "Lengths are numbers",
         arguments: [Float64Array.of(10, 9, 2, 1), 0.5],
-        fault: kept([2, 3], "An array sorts its elements as text unless it is told how.")
+        fault: kept([2, 3], "An array sorts its elements as text unless told otherwise.")
       },
       {
         name: "A corridor without trimming",
@@ -248,7 +248,7 @@ function keep_pairs(lengths, trim) {
     ],
     help: [
       "Sort a copy of the lengths to find the length of the last pair that stays, and keep all pairs up to it.",
-      "k = Math.max(1, Math.ceil((1 \u2212 trim) * n)); of no pairs there is no k-th one.",
+      "k = Math.max(1, Math.ceil((1 \u2212 trim) * n)); without pairs there is no k-th one.",
       "const limit = Float64Array.from(lengths).sort()[k \u2212 1]; a typed array sorts numbers."
     ],
     solution: `function keep_pairs(lengths, trim) {
@@ -267,7 +267,7 @@ function keep_pairs(lengths, trim) {
       if (isNear && found?.accepted === accepted) return void 0;
       const expected = `\u03C7\xB2 ${Number.isNaN(chi2) ? "NaN" : chi2.toFixed(3)} and accepted ${accepted}`;
       const came = typeof found?.chi2 === "number" ? `\u03C7\xB2 ${found.chi2.toFixed(3)} and accepted ${String(found.accepted)}` : shown(result);
-      return `expected ${expected}, and ${came} came. ${meaning}`;
+      return `expected ${expected}, but got ${came}. ${meaning}`;
     };
   }
   var DRIFT = [0.045, 0.012];
@@ -305,13 +305,13 @@ function gate(innovation, gap, drift, limit) {
       {
         name: "Another limit",
         arguments: [Float64Array.of(3 * 0.045 * 5, 0, 0), 25, [...DRIFT], 11.345],
-        fault: verdict(9, true, "The limit is an argument: 11.345 is the 99 % quantile.")
+        fault: verdict(9, true, "The limit is an argument: 11.345 is the 99% quantile.")
       },
       { name: "At the limit", arguments: [Float64Array.of(0, 2, 0), 1, [1, 1], 4], fault: verdict(4, true, "\u2264, not <.") },
       {
         name: "No pairs",
         arguments: [Float64Array.of(NaN, 0, 0), 1, [...DRIFT], GATE],
-        fault: verdict(NaN, false, "A registration without pairs has no innovation; NaN \u2264 limit is false, and NaN > limit as well.")
+        fault: verdict(NaN, false, "A registration without pairs has no innovation; NaN \u2264 limit is false, and so is NaN > limit.")
       }
     ],
     help: [

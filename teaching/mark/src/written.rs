@@ -208,7 +208,7 @@ impl Engine {
             value.catch(&ctx).map_err(|problem| {
                 if self.is_over() {
                     return format!(
-                        "there was no answer after {} million steps: is there a loop without end?",
+                        "there was no answer after {} million steps; is there an infinite loop?",
                         MOST_STEPS / 1_000_000
                     );
                 }
@@ -355,7 +355,7 @@ mod tests {
         for (code, note) in [
             (
                 "for (;;) {}",
-                "no answer after 200 million steps: is there a loop without end?",
+                "no answer after 200 million steps; is there an infinite loop?",
             ),
             ("function gate() { return y; }", "y is not defined"),
             ("const other = 1;", "there is no function gate"),

@@ -78,8 +78,8 @@ function drawLabels(moment: Moment, surface: Surface, toPixels: Camera, unit: nu
   surface.words('by the sweeps', [robot[0], robot[1] - side * 1.7 * size], 'posterior', size);
   // On a phone they would lie on each other: the caption has the words.
   if (moment.act === 0 || widthPx < PHONE_PX) return;
-  surface.words('walls, way out', toPixels(WALL_LABELS.out), 'outbound', size);
-  surface.words('walls, way back', toPixels(WALL_LABELS.back), 'return', size);
+  surface.words('walls, outbound', toPixels(WALL_LABELS.out), 'outbound', size);
+  surface.words('walls, return', toPixels(WALL_LABELS.back), 'return', size);
 }
 
 /** At the end: the walls of the way back before the loops closed. */

@@ -66,7 +66,7 @@ export function sweeps(scene: Scene, room: Room): string {
   });
   const squares = points(scene.source).map(([x, y]) => `M${short(x)} ${short(y)}h0`).join('');
   const at = placedAt(startOf(scene, room));
-  return `<title id="match-name">Two sweeps of one room, to be laid on each other</title>
+  return `<title id="match-name">Two sweeps of one room, to be aligned</title>
       <g transform="scale(1 -1)">
         <path class="match-target" d="${crosses.join('')}"/>
         <path class="match-source match-left" d="${squares}" transform="${at}" visibility="hidden"/>

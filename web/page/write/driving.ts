@@ -67,7 +67,7 @@ export class Driving implements Driver {
    */
   static async start(code: string, name: string, seat: Seat, failed: (why: NotRun) => void): Promise<Driving> {
     const [script, program] = await Promise.all([workerScript(), coreProgram()]).catch((why: unknown) => {
-      throw new NotRun(`The program that calls your code did not arrive (${why instanceof Error ? why.message : String(why)}). Check the connection and press the button again.`);
+      throw new NotRun(`The program that calls your code could not be fetched (${why instanceof Error ? why.message : String(why)}). Check the connection and press the button again.`);
     });
     const sandbox = await Sandbox.start(code, name, script);
     await sandbox.ask({ program });

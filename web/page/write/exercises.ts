@@ -40,10 +40,10 @@ function written([x, y, theta]: number[]): string {
 function motion(expected: Motion, tolerance: number, meaning: string): (result: unknown) => string | undefined {
   return (result) => {
     const found = numbers(result, 3);
-    if (found === undefined) return `expected ${written(expected)} as an array [x, y, θ], and ${shown(result)} came. Return three numbers.`;
+    if (found === undefined) return `expected ${written(expected)} as an array [x, y, θ], but got ${shown(result)}. Return three numbers.`;
     const turn = Math.abs(Math.atan2(Math.sin((found[2] ?? 0) - expected[2]), Math.cos((found[2] ?? 0) - expected[2])));
     const apart = Math.hypot((found[0] ?? 0) - expected[0], (found[1] ?? 0) - expected[1]) + turn;
-    return apart <= tolerance ? undefined : `expected ${written(expected)}, and ${written(found)} came. ${meaning}`;
+    return apart <= tolerance ? undefined : `expected ${written(expected)}, but got ${written(found)}. ${meaning}`;
   };
 }
 
@@ -76,25 +76,25 @@ const WALLS = [-2, -1, 0, 1, 2].flatMap((x) => [[x, 1], [x, -1]]);
 const ALIGN: Exercise = {
   name: 'svd_align',
   stub: `// The motion [x, y, θ] that minimizes Σ ‖R(θ) pₖ + t − qₖ‖².
-// src, dst: Float64Array x0, y0, x1, y1, …; point k of both belongs together.
+// src, dst: Float64Array x0, y0, x1, y1, …; points k of both belong together.
 function svd_align(src, dst) {
   return [0, 0, 0];
 }
 `,
   trials: [
     { name: 'A known motion', arguments: [flat(CIRCLE), flat(moved(CIRCLE, [2, 1, Math.atan2(0.6, 0.8)]))],
-      fault: motion([2, 1, Math.atan2(0.6, 0.8)], 1e-9, 'Four points on a circle were turned and shifted by this.') },
+      fault: motion([2, 1, Math.atan2(0.6, 0.8)], 1e-9, 'Four points on a circle were turned and shifted by this motion.') },
     { name: 'A shift after a turn', arguments: [flat(ROOM), flat(moved(ROOM, [-3, 0.5, 2.5]))],
       fault: motion([-3, 0.5, 2.5], 1e-9, 'The turn comes first: t = q̄ − R p̄.') },
     { name: 'Mirrored points', arguments: [flat(THIN), flat(THIN.map(([x = 0, y = 0]) => [x, -y]))],
-      fault: motion([0, 0, THIN_TURN], 1e-9, 'No turn fits; without the sign of the determinant the result is a reflection.') },
+      fault: motion([0, 0, THIN_TURN], 1e-9, 'No rotation fits; without the sign of the determinant the result is a reflection.') },
     { name: 'A corridor', arguments: [flat(WALLS), flat(WALLS.map(([x = 0, y = 0]) => [x + 0.5, y]))],
-      fault: motion([0.5, 0, 0], 1e-9, 'Given pairs tell the shift along the walls; it is the search for pairs that cannot.') },
+      fault: motion([0.5, 0, 0], 1e-9, 'Known pairs determine the shift along the walls; searching for pairs does not.') },
     { name: 'No pairs', arguments: [new Float64Array(0), new Float64Array(0)],
-      fault: motion([0, 0, 0], 0, 'A mean of no points is NaN, so they need a rule.') },
+      fault: motion([0, 0, 0], 0, 'The mean of no points is NaN, so this case needs a rule.') },
   ],
   help: [
-    'Subtract both means first. Then only a turn is left to find, and t follows from the means.',
+    'Subtract both means first. Then only a rotation is left to find, and t follows from the means.',
     'Of centred pairs sum c = Σ (pₓ q_y − p_y qₓ) and d = Σ (pₓ qₓ + p_y q_y). The cost is one sinusoid in θ.',
     'θ = Math.atan2(c, d); x and y are q̄ − R(θ) p̄.',
   ],
@@ -137,7 +137,7 @@ function cornerSeen(off: Motion, at: [number, number]): unknown[] {
 function undoes(off: Motion, at: [number, number], meaning: string): (result: unknown) => string | undefined {
   return (result) => {
     const found = numbers(result, 3) as Motion | undefined;
-    if (found === undefined) return `expected an array [x, y, θ], and ${shown(result)} came.`;
+    if (found === undefined) return `expected an array [x, y, θ], but got ${shown(result)}.`;
     // The step acts in the frame of the map: it has to bring the moved corner back.
     const shifted = moved(CORNER_POINTS, off).map(([x = 0, y = 0]) => [x + at[0], y + at[1]]);
     const back = moved(shifted, found);
@@ -151,7 +151,7 @@ const OFF: Motion = [0.02, -0.03, 0.01];
 const PLANE: Exercise = {
   name: 'point_to_plane_step',
   stub: `// One Gauss–Newton step on Σ (nₖ · (pₖ − qₖ))²: the motion [x, y, θ] of the new pose step ∘ pose.
-// src: points moved by the present pose; dst: their partners; normals: unit normals of these, NaN where there is none.
+// src: points moved by the present pose; dst: their matches; normals: unit normals of these, NaN where there is none.
 // All are Float64Array x0, y0, x1, y1, …
 function point_to_plane_step(src, dst, normals) {
   return [0, 0, 0];
@@ -159,13 +159,13 @@ function point_to_plane_step(src, dst, normals) {
 `,
   trials: [
     { name: 'A known motion', arguments: cornerSeen(OFF, [0, 0]),
-      fault: undoes(OFF, [0, 0], 'Two walls that meet tell all three numbers.') },
+      fault: undoes(OFF, [0, 0], 'Two walls that meet determine all three numbers.') },
     { name: 'Far from the origin', arguments: cornerSeen(OFF, [1000, -2000]),
-      fault: undoes(OFF, [1000, -2000], 'Turn about the centroid: about the origin each turn would be a shift as well.') },
+      fault: undoes(OFF, [1000, -2000], 'Rotate about the centroid; about the origin, each rotation would also be a shift.') },
     { name: 'Mirrored normals', arguments: [flat(WALL), flat(WALL.map(([x = 0]) => [x, 0])), flat([[0, -1], [0, 1], [0, -1]])],
       fault: motion([0, ACROSS, 0], 1e-9, 'The sign of a normal is arbitrary, and cancels in JᵀJ and in Jᵀe.') },
     { name: 'A corridor', arguments: [flat(WALL), flat(WALL.map(([x = 0]) => [x + 0.5, 0])), flat([[0, 1], [0, 1], [0, 1]])],
-      fault: motion([0, ACROSS, 0], 1e-9, 'No normal sees the way along the wall: the ridge gives it no step.') },
+      fault: motion([0, ACROSS, 0], 1e-9, 'No normal points along the wall, so the ridge allows no step there.') },
     { name: 'No pairs', arguments: [new Float64Array(0), new Float64Array(0), new Float64Array(0)],
       fault: motion([0, 0, 0], 0, 'Fewer than three normals give the identity.') },
     { name: 'Two normals of many', arguments: [flat(ROOM), flat(ROOM.map(([x = 0, y = 0]) => [x + 0.1, y])), flat(ROOM.map((_, k) => (k < 2 ? [1, 0] : [NaN, NaN])))],
@@ -219,7 +219,7 @@ function kept(expected: number[], meaning: string): (result: unknown) => string 
   return (result) => {
     const found = numbers(result, expected.length);
     if (found?.every((one, k) => one === expected[k]) === true) return undefined;
-    return `expected the numbers [${expected.join(', ')}], and ${shown(result)} came. ${meaning}`;
+    return `expected the numbers [${expected.join(', ')}], but got ${shown(result)}. ${meaning}`;
   };
 }
 
@@ -233,11 +233,11 @@ function keep_pairs(lengths, trim) {
 `,
   trials: [
     { name: 'A box that moved', arguments: [Float64Array.of(0.1, 0.5, 0.2, 0.4), 0.25],
-      fault: kept([0, 2, 3], 'The longest pair lies on the box and goes.') },
+      fault: kept([0, 2, 3], 'The longest pair is on the box and is dropped.') },
     { name: 'A share of three', arguments: [Float64Array.of(0.3, 0.1, 0.2), 0.5],
-      fault: kept([1, 2], 'Of 1.5 pairs 2 are kept: round up.') },
+      fault: kept([1, 2], 'Of 1.5 pairs, 2 are kept. Round up.') },
     { name: 'Lengths are numbers', arguments: [Float64Array.of(10, 9, 2, 1), 0.5],
-      fault: kept([2, 3], 'An array sorts its elements as text unless it is told how.') },
+      fault: kept([2, 3], 'An array sorts its elements as text unless told otherwise.') },
     { name: 'A corridor without trimming', arguments: [Float64Array.of(0.2, 0.2, 0.2), 0],
       fault: kept([0, 1, 2], 'All pairs stay if nothing is trimmed.') },
     { name: 'All trimmed', arguments: [Float64Array.of(0.3, 0.1, 0.2), 1], fault: kept([1], 'At least one stays, the shortest.') },
@@ -245,7 +245,7 @@ function keep_pairs(lengths, trim) {
   ],
   help: [
     'Sort a copy of the lengths to find the length of the last pair that stays, and keep all pairs up to it.',
-    'k = Math.max(1, Math.ceil((1 − trim) * n)); of no pairs there is no k-th one.',
+    'k = Math.max(1, Math.ceil((1 − trim) * n)); without pairs there is no k-th one.',
     'const limit = Float64Array.from(lengths).sort()[k − 1]; a typed array sorts numbers.',
   ],
   solution: `function keep_pairs(lengths, trim) {
@@ -265,7 +265,7 @@ function verdict(chi2: number, accepted: boolean, meaning: string): (result: unk
     if (isNear && found?.accepted === accepted) return undefined;
     const expected = `χ² ${Number.isNaN(chi2) ? 'NaN' : chi2.toFixed(3)} and accepted ${accepted}`;
     const came = typeof found?.chi2 === 'number' ? `χ² ${found.chi2.toFixed(3)} and accepted ${String(found.accepted)}` : shown(result);
-    return `expected ${expected}, and ${came} came. ${meaning}`;
+    return `expected ${expected}, but got ${came}. ${meaning}`;
   };
 }
 
@@ -292,10 +292,10 @@ function gate(innovation, gap, drift, limit) {
     { name: 'Three sigma along a corridor', arguments: [Float64Array.of(3 * 0.045 * 5, 0, 0), 25, [...DRIFT], GATE],
       fault: verdict(9, false, 'χ² 9 is above 7.815.') },
     { name: 'Another limit', arguments: [Float64Array.of(3 * 0.045 * 5, 0, 0), 25, [...DRIFT], 11.345],
-      fault: verdict(9, true, 'The limit is an argument: 11.345 is the 99 % quantile.') },
+      fault: verdict(9, true, 'The limit is an argument: 11.345 is the 99% quantile.') },
     { name: 'At the limit', arguments: [Float64Array.of(0, 2, 0), 1, [1, 1], 4], fault: verdict(4, true, '≤, not <.') },
     { name: 'No pairs', arguments: [Float64Array.of(NaN, 0, 0), 1, [...DRIFT], GATE],
-      fault: verdict(NaN, false, 'A registration without pairs has no innovation; NaN ≤ limit is false, and NaN > limit as well.') },
+      fault: verdict(NaN, false, 'A registration without pairs has no innovation; NaN ≤ limit is false, and so is NaN > limit.') },
   ],
   help: [
     'S = gap · diag(σ², σ², σ_θ²), and χ² = ξᵀ S⁻¹ ξ: S is diagonal, so it is a sum of three quotients.',

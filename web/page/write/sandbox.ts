@@ -162,7 +162,7 @@ export class Sandbox {
     clearTimeout(this.#timer);
     removeEventListener('message', this.#hear);
     this.#frame.remove();
-    this.#pending?.reject(new NotRun('Your code was ended.'));
+    this.#pending?.reject(new NotRun('Your code was stopped.'));
     this.#pending = undefined;
   }
 
@@ -233,7 +233,7 @@ function unstarted(patience_ms: number): NotRun {
 }
 
 function slow(patience_ms: number): NotRun {
-  return new NotRun(`There was no answer for ${patience_ms / 1000} s, and your code was ended. Is there a loop without end?`);
+  return new NotRun(`There was no answer for ${patience_ms / 1000} s, and your code was stopped. Is there an infinite loop?`);
 }
 
 /** A line of the worker's text as a line of the code. */

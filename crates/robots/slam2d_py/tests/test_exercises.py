@@ -116,7 +116,7 @@ def test_a_loop_without_end_is_ended(code, monkeypatch):
     monkeypatch.setattr(exercises, "LIMIT_S", 5)
     results, message = exercises.run("svd_align", FOLDER, code)
     assert len(results) == 5 and not any(results.values())
-    assert "it was ended after 5 s: is there a loop without end?" in message
+    assert "it was ended after 5 s; is there an infinite loop?" in message
 
 
 def test_an_argument_that_the_code_changes_is_changed_for_the_test(code):

@@ -71,7 +71,7 @@ class Student:
         self._timer.start()
 
     def _late(self):
-        self._ended = f"it was ended after {self._limit_s} s: is there a loop without end?"
+        self._ended = f"it was ended after {self._limit_s} s; is there an infinite loop?"
         self._process.kill()
 
     def end(self):

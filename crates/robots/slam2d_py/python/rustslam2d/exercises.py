@@ -77,7 +77,7 @@ def run(name, folder, code):
                 timeout=LIMIT_S + START_S,
             )
         except subprocess.TimeoutExpired:
-            return None, f"it was ended after {LIMIT_S + START_S} s: is there a loop without end?"
+            return None, f"it was ended after {LIMIT_S + START_S} s; is there an infinite loop?"
         signed = [line[len(key):] for line in done.stdout.splitlines() if line.startswith(key)]
         if len(signed) != 1:
             text = (done.stdout + done.stderr).strip()
