@@ -94,7 +94,7 @@ impl Roster {
         let is_one = identifiers.len() == 1 || (by.is_none() && !identifiers.is_empty());
         ensure!(
             is_one,
-            "{} has {}; its columns, with {} between them, are {}; name the one that holds the names or tokens by --by COLUMN",
+            "{} has {}; its columns, with {} between them, are {}; name the one that holds the names or tokens with --by COLUMN",
             path.display(),
             match by {
                 Some(by) => format!("not one column {}", by.trim()),

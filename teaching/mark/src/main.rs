@@ -85,7 +85,7 @@ fn run(args: &MarkArgs) -> anyhow::Result<()> {
             && !sheet.intact
         {
             problems.push(format!(
-                "{} was changed after the page saved it, its digest is broken; ask {} for the file as it was saved",
+                "{} was changed after the page saved it (its digest is broken); ask {} for the file as it was saved",
                 sheet.file,
                 one_line(sheet.identity())
             ));

@@ -524,7 +524,7 @@ fn a_roster_names_its_column_or_says_what_it_has() {
     let roster = write(b"Kennung\tGruppe\nS114\t1\n");
     let (code, _, errors) = by(&roster, &[]);
     assert_eq!(code, Some(2));
-    let told = "has no column that identifies a student; its columns, with tabs between them, are Kennung | Gruppe; name the one that holds the names or tokens by --by COLUMN";
+    let told = "has no column that identifies a student; its columns, with tabs between them, are Kennung | Gruppe; name the one that holds the names or tokens with --by COLUMN";
     assert!(errors.contains(told), "{errors}");
     let (_, _, errors) = by(&roster, &["--by", "Name"]);
     assert!(

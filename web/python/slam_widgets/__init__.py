@@ -177,7 +177,7 @@ class _RobotWidget(_Widget):
     def _add(self, path, use):
         path = Path(path)
         if not path.is_file():
-            raise FileNotFoundError(f"{path} is no readable file; give a log, a session or a reference")
+            raise FileNotFoundError(f"{path} is not a readable file; use a log, a session or a reference")
         self._files[use] = path
         self._send_file(path, use)
 

@@ -42,7 +42,7 @@ fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArr
     };
     if !held.is_empty() {
         return Err(ArrayError::new_err(format!(
-            "{name} holds {held}, and has to hold real numbers"
+            "{name} holds {held}, but has to hold real numbers"
         )));
     }
     let options = PyDict::new(py);
@@ -81,7 +81,7 @@ fn all_finite<'a>(name: &str, numbers: impl IntoIterator<Item = &'a f64>) -> PyR
         return Ok(());
     }
     Err(ArrayError::new_err(format!(
-        "{name} holds what is no finite number"
+        "{name} holds a value that is not a finite number"
     )))
 }
 
@@ -158,7 +158,7 @@ pub fn pose(name: &str, value: &Bound<'_, PyAny>) -> PyResult<SE2> {
     let differs = |(k, number): (usize, &f64)| (number - expected[k]).abs() > MATRIX_TOLERANCE;
     if view.iter().enumerate().any(differs) {
         return Err(ArrayError::new_err(format!(
-            "{name} is a {shape} matrix, but no motion of the plane: a rotation by one angle, a position, and zeros and \
+            "{name} is a {shape} matrix, but not a motion of the plane: a rotation by one angle, a position, and zeros and \
              ones elsewhere"
         )));
     }

@@ -19,7 +19,7 @@ create_exception!(
     rustslam2d,
     ArrayError,
     SlamError,
-    "An array has another shape than asked, or holds what is no finite number."
+    "An array has the wrong shape, or holds a value that is not a finite number."
 );
 create_exception!(
     rustslam2d,
@@ -55,7 +55,7 @@ create_exception!(
     rustslam2d,
     LogError,
     SlamError,
-    "A file is no log that can be read, or no scan of it could be used."
+    "A file is not a readable log, or no scan of it could be used."
 );
 create_exception!(
     rustslam2d,

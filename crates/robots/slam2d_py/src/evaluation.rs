@@ -60,7 +60,7 @@ pub fn evaluate<'py>(
                 .report();
             if report.n == 0 {
                 return Err(EvaluationError::new_err(format!(
-                    "none of the {} relations is within the times of the trajectory; give both the same clock",
+                    "none of the {} relations is within the times of the trajectory; use the same clock for both",
                     relations.len()
                 )));
             }

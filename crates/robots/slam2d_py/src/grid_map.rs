@@ -53,7 +53,9 @@ impl GridMap {
             return Err(ArrayError::new_err("log_odds holds NaN; 0 is unknown"));
         }
         if !origin.0.is_finite() || !origin.1.is_finite() {
-            return Err(ArrayError::new_err("origin holds what is no finite number"));
+            return Err(ArrayError::new_err(
+                "origin holds a value that is not a finite number",
+            ));
         }
         Ok(Self {
             height: odds.nrows(),

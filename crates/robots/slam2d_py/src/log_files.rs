@@ -45,7 +45,7 @@ pub fn parts(path: &Path) -> PyResult<(Vec<LogBytes<'static>>, Vec<Remark>, Read
             .collect();
         let order = rosbag2::in_order(listed.as_deref(), &names).map_err(|absent| {
             LogError::new_err(format!(
-                "{}: {absent} is listed and not there",
+                "{}: {absent} is listed but missing",
                 path.display()
             ))
         })?;

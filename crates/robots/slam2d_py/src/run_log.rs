@@ -277,7 +277,7 @@ impl Pipeline {
             if Sensor::from_scan(&frame.scan) != sensor {
                 return Err(LogError::new_err(format!(
                     "{}: the laser of scan {number} has other angles, limits or mounting than that of the first; \
-                     leave one laser by scan_topic",
+                     select one laser with scan_topic",
                     self.log.display()
                 )));
             }

@@ -176,7 +176,7 @@ impl Slam {
     fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Estimator>> {
         if *self.stepper() == Some(thread::current().id()) {
             return Err(SlamError::new_err(
-                "the estimator is in a step, and a function that it calls reads it; use what the function is given",
+                "a function that the estimator calls during a step cannot read it; use the function's arguments",
             ));
         }
         let inner = self.inner.lock_py_attached(py);
@@ -233,7 +233,7 @@ impl Slam {
             (None, Some(scan)) => Py::new(py, Sensor::from_scan(scan))?,
             (None, None) => {
                 return Err(SlamError::new_err(
-                    "the session has no laser; give its geometry by sensor",
+                    "the session has no laser; give its geometry with sensor",
                 ));
             }
         };

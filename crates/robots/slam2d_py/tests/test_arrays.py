@@ -48,9 +48,9 @@ def test_an_array_that_is_read_is_not_written(drive):
         (POINTS.T, "points has to have the shape (n, 2), not (2, 3)"),
         (POINTS[None], "points has to have the shape (n, 2), not (1, 3, 2)"),
         (1.0, "points has to have the shape (n, 2), not ()"),
-        ([[1.0, np.nan]], "points holds what is no finite number"),
-        ([[1.0, np.inf]], "points holds what is no finite number"),
-        ("walls", "points holds text, and has to hold real numbers"),
+        ([[1.0, np.nan]], "points holds a value that is not a finite number"),
+        ([[1.0, np.inf]], "points holds a value that is not a finite number"),
+        ("walls", "points holds text, but has to hold real numbers"),
         ([[1, 2], [3]], "points cannot be read as an array of numbers"),
         (None, "points has to have the shape (n, 2), not ()"),
     ],
@@ -86,7 +86,7 @@ def test_motions_make_a_group():
     ],
 )
 def test_complex_numbers_and_text_are_rejected_in_a_sentence(bad, held):
-    with pytest.raises(rs.ArrayError, match=f"source holds {held}, and has to hold real numbers"):
+    with pytest.raises(rs.ArrayError, match=f"source holds {held}, but has to hold real numbers"):
         rs.icp(bad, np.ones((9, 2)))
 
 

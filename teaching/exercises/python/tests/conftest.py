@@ -18,7 +18,7 @@ def assert_same_pose(found, expected, tolerance, what="the pose"):
     assert found.shape == (3,), f"{what} has to have the shape (3,), not {found.shape}"
     x, y, theta = rs.between(expected, found)
     apart = np.hypot(x, y) + abs(theta)
-    assert apart < tolerance, f"{what} is {found}, expected {expected}: {apart:.2e} apart, allowed is {tolerance:.0e}"
+    assert apart < tolerance, f"{what} is {found}, expected {expected}: {apart:.2e} apart, at most {tolerance:.0e} is allowed"
 
 
 @pytest.fixture(scope="session")

@@ -23,7 +23,7 @@ def test_a_loop_error_spreads_evenly_around_the_cycle():
     edges = [(0, 1, at(1.0), np.eye(3)), (1, 2, at(1.0), np.eye(3)), (0, 2, at(2.6), np.eye(3))]
     start = np.array([at(0.0), at(1.0), at(2.0)])
     poses, steps = optimize(start, edges, 0, 10, 1e-6, np.inf)
-    assert chi2(start, edges) == pytest.approx(0.36), "the poses that were given have to stay as they are"
+    assert chi2(start, edges) == pytest.approx(0.36), "the given poses must not change"
     # 1e-8: 1e-9 is added to the diagonal.
     assert chi2(poses, edges) == pytest.approx(0.12, abs=1e-8), "the loop's error is not spread evenly"
     assert_same_pose(poses[1], at(1.2), 1e-8, "the second pose")
@@ -129,5 +129,5 @@ def test_it_takes_no_more_steps_than_it_may():
     poses, edges = ring(18)
     once, _ = optimize_once(poses, edges, 0, np.inf)
     found, steps = optimize(poses, edges, 0, 1, 1e-12, np.inf)
-    assert steps == 1 and np.array_equal(found, once), f"{steps} steps, and one was allowed"
+    assert steps == 1 and np.array_equal(found, once), f"{steps} steps, but one was allowed"
     assert optimize(poses, edges, 0, 50, 1e3, np.inf)[1] == 1, "a correction below the tolerance ends it"

@@ -52,13 +52,13 @@ def test_the_three_loops_of_the_lap_have_the_numbers_of_the_reference():
         assert loop.inliers == inliers, f"{what} has {loop.inliers} pairs, expected {inliers}"
         assert loop.rmse == pytest.approx(rmse, abs=1e-5), f"{what}: the rmse"
         assert loop.chi2 == pytest.approx(chi2, abs=1e-5), f"{what}: χ²"
-        assert loop.accepted, f"{what} passes both tests and is rejected"
+        assert loop.accepted, f"{what} passes both tests but is rejected"
 
 
 def test_a_belief_that_is_far_off_fails_the_gate_and_nothing_else(first):
     right, off = verify_loop(*first, NODE, OLD), verify_loop(*moved(first, (0, 0, 0.2)), NODE, OLD)
     assert off.rmse <= 0.16 and off.inliers >= 25, f"it fits, because registration corrects the rotation: {off}"
-    assert off.chi2 > 7.815 and not off.accepted, f"χ² {off.chi2} is above 7.815, and accepted is {off.accepted}"
+    assert off.chi2 > 7.815 and not off.accepted, f"χ² {off.chi2} is above 7.815, but accepted is {off.accepted}"
     assert abs(rs.between(right.pose, off.pose)[2]) < 0.02, "the edge is what was registered"
 
 
@@ -86,9 +86,9 @@ def test_a_poor_fit_and_few_pairs_fail_whatever_the_gate_says(first):
 def test_the_gate_is_the_one_that_was_asked_for(first):
     usual = verify_loop(*first, NODE, OLD)
     narrow = verify_loop(*first, NODE, OLD, LoopConfig(gate=0.99 * usual.chi2))
-    assert not narrow.accepted, f"χ² {narrow.chi2} is above the gate {0.99 * usual.chi2}, and the loop is accepted"
+    assert not narrow.accepted, f"χ² {narrow.chi2} is above the gate {0.99 * usual.chi2}, but the loop is accepted"
     wide = verify_loop(*moved(first, (0, 0, 0.2)), NODE, OLD, LoopConfig(gate=1e6))
-    assert wide.accepted, f"χ² {wide.chi2} is below the gate 1e6, and the loop is rejected"
+    assert wide.accepted, f"χ² {wide.chi2} is below the gate 1e6, but the loop is rejected"
 
 
 def test_a_narrow_search_still_pairs_within_0_6_m_and_a_wide_one_within_half_its_radius(first):

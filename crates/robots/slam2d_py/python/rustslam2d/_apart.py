@@ -171,7 +171,7 @@ def decoded(value):
         return items if kind == "list" else tuple(items)
     result = getattr(importlib.import_module("given"), kind, None)
     if not hasattr(result, "_fields"):
-        raise TypeError(f"a {kind} was returned, which is no type of given.py")
+        raise TypeError(f"a {kind} was returned, which is not a type of given.py")
     return result(*items)
 
 
@@ -179,7 +179,7 @@ class Plain(pickle.Unpickler):
     """Reads containers, numbers, texts and bytes; anything else would run code."""
 
     def find_class(self, module, name):
-        raise pickle.UnpicklingError(f"{module}.{name} is no plain value")
+        raise pickle.UnpicklingError(f"{module}.{name} is not a plain value")
 
 
 def write(stream, content):

@@ -1,4 +1,4 @@
-"""Pictures by matplotlib and tables by pandas; neither is needed for the rest."""
+"""Pictures with matplotlib and tables with pandas; neither is needed for the rest."""
 
 import numpy as np
 

@@ -49,7 +49,7 @@ def folder_of(given):
     for folder in [Path(given)] if given else [Path(), Path("teaching/exercises/python")]:
         if (folder / "tests/test_svd_align.py").is_file():
             return folder.resolve()
-    sys.exit(f"{given or Path().resolve()} is not the folder teaching/exercises/python; go there, or name it by --folder")
+    sys.exit(f"{given or Path().resolve()} is not the folder teaching/exercises/python; go there, or name it with --folder")
 
 
 def run(name, folder, code):
