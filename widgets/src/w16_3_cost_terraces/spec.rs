@@ -252,7 +252,7 @@ params! {
         Param::slider("drops", "sweeps dropped", [0.0, MAX_DROPS], 1.0)
             .help("How many sweeps, each with its own noise, are dropped up to 0.3 m from the truth and registered point-to-plane with a τ of 0.6 m.");
 
-    pub(super) static ROWS: Param<f64> = Param::slider("rows", "rows of H", [0.0, MAX_ROWS], 1.0)
+    pub(super) static ROWS: Param<f64> = Param::slider("rows", "rows of the step", [0.0, MAX_ROWS], 1.0)
         .default(MAX_ROWS)
         .help("How many points, in beam order, contribute a row (n_x, n_y, p × n) to the point-to-plane step; at the right end, all.");
 

@@ -130,7 +130,7 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &TerraceSettings) -> 
             "",
             0,
         ),
-        Fact::count("rows", "rows of H taken", terrains.rows_taken() as f64),
+        Fact::count("rows", "rows taken", terrains.rows_taken() as f64),
         Fact::count("rows_rank", "their rank", constraints.rank as f64),
         Fact::count(
             "partners_changing",
