@@ -124,7 +124,7 @@ fn offers(own: &OwnRobot) -> Option<Table> {
         .collect();
     (!rows.is_empty()).then(|| Table {
         id: "offers",
-        title: "What the recording has several of".to_owned(),
+        title: "Topics and frames to choose from".to_owned(),
         columns: ["", "taken", "others"].map(str::to_owned).to_vec(),
         rows,
         place: TablePlace::Shown,

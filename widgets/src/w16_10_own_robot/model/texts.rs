@@ -91,7 +91,7 @@ fn sentence(own: &OwnRobot) -> String {
                 robot.answer
             );
         }
-        Stage::Opening => format!("{name} is opened."),
+        Stage::Opening => format!("{name} is being opened."),
         Stage::Reading => format!(
             "{name}: {done}, {}, {}, {} closed.",
             plural(robot.progress.scans, "scan"),

@@ -34,7 +34,7 @@ impl fmt::Display for CoursePoint {
 pub enum CourseError {
     /// The text is not JSON.
     #[error(
-        "line {line}, column {column}: {problem}; the file has to be JSON, which knows no comments, no NaN and no comma after the last item"
+        "line {line}, column {column}: {problem}; the file has to be JSON, which allows no comments, no NaN and no comma after the last item"
     )]
     NotJson {
         /// Line, from 1.
@@ -60,7 +60,7 @@ pub enum CourseError {
     #[error("walls_m is empty: give it at least one wall as [x, y, x, y]")]
     NoWalls,
     /// There are too many walls.
-    #[error("walls_m has {count} walls, and {limit} are the most: leave small ones out")]
+    #[error("walls_m has {count} walls, but at most {limit} are allowed: leave small ones out")]
     TooManyWalls {
         /// Their number.
         count: usize,
@@ -77,7 +77,7 @@ pub enum CourseError {
     #[error("way_points_m is empty: give it at least one way point as [x, y]")]
     NoWayPoints,
     /// There are too many way points.
-    #[error("way_points_m has {count} way points, and {limit} are the most: leave some out")]
+    #[error("way_points_m has {count} way points, but at most {limit} are allowed: leave some out")]
     TooManyWayPoints {
         /// Their number.
         count: usize,
@@ -85,7 +85,7 @@ pub enum CourseError {
         limit: usize,
     },
     /// The turn is not a way point.
-    #[error("turn_at is {turn}, and there are {count} way points: name one of them, from 1")]
+    #[error("turn_at is {turn}, but there are {count} way points: name one of them, from 1")]
     NoSuchTurn {
         /// The given value.
         turn: usize,
@@ -128,7 +128,7 @@ pub enum CourseError {
     },
     /// The straight segment between two way points is too close to a wall.
     #[error(
-        "the straight way from {from} to {to} comes within {distance_m:.2} m of wall {wall}: lead it around by way points, {CLEARANCE_M} m from every wall"
+        "the straight line from {from} to {to} comes within {distance_m:.2} m of wall {wall}: lead it around with way points, {CLEARANCE_M} m from every wall"
     )]
     Blocked {
         /// Its start.
@@ -141,7 +141,9 @@ pub enum CourseError {
         distance_m: f64,
     },
     /// The path is too long.
-    #[error("the way is {length_m:.0} m long, and {limit_m} m are the most: leave way points out")]
+    #[error(
+        "the path is {length_m:.0} m long, but at most {limit_m} m are allowed: leave way points out"
+    )]
     TooLong {
         /// The path length, m.
         length_m: f64,

@@ -202,13 +202,13 @@ fn what_is_wrong_is_one_sentence_that_says_what_where_and_what_to_do() {
         (
             "[7, 1], [7, 7]",
             "[4, 3], [4, 5]",
-            "the straight way from way point 1 to way point 2 comes within 0.00 m of wall 5",
+            "the straight line from way point 1 to way point 2 comes within 0.00 m of wall 5",
             "0.3 m from every wall",
         ),
         (
             "[7, 1]",
             "[7, 7]",
-            "the straight way from the start to way point 1 comes within 0.00 m of wall 5",
+            "the straight line from the start to way point 1 comes within 0.00 m of wall 5",
             "every wall",
         ),
         (
@@ -249,15 +249,22 @@ fn what_is_too_much_is_rejected_with_its_limit() {
     let walls = course.world().walls().to_vec();
     assert_eq!(
         with(walls.repeat(75), way.clone()),
-        Err("walls_m has 2025 walls, and 2000 are the most: leave small ones out".to_owned())
+        Err(
+            "walls_m has 2025 walls, but at most 2000 are allowed: leave small ones out".to_owned()
+        )
     );
     assert_eq!(
         with(walls.clone(), way.repeat(9)),
-        Err("way_points_m has 54 way points, and 50 are the most: leave some out".to_owned())
+        Err(
+            "way_points_m has 54 way points, but at most 50 are allowed: leave some out".to_owned()
+        )
     );
     assert_eq!(
         with(walls, way[..5].repeat(6)),
-        Err("the way is 218 m long, and 200 m are the most: leave way points out".to_owned())
+        Err(
+            "the path is 218 m long, but at most 200 m are allowed: leave way points out"
+                .to_owned()
+        )
     );
     assert_eq!(
         with(Vec::new(), way),

@@ -273,7 +273,7 @@ fn a_flat_that_cannot_be_driven_shows_the_reason_and_no_other_lap() {
     assert_eq!(outcome.standing, Assessment::Bad);
     let sentence = outcome.sentence;
     assert!(
-        sentence.contains("the straight way from the start to way point 1"),
+        sentence.contains("the straight line from the start to way point 1"),
         "{sentence}"
     );
     assert!(sentence.contains("wall 19"), "{sentence}");

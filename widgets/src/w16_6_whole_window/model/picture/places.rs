@@ -48,7 +48,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
     Panel {
         id: panel::PLACES,
         title: format!(
-            "{} of {} sums made; more ink fits better",
+            "{} of {} sums done; more ink, better fit",
             grouped(moment.counts.scored()),
             grouped(moment.counts.window)
         ),
