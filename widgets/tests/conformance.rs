@@ -387,7 +387,7 @@ fn a_step_goes_to_the_next_position() {
             "w16.6",
             ("progress", 0.0),
             ("progress", 1.0),
-            Some("the search finds home"),
+            Some("the search finds the truth"),
         ),
         ("w16.7", ("new", 30.0), ("new", 31.0), None),
         ("w16.9", ("moment", 5.0), ("moment", 6.0), None),

@@ -66,7 +66,7 @@ params! {
         "tried",
         "matrices tried",
         &[
-            (Handedness::Turn, "turns", "turns"),
+            (Handedness::Turn, "turns", "rotations"),
             (Handedness::Mirror, "mirrors", "mirror images"),
         ],
     )

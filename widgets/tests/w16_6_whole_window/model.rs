@@ -118,11 +118,19 @@ fn a_dragged_start_is_searched_again_at_its_new_pose() {
 #[test]
 fn every_preset_does_what_its_button_claims() {
     for (id, verdict, standing) in [
-        ("quarter-turn", "the search finds home", Assessment::Good),
-        ("upside-down", "the search finds home", Assessment::Good),
-        ("wide", "the search finds home", Assessment::Good),
+        (
+            "quarter-turn",
+            "the search finds the truth",
+            Assessment::Good,
+        ),
+        (
+            "upside-down",
+            "the search finds the truth",
+            Assessment::Good,
+        ),
+        ("wide", "the search finds the truth", Assessment::Good),
         ("without-home", "no place fits", Assessment::Bad),
-        ("coarse", "the search finds home", Assessment::Good),
+        ("coarse", "the search finds the truth", Assessment::Good),
     ] {
         let mut window = WholeWindow::default();
         window.press(id).unwrap();

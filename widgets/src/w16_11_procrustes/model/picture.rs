@@ -157,9 +157,9 @@ fn points(trace: &ProcrustesTrace) -> Panel {
         legend: vec![
             LegendEntry::mark("target, to be dragged", Tone::Measurement, Mark::Circle),
             match kind {
-                Handedness::Turn => LegendEntry::mark("source, turned", tone(kind), mark(kind)),
+                Handedness::Turn => LegendEntry::mark("source, rotated", tone(kind), mark(kind)),
                 Handedness::Mirror => {
-                    LegendEntry::mark("source, mirrored and turned", tone(kind), mark(kind))
+                    LegendEntry::mark("source, mirrored and rotated", tone(kind), mark(kind))
                 }
             },
         ],
@@ -232,7 +232,7 @@ fn curves(trace: &ProcrustesTrace) -> Panel {
         layers,
         legend: vec![
             LegendEntry::marked_line(
-                "turns",
+                "rotations",
                 tone(Handedness::Turn),
                 mark(Handedness::Turn),
                 Stroke::Solid,

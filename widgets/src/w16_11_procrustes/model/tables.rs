@@ -72,7 +72,7 @@ fn curves(trace: &ProcrustesTrace) -> Table {
     Table::exported(
         "trace",
         "The trace over the angle",
-        &["angle (°)", "turns (m²)", "mirror images (m²)"],
+        &["angle (°)", "rotations (m²)", "mirror images (m²)"],
         rows.collect(),
     )
 }

@@ -9,7 +9,7 @@ use crate::w16_11_procrustes::spec::{TURN, WHOLE_TURN_DEG};
 /// Plural name of a kind of matrices.
 pub fn plural(kind: Handedness) -> &'static str {
     match kind {
-        Handedness::Turn => "turns",
+        Handedness::Turn => "rotations",
         Handedness::Mirror => "mirror images",
     }
 }

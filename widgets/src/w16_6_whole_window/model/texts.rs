@@ -29,7 +29,7 @@ pub fn standing_of(end: &BasinOutcome) -> Assessment {
 /// Where ICP stops, after "stops".
 pub fn stop(end: &BasinOutcome) -> String {
     match end.ending {
-        Minimum::Right => "at home".to_owned(),
+        Minimum::Right => "at the truth".to_owned(),
         Minimum::NotConverged => "before it converged".to_owned(),
         Minimum::WrongHeading => "with a wrong heading".to_owned(),
         Minimum::Other => "in another false minimum".to_owned(),
@@ -43,7 +43,7 @@ pub fn verdict(window: &WholeWindow) -> &'static str {
         (None, _) => "searching",
         (_, None) => "no place fits",
         (_, Some(refined)) => match refined.outcome.ending {
-            Minimum::Right => "the search finds home",
+            Minimum::Right => "the search finds the truth",
             other => other.name(),
         },
     }
@@ -232,7 +232,7 @@ pub fn grouped(number: u64) -> String {
 fn ending(end: &BasinOutcome) -> String {
     let off = format!("{:.2} m and {:.1}° off", end.error_m, end.error_deg.abs());
     match end.ending {
-        Minimum::Right => format!("at home, {off}"),
+        Minimum::Right => format!("at the truth, {off}"),
         Minimum::Other => format!("in another false minimum, {off}"),
         Minimum::NotConverged => format!("before it converged, {off}"),
         Minimum::WrongHeading => format!("at the right place with a wrong heading, {off}"),
