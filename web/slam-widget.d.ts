@@ -121,9 +121,9 @@ export interface CostTerracesState {
   colours: 'value' | 'rank';
   /** Seed of the range noise of the sweep; 1472 is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** Position of the cross hair and start of the ball, east of the truth. -1.3 to 1.3 m. */
+  /** Position of the crosshair and start of the ball, east of the truth. -1.3 to 1.3 m. */
   'probe-x': number;
-  /** Position of the cross hair and start of the ball, north of the truth. -1.3 to 1.3 m. */
+  /** Position of the crosshair and start of the ball, north of the truth. -1.3 to 1.3 m. */
   'probe-y': number;
   /** How many sweeps, each with its own noise, are dropped up to 0.3 m from the truth and registered point-to-plane with a τ of 0.6 m. 0 to 100. */
   drops: number;
@@ -383,9 +383,9 @@ export interface OneGraphSolvedInFourWaysState {
   bias: number;
   /** Twice the exact Jacobian, or the Jacobian of a perturbation on the other side of the pose. */
   wrong: 'twice' | 'left';
-  /** Standard deviation of the noise that is added to each pose before the first step. 0 to 0.3 m, rad. */
+  /** Standard deviation of the noise added to each pose before the first step. 0 to 0.3 m, rad. */
   scatter: number;
-  /** Seed of that noise. 0 to 4294967295. */
+  /** Seed of this noise. 0 to 4294967295. */
   seed: number;
   /** Largest distance of a pose from its optimum, or the difference of χ² from its minimum. */
   curve: 'distance' | 'chi2';

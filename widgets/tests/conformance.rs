@@ -728,7 +728,7 @@ fn the_five_colours_mean_the_same_in_every_legend() {
                 "before",
                 "local map",
                 "sweep",
-                "cross hair",
+                "crosshair",
                 "front end alone",
                 "first guess",
                 "source",

@@ -51,13 +51,13 @@ params! {
     .help("Twice the exact Jacobian, or the Jacobian of a perturbation on the other side of the pose.");
 
     pub(super) static SCATTER: Param<f64> =
-        Param::slider("scatter", "start thrown off by", [0.0, 0.3], 0.05)
+        Param::slider("scatter", "start scattered by", [0.0, 0.3], 0.05)
             .unit("m, rad")
             .default(0.2)
-            .help("Standard deviation of the noise that is added to each pose before the first step.");
+            .help("Standard deviation of the noise added to each pose before the first step.");
 
     pub(super) static SEED: Param<u32> =
-        Param::seed("seed of the throw", 1).help("Seed of that noise.");
+        Param::seed("seed of the scatter", 1).help("Seed of this noise.");
 
     pub(super) static CURVE: OneOf<Curve> = one_of!(
         Curve,

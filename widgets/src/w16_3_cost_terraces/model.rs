@@ -1,7 +1,7 @@
 //! State and logic of the widget; no egui.
 //!
 //! A sweep is shifted over the map for which it was taken, with fixed heading. Every shift has ICP's
-//! truncated cost and NDT's score. A ball descends from the cross hair on each landscape. The
+//! truncated cost and NDT's score. A ball descends from the crosshair on each landscape. The
 //! relief shows one of the two, and morphs if the reader switches. Only what
 //! depends on a changed parameter is computed again: see [`terrains`]. A hundred sweeps with independent
 //! noise show the scatter of the results: see [`rests`].
@@ -216,7 +216,7 @@ impl Model for CostTerraces {
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], _reach: [f64; 2]) -> Option<Handle> {
-        // The whole map is the target: a press anywhere moves the cross hair there.
+        // The whole map is the target: a press anywhere moves the crosshair there.
         is_on_map(panel, at).then_some(Handle {
             panel: picture::RELIEF,
             id: "cell",

@@ -240,13 +240,13 @@ params! {
         Param::slider("probe-x", "drop at Δx", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
             .unit("m")
             .default(0.4)
-            .help("Position of the cross hair and start of the ball, east of the truth.");
+            .help("Position of the crosshair and start of the ball, east of the truth.");
 
     pub(super) static PROBE_Y: Param<f64> =
         Param::slider("probe-y", "drop at Δy", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
             .unit("m")
             .default(0.1)
-            .help("Position of the cross hair and start of the ball, north of the truth.");
+            .help("Position of the crosshair and start of the ball, north of the truth.");
 
     pub(super) static DROPS: Param<usize> =
         Param::slider("drops", "sweeps dropped", [0.0, MAX_DROPS], 1.0)

@@ -117,7 +117,7 @@ fn at_a_ridge_the_partner_that_changes_lights_up() {
 #[test]
 fn the_pointer_over_a_map_moves_the_sweep_that_is_paired() {
     let mut model = with(&[("tau", 0.6)]);
-    assert_eq!(panel(&model, "sweep").title, "Matches at the cross hair");
+    assert_eq!(panel(&model, "sweep").title, "Matches at the crosshair");
     assert_ne!(lit(&model), (0, 0));
     model.hover("relief", Some([0.0, 0.0]));
     assert_eq!(panel(&model, "sweep").title, "Matches under the pointer");

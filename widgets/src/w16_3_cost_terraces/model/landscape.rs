@@ -17,7 +17,7 @@ pub struct Landscape {
     pub range: [f64; 2],
     /// Shift of the lowest cell, m.
     pub lowest_m: [f64; 2],
-    /// The ball that was dropped at the cross hair.
+    /// The ball that was dropped at the crosshair.
     pub ball: BallPath,
     /// Heights from its end straight on to the truth, as `[distance from the end (m), height]`.
     pub ahead: Vec<[f64; 2]>,
@@ -177,7 +177,7 @@ impl Landscape {
         self.cells
     }
 
-    /// Height exactly under the cross hair, not of its cell.
+    /// Height exactly under the crosshair, not of its cell.
     pub fn at_probe(&self) -> f64 {
         self.ball.heights[0]
     }

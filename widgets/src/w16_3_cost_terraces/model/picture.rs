@@ -23,7 +23,7 @@ pub const RELIEF: &str = "relief";
 pub struct PictureState {
     /// The measure that the relief shows.
     pub measure: ReliefMeasure,
-    /// Shift under the cross hair, m.
+    /// Shift under the crosshair, m.
     pub probe_m: [f64; 2],
     /// The shift at which the sweep is shown.
     pub looked: Looked,
@@ -36,7 +36,7 @@ pub struct PictureState {
 /// The shift at which the sweep is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Looked {
-    /// The cross hair's.
+    /// The crosshair's.
     CrossHair,
     /// That of the ball while it rolls.
     Ball,

@@ -24,7 +24,7 @@ pub struct TerraceSettings {
     pub cells: usize,
     /// What determines a cell's colour.
     pub colors: Colors,
-    /// Shift under the cross hair, m.
+    /// Shift under the crosshair, m.
     pub probe_m: [f64; 2],
     /// Number of rows of the point-to-plane step.
     pub rows: usize,

@@ -133,7 +133,7 @@ fn dropped(rests: &Rests) -> Table {
     )
 }
 
-/// The pairs at the cross hair, and those that are about to change.
+/// The pairs at the crosshair, and those that are about to change.
 fn partners(terrains: &Terrains, settings: &TerraceSettings) -> Table {
     let pairing = terrains.pairing_at(settings.probe_m);
     let groups = [
@@ -150,7 +150,7 @@ fn partners(terrains: &Terrains, settings: &TerraceSettings) -> Table {
     });
     Table::exported(
         "partners",
-        "Matches at the cross hair",
+        "Matches at the crosshair",
         &[
             "pair",
             "point x (m)",

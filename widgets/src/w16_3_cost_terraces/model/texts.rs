@@ -90,14 +90,14 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &TerraceSettings) -> 
     let mut facts = vec![
         Fact::new(
             "icp_cost_m2",
-            "ICP cost at the cross hair",
+            "ICP cost at the crosshair",
             icp.at_probe(),
             "m²",
             4,
         ),
         Fact::new(
             "ndt_score",
-            "NDT score at the cross hair",
+            "NDT score at the crosshair",
             -ndt.at_probe(),
             "",
             3,
@@ -183,7 +183,7 @@ pub fn summary(terrains: &Terrains, settings: &TerraceSettings) -> String {
     format!(
         "Two reliefs over {cells} by {cells} shifts of a sweep in {place}, up to 1.3 metres from the truth: \
          ICP's cost up to {icp_high:.3} square metres, and NDT's score up to {ndt_high:.3}. \
-         At the cross hair the cost is {cost:.4} square metres and the score {score:.3}, and {changing} points are about to change their match.",
+         At the crosshair the cost is {cost:.4} square metres and the score {score:.3}, and {changing} points are about to change their match.",
         cells = settings.cells,
         icp_high = icp.range[1],
         ndt_high = -ndt.range[0],

@@ -47,7 +47,7 @@ pub fn pairs(terrains: &Terrains, moment: PictureState) -> Panel {
         Layer::points(points, Mark::Triangle, Tone::Series(0), 4.5),
     ]);
     let title = match moment.looked {
-        Looked::CrossHair => "Matches at the cross hair",
+        Looked::CrossHair => "Matches at the crosshair",
         Looked::Ball => "Matches at the ball",
         Looked::Pointer(_) => "Matches under the pointer",
     };

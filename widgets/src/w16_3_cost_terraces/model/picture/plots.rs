@@ -1,4 +1,4 @@
-//! The slices through the cross hair, and the information at the truth over the results of many sweeps.
+//! The slices through the crosshair, and the information at the truth over the results of many sweeps.
 
 use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
@@ -21,13 +21,13 @@ const MANY_DEVIATIONS: f64 = 3.0;
 /// Direction of a slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
-    /// East, in the row of samples nearest to the cross hair.
+    /// East, in the row of samples nearest to the crosshair.
     X,
-    /// North, in the column of samples nearest to the cross hair.
+    /// North, in the column of samples nearest to the crosshair.
     Y,
 }
 
-/// One landscape along the line of samples nearest to the cross hair; the title says which line.
+/// One landscape along the line of samples nearest to the crosshair; the title says which line.
 pub fn slice(terrains: &Terrains, moment: PictureState, along: Along) -> Panel {
     let landscape = terrains.of(moment.measure);
     let (sign, name) = match moment.measure {
@@ -73,7 +73,7 @@ pub fn slice(terrains: &Terrains, moment: PictureState, along: Along) -> Panel {
         ],
         legend: vec![
             LegendEntry::line("truth", Tone::Truth, Stroke::Dashed),
-            LegendEntry::line("cross hair", Tone::Prior, Stroke::Dotted),
+            LegendEntry::line("crosshair", Tone::Prior, Stroke::Dotted),
         ],
         color_bar: None,
     }

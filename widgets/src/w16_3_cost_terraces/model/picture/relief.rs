@@ -1,4 +1,4 @@
-//! The relief with cross hair, ball, lowest cell and truth.
+//! The relief with crosshair, ball, lowest cell and truth.
 
 use widget_kit::scene::{
     Aspect, Axis, ColorBar, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight,
