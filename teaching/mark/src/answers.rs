@@ -104,7 +104,7 @@ impl StudentAnswers {
         );
         let answers: Self = serde_json::from_slice(without_bom(&bytes))
             .map_err(|error| {
-                format!("{error}; give a file that the page saved by “Save my answers”")
+                format!("{error}; give a file that the page saved with “Save my answers”")
             })
             .in_file(path)?;
         ensure!(

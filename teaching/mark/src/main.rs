@@ -23,7 +23,7 @@ use gradebook::{Columns, Roster};
 #[derive(Parser, Clone, Debug)]
 #[command(name = "ch16-mark", version)]
 struct MarkArgs {
-    /// Files that the page saved by "Save my answers".
+    /// Files that the page saved with "Save my answers".
     #[arg(required = true, value_name = "ANSWERS.json")]
     files: Vec<PathBuf>,
     /// Print a gradebook: a row for each student, a column for each question, and the total.
@@ -32,16 +32,16 @@ struct MarkArgs {
     /// With --csv, a row for each answer instead.
     #[arg(long, requires = "csv", conflicts_with_all = ["roster", "columns"])]
     long: bool,
-    /// With --csv, the students of the course: a table that Canvas or Moodle exported. Rows have its order.
+    /// With --csv, the students of the course: a table that Canvas or Moodle exported. Rows keep its order.
     #[arg(long, requires = "csv", value_name = "ROSTER.csv")]
     roster: Option<PathBuf>,
-    /// The column of the roster that holds what the students gave as name or token; otherwise any that usually does.
+    /// The column of the roster that holds what the students gave as name or token; default: the usual ones.
     #[arg(long, requires = "roster", value_name = "COLUMN")]
     by: Option<String>,
     /// With --csv, whose column names it has.
     #[arg(long, requires = "csv", value_enum, default_value_t = Columns::Plain)]
     columns: Columns,
-    /// Print one JSON object for each file, a line each.
+    /// Print one JSON object for each file, one per line.
     #[arg(long)]
     json: bool,
 }
