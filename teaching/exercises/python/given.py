@@ -18,7 +18,7 @@ class LoopConfig(NamedTuple):
     min_inliers: int = 25
     #: Second test: drift per node, standard deviations, m and rad; it grows with √gap.
     drift: tuple = (0.045, 0.012)
-    #: Second test: largest accepted squared innovation, the 95 % quantile of χ² with three degrees of freedom.
+    #: Second test: largest accepted squared innovation, the 95% quantile of χ² with three degrees of freedom.
     gate: float = rs.chi2_gate(0.95)
     #: Noise of a point, m, and the covariance scale for correlated beams.
     trust: tuple = (0.05, 25.0)
