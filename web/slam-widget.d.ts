@@ -13,7 +13,7 @@ export interface BasinExplorerState {
   dy: number;
   /** What the two sweeps see: room A, which is almost square, or a row of equal posts 0.5 m apart. */
   scene: 'room' | 'fence';
-  /** Distance between paired points, or distance along the wall's normal. */
+  /** The distance between paired points, or only its part along the wall's normal. */
   variant: 'point-to-point' | 'point-to-plane';
   /** A point further than this from the target is unmatched. 0.1 to 1.6 m. */
   tau: number;
@@ -21,9 +21,9 @@ export interface BasinExplorerState {
   limit: '30' | '200';
   /** Trimming drops this share of the pairs in each iteration, longest first; 0 keeps them all. 0 to 0.7. */
   trim: number;
-  /** Longer pairs have less weight; at 1.6 m all pairs have equal weight. 0.02 to 1.6 m. */
+  /** Pairs longer than this have less weight; at 1.6 m, all pairs have equal weight. 0.02 to 1.6 m. */
   huber: number;
-  /** The vertical axis of the basin maps; the other offset comes from its slider. */
+  /** The offset on the vertical axis of the basin maps; the other offset keeps the value of its slider. */
   axis: 'dx' | 'dy';
   /** Draws paths from starts all over the basin map, iteration by iteration. */
   paths: boolean;
@@ -33,9 +33,9 @@ export interface BasinExplorerState {
   'edge-p2p': number;
   /** Your mark for the edge, on either side of the truth; 0 means no mark. 0 to 180 °. */
   'edge-p2l': number;
-  /** Seed of the range noise of both sweeps; 457 is the chapter's. 0 to 4294967295. */
+  /** Seed of the range noise in both sweeps; the chapter uses 457. 0 to 4294967295. */
   seed: number;
-  /** The iteration shown; 0 is the first guess, and values past the last mean the end. 0 to 200. */
+  /** The iteration shown; 0 is the first guess, and values past the last iteration show the end. 0 to 200. */
   iteration: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -45,55 +45,55 @@ export interface BasinExplorerState {
 
 /** The full lap: every parameter. */
 export interface TheFullLapState {
-  /** The world. The Apartment uses the chapter's estimator, every other world the default. */
+  /** The world the robot drives through. The Apartment uses the chapter's estimator; every other world uses the default one. */
   world: 'apartment' | 'ring' | 'twins' | 'corridor' | 'hall' | 'own';
   /** What a press on the map does. The hand moves a wall, an end, a way point or the robot; the pencil draws a wall; the others place a way point after the selected one, remove something, or set the robot down. Everything snaps to a grid of 5 cm. */
   edit: 'off' | 'move' | 'wall' | 'way' | 'remove' | 'robot';
   /** The piece that the arrows move and Remove deletes. Press a piece on the map to select it. */
   piece: 'nothing' | 'wall' | 'first-end' | 'second-end' | 'way-point' | 'start' | 'heading';
-  /** The number of the wall or of the way point, from 1. 0 to 2000. */
+  /** The number of the selected wall or way point, counted from 1. 0 to 2000. */
   'piece-number': number;
-  /** Walls, start and way points of your own floor plan to the centimetre, as in links. Setting it makes this the world. At most 33000 letters, digits, - and _. */
+  /** The walls, start and way points of your own floor plan, to the centimetre, in the form used in links. Setting it makes that plan the world. At most 33000 letters, digits, - and _. */
   flat: string;
-  /** Multiplies the variances of the wheel odometry: 1 is the chapter's robot. 0.25 to 4. */
+  /** Multiplies the variances of the wheel odometry; at 1, the robot is the chapter's. 0.25 to 4. */
   noise: number;
   /** Whether a keyframe near an old one is matched against it. */
   loops: boolean;
   /** A different seed gives a different lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** Quantile of χ² with 3 degrees of freedom; 0.95 means χ² up to 7.815. This share of true loops passes if the robot stands still, a smaller one after a drive. 0.9 to 0.999. */
+  /** Quantile of χ² with 3 degrees of freedom; 0.95 means χ² up to 7.815. This share of true loops passes if the robot stands still; after a drive, a smaller share passes. 0.9 to 0.999. */
   gate: number;
   /** Path: the chapter's gate, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. The outline shows which positions pass at the registered heading. */
   'gate-model': 'path' | 'exact';
   /** What registers each sweep, in the front end and for loops: the chapter's ICP, point-to-point or point-to-plane, or the normal distributions transform. */
   matcher: 'p2p' | 'p2l' | 'ndt';
-  /** The frame of an edge's information. For the chapter's figures, it is turned by a heading in the world; the exact frame is the frame of the edge's target, its newer end. */
+  /** The frame in which an edge's information is expressed. For the chapter's figures, it is turned by a heading in the world; the exact frame is the frame of the edge's target, its newer end. */
   information: 'chapter' | 'exact';
   /** A point's normal comes from its neighbours within this radius, in cells of 12 cm. 0 is the matcher's default: 2.5, or 4.2 for point-to-plane. 0 to 8 cells. */
   normals: number;
-  /** Whether the information of an edge is capped at 2500, a standard deviation of 2 cm or 0.02 rad. */
+  /** Whether the information of an edge is capped at 2500, which corresponds to a standard deviation of 2 cm or 0.02 rad. */
   cap: boolean;
   /** A beam that hits no wall reports the maximum range. Keeping these as points is a common mistake. They form a wall that moves with the robot. */
   misses: boolean;
   /** The part of the graph whose numbers are shown. Click or tap it on the map to select it, or an empty spot to select none. */
   pick: 'nothing' | 'keyframe' | 'edge' | 'loop';
-  /** The number of the keyframe, of the edge's first keyframe, or of the loop's newer one. 0 to 999. */
+  /** The number of the keyframe, of the edge's first keyframe, or of the loop's newer keyframe. 0 to 999. */
   number: number;
-  /** A loop between any two keyframes. Registered: their sweeps, registered from their poses in the graph. The truth: what no robot knows. “The same place”: both at one position, rightly or wrongly. */
+  /** A loop between any two keyframes. Registered: found by registering their sweeps, starting from their poses in the graph. The truth: their true relative pose, which no robot knows. “The same place”: the claim, right or wrong, that both are at one position. */
   own: 'none' | 'registered' | 'truth' | 'same-place';
   /** One end of your own loop. On the map, drag from the selected keyframe to any other. 0 to 999. */
   'own-from': number;
   /** The other end of your own loop. 0 to 999. */
   'own-to': number;
-  /** Whether the tests may reject your own loop: fit, pairs and gate if it is registered, only the gate if it is asserted. */
+  /** Whether the tests may reject your own loop: the fit, the pairs and the gate if it is registered, but only the gate if it is asserted. */
   'own-gate': boolean;
-  /** The robust kernel of your own loop: plain least squares, Huber's kernel from 1.345 standard deviations, or dynamic covariance scaling from a χ² of 10. */
+  /** The robust kernel of your own loop: plain least squares, Huber's kernel, which acts beyond 1.345 standard deviations, or dynamic covariance scaling, which acts beyond a χ² of 10. */
   kernel: 'quadratic' | 'huber' | 'dcs';
   /** At a closed loop, the map before it is shown left of the line, and the map after it right of the line. The line's position is a share of the map's width. 0 to 1. */
   wipe: number;
-  /** The moment shown. A tick is a quarter of a second, the marks are loops, and values past the end mean the end. 0 to 2000. */
+  /** The moment shown. A tick is a quarter of a second, each mark is a loop, and values past the end show the end. 0 to 2000. */
   t: number;
-  /** The layers of the map. Wheels alone: where odometry and the truth put the robot. The map: the walls that the sweeps saw. Then the graph with its loops, the truth, and everything, with the front end alone. */
+  /** The layers of the map. Wheels alone: where odometry and the truth put the robot. The map: the walls that the sweeps saw. Map and loops: the graph with its loops as well. What is left: the truth as well. Everything: also odometry, and the front end alone. */
   show: 'wheels' | 'map' | 'loops' | 'truth' | 'all';
   /** Plots the whole lap, including what comes after the moment shown. */
   future: boolean;
@@ -107,7 +107,7 @@ export interface TheFullLapState {
 export interface CostTerracesState {
   /** ICP's cost or NDT's score, for the same sweep on the same points. The relief morphs from one to the other. */
   measure: 'icp' | 'ndt';
-  /** Room A on its own points; a corridor without doors on a map with independent noise; the Apartment's corridor, with its doors, on its own points. */
+  /** Room A, matched with its own points; a corridor without doors, matched with a map whose noise is independent; or the Apartment's corridor, with its doors, matched with its own points. */
   scene: 'room' | 'corridor' | 'own-corridor';
   /** ICP pairs a point with the nearest map point within τ; an unmatched point costs τ². 0.1 to 1.6 m. */
   tau: number;
@@ -119,17 +119,17 @@ export interface CostTerracesState {
   cells: number;
   /** By rank, every colour covers the same number of cells, so low steps show even on high ground. */
   colours: 'value' | 'rank';
-  /** Seed of the range noise of the sweep; 1472 is the chapter's. 0 to 4294967295. */
+  /** Seed of the range noise in the sweep; the chapter uses 1472. 0 to 4294967295. */
   seed: number;
-  /** Position of the crosshair and start of the ball, east of the truth. -1.3 to 1.3 m. */
+  /** How far east of the truth the crosshair is placed, which is where the ball starts. -1.3 to 1.3 m. */
   'probe-x': number;
-  /** Position of the crosshair and start of the ball, north of the truth. -1.3 to 1.3 m. */
+  /** How far north of the truth the crosshair is placed, which is where the ball starts. -1.3 to 1.3 m. */
   'probe-y': number;
   /** How many sweeps, each with its own noise, are dropped up to 0.3 m from the truth and registered point-to-plane with a τ of 0.6 m. 0 to 100. */
   drops: number;
-  /** How many points, in beam order, contribute a row (n_x, n_y, p × n) to the point-to-plane step; at the right end, all. 0 to 120. */
+  /** How many points, in beam order, contribute a row (n_x, n_y, p × n) to the point-to-plane step; at the right end, all of them do. 0 to 120. */
   rows: number;
-  /** Adds the row (1, 0, 0) with weight 1/σ²; 0 adds none. 0 to 0.5 m. */
+  /** Adds the row (1, 0, 0) with weight 1/σ²; 0 adds no row. 0 to 0.5 m. */
   odometry: number;
   /** How much of its path the ball has rolled, in steps of its descent. 0 to 100. */
   t: number;
@@ -141,15 +141,15 @@ export interface CostTerracesState {
 
 /** Control room: every parameter. */
 export interface ControlRoomState {
-  /** Multiplies the variances of the wheel odometry: 1 is the chapter's robot. 0.25 to 4. */
+  /** Multiplies the variances of the wheel odometry; at 1, the robot is the chapter's. 0.25 to 4. */
   noise: number;
   /** Whether a keyframe near an old one is matched against it. */
   loops: boolean;
   /** A different seed gives a different lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** The operation that is described at this tick. Press a mark on a lane to select it. */
+  /** The operation described at this tick. To select another, press its mark on a lane. */
   lane: 'predict' | 'register' | 'keyframe' | 'candidate' | 'fit' | 'gate' | 'optimize' | 'repaint';
-  /** The moment shown. A tick is a quarter of a second, and the marks are loops. 0 to 129. */
+  /** The moment shown. A tick is a quarter of a second, and each mark is a loop. 0 to 129. */
   t: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -159,13 +159,13 @@ export interface ControlRoomState {
 
 /** Pose-graph toy: every parameter. */
 export interface PoseGraphToyState {
-  /** Information of the loop, relative to an odometry edge. A stiffer spring gives way less. 0.1 to 10 ×. */
+  /** The information of the loop. A stiffer spring gives way less. 0.1 to 10 ×. */
   stiffness: number;
   /** The chapter's three poses on a line, four around a square, or a ring of six whose ends do not meet. */
   graph: 'line' | 'square' | 'ring';
   /** How much further ahead the loop puts the last pose, seen from the first, than odometry does. -1.5 to 1.5 m. */
   gap: number;
-  /** Information of each odometry edge. 0.1 to 10 ×. */
+  /** The information of each odometry edge. 0.1 to 10 ×. */
   odometry: number;
   /** Measurements are relative. Unless a pose is fixed, the whole graph can be anywhere. */
   pinned: boolean;
@@ -205,7 +205,7 @@ export interface PoseGraphToyState {
   y6: number;
   /** How far the pose is turned from its odometry heading before the first step. -180 to 180 °. */
   turn6: number;
-  /** How many steps the solver has taken; 0 is the graph before the first. 0 to 20. */
+  /** How many steps the solver has taken; 0 is the graph before the first step. 0 to 20. */
   steps: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -223,13 +223,13 @@ export interface TheWholeWindowState {
   dy: number;
   /** How far from the start the search looks, along x and along y. 0.5 to 3 m. */
   window: number;
-  /** How far from the start's heading the search looks; 180 covers every heading. 30 to 180 °. */
+  /** How far from the start's heading the search looks; 180° covers every heading. 30 to 180 °. */
   turn: number;
   /** The resolution of the search; the map is blurred accordingly. 0.05 to 0.2 m. */
   cell: number;
-  /** Seed of the range noise of both sweeps; 457 is the chapter's. 0 to 4294967295. */
+  /** Seed of the range noise in both sweeps; the chapter uses 457. 0 to 4294967295. */
   seed: number;
-  /** How many boxes the search has expanded; ICP's iterations follow the last. 0 to 200000. */
+  /** How many boxes the search has expanded; ICP's iterations follow the last box. 0 to 200000. */
   progress: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -241,19 +241,19 @@ export interface TheWholeWindowState {
 export interface HaveIBeenHereState {
   /** The share of pairs, most similar first, that are called the same place: one threshold for every detector. 0 to 60 %. */
   called: number;
-  /** Compares estimated poses, range histograms, or rings and sectors. */
+  /** What the detector compares: estimated poses, range histograms, or rings and sectors. */
   detector: 'nearby' | 'histogram' | 'context';
-  /** The world of the lap. */
+  /** The world in which the lap is driven. */
   world: 'apartment' | 'ring';
-  /** The older keyframe compared with the newest; −1 is the most similar one. -1 to 120. */
+  /** The older keyframe compared with the newest one; −1 selects the most similar one. -1 to 120. */
   old: number;
-  /** How far the newer view is turned from the heading where Scan Context fits best. -180 to 180 °. */
+  /** How far the newer view is turned from the heading at which Scan Context fits best. -180 to 180 °. */
   turn: number;
   /** A different seed gives a different lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** Multiplies the variances of the wheel odometry: 1 is the chapter's robot. 0.25 to 4. */
+  /** Multiplies the variances of the wheel odometry; at 1, the robot is the chapter's. 0.25 to 4. */
   noise: number;
-  /** The newest keyframe so far; values past the last mean the whole lap. 0 to 400. */
+  /** The newest keyframe so far; values past the last keyframe show the whole lap. 0 to 400. */
   new: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -263,7 +263,7 @@ export interface HaveIBeenHereState {
 
 /** The moving box: every parameter. */
 export interface TheMovingBoxState {
-  /** Which registration's pairs are drawn: all of them, all but the longest, or the long ones with less weight. */
+  /** Which registration's pairs are drawn: plain ICP uses all pairs, trimming drops the longest, and Huber's kernel gives long pairs less weight. */
   method: 'plain' | 'trimmed' | 'huber';
   /** The share of points on the moved box, in both sweeps. 0 to 60 %. */
   share: number;
@@ -277,11 +277,11 @@ export interface TheMovingBoxState {
   huber: number;
   /** A point further than this from the target is unmatched. A gate is a kernel, too. 0.1 to 1.6 m. */
   tau: number;
-  /** Distance between paired points, or distance along the wall's normal. */
+  /** The distance between paired points, or only its part along the wall's normal. */
   variant: 'point-to-point' | 'point-to-plane';
   /** Seed of the range noise of the sweeps above; the curves have their own hundred seeds. 0 to 4294967295. */
   seed: number;
-  /** The iteration shown, for all three; a registration with fewer iterations has converged. 0 to 30. */
+  /** The iteration shown for all three registrations; one that stops early has converged. 0 to 30. */
   iteration: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -291,19 +291,19 @@ export interface TheMovingBoxState {
 
 /** Come back tomorrow: every parameter. */
 export interface ComeBackTomorrowState {
-  /** The map was made from one lap before that night, and this many after it. 0 to 2. */
+  /** The map was made from one lap before that night, and from this many laps after it. 0 to 2. */
   laps: number;
-  /** Where on the plan the robot is put overnight. The robot does not know. 0 to 12 m. */
+  /** Where on the plan the robot is moved to overnight. The robot is not told. 0 to 12 m. */
   x: number;
-  /** Where on the plan the robot is put overnight. The robot does not know. 0 to 9 m. */
+  /** Where on the plan the robot is moved to overnight. The robot is not told. 0 to 9 m. */
   y: number;
-  /** The robot's heading when it is switched on. The robot does not know. -180 to 180 °. */
+  /** The robot's heading when it is switched on, which the robot does not know. -180 to 180 °. */
   heading: number;
-  /** The world. Only the Apartment has the wardrobe. */
+  /** The world the robot wakes up in. Only the Apartment has the wardrobe. */
   world: 'apartment' | 'ring' | 'twins';
   /** A different seed gives a different lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** The moment shown, counted in boxes of a search and in scans. 0 to 4000. */
+  /** The moment shown, counted in boxes of the search and in scans. 0 to 4000. */
   moment: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -313,13 +313,13 @@ export interface ComeBackTomorrowState {
 
 /** Your own robot: every parameter. */
 export interface YourOwnRobotState {
-  /** Time, the share of each scan that fits, the graph's standard deviation, or the error against your reference. */
+  /** What the colours show: time, the share of each scan that fits, the graph's standard deviation, or the error against your reference. */
   colour: 'time' | 'fit' | 'sigma' | 'error';
   /** Which loops the map shows: none, the accepted ones, or the rejected ones as well. */
   links: 'none' | 'closed' | 'all';
-  /** The loop whose evidence is shown; 0 fits the graph worst. 0 to 999999. */
+  /** The loop whose evidence is shown; loop 0 fits the graph worst. 0 to 999999. */
   loop: number;
-  /** One end of a loop you add; the other is the keyframe shown. 0 to 999999. */
+  /** One end of a loop you add; the other end is the keyframe shown. 0 to 999999. */
   marked: number;
   /** Keyframes with a smaller share of fitting points are ringed on the map, and “Next doubt” stops there. 0 to 1. */
   poor: number;
@@ -327,11 +327,11 @@ export interface YourOwnRobotState {
   file: 'map-pgm' | 'map-yaml' | 'map-png' | 'trajectory' | 'graph' | 'report' | 'session' | 'where';
   /** Where the other log begins on this map: anywhere, or within 1.5 m and 34° of the keyframe shown. */
   start: 'anywhere' | 'here';
-  /** The scan of the other log whose pose is shown; past the end, the last scan. 0 to 99999999. */
+  /** The scan of the other log whose pose is shown; values past the end show the last scan. 0 to 99999999. */
   scan: number;
   /** Whether a dropped log is mapped, or its robot is localized on the current map. */
   drop: 'map' | 'where';
-  /** What “Take another” changes if a recording has several: the scan topic, the odometry topic, the odometry frame, or the body frame. */
+  /** What “Take another” changes if a recording offers more than one: the scan topic, the odometry topic, the odometry frame, or the body frame. */
   option: 'scan-topic' | 'odom-topic' | 'odom-frame' | 'body-frame';
   /** The keyframe whose scan is drawn over the map. 0 to 999999. */
   keyframe: number;
@@ -343,33 +343,33 @@ export interface YourOwnRobotState {
 
 /** Turn or mirror image: every parameter. */
 export interface TurnOrMirrorImageState {
-  /** Paired points of two sweeps. In the last scene, the sensor hangs upside down for the second one. */
+  /** Paired points from two sweeps. In the last scene, the sensor hung upside down for the second sweep. */
   shape: 'corners' | 'two' | 'wall' | 'upside-down';
   /** The source is rotated, or mirrored and then rotated. Together these are all the orthogonal matrices. */
   tried: 'turns' | 'mirrors';
-  /** Seed of the range noise of both sweeps, 12 mm along each axis. 0 to 4294967295. */
+  /** Seed of the noise in both sweeps, which has a standard deviation of 12 mm along each axis. 0 to 4294967295. */
   seed: number;
-  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
+  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
   x1: number;
-  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
+  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
   y1: number;
-  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
+  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
   x2: number;
-  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
+  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
   y2: number;
-  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
+  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
   x3: number;
-  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
+  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
   y3: number;
-  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
+  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
   x4: number;
-  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
+  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
   y4: number;
-  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
+  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
   x5: number;
-  /** How far the point is dragged from its observed position; only points in the scene count. -3 to 3 m. */
+  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
   y5: number;
-  /** How far the source is rotated, after the mirror if there is one. 0 to 360 °. */
+  /** How far the source is rotated, after mirroring if any. 0 to 360 °. */
   turn: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -379,17 +379,17 @@ export interface TurnOrMirrorImageState {
 
 /** One graph, solved in four ways: every parameter. */
 export interface OneGraphSolvedInFourWaysState {
-  /** How much odometry contradicts the loop. 2 to 10 °. */
+  /** How far odometry contradicts the loop: the rotation missing from each edge. 2 to 10 °. */
   bias: number;
   /** Twice the exact Jacobian, or the Jacobian of a perturbation on the other side of the pose. */
   wrong: 'twice' | 'left';
   /** Standard deviation of the noise added to each pose before the first step. 0 to 0.3 m, rad. */
   scatter: number;
-  /** Seed of this noise. 0 to 4294967295. */
+  /** Seed of the noise added to each pose. 0 to 4294967295. */
   seed: number;
-  /** Largest distance of a pose from its optimum, or the difference of χ² from its minimum. */
+  /** The largest distance of any pose from its optimum, or how far χ² is above its minimum. */
   curve: 'distance' | 'chi2';
-  /** How many steps each solver has taken; a solver that needs fewer has converged. 0 to 40. */
+  /** How many steps each solver has taken; one that stops early has converged. 0 to 40. */
   steps: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';

@@ -14,4 +14,4 @@ pub static VARIANT: OneOf<IcpVariant> = one_of!(
         (IcpVariant::PointToPlane, "point-to-plane", "point-to-plane"),
     ],
 )
-.help("Distance between paired points, or distance along the wall's normal.");
+.help("The distance between paired points, or only its part along the wall's normal.");

@@ -56,7 +56,7 @@ params! {
             (Colour::Error, "error", "error"),
         ],
     )
-    .help("Time, the share of each scan that fits, the graph's standard deviation, or the error against your reference.");
+    .help("What the colours show: time, the share of each scan that fits, the graph's standard deviation, or the error against your reference.");
 
     pub(super) static LOOPS: OneOf<ShownLoops> = one_of!(
         ShownLoops,
@@ -72,10 +72,10 @@ params! {
     .help("Which loops the map shows: none, the accepted ones, or the rejected ones as well.");
 
     pub(super) static LOOP: Param<usize> = Param::typed("loop", "loop of the list", MAX_KEYFRAMES)
-        .help("The loop whose evidence is shown; 0 fits the graph worst.");
+        .help("The loop whose evidence is shown; loop 0 fits the graph worst.");
 
     pub(super) static MARKED: Param<usize> = Param::typed("marked", "marked keyframe", MAX_KEYFRAMES)
-        .help("One end of a loop you add; the other is the keyframe shown.");
+        .help("One end of a loop you add; the other end is the keyframe shown.");
 
     pub(super) static POOR: Param<f64> =
         Param::slider("poor", "look into scans that fit less than", [0.0, 1.0], 0.05)
@@ -113,7 +113,7 @@ params! {
 
     pub(super) static SCAN: Param<usize> = Param::typed("scan", "scan of the other log", MAX_SCANS)
         .default(MAX_SCANS)
-        .help("The scan of the other log whose pose is shown; past the end, the last scan.");
+        .help("The scan of the other log whose pose is shown; values past the end show the last scan.");
 
     // What the page does with a log that is dropped, as it is named to the page.
     pub(super) static DROP: OneOf<&'static str> = one_of!(
@@ -133,7 +133,7 @@ params! {
         "of a recording",
         RECORDING_OPTIONS,
     )
-    .help("What “Take another” changes if a recording has several: the scan topic, the odometry topic, the odometry frame, or the body frame.");
+    .help("What “Take another” changes if a recording offers more than one: the scan topic, the odometry topic, the odometry frame, or the body frame.");
 
     pub(super) static KEYFRAME: Param<usize> = Param::timeline("keyframe", "keyframe", MAX_KEYFRAMES)
         .default(MAX_KEYFRAMES)
@@ -185,7 +185,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             "Opens a CARMEN, ROS 1 or ROS 2 log, a saved session, or a pose graph. You can also drop it on the picture. It stays in this browser.",
         ),
         ButtonSpec {
-            help: "Maps the sample if no log is open, pauses or resumes a log that is being read, and plays the path of a mapped one.",
+            help: "Maps the sample if no log is open, pauses or resumes a log while it is being read, and plays back the path once it has been mapped.",
             ..PLAY
         },
         ButtonSpec::new(
@@ -223,22 +223,22 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         ButtonSpec::new(
             "west",
             "Left",
-            "Moves the keyframe shown 5 cm to the left; also the arrow key.",
+            "Moves the keyframe shown 5 cm to the left, as the arrow key does.",
         ),
         ButtonSpec::new(
             "east",
             "Right",
-            "Moves the keyframe shown 5 cm to the right; also the arrow key.",
+            "Moves the keyframe shown 5 cm to the right, as the arrow key does.",
         ),
         ButtonSpec::new(
             "north",
             "Up",
-            "Moves the keyframe shown 5 cm up; also the arrow key.",
+            "Moves the keyframe shown 5 cm up, as the arrow key does.",
         ),
         ButtonSpec::new(
             "south",
             "Down",
-            "Moves the keyframe shown 5 cm down; also the arrow key.",
+            "Moves the keyframe shown 5 cm down, as the arrow key does.",
         ),
         ButtonSpec::new("unpin", "Let go", "Releases the keyframes you moved."),
         ButtonSpec::new(

@@ -40,7 +40,7 @@ const fn moved(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
         .unit("m")
         .help(
-            "How far the point is dragged from its observed position; only points in the scene count.",
+            "How far the point has been dragged from its observed position. Applies only to points in the scene.",
         )
 }
 
@@ -58,7 +58,7 @@ params! {
     )
     .default("upside-down")
     .help(
-        "Paired points of two sweeps. In the last scene, the sensor hangs upside down for the second one.",
+        "Paired points from two sweeps. In the last scene, the sensor hung upside down for the second sweep.",
     );
 
     pub(super) static TRIED: OneOf<Handedness> = one_of!(
@@ -73,13 +73,13 @@ params! {
     .help("The source is rotated, or mirrored and then rotated. Together these are all the orthogonal matrices.");
 
     pub(super) static SEED: Param<u32> = Param::seed("seed of the noise", 1)
-        .help("Seed of the range noise of both sweeps, 12 mm along each axis.");
+        .help("Seed of the noise in both sweeps, which has a standard deviation of 12 mm along each axis.");
 
     use MOVED[0 1 2 3 4][0 1];
 
     pub(super) static TURN: Param<f64> = Param::timeline("turn", "angle tried", WHOLE_TURN_DEG)
         .unit("°")
-        .help("How far the source is rotated, after the mirror if there is one.");
+        .help("How far the source is rotated, after mirroring if any.");
 
     use SPEED;
     use MORE;
@@ -96,7 +96,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "Over a full turn the trace is one sinusoid. It has one peak, and the closed form gives its angle.",
         "Mirror images have their own sinusoid. The higher of the two peaks is the sum of the singular values, and no trace exceeds it.",
-        "For two points, or points on a line, both peaks are equally high. Along a bare wall, noise decides.",
+        "For two points, or points on a line, both peaks are equally high. Along a bare wall, noise decides which is higher.",
         "A mirrored map fits its points as well as any, but its doors are on the wrong side. Compare the two floor plans.",
     ],
     opening: Opening {
@@ -131,7 +131,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "upside-down",
             label: "Hang the sensor upside down",
-            help: "A mirror image fits perfectly and hides the mistake. The best rotation leaves a cost that shows it.",
+            help: "A mirror image fits perfectly and hides the mistake. The best rotation leaves a cost that gives the mistake away.",
             set: &[SHAPE.to("upside-down"), TRIED.to("mirrors")],
             then: &["play"],
         },

@@ -37,7 +37,7 @@ params! {
     )
     .unit("°")
     .default(6.0)
-    .help("How much odometry contradicts the loop.");
+    .help("How far odometry contradicts the loop: the rotation missing from each edge.");
 
     pub(super) static WRONG: OneOf<WrongJacobian> = one_of!(
         WrongJacobian,
@@ -57,7 +57,7 @@ params! {
             .help("Standard deviation of the noise added to each pose before the first step.");
 
     pub(super) static SEED: Param<u32> =
-        Param::seed("seed of the scatter", 1).help("Seed of this noise.");
+        Param::seed("seed of the scatter", 1).help("Seed of the noise added to each pose.");
 
     pub(super) static CURVE: OneOf<Curve> = one_of!(
         Curve,
@@ -68,10 +68,10 @@ params! {
             (Curve::Chi2, "chi2", "χ² above the optimum"),
         ],
     )
-    .help("Largest distance of a pose from its optimum, or the difference of χ² from its minimum.");
+    .help("The largest distance of any pose from its optimum, or how far χ² is above its minimum.");
 
     pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MAX_STEPS as f64)
-        .help("How many steps each solver has taken; a solver that needs fewer has converged.");
+        .help("How many steps each solver has taken; one that stops early has converged.");
 
     use SPEED;
     use MORE;
@@ -88,8 +88,8 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "With the exact Jacobian each step cuts the distance by about two powers of ten, until only rounding is left.",
         "With a Jacobian twice as long as it should be, each step goes only halfway. It still ends at the optimum.",
-        "With the approximate Jacobian, the error grows with the square of the contradiction. It ends a centimetre out, and the wrong residual two decimetres.",
-        "The less the measurements contradict each other, the closer to the optimum the wrong residual ends. A test on clean data does not find it.",
+        "With the approximate Jacobian, the error grows with the square of the contradiction. The solver ends a centimetre out; with the wrong residual, it ends two decimetres out.",
+        "The less the measurements contradict each other, the closer to the optimum the wrong residual ends. A test on clean data does not find the mistake.",
     ],
     opening: Opening {
         panels: &["graphs"],
@@ -102,21 +102,21 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "four",
             label: "Solve it in four ways",
-            help: "All start from the same poses, step by step. Watch where each one ends.",
+            help: "All four start from the same poses and advance step by step. Watch where each one ends.",
             set: &[],
             then: &["play"],
         },
         Preset {
             id: "left",
             label: "Left for right",
-            help: "A Jacobian for the wrong side is right only where the residual is zero. It ends a millimetre or two from the optimum.",
+            help: "A Jacobian for the wrong side is correct only where the residual is zero. The solver ends a millimetre or two from the optimum.",
             set: &[WRONG.to("left")],
             then: &["play"],
         },
         Preset {
             id: "half",
             label: "Half the contradiction",
-            help: "The wrong residual ends half as far out, and the approximate Jacobian a quarter as far.",
+            help: "The wrong residual ends half as far out, and the approximate Jacobian a quarter as far out.",
             set: &[BIAS.to(3.0)],
             then: &["play"],
         },

@@ -24,7 +24,7 @@ pub const ITERATION_LIMITS: [usize; 2] = [BasinScene::MAX_ITERS, BasinScene::PAT
 pub const SWEEP: ButtonSpec = ButtonSpec {
     id: "sweep",
     label: "Sweep the edge",
-    help: "Register from every heading outwards from the truth, and compare the edge with your marks.",
+    help: "Register at every heading, working outwards from the truth, and compare the edge of the basin with your marks.",
 };
 
 /// The state of the question.
@@ -106,7 +106,7 @@ params! {
         Param::slider("huber", "Huber width", [0.02, HUBER_OFF_M], 0.02)
             .unit("m")
             .default(HUBER_OFF_M)
-            .help("Longer pairs have less weight; at 1.6 m all pairs have equal weight.");
+            .help("Pairs longer than this have less weight; at 1.6 m, all pairs have equal weight.");
 
     pub(super) static AXIS: OneOf<OffsetAxis> = one_of!(
         OffsetAxis,
@@ -117,7 +117,7 @@ params! {
             (OffsetAxis::Dy, "dy", "Δy"),
         ],
     )
-    .help("The vertical axis of the basin maps; the other offset comes from its slider.");
+    .help("The offset on the vertical axis of the basin maps; the other offset keeps the value of its slider.");
 
     pub(super) static PATHS: Param<bool> = Param::switch("paths", "paths of other starts")
         .help("Draws paths from starts all over the basin map, iteration by iteration.");
@@ -138,11 +138,11 @@ params! {
     use EDGES[1];
 
     pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
-        .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
+        .help("Seed of the range noise in both sweeps; the chapter uses 457.");
 
     pub(super) static ITERATION: Param<f64> =
         Param::timeline("iteration", "iteration", ITERATION_LIMITS[1] as f64).help(
-            "The iteration shown; 0 is the first guess, and values past the last mean the end.",
+            "The iteration shown; 0 is the first guess, and values past the last iteration show the end.",
         );
 
     use SPEED;
@@ -159,11 +159,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     awaits: Awaits::Rest,
     notice: &[
         "The room is almost square, so the quarter turn is a minimum as well, with an rmse of 0.13 m against 0.03 m at the truth. At the half turn, point-to-plane fits better than at the truth.",
-        "Between the right basin and the quarter turn, point-to-point settles on a third answer.",
+        "Between the correct basin and the quarter turn, point-to-point settles on a third answer.",
         "A row of equal posts has a minimum at every spacing, which shows as bands on the map. No residual tells them apart.",
-        "Point-to-plane needs fewer iterations. With no offset, its right basin is also wider.",
+        "Point-to-plane needs fewer iterations. With no offset, its correct basin is also wider.",
         "The verdict uses the truth. A robot has only the rmse and the pairs, and a wrong pose can have the smaller rmse.",
-        "A run that stops at its iteration limit has not reached a minimum. With 200 iterations the right basin is a little wider.",
+        "A run that stops at its iteration limit has not reached a minimum. With 200 iterations, the correct basin is a little wider.",
     ],
     opening: Opening {
         panels: &["sweeps", "basin-point-to-point", "basin-point-to-plane"],
@@ -176,7 +176,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "near",
             label: "Start 25° off",
-            help: "Inside the right basin, the sweeps come together.",
+            help: "Inside the correct basin, the sweeps come together.",
             set: &[ITERATION.to(0.0)],
             then: &["play"],
         },

@@ -88,22 +88,22 @@ pub const LOOP_BUTTONS: &[ButtonSpec] = &[
     ButtonSpec::new(
         "before",
         "Before the loop",
-        "One tick before the loop is tried.",
+        "Goes to the tick before the loop is tried.",
     ),
     ButtonSpec::new(
         "at",
         "At the loop",
-        "The tick of the loop: watch the history move.",
+        "Goes to the tick of the loop. Watch the history move.",
     ),
     ButtonSpec::new(
         "after",
         "After the loop",
-        "One tick after the loop was tried.",
+        "Goes to the tick after the loop was tried.",
     ),
     ButtonSpec::new(
         "next",
         "Next loop",
-        "Go to the next loop; from the last, back to the first.",
+        "Goes to the next loop, and from the last one back to the first.",
     ),
 ];
 
@@ -131,7 +131,7 @@ const GRAPH_BUTTONS: &[ButtonSpec] = &[
 pub const EDIT_FLAT: ButtonSpec = ButtonSpec::new(
     "edit-flat",
     "Edit the flat",
-    "Starts or ends editing: a drag on the map draws a wall.",
+    "Starts or ends editing. While you edit, a drag on the map draws a wall.",
 );
 
 /// The buttons that edit the flat, which are shown only during editing.
@@ -139,42 +139,42 @@ const FLAT_BUTTONS: &[ButtonSpec] = &[
     ButtonSpec::new(
         "piece-back",
         "Previous piece",
-        "Selects the previous wall, end or way point; also Page Up.",
+        "Selects the previous wall, end or way point, as Page Up does.",
     ),
     ButtonSpec::new(
         "piece-on",
         "Next piece",
-        "Selects the next wall, end or way point; also Page Down.",
+        "Selects the next wall, end or way point, as Page Down does.",
     ),
     ButtonSpec::new(
         "west",
         "Left",
-        "Moves the selection 5 cm to the left, or turns the start back; also the arrow key.",
+        "Moves the selection 5 cm to the left, or turns the starting heading clockwise, as the arrow key does.",
     ),
     ButtonSpec::new(
         "east",
         "Right",
-        "Moves the selection 5 cm to the right, or turns the start on; also the arrow key.",
+        "Moves the selection 5 cm to the right, or turns the starting heading anticlockwise, as the arrow key does.",
     ),
     ButtonSpec::new(
         "north",
         "Up",
-        "Moves the selection 5 cm up, or turns the start on; also the arrow key.",
+        "Moves the selection 5 cm up, or turns the starting heading anticlockwise, as the arrow key does.",
     ),
     ButtonSpec::new(
         "south",
         "Down",
-        "Moves the selection 5 cm down, or turns the start back; also the arrow key.",
+        "Moves the selection 5 cm down, or turns the starting heading clockwise, as the arrow key does.",
     ),
     ButtonSpec::new(
         "remove",
         "Remove",
-        "Removes the selected wall or way point; also Delete.",
+        "Removes the selected wall or way point, as Delete does.",
     ),
     ButtonSpec::new(
         "add-wall",
         "Add a wall",
-        "Adds a wall of one metre in the middle and selects it.",
+        "Adds a wall one metre long in the middle, and selects it.",
     ),
     ButtonSpec::new(
         "add-way-point",
@@ -189,12 +189,12 @@ const FLAT_BUTTONS: &[ButtonSpec] = &[
     ButtonSpec::new(
         "take-back",
         "Undo edit",
-        "Undoes the last change to the floor plan; also Ctrl+Z.",
+        "Undoes the last change to the floor plan, as Ctrl+Z does.",
     ),
     ButtonSpec::new(
         "do-again",
         "Redo edit",
-        "Redoes the last undone change; also Ctrl+Y.",
+        "Redoes the last undone change, as Ctrl+Y does.",
     ),
     ButtonSpec::new(
         "open-flat",
@@ -251,7 +251,7 @@ params! {
             ["own", "your own flat"],
         ),
     )
-    .help("The world. The Apartment uses the chapter's estimator, every other world the default.");
+    .help("The world the robot drives through. The Apartment uses the chapter's estimator; every other world uses the default one.");
 
     pub(super) static EDIT: OneOf<Option<Tool>> = one_of!(
         Option<Tool>,
@@ -287,10 +287,10 @@ params! {
     pub(super) static PIECE_NUMBER: Param<usize> =
         Param::typed("piece-number", "number of the piece", MAX_PIECES)
             .default(1.0)
-            .help("The number of the wall or of the way point, from 1.");
+            .help("The number of the selected wall or way point, counted from 1.");
 
     pub(super) static FLAT: Param<String> = Param::text("flat", "your flat as text", MAX_FLAT)
-        .help("Walls, start and way points of your own floor plan to the centimetre, as in links. Setting it makes this the world.");
+        .help("The walls, start and way points of your own floor plan, to the centimetre, in the form used in links. Setting it makes that plan the world.");
 
     use NOISE;
     use LOOPS;
@@ -299,7 +299,7 @@ params! {
 
     pub(super) static GATE: Param<f64> = Param::slider("gate", "gate quantile", [0.90, 0.999], 0.001)
         .default(CHAPTER_QUANTILE)
-        .help("Quantile of χ² with 3 degrees of freedom; 0.95 means χ² up to 7.815. This share of true loops passes if the robot stands still, a smaller one after a drive.");
+        .help("Quantile of χ² with 3 degrees of freedom; 0.95 means χ² up to 7.815. This share of true loops passes if the robot stands still; after a drive, a smaller share passes.");
 
     pub(super) static GATE_MODEL: OneOf<GateModel> = one_of!(
         GateModel,
@@ -326,7 +326,7 @@ params! {
         "information",
         InformationFrame::NAMED,
     )
-    .help("The frame of an edge's information. For the chapter's figures, it is turned by a heading in the world; the exact frame is the frame of the edge's target, its newer end.");
+    .help("The frame in which an edge's information is expressed. For the chapter's figures, it is turned by a heading in the world; the exact frame is the frame of the edge's target, its newer end.");
 
     pub(super) static NORMALS: Param<f64> = Param::slider("normals", "radius of the normals", [0.0, 8.0], 0.1)
         .unit("cells")
@@ -334,7 +334,7 @@ params! {
 
     pub(super) static CAP: Param<bool> = Param::switch("cap", "cap on the information")
         .on()
-        .help("Whether the information of an edge is capped at 2500, a standard deviation of 2 cm or 0.02 rad.");
+        .help("Whether the information of an edge is capped at 2500, which corresponds to a standard deviation of 2 cm or 0.02 rad.");
 
     pub(super) static MISSES: Param<bool> = Param::switch("misses", "keep beams that hit no wall")
         .help("A beam that hits no wall reports the maximum range. Keeping these as points is a common mistake. They form a wall that moves with the robot.");
@@ -353,7 +353,7 @@ params! {
     .help("The part of the graph whose numbers are shown. Click or tap it on the map to select it, or an empty spot to select none.");
 
     pub(super) static NUMBER: Param<usize> = Param::typed("number", "number", MAX_NODES)
-        .help("The number of the keyframe, of the edge's first keyframe, or of the loop's newer one.");
+        .help("The number of the keyframe, of the edge's first keyframe, or of the loop's newer keyframe.");
 
     pub(super) static OWN: OneOf<Option<Claim>> = one_of!(
         Option<Claim>,
@@ -361,7 +361,7 @@ params! {
         "your own loop",
         &optional::<_, { Claim::NAMED.len() + 1 }>(Claim::NAMED, 0, ["none", "none"]),
     )
-    .help("A loop between any two keyframes. Registered: their sweeps, registered from their poses in the graph. The truth: what no robot knows. “The same place”: both at one position, rightly or wrongly.");
+    .help("A loop between any two keyframes. Registered: found by registering their sweeps, starting from their poses in the graph. The truth: their true relative pose, which no robot knows. “The same place”: the claim, right or wrong, that both are at one position.");
 
     pub(super) static OWN_FROM: Param<usize> =
         Param::typed("own-from", "your loop: from keyframe", MAX_NODES)
@@ -378,7 +378,7 @@ params! {
     pub(super) static OWN_GATE: Param<bool> =
         Param::switch("own-gate", "your loop must pass the gate")
             .on()
-            .help("Whether the tests may reject your own loop: fit, pairs and gate if it is registered, only the gate if it is asserted.");
+            .help("Whether the tests may reject your own loop: the fit, the pairs and the gate if it is registered, but only the gate if it is asserted.");
 
     pub(super) static KERNEL: OneOf<OwnKernel> = one_of!(
         OwnKernel,
@@ -386,7 +386,7 @@ params! {
         "kernel of your loop",
         OwnKernel::NAMED,
     )
-    .help("The robust kernel of your own loop: plain least squares, Huber's kernel from 1.345 standard deviations, or dynamic covariance scaling from a χ² of 10.");
+    .help("The robust kernel of your own loop: plain least squares, Huber's kernel, which acts beyond 1.345 standard deviations, or dynamic covariance scaling, which acts beyond a χ² of 10.");
 
     pub(super) static WIPE: Param<f64> = Param::slider("wipe", "before and after", [0.0, 1.0], 0.01)
         .default(0.45)
@@ -394,7 +394,7 @@ params! {
 
     pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", MAX_TICKS)
         .default(FIRST_LOOP_TICK)
-        .help("The moment shown. A tick is a quarter of a second, the marks are loops, and values past the end mean the end.");
+        .help("The moment shown. A tick is a quarter of a second, each mark is a loop, and values past the end show the end.");
 
     pub(super) static SHOW: OneOf<Layers> = one_of!(
         Layers,
@@ -409,7 +409,7 @@ params! {
         ],
     )
     .default("loops")
-    .help("The layers of the map. Wheels alone: where odometry and the truth put the robot. The map: the walls that the sweeps saw. Then the graph with its loops, the truth, and everything, with the front end alone.");
+    .help("The layers of the map. Wheels alone: where odometry and the truth put the robot. The map: the walls that the sweeps saw. Map and loops: the graph with its loops as well. What is left: the truth as well. Everything: also odometry, and the front end alone.");
 
     pub(super) static FUTURE: Param<bool> = Param::switch("future", "show what is to come")
         .help("Plots the whole lap, including what comes after the moment shown.");
@@ -439,7 +439,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "The walls seen on the outbound and return legs are apart, and one loop brings them together. Over the lap, the map's disagreement falls to about a third.",
         "The typical error over the keyframes barely changes, and the largest even grows a little. The corridor comes out almost a metre too short, and no loop can see that.",
-        "A loop moves poses that the robot left long ago. A filter that keeps only the newest pose could not.",
+        "A loop moves poses that the robot left long ago. A filter that keeps only the newest pose could not do that.",
         "Click a keyframe, and drag from it to another to add your own loop. If it is wrong, every edge between its ends pays a little. A kernel gives it little weight.",
         "A small χ² is not enough: the sweep must also fit the old walls to 0.16 m, with at least 25 pairs.",
         "The exact gate adds up the covariances of the edges, and is no closer to the truth. Over seeds 1 to 50 at four times the noise, the chapter's gate closes 78 loops, 3 of them false. The exact gate closes 123, 7 of them false. False means more than 0.3 m or 5° from the truth.",
@@ -497,7 +497,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "let-in",
             label: "The same lap, exact gate",
-            help: "The chapter's gate rejects the first loop for its heading alone. The edges are less sure of the heading, so the exact gate accepts all three loops, and the lap ends more than a metre closer.",
+            help: "The chapter's gate rejects the first loop for its heading alone. The edges are less sure of the heading, so the exact gate accepts all three loops, and the lap ends more than a metre closer to the truth.",
             set: &[
                 SEED.to(2),
                 NOISE.to(3.0),
@@ -550,7 +550,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "ring",
             label: "A ring that closes",
-            help: "Around a block and back to the start from the other side, point-to-plane. The chain is held at both ends.",
+            help: "The robot drives around a block, back to the start from the other side, and registers point-to-plane. The chain is held at both ends.",
             set: &[
                 WORLD.to("ring"),
                 MATCHER.to("p2l"),
@@ -562,7 +562,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "twins",
             label: "Two rooms alike",
-            help: "The second room looks like the first, and after such a long path the gate is wide enough. The robot closes a false loop, and the two rooms become one.",
+            help: "The second room looks like the first, and after so long a path, the gate is wide enough to let it pass. The robot closes a false loop, and the two rooms become one.",
             set: &[
                 WORLD.to("twins"),
                 INFORMATION.to("exact"),
@@ -598,7 +598,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "phantom-wall",
             label: "Keep beams that hit no wall",
-            help: "The most common mistake. Readings at the maximum range become points, which travel with the robot and drag it back. The typical error over the keyframes grows from 0.59 m to 0.89 m, though the lap ends closer and the map agrees with itself.",
+            help: "The most common mistake. Readings at the maximum range become points, which travel with the robot and drag it back. The typical error over the keyframes grows from 0.59 m to 0.89 m, even though the lap ends closer to the truth and the map agrees with itself.",
             set: &[MISSES.to(true), TICK.to(LAP_TICKS)],
             then: &[],
         },

@@ -78,14 +78,14 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "bowl",
         label: "Widen τ to 0.6 m",
-        help: "The steps melt into one bowl, and both balls come home. Beyond 0.6 m the plain goes on.",
+        help: "The steps melt into one bowl, and both balls come home. Beyond 0.6 m, the ground is as flat as before.",
         set: &[("tau", 0.6), ("colours", 0.0)],
         then: &["play"],
     },
     Preset {
         id: "wide-hill",
         label: "Widen the NDT cell to 0.8 m",
-        help: "The bells become longer and fewer. NDT's ball comes home from a start where ICP's rolls further away.",
+        help: "The bells become longer and fewer. NDT's ball comes home from a start from which ICP's ball rolls further away.",
         set: &[
             ("tau", 0.6),
             ("colours", 0.0),
@@ -163,7 +163,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "one-row",
         label: "Take the corridor's rows one by one",
-        help: "Start with one row, and add more with the slider. The second distinct row makes the rank two, and no further row makes it three.",
+        help: "Start with one row, and add more with the slider. A second distinct row raises the rank to two; no further row raises it to three.",
         set: &[("scene", 1.0), ("rows", 1.0)],
         then: &[],
     },
@@ -198,7 +198,7 @@ params! {
             (SweepPlace::OwnCorridor, "own-corridor", "corridor on itself"),
         ],
     )
-    .help("Room A on its own points; a corridor without doors on a map with independent noise; the Apartment's corridor, with its doors, on its own points.");
+    .help("Room A, matched with its own points; a corridor without doors, matched with a map whose noise is independent; or the Apartment's corridor, with its doors, matched with its own points.");
 
     pub(super) static TAU: Param<f64> = Param::slider("tau", "pair limit τ", [0.1, 1.6], 0.05)
         .unit("m")
@@ -234,19 +234,19 @@ params! {
     .help("By rank, every colour covers the same number of cells, so low steps show even on high ground.");
 
     pub(super) static SEED: Param<u32> = Param::seed("seed of the sweep", TerrainScene::SEED)
-        .help("Seed of the range noise of the sweep; 1472 is the chapter's.");
+        .help("Seed of the range noise in the sweep; the chapter uses 1472.");
 
     pub(super) static PROBE_X: Param<f64> =
         Param::slider("probe-x", "drop at Δx", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
             .unit("m")
             .default(0.4)
-            .help("Position of the crosshair and start of the ball, east of the truth.");
+            .help("How far east of the truth the crosshair is placed, which is where the ball starts.");
 
     pub(super) static PROBE_Y: Param<f64> =
         Param::slider("probe-y", "drop at Δy", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
             .unit("m")
             .default(0.1)
-            .help("Position of the crosshair and start of the ball, north of the truth.");
+            .help("How far north of the truth the crosshair is placed, which is where the ball starts.");
 
     pub(super) static DROPS: Param<usize> =
         Param::slider("drops", "sweeps dropped", [0.0, MAX_DROPS], 1.0)
@@ -254,12 +254,12 @@ params! {
 
     pub(super) static ROWS: Param<f64> = Param::slider("rows", "rows of the step", [0.0, MAX_ROWS], 1.0)
         .default(MAX_ROWS)
-        .help("How many points, in beam order, contribute a row (n_x, n_y, p × n) to the point-to-plane step; at the right end, all.");
+        .help("How many points, in beam order, contribute a row (n_x, n_y, p × n) to the point-to-plane step; at the right end, all of them do.");
 
     pub(super) static ODOMETRY: Param<f64> =
         Param::slider("odometry", "σ of an odometry row", [0.0, 0.5], 0.01)
             .unit("m")
-            .help("Adds the row (1, 0, 0) with weight 1/σ²; 0 adds none.");
+            .help("Adds the row (1, 0, 0) with weight 1/σ²; 0 adds no row.");
 
     pub(super) static ROLLED: Param<f64> = Param::timeline("t", "% rolled", END_PERCENT)
         .help("How much of its path the ball has rolled, in steps of its descent.");
@@ -278,7 +278,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     awaits: Awaits::End,
     notice: &[
         "Both reliefs compare the same sweep with the same points; only the measure differs. Dark is low, and the ball rolls into the dark.",
-        "A small τ breaks ICP's bowl into terraces and hollows. The ball rests in the nearest one, however good the solver. The profile beside the relief shows it, and the pit it did not reach.",
+        "A small τ breaks ICP's bowl into terraces and hollows. The ball rests in the nearest one, however good the solver. The profile beside the relief shows the ball, and the pit it never reached.",
         "At each crease a point changes its match, or loses it, so the slope jumps and the height does not. Points about to change light up.",
         "NDT has no such creases, because each point feels the whole bell of its cell. But thin walls make thin bells, so the valley is narrow and the plain around it has dents of its own. Wider cells help.",
         "A wide τ lets ICP reach further than NDT. Neither measure wins everywhere.",

@@ -18,7 +18,7 @@ const BEFORE_THE_LOOP: f64 = 91.0;
 const NEXT_EVENT: ButtonSpec = ButtonSpec {
     id: "next-event",
     label: "Next event",
-    help: "Go to the next keyframe, loop test or way point; from the last, back to the first.",
+    help: "Go to the next keyframe, loop test or way point, and from the last one back to the first.",
 };
 
 params! {
@@ -43,11 +43,11 @@ params! {
         ],
     )
     .default("register")
-    .help("The operation that is described at this tick. Press a mark on a lane to select it.");
+    .help("The operation described at this tick. To select another, press its mark on a lane.");
 
     pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", LAP_TICKS)
         .default(BEFORE_THE_LOOP)
-        .help("The moment shown. A tick is a quarter of a second, and the marks are loops.");
+        .help("The moment shown. A tick is a quarter of a second, and each mark is a loop.");
 
     use SPEED;
     use MORE;

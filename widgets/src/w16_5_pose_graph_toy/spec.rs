@@ -93,7 +93,7 @@ params! {
     .unit("×")
     .default(1.0)
     .help(
-        "Information of the loop, relative to an odometry edge. A stiffer spring gives way less.",
+        "The information of the loop. A stiffer spring gives way less.",
     );
 
     pub(super) static GRAPH: OneOf<GraphShape> = one_of!(
@@ -123,7 +123,7 @@ params! {
         Param::slider("odometry", "stiffness of odometry", [0.1, 10.0], 0.1)
             .unit("×")
             .default(1.0)
-            .help("Information of each odometry edge.");
+            .help("The information of each odometry edge.");
 
     pub(super) static PINNED: Param<bool> = Param::switch("pinned", "pin the first pose")
         .on()
@@ -132,7 +132,7 @@ params! {
     use MOVED[0 1 2 3 4 5][0 1 2];
 
     pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MAX_STEPS as f64)
-        .help("How many steps the solver has taken; 0 is the graph before the first.");
+        .help("How many steps the solver has taken; 0 is the graph before the first step.");
 
     use SPEED;
     use MORE;
@@ -149,7 +149,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "Each edge is a spring, at rest when its measurement is met. The dotted line shows how far it is from rest, and the number shows the cost.",
         "Pull a pose and let go. Each beat is one Gauss–Newton step. Pull the green spring tight, and it grows thick and stiff.",
-        "On a line the problem is linear, and one step from anywhere is enough. Headings make it nonlinear, and it takes a few.",
+        "On a line the problem is linear, and one step from anywhere is enough. Headings make it nonlinear, so it takes a few steps.",
         "The disagreement does not vanish. The springs share it, and a stiff one takes less.",
         "Without a pin the whole graph floats, because χ² depends only on differences.",
     ],
@@ -171,7 +171,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "stiff",
             label: "A confident loop",
-            help: "A loop ten times as stiff keeps almost its whole length, and odometry gives way.",
+            help: "A loop ten times as stiff keeps nearly all of its length, and it is odometry that gives way.",
             set: &[GRAPH.to("line"), STIFFNESS.to(10.0)],
             then: &["step"],
         },
@@ -185,7 +185,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "square",
             label: "A square that does not close",
-            help: "Four sides, and a loop that puts the end somewhere else. The whole square gives way a little.",
+            help: "Four sides, and a loop that puts their end somewhere else. The whole square gives way a little.",
             set: &[GRAPH.to("square"), STEPS.to(0.0)],
             then: &["play"],
         },

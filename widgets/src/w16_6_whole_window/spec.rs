@@ -49,7 +49,7 @@ params! {
     pub(super) static TURN: Param<f64> = Param::slider("turn", "headings ±", [30.0, 180.0], 15.0)
         .unit("°")
         .default(180.0)
-        .help("How far from the start's heading the search looks; 180 covers every heading.");
+        .help("How far from the start's heading the search looks; 180° covers every heading.");
 
     pub(super) static CELL: Param<f64> = Param::slider("cell", "cell", [0.05, 0.2], 0.01)
         .unit("m")
@@ -57,10 +57,10 @@ params! {
         .help("The resolution of the search; the map is blurred accordingly.");
 
     pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
-        .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
+        .help("Seed of the range noise in both sweeps; the chapter uses 457.");
 
     pub(super) static PROGRESS: Param<f64> = Param::timeline("progress", "boxes expanded", MAX_STEPS)
-        .help("How many boxes the search has expanded; ICP's iterations follow the last.");
+        .help("How many boxes the search has expanded; ICP's iterations follow the last box.");
 
     use SPEED;
     use MORE;
@@ -75,7 +75,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     gesture: "Turn the sweep by its ring, and let it go.",
     awaits: Awaits::End,
     notice: &[
-        "Each bar is a box of poses, and its height is a score that no pose in the box can exceed. Point at one to see their true scores, all below. As boxes split, the bars fall towards them.",
+        "Each bar is a box of poses, and its height is a score that no pose in the box can exceed. Point at one to see the true scores of its poses, all of them lower. As boxes split, the bars fall towards them.",
         "ICP races from the same start. It finishes first, in whatever minimum it fell into.",
         "A box whose bound is below the best score so far is dropped unseen, and turns the colour of this text. The bound is never too low, so the search is exact.",
         "The half turn is the runner-up. The quarter turn, which traps ICP, is far behind, because the search counts the points that fit nowhere.",
@@ -106,14 +106,14 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "wide",
             label: "Four times the window",
-            help: "±3 m instead of ±1.5 m: four times the poses, less than twice the work.",
+            help: "The window is ±3 m instead of ±1.5 m. It holds four times the poses, but the search does less than twice the work.",
             set: &[WINDOW.to(3.0), PROGRESS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "without-home",
             label: "A window without the truth",
-            help: "Only ±60° around a start that is 75° off. The truth is outside the window, and the search reports that no place fits.",
+            help: "The search covers only ±60° around a start that is 75° off. The truth is outside the window, and the search reports that no place fits.",
             set: &[TURN.to(60.0), PROGRESS.to(0.0)],
             then: &["play"],
         },

@@ -52,7 +52,7 @@ params! {
         ],
     )
     .default("context")
-    .help("Compares estimated poses, range histograms, or rings and sectors.");
+    .help("What the detector compares: estimated poses, range histograms, or rings and sectors.");
 
     pub(super) static WORLD: OneOf<BuiltInWorld> = one_of!(
         BuiltInWorld,
@@ -60,7 +60,7 @@ params! {
         "world",
         BuiltInWorld::NAMED.split_at(2).0,
     )
-    .help("The world of the lap.");
+    .help("The world in which the lap is driven.");
 
     pub(super) static OLDER: Param<f64> = Param::slider(
         "old",
@@ -69,7 +69,7 @@ params! {
         1.0,
     )
     .default(18.0)
-    .help("The older keyframe compared with the newest; −1 is the most similar one.");
+    .help("The older keyframe compared with the newest one; −1 selects the most similar one.");
 
     pub(super) static TURN: Param<f64> = Param::slider(
         "turn",
@@ -78,7 +78,7 @@ params! {
         SECTOR_DEG,
     )
     .unit("°")
-    .help("How far the newer view is turned from the heading where Scan Context fits best.");
+    .help("How far the newer view is turned from the heading at which Scan Context fits best.");
 
     pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
 
@@ -86,7 +86,7 @@ params! {
 
     pub(super) static NEWEST: Param<f64> = Param::timeline("new", "keyframe", MAX_KEYFRAMES)
         .default(MAX_KEYFRAMES)
-        .help("The newest keyframe so far; values past the last mean the whole lap.");
+        .help("The newest keyframe so far; values past the last keyframe show the whole lap.");
 
     use SPEED;
     use MORE;
@@ -96,7 +96,7 @@ params! {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.7",
     name: "Have I been here?",
-    title: "How much may two views of one place differ?",
+    title: "How different can two views of the same place be?",
     claim: "Places that look alike may be different.",
     gesture: "Drag the line in the plot.",
     awaits: Awaits::Rest,
@@ -105,7 +105,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "In the matrix, dark means alike. The stripe down to the right is the return leg, which revisits the places in reverse order.",
         "In the corridor all histograms look alike, because a range has no direction.",
         "Scan Context keeps directions. Slide one view over the other: they differ least at the rotation between them.",
-        "A looser threshold finds more true pairs and calls more false ones. No point on the curve is free.",
+        "A looser threshold finds more true pairs but also admits more false ones. No point on the curve comes free.",
     ],
     opening: Opening {
         panels: &["flat", "scores", "looks"],
@@ -118,7 +118,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "lap",
             label: "Drive the lap",
-            help: "Each new keyframe is compared with all older ones, which adds a column.",
+            help: "Each new keyframe is compared with all older ones, which adds a column to the matrix.",
             set: &[OLDER.to(MOST_ALIKE), NEWEST.to(0.0)],
             then: &["play"],
         },

@@ -28,7 +28,7 @@ params! {
             (2, "huber", "with Huber"),
         ],
     )
-    .help("Which registration's pairs are drawn: all of them, all but the longest, or the long ones with less weight.");
+    .help("Which registration's pairs are drawn: plain ICP uses all pairs, trimming drops the longest, and Huber's kernel gives long pairs less weight.");
 
     pub(super) static SHARE: Param<f64> =
         Param::slider("share", "points on the box", [0.0, MAX_SHARE], 1.0)
@@ -69,7 +69,7 @@ params! {
 
     pub(super) static ITERATION: Param<f64> = Param::timeline("iteration", "iteration", MAX_ITERATIONS)
         .help(
-            "The iteration shown, for all three; a registration with fewer iterations has converged.",
+            "The iteration shown for all three registrations; one that stops early has converged.",
         );
 
     use SPEED;
@@ -102,7 +102,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "fifth",
             label: "A fifth of the points",
-            help: "The exercise. Plain ICP follows the box; trimmed and Huber barely move.",
+            help: "The exercise's setting. Plain ICP follows the box; with trimming or Huber's kernel, the sweep barely moves.",
             set: &[],
             then: &["play"],
         },

@@ -19,7 +19,7 @@ const fn place(id: &'static str, label: &'static str, max: f64, default: f64) ->
     Param::slider(id, label, [0.0, max], 0.1)
         .unit("m")
         .default(default)
-        .help("Where on the plan the robot is put overnight. The robot does not know.")
+        .help("Where on the plan the robot is moved to overnight. The robot is not told.")
 }
 
 /// The step button: one moment.
@@ -32,7 +32,7 @@ const ONE_MOMENT: ButtonSpec = ButtonSpec {
 params! {
     pub(super) static LAPS: Param<usize> =
         Param::slider("laps", "laps since the wardrobe moved", [0.0, 2.0], 1.0)
-            .help("The map was made from one lap before that night, and this many after it.");
+            .help("The map was made from one lap before that night, and from this many laps after it.");
 
     pub(super) static START_X: Param<f64> = place("x", "switched on at x", PLAN_M[0], 4.4);
 
@@ -41,7 +41,7 @@ params! {
     pub(super) static HEADING: Param<f64> =
         Param::slider("heading", "heading there", [-180.0, 180.0], 5.0)
             .unit("°")
-            .help("The robot's heading when it is switched on. The robot does not know.");
+            .help("The robot's heading when it is switched on, which the robot does not know.");
 
     pub(super) static WORLD: OneOf<BuiltInWorld> = one_of!(
         BuiltInWorld,
@@ -49,12 +49,12 @@ params! {
         "world",
         BuiltInWorld::NAMED.split_at(3).0,
     )
-    .help("The world. Only the Apartment has the wardrobe.");
+    .help("The world the robot wakes up in. Only the Apartment has the wardrobe.");
 
     pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
 
     pub(super) static MOMENT: Param<f64> = Param::timeline("moment", "moment", MAX_MOMENTS)
-        .help("The moment shown, counted in boxes of a search and in scans.");
+        .help("The moment shown, counted in boxes of the search and in scans.");
 
     use SPEED;
     use MORE;

@@ -5,7 +5,7 @@ use crate::param::Param;
 /// Noise factor of the odometry.
 pub static NOISE: Param<f64> = Param::slider("noise", "odometry noise ×", [0.25, 4.0], 0.05)
     .default(1.0)
-    .help("Multiplies the variances of the wheel odometry: 1 is the chapter's robot.");
+    .help("Multiplies the variances of the wheel odometry; at 1, the robot is the chapter's.");
 
 /// Whether loops are closed.
 pub static LOOPS: Param<bool> = Param::switch("loops", "loop closure")

@@ -156,7 +156,7 @@ fn quarter_from_deg(scene: &BasinScene, name: &str, settings: Settings) -> Optio
     Some(f64::from(last_other + 1))
 }
 
-/// Iterations from each whole degree of the right basin, except for the truth itself.
+/// Iterations from each whole degree of the correct basin, except for the truth itself.
 fn iterations_in_basin(scene: &BasinScene, name: &str, settings: Settings) -> Option<Iterations> {
     let [from, to] = [-1, 1].map(|side| basin_edge(scene, name, settings, side));
     let degrees = (from? as i32..=to? as i32).filter(|degrees| *degrees != 0);

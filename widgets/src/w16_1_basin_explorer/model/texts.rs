@@ -67,7 +67,7 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
 
 pub fn summary(explorer: &BasinExplorer) -> String {
     if explorer.values.get(&EDGE) == Phase::Marking {
-        return "Two basin maps of headings and offsets, covered until the edge of the right basin is marked."
+        return "Two basin maps of headings and offsets, covered until the edge of the correct basin is marked."
             .to_owned();
     }
     let shown = explorer.shown();

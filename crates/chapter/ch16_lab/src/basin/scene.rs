@@ -93,9 +93,9 @@ impl Default for BasinScene {
 impl BasinScene {
     /// Seed of the chapter's range noise.
     pub const SEED: u32 = 0x1C9;
-    /// Largest number of iterations of the chapter's registrations. Some starts of the right basin need more.
+    /// Largest number of iterations of the chapter's registrations. Some starts of the correct basin need more.
     pub const MAX_ITERS: usize = 30;
-    /// A number of iterations within which every start of the right basin converges.
+    /// A number of iterations within which every start of the correct basin converges.
     pub const PATIENT_ITERS: usize = 200;
 
     /// The chapter's scene.
