@@ -3,9 +3,6 @@
 //! A thread listens to the robot's server, records what it reads as MCAP, and passes the same bytes to the reader of
 //! [`LogFormat::open_live`](robot_io::log_format::LogFormat::open_live): from there on, a robot and a file are the same.
 
-mod connection;
-mod listener;
-
 use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::Path;
@@ -21,15 +18,15 @@ use command_line::in_file::InFile as _;
 use command_line::interrupt::Interrupt;
 use command_line::log_file::{OdometryArgs, TopicArgs, open_live};
 use command_line::numbers;
+use robot_connection::{Address, Connection, Listener};
 use robot_io::live::drive::{Drive, DriveEnd};
 use robot_io::live::network::Host;
 use robot_io::live::queue;
 use robot_io::live::{RECORDING, WAIT_S};
 use robot_io::log::LogReader as _;
 
-use self::connection::{Address, Connection};
-use self::listener::Listener;
 use crate::mapping::{Ended, Mapping, MappingArgs};
+use crate::shown::{PORT, ServeAt};
 
 /// Time between two reports of progress.
 const EVERY: Duration = Duration::from_secs(10);
@@ -48,6 +45,16 @@ pub struct LiveArgs {
     /// How long to wait for the first scan, and for the robot to come back after the connection was lost, s.
     #[arg(long, value_name = "SECONDS", default_value_t = WAIT_S, value_parser = numbers::wait_s, allow_hyphen_values = true)]
     wait: f64,
+    /// Show the map, its path and map → odom to Foxglove or Lichtblick while the robot drives, on this computer: at port
+    /// 8766, or this one; with an address such as 0.0.0.0:8766 to others, too.
+    #[arg(
+        long,
+        value_name = "[ADDRESS:]PORT",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = PORT
+    )]
+    serve: Option<ServeAt>,
     #[command(flatten)]
     mapping: MappingArgs,
 }
@@ -70,6 +77,16 @@ pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
             recording.display()
         );
     }
+    let mut shown = None;
+    if let Some(at) = args.serve {
+        let serving = mapping.show_at(at).map_err(|error| {
+            anyhow!(
+                "the map cannot be served at {at}: {error}; pass another port, such as --serve=8767"
+            )
+        })?;
+        eprintln!("slam2d: shows the map at {}", serving.url());
+        shown = Some(serving);
+    }
     let connection = Connection::open(&address)?;
     fs::create_dir_all(folder).in_file(folder)?;
     let file = File::create_new(&recording).in_file(&recording)?;
@@ -77,16 +94,25 @@ pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
     let is_ended = Arc::<AtomicBool>::default();
     let asked = args.topics.scan_topics().map(str::to_owned).collect();
     let drive = Drive::new(feeder, asked);
+    let has_ended = Arc::clone(&is_ended);
     let listener = Listener::new(address, BufWriter::with_capacity(1 << 16, file), drive)
         .waiting(Duration::from_secs_f64(args.wait))
-        .until(interrupt, Arc::clone(&is_ended));
+        .until(move || interrupt.came() || has_ended.load(Ordering::Relaxed))
+        .saying(|event| eprintln!("slam2d: {event}"));
     let listening = thread::spawn(move || listener.listen(connection));
     let topics = args.topics.resuming_with(mapping.laser_before);
     let mut reader = open_live(feed, &args.url, &topics, args.odometry);
     let mut reported = Instant::now();
     let problem = loop {
         match reader.next_frame() {
-            Ok(Some(frame)) => mapping.step(frame),
+            Ok(Some(frame)) => {
+                let odometry = frame.odometry;
+                let report = mapping.step(frame);
+                if let Some((shown, report)) = shown.as_mut().zip(report) {
+                    let mapped = (&mapping.run, &mapping.recorder);
+                    shown.step(&report, odometry, reader.notes(), mapped);
+                }
+            }
             Ok(None) => break None,
             Err(problem) => break Some(problem),
         }
@@ -107,6 +133,7 @@ pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
     let mut ended = Ended {
         remarks: reader.notes().sentences(&args.url),
         about: reader.notes().about.clone(),
+        shown,
         ..Ended::default()
     };
     let recorded = recording.display().to_string();

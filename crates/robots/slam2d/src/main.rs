@@ -17,6 +17,7 @@ mod run_folder;
 mod run_log;
 mod run_output;
 mod session_file;
+mod shown;
 mod tick_costs;
 
 use std::process::ExitCode;

@@ -1,10 +1,12 @@
 //! The estimator's run of `slam2d run` and `slam2d live`: its arguments, its scans, its results.
 
+use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::bail;
 use bench_support::{process, timed};
+use ch16_slam2d::slam::SlamReport;
 use clap::Args;
 use robot_io::laser_mount::LaserMount;
 use robot_io::log::LogFrame;
@@ -19,6 +21,7 @@ use crate::localize::Init;
 use crate::run_folder::{CUT_SHORT, folder_of_part};
 use crate::run_output::{Results, write_folder};
 use crate::session_file::read_session;
+use crate::shown::{ServeAt, Shown};
 use crate::tick_costs::{TickCosts, TickSummary};
 use command_line::in_file::InFile as _;
 use command_line::interrupt;
@@ -97,7 +100,8 @@ pub struct Mapping<'a> {
     pub run: LogRun,
     /// The session's mounting of the laser.
     pub laser_before: Option<LaserMount>,
-    recorder: RunRecorder,
+    /// The scans of its keyframes.
+    pub recorder: RunRecorder,
     costs: TickCosts,
     reference: Option<Reference>,
 }
@@ -113,6 +117,8 @@ pub struct Ended {
     pub is_interrupted: bool,
     /// Why the log cannot be read further.
     pub broken: Option<anyhow::Error>,
+    /// To whom the result is shown, too.
+    pub shown: Option<Shown>,
 }
 
 impl<'a> Mapping<'a> {
@@ -136,13 +142,22 @@ impl<'a> Mapping<'a> {
         })
     }
 
-    /// Takes the next scan.
-    pub fn step(&mut self, frame: LogFrame) {
+    /// Takes the next scan; returns `None` if it is skipped.
+    pub fn step(&mut self, frame: LogFrame) -> Option<SlamReport> {
         let (report, ms) = timed(|| self.run.step(frame.clone()));
         self.costs.push(ms);
-        if let Some(report) = report {
-            self.recorder.add(&frame, &report);
+        if let Some(report) = &report {
+            self.recorder.add(&frame, report);
         }
+        report
+    }
+
+    /// Starts to show the map to clients at this address.
+    ///
+    /// # Errors
+    /// If it is taken or not this computer's.
+    pub fn show_at(&self, at: ServeAt) -> io::Result<Shown> {
+        Shown::start(at, self.args.resolution, self.args.free_space)
     }
 
     /// Ends the run on `name`, writes its folder, whose report has this title, and prints the result; the exit code
@@ -164,6 +179,7 @@ impl<'a> Mapping<'a> {
             about,
             is_interrupted,
             broken,
+            shown,
         } = ended;
         run.finish();
         recorder.forget_left_out(&run);
@@ -226,6 +242,9 @@ impl<'a> Mapping<'a> {
             if let Some(sentence) = write_folder(folder, &results)? {
                 eprintln!("slam2d: {name}: {sentence}");
             }
+        }
+        if let Some(shown) = shown {
+            shown.end(&run, &recorder);
         }
         // Write the results before reporting any later error.
         let grade = grade?;

@@ -7,6 +7,7 @@ mod field;
 mod live;
 mod robot;
 mod robots;
+mod shown;
 mod variants;
 mod write;
 

@@ -2,6 +2,8 @@
 //!
 //! Source: "MCAP format specification", version 0; OMG, "Extended and dynamic topic types for DDS", 7.4.
 
+use robot_connection::Cdr;
+
 /// A message with its topic and the time of its recording.
 #[derive(Clone, Debug)]
 pub struct Message {
@@ -55,61 +57,22 @@ pub struct FrameTransform {
     pub is_upside_down: bool,
 }
 
-/// Little-endian CDR fields.
-struct Cdr(Vec<u8>);
+/// Adds a list of numbers.
+fn floats(cdr: &mut Cdr, values: &[f32]) {
+    cdr.u32(values.len() as u32);
+    values.iter().for_each(|&value| cdr.f32(value));
+}
 
-impl Cdr {
-    fn align(&mut self, size: usize) {
-        while !(self.0.len() - 4).is_multiple_of(size) {
-            self.0.push(0);
-        }
-    }
-
-    fn u32(&mut self, value: u32) {
-        self.align(4);
-        self.0.extend_from_slice(&value.to_le_bytes());
-    }
-
-    fn f32(&mut self, value: f32) {
-        self.align(4);
-        self.0.extend_from_slice(&value.to_le_bytes());
-    }
-
-    fn f64(&mut self, value: f64) {
-        self.align(8);
-        self.0.extend_from_slice(&value.to_le_bytes());
-    }
-
-    fn text(&mut self, text: &str) {
-        self.u32(text.len() as u32 + 1);
-        self.0.extend_from_slice(text.as_bytes());
-        self.0.push(0);
-    }
-
-    fn floats(&mut self, values: &[f32]) {
-        self.u32(values.len() as u32);
-        values.iter().for_each(|&value| self.f32(value));
-    }
-
-    fn header(&mut self, stamp_s: f64, frame: &str) {
-        let nanoseconds = (stamp_s.max(0.0) * 1e9).round() as u64;
-        self.u32((nanoseconds / 1_000_000_000) as u32);
-        self.u32((nanoseconds % 1_000_000_000) as u32);
-        self.text(frame);
-    }
-
-    fn pose(&mut self, [x, y, theta]: [f64; 3], is_upside_down: bool) {
-        let (sin, cos) = (theta / 2.0).sin_cos();
-        // Half a turn about x first.
-        let [qx, qy, qz, qw] = if is_upside_down {
-            [cos, sin, 0.0, 0.0]
-        } else {
-            [0.0, 0.0, sin, cos]
-        };
-        for value in [x, y, 0.0, qx, qy, qz, qw] {
-            self.f64(value);
-        }
-    }
+/// Adds position and quaternion.
+fn pose(cdr: &mut Cdr, [x, y, theta]: [f64; 3], is_upside_down: bool) {
+    let (sin, cos) = (theta / 2.0).sin_cos();
+    // Half a turn about x first.
+    let [qx, qy, qz, qw] = if is_upside_down {
+        [cos, sin, 0.0, 0.0]
+    } else {
+        [0.0, 0.0, sin, cos]
+    };
+    cdr.f64s(&[x, y, 0.0, qx, qy, qz, qw]);
 }
 
 impl Message {
@@ -126,7 +89,7 @@ impl Message {
 
     /// The message in CDR.
     pub fn bytes(&self) -> Vec<u8> {
-        let mut cdr = Cdr(vec![0, 1, 0, 0]);
+        let mut cdr = Cdr::default();
         match &self.body {
             Body::Scan(scan) => {
                 cdr.header(scan.stamp_s, &scan.frame);
@@ -144,11 +107,11 @@ impl Message {
                 if scan.has_echoes {
                     cdr.u32(scan.ranges.len() as u32);
                     // The second echo is from behind.
-                    scan.ranges
-                        .iter()
-                        .for_each(|&range| cdr.floats(&[range, range + 1.0]));
+                    for &range in &scan.ranges {
+                        floats(&mut cdr, &[range, range + 1.0]);
+                    }
                 } else {
-                    cdr.floats(&scan.ranges);
+                    floats(&mut cdr, &scan.ranges);
                 }
                 cdr.u32(0);
             }
@@ -160,7 +123,7 @@ impl Message {
             } => {
                 cdr.header(*stamp_s, above);
                 cdr.text(child);
-                cdr.pose(*pose, false);
+                self::pose(&mut cdr, *pose, false);
                 (0..78).for_each(|_| cdr.f64(0.0));
             }
             Body::Transforms(all) => {
@@ -168,7 +131,7 @@ impl Message {
                 for transform in all {
                     cdr.header(transform.stamp_s, &transform.parent);
                     cdr.text(&transform.child);
-                    cdr.pose(transform.pose, transform.is_upside_down);
+                    pose(&mut cdr, transform.pose, transform.is_upside_down);
                 }
             }
             Body::Cloud {
@@ -183,20 +146,20 @@ impl Message {
                 for (offset, name) in ["x", "y", "z"].iter().enumerate() {
                     cdr.text(name);
                     cdr.u32(4 * offset as u32);
-                    cdr.0.push(7);
+                    cdr.raw(&[7]);
                     cdr.u32(1);
                 }
-                cdr.0.push(0);
+                cdr.raw(&[0]);
                 cdr.u32(12);
                 cdr.u32(12 * points.len() as u32);
                 cdr.u32(12 * points.len() as u32);
                 for value in points.iter().flatten() {
-                    cdr.0.extend_from_slice(&value.to_le_bytes());
+                    cdr.raw(&value.to_le_bytes());
                 }
-                cdr.0.push(1);
+                cdr.raw(&[1]);
             }
         }
-        cdr.0
+        cdr.finish()
     }
 }
 

@@ -4,6 +4,7 @@ use std::io::{self, ErrorKind};
 use std::net::{TcpStream, ToSocketAddrs as _};
 use std::time::{Duration, Instant};
 
+use crate::is_wait;
 use robot_io::live::MAX_MESSAGE;
 use robot_io::live::network::{ConnectError, Lost, NO_ANSWER, OTHER_SUBPROTOCOL};
 use robot_io::live::protocol::SUBPROTOCOLS;
@@ -64,7 +65,7 @@ impl Address {
 pub struct Connection {
     socket: WebSocket<TcpStream>,
     /// When the last message came.
-    pub heard: Instant,
+    pub(crate) heard: Instant,
     is_asked: bool,
 }
 
@@ -133,7 +134,7 @@ impl Connection {
     ///
     /// # Errors
     /// If the connection is lost.
-    pub fn send(&mut self, text: String) -> Result<(), Lost> {
+    pub(crate) fn send(&mut self, text: String) -> Result<(), Lost> {
         self.socket.send(Message::text(text)).map_err(lost)
     }
 
@@ -141,7 +142,7 @@ impl Connection {
     ///
     /// # Errors
     /// If the connection is lost.
-    pub fn next(&mut self) -> Result<Option<Message>, Lost> {
+    pub(crate) fn next(&mut self) -> Result<Option<Message>, Lost> {
         match self.socket.read() {
             Ok(message) => {
                 (self.heard, self.is_asked) = (Instant::now(), false);
@@ -166,14 +167,6 @@ impl Connection {
             Err(error) => Err(lost(error)),
         }
     }
-}
-
-/// Whether a read ended because its time was over or a signal came.
-fn is_wait(error: &io::Error) -> bool {
-    matches!(
-        error.kind(),
-        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
-    )
 }
 
 fn lost(error: SocketError) -> Lost {

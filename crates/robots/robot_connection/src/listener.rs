@@ -1,54 +1,79 @@
 //! Listens to a robot: subscribes to what is read, records it, and passes it to the estimator.
 
+use std::fmt;
 use std::io::{self, Write};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use command_line::interrupt::Interrupt;
 use robot_io::live::drive::{Drive, DriveEnd, Heard};
 use robot_io::live::network::{Lost, connected_again, connecting_again};
 use tungstenite::Message;
 
-use super::connection::{Address, Connection};
+use crate::connection::{Address, Connection};
 
 /// Time between two attempts to connect again.
 const RETRY: Duration = Duration::from_millis(200);
+
+/// What happens to a connection, each with its sentence.
+#[derive(Clone, Debug)]
+pub enum Event {
+    /// A topic is read.
+    Reads(String),
+    /// The connection is lost.
+    Lost(String),
+    /// It is there again.
+    Back(String),
+}
+
+impl fmt::Display for Event {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Self::Reads(sentence) | Self::Lost(sentence) | Self::Back(sentence)) = self;
+        f.write_str(sentence)
+    }
+}
 
 /// Listens to a server.
 pub struct Listener<W> {
     address: Address,
     /// How long to wait for the first scan, and for a lost connection.
     wait: Duration,
-    interrupt: Interrupt,
-    is_ended: Arc<AtomicBool>,
+    is_over: Box<dyn Fn() -> bool + Send>,
+    say: Box<dyn Fn(Event) + Send>,
     recording: W,
     drive: Drive,
 }
 
 impl<W: Write> Listener<W> {
-    /// Creates a listener that records `drive` to `recording`.
+    /// Creates a listener that waits for nothing and records `drive` to `recording`.
     pub fn new(address: Address, recording: W, drive: Drive) -> Self {
         Self {
             address,
             wait: Duration::ZERO,
-            interrupt: Interrupt::default(),
-            is_ended: Arc::default(),
+            is_over: Box::new(|| false),
+            say: Box::new(|_| {}),
             recording,
             drive,
         }
     }
 
     /// Waits for the first scan and for a lost connection as long as this.
+    #[must_use]
     pub fn waiting(mut self, wait: Duration) -> Self {
         self.wait = wait;
         self
     }
 
-    /// Ends when a signal comes, or when `is_ended` is set.
-    pub fn until(mut self, interrupt: Interrupt, is_ended: Arc<AtomicBool>) -> Self {
-        (self.interrupt, self.is_ended) = (interrupt, is_ended);
+    /// Ends once `is_over`.
+    #[must_use]
+    pub fn until(mut self, is_over: impl Fn() -> bool + Send + 'static) -> Self {
+        self.is_over = Box::new(is_over);
+        self
+    }
+
+    /// Passes what happens to `say`.
+    #[must_use]
+    pub fn saying(mut self, say: impl Fn(Event) + Send + 'static) -> Self {
+        self.say = Box::new(say);
         self
     }
 
@@ -68,7 +93,7 @@ impl<W: Write> Listener<W> {
     fn listen_through(&mut self, mut connection: Connection) -> io::Result<DriveEnd> {
         let since = Instant::now();
         loop {
-            if self.is_over() {
+            if (self.is_over)() {
                 return Ok(DriveEnd::Asked);
             }
             if self.drive.heard.scans == 0 && since.elapsed() > self.wait {
@@ -99,23 +124,19 @@ impl<W: Write> Listener<W> {
         }
     }
 
-    fn is_over(&self) -> bool {
-        self.interrupt.came() || self.is_ended.load(Ordering::Relaxed)
-    }
-
     /// Connects again after a loss.
     fn connect_again(&mut self, lost: &Lost, heard: Instant) -> Result<Connection, DriveEnd> {
         self.drive.lost();
         let (url, wait_s) = (&self.address.url, self.wait.as_secs_f64());
-        eprintln!("slam2d: {}", connecting_again(url, lost, wait_s));
+        (self.say)(Event::Lost(connecting_again(url, lost, wait_s)));
         let since = Instant::now();
         loop {
-            if self.is_over() {
+            if (self.is_over)() {
                 return Err(DriveEnd::Asked);
             }
             if let Ok(connection) = Connection::open(&self.address) {
                 self.drive.heard.gaps.push(heard.elapsed());
-                eprintln!("slam2d: {}", connected_again(url));
+                (self.say)(Event::Back(connected_again(url)));
                 return Ok(connection);
             }
             if since.elapsed() >= self.wait {
@@ -134,7 +155,8 @@ impl<W: Write> Listener<W> {
         }
         self.recording.write_all(&self.drive.take_recorded())?;
         for (name, schema) in self.drive.take_read() {
-            eprintln!("slam2d: {}: reads {name} ({schema})", self.address.url);
+            let sentence = format!("{}: reads {name} ({schema})", self.address.url);
+            (self.say)(Event::Reads(sentence));
         }
         let mut requests = self.drive.take_requests().into_iter();
         let sent = requests.try_for_each(|request| connection.send(request));
