@@ -39,7 +39,7 @@ export function slidesPage(pages, scripts, exercises, render) {
 <body>
 <main>
 <section class="title"><h1>SLAM in two dimensions</h1>
-<p>The arrow keys turn a slide, N opens the speaker’s notes in a second window.</p>
+<p>The arrow keys turn the slides, and N opens the speaker notes in a second window.</p>
 <p><a href="index.html">The chapter</a></p>
 <template class="note"><p>Each widget asks a question: let the class answer it before you drag.</p></template></section>
 ${slides.join('\n')}
