@@ -21,15 +21,21 @@ def skip(name, reason):
     pytest.skip(reason)
 
 
+def program(name):
+    """A command of the workspace."""
+    folder = Path(os.environ.get("SLAM_NATIVE", ROOT / "target/debug"))
+    path = folder / (f"{name}.exe" if os.name == "nt" else name)
+    if not path.is_file():
+        skip("the command beside the package", f"{path} is not there; cargo build --bin {name} makes it")
+    return path
+
+
 def command(name):
     """A function that runs a command of the workspace, and returns what it prints."""
-    folder = Path(os.environ.get("SLAM_NATIVE", ROOT / "target/debug"))
-    program = folder / (f"{name}.exe" if os.name == "nt" else name)
-    if not program.is_file():
-        skip("the command beside the package", f"{program} is not there; cargo build --bin {name} makes it")
+    path = program(name)
 
     def run(*arguments):
-        return subprocess.run([program, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
+        return subprocess.run([path, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
 
     return run
 
