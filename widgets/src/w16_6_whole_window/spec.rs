@@ -82,7 +82,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "The search is only as fine as its cells. ICP does the rest, from a start it can use.",
     ],
     opening: Opening {
-        panels: &["sweeps", "places"],
+        panels: &["sweeps"],
         params: &["heading"],
         buttons: &["play", "step", "reset"],
     },

@@ -1,23 +1,21 @@
-//! Layout of the panels: the sweeps beside the positions, the rest below.
+//! Layout of the panels: the plan, and below the controls the positions and the bounds.
 
 use widget_kit::scene::Scene;
 use widget_kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot};
 
 use crate::w16_6_whole_window::model::panel;
 
-/// The layout of the widget.
+/// The layout of the widget: the plan is the same with and without what More shows.
 #[must_use]
 pub fn arrange(_scene: &Scene, width: f32) -> Arrangement {
-    let [sweeps, places] = [panel::SWEEPS, panel::PLACES];
-    let (stage, bounds_px) = if width >= SIDE_BY_SIDE {
-        let pair = [sweeps, places].map(|panel| Slot::natural(panel, 420.0));
-        (vec![Row::new(&pair)], 150.0)
+    let (plan, places_px, bounds_px) = if width >= SIDE_BY_SIDE {
+        (Slot::natural(panel::SWEEPS, 560.0), 420.0, 150.0)
     } else {
-        let each = [sweeps, places].map(|panel| Slot::natural(panel, 260.0));
-        (Row::each(&each), 100.0)
+        (Slot::fixed(panel::SWEEPS, 440.0), 260.0, 100.0)
     };
+    let places = Slot::natural(panel::PLACES, places_px);
     Arrangement {
-        stage,
-        below: Row::each(&[Slot::fixed(panel::BOUNDS, bounds_px)]),
+        stage: Row::each(&[plan]),
+        below: Row::each(&[places, Slot::fixed(panel::BOUNDS, bounds_px)]),
     }
 }

@@ -214,10 +214,10 @@ fn icp_races_the_search_and_stops_in_a_false_minimum_first() {
     }
 }
 
-/// The one counter over the positions: the work so far, and that of trying all.
+/// The one counter over the plan: the work so far, and that of trying all.
 #[test]
 fn the_counter_over_the_window_grows_to_the_work_of_the_search() {
-    let title = |window: &WholeWindow| panel_of(window, panel::PLACES).title;
+    let title = |window: &WholeWindow| panel_of(window, panel::SWEEPS).title;
     let count = |window: &WholeWindow| {
         let title = title(window);
         let (sums, all) = title.split_once(" of ").expect("a counter");

@@ -12,7 +12,7 @@ use widget_kit::scene::{
 };
 
 use super::interaction::turn_handle;
-use super::texts::now;
+use super::texts::grouped;
 use super::{WholeWindow, panel};
 use crate::sweep_bounds::sweep_bounds;
 use crate::xy::xy;
@@ -43,6 +43,9 @@ fn sweeps(window: &WholeWindow) -> Panel {
         },
         points(scene.target(), Mark::Cross, Tone::Measurement, 3.0),
     ];
+    if window.step() < window.boxes_taken() {
+        layers.extend(places::open_boxes(window));
+    }
     if let Some(icp) = icp_now(window) {
         let sweep = scene.source().transformed(&icp);
         layers.push(points(&sweep, Mark::Dot, Tone::Series(2), 1.6));
@@ -69,16 +72,21 @@ fn sweeps(window: &WholeWindow) -> Panel {
         layers.push(sensor(pose, Mark::Square, Tone::Posterior));
     }
     let [x, y] = frame(window);
+    let counts = window.search_task.window.moments()[window.step()].counts;
     Panel {
         id: panel::SWEEPS,
-        title: now(window),
+        title: format!(
+            "{} of {} sums made",
+            grouped(counts.scored()),
+            grouped(counts.window)
+        ),
         weight: Weight::Main,
         aspect: Aspect::Equal,
         x,
         y,
         layers,
         legend: vec![
-            LegendEntry::mark("target", Tone::Measurement, Mark::Cross),
+            LegendEntry::line("it may be here", Tone::Series(0), Stroke::Solid),
             LegendEntry::mark("best so far", Tone::Posterior, Mark::Square),
             LegendEntry::mark("start", Tone::Prior, Mark::Circle),
             LegendEntry::mark("ICP alone", Tone::Series(2), Mark::Dot),

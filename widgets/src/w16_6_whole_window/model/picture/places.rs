@@ -5,7 +5,7 @@ use widget_kit::scene::{
     Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Raster, RasterCell, Stroke, Tone, Weight,
 };
 
-use super::super::texts::grouped;
+use super::super::texts::now;
 use super::super::{WholeWindow, panel};
 use super::{icp_now, icp_path, sensor};
 
@@ -17,22 +17,8 @@ pub fn panel(window: &WholeWindow) -> Panel {
     let moment = &search.moments()[window.step()];
     let [low, high] = search.search().extent_m();
     let margin = MARGIN * (high[0] - low[0]);
-    let mut layers = vec![
-        Layer::Raster(raster(window)),
-        boxes(
-            search
-                .boxes()
-                .iter()
-                .filter(|seen| seen.waits_after(window.step()))
-                .map(|seen| &seen.poses),
-            Tone::Series(0),
-            1.0,
-        ),
-    ];
-    if let Some(looked_at) = &window.looked_at {
-        let looked_at = core::iter::once(&search.boxes()[looked_at.seen].poses);
-        layers.push(boxes(looked_at, Tone::Series(3), 2.5));
-    }
+    let mut layers = vec![Layer::Raster(raster(window))];
+    layers.extend(open_boxes(window));
     layers.push(sensor(window.scene.truth(), Mark::Plus, Tone::Truth));
     layers.push(sensor(window.guess(), Mark::Circle, Tone::Prior));
     if let Some(icp) = icp_now(window) {
@@ -47,11 +33,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
     }
     Panel {
         id: panel::PLACES,
-        title: format!(
-            "{} of {} sums done; more ink, better fit",
-            grouped(moment.counts.scored()),
-            grouped(moment.counts.window)
-        ),
+        title: format!("{}; more ink, better fit", now(window)),
         weight: Weight::Half,
         aspect: Aspect::Equal,
         x: Axis::hidden(low[0] - margin, high[0] + margin),
@@ -65,6 +47,19 @@ pub fn panel(window: &WholeWindow) -> Panel {
         ],
         color_bar: None,
     }
+}
+
+/// The boxes that are not dropped yet, and the one looked at.
+pub fn open_boxes(window: &WholeWindow) -> Vec<Layer> {
+    let all = window.search_task.window.boxes();
+    let waiting = all.iter().filter(|seen| seen.waits_after(window.step()));
+    let waiting = waiting.map(|seen| &seen.poses);
+    let mut layers = vec![boxes(waiting, Tone::Series(0), 1.0)];
+    if let Some(looked_at) = &window.looked_at {
+        let looked_at = core::iter::once(&all[looked_at.seen].poses);
+        layers.push(boxes(looked_at, Tone::Series(3), 2.5));
+    }
+    layers
 }
 
 /// The outlines of boxes from above.
