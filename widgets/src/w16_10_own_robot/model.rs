@@ -21,6 +21,7 @@ mod picture;
 pub(super) mod settings;
 mod tables;
 mod texts;
+mod wheels;
 
 use core::cell::OnceCell;
 

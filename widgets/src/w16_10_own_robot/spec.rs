@@ -162,9 +162,9 @@ pub const WITHOUT_LOG: Opening = Opening {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.10",
     name: "Your own robot",
-    title: "Is a map right because it looks right?",
-    claim: "A map that looks right may be wrong.",
-    gesture: "Drop a log of your robot, or watch the sample being mapped.",
+    title: "How far astray do the wheels alone lead a robot?",
+    claim: "What the robot sees again corrects its wheels.",
+    gesture: "Open a log of your robot, or watch the sample being mapped.",
     awaits: Awaits::Nothing,
     notice: &[
         "The log stays in your browser. It is read there, and none of it is sent anywhere.",

@@ -56,6 +56,7 @@ fn keyframes(count: u32) -> MapperReport {
     let keyframe = |k| KeyframeReport {
         stamp_s: k,
         pose: [k, 0.0, 0.0],
+        odometry: [k, 0.1 * k, 0.0],
         fit: 1.0 - 0.1 * k,
         sigma_m: 0.01 * k,
     };
@@ -423,6 +424,7 @@ fn a_malformed_delivery_changes_no_state() {
     let unknown = KeyframeReport {
         stamp_s: f64::NAN,
         pose: [f64::NAN; 3],
+        odometry: [f64::NAN; 3],
         fit: f64::NAN,
         sigma_m: f64::NAN,
     };

@@ -220,9 +220,9 @@ fn the_counter_over_the_window_grows_to_the_work_of_the_search() {
     let title = |window: &WholeWindow| panel_of(window, panel::SWEEPS).title;
     let count = |window: &WholeWindow| {
         let title = title(window);
-        let (sums, all) = title.split_once(" of ").expect("a counter");
-        let all = all.split(' ').next().unwrap();
-        [sums, all].map(|number| number.replace(',', "").parse::<f64>().unwrap())
+        let (scores, all) = title.split_once(" scores for ").expect("a counter");
+        let all = all.strip_suffix(" poses").unwrap();
+        [scores, all].map(|number| number.replace(',', "").parse::<f64>().unwrap())
     };
     let mut window = with(&[]);
     let [before, all] = count(&window);

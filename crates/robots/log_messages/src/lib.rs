@@ -67,6 +67,8 @@ pub struct KeyframeReport {
     pub stamp_s: f64,
     /// `[x, y, θ]`, m and rad.
     pub pose: [f64; 3],
+    /// Where the odometry puts it, in the odometry's own frame; NaN where there is none.
+    pub odometry: [f64; 3],
     /// Share of its scan that fits; NaN if it was not registered.
     pub fit: f64,
     /// Standard deviation of its position, m; NaN until it is known.

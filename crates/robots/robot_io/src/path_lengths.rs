@@ -19,6 +19,12 @@ pub struct PathLengths {
 }
 
 impl PathLengths {
+    /// The odometry at each keyframe until the last one that has any.
+    #[must_use]
+    pub fn odometry(&self) -> &[Option<SE2>] {
+        &self.odometry
+    }
+
     /// Takes the odometry at keyframe `number`.
     pub fn add(&mut self, number: usize, odometry: Option<SE2>) {
         self.odometry.resize(number, None);

@@ -365,6 +365,12 @@ impl LogRun {
         )
     }
 
+    /// The odometry at each keyframe, in its own frame, as far as it is known; none of a continued run's first part.
+    #[must_use]
+    pub fn odometry_at_keyframes(&self) -> &[Option<SE2>] {
+        self.lengths.odometry()
+    }
+
     /// Whether any keyframe's scan has a point.
     #[must_use]
     pub fn has_seen(&self) -> bool {

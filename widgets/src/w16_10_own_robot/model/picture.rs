@@ -3,6 +3,7 @@
 mod charts;
 mod invitation;
 mod visitor;
+mod wheels;
 
 use log_messages::Stage;
 use pr_geom::{math, sort_numbers};
@@ -15,6 +16,7 @@ use super::{OwnRobot, panel};
 use crate::w16_10_own_robot::spec::{COLOUR, Colour, LOOPS, MARKED, ShownLoops};
 use charts::{fit, sure};
 use visitor::{OTHER, other_log};
+use wheels::wheels;
 
 /// The view before there is a map, m.
 const EMPTY: Bounds = Bounds {
@@ -57,6 +59,7 @@ fn map(own: &OwnRobot) -> Panel {
         layers.extend(links(own));
         let (shades, bar) = way(own);
         layers.extend(shades);
+        layers.extend(wheels(own, &bounds));
         color_bar = bar;
         layers.extend(here(own));
         layers.extend(other_log(own));

@@ -7,6 +7,7 @@ use widget_kit::plural::plural;
 
 use super::OwnRobot;
 use super::log_state::LogState;
+use super::wheels::end_m;
 
 /// The privacy statement about the reader's file.
 const STAYS: &str = "The file stays in this browser; none of it is sent anywhere.";
@@ -81,7 +82,7 @@ fn sentence(own: &OwnRobot) -> String {
     };
     let progress = match robot.progress.stage {
         Stage::Empty => {
-            "Drop a log, open one, or map the sample, a simulated ring of corridors.".to_owned()
+            "Open a log, drop one, or map the sample, a simulated ring of corridors.".to_owned()
         }
         Stage::Failed if robot.answer.is_empty() => return robot.progress.problem.clone(),
         Stage::Failed => {
@@ -190,10 +191,16 @@ fn finished(robot: &LogState) -> String {
     } else {
         plural(robot.keyframes.len(), "pose")
     };
+    let path_m = path_length_m(robot);
+    let first = match end_m(robot) {
+        Some(off_m) => {
+            format!("after {path_m:.0} m the wheels alone are {off_m:.1} m off the map. {source}")
+        }
+        None => format!("{source} on a path of {path_m:.0} m"),
+    };
     format!(
-        "{}: {source} on a path of {:.0} m. It holds {}; {doubted}.",
+        "{}: {first}. It holds {}; {doubted}.",
         robot.name,
-        path_length_m(robot),
         plural(closed, "loop")
     )
 }

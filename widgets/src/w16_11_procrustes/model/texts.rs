@@ -46,6 +46,8 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
     let [turn, mirror] = Handedness::ALL.map(|kind| problem.best(kind));
     let [first, second] = problem.singular_values_m2();
     let cost = |kind: Handedness| problem.cost_m2(kind, problem.best(kind).theta_rad);
+    let pairs = trace.pairs.len() as f64;
+    let rms_m = |kind: Handedness| (cost(kind) / pairs).sqrt();
     let aligned_deg = problem.aligned.theta().to_degrees();
     let here = problem.trace_m2(trace.tried(), trace.theta_rad());
     let winner = problem.winner();
@@ -56,15 +58,16 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
     };
     let standing = match winner {
         Winner::Turn => Assessment::Good,
-        Winner::Mirror => Assessment::Bad,
+        Winner::Mirror => Assessment::Doubtful,
         Winner::Tie => Assessment::Neutral,
     };
     Outcome {
         standing,
         verdict: verdict(winner).to_owned(),
         sentence: format!(
-            "the trace reaches {:.2} m² with a rotation, {:.2} m² with a mirror image. {consequence}",
-            turn.trace_m2, mirror.trace_m2,
+            "turned as well as they can be, the corners miss their targets by {:.2} m (rms); mirrored, by {:.2} m. {consequence}",
+            rms_m(Handedness::Turn),
+            rms_m(Handedness::Mirror),
         ),
         facts: vec![
             Fact::new("trace_m2", "trace of the matrix tried", here, "m²", 3),

@@ -135,11 +135,11 @@ fn tick_sentence(runs: &Runs, tick: usize) -> String {
 fn lap_sentence(runs: &Runs) -> String {
     let summary = runs.graph.summary();
     format!(
-        "{}, the end is {:.2} m off. Rms over the keyframes {:.2} m, largest {:.2} m, map disagreement {:.2} m",
+        "{}; its end is {:.2} m off, its worst keyframe {:.2} m. Rms over the keyframes {:.2} m, map disagreement {:.2} m",
         loops_in_words(runs.graph.lap().graph_summary.loops),
         summary.keyframe_end_error_m,
-        summary.keyframe_rms_m,
         summary.keyframe_max_m,
+        summary.keyframe_rms_m,
         summary.map_disagreement_m.unwrap_or(f64::NAN),
     )
 }

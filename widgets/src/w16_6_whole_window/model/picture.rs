@@ -76,7 +76,7 @@ fn sweeps(window: &WholeWindow) -> Panel {
     Panel {
         id: panel::SWEEPS,
         title: format!(
-            "{} of {} sums made",
+            "{} scores for {} poses",
             grouped(counts.scored()),
             grouped(counts.window)
         ),

@@ -53,12 +53,12 @@ pub fn outcome(window: &WholeWindow) -> Outcome {
     let counts = window.search_task.window.search().counts();
     let alone = &window.search_task.alone.outcome;
     let start = format!(
-        "From {:.0}° off, ICP alone ends {}.",
+        "From {:.0}° off, ICP alone ends {}",
         window.values.get(&HEADING),
         ending(alone)
     );
     let work = format!(
-        "The search makes {} sums over the points instead of {}",
+        "{} scores settle {} poses",
         grouped(counts.scored()),
         grouped(counts.window)
     );
@@ -69,20 +69,21 @@ pub fn outcome(window: &WholeWindow) -> Outcome {
                 format!(", {margin:.3} ahead of the next place")
             });
             format!(
-                "{work}. Its best pose scores {:.3}{ahead}, and ICP from there ends {}.",
+                "{work}. {start}. The best pose scores {:.3}{ahead}, and ICP from there ends {}.",
                 result.best.score,
                 ending(&refined.outcome)
             )
         }
-        (Some(_), ..) => format!("{work}, and no pose in the window scores half or more."),
+        (Some(_), ..) => format!("{work}, and none of them fits half the points. {start}."),
         // As long as the text that follows, so that the page below does not move.
-        (None, ..) => "The search splits the box of poses with the largest bound, and drops every box whose bound is below the best score. Then ICP starts from the best pose."
-            .to_owned(),
+        (None, ..) => format!(
+            "The search splits the box of poses with the largest bound, and drops every box whose bound is below the best score. Then ICP starts from the best pose. {start}."
+        ),
     };
     Outcome {
         standing: standing(window),
         verdict: verdict(window).to_owned(),
-        sentence: format!("{start} {answer}"),
+        sentence: answer,
         facts: facts(window),
     }
 }
@@ -153,7 +154,7 @@ fn facts(window: &WholeWindow) -> Vec<Fact> {
             "",
             3,
         ),
-        Fact::count("scored", "sums over the points", counts.scored() as f64),
+        Fact::count("scored", "scores computed", counts.scored() as f64),
         Fact::count("window", "poses of the window", counts.window as f64),
         Fact::new(
             "fewer",

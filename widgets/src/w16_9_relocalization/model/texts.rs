@@ -154,7 +154,7 @@ fn facts(back: &Relocalization) -> Vec<Fact> {
         ),
         Fact::count(
             "scored",
-            "sums over the points, first search",
+            "scores computed, first search",
             number(first.map(|f| f.counts.scored() as f64)),
         ),
         Fact::count(
@@ -222,7 +222,7 @@ pub fn now(back: &Relocalization) -> String {
             format!("Scan {}: {state}", tick + 1)
         }
         (None, Some(counts)) => format!(
-            "Scan {}: {} boxes wait, {} sums made",
+            "Scan {}: {} boxes wait, {} scores computed",
             tick + 1,
             moment.boxes.len(),
             counts.scored()

@@ -92,11 +92,17 @@ impl Engine<'_> {
 
     fn keyframes_report(&self) -> MapperReport {
         let keyframes = self.keyframes();
+        let odometry = self.run.odometry_at_keyframes();
         let reports = keyframes.poses().iter().enumerate().map(|(k, keyframe)| {
             let of = |values: &[f64]| values.get(k).copied().unwrap_or(f64::NAN);
             KeyframeReport {
                 stamp_s: keyframe.stamp_s,
                 pose: keyframe.pose.to_array(),
+                odometry: odometry
+                    .get(k)
+                    .copied()
+                    .flatten()
+                    .map_or([f64::NAN; 3], |pose| pose.to_array()),
                 fit: of(&self.fits),
                 sigma_m: of(&self.sigmas_m),
             }

@@ -119,28 +119,42 @@ fn part_layers(moment: &LapState, part: GraphPart, is_picked: bool) -> Vec<Layer
     layers
 }
 
-/// What a finished lap is off: from the keyframe farthest off, a line to where it truly is. A wrong place has a ring.
+/// What a finished lap is off, at its worst keyframe and at its end. A wrong place has a ring, and is all that is named.
 pub fn off(moment: &LapState) -> Vec<Layer> {
     let wrong = moment.wrong_place();
-    let mut layers = Vec::new();
-    let (at, words) = match (&wrong, moment.farthest()) {
-        (Some(WrongPlace::Loop(attempt)), _) => (
-            loop_mark(moment, attempt),
-            wrong_words(&WrongPlace::Loop(attempt)),
-        ),
-        (_, Some((node, off_m))) => {
-            let truth = moment.runs.truth(moment.runs.graph.keyframe_tick(node));
-            let at = xy(&moment.nodes[node]);
-            let gap = vec![at, xy(&truth)];
-            layers.push(Layer::line(gap, Stroke::Dashed, STRAINED, 2.0));
-            (at, wrong_words(&WrongPlace::Keyframe(off_m)))
-        }
-        (_, None) => return layers,
+    let ringed = |at, words| {
+        vec![
+            Layer::points(vec![at], Mark::Circle, STRAINED, RING_PX),
+            Layer::label(at, words, RING_PX),
+        ]
     };
-    if wrong.is_some() {
-        layers.push(Layer::points(vec![at], Mark::Circle, STRAINED, RING_PX));
+    if let Some(WrongPlace::Loop(attempt)) = &wrong {
+        let words = wrong_words(&WrongPlace::Loop(attempt));
+        return ringed(loop_mark(moment, attempt), words);
     }
-    layers.push(Layer::label(at, words, RING_PX));
+    let Some((worst, worst_m)) = moment.farthest() else {
+        return Vec::new();
+    };
+    let gap = |node: usize| {
+        let truth = moment.runs.truth(moment.runs.graph.keyframe_tick(node));
+        let ends = vec![xy(&moment.nodes[node]), xy(&truth)];
+        Layer::line(ends, Stroke::Dashed, STRAINED, 2.0)
+    };
+    let at = |node: usize| xy(&moment.nodes[node]);
+    let mut layers = vec![gap(worst)];
+    if let Some(wrong) = &wrong {
+        layers.extend(ringed(at(worst), wrong_words(wrong)));
+        return layers;
+    }
+    let label = |node, words: &str, off_m: f64| {
+        Layer::label(at(node), format!("{words}: {off_m:.2} m off"), RING_PX)
+    };
+    layers.push(label(worst, "worst", worst_m));
+    let end = moment.nodes.len() - 1;
+    if end != worst {
+        let end_m = moment.runs.graph.summary().keyframe_end_error_m;
+        layers.extend([gap(end), label(end, "end", end_m)]);
+    }
     layers
 }
 
