@@ -16,6 +16,7 @@
 //! independent from beam to beam; no beam misses.
 
 mod basins;
+mod curve;
 mod edge;
 mod interaction;
 mod letters;
@@ -24,6 +25,7 @@ mod picture;
 mod settings;
 mod tables;
 mod texts;
+mod turns;
 mod your_code;
 
 use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart, OffsetAxis};

@@ -1,8 +1,12 @@
 //! What a registration claims while its input loses what it measures with.
 
+use std::sync::Arc;
+
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
+use ch16_slam2d::graph::Keyframe;
 use ch16_slam2d::icp::{IcpConfig, IcpResult, IcpVariant, StopReason, closed_form, icp};
-use ch16_slam2d::matching::{TrustConfig, result_information};
+use ch16_slam2d::loops::{KeyframeView, LoopCandidate, LoopConfig, LoopWorkspace, verify_loop};
+use ch16_slam2d::matching::{InformationFrame, MatcherKind, TrustConfig, result_information};
 use ch16_slam2d::ndt::{NdtConfig, NdtMap, NdtStop, ndt_align};
 use nalgebra::Matrix3;
 use pr_geom::{Point2, SE2};
@@ -260,4 +264,52 @@ fn ndt_without_points_in_cells_claims_nothing() {
     let at = SE2::from_xy(0.01, 0.0);
     let stop = ndt_align(&one_place, &map, at, &NdtConfig::default()).stop;
     assert!(!stop.converged(), "{stop}");
+}
+
+/// Without normals the pose of a loop is the guess, which fits: no edge may hold it.
+#[test]
+fn a_loop_that_nothing_registered_is_rejected() {
+    let verdict = |with_normals: bool| {
+        let mut old: PointCloud = room(0.1).into_iter().collect();
+        let new = Arc::new(old.transformed(&moved().inverse()));
+        if with_normals {
+            old.estimate_normals(0.3);
+        }
+        let keyframes = [Arc::new(old), new].into_iter().enumerate();
+        let keyframes = keyframes.map(|(node, scan)| Keyframe {
+            node,
+            frame: node,
+            stamp_s: node as f64,
+            scan,
+        });
+        let config = LoopConfig {
+            matcher: MatcherKind::PointToPlane,
+            submap_half_width: 0,
+            max_rmse_m: f64::INFINITY,
+            ..LoopConfig::default()
+        };
+        let view = KeyframeView {
+            poses: &[SE2::identity(); 2],
+            keyframes: &keyframes.collect::<Vec<_>>(),
+        };
+        let candidate = LoopCandidate {
+            node: 0,
+            distance_m: 0.0,
+            proposal: None,
+        };
+        let mut workspace = LoopWorkspace::new(config.matcher.build(&config.submap));
+        let frame = InformationFrame::Exact;
+        let assumed = Ok(Matrix3::identity());
+        verify_loop(view, 1, candidate, assumed, frame, &config, &mut workspace)
+    };
+    let found = verdict(true);
+    assert_eq!(found.rejection, None);
+    assert!((found.registered.position() - moved().position()).norm() < 0.01);
+    let refused = verdict(false);
+    assert_eq!(refused.registered, SE2::identity(), "the guess");
+    let why = refused
+        .rejection
+        .expect("nothing supports the pose")
+        .to_string();
+    assert!(why.starts_with("not registered: ICP: 0 of "), "{why}");
 }

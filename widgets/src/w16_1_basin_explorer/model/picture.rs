@@ -4,17 +4,17 @@ use ch16_lab::basin::{BasinScene, Minimum, OffsetAxis};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpVariant, Pair};
 use pr_geom::{Point2, SE2};
-use widget_kit::chart::{Series, TimeChart};
 use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
 use super::basins::{class, in_the_map, spot_of, start_spot};
+use super::curve::curve;
 use super::edge;
 use super::interaction::turn_handle;
 use super::paths::split_at_half_turn;
 use super::settings::{axis, start, variant, variant_name};
-use super::texts::error_m;
+use super::turns::ring;
 use super::{BasinExplorer, panel};
 use crate::sweep_bounds::sweep_bounds;
 use crate::w16_1_basin_explorer::spec::{EDGE, OFFSET_SPAN_M, Phase, TAU};
@@ -112,8 +112,11 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
         "first sweep".to_owned(),
         ROBOT_CLEAR_PX,
     ));
-    // The truth comes with the verdict.
+    // The truth comes with the verdict, and how the other turns end.
     if iteration == explorer.last() {
+        if explorer.values.get(&EDGE) != Phase::Marking {
+            layers.extend(ring(explorer));
+        }
         let truth = scene.truth();
         layers.push(sensor(truth, Mark::Plus, Tone::Truth));
         let at = [truth.x(), truth.y()];
@@ -365,53 +368,4 @@ fn paths(explorer: &BasinExplorer) -> Vec<Layer> {
     layers.push(line(own, Tone::Posterior, 2.0));
     layers.push(Layer::points(end, Mark::Square, Tone::Posterior, 4.0));
     layers
-}
-
-fn curve(explorer: &BasinExplorer) -> Panel {
-    let trace = &explorer.run.trace;
-    let truth = explorer.scene.truth();
-    let rmse: Vec<f64> = trace.iter().map(|state| state.rmse_m).collect();
-    let error: Vec<f64> = trace
-        .iter()
-        .map(|state| error_m(&truth, &state.pose))
-        .collect();
-    let series = |label, values, tone, mark| Series {
-        label,
-        values,
-        tone,
-        mark,
-    };
-    let chart = TimeChart {
-        id: panel::CURVE,
-        title: "What the robot sees, and how far it is from the truth",
-        x_label: "iteration",
-        last: explorer.last(),
-        y_label: "m",
-        now: explorer.iteration(),
-    };
-    let mut panel = chart.panel(&[
-        series("rmse of the pairs", &rmse, Tone::Posterior, Mark::Square),
-        series("error of the position", &error, Tone::Truth, Mark::Plus),
-    ]);
-    dash_truth(&mut panel);
-    panel
-}
-
-/// Draws the truth with dashes.
-fn dash_truth(panel: &mut Panel) {
-    for layer in &mut panel.layers {
-        if let Layer::Line {
-            tone: Tone::Truth,
-            stroke,
-            ..
-        } = layer
-        {
-            *stroke = Stroke::Dashed;
-        }
-    }
-    for entry in &mut panel.legend {
-        if entry.tone == Tone::Truth {
-            entry.stroke = Some(Stroke::Dashed);
-        }
-    }
 }

@@ -57,9 +57,11 @@ impl LapTrace {
         match attempt.verification.rejection {
             Some(LoopRejection::OutsideGate(_)) => format!("{head}: {gate}"),
             // Nothing was registered, or nothing was there to test against.
-            Some(why @ (LoopRejection::NoPlace { .. } | LoopRejection::NoCovariance(_))) => {
-                format!("{head}: {why}")
-            }
+            Some(
+                why @ (LoopRejection::NoPlace { .. }
+                | LoopRejection::NotRegistered(_)
+                | LoopRejection::NoCovariance(_)),
+            ) => format!("{head}: {why}"),
             Some(why) => format!("{head}: {gate}, but {why}"),
             None => match attempt.verification.waits {
                 Some(agreement) => format!("{head}: {gate}, but {agreement}"),

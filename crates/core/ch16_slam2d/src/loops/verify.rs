@@ -10,7 +10,9 @@ use super::{LoopCandidate, LoopConfig};
 use crate::cloud::PointCloud;
 use crate::graph::{Keyframe, LoopId};
 use crate::icp::{INFORMATION_RIDGE, Pair, regularize};
-use crate::matching::{InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information};
+use crate::matching::{
+    InformationFrame, MatchRequest, MatchStop, MatchSummary, Matcher, chapter_information,
+};
 
 /// Why a loop was rejected, with the measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +31,8 @@ pub enum LoopRejection {
         /// The fewest that are accepted.
         min_inliers: usize,
     },
+    /// The registration has no result: its pose is the guess.
+    NotRegistered(MatchStop),
     /// Too little of the sweep fits.
     LowScore {
         /// The matcher's score.
@@ -74,6 +78,7 @@ impl LoopRejection {
         match self {
             Self::PoorFit { .. } => "RMSE",
             Self::FewInliers { .. } => "inliers",
+            Self::NotRegistered(_) => "not registered",
             Self::LowScore { .. } => "score",
             Self::NoPlace { .. } => "no place",
             Self::Ambiguous { .. } => "ambiguous",
@@ -99,6 +104,7 @@ impl core::fmt::Display for LoopRejection {
                 inliers,
                 min_inliers,
             } => write!(f, "{inliers} inliers, at least {min_inliers} are needed"),
+            Self::NotRegistered(stop) => write!(f, "not registered: {stop}"),
             Self::LowScore { score, min_score } => {
                 write!(
                     f,
@@ -361,6 +367,8 @@ fn rejection(found: &MatchSummary, gate: GateTest, config: &LoopConfig) -> Optio
             inliers: found.inliers,
             min_inliers: config.min_inliers,
         })
+    } else if !found.stop.is_supported() {
+        Some(LoopRejection::NotRegistered(found.stop))
     } else if let Some(score) = found.score
         && score < config.min_score
     {

@@ -122,6 +122,12 @@ pub struct MatchSummary {
 }
 
 impl MatchSummary {
+    /// Whether the pose is a result of the scan, with at least this number of inliers.
+    #[must_use]
+    pub fn is_supported(&self, min_inliers: usize) -> bool {
+        self.inliers >= min_inliers && self.stop.is_supported()
+    }
+
     /// Margin of the score to the runner-up.
     #[must_use]
     pub fn margin(&self) -> Option<f64> {

@@ -135,7 +135,7 @@ impl FrontEnd {
         let prediction = expected.prediction();
         let tau_m = self.tau_m();
         let matched = self.registrar.register(frame, &expected, &self.window);
-        let accepted = matched.inliers >= config.min_inliers && is_finite(&matched.pose);
+        let accepted = matched.is_supported(config.min_inliers) && is_finite(&matched.pose);
         self.estimate = if accepted { matched.pose } else { prediction };
         self.last_dt_s = dt_s;
         self.velocity = match &sweep {

@@ -85,6 +85,7 @@ static LANES: [Lane; 8] = [
                 Some(
                     LoopRejection::PoorFit { .. }
                         | LoopRejection::FewInliers { .. }
+                        | LoopRejection::NotRegistered(_)
                         | LoopRejection::NoPlace { .. }
                 )
             )),
