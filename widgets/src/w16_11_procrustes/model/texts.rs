@@ -1,6 +1,7 @@
 //! The result in words and numbers.
 
 use ch16_lab::procrustes::{Handedness, Procrustes, Winner};
+use pr_geom::math;
 use widget_kit::model::{Assessment, Fact, Outcome};
 
 use super::ProcrustesTrace;
@@ -47,7 +48,7 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
     let [first, second] = problem.singular_values_m2();
     let cost = |kind: Handedness| problem.cost_m2(kind, problem.best(kind).theta_rad);
     let pairs = trace.pairs.len() as f64;
-    let rms_m = |kind: Handedness| (cost(kind) / pairs).sqrt();
+    let rms_m = |kind: Handedness| math::sqrt(cost(kind) / pairs);
     let aligned_deg = problem.aligned.theta().to_degrees();
     let here = problem.trace_m2(trace.tried(), trace.theta_rad());
     let winner = problem.winner();
