@@ -220,13 +220,13 @@ fn what_is_wrong_is_one_sentence_that_says_what_where_and_what_to_do() {
         (
             "\"turn_at\": 4",
             "\"turn_at\": 5",
-            "turn_at is 5, and there are 4 way points",
+            "turn_at is 5, but there are 4 way points",
             "from 1",
         ),
         (
             "\"turn_at\": 4",
             "\"turn_at\": 0",
-            "turn_at is 0, and there are 4 way points",
+            "turn_at is 0, but there are 4 way points",
             "from 1",
         ),
     ] {
