@@ -71,10 +71,15 @@ fn a_finished_lap_says_how_far_off_it_is() {
         let layers = model.scene().panels[0].layers.clone();
         layers
             .into_iter()
-            .any(|layer| matches!(layer, Layer::Label { text, .. } if text == "worst: 0.90 m off"))
+            .any(|layer| matches!(layer, Layer::Label { text, .. } if text == "worst: 0.89 m off"))
     };
     let mut model = at(&[TICK.to(LAP_TICKS)]);
-    assert!(model.outcome().sentence.contains("largest 0.89 m"));
+    assert!(
+        model
+            .outcome()
+            .sentence
+            .contains("its worst keyframe 0.89 m")
+    );
     assert!(off(&model));
     set(&mut model, "t", 128.0);
     assert!(!off(&model));
