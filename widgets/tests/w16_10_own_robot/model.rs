@@ -6,7 +6,7 @@ use log_messages::{
 };
 use widget_kit::host_messages::Delivery;
 use widget_kit::model::{Activity, Assessment, Model, text_alternative};
-use widget_kit::scene::Layer;
+use widget_kit::scene::{Layer, Tone};
 use widgets::w16_10_own_robot::model::OwnRobot;
 
 /// A message of the page.
@@ -56,7 +56,7 @@ fn keyframes(count: u32) -> MapperReport {
     let keyframe = |k| KeyframeReport {
         stamp_s: k,
         pose: [k, 0.0, 0.0],
-        odometry: [k, 0.1 * k, 0.0],
+        odometry: [f64::NAN; 3],
         fit: 1.0 - 0.1 * k,
         sigma_m: 0.01 * k,
     };
@@ -519,4 +519,47 @@ fn what_could_not_be_fetched_is_told_once_and_no_file_is_blamed() {
         })
         .collect();
     assert_eq!(words, ["There is no map yet."]);
+}
+
+/// In its own frame the odometry drives along y, and its steps are a tenth too long.
+#[test]
+fn the_wheels_alone_start_where_the_map_has_the_first_keyframe_with_odometry() {
+    let mut robot = mapped();
+    let keyframe = |k: u8| KeyframeReport {
+        stamp_s: f64::from(k),
+        pose: [f64::from(k), 1.0, 0.0],
+        odometry: match k {
+            0 => [f64::NAN; 3],
+            _ => [7.0, 1.1 * f64::from(k), core::f64::consts::FRAC_PI_2],
+        },
+        fit: 1.0,
+        sigma_m: 0.01,
+    };
+    let keyframes = (0..4).map(keyframe).collect();
+    report(&mut robot, &MapperReport::Keyframes(keyframes));
+    let sentence = robot.outcome().sentence;
+    assert!(
+        sentence.contains("after 3 m the wheels alone are 0.2 m off the map. "),
+        "{sentence}"
+    );
+    let path = |robot: &OwnRobot| {
+        let layers = robot.scene().panels[0].layers.clone();
+        layers.into_iter().find_map(|layer| match layer {
+            Layer::Line { points, tone, .. } if tone == Tone::Prediction => Some(points),
+            _ => None,
+        })
+    };
+    let points = path(&robot).expect("a path");
+    assert!(points[0][0].is_nan(), "{points:?}");
+    for (point, x) in points[1..].iter().zip([1.0, 2.1, 3.2]) {
+        let off_m = (point[0] - x).hypot(point[1] - 1.0);
+        assert!(off_m < 1e-9, "{points:?}");
+    }
+    robot.set("keyframe", 1.0).unwrap();
+    assert_eq!(
+        path(&robot).expect("a path").len(),
+        2,
+        "up to the one shown"
+    );
+    assert_eq!(path(&mapped()), None, "a log without odometry");
 }
