@@ -172,17 +172,14 @@ pub(super) fn continuity(
     if is_short {
         around.worst_score = pace.worst_score();
     }
-    if is_short && matches!(odometry, Odometry::Unknown) {
-        return match around.found(last, reach) {
-            Some(pose) => Continuity::Found(last.between(&pose)),
-            None => Continuity::Interrupted,
-        };
+    if !(is_short && matches!(odometry, Odometry::Unknown)) && around.fits(last * motion) {
+        return Continuity::Predicted;
     }
-    if around.fits(last * motion) {
-        Continuity::Predicted
-    } else {
-        Continuity::Interrupted
-    }
+    // The last message of wheels that seem to stand may be as old as the gap.
+    let found = is_short.then(|| around.found(last, reach)).flatten();
+    found.map_or(Continuity::Interrupted, |pose| {
+        Continuity::Found(last.between(&pose))
+    })
 }
 
 /// A scan, and the map around a pose.
@@ -318,6 +315,13 @@ mod tests {
         assert_eq!(after_gap(19, 3.0, wheels), (0, 0));
         // The far side of the room.
         assert_eq!(after_gap(45, 3.0, wheels), (1, 0));
+    }
+
+    /// A radio that fails for a second holds back the odometry's messages as well as the scans.
+    #[test]
+    fn a_robot_that_moved_during_a_gap_is_searched_for_although_its_wheels_seem_to_stand() {
+        let wheels = |step: usize| Some(truth(0).between(&truth(step)));
+        assert_eq!(after_gap(26, 3.0, wheels), (0, 1));
     }
 
     #[test]
