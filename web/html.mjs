@@ -7,9 +7,14 @@ export const POLICY = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval';
 /** The tag that pages opened from the disk have to lose. */
 export const POLICY_TAG = /<meta http-equiv="Content-Security-Policy" content="[^"]*">\n/;
 
-/** A page with its policy, as the first thing that it loads. Where a reader connects to a robot, the policy opens WebSockets. */
+/**
+ * A page with its policy, as the first thing that it loads. Where a reader connects to a robot, the policy opens WebSockets.
+ * A page of the chapter sets it by its first script, `web/ts/restrict.ts`, because in a sandbox it must name the site.
+ */
 export function withPolicy(html) {
   const policy = / name="w16\.10"[^>]* connects/.test(html) ? POLICY.replace("connect-src 'self'", "connect-src 'self' ws: wss:") : POLICY;
+  const first = '<script src="early-';
+  if (html.includes(first)) return html.replace(first, `<script data-policy="${policy}" src="early-`);
   const tag = `<meta http-equiv="Content-Security-Policy" content="${policy}">\n`;
   return html.replace('<meta charset="utf-8">\n', (charset) => charset + tag);
 }

@@ -1,5 +1,6 @@
 // Runs before the page is painted: what depends on a script, or on the chosen colours, does not change afterwards.
 
+import { restrict } from '../ts/restrict';
 import { chosenTheme, showTheme } from './theme-choice';
 
 /** Set by the build: the oldest browsers, as in a sentence. */
@@ -10,6 +11,7 @@ const NEEDED: readonly (readonly [object, string])[] = [
   [Array.prototype, 'findLast'], [HTMLElement.prototype, 'inert'], [window, 'BroadcastChannel'], [window, 'DecompressionStream'],
 ];
 
+restrict(document.currentScript?.dataset['policy'] ?? '');
 if (!NEEDED.every(([owner, name]) => name in owner)) {
   addEventListener('DOMContentLoaded', () => {
     const line = document.createElement('p');

@@ -14,13 +14,14 @@ import type { SlamWidget } from './element';
 import { showExercise } from './exercise';
 import { readQuery } from './links';
 import { receive, VERSION, type Message } from './messages';
+import { restrict } from './restrict';
 import type { WidgetSpec } from './schema';
 import type { Value } from './values';
 
 /** Set by the build: what a page may load. */
 declare const POLICY: string;
 
-if (location.protocol !== 'file:') restrict();
+restrict(POLICY);
 
 const [first] = schemas as WidgetSpec[];
 
@@ -32,17 +33,6 @@ const spec = named?.widget ?? first;
 const exercise = new URLSearchParams(location.search).get('exercise');
 if (exercise === null) showWidget();
 else void showQuestions(exercise);
-
-/**
- * Restricts what this page may load from now on. In a sandbox it has no origin, and WebKit then matches 'self' with nothing:
- * the policy has to name the site, which only a script knows.
- */
-function restrict(): void {
-  const policy = document.createElement('meta');
-  policy.httpEquiv = 'Content-Security-Policy';
-  policy.content = POLICY.replaceAll("'self'", `'self' ${location.origin}`);
-  document.head.append(policy);
-}
 
 function showWidget(): void {
   const widget = new (Element as typeof SlamWidget)();

@@ -8,8 +8,9 @@ import { after, before, describe, it } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import * as h from '../harness.mjs';
 import { skip } from '../../skip.mjs';
+import { driveOf, robotServer } from '../robot-server.mjs';
 import { unpackOffline } from '../unpacked.mjs';
-import { WATCH, WATCH_TEXT, ask, clickButton, clickControl, live, loaded, troublesOf, until, watched } from './page.mjs';
+import { WATCH, WATCH_TEXT, ask, click, clickButton, clickControl, live, loaded, troublesOf, until, watched } from './page.mjs';
 
 /** A page with `body`, and one with it in a sandbox. */
 const WIDGETS = h.schema.map(({ id }) => `<div style="padding-bottom: 80vh"><slam-widget name="${id}" more="on"></slam-widget></div>`).join('');
@@ -103,13 +104,24 @@ export function testIn(name, open, problem) {
       await isClean();
     });
 
-    test('the sample of w16.10 is mapped, and its session saved', async () => {
+    test('the sample of w16.10 is mapped, and its session saved; then a robot that drives', async () => {
       await visit('/own-robot.html?w=16.10');
       await live(page, 'w16.10');
       await mapsSample(page);
       await ask(page, () => document.querySelector('slam-widget').press('save'));
       await until(page, () => window.saved.some(({ size }) => size > 1000));
+      await mapsRobot(page);
       await isClean();
+    });
+
+    test('a page of the chapter in a sandbox runs its lap and its widgets', async () => {
+      await page.goto(`${server.url}/sandbox.html`);
+      await ask(page, (src) => {
+        addEventListener('message', ({ data }) => { if (data?.ready) window.framed = data; });
+        document.querySelector('iframe').src = src;
+      }, '/index.html?w=16.1');
+      const framed = await until(page, () => window.framed);
+      assert.deepEqual(framed, { ready: 'w16.1', hasLap: true, troubles: [] });
     });
 
     test('a frame in a sandbox runs a widget, and maps the sample', async () => {
@@ -188,6 +200,25 @@ async function mapsSample(page) {
     return outcome && (outcome.facts.keyframes > 5 || /cannot|stopped/.test(outcome.sentence)) && outcome;
   });
   assert.ok(end.facts.keyframes > 5, end.sentence);
+}
+
+/** Connects to a robot that drives, by its panel, and stops once all its scans are there. */
+async function mapsRobot(page) {
+  const messages = driveOf(readFileSync(join(h.DIST, 'samples', 'ring.log'), 'utf8')).slice(0, 201);
+  const scans = messages.filter(({ topic }) => topic === '/scan').length;
+  const robot = await robotServer({ messages });
+  try {
+    const inPanel = (css) => `() => document.querySelector('slam-widget').shadowRoot.querySelector('.connection ${css}')`;
+    const says = (words) => until(page, `(words) => (${inPanel('')})().textContent.includes(words)`, words);
+    await click(page, inPanel('summary'));
+    await ask(page, `(url) => { (${inPanel('input')})().value = url; }`, robot.url);
+    await click(page, inPanel('button[type=submit]'));
+    await says(`${scans} scans came`);
+    await until(page, `() => { for (const button of document.querySelector('slam-widget').shadowRoot.querySelectorAll('.connection button')) if (button.textContent === 'Stop') { button.click(); return true; } }`);
+    await says(`${scans} scans came, ${scans} are mapped.`);
+  } finally {
+    await robot.close();
+  }
 }
 
 /** Runs code in the editor, or what is there; returns the first sentence. */

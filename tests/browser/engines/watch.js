@@ -9,6 +9,12 @@ addEventListener('unhandledrejection', ({ reason }) => troubles.push(`rejected: 
 document.addEventListener('securitypolicyviolation', ({ blockedURI, effectiveDirective }) => {
   troubles.push(`policy: ${effectiveDirective} ${blockedURI}`);
 });
+// A page in a sandbox cannot be asked.
+if (parent !== window) {
+  document.addEventListener('slam-ready', ({ target }) => {
+    parent.postMessage({ ready: target.name, hasLap: document.querySelector('#lap.live') !== null, troubles }, '*');
+  });
+}
 {
   const { error } = console;
   console.error = (...parts) => {
