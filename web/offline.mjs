@@ -16,8 +16,8 @@ const FETCHED = /\.(wasm|json|log|tum)$|worker-\w+\.js$|^slam-robot-\w+\.js$/;
 /** Files of the npm package, and examples that need a server. */
 const EXCLUDED = /^(examples\/|package\.json$|.*\.d\.ts$|slam-anywidget\.js$)/;
 /** Preloaded files, which a page from the disk cannot fetch. */
-const PRELOAD = /<link rel="preload"[^>]*>\n/g;
-const MODULE = /<script type="module" src="([^"]+)"[^>]*><\/script>\n?/g;
+const PRELOAD = /<link rel="(?:module)?preload"[^>]*>\n/g;
+const MODULE = /<script type="module"(?: async)? src="([^"]+)"[^>]*><\/script>\n?/g;
 
 const [from, target] = process.argv.slice(2);
 if (from === undefined || target === undefined) throw new Error('usage: node web/offline.mjs DIST FILE');

@@ -46,6 +46,29 @@ const noting = readFileSync(join(h.DIST, 'index.html'), 'utf8').replace('<head>'
 </script>`);
 
 describe('the lap under the title', () => {
+  it('moves while the scripts of the widgets are on their way, and their module is fetched before anyone scrolls', async () => {
+    let isHeld = true;
+    const held = [];
+    const answer = (path, response) => {
+      const isOfWidgets = /^\/(slam-widget|page)/.test(path) && path.endsWith('.js');
+      if (isHeld && isOfWidgets) held.push(response);
+      return isHeld && isOfWidgets;
+    };
+    // Waiting for the load of the page would wait for these scripts.
+    await visit('', async (tab) => {
+      await tab.goto(`${tab.home}/index.html`, { waitUntil: 'commit' });
+      await live(tab);
+      await tab.waitForFunction(() => Number(document.querySelector('.lap-controls input').value) > 0);
+      assert.equal(await tab.evaluate(() => customElements.get('slam-widget')), undefined);
+      assert.ok(held.length >= 2, `${held.length} are held back`);
+      isHeld = false;
+      const module = tab.waitForRequest((request) => request.url().endsWith('.wasm'));
+      await tab.goto(`${tab.home}/index.html`);
+      await module;
+      assert.equal(await tab.evaluate(() => scrollY), 0);
+    }, { path: '/notices.html', server: { answer }, quiet: false });
+  });
+
   for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 844 }]) {
     it(`is interactive on the first screen, at ${viewport.width}×${viewport.height}`, async () => {
       await reading(async (tab) => {

@@ -64,7 +64,15 @@ await writeNotices(metafiles).catch(endWithOneSentence);
 
 async function renderPage({ file, source, html }) {
   const page = await addListings(addSketches(addMatch(addStills(addGallery(foldExercises(html)))), sketches, source), root);
-  await writeFile(path.join(outDir, file), withPolicy(withNames(page)));
+  await writeFile(path.join(outDir, file), withPolicy(withNames(await addPreloads(page))));
+}
+
+/** Names in the head what scripts request later, in the order in which a reader needs it: the lap, then the widgets. */
+async function addPreloads(html) {
+  const element = (await readFile(path.join(outDir, 'slam-widget.js'), 'utf8')).match(/slam-widget-\w+\.js/)[0];
+  const widgets = html.replace('</head>', `<link rel="modulepreload" href="${element}">\n</head>`);
+  return widgets.replace(/<figure class="lap"[\s\S]*?<\/figure>/, (figure) => `${figure}\n  <script type="module" async src="lap.js"></script>`)
+    .replace(/<link rel="preload"(?=[\s\S]*<figure class="lap")/, (first) => `<link rel="preload" href="${names.get('lap-story.json')}" as="fetch" crossorigin>\n${first}`);
 }
 
 /** Replaces the names of sources by those with a hash. */
@@ -215,8 +223,10 @@ async function bundleScripts(stories, matchAnswer) {
   };
   const worker = await bundle('laps/worker.ts', {});
   const workerFile = await writeHashed('laps-worker.js', worker.text);
+  const files = Object.fromEntries(Object.entries(stories).map(([name, file]) => [name, JSON.stringify(`./${file}`)]));
+  const lap = await bundle('lap.ts', files);
   const page = await bundle('page.ts', {
-    ...Object.fromEntries(Object.entries(stories).map(([name, file]) => [name, JSON.stringify(`./${file}`)])),
+    ...files,
     MATCH_ANSWER: matchAnswer,
     PLACES: JSON.stringify(places),
     LAPS_WORKER_FILE: JSON.stringify(`./${workerFile}`),
@@ -235,10 +245,12 @@ async function bundleScripts(stories, matchAnswer) {
   await writeFile(path.join(outDir, 'write-yourself.js'), writing.text);
   const names = new Map([
     ['page.js', await writeHashed('page.js', page.text)],
+    ['lap.js', await writeHashed('lap.js', lap.text)],
+    ['lap-story.json', stories.LAP_STORY_FILE],
     ['early.js', await writeHashed('early.js', early.text)],
     ['slides.js', await writeHashed('slides.js', slides.text)],
   ]);
-  return { names, metafiles: [worker.metafile, page.metafile, early.metafile, core.metafile, writing.metafile, slides.metafile] };
+  return { names, metafiles: [worker.metafile, page.metafile, lap.metafile, early.metafile, core.metafile, writing.metafile, slides.metafile] };
 }
 
 /** Writes the notices of the widgets, from their build, and of the page. */

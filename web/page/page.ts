@@ -12,8 +12,6 @@ import { DecideFigure } from './decide';
 import { startGame } from './gallery/game';
 import { watchOwnFlat } from './gallery/own';
 import { type Places, redirectOldAddress } from './redirects';
-import { LapPlayer } from './lap/player';
-import type { Story } from './lap/story';
 import { LapsFigure } from './laps/laps';
 import { LEVELS_PLAN } from './laps/levels';
 import { MatchersFigure } from './laps/matchers';
@@ -23,11 +21,10 @@ import { MatchFigure } from './match/figure';
 import type { SlamWidget } from '../ts/main';
 import { reveal } from '../ts/reveal';
 import { replaceMissingPopovers } from './popovers';
+import { startReplay } from './replay';
 import { SketchFigure, type SketchSchema } from './sketch';
 import { chosenTheme, keepTheme, showTheme, type ThemeChoice } from './theme-choice';
 
-/** Set by the build: the canonical lap. */
-declare const LAP_STORY_FILE: string;
 /** Set by the build: the simulated office. */
 declare const BUILDING_FILE: string;
 /** Set by the build: the true pose of the sweep that the reader moves. */
@@ -52,7 +49,6 @@ ignoreStrayDrops();
 listenToEditors();
 addCopyButtons(document.querySelectorAll<HTMLElement>('figure.listing'));
 startMatchFigure();
-void startReplay('#lap', LAP_STORY_FILE, (figure, story: Story) => new LapPlayer(figure, story));
 void startReplay('#building', BUILDING_FILE, (figure, story: Building) => new BuildingFigure(figure, story));
 startLapsFigures();
 lightLines();
@@ -60,6 +56,8 @@ startFlatGame();
 watchChallenges();
 letOpenWidgetsScroll();
 onceNear(document.querySelectorAll(NEEDS_CORE), () => void startCoreFigures());
+// The matcher's own script runs at once; its ICP, like the widgets below, needs the module, which takes seconds on a slow line.
+onceNear(document.querySelectorAll('#match'), () => void (coreModule as () => Promise<WebAssembly.Module>)().catch(() => {}));
 
 /** Opens the exercise that the address names. */
 function openAddressedExercise(): void {
@@ -89,24 +87,6 @@ function sayNoEditor(details: HTMLDetailsElement): void {
 function startMatchFigure(): void {
   const figure = document.querySelector<HTMLElement>('#match');
   if (figure !== null) new MatchFigure(figure, MATCH_ANSWER, core as () => Promise<Glue>);
-}
-
-/** The content of a file; undefined if it does not arrive as a whole, for instance because the reader leaves the page. */
-async function readJson<T>(file: URL): Promise<T | undefined> {
-  try {
-    const response = await fetch(file);
-    return response.ok ? ((await response.json()) as T) : undefined;
-  } catch {
-    return undefined;
-  }
-}
-
-/** Starts a replay; if its data are unavailable, the still picture stays. */
-async function startReplay<T>(name: string, file: string, play: (figure: HTMLElement, story: T) => unknown): Promise<void> {
-  const figure = document.querySelector<HTMLElement>(name);
-  if (figure === null) return;
-  const story = await readJson<T>(new URL(file, import.meta.url));
-  if (story !== undefined) play(figure, story);
 }
 
 /** Calls back once, when the first of the elements comes near the viewport. */
@@ -181,7 +161,7 @@ function trackReading(): void {
   const summary = list?.querySelector('summary');
   if (list === null || list === undefined || summary === null || summary === undefined) return;
   // The side bar stays open. style/navigation.css has the same width.
-  const side = matchMedia('(width >= 1280px)');
+  const side = matchMedia('(width >= 80rem)');
   const fold = (): void => { list.open = side.matches; };
   side.addEventListener('change', fold);
   fold();

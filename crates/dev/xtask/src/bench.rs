@@ -77,6 +77,7 @@ pub fn bench(json: Option<&Path>) -> anyhow::Result<()> {
             "The script of a frame while a slider changes",
             "tests/bench/changing.mjs",
         ),
+        ("The first page on a slow line", "tests/bench/slow_line.mjs"),
     ] {
         table(what, program("node").arg(script).env("CHROMIUM", &chromium))?;
     }
