@@ -35,7 +35,58 @@ const isSeen = (css) => {
 const open = (tab, id) => tab.locator(`#${id} > details > summary`).click();
 const background = (tab) => tab.evaluate(() => getComputedStyle(document.body).backgroundColor);
 
+/** In the page: what its edge cuts off, and what a box that does not scroll does. */
+function cutOff() {
+  const found = [];
+  const name = (element) => `${element.tagName.toLowerCase()}.${element.className} “${element.textContent.trim().slice(0, 40)}”`;
+  const scrolls = (element) => {
+    for (let up = element; up !== null && up !== undefined; up = up.parentElement ?? up.getRootNode().host) {
+      if (/auto|scroll/.test(getComputedStyle(up).overflowX)) return true;
+    }
+    return false;
+  };
+  const isText = ({ childNodes }) => [...childNodes].some(({ nodeType, data }) => nodeType === 3 && data.trim() !== '');
+  const walk = (root) => {
+    for (const element of root.querySelectorAll('*')) {
+      if (element.shadowRoot) walk(element.shadowRoot);
+      // Editors number lines that they do not show.
+      if (!element.checkVisibility({ visibilityProperty: true }) || !isText(element) || element.closest('svg, .katex-mathml, .hidden, .cm-editor')) continue;
+      const { overflowX, overflowY, clipPath } = getComputedStyle(element);
+      const { right, width, height } = element.getBoundingClientRect();
+      if (clipPath !== 'none' || width <= 2 || height <= 2) continue;
+      const isCut = (/hidden|clip/.test(overflowX) && element.scrollWidth > element.clientWidth + 1)
+        || (/hidden|clip/.test(overflowY) && element.scrollHeight > element.clientHeight + 1);
+      if (isCut) found.push(`cut: ${name(element)}`);
+      else if (right + scrollX > document.documentElement.clientWidth + 1 && !scrolls(element)) found.push(`${Math.round(right)} px: ${name(element)}`);
+    }
+  };
+  walk(document);
+  const { scrollWidth, clientWidth } = document.documentElement;
+  return scrollWidth > clientWidth ? [`${scrollWidth} px wide`, ...found] : found;
+}
+
 describe('the chapter', () => {
+  it('loses nothing with letters of twice the size, on a phone and on a wide screen', async () => {
+    const large = await h.launch(['--blink-settings=defaultFontSize=32']);
+    const lost = {};
+    try {
+      await onEach(async (tab, inOrder) => {
+        await tab.evaluate(() => {
+          for (const fold of document.querySelectorAll('main details:not([data-write])')) fold.open = true;
+        });
+        for (const width of [390, 1280]) {
+          await tab.setViewportSize({ width, height: 844 });
+          await tab.evaluate(() => frameClock.pass(600));
+          const found = await tab.evaluate(cutOff);
+          if (found.length > 0) lost[`${width} px: ${inOrder}`] = found;
+        }
+      }, {}, { with: large });
+    } finally {
+      await large.close();
+    }
+    assert.deepEqual(lost, {});
+  });
+
   it('starts and paints each of its widgets near the viewport', async () => {
     await onEach(async (tab, inOrder) => {
       const states = () => tab.evaluate(
@@ -52,17 +103,6 @@ describe('the chapter', () => {
         else assert.ok((await h.painted(tab, widget(id))).share > (id === 'w16.9' ? 0.01 : 0.03), id);
       }
     }, { sees: true });
-  });
-
-  it('has few tab stops in its widgets', async () => {
-    await onEach(async (tab) => {
-      const stops = await tab.evaluate(() => [...document.querySelectorAll('slam-widget')].map(({ name, shadowRoot }) => {
-        const can = [...shadowRoot.querySelectorAll('button, input, select, [tabindex="0"]')];
-        return [name, can.filter((one) => one.tabIndex >= 0 && one.checkVisibility()).length];
-      }));
-      const total = stops.reduce((sum, [, count]) => sum + count, 0);
-      assert.ok(total <= 120, `${total}: ${stops.join(' ')}`);
-    });
   });
 
   it('has widgets that can be dragged, scrolled over and passed by Tab', async () => {
@@ -218,8 +258,12 @@ describe('the chapter', () => {
       found += tables.length;
       const opened = await tab.evaluate(() => document.documentElement.scrollWidth);
       assert.equal(opened, 390, 'nor with all of it unfolded');
+      // WCAG 2.2, 1.4.10: what a zoom to 400 % leaves of a wide screen.
+      await tab.setViewportSize({ width: 320, height: PHONE.height });
+      await tab.evaluate(() => frameClock.pass(600));
+      assert.deepEqual(await tab.evaluate(cutOff), [], 'nor on 320 px');
     }, { viewport: PHONE, deviceScaleFactor: 1 });
-    assert.equal(found, 7);
+    assert.equal(found, 8);
   });
 
   it('shows the whole widget above the contents bar of a phone', async () => {
@@ -271,8 +315,14 @@ describe('the chapter', () => {
     }, { viewport: { width: 1440, height: 900 } });
   });
 
-  it('satisfies axe-core in light and dark', async () => {
+  it('satisfies axe-core in light and dark, and has few tab stops in its widgets', async () => {
     await onEach(async (tab) => {
+      const stops = await tab.evaluate(() => [...document.querySelectorAll('slam-widget')].map(({ name, shadowRoot }) => {
+        const can = [...shadowRoot.querySelectorAll('button, input, select, [tabindex="0"]')];
+        return [name, can.filter((one) => one.tabIndex >= 0 && one.checkVisibility()).length];
+      }));
+      const total = stops.reduce((sum, [, count]) => sum + count, 0);
+      assert.ok(total <= 120, `${total}: ${stops.join(' ')}`);
       assert.deepEqual(await violations(tab), []);
       await tab.emulateMedia({ colorScheme: 'dark' });
       assert.deepEqual(await violations(tab, OF_COLORS), []);

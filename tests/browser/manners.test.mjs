@@ -148,6 +148,21 @@ describe('touch', () => {
     }, TOUCH);
   });
 
+  it('that rests selects no text and opens no menu, on anything that is dragged', async () => {
+    await on('', async (tab) => {
+      await tab.locator('#lap.live').waitFor();
+      const chosen = await tab.evaluate(() => {
+        const dragged = ['.lap-picture canvas', '.match-picture svg', '.laps-grid canvas', '.sketch-picture'];
+        const canvas = document.createElement('slam-widget').shadowRoot.querySelector('.stage').appendChild(document.createElement('canvas'));
+        document.body.append(canvas.getRootNode().host);
+        const all = [...dragged.flatMap((css) => [...document.querySelectorAll(css)]), canvas];
+        return all.map((element) => [element.className || element.tagName, getComputedStyle(element).userSelect]);
+      });
+      assert.ok(chosen.length > 4, `${chosen.length} things`);
+      assert.deepEqual(chosen.filter(([, select]) => select !== 'none'), []);
+    }, { ...TOUCH, path: '/index.html' });
+  });
+
   it('that is cancelled ends its drag', async () => {
     await on(ONE + TALL, async (tab) => {
       await h.ready(tab);
@@ -286,6 +301,29 @@ describe('the appearance', () => {
         assert.ok(Math.abs(ratio - deviceScaleFactor) < 0.01, `${ratio} for ${deviceScaleFactor}`);
       }, { options: { deviceScaleFactor, viewport: { width: 700, height: 700 } } });
     }
+  });
+
+  it('follows a telephone that is turned while a run plays, and a minute in the background skips nothing', async () => {
+    await on(CALM, async (tab) => {
+      await h.ready(tab);
+      const time = () => tab.evaluate(() => document.querySelector('slam-widget').t);
+      await tab.evaluate(() => document.querySelector('slam-widget').press('play'));
+      for (const [width, height] of [[844, 390], [390, 844]]) {
+        const from = await time();
+        await tab.setViewportSize({ width, height });
+        await tab.waitForFunction(([old, room]) => {
+          const widget = document.querySelector('slam-widget');
+          const canvas = widget.shadowRoot.querySelector('canvas');
+          return widget.t > old && canvas.clientWidth <= room && canvas.clientWidth > room - 30 && Math.abs(canvas.width / canvas.clientWidth - devicePixelRatio) < 0.01;
+        }, [from, width]);
+        assert.equal(await tab.evaluate(() => document.documentElement.scrollWidth), width);
+      }
+      // A page in the background gets no frames, and the next one a minute later.
+      const from = await time();
+      await tab.evaluate(() => frameClock.skip(60_000));
+      await tab.waitForFunction((old) => document.querySelector('slam-widget').t > old, from);
+      assert.ok((await time()) < from + 30, `${from} to ${await time()}`);
+    }, { options: { viewport: { width: 390, height: 844 } } });
   });
 
   it('follows the width without a resize loop', async () => {

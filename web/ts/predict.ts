@@ -36,11 +36,11 @@ interface Result {
 
 const STYLE = `
 :host { display: block; border: 1px solid currentColor; border-radius: 6px; padding: 0.75rem 1rem; }
-fieldset { border: 0; margin: 0.5rem 0; padding: 0; }
+fieldset { border: 0; margin: 0.5rem 0; padding: 0; min-width: 0; }
 label { display: block; padding: 0.25rem 0; }
 label:has(input[type='radio']) { display: flex; gap: 0.5rem; }
 input[type='radio'] { flex: none; width: 1.25rem; height: 1.25rem; margin: 0.2em 0 0; }
-input[type='number'], button { font: inherit; min-height: 2rem; padding: 0.1rem 0.6rem; }
+input[type='number'], button { box-sizing: border-box; max-width: 100%; font: inherit; min-height: 2rem; padding: 0.1rem 0.6rem; }
 button { min-height: 2.25rem; padding: 0.2rem 1rem; color: inherit; background: none; border: 1px solid currentColor; border-radius: 999px; cursor: pointer; }
 button:disabled { opacity: 0.6; cursor: default; }
 legend { padding: 0; font-weight: 600; }

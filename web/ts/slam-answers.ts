@@ -6,13 +6,13 @@ import { saveBlob } from './export';
 
 const STYLE = `
 :host { display: block; margin: 1rem 0; border: 1px solid currentColor; border-radius: 6px; padding: 0.75rem 1rem; }
-fieldset { border: 0; margin: 0; padding: 0; }
+fieldset { border: 0; margin: 0; padding: 0; min-width: 0; }
 label { display: flex; flex-wrap: wrap; align-items: center; gap: 0.5rem; padding: 0.25rem 0; }
 input[type='text'], button { font: inherit; min-height: 2rem; padding: 0.1rem 0.6rem; }
 button { min-height: 2.25rem; padding: 0.2rem 1rem; color: inherit; background: none; border: 1px solid currentColor; border-radius: 999px; cursor: pointer; }
 button:disabled { opacity: 0.6; cursor: default; }
 legend { padding: 0; font-weight: 600; }
-input[type='text'] { min-width: 0; max-width: 100%; }
+input[type='text'] { box-sizing: border-box; min-width: 0; max-width: 100%; }
 input[type='checkbox'] { flex: none; width: 1.25rem; height: 1.25rem; margin: 0; }
 p { margin: 0.5rem 0 0; }
 textarea { font: inherit; font-size: 0.8rem; width: 100%; box-sizing: border-box; }

@@ -24,7 +24,8 @@ export const STYLE = `
 .stage.live { min-height: 0; height: auto; }
 .picture { display: block; width: 100%; height: auto; }
 .stage[style*='--reserved-height'] .picture { height: 100%; object-fit: contain; object-position: top; }
-canvas { display: block; width: 100%; touch-action: pan-y pinch-zoom; outline: none; }
+canvas { display: block; width: 100%; touch-action: pan-y pinch-zoom; outline: none;
+  -webkit-user-select: none; user-select: none; -webkit-touch-callout: none; }
 .frame.takes-files canvas { touch-action: pan-y; }
 .frame.dropping { border-color: var(--accent); box-shadow: 0 0 0 3px var(--accent); }
 .pinned { position: fixed; top: 0; z-index: 3; pointer-events: none; background: var(--paper);
@@ -121,6 +122,11 @@ button[aria-disabled='true'] { color: var(--soft); border-color: var(--line); cu
 .timeline > :is(.name, .value) { min-width: max-content; }
 .timeline .name { color: var(--soft); }
 .empty :is(.unit, input[type='number']) { visibility: hidden; }
+@container (width < 20rem) {
+  .timeline { flex-wrap: wrap; min-width: 0; }
+  .timeline .rail { flex: 1 0 100%; }
+  .verdict p { display: block; }
+}
 input[type='range'] { flex: 1; width: 0; min-width: 3rem; min-height: 1.625rem; margin: 0; accent-color: var(--accent); }
 .marks { position: absolute; inset: 0 8px; pointer-events: none; }
 .marks i { position: absolute; left: calc(var(--at) * 100%); width: 2px; height: 0.5rem; top: calc(50% - 0.25rem); background: var(--soft); }
