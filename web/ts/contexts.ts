@@ -3,8 +3,10 @@
 // The widget with focus or pointer has priority, then those closest to the middle of the viewport. The others show
 // a picture.
 
-/** Widgets that may have a context at a time. */
-const MAX_CONTEXTS = 8;
+/** Shorter side of the largest phone, CSS pixels. */
+const PHONE_PX = 600;
+/** Widgets that may have a context at a time; docs/performance.md says what each takes of a phone's memory. */
+const MAX_CONTEXTS = Math.min(screen.width, screen.height) < PHONE_PX ? 4 : 8;
 
 export interface Drawer {
   /** Distance from the middle of the viewport, in CSS pixels; zero with focus or pointer. */
