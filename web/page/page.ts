@@ -56,8 +56,6 @@ startFlatGame();
 watchChallenges();
 letOpenWidgetsScroll();
 onceNear(document.querySelectorAll(NEEDS_CORE), () => void startCoreFigures());
-// The matcher's own script runs at once; its ICP, like the widgets below, needs the module, which takes seconds on a slow line.
-onceNear(document.querySelectorAll('#match'), () => void (coreModule as () => Promise<WebAssembly.Module>)().catch(() => {}));
 
 /** Opens the exercise that the address names. */
 function openAddressedExercise(): void {
