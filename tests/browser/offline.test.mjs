@@ -6,6 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, it } from 'node:test';
 import { pathToFileURL } from 'node:url';
+import { LAST_RESORT_MS } from './chromium.mjs';
 import * as h from './harness.mjs';
 import { unpackOffline } from './unpacked.mjs';
 
@@ -25,6 +26,7 @@ after(async () => {
 /** Opens a page of the folder, which must cause neither errors nor network requests. */
 async function opened(page, test) {
   const context = await browser.newContext({ viewport: { width: 1100, height: 900 } });
+  context.setDefaultTimeout(LAST_RESORT_MS);
   const tab = await context.newPage();
   const troubles = [];
   tab.on('console', (message) => message.type() === 'error' && troubles.push(message.text()));
