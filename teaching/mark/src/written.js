@@ -315,7 +315,7 @@ function gate(innovation, gap, drift, limit) {
       }
     ],
     help: [
-      "S = gap \xB7 diag(\u03C3\xB2, \u03C3\xB2, \u03C3_\u03B8\xB2), and \u03C7\xB2 = \u03BD\u1D40 S\u207B\xB9 \u03BD: S is diagonal, so it is a sum of three quotients.",
+      "S = gap \xB7 diag(\u03C3\xB2, \u03C3\xB2, \u03C3_\u03B8\xB2), and \u03C7\xB2 = \u03BE\u1D40 S\u207B\xB9 \u03BE: S is diagonal, so it is a sum of three quotients.",
       "A loop is accepted if \u03C7\xB2 \u2264 limit; write it so that NaN is rejected.",
       "const chi2 = (x\xB2 + y\xB2) / (gap \u03C3\xB2) + \u03B8\xB2 / (gap \u03C3_\u03B8\xB2)."
     ],
