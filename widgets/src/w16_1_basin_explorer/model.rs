@@ -49,6 +49,7 @@ use basins::Basins;
 use edge::Edges;
 use paths::Paths;
 use settings::{config, other_variant, start, variant};
+use turns::Turns;
 use your_code::YourCode;
 
 /// Names of the panels.
@@ -91,6 +92,8 @@ pub struct BasinExplorer {
     maps_are_open: bool,
     /// Paths from other starts, over the map of the selected variant.
     paths: Paths,
+    /// How the turns of the first guess end.
+    turns: Turns,
     /// The edge of the basin along pure rotations, for the question about it.
     edges: Edges,
     preview: Preview,
@@ -129,6 +132,7 @@ impl Default for BasinExplorer {
         let basins = Basins::new(&values);
         let mut explorer = Self {
             paths: Paths::new(&values),
+            turns: Turns::default(),
             edges: Edges::new(&values),
             preview: Preview::Hidden,
             yours: None,
@@ -155,6 +159,7 @@ impl Default for BasinExplorer {
 impl BasinExplorer {
     /// Registers from the current start, in both variants.
     fn register(&mut self) {
+        self.turns.clear();
         let start = start(&self.values);
         let variant = variant(&self.values);
         let mut run = |variant| {
@@ -219,6 +224,12 @@ impl BasinExplorer {
         self.follow();
         self.preview = Preview::Shown;
         self.settles_in_s = Some(SETTLES_AFTER_S);
+    }
+
+    /// Whether it is shown how other turns end: after the run, and never of the reader's function, whose map is apart.
+    fn shows_turns(&self) -> bool {
+        let is_over = self.iteration() == self.last();
+        is_over && self.driver().is_none() && self.values.get(&EDGE) != Phase::Marking
     }
 
     /// Whether the basin maps are shown: after the reader's first starts, or if a state is about them.
@@ -342,6 +353,14 @@ impl Model for BasinExplorer {
             return Activity::Busy;
         }
         if self.paths.work(&self.scene, &mut self.workspace) == Activity::Busy {
+            return Activity::Busy;
+        }
+        if self.shows_turns()
+            && self
+                .turns
+                .work(&self.scene, &self.values, &mut self.workspace)
+                == Activity::Busy
+        {
             return Activity::Busy;
         }
         if !self.shows_maps() {

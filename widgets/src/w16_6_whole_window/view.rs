@@ -11,7 +11,7 @@ pub fn arrange(_scene: &Scene, width: f32) -> Arrangement {
     let (plan, places_px, bounds_px) = if width >= SIDE_BY_SIDE {
         (Slot::natural(panel::SWEEPS, 560.0), 420.0, 150.0)
     } else {
-        (Slot::fixed(panel::SWEEPS, 450.0), 260.0, 100.0)
+        (Slot::fixed(panel::SWEEPS, 465.0), 260.0, 100.0)
     };
     let places = Slot::natural(panel::PLACES, places_px);
     Arrangement {

@@ -1,11 +1,13 @@
 //! The basin maps enter after the reader's first starts, and begin with them.
 
+use std::collections::BTreeMap;
+
 use widget_kit::model::{Activity, Model};
-use widget_kit::scene::{Layer, Mark, Tone};
+use widget_kit::scene::{Layer, Mark, RasterCell, Tone};
 use widgets::w16_1_basin_explorer::model::{BasinExplorer, panel};
 
 use crate::support::{drawn, panel_of};
-use crate::w16_1_basin_explorer::common::with;
+use crate::w16_1_basin_explorer::common::{class_at, fill, with};
 
 /// Advances until the start has stood still for long enough.
 fn stand_still(model: &mut BasinExplorer) {
@@ -123,4 +125,38 @@ fn the_maps_enter_beside_the_picture_without_a_jump() {
         let jump = (after.0 - before.0).abs();
         assert!(jump <= 20.0, "{width}: {before:?} and {after:?}");
     }
+}
+
+/// Each turn is registered for the ring and for the map apart.
+#[test]
+fn after_the_run_the_ring_shows_how_every_turn_ends() {
+    let ring = |model: &BasinExplorer| {
+        let layers = panel_of(model, panel::SWEEPS).layers;
+        let arcs = layers.into_iter().filter_map(|layer| match layer {
+            Layer::Segments {
+                segments,
+                tone: Tone::Class(class),
+                ..
+            } => Some((class, segments.len())),
+            _ => None,
+        });
+        arcs.collect::<Vec<_>>()
+    };
+    let mut model = with(&[("dx", 0.0), ("dy", 0.0)]);
+    fill(&mut model);
+    assert_eq!(ring(&model), [], "before the run");
+    model.set("iteration", 200.0).unwrap();
+    fill(&mut model);
+    let mut on_the_map = BTreeMap::new();
+    for column in -60..=60 {
+        let at = [3.0 * f64::from(column), 0.0];
+        let RasterCell::Class(class) = class_at(&model, panel::POINT, at) else {
+            panic!("{at:?} is empty");
+        };
+        *on_the_map.entry(class).or_insert(0) += 1;
+    }
+    assert!(on_the_map.len() > 2, "{on_the_map:?}");
+    assert_eq!(ring(&model), on_the_map.into_iter().collect::<Vec<_>>());
+    model.set("dx", 0.3).unwrap();
+    assert_eq!(ring(&model), [], "of another guess");
 }

@@ -16,7 +16,7 @@ use crate::w16_1_basin_explorer::spec::OFFSET_SPAN_M;
 /// The reader's starts that stay on the maps: more would hide them.
 const MAX_TRIES: usize = 24;
 /// Registrations in one piece of work: some tenths of a millisecond.
-const REGISTRATIONS_PER_PIECE: usize = 3;
+pub const REGISTRATIONS_PER_PIECE: usize = 3;
 /// Headings, 3° apart.
 pub const COLUMNS: usize = 121;
 /// Offsets, 7.5 cm apart.

@@ -114,7 +114,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     ));
     // The truth comes with the verdict, and how the other turns end.
     if iteration == explorer.last() {
-        if explorer.values.get(&EDGE) != Phase::Marking {
+        if explorer.shows_turns() {
             layers.extend(ring(explorer));
         }
         let truth = scene.truth();
