@@ -545,7 +545,11 @@ fn the_wheels_alone_start_where_the_map_has_the_first_keyframe_with_odometry() {
     let path = |robot: &OwnRobot| {
         let layers = robot.scene().panels[0].layers.clone();
         layers.into_iter().find_map(|layer| match layer {
-            Layer::Line { points, tone, .. } if tone == Tone::Prediction => Some(points),
+            Layer::Line {
+                points,
+                tone: Tone::Prediction,
+                ..
+            } => Some(points),
             _ => None,
         })
     };
