@@ -167,7 +167,6 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     gesture: "Open a log of your robot, or watch the sample being mapped.",
     awaits: Awaits::Nothing,
     notice: &[
-        "The log stays in your browser. It is read there, and none of it is sent anywhere.",
         "Loops are sorted by how strongly the rest of the graph contradicts them. Reject one, and the graph is solved again at once.",
         "Look where a scan fits badly: glass, people, or a wrong pose.",
         "A graph with small standard deviations may still be wrong. Only an external reference shows the error.",

@@ -63,7 +63,6 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     awaits: Awaits::Nothing,
     notice: &[
         "The front end runs at every tick. It predicts from odometry and corrects with one registration. The threshold τ follows how wrong the predictions were.",
-        "The back end runs only at keyframes. Its big moment is a loop, when old poses move.",
         "The grid stores no poses. After an accepted loop it is discarded and redrawn from every keyframe's sweep.",
         "Cells that are likely occupied have the colour of this text, and free cells the colour of the page. Tinted cells were never seen.",
         "Each lane is one operation. The top two run at every tick; the rest wait for a keyframe. Press a mark to go there and see its data.",

@@ -89,7 +89,6 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "A few centimetres look like noise, but they are a bias and do not average out.",
         "Trimming drops the longest pairs, which are mostly on the box. It gives way last, and slowly.",
         "Huber's kernel never drops a pair. It resists a small box; with half of the points on the box it ends further out than plain ICP.",
-        "A short τ does the same work as trimming, until the start is further out than τ.",
     ],
     opening: Opening {
         panels: &["room", "bias"],

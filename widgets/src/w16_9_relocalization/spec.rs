@@ -71,7 +71,6 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "A ghost is a pose not yet ruled out; the better it may still fit, the larger it is. The ghosts left are where the robot may be.",
         "Where the mapping robot drove, one scan is enough. In a room it never entered, or in one of two identical rooms, no pose is called reliable until the robot is out of the door.",
-        "Once the robot is found, each scan is registered on the map around it, and the search ends.",
         "The wardrobe was moved overnight. The map still shows it in the old place; after another lap it is gone from there.",
     ],
     opening: Opening {

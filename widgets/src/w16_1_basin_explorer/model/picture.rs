@@ -14,7 +14,7 @@ use super::edge;
 use super::interaction::turn_handle;
 use super::paths::split_at_half_turn;
 use super::settings::{axis, start, variant, variant_name};
-use super::turns::ring;
+use super::turns::arc;
 use super::{BasinExplorer, panel};
 use crate::sweep_bounds::sweep_bounds;
 use crate::w16_1_basin_explorer::spec::{EDGE, OFFSET_SPAN_M, Phase, TAU};
@@ -115,7 +115,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     // The truth comes with the verdict, and how the other turns end.
     if iteration == explorer.last() {
         if explorer.shows_turns() {
-            layers.extend(ring(explorer));
+            layers.extend(arc(explorer));
         }
         let truth = scene.truth();
         layers.push(sensor(truth, Mark::Plus, Tone::Truth));
