@@ -162,7 +162,7 @@ pub const WITHOUT_LOG: Opening = Opening {
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.10",
     name: "Your own robot",
-    title: "How far astray do the wheels alone lead a robot?",
+    title: "How far astray do wheels lead a robot?",
     claim: "What the robot sees again corrects its wheels.",
     gesture: "Open a log of your robot, or watch the sample being mapped.",
     awaits: Awaits::Nothing,

@@ -539,7 +539,7 @@ fn the_wheels_alone_start_where_the_map_has_the_first_keyframe_with_odometry() {
     report(&mut robot, &MapperReport::Keyframes(keyframes));
     let sentence = robot.outcome().sentence;
     assert!(
-        sentence.contains("after 3 m the wheels alone are 0.2 m off the map. "),
+        sentence.contains("after 3 m the wheels alone are 0.2 m out. "),
         "{sentence}"
     );
     let path = |robot: &OwnRobot| {

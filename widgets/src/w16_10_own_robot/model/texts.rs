@@ -194,7 +194,7 @@ fn finished(robot: &LogState) -> String {
     let path_m = path_length_m(robot);
     let first = match end_m(robot) {
         Some(off_m) => {
-            format!("after {path_m:.0} m the wheels alone are {off_m:.1} m off the map. {source}")
+            format!("after {path_m:.0} m the wheels alone are {off_m:.1} m out. {source}")
         }
         None => format!("{source} on a path of {path_m:.0} m"),
     };
