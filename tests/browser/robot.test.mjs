@@ -469,7 +469,7 @@ describe('a reader’s log', () => {
   it('offers the topics and frames of a recording, and maps it again with another one', async () => {
     await page(async (tab) => {
       await giveBytes(tab, 'plain.mcap', readFileSync(join(RECORDINGS, 'plain.mcap')));
-      await says(tab, /(mapped|to look into): plain\.mcap: 24 scans/);
+      await says(tab, /(mapped|to look into): plain\.mcap: .*24 scans/);
       const taken = async () => (await table(tab, 'offers')).find(([label]) => label === 'body frame')[1];
       const before = await taken();
       const way = (await outcome(tab)).facts.path_length_m;
@@ -481,7 +481,7 @@ describe('a reader’s log', () => {
         return /mapped|to look into/.test(verdict) && facts.path_length_m !== way;
       }, way);
       assert.notEqual(await taken(), before);
-      assert.match((await outcome(tab)).sentence, /plain\.mcap: 24 scans/);
+      assert.match((await outcome(tab)).sentence, /plain\.mcap: .*24 scans/);
       await tab.evaluate(() => Object.assign(document.querySelector('slam-widget'), { option: 'scan-topic' }));
       const other = tab.locator('slam-widget').getByRole('button', { name: 'Take another', exact: true });
       assert.equal(await other.getAttribute('aria-disabled'), 'true', 'the recording has one topic of scans');
