@@ -47,7 +47,7 @@ export async function live(page, id) {
     const { shadowRoot } = widget;
     return shadowRoot.querySelector('.failure:not(.late) p')?.textContent ?? (shadowRoot.querySelector('.stage.live') !== null && 'live');
   }, id);
-  assert.equal(state, 'live', id);
+  if (state !== 'live') assert.fail(`${id}: ${state} ${JSON.stringify(await troublesOf(page))}`);
 }
 
 /** Clicks what a function in the page finds, with the pointer, once it rests and nothing covers it; again if it moved away. */
