@@ -1,6 +1,6 @@
 """A robot that drives: the official server of Foxglove's WebSocket protocol sends a recording to its first client.
 
-python tests/official_robot.py RECORDING.mcap [--speed 20]
+python tests/official_robot.py RECORDING.mcap [--speed 20] [--without TOPIC]
 
 It prints its address. Once a client has subscribed to all topics, every message is sent at its time, the rate multiplied by
 the speed. It ends when its standard input does.
@@ -32,9 +32,11 @@ def main():
     arguments = argparse.ArgumentParser()
     arguments.add_argument("recording")
     arguments.add_argument("--speed", type=float, default=20)
+    arguments.add_argument("--without", default="")
     options = arguments.parse_args()
     with open(options.recording, "rb") as file:
         messages = list(make_reader(file).iter_messages(log_time_order=False))
+    messages = [one for one in messages if one[1].topic != options.without]
     channels = {}
     for schema, channel, _ in messages:
         if channel.id not in channels:

@@ -137,7 +137,7 @@ pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
         ..Ended::default()
     };
     let recorded = recording.display().to_string();
-    let remarks = heard.remarks(&args.url, &recorded, Host::Command);
+    let remarks = heard.remarks(&args.url, Some(&recorded), Host::Command);
     ended.remarks.extend(remarks);
     ended.broken = match heard.end {
         DriveEnd::Recording(error) => Some(anyhow!("{}: {error}", recording.display())),

@@ -9,12 +9,14 @@
 
 mod arrays;
 mod callables;
+mod connection;
 mod errors;
 mod evaluation;
 mod grid_map;
 mod interrupts;
 mod localizer;
 mod log_files;
+mod log_options;
 mod motions;
 mod pictures;
 mod pose_graph;
@@ -27,6 +29,7 @@ mod sessions;
 mod settings;
 mod simulation;
 mod slam;
+mod steps;
 mod trajectories;
 
 use pyo3::prelude::*;
@@ -40,6 +43,8 @@ use pyo3::prelude::*;
 mod _rustslam2d {
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use super::connection::{RobotConnection, connect};
     #[pymodule_export]
     use super::errors::{
         ArrayError, ChoiceError, EvaluationError, FrameError, GraphError, LogError, OptimizeError,

@@ -1,7 +1,6 @@
 //! Maps a recorded log with the estimator.
 
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use ch16_slam2d::slam::Slam;
 use nalgebra::Matrix3;
@@ -19,13 +18,15 @@ use robot_io::recorder::RunRecorder;
 use robot_io::run::LogRun;
 
 use crate::arrays;
-use crate::errors::{ChoiceError, LogError, SettingError, no_choice, within};
+use crate::errors::{ChoiceError, LogError, SettingError, within};
 use crate::grid_map::GridMap;
 use crate::log_files::{self, ReadTo};
+use crate::log_options::{self, Asked};
 use crate::pose_graph::PoseGraph;
 use crate::reduced::{self, Reduced};
 use crate::sensor::Sensor;
 use crate::settings::{self, Chosen};
+use crate::steps::{StepArguments, Steps};
 use crate::{pictures, trajectories};
 
 /// Scans between two checks for Ctrl-C and two reports of progress.
@@ -135,9 +136,6 @@ impl LogResult {
     }
 }
 
-/// Ranges, odometry and stamp of a scan.
-type StepArguments = (Py<PyArray1<f64>>, Option<Py<PyArray1<f64>>>, f64);
-
 /// Result of a run, before its conversion for Python.
 struct Found {
     trajectory: Vec<(f64, SE2)>,
@@ -188,38 +186,28 @@ impl Pipeline {
         ] {
             keywords.set_item(name, value)?;
         }
-        let odometry = odometry_use(odometry.as_ref())?;
+        let odometry = log_options::odometry_use(odometry.as_ref())?;
         keywords.set_item("odometry", odometry.name())?;
         keywords.set_item("heights", heights)?;
         keywords.set_item("min_range", min_range)?;
         keywords.set_item("footprint", footprint)?;
-        if let Some((low, high)) = heights
-            && !(low < high && low.is_finite() && high.is_finite())
-        {
-            return Err(ChoiceError::new_err(format!(
-                "heights has to be two numbers, the lower one first, not ({low}, {high})"
-            )));
-        }
-        let footprint =
-            footprint.map(|(back, right, front, left)| format!("{back},{right},{front},{left}"));
         Ok(Self {
             log,
             chosen: settings::chosen(config.as_ref())?,
             odometry,
             keywords: keywords.unbind(),
             options: LogOptions {
-                laser: parsed("laser", laser.as_deref())?,
-                heights_m: heights,
-                min_range_m: min_range
-                    .map(|range_m| within("min_range", range_m, 0.0, 1e6, " m"))
-                    .transpose()?,
-                footprint: parsed("footprint", footprint.as_deref())?,
-                columns: parsed("columns", columns.as_deref())?,
                 scan_topic,
                 odometry_topic: odom_topic,
                 odometry_frame: odom_frame,
                 body_frame,
-                ..LogOptions::default()
+                ..log_options::options(&Asked {
+                    laser,
+                    heights,
+                    min_range,
+                    footprint,
+                    columns,
+                })?
             },
         })
     }
@@ -270,26 +258,10 @@ impl Pipeline {
         let first = frames.first().ok_or_else(|| {
             LogError::new_err(format!("{}: the log has no scan", self.log.display()))
         })?;
-        let sensor = Sensor::from_scan(&first.scan);
-        let mut before = None;
-        let mut steps = Vec::new();
-        for (number, frame) in frames.iter().enumerate() {
-            if Sensor::from_scan(&frame.scan) != sensor {
-                return Err(LogError::new_err(format!(
-                    "{}: the laser of scan {number} has other angles, limits or mounting than that of the first; \
-                     select one laser with scan_topic",
-                    self.log.display()
-                )));
-            }
-            let motion = before
-                .zip(frame.odometry)
-                .map(|(before, now): (SE2, SE2)| before.inverse() * now);
-            before = frame.odometry;
-            let ranges = PyArray1::from_slice(py, &frame.scan.ranges_m).unbind();
-            let motion = motion.map(|motion| arrays::of_pose(py, &motion).unbind());
-            steps.push((ranges, motion, frame.stamp_s));
-        }
-        Ok((sensor, steps))
+        let mut steps = Steps::new(self.log.display().to_string(), first);
+        let sensor = steps.sensor();
+        let steps: PyResult<_> = frames.iter().map(|frame| steps.next(py, frame)).collect();
+        Ok((sensor, steps?))
     }
 
     /// A pickled pipeline reads the log again, by its path.
@@ -401,32 +373,6 @@ impl Pipeline {
             remarks,
         })
     }
-}
-
-/// How the odometry is taken: by its name, or a truth value.
-fn odometry_use(wanted: Option<&Bound<'_, PyAny>>) -> PyResult<OdometryUse> {
-    let Some(wanted) = wanted else {
-        return Ok(OdometryUse::Check);
-    };
-    if let Ok(is_used) = wanted.cast::<PyBool>() {
-        return Ok(if is_used.is_true() {
-            OdometryUse::Check
-        } else {
-            OdometryUse::Ignore
-        });
-    }
-    let name: String = wanted.str()?.extract()?;
-    let found = OdometryUse::ALL.into_iter().find(|one| one.name() == name);
-    found.ok_or_else(|| no_choice("odometry", &name, &OdometryUse::ALL.map(OdometryUse::name)))
-}
-
-/// An option as the command reads it.
-fn parsed<T: FromStr<Err = String>>(name: &str, text: Option<&str>) -> PyResult<Option<T>> {
-    let read = |text: &str| {
-        let found = text.parse();
-        found.map_err(|problem| ChoiceError::new_err(format!("{name}: {problem}, not {text:?}")))
-    };
-    text.map(read).transpose()
 }
 
 fn to_error(error: robot_io::log::LogError) -> PyErr {

@@ -2,7 +2,9 @@
 
 import json
 import os
+import signal
 import subprocess
+import threading
 from pathlib import Path
 
 import pytest
@@ -70,3 +72,29 @@ def driven(drive):
     slam = rs.Slam.chapter(sensor=drive.sensor, start=drive.truth[0])
     frames = zip(drive.ranges, drive.odometry, drive.stamps)
     return slam, [slam.step(*frame) for frame in frames]
+
+
+class Interrupted(BaseException):
+    """What the handler raises: not KeyboardInterrupt, which would end pytest if a test failed."""
+
+
+@pytest.fixture
+def interrupted():
+    """What the handler raises."""
+    return Interrupted
+
+
+@pytest.fixture
+def interrupt():
+    """Raises a signal in a moment: the computation meanwhile would take days."""
+    if not hasattr(signal, "setitimer"):
+        pytest.skip("the system has no interval timer")
+
+    def handler(*_):
+        raise Interrupted
+
+    before = signal.signal(signal.SIGALRM, handler)
+    assert threading.current_thread() is threading.main_thread()
+    yield lambda: signal.setitimer(signal.ITIMER_REAL, 0.02)
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    signal.signal(signal.SIGALRM, before)

@@ -3,7 +3,6 @@
 import copy
 import pickle
 import signal
-import threading
 
 import numpy as np
 import pytest
@@ -101,34 +100,14 @@ def test_every_option_of_a_run_has_an_effect_or_a_sentence(log):
             rs.Pipeline(log, **options)
 
 
-class Interrupted(BaseException):
-    """What the handler raises: not KeyboardInterrupt, which would end pytest if a test failed."""
-
-
-@pytest.fixture
-def interrupt():
-    """Raises a signal in a moment: the computation meanwhile would take days."""
-    if not hasattr(signal, "setitimer"):
-        pytest.skip("the system has no interval timer")
-
-    def handler(*_):
-        raise Interrupted
-
-    before = signal.signal(signal.SIGALRM, handler)
-    assert threading.current_thread() is threading.main_thread()
-    yield lambda: signal.setitimer(signal.ITIMER_REAL, 0.02)
-    signal.setitimer(signal.ITIMER_REAL, 0)
-    signal.signal(signal.SIGALRM, before)
-
-
-def test_ctrl_c_ends_icp(interrupt):
+def test_ctrl_c_ends_icp(interrupt, interrupted):
     points = np.random.default_rng(0).uniform(-5, 5, (2000, 2))
     interrupt()
-    with pytest.raises(Interrupted):
+    with pytest.raises(interrupted):
         rs.icp(points, points + 0.01, tolerance=0.0, max_iterations=1_000_000_000)
 
 
-def test_ctrl_c_ends_optimize_and_the_poses_stay(interrupt):
+def test_ctrl_c_ends_optimize_and_the_poses_stay(interrupt, interrupted):
     graph, rng = rs.PoseGraph(), np.random.default_rng(0)
     graph.add_node((0, 0, 0), fixed=True)
     for node in range(1, 2000):
@@ -137,7 +116,7 @@ def test_ctrl_c_ends_optimize_and_the_poses_stay(interrupt):
         graph.add_edge(int(rng.integers(node)), node, (*rng.uniform(-9, 9, 2), 0), np.eye(3))
     before = graph.poses
     interrupt()
-    with pytest.raises(Interrupted):
+    with pytest.raises(interrupted):
         graph.optimize(start="given", method="lm", tolerance=0.0, max_iterations=1_000_000)
     # Without an ear for it, the signal would come after the new poses.
     assert np.array_equal(graph.poses, before)

@@ -16,7 +16,7 @@ pub enum ConnectError {
     Address(String),
     /// TLS is asked for.
     #[error(
-        "{0} asks for an encrypted connection, which slam2d does not make; forward the port with ssh -L 8765:localhost:8765 robot, and pass ws://localhost:8765"
+        "{0} asks for an encrypted connection, which only a browser makes; forward the port with ssh -L 8765:localhost:8765 robot, and pass ws://localhost:8765"
     )]
     Encrypted(String),
     /// The name is unknown.
@@ -92,6 +92,8 @@ pub enum Host {
     Command,
     /// The page.
     Page,
+    /// A program in Python.
+    Python,
 }
 
 impl Heard {
@@ -115,6 +117,7 @@ impl Heard {
                 let advice = match host {
                     Host::Command => ", choose with --scan-topic, or wait longer with --wait",
                     Host::Page => " and connect again",
+                    Host::Python => ", choose with scan_topic, or wait longer with wait",
                 };
                 format!("{url}: no scan came; {topics}. Start the driver of the laser{advice}")
             }
@@ -129,9 +132,9 @@ impl Heard {
         })
     }
 
-    /// Sentences on what the network did; `recording` has all that came.
+    /// Sentences on what the network did; `recording` has all that came, if it is kept.
     #[must_use]
-    pub fn remarks(&self, url: &str, recording: &str, host: Host) -> Vec<String> {
+    pub fn remarks(&self, url: &str, recording: Option<&str>, host: Host) -> Vec<String> {
         let mut remarks = Vec::new();
         for gap in &self.gaps {
             remarks.push(format!(
@@ -143,9 +146,14 @@ impl Heard {
             let advice = match host {
                 Host::Command => "slam2d run maps all of them",
                 Host::Page => "save it and open it to map all of them",
+                Host::Python => "Pipeline maps all of them",
+            };
+            let rest = match recording {
+                Some(recording) => format!("they are in {recording}: {advice}"),
+                None => "pass recording to keep them in a file".to_owned(),
             };
             remarks.push(format!(
-                "{url}: {} of {} scans came faster than this computer maps them and were left out; they are in {recording}: {advice}",
+                "{url}: {} of {} scans came faster than this computer maps them and were left out; {rest}",
                 self.dropped, self.scans
             ));
         }
@@ -153,7 +161,7 @@ impl Heard {
             DriveEnd::NotBack(why) => remarks.push(format!(
                 "{url}: the connection was lost ({why}) and did not come back; the drive ends there"
             )),
-            DriveEnd::TooLong(why) if host == Host::Page => {
+            DriveEnd::TooLong(why) if host != Host::Command => {
                 remarks.push(format!("{url}: {why}; the drive ended there"));
             }
             _ => {}
@@ -185,8 +193,12 @@ mod tests {
     #[test]
     fn dropped_scans_and_gaps_are_said() {
         let heard = heard(1200, DriveEnd::NotBack(Lost::Silent.to_string()));
-        for (host, advice) in [(Host::Command, "slam2d run"), (Host::Page, "save it")] {
-            let said = heard.remarks("ws://r:1", "d/recording.mcap", host);
+        for (host, advice) in [
+            (Host::Command, "slam2d run"),
+            (Host::Page, "save it"),
+            (Host::Python, "Pipeline"),
+        ] {
+            let said = heard.remarks("ws://r:1", Some("d/recording.mcap"), host);
             assert!(said[0].contains("lost for 2.5 s"), "{said:?}");
             assert!(said[1].contains("40 of 1200 scans came faster"), "{said:?}");
             let is_named = said[1].contains(&format!("d/recording.mcap: {advice}"));
@@ -195,6 +207,11 @@ mod tests {
             assert!(is_over, "{said:?}");
             assert_eq!(heard.without_scans("ws://r:1", host), None);
         }
+        let said = heard.remarks("ws://r:1", None, Host::Python);
+        assert!(
+            said[1].ends_with("left out; pass recording to keep them in a file"),
+            "{said:?}"
+        );
     }
 
     #[test]

@@ -39,6 +39,8 @@ pub(super) struct Driving {
     /// Topics that are read.
     reads: Vec<String>,
     said: String,
+    /// The last report.
+    told: Option<DriveReport>,
 }
 
 /// What the network did in a drive.
@@ -52,17 +54,20 @@ pub(super) struct EndOfDrive {
 }
 
 impl Driving {
-    pub(super) fn report(&self, mapped: usize) -> DriveReport {
+    /// What came, if it has changed since the last call.
+    pub(super) fn report(&mut self, mapped: usize) -> Option<DriveReport> {
         let of_drive = self.drive.as_ref().map(|drive| &drive.heard);
         let heard = of_drive.or(self.heard.as_ref());
         let scans = heard.map_or((0, 0), |heard| (heard.scans, heard.dropped));
-        DriveReport {
+        let report = DriveReport {
             reads: self.reads.clone(),
             lasers: heard.map_or_else(Vec::new, |heard| heard.lasers.clone()),
             scans: [scans.0, mapped, scans.1],
             said: self.said.clone(),
             is_driving: self.drive.is_some(),
-        }
+        };
+        let is_new = self.told.as_ref() != Some(&report);
+        is_new.then(|| self.told.insert(report).clone())
     }
 }
 
@@ -83,6 +88,7 @@ impl<'a> Engine<'a> {
                 last: Vec::new(),
                 reads: Vec::new(),
                 said: String::new(),
+                told: None,
             }),
             has_scans: true,
             ..Self::with_work(Work::Reading(Box::new(reader)), url, 0)
@@ -208,7 +214,7 @@ impl<'a> Engine<'a> {
             return EndOfDrive::default();
         };
         EndOfDrive {
-            remarks: heard.remarks(&self.name, RECORDING, Host::Page),
+            remarks: heard.remarks(&self.name, Some(RECORDING), Host::Page),
             without_scans: heard.without_scans(&self.name, Host::Page),
             is_cut: !matches!(heard.end, DriveEnd::Asked),
         }

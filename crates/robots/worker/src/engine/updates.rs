@@ -51,10 +51,9 @@ impl Engine<'_> {
             let other = localization.report(poses_of(&self.run));
             updates.extend(other.map(|other| Update::Report(MapperReport::OtherLog(other))));
         }
-        let drive = self
-            .driving
-            .as_ref()
-            .map(|driving| driving.report(self.run.scans()));
+        let mapped = self.run.scans();
+        let drive = self.driving.as_mut();
+        let drive = drive.and_then(|driving| driving.report(mapped));
         updates.extend(drive.map(Update::Drive));
         updates.append(&mut self.waiting);
         updates
