@@ -15,13 +15,25 @@ use tungstenite::{
     Bytes, ClientRequestBuilder, Error as SocketError, HandshakeError, Message, WebSocket,
 };
 
-/// A robot that does not answer within this is not there.
-const ANSWER: Duration = Duration::from_secs(5);
 /// A read waits this long, so that Ctrl-C is seen.
 const POLL: Duration = Duration::from_millis(100);
-/// After this time without a message the server is asked whether it is there, and after the second it is gone.
-const QUIET: Duration = Duration::from_secs(3);
-const GONE: Duration = Duration::from_secs(10);
+
+/// How long a robot may be silent.
+#[derive(Clone, Copy, Debug)]
+struct Patience {
+    /// If it does not answer within this, it is not there.
+    answer: Duration,
+    /// After this time without a message it is asked whether it is there.
+    quiet: Duration,
+    /// After this time without a message it is gone.
+    gone: Duration,
+}
+
+const PATIENCE: Patience = Patience {
+    answer: Duration::from_secs(5),
+    quiet: Duration::from_secs(3),
+    gone: Duration::from_secs(10),
+};
 
 /// The address of a server.
 #[derive(Clone, Debug)]
@@ -67,6 +79,7 @@ pub struct Connection {
     /// When the last message came.
     pub(crate) heard: Instant,
     is_asked: bool,
+    patience: Patience,
 }
 
 impl Connection {
@@ -75,6 +88,10 @@ impl Connection {
     /// # Errors
     /// If it is not there, or speaks another protocol.
     pub fn open(address: &Address) -> Result<Self, ConnectError> {
+        Self::open_within(address, PATIENCE)
+    }
+
+    fn open_within(address: &Address, patience: Patience) -> Result<Self, ConnectError> {
         let url = || address.url.clone();
         let refused = |source: io::Error| ConnectError::Refused {
             url: url(),
@@ -89,7 +106,7 @@ impl Connection {
         let mut failed = io::Error::from(ErrorKind::AddrNotAvailable);
         let mut stream = None;
         for one in all {
-            match TcpStream::connect_timeout(&one, ANSWER) {
+            match TcpStream::connect_timeout(&one, patience.answer) {
                 Ok(open) => {
                     stream = Some(open);
                     break;
@@ -100,8 +117,9 @@ impl Connection {
         let Some(stream) = stream else {
             return Err(refused(failed));
         };
-        stream.set_read_timeout(Some(ANSWER)).map_err(refused)?;
-        stream.set_write_timeout(Some(ANSWER)).map_err(refused)?;
+        let answer = Some(patience.answer);
+        stream.set_read_timeout(answer).map_err(refused)?;
+        stream.set_write_timeout(answer).map_err(refused)?;
         let mut request = ClientRequestBuilder::new(address.uri.clone());
         for name in SUBPROTOCOLS {
             request = request.with_sub_protocol(name);
@@ -127,6 +145,7 @@ impl Connection {
             socket,
             heard: Instant::now(),
             is_asked: false,
+            patience,
         })
     }
 
@@ -153,10 +172,10 @@ impl Connection {
             }
             Err(SocketError::Io(error)) if is_wait(&error) => {
                 let quiet = self.heard.elapsed();
-                if quiet > GONE {
+                if quiet > self.patience.gone {
                     return Err(Lost::Silent);
                 }
-                if quiet > QUIET && !self.is_asked {
+                if quiet > self.patience.quiet && !self.is_asked {
                     self.is_asked = true;
                     self.socket
                         .send(Message::Ping(Bytes::new()))
@@ -176,5 +195,73 @@ fn lost(error: SocketError) -> Lost {
         }) => Lost::TooLong(size),
         SocketError::ConnectionClosed | SocketError::AlreadyClosed => Lost::Closed,
         error => Lost::Broken(error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Read as _;
+    use std::net::TcpListener;
+    use std::thread;
+
+    use tungstenite::accept_hdr;
+
+    use super::*;
+    use crate::server::choose;
+
+    /// Longer than any test.
+    const AN_HOUR: Duration = Duration::from_secs(3600);
+
+    fn server() -> (TcpListener, Address) {
+        let server = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = Address::new(&format!("ws://{}", server.local_addr().unwrap()));
+        (server, address.unwrap())
+    }
+
+    #[test]
+    fn a_server_that_takes_the_connection_and_does_not_answer_is_named() {
+        // The system takes the connection.
+        let (_server, address) = server();
+        let patience = Patience {
+            answer: Duration::from_millis(50),
+            ..PATIENCE
+        };
+        let problem = Connection::open_within(&address, patience).err().unwrap();
+        assert!(problem.to_string().contains(NO_ANSWER), "{problem}");
+    }
+
+    #[test]
+    fn a_server_that_falls_silent_is_lost_and_one_that_answers_when_asked_is_not() {
+        for (answers, gone) in [(true, AN_HOUR), (false, Duration::ZERO)] {
+            let (server, address) = server();
+            let serving = thread::spawn(move || {
+                let (stream, _) = server.accept().unwrap();
+                let mut socket = accept_hdr(stream, choose).unwrap();
+                if answers {
+                    while socket.read().is_ok() {}
+                }
+                // It neither reads a message nor closes the connection.
+                let _ = socket.get_mut().read_to_end(&mut Vec::new());
+            });
+            let patience = Patience {
+                quiet: Duration::ZERO,
+                gone,
+                ..PATIENCE
+            };
+            let mut connection = Connection::open_within(&address, patience).unwrap();
+            let came = loop {
+                match connection.next() {
+                    Ok(None) => {}
+                    Ok(Some(message)) => break Ok(message),
+                    Err(lost) => break Err(lost),
+                }
+            };
+            match answers {
+                true => assert!(matches!(came, Ok(Message::Pong(_))), "{came:?}"),
+                false => assert!(matches!(came, Err(Lost::Silent)), "{came:?}"),
+            }
+            drop(connection);
+            serving.join().unwrap();
+        }
     }
 }

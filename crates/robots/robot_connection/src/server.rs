@@ -285,7 +285,7 @@ impl Drop for Client {
 /// Chooses a subprotocol that the client offers.
 // The type that the library asks for.
 #[expect(clippy::result_large_err)]
-fn choose(request: &Request, mut answer: Response) -> Result<Response, ErrorResponse> {
+pub(crate) fn choose(request: &Request, mut answer: Response) -> Result<Response, ErrorResponse> {
     let offered = request.headers().get_all(SUBPROTOCOL).iter();
     let offered: Vec<&str> = offered
         .filter_map(|names| names.to_str().ok())

@@ -202,3 +202,30 @@ impl Drive {
         self.feeder.add(bytes);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::queue;
+    use super::*;
+
+    #[test]
+    fn scans_that_come_faster_than_they_are_read_are_counted_and_recorded() {
+        let (feeder, _feed) = queue::stream(true);
+        let mut drive = Drive::new(feeder, Vec::new());
+        drive.text(
+            r#"{"op": "advertise", "channels": [{"id": 7, "topic": "/scan", "encoding": "cdr",
+                "schemaName": "sensor_msgs/msg/LaserScan", "schema": ""}]}"#,
+        );
+        let of_start = drive.take_recorded().len();
+        // Subscription 0 at time 0.
+        let message = [&[1][..], &[0; 4 + 8], b"a scan"].concat();
+        drive.binary(&message);
+        let of_message = drive.take_recorded().len();
+        assert!(of_start > 0 && of_message > message.len());
+        while drive.heard.dropped < 3 && drive.heard.scans < 10_000 {
+            drive.binary(&message);
+        }
+        assert_eq!((drive.heard.scans, drive.heard.dropped), (1003, 3));
+        assert_eq!(drive.take_recorded().len(), 1002 * of_message);
+    }
+}

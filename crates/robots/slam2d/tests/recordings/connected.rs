@@ -6,10 +6,12 @@ use std::net::TcpListener;
 use std::process::Output;
 use std::thread;
 
-use super::base::messages;
+use super::base::{messages, poses, shift_stamps, truth};
 use super::robot::{Robot, topics};
-use super::write::mcap;
+use super::write::{Body, Message, mcap};
+use super::{NEAR_M, distance_m};
 use crate::support::{assert_rejected, slam2d};
+use pr_geom::SE2;
 use tungstenite::{Bytes, Message as Frame};
 
 /// Time for a first scan and a lost connection, s.
@@ -31,6 +33,18 @@ fn drive(
     (output, folder)
 }
 
+/// Plays these parts of a recording, each over a connection and with channels of its own.
+fn play(server: &TcpListener, parts: &[&[Message]]) {
+    let topics = topics(&parts.concat());
+    for (part, first) in parts.iter().zip([1, 70]) {
+        let mut robot = Robot::accept(server);
+        robot.advertise(&topics, first);
+        robot.subscribed(topics.len());
+        robot.play(part);
+        robot.close();
+    }
+}
+
 fn said(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
@@ -44,13 +58,7 @@ fn a_robot_that_is_mapped_while_it_drives_has_the_map_of_its_recording() {
     let all = messages();
     let file = mcap(&all, 40);
     let (output, folder) = drive(&["--wait", WAIT], move |server| {
-        let mut robot = Robot::accept(&server);
-        let topics = topics(&all);
-        robot.advertise(&topics, 5);
-        robot.subscribed(topics.len());
-        robot.play(&all);
-        drop(server);
-        robot.close();
+        play(&server, &[&all]);
     });
     assert!(output.status.success(), "{}", said(&output));
     assert!(said(&output).contains("reads /scan (sensor_msgs/msg/LaserScan)"));
@@ -76,15 +84,8 @@ fn a_robot_that_is_mapped_while_it_drives_has_the_map_of_its_recording() {
 fn a_connection_that_is_lost_comes_back_and_the_gap_is_named() {
     let (output, folder) = drive(&["--wait", WAIT], |server| {
         let all = messages();
-        let topics = topics(&all);
         let (before, after) = all.split_at(all.len() / 2);
-        for (part, first) in [(before, 1), (after, 70)] {
-            let mut robot = Robot::accept(&server);
-            robot.advertise(&topics, first);
-            robot.subscribed(topics.len());
-            robot.play(part);
-            robot.close();
-        }
+        play(&server, &[before, after]);
     });
     let said = said(&output);
     assert!(output.status.success(), "{said}");
@@ -96,6 +97,48 @@ fn a_connection_that_is_lost_comes_back_and_the_gap_is_named() {
     let mapped = trajectory(&folder, "run");
     let mapped = mapped.lines().filter(|line| !line.starts_with('#'));
     assert_eq!(mapped.count(), scans.count());
+}
+
+/// Distance of the path of a run from the truth, m.
+fn error_m(folder: &tempfile::TempDir, truth: &[SE2]) -> f64 {
+    let lines = trajectory(folder, "run");
+    let path = lines.lines().filter(|line| !line.starts_with('#'));
+    let path = path.map(|line| {
+        let words: Vec<f64> = line.split(' ').map(|word| word.parse().unwrap()).collect();
+        SE2::new(words[1], words[2], 2.0 * words[6].atan2(words[7]))
+    });
+    distance_m(&path.collect::<Vec<_>>(), truth)
+}
+
+/// Shifts stamps and times of recording.
+fn shift(part: &mut [Message], by_s: f64) {
+    shift_stamps(part, f64::NEG_INFINITY, by_s);
+    part.iter_mut()
+        .for_each(|message| message.recorded_s += by_s);
+}
+
+#[test]
+fn a_robot_that_restarts_goes_on_in_the_same_map() {
+    let (output, folder) = drive(&["--wait", WAIT], |server| {
+        let mut all = messages();
+        let middle = all.len() / 2;
+        // A minute later, odometry starts at zero.
+        let origin = all[middle..].iter().find_map(|message| match message.body {
+            Body::Odometry { pose, .. } => Some(SE2::new(pose[0], pose[1], pose[2])),
+            _ => None,
+        });
+        let from_origin = origin.unwrap().inverse();
+        poses(&mut all[middle..], |_, _, pose| {
+            *pose = (from_origin * SE2::new(pose[0], pose[1], pose[2])).to_array();
+        });
+        shift(&mut all[middle..], 60.0);
+        play(&server, &[&all[..middle], &all[middle..]]);
+    });
+    let said = said(&output);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("the connection was lost for"), "{said}");
+    let error_m = error_m(&folder, truth());
+    assert!(error_m < NEAR_M, "{error_m}: {said}");
 }
 
 #[test]
