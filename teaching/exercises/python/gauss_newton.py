@@ -1,6 +1,6 @@
 """4. Gauss–Newton on a pose graph, with a dense matrix.
 
-Task. Move all poses except the fixed one to minimize the weighted sum of squared residuals. Use residual and jacobians of
+Task. Move all poses except the fixed one to minimize the weighted sum of squared residuals. Use residual and jacobians from
 exercise 3.
 
 Formula. For n poses H is 3n × 3n. Every edge (i, j) adds, with its Ω, its e and its Jacobians Jᵢ, Jⱼ,

@@ -1,4 +1,4 @@
-"""Changes one place of a solution at a time; a test has to fail for each.
+"""Changes one place in a solution at a time; a test has to fail for each.
 
     python mutants.py [EXERCISE]
 

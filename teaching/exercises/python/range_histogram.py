@@ -28,7 +28,7 @@ def chi2_distance(a, b):
 
 
 def detect_by_histogram(sweeps, node, min_gap, max_range, max_distance):
-    """The nodes with scans similar to that of `node`: at least `min_gap` older, no farther than `max_distance`, the most
+    """The nodes with scans similar to that of `node`: at least `min_gap` older, within `max_distance`, the most
     similar first, and among equals the older first; a list of numbers.
 
     sweeps[k] holds the points of node k in its own frame, max_range (m) is the range of the sensor.

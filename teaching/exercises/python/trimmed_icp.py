@@ -1,7 +1,7 @@
 """6. ICP that drops the longest pairs (exercise 6 of the page).
 
 Task. All pairs on a box that was moved between two sweeps are outliers. Write ICP with `trim`, the share of the pairs to
-drop, the longest first (Chetverikov et al. 2002). Use svd_align and point_to_plane_step of exercises 1 and 2.
+drop, the longest first (Chetverikov et al. 2002). Use svd_align and point_to_plane_step from exercises 1 and 2.
 
 Formula.
 
@@ -17,7 +17,7 @@ associate moves the source by the pose and pairs each point with the nearest of 
 τ = max_distance. With a few hundred points a matrix of all distances is fast enough.
 
 Rules. Pairs exactly as long as the last one kept may also stay. `trace` holds the guess and the pose after each increment;
-`inliers` and `rmse` are of the last pairs. The rmse is that of the residual that the variant minimizes: distances, or
+`inliers` and `rmse` describe the last pairs. The rmse is that of the residual the variant minimizes: distances, or
 n · (p − q) for point-to-plane if the pair has a normal. Without pairs it is infinite.
 
 See it drive. rustslam2d.simulate(icp=icp) registers every scan of a lap with it.

@@ -12,13 +12,13 @@ Formula. The registration starts at the pose predicted by the graph, and the gat
     accepted if rmse ≤ config.max_rmse, inliers ≥ config.min_inliers, and χ² ≤ config.gate
 
 The edge measures T̂. Its information is regularize(icp_information(p, normals, σ, inflate), 1.0, 2500.0) with
-(σ, inflate) = config.trust, the paired points p of the sweep moved by T̂, and the normals of their matches. Mind what it
-is: the chapter's matrix about the centroid of the pairs, in the axes of the candidate. An edge that is exact would have it
+(σ, inflate) = config.trust, the paired points p of the sweep moved by T̂, and the normals of their matches. Note that
+this is the chapter's matrix, about the centroid of the pairs and in the candidate's axes. An exact edge would take it
 about the robot, in the axes of `node`.
 
 Rules. ICP is point-to-point, τ = max(config.radius / 2, 0.6), at most 30 iterations: rustslam2d.icp with
-variant="point-to-point", max_distance=τ and max_iterations=30. Its result has pose, rmse, inliers, and pairs, the numbers of
-the paired points in sweep and submap.
+variant="point-to-point", max_distance=τ and max_iterations=30. Its result has pose, rmse, inliers, and pairs, the indices of
+the paired points in the sweep and the submap.
 
 `given` has the rest: submap(poses, sweeps, center, config) returns points and normals; icp_information; regularize; LoopConfig.
 """

@@ -1,7 +1,7 @@
 //! 4. Gauss–Newton on a pose graph, with a dense matrix.
 //!
 //! **Task.** Move all nodes except the fixed one to minimize the weighted sum of squared residuals. Use
-//! `crate::residual` and `crate::jacobians` of exercise 3.
+//! `crate::residual` and `crate::jacobians` from exercise 3.
 //!
 //! **Formula.** For n nodes H is 3n × 3n. Every edge (i, j) adds, with its Ω, its e and its Jacobians Jᵢ, Jⱼ,
 //!

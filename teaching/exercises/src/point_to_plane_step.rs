@@ -1,6 +1,6 @@
 //! 2. One Gauss–Newton step on the distances along the normals.
 //!
-//! **Task.** A point of the sweep may slide along the wall of its partner; only the distance across the wall counts:
+//! **Task.** A point of the sweep may slide along its match's wall; only the distance across the wall counts:
 //!
 //! ```text
 //! Σ (nₖ · (pₖ − qₖ))²        over the pairs that have a normal
@@ -15,7 +15,7 @@
 //! λ = 1e-4 · tr(H)/3 + 1e-12
 //! ```
 //!
-//! The ridge λ gives a direction that no normal sees no step. The returned motion turns about c, not about the
+//! The ridge λ allows no step in a direction that no normal sees. The returned motion turns about c, not about the
 //! origin: `T(tₓ, t_y) · T(c) · R(θ) · T(c)⁻¹`.
 //!
 //! **Rules.** Pairs without a normal do not count. Fewer than three normals give the identity.

@@ -29,7 +29,7 @@ pub fn chi2_distance(a: &[f64; BINS], b: &[f64; BINS]) -> f64 {
     crate::not_written("range_histogram")
 }
 
-/// The nodes with scans similar to that of `node`: at least `min_gap` older, no farther than `max_distance`, the most similar
+/// The nodes with scans similar to that of `node`: at least `min_gap` older, within `max_distance`, the most similar
 /// first, and among equals the older first.
 ///
 /// `sweeps[k]` is the sweep of node k in its own frame, `max_range` (m) the range of the sensor.

@@ -2,7 +2,7 @@
 //!
 //! **Task.** All pairs on a box that was moved between two sweeps are outliers. Write ICP with
 //! `cfg.trim`, the share of the pairs to drop, the longest first (Chetverikov et al. 2002). Use `crate::svd_align` and
-//! `crate::point_to_plane_step` of exercises 1 and 2.
+//! `crate::point_to_plane_step` from exercises 1 and 2.
 //!
 //! **Formula.**
 //!
@@ -17,7 +17,7 @@
 //! ```
 //!
 //! **Rules.** Pairs exactly as long as the last one kept may also stay. `trace` holds the guess and the pose after each
-//! increment; `inliers` and `rmse` are of the last pairs. The rmse is that of the residual that the variant minimizes: distances, or
+//! increment; `inliers` and `rmse` describe the last pairs. The rmse is that of the residual the variant minimizes: distances, or
 //! `n · (p − q)` for point-to-plane if the pair has a normal. Without pairs it is infinite.
 
 use ch16_listings::{IcpConfig, IcpResult, PointCloud, SE2, VoxelMap};

@@ -14,8 +14,8 @@
 //! ```
 //!
 //! The edge measures T̂. Its information is `regularize(icp_information(pairs, σ, inflate), 1.0, 2500.0)` with the
-//! pairs of `associate` at T̂ and `(σ, inflate) = cfg.trust`. Mind what it is: the chapter's matrix about the centroid of the
-//! pairs, in the axes of the candidate. An edge that is exact would have it about the robot, in the axes of `node`.
+//! pairs of `associate` at T̂ and `(σ, inflate) = cfg.trust`. Note that this is the chapter's matrix, about the centroid of
+//! the pairs and in the candidate's axes. An exact edge would take it about the robot, in the axes of `node`.
 //!
 //! **Rules.** ICP is point-to-point, τ = max(cfg.radius/2, 0.6), at most 30 iterations, otherwise the default. The
 //! listings provide the rest: `submap`, `icp`, `associate`, `icp_information`, `regularize`.
