@@ -265,7 +265,9 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
     let shown = robot.keyframes.get(own.keyframe());
     let of_shown = |of: fn(&KeyframeReport) -> f64| shown.map_or(f64::NAN, of);
     let grade_m = robot.grade.as_ref().map_or(f64::NAN, |grade| grade.error_m);
+    let done = 100.0 * robot.progress.share;
     let mut facts = vec![
+        Fact::count("done_percent", "done, %", done.floor()),
         Fact::count("scans", "scans", robot.progress.scans as f64),
         Fact::count("keyframes", "keyframes", robot.keyframes.len() as f64),
         Fact::new("path_length_m", "path", path_length_m(robot), "m", 1),
@@ -285,11 +287,6 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
         Fact::new("fit", "scan shown: fits", of_shown(|k| k.fit), "", 2),
         Fact::metres("sigma_m", "keyframe shown: σ", of_shown(|k| k.sigma_m)),
     ];
-    // Nobody knows how much of a drive is left.
-    if !robot.progress.share.is_nan() {
-        let done = 100.0 * robot.progress.share;
-        facts.insert(0, Fact::count("done_percent", "done, %", done.floor()));
-    }
     if let Some(other) = &robot.other_log {
         let [.., doubtful, lost] = other.counts;
         facts.extend(
