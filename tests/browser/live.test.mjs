@@ -1,21 +1,25 @@
 // A robot that drives, mapped in the page: w16.10 of own-robot.html connects to its server.
 
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { existsSync, readFileSync } from 'node:fs';
 import { extname, join } from 'node:path';
 import { describe, it } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { skip } from '../skip.mjs';
+import { without } from '../wheel.mjs';
 import { violations } from './axe.mjs';
 import * as h from './harness.mjs';
-import { driveOf, robotServer } from './robot-server.mjs';
+import { driveOf, officialRobot, robotServer } from './robot-server.mjs';
 
 const LOG = readFileSync(join(h.DIST, 'samples', 'ring.log'), 'utf8');
 const DRIVE = driveOf(LOG);
 const SCANS = DRIVE.filter(({ topic }) => topic === '/scan').length;
+const RECORDING = fileURLToPath(new URL('../../../shared/data/field/base/base.mcap', import.meta.url));
 
 const visit = h.visitor();
 /** The page with its panel open, and a robot's server. */
 const beside = (robot, test, how = {}) => visit('', async (tab) => {
-  const server = await robotServer(robot);
+  const server = typeof robot === 'string' ? await officialRobot(robot) : await robotServer(robot);
   try {
     await h.ready(tab);
     await panel(tab).locator('summary').click();
@@ -38,6 +42,14 @@ const outcomeSays = (tab, pattern) => tab.waitForFunction((source) => {
   const { verdict, sentence } = document.querySelector('slam-widget').outcome ?? {};
   return new RegExp(source).test(`${verdict}: ${sentence}`);
 }, pattern.source);
+/** Opens a log and waits for its map. */
+const open = async (tab, bytes, name) => {
+  await tab.evaluate(([base64, as]) => {
+    const of = Uint8Array.from(atob(base64), (digit) => digit.charCodeAt(0));
+    document.querySelector('slam-widget').openFile(new File([of], as));
+  }, [bytes.toString('base64'), name]);
+  await outcomeSays(tab, new RegExp(`^(mapped|[^:]*to look into): ${name}`));
+};
 const isMapped = (tab) => outcomeSays(tab, /^(mapped|[^:]*to look into):/);
 const text = (tab, name) => tab.evaluate(async (file) => (await document.querySelector('slam-widget').savedFile(file)).text(), name);
 const remarks = async (tab) => (await tab.evaluate(() => document.querySelector('slam-widget').tables())).find(({ id }) => id === 'remarks')?.csv ?? '';
@@ -62,13 +74,31 @@ describe('a robot that drives', () => {
       const session = tab.waitForEvent('download');
       await button(tab, 'Save the session').click();
       assert.equal((await session).suggestedFilename(), 'session.slam2d');
-      await tab.evaluate((base64) => {
-        const bytes = Uint8Array.from(atob(base64), (digit) => digit.charCodeAt(0));
-        document.querySelector('slam-widget').openFile(new File([bytes], 'again.mcap'));
-      }, recording.toString('base64'));
-      await outcomeSays(tab, /^(mapped|[^:]*to look into): again\.mcap/);
+      await open(tab, recording, 'again.mcap');
       assert.equal(await text(tab, 'trajectory.tum'), live);
       assert.equal(await button(tab, 'Save the recording').isVisible(), false);
+    });
+  });
+
+  it('is mapped from the official server as the file is', async (context) => {
+    const why = existsSync(RECORDING) ? without('foxglove', 'mcap') : 'its recording is not in ../shared/data/field';
+    if (why !== undefined) {
+      skip(context, why);
+      return;
+    }
+    await beside(RECORDING, async (tab, robot) => {
+      const results = ['trajectory.tum', 'graph.g2o'];
+      const read = async () => Promise.all(results.map((name) => text(tab, name)));
+      await open(tab, readFileSync(RECORDING), 'base.mcap');
+      const ofFile = await read();
+      const scans = ofFile[0].trim().split('\n').length;
+      assert.ok(scans > 50);
+      await connect(tab, robot.url);
+      await says(tab, new RegExp(`${scans} scans came`));
+      await button(tab, 'Stop').click();
+      await isMapped(tab);
+      await says(tab, new RegExp(`${scans} scans came, ${scans} are mapped\\.`));
+      assert.deepEqual(await read(), ofFile);
     });
   });
 

@@ -1,6 +1,10 @@
 // A robot's server of Foxglove's WebSocket protocol, as foxglove_bridge has one, and a drive for it in messages of ROS 2.
 
+import { spawn } from 'node:child_process';
+import { createInterface } from 'node:readline';
+import { fileURLToPath } from 'node:url';
 import { WebSocketServer } from 'ws';
+import { PYTHON } from '../wheel.mjs';
 
 /** Little-endian CDR: numbers are aligned to their size after the four bytes of the header. */
 class Cdr {
@@ -118,4 +122,18 @@ export async function robotServer({ messages = [], lasers = ['/scan'], others = 
       return new Promise((resolve) => server.close(resolve));
     },
   };
+}
+
+/** Starts the official server of Foxglove's WebSocket protocol, which sends a recording; resolves with its address. */
+export async function officialRobot(recording) {
+  const script = fileURLToPath(new URL('../official_robot.py', import.meta.url));
+  const robot = spawn(PYTHON, [script, recording], { stdio: ['pipe', 'pipe', 'inherit'] });
+  const over = new Promise((resolve) => robot.once('close', resolve));
+  // It ends with its input.
+  const close = () => {
+    robot.stdin.end();
+    return over;
+  };
+  for await (const url of createInterface({ input: robot.stdout })) return { url, close };
+  throw new Error(`tests/official_robot.py ended with ${await over}`);
 }
