@@ -6,7 +6,7 @@ use std::net::TcpListener;
 use std::process::Output;
 use std::thread;
 
-use super::base::{messages, poses, shift_stamps, truth};
+use super::base::{START_S, messages, poses, shift_stamps, truth};
 use super::robot::{Robot, topics};
 use super::write::{Body, Message, mcap};
 use super::{NEAR_M, distance_m};
@@ -138,6 +138,25 @@ fn a_robot_that_restarts_goes_on_in_the_same_map() {
     assert!(output.status.success(), "{said}");
     assert!(said.contains("the connection was lost for"), "{said}");
     let error_m = error_m(&folder, truth());
+    assert!(error_m < NEAR_M, "{error_m}: {said}");
+}
+
+#[test]
+fn a_simulation_that_starts_again_goes_on_in_the_same_map() {
+    let mut all = messages();
+    // Simulated time is that of the stamps and of the recording.
+    shift(&mut all, 2.0 - START_S);
+    let half = all.len() / 2;
+    let scans = all[..half]
+        .iter()
+        .filter(|message| message.topic == "/scan");
+    let truth = [&truth()[..scans.count()], truth()].concat();
+    let (output, folder) = drive(&["--wait", WAIT], move |server| {
+        play(&server, &[&[&all[..half], &all].concat()]);
+    });
+    let said = said(&output);
+    assert!(output.status.success(), "{said}");
+    let error_m = error_m(&folder, &truth);
     assert!(error_m < NEAR_M, "{error_m}: {said}");
 }
 

@@ -2,6 +2,10 @@
 
 use crate::stamps::MIN_STEP_S;
 
+/// Time that passes if that of the recording is set back, too, as when a simulation starts again, s: long enough for its
+/// robot to be looked for on the map, because it may stand elsewhere.
+const PAUSE_S: f64 = 20.0;
+
 /// What the stamps of all streams were shifted by after each step back of their clock, s.
 #[derive(Debug)]
 pub struct LiveClock {
@@ -38,7 +42,8 @@ impl LiveClock {
             let before_s = self.shifts_s[of.steps];
             of.steps += 1;
             if of.steps == self.shifts_s.len() {
-                let passed_s = (recorded_s - last_recorded_s).max(0.0);
+                let passed_s = recorded_s - last_recorded_s;
+                let passed_s = if passed_s > 0.0 { passed_s } else { PAUSE_S };
                 self.shifts_s.push(before_s + last_s + passed_s - stated_s);
             }
         }
@@ -61,6 +66,16 @@ mod tests {
         assert!((clock.stamp_s(&mut poses, 1.0, 10.1) - 103.1).abs() < 1e-9);
         assert!((clock.stamp_s(&mut scans, 1.2, 10.3) - 103.3).abs() < 1e-9);
         assert!((clock.stamp_s(&mut scans, 1.3, 10.4) - 103.4).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_simulation_that_starts_again_goes_on_after_a_pause() {
+        let mut clock = LiveClock::default();
+        let (mut scans, mut poses) = (StreamStamps::default(), StreamStamps::default());
+        assert_eq!(clock.stamp_s(&mut scans, 100.0, 100.0), 100.0);
+        assert_eq!(clock.stamp_s(&mut poses, 100.1, 100.1), 100.1);
+        assert_eq!(clock.stamp_s(&mut scans, 1.0, 1.0), 100.0 + PAUSE_S);
+        assert!((clock.stamp_s(&mut poses, 1.1, 1.1) - (100.1 + PAUSE_S)).abs() < 1e-9);
     }
 
     #[test]
