@@ -17,7 +17,8 @@ const FETCHED = /\.(wasm|json|log|tum)$|worker-\w+\.js$|^slam-robot-\w+\.js$/;
 const EXCLUDED = /^(examples\/|package\.json$|.*\.d\.ts$|slam-anywidget\.js$)/;
 /** Preloaded files, which a page from the disk cannot fetch. */
 const PRELOAD = /<link rel="(?:module)?preload"[^>]*>\n/g;
-const MODULE = /<script type="module"(?: async)? src="([^"]+)"[^>]*><\/script>\n?/g;
+/** Scripts that fetch, or import. */
+const MODULE = /<script(?: type="module")? src="([^"]+)"[^>]*><\/script>\n?/g;
 
 const [from, target] = process.argv.slice(2);
 if (from === undefined || target === undefined) throw new Error('usage: node web/offline.mjs DIST FILE');

@@ -5,7 +5,7 @@
 
 import { createHash } from 'node:crypto';
 import { existsSync, readFileSync } from 'node:fs';
-import { cp, mkdir, readFile, writeFile } from 'node:fs/promises';
+import { cp, mkdir, readFile, readdir, writeFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -71,7 +71,7 @@ async function renderPage({ file, source, html }) {
 async function addPreloads(html) {
   const element = (await readFile(path.join(outDir, 'slam-widget.js'), 'utf8')).match(/slam-widget-\w+\.js/)[0];
   const widgets = html.replace('</head>', `<link rel="modulepreload" href="${element}">\n</head>`);
-  return widgets.replace(/<figure class="lap"[\s\S]*?<\/figure>/, (figure) => `${figure}\n  <script type="module" async src="lap.js"></script>`)
+  return widgets.replace(/<figure class="lap"[\s\S]*?<\/figure>/, (figure) => `${figure}\n  <script src="lap.js"></script>`)
     .replace(/<link rel="preload"(?=[\s\S]*<figure class="lap")/, (first) => `<link rel="preload" href="${names.get('lap-story.json')}" as="fetch" crossorigin>\n${first}`);
 }
 
@@ -224,7 +224,8 @@ async function bundleScripts(stories, matchAnswer) {
   const worker = await bundle('laps/worker.ts', {});
   const workerFile = await writeHashed('laps-worker.js', worker.text);
   const files = Object.fromEntries(Object.entries(stories).map(([name, file]) => [name, JSON.stringify(`./${file}`)]));
-  const lap = await bundle('lap.ts', files);
+  const widgets = (await readdir(outDir)).find((name) => /^slam_web-\w+\.wasm$/.test(name));
+  const lap = await bundle('lap.ts', { ...files, WIDGETS_FILE: JSON.stringify(widgets), 'import.meta.url': 'document.baseURI' }, 'iife');
   const page = await bundle('page.ts', {
     ...files,
     MATCH_ANSWER: matchAnswer,

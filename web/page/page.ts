@@ -55,7 +55,9 @@ lightLines();
 startFlatGame();
 watchChallenges();
 letOpenWidgetsScroll();
-onceNear(document.querySelectorAll(NEEDS_CORE), () => void startCoreFigures());
+// The widgets report why it is unavailable.
+onceNear(document.querySelectorAll(NEEDS_CORE), () => void (coreModule as () => Promise<WebAssembly.Module>)().catch(() => {}));
+startCoreFigures();
 
 /** Opens the exercise that the address names. */
 function openAddressedExercise(): void {
@@ -97,24 +99,20 @@ function onceNear(elements: Iterable<Element>, callback: () => void): void {
   for (const element of elements) observer.observe(element);
 }
 
-/** Starts the figures that share one core. If it is unavailable, the still pictures stay, and the widgets report why. */
-async function startCoreFigures(): Promise<void> {
-  const glue = await (core as () => Promise<Glue>)().catch(() => undefined);
-  if (glue === undefined) return;
-  startSketches(glue);
-  startDecideFigure(glue);
-}
-
-function startSketches(glue: Glue): void {
-  for (const schema of JSON.parse(glue.sketchSchemas()) as SketchSchema[]) {
-    const figure = document.querySelector<HTMLElement>(`[data-sketch="${schema.name}"]`);
-    if (figure !== null) new SketchFigure(figure, schema, glue);
+/** Starts the figures that share one core, each once it is near. If it is unavailable, the still pictures stay. */
+function startCoreFigures(): void {
+  let shared: Promise<{ glue: Glue; schemas: SketchSchema[] }> | undefined;
+  const load = async (): Promise<{ glue: Glue; schemas: SketchSchema[] }> => {
+    const glue = await (core as () => Promise<Glue>)();
+    return { glue, schemas: JSON.parse(glue.sketchSchemas()) as SketchSchema[] };
+  };
+  for (const figure of document.querySelectorAll<HTMLElement>('[data-sketch], #decide')) {
+    onceNear([figure], () => void (shared ??= load()).then(({ glue, schemas }) => {
+      const schema = schemas.find(({ name }) => name === figure.dataset['sketch']);
+      if (schema !== undefined) new SketchFigure(figure, schema, glue);
+      else if (figure.id === 'decide') new DecideFigure(figure, glue);
+    }, () => {}));
   }
-}
-
-function startDecideFigure(glue: Glue): void {
-  const figure = document.querySelector<HTMLElement>('#decide');
-  if (figure !== null) new DecideFigure(figure, glue);
 }
 
 function startLapsFigures(): void {

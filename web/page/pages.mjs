@@ -35,13 +35,14 @@ export function withFrame(template, page, pages, places) {
   const at = pages.indexOf(page);
   const filled = {
     head: parts[1].trim(),
+    page: path.parse(page.file).name,
     pages: pages.map(({ file, name }) => `<li><a href="${file}"${file === page.file ? ' aria-current="page"' : ''}>${name}</a></li>`).join('\n    '),
     body,
     steps: [step('prev', pages[at - 1]), step('next', pages[at + 1])].filter(Boolean).join('\n  '),
     challenges: pages.flatMap(({ html }) => html.match(/<p class="challenge"/g) ?? []).length,
     contents: headings(body).map(({ id, text }) => `<li><a href="#${id}">${text}</a></li>`).join('\n      '),
   };
-  return template.replace(/\{(head|pages|body|steps|contents|challenges)\}/g, (_, name) => filled[name]);
+  return template.replace(/\{(head|page|pages|body|steps|contents|challenges)\}/g, (_, name) => filled[name]);
 }
 
 function step(rel, page) {

@@ -111,7 +111,7 @@ export class SlamWidget extends HTMLElement {
       const take = (files: File[]): void => void this.#act(() => this.#takeFiles(files));
       this.#unwatch.push(acceptDrops(this.#parts.frame, take));
     }
-    this.#reservedHeight.fit();
+    this.#reservedHeight.fitSoon();
     watchVisibility(this, this.#lifecycle);
   }
 

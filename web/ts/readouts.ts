@@ -49,10 +49,11 @@ export class VerdictLine {
 
   #replace(shown: string, ...lines: HTMLElement[]): void {
     if (this.#shown === shown) return;
+    // Nothing is kept of the place of nothing: measuring it would lay out the page for each widget.
+    const before = this.#shown === '' ? 0 : this.#element.offsetHeight;
     this.#shown = shown;
-    const before = this.#element.offsetHeight;
     this.#element.replaceChildren(...lines);
-    if (this.#element.offsetHeight < before) this.#element.style.minHeight = `${before}px`;
+    if (before > 0 && this.#element.offsetHeight < before) this.#element.style.minHeight = `${before}px`;
   }
 }
 

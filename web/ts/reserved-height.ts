@@ -4,6 +4,16 @@ import type { Parts } from './parts';
 import type { Heights } from './schema';
 import { mostType } from './type-scale';
 
+/** Those whose widgets are being set up. */
+const waiting = new Set<ReservedHeight>();
+
+/** Measures all before it changes any: the page is laid out once for all its widgets. */
+function fitWaiting(): void {
+  const heights = [...waiting].map((one) => [one, one.measured()] as const);
+  waiting.clear();
+  for (const [one, height] of heights) one.set(height);
+}
+
 export class ReservedHeight {
   readonly #parts: Parts;
   readonly #stage: HTMLElement;
@@ -15,11 +25,17 @@ export class ReservedHeight {
     this.#stage = parts.stage;
   }
 
-  /** Reserves the height at the default values. */
+  /** Reserves the height at the default values, at the end of the present task. */
   reserve(heights: Heights): void {
     this.#heights = heights;
     this.#kept = undefined;
-    this.fit();
+    this.fitSoon();
+  }
+
+  /** Updates the reservation in the page, at the end of the present task. */
+  fitSoon(): void {
+    if (waiting.size === 0) queueMicrotask(fitWaiting);
+    waiting.add(this);
   }
 
   /** Keeps the present height for the picture that replaces the canvas. */
@@ -31,13 +47,22 @@ export class ReservedHeight {
 
   /** Updates the reservation after a resize. */
   fit(): void {
+    this.set(this.measured());
+  }
+
+  /** The height to reserve: undefined if it is not known, null as long as there is no width. */
+  measured(): number | undefined | null {
     const width = this.#stage.clientWidth;
-    if (width === 0) return;
+    if (width === 0) return null;
     const scale = mostType(this.#hostStyle);
     const natural = heightAt(this.#heights, width / scale);
     const height = this.#kept?.width === width ? this.#kept.height : natural && scale * natural;
+    return height && Math.min(height, this.room);
+  }
+
+  set(height: number | undefined | null): void {
     if (height === undefined) this.free();
-    else this.#stage.style.setProperty('--reserved-height', `${Math.min(height, this.room)}px`);
+    else if (height !== null) this.#stage.style.setProperty('--reserved-height', `${height}px`);
   }
 
   /** The height available to the picture: that of `max-height` or of `--room` without what is around it, else infinite. */

@@ -163,7 +163,8 @@ export class LapPlayer {
     const isOver = this.#seconds >= this.#replay.lengthS;
     this.#slider.value = String(this.#seconds);
     this.#slider.setAttribute('aria-valuetext', `${nameOf(this.#acts[act])}, tick ${tick}`);
-    this.#button.textContent = this.#isPlaying ? 'Pause' : isOver ? 'Play again' : 'Play';
+    const does = this.#isPlaying ? 'Pause' : isOver ? 'Play again' : 'Play';
+    if (this.#button.textContent !== does) this.#button.textContent = does;
     this.#figure.dataset['tick'] = String(tick);
     this.#acts.forEach((caption, number) => {
       if (number === act) caption.setAttribute('aria-current', 'step');

@@ -109,8 +109,10 @@ export function contextOf(canvas: HTMLCanvasElement, height: number): CanvasRend
   const width = canvas.clientWidth;
   const context = canvas.getContext('2d');
   if (width === 0 || context === null) return undefined;
-  canvas.width = Math.round(width * devicePixelRatio);
-  canvas.height = Math.round(height * devicePixelRatio);
+  const [columns, rows] = [Math.round(width * devicePixelRatio), Math.round(height * devicePixelRatio)];
+  if (canvas.width !== columns || canvas.height !== rows) Object.assign(canvas, { width: columns, height: rows });
+  context.setTransform(1, 0, 0, 1, 0, 0);
+  context.clearRect(0, 0, columns, rows);
   context.scale(devicePixelRatio, devicePixelRatio);
   return context;
 }
