@@ -104,16 +104,35 @@ describe('the lap under the title', () => {
     }
   });
 
-  it('fetches the module once for page and widgets, a screen ahead of the first use', async () => {
+  it('restyles no other part of the page while it plays', async () => {
+    await reading(async (tab) => {
+      await live(tab);
+      await h.quiet(tab);
+      await offers(tab, 'Play again');
+      await button(tab).click();
+      const played = (least) => tab.waitForFunction((s) => Number(document.querySelector('.lap-controls input').value) > s, least);
+      await played(0);
+      const browser = tab.context().browser();
+      await browser.startTracing(tab, { categories: ['devtools.timeline'] });
+      await played(4);
+      const { traceEvents } = JSON.parse(await browser.stopTracing());
+      const named = (which) => traceEvents.filter(({ name }) => name === which);
+      assert.ok(named('FireAnimationFrame').length > 0, 'it plays');
+      const restyled = named('UpdateLayoutTree').reduce((sum, { args }) => sum + args.elementCount, 0);
+      const elements = await tab.evaluate(() => document.querySelectorAll('*').length);
+      assert.ok(elements > 3000 && restyled < elements / 10, `${restyled} of ${elements}`);
+    });
+  });
+
+  it('fetches the module once for page and widgets, as soon as the reader scrolls', async () => {
     const asked = [];
     const answer = (path) => void (path.endsWith('.wasm') && asked.push(path));
     await reading(async (tab) => {
       await live(tab);
+      await h.quiet(tab);
+      assert.equal(asked.length, 0);
       const request = tab.waitForRequest((one) => one.url().endsWith('.wasm'));
-      await tab.evaluate(() => {
-        const { top } = document.querySelector('slam-widget').getBoundingClientRect();
-        scrollTo(0, top - 1.6 * innerHeight);
-      });
+      await tab.evaluate(() => scrollBy(0, 40));
       await request;
       assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').state), 'resting');
       await tab.locator('slam-widget[name="w16.1"]').scrollIntoViewIfNeeded();

@@ -45,6 +45,16 @@ const changed = (tab, name, says) => tab.waitForFunction(
   ([id, old]) => document.querySelector(`[data-sketch="${id}"] .sketch-says`).textContent !== old, [name, says]);
 
 describe('a small figure', () => {
+  it('starts once it is near, and no other with it', async () => {
+    await reading(async (tab) => {
+      await slider(tab, 'pull');
+      const off = (name) => tab.evaluate((id) => document.querySelector(`[data-sketch="${id}"] input`).disabled, name);
+      assert.equal(await off('rule'), true);
+      await slider(tab, 'rule');
+      assert.equal(await off('gate'), true);
+    });
+  });
+
   for (const [path, names] of Object.entries(ON)) {
     describe(path, () => {
       const page = visit.once('', { path });

@@ -70,9 +70,12 @@ async function renderPage({ file, source, html }) {
 /** Names in the head what scripts request later, in the order in which a reader needs it: the lap, then the widgets. */
 async function addPreloads(html) {
   const element = (await readFile(path.join(outDir, 'slam-widget.js'), 'utf8')).match(/slam-widget-\w+\.js/)[0];
-  const widgets = html.replace('</head>', `<link rel="modulepreload" href="${element}">\n</head>`);
+  const widgets = html.replace('</head>', `<link rel="modulepreload" href="${element}" fetchpriority="low">\n</head>`);
   return widgets.replace(/<figure class="lap"[\s\S]*?<\/figure>/, (figure) => `${figure}\n  <script src="lap.js"></script>`)
-    .replace(/<link rel="preload"(?=[\s\S]*<figure class="lap")/, (first) => `<link rel="preload" href="${names.get('lap-story.json')}" as="fetch" crossorigin>\n${first}`);
+    .replace(/<link rel="preload"(?=[\s\S]*<figure class="lap")/, (first) => {
+      const story = `<link rel="preload" href="${names.get('lap-story.json')}" as="fetch" crossorigin fetchpriority="high">`;
+      return `<link rel="preload" href="lap.js" as="script" fetchpriority="high">\n${story}\n${first}`;
+    });
 }
 
 /** Replaces the names of sources by those with a hash. */

@@ -89,7 +89,7 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .tools { display: flex; flex-direction: column; gap: 0.25rem; }
 .tools .control button, .menu summary { width: 100%; }
 .verdict p { margin: 0; text-wrap: pretty; display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 3; overflow: hidden; }
-@container (30rem <= width < 50rem) { .verdict p { -webkit-line-clamp: 4; } }
+@container (width < 50rem) { .verdict p { -webkit-line-clamp: 4; } }
 .bar:has(.rest:not([hidden])) .verdict p { display: block; }
 .bar:not(:has(.rest:not([hidden]))) .further { display: none; }
 .gesture, .verdict .claim { font-weight: 600; }
