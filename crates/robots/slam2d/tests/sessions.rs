@@ -9,6 +9,7 @@ use ch16_lab::lap::BuiltInWorld;
 use pr_geom::SE2;
 use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
+use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::simulated::{building_log, lap_log};
@@ -217,6 +218,45 @@ fn a_log_is_found_on_the_map_of_a_session() {
         (vec!["localize", &folder, "/absent"], "/absent: "),
     ] {
         assert_rejected(&arguments, expected);
+    }
+}
+
+/// Three points fit in many places, and one in all.
+#[test]
+fn scans_with_too_few_returns_are_localized_nowhere() {
+    let lap = Lap::new();
+    lap.run("whole.jsonl", "out", &[]);
+    let (folder, log, found) = (
+        lap.file("out"),
+        lap.file("thin.jsonl"),
+        lap.file("found.tum"),
+    );
+    let text = fs::read_to_string(lap.file("second.jsonl")).unwrap();
+    for returns in [None, Some(3), Some(1)] {
+        let thin = text.lines().map(|line| {
+            let mut frame: Value = serde_json::from_str(line).unwrap();
+            let ranges = frame["ranges_m"].as_array_mut().unwrap();
+            let (count, kept) = (ranges.len(), returns.unwrap_or(ranges.len()));
+            for (beam, range) in ranges.iter_mut().enumerate() {
+                if beam * kept % count >= kept {
+                    *range = Value::Null;
+                }
+            }
+            format!("{frame}\n")
+        });
+        fs::write(&log, thin.collect::<String>()).unwrap();
+        for init in ["anywhere", "9,0.1,170"] {
+            let run = json(&[
+                "localize", &folder, &log, "--init", init, "-o", &found, "--json",
+            ]);
+            let claimed = run["found"].as_u64().unwrap() + run["tracking"].as_u64().unwrap();
+            assert_eq!(
+                claimed == 0,
+                returns.is_some(),
+                "{returns:?}, {init}: {claimed}"
+            );
+            assert_eq!(lines(Path::new(&found)).len() as u64, claimed);
+        }
     }
 }
 

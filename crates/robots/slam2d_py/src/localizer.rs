@@ -39,7 +39,7 @@ pub struct Fix {
     pub pose: Option<Py<PyArray1<f64>>>,
     /// Its covariance, shape (3, 3), order x, y, θ in the body's frame: m², rad².
     pub covariance: Option<Py<PyArray2<f64>>>,
-    /// Share of the scan that fits at the pose.
+    /// Share of the scan that fits at the pose; None if the scan has no points.
     pub score: Option<f64>,
     /// Margin to the best distinct pose, if a search found one.
     pub margin: Option<f64>,

@@ -97,6 +97,17 @@ def test_a_robot_is_localized_on_the_map_of_an_estimator(drive):
     # The map itself is 0.3 m off at most.
     assert len(errors) > 0.8 * len(drive) and max(errors) < 0.4, (verdicts, len(errors), max(errors))
     assert "tracking" in verdicts and "Localizer(on" in repr(localizer)
+    # Three points fit in many places, and one in all.
+    for returns in (3, 1, 0):
+        kept = np.arange(drive.ranges.shape[1]) * returns % drive.ranges.shape[1] < returns
+        steps = list(zip(np.where(kept, drive.ranges, np.nan), drive.odometry, drive.stamps))
+        unknown = rs.Localizer(slam, sensor=drive.sensor, start=drive.truth[0])
+        blinded = rs.Localizer(slam, sensor=drive.sensor, start=drive.truth[0])
+        blinded.step(drive.ranges[0], drive.odometry[0], stamp=drive.stamps[0])
+        for ranges, odometry, stamp in steps[1:40]:
+            fixes = [one.step(ranges, odometry, stamp=stamp) for one in (unknown, blinded)]
+            assert not {"found", "tracking"} & {fix.verdict for fix in fixes}, (returns, fixes)
+    assert [fix.score for fix in fixes] == [None, None], "no point fits or misses"
     with pytest.raises(rs.SlamError, match="it has taken no scan"):
         rs.Localizer(rs.Slam(sensor=drive.sensor), sensor=drive.sensor)
     with pytest.raises(FileNotFoundError):

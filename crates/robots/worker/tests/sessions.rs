@@ -215,6 +215,39 @@ fn a_start_that_is_given_is_where_the_robot_is_looked_for() {
     assert!(near.places[0].state != LocalizationState::Lost);
 }
 
+/// Three points fit in many places, and one in all.
+#[test]
+fn a_robot_that_sees_too_little_is_shown_nowhere() {
+    let day = String::from_utf8(sample::another_day()).unwrap();
+    let session = saved();
+    for returns in [3, 1] {
+        let thin = day.lines().map(|line| {
+            let mut words: Vec<&str> = line.split(' ').collect();
+            if words[0] == "ROBOTLASER1" {
+                let count: usize = words[8].parse().unwrap();
+                for (beam, range) in words[9..9 + count].iter_mut().enumerate() {
+                    if beam * returns % count >= returns {
+                        *range = "0";
+                    }
+                }
+            }
+            words.join(" ") + "\n"
+        });
+        let thin = thin.collect::<String>().into_bytes();
+        assert_ne!(thin, day.as_bytes());
+        let mut engine = opened(&session);
+        let start = StartPose::Near(SE2::identity());
+        let other = look(&mut engine, &thin, start);
+        assert!(other.places.len() > 10, "{returns}");
+        let [found, tracking, ..] = other.counts;
+        assert_eq!(
+            (found, tracking, other.localized()),
+            (0, 0, 0),
+            "{returns} returns"
+        );
+    }
+}
+
 #[test]
 fn poses_move_with_the_map() {
     let day = sample::another_day();

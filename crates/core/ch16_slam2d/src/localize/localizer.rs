@@ -29,6 +29,9 @@ const SEARCH_EVERY: usize = 20;
 const MAX_SEARCH_INTERVAL: usize = 4;
 /// Rate of the running average of the score.
 const SCORE_RATE: f64 = 0.1;
+/// With fewer points that fit, a pose is not called measured, as ICP ends with fewer pairs by default: three points fit in
+/// many places.
+const MIN_POINTS: usize = 8;
 /// Half width of the search around a given start, in standard deviations.
 const START_SIGMAS: f64 = 3.0;
 
@@ -243,6 +246,7 @@ impl Localizer {
             .local
             .locate(&frame.cloud, &prior, &[], &self.registration);
         let score = found.fit.score;
+        let is_measured = found.fit.inliers >= MIN_POINTS;
         let mut next = Belief {
             pose: prediction,
             covariance,
@@ -263,11 +267,12 @@ impl Localizer {
                 self.trail.restart(frame, self.frames - 1);
             }
             next.drops += 1;
-        } else if !self.is_suspect(&belief) {
+        } else if is_measured && !self.is_suspect(&belief) {
             next.drops = 0;
             next.usual_score += SCORE_RATE * (score - belief.usual_score);
         }
-        let mut is_sure = next.misses == 0 && next.drops == 0 && self.is_usual(&next);
+        let mut is_sure =
+            is_measured && next.misses == 0 && next.drops == 0 && self.is_usual(&next);
         if score >= self.config.poor_score {
             let (position, heading) = prior.squared(&prior.deviation(&found.registered.pose));
             is_sure &= position + heading <= GATE_99;
@@ -289,7 +294,7 @@ impl Localizer {
         };
         report.pose = Some(next.pose);
         report.covariance = Some(next.covariance);
-        report.score = Some(score);
+        report.score = (!frame.cloud.is_empty()).then_some(score);
     }
 
     /// Whether enough scans have fitted clearly worse than usual, so the robot may be elsewhere.

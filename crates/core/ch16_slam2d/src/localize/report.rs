@@ -14,8 +14,8 @@ pub enum Verdict {
     Found,
     /// The pose follows from the previous one, and the scan fits there.
     Tracking,
-    /// The pose is reported, but the scan fits poorly, its covariance is large, or another pose fits
-    /// about as well.
+    /// The pose is reported, but the scan fits poorly or has fewer than 8 points that fit, its covariance is large, or another
+    /// pose fits about as well.
     Doubtful,
     /// The pose is unknown.
     Lost,
@@ -61,7 +61,7 @@ pub struct LocalizeReport {
     /// Covariance of the pose in the body's frame, 3×3, translation first: m², rad².
     #[serde(serialize_with = "rows")]
     pub covariance: Option<Matrix3<f64>>,
-    /// Share of the scan that fits at the pose, 0 to 1.
+    /// Share of the scan that fits at the pose, 0 to 1; `None` without points.
     pub score: Option<f64>,
     /// Result of this frame's search, if there was one and it found a pose.
     pub search: Option<SearchResult>,

@@ -6,7 +6,7 @@ use pr_geom::SE2;
 use super::super::belief::Belief;
 use super::super::pending_fix::PendingFix;
 use super::super::trial::{Trial, Tried, TriedPart};
-use super::{CONFIRMATION_REACH, Localizer, MAX_SEARCH_INTERVAL, SEARCH_EVERY};
+use super::{CONFIRMATION_REACH, Localizer, MAX_SEARCH_INTERVAL, MIN_POINTS, SEARCH_EVERY};
 use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, regularize};
 use crate::local_map::MapRegistration;
@@ -102,7 +102,7 @@ impl Localizer {
         if let Some(belief) = self.belief.as_mut().filter(|belief| is_best(&belief.pose)) {
             // The pose is correct after all: the environment has changed.
             belief.drops = 0;
-            belief.usual_score = report.score.unwrap_or_default();
+            belief.usual_score = report.score.unwrap_or(belief.usual_score);
             return;
         }
         let is_again = self.candidate.as_ref().is_some_and(is_best);
@@ -135,7 +135,7 @@ impl Localizer {
         )
     }
 
-    /// Accepts a registration if it fits; returns whether it did.
+    /// Accepts a registration if it fits with enough points; returns whether it did.
     pub(super) fn accept(
         &mut self,
         found: &MapRegistration,
@@ -143,7 +143,7 @@ impl Localizer {
         report: &mut LocalizeReport,
     ) -> bool {
         let score = found.fit.score;
-        if score < self.expected.good_score {
+        if score < self.expected.good_score || found.fit.inliers < MIN_POINTS {
             return false;
         }
         let known = found.information() + prior.unwrap_or_default();
