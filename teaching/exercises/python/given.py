@@ -52,6 +52,8 @@ class Registration(NamedTuple):
     inliers: int
     #: The initial guess and the pose after each increment, shape (iterations + 1, 3).
     trace: Any
+    #: Whether an increment below the tolerance ended it, and the last pairs measure the pose.
+    converged: bool = False
 
 
 #: Side of a cell of the submap, m, and the most points of a cell.
@@ -97,6 +99,24 @@ def icp_information(points, normals, sigma, inflate):
     cross = arms[:, 0] * directions[:, 1] - arms[:, 1] * directions[:, 0]
     rows = np.column_stack([directions, cross])
     return rows.T @ rows / (sigma**2 * inflate)
+
+
+def measures_pose(points, normals, variant, min_pairs):
+    """Whether pairs measure a pose: there are enough, and no direction is without them, as along a corridor.
+
+    points: the paired points in the frame of the map, shape (n, 2).
+    normals: of their partners, NaN where there is none; only "point-to-plane" reads them. It uses the pairs that have one,
+    and needs twice as many, because each measures one number, not two.
+    """
+    needed, ridge = max(min_pairs, 1), 1e-12
+    if variant == "point-to-plane":
+        known = ~np.isnan(normals[:, 0])
+        points, normals = points[known], normals[known]
+        needed, ridge = max(2 * min_pairs, 3), 1e-4 / 3
+    else:
+        normals = np.full_like(points, np.nan)
+    information = icp_information(points, normals, 1.0, 1.0)
+    return len(points) >= needed and bool(np.linalg.eigvalsh(information)[0] > ridge * np.trace(information))
 
 
 def regularize(omega, ridge, cap):

@@ -11,21 +11,23 @@ Formula.
     repeat at most max_iterations times, while there are min_pairs pairs:
         pose = increment(pairs) · pose        by the variant
         pairs = trimmed(associate(source, target, pose, τ))
-        stop if ‖(x, y)‖ + |θ| of the increment is below tolerance
+        stop if ‖(x, y)‖ + |θ| of the increment is below tolerance; converged if measures_pose(pairs)
 
 associate moves the source by the pose and pairs each point with the nearest of the target, if it is closer than
 τ = max_distance. With a few hundred points a matrix of all distances is fast enough.
 
 Rules. Pairs exactly as long as the last one kept may also stay. `trace` holds the guess and the pose after each increment;
 `inliers` and `rmse` describe the last pairs. The rmse is that of the residual the variant minimizes: distances, or
-n · (p − q) for point-to-plane if the pair has a normal. Without pairs it is infinite.
+n · (p − q) for point-to-plane if the pair has a normal. Without pairs it is infinite. `converged` is false unless the
+increment was small and given.measures_pose holds for the last pairs: without normals, point-to-plane takes steps of zero,
+which say nothing about the pose.
 
 See it drive. rustslam2d.simulate(icp=icp) registers every scan of a lap with it.
 """
 
 import numpy as np
 import rustslam2d as rs
-from given import Registration
+from given import Registration, measures_pose
 from point_to_plane_step import point_to_plane_step
 from svd_align import svd_align
 

@@ -9,7 +9,7 @@ Formula. The registration starts at the pose predicted by the graph, and the gat
     ξ = log(T₀⁻¹ T̂)
     S = gap · diag(σ², σ², σ_θ²)        gap = node − candidate, (σ, σ_θ) = config.drift
     χ² = ξᵀ S⁻¹ ξ
-    accepted if rmse ≤ config.max_rmse, inliers ≥ config.min_inliers, and χ² ≤ config.gate
+    accepted if rmse ≤ config.max_rmse, inliers ≥ max(config.min_inliers, 8), and χ² ≤ config.gate
 
 The edge measures T̂. Its information is regularize(icp_information(p, normals, σ, inflate), 1.0, 2500.0) with
 (σ, inflate) = config.trust, the paired points p of the sweep moved by T̂, and the normals of their matches. Note that
@@ -18,7 +18,8 @@ about the robot, in the axes of `node`.
 
 Rules. ICP is point-to-point, τ = max(config.radius / 2, 0.6), at most 30 iterations: rustslam2d.icp with
 variant="point-to-point", max_distance=τ and max_iterations=30. Its result has pose, rmse, inliers, and pairs, the indices of
-the paired points in the sweep and the submap.
+the paired points in the sweep and the submap. With fewer than 8 pairs it returns its guess, which is no
+measurement.
 
 `given` has the rest: submap(poses, sweeps, center, config) returns points and normals; icp_information; regularize; LoopConfig.
 """

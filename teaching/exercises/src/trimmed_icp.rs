@@ -13,12 +13,14 @@
 //! repeat at most max_iters times, while there are min_pairs pairs:
 //!     pose = increment(pairs) · pose        by cfg.variant
 //!     pairs = trimmed(associate(cloud, map, pose, τ))
-//!     stop if increment.step_size() < tolerance
+//!     stop if increment.step_size() < tolerance; converged if measures_pose(pairs, cfg)
 //! ```
 //!
 //! **Rules.** Pairs exactly as long as the last one kept may also stay. `trace` holds the guess and the pose after each
 //! increment; `inliers` and `rmse` describe the last pairs. The rmse is that of the residual the variant minimizes: distances, or
-//! `n · (p − q)` for point-to-plane if the pair has a normal. Without pairs it is infinite.
+//! `n · (p − q)` for point-to-plane if the pair has a normal. Without pairs it is infinite. `converged` is false unless the
+//! increment was small and `ch16_listings::measures_pose` holds for the last pairs: without normals, point-to-plane takes
+//! steps of zero, which say nothing about the pose.
 
 use ch16_listings::{IcpConfig, IcpResult, PointCloud, SE2, VoxelMap};
 

@@ -10,14 +10,15 @@
 //! ξ = log(T₀⁻¹ T̂)
 //! S = gap · diag(σ², σ², σ_θ²)        gap = node − candidate, (σ, σ_θ) = cfg.drift
 //! χ² = ξᵀ S⁻¹ ξ
-//! accepted if rmse ≤ cfg.max_rmse, inliers ≥ cfg.min_inliers, and χ² ≤ cfg.gate
+//! accepted if rmse ≤ cfg.max_rmse, inliers ≥ max(cfg.min_inliers, min_pairs), and χ² ≤ cfg.gate
 //! ```
 //!
 //! The edge measures T̂. Its information is `regularize(icp_information(pairs, σ, inflate), 1.0, 2500.0)` with the
 //! pairs of `associate` at T̂ and `(σ, inflate) = cfg.trust`. Note that this is the chapter's matrix, about the centroid of
 //! the pairs and in the candidate's axes. An exact edge would take it about the robot, in the axes of `node`.
 //!
-//! **Rules.** ICP is point-to-point, τ = max(cfg.radius/2, 0.6), at most 30 iterations, otherwise the default. The
+//! **Rules.** ICP is point-to-point, τ = max(cfg.radius/2, 0.6), at most 30 iterations, otherwise the default. With
+//! fewer pairs than its `min_pairs` it returns its guess, which is no measurement. The
 //! listings provide the rest: `submap`, `icp`, `associate`, `icp_information`, `regularize`.
 
 use ch16_listings::{LoopConfig, PointCloud, PoseGraph, VerifiedLoop};

@@ -36,6 +36,6 @@ pub use correspondence::{Correspondence, associate};
 pub use information::{icp_information, regularize};
 pub use loop_closure::{LoopConfig, VerifiedLoop, detect_loop_candidates, submap, verify_loop};
 pub use pose_graph::{EdgeKind, PoseEdge, PoseGraph};
-pub use registration::{IcpConfig, IcpResult, IcpVariant, icp};
+pub use registration::{IcpConfig, IcpResult, IcpVariant, icp, measures_pose};
 pub use se2::{SE2, Translation};
 pub use voxel_map::VoxelMap;

@@ -128,7 +128,7 @@ pub fn verify_loop(
         inliers: found.inliers,
         chi2,
         accepted: found.rmse <= cfg.max_rmse
-            && found.inliers >= cfg.min_inliers
+            && found.inliers >= cfg.min_inliers.max(settings.min_pairs)
             && chi2 <= cfg.gate,
     }
 }

@@ -2,7 +2,10 @@
 
 use pr_geom::math;
 
-use crate::{Correspondence, PointCloud, SE2, VoxelMap, associate, point_to_plane_step, svd_align};
+use crate::{
+    Correspondence, PointCloud, SE2, VoxelMap, associate, icp_information, point_to_plane_step,
+    svd_align,
+};
 
 /// The error that an increment minimizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -55,6 +58,8 @@ pub struct IcpResult {
     pub inliers: usize,
     /// The initial guess and the pose after each increment: iterations = length − 1.
     pub trace: Vec<SE2>,
+    /// Whether an increment below the tolerance ended it, and the last pairs measure the pose: [`measures_pose`].
+    pub converged: bool,
 }
 
 /// Registers a cloud on a map from the guess `init`.
@@ -62,6 +67,7 @@ pub struct IcpResult {
 pub fn icp(cloud: &PointCloud, map: &VoxelMap, init: SE2, cfg: &IcpConfig) -> IcpResult {
     let mut pose = init;
     let mut trace = vec![pose];
+    let mut converged = false;
     let mut pairs = trimmed(associate(cloud, map, &pose, cfg.tau), cfg.trim);
     while trace.len() <= cfg.max_iters && pairs.len() >= cfg.min_pairs {
         let increment = match cfg.variant {
@@ -75,6 +81,7 @@ pub fn icp(cloud: &PointCloud, map: &VoxelMap, init: SE2, cfg: &IcpConfig) -> Ic
         trace.push(pose);
         pairs = trimmed(associate(cloud, map, &pose, cfg.tau), cfg.trim);
         if increment.step_size() < cfg.tolerance {
+            converged = measures_pose(&pairs, cfg);
             break;
         }
     }
@@ -83,7 +90,34 @@ pub fn icp(cloud: &PointCloud, map: &VoxelMap, init: SE2, cfg: &IcpConfig) -> Ic
         rmse: rmse(&pairs, cfg.variant),
         inliers: pairs.len(),
         trace,
+        converged,
     }
+}
+
+/// Whether pairs measure a pose: there are enough, and no direction is without them, as along a corridor.
+///
+/// Point to plane uses those with a normal only, and needs twice as many, because a pair measures one number along its
+/// normal, and two without. A direction counts if its information exceeds the ridge of [`point_to_plane_step`], or for
+/// point to point what rounding leaves of coincident points.
+#[must_use]
+pub fn measures_pose(pairs: &[Correspondence], cfg: &IcpConfig) -> bool {
+    let is_plane = cfg.variant == IcpVariant::PointToPlane;
+    let used = pairs
+        .iter()
+        .filter(|pair| !is_plane || pair.normal.is_some());
+    let used: Vec<Correspondence> = used
+        .map(|pair| Correspondence {
+            normal: pair.normal.filter(|_| is_plane),
+            ..*pair
+        })
+        .collect();
+    let (needed, ridge) = match cfg.variant {
+        IcpVariant::PointToPoint => (cfg.min_pairs.max(1), 1e-12),
+        IcpVariant::PointToPlane => ((2 * cfg.min_pairs).max(3), 1e-4 / 3.0),
+    };
+    let information = icp_information(&used, 1.0, 1.0);
+    let least = information.symmetric_eigenvalues().min();
+    used.len() >= needed && least > ridge * information.trace()
 }
 
 /// Drops the longest share of the pairs; keeps at least one.

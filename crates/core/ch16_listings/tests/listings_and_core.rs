@@ -168,6 +168,10 @@ fn a_registration_has_the_same_steps_and_information() {
             }
             assert_eq!(found.inliers, core.inliers);
             assert!((found.rmse - core.rmse_m).abs() < SAME);
+            assert!(
+                found.converged && core.stop.converged(),
+                "{variant:?} {trim}"
+            );
 
             if trim == 0.0 {
                 let pairs = associate(&source, &map, &found.pose, cfg.tau);
@@ -179,6 +183,99 @@ fn a_registration_has_the_same_steps_and_information() {
             }
         }
     }
+}
+
+/// Registers a room on itself, moved, of which every point but each `every`th is gone, and the normals of all but
+/// `normals` points; returns the verdicts of listing and core, and how far off the listing is, m.
+fn claims(
+    variant: IcpVariant,
+    trim: f64,
+    every: usize,
+    normals: usize,
+    points: impl Fn(Point2<f64>) -> Point2<f64>,
+) -> (bool, bool, f64) {
+    let target = sweep(&origin(), 4);
+    let target = PointCloud {
+        points: target
+            .points
+            .into_iter()
+            .step_by(every)
+            .map(points)
+            .collect(),
+        stamp: 0.0,
+    };
+    let moved = SE2::new(Vector2::new(0.15, 0.1), 0.03);
+    let source = target.transformed(&moved.inverse());
+    let mut map = VoxelMap::new(0.25, 1000);
+    let known = target.normals(0.3).into_iter().enumerate();
+    let known: Vec<_> = known.map(|(k, n)| n.filter(|_| k < normals)).collect();
+    map.insert(&target.points, &known);
+    let mut core_map = core_cloud(&target, 0.3);
+    if normals == 0 {
+        core_map = target.points.iter().copied().collect();
+    }
+    let core_map = cloud::VoxelMap::from_cloud(&core_map, 0.25, 1000);
+    let cfg = IcpConfig {
+        variant,
+        trim,
+        max_iters: 200,
+        ..IcpConfig::default()
+    };
+    let core_cfg = icp::IcpConfig {
+        variant: match variant {
+            IcpVariant::PointToPoint => CoreVariant::PointToPoint,
+            IcpVariant::PointToPlane => CoreVariant::PointToPlane,
+        },
+        trim,
+        max_iterations: 200,
+        ..icp::IcpConfig::default()
+    };
+    let found = icp(&source, &map, SE2::identity(), &cfg);
+    let core_source = core_cloud(&source, 0.3);
+    let core = icp::icp(&core_source, &core_map, prelude::SE2::identity(), &core_cfg);
+    let off_m = (found.pose.translation() - moved.translation()).norm();
+    (found.converged, core.stop.converged(), off_m)
+}
+
+/// Point to plane without normals takes steps of zero, and is at rest on its guess.
+#[test]
+fn what_no_pair_measures_has_not_converged_as_in_the_core() {
+    let variants = [IcpVariant::PointToPoint, IcpVariant::PointToPlane];
+    let as_it_is = |p| p;
+    let mut right = 0;
+    for variant in variants {
+        for every in [1, 2, 4, 8, 16, 32, 64, 128] {
+            let (listing, core, off_m) = claims(variant, 0.0, every, usize::MAX, as_it_is);
+            assert_eq!(listing, core, "{variant:?}, every {every}th point");
+            right += usize::from(listing && off_m < 0.01);
+            if variant == IcpVariant::PointToPlane {
+                assert!(!listing || off_m < 0.05, "every {every}th point: {off_m} m");
+            }
+        }
+        for (trim, is_left) in [(0.5, true), (0.99, false), (1.0, false)] {
+            let (listing, core, _) = claims(variant, trim, 1, usize::MAX, as_it_is);
+            assert_eq!(
+                (listing, core),
+                (is_left, is_left),
+                "{variant:?}, trim {trim}"
+            );
+        }
+        let one_place = |_| Point2::new(0.3, -0.2);
+        let (listing, core, _) = claims(variant, 0.0, 1, usize::MAX, one_place);
+        assert!(!listing && !core, "{variant:?}: coincident points");
+    }
+    assert!(right >= 4, "{right}");
+    // 15 normals are fewer than twice `min_pairs`.
+    for normals in [0, 15] {
+        let (listing, ..) = claims(IcpVariant::PointToPlane, 0.0, 1, normals, as_it_is);
+        assert!(!listing, "{normals} normals");
+    }
+    let (listing, core, off_m) = claims(IcpVariant::PointToPlane, 0.0, 1, 0, as_it_is);
+    assert!(!listing && !core && off_m > 0.1, "the guess");
+    // Along two walls nothing is measured.
+    let corridor = |p: Point2<f64>| Point2::new(p.x, if p.y > 0.0 { 1.0 } else { -1.0 });
+    let (listing, core, _) = claims(IcpVariant::PointToPlane, 0.0, 1, usize::MAX, corridor);
+    assert!(!listing && !core, "a corridor");
 }
 
 /// A ring of poses with noise on every edge, and chords.

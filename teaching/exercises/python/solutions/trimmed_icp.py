@@ -2,7 +2,7 @@
 
 import numpy as np
 import rustslam2d as rs
-from given import Registration
+from given import Registration, measures_pose
 from point_to_plane_step import point_to_plane_step
 from svd_align import svd_align
 
@@ -28,6 +28,7 @@ def icp(source, target, init, *, normals=None, variant="point-to-point", max_dis
     is_plane = variant == "point-to-plane"
     pose = np.array(init, dtype=float)
     trace = [pose]
+    converged = False
     moved, nearest = associate(source, target, pose, max_distance, trim)
     while len(trace) <= max_iterations and len(moved) >= min_pairs:
         if is_plane:
@@ -38,10 +39,12 @@ def icp(source, target, init, *, normals=None, variant="point-to-point", max_dis
         trace.append(pose)
         moved, nearest = associate(source, target, pose, max_distance, trim)
         if np.hypot(step[0], step[1]) + abs(step[2]) < tolerance:
+            known = normals[nearest] if is_plane else None
+            converged = measures_pose(moved, known, variant, min_pairs)
             break
     errors = np.linalg.norm(moved - target[nearest], axis=1)
     if is_plane:
         along = np.sum(normals[nearest] * (moved - target[nearest]), axis=1)
         errors = np.where(np.isnan(along), errors, along)
     rmse = np.sqrt(np.mean(errors**2)) if len(errors) > 0 else np.inf
-    return Registration(pose, rmse, len(errors), np.array(trace))
+    return Registration(pose, rmse, len(errors), np.array(trace), converged)

@@ -101,6 +101,28 @@ def test_too_few_pairs_end_it_at_the_guess():
     assert len(enough.trace) > 1, "8 pairs are min_pairs"
 
 
+@pytest.mark.parametrize("variant", ["point-to-point", "point-to-plane"])
+def test_it_has_converged_only_where_its_pairs_measure_the_pose(variant):
+    _, target = with_box(1)
+    source = rs.transform((0.02, 0.03, 0.01), target)
+    normals = rs.normals(target)
+    guess = np.zeros(3)
+    settings = {"variant": variant, "max_distance": 0.7, "max_iterations": 100}
+    assert icp(source, target, guess, normals=normals, **settings).converged, "all points have their pairs"
+    away = icp(source, target, (50.0, 0.0, 0.0), normals=normals, **settings)
+    assert not away.converged, "there is no pair, and converged is true"
+    early = icp(source, target, guess, normals=normals, **{**settings, "max_iterations": 1})
+    assert not early.converged, "the last increment is large, and converged is true"
+    if variant == "point-to-plane":
+        for known in (0, 15):
+            few = np.where(np.cumsum(~np.isnan(normals[:, :1]), axis=0) > known, np.nan, normals)
+            found = icp(source, target, guess, normals=few, **settings)
+            assert not found.converged, f"{known} pairs have a normal at most, and 16 are needed: twice min_pairs"
+    else:
+        one_place = np.full((20, 2), 0.3)
+        assert not icp(one_place, one_place + 0.01, (0, 0, 0), **settings).converged, "coincident points measure no rotation"
+
+
 def test_a_small_increment_ends_it(clouds):
     source, target, truth = clouds
     guess = rs.compose(truth, (0.1, 0.1, 0.05))

@@ -120,6 +120,15 @@ def test_the_edge_knows_what_its_pairs_know_and_trusts_its_points_as_it_is_told(
         assert np.abs(omega - expected).max() < 1e-6, f"with trust={trust} the information is\n{omega}, expected\n{expected}"
 
 
+def test_a_guess_without_pairs_is_no_loop_whatever_the_limits_are(first):
+    poses, sweeps = first
+    limits = LoopConfig(max_rmse=np.inf, min_inliers=0, gate=np.inf)
+    for points in (0, 7, None):
+        found = verify_loop(poses, [*sweeps[:NODE], sweeps[NODE][:points]], NODE, OLD, limits)
+        what = f"a loop of {found.inliers} pairs, of which 8 are needed"
+        assert found.accepted == (points is None), f"{what}: accepted is {found.accepted}"
+
+
 @pytest.mark.filterwarnings("error")
 def test_a_loop_without_pairs_is_rejected(first):
     far = verify_loop(*moved(first, (50.0, 0.0, 0.0)), NODE, OLD)
