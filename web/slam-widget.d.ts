@@ -349,25 +349,25 @@ export interface TurnOrMirrorImageState {
   tried: 'turns' | 'mirrors';
   /** Seed of the noise in both sweeps, which has a standard deviation of 12 mm along each axis. 0 to 4294967295. */
   seed: number;
-  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
+  /** How far the point has been dragged. Applies only to points in the scene. -3 to 3 m. */
   x1: number;
-  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
+  /** How far the point has been dragged. Applies only to points in the scene. -3 to 3 m. */
   y1: number;
-  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
+  /** How far the point has been dragged. Applies only to points in the scene. -3 to 3 m. */
   x2: number;
-  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
+  /** How far the point has been dragged. Applies only to points in the scene. -3 to 3 m. */
   y2: number;
-  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
+  /** How far the point has been dragged. Applies only to points in the scene. -3 to 3 m. */
   x3: number;
-  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
+  /** How far the point has been dragged. Applies only to points in the scene. -3 to 3 m. */
   y3: number;
-  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
+  /** How far the point has been dragged. Applies only to points in the scene. -3 to 3 m. */
   x4: number;
-  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
+  /** How far the point has been dragged. Applies only to points in the scene. -3 to 3 m. */
   y4: number;
-  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
+  /** How far the point has been dragged. Applies only to points in the scene. -3 to 3 m. */
   x5: number;
-  /** How far the point has been dragged from its observed position. Applies only to points in the scene. -3 to 3 m. */
+  /** How far the point has been dragged. Applies only to points in the scene. -3 to 3 m. */
   y5: number;
   /** How far the source is rotated, after mirroring if any. 0 to 360 °. */
   turn: number;

@@ -39,9 +39,7 @@ pub(super) static MOVED: [[Param<f64>; 2]; MAX_PAIRS] =
 const fn moved(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
         .unit("m")
-        .help(
-            "How far the point has been dragged from its observed position. Applies only to points in the scene.",
-        )
+        .help("How far the point has been dragged. Applies only to points in the scene.")
 }
 
 params! {

@@ -2,7 +2,7 @@
 
 use ch16_lab::procrustes::{Pairs, Shape};
 use pr_geom::Point2;
-use widget_kit::model::{Activity, Handle, Model, Motion};
+use widget_kit::model::{Activity, Assessment, Handle, Model, Motion};
 use widget_kit::scene::Layer;
 use widgets::w16_11_procrustes::model::{ProcrustesTrace, panel};
 use widgets::w16_11_procrustes::spec::{SPEC, WHOLE_TURN_DEG};
@@ -45,6 +45,30 @@ fn two_points_fit_a_rotation_and_a_reflection_equally() {
     let trace = with(&[("shape", 1.0)]);
     assert_eq!(trace.outcome().verdict, "turn and mirror image tie");
     assert!((fact(&trace, "turn_cost_m2") - fact(&trace, "mirror_cost_m2")).abs() < 1e-12);
+}
+
+/// The outcome while the second target point comes ever closer to the first.
+#[test]
+fn coincident_points_measure_no_heading() {
+    let seed = with(&[]).values().number("seed") as u32;
+    let [first, second] = Pairs::seen(Shape::Two, seed).target[..] else {
+        panic!("two points")
+    };
+    for apart_m in [1.0, 0.01, 0.0] {
+        let off = [
+            ("x2", first.x - second.x + apart_m),
+            ("y2", first.y - second.y),
+        ];
+        let outcome = with(&[("shape", 1.0), off[0], off[1]]).outcome();
+        let is_admitted = outcome.sentence.contains("No pair measures the heading");
+        assert_eq!(
+            is_admitted,
+            apart_m == 0.0,
+            "{apart_m} m: {}",
+            outcome.sentence
+        );
+        assert_eq!(outcome.standing == Assessment::Bad, is_admitted);
+    }
 }
 
 #[test]

@@ -17,7 +17,7 @@
 
 mod pairs;
 
-use ch16_slam2d::icp::svd_align;
+use ch16_slam2d::icp::closed_form;
 use nalgebra::{Matrix2, Point2};
 use pr_geom::{Rotation, SE2, math};
 
@@ -79,8 +79,10 @@ pub struct Procrustes {
     pub source_mean: Point2<f64>,
     /// Mean of the target, m.
     pub target_mean: Point2<f64>,
-    /// The result of [`svd_align`], `target_from_source`.
+    /// The result of [`svd_align`](ch16_slam2d::icp::svd_align), `target_from_source`.
     pub aligned: SE2,
+    /// Whether the pairs measure its heading; coincident points do not.
+    pub measures_rotation: bool,
     /// `Σ‖p‖² + Σ‖q‖²` about the means, m².
     spread_m2: f64,
 }
@@ -92,6 +94,7 @@ impl Procrustes {
     /// If the slices differ in length.
     #[must_use]
     pub fn new(source: &[Point2<f64>], target: &[Point2<f64>]) -> Self {
+        let aligned = closed_form(source, target);
         let (source_mean, target_mean) = (mean(source), mean(target));
         let mut moments = Matrix2::zeros();
         let mut spread_m2 = 0.0;
@@ -104,7 +107,8 @@ impl Procrustes {
             moments,
             source_mean,
             target_mean,
-            aligned: svd_align(source, target),
+            aligned: aligned.pose,
+            measures_rotation: aligned.measures_rotation,
             spread_m2,
         }
     }
@@ -191,6 +195,7 @@ fn mean(points: &[Point2<f64>]) -> Point2<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ch16_slam2d::icp::svd_align;
     use pr_sim::Rng;
 
     fn points(count: usize, rng: &mut Rng) -> Vec<Point2<f64>> {

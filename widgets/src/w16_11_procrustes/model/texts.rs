@@ -53,11 +53,13 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
     let here = problem.trace_m2(trace.tried(), trace.theta_rad());
     let winner = problem.winner();
     let consequence = match winner {
+        Winner::Tie if !problem.measures_rotation => "No pair measures the heading",
         Winner::Turn => "An unchecked decomposition finds the rotation, too",
         Winner::Mirror => "An unchecked decomposition mirrors the map",
         Winner::Tie => "An unchecked decomposition may return either",
     };
     let standing = match winner {
+        Winner::Tie if !problem.measures_rotation => Assessment::Bad,
         Winner::Turn => Assessment::Good,
         Winner::Mirror => Assessment::Doubtful,
         Winner::Tie => Assessment::Neutral,
