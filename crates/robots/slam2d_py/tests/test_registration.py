@@ -96,6 +96,16 @@ def test_no_wrong_pose_of_an_ever_coarser_room_claims_anything(room, variant, sp
         assert spacing > 0.5 or wider.stop != "too-few-normals", wider
 
 
+@pytest.mark.parametrize("variant", ["point-to-plane", "point-to-point"])
+def test_trimmed_until_nothing_is_left_it_claims_nothing(room, variant):
+    source = rs.transform(rs.inverse(POSE), room)
+    for kept in (1.0, 0.5, 7 / len(room), 0.0):
+        found = rs.icp(source, room, variant=variant, trim=1.0 - kept, max_iterations=300)
+        is_left = found.stop not in ("too-few-pairs", "too-few-normals")
+        assert is_left == (kept >= 0.5), (kept, found)
+        assert is_left or not (found.converged or found.information.any() or found.covariance is not None), found
+
+
 def test_a_kernel_weights_the_information_and_may_refuse_all(room):
     source = rs.transform(rs.inverse(POSE), room) + np.random.default_rng(1).normal(0, 0.02, room.shape)
     wide, narrow = (rs.icp(source, room, huber_width=width, max_iterations=300) for width in (1.0, 0.005))
