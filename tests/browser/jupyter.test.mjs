@@ -108,7 +108,7 @@ test('the wheel works in JupyterLab without a network: values and results in bot
     await tab.waitForFunction(() => document.querySelector('slam-widget').get('heading') === 120);
 
     await run(3);
-    await verdict(3, /^(mapped|[^:]*to look into): ring\.log.*from the truth.*The robot of ring-another-day\.log is found/);
+    await verdict(3, /^(mapped|[^:]*in doubt): ring\.log.*from the truth.*The robot of ring-another-day\.log is found/);
     // Files arrive once the page has written them.
     await run(4);
     await asks(5, /came: trajectory\.tum True kept\.png True \| rejected: .*nothing\.txt.* \| tables: .*loops.*/);

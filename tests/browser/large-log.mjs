@@ -33,7 +33,7 @@ try {
     return maxMb;
   };
   console.log(`before: ${peakMb()} MB`);
-  const isOver = () => /^(mapped|no map)$|to look into$/.test(document.querySelector('slam-widget').outcome.verdict);
+  const isOver = () => /^(mapped|no map)$|in doubt$/.test(document.querySelector('slam-widget').outcome.verdict);
   const reaches = ([share, over]) => new Function(`return (${over})()`)()
     || document.querySelector('slam-widget').outcome.facts.done_percent >= share;
   const outcome = () => tab.evaluate(() => document.querySelector('slam-widget').outcome);

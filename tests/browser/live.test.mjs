@@ -48,9 +48,9 @@ const open = async (tab, bytes, name) => {
     const of = Uint8Array.from(atob(base64), (digit) => digit.charCodeAt(0));
     document.querySelector('slam-widget').openFile(new File([of], as));
   }, [bytes.toString('base64'), name]);
-  await outcomeSays(tab, new RegExp(`^(mapped|[^:]*to look into): ${name}`));
+  await outcomeSays(tab, new RegExp(`^(mapped|[^:]*in doubt): ${name}`));
 };
-const isMapped = (tab) => outcomeSays(tab, /^(mapped|[^:]*to look into):/);
+const isMapped = (tab) => outcomeSays(tab, /^(mapped|[^:]*in doubt):/);
 const text = (tab, name) => tab.evaluate(async (file) => (await document.querySelector('slam-widget').savedFile(file)).text(), name);
 const remarks = async (tab) => (await tab.evaluate(() => document.querySelector('slam-widget').tables())).find(({ id }) => id === 'remarks')?.csv ?? '';
 const troubles = (tab) => tab.troubles.filter((one) => !/WebSocket connection to/.test(one));

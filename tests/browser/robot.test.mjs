@@ -43,7 +43,7 @@ const says = (tab, pattern) => tab.waitForFunction((source) => {
   const { verdict, sentence } = document.querySelector('slam-widget').outcome ?? {};
   return new RegExp(source).test(`${verdict}: ${sentence}`);
 }, pattern.source);
-const isMapped = (tab) => says(tab, /^(mapped|[^:]*to look into):/);
+const isMapped = (tab) => says(tab, /^(mapped|[^:]*in doubt):/);
 
 /** Passes a file with that text to the widget. */
 const give = (tab, name, text) => tab.evaluate(([file, content]) => {
@@ -136,7 +136,7 @@ describe('a reader’s log', () => {
       const chosen = tab.waitForEvent('filechooser');
       await press(tab, 'open');
       await (await chosen).setFiles({ name: 'first.log', mimeType: 'text/plain', buffer: Buffer.from(SAMPLE) });
-      await says(tab, /(mapped|to look into): first\.log/);
+      await says(tab, /(mapped|in doubt): first\.log/);
       await tab.evaluate((text) => {
         const files = new DataTransfer();
         files.items.add(new File([text], 'second.log'));
@@ -145,7 +145,7 @@ describe('a reader’s log', () => {
           frame.dispatchEvent(new DragEvent(type, { dataTransfer: files, bubbles: true, cancelable: true }));
         }
       }, SAMPLE);
-      await says(tab, /(mapped|to look into): second\.log/);
+      await says(tab, /(mapped|in doubt): second\.log/);
       // A reference does not replace the map, whichever button opened it.
       const picked = tab.waitForEvent('filechooser');
       await press(tab, 'open');
@@ -153,9 +153,9 @@ describe('a reader’s log', () => {
       // Of a list of extensions iOS knows few, and greys out logs.
       assert.equal(await chooser.element().getAttribute('accept'), null);
       await chooser.setFiles(join(h.DIST, 'samples', 'ring-truth.tum'));
-      await says(tab, /(mapped|to look into): second\.log.*from the truth/);
+      await says(tab, /(mapped|in doubt): second\.log.*from the truth/);
       await give(tab, 'third.log', SAMPLE.split('\n').slice(0, 80).join('\n'));
-      await says(tab, /(mapped|to look into): third\.log: .*80 scans/);
+      await says(tab, /(mapped|in doubt): third\.log: .*80 scans/);
     });
   });
 
@@ -181,7 +181,7 @@ describe('a reader’s log', () => {
   it('is zoomed by two fingers wherever they start, without a drag', async () => {
     await page(async (tab) => {
       await give(tab, 'square.g2o', SQUARE);
-      await says(tab, /to look into: square\.g2o: 4 poses/);
+      await says(tab, /in doubt: square\.g2o: 4 poses/);
       await tab.evaluate(() => { document.querySelector('slam-widget').value = { keyframe: 2 }; });
       await h.moreFrames(tab, 2);
       const { touch, felt } = await fingers(tab);
@@ -365,7 +365,7 @@ describe('a reader’s log', () => {
         const chosen = tab.waitForEvent('filechooser');
         await tab.getByRole('button', { name: 'Open a log…' }).press('Enter');
         await (await chosen).setFiles(join(folder, 'session.slam2d'));
-        await says(tab, /(mapped|to look into): session\.slam2d/);
+        await says(tab, /(mapped|in doubt): session\.slam2d/);
         const after = (await outcome(tab)).facts;
         for (const id of ['scans', 'keyframes', 'loops', 'path_length_m']) assert.equal(after[id], before[id], id);
         await press(tab, 'turn');
@@ -373,12 +373,12 @@ describe('a reader’s log', () => {
         const [, changed] = await saved(tab, 'session');
         assert.ok(!changed.equals(session));
         await giveBytes(tab, 'changed.slam2d', changed);
-        await says(tab, /(mapped|to look into): changed\.slam2d/);
+        await says(tab, /(mapped|in doubt): changed\.slam2d/);
         assert.equal((await outcome(tab)).facts.loops, before.loops - 1);
 
         // Also if its name has no extension; a damaged one is reported.
         await giveBytes(tab, 'monday', session);
-        await says(tab, /(mapped|to look into): monday:/);
+        await says(tab, /(mapped|in doubt): monday:/);
         const spoilt = Buffer.from(session);
         spoilt[session.length >> 1] ^= 1;
         const newer = Buffer.from(session);
@@ -405,7 +405,7 @@ describe('a reader’s log', () => {
       await says(tab, /early\.log needs a map/);
       // The preset maps the sample and localizes the other day's robot on it.
       await press(tab, 'where');
-      await says(tab, /^(mapped|[^:]*to look into): .*The robot of ring-another-day\.log is found at scan \d+: of \d+ scans/);
+      await says(tab, /^(mapped|[^:]*in doubt): .*The robot of ring-another-day\.log is found at scan \d+: of \d+ scans/);
       const { facts } = await outcome(tab);
       const scans = OTHER_DAY.trim().split('\n').length;
       assert.equal(facts.where_localized + facts.where_doubtful + facts.where_lost, scans);
@@ -432,7 +432,7 @@ describe('a reader’s log', () => {
       await says(tab, /was removed from the graph/);
       await widget(tab, (it) => it.crashForTest('worker'));
       await says(tab, /was restarted/);
-      await says(tab, /^(mapped|[^:]*to look into): .*is found at scan \d+: of/);
+      await says(tab, /^(mapped|[^:]*in doubt): .*is found at scan \d+: of/);
 
       // A file that is not a log changes no result.
       await giveBytes(tab, 'empty.log', Buffer.alloc(0), 'where');
@@ -449,7 +449,7 @@ describe('a reader’s log', () => {
       await isMapped(tab);
       const [, session] = await saved(tab, 'session');
       await drop(tab, [['day.log', OTHER_DAY], ['monday.slam2d', session]]);
-      await says(tab, /^(mapped|[^:]*to look into): monday\.slam2d.*The robot of day\.log is found/);
+      await says(tab, /^(mapped|[^:]*in doubt): monday\.slam2d.*The robot of day\.log is found/);
       await tab.evaluate(() => Object.assign(document.querySelector('slam-widget'), { drop: 'where' }));
       // A resting picture is started to provide the start pose.
       await widget(tab, (it) => it.suspend());
@@ -461,7 +461,7 @@ describe('a reader’s log', () => {
       await says(tab, /The robot of near\.log is found/);
       await tab.evaluate(() => { document.querySelector('slam-widget').value = { drop: 'map' }; });
       await drop(tab, [['map.log', OTHER_DAY]]);
-      await says(tab, /^(mapped|[^:]*to look into): map\.log/);
+      await says(tab, /^(mapped|[^:]*in doubt): map\.log/);
       assert.doesNotMatch((await outcome(tab)).sentence, /The robot of/);
     });
   });
@@ -469,7 +469,7 @@ describe('a reader’s log', () => {
   it('offers the topics and frames of a recording, and maps it again with another one', async () => {
     await page(async (tab) => {
       await giveBytes(tab, 'plain.mcap', readFileSync(join(RECORDINGS, 'plain.mcap')));
-      await says(tab, /(mapped|to look into): plain\.mcap: .*24 scans/);
+      await says(tab, /(mapped|in doubt): plain\.mcap: .*24 scans/);
       const taken = async () => (await table(tab, 'offers')).find(([label]) => label === 'body frame')[1];
       const before = await taken();
       const way = (await outcome(tab)).facts.path_length_m;
@@ -478,7 +478,7 @@ describe('a reader’s log', () => {
       // Another frame makes another map: the keyframes stand elsewhere.
       await tab.waitForFunction((way) => {
         const { verdict, facts } = document.querySelector('slam-widget').outcome;
-        return /mapped|to look into/.test(verdict) && facts.path_length_m !== way;
+        return /mapped|in doubt/.test(verdict) && facts.path_length_m !== way;
       }, way);
       assert.notEqual(await taken(), before);
       assert.match((await outcome(tab)).sentence, /plain\.mcap: .*24 scans/);
@@ -502,7 +502,7 @@ describe('a reader’s log', () => {
         await says(tab, said);
       }
       await give(tab, 'half.log', SAMPLE.slice(0, SAMPLE.length / 2));
-      await says(tab, /(mapped|to look into): half\.log/);
+      await says(tab, /(mapped|in doubt): half\.log/);
       const remarks = (await tab.evaluate(() => document.querySelector('slam-widget').tables()))
         .find(({ id }) => id === 'remarks');
       assert.match(remarks.csv, /is incomplete/);
@@ -529,8 +529,8 @@ describe('a reader’s log', () => {
       await isMapped(tab);
       await tab.waitForFunction((states) => states.at(-1) === 'true', seen);
       assert.ok((await seen.jsonValue()).some((state) => state !== 'true'), 'while the sample is mapped');
-      assert.match((await outcome(tab)).verdict, /^none of \d+ loops to look into$/);
-      const list = host.getByRole('region', { name: 'Loops to look into' });
+      assert.match((await outcome(tab)).verdict, /^none of \d+ loops in doubt$/);
+      const list = host.getByRole('region', { name: 'Loops in doubt' });
       assert.ok(await list.isHidden());
 
       // A keyframe held beside its place contradicts its loops.
@@ -538,7 +538,7 @@ describe('a reader’s log', () => {
       await tab.evaluate((keyframe) => document.querySelector('slam-widget').set('keyframe', keyframe), Number(from));
       for (let k = 0; k < 10; k += 1) await press(tab, 'east');
       await list.waitFor();
-      await says(tab, /^\d+ of \d+ loops to look into:/);
+      await says(tab, /^\d+ of \d+ loops in doubt:/);
       const before = await outcome(tab);
       assert.equal(before.standing, 'doubtful');
       const count = before.facts.loops_doubted;
@@ -725,7 +725,7 @@ describe('the doctor', () => {
       assert.match((await outcome(tab)).sentence, /^ring\.log: .*\d+ scans/);
       // Neither a graph nor an empty widget has a doctor's report.
       await give(tab, 'square.g2o', SQUARE);
-      await says(tab, /to look into: square\.g2o/);
+      await says(tab, /in doubt: square\.g2o/);
       assert.ok(await screen.isHidden());
       await give(tab, 'ring.log', SAMPLE);
       await diagnosis(tab);
@@ -747,7 +747,7 @@ describe('the doctor', () => {
         for (const type of ['dragEnter', 'dragOver', 'drop']) {
           await system.send('Input.dispatchDragEvent', { type, x, y, data });
         }
-        await says(tab, /(mapped|to look into): bag_0\.db3: .*24 scans/);
+        await says(tab, /(mapped|in doubt): bag_0\.db3: .*24 scans/);
         const metadata = 'relative_file_paths:\n  - bag_0.db3\n  - bag_1.db3\n';
         await drop(tab, [['bag_0.db3', readFileSync(join(folder, 'bag_0.db3'))], ['metadata.yaml', metadata]]);
         await tab.waitForFunction(() => JSON.stringify(document.querySelector('slam-widget').diagnosis).includes('bag_1.db3'));

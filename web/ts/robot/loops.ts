@@ -1,4 +1,4 @@
-// The loops to look into, under the picture: of each the surroundings of both ends, laid on each other as the loop
+// The loops in doubt, under the picture: of each the surroundings of both ends, laid on each other as the loop
 // lays them, and the reader's decision. The worker selects them; this only lays them out.
 
 import { create, stopKeyPropagation } from '../dom';
@@ -34,7 +34,7 @@ const HIDDEN_SHARE = 0.02;
 const SVG = 'http://www.w3.org/2000/svg';
 
 export class LoopsToLookInto {
-  readonly element = create('section', { class: 'loops', hidden: '', 'aria-label': 'Loops to look into' });
+  readonly element = create('section', { class: 'loops', hidden: '', 'aria-label': 'Loops in doubt' });
   readonly #host: LoopsHost;
   readonly #heading = create('p', { class: 'question', tabindex: '-1' });
   readonly #legend = create('p');
@@ -62,7 +62,7 @@ export class LoopsToLookInto {
     const focused = (this.element.getRootNode() as ShadowRoot).activeElement;
     const held = [...this.#list.querySelectorAll('button')].indexOf(focused as HTMLButtonElement);
     this.#heading.textContent =
-      count === 0 ? 'No loop is left to look into.' : 'Do these scans belong together? The rest of the graph contradicts it.';
+      count === 0 ? 'No loop is in doubt.' : 'Do these scans belong together? The rest of the graph contradicts it.';
     this.#legend.hidden = count === 0;
     this.#list.replaceChildren(...loops.map((loop) => this.#item(loop)));
     this.#more.textContent = count > loops.length ? `and ${count - loops.length} more` : '';

@@ -189,7 +189,7 @@ fn a_contradicting_loop_is_reported_and_shown_first() {
     let outcome = robot.outcome();
     assert_eq!(
         (outcome.standing, outcome.verdict.as_str()),
-        (Assessment::Doubtful, "1 of 1 loop to look into")
+        (Assessment::Doubtful, "1 of 1 loop in doubt")
     );
     assert!(outcome.sentence.contains("one loop contradicts the graph"));
     assert!(outcome.sentence.contains("none of it is sent anywhere"));
@@ -238,7 +238,7 @@ fn a_loop_that_the_reader_accepts_or_rejects_is_no_longer_one_to_look_into() {
         report(&mut robot, &doubts(&[], &[]));
         report(&mut robot, &MapperReport::Loops(loops.clone()));
         let outcome = robot.outcome();
-        assert_eq!(outcome.verdict, format!("{verdict} to look into"));
+        assert_eq!(outcome.verdict, format!("{verdict} in doubt"));
         assert_eq!(outcome.standing, standing, "{verdict}");
         let is_accepted = loops[0].decision == Confirmed;
         assert_eq!(outcome.sentence.contains("1 accepted by you"), is_accepted);

@@ -185,7 +185,7 @@ fn a_log_without_scans_is_reported() {
             .sentence
             .contains(" x.log is not a CARMEN log.")
     );
-    assert_eq!(robot.outcome().verdict, "1 of 1 loop to look into");
+    assert_eq!(robot.outcome().verdict, "1 of 1 loop in doubt");
     robot.press("change").unwrap();
     let mut robot = with_visitor(true);
     tell(&mut robot, "opening", "other.log");

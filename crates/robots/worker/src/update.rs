@@ -11,7 +11,7 @@ pub enum Update {
     Report(MapperReport),
     /// For the page: the doctor's report.
     Diagnosis(Box<Diagnosis>),
-    /// For the page: the loops to look into.
+    /// For the page: the loops in doubt.
     Evidence(Evidence),
     /// For the page: the robot that drives.
     Drive(DriveReport),
@@ -70,7 +70,7 @@ pub struct Evidence {
     pub loops: Vec<LoopEvidence>,
 }
 
-/// A loop to look into.
+/// A loop in doubt.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LoopEvidence {
     /// Its index in the list.

@@ -128,7 +128,7 @@ fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
     assert_eq!(ends(&after), ends(&sent));
 }
 
-/// The number of loops to look into, and the first few.
+/// The number of loops in doubt, and the first few.
 fn evidence(updates: &[Update]) -> (usize, Vec<LoopEvidence>) {
     let mut found = updates.iter().filter_map(|update| match update {
         Update::Evidence(evidence) => Some((evidence.count, evidence.loops.clone())),

@@ -50,8 +50,8 @@ fn standing(robot: &LogState) -> Assessment {
 fn verdict_on_loops(robot: &LogState) -> String {
     match (to_look_into(robot), in_graph(robot)) {
         (_, 0) => "mapped".to_owned(),
-        (0, all) => format!("none of {} to look into", plural(all, "loop")),
-        (some, all) => format!("{some} of {} to look into", plural(all, "loop")),
+        (0, all) => format!("none of {} in doubt", plural(all, "loop")),
+        (some, all) => format!("{some} of {} in doubt", plural(all, "loop")),
     }
 }
 
@@ -279,7 +279,7 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
         ),
         Fact::count(
             "loops_doubted",
-            "loops to look into",
+            "loops in doubt",
             to_look_into(robot) as f64,
         ),
         Fact::metres("worst_sigma_m", "largest σ", worst_m),
