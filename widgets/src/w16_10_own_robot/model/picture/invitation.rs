@@ -61,7 +61,7 @@ pub fn layers() -> Vec<Layer> {
         ),
         Layer::pose(wheels.to_array(), Mark::Triangle, Tone::Prediction, 6.0),
         Layer::pose(robot.to_array(), Mark::Square, Tone::Posterior, 6.0),
-        Layer::label(xy(&wheels), "by odometry alone".to_owned(), 14.0),
+        Layer::label(xy(&wheels), "by its wheels alone".to_owned(), 14.0),
         Layer::label(xy(&robot), "where it is".to_owned(), 14.0),
     ]
 }
