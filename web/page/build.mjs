@@ -211,6 +211,8 @@ async function bundleScripts(stories, matchAnswer) {
   const bundle = async (source, define, /** @type {import('esbuild').Format} */ format = 'esm', globalName = undefined, minify = true) => {
     const { outputFiles, metafile } = await build({
       entryPoints: [path.join(here, source)],
+      // Comments of the marking's script name its sources, from here.
+      absWorkingDir: root,
       bundle: true,
       external: ['./slam-widget.js', './write-yourself.js'],
       define,

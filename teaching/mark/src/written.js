@@ -1,6 +1,6 @@
 "use strict";
 (() => {
-  // page/write/exercises.ts
+  // web/page/write/exercises.ts
   var DEGREES = 180 / Math.PI;
   function numbers(value, count) {
     if (typeof value !== "object" || value === null || !("length" in value)) return void 0;
@@ -329,7 +329,7 @@ function gate(innovation, gap, drift, limit) {
   };
   var EXERCISES = new Map([ALIGN, PLANE, REJECT, LOOP_GATE].map((exercise) => [exercise.name, exercise]));
 
-  // page/write/marking.ts
+  // web/page/write/marking.ts
   function trial(name, test) {
     const found = EXERCISES.get(name)?.trials[test];
     if (found === void 0) throw new RangeError(`${name} has no test ${test}`);
