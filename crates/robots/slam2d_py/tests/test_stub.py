@@ -42,7 +42,8 @@ def parameters(function):
 
 
 def stated(node):
-    names = [(one.arg, False) for one in node.args.posonlyargs + node.args.args if one.arg != "self"]
+    before = node.args.posonlyargs + node.args.args + [one for one in [node.args.vararg] if one]
+    names = [(one.arg, False) for one in before if one.arg != "self"]
     return names + [(one.arg, True) for one in node.args.kwonlyargs]
 
 
