@@ -9,6 +9,7 @@ import { skip } from '../skip.mjs';
 import { without } from '../wheel.mjs';
 import { violations } from './axe.mjs';
 import * as h from './harness.mjs';
+import { giveBytes, isMapped, says as outcomeSays } from './recordings.mjs';
 import { driveOf, officialRobot, robotServer } from './robot-server.mjs';
 
 const LOG = readFileSync(join(h.DIST, 'samples', 'ring.log'), 'utf8');
@@ -38,19 +39,11 @@ const connect = async (tab, url) => {
 /** Waits until the panel says so. */
 const says = (tab, pattern) => tab.waitForFunction((source) =>
   new RegExp(source).test(document.querySelector('slam-widget').shadowRoot.querySelector('.connection').textContent), pattern.source);
-const outcomeSays = (tab, pattern) => tab.waitForFunction((source) => {
-  const { verdict, sentence } = document.querySelector('slam-widget').outcome ?? {};
-  return new RegExp(source).test(`${verdict}: ${sentence}`);
-}, pattern.source);
 /** Opens a log and waits for its map. */
 const open = async (tab, bytes, name) => {
-  await tab.evaluate(([base64, as]) => {
-    const of = Uint8Array.from(atob(base64), (digit) => digit.charCodeAt(0));
-    document.querySelector('slam-widget').openFile(new File([of], as));
-  }, [bytes.toString('base64'), name]);
+  await giveBytes(tab, name, bytes);
   await outcomeSays(tab, new RegExp(`^(mapped|[^:]*in doubt): ${name}`));
 };
-const isMapped = (tab) => outcomeSays(tab, /^(mapped|[^:]*in doubt):/);
 const text = (tab, name) => tab.evaluate(async (file) => (await document.querySelector('slam-widget').savedFile(file)).text(), name);
 const remarks = async (tab) => (await tab.evaluate(() => document.querySelector('slam-widget').tables())).find(({ id }) => id === 'remarks')?.csv ?? '';
 const troubles = (tab) => tab.troubles.filter((one) => !/WebSocket connection to/.test(one));

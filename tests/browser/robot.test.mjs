@@ -11,6 +11,7 @@ import { native } from '../native.mjs';
 import { skip } from '../skip.mjs';
 import { OF_COLORS, violations } from './axe.mjs';
 import * as h from './harness.mjs';
+import { giveBytes, isMapped, says } from './recordings.mjs';
 import { fingers } from './touch.mjs';
 
 const BODY = '<slam-widget name="w16.10" more="on"></slam-widget>';
@@ -38,23 +39,10 @@ const widget = (tab, act, given) => tab.evaluate(
 const outcome = (tab) => tab.evaluate(() => document.querySelector('slam-widget').outcome);
 const press = (tab, id) => tab.evaluate((name) => document.querySelector('slam-widget').press(name), id);
 
-/** Waits until the result matches; the regular expression applies to the verdict and the sentence. */
-const says = (tab, pattern) => tab.waitForFunction((source) => {
-  const { verdict, sentence } = document.querySelector('slam-widget').outcome ?? {};
-  return new RegExp(source).test(`${verdict}: ${sentence}`);
-}, pattern.source);
-const isMapped = (tab) => says(tab, /^(mapped|[^:]*in doubt):/);
-
 /** Passes a file with that text to the widget. */
 const give = (tab, name, text) => tab.evaluate(([file, content]) => {
   document.querySelector('slam-widget').openFile(new File([content], file));
 }, [name, text]);
-
-/** Passes a file with those bytes to the widget, with its purpose. */
-const giveBytes = (tab, name, bytes, use) => tab.evaluate(([file, text, what]) => {
-  const content = Uint8Array.from(atob(text), (digit) => digit.charCodeAt(0));
-  document.querySelector('slam-widget').openFile(new File([content], file), what);
-}, [name, Buffer.from(bytes).toString('base64'), use]);
 
 /** Drops several files on the picture. */
 const drop = (tab, files) => tab.evaluate((given) => {

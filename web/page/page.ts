@@ -30,6 +30,9 @@ declare const BUILDING_FILE: string;
 /** Set by the build: the true pose of the sweep that the reader moves. */
 declare const MATCH_ANSWER: Answer;
 
+const loadCore = core as () => Promise<Glue>;
+const loadModule = coreModule as () => Promise<WebAssembly.Module>;
+
 /** Elements that need the module of the widgets. */
 const NEEDS_CORE = 'slam-widget, [data-sketch], #decide, .laps';
 /** Distance from the viewport at which the module is prefetched. */
@@ -56,7 +59,7 @@ startFlatGame();
 watchChallenges();
 letOpenWidgetsScroll();
 // The widgets report why it is unavailable.
-onceNear(document.querySelectorAll(NEEDS_CORE), () => void (coreModule as () => Promise<WebAssembly.Module>)().catch(() => {}));
+onceNear(document.querySelectorAll(NEEDS_CORE), () => void loadModule().catch(() => {}));
 startCoreFigures();
 
 /** Opens the exercise that the address names. */
@@ -86,7 +89,7 @@ function sayNoEditor(details: HTMLDetailsElement): void {
 
 function startMatchFigure(): void {
   const figure = document.querySelector<HTMLElement>('#match');
-  if (figure !== null) new MatchFigure(figure, MATCH_ANSWER, core as () => Promise<Glue>);
+  if (figure !== null) new MatchFigure(figure, MATCH_ANSWER, loadCore);
 }
 
 /** Calls back once, when the first of the elements comes near the viewport. */
@@ -101,11 +104,11 @@ function onceNear(elements: Iterable<Element>, callback: () => void): void {
 
 /** Starts the figures that share one core, each once it is near. If it is unavailable, the still pictures stay. */
 function startCoreFigures(): void {
-  let shared: Promise<{ glue: Glue; schemas: SketchSchema[] }> | undefined;
-  const load = async (): Promise<{ glue: Glue; schemas: SketchSchema[] }> => {
-    const glue = await (core as () => Promise<Glue>)();
+  const load = async () => {
+    const glue = await loadCore();
     return { glue, schemas: JSON.parse(glue.sketchSchemas()) as SketchSchema[] };
   };
+  let shared: ReturnType<typeof load> | undefined;
   for (const figure of document.querySelectorAll<HTMLElement>('[data-sketch], #decide')) {
     onceNear([figure], () => void (shared ??= load()).then(({ glue, schemas }) => {
       const schema = schemas.find(({ name }) => name === figure.dataset['sketch']);
@@ -117,8 +120,8 @@ function startCoreFigures(): void {
 
 function startLapsFigures(): void {
   const lapCore = {
-    module: coreModule as () => Promise<WebAssembly.Module>,
-    runner: async () => new (await (core as () => Promise<Glue>)()).LapOutcomes(),
+    module: loadModule,
+    runner: async () => new (await loadCore()).LapOutcomes(),
   };
   const [levels, matchers] = ['#laps', '#matcher-laps'].map((id) => document.querySelector<HTMLElement>(id));
   if (levels) new LapsFigure(levels, lapCore, LEVELS_PLAN);

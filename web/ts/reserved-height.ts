@@ -9,9 +9,9 @@ const waiting = new Set<ReservedHeight>();
 
 /** Measures all before it changes any: the page is laid out once for all its widgets. */
 function fitWaiting(): void {
-  const heights = [...waiting].map((one) => [one, one.measured()] as const);
+  const changes = [...waiting].map((one) => one.measure());
   waiting.clear();
-  for (const [one, height] of heights) one.set(height);
+  for (const change of changes) change();
 }
 
 export class ReservedHeight {
@@ -47,22 +47,19 @@ export class ReservedHeight {
 
   /** Updates the reservation after a resize. */
   fit(): void {
-    this.set(this.measured());
+    this.measure()();
   }
 
-  /** The height to reserve: undefined if it is not known, null as long as there is no width. */
-  measured(): number | undefined | null {
+  /** Measures the widget; returns what then changes the page. */
+  measure(): () => void {
     const width = this.#stage.clientWidth;
-    if (width === 0) return null;
+    if (width === 0) return () => {};
     const scale = mostType(this.#hostStyle);
     const natural = heightAt(this.#heights, width / scale);
     const height = this.#kept?.width === width ? this.#kept.height : natural && scale * natural;
-    return height && Math.min(height, this.room);
-  }
-
-  set(height: number | undefined | null): void {
-    if (height === undefined) this.free();
-    else if (height !== null) this.#stage.style.setProperty('--reserved-height', `${height}px`);
+    if (height === undefined) return () => this.free();
+    const reserved = Math.min(height, this.room);
+    return () => this.#stage.style.setProperty('--reserved-height', `${reserved}px`);
   }
 
   /** The height available to the picture: that of `max-height` or of `--room` without what is around it, else infinite. */

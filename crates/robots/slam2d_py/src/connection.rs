@@ -45,7 +45,6 @@ pub struct RobotConnection {
 
 /// What comes from the threads.
 struct Driving {
-    url: String,
     recording: Option<PathBuf>,
     events: Receiver<Event>,
     /// `None` after the end.
@@ -163,7 +162,6 @@ fn start(
     Ok(RobotConnection {
         has_ended,
         drive: Mutex::new(Driving {
-            url: url.clone(),
             recording,
             events,
             frames: Some(frames),
@@ -217,7 +215,7 @@ impl RobotConnection {
     /// Sentences on the drive, once it has ended: what was lost or left out, and, after the last scan, what was corrected.
     #[getter]
     fn remarks(&self, py: Python<'_>) -> Vec<String> {
-        py.detach(|| self.drive().remarks())
+        py.detach(|| self.drive().remarks(&self.url))
     }
 
     /// Hangs up; the recording is complete then. Scans that came before are still yielded.
@@ -282,7 +280,7 @@ impl RobotConnection {
             }
             Some(Read::End(end)) => {
                 self.has_ended.store(true, Ordering::Relaxed);
-                drive.end(end).map(|()| None)
+                drive.end(&self.url, end).map(|()| None)
             }
             None => Ok(None),
         }
@@ -311,26 +309,26 @@ impl Driving {
     }
 
     /// Takes the end of the drive.
-    fn end(&mut self, end: Result<Vec<String>, NoLog>) -> PyResult<()> {
+    fn end(&mut self, url: &str, end: Result<Vec<String>, NoLog>) -> PyResult<()> {
         self.frames = None;
         self.hang_up()?;
         self.events.try_iter().try_for_each(|event| log(&event))?;
         self.corrected = end.map_err(|problem| {
             let heard = self.heard.as_ref();
-            let said = heard.and_then(|heard| heard.without_scans(&self.url, Host::Python));
+            let said = heard.and_then(|heard| heard.without_scans(url, Host::Python));
             LogError::new_err(said.unwrap_or_else(|| problem.to_string()))
         })?;
         Ok(())
     }
 
     /// Sentences on what was corrected, lost or left out.
-    fn remarks(&self) -> Vec<String> {
+    fn remarks(&self, url: &str) -> Vec<String> {
         let recording = self.recording.as_ref();
         let recording = recording.map(|path| path.display().to_string());
         let of_network = self
             .heard
             .iter()
-            .flat_map(|heard| heard.remarks(&self.url, recording.as_deref(), Host::Python));
+            .flat_map(|heard| heard.remarks(url, recording.as_deref(), Host::Python));
         self.corrected.iter().cloned().chain(of_network).collect()
     }
 }

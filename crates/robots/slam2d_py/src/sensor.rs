@@ -21,7 +21,7 @@ use crate::reduced::{self, Reduced};
 ///
 /// Raises FrameError for an invalid number.
 #[pyclass(frozen, module = "rustslam2d")]
-#[derive(PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Sensor {
     /// The geometry, without ranges.
     scan: LaserScan,
