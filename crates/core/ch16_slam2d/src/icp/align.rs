@@ -151,7 +151,8 @@ pub(super) fn point_to_plane(pairs: impl Iterator<Item = PlanePair>) -> PlaneSte
     let (mut count, mut cx, mut cy) = (0_usize, 0.0, 0.0);
     let mut hessian = PlaneHessian::default();
     let (mut gx, mut gy, mut gw) = (0.0, 0.0, 0.0);
-    // The levers are about the map's origin here, and moved to the centroid later.
+    // A pair's row of the Jacobian is (nx, ny, lever). The levers are about the map's origin here, and moved to the
+    // centroid later.
     for pair in pairs {
         count += 1;
         cx += pair.source.0;
