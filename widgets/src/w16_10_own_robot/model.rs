@@ -11,8 +11,8 @@
 //!
 //! # Simplified
 //!
-//! Nothing is simplified for the page; it has no truth to compare with. The walls of the picture are the ends of the
-//! keyframes' beams, thinned for drawing.
+//! Nothing is simplified for the page; it has no ground truth to compare with. The walls in the picture are the ends of
+//! the keyframes' beams, thinned for drawing.
 
 mod buttons;
 mod interaction;

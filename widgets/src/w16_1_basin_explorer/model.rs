@@ -12,8 +12,8 @@
 //!
 //! # Simplified
 //!
-//! Both sweeps are of one room without moving furniture, and each is taken at one instant. Range noise is normal and
-//! independent from beam to beam; no beam misses.
+//! Both sweeps are of the same room, in which nothing moves, and each is taken at one instant. Range noise is normal
+//! and independent from beam to beam; every beam returns.
 
 mod basins;
 mod curve;

@@ -89,7 +89,8 @@ impl ReferenceArgs {
 }
 
 impl Reference {
-    /// Evaluates a trajectory; reports skipped relations on standard error.
+    /// Evaluates a trajectory; reports skipped relations on standard error, and an ATE that a rigid motion more than
+    /// halves: the two are probably in different frames.
     ///
     /// # Errors
     /// If nothing can be compared.
@@ -118,7 +119,15 @@ impl Reference {
                 Ok(Grade::Relations(report))
             }
             Self::Truth(truth, alignment) => {
-                Ok(Grade::Truth(truth_errors(trajectory, truth, *alignment)?))
+                let report = truth_errors(trajectory, truth, *alignment)?;
+                let aligned_m = truth_errors(trajectory, truth, Alignment::Se2)?.ate.rmse;
+                if 2.0 * aligned_m < report.ate.rmse {
+                    eprintln!(
+                        "slam2d: the ATE's rms is {:.4} m as given and {aligned_m:.4} m after a rigid motion; if the two trajectories are in different frames, add --align se2",
+                        report.ate.rmse
+                    );
+                }
+                Ok(Grade::Truth(report))
             }
         }
     }

@@ -61,3 +61,29 @@ fn a_subcommand_that_moved_names_its_program_and_the_folder_that_has_it() {
         );
     }
 }
+
+#[test]
+fn evaluate_says_that_a_trajectory_in_another_frame_fits_once_it_is_aligned() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, line: fn(f64) -> [f64; 2]| {
+        let path = folder.path().join(name);
+        let lines = (0..20).map(|k| {
+            let [x, y] = line(f64::from(k));
+            format!("{k} {x} {y} 0 0 0 0 1\n")
+        });
+        fs::write(&path, lines.collect::<String>()).unwrap();
+        path.display().to_string()
+    };
+    let truth = write("truth.tum", |k| [k, k % 5.0]);
+    let turned = write("turned.tum", |k| [5.0 - k % 5.0, k]);
+    let noisy = write("noisy.tum", |k| [k, k % 5.0 + 0.1 * (k % 2.0)]);
+    let evaluated = |file: &str, align: &str| {
+        let output = slam2d(&["evaluate", file, "--truth", &truth, "--align", align]);
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(evaluated(&turned, "none").contains("0.0000 m after a rigid motion"));
+    for (file, align) in [(&turned, "se2"), (&noisy, "none"), (&truth, "none")] {
+        assert_eq!(evaluated(file, align), "", "{file}");
+    }
+}
