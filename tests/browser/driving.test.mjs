@@ -134,6 +134,9 @@ it('a step and a gate typed by the keyboard drive the lap of w16.2', async () =>
     await says(tab, 'gate rejects a loop of χ² 1.000 at the limit 7.815: accepted has to be χ² ≤ limit');
     // Ours drives on.
     await tab.waitForFunction((at) => document.querySelector(at).outcome.facts.loops_closed > 0, W2);
+    await type(tab, 'function gate(innovation, gap, drift, limit) {\n  return { chi2: NaN, accepted: false };\n}');
+    await press(tab, 'Drive the loops of w16.2 with it');
+    await says(tab, 'gate returned χ² NaN for an innovation of three numbers. Ours drives again.');
   });
 });
 
@@ -194,6 +197,8 @@ it('a wrong function is told its fault and may drive, an error names its line, a
     const faults = [
       ['function svd_align(src, dst) {\n  for (;;) {}\n}', 'There was no answer for 1 s, and your code was stopped. Is there an infinite loop? Ours drives again.'],
       ['function svd_align(src, dst) {\n  return [srk[0], 0, 0];\n}', 'Line 2: Your function ended with ReferenceError: srk is not defined. Ours drives again.'],
+      ['function svd_align(src, dst) {\n  return [0, NaN, 0];\n}', 'svd_align returned [0, NaN, 0]: each has to be a finite number. Ours drives again.'],
+      ['function svd_align(src, dst) {\n  return [src[0] / 0, 0, 0];\n}', /svd_align returned \[-?inf, 0, 0\]: each has to be a finite number\. Ours drives again\./],
       ['function svd_align(src, dst) {}', 'svd_align has to return three numbers, [x, y, θ]. Ours drives again.'],
       ['const other = 1;', 'There is no function svd_align. Keep its name. Ours drives again.'],
     ];

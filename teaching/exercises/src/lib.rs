@@ -5,12 +5,19 @@
 // A stub uses none of its arguments.
 #![allow(unused_variables)]
 
+#[cfg_attr(feature = "forged", path = "../forged/gauss_newton.rs")]
 pub mod gauss_newton;
+#[cfg_attr(feature = "forged", path = "../forged/point_to_plane_step.rs")]
 pub mod point_to_plane_step;
+#[cfg_attr(feature = "forged", path = "../forged/range_histogram.rs")]
 pub mod range_histogram;
+#[cfg_attr(feature = "forged", path = "../forged/residual.rs")]
 pub mod residual;
+#[cfg_attr(feature = "forged", path = "../forged/svd_align.rs")]
 pub mod svd_align;
+#[cfg_attr(feature = "forged", path = "../forged/trimmed_icp.rs")]
 pub mod trimmed_icp;
+#[cfg_attr(feature = "forged", path = "../forged/verify_loop.rs")]
 pub mod verify_loop;
 
 #[cfg(feature = "solutions")]

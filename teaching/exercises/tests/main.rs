@@ -6,6 +6,7 @@ mod gauss_newton;
 mod point_to_plane_step;
 mod range_histogram;
 mod residual;
+mod signatures;
 mod svd_align;
 mod trimmed_icp;
 mod verify_loop;

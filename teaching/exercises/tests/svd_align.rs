@@ -83,3 +83,17 @@ fn it_gives_what_the_core_gives() {
 fn no_pairs_give_the_identity() {
     assert_eq!(svd_align(&[], &[]), SE2::identity());
 }
+
+/// Every rotation about the place fits as well, but none moves it elsewhere.
+#[test]
+fn coincident_points_are_carried_onto_their_partners() {
+    let (here, there) = (Point2::new(1.3, -0.7), Point2::new(-0.4, 2.1));
+    for count in [1, 2, 9] {
+        let found = svd_align(&vec![here; count], &vec![there; count]);
+        let off = (found.transform(&here) - there).norm();
+        assert!(
+            off < 1e-12 && found.theta().is_finite(),
+            "{count} coincident points end {off:.2e} m from their partners: {found:?}"
+        );
+    }
+}

@@ -2,7 +2,9 @@
 
 use ch16_lab::basin::BasinScene;
 use ch16_lab::moving_box::{BoxConfig, BoxMethods, BoxScene};
-use ch16_listings::{IcpConfig, IcpVariant, PointCloud, SE2, Translation, VoxelMap, associate};
+use ch16_listings::{
+    IcpConfig, IcpResult, IcpVariant, PointCloud, SE2, Translation, VoxelMap, associate,
+};
 use ch16_slam2d::icp::{self, IcpWorkspace};
 use exercises::icp;
 use nalgebra::{Point2, Vector2};
@@ -144,6 +146,144 @@ fn too_few_pairs_end_it_at_the_guess() {
         let found = icp(&few, &map, SE2::identity(), &settings(0.0));
         let moves = found.trace.len() > 1;
         assert_eq!(moves, is_enough, "{points} pairs, and min_pairs is 8");
+    }
+}
+
+/// Two walls that meet and a third: points every 10 cm, each with its normal.
+fn room() -> (PointCloud, Vec<Option<Vector2<f64>>>) {
+    let places = (1..=20).map(|k| 0.1 * f64::from(k));
+    let (points, normals) = places
+        .flat_map(|along| {
+            [
+                (Point2::new(along, 0.0), Some(Vector2::y())),
+                (Point2::new(0.0, along), Some(Vector2::x())),
+                (Point2::new(along, 3.0), Some(-Vector2::y())),
+            ]
+        })
+        .unzip();
+    (PointCloud { points, stamp: 0.0 }, normals)
+}
+
+/// Registers a cloud, moved by less than half the distance of its points, on itself.
+fn on_itself(
+    cloud: &PointCloud,
+    normals: &[Option<Vector2<f64>>],
+    init: SE2,
+    cfg: &IcpConfig,
+) -> IcpResult {
+    let mut map = VoxelMap::new(0.25, cloud.points.len());
+    map.insert(&cloud.points, normals);
+    let off = SE2::new(Vector2::new(0.02, 0.03), 0.005).inverse();
+    let points = cloud.points.iter().map(|p| off.transform(p)).collect();
+    icp(&PointCloud { points, stamp: 0.0 }, &map, init, cfg)
+}
+
+fn claims(variant: IcpVariant) -> IcpConfig {
+    IcpConfig {
+        variant,
+        max_iters: 100,
+        ..settings(0.0)
+    }
+}
+
+#[test]
+fn it_has_converged_only_if_a_small_increment_ended_it() {
+    let (cloud, normals) = room();
+    for variant in [IcpVariant::PointToPoint, IcpVariant::PointToPlane] {
+        let at = |init, cfg: &IcpConfig| on_itself(&cloud, &normals, init, cfg).converged;
+        let cfg = claims(variant);
+        assert!(
+            at(SE2::identity(), &cfg),
+            "{variant:?}: all pairs are there"
+        );
+        let early = IcpConfig {
+            max_iters: 1,
+            ..cfg
+        };
+        assert!(
+            !at(SE2::identity(), &early),
+            "{variant:?}: the last increment is large, and converged is true"
+        );
+        let away = SE2::new(Vector2::new(50.0, 0.0), 0.0);
+        assert!(
+            !at(away, &cfg),
+            "{variant:?}: there is no pair, and converged is true"
+        );
+    }
+}
+
+#[test]
+fn steps_of_zero_for_want_of_normals_are_no_convergence() {
+    let (cloud, normals) = room();
+    let cfg = claims(IcpVariant::PointToPlane);
+    for (known, measures) in [(0, false), (2, false), (15, false), (16, true)] {
+        let few: Vec<_> = normals
+            .iter()
+            .enumerate()
+            .map(|(k, normal)| normal.filter(|_| k < known))
+            .collect();
+        let found = on_itself(&cloud, &few, SE2::identity(), &cfg);
+        assert_eq!(
+            found.converged, measures,
+            "{known} pairs have a normal, and 16 are needed: twice min_pairs"
+        );
+    }
+}
+
+/// Along a corridor every pose fits: the ridge takes no step there, and no pair measures how far it is.
+#[test]
+fn parallel_normals_measure_no_pose() {
+    for heading in [0.0, 0.7, 2.5] {
+        let turn = SE2::new(Vector2::zeros(), heading);
+        let along = (0..80).map(|k| 0.05 * f64::from(k));
+        let points = along.flat_map(|x| [Point2::new(x, 0.0), Point2::new(x, 2.0)]);
+        let points: Vec<_> = points.map(|p| turn.transform(&p)).collect();
+        let across = turn.transform(&Point2::new(0.0, 1.0)).coords;
+        let normals = vec![Some(across); points.len()];
+        let corridor = PointCloud { points, stamp: 0.0 };
+        let cfg = claims(IcpVariant::PointToPlane);
+        let found = on_itself(&corridor, &normals, SE2::identity(), &cfg);
+        assert!(
+            !found.converged && found.inliers > 100,
+            "all {} normals point across the corridor, and converged is true",
+            found.inliers
+        );
+    }
+}
+
+#[test]
+fn coincident_points_measure_no_rotation() {
+    let one_place = PointCloud {
+        points: vec![Point2::new(0.3, 0.3); 20],
+        stamp: 0.0,
+    };
+    let cfg = claims(IcpVariant::PointToPoint);
+    let found = on_itself(&one_place, &[None; 20], SE2::identity(), &cfg);
+    assert!(
+        !found.converged && found.inliers == 20,
+        "every rotation about the place fits, and converged is true"
+    );
+    assert!(found.rmse < 1e-9, "the position is found: {found:?}");
+}
+
+#[test]
+fn trimming_away_the_pairs_leaves_no_claim() {
+    let (cloud, normals) = room();
+    for variant in [IcpVariant::PointToPoint, IcpVariant::PointToPlane] {
+        for (trim, min_pairs) in [(0.95, 8), (0.99, 8), (1.0, 8), (1.0, 0)] {
+            let cfg = IcpConfig {
+                trim,
+                min_pairs,
+                ..claims(variant)
+            };
+            let found = on_itself(&cloud, &normals, SE2::identity(), &cfg);
+            assert!(
+                !found.converged,
+                "{variant:?}: {} of {} pairs are left, which measure no pose, and converged is true",
+                found.inliers,
+                cloud.points.len()
+            );
+        }
     }
 }
 

@@ -256,3 +256,38 @@ fn the_edge_knows_what_its_pairs_know() {
     let expected = regularize(icp_information(&pairs, 0.05, 25.0), 1.0, 2500.0);
     assert!((edge.omega - expected).amax() < 1e-6, "{}", edge.omega);
 }
+
+#[test]
+fn a_guess_without_pairs_is_no_loop_whatever_the_limits_are() {
+    let limits = LoopConfig {
+        max_rmse: f64::INFINITY,
+        min_inliers: 0,
+        gate: f64::INFINITY,
+        ..LoopConfig::default()
+    };
+    for points in [0, 7, usize::MAX] {
+        let mut first = First::new();
+        let sweep = &mut first.sweeps[first.node.index()];
+        sweep.points.truncate(points);
+        let found = first.verify(&limits);
+        assert_eq!(
+            found.accepted,
+            points == usize::MAX,
+            "a loop of {} pairs, of which 8 are needed: accepted is {}",
+            found.inliers,
+            found.accepted
+        );
+    }
+    let far = First::new().moved(SE2::new(Vector2::new(50.0, 0.0), 0.0));
+    let found = far.verify(&limits);
+    assert!(
+        found.inliers == 0 && !found.accepted,
+        "a belief 50 m off has no pair: {found:?}"
+    );
+    let apart = (found.edge.omega - Matrix3::identity()).amax();
+    assert!(
+        apart < 1e-12,
+        "no pair measured anything, so the ridge is left: {}",
+        found.edge.omega
+    );
+}

@@ -343,11 +343,25 @@ mod tests {
         ]
     }
 
+    /// The chance that more than 40 of 80 students get one of the tasks that make up `share` of all.
+    fn chance_of_most(share: f64) -> f64 {
+        let mut exactly = (1.0 - share).powi(80);
+        let mut more = 0.0;
+        for students in 1..=80 {
+            exactly *= f64::from(81 - students) / f64::from(students) * share / (1.0 - share);
+            if students > 40 {
+                more += exactly;
+            }
+        }
+        more
+    }
+
     /// A personal task of which most of a class have the same answer would be copied. No answer has more than a third of
-    /// the tasks, and a hash deals them: more than 40 of 80 students get the same of three answers in one class of 600.
+    /// the tasks, and a hash deals them; the guide states how many classes of 80 share an answer even so.
     #[test]
     fn no_answer_to_a_personal_task_is_that_of_more_than_half_of_a_class() {
         let mut personal = 0;
+        let mut shared: f64 = 0.0;
         for exercise in EXERCISES.iter() {
             let states = exercise.personal_states();
             if states.is_empty() {
@@ -370,6 +384,7 @@ mod tests {
                 "{}: two tasks are the same",
                 exercise.exercise
             );
+            let mut chance = 0.0;
             for choice in &exercise.choices {
                 let right = answers.values().filter(|answer| **answer == choice.choice);
                 let tasks = right.count();
@@ -380,7 +395,9 @@ mod tests {
                     choice.choice,
                     states.len()
                 );
+                chance += chance_of_most(tasks as f64 / states.len() as f64);
             }
+            shared = shared.max(chance);
             for class in classes() {
                 let mut counts = std::collections::HashMap::new();
                 for student in &class {
@@ -397,6 +414,10 @@ mod tests {
             }
         }
         assert_eq!(personal, 3, "16.5a, b and c");
+        let classes = 100.0 * (0.01 / shared).round();
+        let guide = include_str!("../../guide/marking.md").replace('\n', " ");
+        let said = format!("more than half the students share an answer is about 1 in {classes}");
+        assert!(guide.contains(&said), "{said}");
     }
 
     #[test]
