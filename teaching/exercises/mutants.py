@@ -121,6 +121,7 @@ EXERCISES = {
         ("pairs.len() >= cfg.min_pairs", "pairs.len() > cfg.min_pairs"),
         ("increment * pose", "pose * increment"),
         ("measures_pose(&pairs, cfg);", "true;"),
+        ("measures_pose(&pairs, cfg);", "pairs.len() >= cfg.min_pairs;"),
         ("converged = false", "converged = true"),
         ("vec![pose]", "vec![]"),
         ("increment.step_size() < cfg.tolerance", "increment.log().xy().norm() < cfg.tolerance"),

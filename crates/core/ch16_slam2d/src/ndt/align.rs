@@ -77,7 +77,8 @@ pub enum NdtStop {
 
 impl NdtStop {
     /// Whether the pose is a maximum that the points in cells measure in every direction. [`Self::NoBetterStep`] may be
-    /// one, or the border of a cell.
+    /// one, or the border of a cell. That it is the right maximum, and not a false one nearby, no stop can claim: compare
+    /// the score with that of the map's own points.
     #[must_use]
     pub fn converged(&self) -> bool {
         matches!(self, Self::SmallGradient { .. })
