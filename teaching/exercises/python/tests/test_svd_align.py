@@ -50,3 +50,12 @@ def test_it_gives_what_the_core_gives():
 
 def test_no_pairs_give_the_identity():
     assert_same_pose(svd_align(np.zeros((0, 2)), np.zeros((0, 2))), (0, 0, 0), 1e-15)
+
+
+def test_coincident_points_are_carried_onto_their_partners():
+    # Every rotation about the place fits as well, but none moves it elsewhere.
+    here, there = np.array([1.3, -0.7]), np.array([-0.4, 2.1])
+    for count in (1, 2, 9):
+        found = svd_align(np.tile(here, (count, 1)), np.tile(there, (count, 1)))
+        off = np.linalg.norm(rs.transform(found, here[None])[0] - there)
+        assert off < 1e-12 and np.isfinite(found[2]), f"{count} coincident points end {off:.2e} m off: {found}"
