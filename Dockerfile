@@ -10,7 +10,8 @@ RUN apt-get update && apt-get install --yes --no-install-recommends \
 FROM tools AS packages
 WORKDIR /src
 COPY . .
-RUN rustup toolchain install && cargo xtask package
+# The first call of cargo installs the toolchain that rust-toolchain.toml names.
+RUN cargo xtask package
 
 FROM debian:trixie-slim
 RUN apt-get update && apt-get install --yes --no-install-recommends ca-certificates python3 python3-pip python3-venv \
