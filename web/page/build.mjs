@@ -18,7 +18,7 @@ import { escapeHtml, withPolicy } from '../html.mjs';
 import { endWithOneSentence } from '../licences/allowed.mjs';
 import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
 import { colorStyle } from '../palette.mjs';
-import { copyFonts } from './fonts.mjs';
+import { FONT_PRELOADS, copyFonts } from './fonts.mjs';
 import { foldExercises, frameExercises, readExercises } from './exercises.mjs';
 import { addGallery } from './gallery.mjs';
 import { addListings } from './listings.mjs';
@@ -46,7 +46,7 @@ const frames = frameExercises(source, (html) => renderFormulas(html, 'mathml'));
 await writeFile(path.join(outDir, 'exercises.json'), JSON.stringify(frames));
 const scripts = await readFile(path.join(root, 'teaching/guide/widgets.md'), 'utf8');
 const specOf = await widgetSpecs();
-const template = await readFile(path.join(here, 'template.html'), 'utf8');
+const template = (await readFile(path.join(here, 'template.html'), 'utf8')).replace('{fonts}', FONT_PRELOADS);
 const pictured = pages.map((page) => ({ ...page, html: addPictures(renderFormulas(withFrame(template, page, pages, places)), page.source) }));
 const { sketches, story, match, building } = await drawStills(outDir);
 const { names, metafiles } = await bundleScripts({

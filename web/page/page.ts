@@ -181,7 +181,8 @@ function trackReading(): void {
     }
     if (side.matches) keepInView(list.parentElement, here);
     summary.textContent = here?.textContent ?? 'Contents';
-    list.parentElement?.classList.toggle('away', !side.matches && scrollTop < clientHeight / 2);
+    const isFirstScreen = scrollTop < clientHeight / 2;
+    list.parentElement?.classList.toggle('away', !side.matches && !list.open && (isFirstScreen || covers(summary)));
   };
   const wake = (): void => { if (frame === 0) frame = requestAnimationFrame(show); };
   addEventListener('scroll', wake, { passive: true });
@@ -194,6 +195,15 @@ function trackReading(): void {
     if (key !== 'Escape' || !list.open || side.matches) return;
     list.open = false;
     summary.focus();
+  });
+}
+
+/** Whether a bar at the bottom of the screen would lie on a widget. */
+function covers(bar: HTMLElement): boolean {
+  const { clientHeight } = document.documentElement;
+  return [...document.querySelectorAll('slam-widget')].some((widget) => {
+    const { top, bottom } = widget.getBoundingClientRect();
+    return top < clientHeight && bottom > clientHeight - bar.offsetHeight;
   });
 }
 

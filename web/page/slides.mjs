@@ -3,6 +3,7 @@
 // is the speaker's note.
 
 import { escapeHtml } from '../html.mjs';
+import { FONT_PRELOADS } from './fonts.mjs';
 
 /** What the slides take from a page, in order: headings, first paragraphs, formulas, folds and widgets. */
 const PARTS = /<h[12]\b[^>]*>([\s\S]*?)<\/h[12]>|<p>([\s\S]*?)<\/p>|<tex display>[\s\S]*?<\/tex>|<slam-widget name="([^"]*)"|<(details)\b[^>]*>\s*(?:<summary>([\s\S]*?)<\/summary>)?|<\/details>/g;
@@ -30,6 +31,7 @@ export function slidesPage(pages, scripts, exercises, render) {
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>SLAM in two dimensions: slides</title>
 <link rel="icon" href="data:,">
+${FONT_PRELOADS}
 <link rel="stylesheet" href="katex/katex.css">
 <link rel="stylesheet" href="slides.css">
 <script type="module" src="slides.js"></script>

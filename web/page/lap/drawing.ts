@@ -52,23 +52,27 @@ export function draw(story: Story, moment: Moment, surface: Surface, widthPx: nu
   const [wheelsX, wheelsY] = moment.wheels.at(-1) ?? [robotX, robotY];
   drawRobot(surface, toPixels, [wheelsX, wheelsY, wheelsHeading(moment)], 'prediction', 8 * unit);
   drawRobot(surface, toPixels, moment.robot, 'posterior', 10 * unit);
+  drawPathLabels(moment, surface, toPixels, unit);
   if (moment.closed.length > 0) drawCorrection(moment, surface, unit, widthPx);
-  else drawLabels(moment, surface, toPixels, unit, widthPx);
+  else drawWallLabels(moment, surface, toPixels, unit, widthPx);
 }
 
-/** As the doubled wall closes: how far the farthest keyframe has moved, and nothing else in words. */
+/** As the doubled wall closes: how far the farthest keyframe has moved, below the map. */
 function drawCorrection({ before, keyframes }: Moment, surface: Surface, unit: number, widthPx: number): void {
   const moved = keyframes.map(([x, y], node) => {
     const [oldX, oldY] = before.poses[node] ?? [x, y];
     return Math.hypot(x - oldX, y - oldY);
   });
-  const size = 64 * unit;
-  surface.words(`${Math.round(100 * Math.max(...moved))} cm`, [widthPx / 2, 0.75 * size], 'ink', size);
+  const size = 36 * unit;
+  const words = `the past moved ${Math.round(100 * Math.max(...moved))} cm`;
+  surface.words(words, [widthPx / 2, widthPx / aspectAt(widthPx) - 0.75 * size], 'ink', size);
 }
 
-/** Labels each path at its end, and the walls once the way back has some. */
-function drawLabels(moment: Moment, surface: Surface, toPixels: Camera, unit: number, widthPx: number): void {
-  const size = Math.max(14 * unit, 11);
+const labelSize = (unit: number): number => Math.max(14 * unit, 11);
+
+/** Labels each path at its end. */
+function drawPathLabels(moment: Moment, surface: Surface, toPixels: Camera, unit: number): void {
+  const size = labelSize(unit);
   const robot = toPixels([moment.robot[0], moment.robot[1]]);
   const wheels = toPixels(moment.wheels.at(-1) ?? [moment.robot[0], moment.robot[1]]);
   const side = wheels[1] > robot[1] ? 1 : -1;
@@ -76,8 +80,13 @@ function drawLabels(moment: Moment, surface: Surface, toPixels: Camera, unit: nu
   const ofWheels = wheels[1] + side * 1.7 * size < size ? 1 : side;
   surface.words('by the wheels', [wheels[0], wheels[1] + ofWheels * 1.7 * size], 'prediction', size);
   surface.words('by the sweeps', [robot[0], robot[1] - side * 1.7 * size], 'posterior', size);
+}
+
+/** Labels the walls once the way back has some. */
+function drawWallLabels(moment: Moment, surface: Surface, toPixels: Camera, unit: number, widthPx: number): void {
   // On a phone they would lie on each other: the caption has the words.
   if (moment.act === 0 || widthPx < PHONE_PX) return;
+  const size = labelSize(unit);
   surface.words('walls, outbound', toPixels(WALL_LABELS.out), 'outbound', size);
   surface.words('walls, return', toPixels(WALL_LABELS.back), 'return', size);
 }

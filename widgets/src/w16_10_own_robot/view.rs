@@ -9,7 +9,7 @@ use crate::w16_10_own_robot::model::panel;
 #[must_use]
 pub fn arrange(scene: &Scene, width: f32) -> Arrangement {
     let mut panels = scene.panels.iter();
-    let is_mapped = panels.any(|shown| shown.id == panel::MAP && shown.x.is_drawn());
+    let is_mapped = panels.any(|shown| shown.id == panel::MAP && shown.is_plan());
     let map = match (width < SIDE_BY_SIDE, is_mapped) {
         (true, false) => Slot::fixed(panel::MAP, 440.0),
         (true, true) => Slot::natural(panel::MAP, 520.0),

@@ -452,6 +452,13 @@ pub struct Panel {
 }
 
 impl Panel {
+    /// Whether it is a plan: it has walls, and no axes.
+    #[must_use]
+    pub fn is_plan(&self) -> bool {
+        let mut layers = self.layers.iter();
+        layers.any(|layer| matches!(layer, Layer::Walls(_))) && !self.x.is_drawn()
+    }
+
     /// The range of both axes.
     #[must_use]
     pub fn bounds(&self) -> Bounds {

@@ -12,8 +12,10 @@ use widget_kit::scene::{
 };
 
 use super::log_state::LogState;
+use super::wheels::poses as wheel_poses;
 use super::{OwnRobot, panel};
 use crate::w16_10_own_robot::spec::{COLOUR, Colour, LOOPS, MARKED, ShownLoops};
+use crate::xy::xy;
 use charts::{fit, sure};
 use visitor::{OTHER, other_log};
 use wheels::wheels;
@@ -41,21 +43,18 @@ pub fn scene(robot: &OwnRobot) -> Scene {
 
 fn map(own: &OwnRobot) -> Panel {
     let robot = &own.robot;
-    let is_empty = robot.keyframes.is_empty();
     let bounds = match robot.progress.stage {
         Stage::Empty => invitation::BOUNDS,
         _ => bounds(robot),
     };
-    let axis = |i: usize| {
-        // Metres mean something only on a map.
-        let label = if is_empty { "" } else { ["x (m)", "y (m)"][i] };
-        Axis::new(label, bounds.min[i], bounds.max[i])
-    };
+    let axis = |i: usize| Axis::hidden(bounds.min[i], bounds.max[i]);
     let mut layers: Vec<Layer> = robot.map.iter().cloned().map(Layer::Raster).collect();
     let mut color_bar = None;
-    if is_empty {
+    if robot.keyframes.is_empty() {
         layers.extend(without_map(own));
     } else {
+        // No walls, but a plan with its scale.
+        layers.push(Layer::Walls(Vec::new()));
         layers.extend(links(own));
         let (shades, bar) = way(own);
         layers.extend(shades);
@@ -144,7 +143,7 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
     legend
 }
 
-/// The observed area, rounded to whole metres so that a growing map seldom moves the axes.
+/// The observed area and the wheels' path around it, rounded to whole metres so that a growing map seldom moves.
 fn bounds(robot: &LogState) -> Bounds {
     let mut bounds = Bounds {
         min: [f64::INFINITY; 2],
@@ -163,6 +162,15 @@ fn bounds(robot: &LogState) -> Bounds {
     }
     if !bounds.size().iter().all(|size| size.is_finite()) {
         return EMPTY;
+    }
+    // However far the wheels' path leads, the map fills half of the view each way.
+    let beyond = bounds.size().map(|size| 0.5 * size);
+    let [min, max] = [bounds.min, bounds.max];
+    for pose in wheel_poses(robot).iter().flatten() {
+        for (i, at) in xy(pose).into_iter().enumerate() {
+            bounds.min[i] = math::max(bounds.min[i].min(at), min[i] - beyond[i]);
+            bounds.max[i] = math::min(bounds.max[i].max(at), max[i] + beyond[i]);
+        }
     }
     let low = bounds.min.map(|low| (low - MARGIN_M).floor());
     let high = bounds.max.map(|high| (high + MARGIN_M).ceil());

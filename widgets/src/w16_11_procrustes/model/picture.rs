@@ -77,8 +77,8 @@ fn letter(trace: &ProcrustesTrace, kind: Handedness, theta_rad: f64) -> Vec<[f64
     LETTER.map(put).to_vec()
 }
 
-/// The best of all matrices and its R, once the reader has acted and nothing turns any more.
-fn winner(trace: &ProcrustesTrace) -> Vec<Layer> {
+/// The best of all matrices, its R and its name at `above`, once the reader has acted and nothing turns any more.
+fn winner(trace: &ProcrustesTrace, above: [f64; 2]) -> Vec<Layer> {
     if trace.asks || trace.playback.is_playing() {
         return Vec::new();
     }
@@ -90,7 +90,6 @@ fn winner(trace: &ProcrustesTrace) -> Vec<Layer> {
         Handedness::Turn => "best fit: rotated",
         Handedness::Mirror => "best fit: mirrored",
     };
-    let letter = letter(trace, kind, best);
     vec![
         Layer::line(
             moved.map(|p| [p.x, p.y]).collect(),
@@ -98,8 +97,8 @@ fn winner(trace: &ProcrustesTrace) -> Vec<Layer> {
             tone(kind),
             2.0,
         ),
-        Layer::line(letter.clone(), Stroke::Solid, tone(kind), 4.0),
-        Layer::label(letter[3], name.to_owned(), 14.0),
+        Layer::line(letter(trace, kind, best), Stroke::Solid, tone(kind), 4.0),
+        Layer::label(above, name.to_owned(), 0.0),
     ]
 }
 
@@ -112,6 +111,13 @@ fn points(trace: &ProcrustesTrace) -> Panel {
         })
         .collect();
     let target: Vec<[f64; 2]> = trace.pairs.target.iter().map(|q| [q.x, q.y]).collect();
+    // In steps of half a metre, so that a drag seldom moves the axes.
+    let mean = problem.target_mean;
+    let middle = [mean.x, mean.y].map(|value| (2.0 * value).round() / 2.0);
+    let far = |at: &[f64; 2]| math::norm2(at[0] - middle[0], at[1] - middle[1]) + 0.4;
+    let reach = (target.iter().chain(&moved).map(far)).fold(MIN_REACH_M, math::max);
+    let reach = (2.0 * reach).ceil() / 2.0;
+    let axis = |i: usize| Axis::hidden(middle[i] - reach, middle[i] + reach);
     let line = |points: &[[f64; 2]], stroke, tone, width_px| {
         Layer::line(points.to_vec(), stroke, tone, width_px)
     };
@@ -129,7 +135,7 @@ fn points(trace: &ProcrustesTrace) -> Panel {
         tone(kind),
         6.0,
     ));
-    layers.extend(winner(trace));
+    layers.extend(winner(trace, [middle[0], middle[1] + 0.95 * reach]));
     layers.extend([
         line(&moved, Stroke::Solid, tone(kind), 2.0),
         Layer::points(moved.clone(), mark(kind), tone(kind), 4.5),
@@ -139,13 +145,6 @@ fn points(trace: &ProcrustesTrace) -> Panel {
         tone: Tone::Measurement,
         label: "drag the target point",
     }));
-    // In steps of half a metre, so that a drag seldom moves the axes.
-    let mean = problem.target_mean;
-    let middle = [mean.x, mean.y].map(|value| (2.0 * value).round() / 2.0);
-    let far = |at: &[f64; 2]| math::norm2(at[0] - middle[0], at[1] - middle[1]) + 0.4;
-    let reach = (target.iter().chain(&moved).map(far)).fold(MIN_REACH_M, math::max);
-    let reach = (2.0 * reach).ceil() / 2.0;
-    let axis = |i: usize| Axis::hidden(middle[i] - reach, middle[i] + reach);
     Panel {
         id: panel::POINTS,
         title: String::new(),

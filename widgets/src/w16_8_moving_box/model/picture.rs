@@ -65,7 +65,12 @@ fn room(moving: &MovingBox) -> Panel {
         add_errors(moving, &mut layers);
         format!("Each pair pulls: pulls ×{larger}, errors ×{ERRORS_LARGER}")
     };
-    layers.push(Layer::pose(truth.to_array(), Mark::Plus, Tone::Truth, 6.0));
+    layers.push(Layer::points(
+        vec![[truth.x(), truth.y()]],
+        Mark::Plus,
+        Tone::Truth,
+        6.0,
+    ));
     layers.push(Layer::Handle {
         at: box_middle(scene),
         tone: Tone::Ink,

@@ -51,7 +51,7 @@ pub fn front(
         let at = [origin[0], origin[1] + y];
         surface.text(at, Align::Left, line, TextSize::Body, ink);
     }
-    if plan::is_plan(panel) {
+    if panel.is_plan() {
         plan::scale_bar(surface, to, theme);
     } else if panel.x.is_drawn() || panel.aspect == Aspect::Free {
         border(surface, to.plot(), Pen::solid(quiet, 1.0));

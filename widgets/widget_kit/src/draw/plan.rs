@@ -3,7 +3,7 @@
 use core::f32::consts::TAU;
 
 use crate::palette::{self, Rgb, Theme, tone};
-use crate::scene::{Layer, Mark, Panel, Tone};
+use crate::scene::{Mark, Tone};
 use crate::surface::{Align, Pen, Px, PxRect, Surface, TextSize};
 use crate::transform::Transform;
 
@@ -25,17 +25,10 @@ const GAP_RAD: f32 = 0.2;
 const SEEN: [f32; 2] = [0.26, 0.12];
 /// Opacity of an area of uncertainty, in its middle and at its edge.
 const UNSURE: [f32; 2] = [0.34, 0.08];
+/// A metre shorter than this is drawn as ten, px.
+const LEAST_BAR_PX: f32 = 12.0;
 /// Opacity of the body of a robot that is not there.
 const GHOST: f32 = 0.2;
-
-/// Whether a panel is a plan: it has walls, and no axes.
-pub fn is_plan(panel: &Panel) -> bool {
-    let has_walls = panel
-        .layers
-        .iter()
-        .any(|layer| matches!(layer, Layer::Walls(_)));
-    has_walls && !panel.x.is_drawn()
-}
 
 /// The floor within the walls, and the walls: first a line around all, then all fills, so that joints vanish.
 pub fn walls(surface: &mut dyn Surface, walls: &[[[f64; 2]; 2]], to: &Transform, theme: Theme) {
@@ -210,11 +203,13 @@ fn circle(center: Px, radius: f32) -> Vec<Px> {
         .collect()
 }
 
-/// A bar of one metre at the lower left, with its length.
+/// A bar at the lower left with its length: 1 m, or 10 m in a large place.
 pub fn scale_bar(surface: &mut dyn Surface, to: &Transform, theme: Theme) {
     let plot = to.plot();
-    let length = (1.0 / to.units_per_px()[0]) as f32;
-    let words = "1 m";
+    let px_per_m = (1.0 / to.units_per_px()[0]) as f32;
+    let metres = if px_per_m < LEAST_BAR_PX { 10 } else { 1 };
+    let length = px_per_m * metres as f32;
+    let words = &format!("{metres} m");
     let width = surface.text_width(words, TextSize::Small);
     if length + width + 24.0 > plot.width {
         return;

@@ -29,18 +29,14 @@ pub fn map(moment: &LapState) -> Panel {
     if moment.runs.place() == Some(BuiltInWorld::Apartment) && moment.drawn.is_none() {
         layers.extend(rooms());
     }
-    // The walls give the scale; a pencil needs coordinates.
-    let axis = |label, i: usize| match moment.drawn.and_then(|drawn| drawn.tool) {
-        Some(_) => Axis::new(label, bounds.min[i], bounds.max[i]),
-        None => Axis::hidden(bounds.min[i], bounds.max[i]),
-    };
+    let axis = |i: usize| Axis::hidden(bounds.min[i], bounds.max[i]);
     Panel {
         id: panel::MAP,
         title: title(moment),
         weight: Weight::Main,
         aspect: Aspect::Equal,
-        x: axis("x (m)", 0),
-        y: axis("y (m)", 1),
+        x: axis(0),
+        y: axis(1),
         layers,
         legend: legend(moment),
         color_bar: None,
