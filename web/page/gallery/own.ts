@@ -53,12 +53,13 @@ export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement, says: HTM
     if (ask !== asked) return;
     card.hidden = !isShown;
     says.textContent = isDriveable ? '' : withCapital(outcome.sentence);
-    says.classList.toggle('unnoticed', !isDriveable || (isOver && isUnnoticed(facts)));
+    says.classList.toggle('undriveable', !isDriveable);
     if (!isOver) return;
     const points = score(facts);
     record = Math.max(record, points);
     const [title, words] = [`Score ${points.toFixed(1)}, best ${record.toFixed(1)}`, sentence(facts)];
-    says.textContent = `${title}. ${words} ${hint(facts)}`;
+    const { notice, hint } = remark(facts);
+    says.textContent = `${notice} Best so far: ${record.toFixed(1)} m. ${hint}`;
     if (isShown) fill(card, widget, svg, title, words);
   };
   widget.addEventListener('slam-change', (event) => {
@@ -80,11 +81,14 @@ function sentence(facts: Facts): string {
   return `${lead} ${off.startsWith('ends') ? '' : 'is '}${off}${agrees === '' ? '' : `, and its ${agrees}`}.`;
 }
 
-/** How to make it worse. */
-function hint(facts: Facts): string {
-  if (!isUnnoticed(facts)) return 'The map shows it, which scores nothing. Do not let the robot see any place twice.';
-  if (metresOff(facts) < HOME_M) return 'Make it worse: rub out doors and corners, so that the walls look the same everywhere.';
-  return 'Make it worse: make the smooth walls longer.';
+/** Whether anything warns the robot of the error, which is in large figures, and how to make it worse. */
+function remark(facts: Facts): { notice: string; hint: string } {
+  const { agrees } = numbers(facts);
+  if (agrees === '') return { notice: 'Nothing is seen twice, which scores nothing.', hint: 'Let the robot come back.' };
+  if (!isUnnoticed(facts)) return { notice: `It shows: the ${agrees}, which scores nothing.`, hint: 'Let the robot see no room twice.' };
+  const isHome = metresOff(facts) < HOME_M;
+  const change = isHome ? 'rub out doors and corners, so that the walls look the same everywhere' : 'make the smooth walls longer';
+  return { notice: `Nothing warns the robot: its ${agrees}.`, hint: `Make it worse: ${change}.` };
 }
 
 function withCapital(words: string): string {

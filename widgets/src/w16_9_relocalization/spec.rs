@@ -65,7 +65,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.9",
     name: "Come back tomorrow",
     title: "Where can the robot work out where it is?",
-    claim: "It can wherever only one place fits its scan.",
+    claim: "It can where only one place fits its scan.",
     gesture: "Drag the robot anywhere, then let it go.",
     awaits: Awaits::Nothing,
     notice: &[

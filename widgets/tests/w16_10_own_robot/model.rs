@@ -567,3 +567,27 @@ fn the_wheels_alone_start_where_the_map_has_the_first_keyframe_with_odometry() {
     );
     assert_eq!(path(&mapped()), None, "a log without odometry");
 }
+
+#[test]
+fn the_view_follows_the_wheels_up_to_twice_the_size_of_the_map() {
+    // The robot drives 20 m along x; its wheels lead it along y.
+    let view = |wheels_m: f64| {
+        let mut robot = mapped();
+        let keyframe = |k: u8| KeyframeReport {
+            stamp_s: f64::from(k),
+            pose: [5.0 * f64::from(k), 0.0, 0.0],
+            odometry: [0.0, wheels_m * f64::from(k) / 4.0, 0.0],
+            fit: 1.0,
+            sigma_m: 0.01,
+        };
+        report(
+            &mut robot,
+            &MapperReport::Keyframes((0..5).map(keyframe).collect()),
+        );
+        let map = robot.scene().panels.swap_remove(0);
+        assert!(map.is_plan(), "it has a bar of metres in place of axes");
+        map.y.max
+    };
+    assert!(view(8.0) > 8.0);
+    assert!(view(1e3) < 30.0);
+}

@@ -163,13 +163,14 @@ fn bounds(robot: &LogState) -> Bounds {
     if !bounds.size().iter().all(|size| size.is_finite()) {
         return EMPTY;
     }
-    // However far the wheels' path leads, the map fills half of the view each way.
-    let beyond = bounds.size().map(|size| 0.5 * size);
+    // However far the wheels' path leads, the view is at most twice as large as the map.
+    let [width, height] = bounds.size();
+    let beyond = 0.5 * math::max(width, height);
     let [min, max] = [bounds.min, bounds.max];
     for pose in wheel_poses(robot).iter().flatten() {
         for (i, at) in xy(pose).into_iter().enumerate() {
-            bounds.min[i] = math::max(bounds.min[i].min(at), min[i] - beyond[i]);
-            bounds.max[i] = math::min(bounds.max[i].max(at), max[i] + beyond[i]);
+            bounds.min[i] = math::max(bounds.min[i].min(at), min[i] - beyond);
+            bounds.max[i] = math::min(bounds.max[i].max(at), max[i] + beyond);
         }
     }
     let low = bounds.min.map(|low| (low - MARGIN_M).floor());
