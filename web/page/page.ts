@@ -169,6 +169,8 @@ function trackReading(): void {
   document.body.append(bar);
   const links = [...list.querySelectorAll<HTMLAnchorElement>('a')];
   const targets = links.map(({ hash }) => document.getElementById(hash.slice(1)));
+  /** The widgets at the bottom of the screen. */
+  const low = new Set<Element>();
   let frame = 0;
   const show = (): void => {
     frame = 0;
@@ -182,9 +184,18 @@ function trackReading(): void {
     if (side.matches) keepInView(list.parentElement, here);
     summary.textContent = here?.textContent ?? 'Contents';
     const isFirstScreen = scrollTop < clientHeight / 2;
-    list.parentElement?.classList.toggle('away', !side.matches && !list.open && (isFirstScreen || covers(summary)));
+    list.parentElement?.classList.toggle('away', !side.matches && !list.open && (isFirstScreen || low.size > 0));
   };
   const wake = (): void => { if (frame === 0) frame = requestAnimationFrame(show); };
+  // As high as the bar.
+  const bottom = new IntersectionObserver((entries) => {
+    for (const { target, isIntersecting } of entries) {
+      if (isIntersecting) low.add(target);
+      else low.delete(target);
+    }
+    wake();
+  }, { rootMargin: '-95% 0px 0px' });
+  for (const widget of document.querySelectorAll('slam-widget')) bottom.observe(widget);
   addEventListener('scroll', wake, { passive: true });
   addEventListener('resize', wake);
   show();
@@ -195,15 +206,6 @@ function trackReading(): void {
     if (key !== 'Escape' || !list.open || side.matches) return;
     list.open = false;
     summary.focus();
-  });
-}
-
-/** Whether a bar at the bottom of the screen would lie on a widget. */
-function covers(bar: HTMLElement): boolean {
-  const { clientHeight } = document.documentElement;
-  return [...document.querySelectorAll('slam-widget')].some((widget) => {
-    const { top, bottom } = widget.getBoundingClientRect();
-    return top < clientHeight && bottom > clientHeight - bar.offsetHeight;
   });
 }
 
