@@ -361,6 +361,7 @@ impl PoseGraph {
             .collect();
         let solver = Settings {
             jacobians: JacobianModel::Exact,
+            factor_use: FactorUse::WhileStepsShrink,
             ..Settings::default()
         };
         select_added(&self.problem, &trusted, solver, LOOP_CHI2)

@@ -1,6 +1,12 @@
 //! Selection of inlier loops, from more than one start.
 
+mod added;
+#[cfg(test)]
+mod tests;
+
 use pr_geom::{SE2, math, order_by};
+
+pub use added::select_added;
 
 use super::along_path::{Direction, select_along_path};
 use super::consistency::{ConsistencySettings, consistent_set};
@@ -141,36 +147,6 @@ pub fn select_consistent(
     cheapest(selections)
 }
 
-/// [`select_inliers`] after measurements were added to a solved graph, from its present poses.
-///
-/// The selection starts once with all loops and once without those added since the poses were solved
-/// ([`Problem::optimized_factors`]); each is refined, and the lower cost wins. Following the path again, or removing
-/// nearly rejected loops for a trial, takes solves of the whole graph that repeat what earlier selections found.
-///
-/// # Errors
-/// If neither start leads to solvable normal equations and a finite cost.
-///
-/// # Panics
-/// If `trusted` does not have one entry for each measurement.
-pub fn select_added(
-    problem: &Problem,
-    trusted: &[bool],
-    solver: Settings,
-    max_chi2: f64,
-) -> Result<InlierSelection, OptimizeError> {
-    let search = Search {
-        trials: 0,
-        ..Search::new(problem, trusted, solver, max_chi2)
-    };
-    let solved = problem.optimized_factors();
-    let selections = [true, false].map(|is_added| {
-        let starts_in = |k: usize| is_added || trusted[k] || k < solved;
-        let inliers = (0..trusted.len()).map(starts_in).collect();
-        search.improved(problem.poses().to_vec(), inliers, InlierStart::PresentPoses)
-    });
-    cheapest(selections)
-}
-
 /// Decrease of the cost if a loop is flipped between inlier and outlier, to first order.
 #[derive(Clone, Copy, Debug)]
 struct Gain {
@@ -269,11 +245,25 @@ impl<'a> Search<'a> {
         inliers: Vec<bool>,
         start: InlierStart,
     ) -> Result<InlierSelection, OptimizeError> {
+        self.improved_until(poses, inliers, start, |_| false)
+    }
+
+    /// [`improved`](Self::improved), up to the first selection that `is_enough`.
+    fn improved_until(
+        &self,
+        poses: Vec<SE2>,
+        inliers: Vec<bool>,
+        start: InlierStart,
+        mut is_enough: impl FnMut(&[bool]) -> bool,
+    ) -> Result<InlierSelection, OptimizeError> {
         let mut optimizer = Optimizer::new(self.solver);
         let mut best = self.solved(&mut optimizer, &poses, inliers, start)?;
         let mut bars = BARS.into_iter();
         let mut bar = bars.next().unwrap_or(1.0);
         for _ in 0..CHANGES {
+            if is_enough(&best.inliers) {
+                break;
+            }
             let gains = self.gains(&mut optimizer, &best)?;
             let largest = gains.iter().map(|gain| gain.value).fold(0.0, math::max);
             if largest <= 0.0 {
