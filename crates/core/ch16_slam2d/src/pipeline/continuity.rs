@@ -274,9 +274,17 @@ impl<'a> Around<'a> {
             Some(rival) if cost(&rival) < cost(&best) => (rival, Some(best)),
             rival => (best, rival),
         };
-        let is_sure = rival.is_none_or(|rival| cost(&best) + SURE < cost(&rival));
+        let is_sure = rival.is_none_or(|rival| cost(&best) + sure_nats(reach) < cost(&rival));
         (is_sure && self.is_good(&best)).then_some(best.registered.pose)
     }
+}
+
+/// Costs that differ by more than this, nats, decide between the poses within a reach (m, rad): the more of them are
+/// compared, the sooner a wrong one fits better by chance.
+fn sure_nats((reach_m, reach_rad): (f64, f64)) -> f64 {
+    let across = math::max(reach_m / SHIFT.0, 1.0);
+    let distinct = across * across * math::max(reach_rad / SHIFT.1, 1.0);
+    SURE + math::ln(distinct)
 }
 
 #[cfg(test)]
@@ -322,6 +330,16 @@ mod tests {
     fn a_robot_that_moved_during_a_gap_is_searched_for_although_its_wheels_seem_to_stand() {
         let wheels = |step: usize| Some(truth(0).between(&truth(step)));
         assert_eq!(after_gap(26, 3.0, wheels), (0, 1));
+    }
+
+    #[test]
+    fn the_wider_the_search_the_more_evidence_it_takes() {
+        // 1e-12: rounding.
+        assert!((sure_nats(SHIFT) - SURE).abs() < 1e-12);
+        // After a turn in mit-csail, driven backwards, a wrong pose fits 3.26 nats better than its rival, and the right
+        // ones 18 and more.
+        let sure = sure_nats((1.386, 2.007));
+        assert!(3.26 < sure && sure < 18.0, "{sure}");
     }
 
     #[test]
