@@ -70,7 +70,7 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .loops .newer { stroke: var(--newer); }
 .loops span { flex: 1 0 100%; color: var(--soft); font-size: 0.8125rem; }
 .bar { container-type: inline-size; }
-.controls { position: relative; z-index: 1; background: var(--paper); border-top: 1px solid var(--line); display: grid; grid-template: "verdict verdict" "transport transport" "first tools" / minmax(0, 1fr) auto;
+.controls { position: relative; z-index: 1; background: var(--paper); border-top: 1px solid var(--line); display: grid; grid-template: "transport transport" "first tools" "verdict verdict" / minmax(0, 1fr) auto;
   gap: 0.25rem 0.75rem; padding: 0.3rem 0.75rem 0.4rem; }
 .transport { grid-area: transport; }
 .first { grid-area: first; }
