@@ -6,7 +6,7 @@ mod visitor;
 mod wheels;
 
 use log_messages::Stage;
-use pr_geom::{math, sort_numbers};
+use pr_geom::{SE2, math, sort_numbers};
 use widget_kit::scene::{
     Aspect, Axis, Bounds, ColorBar, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
@@ -43,9 +43,10 @@ pub fn scene(robot: &OwnRobot) -> Scene {
 
 fn map(own: &OwnRobot) -> Panel {
     let robot = &own.robot;
+    let by_wheels = wheel_poses(robot);
     let bounds = match robot.progress.stage {
         Stage::Empty => invitation::BOUNDS,
-        _ => bounds(robot),
+        _ => bounds(robot, &by_wheels),
     };
     let axis = |i: usize| Axis::hidden(bounds.min[i], bounds.max[i]);
     let mut layers: Vec<Layer> = robot.map.iter().cloned().map(Layer::Raster).collect();
@@ -58,7 +59,7 @@ fn map(own: &OwnRobot) -> Panel {
         layers.extend(links(own));
         let (shades, bar) = way(own);
         layers.extend(shades);
-        layers.extend(wheels(own, &bounds));
+        layers.extend(wheels(own, &by_wheels, &bounds));
         color_bar = bar;
         layers.extend(here(own));
         layers.extend(other_log(own));
@@ -144,7 +145,7 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
 }
 
 /// The observed area and the wheels' path around it, rounded to whole metres so that a growing map seldom moves.
-fn bounds(robot: &LogState) -> Bounds {
+fn bounds(robot: &LogState, by_wheels: &[Option<SE2>]) -> Bounds {
     let mut bounds = Bounds {
         min: [f64::INFINITY; 2],
         max: [f64::NEG_INFINITY; 2],
@@ -167,7 +168,7 @@ fn bounds(robot: &LogState) -> Bounds {
     let [width, height] = bounds.size();
     let beyond = 0.5 * math::max(width, height);
     let [min, max] = [bounds.min, bounds.max];
-    for pose in wheel_poses(robot).iter().flatten() {
+    for pose in by_wheels.iter().flatten() {
         for (i, at) in xy(pose).into_iter().enumerate() {
             bounds.min[i] = math::max(bounds.min[i].min(at), min[i] - beyond);
             bounds.max[i] = math::min(bounds.max[i].max(at), max[i] + beyond);

@@ -23,10 +23,14 @@ pub fn poses(robot: &LogState) -> Vec<Option<SE2>> {
     poses.collect()
 }
 
+/// Distance of the pose by odometry alone from that of its keyframe, m; `None` without odometry.
+pub fn off_m(robot: &LogState, by_wheels: &[Option<SE2>], keyframe: usize) -> Option<f64> {
+    let [x, y, _] = robot.keyframes.get(keyframe)?.pose;
+    let wheels = by_wheels.get(keyframe)?.as_ref()?;
+    Some(math::norm2(wheels.x() - x, wheels.y() - y))
+}
+
 /// Distance between the ends of the two paths, m; `None` without odometry.
 pub fn end_m(robot: &LogState) -> Option<f64> {
-    let poses = poses(robot);
-    let (wheels, keyframe) = poses.last()?.as_ref().zip(robot.keyframes.last())?;
-    let [x, y, _] = keyframe.pose;
-    Some(math::norm2(wheels.x() - x, wheels.y() - y))
+    off_m(robot, &poses(robot), robot.keyframes.len().checked_sub(1)?)
 }

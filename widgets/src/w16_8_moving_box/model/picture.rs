@@ -12,6 +12,7 @@ use widget_kit::scene::{
 use super::curves::SEEDS;
 use super::{MovingBox, panel, settings};
 use crate::w16_8_moving_box::spec::{MAX_SHARE, SHARE};
+use crate::xy::xy;
 
 /// Tones and marks of the methods.
 const TONES: [Tone; 3] = [Tone::Series(0), Tone::Series(1), Tone::Series(2)];
@@ -66,7 +67,7 @@ fn room(moving: &MovingBox) -> Panel {
         format!("Each pair pulls: pulls ×{larger}, errors ×{ERRORS_LARGER}")
     };
     layers.push(Layer::points(
-        vec![[truth.x(), truth.y()]],
+        vec![xy(&truth)],
         Mark::Plus,
         Tone::Truth,
         6.0,
