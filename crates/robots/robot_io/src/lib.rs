@@ -12,9 +12,9 @@
 //! - [`line_log`]: shared by all text formats.
 //! - [`graph_file`]: pose graphs of g2o, TORO and JSON.
 //! - [`map_image`]: maps for Nav2's map_server.
-//! - [`recorder`] and [`report`]: output of a run for maps, and a report in one HTML file.
+//! - [`report`]: a run's report in one HTML file.
 //! - [`info`]: summary of a log.
-//! - [`run`]: runs [`Slam`](ch16_slam2d::slam::Slam) on a log, frame by frame.
+//! - [`run`]: runs [`Slam`](ch16_slam2d::slam::Slam) on a log, frame by frame, and draws its map.
 //! - [`session`]: the complete state of a run in one file.
 //! - [`settings`]: the parameters of the estimator by name.
 //! - [`live`]: a robot that drives, heard over a network.
@@ -53,7 +53,6 @@ pub mod motion;
 pub mod near_readings;
 pub mod own_body;
 pub mod quality;
-pub mod recorder;
 pub mod relations;
 pub mod remark;
 pub mod report;

@@ -103,23 +103,34 @@ pub fn finest_map(
     }
 }
 
+/// What the map says along a beam without a return, up to the sensor's limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum NoReturn {
+    /// Nothing: many sensors cannot tell far from unseen.
+    #[default]
+    Unknown,
+    /// Free space, as REP 117 defines it.
+    Free,
+}
+
+impl NoReturn {
+    /// That of an option which asks for free space.
+    #[must_use]
+    pub fn free_if(is_asked: bool) -> Self {
+        if is_asked { Self::Free } else { Self::Unknown }
+    }
+}
+
 /// Builds the map of scans with known poses; skips those without one.
 ///
 /// # Errors
 /// If no scan has a point, or there are too many cells.
-pub fn build_map(lines: &[FrameLine], cell_m: f64) -> Result<MapImage, MapError> {
-    built(MapBuilder::new(cell_m), lines)
-}
-
-/// Builds the map of [`build_map`] with free space along beams without a return, up to the sensor's limit.
-///
-/// # Errors
-/// Those of [`build_map`].
-pub fn map_with_free_space(lines: &[FrameLine], cell_m: f64) -> Result<MapImage, MapError> {
-    built(MapBuilder::new(cell_m).with_free_space(), lines)
-}
-
-fn built(mut map: MapBuilder, lines: &[FrameLine]) -> Result<MapImage, MapError> {
+pub fn build_map(
+    lines: &[FrameLine],
+    cell_m: f64,
+    no_return: NoReturn,
+) -> Result<MapImage, MapError> {
+    let mut map = MapBuilder::new(cell_m).with_no_return(no_return);
     for line in lines {
         if let Some([x, y, theta]) = line.pose {
             let frame = LogFrame::from(line.clone());

@@ -1,5 +1,6 @@
 //! Runs the pipeline on a log and collects messages for the user.
 
+mod record;
 mod robots;
 mod sentences;
 
@@ -19,14 +20,16 @@ use crate::quality::Quality;
 use crate::session::{MappedGraph, Session, selected_scan_poses};
 use crate::settings::{Setting, SettingError};
 use crate::trajectory::{StampedPose, Trajectory};
+use record::Record;
 
 /// Scans with a lower score are reported.
 const POOR_SCORE: f64 = 0.5;
 
-/// A run over a log: the pipeline of the core, and the evidence for the quality report.
+/// A run over a log: the pipeline of the core, the scans for its map, and the evidence for the quality report.
 pub struct LogRun {
     settings: Vec<(&'static Setting, f64)>,
     pipeline: Pipeline,
+    record: Record,
     /// Number of scans that belong to a resumed session.
     resumed: usize,
     /// The same before any was left out.
@@ -69,6 +72,7 @@ impl LogRun {
             resumed: pipeline.scans().len(),
             session_scans: pipeline.scans().len(),
             pipeline,
+            record: Record::default(),
             sensor: None,
             loops: Vec::new(),
             held: Vec::new(),
@@ -140,6 +144,7 @@ impl LogRun {
         let pipeline = Pipeline::resume(slam, scans, session.last_odometry);
         Self {
             sensor: session.sensor.clone(),
+            record: Record::resume(session),
             ..Self::with_pipeline(pipeline)
         }
     }
@@ -175,6 +180,7 @@ impl LogRun {
                 return None;
             }
         };
+        self.record.add(&log, &report);
         self.forget_left_out();
         if let Some(number) = report.new_keyframe {
             // The motion to the first keyframe of a piece is unknown.
@@ -227,6 +233,7 @@ impl LogRun {
     pub fn finish(&mut self) {
         let concluded = self.pipeline.finish();
         self.forget_left_out();
+        self.record.keep_mapped(self.pipeline.slam());
         self.note_held();
         if let Some(concluded) = concluded {
             self.links = concluded.links;

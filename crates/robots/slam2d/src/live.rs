@@ -109,8 +109,7 @@ pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
                 let odometry = frame.odometry;
                 let report = mapping.step(frame);
                 if let Some((shown, report)) = shown.as_mut().zip(report) {
-                    let mapped = (&mapping.run, &mapping.recorder);
-                    shown.step(&report, odometry, reader.notes(), mapped);
+                    shown.step(&report, odometry, reader.notes(), &mapping.run);
                 }
             }
             Ok(None) => break None,

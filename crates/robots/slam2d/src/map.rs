@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use robot_io::json_log::FrameLine;
 use robot_io::log::LogError;
 use robot_io::map_image::{
-    MapError, MapImage, MapMode, build_map, build_session_map, finest_map, map_with_free_space,
+    MapError, MapImage, MapMode, NoReturn, build_map, build_session_map, finest_map,
 };
 
 use crate::run_folder::KEYFRAMES;
@@ -85,13 +85,9 @@ pub fn run(args: &MapArgs) -> anyhow::Result<()> {
         );
     }
     let map = if args.run.is_dir() {
-        let draw = if args.free_space {
-            map_with_free_space
-        } else {
-            build_map
-        };
+        let no_return = NoReturn::free_if(args.free_space);
         let lines = keyframes(&args.run)?;
-        as_fine_as_asked(args, |cell_m| draw(&lines, cell_m))?
+        as_fine_as_asked(args, |cell_m| build_map(&lines, cell_m, no_return))?
     } else {
         let session = read_session(&args.run)?.0;
         as_fine_as_asked(args, |cell_m| build_session_map(&session, cell_m))?

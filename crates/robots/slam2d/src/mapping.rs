@@ -10,8 +10,8 @@ use ch16_slam2d::slam::SlamReport;
 use clap::Args;
 use robot_io::laser_mount::LaserMount;
 use robot_io::log::LogFrame;
+use robot_io::map_image::NoReturn;
 use robot_io::quality::Quality;
-use robot_io::recorder::RunRecorder;
 use robot_io::run::LogRun;
 use robot_io::settings::Setting;
 use serde::Serialize;
@@ -100,8 +100,6 @@ pub struct Mapping<'a> {
     pub run: LogRun,
     /// The session's mounting of the laser.
     pub laser_before: Option<LaserMount>,
-    /// The scans of its keyframes.
-    pub recorder: RunRecorder,
     costs: TickCosts,
     reference: Option<Reference>,
 }
@@ -131,12 +129,11 @@ impl<'a> Mapping<'a> {
         if let Some(folder) = &args.output {
             check_folder(folder).in_file(folder)?;
         }
-        let (run, recorder, laser_before) = start(args)?;
+        let (run, laser_before) = start(args)?;
         Ok(Self {
             args,
             run,
             laser_before,
-            recorder,
             costs: TickCosts::default(),
             reference,
         })
@@ -144,11 +141,8 @@ impl<'a> Mapping<'a> {
 
     /// Takes the next scan; returns `None` if it is skipped.
     pub fn step(&mut self, frame: LogFrame) -> Option<SlamReport> {
-        let (report, ms) = timed(|| self.run.step(frame.clone()));
+        let (report, ms) = timed(|| self.run.step(frame));
         self.costs.push(ms);
-        if let Some(report) = &report {
-            self.recorder.add(&frame, report);
-        }
         report
     }
 
@@ -157,7 +151,11 @@ impl<'a> Mapping<'a> {
     /// # Errors
     /// If it is taken or not this computer's.
     pub fn show_at(&self, at: ServeAt) -> io::Result<Shown> {
-        Shown::start(at, self.args.resolution, self.args.free_space)
+        Shown::start(
+            at,
+            self.args.resolution,
+            NoReturn::free_if(self.args.free_space),
+        )
     }
 
     /// Ends the run on `name`, writes its folder, whose report has this title, and prints the result; the exit code
@@ -169,7 +167,6 @@ impl<'a> Mapping<'a> {
         let Self {
             args,
             mut run,
-            mut recorder,
             costs,
             reference,
             ..
@@ -182,7 +179,6 @@ impl<'a> Mapping<'a> {
             shown,
         } = ended;
         run.finish();
-        recorder.forget_left_out(&run);
         if run.scans() == 0 && run.late() > 0 {
             bail!(
                 "{name}: no scan is later than the session's last one; pass the rest of that recording, or run the log without --continue"
@@ -233,10 +229,9 @@ impl<'a> Mapping<'a> {
                 log: title,
                 run: &run,
                 quality: &quality,
-                recorder: &recorder,
                 remarks: &remarks,
                 cell_m: args.resolution,
-                has_free_space: args.free_space,
+                no_return: NoReturn::free_if(args.free_space),
                 is_whole: !is_interrupted,
             };
             if let Some(sentence) = write_folder(folder, &results)? {
@@ -244,7 +239,7 @@ impl<'a> Mapping<'a> {
             }
         }
         if let Some(shown) = shown {
-            shown.end(&run, &recorder);
+            shown.end(&run);
         }
         // Write the results before reporting any later error.
         let grade = grade?;
@@ -278,13 +273,13 @@ impl<'a> Mapping<'a> {
 }
 
 /// A new run, or one that continues a session, and the session's mounting of the laser.
-fn start(args: &MappingArgs) -> anyhow::Result<(LogRun, RunRecorder, Option<LaserMount>)> {
+fn start(args: &MappingArgs) -> anyhow::Result<(LogRun, Option<LaserMount>)> {
     let Some(path) = &args.session else {
         let mut run = LogRun::default();
         for (name, value) in &args.settings {
             run = run.with_setting(Setting::named(name)?, *value)?;
         }
-        return Ok((run, RunRecorder::default(), None));
+        return Ok((run, None));
     };
     let (session, _) = read_session(path)?;
     let mut run = LogRun::resume(&session).in_file(path)?;
@@ -295,7 +290,7 @@ fn start(args: &MappingArgs) -> anyhow::Result<(LogRun, RunRecorder, Option<Lase
         body_from_sensor: sensor.body_from_sensor,
         is_flipped: false,
     });
-    Ok((run, RunRecorder::resume(&session), mount))
+    Ok((run, mount))
 }
 
 fn print_text(result: &RunJson) {

@@ -15,11 +15,8 @@ use std::io::Write;
 use std::path::Path;
 
 use robot_io::graph_file::GraphFile;
-use robot_io::map_image::{
-    MapError, MapImage, MapMode, build_map, finest_map, map_with_free_space,
-};
+use robot_io::map_image::{MapMode, NoReturn};
 use robot_io::quality::Quality;
-use robot_io::recorder::RunRecorder;
 use robot_io::report::LogReport;
 use robot_io::run::LogRun;
 use robot_io::session::FILE_NAME;
@@ -37,14 +34,12 @@ pub struct Results<'a> {
     pub run: &'a LogRun,
     /// Its quality.
     pub quality: &'a Quality,
-    /// The scans of its keyframes.
-    pub recorder: &'a RunRecorder,
     /// Sentences on the recording.
     pub remarks: &'a [String],
     /// Side of the map's cells, m.
     pub cell_m: f64,
-    /// Whether beams without a return mark free space.
-    pub has_free_space: bool,
+    /// What beams without a return say on the map.
+    pub no_return: NoReturn,
     /// Whether the run reached the end of the log.
     pub is_whole: bool,
 }
@@ -54,12 +49,7 @@ pub struct Results<'a> {
 /// # Errors
 /// If the system cannot write a file; the error contains the name, and nothing is replaced.
 pub fn write_folder(folder: &Path, results: &Results<'_>) -> anyhow::Result<Option<String>> {
-    let Results {
-        run,
-        quality,
-        recorder,
-        ..
-    } = results;
+    let Results { run, quality, .. } = results;
     let into = RunFolder::create(folder)?;
     into.save("trajectory.tum", |out| run.trajectory().write_tum(out))?;
     into.save(QUALITY, |out| Ok(serde_json::to_writer(out, quality)?))?;
@@ -74,18 +64,12 @@ pub fn write_folder(folder: &Path, results: &Results<'_>) -> anyhow::Result<Opti
             out.write_all(GraphFile::from_pose_graph(slam.graph()).to_g2o().as_bytes())
         })?;
     }
-    let lines = recorder.map_lines(run);
     into.save(KEYFRAMES, |out| {
-        lines.iter().try_for_each(|line| line.write(&mut *out))
+        run.map_lines()
+            .iter()
+            .try_for_each(|line| line.write(&mut *out))
     })?;
-    let draw = |cell_m: f64| -> Result<MapImage, MapError> {
-        if results.has_free_space {
-            map_with_free_space(&lines, cell_m)
-        } else {
-            build_map(&lines, cell_m)
-        }
-    };
-    let said = match finest_map(results.cell_m, draw) {
+    let said = match run.map(results.cell_m, results.no_return) {
         Ok(map) => {
             into.save("map.pgm", |out| map.write_pgm(out))?;
             into.save("map.png", |out| map.write_png(out, MapMode::Trinary))?;
@@ -96,14 +80,14 @@ pub fn write_folder(folder: &Path, results: &Results<'_>) -> anyhow::Result<Opti
         }
         Err(problem) => Some(format!("no map was written: {problem}")),
     };
-    let map = finest_map(REPORT_CELL_M, draw);
+    let map = run.map(REPORT_CELL_M, results.no_return);
     let mut remarks = results.remarks.to_vec();
     remarks.extend(said.clone());
     let html = LogReport {
         name: results.log,
         scans: run.scans(),
         quality,
-        chi2_over_time: recorder.chi2_over_time(),
+        chi2_over_time: run.chi2_over_time(),
         map: map.as_ref(),
         remarks: &remarks,
     }

@@ -24,8 +24,7 @@ use ch16_slam2d::slam::{Slam, SlamReport};
 use pr_geom::SE2;
 use robot_connection::{Server, nanoseconds};
 use robot_io::log::{LogFrame, LogNotes, LogOption};
-use robot_io::map_image::{MapBuilder, MapError, MapImage, finest_map};
-use robot_io::recorder::RunRecorder;
+use robot_io::map_image::{MapBuilder, MapError, MapImage, NoReturn, finest_map};
 use robot_io::run::LogRun;
 
 use self::messages::{MAP, PATH, TRANSFORMS};
@@ -70,7 +69,7 @@ impl fmt::Display for ServeAt {
 pub struct Shown {
     server: Arc<Server>,
     cell_m: f64,
-    has_free_space: bool,
+    no_return: NoReturn,
     /// Names of the frames of odometry and body.
     frames: Option<[String; 2]>,
     /// Poses of the keyframes of the last path and of the last map.
@@ -108,7 +107,7 @@ impl Shown {
     ///
     /// # Errors
     /// If the address is taken or not this computer's.
-    pub fn start(at: ServeAt, cell_m: f64, has_free_space: bool) -> io::Result<Self> {
+    pub fn start(at: ServeAt, cell_m: f64, no_return: NoReturn) -> io::Result<Self> {
         let server = Server::start("slam2d live", at.0, messages::channels())?;
         let server = Arc::new(server);
         let (to_draw, drawings) = channel();
@@ -116,13 +115,13 @@ impl Shown {
         let of_thread = (Arc::clone(&server), next_map.clone());
         let drawing = thread::spawn(move || {
             draw_all(&drawings, &of_thread.0, &of_thread.1, |poses, frames| {
-                draw(poses, frames, cell_m, has_free_space)
+                draw(poses, frames, cell_m, no_return)
             });
         });
         Ok(Self {
             server,
             cell_m,
-            has_free_space,
+            no_return,
             frames: None,
             shown: Vec::new(),
             drawn: Vec::new(),
@@ -145,7 +144,7 @@ impl Shown {
         report: &SlamReport,
         odometry: Option<SE2>,
         notes: &LogNotes,
-        (run, recorder): (&LogRun, &RunRecorder),
+        run: &LogRun,
     ) {
         self.stamp_s = report.stamp_s;
         let [odom, body] = self.frames.get_or_insert_with(|| frames(notes));
@@ -171,7 +170,7 @@ impl Shown {
         if is_due && self.server.is_wanted(MAP) && self.drawn != poses {
             *self.next_map.at() = None;
             self.drawn = poses.to_vec();
-            let frames = recorder.keyframes();
+            let frames = run.keyframe_frames();
             let _ = self.to_draw.send(ToDraw {
                 stamp_s: report.stamp_s,
                 frames: frames[self.passed..].to_vec(),
@@ -182,7 +181,7 @@ impl Shown {
     }
 
     /// Shows the result of the drive, and ends once all clients have it.
-    pub fn end(self, run: &LogRun, recorder: &RunRecorder) {
+    pub fn end(self, run: &LogRun) {
         drop(self.to_draw);
         // A map that is still drawn comes before the last one.
         let _ = self.drawing.join();
@@ -192,12 +191,7 @@ impl Shown {
         self.server.publish(PATH, time_ns, path);
         if self.server.is_wanted(MAP) {
             let posed = posed(run);
-            let map = draw(
-                &posed,
-                recorder.keyframes(),
-                self.cell_m,
-                self.has_free_space,
-            );
+            let map = draw(&posed, run.keyframe_frames(), self.cell_m, self.no_return);
             if let Ok(map) = map {
                 let map = messages::map(self.stamp_s, &map);
                 self.server.publish(MAP, time_ns, map);
@@ -260,13 +254,10 @@ fn draw(
     poses: &[(f64, SE2)],
     frames: &[LogFrame],
     cell_m: f64,
-    has_free_space: bool,
+    no_return: NoReturn,
 ) -> Result<MapImage, MapError> {
     finest_map(cell_m, |cell_m| {
-        let mut map = MapBuilder::new(cell_m);
-        if has_free_space {
-            map = map.with_free_space();
-        }
+        let mut map = MapBuilder::new(cell_m).with_no_return(no_return);
         for (stamp_s, pose) in poses {
             let at = frames.binary_search_by(|frame| frame.stamp_s.total_cmp(stamp_s));
             if let Ok(at) = at {

@@ -11,10 +11,9 @@ use pyo3::types::{PyBool, PyDict};
 use robot_io::graph_file::GraphFile;
 use robot_io::log::{LogFrame, LogOptions, LogReader as _, with_remarks};
 use robot_io::log_format::LogFormat;
-use robot_io::map_image::{MapImage, build_map, finest_map, map_with_free_space};
+use robot_io::map_image::{MapImage, NoReturn};
 use robot_io::motion::{ComparedReader, OdometryUse};
 use robot_io::quality::Quality;
-use robot_io::recorder::RunRecorder;
 use robot_io::run::LogRun;
 
 use crate::arrays;
@@ -308,15 +307,12 @@ impl Pipeline {
                 .with_setting(setting, *value)
                 .map_err(|error| SettingError::new_err(error.to_string()))?;
         }
-        let mut recorder = RunRecorder::default();
         let mut broken = None;
         let (mut frames, mut share) = (0_usize, 0.0);
         loop {
             match reader.next_frame() {
                 Ok(Some(frame)) => {
-                    if let Some(report) = run.step(frame.clone()) {
-                        recorder.add(&frame, &report);
-                    }
+                    run.step(frame);
                 }
                 Ok(None) => break,
                 Err(error) if run.scans() == 0 => return Err(to_error(error)),
@@ -334,7 +330,6 @@ impl Pipeline {
             }
         }
         run.finish();
-        recorder.forget_left_out(&run);
         if let Some(problem) = run.no_map() {
             return Err(LogError::new_err(format!(
                 "{name}: no scan could be used: {problem}"
@@ -348,14 +343,7 @@ impl Pipeline {
             .keyframes
             .iter()
             .map(|keyframe| Matrix3::from_fn(|row, column| keyframe.covariance[row][column]));
-        let lines = recorder.map_lines(&run);
-        let draw = if free_space {
-            map_with_free_space
-        } else {
-            build_map
-        };
-        // An area too large for cells of this size has a coarser map.
-        let map = finest_map(cell_m, |cell_m| draw(&lines, cell_m));
+        let map = run.map(cell_m, NoReturn::free_if(free_space));
         remarks.extend(match &map {
             Ok(map) => map.coarser_than(cell_m),
             Err(problem) => Some(format!("there is no map: {problem}")),

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt as _;
 use pyo3::types::{PyBytes, PyDict};
 use robot_io::graph_file::GraphFile;
-use robot_io::map_image::MapBuilder;
+use robot_io::map_image::{MapBuilder, NoReturn};
 use robot_io::session::Session;
 
 use crate::arrays;
@@ -479,10 +479,7 @@ impl Slam {
             .map_or(&[][..], |slam| slam.graph().poses());
         let scans = self.scans.lock().unwrap_or_else(PoisonError::into_inner);
         let image = py.detach(|| {
-            let mut map = MapBuilder::new(cell_m);
-            if free_space {
-                map = map.with_free_space();
-            }
+            let mut map = MapBuilder::new(cell_m).with_no_return(NoReturn::free_if(free_space));
             for (pose, scan) in poses.iter().zip(&*scans) {
                 map.add(pose, scan).map_err(|error| error.to_string())?;
             }

@@ -20,7 +20,6 @@ use pr_geom::SE2;
 use robot_io::doctor::Diagnosis;
 use robot_io::graph_file::GraphFile;
 use robot_io::log::{LogError, LogReader};
-use robot_io::recorder::RunRecorder;
 use robot_io::run::LogRun;
 use robot_io::session::{self, Session};
 use robot_io::trajectory::{StampedPose, Trajectory};
@@ -66,7 +65,6 @@ pub struct Engine<'a> {
     size_bytes: u64,
     work: Work<'a>,
     run: LogRun,
-    recorder: RunRecorder,
     /// The graph of a file without scans.
     graph: Option<PoseGraph>,
     /// Inlier share of each keyframe's scan; NaN if it was not registered.
@@ -166,7 +164,6 @@ impl<'a> Engine<'a> {
         }
         let mut engine = Self {
             run,
-            recorder: RunRecorder::resume(session),
             fits: vec![f64::NAN; keyframes],
             has_scans: true,
             scans_before: session.snapshot.frames,
@@ -186,7 +183,6 @@ impl<'a> Engine<'a> {
             driving: None,
             work,
             run: LogRun::default(),
-            recorder: RunRecorder::default(),
             graph: None,
             fits: Vec::new(),
             sigmas_m: Vec::new(),
@@ -246,11 +242,10 @@ impl<'a> Engine<'a> {
         match reader.next_frame() {
             Ok(Some(frame)) => {
                 let is_first = self.run.scans() == 0;
-                if let Some(report) = self.run.step(frame.clone()) {
+                if let Some(report) = self.run.step(frame) {
                     if is_first {
                         self.send_offers(&reader.notes().offers);
                     }
-                    self.recorder.add(&frame, &report);
                     if report.new_keyframe.is_some() {
                         let matched = report.registration.map(|found| found.matched);
                         let fit = matched.and_then(|matched| matched.score);
@@ -314,7 +309,6 @@ impl<'a> Engine<'a> {
 
     fn close_last_loops(&mut self) {
         self.run.finish();
-        self.recorder.forget_left_out(&self.run);
         self.diagnose_map();
         self.begin_editing(links_of(&self.run));
     }
@@ -358,7 +352,7 @@ impl<'a> Engine<'a> {
 
     /// Paints the next scans; returns false if all are painted.
     fn paint(&mut self) -> bool {
-        let frames = self.recorder.keyframes();
+        let frames = self.run.keyframe_frames();
         self.picture.step(frames, poses_of(&self.run))
     }
 

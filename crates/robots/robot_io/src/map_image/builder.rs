@@ -6,7 +6,7 @@ use pr_grid::{
     Beams, Cell, GridConfig, InverseSensorModel, MAX_TILED_CELLS, TiledGrid, TooManyCells,
 };
 
-use super::{MAX_PIXELS, MapError, MapImage};
+use super::{MAX_PIXELS, MapError, MapImage, NoReturn};
 
 /// Longer rays mark no free space, m: distant readings are sparse and graze surfaces.
 const FARTHEST_M: f64 = 30.0;
@@ -20,8 +20,7 @@ fn reach_of(scan: &LaserScan) -> f64 {
 #[derive(Clone, Debug)]
 pub struct MapBuilder {
     cell_m: f64,
-    /// Whether beams without a return mark free space up to the sensor's limit.
-    clears: bool,
+    no_return: NoReturn,
     most: usize,
     grid: Option<TiledGrid>,
     /// Bounds of all points and poses, m: the extent of the image.
@@ -35,7 +34,7 @@ impl MapBuilder {
     pub fn new(cell_m: f64) -> Self {
         Self {
             cell_m,
-            clears: false,
+            no_return: NoReturn::default(),
             most: MAX_TILED_CELLS,
             grid: None,
             low: Point2::new(f64::INFINITY, f64::INFINITY),
@@ -43,10 +42,10 @@ impl MapBuilder {
         }
     }
 
-    /// Lets beams without a return mark free space up to the sensor's limit, as REP 117 defines them.
+    /// Sets what beams without a return say.
     #[must_use]
-    pub fn with_free_space(mut self) -> Self {
-        self.clears = true;
+    pub fn with_no_return(mut self, no_return: NoReturn) -> Self {
+        self.no_return = no_return;
         self
     }
 
@@ -67,7 +66,7 @@ impl MapBuilder {
         for (beam, &range_m) in scan.ranges_m.iter().enumerate() {
             if scan.is_return(range_m) && range_m < FARTHEST_M {
                 beams.push((scan.bearing_rad(beam), range_m));
-            } else if self.clears && range_m >= scan.range_max_m {
+            } else if self.no_return == NoReturn::Free && range_m >= scan.range_max_m {
                 beams.push((scan.bearing_rad(beam), reach_of(scan)));
             }
         }
@@ -115,7 +114,7 @@ impl MapBuilder {
                 // Half a step to either side, plus rounding.
                 beam_width_rad: 1.001 * scan.angle_step_rad.abs(),
                 // A reading at the limit is no return.
-                max_range_m: if self.clears {
+                max_range_m: if self.no_return == NoReturn::Free {
                     reach_of(scan)
                 } else {
                     FARTHEST_M

@@ -131,7 +131,7 @@ fn beams_without_a_return_mark_free_space_by_option() {
         map.finish().unwrap().counts()
     };
     let [occupied, free, _] = counts(MapBuilder::new(0.1));
-    let [occupied_too, more, _] = counts(MapBuilder::new(0.1).with_free_space());
+    let [occupied_too, more, _] = counts(MapBuilder::new(0.1).with_no_return(NoReturn::Free));
     assert_eq!(occupied, occupied_too);
     // Half a disk of 5 m in cells of 0.1 m, to a tenth for its rim.
     let half_disk = 0.5 * TAU / 2.0 * 50.0 * 50.0;

@@ -7,7 +7,7 @@ use ch16_slam2d::scan::ScanPreparer;
 use log_messages::{GradeReport, LoopDecision, MapperOrder, MapperReport, ScanReport};
 use nalgebra::Vector3;
 use pr_geom::SE2;
-use robot_io::map_image::{build_map, finest_map};
+use robot_io::map_image::NoReturn;
 use robot_io::report::LogReport;
 use robot_io::session;
 
@@ -128,7 +128,7 @@ impl<'a> Engine<'a> {
 
     /// The scan of a keyframe as it was measured; empty if it counts as one instant.
     fn sweep_of(&self, keyframe: usize) -> Vec<[f64; 2]> {
-        let keyframe = self.recorder.keyframes().get(keyframe);
+        let keyframe = self.run.keyframe_frames().get(keyframe);
         let Some(scan) = keyframe
             .map(|it| &it.scan)
             .filter(|scan| scan.beam_interval_s > 0.0)
@@ -338,8 +338,7 @@ impl<'a> Engine<'a> {
                 None => Err("There is nothing to save yet.".to_owned()),
             },
             _ => {
-                let lines = self.recorder.map_lines(&self.run);
-                let map = finest_map(MAP_CELL_M, |cell_m| build_map(&lines, cell_m));
+                let map = self.run.map(MAP_CELL_M, NoReturn::Unknown);
                 let map = map.map_err(|problem| problem.to_string())?;
                 let saved = files::MAP_IMAGES.into_iter().find(|image| *image == name);
                 self.image = saved.unwrap_or(self.image);
@@ -350,8 +349,7 @@ impl<'a> Engine<'a> {
 
     fn report(&mut self) -> String {
         let quality = self.quality();
-        let lines = self.recorder.map_lines(&self.run);
-        let map = finest_map(REPORT_CELL_M, |cell_m| build_map(&lines, cell_m));
+        let map = self.run.map(REPORT_CELL_M, NoReturn::Unknown);
         let mut remarks = self.remarks.clone();
         remarks.extend(self.grade().map(|grade| match grade {
             Ok(grade) => grade.words,
@@ -361,7 +359,7 @@ impl<'a> Engine<'a> {
             name: &self.name,
             scans: self.scans_before + self.run.scans(),
             quality: &quality,
-            chi2_over_time: self.recorder.chi2_over_time(),
+            chi2_over_time: self.run.chi2_over_time(),
             map: map.as_ref(),
             remarks: &remarks,
         }

@@ -43,7 +43,7 @@ impl Engine<'_> {
             updates.extend(grade.map(Update::Report));
         }
         if self.has_scans {
-            let scans = self.recorder.keyframes().len();
+            let scans = self.run.keyframe_frames().len();
             let map = self.picture.report(scans).map(MapperReport::Map);
             updates.extend(map.map(Update::Report));
         }
