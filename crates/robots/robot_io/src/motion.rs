@@ -55,6 +55,28 @@ struct Stretch {
     sensor: SE2,
     /// Motion of the body.
     body: SE2,
+    /// Heading of the body at its start, rad.
+    heading_rad: f64,
+}
+
+impl Stretch {
+    /// The segment by odometry with the opposite sign of its headings or of its y.
+    fn opposed(&self, is_heading: bool) -> Self {
+        // R(-θ)ᵀ = R(2θ) R(θ)ᵀ: the heading at the start has turned the motion the wrong way.
+        let turn = SE2::new(0.0, 0.0, 2.0 * self.heading_rad);
+        let [x, y, _] = (turn * self.body).to_array();
+        let theta = self.body.theta();
+        let (body, heading_rad) = if is_heading {
+            (SE2::new(x, y, -theta), -self.heading_rad)
+        } else {
+            (SE2::new(x, -y, theta), self.heading_rad)
+        };
+        Self {
+            body,
+            heading_rad,
+            ..*self
+        }
+    }
 }
 
 /// Scans matched without odometry, and the odometry at their stamps.
@@ -142,6 +164,7 @@ impl Comparison {
             self.stretches.push(Stretch {
                 sensor,
                 body: began.1.between(&now.1),
+                heading_rad: began.1.theta(),
             });
             self.began = Some(now);
         }

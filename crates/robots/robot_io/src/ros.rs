@@ -42,8 +42,10 @@ mod survey;
 mod transforms;
 mod wire;
 
+pub(crate) use container::kind_of;
 pub use live::{LiveReader, MessageUse};
 pub use mcap_writer::{McapWriter, Topic};
+pub(crate) use plan::unread_cloud;
 pub use reader::RosReader;
 pub(crate) use scan_fields::ScanFields;
 

@@ -75,6 +75,7 @@ fn words(motion: &MotionComparison) -> Vec<&'static str> {
         Finding::Unlike { .. } => "unlike",
         Finding::Late { .. } => "late",
         Finding::TurnScale { .. } => "turns",
+        Finding::Opposed { .. } => "opposed",
         Finding::Backward => "backward",
     };
     motion.faults().iter().map(word).collect()

@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::MAX_MESSAGE;
 use super::drive::{DriveEnd, Heard};
+use crate::ros::{kind_of, unread_cloud};
 
 /// Most topics that a sentence lists.
 const LISTED: usize = 20;
@@ -112,7 +113,10 @@ impl Heard {
         } else {
             format!("it has {}", topics.join(", "))
         };
+        let mut clouds = self.topics.iter();
+        let unread = clouds.find_map(|(topic, kind)| unread_cloud(topic, &kind_of(kind)));
         Some(match &self.end {
+            DriveEnd::NoScans if let Some(unread) = unread => format!("{url}: {unread}"),
             DriveEnd::NoScans => {
                 let advice = match host {
                     Host::Command => ", choose with --scan-topic, or wait longer with --wait",

@@ -30,6 +30,8 @@ const AGREE: f64 = 0.8;
 /// comparison that agrees with itself.
 const ONE_DIRECTION: f64 = 0.85;
 const MAX_DRIFT: f64 = 0.3;
+/// A sign of the odometry is tried if it reduces the spread of these directions to less than this share.
+const OPPOSED: f64 = 0.5;
 /// A direction within this of the stated one confirms it, rad: 10°.
 const CONFIRMED_RAD: f64 = 10.0 * PI / 180.0;
 /// A laser whose direction differs by more is turned, rad: 25°.
@@ -102,6 +104,11 @@ impl MotionComparison {
         if stretches.len() < MIN_STRETCHES {
             return motion;
         }
+        let opposed = opposed(stretches);
+        if let Some((is_heading, _)) = opposed {
+            motion.propose(Finding::Opposed { is_heading });
+        }
+        let stretches = opposed.as_ref().map_or(stretches, |(_, with)| &with[..]);
         if motion.moved_m >= MIN_M {
             let by_odometry: f64 = stretches.iter().map(|stretch| length(&stretch.body)).sum();
             let turned: f64 = stretches
@@ -366,6 +373,29 @@ fn compare_turns(stretches: &[Stretch]) -> Option<Turns> {
     })
 }
 
+/// Whether the heading or y of the odometry has the wrong sign, and the segments with the other: only then do the
+/// displacements have one direction.
+fn opposed(stretches: &[Stretch]) -> Option<(bool, Vec<Stretch>)> {
+    let agreement = |stretches: &[Stretch], mirror: f64| {
+        let pairs = stretches.iter().map(|Stretch { sensor, body, .. }| {
+            (
+                Complex::new(sensor.x(), mirror * sensor.y()),
+                Complex::new(body.x(), body.y()),
+            )
+        });
+        direction(&pairs.collect::<Vec<_>>()).map_or(0.0, |(_, agreement)| agreement)
+    };
+    let is_heading = compare_turns(stretches)?.correlation < 0.0;
+    let with: Vec<Stretch> = stretches
+        .iter()
+        .map(|stretch| stretch.opposed(is_heading))
+        .collect();
+    let plain = agreement(stretches, 1.0).max(agreement(stretches, -1.0));
+    let opposed = agreement(&with, 1.0);
+    let is_proposed = opposed >= ONE_DIRECTION && 1.0 - opposed < OPPOSED * (1.0 - plain);
+    is_proposed.then_some((is_heading, with))
+}
+
 /// Direction from displacements by scans to those by odometry, as a unit number, and how concentrated it is, 0 to 1.
 fn direction(pairs: &[(Complex<f64>, Complex<f64>)]) -> Option<(Complex<f64>, f64)> {
     let pairs = pairs.iter();
@@ -406,6 +436,7 @@ mod tests {
             .map(|turn| Stretch {
                 sensor: SE2::new(0.3, 0.0, turn),
                 body: SE2::new(0.3, 0.0, factor * turn),
+                heading_rad: 0.0,
             })
             .collect()
     }

@@ -27,6 +27,11 @@ pub enum Finding {
         /// Correlation of the turns.
         correlation: f64,
     },
+    /// The odometry's headings turn opposite to its path: of its poses, either the heading or y has the wrong sign.
+    Opposed {
+        /// Whether it is the heading.
+        is_heading: bool,
+    },
     /// The laser faces another direction than stated.
     Turned {
         /// Difference, rad.

@@ -22,6 +22,10 @@ impl MotionComparison {
                     Part::Odometry,
                     format!("{text}; it was converted. Publish metres"),
                 ),
+                Finding::Opposed { .. } => Remark::mended(
+                    Part::Odometry,
+                    format!("{text}; it was reversed. Correct the sign in the driver"),
+                ),
                 Finding::TurnScale { .. } => Remark::mended(
                     Part::Odometry,
                     format!(
@@ -54,7 +58,10 @@ impl MotionComparison {
                 ),
             };
             match finding {
-                Finding::Unit { .. } | Finding::TurnScale { .. } | Finding::Still { .. } => {
+                Finding::Unit { .. }
+                | Finding::Opposed { .. }
+                | Finding::TurnScale { .. }
+                | Finding::Still { .. } => {
                     remark.with_option(OdometryUse::Force.option())
                 }
                 Finding::Scale { .. } | Finding::Unlike { .. } => remark.with_option(NO_ODOMETRY),
@@ -132,6 +139,10 @@ fn sentence(finding: &Finding) -> String {
             "odometry is in {name}: it moves {:.0} per metre by scans",
             1.0 / metres
         ),
+        Finding::Opposed { is_heading } => format!(
+            "the path by odometry bends opposite to its headings: its {} has the wrong sign",
+            if *is_heading { "heading" } else { "y" }
+        ),
         Finding::TurnScale { ratio } => {
             format!("odometry turns by {ratio:.2}° per degree by scans")
         }
@@ -173,7 +184,9 @@ fn suggest(suggestion: &Suggestion, mount: LaserMount) -> Remark {
             (Part::Mounting, Some(mended.option()))
         }
         Finding::Late { .. } => (Part::Clocks, None),
-        Finding::Unit { .. } | Finding::TurnScale { .. } => (Part::Odometry, None),
+        Finding::Unit { .. } | Finding::Opposed { .. } | Finding::TurnScale { .. } => {
+            (Part::Odometry, None)
+        }
         Finding::Backward => (Part::Sensor, None),
         Finding::Scale { .. } | Finding::Still { .. } | Finding::Unlike { .. } => {
             (Part::Odometry, Some(NO_ODOMETRY.to_owned()))

@@ -16,6 +16,8 @@ pub(super) struct Repairs {
     mount: Option<CorrectedMount>,
     /// Factor of the odometry's lengths.
     metres: f64,
+    /// Signs of the odometry's y and headings.
+    signs: [f64; 2],
     /// Factor of the odometry's turns.
     turns: f64,
     /// Whether the order of the beams in time is reversed.
@@ -39,6 +41,7 @@ impl Default for Repairs {
         Self {
             mount: None,
             metres: 1.0,
+            signs: [1.0; 2],
             turns: 1.0,
             is_backward: false,
             drops_odometry: false,
@@ -55,6 +58,8 @@ impl Repairs {
         for finding in findings {
             match finding {
                 Finding::Mirrored { .. } | Finding::Turned { .. } => finding.mend(&mut mended),
+                Finding::Opposed { is_heading: true } => repairs.signs = [1.0, -1.0],
+                Finding::Opposed { is_heading: false } => repairs.signs = [-1.0, 1.0],
                 Finding::Unit { metres, .. } => repairs.metres = *metres,
                 Finding::Scale { ratio } => repairs.metres = 1.0 / ratio,
                 Finding::TurnScale { ratio } => repairs.turns = 1.0 / ratio,
@@ -92,21 +97,27 @@ impl Repairs {
         if self.drops_odometry {
             frame.odometry = None;
         }
-        if self.metres != 1.0 {
-            frame.odometry = frame
-                .odometry
-                .map(|pose| SE2::new(pose.x() * self.metres, pose.y() * self.metres, pose.theta()));
-        }
+        frame.odometry = frame.odometry.map(|pose| self.pose(pose));
         if self.turns != 1.0 {
             frame.odometry = frame.odometry.map(|pose| path.next(pose, self.turns));
         }
         frame
     }
 
-    /// The corrected velocity of the body, by odometry.
-    pub fn velocity(&self, by_odometry: Vector3<f64>) -> Vector3<f64> {
-        let [x, y, turn] = by_odometry.into();
-        Vector3::new(x * self.metres, y * self.metres, turn * self.turns)
+    /// A pose by odometry with corrected unit and signs.
+    fn pose(&self, pose: SE2) -> SE2 {
+        let [of_y, of_heading] = self.signs;
+        SE2::new(
+            pose.x() * self.metres,
+            pose.y() * self.metres * of_y,
+            pose.theta() * of_heading,
+        )
+    }
+
+    /// The corrected motion of the body between two poses by odometry, as a twist.
+    pub fn motion(&self, [from, to]: [SE2; 2]) -> Vector3<f64> {
+        let [x, y, turn] = self.pose(from).between(&self.pose(to)).log().into();
+        Vector3::new(x, y, turn * self.turns)
     }
 }
 

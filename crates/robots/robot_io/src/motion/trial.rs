@@ -69,8 +69,7 @@ impl Trial {
             }
             if !repairs.drops_odometry {
                 let from_s = frame.stamp_s + repairs.late_s.unwrap_or(0.0);
-                let velocity = self.velocity(from_s, frame.scan.sweep_s());
-                frame.scan.velocity = velocity.map(|velocity| repairs.velocity(velocity));
+                frame.scan.velocity = self.velocity(repairs, from_s, frame.scan.sweep_s());
             }
             let frame = repairs.apply(frame, &mut path);
             let motion = last_odometry.zip(frame.odometry);
@@ -90,12 +89,12 @@ impl Trial {
     }
 
     /// Velocity of the body during a sweep, by odometry.
-    fn velocity(&self, from_s: f64, sweep_s: f64) -> Option<Vector3<f64>> {
-        let (first, last) = (
+    fn velocity(&self, repairs: &Repairs, from_s: f64, sweep_s: f64) -> Option<Vector3<f64>> {
+        let ends = [
             self.odometry.at(from_s)?,
             self.odometry.at(from_s + sweep_s)?,
-        );
-        (sweep_s > 0.0).then(|| first.between(&last).log() / sweep_s)
+        ];
+        (sweep_s > 0.0).then(|| repairs.motion(ends) / sweep_s)
     }
 
     /// Whether `with` is cheaper than `without`, scan by scan.

@@ -16,7 +16,7 @@ use self::started::Started;
 use super::container::{Container as _, ContainerError, Recorded, kind_of};
 use super::mcap_file::{LASER_SCAN, McapFile};
 use super::plan::Plan;
-use super::survey::{BodyPoses, ODOMETRY, POINT_CLOUD, SCANS, Survey, is_transforms};
+use super::survey::{BodyPoses, ODOMETRY, POINT_CLOUD, POSES, SCANS, Survey, is_transforms};
 use crate::log::{FilePosition, LogError, LogFrame, LogNotes, LogOptions, LogReader};
 
 /// Scans that the survey needs at least.
@@ -51,7 +51,9 @@ impl MessageUse {
         match kind.as_str() {
             POINT_CLOUD => Some(Self::Cloud),
             kind if SCANS.contains(&kind) => Some(Self::Scan),
-            kind if kind == ODOMETRY || is_transforms(kind) => Some(Self::Motion),
+            kind if kind == ODOMETRY || POSES.contains(&kind) || is_transforms(kind) => {
+                Some(Self::Motion)
+            }
             _ => None,
         }
     }

@@ -14,7 +14,7 @@ pub struct Header {
     pub frame: String,
 }
 
-/// `nav_msgs/Odometry`, reduced to what a planar robot needs.
+/// `nav_msgs/Odometry` or a stamped pose, reduced to what a planar robot needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OdometryMessage {
     /// Stamp and odometry frame.
@@ -87,7 +87,7 @@ fn scan_without_ranges(fields: &mut WireReader<'_>) -> Result<(Header, ScanField
     Ok((header, scan))
 }
 
-/// `nav_msgs/Odometry`.
+/// `nav_msgs/Odometry`, or `geometry_msgs/TransformStamped`, whose fields begin alike.
 pub fn odometry(fields: &mut WireReader<'_>) -> Result<OdometryMessage, WireError> {
     let header = header(fields)?;
     let child = fields.name("child_frame_id")?;
@@ -95,6 +95,18 @@ pub fn odometry(fields: &mut WireReader<'_>) -> Result<OdometryMessage, WireErro
     Ok(OdometryMessage {
         header,
         child: child.trim_start_matches('/').to_owned(),
+        pose,
+        is_oriented,
+    })
+}
+
+/// `geometry_msgs/PoseStamped` or `geometry_msgs/PoseWithCovarianceStamped`, which do not name the body frame.
+pub fn stamped_pose(fields: &mut WireReader<'_>) -> Result<OdometryMessage, WireError> {
+    let header = header(fields)?;
+    let (pose, is_oriented) = pose(fields)?;
+    Ok(OdometryMessage {
+        header,
+        child: String::new(),
         pose,
         is_oriented,
     })

@@ -164,6 +164,9 @@ impl Plan {
             );
             plan.align_clocks(odometry, &clocks[0]);
             plan.about.extend(odometry.others.clone());
+        } else if options.odometry_topic.is_none() {
+            plan.warnings
+                .extend(odometry::instead_of_odometry(survey, &clocks[0]));
         }
         for (parent, child) in survey.transforms.edges().take(100) {
             plan.about
@@ -300,6 +303,24 @@ impl Plan {
     }
 }
 
+/// What to do about a topic of clouds in another type than `sensor_msgs/PointCloud2`.
+pub fn unread_cloud(topic: &str, kind: &str) -> Option<String> {
+    let (of, remedy) = match kind {
+        "sensor_msgs/PointCloud" => (
+            "the old type of clouds",
+            "convert each message with convertPointCloudToPointCloud2 of sensor_msgs",
+        ),
+        kind if kind.starts_with("livox_ros_driver") && kind.ends_with("/CustomMsg") => (
+            "Livox's own type of clouds",
+            "set xfer_format to 0 in the launch file of its driver",
+        ),
+        _ => return None,
+    };
+    Some(format!(
+        "{topic} is {kind}, {of}, which is not read; {remedy}, record sensor_msgs/PointCloud2, and pass --heights LOW,HIGH"
+    ))
+}
+
 /// Whether a frame does not move with the robot.
 fn is_fixed(frame: &str, ground: Option<&str>) -> bool {
     !frame.is_empty() && (ground == Some(frame) || is_ground(frame))
@@ -393,8 +414,18 @@ fn without_scans(survey: &Survey, options: &LogOptions) -> String {
     {
         return problem;
     }
-    let topics = survey.counts.keys().take(20);
-    let topics = listed(topics.map(|(topic, kind)| format!("{topic} ({kind})")));
+    let topics = survey.counts.keys();
+    if let Some(advice) = topics
+        .clone()
+        .find_map(|(topic, kind)| unread_cloud(topic, kind))
+    {
+        return advice;
+    }
+    let topics = listed(
+        topics
+            .take(20)
+            .map(|(topic, kind)| format!("{topic} ({kind})")),
+    );
     if let Some(topic) = &options.scan_topic {
         return format!("{topic} is not one of {topics}");
     }

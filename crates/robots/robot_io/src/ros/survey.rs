@@ -8,7 +8,9 @@ use std::collections::BTreeMap;
 use pr_geom::SE2;
 
 use super::container::Recorded;
-use super::messages::{Header, header, laser_scan, multi_echo_scan, odometry, transforms};
+use super::messages::{
+    Header, header, laser_scan, multi_echo_scan, odometry, stamped_pose, transforms,
+};
 use super::point_cloud::point_cloud;
 use super::transforms::{Transforms, is_ground, planar};
 use super::wire::WireReader;
@@ -40,6 +42,14 @@ pub const SCANS: [&str; 3] = [
 pub const POINT_CLOUD: &str = "sensor_msgs/PointCloud2";
 /// Message type of odometry.
 pub const ODOMETRY: &str = "nav_msgs/Odometry";
+
+/// Message types of poses that are odometry if the user says so: also goals and the results of programs have these types.
+pub const POSES: [&str; 3] = [
+    "geometry_msgs/PoseStamped",
+    "geometry_msgs/PoseWithCovarianceStamped",
+    TRANSFORM,
+];
+const TRANSFORM: &str = "geometry_msgs/TransformStamped";
 
 /// Whether a message type is that of transforms.
 pub fn is_transforms(kind: &str) -> bool {
@@ -143,6 +153,8 @@ pub struct BodyPoses {
     pub poses: Vec<SE2>,
     /// Whether the poses differ.
     pub moves: bool,
+    /// Whether the messages are poses, which are used only if the user chooses their topic.
+    pub is_pose: bool,
     /// Number of messages without an orientation; their poses are left out.
     pub without_heading: usize,
     /// Keeps every n-th message.
@@ -212,7 +224,10 @@ impl Survey {
             return Ok(());
         }
         match message.kind.as_str() {
-            ODOMETRY => self.add_odometry(message).map_err(named),
+            kind if kind == ODOMETRY || POSES.contains(&kind) => {
+                self.add_odometry(message).map_err(named)
+            }
+
             kind if is_transforms(kind) => {
                 let all = reader(message)
                     .and_then(|mut fields| transforms(&mut fields).map_err(|e| e.to_string()))
@@ -312,7 +327,11 @@ impl Survey {
 
     fn add_odometry(&mut self, message: &Recorded) -> Result<(), String> {
         let mut fields = reader(message)?;
-        let parsed = odometry(&mut fields).map_err(|problem| problem.to_string())?;
+        let read = match message.kind.as_str() {
+            ODOMETRY | TRANSFORM => odometry,
+            _ => stamped_pose,
+        };
+        let parsed = read(&mut fields).map_err(|problem| problem.to_string())?;
         let pose = plausible_pose(planar(&parsed.pose))?;
         let order = self.odometry.len();
         if order >= MAX_TOPICS && !self.odometry.contains_key(&message.topic) {
@@ -329,6 +348,7 @@ impl Survey {
                     parsed.child.clone()
                 },
                 order,
+                is_pose: message.kind != ODOMETRY,
                 ..BodyPoses::default()
             });
         if parsed.is_oriented {

@@ -18,7 +18,7 @@ use tungstenite::{Bytes, Message as Frame};
 const WAIT: &str = "2";
 
 /// The output of `slam2d live` into a new folder, with this server at the other end, and the folder.
-fn drive(
+pub fn drive(
     options: &[&str],
     serve: impl FnOnce(TcpListener) + Send + 'static,
 ) -> (Output, tempfile::TempDir) {
@@ -45,7 +45,7 @@ fn play(server: &TcpListener, parts: &[&[Message]]) {
     }
 }
 
-fn said(output: &Output) -> String {
+pub fn said(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 

@@ -4,6 +4,7 @@ mod base;
 mod connected;
 mod damage;
 mod field;
+mod instead;
 mod live;
 mod robot;
 mod robots;

@@ -169,6 +169,18 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         "the scans are mirrored",
     ),
     (
+        "the heading of odometry has the wrong sign",
+        |all| poses(all, |_, _, pose| pose[2] *= -1.0),
+        NEAR_M,
+        "its heading has the wrong sign",
+    ),
+    (
+        "y of odometry has the wrong sign",
+        |all| poses(all, |_, _, pose| pose[1] *= -1.0),
+        NEAR_M,
+        "its y has the wrong sign",
+    ),
+    (
         "odometry stands still",
         |all| poses(all, |_, _, pose| *pose = [0.0; 3]),
         BY_SCANS_M,

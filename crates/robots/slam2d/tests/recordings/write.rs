@@ -23,6 +23,15 @@ pub enum Body {
         pose: [f64; 3],
     },
     Transforms(Vec<FrameTransform>),
+    /// A pose, of a type that states it like this.
+    Pose {
+        kind: &'static str,
+        stamp_s: f64,
+        above: String,
+        pose: [f64; 3],
+    },
+    /// A message of another type.
+    Other(&'static str),
     /// Points of a 3-D sensor, in its frame.
     Cloud {
         stamp_s: f64,
@@ -83,6 +92,7 @@ impl Message {
             Body::Scan(_) => "sensor_msgs/msg/LaserScan",
             Body::Odometry { .. } => "nav_msgs/msg/Odometry",
             Body::Transforms(_) => "tf2_msgs/msg/TFMessage",
+            Body::Pose { kind, .. } | Body::Other(kind) => kind,
             Body::Cloud { .. } => "sensor_msgs/msg/PointCloud2",
         }
     }
@@ -134,6 +144,22 @@ impl Message {
                     pose(&mut cdr, transform.pose, transform.is_upside_down);
                 }
             }
+            Body::Pose {
+                kind,
+                stamp_s,
+                above,
+                pose,
+            } => {
+                cdr.header(*stamp_s, above);
+                if kind.ends_with("TransformStamped") {
+                    cdr.text("base_link");
+                }
+                self::pose(&mut cdr, *pose, false);
+                if kind.ends_with("WithCovarianceStamped") {
+                    cdr.f64s(&[0.0; 36]);
+                }
+            }
+            Body::Other(_) => cdr.header(0.0, ""),
             Body::Cloud {
                 stamp_s,
                 frame,

@@ -16,6 +16,9 @@ const AHEAD_S: f64 = 0.1;
 /// Odometry at fewer scans than this share does not cover them.
 const COVERS: f64 = 0.8;
 
+/// Message type of inertial measurements.
+const IMU: &str = "sensor_msgs/Imu";
+
 /// The selected odometry.
 pub struct SelectedOdometry<'a> {
     /// Topic.
@@ -49,7 +52,7 @@ pub fn chosen<'a>(
     let candidates = topics
         .chain(transforms)
         .filter(|(topic, track, is_transform)| {
-            let is_wanted = wanted.is_none_or(|wanted| wanted == topic);
+            let is_wanted = wanted.map_or(!track.is_pose, |wanted| wanted == topic);
             // A transform with one message is static, whatever its name.
             let is_static = *is_transform && !track.moves && track.poses.len() <= 2;
             is_wanted && !is_static && !track.poses.is_empty()
@@ -119,9 +122,37 @@ impl SelectedOdometry<'_> {
     }
 }
 
+/// What is said of a recording without odometry that has other measurements of the robot's motion.
+pub fn instead_of_odometry(survey: &Survey, scans: &MendedStamps) -> Option<Remark> {
+    let poses = survey.odometry.iter().filter(|(_, track)| {
+        let clock = MendedStamps::new(&track.stamps_s, &track.recorded_s);
+        track.is_pose && track.moves && covers(&clock, scans)
+    });
+    let options: Vec<String> = poses
+        .map(|(topic, _)| format!("--odom-topic {topic}"))
+        .take(5)
+        .collect();
+    if !options.is_empty() {
+        let text = format!(
+            "the recording has no odometry, and poses that may be the robot's are not read; choose them with {}",
+            listed(options.iter().cloned())
+        );
+        let remark = Remark::mended(Part::Odometry, text);
+        return Some(options.iter().fold(remark, Remark::with_option));
+    }
+    let topics = survey.counts.keys();
+    let (topic, kind) = topics.into_iter().find(|(_, kind)| kind == IMU)?;
+    Some(Remark::mended(
+        Part::Odometry,
+        format!(
+            "the recording has no odometry, and {topic} ({kind}) is not read; scans are matched alone. Record nav_msgs/Odometry as well, for example from robot_localization"
+        ),
+    ))
+}
+
 /// Remarks on sources of odometry whose poses have no orientation.
 pub fn without_headings(survey: &Survey) -> Vec<Remark> {
-    let topics = survey.odometry.iter();
+    let topics = survey.odometry.iter().filter(|(_, track)| !track.is_pose);
     let topics = topics.map(|(topic, track)| (topic.as_str(), track));
     let transforms = survey.tracks.values().map(|track| (TRANSFORMS, track));
     let unset = topics

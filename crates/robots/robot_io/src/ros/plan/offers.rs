@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::TRANSFORMS;
 use super::odometry::SelectedOdometry;
 use crate::log::{LogOffer, LogOption, LogOptions};
-use crate::ros::survey::{ODOMETRY, SCANS, Survey};
+use crate::ros::survey::{ODOMETRY, POSES, SCANS, Survey};
 use crate::ros::transforms::is_ground;
 
 /// Most topics or frames listed for an option.
@@ -33,7 +33,7 @@ pub fn list(
     let parents = frames().map(|(parent, _)| parent.to_owned());
     let children = frames().map(|(_, child)| child.to_owned());
     let bodies: BTreeSet<String> = children.chain(parents).collect();
-    let mut odometry_topics = topics(&[ODOMETRY]);
+    let mut odometry_topics = topics(&[&[ODOMETRY][..], &POSES].concat());
     if !survey.tracks.is_empty() {
         odometry_topics.insert(TRANSFORMS.to_owned());
     }
