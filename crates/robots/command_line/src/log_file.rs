@@ -28,7 +28,7 @@ pub struct TopicArgs {
     /// The topic of the scans, such as /scan.
     #[arg(long, value_name = "TOPIC")]
     scan_topic: Option<String>,
-    /// The topic of the odometry, such as /odom, or /tf.
+    /// The topic of the odometry, such as /odom, of stamped poses, or /tf.
     #[arg(long, value_name = "TOPIC")]
     odom_topic: Option<String>,
     /// The odometry frame in /tf.

@@ -219,6 +219,26 @@ fn missing_parts_of_a_graph_are_added_and_reported() {
 }
 
 #[test]
+fn loops_with_a_switch_or_a_weight_are_edges_of_the_problem() {
+    let (poses, closing) = SQUARE.trim_end().rsplit_once('\n').unwrap();
+    let plain = Graph::new(SQUARE).solve(&[]);
+    for tag in ["SWITCHABLE 3 0 4", "MAXMIX 3 0 0.01", "SWITCHABLE 3 0"] {
+        let edge = closing.replace("EDGE_SE2 3 0", &format!("EDGE_SE2_{tag}"));
+        let graph = Graph::new(format!("{poses}\n{edge}\n"));
+        let summary = graph.solve(&[]);
+        assert_eq!(summary["edges"], plain["edges"], "{tag}");
+        assert_eq!(summary["chi2"], plain["chi2"], "{tag}");
+        let output = slam2d(&["optimize", graph.input()]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            said.contains("line 8: 1 switchable or max-mixture edge read as EDGE_SE2")
+                && said.contains("--robust gnc"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
 fn graphs_that_cannot_be_solved_are_rejected_in_one_line() {
     for (line, expected) in [
         (
@@ -256,8 +276,12 @@ fn kept_records_are_reported_and_standard_output_is_complete() {
     let notes = String::from_utf8(printed.stderr).unwrap();
     assert_eq!(
         notes,
-        "2 × ODD\\u{7}TAG kept unchanged, not part of the problem\n\
-         1 × VERTEX_XY kept unchanged, not part of the problem\n"
+        format!(
+            "slam2d: {}: line 9: VERTEX_XY: landmarks are not optimized, so 1 record is not used; solve the graph with g2o, or write an EDGE_SE2 between the poses that measure the same landmark\n\
+         2 × ODD\\u{{7}}TAG kept unchanged, not part of the problem\n\
+         1 × VERTEX_XY kept unchanged, not part of the problem\n",
+            graph.input()
+        )
     );
     assert!(fs::read_to_string(output).unwrap().ends_with(tags));
 }

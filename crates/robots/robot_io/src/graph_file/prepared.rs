@@ -50,7 +50,7 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
         );
     }
     let text = super::toro::as_g2o(bytes);
-    let mut remarks: Vec<String> = text.remark.into_iter().collect();
+    let mut remarks = text.remarks;
     let text = text.text;
     let mut ids: Vec<i64> = Vec::new();
     let mut poses: BTreeMap<i64, SE2> = BTreeMap::new();
@@ -58,6 +58,8 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
     let mut fixed: Vec<i64> = Vec::new();
     let mut priors: Vec<(i64, String)> = Vec::new();
     let mut in_space = None;
+    // The first record of a landmark, and their number.
+    let mut landmarks: Option<(usize, String, usize)> = None;
     for (number, line) in text.split(|&byte| byte == b'\n').enumerate() {
         let Ok(line) = std::str::from_utf8(line) else {
             continue;
@@ -95,6 +97,10 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
             "VERTEX_SE3:QUAT" | "EDGE_SE3:QUAT" | "VERTEX3" | "EDGE3" => {
                 in_space.get_or_insert((number + 1, kind.to_owned()));
             }
+            kind if kind == "LANDMARK" || kind.ends_with("_XY") => {
+                let first = landmarks.get_or_insert_with(|| (number + 1, kind.to_owned(), 0));
+                first.2 += 1;
+            }
             _ => {}
         }
     }
@@ -104,6 +110,16 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
     {
         return Err(format!(
             "line {line} is a {kind}: the graph is three-dimensional, but only planar graphs are supported; write it with VERTEX_SE2 and EDGE_SE2"
+        ));
+    }
+    if let Some((line, kind, count)) = landmarks {
+        remarks.push(format!(
+            "line {line}: {kind}: landmarks are not optimized, so {} not used; solve the graph with g2o, or write an EDGE_SE2 between the poses that measure the same landmark",
+            if count == 1 {
+                "1 record is".to_owned()
+            } else {
+                format!("{count} records are")
+            }
         ));
     }
     let mut lines = text.split_inclusive(|&byte| byte == b'\n').count();

@@ -1,26 +1,37 @@
-//! Converts records of TORO and iSAM to records of g2o.
+//! Converts records of TORO and iSAM, and loops with a switch or a weight, to records of g2o.
+//!
+//! `EDGE_SE2_SWITCHABLE from to switch dx dy dtheta I…` and `EDGE_SE2_MAXMIX from to weight dx dy dtheta I…` become edges.
+//! Source: Sünderhauf, Protzel, "Switchable constraints for robust pose graph SLAM", 2012; Olson, Agarwal, "Inference on
+//! networks of mixtures for robust robot mapping", 2012; the files of Vertigo.
 
 use std::borrow::Cow;
 
 use nalgebra::Matrix3;
 
-/// Text in g2o's records, with a remark on its order.
+use crate::plural::plural;
+
+/// Text in g2o's records, with remarks on what was changed.
 pub struct AsG2o<'a> {
     /// The text.
     pub text: Cow<'a, [u8]>,
-    /// Remark if the information was in an unexpected order.
-    pub remark: Option<String>,
+    /// Remarks on information in an unexpected order, and on switches and weights that are left out.
+    pub remarks: Vec<String>,
 }
 
-/// Converts every TORO or iSAM record of a text to g2o, line by line; other lines are unchanged.
+/// Records of loops with a switch or a weight.
+const ROBUST: [&str; 2] = ["EDGE_SE2_SWITCHABLE", "EDGE_SE2_MAXMIX"];
+
+/// Converts every such record of a text to g2o, line by line; other lines are unchanged.
 #[must_use]
 pub fn as_g2o(bytes: &[u8]) -> AsG2o<'_> {
-    let is_toro = |line: &[u8]| {
-        let line = line.trim_ascii_start();
-        [&b"VERTEX2"[..], b"EDGE2", b"ODOMETRY"].iter().any(|name| {
-            line.starts_with(name) && line.get(name.len()).is_some_and(u8::is_ascii_whitespace)
-        })
+    let is_one_of = |line: &[u8], names: &[&str]| {
+        let mut words = line.split(u8::is_ascii_whitespace);
+        let name = words.find(|word| !word.is_empty()).unwrap_or_default();
+        names.iter().any(|known| known.as_bytes() == name)
     };
+    let is_robust = |line: &[u8]| is_one_of(line, &ROBUST);
+    let is_toro =
+        |line: &[u8]| is_one_of(line, &["VERTEX2", "EDGE2", "ODOMETRY"]) || is_robust(line);
     let lines = || bytes.split_inclusive(|&byte| byte == b'\n');
     let toro = || {
         lines()
@@ -30,7 +41,7 @@ pub fn as_g2o(bytes: &[u8]) -> AsG2o<'_> {
     if toro().next().is_none() && !lines().any(is_toro) {
         return AsG2o {
             text: Cow::Borrowed(bytes),
-            remark: None,
+            remarks: Vec::new(),
         };
     }
     let is_g2o_order = toro().any(|line| !is_information(line, TORO_ORDER))
@@ -45,11 +56,19 @@ pub fn as_g2o(bytes: &[u8]) -> AsG2o<'_> {
             _ => text.extend_from_slice(line),
         }
     }
+    let order = is_g2o_order.then(|| {
+        "its EDGE2 records have the information in g2o's order, because it would be indefinite in TORO's order; they are read in g2o's order".to_owned()
+    });
+    let robust = lines().position(is_robust).map(|first| {
+        format!(
+            "line {}: {} read as EDGE_SE2, without switch or weight; reject wrong loops with --robust gnc",
+            first + 1,
+            plural(lines().filter(|line| is_robust(line)).count(), "switchable or max-mixture edge")
+        )
+    });
     AsG2o {
         text: Cow::Owned(text),
-        remark: is_g2o_order.then(|| {
-            "its EDGE2 records have the information in g2o's order, because it would be indefinite in TORO's order; they are read in g2o's order".to_owned()
-        }),
+        remarks: order.into_iter().chain(robust).collect(),
     }
 }
 
@@ -95,7 +114,7 @@ fn squared(root: &[&str]) -> Option<String> {
     Some(upper.map(|entry| entry.to_string()).join(" "))
 }
 
-/// A record of TORO or iSAM as a g2o record; a wrong number of fields is passed on.
+/// Such a record as a g2o record; a wrong number of fields is passed on.
 fn toro_line(line: &str, is_g2o_order: bool) -> String {
     let words: Vec<&str> = line.split_whitespace().collect();
     match words[..] {
@@ -108,6 +127,13 @@ fn toro_line(line: &str, is_g2o_order: bool) -> String {
         }
         ["ODOMETRY", ref rest @ ..] => format!("EDGE_SE2 {}", rest.join(" ")),
         ["EDGE2", ref rest @ ..] => format!("EDGE_SE2 {}", rest.join(" ")),
+        [name, from, to, _, x, y, theta, ref rest @ ..]
+            if ROBUST.contains(&name) && rest.len() == 6 =>
+        {
+            format!("EDGE_SE2 {from} {to} {x} {y} {theta} {}", rest.join(" "))
+        }
+        // Some programs leave the switch out.
+        [name, ref rest @ ..] if ROBUST.contains(&name) => format!("EDGE_SE2 {}", rest.join(" ")),
         [_, ref rest @ ..] => format!("VERTEX_SE2 {}", rest.join(" ")),
         [] => String::new(),
     }
@@ -136,10 +162,6 @@ mod tests {
             converted("EDGE2 0 1 1 0 0 100 0 0 100 0 400\n"),
             "EDGE_SE2 0 1 1 0 0 100 0 0 100 0 400\n"
         );
-        assert!(
-            as_g2o(b"EDGE2 0 1 1 0 0 100 0 0 100 0 400\n")
-                .remark
-                .is_some()
-        );
+        assert!(as_g2o(b"EDGE2 0 1 1 0 0 100 0 0 100 0 400\n").remarks.len() == 1);
     }
 }

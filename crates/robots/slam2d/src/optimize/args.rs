@@ -12,7 +12,7 @@ use command_line::numbers;
 /// Optimize a pose graph: g2o in, g2o out.
 #[derive(Args, Clone, Debug)]
 pub struct OptimizeArgs {
-    /// Graph to read: VERTEX_SE2, EDGE_SE2, FIX; other records are kept unchanged.
+    /// Graph to read: VERTEX_SE2, EDGE_SE2 (also _SWITCHABLE and _MAXMIX), FIX; other records are kept unchanged.
     #[arg(value_name = "IN.g2o")]
     pub input: PathBuf,
     /// File for the optimized graph; symbolic links are followed. Without it, no file is written.
