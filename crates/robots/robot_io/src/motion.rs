@@ -95,6 +95,9 @@ struct Comparison {
     last_estimate: Option<(f64, SE2)>,
     /// Largest turn during a sweep, in steps between two beams.
     skew: f64,
+    /// Stamp of the last scan, s, and for each scan the time of its sweep over that since the one before.
+    stamp_s: Option<f64>,
+    sweep_shares: Vec<f64>,
 }
 
 impl Comparison {
@@ -111,10 +114,16 @@ impl Comparison {
             turned_rad: 0.0,
             last_estimate: None,
             skew: 0.0,
+            stamp_s: None,
+            sweep_shares: Vec::new(),
         }
     }
 
     fn add(&mut self, log: &LogFrame) {
+        if let Some(before_s) = self.stamp_s.replace(log.stamp_s) {
+            let share = log.scan.sweep_s() / (log.stamp_s - before_s);
+            self.sweep_shares.push(share);
+        }
         if log.stamp_s - self.last_s < MIN_APART_S {
             return;
         }

@@ -47,6 +47,7 @@ pub use live::{LiveReader, MessageUse};
 pub use mcap_writer::{McapWriter, Topic};
 pub(crate) use plan::unread_cloud;
 pub use reader::RosReader;
+pub(crate) use scan_fields::SWEEP_SLACK;
 pub(crate) use scan_fields::ScanFields;
 
 #[cfg(test)]

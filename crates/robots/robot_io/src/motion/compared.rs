@@ -13,6 +13,7 @@ use super::lag::{Heading, lag_s};
 use super::repairs::Repairs;
 use super::trial::Trial;
 use crate::laser_mount::LaserMount;
+use crate::ros::SWEEP_SLACK;
 use crate::stamps::median;
 
 /// A shorter turn has no ratio, rad.
@@ -79,6 +80,9 @@ pub struct MotionComparison {
     pub drift_m_per_m: Option<f64>,
     /// Lag of odometry behind the scans, s; `None` if there is none or the turns do not show it.
     pub lag_s: Option<f64>,
+    /// Time of a sweep over that between two scans, if it is longer.
+    #[serde(skip)]
+    long_sweep: Option<f64>,
     /// Faults whose repair won its trial, each with its costs; before the trial, those that the comparison shows.
     #[serde(skip)]
     findings: Vec<(Finding, Option<Costs>)>,
@@ -249,8 +253,9 @@ impl MotionComparison {
     }
 
     /// Tries the opposite order of the beams in time, if the robot turned by more than the step between two beams (a
-    /// `skew` of 1) during a sweep.
-    pub(super) fn compare_sweeps(&mut self, skew: f64) {
+    /// `skew` of 1) during a sweep. `shares` are the times of the sweeps over those between two scans.
+    pub(super) fn compare_sweeps(&mut self, skew: f64, shares: Vec<f64>) {
+        self.long_sweep = median(shares).filter(|&share| share > SWEEP_SLACK);
         if skew > 1.0 {
             self.propose(Finding::Backward);
         }
@@ -317,6 +322,11 @@ impl MotionComparison {
         let mut faults = self.faults();
         faults.retain(|fault| !(fault.is_left() || is_mount_fixed && fault.is_of_mount()));
         Repairs::of(&faults, mount)
+    }
+
+    /// Time of a sweep over that between two scans, if it is longer: beams of different sweeps would overlap.
+    pub(super) fn long_sweep(&self) -> Option<f64> {
+        self.long_sweep
     }
 
     /// Whether odometry stands still while the robot moves.

@@ -15,7 +15,7 @@ const FULL_TURN: f64 = 1.02 * TAU;
 /// No scanner sees less, degrees: smaller angles that are more than a turn in radians are not degrees either.
 const LEAST_VIEW_DEG: f64 = 20.0;
 /// A sweep may take this many scan periods: stamps jitter.
-const SWEEP_SLACK: f64 = 1.3;
+pub const SWEEP_SLACK: f64 = 1.3;
 
 /// A sweep of more scan periods has another unit of time.
 const MOST_PERIODS: f64 = 50.0;

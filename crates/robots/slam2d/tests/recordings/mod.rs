@@ -9,6 +9,7 @@ mod live;
 mod robot;
 mod robots;
 mod shown;
+mod sweeps;
 mod variants;
 mod write;
 
