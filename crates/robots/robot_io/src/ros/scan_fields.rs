@@ -264,8 +264,15 @@ fn in_a_turn(first: f64, step: f64, gaps: f64) -> Result<(f64, f64), String> {
     if (step * gaps).abs() <= FULL_TURN && first.abs() <= 4.0 * PI && step != 0.0 {
         Ok((first, step))
     } else {
+        let turns = (step * (gaps + 1.0)).abs() / TAU;
+        let off_beams = (turns - turns.round()).abs() * TAU / step.abs();
+        let remedy = if turns.round() >= 2.0 && off_beams <= 1.5 {
+            format!("publish each of its {turns:.0} revolutions as a scan")
+        } else {
+            "correct angle_min, angle_max and angle_increment in the driver".to_owned()
+        };
         Err(format!(
-            "its beams cover {:.0}°, more than a turn; correct angle_min, angle_max and angle_increment in the driver",
+            "its beams cover {:.0}°, more than a turn; {remedy}",
             (step * gaps).abs().to_degrees()
         ))
     }

@@ -115,7 +115,17 @@ fn inconsistent_angles_are_rejected() {
     };
     let remarks = bad.checked(0.1).unwrap_err();
     assert!(
-        remarks.contains("cover 480°, more than a turn"),
+        remarks.contains("cover 480°, more than a turn; correct angle_min"),
+        "{remarks}"
+    );
+    let bad = ScanFields {
+        angle_max: -PI + 3.0 * TAU - TAU / 120.0,
+        angle_increment: TAU / 120.0,
+        ..fields()
+    };
+    let remarks = bad.checked(0.1).unwrap_err();
+    assert!(
+        remarks.ends_with("publish each of its 3 revolutions as a scan"),
         "{remarks}"
     );
     let bad = ScanFields {
