@@ -214,3 +214,26 @@ fn the_chain_is_bent_by_its_loose_end_and_no_mark_is_ahead_of_the_step() {
     widget.set("steps", 5.0).unwrap();
     assert!(widget.grab("graphs", wanted, [0.1; 2]).is_none());
 }
+
+#[test]
+fn solvers_that_cannot_be_told_apart_are_one_chain() {
+    let chains = |steps: f64| {
+        let layers = with(&[("steps", steps)]).scene().panels[0].layers.clone();
+        let of_solvers = layers.iter().filter(|layer| {
+            matches!(
+                layer,
+                Layer::Line {
+                    tone: widget_kit::scene::Tone::Series(_),
+                    ..
+                }
+            )
+        });
+        of_solvers.count()
+    };
+    assert_eq!(
+        chains(MAX_STEPS as f64),
+        2,
+        "three end alike, one elsewhere"
+    );
+    assert!(chains(1.0) > 2, "the wrong Jacobian is behind");
+}

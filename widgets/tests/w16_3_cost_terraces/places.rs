@@ -453,3 +453,29 @@ fn a_slope_that_faces_the_light_is_brighter_than_one_that_turns_away() {
     assert!(light(32, 16) > 0.1, "{}", light(32, 16));
     assert!(light(16, 32) < -0.1, "{}", light(16, 32));
 }
+
+#[test]
+fn the_picture_shows_the_hollow_that_holds_a_stuck_ball_and_none_around_one_that_is_home() {
+    let hollow = |measure: f64| {
+        let model = with(&[("measure", measure), ("t", 100.0)]);
+        panel(&model, "path")
+            .layers
+            .into_iter()
+            .find_map(|layer| match layer {
+                Layer::Line {
+                    points,
+                    tone: Tone::Posterior,
+                    ..
+                } => Some(points),
+                _ => None,
+            })
+    };
+    let points = hollow(0.0).expect("ICP's ball sticks");
+    let low = points.iter().map(|at| at[1]).fold(f64::INFINITY, f64::min);
+    let before = points.iter().position(|at| at[1] - low < 1e-9).unwrap();
+    // It rises on both sides, and behind the rim it falls: that is why a ball that only descends stays.
+    let rim = points[before..].iter().map(|at| at[1]).fold(low, f64::max);
+    assert!(rim - low > 1.0, "{points:?}");
+    assert!(points.last().unwrap()[1] < rim, "{points:?}");
+    assert_eq!(hollow(1.0), None, "NDT's is home");
+}

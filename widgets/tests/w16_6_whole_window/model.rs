@@ -288,3 +288,21 @@ fn the_curve_belongs_to_the_box_under_the_pointer_or_to_the_one_taken_up() {
     window.set("heading", 20.0).unwrap();
     assert_eq!(looked_into(&window), None, "another search has other boxes");
 }
+
+#[test]
+fn what_was_thrown_away_leaves_its_outline() {
+    let outlines = |progress: f64| {
+        let layers = panel_of(&with(&[("progress", progress)]), panel::SWEEPS).layers;
+        let lines = layers.into_iter().filter_map(|layer| match layer {
+            Layer::Line {
+                points,
+                tone: Tone::Faint,
+                ..
+            } => Some(points.len()),
+            _ => None,
+        });
+        lines.sum::<usize>()
+    };
+    assert_eq!(outlines(0.0), 0);
+    assert!(outlines(200_000.0) > outlines(200.0));
+}

@@ -75,7 +75,7 @@ fn map(own: &OwnRobot) -> Panel {
         x: axis(0),
         y: axis(1),
         layers,
-        legend: legend(own),
+        legend: legend(own, by_wheels.iter().any(Option::is_some)),
         color_bar,
     }
 }
@@ -89,13 +89,16 @@ fn short(name: &str) -> String {
     format!("{start}…")
 }
 
-fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
+fn legend(own: &OwnRobot, has_wheels: bool) -> Vec<LegendEntry> {
     let mut legend = Vec::new();
     if own.robot.keyframes.is_empty() {
         return legend;
     }
-    let posterior = LegendEntry::mark("keyframe shown", Tone::Posterior, Mark::Square);
-    legend.push(posterior);
+    legend.push(if has_wheels {
+        LegendEntry::line("by the wheels alone", Tone::Prediction, Stroke::Dashed)
+    } else {
+        LegendEntry::mark("keyframe shown", Tone::Posterior, Mark::Square)
+    });
     if own.robot.has_scans {
         legend.push(LegendEntry::mark(
             "its scan",

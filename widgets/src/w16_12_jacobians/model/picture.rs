@@ -19,8 +19,6 @@ const TONES: [Tone; 4] = [
     Tone::Series(3),
 ];
 const MARKS: [Mark; 4] = [Mark::Square, Mark::Circle, Mark::Triangle, Mark::Cross];
-/// Widths of the chains and radii of their marks, px: of chains that coincide each shows beside the next one.
-const SIZES: [[f32; 2]; 4] = [[12.0, 9.0], [7.5, 7.0], [4.0, 4.5], [1.75, 4.5]];
 /// Margin around the poses, m.
 const MARGIN_M: f64 = 0.4;
 /// The curves end at this power of ten: smaller values are rounding.
@@ -62,33 +60,40 @@ fn axes(widget: &WrongJacobians) -> [Axis; 2] {
     spans.map(axis)
 }
 
-/// The graphs of all four over the optimum.
+/// The graphs of the four that differ, under the optimum.
 fn graphs(widget: &WrongJacobians) -> Panel {
     let [x, y] = axes(widget);
     let line =
         |points: Vec<[f64; 2]>, stroke, tone, width_px| Layer::line(points, stroke, tone, width_px);
     let best = places(&widget.solved.optimum);
     let far = best[best.len() / 2];
-    let mut layers = vec![line(best, Stroke::Dotted, Tone::Ink, 2.0)];
-    let mut chain = |solver: usize, tone, mark, [width_px, radius_px]: [f32; 2]| {
-        let now = places(&widget.shown(solver).poses);
+    let start = places(&widget.shown(0).poses);
+    let mut layers = Vec::new();
+    let mut chain = |now: Vec<[f64; 2]>, tone, mark, [width_px, radius_px]: [f32; 2]| {
         layers.push(line(now.clone(), Stroke::Solid, tone, width_px));
         layers.push(Layer::points(now, mark, tone, radius_px));
     };
+    let mut labels = Vec::new();
     if widget.step() == 0 {
         // One start, not four graphs over each other.
-        chain(0, Tone::Ink, Mark::Square, [1.75, 4.0]);
+        chain(start, Tone::Ink, Mark::Square, [1.75, 4.0]);
     } else {
-        let looks = TONES.into_iter().zip(MARKS).zip(SIZES);
-        for (solver, ((tone, mark), size)) in looks.enumerate() {
-            chain(solver, tone, mark, size);
+        for (solver, names) in apart(widget) {
+            let now = places(&widget.shown(solver).poses);
+            if !widget.is_over() {
+                labels.push(Layer::label(now[now.len() - 1], names.join(", "), 10.0));
+            }
+            chain(now, TONES[solver], MARKS[solver], [4.0, 5.0]);
         }
     }
+    // On top, or the chains that end there would hide it.
+    layers.push(line(best, Stroke::Dotted, Tone::Ink, 2.0));
     if widget.is_over() {
-        layers.extend(ends(widget, far));
-    } else {
-        layers.push(Layer::label(far, "optimum".to_owned(), 10.0));
+        labels.extend(ends(widget, far));
+    } else if widget.step() == 0 {
+        labels.push(Layer::label(far, "optimum".to_owned(), 10.0));
     }
+    layers.extend(labels);
     if let Some(at) = widget.loose_end() {
         layers.push(Layer::Handle {
             at,
@@ -101,9 +106,6 @@ fn graphs(widget: &WrongJacobians) -> Panel {
         0 => "All four solvers start here".to_owned(),
         step => format!("Step {step} of {}", widget.last()),
     };
-    let legend = (0..NAMES.len())
-        .map(|k| LegendEntry::marked_line(NAMES[k], TONES[k], MARKS[k], Stroke::Solid))
-        .collect();
     Panel {
         id: panel::GRAPHS,
         title,
@@ -112,9 +114,28 @@ fn graphs(widget: &WrongJacobians) -> Panel {
         x,
         y,
         layers,
-        legend,
+        // The names stand at the chains.
+        legend: Vec::new(),
         color_bar: None,
     }
+}
+
+/// The chains that can be told apart, by their first solver, and the names of those whose poses are all within the
+/// noise of an edge of it: over each other they would be one rope.
+fn apart(widget: &WrongJacobians) -> Vec<(usize, Vec<&'static str>)> {
+    let mut chains: Vec<(usize, Vec<&'static str>)> = Vec::new();
+    for (solver, name) in NAMES.into_iter().enumerate() {
+        let poses = &widget.shown(solver).poses;
+        let same = chains.iter_mut().find(|(first, _)| {
+            let mut pairs = poses.iter().zip(&widget.shown(*first).poses);
+            pairs.all(|(a, b)| math::norm2(a.x() - b.x(), a.y() - b.y()) < SAME_END_M)
+        });
+        match same {
+            Some((_, names)) => names.push(name),
+            None => chains.push((solver, vec![name])),
+        }
+    }
+    chains
 }
 
 /// Who ended at the optimum, and who elsewhere, each with its χ².
@@ -247,7 +268,9 @@ fn curve(widget: &WrongJacobians) -> Panel {
         x: Axis::new("step", -0.05 * last, 1.05 * last),
         y,
         layers,
-        legend: Vec::new(),
+        legend: (0..NAMES.len())
+            .map(|k| LegendEntry::marked_line(NAMES[k], TONES[k], MARKS[k], Stroke::Solid))
+            .collect(),
         color_bar: None,
     }
 }

@@ -21,6 +21,8 @@ pub struct Landscape {
     pub ball: BallPath,
     /// Heights from its end straight on to the truth, as `[distance from the end (m), height]`.
     pub ahead: Vec<[f64; 2]>,
+    /// Heights close around its end on that line, as `[distance ahead of the end (m), height]`.
+    pub around: Vec<[f64; 2]>,
     heights: Vec<f64>,
     cells: usize,
 }
@@ -102,6 +104,7 @@ impl Landscape {
             lowest_m: [0.0, 0.0],
             ball: BallPath::at([0.0, 0.0], 0.0),
             ahead: Vec::new(),
+            around: Vec::new(),
             heights: Vec::new(),
             cells: 0,
         }

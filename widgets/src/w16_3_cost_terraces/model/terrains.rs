@@ -21,6 +21,9 @@ const ABOUT_M: f64 = 0.004;
 
 /// Distance of the samples on the line from a ball's end to the truth, m: less than any step of the cost.
 const AHEAD_SPACING_M: f64 = 0.01;
+/// Half the width of the ground around a resting ball that is magnified, and its samples on either side, m.
+const REST_REACH_M: f64 = 0.015;
+const REST_SAMPLES: i32 = 15;
 
 /// Everything that follows from the settings.
 #[derive(Debug)]
@@ -189,11 +192,15 @@ impl Terrains {
             let probe = TerrainProbe::new(&self.scene, &grid);
             if stale.icp_ball {
                 self.icp.ball = roll(&probe, Objective::IcpCost, probe_m);
-                self.icp.ahead = ahead(self.icp.ball.end_m(), |at| probe.icp_cost_m2(at));
+                let height = |at| probe.icp_cost_m2(at);
+                self.icp.ahead = ahead(self.icp.ball.end_m(), height);
+                self.icp.around = around(self.icp.ball.end_m(), height);
             }
             if stale.ndt_ball {
                 self.ndt.ball = roll(&probe, Objective::NdtScore, probe_m);
-                self.ndt.ahead = ahead(self.ndt.ball.end_m(), |at| -probe.ndt_score(at));
+                let height = |at| -probe.ndt_score(at);
+                self.ndt.ahead = ahead(self.ndt.ball.end_m(), height);
+                self.ndt.around = around(self.ndt.ball.end_m(), height);
             }
         }
     }
@@ -339,6 +346,16 @@ fn ahead(from_m: [f64; 2], height: impl Fn(Vector2<f64>) -> f64) -> Vec<[f64; 2]
     (0..=pieces)
         .map(|k| k as f64 / pieces as f64)
         .map(|share| [share * length_m, height(from * (1.0 - share))])
+        .collect()
+}
+
+/// Heights on the same line just behind and ahead of a resting ball, as `[distance ahead of it (m), height]`.
+fn around(rest_m: [f64; 2], height: impl Fn(Vector2<f64>) -> f64) -> Vec<[f64; 2]> {
+    let rest = Vector2::from(rest_m);
+    let length_m = math::norm2(rest.x, rest.y).max(1e-9);
+    (-REST_SAMPLES..=REST_SAMPLES)
+        .map(|k| REST_REACH_M * f64::from(k) / f64::from(REST_SAMPLES))
+        .map(|at| [at, height(rest * (1.0 - at / length_m))])
         .collect()
 }
 

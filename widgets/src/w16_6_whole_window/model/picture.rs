@@ -43,9 +43,7 @@ fn sweeps(window: &WholeWindow) -> Panel {
         },
         points(scene.target(), Mark::Cross, Tone::Measurement, 3.0),
     ];
-    if window.step() < window.boxes_taken() {
-        layers.extend(places::open_boxes(window));
-    }
+    layers.extend(places::boxes_now(window));
     if let Some(icp) = icp_now(window) {
         let sweep = scene.source().transformed(&icp);
         layers.push(points(&sweep, Mark::Dot, Tone::Series(2), 1.6));

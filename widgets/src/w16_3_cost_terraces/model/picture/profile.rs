@@ -1,5 +1,6 @@
 //! The ground under the ball, from its drop along its path and straight on to the truth.
 
+use pr_geom::math;
 use widget_kit::scene::{Aspect, Axis, Layer, Panel, Stroke, Tone, Weight};
 
 use super::{PictureState, ball, name};
@@ -11,6 +12,12 @@ const COLUMN_PX: f32 = 4.0;
 
 /// Part of the axis of heights above the highest ground: room for the ball and the words.
 const SKY: f64 = 0.3;
+
+/// Height of the rim of a magnified hollow, and of its name, as shares of the sky.
+const HOLLOW: f64 = 0.4;
+const NAMED_AT: f64 = 0.7;
+/// Times by which it is wider.
+const WIDER: f64 = 6.0;
 
 /// Steps in which the axes grow: they stay during most of a drag.
 const AXIS_STEP_M: f64 = 0.65;
@@ -48,6 +55,9 @@ pub fn panel(landscape: &Landscape, moment: PictureState) -> Panel {
         Layer::line(ground.clone(), Stroke::Solid, Tone::Ink, 2.0),
     ];
     layers.extend(ball(ground[step]));
+    if step == landscape.ball.steps() && !landscape.ball.is_home() {
+        layers.extend(hollow(landscape, ground[step][0], [highest, sky]));
+    }
     layers.push(Layer::label(flag[1], "truth".to_owned(), 6.0));
     Panel {
         id: "path",
@@ -60,6 +70,31 @@ pub fn panel(landscape: &Landscape, moment: PictureState) -> Panel {
         legend: Vec::new(),
         color_bar: None,
     }
+}
+
+/// Above a ball that stuck: the hollow that holds it, which is too flat to be seen at the scale of the ground.
+fn hollow(landscape: &Landscape, rest_m: f64, [highest, sky]: [f64; 2]) -> Vec<Layer> {
+    let around = &landscape.around;
+    let rest = landscape.share(around[around.len() / 2][1]);
+    let rises = around
+        .iter()
+        .map(|[at, height]| [*at, 100.0 * (landscape.share(*height) - rest)]);
+    let ahead = rises.clone().filter(|[at, _]| *at > 0.0);
+    let rim = ahead.fold(0.0, |rim, [_, rise]| math::max(rim, rise));
+    if rim <= 0.0 {
+        return Vec::new();
+    }
+    let times = HOLLOW * sky / rim;
+    let drawn = rises.skip_while(|[at, rise]| *at < 0.0 && *rise > 1.5 * rim);
+    let curve = drawn.map(|[at, rise]| [rest_m + WIDER * at, highest + times * rise.max(-rim)]);
+    vec![
+        Layer::line(curve.collect(), Stroke::Solid, Tone::Posterior, 2.0),
+        Layer::label(
+            [rest_m, highest + NAMED_AT * sky],
+            format!("its hollow, {times:.0} times higher"),
+            8.0,
+        ),
+    ]
 }
 
 /// Upright lines from zero to the ground, evenly apart.

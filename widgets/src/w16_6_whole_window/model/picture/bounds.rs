@@ -96,7 +96,7 @@ fn scores(window: &WholeWindow, looked_at: &LookedAt) -> Vec<[f64; 2]> {
 }
 
 /// Whether a box was dropped by that step.
-fn is_dropped(seen: &SeenBox, step: usize) -> bool {
+pub fn is_dropped(seen: &SeenBox, step: usize) -> bool {
     let is_past = seen.until.is_some_and(|until| until <= step);
     is_past && seen.fate == Some(BoxFate::Pruned)
 }

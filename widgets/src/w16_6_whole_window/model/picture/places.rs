@@ -1,5 +1,6 @@
 //! The window from above: the best score of each position, and the open boxes over it.
 
+use ch16_lab::whole_window::SeenBox;
 use ch16_slam2d::search::PoseBox;
 use widget_kit::scene::{
     Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Raster, RasterCell, Stroke, Tone, Weight,
@@ -7,6 +8,7 @@ use widget_kit::scene::{
 
 use super::super::texts::now;
 use super::super::{WholeWindow, panel};
+use super::bounds::is_dropped;
 use super::{icp_now, icp_path, sensor};
 
 /// Margin around the window as a share of its width.
@@ -18,7 +20,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
     let [low, high] = search.search().extent_m();
     let margin = MARGIN * (high[0] - low[0]);
     let mut layers = vec![Layer::Raster(raster(window))];
-    layers.extend(open_boxes(window));
+    layers.extend(boxes_now(window));
     layers.push(sensor(window.scene.truth(), Mark::Plus, Tone::Truth));
     layers.push(sensor(window.guess(), Mark::Circle, Tone::Prior));
     if let Some(icp) = icp_now(window) {
@@ -49,17 +51,30 @@ pub fn panel(window: &WholeWindow) -> Panel {
     }
 }
 
-/// The boxes that are not dropped yet, and the one looked at.
-pub fn open_boxes(window: &WholeWindow) -> Vec<Layer> {
+/// The boxes, those dropped as a trace behind those that are not, and the one looked at.
+pub fn boxes_now(window: &WholeWindow) -> Vec<Layer> {
     let all = window.search_task.window.boxes();
-    let waiting = all.iter().filter(|seen| seen.waits_after(window.step()));
-    let waiting = waiting.map(|seen| &seen.poses);
-    let mut layers = vec![boxes(waiting, Tone::Series(0), 1.0)];
+    let step = window.step();
+    let dropped = all.iter().filter(|seen| is_dropped(seen, step));
+    let waiting = all.iter().filter(|seen| seen.waits_after(step));
+    let mut layers = vec![
+        boxes(dropped.clone().map(|seen| &seen.poses), Tone::Faint, 1.0),
+        boxes(waiting.map(|seen| &seen.poses), Tone::Series(0), 1.0),
+    ];
+    let largest = dropped.max_by(|a, b| width_m(a).total_cmp(&width_m(b)));
+    if let Some(SeenBox { poses, .. }) = largest.filter(|_| step == window.boxes_taken()) {
+        let corner = [poses.x_m[0], poses.y_m[1]];
+        layers.push(Layer::label(corner, "boxes thrown away".to_owned(), 6.0));
+    }
     if let Some(looked_at) = &window.looked_at {
         let looked_at = core::iter::once(&all[looked_at.seen].poses);
         layers.push(boxes(looked_at, Tone::Series(3), 2.5));
     }
     layers
+}
+
+fn width_m(seen: &SeenBox) -> f64 {
+    seen.poses.x_m[1] - seen.poses.x_m[0]
 }
 
 /// The outlines of boxes from above.
