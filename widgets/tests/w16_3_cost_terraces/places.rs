@@ -471,11 +471,13 @@ fn the_picture_shows_the_hollow_that_holds_a_stuck_ball_and_none_around_one_that
             })
     };
     let points = hollow(0.0).expect("ICP's ball sticks");
-    let low = points.iter().map(|at| at[1]).fold(f64::INFINITY, f64::min);
-    let before = points.iter().position(|at| at[1] - low < 1e-9).unwrap();
+    let rest = ball_and_ground(&with(&[("t", 100.0)])).0[0];
+    let (behind, ahead): (Vec<[f64; 2]>, Vec<[f64; 2]>) =
+        points.into_iter().partition(|at| at[0] < rest - 1e-9);
+    let highest = |side: &[[f64; 2]]| side.iter().map(|at| at[1]).fold(f64::MIN, f64::max);
     // It rises on both sides, and behind the rim it falls: that is why a ball that only descends stays.
-    let rim = points[before..].iter().map(|at| at[1]).fold(low, f64::max);
-    assert!(rim - low > 1.0, "{points:?}");
-    assert!(points.last().unwrap()[1] < rim, "{points:?}");
+    let (low, rim) = (ahead[0][1], highest(&ahead));
+    assert!(rim - low > 1.0 && highest(&behind) > low, "{ahead:?}");
+    assert!(ahead[ahead.len() - 1][1] < low, "{ahead:?}");
     assert_eq!(hollow(1.0), None, "NDT's is home");
 }

@@ -305,4 +305,18 @@ fn what_was_thrown_away_leaves_its_outline() {
     };
     assert_eq!(outlines(0.0), 0);
     assert!(outlines(200_000.0) > outlines(200.0));
+    let end = panel_of(&with(&[("progress", 200_000.0)]), panel::SWEEPS).layers;
+    let is_looked_at = |layer: &Layer| {
+        matches!(
+            layer,
+            Layer::Line {
+                tone: Tone::Series(3),
+                ..
+            }
+        )
+    };
+    assert!(
+        !end.iter().any(is_looked_at),
+        "the last box taken is none of these"
+    );
 }

@@ -44,6 +44,9 @@ fn sweeps(window: &WholeWindow) -> Panel {
         points(scene.target(), Mark::Cross, Tone::Measurement, 3.0),
     ];
     layers.extend(places::boxes_now(window));
+    if window.step() < window.boxes_taken() {
+        layers.extend(places::looked_at(window));
+    }
     if let Some(icp) = icp_now(window) {
         let sweep = scene.source().transformed(&icp);
         layers.push(points(&sweep, Mark::Dot, Tone::Series(2), 1.6));

@@ -21,6 +21,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
     let margin = MARGIN * (high[0] - low[0]);
     let mut layers = vec![Layer::Raster(raster(window))];
     layers.extend(boxes_now(window));
+    layers.extend(looked_at(window));
     layers.push(sensor(window.scene.truth(), Mark::Plus, Tone::Truth));
     layers.push(sensor(window.guess(), Mark::Circle, Tone::Prior));
     if let Some(icp) = icp_now(window) {
@@ -51,7 +52,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
     }
 }
 
-/// The boxes, those dropped as a trace behind those that are not, and the one looked at.
+/// The boxes, those dropped as a trace behind those that are not.
 pub fn boxes_now(window: &WholeWindow) -> Vec<Layer> {
     let all = window.search_task.window.boxes();
     let step = window.step();
@@ -66,11 +67,14 @@ pub fn boxes_now(window: &WholeWindow) -> Vec<Layer> {
         let corner = [poses.x_m[0], poses.y_m[1]];
         layers.push(Layer::label(corner, "boxes thrown away".to_owned(), 6.0));
     }
-    if let Some(looked_at) = &window.looked_at {
-        let looked_at = core::iter::once(&all[looked_at.seen].poses);
-        layers.push(boxes(looked_at, Tone::Series(3), 2.5));
-    }
     layers
+}
+
+/// The box looked at.
+pub fn looked_at(window: &WholeWindow) -> Option<Layer> {
+    let seen = window.looked_at.as_ref()?.seen;
+    let poses = &window.search_task.window.boxes()[seen].poses;
+    Some(boxes(core::iter::once(poses), Tone::Series(3), 2.5))
 }
 
 fn width_m(seen: &SeenBox) -> f64 {
