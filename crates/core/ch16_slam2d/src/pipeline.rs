@@ -97,9 +97,6 @@ pub struct Pipeline {
     pieces: Vec<PieceReport>,
     bridged: Vec<BridgedGap>,
     left_out: Vec<LeftOut>,
-    /// Number of keyframes of the map that were linked when a piece began, so that each is linked once however often the
-    /// log is interrupted.
-    linked_keyframes: usize,
     /// Whether the map is that of a session, without a scan of this log.
     is_session: bool,
     /// Where the robot is on the map at the next scan, by the user.

@@ -38,7 +38,7 @@ use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::OptimizeError;
 
-pub use finder::{CloneFinder, Linking, LoopFinder, TriedLoops};
+pub use finder::{CloneFinder, LoopFinder, TriedLoops};
 pub use front_end::FrontEnd;
 pub use join::PiecePose;
 pub use loop_closer::LoopCloser;
@@ -178,11 +178,6 @@ impl Slam {
     /// Ends the run: closes pending loops, searches for loops at the last keyframe, and links all keyframes again
     /// with the visits around them.
     pub fn conclude(&mut self) -> Conclusion {
-        self.conclude_linking(Linking::All)
-    }
-
-    /// [`Slam::conclude`] with these keyframes linked again.
-    pub(crate) fn conclude_linking(&mut self, linking: Linking) -> Conclusion {
         let mut pending = PendingFrame::new(self.last_stamp_s, None, None);
         let tried = self.loop_closer.conclude(&mut self.mapper, &self.config);
         pending.add(self.frames.saturating_sub(1), tried);
@@ -192,10 +187,7 @@ impl Slam {
             self.front_end.correct(correction);
         }
         let links = match self.config.loop_closure {
-            LoopClosure::On => {
-                let finder = &mut self.loop_closer.finder;
-                finder.link(&mut self.mapper, linking)
-            }
+            LoopClosure::On => self.loop_closer.finder.link_all(&mut self.mapper),
             LoopClosure::Off => Vec::new(),
         };
         Conclusion {

@@ -3,9 +3,6 @@
 //! While frames come in, loops are searched at every few keyframes only. At the end each keyframe is linked with
 //! every earlier visit around it, from poses that are nearly correct. The links of a pass replace
 //! the earlier loops: a loop that the final map does not confirm is removed.
-//!
-//! When a log is interrupted, the map is linked before the robot is searched for on it. Then only the keyframes that
-//! are new since the last interruption are linked, and the second pass registers only those that the first rejected.
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::math;
@@ -20,7 +17,7 @@ use crate::chi_squared::CHAPTER_GATE;
 use crate::loops::{LoopCandidate, LoopRejection, LoopVerification, detect_visits};
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
-use crate::slam::{Linking, Mapper};
+use crate::slam::Mapper;
 
 /// Gate of a link against the graph.
 #[derive(Clone, Copy)]
@@ -32,29 +29,16 @@ struct LinkGate {
     window: Option<(f64, f64)>,
 }
 
-/// Links keyframes with the visits around them, and optimizes. Returns the links of the last pass, accepted or not. A
-/// graph that cannot be solved is unchanged.
-pub(super) fn link(
-    mapper: &mut Mapper,
-    linking: Linking,
-    submaps: &mut Submaps,
-) -> Vec<LoopVerification> {
-    let (first, is_final) = match linking {
-        Linking::All => (0, true),
-        Linking::New { first } => (first, false),
-    };
-    let mut last: Vec<LoopVerification> = Vec::new();
+/// Links all keyframes with the visits around them, and optimizes. Returns the links of the last pass, accepted
+/// or not. A graph that cannot be solved is unchanged.
+pub(super) fn link_all(mapper: &mut Mapper, submaps: &mut Submaps) -> Vec<LoopVerification> {
+    let mut last = Vec::new();
     for _ in 0..LINK_PASSES {
-        let mut earlier = last.iter().copied().peekable();
-        let mut links = Vec::with_capacity(last.len());
-        for node in first..mapper.keyframes().len() {
-            let of_node = core::iter::from_fn(|| earlier.next_if(|link| link.from_node == node));
-            let known: Vec<LoopVerification> = of_node
-                .filter(|link| !is_final && link.accepted())
-                .collect();
-            links.extend(links_of(mapper, node, &known, submaps));
-        }
-        if !mapper.replace_loops(first, &links, LINK_HUBER) {
+        let nodes = 0..mapper.keyframes().len();
+        let links: Vec<LoopVerification> = nodes
+            .flat_map(|node| links_of(mapper, node, submaps))
+            .collect();
+        if !mapper.replace_loops(&links, LINK_HUBER) {
             return last;
         }
         last = links;
@@ -62,13 +46,8 @@ pub(super) fn link(
     last
 }
 
-/// The registrations of a keyframe on the visits around it, those that an earlier pass accepted as they are.
-fn links_of(
-    mapper: &Mapper,
-    node: usize,
-    accepted: &[LoopVerification],
-    submaps: &mut Submaps,
-) -> Vec<LoopVerification> {
+/// The registrations of a keyframe on the visits around it.
+fn links_of(mapper: &Mapper, node: usize, submaps: &mut Submaps) -> Vec<LoopVerification> {
     let visits = detect_visits(mapper.poses(), node, LINK_RADIUS_M, LINK_GAP_NODES);
     let gate = LinkGate {
         information: Matrix3::from_diagonal(&Vector3::new(
@@ -81,14 +60,7 @@ fn links_of(
     };
     let visits = visits.into_iter().take(LINK_VISITS);
     visits
-        .map(|visit| {
-            let known = accepted
-                .iter()
-                .find(|known| known.candidate.node == visit.node);
-            known
-                .copied()
-                .unwrap_or_else(|| register(mapper, node, visit, gate, submaps))
-        })
+        .map(|visit| link(mapper, node, visit, gate, submaps))
         .collect()
 }
 
@@ -126,11 +98,11 @@ pub(super) fn link_on_request(
             math::min(half_rad, REQUEST_RAD),
         )),
     };
-    Ok(register(mapper, new, candidate, gate, submaps))
+    Ok(link(mapper, new, candidate, gate, submaps))
 }
 
 /// Registers keyframe `node` on the visit around an older one, from its pose in the graph.
-fn register(
+fn link(
     mapper: &Mapper,
     node: usize,
     visit: LoopCandidate,
@@ -167,44 +139,4 @@ fn register(
         (!link.gate.passes()).then_some(LoopRejection::OutsideGate(link.gate))
     };
     link
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::graph::EdgeView;
-    use crate::slam::{Slam, SlamConfig, test_room::frame};
-
-    #[test]
-    fn keyframes_that_were_linked_keep_their_links_when_new_ones_are() {
-        let mut slam = Slam::new(SlamConfig::for_robot(&frame(0).scan));
-        // Two laps, and half of the next.
-        for step in 0..210 {
-            slam.step(&frame(step)).unwrap();
-        }
-        slam.conclude_linking(Linking::New { first: 0 });
-        let first = slam.keyframes().len();
-        for step in 210..260 {
-            slam.step(&frame(step)).unwrap();
-        }
-        let links = |slam: &Slam, is_new: bool| -> Vec<EdgeView> {
-            let of = |view: &EdgeView| view.loop_id().is_some_and(|id| (id.new >= first) == is_new);
-            let edges = slam.graph().edges().filter(of);
-            edges
-                .map(|view| EdgeView {
-                    id: 0.into(),
-                    ..view
-                })
-                .collect()
-        };
-        let old = links(&slam, false);
-        let concluded = slam.conclude_linking(Linking::New { first });
-        assert!(!old.is_empty() && links(&slam, false) == old);
-        let accepted = concluded.links.iter().filter(|link| link.accepted());
-        assert_eq!(links(&slam, true).len(), accepted.count());
-        // Every new keyframe lies on two laps.
-        let is_new = |link: &LoopVerification| link.from_node >= first && link.accepted();
-        assert!(concluded.links.iter().all(is_new));
-        assert!(concluded.links.len() >= slam.keyframes().len() - first);
-    }
 }

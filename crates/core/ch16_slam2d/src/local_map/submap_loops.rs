@@ -27,7 +27,7 @@ use crate::loops::{
 };
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
-use crate::slam::{Consistency, Linking, LoopFinder, Mapper, SnapshotError, TriedLoops};
+use crate::slam::{Consistency, LoopFinder, Mapper, SnapshotError, TriedLoops};
 
 /// Finds loops, and keeps the pending ones.
 #[derive(Clone)]
@@ -311,8 +311,8 @@ impl LoopFinder for SubmapLoops {
         Some(tried)
     }
 
-    fn link(&mut self, mapper: &mut Mapper, linking: Linking) -> Vec<LoopVerification> {
-        linking::link(mapper, linking, &mut self.submaps)
+    fn link_all(&mut self, mapper: &mut Mapper) -> Vec<LoopVerification> {
+        linking::link_all(mapper, &mut self.submaps)
     }
 
     fn verify(

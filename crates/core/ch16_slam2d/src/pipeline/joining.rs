@@ -2,7 +2,7 @@
 
 use super::piece::Piece;
 use super::{LeftOut, LogFrame, PieceFate, PieceReport, Pipeline};
-use crate::slam::{Linking, Slam};
+use crate::slam::Slam;
 
 impl Pipeline {
     /// Starts a piece; one that has not joined the map is compared with it, and the shorter one is left out.
@@ -12,10 +12,8 @@ impl Pipeline {
         let Some(slam) = &mut self.slam else { return };
         // The map is searched as it would be saved.
         if self.before_finish.is_none() {
-            let first = self.linked_keyframes;
-            slam.conclude_linking(Linking::New { first });
+            slam.conclude();
         }
-        self.linked_keyframes = slam.keyframes().len();
         let start = self.start.take().unwrap_or_default();
         self.piece = Some(Box::new(Piece::new(slam, start)));
         self.pieces.push(PieceReport {
@@ -61,7 +59,6 @@ impl Pipeline {
         let left_out = if self.is_session || newest.scans >= before {
             newest.fate = PieceFate::Kept;
             self.is_session = false;
-            self.linked_keyframes = 0;
             self.slam = Some(piece.slam);
             self.scans.drain(..before);
             for scan in &mut self.scans {

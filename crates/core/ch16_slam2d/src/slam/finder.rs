@@ -15,20 +15,8 @@ pub struct TriedLoops {
     pub consistency: Consistency,
 }
 
-/// Keyframes that are linked again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Linking {
-    /// All of them, at the end of a run.
-    All,
-    /// Those from the first new one on, while a run goes on: those before keep their links.
-    New {
-        /// The first new keyframe.
-        first: usize,
-    },
-}
-
 /// Proposes loops and verifies them, with its own parameters and memory; it does not change the graph, but for
-/// [`link`](Self::link).
+/// [`link_all`](Self::link_all).
 ///
 /// The chapter's finder tests keyframes near in the graph, one at a time; that for recorded logs registers several
 /// keyframes together on submaps.
@@ -45,8 +33,9 @@ pub trait LoopFinder: CloneFinder + Send {
         None
     }
 
-    /// Links keyframes again with the visits around them, in place of their loops. Returns the links, accepted or not.
-    fn link(&mut self, _mapper: &mut Mapper, _linking: Linking) -> Vec<LoopVerification> {
+    /// Links all keyframes again with the visits around them, in place of the loops. Returns the links, accepted or
+    /// not.
+    fn link_all(&mut self, _mapper: &mut Mapper) -> Vec<LoopVerification> {
         Vec::new()
     }
 

@@ -304,16 +304,11 @@ impl Mapper {
         Ok(Solution::Optimized { iterations })
     }
 
-    /// Replaces the loops of the keyframes from `first` on by the accepted `links` and optimizes with this width of the
-    /// robust cost, in standard deviations; returns whether that succeeded, otherwise nothing changes.
-    pub(crate) fn replace_loops(
-        &mut self,
-        first: usize,
-        links: &[LoopVerification],
-        huber: f64,
-    ) -> bool {
-        let is_kept = |view: &EdgeView| view.loop_id().is_none_or(|id| id.new < first);
-        let mut graph = self.graph.with_edges(is_kept);
+    /// Replaces the loops by the accepted `links` and optimizes with this width of the robust cost, in standard
+    /// deviations; returns whether that succeeded, otherwise nothing changes.
+    pub(crate) fn replace_loops(&mut self, links: &[LoopVerification], huber: f64) -> bool {
+        let is_odometry = |view: &EdgeView| view.edge.kind == EdgeKind::Odometry;
+        let mut graph = self.graph.with_edges(is_odometry);
         for link in links.iter().filter(|link| link.accepted()) {
             let (old, new) = (link.candidate.node, link.from_node);
             graph.add_edge(old, new, link.registered, link.information, EdgeKind::Loop);
