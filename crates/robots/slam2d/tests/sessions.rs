@@ -438,7 +438,7 @@ fn two_robots_are_not_merged_and_the_other_one_is_named() {
     let both = slam2d(&["run", &log("namespaced.mcap"), "--all-robots", "-o", &named]);
     let said = String::from_utf8(both.stderr).unwrap();
     assert!(
-        said.contains("the robot of /tb3_1/scan was found on the map after 4 scans")
+        said.contains("the robot of /tb3_1/scan was found on the map after 14 scans")
             && said.contains("are 190 s later in the results")
             && !said.contains("there are also scans"),
         "{said}"
