@@ -191,16 +191,12 @@ impl Terrains {
         if stale.icp_ball || stale.ndt_ball {
             let probe = TerrainProbe::new(&self.scene, &grid);
             if stale.icp_ball {
-                self.icp.ball = roll(&probe, Objective::IcpCost, probe_m);
-                let height = |at| probe.icp_cost_m2(at);
-                self.icp.ahead = ahead(self.icp.ball.end_m(), height);
-                self.icp.around = around(self.icp.ball.end_m(), height);
+                let ball = roll(&probe, Objective::IcpCost, probe_m);
+                rest(&mut self.icp, ball, |at| probe.icp_cost_m2(at));
             }
             if stale.ndt_ball {
-                self.ndt.ball = roll(&probe, Objective::NdtScore, probe_m);
-                let height = |at| -probe.ndt_score(at);
-                self.ndt.ahead = ahead(self.ndt.ball.end_m(), height);
-                self.ndt.around = around(self.ndt.ball.end_m(), height);
+                let ball = roll(&probe, Objective::NdtScore, probe_m);
+                rest(&mut self.ndt, ball, |at| -probe.ndt_score(at));
             }
         }
     }
@@ -336,6 +332,13 @@ fn roll(probe: &TerrainProbe<'_>, objective: Objective, [x, y]: [f64; 2]) -> Bal
         heights,
         end,
     }
+}
+
+/// Sets a ball that has come to rest, and the ground between its end and the truth.
+fn rest(landscape: &mut Landscape, ball: BallPath, height: impl Fn(Vector2<f64>) -> f64) {
+    landscape.ahead = ahead(ball.end_m(), &height);
+    landscape.around = around(ball.end_m(), &height);
+    landscape.ball = ball;
 }
 
 /// Heights on the straight line from a shift to the truth, both ends included.

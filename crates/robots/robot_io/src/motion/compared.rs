@@ -80,9 +80,9 @@ pub struct MotionComparison {
     pub drift_m_per_m: Option<f64>,
     /// Lag of odometry behind the scans, s; `None` if there is none or the turns do not show it.
     pub lag_s: Option<f64>,
-    /// Time of a sweep over that between two scans, if it is longer.
+    /// Time of a sweep over that between two scans, if it is longer: beams of different sweeps would overlap.
     #[serde(skip)]
-    long_sweep: Option<f64>,
+    pub(super) long_sweep: Option<f64>,
     /// Faults whose repair won its trial, each with its costs; before the trial, those that the comparison shows.
     #[serde(skip)]
     findings: Vec<(Finding, Option<Costs>)>,
@@ -322,11 +322,6 @@ impl MotionComparison {
         let mut faults = self.faults();
         faults.retain(|fault| !(fault.is_left() || is_mount_fixed && fault.is_of_mount()));
         Repairs::of(&faults, mount)
-    }
-
-    /// Time of a sweep over that between two scans, if it is longer: beams of different sweeps would overlap.
-    pub(super) fn long_sweep(&self) -> Option<f64> {
-        self.long_sweep
     }
 
     /// Whether odometry stands still while the robot moves.

@@ -73,7 +73,7 @@ impl MotionComparison {
             |suggestion: &&Suggestion| !matches!(suggestion.finding, Finding::Unlike { .. });
         let suggested = self.suggestions().iter().filter(is_said);
         let suggested = suggested.map(|suggestion| suggest(suggestion, mount));
-        let long = self.long_sweep().map(|share| {
+        let long = self.long_sweep.map(|share| {
             let text = format!(
                 "a sweep takes {share:.1} times the time between two scans, so each scan has beams of the ones before: publish one revolution per scan, stamped at its first beam, or correct the time between beams"
             );

@@ -227,7 +227,6 @@ impl Survey {
             kind if kind == ODOMETRY || POSES.contains(&kind) => {
                 self.add_odometry(message).map_err(named)
             }
-
             kind if is_transforms(kind) => {
                 let all = reader(message)
                     .and_then(|mut fields| transforms(&mut fields).map_err(|e| e.to_string()))

@@ -62,10 +62,12 @@ pub fn boxes_now(window: &WholeWindow) -> Vec<Layer> {
         boxes(dropped.clone().map(|seen| &seen.poses), Tone::Faint, 1.0),
         boxes(waiting.map(|seen| &seen.poses), Tone::Series(0), 1.0),
     ];
-    let largest = dropped.max_by(|a, b| width_m(a).total_cmp(&width_m(b)));
-    if let Some(SeenBox { poses, .. }) = largest.filter(|_| step == window.boxes_taken()) {
-        let corner = [poses.x_m[0], poses.y_m[1]];
-        layers.push(Layer::label(corner, "boxes thrown away".to_owned(), 6.0));
+    if step == window.boxes_taken() {
+        let largest = dropped.max_by(|a, b| width_m(a).total_cmp(&width_m(b)));
+        layers.extend(largest.map(|SeenBox { poses, .. }| {
+            let corner = [poses.x_m[0], poses.y_m[1]];
+            Layer::label(corner, "boxes thrown away".to_owned(), 6.0)
+        }));
     }
     layers
 }
