@@ -48,7 +48,7 @@ use settings::TerraceSettings;
 use terrains::Terrains;
 
 /// Share of the path that the ball rolls in a second at speed ×1.
-const PERCENT_PER_S: f64 = 40.0;
+const PERCENT_PER_S: f64 = 30.0;
 
 /// The model of the widget.
 pub struct CostTerraces {

@@ -34,13 +34,14 @@ params! {
         Param::slider("laps", "laps since the wardrobe moved", [0.0, 2.0], 1.0)
             .help("The map was made from one lap before that night, and from this many laps after it.");
 
-    pub(super) static START_X: Param<f64> = place("x", "switched on at x", PLAN_M[0], 4.4);
+    pub(super) static START_X: Param<f64> = place("x", "switched on at x", PLAN_M[0], 2.6);
 
-    pub(super) static START_Y: Param<f64> = place("y", "switched on at y", PLAN_M[1], 4.4);
+    pub(super) static START_Y: Param<f64> = place("y", "switched on at y", PLAN_M[1], 2.2);
 
     pub(super) static HEADING: Param<f64> =
         Param::slider("heading", "heading there", [-180.0, 180.0], 5.0)
             .unit("°")
+            .default(120.0)
             .help("The robot's heading when it is switched on, which the robot does not know.");
 
     pub(super) static WORLD: OneOf<BuiltInWorld> = one_of!(
@@ -69,7 +70,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     gesture: "Drag the robot anywhere, then let it go.",
     awaits: Awaits::Nothing,
     notice: &[
-        "A ghost is a pose not yet ruled out; the better it may still fit, the larger it is. The ghosts left are where the robot may be.",
+        "A ring is a place not yet ruled out; the better it may still fit, the larger it is. Two robots are the two places that fit best.",
         "Where the mapping robot drove, one scan is enough. In a room it never entered, or in one of two identical rooms, no pose is called reliable until the robot is out of the door.",
         "The wardrobe was moved overnight. The map still shows it in the old place; after another lap it is gone from there.",
     ],

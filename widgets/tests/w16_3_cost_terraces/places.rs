@@ -1,7 +1,7 @@
 //! The panels beside the maps: partners at a ridge, Gaussians, slices, and the results of many sweeps.
 
 use widget_kit::model::{Activity, Model, Motion, apply_preset};
-use widget_kit::scene::{Layer, Panel, Tone};
+use widget_kit::scene::{Layer, Panel, Stroke, Tone};
 use widgets::w16_3_cost_terraces::model::CostTerraces;
 
 use crate::support::{fact, panel_of as panel};
@@ -455,29 +455,37 @@ fn a_slope_that_faces_the_light_is_brighter_than_one_that_turns_away() {
 }
 
 #[test]
-fn the_picture_shows_the_hollow_that_holds_a_stuck_ball_and_none_around_one_that_is_home() {
-    let hollow = |measure: f64| {
-        let model = with(&[("measure", measure), ("t", 100.0)]);
-        panel(&model, "path")
-            .layers
-            .into_iter()
-            .find_map(|layer| match layer {
-                Layer::Line {
-                    points,
-                    tone: Tone::Posterior,
-                    ..
-                } => Some(points),
-                _ => None,
-            })
+fn a_lens_shows_the_dent_that_holds_a_stuck_ball_and_none_one_that_is_home() {
+    let lens = |measure: f64| {
+        let panel = panel(&with(&[("measure", measure), ("t", 100.0)]), "path");
+        let lines = panel.layers.into_iter().filter_map(|layer| match layer {
+            Layer::Line {
+                points,
+                stroke: Stroke::Solid,
+                ..
+            } => Some(points),
+            _ => None,
+        });
+        lines.collect::<Vec<_>>()
     };
-    let points = hollow(0.0).expect("ICP's ball sticks");
-    let rest = ball_and_ground(&with(&[("t", 100.0)])).0[0];
+    let lines = lens(0.0);
+    let [ground, dent, frame] = &lines[..] else {
+        panic!("ICP's ball sticks: {lines:?}");
+    };
+    let middle = 0.5 * (dent[0][0] + dent[dent.len() - 1][0]);
     let (behind, ahead): (Vec<[f64; 2]>, Vec<[f64; 2]>) =
-        points.into_iter().partition(|at| at[0] < rest - 1e-9);
+        dent.iter().partition(|at| at[0] < middle - 1e-9);
     let highest = |side: &[[f64; 2]]| side.iter().map(|at| at[1]).fold(f64::MIN, f64::max);
     // It rises on both sides, and behind the rim it falls: that is why a ball that only descends stays.
     let (low, rim) = (ahead[0][1], highest(&ahead));
     assert!(rim - low > 1.0 && highest(&behind) > low, "{ahead:?}");
-    assert!(ahead[ahead.len() - 1][1] < low, "{ahead:?}");
-    assert_eq!(hollow(1.0), None, "NDT's is home");
+    assert!(ahead[ahead.len() - 1][1] < rim, "{ahead:?}");
+    // The lens hides no ground.
+    let [left, right] = [frame[0][0], frame[1][0]];
+    let under = ground.iter().filter(|at| (left..=right).contains(&at[0]));
+    assert!(
+        under.map(|at| at[1]).all(|height| height < frame[0][1]),
+        "{frame:?}"
+    );
+    assert_eq!(lens(1.0).len(), 1, "NDT's is home");
 }

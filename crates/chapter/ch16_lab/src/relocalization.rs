@@ -22,7 +22,7 @@ const BOXES_PER_PIECE: usize = 24;
 /// The number of open boxes that are kept for a figure, the best ones.
 const BOXES_KEPT: usize = 400;
 /// A search is recorded whenever the number of expanded boxes has grown by this factor.
-const KEPT_EVERY: f64 = 1.6;
+const KEPT_EVERY: f64 = 4.0;
 
 /// The drive of a robot that is switched on at `pose`, `ticks` long: to the nearest visible spot of the path,
 /// to the path's end and back. If no spot is visible it stands still.

@@ -21,6 +21,8 @@ const TONES: [Tone; 4] = [
 const MARKS: [Mark; 4] = [Mark::Square, Mark::Circle, Mark::Triangle, Mark::Cross];
 /// Margin around the poses, m.
 const MARGIN_M: f64 = 0.4;
+/// Height of a name above the chain that it names, m.
+const NAME_M: f64 = 0.35;
 /// The curves end at this power of ten: smaller values are rounding.
 const LOWEST_POWER: f64 = -9.0;
 
@@ -89,7 +91,7 @@ fn graphs(widget: &WrongJacobians) -> Panel {
     // On top, or the chains that end there would hide it.
     layers.push(line(best, Stroke::Dotted, Tone::Ink, 2.0));
     if widget.is_over() {
-        labels.extend(ends(widget, far));
+        labels.extend(ends(widget));
     } else if widget.step() == 0 {
         labels.push(Layer::label(far, "optimum".to_owned(), 10.0));
     }
@@ -138,23 +140,37 @@ fn apart(widget: &WrongJacobians) -> Vec<(usize, Vec<&'static str>)> {
     chains
 }
 
-/// Who ended at the optimum, and who elsewhere, each with its χ².
-fn ends(widget: &WrongJacobians, optimum: [f64; 2]) -> Vec<Layer> {
+/// Who ended at the optimum, and who elsewhere, each with its χ²: on the side where the other chain is not.
+fn ends(widget: &WrongJacobians) -> Vec<Layer> {
     let is_there = |solver: &usize| ends_at_the_optimum(widget, *solver);
     let (there, elsewhere): (Vec<_>, Vec<_>) = (0..NAMES.len()).partition(is_there);
+    let optimum = places(&widget.solved.optimum);
+    let named = |[x, y]: [f64; 2], is_above: bool, words: String| {
+        let at = [x, y + if is_above { NAME_M } else { -NAME_M }];
+        [
+            Layer::segments(vec![[[x, y], at]], Stroke::Solid, Tone::Ink, 1.0),
+            Layer::label(at, words, 2.0),
+        ]
+    };
+    let mut layers = Vec::new();
+    let mut optimum_is_above = true;
+    for solver in elsewhere {
+        let end = widget.shown(solver);
+        let ends = places(&end.poses).into_iter().zip(&optimum);
+        let rise = |(at, best): &([f64; 2], &[f64; 2])| at[1] - best[1];
+        let farthest = ends.max_by(|a, b| rise(a).abs().total_cmp(&rise(b).abs()));
+        if let Some(pair) = farthest {
+            let is_above = rise(&pair) > 0.0;
+            optimum_is_above = !is_above;
+            let words = format!("{}: χ² {:.1}", NAMES[solver], end.chi2);
+            layers.extend(named(pair.0, is_above, words));
+        }
+    }
     let least = widget.solved.least_chi2;
     let words = format!("{} at the optimum: χ² {least:.1}", there.len());
-    let mut labels = vec![Layer::label(optimum, words, 14.0)];
-    labels.extend(elsewhere.into_iter().filter_map(|solver| {
-        let end = widget.shown(solver);
-        let off_m =
-            |(pose, best): &(&SE2, &SE2)| math::norm2(pose.x() - best.x(), pose.y() - best.y());
-        let ends = end.poses.iter().zip(&widget.solved.optimum);
-        let (farthest, _) = ends.max_by(|a, b| off_m(a).total_cmp(&off_m(b)))?;
-        let words = format!("{}: χ² {:.1}", NAMES[solver], end.chi2);
-        Some(Layer::label([farthest.x(), farthest.y()], words, 10.0))
-    }));
-    labels
+    let middle = optimum[optimum.len() / 2];
+    layers.extend(named(middle, optimum_is_above, words));
+    layers
 }
 
 /// Decades of the distance from the least one drawn, each with its unit.

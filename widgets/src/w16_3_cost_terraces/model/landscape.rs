@@ -21,7 +21,7 @@ pub struct Landscape {
     pub ball: BallPath,
     /// Heights from its end straight on to the truth, as `[distance from the end (m), height]`.
     pub ahead: Vec<[f64; 2]>,
-    /// Heights close around its end on that line, as `[distance ahead of the end (m), height]`.
+    /// Heights close around its end on that line, as `[distance ahead of the end (m), height]`; none if it is home.
     pub around: Vec<[f64; 2]>,
     heights: Vec<f64>,
     cells: usize,

@@ -23,7 +23,7 @@ const ABOUT_M: f64 = 0.004;
 const AHEAD_SPACING_M: f64 = 0.01;
 /// Half the width of the ground around a resting ball that is magnified, and its samples on either side, m.
 const REST_REACH_M: f64 = 0.015;
-const REST_SAMPLES: i32 = 15;
+const REST_SAMPLES: i32 = 10;
 
 /// Everything that follows from the settings.
 #[derive(Debug)]
@@ -337,7 +337,11 @@ fn roll(probe: &TerrainProbe<'_>, objective: Objective, [x, y]: [f64; 2]) -> Bal
 /// Sets a ball that has come to rest, and the ground between its end and the truth.
 fn rest(landscape: &mut Landscape, ball: BallPath, height: impl Fn(Vector2<f64>) -> f64) {
     landscape.ahead = ahead(ball.end_m(), &height);
-    landscape.around = around(ball.end_m(), &height);
+    landscape.around = if ball.is_home() {
+        Vec::new()
+    } else {
+        around(ball.end_m(), &height)
+    };
     landscape.ball = ball;
 }
 

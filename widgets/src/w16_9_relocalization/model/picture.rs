@@ -14,7 +14,7 @@ use super::{Relocalization, panel};
 use crate::w16_9_relocalization::spec::PLAN_M;
 
 /// Tone of the poses that are not ruled out.
-const GHOST: Tone = Tone::Series(0);
+const RING: Tone = Tone::Series(0);
 
 pub fn scene(back: &Relocalization) -> Scene {
     Scene {
@@ -51,7 +51,7 @@ fn map(back: &Relocalization) -> Panel {
         },
         pose(start, Mark::Circle, Tone::Prior),
     ]);
-    if !matches!(so_far(back), Ending::Found | Ending::WrongPose) {
+    if !is_found(back) && back.place() == 0 {
         // Nobody has told the robot where it is.
         let at = [start.x(), start.y()];
         layers.push(Layer::label(at, "where am I?".to_owned(), 10.0));
@@ -67,7 +67,7 @@ fn map(back: &Relocalization) -> Panel {
         layers,
         legend: vec![
             LegendEntry::mark("start, where it is switched on", Tone::Prior, Mark::Circle),
-            LegendEntry::mark("it may be here", GHOST, Mark::Circle),
+            LegendEntry::mark("it may be here", RING, Mark::Circle),
             LegendEntry::mark("best place, with the scan", Tone::Posterior, Mark::Square),
         ],
         color_bar: None,
@@ -88,62 +88,69 @@ fn localization(back: &Relocalization) -> Vec<Layer> {
         (walls.min.x..=walls.max.x).contains(&x) && (walls.min.y..=walls.max.y).contains(&y)
     };
     // The search window is a rectangle around the map, so its boxes reach beyond the walls.
-    let mut layers = ghosts(moment.boxes.iter().filter(inside));
+    let mut layers = rings(moment.boxes.iter().filter(inside));
     layers.extend([
         Layer::line(way.collect(), Stroke::Dashed, Tone::Truth, 1.5),
         pose(truth(moment.tick), Mark::Plus, Tone::Truth),
     ]);
+    let mut candidate = |at: SE2, mark, tone, words: &str| {
+        let scan = drive.prepared(moment.tick).cloud.transformed(&at);
+        let points = scan.iter().map(|p| [p.x, p.y]).collect();
+        layers.push(Layer::points(points, mark, tone, 2.0));
+        layers.push(pose(at, mark, tone));
+        if !is_found(back) {
+            layers.push(Layer::label([at.x(), at.y()], words.to_owned(), 12.0));
+        }
+    };
     if let Some(next) = moment.runner_up {
-        layers.push(pose(next.pose, Mark::Triangle, Tone::Series(1)));
+        candidate(next.pose, Mark::Triangle, Tone::Series(1), "or here?");
     }
     let finished = moment.report.as_ref().and_then(|report| report.pose);
     if let Some(best) = finished.or(moment.best.map(|best| best.pose)) {
-        let scan = drive.prepared(moment.tick).cloud.transformed(&best);
-        let points = scan.iter().map(|p| [p.x, p.y]).collect();
-        layers.push(Layer::points(points, Mark::Square, Tone::Posterior, 2.0));
-        layers.push(pose(best, Mark::Square, Tone::Posterior));
+        candidate(best, Mark::Square, Tone::Posterior, "here?");
     }
     layers
+}
+
+/// Whether the robot knows its pose, rightly or wrongly, at the moment on screen.
+fn is_found(back: &Relocalization) -> bool {
+    matches!(so_far(back), Ending::Found | Ending::WrongPose)
 }
 
 fn pose(pose: SE2, mark: Mark, tone: Tone) -> Layer {
     Layer::pose(pose.to_array(), mark, tone, 6.0)
 }
 
-/// Sizes of the ghosts.
-const GHOSTS: usize = 3;
-/// Length of the heading of the smallest ghost, m.
-const GHOST_M: f64 = 0.14;
+/// Number of sizes of the rings.
+const SIZES: usize = 3;
 
 fn middle([low, high]: [f64; 2]) -> f64 {
     0.5 * (low + high)
 }
 
-/// The middle of each box as a ghost of the robot, the larger the higher its bound.
-fn ghosts<'a>(boxes: impl Iterator<Item = &'a PoseBox> + Clone) -> Vec<Layer> {
+/// A ring in the middle of each place that has a box, the larger the higher its bound.
+fn rings<'a>(boxes: impl Iterator<Item = &'a PoseBox> + Clone) -> Vec<Layer> {
     let bounds = boxes.clone().map(|seen| seen.bound);
     let low = bounds.clone().fold(f64::INFINITY, f64::min);
     let high = bounds.fold(f64::NEG_INFINITY, f64::max);
     let size_of = |seen: &PoseBox| {
         let share = (seen.bound - low) / (high - low).max(f64::MIN_POSITIVE);
-        ((share * GHOSTS as f64) as usize).min(GHOSTS - 1)
+        ((share * SIZES as f64) as usize).min(SIZES - 1)
     };
-    let mut layers = Vec::new();
-    for size in 0..GHOSTS {
-        let length_m = GHOST_M * (size + 1) as f64;
-        let (mut places, mut headings) = (Vec::new(), Vec::new());
-        for seen in boxes.clone().filter(|seen| size_of(seen) == size) {
-            let pose = SE2::new(middle(seen.x_m), middle(seen.y_m), middle(seen.heading_rad));
-            let tip = pose.transform(Point2::new(length_m, 0.0));
-            places.push([pose.x(), pose.y()]);
-            headings.push([[pose.x(), pose.y()], [tip.x, tip.y]]);
+    // The most promising box of a place comes first; its other headings would be the same ring.
+    let mut places: [Vec<[f64; 2]>; SIZES] = Default::default();
+    for seen in boxes {
+        let place = [seen.x_m, seen.y_m].map(middle);
+        if !places.iter().flatten().any(|known| *known == place) {
+            places[size_of(seen)].push(place);
         }
-        layers.extend([
-            Layer::segments(headings, Stroke::Solid, GHOST, 0.75),
-            Layer::points(places, Mark::Circle, GHOST, 1.5 + 1.5 * size as f32),
-        ]);
     }
-    layers
+    let sized = places.into_iter().zip(0_u8..);
+    sized
+        .map(|(places, size)| {
+            Layer::points(places, Mark::Circle, RING, 3.0 + 2.0 * f32::from(size))
+        })
+        .collect()
 }
 
 /// The wardrobe where the map has it, and where it stands now.

@@ -13,11 +13,13 @@ const COLUMN_PX: f32 = 4.0;
 /// Part of the axis of heights above the highest ground: room for the ball and the words.
 const SKY: f64 = 0.3;
 
-/// Height of the rim of a magnified hollow, and of its name, as shares of the sky.
-const HOLLOW: f64 = 0.4;
-const NAMED_AT: f64 = 0.7;
-/// Times by which it is wider.
-const WIDER: f64 = 6.0;
+/// The lens over a ball that stuck, as shares of the axes: its half width, its smallest height and its top.
+const LENS_HALF_WIDTH: f64 = 0.2;
+const LENS_HEIGHT: f64 = 0.24;
+const LENS_TOP: f64 = 0.9;
+/// Heights in it, as shares of its own: the lowest ground, and the rim of the dent.
+const LENS_FLOOR: f64 = 0.2;
+const LENS_RIM: f64 = 0.65;
 
 /// Steps in which the axes grow: they stay during most of a drag.
 const AXIS_STEP_M: f64 = 0.65;
@@ -56,7 +58,7 @@ pub fn panel(landscape: &Landscape, moment: PictureState) -> Panel {
     ];
     layers.extend(ball(ground[step]));
     if step == landscape.ball.steps() && !landscape.ball.is_home() {
-        layers.extend(hollow(landscape, ground[step][0], [highest, sky]));
+        layers.extend(lens(landscape, &ground, ground[step], [far, high + sky]));
     }
     layers.push(Layer::label(flag[1], "truth".to_owned(), 6.0));
     Panel {
@@ -72,29 +74,63 @@ pub fn panel(landscape: &Landscape, moment: PictureState) -> Panel {
     }
 }
 
-/// Above a ball that stuck: the hollow that holds it, which is too flat to be seen at the scale of the ground.
-fn hollow(landscape: &Landscape, rest_m: f64, [highest, sky]: [f64; 2]) -> Vec<Layer> {
+/// A lens over a ball that stuck: the dent that holds it is too flat to be seen at the scale of the ground.
+fn lens(
+    landscape: &Landscape,
+    ground: &[[f64; 2]],
+    ball_at: [f64; 2],
+    [far, top]: [f64; 2],
+) -> Vec<Layer> {
     let around = &landscape.around;
-    let rest = landscape.share(around[around.len() / 2][1]);
+    let [reach_m, rest] = [around[around.len() - 1][0], around[around.len() / 2][1]];
     let rises = around
         .iter()
-        .map(|[at, height]| [*at, 100.0 * (landscape.share(*height) - rest)]);
+        .map(|[at, height]| [*at, landscape.share(*height) - landscape.share(rest)]);
     let ahead = rises.clone().filter(|[at, _]| *at > 0.0);
     let rim = ahead.fold(0.0, |rim, [_, rise]| math::max(rim, rise));
     if rim <= 0.0 {
         return Vec::new();
     }
-    let times = HOLLOW * sky / rim;
-    let drawn = rises.skip_while(|[at, rise]| *at < 0.0 && *rise > 1.5 * rim);
-    let curve = drawn.map(|[at, rise]| [rest_m + WIDER * at, highest + times * rise.max(-rim)]);
-    vec![
-        Layer::line(curve.collect(), Stroke::Solid, Tone::Posterior, 2.0),
-        Layer::label(
-            [rest_m, highest + NAMED_AT * sky],
-            format!("its hollow, {times:.0} times higher"),
-            8.0,
-        ),
-    ]
+    // Between the drop and the truth, on the ground below it or under the top.
+    let half = LENS_HALF_WIDTH * far;
+    let truth = ground[ground.len() - 1][0];
+    let middle = ball_at[0].min(truth - 1.1 * half).max(half);
+    let under = ground.iter().filter(|at| (at[0] - middle).abs() <= half);
+    let ceiling = LENS_TOP * top;
+    let bottom = under.map(|at| at[1]).fold(ball_at[1], f64::max);
+    let bottom = (bottom + 0.1 * top).min(ceiling - LENS_HEIGHT * top);
+    let tall = (ceiling - bottom).min(2.0 * LENS_HEIGHT * top);
+    let [left, right, ceiling] = [middle - half, middle + half, bottom + tall];
+    let magnified = (LENS_RIM - LENS_FLOOR) * tall / rim;
+    let seen: Vec<[f64; 2]> = rises
+        .map(|[at, rise]| {
+            let height = bottom + LENS_FLOOR * tall + magnified * rise;
+            [middle + half * at / reach_m, height.clamp(bottom, ceiling)]
+        })
+        .collect();
+    let bed = seen.iter().map(|at| [[at[0], bottom], *at]).collect();
+    let corners = [
+        [left, bottom],
+        [right, bottom],
+        [right, ceiling],
+        [left, ceiling],
+    ];
+    let frame = [0, 1, 2, 3, 0].map(|corner| corners[corner]).to_vec();
+    let cone = vec![[ball_at, corners[0]], [ball_at, corners[1]]];
+    let mut layers = vec![
+        Layer::segments(cone, Stroke::Solid, Tone::Posterior, 1.0),
+        Layer::segments(bed, Stroke::Solid, Tone::Faint, COLUMN_PX),
+        Layer::line(seen, Stroke::Solid, Tone::Ink, 2.0),
+        Layer::line(frame, Stroke::Solid, Tone::Posterior, 1.0),
+    ];
+    layers.extend(ball([middle, bottom + LENS_FLOOR * tall]));
+    let times = magnified / 100.0;
+    layers.push(Layer::label(
+        [middle, ceiling],
+        format!("the dent it sits in, {times:.0} times taller"),
+        8.0,
+    ));
+    layers
 }
 
 /// Upright lines from zero to the ground, evenly apart.
