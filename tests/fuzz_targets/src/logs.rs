@@ -24,7 +24,8 @@ pub fn fuzz(bytes: &[u8]) {
     };
     for offer in &notes.offers {
         for name in offer.names.iter().rev().take(1) {
-            read(bytes, &LogOptions::default().with(offer.option, name));
+            let options = LogOptions::default().with(offer.option, name);
+            read(bytes, &options.expect("any name can be asked for"));
         }
     }
     let mut info = LogInfo::default();

@@ -59,7 +59,8 @@ export class DoctorScreen {
   receive({ kind, text }: Delivery): boolean {
     if (kind === 'opening') this.#wait(text);
     else if (kind === 'diagnosis') this.#show(JSON.parse(text) as Diagnosis);
-    else if (kind === 'closed' || (kind === 'failed' && this.#diagnosis === undefined)) this.#hide();
+    else if (kind === 'closed') this.#hide();
+    else if (kind === 'failed' && this.#diagnosis === undefined) this.#fail(text);
     else return false;
     return true;
   }
@@ -83,11 +84,22 @@ export class DoctorScreen {
   #show(diagnosis: Diagnosis): void {
     this.#diagnosis = diagnosis;
     const summary = headingFor(diagnosis);
-    this.#replace(summary, [this.#list(diagnosis.remarks), this.#choices(), this.#laser(diagnosis)]);
+    this.#replace(summary, [this.#list(diagnosis.remarks), this.#choices(), this.#laser(diagnosis), this.#option()]);
     // A report without a fault would only push the map down.
     if (this.element.hidden) this.#fold.open = diagnosis.verdict !== 'good';
     this.element.hidden = false;
     this.#live.textContent = summary;
+  }
+
+  /** A log that needs an option, or cannot be read with those that were chosen: others can be tried. */
+  #fail(sentence: string): void {
+    if (!sentence.includes('--') && this.#host.chosen().length === 0) {
+      this.#hide();
+      return;
+    }
+    this.#replace(`${SIGNS.wrong} ${this.#name} cannot be mapped with these options`, [this.#choices(), this.#option()]);
+    this.#fold.open = true;
+    this.element.hidden = false;
   }
 
   #replace(heading: string, body: HTMLElement[]): void {
@@ -128,6 +140,22 @@ export class DoctorScreen {
     const chosen = this.#host.chosen();
     if (chosen.length > 0) line.append(`Mapped with ${chosen.join(' ')}. `, this.#button('Map without options', undefined));
     return line;
+  }
+
+  /** A form for any other option of the command. */
+  #option(): HTMLElement {
+    const form = create('form');
+    const input = create('input', { required: '', pattern: '--[a-z].*', placeholder: '--heights 0.2,0.6' });
+    const label = create('label');
+    label.append('Another option of slam2d run ', input);
+    const button = create('button', { type: 'submit' });
+    button.textContent = 'Map with this option';
+    form.append(label, button);
+    form.addEventListener('submit', (event) => {
+      event.preventDefault();
+      this.#host.choose(input.value.trim());
+    });
+    return form;
   }
 
   /** A form for the pose of the laser. */

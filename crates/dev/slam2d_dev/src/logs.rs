@@ -23,7 +23,7 @@ use serde::Serialize;
 
 use self::disturbance::{Disturbance, worse_odometry};
 use command_line::in_file::InFile as _;
-use command_line::log_file::{TopicArgs, open, read_frames};
+use command_line::log_file::{open, read_frames};
 use command_line::numbers;
 use command_line::output::{print_json, say};
 
@@ -162,7 +162,7 @@ fn read(folder: &Path) -> anyhow::Result<Vec<Bench>> {
         let name = path.file_stem().unwrap_or(path.as_os_str());
         benches.push(Bench {
             name: name.to_string_lossy().into_owned(),
-            frames: read_frames(path, &TopicArgs::default())?,
+            frames: read_frames(path)?,
             reference,
         });
     }

@@ -17,7 +17,7 @@ use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
 use serde::Serialize;
 
-use command_line::log_file::{TopicArgs, read_frames};
+use command_line::log_file::read_frames;
 use command_line::output::{print_json, say};
 
 /// Markers around the table on a page.
@@ -155,7 +155,7 @@ impl Bench {
     fn new(path: &Path) -> anyhow::Result<Self> {
         let name = path.file_stem().unwrap_or(path.as_os_str());
         let name = name.to_string_lossy().into_owned();
-        let frames = read_frames(path, &TopicArgs::default())?;
+        let frames = read_frames(path)?;
         let (whole, session) = mapped(frames.iter()).with_context(|| too_short(&name))?;
         Ok(Self {
             name,

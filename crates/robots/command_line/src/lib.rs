@@ -3,10 +3,11 @@
 pub mod choice;
 pub mod in_file;
 pub mod interrupt;
+pub mod log_args;
 pub mod log_file;
 pub mod numbers;
 pub mod output;
 pub mod program;
-pub mod robots;
+pub mod progress;
 pub mod setting;
 pub mod whole_file;

@@ -32,11 +32,6 @@ pub fn tau_m(text: &str) -> Result<f64, String> {
     within(text, 0.01..=10.0, " m")
 }
 
-/// A shortest range in metres.
-pub fn range_m(text: &str) -> Result<f64, String> {
-    within(text, 0.0..=100.0, " m")
-}
-
 /// Cell size of a map in metres.
 pub fn cell_m(text: &str) -> Result<f64, String> {
     within(text, 0.01..=1.0, " m")

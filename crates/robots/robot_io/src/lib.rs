@@ -3,6 +3,8 @@
 //! Reads recorded logs of real robots, runs the estimator on them, and evaluates the result.
 //!
 //! - [`log`]: what every log yields: frames in the order of the file, and notes.
+//! - [`log_options`]: the options of a log, which the command, Python and the page read here; [`robots`]: its robots, one after
+//!   the other.
 //! - [`log_format`]: detects the format of a file and opens its reader.
 //! - [`carmen`]: the text format of CARMEN, in both directions.
 //! - [`ros`]: recordings of ROS 2 (MCAP) and ROS 1 (bags).
@@ -48,6 +50,7 @@ pub mod localize;
 pub mod log;
 pub mod log_bytes;
 pub mod log_format;
+pub mod log_options;
 pub mod map_image;
 pub mod motion;
 pub mod near_readings;
@@ -56,6 +59,7 @@ pub mod quality;
 pub mod relations;
 pub mod remark;
 pub mod report;
+pub mod robots;
 pub mod ros;
 pub mod rosbag2;
 pub mod run;
@@ -68,6 +72,7 @@ pub mod trajectory;
 mod lines;
 mod mounted_reader;
 mod odometry_poses;
+mod odometry_use;
 mod open_log;
 mod path_lengths;
 mod plausible;

@@ -7,10 +7,9 @@ use std::io;
 
 use thiserror::Error;
 
-use crate::footprint::Footprint;
 use crate::laser_mount::LaserMount;
+pub use crate::log_options::{LogOption, LogOptions};
 use crate::remark::Remark;
-use crate::table_layout::TableLayout;
 
 /// A position in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,96 +26,6 @@ impl fmt::Display for FilePosition {
             Self::Line(line) => write!(f, "line {line}"),
             Self::Byte(byte) => write!(f, "byte {byte}"),
         }
-    }
-}
-
-/// Chooses among several topics and frames of a recording; `None`: found by type.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct LogOptions {
-    /// The topic of scans; default: the first one with scans.
-    pub scan_topic: Option<String>,
-    /// The topic of odometry, or /tf; default: the first one of nav_msgs/Odometry, else /tf.
-    pub odometry_topic: Option<String>,
-    /// The odometry frame in /tf; default: one whose name contains ‘odom’.
-    pub odometry_frame: Option<String>,
-    /// The frame of the robot's body; default: the child frame of the odometry.
-    pub body_frame: Option<String>,
-    /// Mounting of the laser, which overrides the recording.
-    pub laser: Option<LaserMount>,
-    /// Mounting of the laser if neither an option nor the recording states it: that of the session that is continued.
-    pub laser_before: Option<LaserMount>,
-    /// Shorter ranges are no returns, m.
-    pub min_range_m: Option<f64>,
-    /// Readings on the robot are no returns.
-    pub footprint: Option<Footprint>,
-    /// Columns of a table; default: those of its header, or those of a known form.
-    pub columns: Option<TableLayout>,
-    /// Whether the scans of further robots are read after those of the first one, so that they need not be named.
-    pub all_robots: bool,
-    /// Height band (m, on the body) for points of a 3-D sensor; without it, only single-ring clouds are read.
-    pub heights_m: Option<(f64, f64)>,
-}
-
-/// One of [`LogOptions`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LogOption {
-    /// [`LogOptions::scan_topic`].
-    ScanTopic,
-    /// [`LogOptions::odometry_topic`].
-    OdometryTopic,
-    /// [`LogOptions::odometry_frame`].
-    OdometryFrame,
-    /// [`LogOptions::body_frame`].
-    BodyFrame,
-}
-
-impl LogOption {
-    /// All options.
-    pub const ALL: [Self; 4] = [
-        Self::ScanTopic,
-        Self::OdometryTopic,
-        Self::OdometryFrame,
-        Self::BodyFrame,
-    ];
-
-    /// Name on the command line, without the dashes.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::ScanTopic => "scan-topic",
-            Self::OdometryTopic => "odom-topic",
-            Self::OdometryFrame => "odom-frame",
-            Self::BodyFrame => "body-frame",
-        }
-    }
-}
-
-impl LogOptions {
-    /// Sets one option.
-    #[must_use]
-    pub fn with(mut self, option: LogOption, value: &str) -> Self {
-        let slot = match option {
-            LogOption::ScanTopic => &mut self.scan_topic,
-            LogOption::OdometryTopic => &mut self.odometry_topic,
-            LogOption::OdometryFrame => &mut self.odometry_frame,
-            LogOption::BodyFrame => &mut self.body_frame,
-        };
-        *slot = Some(value.to_owned());
-        self
-    }
-
-    /// The first topic or frame that is asked for.
-    #[must_use]
-    pub fn first_asked(&self) -> Option<(LogOption, &str)> {
-        LogOption::ALL.into_iter().find_map(|option| {
-            let asked = match option {
-                LogOption::ScanTopic => &self.scan_topic,
-                LogOption::OdometryTopic => &self.odometry_topic,
-                LogOption::OdometryFrame => &self.odometry_frame,
-                LogOption::BodyFrame => &self.body_frame,
-            };
-            Some((option, asked.as_deref()?))
-        })
     }
 }
 
@@ -299,6 +208,11 @@ pub trait LogReader {
 
     /// Counts, choices and problems so far.
     fn notes(&self) -> &LogNotes;
+
+    /// The robot of the last frame, once, if that is the first one of a robot after the first.
+    fn next_robot(&mut self) -> Option<String> {
+        None
+    }
 }
 
 /// A reader whose notes begin with remarks on its files.

@@ -20,15 +20,14 @@
 mod compared;
 mod finding;
 mod lag;
-mod odometry_use;
 mod reader;
 mod remarks;
 mod repairs;
 mod trial;
 
+pub use crate::odometry_use::OdometryUse;
 pub use compared::MotionComparison;
 pub use finding::{Costs, Finding, Suggestion};
-pub use odometry_use::OdometryUse;
 pub use reader::ComparedReader;
 
 use ch16_slam2d::scan::{Frame, LaserScan};

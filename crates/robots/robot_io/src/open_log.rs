@@ -148,7 +148,9 @@ mod tests {
 
     #[test]
     fn a_topic_is_rejected_where_there_are_none() {
-        let options = LogOptions::default().with(LogOption::OdometryTopic, "/wheels");
+        let options = LogOptions::default()
+            .with(LogOption::OdometryTopic, "/wheels")
+            .unwrap();
         for bytes in [
             &b"FLASER 1 2 0 0 0 0 0 0 0 host 0\n"[..],
             b"{\"stamp\": 1}\n",

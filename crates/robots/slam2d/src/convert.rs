@@ -14,7 +14,8 @@ use serde::Serialize;
 
 use crate::session_file::{is_session, read_session};
 use command_line::in_file::InFile as _;
-use command_line::log_file::{TopicArgs, open, open_log};
+use command_line::log_args::TopicArgs;
+use command_line::log_file::{open, open_log};
 use command_line::whole_file::{WholeFile, write_whole};
 
 /// Convert a log, a pose graph or a trajectory to another format, chosen by the file name extensions.
@@ -29,7 +30,7 @@ pub struct ConvertArgs {
     /// File to write.
     output: PathBuf,
     #[command(flatten)]
-    topics: TopicArgs,
+    options: TopicArgs,
 }
 
 /// Content of a file, by its extension.
@@ -126,7 +127,7 @@ fn extension(path: &Path) -> String {
 }
 
 fn convert_log(args: &ConvertArgs, to: &str) -> anyhow::Result<()> {
-    let (mut reader, mut progress) = open_log(&args.input, &args.topics)?;
+    let (mut reader, mut progress) = open_log(&args.input, &[], &args.options.0)?;
     // If the log cannot be read, the output is left unchanged.
     let mut next = reader.next_frame()?;
     let mut file: Option<WholeFile> = None;

@@ -9,7 +9,8 @@ use robot_io::log::LogReader;
 use robot_io::remark::Condition;
 use robot_io::run::LogRun;
 
-use command_line::log_file::{OdometryArgs, TopicArgs, open_compared};
+use command_line::log_args::OneRobotArgs;
+use command_line::log_file::open_compared;
 use command_line::output::{print_json, say};
 
 /// Check a recording: print sensor, odometry, mounting, clocks and file, each with ✓, ! or ✗.
@@ -24,9 +25,7 @@ pub struct DoctorArgs {
     #[arg(value_name = "PART")]
     parts: Vec<PathBuf>,
     #[command(flatten)]
-    topics: TopicArgs,
-    #[command(flatten)]
-    odometry: OdometryArgs,
+    options: OneRobotArgs,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -37,8 +36,7 @@ pub struct DoctorArgs {
 /// # Errors
 /// If the log cannot be read at all.
 pub fn run(args: &DoctorArgs) -> anyhow::Result<ExitCode> {
-    let topics = args.topics.clone().of_parts(&args.parts);
-    let (mut reader, mut progress) = open_compared(&args.log, &topics, args.odometry)?;
+    let (mut reader, mut progress) = open_compared(&args.log, &args.parts, &args.options.0)?;
     let mut checkup = Checkup::default();
     let mut run = LogRun::default();
     while let Some(frame) = reader.next_frame()? {

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
 use clap::Args;
-use robot_io::log::LogReader;
+use robot_io::log::{LogOptions, LogReader as _};
 use robot_io::trajectory::{StampedPose, Trajectory};
 
 use crate::grade::ReferenceArgs;
-use command_line::log_file::{OdometryArgs, TopicArgs, open, open_compared};
+use command_line::log_args::TopicArgs;
+use command_line::log_file::{open, open_compared};
 use command_line::output::print_json;
 
 /// Evaluate a trajectory against reference relations or the true trajectory.
@@ -22,7 +23,7 @@ pub struct EvaluateArgs {
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
     #[command(flatten)]
-    topics: TopicArgs,
+    options: TopicArgs,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -39,7 +40,7 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
     let name = args.trajectory.display().to_string();
     let mut trajectory = Trajectory::read_tum(open(&args.trajectory)?, &name)?;
     if let Some(path) = &args.log {
-        let odometry = odometry(path, &args.topics)?;
+        let odometry = odometry(path, &args.options.0)?;
         trajectory = trajectory.carried_by(&odometry);
     }
     let grade = reference.grade(&trajectory)?;
@@ -52,8 +53,8 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
 }
 
 /// The odometry of a log at its scans, without those whose stamp is not later than the one before.
-fn odometry(path: &Path, topics: &TopicArgs) -> anyhow::Result<Trajectory> {
-    let (mut reader, mut progress) = open_compared(path, topics, OdometryArgs::default())?;
+fn odometry(path: &Path, options: &LogOptions) -> anyhow::Result<Trajectory> {
+    let (mut reader, mut progress) = open_compared(path, &[], options)?;
     let mut poses: Vec<StampedPose> = Vec::new();
     while let Some(frame) = reader.next_frame()? {
         progress.report(poses.len());

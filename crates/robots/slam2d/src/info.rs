@@ -10,7 +10,8 @@ use robot_io::info::LogInfo;
 use serde::Serialize;
 
 use crate::session_file::is_session;
-use command_line::log_file::{TopicArgs, open_log};
+use command_line::log_args::TopicArgs;
+use command_line::log_file::open_log;
 use command_line::output::{print_json, say};
 
 /// Print a summary of a recorded log or a session: scans, beams, odometry, stamps, and unreadable records.
@@ -22,7 +23,7 @@ pub struct InfoArgs {
     #[arg(value_name = "PART")]
     parts: Vec<PathBuf>,
     #[command(flatten)]
-    topics: TopicArgs,
+    options: TopicArgs,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -45,8 +46,7 @@ pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
     if is_session(&args.log) {
         return session_info::run(&args.log, args.json);
     }
-    let (mut reader, mut progress) =
-        open_log(&args.log, &args.topics.clone().of_parts(&args.parts))?;
+    let (mut reader, mut progress) = open_log(&args.log, &args.parts, &args.options.0)?;
     let mut info = LogInfo::default();
     while let Some(frame) = reader.next_frame()? {
         info.add(&frame);

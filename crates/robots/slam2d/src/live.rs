@@ -1,7 +1,7 @@
 //! `slam2d live`: maps a robot while it drives.
 //!
 //! A thread listens to the robot's server, records what it reads as MCAP, and passes the same bytes to the reader of
-//! [`LogFormat::open_live`](robot_io::log_format::LogFormat::open_live): from there on, a robot and a file are the same.
+//! [`LogFormat::open_live`]: from there on, a robot and a file are the same.
 
 use std::fs::{self, File};
 use std::io::BufWriter;
@@ -16,14 +16,16 @@ use anyhow::{anyhow, bail};
 use clap::Args;
 use command_line::in_file::InFile as _;
 use command_line::interrupt::Interrupt;
-use command_line::log_file::{OdometryArgs, TopicArgs, open_live};
+use command_line::log_args::OneRobotArgs;
 use command_line::numbers;
 use robot_connection::{Address, Connection, Listener};
 use robot_io::live::drive::{Drive, DriveEnd};
 use robot_io::live::network::Host;
 use robot_io::live::queue;
 use robot_io::live::{RECORDING, WAIT_S};
-use robot_io::log::LogReader as _;
+use robot_io::log::{LogOptions, LogReader as _};
+use robot_io::log_format::LogFormat;
+use robot_io::motion::ComparedReader;
 
 use crate::mapping::{Ended, Mapping, MappingArgs};
 use crate::shown::{PORT, ServeAt};
@@ -39,9 +41,7 @@ pub struct LiveArgs {
     #[arg(value_name = "ADDRESS")]
     url: String,
     #[command(flatten)]
-    topics: TopicArgs,
-    #[command(flatten)]
-    odometry: OdometryArgs,
+    options: OneRobotArgs,
     /// How long to wait for the first scan, and for the robot to come back after the connection was lost, s.
     #[arg(long, value_name = "SECONDS", default_value_t = WAIT_S, value_parser = numbers::wait_s, allow_hyphen_values = true)]
     wait: f64,
@@ -92,16 +92,19 @@ pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
     let file = File::create_new(&recording).in_file(&recording)?;
     let (feeder, feed) = queue::stream(true);
     let is_ended = Arc::<AtomicBool>::default();
-    let asked = args.topics.scan_topics().map(str::to_owned).collect();
-    let drive = Drive::new(feeder, asked);
+    let drive = Drive::new(feeder, args.options.0.scan_topics());
     let has_ended = Arc::clone(&is_ended);
     let listener = Listener::new(address, BufWriter::with_capacity(1 << 16, file), drive)
         .waiting(Duration::from_secs_f64(args.wait))
         .until(move || interrupt.came() || has_ended.load(Ordering::Relaxed))
         .saying(|event| eprintln!("slam2d: {event}"));
     let listening = thread::spawn(move || listener.listen(connection));
-    let topics = args.topics.resuming_with(mapping.laser_before);
-    let mut reader = open_live(feed, &args.url, &topics, args.odometry);
+    let options = LogOptions {
+        laser_before: mapping.laser_before,
+        ..args.options.0.clone()
+    };
+    let reader = LogFormat::open_live(feed, &args.url, &options);
+    let mut reader = ComparedReader::chosen(reader, &options);
     let mut reported = Instant::now();
     let problem = loop {
         match reader.next_frame() {

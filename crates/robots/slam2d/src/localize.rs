@@ -18,7 +18,8 @@ use crate::grade::{Grade, ReferenceArgs, by_reference};
 use crate::session_file::read_session;
 use command_line::in_file::InFile as _;
 use command_line::interrupt::{self, Interrupt};
-use command_line::log_file::{OdometryArgs, TopicArgs, open_compared};
+use command_line::log_args::OneRobotArgs;
+use command_line::log_file::open_compared;
 use command_line::output::{print_json, say};
 use command_line::whole_file::{check_file, write_whole};
 
@@ -30,9 +31,7 @@ pub struct LocalizeArgs {
     /// The log.
     log: PathBuf,
     #[command(flatten)]
-    topics: TopicArgs,
-    #[command(flatten)]
-    odometry: OdometryArgs,
+    options: OneRobotArgs,
     /// Initial pose on the map: x,y,deg in metres and degrees, or anywhere.
     #[arg(
         long,
@@ -119,7 +118,7 @@ pub fn run(args: &LocalizeArgs) -> anyhow::Result<ExitCode> {
         })
         .in_file(&args.session)?;
     let interrupt = Interrupt::watch();
-    let (mut reader, mut progress) = open_compared(&args.log, &args.topics, args.odometry)?;
+    let (mut reader, mut progress) = open_compared(&args.log, &[], &args.options.0)?;
     let mut is_interrupted = true;
     while !interrupt.came() {
         let Some(frame) = reader.next_frame()? else {

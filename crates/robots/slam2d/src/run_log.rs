@@ -5,8 +5,9 @@ use std::process::ExitCode;
 
 use clap::Args;
 use command_line::interrupt::Interrupt;
-use command_line::log_file::{OdometryArgs, TopicArgs};
-use command_line::robots::Robots;
+use command_line::log_args::AllLogArgs;
+use command_line::log_file::open_robots;
+use robot_io::log::{LogOptions, LogReader as _};
 
 use crate::mapping::{Ended, Mapping, MappingArgs};
 
@@ -19,12 +20,7 @@ pub struct RunArgs {
     #[arg(value_name = "PART")]
     parts: Vec<PathBuf>,
     #[command(flatten)]
-    topics: TopicArgs,
-    #[command(flatten)]
-    odometry: OdometryArgs,
-    /// Map all robots of a recording into one map, one after the other, if it has scans of several.
-    #[arg(long, conflicts_with_all = ["scan_topic", "odom_topic", "odom_frame", "body_frame"])]
-    all_robots: bool,
+    options: AllLogArgs,
     #[command(flatten)]
     mapping: MappingArgs,
 }
@@ -37,31 +33,39 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let name = args.log.display().to_string();
     let interrupt = Interrupt::watch();
     let mut mapping = Mapping::start(&args.mapping)?;
-    let topics = args.topics.resuming_with(mapping.laser_before);
-    let topics = topics.of_all_robots(args.all_robots).of_parts(&args.parts);
-    let mut robots = Robots::open(&args.log, &topics, args.odometry)?;
+    let options = LogOptions {
+        laser_before: mapping.laser_before,
+        ..args.options.0.clone()
+    };
+    let (mut reader, mut progress) = open_robots(&args.log, &args.parts, &options)?;
     let mut ended = Ended {
         is_interrupted: true,
         ..Ended::default()
     };
     while !interrupt.came() {
-        match robots.next_frame(&mut mapping.run) {
+        match reader.next_frame() {
             Ok(Some(frame)) => {
+                if let Some(robot) = reader.next_robot() {
+                    mapping.run.next_robot(&robot, frame.stamp_s);
+                    progress.restart();
+                }
                 mapping.step(frame);
-                robots.report(mapping.run.scans());
+                progress.report(mapping.run.scans());
             }
             Ok(None) => {
                 ended.is_interrupted = false;
                 break;
             }
-            Err(error) if mapping.run.scans() == 0 => return Err(error),
+            Err(error) if mapping.run.scans() == 0 => return Err(error.into()),
             Err(error) => {
-                ended.broken = Some(error);
+                ended.broken = Some(error.into());
                 break;
             }
         }
     }
-    (ended.remarks, ended.about) = robots.end(!ended.is_interrupted);
+    progress.end();
+    ended.remarks = reader.notes().sentences(&name);
+    ended.about.clone_from(&reader.notes().about);
     let title = args.log.file_name().unwrap_or(args.log.as_os_str());
     mapping.end(&name, &title.to_string_lossy(), ended)
 }

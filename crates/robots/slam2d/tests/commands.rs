@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use robot_io::log::LogOption;
+
 use crate::support::{assert_rejected, slam2d};
 
 #[test]
@@ -85,5 +87,33 @@ fn evaluate_says_that_a_trajectory_in_another_frame_fits_once_it_is_aligned() {
     assert!(evaluated(&turned, "none").contains("0.0000 m after a rigid motion"));
     for (file, align) in [(&turned, "se2"), (&noisy, "none"), (&truth, "none")] {
         assert_eq!(evaluated(file, align), "", "{file}");
+    }
+}
+
+#[test]
+fn the_command_and_python_offer_every_option_of_a_log() {
+    // Options that a host does not offer, with the reason.
+    const WITHOUT: [(&str, &str, &str); 4] = [
+        ("Pipeline", "no_odometry", "odometry=False"),
+        ("connect", "no_odometry", "odometry=False"),
+        ("connect", "columns", "a robot sends messages of ROS"),
+        ("connect", "all_robots", "one robot drives"),
+    ];
+    let help = String::from_utf8(slam2d(&["run", "--help"]).stdout).unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
+    let stub = root.join("crates/robots/slam2d_py/python/rustslam2d/__init__.pyi");
+    let stub = fs::read_to_string(stub).unwrap();
+    for option in LogOption::ALL {
+        let dashed = format!("--{} ", option.name());
+        assert!(help.replace('\n', " \n").contains(&dashed), "{option:?}");
+        let name = option.name().replace('-', "_");
+        for (host, start) in [("Pipeline", "class Pipeline"), ("connect", "def connect(")] {
+            let arguments = stub.split(start).nth(1).unwrap();
+            let arguments = arguments.split(") ->").next().unwrap();
+            let mut without = WITHOUT.iter();
+            let is_without = without.any(|(of, absent, _)| (*of, *absent) == (host, &name));
+            let is_offered = arguments.contains(&format!(" {name}: "));
+            assert_ne!(is_offered, is_without, "{host}: {name}");
+        }
     }
 }

@@ -22,10 +22,10 @@ use robot_io::live::network::{ConnectError, Host};
 use robot_io::live::{WAIT_S, queue};
 use robot_io::log::{LogError as NoLog, LogFrame, LogOptions, LogReader as _};
 use robot_io::log_format::LogFormat;
-use robot_io::motion::{ComparedReader, OdometryUse};
+use robot_io::motion::ComparedReader;
 
 use crate::errors::{ChoiceError, LogError, os_error, within};
-use crate::log_options::{self, Asked};
+use crate::log_options::{self, keywords};
 use crate::sensor::Sensor;
 use crate::steps::{StepArguments, Steps};
 
@@ -99,30 +99,19 @@ pub fn connect(
     wait: f64,
     recording: Option<PathBuf>,
 ) -> PyResult<RobotConnection> {
-    let odometry = log_options::odometry_use(odometry.as_ref())?;
-    let options = LogOptions {
-        scan_topic,
-        odometry_topic: odom_topic,
-        odometry_frame: odom_frame,
-        body_frame,
-        ..log_options::options(&Asked {
-            laser,
-            heights,
-            min_range,
-            footprint,
-            columns: None,
-        })?
-    };
+    let options = log_options::options(
+        &keywords!(py; odometry, scan_topic, odom_topic, odom_frame, body_frame, laser,
+        heights, min_range, footprint),
+    )?;
     let wait = Duration::from_secs_f64(within("wait", wait, 0.0, LONGEST_WAIT_S, " s")?);
     let address = Address::new(&url).map_err(|error| not_there(&error))?;
-    py.detach(|| start(address, options, odometry, wait, recording))
+    py.detach(|| start(address, options, wait, recording))
 }
 
 /// Connects, and starts both threads.
 fn start(
     address: Address,
     options: LogOptions,
-    odometry: OdometryUse,
     wait: Duration,
     recording: Option<PathBuf>,
 ) -> PyResult<RobotConnection> {
@@ -141,12 +130,10 @@ fn start(
         None => Box::new(io::sink()),
     };
     let (feeder, feed) = queue::stream(true);
-    let asked = options.scan_topic.iter();
-    let asked = asked.flat_map(|topics| topics.split(',').map(|topic| topic.trim().to_owned()));
     let has_ended = Arc::<AtomicBool>::default();
     let (say, events) = channel();
     let ends = Arc::clone(&has_ended);
-    let listener = Listener::new(address, target, Drive::new(feeder, asked.collect()))
+    let listener = Listener::new(address, target, Drive::new(feeder, options.scan_topics()))
         .waiting(wait)
         .until(move || ends.load(Ordering::Relaxed))
         // Nobody misses what is said after the program has gone on.
@@ -156,8 +143,7 @@ fn start(
     let name = url.clone();
     thread::spawn(move || {
         let reader = LogFormat::open_live(feed, &name, &options);
-        let reader = ComparedReader::new(reader, options.laser.is_some());
-        read(reader.with_odometry(odometry), &name, &pass);
+        read(ComparedReader::chosen(reader, &options), &name, &pass);
     });
     Ok(RobotConnection {
         has_ended,

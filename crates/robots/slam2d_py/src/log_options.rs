@@ -1,75 +1,54 @@
 //! Options of a log and of a robot that drives, as Python gives them.
 
-use std::str::FromStr;
-
 use pyo3::prelude::*;
-use pyo3::types::PyBool;
-use robot_io::log::LogOptions;
+use pyo3::types::{PyBool, PyDict, PyTuple};
+use robot_io::log::{LogOption, LogOptions};
 use robot_io::motion::OdometryUse;
 
-use crate::errors::{ChoiceError, no_choice, within};
+use crate::errors::ChoiceError;
 
-/// What is asked for, beside topics and frames.
-pub struct Asked {
-    /// Mounting of the laser.
-    pub laser: Option<String>,
-    /// Heights of the points of a 3-D sensor, the lower one first, m.
-    pub heights: Option<(f64, f64)>,
-    /// Shorter ranges are no points, m.
-    pub min_range: Option<f64>,
-    /// Back, right, front and left end of the robot, m.
-    pub footprint: Option<(f64, f64, f64, f64)>,
-    /// Columns of a table.
-    pub columns: Option<String>,
+/// A dict of the variables, by their names.
+macro_rules! keywords {
+    ($py:expr; $($name:ident),+ $(,)?) => {{
+        let keywords = pyo3::types::PyDict::new($py);
+        $(keywords.set_item(stringify!($name), &$name)?;)+
+        keywords
+    }};
 }
+pub(crate) use keywords;
 
-/// The options, without topics and frames; or `ChoiceError`.
-pub fn options(asked: &Asked) -> PyResult<LogOptions> {
-    if let Some((low, high)) = asked.heights
-        && !(low < high && low.is_finite() && high.is_finite())
-    {
-        return Err(ChoiceError::new_err(format!(
-            "heights has to be two numbers, the lower one first, not ({low}, {high})"
-        )));
+/// The options among these keywords; or `ChoiceError`.
+pub fn options(keywords: &Bound<'_, PyDict>) -> PyResult<LogOptions> {
+    let mut given: Vec<(String, String)> = Vec::new();
+    for option in LogOption::ALL {
+        let name = option.name().replace('-', "_");
+        let value = keywords.get_item(&name)?.filter(|value| !value.is_none());
+        if let Some(text) = value.map(|value| text_of(option, &value)).transpose()? {
+            given.extend(text.map(|text| (name, text)));
+        }
     }
-    let footprint = asked.footprint;
-    let footprint =
-        footprint.map(|(back, right, front, left)| format!("{back},{right},{front},{left}"));
-    Ok(LogOptions {
-        laser: parsed("laser", asked.laser.as_deref())?,
-        heights_m: asked.heights,
-        min_range_m: asked
-            .min_range
-            .map(|range_m| within("min_range", range_m, 0.0, 1e6, " m"))
-            .transpose()?,
-        footprint: parsed("footprint", footprint.as_deref())?,
-        columns: parsed("columns", asked.columns.as_deref())?,
-        ..LogOptions::default()
-    })
+    let pairs = given
+        .iter()
+        .map(|(name, text)| (name.as_str(), text.as_str()));
+    LogOptions::read(pairs).map_err(ChoiceError::new_err)
 }
 
-/// How the odometry is taken: by its name, or a truth value.
-pub fn odometry_use(wanted: Option<&Bound<'_, PyAny>>) -> PyResult<OdometryUse> {
-    let Some(wanted) = wanted else {
-        return Ok(OdometryUse::Check);
-    };
-    if let Ok(is_used) = wanted.cast::<PyBool>() {
-        return Ok(if is_used.is_true() {
-            OdometryUse::Check
-        } else {
-            OdometryUse::Ignore
+/// A value as the command reads it; `None` if the option is not set.
+fn text_of(option: LogOption, value: &Bound<'_, PyAny>) -> PyResult<Option<String>> {
+    if let Ok(is_set) = value.cast::<PyBool>() {
+        return Ok(match (option, is_set.is_true()) {
+            (LogOption::Odometry, true) => Some(OdometryUse::Check.name().to_owned()),
+            (LogOption::Odometry, false) => Some(OdometryUse::Ignore.name().to_owned()),
+            (_, is_set) => is_set.then(String::new),
         });
     }
-    let name: String = wanted.str()?.extract()?;
-    let found = OdometryUse::ALL.into_iter().find(|one| one.name() == name);
-    found.ok_or_else(|| no_choice("odometry", &name, &OdometryUse::ALL.map(OdometryUse::name)))
+    if let Ok(numbers) = value.cast::<PyTuple>() {
+        let words: PyResult<Vec<String>> = numbers.iter().map(|number| word(&number)).collect();
+        return Ok(Some(words?.join(",")));
+    }
+    word(value).map(Some)
 }
 
-/// An option as the command reads it.
-fn parsed<T: FromStr<Err = String>>(name: &str, text: Option<&str>) -> PyResult<Option<T>> {
-    let read = |text: &str| {
-        let found = text.parse();
-        found.map_err(|problem| ChoiceError::new_err(format!("{name}: {problem}, not {text:?}")))
-    };
-    text.map(read).transpose()
+fn word(value: &Bound<'_, PyAny>) -> PyResult<String> {
+    value.str()?.extract()
 }

@@ -12,15 +12,16 @@ use robot_io::graph_file::GraphFile;
 use robot_io::log::{LogFrame, LogOptions, LogReader as _, with_remarks};
 use robot_io::log_format::LogFormat;
 use robot_io::map_image::{MapImage, NoReturn};
-use robot_io::motion::{ComparedReader, OdometryUse};
+use robot_io::motion::ComparedReader;
 use robot_io::quality::Quality;
+use robot_io::robots::Robots;
 use robot_io::run::LogRun;
 
 use crate::arrays;
 use crate::errors::{ChoiceError, LogError, SettingError, within};
 use crate::grid_map::GridMap;
 use crate::log_files::{self, ReadTo};
-use crate::log_options::{self, Asked};
+use crate::log_options::{self, keywords};
 use crate::pose_graph::PoseGraph;
 use crate::reduced::{self, Reduced};
 use crate::sensor::Sensor;
@@ -47,6 +48,7 @@ const SHARE_OF_SCANS: f64 = 0.75;
 /// min_range: shorter ranges are no points, m.
 /// footprint: the rectangle that the robot covers, whose readings are no points: back, right, front and left end, m.
 /// columns: columns of a table without a header, "time_us,angle_deg,range_mm".
+/// all_robots: `run` maps all robots of a recording into one map, one after the other.
 ///
 /// Raises OSError if the log cannot be opened, SettingError for a name or a value that the estimator does not have,
 /// ChoiceError for an argument out of its range.
@@ -54,7 +56,6 @@ const SHARE_OF_SCANS: f64 = 0.75;
 pub struct Pipeline {
     log: PathBuf,
     chosen: Chosen,
-    odometry: OdometryUse,
     options: LogOptions,
     /// Its arguments, for pickling.
     keywords: Py<PyDict>,
@@ -150,9 +151,11 @@ struct Found {
 impl Pipeline {
     #[new]
     #[pyo3(signature = (log, config=None, *, odometry=None, scan_topic=None, odom_topic=None, odom_frame=None,
-        body_frame=None, laser=None, heights=None, min_range=None, footprint=None, columns=None),
+        body_frame=None, laser=None, heights=None, min_range=None, footprint=None, columns=None,
+        all_robots=false),
         text_signature = "(log, config=None, *, odometry='check', scan_topic=None, odom_topic=None, odom_frame=None, \
-            body_frame=None, laser=None, heights=None, min_range=None, footprint=None, columns=None)")]
+            body_frame=None, laser=None, heights=None, min_range=None, footprint=None, columns=None, \
+            all_robots=False)")]
     // Keyword arguments of Python.
     #[expect(clippy::too_many_arguments)]
     fn new(
@@ -169,45 +172,17 @@ impl Pipeline {
         min_range: Option<f64>,
         footprint: Option<(f64, f64, f64, f64)>,
         columns: Option<String>,
+        all_robots: bool,
     ) -> PyResult<Self> {
         // A log that is not there is reported here, and not an hour later by the run.
         log_files::parts(&log)?;
-        let keywords = PyDict::new(py);
-        keywords.set_item("log", &log)?;
-        keywords.set_item("config", &config)?;
-        for (name, value) in [
-            ("scan_topic", &scan_topic),
-            ("odom_topic", &odom_topic),
-            ("odom_frame", &odom_frame),
-            ("body_frame", &body_frame),
-            ("laser", &laser),
-            ("columns", &columns),
-        ] {
-            keywords.set_item(name, value)?;
-        }
-        let odometry = log_options::odometry_use(odometry.as_ref())?;
-        keywords.set_item("odometry", odometry.name())?;
-        keywords.set_item("heights", heights)?;
-        keywords.set_item("min_range", min_range)?;
-        keywords.set_item("footprint", footprint)?;
+        let keywords = keywords!(py; log, config, odometry, scan_topic, odom_topic, odom_frame, body_frame, laser,
+            heights, min_range, footprint, columns, all_robots);
         Ok(Self {
-            log,
             chosen: settings::chosen(config.as_ref())?,
-            odometry,
+            options: log_options::options(&keywords)?,
             keywords: keywords.unbind(),
-            options: LogOptions {
-                scan_topic,
-                odometry_topic: odom_topic,
-                odometry_frame: odom_frame,
-                body_frame,
-                ..log_options::options(&Asked {
-                    laser,
-                    heights,
-                    min_range,
-                    footprint,
-                    columns,
-                })?
-            },
+            log,
         })
     }
 
@@ -274,18 +249,26 @@ impl Pipeline {
 }
 
 impl Pipeline {
-    /// Opens the log.
-    fn reader(&self) -> PyResult<(ComparedReader<'static>, ReadTo)> {
+    /// Opens the log, for one robot or all.
+    fn reader(&self, options: &LogOptions) -> PyResult<(Robots<'static>, ReadTo)> {
         let name = self.log.display().to_string();
         let (parts, of_files, read) = log_files::parts(&self.log)?;
-        let reader = LogFormat::open_parts(parts, &name, &self.options).map_err(to_error)?;
-        let is_given = self.options.laser.is_some();
-        let reader = ComparedReader::new(with_remarks(reader, of_files), is_given);
-        Ok((reader.with_odometry(self.odometry), read))
+        let open = move |options: &LogOptions| {
+            let reader = LogFormat::open_parts(parts.clone(), &name, options)?;
+            Ok(ComparedReader::chosen(
+                with_remarks(reader, of_files.clone()),
+                options,
+            ))
+        };
+        Ok((Robots::open(open, options).map_err(to_error)?, read))
     }
 
     fn read_frames(&self) -> PyResult<Vec<LogFrame>> {
-        let (mut reader, _) = self.reader()?;
+        let of_one = LogOptions {
+            all_robots: false,
+            ..self.options.clone()
+        };
+        let (mut reader, _) = self.reader(&of_one)?;
         let mut frames = Vec::new();
         loop {
             match reader.next_frame() {
@@ -300,7 +283,7 @@ impl Pipeline {
     /// Runs the log without the interpreter's lock, except to report progress.
     fn drive(&self, progress: &Progress, cell_m: f64, free_space: bool) -> PyResult<Found> {
         let name = self.log.display().to_string();
-        let (mut reader, read) = self.reader()?;
+        let (mut reader, read) = self.reader(&self.options)?;
         let mut run = LogRun::default();
         for (setting, value) in &self.chosen {
             run = run
@@ -312,6 +295,9 @@ impl Pipeline {
         loop {
             match reader.next_frame() {
                 Ok(Some(frame)) => {
+                    if let Some(robot) = reader.next_robot() {
+                        run.next_robot(&robot, frame.stamp_s);
+                    }
                     run.step(frame);
                 }
                 Ok(None) => break,

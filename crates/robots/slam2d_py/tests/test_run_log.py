@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 import rustslam2d as rs
+from conftest import ROOT, skip
 
 
 @pytest.fixture(scope="module")
@@ -124,6 +125,17 @@ def test_errors_against_truth_and_relations():
     by_relations = rs.evaluate(stamps, off, relations=[(0.0, 2.0, 2.0, 0.3, 0.0), (1.0, 3.0, 2.0, 0.1, np.pi / 2)])
     assert by_relations["n"] == 2 and by_relations["trans"]["mean"] == pytest.approx(0.2)
     assert by_relations["rot_deg"]["mean"] == pytest.approx(45.0)
+
+
+def test_all_robots_of_a_recording_are_mapped_as_by_the_command():
+    recording = ROOT.parent / "shared/data/field/two_robots/namespaced.mcap"
+    if not recording.is_file():
+        skip("all robots of a recording", "it is not in ../shared/data/field, beside the repository")
+    run = rs.Pipeline(recording, all_robots=True).run()
+    assert len(run.stamps) == 314 and (np.diff(run.stamps) > 0).all()
+    assert any("the robot of /tb3_1/scan was found on the map" in said for said in run.remarks)
+    with pytest.raises(rs.ChoiceError, match="all robots have topics and frames of their own"):
+        rs.Pipeline(recording, all_robots=True, odom_topic="/odom")
 
 
 @pytest.mark.parametrize(

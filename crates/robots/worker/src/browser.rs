@@ -14,7 +14,7 @@ use robot_io::log_bytes::LogBytes;
 use wasm_bindgen::prelude::*;
 
 use crate::engine::{Engine, NoConnection};
-use crate::given::{Choices, Given, GivenFile};
+use crate::given::{self, Given, GivenFile};
 use crate::sample;
 use crate::update::Update;
 
@@ -90,7 +90,7 @@ impl LogMapper {
         chosen: &str,
     ) -> Result<Self, JsError> {
         let opened = given(names, sizes, read)
-            .and_then(|given| Engine::open(given, &Choices::read(chosen)?));
+            .and_then(|given| Engine::open(given, &given::options(chosen)?));
         let engine = opened.map_err(|message| JsError::new(&message))?;
         Ok(Self { engine })
     }
@@ -100,8 +100,8 @@ impl LogMapper {
     /// # Errors
     /// If a line is not an option; the message is one sentence.
     pub fn listen(url: &str, chosen: &str) -> Result<Self, JsError> {
-        let choices = Choices::read(chosen).map_err(|message| JsError::new(&message))?;
-        let engine = Engine::listen(url, &choices);
+        let options = given::options(chosen).map_err(|message| JsError::new(&message))?;
+        let engine = Engine::listen(url, &options);
         Ok(Self { engine })
     }
 
@@ -190,7 +190,7 @@ impl LogMapper {
             _ => StartPose::Anywhere,
         };
         let begun = given(names, sizes, read)
-            .and_then(|given| self.engine.locate(given, &Choices::read(chosen)?, start));
+            .and_then(|given| self.engine.locate(given, &given::options(chosen)?, start));
         begun.map_err(|message| JsError::new(&message))
     }
 

@@ -19,13 +19,13 @@ use log_messages::{MapperOrder, MapperReport, Stage};
 use pr_geom::SE2;
 use robot_io::doctor::Diagnosis;
 use robot_io::graph_file::GraphFile;
-use robot_io::log::{LogError, LogReader};
+use robot_io::log::{LogError, LogOptions, LogReader};
 use robot_io::run::LogRun;
 use robot_io::session::{self, Session};
 use robot_io::trajectory::{StampedPose, Trajectory};
 
 use crate::files;
-use crate::given::{Choices, Given};
+use crate::given::Given;
 use crate::grade::DroppedReference;
 use crate::graph_log::{self, GraphSolving, loops_of};
 use crate::links::Link;
@@ -106,7 +106,7 @@ impl<'a> Engine<'a> {
     ///
     /// # Errors
     /// If they cannot be mapped, optimized or viewed; the message is one sentence.
-    pub fn open(given: Given<'a>, choices: &Choices) -> Result<Self, String> {
+    pub fn open(given: Given<'a>, options: &LogOptions) -> Result<Self, String> {
         let name = given.name.clone();
         let (name, size_bytes) = (name.as_str(), given.size_bytes);
         let Some(bytes) = given.parts.first() else {
@@ -143,7 +143,7 @@ impl<'a> Engine<'a> {
             Work::Solving(Box::new(GraphSolving::read(&bytes, name)?))
         } else {
             drop(source);
-            let examination = Examination::begin(given.clone(), choices.clone())?;
+            let examination = Examination::begin(given.clone(), options.clone())?;
             Work::Examining(Box::new(examination))
         };
         let run = LogRun::default();
@@ -242,6 +242,9 @@ impl<'a> Engine<'a> {
         match reader.next_frame() {
             Ok(Some(frame)) => {
                 let is_first = self.run.scans() == 0;
+                if let Some(robot) = reader.next_robot() {
+                    self.run.next_robot(&robot, frame.stamp_s);
+                }
                 if let Some(report) = self.run.step(frame) {
                     if is_first {
                         self.send_offers(&reader.notes().offers);

@@ -2,12 +2,11 @@
 
 use std::io::Read as _;
 
-use robot_io::laser_mount::LaserMount;
-use robot_io::log::{LogOption, LogOptions, with_remarks};
+use robot_io::log::{LogError, LogOptions, with_remarks};
 use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::log_format::LogFormat;
-use robot_io::motion::{ComparedReader, OdometryUse};
-use robot_io::remark::{NO_ODOMETRY, Remark};
+use robot_io::motion::ComparedReader;
+use robot_io::remark::Remark;
 use robot_io::rosbag2;
 
 /// Largest metadata file, bytes.
@@ -99,56 +98,27 @@ impl<'a> Given<'a> {
     }
 }
 
-/// Options that the user chose for a log.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Choices {
-    /// Topics, frames and mounting of the laser.
-    pub log: LogOptions,
-    /// How the odometry is taken.
-    pub odometry: OdometryUse,
-}
-
-impl Choices {
-    /// Parses command line options, one per line and without the dashes: `scan-topic /front`.
-    ///
-    /// # Errors
-    /// If a line is not an option or has an invalid value; the message is one sentence.
-    pub fn read(lines: &str) -> Result<Self, String> {
-        let mut choices = Self::default();
-        for line in lines.lines() {
-            let (name, value) = line.split_once(' ').unwrap_or((line, ""));
-            let mut options = LogOption::ALL.into_iter();
-            if let Some(option) = options.find(|option| option.name() == name) {
-                choices.log = choices.log.with(option, value);
-            } else if name == "laser" {
-                choices.log.laser = Some(value.parse::<LaserMount>()?);
-            } else if name == "min-range" {
-                let range_m = value.parse().ok().filter(|m: &f64| *m >= 0.0);
-                choices.log.min_range_m = Some(range_m.ok_or("min-range has to be metres")?);
-            } else if name == "footprint" {
-                choices.log.footprint = Some(value.parse()?);
-            } else if name == "columns" {
-                choices.log.columns = Some(value.parse()?);
-            } else if name == "odometry" {
-                choices.odometry = value.parse()?;
-            } else if format!("--{name}") == NO_ODOMETRY {
-                choices.odometry = OdometryUse::Ignore;
-            } else {
-                return Err(format!("a log has no option {name}"));
-            }
-        }
-        Ok(choices)
-    }
+/// Parses options of the command, one per line and without the dashes: `scan-topic /front`.
+///
+/// # Errors
+/// If a line is not an option or has an invalid value; the message is one sentence.
+pub fn options(lines: &str) -> Result<LogOptions, String> {
+    LogOptions::read(
+        lines
+            .lines()
+            .map(|line| line.split_once(' ').unwrap_or((line, ""))),
+    )
 }
 
 /// Opens the log, and compares its first scans with its odometry.
 ///
 /// # Errors
-/// If it is not a log; the message is one sentence.
-pub fn compared<'a>(given: &Given<'a>, choices: &Choices) -> Result<ComparedReader<'a>, String> {
-    let parts = given.parts.clone();
-    let reader = LogFormat::open_parts(parts, &given.name, &choices.log);
-    let reader = reader.map_err(|problem| problem.to_string())?;
+/// If it is not a log.
+pub fn compared<'a>(
+    given: &Given<'a>,
+    options: &LogOptions,
+) -> Result<ComparedReader<'a>, LogError> {
+    let reader = LogFormat::open_parts(given.parts.clone(), &given.name, options)?;
     let reader = with_remarks(reader, given.remarks.clone());
-    Ok(ComparedReader::new(reader, choices.log.laser.is_some()).with_odometry(choices.odometry))
+    Ok(ComparedReader::chosen(reader, options))
 }

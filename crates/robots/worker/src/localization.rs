@@ -7,13 +7,13 @@ use ch16_slam2d::metrics::position_error_m;
 use log_messages::{LocalizationState, LocalizedScan, OtherLog};
 use pr_geom::SE2;
 use robot_io::localize::LocalizeRun;
-use robot_io::log::{LogNotes, LogReader};
+use robot_io::log::{LogNotes, LogOptions, LogReader};
 use robot_io::quality::KeyframeQuality;
 use robot_io::run::late_scans;
 use robot_io::session::Session;
 use robot_io::trajectory::{StampedPose, Trajectory};
 
-use crate::given::{Choices, Given, compared};
+use crate::given::{Given, compared};
 
 /// Most scans in a report: of a longer log every n-th scan is sent.
 const MAX_SENT: usize = 20_000;
@@ -49,11 +49,11 @@ impl<'a> Localization<'a> {
     /// If the file is not a log, or the session has no map; the message is one sentence.
     pub fn open(
         given: Given<'a>,
-        choices: &Choices,
+        options: &LogOptions,
         session: &Session,
         start: StartPose,
     ) -> Result<Self, String> {
-        let reader = compared(&given, choices)?;
+        let reader = compared(&given, options).map_err(|problem| problem.to_string())?;
         let run = LocalizeRun::new(session, start)
             .map_err(|problem| format!("The map cannot be searched: {problem}."))?;
         Ok(Self {

@@ -1,7 +1,7 @@
 //! A robot that drives, of whom the page tells the engine what comes.
 
+use robot_io::log::LogOptions;
 use slam_robot::engine::Engine;
-use slam_robot::given::Choices;
 use slam_robot::update::{DriveReport, Update};
 
 const ADVERTISED: &str = r#"{"op": "advertise", "channels": [
@@ -18,7 +18,7 @@ fn reported(engine: &mut Engine<'_>) -> Option<DriveReport> {
 
 #[test]
 fn what_came_of_a_drive_is_reported_whenever_it_has_changed() {
-    let mut engine = Engine::listen("ws://robot:8765", &Choices::default());
+    let mut engine = Engine::listen("ws://robot:8765", &LogOptions::default());
     assert!(reported(&mut engine).unwrap().is_driving);
     assert_eq!(reported(&mut engine), None);
     engine.hear_text(ADVERTISED);

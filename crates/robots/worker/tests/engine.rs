@@ -8,7 +8,7 @@ use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
 use robot_io::run::LogRun;
 use slam_robot::engine::Engine;
-use slam_robot::given::{Choices, Given};
+use slam_robot::given::Given;
 use slam_robot::sample;
 use slam_robot::update::{LoopEvidence, Update};
 
@@ -39,7 +39,7 @@ pub fn given<'a>(bytes: &'a [u8], name: &str) -> Given<'a> {
 }
 
 pub fn open<'a>(bytes: &'a [u8], name: &str) -> Result<Engine<'a>, String> {
-    Engine::open(given(bytes, name), &Choices::default())
+    Engine::open(given(bytes, name), &LogOptions::default())
 }
 
 pub fn finished(bytes: &[u8]) -> Engine<'_> {
@@ -397,7 +397,7 @@ fn a_file_that_goes_while_it_is_read_leaves_a_map_of_a_part_and_says_so() {
     let bytes = &log[..=half.unwrap()];
     let source = LogBytes::new(move || Ok(std::io::BufReader::new(Torn { bytes })));
     let given = Given::one("ring.log", log.len() as u64, source);
-    let mut engine = Engine::open(given, &Choices::default()).unwrap();
+    let mut engine = Engine::open(given, &LogOptions::default()).unwrap();
     while engine.step() {}
     assert_eq!(engine.stage(), Stage::Done);
     let text = of!(engine.updates(), Answer);

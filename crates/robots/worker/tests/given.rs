@@ -5,11 +5,12 @@ use std::path::Path;
 
 use bench_support::skip::skip;
 use log_messages::{MapperReport, Stage};
+use robot_io::log::{LogOption, LogOptions};
 use robot_io::log_bytes::LogBytes;
 use robot_io::motion::OdometryUse;
 use serde_json::Value;
 use slam_robot::engine::Engine;
-use slam_robot::given::{Choices, Given, GivenFile};
+use slam_robot::given::{Given, GivenFile, options};
 use slam_robot::update::Update;
 
 use crate::engine::{files, given, of, open};
@@ -59,20 +60,24 @@ fn the_files_of_a_folder_are_one_recording_in_the_order_of_its_metadata() {
 
 #[test]
 fn options_are_those_of_the_command() {
-    let choices =
-        Choices::read("scan-topic /front\nlaser 0,0,180,flipped\nodometry force").unwrap();
-    assert_eq!(choices.log.scan_topic.as_deref(), Some("/front"));
-    assert_eq!(
-        choices.log.laser.unwrap().option(),
-        "--laser 0,0,180,flipped"
-    );
+    let choices = options("scan-topic /front\nlaser 0,0,180,flipped\nodometry force").unwrap();
+    assert_eq!(choices.scan_topic.as_deref(), Some("/front"));
+    assert_eq!(choices.laser.unwrap().option(), "--laser 0,0,180,flipped");
     assert_eq!(choices.odometry, OdometryUse::Force);
-    let alone = Choices::read("no-odometry").unwrap();
+    let alone = options("no-odometry").unwrap();
     assert_eq!(alone.odometry, OdometryUse::Ignore);
     for wrong in ["laser 0,0", "speed 3", "odometry maybe"] {
-        assert!(Choices::read(wrong).is_err(), "{wrong}");
+        assert!(options(wrong).is_err(), "{wrong}");
     }
-    assert_eq!(Choices::read(""), Ok(Choices::default()));
+    assert_eq!(options(""), Ok(LogOptions::default()));
+    // The page passes on whatever the core has.
+    for option in LogOption::ALL {
+        let taken = options(&format!("{} ?", option.name()));
+        assert!(
+            !taken.is_err_and(|said| said.contains("no option")),
+            "{option:?}"
+        );
+    }
 }
 
 /// All updates of a log, in order.
@@ -123,7 +128,7 @@ fn a_path_of_another_length_by_odometry_joins_the_doctor_s_screen_after_the_map(
         words.join(" ") + "\n"
     });
     let log: Vec<u8> = lengthened.collect::<String>().into_bytes();
-    let choices = Choices::read("odometry force").unwrap();
+    let choices = options("odometry force").unwrap();
     let updates = updates(Engine::open(given(&log, "long.log"), &choices).unwrap());
     let screens = updates.iter().filter(|update| update.kind() == "diagnosis");
     let screens: Vec<bool> = screens
@@ -135,7 +140,7 @@ fn a_path_of_another_length_by_odometry_joins_the_doctor_s_screen_after_the_map(
 #[test]
 fn a_turned_laser_is_reported_with_the_options_that_correct_it() {
     let (log, _) = files();
-    let choices = Choices::read("laser 0,0,180").unwrap();
+    let choices = options("laser 0,0,180").unwrap();
     let turned = Engine::open(given(log, "ring.log"), &choices).unwrap();
     let told_of_turned = diagnosis(&updates(turned));
     assert_eq!(told_of_turned["laser"], "0,0,180");
@@ -151,7 +156,7 @@ fn a_turned_laser_is_reported_with_the_options_that_correct_it() {
 #[test]
 fn scans_go_alone_if_the_reader_leaves_odometry_out() {
     let (log, _) = files();
-    let choices = Choices::read("no-odometry").unwrap();
+    let choices = options("no-odometry").unwrap();
     let alone = updates(Engine::open(given(log, "ring.log"), &choices).unwrap());
     let with = updates(open(log, "ring.log").unwrap());
     let way = |updates: &[Update]| {
@@ -219,6 +224,26 @@ fn files_that_people_have_are_mapped_or_named_as_by_the_command() {
 }
 
 #[test]
+fn all_robots_of_a_recording_are_mapped_if_the_reader_wants_so() {
+    let Some(bytes) = field("two_robots/namespaced.mcap") else {
+        return;
+    };
+    let of_one = updates(open(&bytes, "two.mcap").unwrap());
+    let text = diagnosis(&of_one).to_string();
+    assert!(text.contains(r#""--all-robots""#), "{text}");
+    let all = options("all-robots").unwrap();
+    let of_all = updates(Engine::open(given(&bytes, "two.mcap"), &all).unwrap());
+    let scans = |updates: &[Update]| {
+        let of_update = |update: &Update| match update {
+            Update::Report(MapperReport::Progress(progress)) => progress.scans,
+            _ => 0,
+        };
+        updates.iter().map(of_update).max()
+    };
+    assert_eq!((scans(&of_one), scans(&of_all)), (Some(157), Some(314)));
+}
+
+#[test]
 fn a_database_and_its_write_ahead_log_are_read_together() {
     let folder = "folders/killed_recording_wal";
     let (Some(database), Some(log)) = (
@@ -233,7 +258,7 @@ fn a_database_and_its_write_ahead_log_are_read_together() {
         bytes: LogBytes::from(bytes.clone()),
     };
     let files = vec![given("ok.db3", &database), given("ok.db3-wal", &log)];
-    let mut engine = Engine::open(Given::new(files).unwrap(), &Choices::default()).unwrap();
+    let mut engine = Engine::open(Given::new(files).unwrap(), &LogOptions::default()).unwrap();
     while engine.step() {}
     let updates = engine.updates();
     assert_eq!(of!(updates, Progress).scans, 80);

@@ -9,7 +9,7 @@ use robot_io::run::LogRun;
 use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
 use slam_robot::engine::Engine;
-use slam_robot::given::{Choices, Given};
+use slam_robot::given::{Given, options};
 use slam_robot::sample;
 use slam_robot::update::Update;
 
@@ -139,7 +139,7 @@ fn sessions_that_are_broken_are_answered_in_one_sentence() {
     }
     let huge = Engine::open(
         Given::one("x.slam2d", 1 << 30, &session[..]),
-        &Choices::default(),
+        &LogOptions::default(),
     );
     assert!(huge.err().unwrap().contains("larger than 512 MB"));
     // A session is recognized by its first bytes alone.
@@ -148,7 +148,7 @@ fn sessions_that_are_broken_are_answered_in_one_sentence() {
 
 fn look<'a>(engine: &mut Engine<'a>, log: &'a [u8], start: StartPose) -> OtherLog {
     engine.updates();
-    let begun = engine.locate(given(log, "tuesday.log"), &Choices::default(), start);
+    let begun = engine.locate(given(log, "tuesday.log"), &LogOptions::default(), start);
     begun.unwrap();
     while engine.step() {}
     of!(engine.updates(), OtherLog)
@@ -270,7 +270,7 @@ fn files_that_are_not_logs_are_reported_and_change_nothing() {
     let session = saved();
     let mut engine = opened(&session);
     look(&mut engine, &day, StartPose::Anywhere);
-    let choices = Choices::default();
+    let choices = LogOptions::default();
     let mut tried =
         |bytes: &'static [u8]| engine.locate(given(bytes, "x.log"), &choices, StartPose::Anywhere);
     assert!(tried(b"").unwrap_err().contains("is empty"));
@@ -303,7 +303,7 @@ fn a_search_is_stopped_and_keeps_what_was_found() {
     let mut engine = opened(&session);
     let begun = engine.locate(
         given(&day, "day.log"),
-        &Choices::default(),
+        &LogOptions::default(),
         StartPose::Anywhere,
     );
     begun.unwrap();
@@ -326,7 +326,7 @@ fn a_recording_says_what_its_options_could_choose_and_takes_them() {
     let mut scans = offers.iter().filter(|offer| offer.option == "scan-topic");
     let scans = scans.next().unwrap();
     assert!(scans.names.contains(&scans.taken), "{offers:?}");
-    let choices = Choices::read("scan-topic /nowhere").unwrap();
+    let choices = options("scan-topic /nowhere").unwrap();
     let mut engine = Engine::open(given(recording, "plain.mcap"), &choices).unwrap();
     while engine.step() {}
     let reply = of!(engine.updates(), Progress).problem;

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use robot_io::evaluate::{Alignment, truth_errors};
 use robot_io::graph_file::GraphFile;
+use robot_io::log::{LogOptions, LogReader as _};
 use robot_io::log_format::LogFormat;
 use robot_io::run::LogRun;
 use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
 
 use command_line::in_file::InFile as _;
-use command_line::log_file::{OdometryArgs, TopicArgs};
-use command_line::robots::Robots;
+use command_line::log_file::open_robots;
 
 /// File of a folder whose recordings are listed.
 const README: &str = "README";
@@ -73,21 +73,25 @@ struct Mapped {
 }
 
 /// Maps a recording as `slam2d run` does.
-fn mapped(log: &Path, mut run: LogRun, topics: &TopicArgs) -> anyhow::Result<Mapped> {
-    let mut robots = Robots::open(log, topics, OdometryArgs::default())?;
+fn mapped(log: &Path, mut run: LogRun, options: &LogOptions) -> anyhow::Result<Mapped> {
+    let (mut reader, progress) = open_robots(log, &[], options)?;
     let end = loop {
-        match robots.next_frame(&mut run) {
+        match reader.next_frame() {
             Ok(Some(frame)) => {
+                if let Some(robot) = reader.next_robot() {
+                    run.next_robot(&robot, frame.stamp_s);
+                }
                 run.step(frame);
             }
             Ok(None) => break None,
-            Err(problem) if run.scans() == 0 => return Err(problem),
+            Err(problem) if run.scans() == 0 => return Err(problem.into()),
             Err(problem) => break Some(problem.to_string()),
         }
     };
     run.finish();
     let name = log.display().to_string();
-    let (mut said, _) = robots.end(end.is_none());
+    progress.end();
+    let mut said = reader.notes().sentences(&name);
     said.extend(run.sentences(&name));
     said.extend(end);
     match run.no_map() {
@@ -115,7 +119,7 @@ fn error_m(run: &LogRun, log: &Path) -> Option<f64> {
 }
 
 /// Result and largest error of a recording, and what was said about it.
-fn outcome(log: &Path, run: LogRun, topics: &TopicArgs) -> [String; 3] {
+fn outcome(log: &Path, run: LogRun, options: &LogOptions) -> [String; 3] {
     let bytes = fs::read(log).unwrap_or_default();
     if GraphFile::begins(&bytes) && LogFormat::detect(&bytes) != LogFormat::Carmen {
         let name = log.display().to_string();
@@ -127,7 +131,7 @@ fn outcome(log: &Path, run: LogRun, topics: &TopicArgs) -> [String; 3] {
             Err(problem) => ["rejected".to_owned(), "–".to_owned(), problem.to_string()],
         };
     }
-    match mapped(log, run, topics) {
+    match mapped(log, run, options) {
         Ok(Mapped { run, said }) => {
             let error = error_m(&run, log).map_or("–".to_owned(), |m| format!("{m:.3}"));
             [format!("{} scans", run.scans()), error, said.join("\n")]
@@ -145,8 +149,8 @@ pub fn table(folder: &Path) -> anyhow::Result<String> {
         "| recording | result | largest error, m | said |".to_owned(),
         "| --- | --- | ---: | --- |".to_owned(),
     ];
-    let row = |log: &Path, run: LogRun, how: &str, topics: &TopicArgs| {
-        let [result, error, said] = outcome(log, run, topics);
+    let row = |log: &Path, run: LogRun, how: &str, options: &LogOptions| {
+        let [result, error, said] = outcome(log, run, options);
         let name = log.strip_prefix(folder).unwrap_or(log).display();
         // Sentences name the file, which the row does already.
         let said = said.replace(&format!("{}: ", log.display()), "");
@@ -154,7 +158,7 @@ pub fn table(folder: &Path) -> anyhow::Result<String> {
         let said = said.replace('|', "\\|").replace('\n', ". ");
         format!("| `{name}`{how} | {result} | {error} | {said} |")
     };
-    let plain = TopicArgs::default();
+    let plain = LogOptions::default();
     for log in recordings(folder)? {
         lines.push(row(&log, LogRun::default(), "", &plain));
     }
@@ -170,7 +174,10 @@ pub fn table(folder: &Path) -> anyhow::Result<String> {
     }
     let robots = folder.join(ROBOTS);
     if robots.exists() {
-        let all = plain.of_all_robots(true);
+        let all = LogOptions {
+            all_robots: true,
+            ..plain
+        };
         lines.push(row(
             &robots,
             LogRun::default(),

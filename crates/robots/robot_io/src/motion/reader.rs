@@ -6,7 +6,7 @@ use super::repairs::{Repairs, TurnedPath};
 use super::trial::Trial;
 use super::{Comparison, MotionComparison, OdometryUse};
 use crate::laser_mount::LaserMount;
-use crate::log::{LogError, LogFrame, LogNotes, LogReader};
+use crate::log::{LogError, LogFrame, LogNotes, LogOptions, LogReader};
 use crate::odometry_poses::OdometryPoses;
 use crate::own_body::{BodyReader, beams_of};
 use crate::remark::Remark;
@@ -99,6 +99,12 @@ impl<'a> ComparedReader<'a> {
             notes: LogNotes::default(),
             remarks: Vec::new(),
         }
+    }
+
+    /// Starts a comparison of a log that was opened with these options.
+    #[must_use]
+    pub fn chosen(inner: Box<dyn LogReader + 'a>, options: &LogOptions) -> Self {
+        Self::new(inner, options.laser.is_some()).with_odometry(options.odometry)
     }
 
     /// Takes the odometry as chosen.

@@ -252,7 +252,7 @@ impl Plan {
             .collect();
         if !others.is_empty() {
             let options = others.iter().map(|topic| format!("--scan-topic {topic}"));
-            let options: Vec<String> = options.collect();
+            let mut options: Vec<String> = options.collect();
             let all = if self.robots.is_empty() {
                 ""
             } else {
@@ -264,6 +264,9 @@ impl Plan {
                 options[0]
             );
             let remark = Remark::mended(Part::Sensor, text);
+            if !self.robots.is_empty() {
+                options.push(format!("--{}", LogOption::AllRobots.name()));
+            }
             self.warnings
                 .push(options.iter().fold(remark, Remark::with_option));
         }

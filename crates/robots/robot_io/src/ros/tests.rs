@@ -160,7 +160,9 @@ fn topics_and_frames_can_be_chosen() {
         error.to_string(),
         "x.mcap has no odom-topic /tf; it has /odom"
     );
-    let of_laser = LogOptions::default().with(LogOption::BodyFrame, "laser");
+    let of_laser = LogOptions::default()
+        .with(LogOption::BodyFrame, "laser")
+        .unwrap();
     let (frames, notes) = read_with(bytes, "x.mcap", &of_laser).unwrap();
     assert_eq!(frames[0].scan.body_from_sensor.to_array(), [0.0; 3]);
     let taken = notes.offers.iter().map(|offer| offer.taken.as_deref());

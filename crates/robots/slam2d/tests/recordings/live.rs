@@ -215,7 +215,9 @@ fn of_two_lasers_one_is_read_and_the_option_names_the_other() {
         notes.contains("scans of /rear are not merged with those of /scan while the robot drives"),
         "{notes}"
     );
-    let rear = LogOptions::default().with(LogOption::ScanTopic, "/rear");
+    let rear = LogOptions::default()
+        .with(LogOption::ScanTopic, "/rear")
+        .unwrap();
     let (frames, notes) = live(&mcap(&all, PER_CHUNK), &rear);
     assert!(!frames.is_empty() && notes.is_empty(), "{notes}");
 }

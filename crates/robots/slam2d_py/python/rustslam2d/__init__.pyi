@@ -335,6 +335,7 @@ class Pipeline:
         min_range: Optional[float] = None,
         footprint: Optional[tuple[float, float, float, float]] = None,
         columns: Optional[str] = None,
+        all_robots: bool = False,
     ) -> None: ...
     def run(
         self,

@@ -8,11 +8,11 @@ use robot_io::live::network::{
     ConnectError, Host, Lost, NO_ANSWER, OTHER_SUBPROTOCOL, connected_again, connecting_again,
 };
 use robot_io::live::{RECORDING, WAIT_S, queue};
+use robot_io::log::LogOptions;
 use robot_io::log_format::LogFormat;
 use robot_io::motion::ComparedReader;
 
 use super::{Engine, Work};
-use crate::given::Choices;
 use crate::update::DriveReport;
 
 /// Why there is no connection, as far as a browser knows.
@@ -74,16 +74,12 @@ impl Driving {
 impl<'a> Engine<'a> {
     /// Maps a robot at this address while it drives, by what [`hear_text`](Self::hear_text) and the others are told.
     #[must_use]
-    pub fn listen(url: &str, choices: &Choices) -> Self {
+    pub fn listen(url: &str, options: &LogOptions) -> Self {
         let (feeder, feed) = queue::stream(false);
-        let asked = choices.log.scan_topic.iter();
-        let asked = asked.flat_map(|topics| topics.split(',').map(|topic| topic.trim().to_owned()));
-        let reader = LogFormat::open_live(feed, url, &choices.log);
-        let reader = ComparedReader::new(reader, choices.log.laser.is_some())
-            .with_odometry(choices.odometry);
+        let reader = ComparedReader::chosen(LogFormat::open_live(feed, url, options), options);
         Self {
             driving: Some(Driving {
-                drive: Some(Drive::new(feeder, asked.collect())),
+                drive: Some(Drive::new(feeder, options.scan_topics())),
                 heard: None,
                 last: Vec::new(),
                 reads: Vec::new(),

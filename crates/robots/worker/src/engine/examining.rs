@@ -1,11 +1,12 @@
 //! The doctor's pass over a log, before it is mapped.
 
 use robot_io::doctor::{Checkup, Diagnosis};
-use robot_io::log::LogReader as _;
+use robot_io::log::{LogOptions, LogReader as _};
 use robot_io::motion::ComparedReader;
+use robot_io::robots::Robots;
 
 use super::{Engine, Work};
-use crate::given::{Choices, Given, compared};
+use crate::given::{Given, compared};
 use crate::update::Update;
 
 /// A log that the doctor is reading.
@@ -14,7 +15,7 @@ pub(super) struct Examination<'a> {
     checkup: Checkup,
     /// The files, which are opened again for mapping.
     given: Given<'a>,
-    choices: Choices,
+    options: LogOptions,
 }
 
 impl<'a> Examination<'a> {
@@ -22,12 +23,12 @@ impl<'a> Examination<'a> {
     ///
     /// # Errors
     /// If they are not a log; the message is one sentence.
-    pub(super) fn begin(given: Given<'a>, choices: Choices) -> Result<Self, String> {
+    pub(super) fn begin(given: Given<'a>, options: LogOptions) -> Result<Self, String> {
         Ok(Self {
-            reader: compared(&given, &choices)?,
+            reader: compared(&given, &options).map_err(|problem| problem.to_string())?,
             checkup: Checkup::default(),
             given,
-            choices,
+            options,
         })
     }
 }
@@ -52,15 +53,21 @@ impl<'a> Engine<'a> {
         let Examination {
             reader,
             given,
-            choices,
+            options,
             ..
         } = *examination;
-        self.work = match compared(&given, &choices) {
-            Ok(again) => Work::Reading(Box::new(match reader.motion() {
-                Some(motion) => again.with_motion(motion.clone()),
+        // What the doctor found is true of the first robot.
+        let mut motion = reader.motion().cloned();
+        let open = move |options: &LogOptions| {
+            let again = compared(&given, options)?;
+            Ok(match motion.take() {
+                Some(motion) => again.with_motion(motion),
                 None => again,
-            })),
-            Err(problem) => Work::Failed(problem),
+            })
+        };
+        self.work = match Robots::open(open, &options) {
+            Ok(robots) => Work::Reading(Box::new(robots)),
+            Err(problem) => Work::Failed(problem.to_string()),
         };
     }
 

@@ -7,6 +7,7 @@ use ch16_slam2d::scan::ScanPreparer;
 use log_messages::{GradeReport, LoopDecision, MapperOrder, MapperReport, ScanReport};
 use nalgebra::Vector3;
 use pr_geom::SE2;
+use robot_io::log::LogOptions;
 use robot_io::map_image::NoReturn;
 use robot_io::report::LogReport;
 use robot_io::session;
@@ -14,7 +15,7 @@ use robot_io::session;
 use super::{Engine, Work};
 use crate::editing::{Solving, rebuilt, solve};
 use crate::files::{self, MAP_CELL_M, NAMES, REPORT_CELL_M};
-use crate::given::{Choices, Given};
+use crate::given::Given;
 use crate::grade::DroppedReference;
 use crate::links::Link;
 use crate::localization::Localization;
@@ -60,7 +61,7 @@ impl<'a> Engine<'a> {
     pub fn locate(
         &mut self,
         given: Given<'a>,
-        choices: &Choices,
+        options: &LogOptions,
         start: StartPose,
     ) -> Result<(), String> {
         if !self.has_scans {
@@ -75,7 +76,7 @@ impl<'a> Engine<'a> {
         let Some(session) = self.run.session() else {
             return Err("There is no map for localization.".to_owned());
         };
-        let opened = Localization::open(given, choices, &session, start)?;
+        let opened = Localization::open(given, options, &session, start)?;
         self.localization = Some(opened);
         Ok(())
     }

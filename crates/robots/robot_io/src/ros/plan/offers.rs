@@ -38,27 +38,30 @@ pub fn list(
         odometry_topics.insert(TRANSFORMS.to_owned());
     }
     let above = odometry.filter(|odometry| odometry.is_transform);
-    LogOption::ALL
-        .map(|option| {
-            let (taken, names) = match option {
-                LogOption::ScanTopic => (scans.map(str::to_owned), topics(&SCANS)),
-                LogOption::OdometryTopic => (
-                    odometry.map(|odometry| odometry.topic.clone()),
-                    odometry_topics.clone(),
-                ),
-                LogOption::OdometryFrame => (
-                    above.map(|odometry| odometry.track.above.clone()),
-                    grounds.clone(),
-                ),
-                LogOption::BodyFrame => (body.map(str::to_owned), bodies.clone()),
-            };
-            LogOffer {
-                option,
-                taken,
-                names: names.into_iter().take(MAX_OFFERED).collect(),
-            }
-        })
-        .to_vec()
+    let offers = [
+        (
+            LogOption::ScanTopic,
+            scans.map(str::to_owned),
+            topics(&SCANS),
+        ),
+        (
+            LogOption::OdometryTopic,
+            odometry.map(|odometry| odometry.topic.clone()),
+            odometry_topics,
+        ),
+        (
+            LogOption::OdometryFrame,
+            above.map(|odometry| odometry.track.above.clone()),
+            grounds,
+        ),
+        (LogOption::BodyFrame, body.map(str::to_owned), bodies),
+    ];
+    let offers = offers.map(|(option, taken, names)| LogOffer {
+        option,
+        taken,
+        names: names.into_iter().take(MAX_OFFERED).collect(),
+    });
+    offers.to_vec()
 }
 
 /// Returns the first option (odometry topic, odometry frame or body frame) whose name does not exist.

@@ -40,7 +40,7 @@ impl OdometryUse {
     }
 
     /// A recorded pose of the body.
-    pub(super) fn pose(self, recorded: SE2) -> SE2 {
+    pub(crate) fn pose(self, recorded: SE2) -> SE2 {
         match self {
             Self::Mirrored => SE2::new(recorded.x(), -recorded.y(), -recorded.theta()),
             Self::Check | Self::Force | Self::Ignore => recorded,
@@ -56,6 +56,6 @@ impl FromStr for OdometryUse {
         Self::ALL
             .into_iter()
             .find(named)
-            .ok_or_else(|| "the odometry must be check, force, mirrored or none".to_owned())
+            .ok_or_else(|| "expected check, force, mirrored or none".to_owned())
     }
 }
