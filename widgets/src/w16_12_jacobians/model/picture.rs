@@ -21,8 +21,8 @@ const TONES: [Tone; 4] = [
 const MARKS: [Mark; 4] = [Mark::Square, Mark::Circle, Mark::Triangle, Mark::Cross];
 /// Margin around the poses, m.
 const MARGIN_M: f64 = 0.4;
-/// Height of a name above the chain that it names, m.
-const NAME_M: f64 = 0.35;
+/// Height of the rows of names in the middle, m.
+const ROW_M: f64 = 0.3;
 /// The curves end at this power of ten: smaller values are rounding.
 const LOWEST_POWER: f64 = -9.0;
 
@@ -140,37 +140,33 @@ fn apart(widget: &WrongJacobians) -> Vec<(usize, Vec<&'static str>)> {
     chains
 }
 
-/// Who ended at the optimum, and who elsewhere, each with its χ²: on the side where the other chain is not.
+/// Who ended at the optimum, and who elsewhere, each with its χ² and a line to its chain. The middle of the ring is free.
 fn ends(widget: &WrongJacobians) -> Vec<Layer> {
+    let optimum = places(&widget.solved.optimum);
+    let middle =
+        [0, 1].map(|axis| optimum.iter().map(|at| at[axis]).sum::<f64>() / optimum.len() as f64);
     let is_there = |solver: &usize| ends_at_the_optimum(widget, *solver);
     let (there, elsewhere): (Vec<_>, Vec<_>) = (0..NAMES.len()).partition(is_there);
-    let optimum = places(&widget.solved.optimum);
-    let named = |[x, y]: [f64; 2], is_above: bool, words: String| {
-        let at = [x, y + if is_above { NAME_M } else { -NAME_M }];
-        [
-            Layer::segments(vec![[[x, y], at]], Stroke::Solid, Tone::Ink, 1.0),
-            Layer::label(at, words, 2.0),
-        ]
-    };
-    let mut layers = Vec::new();
-    let mut optimum_is_above = true;
-    for solver in elsewhere {
-        let end = widget.shown(solver);
-        let ends = places(&end.poses).into_iter().zip(&optimum);
-        let rise = |(at, best): &([f64; 2], &[f64; 2])| at[1] - best[1];
-        let farthest = ends.max_by(|a, b| rise(a).abs().total_cmp(&rise(b).abs()));
-        if let Some(pair) = farthest {
-            let is_above = rise(&pair) > 0.0;
-            optimum_is_above = !is_above;
-            let words = format!("{}: χ² {:.1}", NAMES[solver], end.chi2);
-            layers.extend(named(pair.0, is_above, words));
-        }
-    }
     let least = widget.solved.least_chi2;
     let words = format!("{} at the optimum: χ² {least:.1}", there.len());
-    let middle = optimum[optimum.len() / 2];
-    layers.extend(named(middle, optimum_is_above, words));
-    layers
+    let mut chains = vec![(optimum, Tone::Ink, words)];
+    for solver in elsewhere {
+        let end = widget.shown(solver);
+        let words = format!("{}: χ² {:.1}", NAMES[solver], end.chi2);
+        chains.push((places(&end.poses), TONES[solver], words));
+    }
+    let named = |(row, (chain, tone, text)): (usize, (Vec<[f64; 2]>, Tone, String))| {
+        let up = if row == 0 { -1.0 } else { 1.0 };
+        let at = [middle[0], middle[1] + up * ROW_M * row.max(1) as f64];
+        let end = chain
+            .into_iter()
+            .max_by(|a, b| (up * a[1]).total_cmp(&(up * b[1])));
+        let from = [at[0], at[1] + up * 0.5 * ROW_M];
+        let line = end.map(|end| Layer::segments(vec![[from, end]], Stroke::Solid, tone, 1.0));
+        [line, Some(Layer::Text { at, text, tone })]
+    };
+    let layers = chains.into_iter().enumerate().flat_map(named);
+    layers.flatten().collect()
 }
 
 /// Decades of the distance from the least one drawn, each with its unit.

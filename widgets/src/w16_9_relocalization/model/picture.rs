@@ -1,6 +1,7 @@
 //! The panels: the map with the localization, and the scores over the scans.
 
 use ch16_lab::laps::wardrobe_corners;
+use ch16_lab::relocalization::Moment;
 use ch16_slam2d::localize::LocalizeConfig;
 use ch16_slam2d::search::PoseBox;
 use pr_geom::{Point2, SE2};
@@ -93,8 +94,13 @@ fn localization(back: &Relocalization) -> Vec<Layer> {
         Layer::line(way.collect(), Stroke::Dashed, Tone::Truth, 1.5),
         pose(truth(moment.tick), Mark::Plus, Tone::Truth),
     ]);
+    // What the last search left in doubt stays until the next one has ended.
+    let is_doubted = |earlier: &&Moment| earlier.report.is_some() && earlier.runner_up.is_some();
+    let mut until_now = run.moments()[..=back.place()].iter().rev();
+    let asked = until_now.find(is_doubted);
+    let asked = asked.filter(|_| !is_found(back)).unwrap_or(moment);
     let mut candidate = |at: SE2, mark, tone, words: &str| {
-        let scan = drive.prepared(moment.tick).cloud.transformed(&at);
+        let scan = drive.prepared(asked.tick).cloud.transformed(&at);
         let points = scan.iter().map(|p| [p.x, p.y]).collect();
         layers.push(Layer::points(points, mark, tone, 2.0));
         layers.push(pose(at, mark, tone));
@@ -102,11 +108,11 @@ fn localization(back: &Relocalization) -> Vec<Layer> {
             layers.push(Layer::label([at.x(), at.y()], words.to_owned(), 12.0));
         }
     };
-    if let Some(next) = moment.runner_up {
+    if let Some(next) = asked.runner_up {
         candidate(next.pose, Mark::Triangle, Tone::Series(1), "or here?");
     }
-    let finished = moment.report.as_ref().and_then(|report| report.pose);
-    if let Some(best) = finished.or(moment.best.map(|best| best.pose)) {
+    let finished = asked.report.as_ref().and_then(|report| report.pose);
+    if let Some(best) = finished.or(asked.best.map(|best| best.pose)) {
         candidate(best, Mark::Square, Tone::Posterior, "here?");
     }
     layers

@@ -11,12 +11,12 @@ const COLUMNS: usize = 240;
 const COLUMN_PX: f32 = 4.0;
 
 /// Part of the axis of heights above the highest ground: room for the ball and the words.
-const SKY: f64 = 0.3;
+const SKY: f64 = 0.6;
 
 /// The lens over a ball that stuck, as shares of the axes: its half width, its smallest height and its top.
 const LENS_HALF_WIDTH: f64 = 0.2;
-const LENS_HEIGHT: f64 = 0.24;
-const LENS_TOP: f64 = 0.9;
+const LENS_HEIGHT: f64 = 0.22;
+const LENS_TOP: f64 = 0.84;
 /// Heights in it, as shares of its own: the lowest ground, and the rim of the dent.
 const LENS_FLOOR: f64 = 0.2;
 const LENS_RIM: f64 = 0.65;
@@ -42,7 +42,7 @@ pub fn panel(landscape: &Landscape, moment: PictureState) -> Panel {
     .map(|(end, step)| step * (end / step).ceil());
     let step = moment.step.min(landscape.ball.steps());
     let sky = SKY * high;
-    let flag = [[length_m, 0.0], [length_m, highest + 0.5 * sky]];
+    let flag = [[length_m, 0.0], [length_m, highest + 0.25 * sky]];
     let title = if step < landscape.ball.steps() {
         "The ground from the drop to the truth".to_owned()
     } else if landscape.ball.is_home() {
@@ -127,7 +127,7 @@ fn lens(
     let times = magnified / 100.0;
     layers.push(Layer::label(
         [middle, ceiling],
-        format!("the dent it sits in, {times:.0} times taller"),
+        format!("its dent, {times:.0} times taller"),
         8.0,
     ));
     layers
