@@ -99,8 +99,9 @@ fn localization(back: &Relocalization) -> Vec<Layer> {
     let mut until_now = run.moments()[..=back.place()].iter().rev();
     let asked = until_now.find(is_doubted);
     let asked = asked.filter(|_| !is_found(back)).unwrap_or(moment);
+    let scan = drive.prepared(asked.tick).cloud;
     let mut candidate = |at: SE2, mark, tone, words: &str| {
-        let scan = drive.prepared(asked.tick).cloud.transformed(&at);
+        let scan = scan.transformed(&at);
         let points = scan.iter().map(|p| [p.x, p.y]).collect();
         layers.push(Layer::points(points, mark, tone, 2.0));
         layers.push(pose(at, mark, tone));
