@@ -92,14 +92,15 @@ fn relations(text: &[u8]) {
 }
 
 fn graph(text: &[u8]) {
-    let Some(read) = accepted(GraphFile::read(text, NAME)) else {
+    let Some((read, _)) = accepted(GraphFile::read(text, NAME)) else {
         return;
     };
     let json = serde_json::to_vec(&read).expect("finite numbers can be written");
-    let again = GraphFile::read(&json, NAME).expect("what was written can be read");
+    let (again, _) = GraphFile::read(&json, NAME).expect("what was written can be read");
     assert_eq!(again, read);
     for text in [read.to_g2o(), read.to_toro()] {
-        let again = GraphFile::read(text.as_bytes(), NAME).expect("what was written can be read");
+        let (again, _) =
+            GraphFile::read(text.as_bytes(), NAME).expect("what was written can be read");
         assert_eq!(again.nodes.len(), read.nodes.len());
         for (old, new) in read.nodes.iter().zip(&again.nodes) {
             assert_eq!(old.id, new.id);

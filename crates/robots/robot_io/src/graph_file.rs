@@ -24,6 +24,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::lines::json_words;
+use prepared::is_landmark;
 
 pub use prepared::{Prepared, prepared, with_fix_last};
 
@@ -151,11 +152,12 @@ impl GraphFile {
         Self::from_problem(&problem, |node| node as i64)
     }
 
-    /// Reads a graph in g2o, TORO or JSON, detected by content.
+    /// Reads a graph in g2o, TORO or JSON, detected by content; returns with it what was changed or left out, a sentence
+    /// each.
     ///
     /// # Errors
     /// If a line is malformed, or the file is not a planar graph.
-    pub fn read(bytes: &[u8], name: &str) -> Result<Self, GraphError> {
+    pub fn read(bytes: &[u8], name: &str) -> Result<(Self, Vec<String>), GraphError> {
         let text_error = |source| GraphError::Text {
             name: name.to_owned(),
             source,
@@ -170,14 +172,25 @@ impl GraphFile {
                 name: name.to_owned(),
                 problem: format!("{} (as g2o, line {})", e.problem, e.line),
             })?;
-            return Ok(graph);
+            return Ok((graph, Vec::new()));
         }
         let prepared = prepared(bytes).map_err(|problem| GraphError::Foreign {
             name: name.to_owned(),
             problem,
         })?;
         let file = G2oFile::parse(&prepared.text).map_err(text_error)?;
-        Ok(Self::from_problem(&file.problem, |node| file.id_of(node)))
+        let mut remarks = prepared.remarks;
+        for (record, count) in file.kept_records() {
+            // Priors are edges now, and landmarks were named.
+            if record != "EDGE_PRIOR_SE2" && !is_landmark(&record) {
+                remarks.push(format!(
+                    "{count} × {record} left out, not part of the graph"
+                ));
+            }
+        }
+        let remarks = remarks.iter().map(|remark| format!("{name}: {remark}"));
+        let graph = Self::from_problem(&file.problem, |node| file.id_of(node));
+        Ok((graph, remarks.collect()))
     }
 
     /// The graph in the format of g2o.
@@ -260,18 +273,38 @@ mod tests {
 
     #[test]
     fn a_graph_is_the_same_in_all_three_formats() {
-        let graph = GraphFile::read(G2O.as_bytes(), "x.g2o").unwrap();
+        let read = |bytes: &[u8]| {
+            let (graph, remarks) = GraphFile::read(bytes, "x").unwrap();
+            assert_eq!(remarks, [""; 0]);
+            graph
+        };
+        let graph = read(G2O.as_bytes());
         assert_eq!(graph.to_g2o(), G2O);
         // The order of TORO's information is xx xy yy tt xt yt.
         let toro = graph.to_toro();
         assert!(toro.ends_with("EDGE2 3 7 1 0.5 0.25 10 1 20 30 2 3\n"));
-        let back = GraphFile::read(toro.as_bytes(), "x.graph").unwrap();
+        let back = read(toro.as_bytes());
         // Without FIX the first node fixes the gauge, as in the original.
         assert_eq!(back, graph);
         let json = serde_json::to_vec(&graph).unwrap();
-        assert_eq!(GraphFile::read(&json, "x.json").unwrap(), graph);
+        assert_eq!(read(&json), graph);
         let file = G2oFile::parse(graph.to_g2o()).unwrap();
         assert_eq!(file.problem.chi2(), 0.0);
+    }
+
+    #[test]
+    fn what_a_graph_leaves_out_is_named() {
+        let text = format!("{G2O}VERTEX_XY 9 1 1\nPARAMS_SE2OFFSET 0 0 0 0\n");
+        let (graph, remarks) = GraphFile::read(text.as_bytes(), "x").unwrap();
+        assert_eq!(graph.nodes.len(), 2);
+        let [landmark, parameter] = &remarks[..] else {
+            panic!("{remarks:?}");
+        };
+        assert!(landmark.starts_with("x: line 5: VERTEX_XY: landmarks are not optimized"));
+        assert_eq!(
+            parameter,
+            "x: 1 × PARAMS_SE2OFFSET left out, not part of the graph"
+        );
     }
 
     #[test]

@@ -183,7 +183,10 @@ fn convert_log(args: &ConvertArgs, to: &str) -> anyhow::Result<()> {
 
 fn convert_graph(args: &ConvertArgs, to: &str) -> anyhow::Result<()> {
     let bytes = fs::read(&args.input).in_file(&args.input)?;
-    let graph = GraphFile::read(&bytes, &args.input.display().to_string())?;
+    let (graph, remarks) = GraphFile::read(&bytes, &args.input.display().to_string())?;
+    for remark in remarks {
+        eprintln!("slam2d: {remark}");
+    }
     write_graph(args, &graph, to)
 }
 

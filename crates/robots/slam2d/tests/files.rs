@@ -184,6 +184,14 @@ fn a_graph_goes_through_toro_and_json_and_solves_to_the_same() {
     assert_eq!(fs::read(&back).unwrap(), fs::read(&g2o).unwrap());
     let chi2 = |file: &str| json(&["optimize", file, "--json"])["chi2"].clone();
     assert_eq!(chi2(text(&g2o)), chi2(&toro));
+    let landmark = fs::read_to_string(&g2o).unwrap() + "VERTEX_XY 9 1 1\n";
+    fs::write(&g2o, landmark).unwrap();
+    let converted = slam2d(&["convert", text(&g2o), &toro]);
+    let said = String::from_utf8(converted.stderr).unwrap();
+    assert!(
+        converted.status.success() && said.contains("line 8: VERTEX_XY: landmarks are not"),
+        "{said}"
+    );
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The pose graph and its solver.
 
 use std::collections::HashMap;
+use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -13,6 +14,7 @@ use pr_optim::{
     Between, JacobianModel, Method, Optimizer, Problem, RobustKernel, Settings, SolveSession,
     Start, StopReason,
 };
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use robot_io::graph_file::{GraphEdge, GraphFile, GraphNode};
@@ -103,10 +105,21 @@ impl PoseGraph {
         Ok(problem)
     }
 
-    fn read(bytes: &[u8], name: &str) -> PyResult<Self> {
-        let file = GraphFile::read(bytes, name);
-        let file = file.map_err(|error| GraphError::new_err(error.to_string()))?;
-        Ok(Self::from_file(&file))
+    /// Reads a graph; what was changed or left out becomes a `UserWarning` each.
+    fn read(py: Python<'_>, bytes: &[u8], name: &str) -> PyResult<Self> {
+        let read = py.detach(|| {
+            GraphFile::read(bytes, name).map(|(file, remarks)| (Self::from_file(&file), remarks))
+        });
+        let (graph, remarks) = read.map_err(|error| GraphError::new_err(error.to_string()))?;
+        for remark in remarks {
+            PyErr::warn(
+                py,
+                &py.get_type::<PyUserWarning>(),
+                &CString::new(remark)?,
+                1,
+            )?;
+        }
+        Ok(graph)
     }
 
     /// The graph of a file that was read or written by the core: every end of an edge is a node.
@@ -193,15 +206,15 @@ impl PoseGraph {
         Self::from_file(&GraphFile::default())
     }
 
-    /// Reads a file of g2o, TORO or JSON; the content decides the format.
+    /// Reads a file of g2o, TORO or JSON; the content decides the format. What it changes or leaves out, such as landmarks,
+    /// is a UserWarning.
     ///
     /// Raises OSError if the file cannot be read, GraphError with the line that is wrong.
     #[staticmethod]
     fn read_g2o(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        py.detach(|| {
-            let bytes = std::fs::read(&path).map_err(|error| os_error(&path, &error))?;
-            Self::read(&bytes, &path.display().to_string())
-        })
+        let bytes = py.detach(|| std::fs::read(&path));
+        let bytes = bytes.map_err(|error| os_error(&path, &error))?;
+        Self::read(py, &bytes, &path.display().to_string())
     }
 
     /// Parses the text of such a file.
@@ -209,7 +222,7 @@ impl PoseGraph {
     /// Raises GraphError with the line that is wrong.
     #[staticmethod]
     fn from_g2o(py: Python<'_>, text: &str) -> PyResult<Self> {
-        py.detach(|| Self::read(text.as_bytes(), "the text"))
+        Self::read(py, text.as_bytes(), "the text")
     }
 
     /// The graph as text of g2o; numbers read back to the same bits.

@@ -151,3 +151,12 @@ def test_the_gate_is_the_chapters():
     assert rs.chi2_gate() == pytest.approx(7.815, abs=5e-4)
     with pytest.raises(rs.ChoiceError, match="quantile has to be within"):
         rs.chi2_gate(1.0)
+
+
+def test_what_a_graph_leaves_out_is_a_warning(tmp_path):
+    text = "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nVERTEX_XY 2 1 1\n"
+    (tmp_path / "x.g2o").write_text(text)
+    for read in (lambda: rs.PoseGraph.from_g2o(text), lambda: rs.PoseGraph.read_g2o(tmp_path / "x.g2o")):
+        with pytest.warns(UserWarning, match="line 4: VERTEX_XY: landmarks are not optimized") as said:
+            assert len(read()) == 2
+        assert len(said) == 1 and said[0].filename == __file__

@@ -146,11 +146,16 @@ impl<'a> Engine<'a> {
             let examination = Examination::begin(given.clone(), options.clone())?;
             Work::Examining(Box::new(examination))
         };
-        let run = LogRun::default();
-        Ok(Self {
-            run,
-            ..Self::with_work(work, name, size_bytes)
-        })
+        let remarks = match &work {
+            Work::Solving(solving) => solving.remarks.clone(),
+            _ => Vec::new(),
+        };
+        let mut engine = Self::with_work(work, name, size_bytes);
+        if !remarks.is_empty() {
+            engine.remarks.clone_from(&remarks);
+            engine.send(MapperReport::Remarks(remarks));
+        }
+        Ok(engine)
     }
 
     /// Opens a session, which already has a map.

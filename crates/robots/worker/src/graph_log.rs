@@ -19,6 +19,8 @@ pub struct GraphSolving {
     problem: Problem,
     optimizer: Optimizer,
     steps: Vec<StepReport>,
+    /// What was changed in the file or left out, a sentence each.
+    pub remarks: Vec<String>,
 }
 
 impl GraphSolving {
@@ -27,7 +29,8 @@ impl GraphSolving {
     /// # Errors
     /// If a line is malformed; the message is one sentence.
     pub fn read(bytes: &[u8], name: &str) -> Result<Self, String> {
-        let graph = GraphFile::read(bytes, name).map_err(|problem| problem.to_string())?;
+        let (graph, remarks) =
+            GraphFile::read(bytes, name).map_err(|problem| problem.to_string())?;
         if graph.nodes.is_empty() {
             return Err(format!(
                 "{name} has no poses; a graph has lines of VERTEX_SE2 and EDGE_SE2"
@@ -50,6 +53,7 @@ impl GraphSolving {
             problem,
             optimizer,
             steps: Vec::new(),
+            remarks,
         })
     }
 

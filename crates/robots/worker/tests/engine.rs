@@ -424,8 +424,14 @@ fn the_map_s_text_names_the_picture_that_was_saved_with_it() {
 fn a_graph_is_solved_and_edited_without_scans() {
     let (log, _) = files();
     let mut source = finished(log);
-    let graph = source.file("graph.g2o").unwrap();
+    let mut graph = source.file("graph.g2o").unwrap();
+    graph.extend_from_slice(b"VERTEX_XY 9999 1 1\n");
     let mut engine = open(&graph, "graph.g2o").unwrap();
+    let remarks = of!(engine.updates(), Remarks);
+    assert!(
+        remarks[0].contains("landmarks are not optimized"),
+        "{remarks:?}"
+    );
     while engine.step() {}
     let updates = engine.updates();
     assert_eq!(engine.stage(), Stage::Done);

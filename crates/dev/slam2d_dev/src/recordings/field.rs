@@ -124,9 +124,9 @@ fn outcome(log: &Path, run: LogRun, options: &LogOptions) -> [String; 3] {
     if GraphFile::begins(&bytes) && LogFormat::detect(&bytes) != LogFormat::Carmen {
         let name = log.display().to_string();
         return match GraphFile::read(&bytes, &name) {
-            Ok(graph) => {
+            Ok((graph, remarks)) => {
                 let size = format!("{} poses, {} edges", graph.nodes.len(), graph.edges.len());
-                [size, "–".to_owned(), String::new()]
+                [size, "–".to_owned(), remarks.join("\n")]
             }
             Err(problem) => ["rejected".to_owned(), "–".to_owned(), problem.to_string()],
         };

@@ -97,7 +97,7 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
             "VERTEX_SE3:QUAT" | "EDGE_SE3:QUAT" | "VERTEX3" | "EDGE3" => {
                 in_space.get_or_insert((number + 1, kind.to_owned()));
             }
-            kind if kind == "LANDMARK" || kind.ends_with("_XY") => {
+            kind if is_landmark(kind) => {
                 let first = landmarks.get_or_insert_with(|| (number + 1, kind.to_owned(), 0));
                 first.2 += 1;
             }
@@ -194,6 +194,11 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
         priors: priors.len(),
         remarks,
     })
+}
+
+/// Whether a record is that of a landmark.
+pub(super) fn is_landmark(kind: &str) -> bool {
+    kind == "LANDMARK" || kind.ends_with("_XY")
 }
 
 /// The text with its FIX records at the end: GTSAM 4.3 reads no edge after one.
