@@ -125,11 +125,11 @@ fn lens(
     ];
     layers.extend(ball([middle, bottom + LENS_FLOOR * tall]));
     let times = magnified / 100.0;
-    layers.push(Layer::label(
-        [middle, ceiling],
-        format!("its dent, {times:.0} times taller"),
-        8.0,
-    ));
+    layers.push(Layer::Text {
+        at: [0.5 * far, ceiling + 0.5 * (1.0 - LENS_TOP) * top],
+        text: format!("its dent, {times:.0} times taller"),
+        tone: Tone::Ink,
+    });
     layers
 }
 
