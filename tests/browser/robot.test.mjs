@@ -711,6 +711,17 @@ describe('the doctor', () => {
       assert.equal((await diagnosis(tab, null)).verdict, 'good');
       await isMapped(tab);
       assert.match((await outcome(tab)).sentence, /^ring\.log: .*\d+ scans/);
+      // Any other option of the command, and the way back from one that it rejects.
+      const another = screen.getByLabel('Another option of slam2d run');
+      await another.fill('--min-range -1');
+      await another.press('Enter');
+      await screen.getByText('✗ ring.log cannot be mapped with these options').first().waitFor();
+      await another.fill('--min-range 0.2');
+      await another.press('Enter');
+      await diagnosis(tab, null);
+      await screen.getByText('Mapped with --min-range 0.2.').waitFor();
+      await screen.getByRole('button', { name: 'Map without options' }).press('Enter');
+      await isMapped(tab);
       // Neither a graph nor an empty widget has a doctor's report.
       await give(tab, 'square.g2o', SQUARE);
       await says(tab, /in doubt: square\.g2o/);
