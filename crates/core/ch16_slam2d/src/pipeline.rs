@@ -153,21 +153,32 @@ impl Pipeline {
             scan: recorded.scan.clone(),
         };
         let gap_s = self.gap_s(recorded);
+        let mut rough = None;
         match self.continuity(recorded, &frame, gap_s)? {
             Continuity::Predicted => {}
+            Continuity::Roughly(found) if self.piece.is_none() => {
+                frame.odometry = None;
+                rough = Some(found);
+                self.bridged.push(BridgedGap { stamp_s, gap_s });
+            }
             Continuity::Found(motion) => {
                 frame.odometry = Some(motion);
                 self.bridged.push(BridgedGap { stamp_s, gap_s });
             }
-            Continuity::Interrupted => {
+            Continuity::Roughly(_) | Continuity::Interrupted => {
                 frame.odometry = None;
                 self.begin_piece(recorded, gap_s);
             }
         }
         let last = self.newest_slam().map(|slam| slam.front_end().estimate());
-        let report = match &mut self.piece {
-            Some(piece) => piece.step(&frame)?,
-            None => {
+        let continued = match rough {
+            Some(rough) => self.step_roughly(&frame, &rough)?,
+            None => None,
+        };
+        let report = match (continued, &mut self.piece) {
+            (Some(report), _) => report,
+            (None, Some(piece)) => piece.step(&frame)?,
+            (None, None) => {
                 let robot = self.robot;
                 let slam = self.slam.get_or_insert_with(|| {
                     let robot = robot.unwrap_or_else(|| LocalMapConfig::for_scan(&frame.scan));

@@ -49,8 +49,19 @@ pub(super) enum Continuity {
     Predicted,
     /// By this motion, by which it was found on the map around the last pose.
     Found(SE2),
+    /// The scan fits within the robot's reach, at this pose or at others beside it.
+    Roughly(RoughPose),
     /// Nothing explains how the robot came there.
     Interrupted,
+}
+
+/// A pose among others that fit as well.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct RoughPose {
+    /// `map_from_body`.
+    pub pose: SE2,
+    /// Standard deviations: as far as the others are, m and rad.
+    pub sigmas: (f64, f64),
 }
 
 /// The recording's own pace: what is usual between two scans, and how fast the robot has been.
@@ -176,10 +187,11 @@ pub(super) fn continuity(
         return Continuity::Predicted;
     }
     // The last message of wheels that seem to stand may be as old as the gap.
-    let found = is_short.then(|| around.found(last, reach)).flatten();
-    found.map_or(Continuity::Interrupted, |pose| {
-        Continuity::Found(last.between(&pose))
-    })
+    match is_short.then(|| around.found(last, reach)).flatten() {
+        Some((pose, None)) => Continuity::Found(last.between(&pose)),
+        Some((pose, Some(rival))) => roughly(pose, rival),
+        None => Continuity::Interrupted,
+    }
 }
 
 /// A scan, and the map around a pose.
@@ -252,9 +264,9 @@ impl<'a> Around<'a> {
             && self.is_good(&found)
     }
 
-    /// The pose at which the scan fits on the keyframes within a reach (m, rad) of a pose; `None` if it fits nowhere, or at
-    /// another pose as well.
-    fn found(&mut self, pose: SE2, reach: (f64, f64)) -> Option<SE2> {
+    /// The pose at which the scan fits on the keyframes within a reach (m, rad) of a pose, and another one at which it fits
+    /// as well; `None` if it fits nowhere.
+    fn found(&mut self, pose: SE2, reach: (f64, f64)) -> Option<(SE2, Option<SE2>)> {
         self.build(pose, (NEAR.0 + reach.0, usize::MAX));
         let window = SearchWindow::around(pose, reach.0, reach.1);
         let searched = self.map.search(self.scan, &window, MARGIN)?;
@@ -274,9 +286,62 @@ impl<'a> Around<'a> {
             Some(rival) if cost(&rival) < cost(&best) => (rival, Some(best)),
             rival => (best, rival),
         };
-        let is_sure = rival.is_none_or(|rival| cost(&best) + sure_nats(reach) < cost(&rival));
-        (is_sure && self.is_good(&best)).then_some(best.registered.pose)
+        let rival = rival.filter(|rival| cost(&best) + sure_nats(reach) >= cost(rival));
+        if !self.is_good(&best) {
+            return None;
+        }
+        let most = cost(&best) + sure_nats(reach);
+        let best = best.registered.pose;
+        let Some(rival) = rival else {
+            return Some((best, None));
+        };
+        let turned = self.turned(pose, reach, best, most);
+        Some((best, turned.or(Some(rival.registered.pose))))
     }
+
+    /// A pose with another heading than the best one, within the reach, at which the scan costs at most so much, nats.
+    fn turned(&mut self, pose: SE2, reach: (f64, f64), best: SE2, most: f64) -> Option<SE2> {
+        let turn_rad = pose.between(&best).theta();
+        let stages = [self.settings.inlier_distance_m];
+        let sides = [
+            (-reach.1, turn_rad - SHIFT.1),
+            (turn_rad + SHIFT.1, reach.1),
+        ];
+        for (from_rad, to_rad) in sides.into_iter().filter(|(from, to)| from < to) {
+            let middle = pose * SE2::new(0.0, 0.0, 0.5 * (from_rad + to_rad));
+            let window = SearchWindow::around(middle, reach.0, 0.5 * (to_rad - from_rad));
+            let searched = self.map.search(self.scan, &window, MARGIN);
+            let starts = searched.map(|found| [Some(found.best), found.runner_up]);
+            for start in starts.into_iter().flatten().flatten() {
+                let settings = &self.settings;
+                let found = self
+                    .map
+                    .register(self.scan, start.pose, &stages, None, settings);
+                let turned = found.registered.pose;
+                if best.between(&turned).theta().abs() > SHIFT.1
+                    && settings.misfit_cost(self.scan, found.fit.score) <= most
+                {
+                    return Some(turned);
+                }
+            }
+        }
+        None
+    }
+}
+
+/// A scan that fits at two poses: loops search positions around either, but not other headings.
+fn roughly(pose: SE2, rival: SE2) -> Continuity {
+    let apart = pose.between(&rival);
+    if apart.theta().abs() > SHIFT.1 {
+        return Continuity::Interrupted;
+    }
+    Continuity::Roughly(RoughPose {
+        pose,
+        sigmas: (
+            math::max(math::norm2(apart.x(), apart.y()), SHIFT.0),
+            SHIFT.1,
+        ),
+    })
 }
 
 /// Costs that differ by more than this, nats, decide between the poses within a reach (m, rad): the more of them are
@@ -340,6 +405,46 @@ mod tests {
         // ones 18 and more.
         let sure = sure_nats((1.386, 2.007));
         assert!(3.26 < sure && sure < 18.0, "{sure}");
+    }
+
+    #[test]
+    fn a_scan_that_fits_beside_continues_roughly_and_one_that_fits_turned_does_not() {
+        let pose = SE2::new(2.0, 1.0, 0.5);
+        let Continuity::Roughly(rough) = roughly(pose, pose * SE2::new(0.6, 0.8, 0.1)) else {
+            panic!("it is interrupted");
+        };
+        // 1e-12: rounding.
+        assert!(rough.pose == pose && (rough.sigmas.0 - 1.0).abs() < 1e-12);
+        let turned = roughly(pose, pose * SE2::new(0.6, 0.8, 3.0));
+        assert_eq!(turned, Continuity::Interrupted);
+    }
+
+    #[test]
+    fn a_map_continues_at_a_rough_pose_with_its_uncertainty() {
+        let mut pipeline = Pipeline::default();
+        let wheels = |step: usize| Some(truth(0).between(&truth(step)));
+        for step in 0..20 {
+            let stamp_s = 0.1 * step as f64;
+            pipeline
+                .step(&recorded(step, stamp_s, wheels(step)))
+                .unwrap();
+        }
+        let keyframes = pipeline.map_keyframes();
+        let rough = RoughPose {
+            pose: truth(0).between(&truth(26)),
+            sigmas: (1.0, 0.35),
+        };
+        let found = pipeline.step_roughly(&frame(26), &rough).unwrap().unwrap();
+        assert_eq!(found.new_keyframe, Some(keyframes));
+        let slam = pipeline.slam_mut().unwrap();
+        // 1e-9: the new edges agree with the pose.
+        assert!(position_error_m(&slam.graph().pose(keyframes), &rough.pose) < 1e-9);
+        let relative = slam
+            .graph_mut()
+            .relative_covariance(keyframes - 1, keyframes);
+        let sigma_m = relative.unwrap().m11.sqrt();
+        // 5 m along the path bounds it as well, and the map's own errors add a little.
+        assert!((0.9..1.2).contains(&sigma_m), "{sigma_m}");
     }
 
     #[test]

@@ -1,8 +1,14 @@
 //! The pieces of a log: when one starts, joins the map, or is left out.
 
+use nalgebra::{Matrix3, Vector3};
+use pr_geom::SE2;
+
+use super::continuity::RoughPose;
 use super::piece::Piece;
+use super::report::numbered_after;
 use super::{LeftOut, LogFrame, PieceFate, PieceReport, Pipeline};
-use crate::slam::Slam;
+use crate::scan::{Frame, FrameError};
+use crate::slam::{PiecePose, Slam, SlamConfig, SlamReport};
 
 impl Pipeline {
     /// Starts a piece; one that has not joined the map is compared with it, and the shorter one is left out.
@@ -23,6 +29,37 @@ impl Pipeline {
             scans: 0,
             fate: PieceFate::Alone,
         });
+    }
+
+    /// Continues the map at a rough pose: later loops search as far around it as it is uncertain. Returns `None` without a
+    /// map.
+    ///
+    /// # Errors
+    /// If the frame cannot be used.
+    pub(super) fn step_roughly(
+        &mut self,
+        frame: &Frame,
+        rough: &RoughPose,
+    ) -> Result<Option<SlamReport>, FrameError> {
+        let Some(map) = &self.slam else {
+            return Ok(None);
+        };
+        let mut alone = Slam::new(SlamConfig {
+            start: rough.pose,
+            ..map.config().clone()
+        });
+        let report = alone.step(frame)?;
+        let (m, rad) = rough.sigmas;
+        let here = PiecePose {
+            map_from_piece: SE2::identity(),
+            covariance: Matrix3::from_diagonal(&Vector3::new(m * m, m * m, rad * rad)),
+        };
+        let joined = map.snapshot().joined(&alone.snapshot(), &here);
+        let first = self.map_keyframes();
+        Ok(Slam::restore(&joined).ok().map(|joined| {
+            self.slam = Some(joined);
+            numbered_after(first, report)
+        }))
     }
 
     /// Joins the piece to the map if the robot was found on it.
