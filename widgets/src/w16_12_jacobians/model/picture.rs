@@ -148,8 +148,9 @@ fn ends(widget: &WrongJacobians) -> Vec<Layer> {
     let is_there = |solver: &usize| ends_at_the_optimum(widget, *solver);
     let (there, elsewhere): (Vec<_>, Vec<_>) = (0..NAMES.len()).partition(is_there);
     let least = widget.solved.least_chi2;
-    let words = format!("{} at the optimum: χ² {least:.1}", there.len());
-    let mut chains = vec![(optimum, Tone::Ink, words)];
+    let words = format!("{} solvers at the optimum: χ² {least:.1}", there.len());
+    let tone = there.first().map_or(Tone::Ink, |solver| TONES[*solver]);
+    let mut chains = vec![(optimum, tone, words)];
     for solver in elsewhere {
         let end = widget.shown(solver);
         let words = format!("{}: χ² {:.1}", NAMES[solver], end.chi2);
