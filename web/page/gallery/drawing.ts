@@ -32,10 +32,15 @@ export function metresOff({ graph_error_m: end, keyframe_rms_m: way }: Facts): n
   return Math.max(way ?? 0, end ?? 0);
 }
 
+/** Whether the error is larger on the way than at its end. */
+export function isOffOnTheWay({ graph_error_m: end, keyframe_rms_m: way }: Facts): boolean {
+  return (way ?? 0) > (end ?? 0);
+}
+
 /** How far off the robot ends, or is on the way if that is more, and how well the map agrees with itself. */
 export function numbers(facts: Facts): { off: string; agrees: string } {
-  const { graph_error_m: end, keyframe_rms_m: way, map_disagreement_m: apart } = facts;
-  const isWay = (way ?? 0) > (end ?? 0);
+  const { map_disagreement_m: apart } = facts;
+  const isWay = isOffOnTheWay(facts);
   const off = metresOff(facts);
   return {
     off: `${isWay ? '' : 'ends '}${off.toFixed(off < 1 ? 2 : 1)} m off${isWay ? ' on the way' : ''}`,

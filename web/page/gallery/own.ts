@@ -2,7 +2,7 @@
 
 import type { SlamWidget } from '../../ts/main';
 import { copyText, pngOfSvg, saveBlob, send } from '../../ts/export';
-import { drawing, HEIGHT, isUnnoticed, metresOff, numbers, WIDTH, type Facts } from './drawing';
+import { drawing, HEIGHT, isOffOnTheWay, isUnnoticed, metresOff, numbers, WIDTH, type Facts } from './drawing';
 
 /** Scale of a saved picture. */
 const SAVED_SCALE = 3;
@@ -37,7 +37,7 @@ export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement, says: HTM
   let record = 0;
   const count = ({ verdict, facts }: Result['outcome']): void => {
     off.hidden = verdict === UNDRIVEABLE || Number(widget.value['t']) === 0;
-    off.textContent = `${metresOff(facts).toFixed(1)} m off`;
+    off.textContent = `${metresOff(facts).toFixed(1)} m off${isOffOnTheWay(facts) ? ' on the way' : ''}`;
   };
   const show = async (outcome: Result['outcome']): Promise<void> => {
     const { facts } = outcome;
@@ -87,7 +87,7 @@ function remark(facts: Facts): { notice: string; hint: string } {
   if (agrees === '') return { notice: 'Nothing is seen twice, which scores nothing.', hint: 'Let the robot come back.' };
   if (!isUnnoticed(facts)) return { notice: `It shows: the ${agrees}, which scores nothing.`, hint: 'Let the robot see no room twice.' };
   const isHome = metresOff(facts) < HOME_M;
-  const change = isHome ? 'rub out doors and corners, so that the walls look the same everywhere' : 'make the smooth walls longer';
+  const change = isHome ? 'rub out doors and corners, so that the walls look the same everywhere' : 'draw longer walls without doors or corners';
   return { notice: `Nothing warns the robot: its ${agrees}.`, hint: `Make it worse: ${change}.` };
 }
 
