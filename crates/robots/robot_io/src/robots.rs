@@ -96,6 +96,12 @@ impl<'a> Robots<'a> {
         }
     }
 
+    /// Whether anything was said about robots before the present one; otherwise its reader has all notes, which need
+    /// not be copied at every frame.
+    fn follows_others(&self) -> bool {
+        !(self.about.is_empty() && self.warnings.is_empty())
+    }
+
     /// The notes of the present robot, after what was said about those before.
     fn join_notes(&mut self) {
         let Self {
@@ -115,12 +121,18 @@ impl<'a> Robots<'a> {
 impl LogReader for Robots<'_> {
     fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
         let frame = self.frame();
-        self.join_notes();
+        if self.follows_others() {
+            self.join_notes();
+        }
         frame
     }
 
     fn notes(&self) -> &LogNotes {
-        &self.notes
+        if self.follows_others() {
+            &self.notes
+        } else {
+            self.reader.notes()
+        }
     }
 
     fn next_robot(&mut self) -> Option<String> {

@@ -146,14 +146,12 @@ impl<'a> Engine<'a> {
             let examination = Examination::begin(given.clone(), options.clone())?;
             Work::Examining(Box::new(examination))
         };
-        let remarks = match &work {
-            Work::Solving(solving) => solving.remarks.clone(),
-            _ => Vec::new(),
-        };
         let mut engine = Self::with_work(work, name, size_bytes);
-        if !remarks.is_empty() {
-            engine.remarks.clone_from(&remarks);
-            engine.send(MapperReport::Remarks(remarks));
+        if let Work::Solving(solving) = &engine.work
+            && !solving.remarks.is_empty()
+        {
+            engine.remarks.clone_from(&solving.remarks);
+            engine.send(MapperReport::Remarks(engine.remarks.clone()));
         }
         Ok(engine)
     }

@@ -98,14 +98,15 @@ fn localization(back: &Relocalization) -> Vec<Layer> {
     let is_doubted = |earlier: &&Moment| earlier.report.is_some() && earlier.runner_up.is_some();
     let mut until_now = run.moments()[..=back.place()].iter().rev();
     let asked = until_now.find(is_doubted);
-    let asked = asked.filter(|_| !is_found(back)).unwrap_or(moment);
+    let is_found = is_found(back);
+    let asked = asked.filter(|_| !is_found).unwrap_or(moment);
     let scan = drive.prepared(asked.tick).cloud;
     let mut candidate = |at: SE2, mark, tone, words: &str| {
         let scan = scan.transformed(&at);
         let points = scan.iter().map(|p| [p.x, p.y]).collect();
         layers.push(Layer::points(points, mark, tone, 2.0));
         layers.push(pose(at, mark, tone));
-        if !is_found(back) {
+        if !is_found {
             layers.push(Layer::label([at.x(), at.y()], words.to_owned(), 12.0));
         }
     };

@@ -238,6 +238,18 @@ impl<'a> Around<'a> {
         );
     }
 
+    /// The scan registered from a pose near the right one.
+    fn registered(&mut self, start: SE2) -> MapRegistration {
+        let stages = [self.settings.inlier_distance_m];
+        self.map
+            .register(self.scan, start, &stages, None, &self.settings)
+    }
+
+    /// How badly the scan fits where it was registered, nats.
+    fn cost(&self, found: &MapRegistration) -> f64 {
+        self.settings.misfit_cost(self.scan, found.fit.score)
+    }
+
     /// Whether a scan fits: well, or as well as those before it, which may be of a place full of people.
     fn is_good(&self, found: &MapRegistration) -> bool {
         let cost = |score: f64| self.settings.misfit_cost(self.scan, score);
@@ -270,29 +282,23 @@ impl<'a> Around<'a> {
         self.build(pose, (NEAR.0 + reach.0, usize::MAX));
         let window = SearchWindow::around(pose, reach.0, reach.1);
         let searched = self.map.search(self.scan, &window, MARGIN)?;
-        let stages = [self.settings.inlier_distance_m];
-        let mut at = |start: SE2| {
-            self.map
-                .register(self.scan, start, &stages, None, &self.settings)
-        };
-        let best = at(searched.best.pose);
-        let rival = searched.runner_up.map(|rival| at(rival.pose));
+        let best = self.registered(searched.best.pose);
+        let rival = searched.runner_up;
+        let rival = rival.map(|rival| self.registered(rival.pose));
         let is_elsewhere = |rival: &MapRegistration| {
             let apart = best.registered.pose.between(&rival.registered.pose);
             math::norm2(apart.x(), apart.y()) > SHIFT.0 || apart.theta().abs() > SHIFT.1
         };
-        let cost = |found: &MapRegistration| self.settings.misfit_cost(self.scan, found.fit.score);
         let (best, rival) = match rival.filter(is_elsewhere) {
-            Some(rival) if cost(&rival) < cost(&best) => (rival, Some(best)),
+            Some(rival) if self.cost(&rival) < self.cost(&best) => (rival, Some(best)),
             rival => (best, rival),
         };
-        let rival = rival.filter(|rival| cost(&best) + sure_nats(reach) >= cost(rival));
         if !self.is_good(&best) {
             return None;
         }
-        let most = cost(&best) + sure_nats(reach);
+        let most = self.cost(&best) + sure_nats(reach);
         let best = best.registered.pose;
-        let Some(rival) = rival else {
+        let Some(rival) = rival.filter(|rival| self.cost(rival) <= most) else {
             return Some((best, None));
         };
         let turned = self.turned(pose, reach, best, most);
@@ -302,7 +308,6 @@ impl<'a> Around<'a> {
     /// A pose with another heading than the best one, within the reach, at which the scan costs at most so much, nats.
     fn turned(&mut self, pose: SE2, reach: (f64, f64), best: SE2, most: f64) -> Option<SE2> {
         let turn_rad = pose.between(&best).theta();
-        let stages = [self.settings.inlier_distance_m];
         let sides = [
             (-reach.1, turn_rad - SHIFT.1),
             (turn_rad + SHIFT.1, reach.1),
@@ -313,14 +318,9 @@ impl<'a> Around<'a> {
             let searched = self.map.search(self.scan, &window, MARGIN);
             let starts = searched.map(|found| [Some(found.best), found.runner_up]);
             for start in starts.into_iter().flatten().flatten() {
-                let settings = &self.settings;
-                let found = self
-                    .map
-                    .register(self.scan, start.pose, &stages, None, settings);
+                let found = self.registered(start.pose);
                 let turned = found.registered.pose;
-                if best.between(&turned).theta().abs() > SHIFT.1
-                    && settings.misfit_cost(self.scan, found.fit.score) <= most
-                {
+                if best.between(&turned).theta().abs() > SHIFT.1 && self.cost(&found) <= most {
                     return Some(turned);
                 }
             }

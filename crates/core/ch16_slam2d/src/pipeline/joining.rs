@@ -54,9 +54,8 @@ impl Pipeline {
             map_from_piece: SE2::identity(),
             covariance: Matrix3::from_diagonal(&Vector3::new(m * m, m * m, rad * rad)),
         };
-        let joined = map.snapshot().joined(&alone.snapshot(), &here);
         let first = self.map_keyframes();
-        Ok(Slam::restore(&joined).ok().map(|joined| {
+        Ok(joined(map, &alone, &here).map(|joined| {
             self.slam = Some(joined);
             numbered_after(first, report)
         }))
@@ -70,8 +69,7 @@ impl Pipeline {
         let Some(found) = piece.pose(is_end) else {
             return;
         };
-        let joined = slam.snapshot().joined(&piece.slam.snapshot(), &found);
-        let Ok(joined) = Slam::restore(&joined) else {
+        let Some(joined) = joined(slam, &piece.slam, &found) else {
             return;
         };
         self.slam = Some(joined);
@@ -117,4 +115,10 @@ impl Pipeline {
         };
         self.left_out.push(left_out);
     }
+}
+
+/// The map with a piece that was found on it; `None` if they do not make one graph.
+fn joined(map: &Slam, piece: &Slam, found: &PiecePose) -> Option<Slam> {
+    let joined = map.snapshot().joined(&piece.snapshot(), found);
+    Slam::restore(&joined).ok()
 }
