@@ -67,13 +67,7 @@ pub fn outcome(toy: &PoseGraphToy) -> Outcome {
     };
     let mut facts = vec![
         Fact::new("chi2", "χ²", shown.chi2, "", 3),
-        Fact::new(
-            "chi2_start",
-            "χ² before the first step",
-            start,
-            "",
-            3,
-        ),
+        Fact::new("chi2_start", "χ² before the first step", start, "", 3),
         Fact::new(
             "chi2_rest",
             "χ² at rest",

@@ -72,9 +72,9 @@ fn is_planned(drawn: &Drawn) -> bool {
 
 /// Whether the lap is shown: not that of another world, nor over a plan before it begins.
 fn has_lap(moment: &LapState) -> bool {
-    moment.drawn.is_none_or(|drawn| {
-        drawn.problem.is_none() && (moment.tick > 0 || !is_planned(&drawn))
-    })
+    moment
+        .drawn
+        .is_none_or(|drawn| drawn.problem.is_none() && (moment.tick > 0 || !is_planned(&drawn)))
 }
 
 /// `The Apartment after tick 92`.
