@@ -5,6 +5,7 @@ use robot_io::doctor::Checkup;
 use robot_io::info::LogInfo;
 use robot_io::json_log::{FrameLine, JsonLogReader};
 use robot_io::log::{LogFrame, LogNotes, LogOptions, LogReader};
+use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
 use robot_io::motion::ComparedReader;
 use robot_io::run::LogRun;
@@ -63,8 +64,21 @@ fn compare(bytes: &[u8]) {
 
 /// The frames and notes of a log; `None` after checking that the error is one sentence.
 pub fn read(bytes: &[u8], options: &LogOptions) -> Option<(Vec<LogFrame>, LogNotes)> {
+    // Bytes of a compressed file are counted after decompression.
+    let is_packed = bytes.starts_with(b"\x1f\x8b") || bytes.starts_with(b"\x28\xb5\x2f\xfd");
+    let most = if is_packed { usize::MAX } else { bytes.len() };
+    read_parts(vec![LogBytes::from(bytes)], most, options)
+}
+
+/// As [`read`], of several files, the log's with at most so many bytes.
+pub fn read_parts(
+    parts: Vec<LogBytes<'_>>,
+    most_bytes: usize,
+    options: &LogOptions,
+) -> Option<(Vec<LogFrame>, LogNotes)> {
     let check = |rejection: robot_io::log::LogError| assert_rejection(&rejection.to_string());
-    let mut reader = LogFormat::open(bytes, NAME, options).map_err(check).ok()?;
+    let opened = LogFormat::open_parts(parts, NAME, options);
+    let mut reader = opened.map_err(check).ok()?;
     let mut frames = Vec::new();
     while let Some(frame) = reader.next_frame().map_err(check).ok()? {
         assert!(frame.stamp_s.is_finite(), "{frame:?}");
@@ -73,9 +87,7 @@ pub fn read(bytes: &[u8], options: &LogOptions) -> Option<(Vec<LogFrame>, LogNot
         frames.push(frame);
     }
     let notes = reader.notes();
-    // Bytes of a compressed file are counted after decompression.
-    let is_packed = bytes.starts_with(b"\x1f\x8b") || bytes.starts_with(b"\x28\xb5\x2f\xfd");
-    assert!(is_packed || notes.bytes <= bytes.len() as u64);
+    assert!(notes.bytes <= most_bytes as u64);
     notes
         .sentences(NAME)
         .iter()

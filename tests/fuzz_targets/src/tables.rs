@@ -3,6 +3,7 @@
 //! The first byte selects the form, and its head is put before the rest, because no fuzzer would find it.
 
 use robot_io::log::LogOptions;
+use robot_io::log_bytes::LogBytes;
 
 use crate::logs;
 use crate::sentences::assert_sentence;
@@ -42,11 +43,27 @@ pub fn fuzz(data: &[u8]) {
     }
 }
 
-/// The first line names the columns, as `--columns` does.
+/// A scan table whose odometry is in another file.
+const SCANS: &[u8] =
+    b"time,angle_min,angle_increment,ranges\n0,-1,1,1,2,3\n1,-1,1,1,2,3\n2,-1,1,1,2,3\n";
+
+/// The first line names the columns, as `--columns` does; after an `@`, those of odometry beside a table of scans.
 fn with_columns(text: &[u8]) {
     let end = text.iter().position(|&byte| byte == b'\n');
     let (names, rows) = text.split_at(end.map_or(text.len(), |end| end + 1));
-    match String::from_utf8_lossy(names).trim_end().parse() {
+    let names = String::from_utf8_lossy(names);
+    let names = names.trim_end();
+    if let Some(columns) = names.strip_prefix('@') {
+        let parts = || [SCANS, rows].map(LogBytes::from).to_vec();
+        logs::read_parts(parts(), SCANS.len(), &LogOptions::default());
+        let file = format!("odom.csv@{columns}");
+        match LogOptions::read([("odometry", file.as_str())]) {
+            Ok(options) => drop(logs::read_parts(parts(), SCANS.len(), &options)),
+            Err(rejection) => assert_sentence(&rejection),
+        }
+        return;
+    }
+    match names.parse() {
         Ok(columns) => {
             let options = LogOptions {
                 columns: Some(columns),

@@ -38,7 +38,7 @@ pub fn open_log(
     parts: &[PathBuf],
     options: &LogOptions,
 ) -> anyhow::Result<(Box<dyn LogReader>, Progress)> {
-    let (files, progress) = LogFiles::of(path, parts)?;
+    let (files, progress) = LogFiles::of(path, parts, options)?;
     Ok((files.open(options)?, progress))
 }
 
@@ -79,7 +79,7 @@ pub fn open_robots(
     parts: &[PathBuf],
     options: &LogOptions,
 ) -> anyhow::Result<(Robots<'static>, Progress)> {
-    let (files, progress) = LogFiles::of(path, parts)?;
+    let (files, progress) = LogFiles::of(path, parts, options)?;
     let open =
         move |options: &LogOptions| Ok(ComparedReader::chosen(files.open(options)?, options));
     Ok((Robots::open(open, options)?, progress))
@@ -96,10 +96,16 @@ struct LogFiles {
 }
 
 impl LogFiles {
-    /// The files of a log and of its further parts.
-    fn of(path: &Path, further: &[PathBuf]) -> anyhow::Result<(Self, Progress)> {
+    /// The files of a log and of its further parts, then that of its odometry.
+    fn of(
+        path: &Path,
+        further: &[PathBuf],
+        options: &LogOptions,
+    ) -> anyhow::Result<(Self, Progress)> {
         let (mut files, mut remarks) = log_files(path)?;
-        for part in further {
+        let odometry = options.odometry_file.as_ref();
+        let odometry = odometry.map(|file| PathBuf::from(&file.path));
+        for part in further.iter().chain(&odometry) {
             let (of_part, about_part) = log_files(part)?;
             files.extend(of_part);
             remarks.extend(about_part);

@@ -36,6 +36,12 @@ impl Foreign {
         })
     }
 
+    /// Whether it is a trajectory.
+    #[must_use]
+    pub(crate) fn is_trajectory(&self) -> bool {
+        self.extensions == ["tum"]
+    }
+
     /// The kind of a file with this name, whose content is not recognized.
     #[must_use]
     pub fn named(name: &str) -> Option<&'static Self> {

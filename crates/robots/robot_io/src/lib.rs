@@ -71,6 +71,7 @@ pub mod trajectory;
 
 mod lines;
 mod mounted_reader;
+mod odometry_file;
 mod odometry_poses;
 mod odometry_use;
 mod open_log;

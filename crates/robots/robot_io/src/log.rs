@@ -171,6 +171,14 @@ pub enum LogError {
         /// How its columns may be read.
         advice: String,
     },
+    /// The file of odometry beside the log cannot be used.
+    #[error("{name}: {problem}")]
+    Odometry {
+        /// The file's name.
+        name: String,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
     /// A requested topic or frame does not exist.
     #[error("{name} has no {option} {wanted}; {advice}")]
     Missing {

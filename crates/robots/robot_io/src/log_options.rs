@@ -4,7 +4,7 @@
 
 use crate::footprint::Footprint;
 use crate::laser_mount::LaserMount;
-use crate::odometry_use::OdometryUse;
+use crate::odometry_use::{OdometryFile, OdometryUse};
 use crate::table_layout::TableLayout;
 
 /// Largest shortest range, m.
@@ -33,6 +33,8 @@ pub struct LogOptions {
     pub columns: Option<TableLayout>,
     /// How the odometry is used.
     pub odometry: OdometryUse,
+    /// The file that the odometry comes from, which follows the log among the files that are opened.
+    pub odometry_file: Option<OdometryFile>,
     /// Whether the scans of further robots are read after those of the first one, so that they need not be named.
     pub all_robots: bool,
     /// Height band (m, on the body) for points of a 3-D sensor; without it, only single-ring clouds are read.
@@ -96,68 +98,76 @@ impl LogOption {
     /// Name on the command line, without the dashes.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::ScanTopic => "scan-topic",
-            Self::OdometryTopic => "odom-topic",
-            Self::OdometryFrame => "odom-frame",
-            Self::BodyFrame => "body-frame",
-            Self::Laser => "laser",
-            Self::Heights => "heights",
-            Self::MinRange => "min-range",
-            Self::Footprint => "footprint",
-            Self::Columns => "columns",
-            Self::Odometry => "odometry",
-            Self::NoOdometry => "no-odometry",
-            Self::AllRobots => "all-robots",
-        }
+        self.row().0
     }
 
     /// Form of its value; `None` if it has none.
     #[must_use]
     pub fn value_name(self) -> Option<&'static str> {
-        Some(match self {
-            Self::ScanTopic | Self::OdometryTopic => "TOPIC",
-            Self::OdometryFrame | Self::BodyFrame => "FRAME",
-            Self::Laser => "X,Y,DEG[,flipped]",
-            Self::Heights => "LOW,HIGH",
-            Self::MinRange => "METRES",
-            Self::Footprint => "B,R,F,L",
-            Self::Columns => "NAMES",
-            Self::Odometry => "check|force|mirrored|none",
-            Self::NoOdometry | Self::AllRobots => return None,
-        })
+        Some(self.row().1).filter(|form| !form.is_empty())
     }
 
     /// Description for a help text.
     #[must_use]
     pub fn about(self) -> &'static str {
+        self.row().2
+    }
+
+    /// Name, form of the value and description.
+    fn row(self) -> (&'static str, &'static str, &'static str) {
         match self {
-            Self::ScanTopic => "The topic of the scans, such as /scan",
-            Self::OdometryTopic => {
-                "The topic of the odometry, such as /odom, of stamped poses, or /tf"
-            }
-            Self::OdometryFrame => "The odometry frame in /tf",
-            Self::BodyFrame => "The frame of the robot's body",
-            Self::Laser => {
-                "Mounting of the laser on the body, which overrides the recording: metres forward and to the left, and degrees counter-clockwise; ,flipped if it is mounted upside down or its driver lists beams clockwise"
-            }
-            Self::Heights => {
-                "Use the points of a 3-D sensor between these heights above the body's origin, m"
-            }
-            Self::MinRange => "Treat shorter ranges as no returns, m",
-            Self::Footprint => {
-                "Treat readings on the robot as no returns: back, right, front and left end of the rectangle that it covers, in metres from the body's origin"
-            }
-            Self::Columns => {
-                "Columns of a table of scans or beams without a header, such as time_us,angle_deg,range_mm or time,x,y,heading,angle_min,angle_increment,ranges; - is not read"
-            }
-            Self::Odometry => {
-                "How the odometry is used: checked against the scans, as it is, checked with left and right exchanged, or not at all"
-            }
-            Self::NoOdometry => "Ignore odometry and match scans alone; same as --odometry none",
-            Self::AllRobots => {
-                "Map all robots of a recording into one map, one after the other, if it has scans of several"
-            }
+            Self::ScanTopic => (
+                "scan-topic",
+                "TOPIC",
+                "The topic of the scans, such as /scan",
+            ),
+            Self::OdometryTopic => (
+                "odom-topic",
+                "TOPIC",
+                "The topic of the odometry, such as /odom, of stamped poses, or /tf",
+            ),
+            Self::OdometryFrame => ("odom-frame", "FRAME", "The odometry frame in /tf"),
+            Self::BodyFrame => ("body-frame", "FRAME", "The frame of the robot's body"),
+            Self::Laser => (
+                "laser",
+                "X,Y,DEG[,flipped]",
+                "Mounting of the laser on the body, which overrides the recording: metres forward and to the left, and degrees counter-clockwise; ,flipped if it is mounted upside down or its driver lists beams clockwise",
+            ),
+            Self::Heights => (
+                "heights",
+                "LOW,HIGH",
+                "Use the points of a 3-D sensor between these heights above the body's origin, m",
+            ),
+            Self::MinRange => (
+                "min-range",
+                "METRES",
+                "Treat shorter ranges as no returns, m",
+            ),
+            Self::Footprint => (
+                "footprint",
+                "B,R,F,L",
+                "Treat readings on the robot as no returns: back, right, front and left end of the rectangle that it covers, in metres from the body's origin",
+            ),
+            Self::Columns => (
+                "columns",
+                "NAMES",
+                "Columns of a table of scans or beams without a header, such as time_us,angle_deg,range_mm or time,x,y,heading,angle_min,angle_increment,ranges; - is not read",
+            ),
+            Self::Odometry => (
+                "odometry",
+                "check|force|mirrored|none|FILE",
+                "How the odometry is used: checked against the scans, as it is, checked with left and right exchanged, or not at all; or the file beside a log of text that it comes from: a table with time, x, y and heading, or lines of TUM, also with its columns, such as odom.csv@time_us,x_mm,y_mm,heading_deg",
+            ),
+            Self::NoOdometry => (
+                "no-odometry",
+                "",
+                "Ignore odometry and match scans alone; same as --odometry none",
+            ),
+            Self::AllRobots => (
+                "all-robots",
+                "",
+                "Map all robots of a recording into one map, one after the other, if it has scans of several",
+            ),
         }
     }
 }
@@ -201,11 +211,31 @@ impl LogOptions {
             LogOption::MinRange => self.min_range_m = Some(min_range_m(text)?),
             LogOption::Footprint => self.footprint = Some(text.parse()?),
             LogOption::Columns => self.columns = Some(text.parse()?),
-            LogOption::Odometry => self.odometry = text.parse()?,
+            LogOption::Odometry => match text.parse() {
+                Ok(odometry) => self.odometry = odometry,
+                Err(_) if text.contains(['.', '/', '\\']) => {
+                    self.odometry_file = Some(text.parse()?);
+                }
+                Err(problem) => return Err(problem),
+            },
             LogOption::NoOdometry => self.odometry = OdometryUse::Ignore,
             LogOption::AllRobots => self.all_robots = true,
         }
         Ok(self)
+    }
+
+    /// The options for a robot that drives.
+    ///
+    /// # Errors
+    /// If they name a file.
+    pub fn of_drive(self) -> Result<Self, String> {
+        match &self.odometry_file {
+            Some(file) => Err(format!(
+                "odometry: a robot that drives sends its odometry; leave {} out",
+                file.path
+            )),
+            None => Ok(self),
+        }
     }
 
     /// The first topic or frame that is asked for.
@@ -283,7 +313,12 @@ mod tests {
             (
                 "odometry",
                 "wheels",
-                "odometry: expected check, force, mirrored or none, not \"wheels\"",
+                "odometry: expected check, force, mirrored, none or a file such as odom.csv, not \"wheels\"",
+            ),
+            (
+                "odometry",
+                "odom.csv@time,x,y",
+                "odometry: name time, x, y and heading of the odometry, not \"odom.csv@time,x,y\"",
             ),
             ("speed", "3", "a log has no option speed"),
         ] {

@@ -93,6 +93,8 @@ impl OdometryPoses {
         let after = self.poses.partition_point(|&(pose_s, _)| pose_s < stamp_s);
         let before = after.checked_sub(1).and_then(|k| self.poses.get(k));
         match (before, self.poses.get(after)) {
+            // The same bits as in the file, not those of a twist there and back.
+            (_, Some(&(after_s, after))) if after_s == stamp_s => Some(after),
             (Some(&(before_s, before)), Some(&(after_s, after))) => {
                 let gap_s = after_s - before_s;
                 if gap_s > self.gap_s {

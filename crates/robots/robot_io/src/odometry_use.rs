@@ -1,8 +1,10 @@
-//! How the odometry of a recording is taken.
+//! How the odometry of a recording is taken, and from where.
 
 use std::str::FromStr;
 
 use pr_geom::SE2;
+
+use crate::table_layout::TableLayout;
 
 /// How the odometry of a recording is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,9 +55,32 @@ impl FromStr for OdometryUse {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let named = |choice: &Self| choice.name() == text;
-        Self::ALL
-            .into_iter()
-            .find(named)
-            .ok_or_else(|| "expected check, force, mirrored or none".to_owned())
+        Self::ALL.into_iter().find(named).ok_or_else(|| {
+            "expected check, force, mirrored, none or a file such as odom.csv".to_owned()
+        })
+    }
+}
+
+/// The file that an option names, such as `odom.csv`, or `odom.csv@time_us,x_mm,y_mm,heading_deg` with its columns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OdometryFile {
+    /// Its path.
+    pub path: String,
+    /// Its columns; default: those of its header, or those of a known form.
+    pub columns: Option<TableLayout>,
+}
+
+impl FromStr for OdometryFile {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (path, columns) = match text.rsplit_once('@') {
+            Some((path, columns)) => (path, Some(TableLayout::of_named_poses(columns)?)),
+            None => (text, None),
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            columns,
+        })
     }
 }

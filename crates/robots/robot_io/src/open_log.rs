@@ -10,6 +10,7 @@ use crate::log_bytes::LogBytes;
 use crate::log_format::LogFormat;
 use crate::mounted_reader::MountedReader;
 use crate::near_readings::without_near_readings;
+use crate::odometry_file::BesideOdometry;
 use crate::restamped::restamped;
 use crate::ros::{LiveReader, RosReader};
 use crate::table_layout::TableLayout;
@@ -41,12 +42,13 @@ impl LogFormat {
         without_near_readings(reader, options.min_range_m, options.footprint)
     }
 
-    /// Opens a log of several files: a recording of ROS may be split.
+    /// Opens a log of several files: a recording of ROS may be split, and beside any other log there may be a file of
+    /// odometry, which is the last one if an option names it.
     ///
     /// # Errors
-    /// Those of [`open`](Self::open), and if several files are not a recording of ROS.
+    /// Those of [`open`](Self::open), and if several files are neither.
     pub fn open_parts<'a>(
-        parts: Vec<LogBytes<'a>>,
+        mut parts: Vec<LogBytes<'a>>,
         name: &str,
         options: &LogOptions,
     ) -> Result<Box<dyn LogReader + 'a>, LogError> {
@@ -54,6 +56,26 @@ impl LogFormat {
             name: name.to_owned(),
             position: FilePosition::Byte(0),
             source,
+        };
+        let named = options.odometry_file.as_ref();
+        let beside = match named {
+            Some(file) if parts.len() < 2 => {
+                return Err(LogError::Odometry {
+                    name: file.path.clone(),
+                    problem: "open the file of odometry together with the log, without the option"
+                        .to_owned(),
+                });
+            }
+            Some(_) => parts.pop(),
+            None if parts.len() == 2 => {
+                let begins = |part: &LogBytes<'_>| {
+                    let start = part.stream();
+                    start.is_ok_and(|mut bytes| bytes.fill_buf().is_ok_and(BesideOdometry::begins))
+                };
+                let at = parts.iter().rposition(begins);
+                at.map(|at| parts.remove(at))
+            }
+            None => None,
         };
         let Some(first) = parts.first().cloned() else {
             return Err(LogError::Empty {
@@ -92,9 +114,20 @@ impl LogFormat {
         if parts.len() > 1 && !found.is_ros() {
             return Err(foreign(
                 "several files, the first of which is not a ROS recording",
-                "give one log at a time",
+                "give one log at a time, with a file of odometry beside it or none",
             ));
         }
+        let beside = match beside {
+            Some(_) if found.is_ros() => {
+                return Err(foreign(
+                    "a recording of ROS, which has its odometry in itself",
+                    "leave the file of odometry out; --odom-topic chooses a topic",
+                ));
+            }
+            Some(bytes) => Some(BesideOdometry::read(&bytes, named)?),
+            None => None,
+        };
+        let beside = beside.as_ref();
         if !found.is_ros()
             && let Some((option, wanted)) = options.first_asked()
         {
@@ -106,22 +139,26 @@ impl LogFormat {
                     .to_owned(),
             });
         }
-        let mounted = |reader: io::Result<Box<dyn LogReader + 'a>>| {
-            let reader = reader.map_err(io)?;
+        let mounted = |reader: Result<Box<dyn LogReader + 'a>, LogError>| {
+            let reader = reader?;
             Ok(match options.laser {
                 Some(mount) => Box::new(MountedReader::new(reader, mount)),
                 None => reader,
             })
         };
         let reader = match found {
-            Self::Json => mounted(restamped(&first, |source| JsonLogReader::new(source, name))),
-            Self::Course => mounted(restamped(&first, |source| CourseReader::new(source, name))),
+            Self::Json => mounted(restamped(&first, name, beside, |source| {
+                JsonLogReader::new(source, name)
+            })),
+            Self::Course => mounted(restamped(&first, name, beside, |source| {
+                CourseReader::new(source, name)
+            })),
             Self::Table => {
                 let columns = options.columns.clone();
                 let layout = columns
                     .or_else(|| TableLayout::of(start))
                     .unwrap_or_default();
-                mounted(restamped(&first, |source| {
+                mounted(restamped(&first, name, beside, |source| {
                     TableReader::with_format(source, name, TableRows::new(layout.clone()))
                 }))
             }
@@ -129,9 +166,9 @@ impl LogFormat {
                 let reader: Box<dyn LogReader> = Box::new(RosReader::new(parts, name, options));
                 Ok(reader)
             }
-            Self::Carmen | Self::Foreign(_) => {
-                mounted(restamped(&first, |source| CarmenReader::new(source, name)))
-            }
+            Self::Carmen | Self::Foreign(_) => mounted(restamped(&first, name, beside, |source| {
+                CarmenReader::new(source, name)
+            })),
         };
         Ok(without_near_readings(
             reader?,

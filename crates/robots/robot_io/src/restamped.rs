@@ -6,8 +6,9 @@ use std::io;
 
 use pr_geom::SE2;
 
-use crate::log::{LogError, LogFrame, LogNotes, LogReader};
+use crate::log::{FilePosition, LogError, LogFrame, LogNotes, LogReader};
 use crate::log_bytes::LogBytes;
+use crate::odometry_file::BesideOdometry;
 use crate::odometry_poses::{jumps_remark, remove_jumps};
 use crate::remark::Remark;
 use crate::stamps::MendedStamps;
@@ -22,7 +23,7 @@ type Key = (u64, usize);
 struct Restamped<R> {
     inner: R,
     stamps_s: Vec<f64>,
-    /// The odometry of each frame; empty if it does not jump.
+    /// The odometry of each frame; empty if it is that of the log and does not jump.
     odometry: Vec<Option<SE2>>,
     remarks: Vec<Remark>,
     /// Earliest stamp of any frame after this one, s.
@@ -33,33 +34,46 @@ struct Restamped<R> {
     notes: LogNotes,
 }
 
-/// Opens a text log; corrects it if its stamps are out of order or its odometry jumps.
+/// Opens a text log; corrects it if its stamps are out of order or its odometry jumps. The odometry is that of the file
+/// beside it, if there is one.
 ///
 /// # Errors
-/// If the system cannot read the bytes.
+/// If the system cannot read the bytes, or no scan has odometry in the file beside it.
 pub fn restamped<'a, R: LogReader + 'a>(
     bytes: &LogBytes<'a>,
+    name: &str,
+    beside: Option<&BesideOdometry>,
     reader: impl Fn(Box<dyn io::BufRead + 'a>) -> R,
-) -> io::Result<Box<dyn LogReader + 'a>> {
-    let mut first = reader(bytes.stream()?);
+) -> Result<Box<dyn LogReader + 'a>, LogError> {
+    let stream = || {
+        bytes.stream().map_err(|source| LogError::Io {
+            name: name.to_owned(),
+            position: FilePosition::Byte(0),
+            source,
+        })
+    };
+    let mut first = reader(stream()?);
     let (mut stamps_s, mut odometry) = (Vec::new(), Vec::new());
     // Errors recur in the second pass and are reported there.
     while let Ok(Some(frame)) = first.next_frame() {
         stamps_s.push(frame.stamp_s);
         odometry.push(frame.odometry);
     }
-    let inner = reader(bytes.stream()?);
+    let inner = reader(stream()?);
     let mut remarks = Vec::new();
+    if let Some(beside) = beside {
+        remarks = beside.take_place(&stamps_s, &mut odometry)?;
+    }
     if let Some(mended) = mended_stamps(&stamps_s) {
-        remarks = mended.remarks("scans");
+        remarks.extend(mended.remarks("scans"));
         stamps_s = mended.stamps_s;
     }
     let jumps = without_jumps(&stamps_s, &mut odometry);
-    if jumps.is_empty() {
+    if jumps.is_empty() && beside.is_none() {
         odometry.clear();
     }
     remarks.extend(jumps_remark(&jumps));
-    if remarks.is_empty() {
+    if remarks.is_empty() && odometry.is_empty() {
         return Ok(Box::new(inner));
     }
     let mut earliest_s = f64::INFINITY;
@@ -186,7 +200,10 @@ mod tests {
 
     fn stamps(text: &str) -> (Vec<f64>, Vec<Remark>) {
         let bytes = LogBytes::from(text.as_bytes().to_vec());
-        let mut reader = restamped(&bytes, |source| CarmenReader::new(source, "x.clf")).unwrap();
+        let mut reader = restamped(&bytes, "x.clf", None, |source| {
+            CarmenReader::new(source, "x.clf")
+        })
+        .unwrap();
         let mut stamps = Vec::new();
         while let Some(frame) = reader.next_frame().unwrap() {
             stamps.push(frame.stamp_s);
@@ -212,7 +229,10 @@ mod tests {
         };
         let text: String = (0..60).map(lines).collect();
         let bytes = LogBytes::from(text.into_bytes());
-        let mut reader = restamped(&bytes, |source| CarmenReader::new(source, "x.clf")).unwrap();
+        let mut reader = restamped(&bytes, "x.clf", None, |source| {
+            CarmenReader::new(source, "x.clf")
+        })
+        .unwrap();
         let mut last = None;
         while let Some(frame) = reader.next_frame().unwrap() {
             last = frame.odometry;

@@ -378,7 +378,7 @@ fn swapped(stamps_s: &[f64]) -> usize {
 }
 
 /// Median time between increasing stamps, s; 0 of fewer than two.
-fn period_s(stamps_s: &[f64]) -> f64 {
+pub(crate) fn period_s(stamps_s: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = stamps_s.iter().copied().filter(|s| s.is_finite()).collect();
     sort_numbers(&mut sorted);
     let steps = sorted.windows(2).map(|two| two[1] - two[0]);

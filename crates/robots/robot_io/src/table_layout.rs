@@ -1,10 +1,13 @@
 //! What the columns of a table are: by the header of the file, by its form, or by the user.
 
 pub(crate) mod guess;
+mod poses;
+mod words;
 
 use std::str::FromStr;
 
 use crate::lines::printable;
+pub use words::{is_missing, list, number, words};
 
 /// Meaning of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -29,6 +32,14 @@ pub enum ColumnMeaning {
     Y,
     /// Odometry.
     Heading,
+    /// Odometry: orientation as a quaternion.
+    OrientationX,
+    /// Odometry.
+    OrientationY,
+    /// Odometry.
+    OrientationZ,
+    /// Odometry.
+    OrientationW,
     /// Bearing of the first beam.
     AngleMin,
     /// Bearing of the last beam.
@@ -91,6 +102,20 @@ impl TableLayout {
 
     /// By a header.
     fn of_header(text: &str) -> Option<Self> {
+        let columns = Self::columns_of_header(text)?;
+        let of = |wanted: ColumnMeaning| columns.iter().filter(|c| c.0 == wanted).count();
+        let is_of_beams = of(ColumnMeaning::Angle) == 1 && of(ColumnMeaning::Range) == 1;
+        let is_of_scans = of(ColumnMeaning::Ranges) > 0;
+        let is_clockwise = is_of_beams && of(ColumnMeaning::Quality) > 0;
+        (is_of_beams != is_of_scans).then(|| Self {
+            is_clockwise,
+            columns,
+            ..Self::default()
+        })
+    }
+
+    /// The columns that a header names; `None` if the text is none.
+    fn columns_of_header(text: &str) -> Option<Vec<Scaled>> {
         let text = text.trim_start_matches(['#', '%', ' ']);
         let names: Vec<&str> = words(text).collect();
         if names.len() < 2 || names.iter().any(|name| number(name).is_some()) {
@@ -103,9 +128,6 @@ impl TableLayout {
         if is_prose || names.iter().any(|name| name.contains(' ')) {
             return None;
         }
-        let of = |wanted: ColumnMeaning, columns: &[Scaled]| {
-            columns.iter().filter(|c| c.0 == wanted).count()
-        };
         // A bag's own stamp is better than the time of recording before it.
         // `rostopic echo -p` prints every time in nanoseconds, also that of a simulation, which is small.
         if names.iter().any(|name| name.starts_with("field.")) {
@@ -114,7 +136,8 @@ impl TableLayout {
                 .filter(|column| column.0 == ColumnMeaning::Time)
                 .for_each(|column| column.1 = Some(1e-9));
         }
-        if of(ColumnMeaning::Time, &columns) > 1 {
+        let is_time = |column: &&Scaled| column.0 == ColumnMeaning::Time;
+        if columns.iter().filter(is_time).count() > 1 {
             let best = names.iter().position(|name| name.ends_with("header.stamp"));
             let best = best.or_else(|| columns.iter().position(|c| c.0 == ColumnMeaning::Time));
             for (at, column) in columns.iter_mut().enumerate() {
@@ -123,14 +146,7 @@ impl TableLayout {
                 }
             }
         }
-        let is_of_beams =
-            of(ColumnMeaning::Angle, &columns) == 1 && of(ColumnMeaning::Range, &columns) == 1;
-        let is_of_scans = of(ColumnMeaning::Ranges, &columns) > 0;
-        (is_of_beams != is_of_scans).then(|| Self {
-            is_clockwise: is_of_beams && of(ColumnMeaning::Quality, &columns) > 0,
-            columns,
-            ..Self::default()
-        })
+        Some(columns)
     }
 
     /// By the words of RPLidar's SDK: `S  theta: 0.50 Dist: 00234.00 Q: 47`.
@@ -263,15 +279,7 @@ impl FromStr for TableLayout {
             Some((text, view)) => (text, Some(view_of(view)?)),
             None => (text, None),
         };
-        let columns: Vec<Scaled> = text.split(',').map(|name| column(name.trim())).collect();
-        for (name, (column, _)) in text.split(',').zip(&columns) {
-            if *column == ColumnMeaning::Other && !matches!(name.trim(), "-" | "frame_id") {
-                return Err(format!(
-                    "there is no column {}; use time, sec, nanosec, angle, range, quality, x, y, heading, angle_min, angle_max, angle_increment, time_increment, scan_time, range_min, range_max, ranges or -, with units such as time_us, angle_deg, range_mm",
-                    printable(name.trim())
-                ));
-            }
-        }
+        let columns = named(text)?;
         let has = |wanted: ColumnMeaning| columns.iter().any(|column| column.0 == wanted);
         if has(ColumnMeaning::Ranges) == (has(ColumnMeaning::Angle) && has(ColumnMeaning::Range)) {
             return Err("name either ranges, or angle and range".to_owned());
@@ -288,6 +296,20 @@ impl FromStr for TableLayout {
             ..Self::default()
         })
     }
+}
+
+/// The columns of names, separated by commas.
+fn named(text: &str) -> Result<Vec<Scaled>, String> {
+    let names = text.split(',').map(str::trim);
+    names
+        .map(|name| match column(name) {
+            (ColumnMeaning::Other, _) if !matches!(name, "-" | "frame_id") => Err(format!(
+                "there is no column {}; use time, sec, nanosec, angle, range, quality, x, y, heading, angle_min, angle_max, angle_increment, time_increment, scan_time, range_min, range_max, ranges or -, with units such as time_us, angle_deg, range_mm",
+                printable(name)
+            )),
+            column => Ok(column),
+        })
+        .collect()
 }
 
 /// The first and the last angle of `-90:90`, in rad.
@@ -308,70 +330,6 @@ fn view_of(text: &str) -> Result<[f64; 2], String> {
             "the first and the last angle come after ranges, in degrees, such as ranges@-90:90"
                 .to_owned()
         })
-}
-
-/// The words of a row, without quotes and outer brackets: empty ones count between commas, not between spaces. A comma
-/// beside semicolons or tabs is the decimal sign. A list in quotes or brackets is one word.
-pub fn words(text: &str) -> impl Iterator<Item = &str> {
-    let is_outside = outside_of_lists(text);
-    let separates = |c: char| text.match_indices(c).any(|(at, _)| is_outside[at]);
-    let separator = ['\t', ';', ','].into_iter().find(|c| separates(*c));
-    let wanted = separator.unwrap_or(' ');
-    let mut at = 0;
-    text.split(move |c: char| {
-        let is_end = c == wanted && is_outside[at];
-        at += c.len_utf8();
-        is_end
-    })
-    .map(|word| word.trim_matches([' ', '"', '\'', '[', ']', '(', ')']))
-    .filter(move |word| separator.is_some() || !word.is_empty())
-}
-
-/// For each byte, whether it is outside of quotes and brackets; all are if one of them is not closed.
-fn outside_of_lists(text: &str) -> Vec<bool> {
-    let (mut depth, mut is_quoted, mut is_balanced) = (0_usize, false, true);
-    let mut outside = Vec::with_capacity(text.len());
-    for byte in text.bytes() {
-        match byte {
-            b'"' => is_quoted = !is_quoted,
-            b'[' | b'(' if !is_quoted => depth += 1,
-            b']' | b')' if !is_quoted => {
-                is_balanced &= depth > 0;
-                depth = depth.saturating_sub(1);
-            }
-            _ => {}
-        }
-        outside.push(depth == 0 && !is_quoted);
-    }
-    if depth > 0 || is_quoted || !is_balanced {
-        outside.fill(true);
-    }
-    outside
-}
-
-/// The items of a word: one, or those of a list such as `[1.5, 1.6]`, `(1.5 1.6)` or `array('f', [1.5, 1.6])`.
-pub fn list(word: &str) -> impl Iterator<Item = &str> {
-    let is_one = number(word).is_some();
-    let inner = word.rsplit(['[', '(']).next().unwrap_or(word);
-    let separator = [';', ',']
-        .into_iter()
-        .find(|c| !is_one && inner.contains(*c));
-    let wanted = separator.unwrap_or(' ');
-    inner
-        .split(wanted)
-        .map(|item| item.trim_matches([' ', '"', '\'', ']', ')']))
-        .filter(move |item| is_one || separator.is_some() || !item.is_empty())
-}
-
-/// Whether an item of a list stands for a reading that is missing.
-pub fn is_missing(item: &str) -> bool {
-    item.is_empty() || matches!(item, "None" | "null" | "-")
-}
-
-/// The number of a word, with a point or a comma before its decimals.
-pub fn number(word: &str) -> Option<f64> {
-    let number = word.parse().ok();
-    number.or_else(|| word.replacen(',', ".", 1).parse().ok())
 }
 
 /// The meaning of a name, and the factor of its unit.
@@ -412,8 +370,12 @@ fn column(name: &str) -> Scaled {
             "angle" | "theta" | "bearing" => ColumnMeaning::Angle,
             "range" | "distance" | "dist" => ColumnMeaning::Range,
             "quality" | "q" => ColumnMeaning::Quality,
-            "x" | "odom_x" => ColumnMeaning::X,
-            "y" | "odom_y" => ColumnMeaning::Y,
+            "x" | "odom_x" | "pose.pose.position.x" => ColumnMeaning::X,
+            "y" | "odom_y" | "pose.pose.position.y" => ColumnMeaning::Y,
+            "orientation.x" | "pose.pose.orientation.x" => ColumnMeaning::OrientationX,
+            "orientation.y" | "pose.pose.orientation.y" => ColumnMeaning::OrientationY,
+            "orientation.z" | "pose.pose.orientation.z" => ColumnMeaning::OrientationZ,
+            "orientation.w" | "pose.pose.orientation.w" => ColumnMeaning::OrientationW,
             "heading" | "yaw" | "odom_theta" | "odom_yaw" => ColumnMeaning::Heading,
             "angle_min" => ColumnMeaning::AngleMin,
             "angle_max" => ColumnMeaning::AngleMax,

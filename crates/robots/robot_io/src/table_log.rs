@@ -26,6 +26,7 @@ use crate::plausible::{MAX_BEAMS, plausible_pose, plausible_stamp_s};
 use crate::remark::{Part, Remark};
 use crate::ros::ScanFields;
 use crate::table_layout::{self, ColumnMeaning, TableLayout};
+use crate::trajectory::yaw;
 
 /// Time between scans of a table without times, s: that of most cheap scanners.
 const PERIOD_S: f64 = 0.1;
@@ -51,6 +52,8 @@ struct Row {
     time_s: Option<f64>,
     /// x, y and heading of odometry.
     pose: [Option<f64>; 3],
+    /// Orientation of odometry: x, y, z and w of a quaternion.
+    orientation: [f64; 4],
     angle: Option<f64>,
     range: Option<f64>,
     is_return: bool,
@@ -140,6 +143,10 @@ impl TableRows {
                 ColumnMeaning::X => row.pose[0] = Some(value),
                 ColumnMeaning::Y => row.pose[1] = Some(value),
                 ColumnMeaning::Heading => row.pose[2] = Some(value),
+                ColumnMeaning::OrientationX => row.orientation[0] = value,
+                ColumnMeaning::OrientationY => row.orientation[1] = value,
+                ColumnMeaning::OrientationZ => row.orientation[2] = value,
+                ColumnMeaning::OrientationW => row.orientation[3] = value,
                 ColumnMeaning::AngleMin => fields.angle_min = value,
                 ColumnMeaning::AngleMax => fields.angle_max = value,
                 ColumnMeaning::AngleIncrement => fields.angle_increment = value,
@@ -159,6 +166,26 @@ impl TableRows {
         }
         row.time_s = time_s.map(plausible_stamp_s).transpose()?;
         Ok(row)
+    }
+
+    /// The time (s) and the pose of a row of odometry; `None` if the line is empty, a comment or a header.
+    ///
+    /// # Errors
+    /// If the row has none, or they are out of range.
+    pub(crate) fn pose(&self, line: &[u8]) -> Result<Option<(f64, SE2)>, String> {
+        let text = String::from_utf8_lossy(line);
+        let text = text.trim_start_matches('\u{feff}').trim();
+        if is_empty(text) || is_header(text) {
+            return Ok(None);
+        }
+        let mut row = self.row(text)?;
+        if row.pose[2].is_none() && row.orientation != [0.0; 4] {
+            row.pose[2] = Some(yaw(&row.orientation, false));
+        }
+        let (Some(time_s), [Some(x), Some(y), Some(heading)]) = (row.time_s, row.pose) else {
+            return Err("a pose must have a time, x, y and a heading".to_owned());
+        };
+        Ok(Some((time_s, plausible_pose(SE2::new(x, y, heading))?)))
     }
 
     /// The frame of a scan; what was corrected goes to the notes.
@@ -228,8 +255,7 @@ impl LineFormat for TableRows {
     ) -> Result<Option<LogFrame>, String> {
         let text = String::from_utf8_lossy(line);
         let text = text.trim_start_matches('\u{feff}').trim();
-        let is_comment = text.starts_with(['#', '%']);
-        if text.is_empty() || is_comment {
+        if is_empty(text) {
             return Ok(None);
         }
         if self.layout.begins_with_angles && !self.has_rows {
@@ -304,6 +330,11 @@ impl TableRows {
         }
         Ok(())
     }
+}
+
+/// Whether a row is a comment or has no words.
+fn is_empty(text: &str) -> bool {
+    text.is_empty() || text.starts_with(['#', '%'])
 }
 
 /// Whether a row names columns.

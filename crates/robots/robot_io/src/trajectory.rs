@@ -215,7 +215,7 @@ fn quaternion(numbers: &[f64; 4], is_w_first: bool) -> [f64; 4] {
 }
 
 /// Yaw of a quaternion of any length, rad.
-fn yaw(numbers: &[f64; 4], is_w_first: bool) -> f64 {
+pub(crate) fn yaw(numbers: &[f64; 4], is_w_first: bool) -> f64 {
     let [qx, qy, qz, qw] = quaternion(numbers, is_w_first);
     let sin = 2.0 * (qw * qz + qx * qy);
     let cos = qw * qw + qx * qx - qy * qy - qz * qz;

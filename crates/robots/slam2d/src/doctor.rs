@@ -21,7 +21,7 @@ use command_line::output::{print_json, say};
 pub struct DoctorArgs {
     /// The log, or the folder of a ROS recording.
     log: PathBuf,
-    /// Further parts of the same recording, such as the files of rosbag record --split.
+    /// Further parts of the same recording, such as the files of rosbag record --split, or the odometry of a table of scans.
     #[arg(value_name = "PART")]
     parts: Vec<PathBuf>,
     #[command(flatten)]

@@ -65,6 +65,8 @@ pub struct LiveArgs {
 /// If the robot is not there, has no scans, or a file cannot be used.
 pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
     let address = Address::new(&args.url)?;
+    let options = args.options.0.clone();
+    let options = options.of_drive().map_err(anyhow::Error::msg)?;
     let Some(folder) = &args.mapping.output else {
         bail!("slam2d live needs a folder for the recording and the results: -o DIR");
     };
@@ -92,7 +94,7 @@ pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
     let file = File::create_new(&recording).in_file(&recording)?;
     let (feeder, feed) = queue::stream(true);
     let is_ended = Arc::<AtomicBool>::default();
-    let drive = Drive::new(feeder, args.options.0.scan_topics());
+    let drive = Drive::new(feeder, options.scan_topics());
     let has_ended = Arc::clone(&is_ended);
     let listener = Listener::new(address, BufWriter::with_capacity(1 << 16, file), drive)
         .waiting(Duration::from_secs_f64(args.wait))
@@ -101,7 +103,7 @@ pub fn run(args: &LiveArgs) -> anyhow::Result<ExitCode> {
     let listening = thread::spawn(move || listener.listen(connection));
     let options = LogOptions {
         laser_before: mapping.laser_before,
-        ..args.options.0.clone()
+        ..options
     };
     let reader = LogFormat::open_live(feed, &args.url, &options);
     let mut reader = ComparedReader::chosen(reader, &options);

@@ -16,7 +16,7 @@ use crate::mapping::{Ended, Mapping, MappingArgs};
 pub struct RunArgs {
     /// The log.
     log: PathBuf,
-    /// Further parts of the same recording, such as the files of rosbag record --split.
+    /// Further parts of the same recording, such as the files of rosbag record --split, or the odometry of a table of scans.
     #[arg(value_name = "PART")]
     parts: Vec<PathBuf>,
     #[command(flatten)]

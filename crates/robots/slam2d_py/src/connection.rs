@@ -103,6 +103,7 @@ pub fn connect(
         &keywords!(py; odometry, scan_topic, odom_topic, odom_frame, body_frame, laser,
         heights, min_range, footprint),
     )?;
+    let options = options.of_drive().map_err(ChoiceError::new_err)?;
     let wait = Duration::from_secs_f64(within("wait", wait, 0.0, LONGEST_WAIT_S, " s")?);
     let address = Address::new(&url).map_err(|error| not_there(&error))?;
     py.detach(|| start(address, options, wait, recording))

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use pyo3::prelude::*;
+use robot_io::log::LogOptions;
 use robot_io::log_bytes::{LogBytes, WRITE_AHEAD};
 use robot_io::remark::Remark;
 use robot_io::rosbag2;
@@ -27,8 +28,11 @@ impl ReadTo {
     }
 }
 
-/// The files of a log.
-pub fn parts(path: &Path) -> PyResult<(Vec<LogBytes<'static>>, Vec<Remark>, ReadTo)> {
+/// The files of a log, then that of its odometry.
+pub fn parts(
+    path: &Path,
+    options: &LogOptions,
+) -> PyResult<(Vec<LogBytes<'static>>, Vec<Remark>, ReadTo)> {
     let unreadable = |path: &Path| {
         let path = path.to_owned();
         move |error: io::Error| os_error(&path, &error)
@@ -62,6 +66,8 @@ pub fn parts(path: &Path) -> PyResult<(Vec<LogBytes<'static>>, Vec<Remark>, Read
             )));
         }
     }
+    let odometry = options.odometry_file.as_ref();
+    files.extend(odometry.map(|file| PathBuf::from(&file.path)));
     let end = Arc::new(AtomicU64::new(0));
     let mut parts = Vec::new();
     let mut size = 0;

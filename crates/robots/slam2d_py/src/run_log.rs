@@ -40,7 +40,8 @@ const SHARE_OF_SCANS: f64 = 0.75;
 /// log: the file, or the folder of a recording of ROS 2.
 /// config: settings by name, as `settings()` lists them.
 /// odometry: "check" compares it with the scans, "force" takes it as it is, "mirrored" exchanges left and right and compares,
-///     "none" uses scans alone; True is "check", False "none".
+///     "none" uses scans alone; True is "check", False "none". The path of a file takes the odometry beside a log of text
+///     from it, as `slam2d run --odometry FILE` does.
 /// scan_topic, odom_topic, odom_frame, body_frame: the one to use if a recording of ROS has several.
 /// laser: mounting of the laser, which overrides the recording, as `slam2d run --laser` takes it: "0.1,0,180" is metres
 ///     forward and to the left, and degrees; with ",flipped" if it is upside down.
@@ -174,13 +175,14 @@ impl Pipeline {
         columns: Option<String>,
         all_robots: bool,
     ) -> PyResult<Self> {
-        // A log that is not there is reported here, and not an hour later by the run.
-        log_files::parts(&log)?;
         let keywords = keywords!(py; log, config, odometry, scan_topic, odom_topic, odom_frame, body_frame, laser,
             heights, min_range, footprint, columns, all_robots);
+        let options = log_options::options(&keywords)?;
+        // A log that is not there is reported here, and not an hour later by the run.
+        log_files::parts(&log, &options)?;
         Ok(Self {
             chosen: settings::chosen(config.as_ref())?,
-            options: log_options::options(&keywords)?,
+            options,
             keywords: keywords.unbind(),
             log,
         })
@@ -252,7 +254,7 @@ impl Pipeline {
     /// Opens the log, for one robot or all.
     fn reader(&self, options: &LogOptions) -> PyResult<(Robots<'static>, ReadTo)> {
         let name = self.log.display().to_string();
-        let (parts, of_files, read) = log_files::parts(&self.log)?;
+        let (parts, of_files, read) = log_files::parts(&self.log, options)?;
         let open = move |options: &LogOptions| {
             let reader = LogFormat::open_parts(parts.clone(), &name, options)?;
             Ok(ComparedReader::chosen(

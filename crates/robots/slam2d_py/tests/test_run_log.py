@@ -65,6 +65,24 @@ def test_the_scans_of_a_log_drive_any_estimator(drive, driven, log):
     assert slam.frames == len(drive)
 
 
+def test_odometry_may_be_in_a_file_beside_a_table_of_scans(drive, tmp_path):
+    scans, odometry = tmp_path / "scans.csv", tmp_path / "odom.csv"
+    rows = [[stamp, -np.pi, 2 * np.pi / len(ranges), 12, *ranges] for stamp, ranges in zip(drive.stamps, drive.ranges)]
+    header = "time,angle_min,angle_increment,range_max,ranges\n"
+    scans.write_text(header + "".join(",".join(map(str, row)) + "\n" for row in rows))
+    poses = ((stamp, *pose) for stamp, pose in zip(drive.stamps, drive.truth))
+    odometry.write_text("t,x,y,theta\n" + "".join("{},{},{},{}\n".format(*pose) for pose in poses))
+    moved = [motion for _, motion, _ in rs.Pipeline(scans, odometry=odometry).frames()[1]]
+    steps = np.linalg.norm(np.diff(drive.truth[:, :2], axis=0), axis=1)
+    # 1e-9 m: poses as text and back.
+    assert np.allclose([np.hypot(*motion[:2]) for motion in moved[1:]], steps, atol=1e-9)
+    assert rs.Pipeline(scans).frames()[1][1][1] is None
+    with pytest.raises(FileNotFoundError):
+        rs.Pipeline(scans, odometry=tmp_path / "absent.csv")
+    with pytest.raises(rs.ChoiceError, match="a file such as odom.csv"):
+        rs.Pipeline(scans, odometry="wheels")
+
+
 def test_progress_comes_as_numbers_or_on_standard_error(log, capsys):
     told = []
     rs.Pipeline(log).run(progress=lambda scans, share: told.append((scans, share)))

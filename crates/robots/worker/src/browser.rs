@@ -10,6 +10,7 @@ use pr_geom::SE2;
 use robot_io::live::drive::DriveEnd;
 use robot_io::live::network::Lost;
 use robot_io::live::{MAX_MESSAGE, WAIT_S};
+use robot_io::log::LogOptions;
 use robot_io::log_bytes::LogBytes;
 use wasm_bindgen::prelude::*;
 
@@ -100,7 +101,9 @@ impl LogMapper {
     /// # Errors
     /// If a line is not an option; the message is one sentence.
     pub fn listen(url: &str, chosen: &str) -> Result<Self, JsError> {
-        let options = given::options(chosen).map_err(|message| JsError::new(&message))?;
+        let options = given::options(chosen)
+            .and_then(LogOptions::of_drive)
+            .map_err(|message| JsError::new(&message))?;
         let engine = Engine::listen(url, &options);
         Ok(Self { engine })
     }

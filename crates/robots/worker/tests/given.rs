@@ -5,12 +5,12 @@ use std::path::Path;
 
 use bench_support::skip::skip;
 use log_messages::{MapperReport, Stage};
-use robot_io::log::{LogOption, LogOptions};
+use robot_io::log::{LogOption, LogOptions, LogReader as _};
 use robot_io::log_bytes::LogBytes;
 use robot_io::motion::OdometryUse;
 use serde_json::Value;
 use slam_robot::engine::Engine;
-use slam_robot::given::{Given, GivenFile, options};
+use slam_robot::given::{Given, GivenFile, compared, options};
 use slam_robot::update::Update;
 
 use crate::engine::{files, given, of, open};
@@ -241,6 +241,23 @@ fn all_robots_of_a_recording_are_mapped_if_the_reader_wants_so() {
         updates.iter().map(of_update).max()
     };
     assert_eq!((scans(&of_one), scans(&of_all)), (Some(157), Some(314)));
+}
+
+#[test]
+fn a_table_and_the_file_of_its_odometry_are_opened_together() {
+    let row = |k: u32| format!("{k},-1,1,1,2,3\n");
+    let rows: String = (0..4).map(row).collect();
+    let scans = format!("time,angle_min,angle_increment,ranges\n{rows}");
+    let odometry = "t,x,y,theta\n0,0,0,0\n3,3,0,0\n";
+    let given = Given::new(vec![file("odom.csv", odometry), file("scans.csv", &scans)]).unwrap();
+    let mut reader = compared(&given, &LogOptions::default()).unwrap();
+    let mut along_m = Vec::new();
+    while let Some(frame) = reader.next_frame().unwrap() {
+        along_m.push(frame.odometry.unwrap().x());
+    }
+    assert_eq!(along_m.len(), 4);
+    // 1e-12 m: between two poses.
+    assert!((along_m[3] - along_m[1] - 2.0).abs() < 1e-12, "{along_m:?}");
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod robot;
 mod robots;
 mod shown;
 mod sweeps;
+mod tables;
 mod variants;
 mod write;
 

@@ -325,7 +325,7 @@ class Pipeline:
         log: _Path,
         config: Optional[dict[str, Any]] = None,
         *,
-        odometry: Union[bool, Literal["check", "force", "mirrored", "none"]] = "check",
+        odometry: Union[bool, Literal["check", "force", "mirrored", "none"], _Path] = "check",
         scan_topic: Optional[str] = None,
         odom_topic: Optional[str] = None,
         odom_frame: Optional[str] = None,

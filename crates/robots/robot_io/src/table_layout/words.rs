@@ -1,0 +1,65 @@
+//! The words of a table's rows, and the numbers in them.
+
+/// The words of a row, without quotes and outer brackets: empty ones count between commas, not between spaces. A comma
+/// beside semicolons or tabs is the decimal sign. A list in quotes or brackets is one word.
+pub fn words(text: &str) -> impl Iterator<Item = &str> {
+    let is_outside = outside_of_lists(text);
+    let separates = |c: char| text.match_indices(c).any(|(at, _)| is_outside[at]);
+    let separator = ['\t', ';', ','].into_iter().find(|c| separates(*c));
+    let wanted = separator.unwrap_or(' ');
+    let mut at = 0;
+    text.split(move |c: char| {
+        let is_end = c == wanted && is_outside[at];
+        at += c.len_utf8();
+        is_end
+    })
+    .map(|word| word.trim_matches([' ', '"', '\'', '[', ']', '(', ')']))
+    .filter(move |word| separator.is_some() || !word.is_empty())
+}
+
+/// For each byte, whether it is outside of quotes and brackets; all are if one of them is not closed.
+fn outside_of_lists(text: &str) -> Vec<bool> {
+    let (mut depth, mut is_quoted, mut is_balanced) = (0_usize, false, true);
+    let mut outside = Vec::with_capacity(text.len());
+    for byte in text.bytes() {
+        match byte {
+            b'"' => is_quoted = !is_quoted,
+            b'[' | b'(' if !is_quoted => depth += 1,
+            b']' | b')' if !is_quoted => {
+                is_balanced &= depth > 0;
+                depth = depth.saturating_sub(1);
+            }
+            _ => {}
+        }
+        outside.push(depth == 0 && !is_quoted);
+    }
+    if depth > 0 || is_quoted || !is_balanced {
+        outside.fill(true);
+    }
+    outside
+}
+
+/// The items of a word: one, or those of a list such as `[1.5, 1.6]`, `(1.5 1.6)` or `array('f', [1.5, 1.6])`.
+pub fn list(word: &str) -> impl Iterator<Item = &str> {
+    let is_one = number(word).is_some();
+    let inner = word.rsplit(['[', '(']).next().unwrap_or(word);
+    let separator = [';', ',']
+        .into_iter()
+        .find(|c| !is_one && inner.contains(*c));
+    let wanted = separator.unwrap_or(' ');
+    inner
+        .split(wanted)
+        .map(|item| item.trim_matches([' ', '"', '\'', ']', ')']))
+        .filter(move |item| is_one || separator.is_some() || !item.is_empty())
+}
+
+/// Whether an item of a list stands for a reading that is missing.
+pub fn is_missing(item: &str) -> bool {
+    item.is_empty() || matches!(item, "None" | "null" | "-")
+}
+
+/// The number of a word, with a point or a comma before its decimals.
+pub fn number(word: &str) -> Option<f64> {
+    let number = word.parse().ok();
+    number.or_else(|| word.replacen(',', ".", 1).parse().ok())
+}
