@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use ch16_lab::lap::{AcceptedShares, FALSE_LOOP_DISTANCE_M, LapConfig, LoopError, TestedLoop};
+use ch16_lab::lap::FALSE_LOOP_DISTANCE_M;
 use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
@@ -34,56 +34,64 @@ fn handle(gate: f64) -> (&'static str, [f64; 2]) {
     ("attempts", [gate, 0.9 * MOST_M])
 }
 
+/// An attempt to close a loop, to the digits that the picture needs.
+struct Attempt {
+    chi2: f64,
+    error_m: f64,
+    /// Whether it passed the first test, the fit.
+    fits: bool,
+    is_false: bool,
+}
+
 /// Point-to-point at the usual noise, seeds 1 to 1000; `tests/pinned/page/attempts.rs` compares them with the core.
-fn attempts() -> &'static [TestedLoop] {
-    static ATTEMPTS: OnceLock<Vec<TestedLoop>> = OnceLock::new();
-    ATTEMPTS.get_or_init(|| parse(include_str!("attempts.txt")))
+fn attempts() -> &'static [Attempt] {
+    static ATTEMPTS: OnceLock<Vec<Attempt>> = OnceLock::new();
+    ATTEMPTS.get_or_init(|| {
+        include_str!("attempts.txt")
+            .lines()
+            .filter_map(parse)
+            .collect()
+    })
 }
 
-/// Lines `chi2 position_m heading_deg fits`.
-fn parse(table: &str) -> Vec<TestedLoop> {
-    let mut attempts = Vec::new();
-    for line in table.lines() {
-        let mut numbers = line.split(' ').filter_map(|word| word.parse::<f64>().ok());
-        if let (Some(chi2), Some(position_m), Some(heading_deg), Some(fits)) = (
-            numbers.next(),
-            numbers.next(),
-            numbers.next(),
-            numbers.next(),
-        ) {
-            attempts.push(TestedLoop {
-                fits: fits > 0.0,
-                chi2,
-                accepted: fits > 0.0 && chi2 <= LapConfig::default().slam.chapter.loops.gate_chi2,
-                error: LoopError {
-                    position_m,
-                    heading_deg,
-                },
-            });
-        }
-    }
-    attempts
+/// A line `chi2 error_cm flags`: 1 is added for a fit, 2 for a false loop. In the order of χ², to be small when compressed.
+fn parse(line: &str) -> Option<Attempt> {
+    let mut words = line.split(' ');
+    let chi2 = words.next()?.parse().ok()?;
+    let error_cm: f64 = words.next()?.parse().ok()?;
+    let flags: u8 = words.next()?.parse().ok()?;
+    Some(Attempt {
+        chi2,
+        error_m: 0.01 * error_cm,
+        fits: flags & 1 != 0,
+        is_false: flags & 2 != 0,
+    })
 }
 
-/// Both tests, with the gate at another threshold.
-fn shares(gate: f64) -> AcceptedShares {
-    AcceptedShares::of(attempts(), |tested| tested.fits && tested.chi2 <= gate)
+/// Accepted attempts beside all, of the true ones and of the false ones, with the gate at another threshold.
+fn shares(gate: f64) -> [[usize; 2]; 2] {
+    [false, true].map(|is_false| {
+        let all = attempts().iter().filter(|tried| tried.is_false == is_false);
+        let accepted = all.clone().filter(|tried| tried.fits && tried.chi2 <= gate);
+        [accepted.count(), all.count()]
+    })
+}
+
+/// Both shares, true and false, %.
+fn rates(gate: f64) -> [f64; 2] {
+    shares(gate).map(|[accepted, all]| 100.0 * accepted as f64 / all as f64)
 }
 
 fn at(gate: f64) -> Shown {
-    let found = shares(gate);
-    let [of_true, of_false] = found.rates().map(|rate| 100.0 * rate);
+    let [[passed, all], [slipped, wrong]] = shares(gate);
+    let [of_true, of_false] = rates(gate);
     Shown {
         scene: Scene {
-            panels: vec![picture(gate), rates(gate)],
+            panels: vec![picture(gate), curve(gate)],
         },
         sentence: format!(
-            "Up to {gate:.1}, {} of {} true attempts are accepted, {of_true:.0}%, and {} of {} false ones, {of_false:.0}%. The \
-             difference is {:.0}%; chance has 0, a perfect test 100.",
-            found.of_true[0],
-            found.of_true[1],
-            found.of_false[0],
-            found.of_false[1],
+            "Up to {gate:.1}, {passed} of {all} true attempts are accepted, {of_true:.0}%, and {slipped} of {wrong} false ones, \
+             {of_false:.0}%. The difference is {:.0}%; chance has 0, a perfect test 100.",
             of_true - of_false,
         ),
     }
@@ -91,16 +99,9 @@ fn at(gate: f64) -> Shown {
 
 fn picture(gate: f64) -> Panel {
     let places = |wanted: bool| -> Vec<[f64; 2]> {
-        let wanted = attempts()
-            .iter()
-            .filter(|tested| tested.error.is_false() == wanted);
+        let wanted = attempts().iter().filter(|tried| tried.is_false == wanted);
         wanted
-            .map(|tested| {
-                [
-                    tested.chi2.min(MOST_CHI2),
-                    tested.error.position_m.min(MOST_M),
-                ]
-            })
+            .map(|tried| [tried.chi2.min(MOST_CHI2), tried.error_m.min(MOST_M)])
             .collect()
     };
     let across = |y: f64| [[0.0, y], [MOST_CHI2, y]];
@@ -137,10 +138,10 @@ fn picture(gate: f64) -> Panel {
 }
 
 /// Both rates for every gate, beside chance and perfect.
-fn rates(gate: f64) -> Panel {
+fn curve(gate: f64) -> Panel {
     let place = |gate: f64| {
-        let [of_true, of_false] = shares(gate).rates();
-        [100.0 * of_false, 100.0 * of_true]
+        let [of_true, of_false] = rates(gate);
+        [of_false, of_true]
     };
     let curve = (0..=80).map(|k| place(f64::from(k) * 0.25)).collect();
     Panel {
@@ -175,12 +176,12 @@ mod tests {
 
     #[test]
     fn the_chapters_gate_accepts_true_and_false_alike_and_no_other_parts_them() {
-        let [of_true, of_false] = shares(7.815).rates();
+        let [of_true, of_false] = rates(7.815);
         // The rate of some 127 false ones has a standard deviation of 3 %.
-        assert!((of_true - of_false).abs() < 0.06, "{of_true} {of_false}");
+        assert!((of_true - of_false).abs() < 6.0, "{of_true} {of_false}");
         for k in 1..=80 {
-            let [of_true, of_false] = shares(0.2 * f64::from(k)).rates();
-            assert!(of_true - of_false < 0.5, "{k}: {of_true} {of_false}");
+            let [of_true, of_false] = rates(0.2 * f64::from(k));
+            assert!(of_true - of_false < 50.0, "{k}: {of_true} {of_false}");
         }
     }
 }

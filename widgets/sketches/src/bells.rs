@@ -2,7 +2,7 @@
 
 use ch16_lab::samples;
 use ch16_slam2d::cloud::PointCloud;
-use ch16_slam2d::ndt::NdtMap;
+use ch16_slam2d::ndt::{NdtCell, NdtMap};
 use pr_geom::{Rng, SE2};
 use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
@@ -11,7 +11,7 @@ use widget_kit::scene::{
 use super::{Shown, SketchSpec, Slider};
 
 /// Beams of each of the two sweeps.
-const BEAMS: usize = 180;
+pub(super) const BEAMS: usize = 180;
 /// Smallest number of points in a cell.
 const MIN_POINTS: usize = 3;
 /// Largest shift, m.
@@ -36,10 +36,15 @@ pub(super) const SKETCH: SketchSpec = SketchSpec {
 };
 
 /// Two sweeps from one pose in room A, with independent noise.
-fn sweeps() -> [PointCloud; 2] {
+pub(super) fn sweeps() -> [PointCloud; 2] {
     let mut rng = Rng::new(16);
     let room = SE2::new(1.9, 1.8, 0.0);
     core::array::from_fn(|_| samples::sweep(&room, BEAMS, &mut rng))
+}
+
+/// The Gaussians of a sweep.
+pub(super) fn map(target: &PointCloud, cell_m: f64) -> NdtMap {
+    NdtMap::build(target, cell_m, MIN_POINTS)
 }
 
 /// The score of the second sweep shifted along x.
@@ -63,7 +68,7 @@ fn half_width_m(map: &NdtMap, sweep: &PointCloud) -> f64 {
 
 fn at(cell_m: f64) -> Shown {
     let [target, sweep] = sweeps();
-    let map = NdtMap::build(&target, cell_m, MIN_POINTS);
+    let map = map(&target, cell_m);
     let bells = map.cells().len();
     let width = half_width_m(&map, &sweep);
     Shown {
@@ -91,16 +96,7 @@ fn picture(cell_m: f64, target: &PointCloud, map: &NdtMap) -> Panel {
         Tone::Measurement,
         1.5,
     )];
-    layers.extend(map.cells().iter().filter_map(|cell| {
-        // Any root of the covariance spans the ellipse.
-        let root = cell.covariance.cholesky()?.l() * DRAWN_SIGMAS;
-        Some(Layer::Ellipse {
-            center: [cell.mean.x, cell.mean.y],
-            half_axes: [[root[(0, 0)], root[(1, 0)]], [root[(0, 1)], root[(1, 1)]]],
-            stroke: Stroke::Solid,
-            tone: Tone::Posterior,
-        })
-    }));
+    layers.extend(ellipses(map));
     let [[left, low], [right, top]] = [CELL_M, handle(cell_m).1];
     layers.push(Layer::line(
         vec![
@@ -115,12 +111,6 @@ fn picture(cell_m: f64, target: &PointCloud, map: &NdtMap) -> Panel {
         1.5,
     ));
     Panel {
-        id: "bells",
-        title: "The map: one bell per cell".to_owned(),
-        weight: Weight::Half,
-        aspect: Aspect::Equal,
-        x: Axis::new("x (m)", -2.4, 2.6),
-        y: Axis::new("y (m)", -2.1, 2.4),
         layers,
         legend: vec![
             LegendEntry::mark("points of the sweep", Tone::Measurement, Mark::Dot),
@@ -131,8 +121,38 @@ fn picture(cell_m: f64, target: &PointCloud, map: &NdtMap) -> Panel {
             ),
             LegendEntry::line("a cell", Tone::Ink, Stroke::Dashed),
         ],
+        ..plan()
+    }
+}
+
+/// Room A without its bells.
+pub(super) fn plan() -> Panel {
+    Panel {
+        id: "bells",
+        title: "The map: one bell per cell".to_owned(),
+        weight: Weight::Half,
+        aspect: Aspect::Equal,
+        x: Axis::new("x (m)", -2.4, 2.6),
+        y: Axis::new("y (m)", -2.4, 2.4),
+        layers: Vec::new(),
+        legend: Vec::new(),
         color_bar: None,
     }
+}
+
+/// The bells of a map.
+pub(super) fn ellipses(map: &NdtMap) -> Vec<Layer> {
+    let ellipse = |cell: &NdtCell| {
+        // Any root of the covariance spans the ellipse.
+        let root = cell.covariance.cholesky()?.l() * DRAWN_SIGMAS;
+        Some(Layer::Ellipse {
+            center: [cell.mean.x, cell.mean.y],
+            half_axes: [[root[(0, 0)], root[(1, 0)]], [root[(0, 1)], root[(1, 1)]]],
+            stroke: Stroke::Solid,
+            tone: Tone::Posterior,
+        })
+    };
+    map.cells().iter().filter_map(ellipse).collect()
 }
 
 fn curve(map: &NdtMap, sweep: &PointCloud) -> Panel {

@@ -11,7 +11,9 @@ mod ellipse;
 mod fill;
 mod gate;
 mod incremental;
+mod kappa;
 mod nearest;
+mod newton;
 mod pull;
 mod push;
 mod rule;
@@ -70,11 +72,13 @@ pub struct SketchSpec {
 const PLACES: f64 = 120.0;
 
 /// All figures, in the order of the page.
-pub const SKETCHES: [SketchSpec; 15] = [
+pub const SKETCHES: [SketchSpec; 17] = [
     pull::SKETCH,
     slide::SKETCH,
     bells::SKETCH,
+    newton::SKETCH,
     ellipse::SKETCH,
+    kappa::SKETCH,
     gate::SKETCH,
     attempts::SKETCH,
     agree::SKETCH,
@@ -87,6 +91,20 @@ pub const SKETCHES: [SketchSpec; 15] = [
     ate::SKETCH,
     incremental::SKETCH,
 ];
+
+/// The outline of a histogram with `bins` bins to either side of zero; what lies beyond is counted in the last ones.
+fn histogram(values: impl Iterator<Item = f64>, width: f64, bins: i32) -> Vec<[f64; 2]> {
+    let mut counts = vec![0.0; 2 * bins as usize + 1];
+    for value in values {
+        let bin = (value / width).round() as i32;
+        counts[(bin.clamp(-bins, bins) + bins) as usize] += 1.0;
+    }
+    let outline = counts.iter().enumerate().flat_map(|(bin, count)| {
+        let left = width * (bin as f64 - f64::from(bins) - 0.5);
+        [[left, *count], [left + width, *count]]
+    });
+    outline.collect()
+}
 
 /// Looks up a figure by name.
 #[must_use]

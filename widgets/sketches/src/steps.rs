@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use ch16_lab::lap::{LapConfig, LapMatcher, LapRunner, LapTrace, StepInnovations};
 use widget_kit::scene::{Aspect, Axis, Layer, LegendEntry, Panel, Scene, Stroke, Tone, Weight};
 
-use super::{Shown, SketchSpec, Slider};
+use super::{Shown, SketchSpec, Slider, histogram};
 
 /// Beside the histogram in this order, with their lines.
 const MATCHERS: [(LapMatcher, &str, Stroke); 3] = [
@@ -81,7 +81,7 @@ fn at(ticks: f64) -> Shown {
         .collect();
     Shown {
         scene: Scene {
-            panels: vec![histogram(ticks), alarm(ticks)],
+            panels: vec![changes(ticks), alarm(ticks)],
         },
         sentence: format!(
             "After {ticks:.0} ticks, each changes a step on average: {}.",
@@ -95,18 +95,11 @@ fn tone(which: usize) -> Tone {
     Tone::Series(which as u8)
 }
 
-fn histogram(ticks: f64) -> Panel {
+fn changes(ticks: f64) -> Panel {
     let curve = |which: usize| {
-        let mut counts = vec![0.0; 2 * BINS as usize + 1];
-        for [innovation_m, _] in laps()[which].step_innovations(ticks as usize) {
-            let bin = (100.0 * innovation_m / BIN_CM).round() as i32;
-            counts[(bin.clamp(-BINS, BINS) + BINS) as usize] += 1.0;
-        }
-        let points = counts.iter().enumerate().flat_map(|(bin, count)| {
-            let left = BIN_CM * (bin as f64 - f64::from(BINS) - 0.5);
-            [[left, *count], [left + BIN_CM, *count]]
-        });
-        Layer::line(points.collect(), MATCHERS[which].2, tone(which), 2.0)
+        let innovations = laps()[which].step_innovations(ticks as usize);
+        let points = histogram(innovations.map(|step| 100.0 * step[0]), BIN_CM, BINS);
+        Layer::line(points, MATCHERS[which].2, tone(which), 2.0)
     };
     let reach_cm = BIN_CM * (f64::from(BINS) + 0.5);
     Panel {

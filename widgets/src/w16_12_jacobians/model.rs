@@ -44,8 +44,10 @@ pub mod panel {
 /// Names of the four solvers.
 pub const NAMES: [&str; 4] = ["exact", "approximate", "wrong Jacobian", "wrong residual"];
 
-/// Steps a second at normal speed.
+/// The first steps a second at normal speed.
 const STEPS_PER_S: f64 = 3.0;
+/// After so many steps the rate has doubled: later steps are too short to see.
+const DOUBLED_AFTER: f64 = 5.0;
 
 /// The model of the widget.
 pub struct WrongJacobians {
@@ -159,9 +161,9 @@ impl Model for WrongJacobians {
     fn played(&mut self) -> Option<PlayedValues<'_>> {
         Some(PlayedValues {
             end: Some(self.last() as f64),
+            steps_per_s: STEPS_PER_S * (1.0 + self.step() as f64 / DOUBLED_AFTER),
             values: &mut self.values,
             playback: &mut self.playback,
-            steps_per_s: STEPS_PER_S,
         })
     }
 

@@ -1,4 +1,4 @@
-//! Layout of the panels: the graph beside χ² over its steps, the bars of the springs below.
+//! Layout of the panels: the graph; below it χ² over the steps, and the bars of the springs.
 
 use widget_kit::scene::Scene;
 use widget_kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot};
@@ -8,17 +8,13 @@ use crate::w16_5_pose_graph_toy::model::panel;
 /// The layout of the widget.
 #[must_use]
 pub fn arrange(_scene: &Scene, width: f32) -> Arrangement {
-    let bars = Slot::fixed(panel::BARS, 150.0);
-    let stage = if width >= SIDE_BY_SIDE {
-        let graph = Slot::natural(panel::GRAPH, 420.0);
-        let steps = Slot::fixed(panel::STEPS, 330.0);
-        vec![Row::of_columns(&[(1.8, &[graph]), (1.0, &[steps])])]
-    } else {
-        let graph = Slot::natural(panel::GRAPH, 330.0);
-        Row::each(&[graph, Slot::fixed(panel::STEPS, 150.0)])
-    };
+    let graph_px = if width >= SIDE_BY_SIDE { 400.0 } else { 330.0 };
+    let below = [
+        Slot::fixed(panel::STEPS, 150.0),
+        Slot::fixed(panel::BARS, 150.0),
+    ];
     Arrangement {
-        stage,
-        below: Row::each(&[bars]),
+        stage: Row::each(&[Slot::natural(panel::GRAPH, graph_px)]),
+        below: Row::each(&below),
     }
 }

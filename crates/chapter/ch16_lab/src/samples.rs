@@ -10,7 +10,8 @@ use crate::lap::{Lap, LapConfig};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::graph::PoseGraph;
 
-const RANGE_SIGMA_M: f64 = 0.02;
+/// Standard deviation of a range, m.
+pub const RANGE_SIGMA_M: f64 = 0.02;
 /// Points of [`apartment_map`].
 const MAP_POINTS: usize = 5000;
 /// Radius of the normals on the map, whose points are dense, m.

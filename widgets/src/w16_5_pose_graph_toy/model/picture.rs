@@ -15,7 +15,7 @@ use crate::w16_5_pose_graph_toy::spec::{PINNED, STIFFNESS};
 /// Margin around the poses, m.
 const MARGIN_M: f64 = 0.4;
 /// Smallest size of the map, m.
-const MIN_SIZE_M: [f64; 2] = [3.6, 2.2];
+const MIN_SIZE_M: [f64; 2] = [2.9, 2.2];
 /// Windings of a spring.
 const WINDINGS: usize = 7;
 /// Distance of the name of the pinned pose below it, m.

@@ -49,8 +49,11 @@ pub fn outcome(toy: &PoseGraphToy) -> Outcome {
         (false, _) => "springs pull",
     };
     let worst = worst(toy);
+    let start = toy.course.moments[0].chi2;
     let sentence = if step == 0 {
-        format!("before the first step χ² is {:.3}{worst}", shown.chi2)
+        format!("before the first step χ² is {start:.3}{worst}")
+    } else if step == last {
+        format!("χ² falls from {start:.3} to {:.3}{worst}", shown.chi2)
     } else {
         format!(
             "step {step} of {last} takes χ² from {:.3} to {:.3}. It moves a pose by {:.2} m + rad at most{worst}",
@@ -64,13 +67,7 @@ pub fn outcome(toy: &PoseGraphToy) -> Outcome {
     };
     let mut facts = vec![
         Fact::new("chi2", "χ²", shown.chi2, "", 3),
-        Fact::new(
-            "chi2_start",
-            "χ² before the first step",
-            toy.course.moments[0].chi2,
-            "",
-            3,
-        ),
+        Fact::new("chi2_start", "χ² before the first step", start, "", 3),
         Fact::new(
             "chi2_rest",
             "χ² at rest",

@@ -12,7 +12,7 @@ use crate::xy::xy;
 const MARGIN_M: f64 = 0.4;
 
 /// Margin during editing: how far outside a stroke may go, m.
-const EDIT_MARGIN_M: f64 = 1.0;
+const EDIT_MARGIN_M: f64 = 0.6;
 
 /// The world with a margin, and the extent of the estimates except in the Apartment, whose axes are fixed.
 pub fn shown_bounds(moment: &LapState) -> Bounds {

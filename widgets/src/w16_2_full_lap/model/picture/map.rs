@@ -19,8 +19,7 @@ use crate::xy::xy;
 pub fn map(moment: &LapState) -> Panel {
     let bounds = shown_bounds(moment);
     let mut layers = vec![walls(moment)];
-    // A lap of another world does not belong into this one.
-    if moment.drawn.is_none_or(|drawn| drawn.problem.is_none()) {
+    if has_lap(moment) {
         layers.extend(lap(moment));
     }
     if let Some(drawn) = moment.drawn.filter(is_planned) {
@@ -69,6 +68,13 @@ fn lap(moment: &LapState) -> Vec<Layer> {
 /// Whether the plan is shown: during editing, and if there is no lap.
 fn is_planned(drawn: &Drawn) -> bool {
     drawn.tool.is_some() || drawn.problem.is_some()
+}
+
+/// Whether the lap is shown: not that of another world, nor over a plan before it begins.
+fn has_lap(moment: &LapState) -> bool {
+    moment
+        .drawn
+        .is_none_or(|drawn| drawn.problem.is_none() && (moment.tick > 0 || !is_planned(&drawn)))
 }
 
 /// `The Apartment after tick 92`.
@@ -252,7 +258,7 @@ fn legend(moment: &LapState) -> Vec<LegendEntry> {
         legend.push(floor_plan::legend());
     }
     // The robots have their names beside them.
-    if moment.layers == Layers::Wheels {
+    if moment.layers == Layers::Wheels || !has_lap(moment) {
         return legend;
     }
     let has_loops = moment.layers != Layers::Map;

@@ -64,10 +64,12 @@ pub fn boxes_now(window: &WholeWindow) -> Vec<Layer> {
     ];
     if step == window.boxes_taken() {
         let largest = dropped.max_by(|a, b| width_m(a).total_cmp(&width_m(b)));
-        layers.extend(largest.map(|SeenBox { poses, .. }| {
-            let corner = [poses.x_m[0], poses.y_m[1]];
-            Layer::label(corner, "boxes thrown away".to_owned(), 6.0)
-        }));
+        let best = window.search_task.window.moments()[step].best;
+        if let (Some(SeenBox { poses, .. }), Some(best)) = (largest, best) {
+            layers.push(boxes(core::iter::once(poses), Tone::Ink, 2.0));
+            let words = format!("at most {:.2}, best {:.2}: out", poses.bound, best.score);
+            layers.push(Layer::label([poses.x_m[0], poses.y_m[1]], words, 6.0));
+        }
     }
     layers
 }
