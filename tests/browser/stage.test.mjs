@@ -36,7 +36,7 @@ describe('the picture', () => {
       await visit('', async (tab) => {
         const low = [];
         await h.withoutLaps(tab);
-        for (const viewport of [...SCREENS, { width: 1280, height: 800 }]) {
+        for (const viewport of SCREENS) {
           await tab.setViewportSize(viewport);
           for (const id of h.widgetsOf(page)) {
             await h.unfold(tab, named(id));
@@ -85,7 +85,9 @@ describe('the verdict', () => {
           for (const id of h.widgetsOf(page)) {
             const width = await tab.evaluate((name) => document.querySelector(name).offsetWidth, named(id));
             assert.ok(width > 300, `${id} is ${width} px wide`);
-            widths.get(id).push({ viewport, width });
+            const places = widths.get(id);
+            // Pages that give it the same place count once.
+            if (!places.some((place) => place.viewport === viewport && place.width === width)) places.push({ viewport, width });
           }
         }
       }, { path: h.addressOf(page), options: { viewport: SCREENS[0], deviceScaleFactor: 1 } });

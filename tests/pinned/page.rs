@@ -19,7 +19,6 @@ mod thousand_laps;
 pub mod widgets;
 
 use document::{Document, Figure, NumberLink, companion, numbers_in};
-use figures::Figures;
 use widgets::Widgets;
 
 fn page() -> Document {
@@ -28,10 +27,9 @@ fn page() -> Document {
 
 #[test]
 fn every_figure_is_what_the_core_computes_at_the_printed_digits() {
-    let mut figures = Figures::default();
     let mut wrong = Vec::new();
     for Figure { name, text } in page().figures {
-        match figures.value(&name) {
+        match figures::value(&name) {
             None => wrong.push(format!("{name}: there is no such figure")),
             Some(value) => {
                 if let Err(computed) = printed::check(&text, value) {
@@ -170,7 +168,6 @@ fn every_question_has_an_answer_in_its_widget() {
 #[test]
 fn a_link_to_a_loop_sets_the_tick_of_that_loop() {
     let html = companion();
-    let mut figures = Figures::default();
     let links: Vec<_> = html.split("href=\"").skip(1).collect();
     let ticks = links.iter().filter_map(|link| {
         let (query, rest) = link.split_once('"')?;
@@ -181,9 +178,7 @@ fn a_link_to_a_loop_sets_the_tick_of_that_loop() {
     let ticks: Vec<_> = ticks.collect();
     assert!(ticks.len() >= 3);
     for (query, name) in ticks {
-        let tick = figures
-            .value(name)
-            .unwrap_or_else(|| panic!("no figure {name}"));
+        let tick = figures::value(name).unwrap_or_else(|| panic!("no figure {name}"));
         let set = query
             .split("&amp;")
             .filter_map(|pair| pair.strip_prefix("t="));

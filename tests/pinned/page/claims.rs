@@ -5,12 +5,11 @@ use ch16_lab::terrain::{SceneKind, TerrainProbe, TerrainScene, TerrainSettings};
 use ch16_slam2d::icp::{IcpConfig, IcpVariant, IcpWorkspace};
 use pr_geom::Vector2;
 
-use super::figures::Figures;
+use super::figures;
 use super::figures::basin::TAU_M;
 
 fn of(names: &[&str]) -> Vec<f64> {
-    let mut figures = Figures::default();
-    let value = |name: &&str| figures.value(name).unwrap_or_else(|| panic!("{name}"));
+    let value = |name: &&str| figures::value(name).unwrap_or_else(|| panic!("{name}"));
     names.iter().map(value).collect()
 }
 
@@ -336,10 +335,9 @@ fn the_exact_gate_accepts_true_and_false_alike_and_the_path_gate_does_not() {
 #[test]
 fn no_covariance_holds_a_bias_with_the_cap_or_without() {
     assert!(of(&["lap.canonical.capped_percent"])[0] > 95.0);
-    let mut figures = Figures::default();
-    let mut at_turn = |matcher: &str, bound: &str, what: &str| {
+    let at_turn = |matcher: &str, bound: &str, what: &str| {
         let name = format!("consistency.apartment.{matcher}.{bound}.front_end.{what}");
-        figures.value(&name).unwrap_or_else(|| panic!("{name}"))
+        figures::value(&name).unwrap_or_else(|| panic!("{name}"))
     };
     for bound in ["capped", "uncapped"] {
         let [point, plane] = ["p2p", "p2l"].map(|of| at_turn(of, bound, "bias_m"));
@@ -362,11 +360,10 @@ fn no_covariance_holds_a_bias_with_the_cap_or_without() {
 
 #[test]
 fn loops_reduce_the_scatter_on_the_ring_as_the_graph_predicts_by_point_to_plane_but_not_by_ndt() {
-    let mut figures = Figures::default();
-    let mut fall = |matcher: &str, bound: &str, what: &str| {
+    let fall = |matcher: &str, bound: &str, what: &str| {
         let [before, after] = ["front_end", "with_loops"].map(|estimate| {
             let name = format!("consistency.ring.{matcher}.{bound}.{estimate}.{what}");
-            figures.value(&name).unwrap_or_else(|| panic!("{name}"))
+            figures::value(&name).unwrap_or_else(|| panic!("{name}"))
         });
         1.0 - after / before
     };

@@ -24,81 +24,65 @@ mod rows;
 mod rule;
 mod search;
 mod setup;
+mod shared;
 pub mod sweep;
 mod terrain;
 
-use std::cell::OnceCell;
-use std::collections::HashMap;
+use std::sync::OnceLock;
 
 use ch16_lab::basin::BasinScene;
 use ch16_lab::lap::{LapRecord, LapRunner};
 
+use shared::Shared;
 use sweep::LapSweep;
 
-/// Values of the core by name; slow results are cached.
-#[derive(Default)]
-pub struct Figures {
-    laps: HashMap<String, LapRecord>,
-    basin: OnceCell<BasinScene>,
-    places: HashMap<String, places::GradedWorld>,
-    consistency: consistency::Cases,
+/// The value of the core of that name; `None` if it is unknown.
+pub fn value(name: &str) -> Option<f64> {
+    if let Some((above, below)) = name.split_once('/') {
+        return Some(value(above)? / value(below)?);
+    }
+    let path: Vec<&str> = name.split('.').collect();
+    match path.as_slice() {
+        ["world", what] => setup::world(what),
+        ["setup", what @ ..] => setup::value(what),
+        ["gate", what] => setup::gate(what),
+        ["example", "points", what] => alignment::value(what),
+        ["example", "poses", what] => graph::value(what),
+        ["basin", what @ ..] => basin::value(basin(), what),
+        ["attempts", what @ ..] => attempts::value(what),
+        ["corridor", what @ ..] => corridor::value(what),
+        ["consistency", what @ ..] => consistency::value(what),
+        ["rule", what] => rule::value(what),
+        ["drift", path, edges] => drift::rejected_percent(path, edges),
+        ["ndt", "hessian", what] => ndt::hessian(what),
+        ["ndt", start, what] => ndt::value(start, what),
+        ["procrustes", what @ ..] => procrustes::value(what),
+        ["jacobians", what @ ..] => jacobians::value(what),
+        ["box", what @ ..] => moving_box::value(what),
+        ["places", "setup", what] => places::setup(what),
+        ["places", world, what @ ..] => places::GradedWorld::shared(world)?.value(what),
+        ["search", case, what] => search::value(basin(), case, what),
+        ["terrain", what @ ..] => terrain::value(what),
+        ["rows", what @ ..] => rows::value(what),
+        ["drops", what @ ..] => drops::value(what),
+        ["ball", place, objective, reach_cm, dx_cm, dy_cm, "rest_m"] => {
+            ball::rest_m(place, objective, [reach_cm, dx_cm, dy_cm])
+        }
+        ["grid", run, what] => lap::grid(lap_named(run)?, what),
+        ["lap", run, what @ ..] => lap::value(lap_named(run)?, what),
+        ["robots", row, column] => robots::value(row, column),
+        ["worlds", what @ ..] => crate::worlds::value(what),
+        ["sweep", what @ ..] => LapSweep::shared().value(what),
+        _ => None,
+    }
 }
 
-impl Figures {
-    /// The value of that name; `None` if it is unknown.
-    pub fn value(&mut self, name: &str) -> Option<f64> {
-        if let Some((above, below)) = name.split_once('/') {
-            return Some(self.value(above)? / self.value(below)?);
-        }
-        let path: Vec<&str> = name.split('.').collect();
-        match path.as_slice() {
-            ["world", what] => setup::world(what),
-            ["setup", what @ ..] => setup::value(what),
-            ["gate", what] => setup::gate(what),
-            ["example", "points", what] => alignment::value(what),
-            ["example", "poses", what] => graph::value(what),
-            ["basin", what @ ..] => basin::value(self.basin.get_or_init(BasinScene::new), what),
-            ["attempts", what @ ..] => attempts::value(what),
-            ["corridor", what @ ..] => corridor::value(what),
-            ["consistency", what @ ..] => self.consistency.value(what),
-            ["rule", what] => rule::value(what),
-            ["drift", path, edges] => drift::rejected_percent(path, edges),
-            ["ndt", "hessian", what] => ndt::hessian(what),
-            ["ndt", start, what] => ndt::value(start, what),
-            ["procrustes", what @ ..] => procrustes::value(what),
-            ["jacobians", what @ ..] => jacobians::value(what),
-            ["box", what @ ..] => moving_box::value(what),
-            ["places", "setup", what] => places::setup(what),
-            ["places", world, what @ ..] => self.places(world)?.value(what),
-            ["search", case, what] => {
-                search::value(self.basin.get_or_init(BasinScene::new), case, what)
-            }
-            ["terrain", what @ ..] => terrain::value(what),
-            ["rows", what @ ..] => rows::value(what),
-            ["drops", what @ ..] => drops::value(what),
-            ["ball", place, objective, reach_cm, dx_cm, dy_cm, "rest_m"] => {
-                ball::rest_m(place, objective, [reach_cm, dx_cm, dy_cm])
-            }
-            ["grid", run, what] => lap::grid(self.lap(run)?, what),
-            ["lap", run, what @ ..] => lap::value(self.lap(run)?, what),
-            ["robots", row, column] => robots::value(row, column),
-            ["worlds", what @ ..] => crate::worlds::value(what),
-            ["sweep", what @ ..] => LapSweep::shared().value(what),
-            _ => None,
-        }
-    }
+fn basin() -> &'static BasinScene {
+    static BASIN: OnceLock<BasinScene> = OnceLock::new();
+    BASIN.get_or_init(BasinScene::new)
+}
 
-    fn places(&mut self, world: &str) -> Option<&places::GradedWorld> {
-        if !self.places.contains_key(world) {
-            let graded = places::GradedWorld::graded(world)?;
-            self.places.insert(world.to_owned(), graded);
-        }
-        self.places.get(world)
-    }
-
-    fn lap(&mut self, name: &str) -> Option<&LapRecord> {
-        let config = lap::config(name)?;
-        let laps = self.laps.entry(name.to_owned());
-        Some(laps.or_insert_with(|| LapRunner::new().run(&config)))
-    }
+fn lap_named(name: &str) -> Option<&'static LapRecord> {
+    static LAPS: Shared<LapRecord> = Shared::new();
+    LAPS.get(name, || Some(LapRunner::new().run(&lap::config(name)?)))
 }

@@ -3,7 +3,7 @@
 use ch16_lab::basin::Minimum;
 use widget_kit::model::Assessment;
 
-use super::figures::Figures;
+use super::figures;
 use super::widgets::Widgets;
 
 /// Names of basins in the text, and the settings of the widget.
@@ -19,7 +19,6 @@ const BASINS: [(&str, &str); 4] = [
 
 #[test]
 fn the_widget_converges_at_both_printed_edges_and_not_one_degree_beyond() {
-    let mut figures = Figures::default();
     let mut widgets = Widgets::new();
     let mut verdict = |state: &str, heading: f64| {
         let state = format!("{state}&dx=0&dy=0&heading={heading}");
@@ -30,7 +29,7 @@ fn the_widget_converges_at_both_printed_edges_and_not_one_degree_beyond() {
     for (basin, state) in BASINS {
         for (edge, outwards) in [("from_deg", -1.0), ("to_deg", 1.0)] {
             let name = format!("{basin}.{edge}");
-            let heading = figures.value(&name).expect("the page prints it");
+            let heading = figures::value(&name).expect("the page prints it");
             assert_eq!(verdict(state, heading), home, "{name}: {heading}°");
             let beyond = heading + outwards;
             assert_ne!(verdict(state, beyond), home, "{name}: {beyond}°");

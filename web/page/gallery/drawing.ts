@@ -43,7 +43,7 @@ export function numbers(facts: Facts): { off: string; agrees: string } {
   const isWay = isOffOnTheWay(facts);
   const off = metresOff(facts);
   return {
-    off: `${isWay ? '' : 'ends '}${off.toFixed(off < 1 ? 2 : 1)} m off${isWay ? ' on the way' : ''}`,
+    off: `${isWay ? 'typically' : 'ends'} ${off.toFixed(off < 1 ? 2 : 1)} m off`,
     agrees: typeof apart === 'number' ? agreement(Math.round(100 * apart)) : '',
   };
 }

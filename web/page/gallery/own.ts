@@ -37,7 +37,7 @@ export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement, says: HTM
   let record = 0;
   const count = ({ verdict, facts }: Result['outcome']): void => {
     off.hidden = verdict === UNDRIVEABLE || Number(widget.value['t']) === 0;
-    off.textContent = `${metresOff(facts).toFixed(1)} m off${isOffOnTheWay(facts) ? ' on the way' : ''}`;
+    off.textContent = `${isOffOnTheWay(facts) ? 'typically ' : ''}${metresOff(facts).toFixed(1)} m off`;
   };
   const show = async (outcome: Result['outcome']): Promise<void> => {
     const { facts } = outcome;
@@ -88,7 +88,7 @@ function remark(facts: Facts): { notice: string; hint: string } {
   if (!isUnnoticed(facts)) return { notice: `It shows: the ${agrees}, which scores nothing.`, hint: 'Let the robot see no room twice.' };
   const isHome = metresOff(facts) < HOME_M;
   const change = isHome ? 'rub out doors and corners, so that the walls look the same everywhere' : 'draw longer walls without doors or corners';
-  return { notice: `Nothing warns the robot: its ${agrees}.`, hint: `Make it worse: ${change}.` };
+  return { notice: `Nothing warns the robot: its ${agrees}, wrong on both passes.`, hint: `Make it worse: ${change}.` };
 }
 
 function withCapital(words: string): string {

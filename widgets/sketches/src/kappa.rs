@@ -29,7 +29,7 @@ const DRIVE: [f64; 2] = [0.2, 0.05];
 const CORNER_M: [f64; 2] = [0.8, 0.8];
 const SIZE_M: [f64; 2] = [2.4, 2.0];
 /// Largest κ.
-const MOST: f64 = 30.0;
+const MOST: f64 = 20.0;
 /// Width of a bin in standard deviations, and bins to either side.
 const BIN: f64 = 0.5;
 const BINS: i32 = 10;
@@ -41,7 +41,7 @@ pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "kappa",
     title: "Errors, in the standard deviations that a registration claims",
     slider: Slider {
-        label: "κ",
+        label: "κ, points that count as one",
         unit: "",
         min: 1.0,
         max: MOST,
@@ -134,7 +134,11 @@ fn errors(kappa: f64) -> Panel {
         title: "Error ÷ claimed standard deviation".to_owned(),
         weight: Weight::Main,
         aspect: Aspect::Free,
-        x: Axis::new("along the drive (σ)", -reach, reach),
+        x: Axis::new(
+            "along the drive (σ); the ends hold all beyond",
+            -reach,
+            reach,
+        ),
         y: Axis::new("registrations", 0.0, HIGHEST),
         layers: vec![
             Layer::line(normal.collect(), Stroke::Dotted, Tone::Ink, 2.0),
@@ -166,11 +170,11 @@ fn honest(kappa: f64) -> Panel {
     };
     Panel {
         id: "honest",
-        title: "Rms of the ratio".to_owned(),
+        title: "Above 1 too sure, below it too cautious".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Free,
         x: Axis::new("κ", 0.0, MOST),
-        y: Axis::new("rms error ÷ σ", 0.0, MOST_RATIO),
+        y: Axis::new("typical error ÷ σ", 0.0, MOST_RATIO),
         layers: vec![
             Layer::segments(
                 vec![[[0.0, 1.0], [MOST, 1.0]]],

@@ -1,4 +1,4 @@
-//! NDT's own steps from a guess: each climbs the score of the whole sweep.
+//! NDT's own steps from a guess: how far each moves the sweep.
 
 use std::sync::OnceLock;
 
@@ -18,8 +18,8 @@ const CELL_M: f64 = 0.8;
 const GUESS: [f64; 3] = [0.25, -0.2, 0.15];
 /// Steps on the slider.
 const STEPS: usize = 14;
-/// Top of the axis of the score per beam.
-const HIGHEST: f64 = 0.8;
+/// Top of the axis of the lengths, cm.
+const HIGHEST_CM: f64 = 8.0;
 
 pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "newton",
@@ -69,9 +69,18 @@ fn score(step: usize) -> f64 {
     climb().states[step].score / BEAMS as f64
 }
 
-/// On the curve of the score.
+/// How far a step moves the sweep, cm; the guess is no step.
+fn length_cm(step: usize) -> f64 {
+    let Some(before) = step.checked_sub(1) else {
+        return 0.0;
+    };
+    let [from, to] = [before, step].map(|step| climb().states[step].pose);
+    100.0 * math::norm2(to.x() - from.x(), to.y() - from.y())
+}
+
+/// On the length of the last step.
 fn handle(steps: f64) -> (&'static str, [f64; 2]) {
-    ("climb", [steps, score(steps as usize)])
+    ("lengths", [steps, length_cm(steps as usize)])
 }
 
 fn at(steps: f64) -> Shown {
@@ -81,7 +90,7 @@ fn at(steps: f64) -> Shown {
     let off_deg = off.theta().to_degrees().abs();
     Shown {
         scene: Scene {
-            panels: vec![plan(step), curve(step)],
+            panels: vec![plan(step), lengths(step)],
         },
         sentence: match step.checked_sub(1) {
             None => {
@@ -91,7 +100,8 @@ fn at(steps: f64) -> Shown {
                 )
             }
             Some(before) => format!(
-                "Step {step} takes the score from {:.3} to {:.3} a beam. The sweep is {off_cm:.1} cm and {off_deg:.1}° off.",
+                "Step {step} is {:.1} cm long and takes the score from {:.3} to {:.3} a beam. The sweep is {off_cm:.1} cm off.",
+                length_cm(step),
                 score(before),
                 score(step)
             ),
@@ -106,7 +116,7 @@ fn plan(step: usize) -> Panel {
         moved.iter().map(|point| [point.x, point.y]).collect()
     };
     let mut layers = bells::ellipses(&climb.map);
-    layers.push(Layer::points(placed(0), Mark::Circle, Tone::Prior, 2.0));
+    layers.push(Layer::points(placed(0), Mark::Dot, Tone::Prior, 1.2));
     layers.push(Layer::points(
         placed(step),
         Mark::Cross,
@@ -118,31 +128,25 @@ fn plan(step: usize) -> Panel {
         title: "The sweep on the bells".to_owned(),
         layers,
         legend: vec![
-            LegendEntry::mark("the guess", Tone::Prior, Mark::Circle),
+            LegendEntry::mark("the guess", Tone::Prior, Mark::Dot),
             LegendEntry::mark("after the steps", Tone::Measurement, Mark::Cross),
+            LegendEntry::line("a bell", Tone::Posterior, Stroke::Solid),
         ],
         ..bells::plan()
     }
 }
 
-fn curve(step: usize) -> Panel {
-    let climbed = (0..=step).map(|k| [k as f64, score(k)]).collect();
+fn lengths(step: usize) -> Panel {
+    let bar = |k: usize| [[k as f64, 0.0], [k as f64, length_cm(k)]];
+    let bars = (1..=step).map(bar).collect();
     Panel {
-        id: "climb",
-        title: "Its score".to_owned(),
+        id: "lengths",
+        title: "Length of each step".to_owned(),
         weight: Weight::Half,
         aspect: Aspect::Free,
-        x: Axis::new("steps", 0.0, STEPS as f64),
-        y: Axis::new("score per beam", 0.0, HIGHEST),
-        layers: vec![
-            Layer::line(climbed, Stroke::Solid, Tone::Posterior, 2.0),
-            Layer::points(
-                vec![[step as f64, score(step)]],
-                Mark::Square,
-                Tone::Posterior,
-                5.0,
-            ),
-        ],
+        x: Axis::new("step", 0.0, STEPS as f64 + 0.5),
+        y: Axis::new("cm", 0.0, HIGHEST_CM),
+        layers: vec![Layer::segments(bars, Stroke::Solid, Tone::Posterior, 7.0)],
         legend: Vec::new(),
         color_bar: None,
     }
@@ -158,7 +162,6 @@ mod tests {
         for pair in scores.windows(2) {
             assert!(pair[1] > pair[0], "{scores:?}");
         }
-        assert!(scores[STEPS] < HIGHEST, "{scores:?}");
         let off = climb().states[STEPS].pose;
         assert!(off.step_size() < 0.03, "{off:?}");
     }
@@ -166,11 +169,10 @@ mod tests {
     /// The claim of the caption.
     #[test]
     fn a_later_step_is_longer_than_the_first() {
-        let length = |k: usize| {
-            let poses = [k, k + 1].map(|step| climb().states[step].pose);
-            poses[0].between(&poses[1]).step_size()
-        };
-        let longest = (1..STEPS).map(length).fold(0.0, f64::max);
-        assert!(longest > 1.5 * length(0), "{longest} {}", length(0));
+        let longest = (2..=STEPS).map(length_cm).fold(0.0, f64::max);
+        assert!(
+            longest > 1.5 * length_cm(1) && longest < HIGHEST_CM,
+            "{longest}"
+        );
     }
 }

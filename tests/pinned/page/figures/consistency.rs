@@ -1,12 +1,12 @@
 //! Errors halfway of many laps beside the graph's covariance, with the cap on information and without.
 
-use std::collections::HashMap;
-
 use ch16_lab::lap::{
     BuiltInWorld, HalfWay, LapConfig, LapConsistency, LapMatcher, LapRunner, NamedChoice as _,
     StepInnovations,
 };
 use ch16_slam2d::chapter::InformationFrame;
+
+use super::shared::Shared;
 
 /// Laps of each case, from seed 1 on: the standard deviation of a scatter is 5 % of it.
 const SEEDS: u32 = 100;
@@ -17,44 +17,35 @@ type Case = ([LapConsistency; 2], Vec<StepInnovations>);
 /// A mean beyond so many standard errors is seldom chance.
 const ALARM: f64 = 2.0;
 
-/// The cases that were asked for.
-#[derive(Default)]
-pub struct Cases(HashMap<String, Case>);
-
-impl Cases {
-    /// `ring.ndt.uncapped.with_loops.scatter_m`: by world, matcher, bound of the information, estimate.
-    pub fn value(&mut self, path: &[&str]) -> Option<f64> {
-        let [world, matcher, bound, estimate, what] = *path else {
-            return (path == ["seeds"]).then(|| f64::from(SEEDS));
-        };
-        let name = format!("{world}.{matcher}.{bound}");
-        if !self.0.contains_key(&name) {
-            self.0.insert(name.clone(), case(world, matcher, bound)?);
+/// `ring.ndt.uncapped.with_loops.scatter_m`: by world, matcher, bound of the information, estimate.
+pub fn value(path: &[&str]) -> Option<f64> {
+    static CASES: Shared<Case> = Shared::new();
+    let [world, matcher, bound, estimate, what] = *path else {
+        return (path == ["seeds"]).then(|| f64::from(SEEDS));
+    };
+    let name = format!("{world}.{matcher}.{bound}");
+    let ([front_end, with_loops], steps) = CASES.get(&name, || case(world, matcher, bound))?;
+    let mean =
+        |of: fn(&StepInnovations) -> f64| steps.iter().map(of).sum::<f64>() / steps.len() as f64;
+    match what {
+        "alarm_percent" => {
+            return Some(100.0 * mean(|lap| f64::from(u8::from(lap.t().abs() > ALARM))));
         }
-        let ([front_end, with_loops], steps) = &self.0[&name];
-        let mean = |of: fn(&StepInnovations) -> f64| {
-            steps.iter().map(of).sum::<f64>() / steps.len() as f64
-        };
-        match what {
-            "alarm_percent" => {
-                return Some(100.0 * mean(|lap| f64::from(u8::from(lap.t().abs() > ALARM))));
-            }
-            "step_ratio" => return Some(mean(|lap| lap.ratio)),
-            _ => {}
-        }
-        let of = match estimate {
-            "front_end" => front_end,
-            "with_loops" => with_loops,
-            _ => return None,
-        };
-        Some(match what {
-            "bias_m" => of.bias_m,
-            "scatter_m" => of.scatter_m,
-            "sigma_m" => of.sigma_m,
-            "nees" => of.nees,
-            _ => return None,
-        })
+        "step_ratio" => return Some(mean(|lap| lap.ratio)),
+        _ => {}
     }
+    let of = match estimate {
+        "front_end" => front_end,
+        "with_loops" => with_loops,
+        _ => return None,
+    };
+    Some(match what {
+        "bias_m" => of.bias_m,
+        "scatter_m" => of.scatter_m,
+        "sigma_m" => of.sigma_m,
+        "nees" => of.nees,
+        _ => return None,
+    })
 }
 
 fn case(world: &str, matcher: &str, bound: &str) -> Option<Case> {

@@ -3,6 +3,8 @@
 use ch16_lab::lap::{BuiltInWorld, LapConfig, LapDetector, LapMatcher, NamedChoice};
 use ch16_lab::places::{GRADED, PlaceCurve, PlacePair, place_curves, place_pairs};
 
+use super::shared::Shared;
+
 /// Laps of each world, from seed 1 on.
 const SEEDS: u32 = 20;
 
@@ -16,8 +18,14 @@ pub struct GradedWorld {
 }
 
 impl GradedWorld {
+    /// The world of that name.
+    pub fn shared(name: &str) -> Option<&'static Self> {
+        static WORLDS: Shared<GradedWorld> = Shared::new();
+        WORLDS.get(name, || Self::graded(name))
+    }
+
     /// Runs the laps of the world of that name.
-    pub fn graded(name: &str) -> Option<Self> {
+    fn graded(name: &str) -> Option<Self> {
         let world = BuiltInWorld::named(name)?;
         let lap = |seed| LapConfig::in_world(world, seed, 1.0).with_matcher(LapMatcher::Ndt);
         let pairs: Vec<_> = (1..=SEEDS)

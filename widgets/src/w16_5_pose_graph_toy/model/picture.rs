@@ -110,10 +110,10 @@ fn graph(toy: &PoseGraphToy) -> Panel {
     Panel {
         id: panel::GRAPH,
         title: format!(
-            "Step {} of {}: χ² {:.2}",
+            "Step {} of {}: χ² {}",
             toy.step(),
             toy.course.last(),
-            toy.shown().chi2
+            short(toy.shown().chi2)
         ),
         weight: Weight::Main,
         aspect: Aspect::Equal,
@@ -268,9 +268,13 @@ fn bars(toy: &PoseGraphToy) -> Panel {
     }
 }
 
-/// A number with at most five characters: as many decimals as the title has, if there is room.
+/// A number with at most five characters.
 fn short(value: f64) -> String {
-    let decimals = if value < 10.0 { 2 } else { 1 };
+    let decimals = match value {
+        0.0..1.0 => 3,
+        1.0..10.0 => 2,
+        _ => 1,
+    };
     format!("{value:.decimals$}")
 }
 

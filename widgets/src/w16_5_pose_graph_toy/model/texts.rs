@@ -51,12 +51,15 @@ pub fn outcome(toy: &PoseGraphToy) -> Outcome {
     let worst = worst(toy);
     let start = toy.course.moments[0].chi2;
     let sentence = if step == 0 {
-        format!("before the first step χ² is {start:.3}{worst}")
+        format!("before the first step χ² is {start:.3}; {worst}")
     } else if step == last {
-        format!("χ² falls from {start:.3} to {:.3}{worst}", shown.chi2)
+        format!(
+            "χ² falls from {start:.3} to {:.3}. At rest, {worst}",
+            shown.chi2
+        )
     } else {
         format!(
-            "step {step} of {last} takes χ² from {:.3} to {:.3}. It moves a pose by {:.2} m + rad at most{worst}",
+            "step {step} of {last} takes χ² from {:.3} to {:.3}. It moves a pose by {:.2} m + rad at most; {worst}",
             before.chi2, shown.chi2, shown.moved
         )
     };
@@ -103,13 +106,13 @@ fn worst(toy: &PoseGraphToy) -> String {
         match shown.edge_chi2.iter().filter(alike).count() {
             1 => "the largest share",
             count if count == shown.edge_chi2.len() => {
-                return format!("; every spring has the same share, {chi2:.3}");
+                return format!("every spring has the same share, {chi2:.3}");
             }
-            count => return format!("; {count} springs have the largest share, {chi2:.3} each"),
+            count => return format!("{count} springs have the largest share, {chi2:.3} each"),
         }
     };
     format!(
-        "; {share}, {chi2:.3}, is in the {} from {}",
+        "{share}, {chi2:.3}, is in the {} from {}",
         kind(edge),
         ends(edge)
     )

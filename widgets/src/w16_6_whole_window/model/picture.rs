@@ -90,7 +90,11 @@ fn sweeps(window: &WholeWindow) -> Panel {
             LegendEntry::line("it may be here", Tone::Series(0), Stroke::Solid),
             LegendEntry::mark("best so far", Tone::Posterior, Mark::Square),
             LegendEntry::mark("start", Tone::Prior, Mark::Circle),
-            LegendEntry::mark("ICP alone", Tone::Series(2), Mark::Dot),
+            if window.raced().is_some() {
+                LegendEntry::mark("ICP alone", Tone::Series(2), Mark::Dot)
+            } else {
+                LegendEntry::line("thrown away", places::THROWN_AWAY, Stroke::Solid)
+            },
         ],
         color_bar: None,
     }

@@ -11,6 +11,9 @@ use super::super::{WholeWindow, panel};
 use super::bounds::is_dropped;
 use super::{icp_now, icp_path, sensor};
 
+/// Colour of boxes whose best possible score is below one that was found.
+pub const THROWN_AWAY: Tone = Tone::Truth;
+
 /// Margin around the window as a share of its width.
 const MARGIN: f64 = 0.06;
 
@@ -59,15 +62,15 @@ pub fn boxes_now(window: &WholeWindow) -> Vec<Layer> {
     let dropped = all.iter().filter(|seen| is_dropped(seen, step));
     let waiting = all.iter().filter(|seen| seen.waits_after(step));
     let mut layers = vec![
-        boxes(dropped.clone().map(|seen| &seen.poses), Tone::Faint, 1.0),
+        boxes(dropped.clone().map(|seen| &seen.poses), THROWN_AWAY, 0.5),
         boxes(waiting.map(|seen| &seen.poses), Tone::Series(0), 1.0),
     ];
     if step == window.boxes_taken() {
         let largest = dropped.max_by(|a, b| width_m(a).total_cmp(&width_m(b)));
         let best = window.search_task.window.moments()[step].best;
         if let (Some(SeenBox { poses, .. }), Some(best)) = (largest, best) {
-            layers.push(boxes(core::iter::once(poses), Tone::Ink, 2.0));
-            let words = format!("at most {:.2}, best {:.2}: out", poses.bound, best.score);
+            layers.push(boxes(core::iter::once(poses), THROWN_AWAY, 2.5));
+            let words = format!("scores at most {:.2}, best {:.2}", poses.bound, best.score);
             layers.push(Layer::label([poses.x_m[0], poses.y_m[1]], words, 6.0));
         }
     }
