@@ -94,9 +94,9 @@ struct Comparison {
     last_estimate: Option<(f64, SE2)>,
     /// Largest turn during a sweep, in steps between two beams.
     skew: f64,
-    /// Stamp of the last scan, s, and for each scan the time of its sweep over that since the one before.
+    /// Stamp of the last scan, s, and for each scan the time of its sweep and that since the one before, s.
     stamp_s: Option<f64>,
-    sweep_shares: Vec<f64>,
+    sweeps: Vec<(f64, f64)>,
 }
 
 impl Comparison {
@@ -114,14 +114,14 @@ impl Comparison {
             last_estimate: None,
             skew: 0.0,
             stamp_s: None,
-            sweep_shares: Vec::new(),
+            sweeps: Vec::new(),
         }
     }
 
     fn add(&mut self, log: &LogFrame) {
         if let Some(before_s) = self.stamp_s.replace(log.stamp_s) {
-            let share = log.scan.sweep_s() / (log.stamp_s - before_s);
-            self.sweep_shares.push(share);
+            let sweep = (log.scan.sweep_s(), log.stamp_s - before_s);
+            self.sweeps.push(sweep);
         }
         if log.stamp_s - self.last_s < MIN_APART_S {
             return;

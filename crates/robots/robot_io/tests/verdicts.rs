@@ -77,6 +77,7 @@ fn words(motion: &MotionComparison) -> Vec<&'static str> {
         Finding::TurnScale { .. } => "turns",
         Finding::Opposed { .. } => "opposed",
         Finding::Backward => "backward",
+        Finding::Swept { .. } => "swept",
     };
     motion.faults().iter().map(word).collect()
 }

@@ -50,6 +50,8 @@ const UNITS: [(f64, &str); 4] = [
 ];
 /// Relative tolerance of a unit.
 const UNIT_OFF: f64 = 0.12;
+/// Times of a sweep over that between two scans that are tried for scans whose beams have no times.
+const SWEEPS: [f64; 3] = [2.0, 3.0, 4.0];
 /// Odometry that covers less than this share of the path by scans stands still.
 const STILL: f64 = 0.03;
 
@@ -83,6 +85,11 @@ pub struct MotionComparison {
     /// Time of a sweep over that between two scans, if it is longer: beams of different sweeps would overlap.
     #[serde(skip)]
     pub(super) long_sweep: Option<f64>,
+    /// Medians of the time of a sweep and of that between two scans, s.
+    #[serde(skip)]
+    pub(super) sweep_s: f64,
+    #[serde(skip)]
+    period_s: f64,
     /// Faults whose repair won its trial, each with its costs; before the trial, those that the comparison shows.
     #[serde(skip)]
     findings: Vec<(Finding, Option<Costs>)>,
@@ -253,9 +260,12 @@ impl MotionComparison {
     }
 
     /// Tries the opposite order of the beams in time, if the robot turned by more than the step between two beams (a
-    /// `skew` of 1) during a sweep. `shares` are the times of the sweeps over those between two scans.
-    pub(super) fn compare_sweeps(&mut self, skew: f64, shares: Vec<f64>) {
-        self.long_sweep = median(shares).filter(|&share| share > SWEEP_SLACK);
+    /// `skew` of 1) during a sweep. `sweeps` are the times of the sweeps and those between two scans, s.
+    pub(super) fn compare_sweeps(&mut self, skew: f64, sweeps: &[(f64, f64)]) {
+        let middle = |of: fn(&(f64, f64)) -> f64| median(sweeps.iter().map(of).collect());
+        self.sweep_s = middle(|sweep| sweep.0).unwrap_or_default();
+        self.period_s = middle(|sweep| sweep.1).unwrap_or_default();
+        self.long_sweep = middle(|sweep| sweep.0 / sweep.1).filter(|&share| share > SWEEP_SLACK);
         if skew > 1.0 {
             self.propose(Finding::Backward);
         }
@@ -293,9 +303,36 @@ impl MotionComparison {
             }
         }
         let is_late = |(finding, _): &(Finding, _)| matches!(finding, Finding::Late { .. });
-        if !self.findings.iter().any(is_late) {
+        let late = self.findings.iter().position(is_late);
+        if late.is_none_or(|at| self.is_swept(at, trial, mount)) {
             self.lag_s = None;
         }
+    }
+
+    /// Whether sweeps of several times the time between two scans explain the lag, the finding `at`: the middle of such a
+    /// sweep is measured after its stamp. Then they take the place of the lag.
+    fn is_swept(&mut self, at: usize, trial: &Trial, mount: LaserMount) -> bool {
+        let is_candidate = self.lag_s.is_some_and(|by_s| by_s > 0.0) && self.sweep_s == 0.0;
+        if !is_candidate {
+            return false;
+        }
+        let mut faults = self.faults();
+        let late = trial.costs(&Repairs::of(&faults, mount));
+        let tried = SWEEPS.map(|share| {
+            let sweep_s = share * self.period_s;
+            faults[at] = Finding::Swept { share, sweep_s };
+            let swept = trial.costs(&Repairs::of(&faults, mount));
+            (faults[at].clone(), trial.compare(&swept, &late))
+        });
+        let best = tried
+            .into_iter()
+            .filter(|(_, costs)| costs.wins)
+            .min_by(|a, b| a.1.with.total_cmp(&b.1.with));
+        let is_swept = best.is_some();
+        if let Some((finding, costs)) = best {
+            self.findings[at] = (finding, Some(costs));
+        }
+        is_swept
     }
 
     /// The faults found.

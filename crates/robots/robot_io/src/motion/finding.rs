@@ -66,6 +66,13 @@ pub enum Finding {
         /// Correlation of the turns.
         correlation: f64,
     },
+    /// A sweep takes several times the time between two scans, and its beams have no times.
+    Swept {
+        /// Time of a sweep over that between two scans.
+        share: f64,
+        /// Time of a sweep, s.
+        sweep_s: f64,
+    },
     /// Odometry has the stamps of another time.
     Late {
         /// Its lag behind the scans, s.
@@ -76,7 +83,7 @@ pub enum Finding {
 impl Finding {
     /// Whether it is about the laser rather than the odometry.
     pub(super) fn is_of_laser(&self) -> bool {
-        self.is_of_mount() || matches!(self, Self::Backward)
+        self.is_of_mount() || matches!(self, Self::Backward | Self::Swept { .. })
     }
 
     /// Whether it is about the mounting of the laser.

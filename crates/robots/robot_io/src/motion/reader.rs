@@ -185,7 +185,7 @@ impl<'a> ComparedReader<'a> {
                     MotionComparison::from_stretches(&compared.stretches, stated.body_from_sensor);
                 motion.compare_turns(&compared.headings);
             }
-            motion.compare_sweeps(compared.skew, compared.sweep_shares);
+            motion.compare_sweeps(compared.skew, &compared.sweeps);
             if matches!(self.odometry, OdometryUse::Force | OdometryUse::Ignore) {
                 motion.keep_mounting();
             }

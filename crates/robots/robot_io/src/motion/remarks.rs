@@ -6,6 +6,9 @@ use super::{Costs, Finding, MotionComparison, OdometryUse, Suggestion};
 use crate::laser_mount::LaserMount;
 use crate::remark::{NO_ODOMETRY, Part, Remark};
 
+/// A lag is the time of a sweep to within this share of it: the lag is found to a few hundredths of a second.
+const SAME_SWEEP: f64 = 0.35;
+
 impl MotionComparison {
     /// The findings, one remark each; `mount` is the stated mounting, and `is_mount_fixed` whether the user set it, so
     /// that it was not corrected.
@@ -50,10 +53,17 @@ impl MotionComparison {
                     Part::Odometry,
                     format!("{text}; it may not be this robot's: use scans alone with {NO_ODOMETRY}"),
                 ),
-                Finding::Late { .. } => Remark::mended(
+                Finding::Swept { .. } => Remark::mended(
+                    Part::Sensor,
+                    format!(
+                        "{text} with the odometry late; the time between beams was set to that. Publish one revolution per scan, stamped at its first beam, or state the time between beams"
+                    ),
+                ),
+                Finding::Late { by_s } => Remark::mended(
                     Part::Clocks,
                     format!(
-                        "{text}; it was shifted by that. Synchronize both clocks with NTP, and stamp each message when it is measured"
+                        "{text}; it was shifted by that{}. Synchronize both clocks with NTP, and stamp each message when it is measured",
+                        self.at_last_beam(*by_s)
                     ),
                 ),
             };
@@ -80,6 +90,21 @@ impl MotionComparison {
             Remark::wrong(Part::Sensor, text)
         });
         found.chain(suggested).chain(long).collect()
+    }
+}
+
+impl MotionComparison {
+    /// What a lag of odometry of minus the time of a sweep also means.
+    fn at_last_beam(&self, by_s: f64) -> String {
+        let is_sweep =
+            self.sweep_s > 0.0 && (by_s + self.sweep_s).abs() <= SAME_SWEEP * self.sweep_s;
+        if !is_sweep {
+            return String::new();
+        }
+        format!(
+            ". A sweep takes {:.2} s, so the scans may be stamped at their last beam: stamp them at the first, because each pose is where its first beam was measured",
+            self.sweep_s
+        )
     }
 }
 
@@ -162,6 +187,9 @@ fn sentence(finding: &Finding) -> String {
         Finding::Unlike { correlation } => format!(
             "the turns of scans matched alone and of odometry differ (correlation {correlation:.2})"
         ),
+        Finding::Swept { share, .. } => format!(
+            "a sweep takes about {share:.0} times the time between two scans, although its beams have no times, so each scan has beams of the ones before"
+        ),
         Finding::Late { by_s } => format!(
             "odometry is {:.2} s {} relative to the scans, judging by the turns of both",
             by_s.abs(),
@@ -193,7 +221,7 @@ fn suggest(suggestion: &Suggestion, mount: LaserMount) -> Remark {
         Finding::Unit { .. } | Finding::Opposed { .. } | Finding::TurnScale { .. } => {
             (Part::Odometry, None)
         }
-        Finding::Backward => (Part::Sensor, None),
+        Finding::Backward | Finding::Swept { .. } => (Part::Sensor, None),
         Finding::Scale { .. } | Finding::Still { .. } | Finding::Unlike { .. } => {
             (Part::Odometry, Some(NO_ODOMETRY.to_owned()))
         }

@@ -23,6 +23,8 @@ pub(super) struct Repairs {
     /// Whether the order of the beams in time is reversed.
     is_backward: bool,
     pub drops_odometry: bool,
+    /// Time of a sweep whose beams have no times, s.
+    sweep_s: Option<f64>,
     /// Lag of the odometry, s.
     pub late_s: Option<f64>,
 }
@@ -45,6 +47,7 @@ impl Default for Repairs {
             turns: 1.0,
             is_backward: false,
             drops_odometry: false,
+            sweep_s: None,
             late_s: None,
         }
     }
@@ -65,6 +68,7 @@ impl Repairs {
                 Finding::TurnScale { ratio } => repairs.turns = 1.0 / ratio,
                 Finding::Backward => repairs.is_backward = true,
                 Finding::Still { .. } | Finding::Unlike { .. } => repairs.drops_odometry = true,
+                Finding::Swept { sweep_s, .. } => repairs.sweep_s = Some(*sweep_s),
                 Finding::Late { by_s } => repairs.late_s = Some(*by_s),
             }
         }
@@ -83,6 +87,7 @@ impl Repairs {
 
     /// A corrected frame, but for the lag of its odometry; `path` has the frames before.
     pub fn apply(&self, mut frame: LogFrame, path: &mut TurnedPath) -> LogFrame {
+        self.time_beams(&mut frame.scan);
         if self.is_backward {
             reverse(&mut frame.scan);
         }
@@ -102,6 +107,14 @@ impl Repairs {
             frame.odometry = frame.odometry.map(|pose| path.next(pose, self.turns));
         }
         frame
+    }
+
+    /// States the time between the beams of a scan that has none.
+    pub fn time_beams(&self, scan: &mut LaserScan) {
+        let steps = scan.ranges_m.len().saturating_sub(1).max(1);
+        if let Some(sweep_s) = self.sweep_s.filter(|_| scan.beam_interval_s == 0.0) {
+            scan.beam_interval_s = sweep_s / steps as f64;
+        }
     }
 
     /// A pose by odometry with corrected unit and signs.

@@ -67,6 +67,7 @@ impl Trial {
             if let Some(late_s) = repairs.late_s {
                 frame.odometry = self.odometry.at(frame.stamp_s + late_s);
             }
+            repairs.time_beams(&mut frame.scan);
             if !repairs.drops_odometry {
                 let from_s = frame.stamp_s + repairs.late_s.unwrap_or(0.0);
                 frame.scan.velocity = self.velocity(repairs, from_s, frame.scan.sweep_s());
