@@ -24,6 +24,7 @@ mod reader;
 mod remarks;
 mod repairs;
 mod trial;
+mod turns;
 
 pub use crate::odometry_use::OdometryUse;
 pub use compared::MotionComparison;

@@ -12,14 +12,11 @@ use super::finding::{Finding, Suggestion};
 use super::lag::{Heading, lag_s};
 use super::repairs::Repairs;
 use super::trial::Trial;
+use super::turns::{compare_turns, direction, length, opposed, size, without_outliers};
 use crate::laser_mount::LaserMount;
 use crate::ros::SWEEP_SLACK;
 use crate::stamps::median;
 
-/// A shorter turn has no ratio, rad.
-const MIN_TURN_RAD: f64 = 0.1;
-/// One of this many segments may be wrong.
-const OUTLIERS: usize = 10;
 /// Fewer segments are not evaluated.
 const MIN_STRETCHES: usize = 8;
 /// A shorter path or less turning is not evaluated, m and rad.
@@ -29,10 +26,8 @@ const MIN_RAD: f64 = 1.5;
 const AGREE: f64 = 0.8;
 /// Least concentration of the displacements' directions, and largest distance per metre between scans and odometry, of a
 /// comparison that agrees with itself.
-const ONE_DIRECTION: f64 = 0.85;
+pub(super) const ONE_DIRECTION: f64 = 0.85;
 const MAX_DRIFT: f64 = 0.3;
-/// A sign of the odometry is tried if it reduces the spread of these directions to less than this share.
-const OPPOSED: f64 = 0.5;
 /// A direction within this of the stated one confirms it, rad: 10°.
 const CONFIRMED_RAD: f64 = 10.0 * PI / 180.0;
 /// A laser whose direction differs by more is turned, rad: 25°.
@@ -40,7 +35,7 @@ const ELSEWHERE_RAD: f64 = 25.0 * PI / 180.0;
 /// A scale that differs from 1 by more is reported.
 const SCALE_OFF: f64 = 0.08;
 /// The same for turns: wheels that scrub turn less evenly than they roll.
-const TURNS_OFF: f64 = 2.0 * SCALE_OFF;
+pub(super) const TURNS_OFF: f64 = 2.0 * SCALE_OFF;
 /// Units of length, in metres, and their names.
 const UNITS: [(f64, &str); 4] = [
     (1e-3, "millimetres"),
@@ -367,104 +362,6 @@ impl MotionComparison {
         let is_still = |(finding, _): &(Finding, _)| matches!(finding, Finding::Still { .. });
         self.findings.iter().any(is_still)
     }
-}
-
-/// Turns by odometry and by scans.
-struct Turns {
-    /// Correlation; a mirror image is tried as well.
-    correlation: f64,
-    /// Median of those by odometry per turn by scans.
-    ratio: f64,
-    /// Whether the quartile of the ratios on the side of 1 is out of scale.
-    is_off: bool,
-}
-
-fn compare_turns(stretches: &[Stretch]) -> Option<Turns> {
-    // Few segments of a long path turn: among all of them, turns that differ would be the outliers.
-    let turns = |mirror: f64| {
-        let both = stretches.iter();
-        let both = both.map(|stretch| (stretch.sensor.theta(), stretch.body.theta()));
-        let both = both.filter(|(scans, body)| scans.abs().max(body.abs()) > MIN_TURN_RAD);
-        let both = without_outliers(both.collect(), |(scans, body)| {
-            (scans - mirror * body).abs()
-        });
-        let sum = |of: fn(&(f64, f64)) -> f64| both.iter().map(of).sum::<f64>();
-        let product = sum(|(scans, body)| scans * body);
-        let size = math::sqrt(sum(|both| both.0 * both.0) * sum(|both| both.1 * both.1));
-        (size > 0.0).then_some(product / size)
-    };
-    let (plain, mirrored) = (turns(1.0)?, turns(-1.0)?);
-    let correlation = if mirrored.abs() > plain.abs() {
-        mirrored
-    } else {
-        plain
-    };
-    let turning = stretches
-        .iter()
-        .filter(|stretch| stretch.sensor.theta().abs() > MIN_TURN_RAD);
-    let ratios = turning.map(|stretch| stretch.body.theta() / stretch.sensor.theta());
-    let mut ratios: Vec<f64> = ratios.collect();
-    ratios.sort_by(f64::total_cmp);
-    let low = ratios.len() / 4;
-    let high = ratios.len().checked_sub(1 + low)?;
-    let is_off = *ratios.get(low)? > 1.0 + TURNS_OFF || *ratios.get(high)? < 1.0 - TURNS_OFF;
-    Some(Turns {
-        correlation,
-        ratio: median(ratios)?,
-        is_off,
-    })
-}
-
-/// Whether the heading or y of the odometry has the wrong sign, and the segments with the other: only then do the
-/// displacements have one direction.
-fn opposed(stretches: &[Stretch]) -> Option<(bool, Vec<Stretch>)> {
-    let agreement = |stretches: &[Stretch], mirror: f64| {
-        let pairs = stretches.iter().map(|Stretch { sensor, body, .. }| {
-            (
-                Complex::new(sensor.x(), mirror * sensor.y()),
-                Complex::new(body.x(), body.y()),
-            )
-        });
-        direction(&pairs.collect::<Vec<_>>()).map_or(0.0, |(_, agreement)| agreement)
-    };
-    let is_heading = compare_turns(stretches)?.correlation < 0.0;
-    let with: Vec<Stretch> = stretches
-        .iter()
-        .map(|stretch| stretch.opposed(is_heading))
-        .collect();
-    let plain = agreement(stretches, 1.0).max(agreement(stretches, -1.0));
-    let opposed = agreement(&with, 1.0);
-    let is_proposed = opposed >= ONE_DIRECTION && 1.0 - opposed < OPPOSED * (1.0 - plain);
-    is_proposed.then_some((is_heading, with))
-}
-
-/// Direction from displacements by scans to those by odometry, as a unit number, and how concentrated it is, 0 to 1.
-fn direction(pairs: &[(Complex<f64>, Complex<f64>)]) -> Option<(Complex<f64>, f64)> {
-    let pairs = pairs.iter();
-    let sum: Complex<f64> = pairs
-        .clone()
-        .map(|(by_scans, by_body)| by_scans.conj() * by_body)
-        .sum();
-    let sizes: f64 = pairs
-        .map(|(by_scans, by_body)| size(by_scans) * size(by_body))
-        .sum();
-    let length = size(&sum);
-    (length > 0.0).then(|| (sum / length, length / sizes))
-}
-
-/// Without the tenth of largest residuals: a scan that matched a wrong place must not decide.
-fn without_outliers<T>(mut items: Vec<T>, residual: impl Fn(&T) -> f64) -> Vec<T> {
-    items.sort_by(|a, b| residual(a).total_cmp(&residual(b)));
-    items.truncate(items.len() - items.len() / OUTLIERS);
-    items
-}
-
-fn length(motion: &SE2) -> f64 {
-    math::norm2(motion.x(), motion.y())
-}
-
-fn size(displacement: &Complex<f64>) -> f64 {
-    math::norm2(displacement.re, displacement.im)
 }
 
 #[cfg(test)]
