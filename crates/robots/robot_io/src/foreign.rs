@@ -247,18 +247,24 @@ static KINDS: [Foreign; 34] = [
         ],
         &["pcap", "pcapng"],
     ),
-    kind(
-        "what an RPLidar sends on its serial port",
-        "record the topic of its driver, or save the output of the SDK's ultra_simple, lines of theta: … Dist: … Q: …",
-        &[b"\xa5\x5a"],
-        &[],
-    ),
-    kind(
-        "a log of Player",
-        "write its laser lines as CSV with a header such as time,x,y,heading,angle_min,angle_increment,ranges",
-        &[b"## Player version"],
-        &[],
-    ),
+    Foreign {
+        is: is_rplidar,
+        ..kind(
+            "what an RPLidar sends on its serial port",
+            "record the topic of its driver, or save the output of the SDK's ultra_simple, lines of theta: … Dist: … Q: …",
+            &[b"\xa5\x5a"],
+            &[],
+        )
+    },
+    Foreign {
+        is: is_player,
+        ..kind(
+            "a log of Player",
+            "write its laser lines as CSV with a header such as time,x,y,heading,angle_min,angle_increment,ranges",
+            &[b"## Player version"],
+            &[],
+        )
+    },
     Foreign {
         is: |start| {
             contains(
@@ -384,6 +390,22 @@ fn is_trajectory(start: &[u8]) -> bool {
         .filter(|word| !word.is_empty())
         .collect();
     (8..=24).contains(&words.len()) && words.iter().all(|word| word.parse::<f64>().is_ok())
+}
+
+/// Whether the bytes are measurements of an RPLidar, five each, without the answer that announces them: the first two bits
+/// differ, and a bit of the angle is set.
+fn is_rplidar(start: &[u8]) -> bool {
+    let is_measured = |frame: &[u8]| (frame[0] ^ (frame[0] >> 1)) & 1 == 1 && frame[1] & 1 == 1;
+    let start = &start[..start.len().min(500)];
+    start.len() >= 100 && start.contains(&0) && start.chunks_exact(5).all(is_measured)
+}
+
+/// Whether the first line is one of Player: time, host, robot, interface.
+fn is_player(start: &[u8]) -> bool {
+    let line = start.split(|&byte| byte == b'\n').next().unwrap_or(start);
+    let mut words = line.split(|&byte| byte == b' ');
+    let names: [&[u8]; 4] = [b"laser", b"ranger", b"position2d", b"sync"];
+    words.nth(3).is_some_and(|word| names.contains(&word))
 }
 
 /// Whether a line starts with a keyword of GMapping.

@@ -234,6 +234,14 @@ mod tests {
                 "x.log is a trajectory, not a log of scans; pass a log; slam2d evaluate evaluates a trajectory",
             ),
             (
+                b"10.5 16777343 6665 position2d 00 001 001 0.1 0 0 0 0 0 0\n",
+                "x.log is a log of Player; write its laser lines as CSV with a header such as time,x,y,heading,angle_min,angle_increment,ranges",
+            ),
+            (
+                &b"\x3e\x81\0\x40\x1f".repeat(40),
+                "x.log is what an RPLidar sends on its serial port; record the topic of its driver, or save the output of the SDK's ultra_simple, lines of theta: … Dist: … Q: …",
+            ),
+            (
                 b"LASER_READING 361 1.2\n",
                 "x.log is the output of GMapping, not a log of scans; pass the log that GMapping was run on",
             ),

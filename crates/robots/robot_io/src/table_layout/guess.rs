@@ -73,6 +73,14 @@ fn beam(rows: &[Vec<f64>], count: usize, names: Option<&[&str]>) -> Option<Strin
     let others = (0..count).filter(|at| *at != angle);
     let range = others.max_by(|a, b| spread(a).total_cmp(&spread(b)))?;
     let step = steps(angle).next().unwrap_or(0.0).abs();
+    let is_quality = |at: usize| {
+        of(at).all(|value| value.fract() == 0.0 && (1.0..=MOST_QUALITY).contains(&value))
+    };
+    let is_time = |at: &usize| {
+        let is_other = ![angle, range].contains(at) && !is_quality(*at);
+        is_other && steps(*at).all(|step| step >= 0.0)
+    };
+    let time = (0..count).find(is_time);
     let column = |at: usize| {
         if at == angle {
             let is_deg = step >= STEP_DEG;
@@ -87,10 +95,7 @@ fn beam(rows: &[Vec<f64>], count: usize, names: Option<&[&str]>) -> Option<Strin
         {
             return "-";
         }
-        let is_quality =
-            of(at).all(|value| value.fract() == 0.0 && (1.0..=MOST_QUALITY).contains(&value));
-        let is_later = steps(at).all(|step| step >= 0.0);
-        match (is_quality, is_later) {
+        match (is_quality(at), time == Some(at)) {
             (true, _) => "quality",
             (false, true) => "time",
             (false, false) => "-",
@@ -101,13 +106,16 @@ fn beam(rows: &[Vec<f64>], count: usize, names: Option<&[&str]>) -> Option<Strin
 
 /// Columns of rows that are scans.
 fn scan(rows: &[Vec<f64>]) -> String {
-    // The number of ranges stands before them, or only a time does.
-    let is_count = |at: &usize| {
-        rows.iter()
-            .all(|row| row[*at] == (row.len() - at - 1) as f64)
+    // The number of ranges stands before them, perhaps with a word between them, or only a time does.
+    let counted = |at: usize| {
+        let between = |between: &usize| {
+            rows.iter()
+                .all(|row| row[at] == (row.len() - at - 1 - between) as f64)
+        };
+        Some(at + (0..2).find(between)?)
     };
     let first = rows.iter().map(Vec::len).min().unwrap_or(0);
-    let counted = (0..first.saturating_sub(MOST_OF_BEAM / 2)).find(is_count);
+    let counted = (0..first.saturating_sub(MOST_OF_BEAM / 2)).find_map(counted);
     let is_later = |at: usize| rows.windows(2).all(|two| two[1][at] > two[0][at]);
     let before = counted.map_or(usize::from(is_later(0)), |at| at + 1);
     let names = (0..before).map(|at| if at == 0 && is_later(0) { "time" } else { "-" });
@@ -158,6 +166,9 @@ mod tests {
             |k: i32| (0..61).map(move |beam| format!(" {}", 2.0 + 0.01 * f64::from(beam + k)));
         let counted = (0..5).map(|k| format!("{k} 61{}", ranges(k).collect::<String>()));
         assert_eq!(proposed(counted).unwrap(), "time,-,ranges_m@-90:90");
+        // Rawseeds: the offset of the first angle stands between the number of ranges and them.
+        let offset = (0..5).map(|k| format!("{k} 61 {}{}", k % 2, ranges(k).collect::<String>()));
+        assert_eq!(proposed(offset).unwrap(), "time,-,-,ranges_m@-90:90");
         let timed = (0..5).map(|k| format!("{k}{}", ranges(k).collect::<String>()));
         assert_eq!(proposed(timed).unwrap(), "time,ranges_m@-90:90");
     }

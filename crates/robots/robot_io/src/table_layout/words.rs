@@ -3,6 +3,7 @@
 /// The words of a row, without quotes and outer brackets: empty ones count between commas, not between spaces. A comma
 /// beside semicolons or tabs is the decimal sign. A list in quotes or brackets is one word.
 pub fn words(text: &str) -> impl Iterator<Item = &str> {
+    let text = unwrapped(text.trim());
     let is_outside = outside_of_lists(text);
     let separates = |c: char| text.match_indices(c).any(|(at, _)| is_outside[at]);
     let separator = ['\t', ';', ','].into_iter().find(|c| separates(*c));
@@ -15,6 +16,22 @@ pub fn words(text: &str) -> impl Iterator<Item = &str> {
     })
     .map(|word| word.trim_matches([' ', '"', '\'', '[', ']', '(', ')']))
     .filter(move |word| separator.is_some() || !word.is_empty())
+}
+
+/// A row without the brackets around all of it, as Python prints a tuple.
+fn unwrapped(text: &str) -> &str {
+    let inner = text.strip_prefix(['(', '[']);
+    let inner = inner.and_then(|inner| inner.strip_suffix([')', ']']));
+    // Otherwise these are the brackets of two lists, or of a list of lists.
+    let is_one = |inner: &&str| {
+        let mut depth = 0_i32;
+        !inner.starts_with(['(', '['])
+            && inner.bytes().all(|byte| {
+                depth += i32::from(b"([".contains(&byte)) - i32::from(b")]".contains(&byte));
+                depth >= 0
+            })
+    };
+    inner.filter(is_one).unwrap_or(text)
 }
 
 /// For each byte, whether it is outside of quotes and brackets; all are if one of them is not closed.

@@ -230,6 +230,27 @@ fn a_sweep_with_one_time_may_pass_the_bearing_where_counting_begins() {
 }
 
 #[test]
+fn rows_that_python_printed_as_tuples_are_read_and_proposed() {
+    let rows = (0..80).map(|k| format!("(15, {:.3}, {}.0)\n", 9 * (k % 40), 2000 + k * k));
+    let text: String = rows.collect();
+    let mut reader = LogFormat::open(text.as_bytes(), "x.txt", &LogOptions::default()).unwrap();
+    let error = reader.next_frame().unwrap_err().to_string();
+    let columns = "quality,angle_deg,range_mm";
+    assert!(
+        error.contains(&format!(
+            "if its 3 columns are what they seem to be, pass --columns {columns} "
+        )),
+        "{error}"
+    );
+    let options = LogOptions {
+        columns: Some(columns.parse().unwrap()),
+        ..LogOptions::default()
+    };
+    let (frames, _) = read_with(&text, &options);
+    assert_eq!((frames.len(), frames[1].scan.ranges_m.len()), (2, 40));
+}
+
+#[test]
 fn a_scan_in_one_cell_has_all_its_beams() {
     let header = "time,frame,angle_min,angle_increment,ranges,intensities";
     for list in [
