@@ -108,31 +108,6 @@ const opening = ({ id }) => {
 /** Screens with the widget beside the text. */
 const WIDE = [{ width: 1440, height: 900 }, { width: 1100, height: 900 }, { width: 1280, height: 800 }];
 
-describe('a widget on a low screen', () => {
-  const viewport = { width: 1280, height: 680 };
-  const plays = ({ buttons }) => buttons.some((button) => button.id === 'play');
-  for (const page of h.PAGES.filter((file) => file !== 'break.html' && h.widgetsOf(file).length > 0)) {
-    it(`shows its picture and Play together: ${page}`, async () => {
-      await chapter(h.addressOf(page), async (tab) => {
-        for (const { id } of h.schema.filter((spec) => plays(spec) && h.widgetsOf(page).includes(spec.id))) {
-          await h.unfold(tab, named(id));
-          await tab.evaluate((css) => document.querySelector(css).scrollIntoView(), named(id));
-          await h.ready(tab, named(id));
-          await tab.evaluate((css) => document.querySelector(css).scrollIntoView(), named(id));
-          await h.quiet(tab);
-          const [top, bottom] = await tab.evaluate((css) => {
-            const element = document.querySelector(css);
-            const { top } = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
-            const play = element.shadowRoot.querySelector('[data-control="play"]').getBoundingClientRect();
-            return [top + element.sceneBox()[1], play.bottom];
-          }, named(id));
-          assert.ok(top >= 0 && bottom <= viewport.height, `${id} from ${top} to ${bottom}`);
-        }
-      }, { options: { deviceScaleFactor, viewport } });
-    });
-  }
-});
-
 describe('a widget beside its text', () => {
   for (const spec of h.schema.filter((spec) => opening(spec).length > 0)) {
     it(`shows scene, control and verdict together on wide screens: ${spec.id}`, async () => {

@@ -11,6 +11,10 @@ const named = (id) => `slam-widget[name="${id}"]`;
 /** A wide screen, a low one, a phone. */
 const SCREENS = [{ width: 1440, height: 900 }, { width: 1280, height: 680 }, { width: 390, height: 844 }];
 
+/** The low screen, on which picture and Play have to fit together. */
+const [, LOW] = SCREENS;
+const plays = new Set(h.schema.filter(({ buttons }) => buttons.some(({ id }) => id === 'play')).map(({ id }) => id));
+
 /** Least share of a widget's height that its picture has at rest. */
 const LEAST_SHARE = 0.7;
 
@@ -27,6 +31,15 @@ const measured = (tab, css) => tab.evaluate((name) => {
       return box.left < left + width && box.right > left && box.top < top + height && box.bottom > top;
     });
   return { share: height / element.offsetHeight, high: element.offsetHeight, over: over.map(({ textContent }) => textContent) };
+}, css);
+
+/** From the top of the picture to the bottom of Play, once the widget is scrolled into view. */
+const span = (tab, css) => tab.evaluate((name) => {
+  const element = document.querySelector(name);
+  element.scrollIntoView();
+  const { top } = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
+  const play = element.shadowRoot.querySelector('[data-control="play"]').getBoundingClientRect();
+  return [top + element.sceneBox()[1], play.bottom];
 }, css);
 
 describe('the picture', () => {
@@ -46,6 +59,11 @@ describe('the picture', () => {
             const { share, high, over } = await measured(tab, named(id));
             const where = `${id} at ${viewport.width}×${viewport.height}`;
             assert.deepEqual(over, [], `${where}: controls on the picture`);
+            // The game's own Drive is its Play.
+            if (viewport === LOW && plays.has(id) && page !== 'break.html') {
+              const [top, bottom] = await span(tab, named(id));
+              assert.ok(top >= 0 && bottom <= LOW.height, `${where}: picture and Play from ${top} to ${bottom}`);
+            }
             if (share < LEAST_SHARE) low.push(`${where}: ${(100 * share).toFixed(0)} % of ${high} px`);
           }
         }

@@ -38,7 +38,7 @@ pub fn value(start: &str, what: &str) -> Option<f64> {
 const CORRIDORS: u32 = 12;
 
 /// The exact Hessian of the negative score in these corridors: `corridors`, and its smallest eigenvalue at the
-/// truth (`negative_at_truth` counts the corridors) and at the optimum (`least_at_optimum`, `most_at_optimum`).
+/// truth (`negative_at_truth` counts the corridors) and at the optimum (`least_at_optimum`).
 pub fn hessian(what: &str) -> Option<f64> {
     let scenes = (0..CORRIDORS).map(|k| {
         TerrainScene::with_seed(
@@ -65,7 +65,6 @@ pub fn hessian(what: &str) -> Option<f64> {
             Some(curvatures.filter(|least| *least < 0.0).count() as f64)
         }
         "least_at_optimum" => scenes.map(|scene| at_optimum(&scene)).reduce(f64::min),
-        "most_at_optimum" => scenes.map(|scene| at_optimum(&scene)).reduce(f64::max),
         _ => None,
     }
 }

@@ -1,5 +1,6 @@
 //! The drawing of a flat during editing: its walls with their ends, the start and the path.
 
+use pr_geom::math;
 use pr_sim::sketch::to_m;
 use widget_kit::scene::{Layer, LegendEntry, Mark, Stroke, Tone};
 
@@ -9,6 +10,9 @@ use crate::w16_2_full_lap::spec::Tool;
 
 /// Distance of text from its way point, in pixels.
 const CLEAR_PX: f32 = 12.0;
+
+/// Stops nearer to each other than this share a name, m.
+const ONE_RING_M: f64 = 0.3;
 
 /// The walls of the drawing.
 pub fn walls(drawn: &Drawn) -> Vec<[[f64; 2]; 2]> {
@@ -47,13 +51,25 @@ pub fn layers(drawn: &Drawn) -> Vec<Layer> {
         layers.push(Layer::points(places.clone(), Mark::Circle, Tone::Ink, 4.0));
     }
     for (index, at) in places.iter().enumerate() {
-        let name = match index {
-            0 => "start".to_owned(),
-            number => number.to_string(),
-        };
-        layers.push(Layer::label(*at, name, CLEAR_PX));
+        if places[..index].iter().any(|before| is_there(before, at)) {
+            continue;
+        }
+        let here = places.iter().enumerate().skip(index);
+        let names: Vec<String> = here
+            .filter(|(_, other)| is_there(at, other))
+            .map(|(stop, _)| match stop {
+                0 => "start".to_owned(),
+                number => number.to_string(),
+            })
+            .collect();
+        layers.push(Layer::label(*at, names.join(", "), CLEAR_PX));
     }
     layers
+}
+
+/// Whether two rings are one to the eye, and share a name.
+fn is_there(one: &[f64; 2], other: &[f64; 2]) -> bool {
+    math::norm2(other[0] - one[0], other[1] - one[1]) < ONE_RING_M
 }
 
 /// The selection: a wide wall with a handle at each end, or a ring around a point.
