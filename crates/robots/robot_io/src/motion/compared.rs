@@ -12,7 +12,9 @@ use super::finding::{Finding, Suggestion};
 use super::lag::{Heading, lag_s};
 use super::repairs::Repairs;
 use super::trial::Trial;
-use super::turns::{compare_turns, direction, length, opposed, size, without_outliers};
+use super::turns::{
+    ONE_DIRECTION, SCALE_OFF, compare_turns, direction, length, opposed, size, without_outliers,
+};
 use crate::laser_mount::LaserMount;
 use crate::ros::SWEEP_SLACK;
 use crate::stamps::median;
@@ -24,18 +26,12 @@ const MIN_M: f64 = 2.0;
 const MIN_RAD: f64 = 1.5;
 /// Turns with at least this absolute correlation agree, or are opposite.
 const AGREE: f64 = 0.8;
-/// Least concentration of the displacements' directions, and largest distance per metre between scans and odometry, of a
-/// comparison that agrees with itself.
-pub(super) const ONE_DIRECTION: f64 = 0.85;
+/// Largest distance per metre between scans and odometry in a comparison that agrees with itself.
 const MAX_DRIFT: f64 = 0.3;
 /// A direction within this of the stated one confirms it, rad: 10°.
 const CONFIRMED_RAD: f64 = 10.0 * PI / 180.0;
 /// A laser whose direction differs by more is turned, rad: 25°.
 const ELSEWHERE_RAD: f64 = 25.0 * PI / 180.0;
-/// A scale that differs from 1 by more is reported.
-const SCALE_OFF: f64 = 0.08;
-/// The same for turns: wheels that scrub turn less evenly than they roll.
-pub(super) const TURNS_OFF: f64 = 2.0 * SCALE_OFF;
 /// Units of length, in metres, and their names.
 const UNITS: [(f64, &str); 4] = [
     (1e-3, "millimetres"),

@@ -4,9 +4,14 @@ use nalgebra::Complex;
 use pr_geom::{SE2, math};
 
 use super::Stretch;
-use super::compared::{ONE_DIRECTION, TURNS_OFF};
 use crate::stamps::median;
 
+/// Least concentration of the displacements' directions in a comparison that agrees with itself.
+pub(super) const ONE_DIRECTION: f64 = 0.85;
+/// A scale that differs from 1 by more is reported.
+pub(super) const SCALE_OFF: f64 = 0.08;
+/// The same for turns: wheels that scrub turn less evenly than they roll.
+const TURNS_OFF: f64 = 2.0 * SCALE_OFF;
 /// A shorter turn has no ratio, rad.
 const MIN_TURN_RAD: f64 = 0.1;
 /// One of this many segments may be wrong.
