@@ -23,6 +23,9 @@ interface Change {
   readonly outcome?: Result['outcome'];
 }
 
+/** What to draw, as in break.html. */
+const HINT = 'Long walls without doors or corners lead it astray.';
+
 /** The verdict on a flat with a goal out of reach, or a start in a wall. */
 const UNDRIVEABLE = 'cannot be driven';
 
@@ -36,8 +39,10 @@ export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement, says: HTM
   let asked = 0;
   let record = 0;
   const count = ({ verdict, facts }: Result['outcome']): void => {
-    off.hidden = verdict === UNDRIVEABLE || Number(widget.value['t']) === 0;
-    off.textContent = `${isOffOnTheWay(facts) ? 'typically ' : ''}${metresOff(facts).toFixed(1)} m off`;
+    const [now, end] = [Number(widget.value['t']), widget.timeline?.last ?? 0];
+    off.hidden = verdict === UNDRIVEABLE || now === 0;
+    const score = `${isOffOnTheWay(facts) ? 'typically ' : ''}${metresOff(facts).toFixed(1)} m off`;
+    off.textContent = now < end ? `${(facts['graph_error_m'] ?? 0).toFixed(1)} m off now` : score;
   };
   const show = async (outcome: Result['outcome']): Promise<void> => {
     const { facts } = outcome;
@@ -52,14 +57,14 @@ export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement, says: HTM
     // Another result may have come meanwhile.
     if (ask !== asked) return;
     card.hidden = !isShown;
-    says.textContent = isDriveable ? '' : withCapital(outcome.sentence);
+    says.textContent = isDriveable ? HINT : withCapital(outcome.sentence);
     says.classList.toggle('undriveable', !isDriveable);
     if (!isOver) return;
     const points = score(facts);
     record = Math.max(record, points);
     const [title, words] = [`Score ${points.toFixed(1)}, best ${record.toFixed(1)}`, sentence(facts)];
     const { notice, hint } = remark(facts);
-    says.textContent = `${notice} Best so far: ${record.toFixed(1)} m. ${hint}`;
+    says.textContent = `${notice} Your record: ${record.toFixed(1)} m. ${hint}`;
     if (isShown) fill(card, widget, svg, title, words);
   };
   widget.addEventListener('slam-change', (event) => {

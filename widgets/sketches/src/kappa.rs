@@ -107,13 +107,24 @@ fn at(kappa: f64) -> Shown {
             panels: vec![errors(kappa), honest(kappa)],
         },
         sentence: format!(
-            "With κ = {kappa:.0}, the typical error is {point:.2} times what point-to-point claims, and {plane:.2} times what \
-             point-to-plane claims."
+            "With κ = {kappa:.0}, the typical error is {point:.2} times what point-to-point claims, which is {}, and {plane:.2} \
+             times what point-to-plane claims, which is {}.",
+            verdict(point),
+            verdict(plane)
         ),
     }
 }
 
-/// Line, colour and name of a matcher.
+/// A claim beside the typical error, in units of the claim.
+fn verdict(ratio: f64) -> &'static str {
+    match ratio {
+        1.1.. => "too sure",
+        0.9.. => "honest",
+        _ => "too cautious",
+    }
+}
+
+/// Line and colour of a matcher.
 fn line(which: usize, points: Vec<[f64; 2]>) -> Layer {
     Layer::line(points, MATCHERS[which].2, Tone::Series(which as u8), 2.0)
 }
@@ -161,7 +172,8 @@ fn errors(kappa: f64) -> Panel {
 
 fn honest(kappa: f64) -> Panel {
     let curve = |which: usize| {
-        let points = (1..=MOST as u32).map(|k| [f64::from(k), rms(which, f64::from(k))]);
+        // What is to come would give the answer away.
+        let points = (1..=kappa as u32).map(|k| [f64::from(k), rms(which, f64::from(k))]);
         line(which, points.collect())
     };
     let here = |which: usize| {

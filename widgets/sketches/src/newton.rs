@@ -99,6 +99,14 @@ fn at(steps: f64) -> Shown {
                     score(0)
                 )
             }
+            Some(_) if step == STEPS => {
+                let longest = (1..=STEPS).max_by(|a, b| length_cm(*a).total_cmp(&length_cm(*b)));
+                let longest = longest.unwrap_or(step);
+                format!(
+                    "After {step} steps the sweep is {off_cm:.1} cm off. The longest was step {longest}, by {:.1} cm.",
+                    length_cm(longest)
+                )
+            }
             Some(before) => format!(
                 "Step {step} is {:.1} cm long and takes the score from {:.3} to {:.3} a beam. The sweep is {off_cm:.1} cm off.",
                 length_cm(step),
@@ -129,7 +137,7 @@ fn plan(step: usize) -> Panel {
         layers,
         legend: vec![
             LegendEntry::mark("the guess", Tone::Prior, Mark::Dot),
-            LegendEntry::mark("after the steps", Tone::Measurement, Mark::Cross),
+            LegendEntry::mark("the sweep", Tone::Measurement, Mark::Cross),
             LegendEntry::line("a bell", Tone::Posterior, Stroke::Solid),
         ],
         ..bells::plan()

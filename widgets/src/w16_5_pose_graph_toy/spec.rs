@@ -154,7 +154,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "Without a pin the whole graph floats, because χ² depends only on differences.",
     ],
     opening: Opening {
-        panels: &["graph", "steps"],
+        panels: &["graph", "bars"],
         params: &["stiffness"],
         buttons: &["play", "step", "reset"],
     },

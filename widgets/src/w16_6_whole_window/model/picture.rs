@@ -86,18 +86,32 @@ fn sweeps(window: &WholeWindow) -> Panel {
         x,
         y,
         layers,
-        legend: vec![
-            LegendEntry::line("it may be here", Tone::Series(0), Stroke::Solid),
-            LegendEntry::mark("best so far", Tone::Posterior, Mark::Square),
-            LegendEntry::mark("start", Tone::Prior, Mark::Circle),
-            if window.raced().is_some() {
-                LegendEntry::mark("ICP alone", Tone::Series(2), Mark::Dot)
-            } else {
-                LegendEntry::line("thrown away", places::THROWN_AWAY, Stroke::Solid)
-            },
-        ],
+        legend: legend(window),
         color_bar: None,
     }
+}
+
+/// What is on the picture now, and stays in its place.
+fn legend(window: &WholeWindow) -> Vec<LegendEntry> {
+    let is_open = window.step() < window.boxes_taken();
+    vec![
+        if is_open {
+            LegendEntry::line("it may be here", Tone::Series(0), Stroke::Solid)
+        } else {
+            LegendEntry::mark("first sweep", Tone::Measurement, Mark::Cross)
+        },
+        if window.step() > 0 {
+            LegendEntry::line("thrown away", places::THROWN_AWAY, Stroke::Solid)
+        } else {
+            LegendEntry::mark("start", Tone::Prior, Mark::Circle)
+        },
+        LegendEntry::mark("best so far", Tone::Posterior, Mark::Square),
+        if window.raced().is_some() {
+            LegendEntry::mark("ICP alone", Tone::Series(2), Mark::Dot)
+        } else {
+            LegendEntry::mark("first sweep", Tone::Measurement, Mark::Cross)
+        },
+    ]
 }
 
 /// The pose of ICP alone in the race; before it nothing tells where it ends.
