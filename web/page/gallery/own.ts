@@ -23,9 +23,6 @@ interface Change {
   readonly outcome?: Result['outcome'];
 }
 
-/** What to draw, as in break.html. */
-const HINT = 'Long walls without doors or corners lead it astray.';
-
 /** The verdict on a flat with a goal out of reach, or a start in a wall. */
 const UNDRIVEABLE = 'cannot be driven';
 
@@ -57,7 +54,7 @@ export function watchOwnFlat(widget: SlamWidget, gallery: HTMLElement, says: HTM
     // Another result may have come meanwhile.
     if (ask !== asked) return;
     card.hidden = !isShown;
-    says.textContent = isDriveable ? HINT : withCapital(outcome.sentence);
+    says.textContent = isDriveable ? '' : withCapital(outcome.sentence);
     says.classList.toggle('undriveable', !isDriveable);
     if (!isOver) return;
     const points = score(facts);

@@ -296,7 +296,7 @@ fn what_was_thrown_away_leaves_its_outline() {
         let lines = layers.into_iter().filter_map(|layer| match layer {
             Layer::Line {
                 points,
-                tone: Tone::Truth,
+                tone: Tone::Ink,
                 ..
             } => Some(points.len()),
             _ => None,

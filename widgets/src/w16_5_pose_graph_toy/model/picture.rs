@@ -62,7 +62,11 @@ fn graph(toy: &PoseGraphToy) -> Panel {
             EdgeKind::Loop => bow_m(toy.values.get(&STIFFNESS)),
         };
         let points = spring([from.x(), from.y()], [to.x(), to.y()], bow_m);
-        costs.push(Layer::label(points[points.len() / 2], short(*chi2), 10.0));
+        costs.push(Layer::label(
+            points[points.len() / 2],
+            short(toy, *chi2),
+            10.0,
+        ));
         layers.push(Layer::Line {
             points,
             stroke: Stroke::Solid,
@@ -113,7 +117,7 @@ fn graph(toy: &PoseGraphToy) -> Panel {
             "Step {} of {}: χ² {}",
             toy.step(),
             toy.course.last(),
-            short(toy.shown().chi2)
+            short(toy, toy.shown().chi2)
         ),
         weight: Weight::Main,
         aspect: Aspect::Equal,
@@ -243,7 +247,7 @@ fn bars(toy: &PoseGraphToy) -> Panel {
             Tone::Prior,
             2.0,
         ));
-        layers.push(words([x, now + 0.09 * y.max], &short(now)));
+        layers.push(words([x, now + 0.09 * y.max], &short(toy, now)));
     }
     Panel {
         id: panel::BARS,
@@ -268,11 +272,11 @@ fn bars(toy: &PoseGraphToy) -> Panel {
     }
 }
 
-/// A number with at most five characters.
-fn short(value: f64) -> String {
+/// A number with at most five characters; at the start with two decimals, which the settings have.
+fn short(toy: &PoseGraphToy, value: f64) -> String {
     let decimals = match value {
-        0.0..1.0 => 3,
-        1.0..10.0 => 2,
+        0.0..1.0 if toy.step() > 0 => 3,
+        0.0..10.0 => 2,
         _ => 1,
     };
     format!("{value:.decimals$}")

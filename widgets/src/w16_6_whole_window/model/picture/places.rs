@@ -12,7 +12,7 @@ use super::bounds::is_dropped;
 use super::{icp_now, icp_path, sensor};
 
 /// Colour of boxes whose best possible score is below one that was found.
-pub const THROWN_AWAY: Tone = Tone::Truth;
+pub const THROWN_AWAY: Tone = Tone::Ink;
 
 /// Margin around the window as a share of its width.
 const MARGIN: f64 = 0.06;
