@@ -89,7 +89,7 @@ def test_every_option_of_a_run_has_an_effect_or_a_sentence(log):
     for options in ({"laser": "0.3,0,0"}, {"min_range": 2.0}, {"footprint": (-3, -3, 3, 3)}):
         assert not np.array_equal(plain, rs.Pipeline(log, **options).run(cell=0.2).trajectory), options
     for options, said in (
-        ({"odometry": "wheels"}, "odometry: expected check, force, mirrored or none"),
+        ({"odometry": "wheels"}, "odometry: expected check, force, mirrored, none or a file"),
         ({"laser": "left"}, "laser: "),
         ({"heights": (2.0, 1.0)}, "heights: expected two heights, the lower one first"),
         ({"min_range": -1.0}, "min_range: expected metres within 0 to"),
