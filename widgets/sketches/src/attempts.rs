@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use ch16_lab::lap::FALSE_LOOP_DISTANCE_M;
+use ch16_lab::lap::{AcceptedShares, FALSE_LOOP_DISTANCE_M};
 use widget_kit::scene::{
     Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
@@ -43,7 +43,7 @@ struct Attempt {
     is_false: bool,
 }
 
-/// Point-to-point at the usual noise, seeds 1 to 1000; `tests/pinned/page/attempts.rs` compares them with the core.
+/// Point-to-point at the usual noise, seeds 1 to 1000; `tests/pinned/page/figures/attempts.rs` compares them with the core.
 fn attempts() -> &'static [Attempt] {
     static ATTEMPTS: OnceLock<Vec<Attempt>> = OnceLock::new();
     ATTEMPTS.get_or_init(|| {
@@ -68,22 +68,22 @@ fn parse(line: &str) -> Option<Attempt> {
     })
 }
 
-/// Accepted attempts beside all, of the true ones and of the false ones, with the gate at another threshold.
-fn shares(gate: f64) -> [[usize; 2]; 2] {
-    [false, true].map(|is_false| {
-        let all = attempts().iter().filter(|tried| tried.is_false == is_false);
-        let accepted = all.clone().filter(|tried| tried.fits && tried.chi2 <= gate);
-        [accepted.count(), all.count()]
-    })
+/// Both tests, with the gate at another threshold.
+fn shares(gate: f64) -> AcceptedShares {
+    let accepts = |tried: &Attempt| tried.fits && tried.chi2 <= gate;
+    AcceptedShares::of(attempts(), |tried| tried.is_false, accepts)
 }
 
 /// Both shares, true and false, %.
 fn rates(gate: f64) -> [f64; 2] {
-    shares(gate).map(|[accepted, all]| 100.0 * accepted as f64 / all as f64)
+    shares(gate).rates().map(|rate| 100.0 * rate)
 }
 
 fn at(gate: f64) -> Shown {
-    let [[passed, all], [slipped, wrong]] = shares(gate);
+    let AcceptedShares {
+        of_true: [passed, all],
+        of_false: [slipped, wrong],
+    } = shares(gate);
     let [of_true, of_false] = rates(gate);
     Shown {
         scene: Scene {

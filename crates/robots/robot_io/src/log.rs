@@ -204,6 +204,17 @@ pub enum LogError {
     },
 }
 
+impl LogError {
+    /// An error of the system before the first record.
+    pub(crate) fn at_start(name: &str, source: io::Error) -> Self {
+        Self::Io {
+            name: name.to_owned(),
+            position: FilePosition::Byte(0),
+            source,
+        }
+    }
+}
+
 /// Reads the scans of a log in order.
 ///
 /// Skips an unreadable record and counts it in [`notes`](Self::notes).

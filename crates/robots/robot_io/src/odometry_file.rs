@@ -37,11 +37,7 @@ impl BesideOdometry {
     /// If the system cannot read it, or it has no poses.
     pub fn read(bytes: &LogBytes<'_>, chosen: Option<&OdometryFile>) -> Result<Self, LogError> {
         let name = chosen.map_or("the file of odometry", |file| file.path.as_str());
-        let io = |source| LogError::Io {
-            name: name.to_owned(),
-            position: FilePosition::Byte(0),
-            source,
-        };
+        let io = |source| LogError::at_start(name, source);
         let wrong = |problem| LogError::Odometry {
             name: name.to_owned(),
             problem,
@@ -125,15 +121,12 @@ impl BesideOdometry {
         for (stamp_s, pose) in stamps_s.iter().zip(odometry.iter_mut()) {
             *pose = self.poses.at(*stamp_s);
         }
-        let span = |stamps_s: &[f64]| {
-            let first = stamps_s.iter().copied().fold(f64::INFINITY, f64::min);
-            let last = stamps_s.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            (first, last)
-        };
-        let (first, last) = span(stamps_s);
         if stamps_s.is_empty() || odometry.iter().any(Option::is_some) {
             return Ok(remarks);
         }
+        let stamps_s = stamps_s.iter().copied();
+        let first = stamps_s.clone().fold(f64::INFINITY, f64::min);
+        let last = stamps_s.fold(f64::NEG_INFINITY, f64::max);
         let (from, to) = self.poses.ends_s().unwrap_or_default();
         Err(LogError::Odometry {
             name: self.name.clone(),

@@ -5,7 +5,7 @@ use std::io::{self, BufRead};
 use crate::carmen::CarmenReader;
 use crate::course_log::CourseReader;
 use crate::json_log::JsonLogReader;
-use crate::log::{FilePosition, LogError, LogOptions, LogReader};
+use crate::log::{LogError, LogOptions, LogReader};
 use crate::log_bytes::LogBytes;
 use crate::log_format::LogFormat;
 use crate::mounted_reader::MountedReader;
@@ -52,11 +52,7 @@ impl LogFormat {
         name: &str,
         options: &LogOptions,
     ) -> Result<Box<dyn LogReader + 'a>, LogError> {
-        let io = |source| LogError::Io {
-            name: name.to_owned(),
-            position: FilePosition::Byte(0),
-            source,
-        };
+        let io = |source| LogError::at_start(name, source);
         let named = options.odometry_file.as_ref();
         let beside = match named {
             Some(file) if parts.len() < 2 => {

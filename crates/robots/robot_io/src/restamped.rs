@@ -6,7 +6,7 @@ use std::io;
 
 use pr_geom::SE2;
 
-use crate::log::{FilePosition, LogError, LogFrame, LogNotes, LogReader};
+use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::log_bytes::LogBytes;
 use crate::odometry_file::BesideOdometry;
 use crate::odometry_poses::{jumps_remark, remove_jumps};
@@ -46,11 +46,8 @@ pub fn restamped<'a, R: LogReader + 'a>(
     reader: impl Fn(Box<dyn io::BufRead + 'a>) -> R,
 ) -> Result<Box<dyn LogReader + 'a>, LogError> {
     let stream = || {
-        bytes.stream().map_err(|source| LogError::Io {
-            name: name.to_owned(),
-            position: FilePosition::Byte(0),
-            source,
-        })
+        let stream = bytes.stream();
+        stream.map_err(|source| LogError::at_start(name, source))
     };
     let mut first = reader(stream()?);
     let (mut stamps_s, mut odometry) = (Vec::new(), Vec::new());

@@ -143,7 +143,8 @@ impl Laps {
 
 /// `true_accepted_percent`, `false_error.median`: attempts to close a loop, by name.
 pub fn of_attempts(tested: &[TestedLoop], path: &[&str]) -> Option<f64> {
-    let [of_true, of_false] = AcceptedShares::of(tested, |tested| tested.accepted).rates();
+    let [of_true, of_false] =
+        AcceptedShares::of(tested, TestedLoop::is_false, |tested| tested.accepted).rates();
     let closed = tested.iter().filter(|tested| tested.accepted);
     let mut errors_m: Vec<f64> = closed
         .filter(|tested| tested.error.is_false())
@@ -159,7 +160,9 @@ pub fn of_attempts(tested: &[TestedLoop], path: &[&str]) -> Option<f64> {
         ["true_accepted_percent"] => 100.0 * of_true,
         ["gate_rejects_percent"] => {
             let gate = LapConfig::default().slam.chapter.loops.gate_chi2;
-            let [passed, _] = AcceptedShares::of(tested, |tested| tested.chi2 <= gate).rates();
+            let [passed, _] =
+                AcceptedShares::of(tested, TestedLoop::is_false, |tested| tested.chi2 <= gate)
+                    .rates();
             100.0 * (1.0 - passed)
         }
         ["false_accepted_percent"] => 100.0 * of_false,

@@ -21,6 +21,14 @@ pub struct TestedLoop {
     pub error: LoopError,
 }
 
+impl TestedLoop {
+    /// Whether it is a false loop: see [`LoopError::is_false`].
+    #[must_use]
+    pub fn is_false(&self) -> bool {
+        self.error.is_false()
+    }
+}
+
 impl LapTrace {
     /// All attempts to close a loop, in order, beside the truth.
     pub fn tested_loops(&self) -> impl Iterator<Item = TestedLoop> + '_ {
@@ -51,13 +59,14 @@ pub struct AcceptedShares {
 impl AcceptedShares {
     /// Counts attempts; `accepts` is the test.
     #[must_use]
-    pub fn of<'a>(
-        loops: impl IntoIterator<Item = &'a TestedLoop>,
-        accepts: impl Fn(&TestedLoop) -> bool,
+    pub fn of<'a, T: 'a>(
+        loops: impl IntoIterator<Item = &'a T>,
+        is_false: impl Fn(&T) -> bool,
+        accepts: impl Fn(&T) -> bool,
     ) -> Self {
         let mut shares = Self::default();
         for tested in loops {
-            let [accepted, all] = if tested.error.is_false() {
+            let [accepted, all] = if is_false(tested) {
                 &mut shares.of_false
             } else {
                 &mut shares.of_true
@@ -99,7 +108,7 @@ mod tests {
                 )
             })
             .collect();
-        let shares = AcceptedShares::of(&loops, |tested| tested.chi2 < 6.0);
+        let shares = AcceptedShares::of(&loops, TestedLoop::is_false, |tested| tested.chi2 < 6.0);
         assert_eq!(shares.rates(), [0.6, 0.6]);
         let among_accepted =
             shares.of_false[0] as f64 / (shares.of_false[0] + shares.of_true[0]) as f64;

@@ -91,9 +91,7 @@ impl MotionComparison {
         });
         found.chain(suggested).chain(long).collect()
     }
-}
 
-impl MotionComparison {
     /// What a lag of odometry of minus the time of a sweep also means.
     fn at_last_beam(&self, by_s: f64) -> String {
         let is_sweep =

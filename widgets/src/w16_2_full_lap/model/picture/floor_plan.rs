@@ -50,20 +50,18 @@ pub fn layers(drawn: &Drawn) -> Vec<Layer> {
     } else {
         layers.push(Layer::points(places.clone(), Mark::Circle, Tone::Ink, 4.0));
     }
-    for (index, at) in places.iter().enumerate() {
-        if places[..index].iter().any(|before| is_there(before, at)) {
-            continue;
+    let mut named = vec![(places[0], "start".to_owned())];
+    for (number, at) in places.iter().enumerate().skip(1) {
+        match named.iter_mut().find(|(ring, _)| is_there(ring, at)) {
+            Some((_, names)) => *names += &format!(", {number}"),
+            None => named.push((*at, number.to_string())),
         }
-        let here = places.iter().enumerate().skip(index);
-        let names: Vec<String> = here
-            .filter(|(_, other)| is_there(at, other))
-            .map(|(stop, _)| match stop {
-                0 => "start".to_owned(),
-                number => number.to_string(),
-            })
-            .collect();
-        layers.push(Layer::label(*at, names.join(", "), CLEAR_PX));
     }
+    layers.extend(
+        named
+            .into_iter()
+            .map(|(at, names)| Layer::label(at, names, CLEAR_PX)),
+    );
     layers
 }
 
