@@ -3,6 +3,7 @@
 use crate::graph_file::GraphFile;
 use crate::log_bytes::packs;
 use crate::session::Session;
+use crate::table_layout::TableLayout;
 
 /// A kind of file that is no log.
 #[derive(Debug)]
@@ -75,7 +76,7 @@ const fn kind(
 const FROM_ITS_RECORDING: &str = "pass the recording that it was made from";
 
 /// All kinds; the first one that fits is taken.
-static KINDS: [Foreign; 34] = [
+static KINDS: [Foreign; 35] = [
     kind(
         "a Git LFS pointer, not the file itself",
         "fetch the file with git lfs pull",
@@ -287,7 +288,7 @@ static KINDS: [Foreign; 34] = [
         },
         ..kind(
             "a list in JSON, not an object a line",
-            "write an object a line with jq, with the field names of docs/recordings.md: jq -c '.[] | {stamp_s: .timestamp, odometry: [.x, .y, .theta], first_angle_rad: -3.14159, angle_step_rad: 0.0174533, ranges_m: .ranges}'",
+            "write an object a line: jq -c '.[]' FILE; each needs a time, angle_min, angle_increment and ranges, which jq -c '.[] + {angle_min: -3.14159, angle_increment: 0.0174533}' FILE adds",
             &[],
             &[],
         )
@@ -354,6 +355,15 @@ static KINDS: [Foreign; 34] = [
             "pass a log; slam2d evaluate evaluates a trajectory",
             &[],
             &["tum"],
+        )
+    },
+    Foreign {
+        is: TableLayout::names_poses,
+        ..kind(
+            "odometry without scans",
+            "pass the log of the scans with it: slam2d run SCANS ODOMETRY",
+            &[],
+            &[],
         )
     },
 ];

@@ -14,11 +14,14 @@ use std::io::{self, Write};
 use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::line_log::{LineFormat, LineReader};
-use crate::lines::json_words;
+use crate::lines::{json_words, listed, printable};
 use crate::log::{LogFrame, LogNotes};
 use crate::plausible::{plausible_pose, plausible_stamp_s};
+use crate::table_layout::{ColumnMeaning, column};
+use crate::table_log::TableRows;
 
 /// One line: a frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -147,7 +150,10 @@ pub type JsonLogReader<R> = LineReader<R, JsonLines>;
 
 /// The format: each line is independent.
 #[derive(Debug, Default)]
-pub struct JsonLines;
+pub struct JsonLines {
+    /// Objects with names of their own.
+    rows: TableRows,
+}
 
 impl LineFormat for JsonLines {
     const NO_SCANS: &'static str = "no line is a frame with ranges_m";
@@ -163,7 +169,25 @@ impl LineFormat for JsonLines {
         if line.trim_ascii().is_empty() {
             return Ok(None);
         }
-        let line: FrameLine = serde_json::from_slice(line).map_err(|problem| in_words(&problem))?;
+        let read: Result<FrameLine, _> = serde_json::from_slice(line);
+        let line = match read {
+            Ok(line) => line,
+            Err(problem) => {
+                let object: Value = serde_json::from_slice(line).map_err(|it| in_words(&it))?;
+                let mut values = Vec::new();
+                flatten(&object, String::new(), &mut values);
+                let is_ranges =
+                    |(name, _): &(String, String)| column(name).0 == ColumnMeaning::Ranges;
+                if values.iter().any(is_ranges) {
+                    return self.rows.frame_of(&values, notes);
+                }
+                let names = listed(values.into_iter().map(|(name, _)| printable(&name)));
+                return Err(format!(
+                    "{}; its names are {names}; it needs a time, angle_min, angle_increment and ranges, in these names or those of docs/recordings.md",
+                    in_words(&problem)
+                ));
+            }
+        };
         let frame = LogFrame::from(line);
         plausible_stamp_s(frame.stamp_s)?;
         for pose in [Some(frame.scan.body_from_sensor), frame.odometry] {
@@ -171,6 +195,33 @@ impl LineFormat for JsonLines {
         }
         *notes.records.entry("frame".to_owned()).or_default() += 1;
         Ok(Some(frame))
+    }
+}
+
+/// The values of an object and of those in it, with the names on the way to each; three numbers of a pose are x, y and theta.
+fn flatten(value: &Value, name: String, values: &mut Vec<(String, String)>) {
+    let inner = |key: &str| {
+        if name.is_empty() {
+            key.to_owned()
+        } else {
+            format!("{name}.{key}")
+        }
+    };
+    match value {
+        Value::Object(object) => {
+            for (key, value) in object {
+                flatten(value, inner(key), values);
+            }
+        }
+        Value::Array(items)
+            if items.len() == 3 && column(&inner("theta")).0 == ColumnMeaning::Heading =>
+        {
+            for (key, item) in ["x", "y", "theta"].iter().zip(items) {
+                flatten(item, inner(key), values);
+            }
+        }
+        Value::String(text) => values.push((name, text.clone())),
+        other => values.push((name, other.to_string())),
     }
 }
 
@@ -212,6 +263,32 @@ mod tests {
             assert_eq!(reader.next_frame().unwrap(), Some(frame()));
             assert_eq!(reader.next_frame().unwrap(), None);
         }
+    }
+
+    #[test]
+    fn objects_with_names_of_their_own_are_frames() {
+        for line in [
+            r#"{"timestamp": 12.5, "pose": {"x": 1, "y": -2, "theta": 0.3}, "scan": {"angle_min": -1.5, "angle_increment": 0.1, "ranges": [1.25, null, 2]}}"#,
+            r#"{"t": 12.5, "odom": [1, -2, 0.3], "angle_min": -1.5, "angle_increment": 0.1, "ranges": [1.25, "N/A", 2]}"#,
+            r#"{"data": {"header": {"stamp": {"sec": 12, "nanosec": 500000000}}, "angle_min": -1.5, "angle_increment": 0.1, "ranges": [1.25, null, 2]}, "position": {"x": 1, "y": -2}, "yaw": 0.3}"#,
+        ] {
+            let mut reader = JsonLogReader::new(line.as_bytes(), "x.jsonl");
+            let read = reader.next_frame().unwrap().unwrap();
+            assert_eq!(
+                (read.stamp_s, read.odometry),
+                (12.5, frame().odometry),
+                "{line}"
+            );
+            assert_eq!(read.scan.first_angle_rad, -1.5);
+            assert!(read.scan.ranges_m[1].is_nan() && read.scan.ranges_m[2] == 2.0);
+        }
+        let other = br#"{"time": 1, "values": [1, 2]}"#;
+        let mut reader = JsonLogReader::new(&other[..], "x.jsonl");
+        let error = reader.next_frame().unwrap_err().to_string();
+        assert!(
+            error.contains("its names are time, values; it needs"),
+            "{error}"
+        );
     }
 
     #[test]

@@ -109,7 +109,8 @@ pub fn listed(names: impl Iterator<Item = String>) -> String {
 
 /// At most `most` characters of a text, without control characters.
 fn clipped(text: &str, most: usize) -> String {
-    let clean = text.chars().filter(|c| !c.is_control());
+    let spaced = text.chars().map(|c| if c == '\t' { ' ' } else { c });
+    let clean = spaced.filter(|c| !c.is_control());
     clean.take(most).collect()
 }
 

@@ -5,7 +5,7 @@ use std::io::{self, BufRead};
 use crate::carmen::CarmenReader;
 use crate::course_log::CourseReader;
 use crate::json_log::JsonLogReader;
-use crate::log::{LogError, LogOptions, LogReader};
+use crate::log::{LogError, LogOption, LogOptions, LogReader};
 use crate::log_bytes::LogBytes;
 use crate::log_format::LogFormat;
 use crate::mounted_reader::MountedReader;
@@ -13,7 +13,7 @@ use crate::near_readings::without_near_readings;
 use crate::odometry_file::BesideOdometry;
 use crate::restamped::restamped;
 use crate::ros::{LiveReader, RosReader};
-use crate::table_layout::TableLayout;
+use crate::table_layout::{ColumnMeaning, TableLayout};
 use crate::table_log::{TableReader, TableRows};
 
 impl LogFormat {
@@ -109,8 +109,8 @@ impl LogFormat {
         }
         if parts.len() > 1 && !found.is_ros() {
             return Err(foreign(
-                "several files, the first of which is not a ROS recording",
-                "give one log at a time, with a file of odometry beside it or none",
+                "one of several files, which are neither a recording of ROS nor scans with odometry",
+                "give one log at a time, with a file of odometry beside it or none; its header may be time,x,y,heading",
             ));
         }
         let beside = match beside {
@@ -124,8 +124,15 @@ impl LogFormat {
             None => None,
         };
         let beside = beside.as_ref();
+        let columns = options.columns.clone();
+        let layout = columns
+            .or_else(|| TableLayout::of(start))
+            .unwrap_or_default();
+        let has_lasers = found == Self::Table && layout.has(ColumnMeaning::Sensor);
+        let asked = options.first_asked();
         if !found.is_ros()
-            && let Some((option, wanted)) = options.first_asked()
+            && let Some((option, wanted)) =
+                asked.filter(|(option, _)| !(has_lasers && *option == LogOption::ScanTopic))
         {
             return Err(LogError::Missing {
                 name: name.to_owned(),
@@ -150,12 +157,9 @@ impl LogFormat {
                 CourseReader::new(source, name)
             })),
             Self::Table => {
-                let columns = options.columns.clone();
-                let layout = columns
-                    .or_else(|| TableLayout::of(start))
-                    .unwrap_or_default();
+                let rows = || TableRows::new(layout.clone()).of_sensor(options.scan_topic.clone());
                 mounted(restamped(&first, name, beside, |source| {
-                    TableReader::with_format(source, name, TableRows::new(layout.clone()))
+                    TableReader::with_format(source, name, rows())
                 }))
             }
             Self::Mcap | Self::RosBag | Self::Sqlite => {
@@ -177,7 +181,6 @@ impl LogFormat {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::LogOption;
 
     #[test]
     fn a_topic_is_rejected_where_there_are_none() {
@@ -244,6 +247,10 @@ mod tests {
             (
                 b"{\"nrays\":3,\"min_theta\":0,\"readings\":[1,2,3]}\n",
                 "x.log is a log of CSM, the canonical scan matcher; convert it to CARMEN with CSM's json2carmen first",
+            ),
+            (
+                b"time,x,y,theta\n0,0,0,0\n",
+                "x.log is odometry without scans; pass the log of the scans with it: slam2d run SCANS ODOMETRY",
             ),
             (
                 b"rosbag2_bagfile_information:\n",

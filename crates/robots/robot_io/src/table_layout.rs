@@ -1,12 +1,16 @@
 //! What the columns of a table are: by the header of the file, by its form, or by the user.
 
+mod clock;
 pub(crate) mod guess;
+mod names;
 mod poses;
 mod words;
 
 use std::str::FromStr;
 
 use crate::lines::printable;
+pub use clock::seconds;
+pub use names::{column, settle};
 pub use words::{is_missing, list, number, words};
 
 /// Meaning of a column.
@@ -56,6 +60,10 @@ pub enum ColumnMeaning {
     RangeMax,
     /// One of the ranges of a scan, or all from here on.
     Ranges,
+    /// The bearings of a scan, as a list.
+    Angles,
+    /// The name of the laser, if the table has several.
+    Sensor,
 }
 
 /// A column with the factor that makes its unit SI; `None` if it is to be found by the size of the numbers.
@@ -76,6 +84,8 @@ pub struct TableLayout {
     pub begins_with_angles: bool,
 }
 
+/// The header is among so many lines.
+const FIRST_LINES: usize = 64;
 /// Beams of the URG-04LX in a log of BreezySLAM, and the words before them.
 const BREEZY: (usize, usize) = (682, 24);
 /// First angle and step of that sensor, degrees.
@@ -85,19 +95,32 @@ impl TableLayout {
     /// The layout of a file with this start.
     #[must_use]
     pub fn of(start: &[u8]) -> Option<Self> {
-        let lines = start.split(|&byte| byte == b'\n' || byte == b'\r');
-        let mut lines = lines.filter(|line| !line.trim_ascii().is_empty());
-        let text = std::str::from_utf8(lines.next()?).ok()?;
-        let text = text.trim_start_matches('\u{feff}');
-        // A comment may have the words of a header.
-        let row = lines.next().and_then(|row| std::str::from_utf8(row).ok());
-        let fits = |layout: &Self| row.is_none_or(|row| layout.has_numbers(row));
-        Self::of_header(text)
-            .filter(fits)
+        let lines = Self::first_lines(start);
+        let at = lines.iter().position(|line| !is_note(line))?;
+        let fits =
+            |layout: &Self, row: Option<&&str>| row.is_none_or(|row| layout.has_numbers(row));
+        // A comment may be the header, or have its words.
+        let noted = lines[..at].iter().find_map(|note| {
+            let layout = Self::of_header(note);
+            layout.filter(|layout| fits(layout, lines.get(at)))
+        });
+        let text = lines[at];
+        let row = lines[at + 1..].iter().find(|line| !is_note(line));
+        noted
+            .or_else(|| Self::of_header(text).filter(|layout| fits(layout, row)))
             .or_else(|| Self::of_sdk(text))
             .or_else(|| Self::of_echo(text))
             .or_else(|| Self::of_breezy(text))
             .or_else(|| Self::of_angles(text))
+    }
+
+    /// The first lines with text.
+    fn first_lines(start: &[u8]) -> Vec<&str> {
+        let lines = start.split(|&byte| byte == b'\n' || byte == b'\r');
+        let lines = lines.map_while(|line| std::str::from_utf8(line).ok());
+        let lines = lines.map(|line| line.trim_start_matches('\u{feff}'));
+        let lines = lines.filter(|line| !line.trim().is_empty());
+        lines.take(FIRST_LINES).collect()
     }
 
     /// By a header.
@@ -117,7 +140,10 @@ impl TableLayout {
     /// The columns that a header names; `None` if the text is none.
     fn columns_of_header(text: &str) -> Option<Vec<Scaled>> {
         let text = text.trim_start_matches(['#', '%', ' ']);
-        let names: Vec<&str> = words(text).collect();
+        let mut names: Vec<&str> = words(text).collect();
+        while names.last().is_some_and(|name| name.is_empty()) {
+            names.pop();
+        }
         if names.len() < 2 || names.iter().any(|name| number(name).is_some()) {
             return None;
         }
@@ -125,10 +151,9 @@ impl TableLayout {
         // A sentence may have the words of a header.
         let is_prose =
             !text.contains([',', ';', '\t']) && columns.iter().any(|c| c.0 == ColumnMeaning::Other);
-        if is_prose || names.iter().any(|name| name.contains(' ')) {
+        if is_prose {
             return None;
         }
-        // A bag's own stamp is better than the time of recording before it.
         // `rostopic echo -p` prints every time in nanoseconds, also that of a simulation, which is small.
         if names.iter().any(|name| name.starts_with("field.")) {
             let times = columns.iter_mut();
@@ -136,16 +161,7 @@ impl TableLayout {
                 .filter(|column| column.0 == ColumnMeaning::Time)
                 .for_each(|column| column.1 = Some(1e-9));
         }
-        let is_time = |column: &&Scaled| column.0 == ColumnMeaning::Time;
-        if columns.iter().filter(is_time).count() > 1 {
-            let best = names.iter().position(|name| name.ends_with("header.stamp"));
-            let best = best.or_else(|| columns.iter().position(|c| c.0 == ColumnMeaning::Time));
-            for (at, column) in columns.iter_mut().enumerate() {
-                if column.0 == ColumnMeaning::Time && Some(at) != best {
-                    column.0 = ColumnMeaning::Other;
-                }
-            }
-        }
+        settle(&mut columns, &names);
         Some(columns)
     }
 
@@ -204,21 +220,10 @@ impl TableLayout {
             return None;
         }
         let angles: Option<Vec<f64>> = words.map(number).collect();
-        let angles = angles?;
-        let (first, last) = (*angles.first()?, *angles.last()?);
-        let step = (last - first) / (angles.len() as f64 - 1.0);
-        let is_even = angles
-            .windows(2)
-            .all(|two| (two[1] - two[0] - step).abs() < 0.05 * step.abs());
-        // A turn in radians has fewer than seven of them, and a table of angles in degrees more.
-        let unit = if first.abs().max(last.abs()) > 7.0 {
-            1.0_f64.to_radians()
-        } else {
-            1.0
-        };
-        (angles.len() > 3 && is_even).then(|| Self {
+        let angles = angles.filter(|angles| angles.len() > 3)?;
+        Some(Self {
             columns: vec![(ColumnMeaning::Time, None), (ColumnMeaning::Ranges, None)],
-            angles_rad: Some([unit * first, unit * step]),
+            angles_rad: Some(evenly(&angles)?),
             begins_with_angles: true,
             ..Self::default()
         })
@@ -237,7 +242,8 @@ impl TableLayout {
             .filter(|(at, _)| is_range(at))
             .peekable();
         let is_numbers =
-            |word: &str| list(word).all(|item| is_missing(item) || number(item).is_some());
+            // The reader says what dots mean.
+            |word: &str| list(word).all(|item| is_missing(item) || number(item).is_some() || item == "...");
         ranges.peek().is_some() && ranges.all(|(_, word)| is_numbers(word))
     }
 
@@ -253,9 +259,13 @@ impl TableLayout {
     /// Whether a row is a beam, not a scan.
     #[must_use]
     pub fn is_of_beams(&self) -> bool {
-        self.columns
-            .iter()
-            .any(|column| column.0 == ColumnMeaning::Angle)
+        self.has(ColumnMeaning::Angle) && self.has(ColumnMeaning::Range)
+    }
+
+    /// Whether a column has this meaning.
+    #[must_use]
+    pub fn has(&self, wanted: ColumnMeaning) -> bool {
+        self.columns.iter().any(|column| column.0 == wanted)
     }
 
     /// The column of a word; `None` beyond the last.
@@ -300,16 +310,42 @@ impl FromStr for TableLayout {
 
 /// The columns of names, separated by commas.
 fn named(text: &str) -> Result<Vec<Scaled>, String> {
-    let names = text.split(',').map(str::trim);
-    names
+    let names: Vec<&str> = text.split(',').map(str::trim).collect();
+    let columns: Result<Vec<Scaled>, String> = names
+        .iter()
         .map(|name| match column(name) {
-            (ColumnMeaning::Other, _) if !matches!(name, "-" | "frame_id") => Err(format!(
+            (ColumnMeaning::Other, _) if *name != "-" => Err(format!(
                 "there is no column {}; use time, sec, nanosec, angle, range, quality, x, y, heading, angle_min, angle_max, angle_increment, time_increment, scan_time, range_min, range_max, ranges or -, with units such as time_us, angle_deg, range_mm",
                 printable(name)
             )),
             column => Ok(column),
         })
-        .collect()
+        .collect();
+    let mut columns = columns?;
+    settle(&mut columns, &names);
+    Ok(columns)
+}
+
+/// The first angle and the step of evenly spaced angles, rad; they are degrees if no turn in radians has so many.
+pub fn evenly(angles: &[f64]) -> Option<[f64; 2]> {
+    let (first, last) = (*angles.first()?, *angles.last()?);
+    let step = (last - first) / (angles.len() as f64 - 1.0);
+    let mut steps = angles.windows(2).map(|two| two[1] - two[0]);
+    let is_even = steps.all(|other| (other - step).abs() < 0.05 * step.abs());
+    let is_in_degrees = first.abs().max(last.abs()) > 7.0;
+    let unit = if is_in_degrees {
+        1.0_f64.to_radians()
+    } else {
+        1.0
+    };
+    is_even.then_some([unit * first, unit * step])
+}
+
+/// Whether a line is a comment, or tells a spreadsheet its separator.
+pub fn is_note(text: &str) -> bool {
+    let text = text.trim_start();
+    let begins = text.get(..4).unwrap_or_default();
+    text.starts_with(['#', '%']) || text.starts_with("//") || begins.eq_ignore_ascii_case("sep=")
 }
 
 /// The first and the last angle of `-90:90`, in rad.
@@ -330,62 +366,4 @@ fn view_of(text: &str) -> Result<[f64; 2], String> {
             "the first and the last angle come after ranges, in degrees, such as ranges@-90:90"
                 .to_owned()
         })
-}
-
-/// The meaning of a name, and the factor of its unit.
-fn column(name: &str) -> Scaled {
-    let name = name.to_ascii_lowercase();
-    let name = name.strip_prefix("field.").unwrap_or(&name);
-    let (name, bracket) = name.split_once(['[', '(']).unwrap_or((name, ""));
-    let unit = |unit: &str| match unit {
-        "s" | "m" | "rad" => Some(1.0),
-        "ms" | "mm" => Some(1e-3),
-        "us" => Some(1e-6),
-        "ns" => Some(1e-9),
-        "cm" => Some(1e-2),
-        "deg" | "degrees" => Some(1.0_f64.to_radians()),
-        _ => None,
-    };
-    let of_bracket = unit(bracket.trim_end_matches([']', ')']));
-    let (stem, factor) = match name.trim_end_matches('_').rsplit_once('_') {
-        Some((stem, suffix)) if unit(suffix).is_some() => (stem, unit(suffix)),
-        _ => (name.trim_end_matches('_'), of_bracket),
-    };
-    let without_number = stem.trim_end_matches(|c: char| c.is_ascii_digit());
-    let is_numbered =
-        without_number.len() < stem.len() || bracket.starts_with(|c: char| c.is_ascii_digit());
-    let column = match without_number.trim_end_matches('_') {
-        "range" | "ranges" | "dist" | "distance" | "r" | "d" | "scan" if is_numbered => {
-            ColumnMeaning::Ranges
-        }
-        _ => match stem {
-            "ranges" => ColumnMeaning::Ranges,
-            "time" | "stamp" | "timestamp" | "t" | "header.stamp" => ColumnMeaning::Time,
-            "sec" | "secs" | "seconds" | "header.stamp.sec" | "header.stamp.secs" => {
-                ColumnMeaning::Seconds
-            }
-            "nanosec" | "nsecs" | "nanoseconds" | "header.stamp.nanosec" | "header.stamp.nsecs" => {
-                ColumnMeaning::Nanoseconds
-            }
-            "angle" | "theta" | "bearing" => ColumnMeaning::Angle,
-            "range" | "distance" | "dist" => ColumnMeaning::Range,
-            "quality" | "q" => ColumnMeaning::Quality,
-            "x" | "odom_x" | "pose.pose.position.x" => ColumnMeaning::X,
-            "y" | "odom_y" | "pose.pose.position.y" => ColumnMeaning::Y,
-            "orientation.x" | "pose.pose.orientation.x" => ColumnMeaning::OrientationX,
-            "orientation.y" | "pose.pose.orientation.y" => ColumnMeaning::OrientationY,
-            "orientation.z" | "pose.pose.orientation.z" => ColumnMeaning::OrientationZ,
-            "orientation.w" | "pose.pose.orientation.w" => ColumnMeaning::OrientationW,
-            "heading" | "yaw" | "odom_theta" | "odom_yaw" => ColumnMeaning::Heading,
-            "angle_min" => ColumnMeaning::AngleMin,
-            "angle_max" => ColumnMeaning::AngleMax,
-            "angle_increment" => ColumnMeaning::AngleIncrement,
-            "time_increment" => ColumnMeaning::TimeIncrement,
-            "scan_time" => ColumnMeaning::ScanTime,
-            "range_min" => ColumnMeaning::RangeMin,
-            "range_max" => ColumnMeaning::RangeMax,
-            _ => ColumnMeaning::Other,
-        },
-    };
-    (column, factor)
 }

@@ -13,6 +13,8 @@
 mod limit;
 mod sweep;
 
+use std::fmt::Display;
+
 use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 
@@ -25,7 +27,7 @@ use crate::log::{LogFrame, LogNotes};
 use crate::plausible::{MAX_BEAMS, plausible_pose, plausible_stamp_s};
 use crate::remark::{Part, Remark};
 use crate::ros::ScanFields;
-use crate::table_layout::{self, ColumnMeaning, TableLayout};
+use crate::table_layout::{self, ColumnMeaning, Scaled, TableLayout};
 use crate::trajectory::yaw;
 
 /// Time between scans of a table without times, s: that of most cheap scanners.
@@ -38,6 +40,10 @@ pub type TableReader<R> = LineReader<R, TableRows>;
 #[derive(Debug, Default)]
 pub struct TableRows {
     layout: TableLayout,
+    /// The laser whose rows are read: the first one, unless an option names it.
+    sensor: Option<String>,
+    /// Most words of a row so far.
+    most_words: usize,
     sweep: BeamBuffer,
     limit: UnstatedLimit,
     done: Option<LogFrame>,
@@ -47,8 +53,13 @@ pub struct TableRows {
 }
 
 /// The numbers of a row.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Row {
+    words: usize,
+    /// Readings without a number, before one that has.
+    missing: usize,
+    /// The name of the laser, if the row has it.
+    sensor: Option<String>,
     time_s: Option<f64>,
     /// x, y and heading of odometry.
     pose: [Option<f64>; 3],
@@ -58,6 +69,140 @@ struct Row {
     range: Option<f64>,
     is_return: bool,
     fields: ScanFields,
+}
+
+impl Default for Row {
+    fn default() -> Self {
+        Self {
+            words: 0,
+            missing: 0,
+            sensor: None,
+            time_s: None,
+            pose: [None; 3],
+            orientation: [0.0; 4],
+            angle: None,
+            range: None,
+            is_return: true,
+            fields: ScanFields::default(),
+        }
+    }
+}
+
+impl Row {
+    /// Takes the word of a column; `place` is where it stands.
+    fn take(
+        &mut self,
+        (column, factor): Scaled,
+        word: &str,
+        place: &dyn Display,
+    ) -> Result<(), String> {
+        let fields = &mut self.fields;
+        if column == ColumnMeaning::Other {
+            return Ok(());
+        }
+        if word.contains("...") {
+            return Err(
+                "its ranges are cut off; print all of them: in NumPy np.set_printoptions(threshold=sys.maxsize, linewidth=sys.maxsize), in ROS ros2 topic echo --csv --full-length"
+                    .to_owned(),
+            );
+        }
+        if table_layout::is_missing(word) {
+            self.missing += usize::from(column == ColumnMeaning::Ranges);
+            return Ok(());
+        }
+        let of = |item: &str| {
+            table_layout::number(item).ok_or_else(|| {
+                let what = match column {
+                    ColumnMeaning::Time => "a number of seconds or a date with a time of day",
+                    _ => "a number",
+                };
+                format!("{place} must be {what}, not ‘{}’", printable(item))
+            })
+        };
+        match column {
+            ColumnMeaning::Ranges => {
+                for item in table_layout::list(word) {
+                    if table_layout::is_missing(item) {
+                        self.missing += 1;
+                        continue;
+                    }
+                    let range = of(item)?;
+                    let beams = fields.ranges_m.len() + std::mem::take(&mut self.missing);
+                    if beams >= MAX_BEAMS {
+                        return Err(format!("a scan has more than {MAX_BEAMS} ranges"));
+                    }
+                    fields.ranges_m.resize(beams, f64::NAN);
+                    fields.ranges_m.push(factor.unwrap_or(1.0) * range);
+                }
+                return Ok(());
+            }
+            ColumnMeaning::Angles => {
+                let angles: Result<Vec<f64>, String> = table_layout::list(word).map(of).collect();
+                let mut angles = angles?;
+                angles
+                    .iter_mut()
+                    .for_each(|angle| *angle *= factor.unwrap_or(1.0));
+                let [first, step] = table_layout::evenly(&angles)
+                    .ok_or_else(|| format!("the angles of {place} must be evenly spaced"))?;
+                (fields.angle_min, fields.angle_increment) = (first, step);
+                fields.angle_max = f64::NAN;
+                return Ok(());
+            }
+            ColumnMeaning::Sensor => {
+                // A number is that of a frame.
+                let name = Some(word).filter(|word| table_layout::number(word).is_none());
+                self.sensor = name.map(str::to_owned);
+                return Ok(());
+            }
+            ColumnMeaning::Time if let Some(time_s) = table_layout::seconds(word) => {
+                self.time_s = Some(time_s);
+                return Ok(());
+            }
+            _ => {}
+        }
+        let number = of(word)?;
+        let value = factor.unwrap_or(1.0) * number;
+        match column {
+            ColumnMeaning::Other
+            | ColumnMeaning::Ranges
+            | ColumnMeaning::Angles
+            | ColumnMeaning::Sensor => {}
+            ColumnMeaning::Time => {
+                self.time_s = Some(factor.unwrap_or_else(|| second(number)) * number);
+            }
+            ColumnMeaning::Seconds => self.time_s = Some(self.time_s.unwrap_or(0.0) + number),
+            ColumnMeaning::Nanoseconds => {
+                self.time_s = Some(self.time_s.unwrap_or(0.0) + 1e-9 * number);
+            }
+            ColumnMeaning::Angle => self.angle = Some(value),
+            ColumnMeaning::Range => self.range = Some(value),
+            ColumnMeaning::Quality => self.is_return = number > 0.0,
+            ColumnMeaning::X => self.pose[0] = Some(value),
+            ColumnMeaning::Y => self.pose[1] = Some(value),
+            ColumnMeaning::Heading => self.pose[2] = Some(value),
+            ColumnMeaning::OrientationX => self.orientation[0] = value,
+            ColumnMeaning::OrientationY => self.orientation[1] = value,
+            ColumnMeaning::OrientationZ => self.orientation[2] = value,
+            ColumnMeaning::OrientationW => self.orientation[3] = value,
+            ColumnMeaning::AngleMin => fields.angle_min = value,
+            ColumnMeaning::AngleMax => fields.angle_max = value,
+            ColumnMeaning::AngleIncrement => fields.angle_increment = value,
+            ColumnMeaning::TimeIncrement => fields.time_increment = value,
+            ColumnMeaning::ScanTime => fields.scan_time = value,
+            ColumnMeaning::RangeMin => fields.range_min = value,
+            ColumnMeaning::RangeMax => fields.range_max = value,
+        }
+        Ok(())
+    }
+
+    /// The row, whose time is checked and whose heading may be that of a quaternion.
+    fn completed(mut self) -> Result<Self, String> {
+        self.time_s = self.time_s.map(plausible_stamp_s).transpose()?;
+        if self.pose[2].is_none() && self.orientation != [0.0; 4] {
+            self.pose[2] = Some(yaw(&self.orientation, false));
+        }
+        Ok(self)
+    }
 }
 
 impl TableRows {
@@ -70,102 +215,82 @@ impl TableRows {
         }
     }
 
-    fn row(&self, text: &str) -> Result<Row, String> {
-        let mut row = Row {
-            is_return: true,
-            ..Row::default()
+    /// Reads the rows of the laser with this name only.
+    #[must_use]
+    pub fn of_sensor(self, sensor: Option<String>) -> Self {
+        Self { sensor, ..self }
+    }
+
+    /// The frame of an object's values, whose names are those of columns; `None` if it has no ranges or another laser.
+    ///
+    /// # Errors
+    /// If a value is no number, or the scan is incomplete.
+    pub(crate) fn frame_of(
+        &mut self,
+        values: &[(String, String)],
+        notes: &mut LogNotes,
+    ) -> Result<Option<LogFrame>, String> {
+        let names: Vec<&str> = values.iter().map(|(name, _)| name.as_str()).collect();
+        let mut columns: Vec<Scaled> = names
+            .iter()
+            .map(|name| table_layout::column(name))
+            .collect();
+        table_layout::settle(&mut columns, &names);
+        let mut row = Row::default();
+        for (column, (name, value)) in columns.into_iter().zip(values) {
+            row.take(column, value, name)?;
+        }
+        let mut row = row.completed()?;
+        if !self.is_of_laser(&row, notes) {
+            return Ok(None);
+        }
+        self.complete(&mut row.fields)?;
+        self.frame(row, notes).map(Some)
+    }
+
+    /// Whether a row is of the laser that is read: each one has its own place on the robot, which a table does not state.
+    fn is_of_laser(&mut self, row: &Row, notes: &mut LogNotes) -> bool {
+        let Some(name) = &row.sensor else {
+            return true;
         };
-        let fields = &mut row.fields;
+        let own = self.sensor.get_or_insert_with(|| name.clone());
+        if own == name {
+            return true;
+        }
+        let remark = Remark::mended(
+            Part::Sensor,
+            format!(
+                "the scans are of several lasers; those of {} are read, those of {} are not: --scan-topic {} chooses",
+                printable(own),
+                printable(name),
+                printable(name)
+            ),
+        );
+        if !notes.warnings.contains(&remark) && notes.warnings.len() < 10 {
+            notes.warnings.push(remark);
+        }
+        false
+    }
+
+    fn row(&self, text: &str) -> Result<Row, String> {
+        let mut row = Row::default();
         let is_sdk = text.contains("theta:");
         let words = table_layout::words(text)
             .filter(|word| !is_sdk || table_layout::number(word).is_some());
-        // Readings without a number, before one that has.
-        let mut missing = 0;
-        let mut time_s = None;
         for (at, word) in words.enumerate() {
-            let Some((column, factor)) = self.layout.column(at) else {
-                break;
-            };
-            if column == ColumnMeaning::Other {
-                continue;
-            }
-            if word.contains("...") {
-                return Err(
-                    "its ranges are cut off; print them with ros2 topic echo --csv --full-length"
-                        .to_owned(),
-                );
-            }
-            if word.is_empty() {
-                missing += usize::from(column == ColumnMeaning::Ranges);
-                continue;
-            }
-            if column == ColumnMeaning::Ranges {
-                for item in table_layout::list(word) {
-                    if table_layout::is_missing(item) {
-                        missing += 1;
-                        continue;
-                    }
-                    let range = table_layout::number(item).ok_or_else(|| {
-                        format!(
-                            "word {} must be a number, not ‘{}’",
-                            at + 1,
-                            printable(item)
-                        )
-                    })?;
-                    let beams = fields.ranges_m.len() + std::mem::take(&mut missing);
-                    if beams >= MAX_BEAMS {
-                        return Err(format!("a scan has more than {MAX_BEAMS} ranges"));
-                    }
-                    fields.ranges_m.resize(beams, f64::NAN);
-                    fields.ranges_m.push(factor.unwrap_or(1.0) * range);
-                }
-                continue;
-            }
-            let number = table_layout::number(word).ok_or_else(|| {
-                let what = if column == ColumnMeaning::Time {
-                    "a number of seconds"
-                } else {
-                    "a number"
-                };
-                format!("word {} must be {what}, not ‘{}’", at + 1, printable(word))
-            })?;
-            let value = factor.unwrap_or(1.0) * number;
-            match column {
-                ColumnMeaning::Other | ColumnMeaning::Ranges => {}
-                ColumnMeaning::Time => {
-                    time_s = Some(factor.unwrap_or_else(|| second(number)) * number)
-                }
-                ColumnMeaning::Seconds => time_s = Some(time_s.unwrap_or(0.0) + number),
-                ColumnMeaning::Nanoseconds => time_s = Some(time_s.unwrap_or(0.0) + 1e-9 * number),
-                ColumnMeaning::Angle => row.angle = Some(value),
-                ColumnMeaning::Range => row.range = Some(value),
-                ColumnMeaning::Quality => row.is_return = number > 0.0,
-                ColumnMeaning::X => row.pose[0] = Some(value),
-                ColumnMeaning::Y => row.pose[1] = Some(value),
-                ColumnMeaning::Heading => row.pose[2] = Some(value),
-                ColumnMeaning::OrientationX => row.orientation[0] = value,
-                ColumnMeaning::OrientationY => row.orientation[1] = value,
-                ColumnMeaning::OrientationZ => row.orientation[2] = value,
-                ColumnMeaning::OrientationW => row.orientation[3] = value,
-                ColumnMeaning::AngleMin => fields.angle_min = value,
-                ColumnMeaning::AngleMax => fields.angle_max = value,
-                ColumnMeaning::AngleIncrement => fields.angle_increment = value,
-                ColumnMeaning::TimeIncrement => fields.time_increment = value,
-                ColumnMeaning::ScanTime => fields.scan_time = value,
-                ColumnMeaning::RangeMin => fields.range_min = value,
-                ColumnMeaning::RangeMax => fields.range_max = value,
+            row.words += 1;
+            if let Some(column) = self.layout.column(at) {
+                row.take(column, word, &format_args!("word {}", at + 1))?;
             }
         }
         // A separator at the end of the row is none; a reading with a name is one.
-        let named = self
-            .layout
-            .named_ranges()
-            .min(row.fields.ranges_m.len() + missing);
-        if row.fields.ranges_m.len() < named {
-            row.fields.ranges_m.resize(named, f64::NAN);
+        let ranges_m = &mut row.fields.ranges_m;
+        let named = self.layout.named_ranges();
+        let named = named.min(ranges_m.len() + row.missing);
+        if ranges_m.len() < named {
+            ranges_m.resize(named, f64::NAN);
         }
-        row.time_s = time_s.map(plausible_stamp_s).transpose()?;
-        Ok(row)
+        row.completed()
     }
 
     /// The time (s) and the pose of a row of odometry; `None` if the line is empty, a comment or a header.
@@ -178,10 +303,7 @@ impl TableRows {
         if is_empty(text) || is_header(text) {
             return Ok(None);
         }
-        let mut row = self.row(text)?;
-        if row.pose[2].is_none() && row.orientation != [0.0; 4] {
-            row.pose[2] = Some(yaw(&row.orientation, false));
-        }
+        let row = self.row(text)?;
         let (Some(time_s), [Some(x), Some(y), Some(heading)]) = (row.time_s, row.pose) else {
             return Err("a pose must have a time, x, y and a heading".to_owned());
         };
@@ -192,10 +314,17 @@ impl TableRows {
     fn frame(&mut self, row: Row, notes: &mut LogNotes) -> Result<LogFrame, String> {
         let (mut scan, mut remarks): (LaserScan, _) = row.fields.checked(0.0)?;
         remarks.extend(self.limit.apply(&mut scan));
+        // The same sentence has other numbers in the next scan.
+        let words = |text: &str| {
+            text.split(|c: char| c.is_ascii_digit())
+                .next()
+                .map(str::len)
+        };
         for sentence in remarks {
-            let remark = Remark::mended(Part::Sensor, sentence);
-            if !notes.warnings.contains(&remark) && notes.warnings.len() < 10 {
-                notes.warnings.push(remark);
+            let kind = &sentence[..words(&sentence).unwrap_or_default()];
+            let mut said = notes.warnings.iter();
+            if !said.any(|said| said.text.starts_with(kind)) {
+                notes.warnings.push(Remark::mended(Part::Sensor, sentence));
             }
         }
         if row.time_s.is_none() && self.frames == 0 {
@@ -267,6 +396,14 @@ impl LineFormat for TableRows {
             other => other?,
         };
         self.has_rows = true;
+        let whole = self.most_words.min(self.layout.columns.len());
+        if row.words < whole {
+            return Err(format!("it has {} of {whole} columns", row.words));
+        }
+        self.most_words = self.most_words.max(row.words);
+        if !self.is_of_laser(&row, notes) {
+            return Ok(None);
+        }
         if !self.layout.is_of_beams() {
             let mut row = row;
             self.complete(&mut row.fields)?;
@@ -334,7 +471,7 @@ impl TableRows {
 
 /// Whether a row is a comment or has no words.
 fn is_empty(text: &str) -> bool {
-    text.is_empty() || text.starts_with(['#', '%'])
+    text.is_empty() || table_layout::is_note(text)
 }
 
 /// Whether a row names columns.

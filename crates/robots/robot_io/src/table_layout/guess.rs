@@ -1,6 +1,7 @@
 //! What the columns of a table without known names may be, as a proposal for the user to check.
 
 use super::{column, list, number, words};
+use crate::stamps::median;
 use crate::table_layout::ColumnMeaning;
 
 /// Number of lines that are looked at.
@@ -11,11 +12,16 @@ const MOST_OF_BEAM: usize = 8;
 const STEP_DEG: f64 = 0.12;
 /// No laser of a robot sees farther, m: longer ranges are millimetres.
 const FARTHEST_M: f64 = 150.0;
+/// Readings are rarely this near, of the typical one.
+const NEAR: f64 = 0.05;
 /// Largest quality that drivers state.
 const MOST_QUALITY: f64 = 255.0;
 
 /// How the lines may be read, as the end of a sentence.
 pub fn advice(lines: &[String]) -> String {
+    if are_points(lines) {
+        return "its rows are points x, y, not beams: write each as a bearing atan2(y, x) and a range hypot(x, y) as the laser sees it, under a header such as time,angle_rad,range_m".to_owned();
+    }
     match proposal(lines) {
         Some(columns) => {
             let count = lines.first().map_or(0, |line| words(line).count());
@@ -30,6 +36,20 @@ pub fn advice(lines: &[String]) -> String {
         }
         None => "if it is a table, name its columns with --columns, such as time_s,ranges_m@-90:90 or angle_deg,range_mm".to_owned(),
     }
+}
+
+/// Whether the first line names x and y of something, and no heading.
+fn are_points(lines: &[String]) -> bool {
+    let names: Vec<String> = match lines.first() {
+        Some(line) => words(line).map(str::to_lowercase).collect(),
+        None => return false,
+    };
+    let is_turned = |name: &String| column(name).0 == ColumnMeaning::Heading;
+    let is_pair = |two: &[String]| {
+        let stem = two[0].strip_suffix('x');
+        stem.is_some_and(|stem| two[1].strip_suffix('y') == Some(stem))
+    };
+    names.len() < MOST_OF_BEAM && names.windows(2).any(is_pair) && !names.iter().any(is_turned)
 }
 
 /// The value of `--columns` that may fit; `None` if the lines are no rows of numbers.
@@ -52,7 +72,7 @@ fn proposal(lines: &[String]) -> Option<String> {
     if count < MOST_OF_BEAM {
         return beam(&rows, count, names.as_deref());
     }
-    Some(scan(&rows))
+    Some(scan(&rows, names.as_deref()))
 }
 
 /// Columns of rows that are beams.
@@ -105,7 +125,7 @@ fn beam(rows: &[Vec<f64>], count: usize, names: Option<&[&str]>) -> Option<Strin
 }
 
 /// Columns of rows that are scans.
-fn scan(rows: &[Vec<f64>]) -> String {
+fn scan(rows: &[Vec<f64>], names: Option<&[&str]>) -> String {
     // The number of ranges stands before them, perhaps with a word between them, or only a time does.
     let counted = |at: usize| {
         let between = |between: &usize| {
@@ -117,15 +137,48 @@ fn scan(rows: &[Vec<f64>]) -> String {
     let first = rows.iter().map(Vec::len).min().unwrap_or(0);
     let counted = (0..first.saturating_sub(MOST_OF_BEAM / 2)).find_map(counted);
     let is_later = |at: usize| rows.windows(2).all(|two| two[1][at] > two[0][at]);
-    let before = counted.map_or(usize::from(is_later(0)), |at| at + 1);
-    let names = (0..before).map(|at| if at == 0 && is_later(0) { "time" } else { "-" });
+    let time = usize::from(is_later(0));
+    // A pose may stand between: it is negative or near its start, and no range is.
+    let typical = median(rows.iter().flatten().copied().collect()).unwrap_or_default();
+    let is_range = |at: &usize| {
+        let mut column = rows.iter().map(|row| row[*at]);
+        let least = column.clone().fold(0.0, f64::min);
+        least >= 0.0 && column.any(|value| value > NEAR * typical)
+    };
+    let unnamed = (time..first).find(is_range).unwrap_or(time);
+    let named = names.and_then(numbered);
+    let before = named.or(counted.map(|at| at + 1)).unwrap_or(unnamed);
+    let is_pose = named.is_none() && counted.is_none() && before == time + 3;
+    let columns = (0..before).map(|at| match names.map(|names| column(names[at]).0) {
+        Some(ColumnMeaning::Time) => "time",
+        Some(ColumnMeaning::X) => "x",
+        Some(ColumnMeaning::Y) => "y",
+        Some(ColumnMeaning::Heading) => "heading",
+        _ if at < time => "time",
+        _ if is_pose => ["x", "y", "heading"][at - time],
+        _ => "-",
+    });
     let longest = rows
         .iter()
         .flat_map(|row| &row[before..])
         .copied()
         .fold(0.0, f64::max);
     let ranges = unit(longest, ["ranges_m@-90:90", "ranges_mm@-90:90"]);
-    names.chain([ranges]).collect::<Vec<_>>().join(",")
+    columns.chain([ranges]).collect::<Vec<_>>().join(",")
+}
+
+/// The first of many names that differ by their number only: readings, whatever they are called.
+fn numbered(names: &[&str]) -> Option<usize> {
+    let stem = |name: &str| {
+        let digits = |c: char| c.is_ascii_digit() || [']', ')'].contains(&c);
+        let stem = name.trim_end_matches(digits);
+        (stem.len() < name.len()).then(|| stem.to_owned())
+    };
+    let is_run = |many: &[&str]| {
+        let first = stem(many[0]);
+        first.is_some() && many.iter().all(|name| stem(name) == first)
+    };
+    names.windows(MOST_OF_BEAM).position(is_run)
 }
 
 /// The name in metres or in millimetres, by the largest value.
@@ -171,6 +224,39 @@ mod tests {
         assert_eq!(proposed(offset).unwrap(), "time,-,-,ranges_m@-90:90");
         let timed = (0..5).map(|k| format!("{k}{}", ranges(k).collect::<String>()));
         assert_eq!(proposed(timed).unwrap(), "time,ranges_m@-90:90");
+    }
+
+    #[test]
+    fn the_pose_before_ranges_is_no_range_whatever_it_is_called() {
+        let rows = |k: i32| {
+            let ranges = (0..60).map(|beam| format!(";{}", 1.5 + 0.01 * f64::from(beam)));
+            format!(
+                "{k};{};{};-0.2{}",
+                0.01 * f64::from(k),
+                0.0,
+                ranges.collect::<String>()
+            )
+        };
+        let unnamed = (0..5).map(rows);
+        assert_eq!(
+            proposed(unnamed).unwrap(),
+            "time,x,y,heading,ranges_m@-90:90"
+        );
+        let names = (0..60).map(|beam| format!(";Messwert{beam}"));
+        let header = format!(
+            "Zeit;Position X;Position Y;Kurs{}",
+            names.collect::<String>()
+        );
+        let named = [header].into_iter().chain((0..5).map(rows));
+        assert_eq!(proposed(named).unwrap(), "time,x,y,-,ranges_m@-90:90");
+    }
+
+    #[test]
+    fn points_are_not_proposed_as_beams() {
+        for header in ["time,px,py", "scan_id,timestamp,x,y,intensity", "x,y"] {
+            let advice = advice(&[header.to_owned(), "0,1,2,3,4".to_owned()]);
+            assert!(advice.contains("atan2(y, x)"), "{advice}");
+        }
     }
 
     #[test]

@@ -1,16 +1,36 @@
 //! What the columns of a file of odometry are.
 
-use super::{ColumnMeaning, Scaled, TableLayout, named, number, words};
+use super::{ColumnMeaning, Scaled, TableLayout, is_note, named, number, words};
 
 impl TableLayout {
     /// The layout of a file of odometry with this start: by a header, by the form of `ros2 topic echo --csv`, or time, x, y
     /// and heading in rows of four numbers.
     #[must_use]
     pub fn of_poses(start: &[u8]) -> Option<Self> {
-        let mut lines = start.split(|&byte| byte == b'\n' || byte == b'\r');
-        let line = lines.find(|line| !line.trim_ascii().is_empty())?;
-        let text = std::str::from_utf8(line).ok()?;
-        let text = text.trim_start_matches('\u{feff}');
+        let lines = Self::first_lines(start);
+        let at = lines.iter().position(|line| !is_note(line))?;
+        lines[..=at]
+            .iter()
+            .find_map(|text| Self::of_pose_line(text))
+    }
+
+    /// Whether the columns of a file are named, and are those of odometry.
+    #[must_use]
+    pub fn names_poses(start: &[u8]) -> bool {
+        let lines = Self::first_lines(start);
+        let is_named = |text: &&str| {
+            let columns = Self::columns_of_header(text);
+            columns.and_then(Self::of_pose_columns).is_some()
+        };
+        lines.iter().take_while(|line| is_note(line)).any(is_named)
+            || lines
+                .iter()
+                .find(|line| !is_note(line))
+                .is_some_and(is_named)
+    }
+
+    /// The layout of a file of odometry with this line before its rows, or as one of them.
+    fn of_pose_line(text: &str) -> Option<Self> {
         let of_row = |names: &str| Self::of_named_poses(names).ok();
         let words: Vec<&str> = words(text).collect();
         match words.iter().map(|word| number(word)).collect::<Vec<_>>()[..] {
@@ -32,22 +52,17 @@ impl TableLayout {
             .ok_or_else(|| "name time, x, y and heading of the odometry".to_owned())
     }
 
-    /// With `theta` as the heading; `None` if the columns have no poses, or have ranges.
-    fn of_pose_columns(mut columns: Vec<Scaled>) -> Option<Self> {
-        use ColumnMeaning::{Angle, Heading, OrientationZ, Range, Ranges, Seconds, Time, X, Y};
-        let has =
-            |columns: &[Scaled], of: ColumnMeaning| columns.iter().any(|column| column.0 == of);
-        if !has(&columns, Heading)
-            && let Some(theta) = columns.iter_mut().find(|column| column.0 == Angle)
-        {
-            theta.0 = Heading;
-        }
-        let is_timed = has(&columns, Time) || has(&columns, Seconds);
-        let is_turned = has(&columns, Heading) || has(&columns, OrientationZ);
-        let is_pose = is_timed && is_turned && has(&columns, X) && has(&columns, Y);
-        (is_pose && !has(&columns, Range) && !has(&columns, Ranges)).then(|| Self {
+    /// `None` if the columns have no poses, or have ranges.
+    fn of_pose_columns(columns: Vec<Scaled>) -> Option<Self> {
+        use ColumnMeaning::{Heading, OrientationZ, Range, Ranges, Seconds, Time, X, Y};
+        let layout = Self {
             columns,
             ..Self::default()
-        })
+        };
+        let has = |of| layout.has(of);
+        let is_timed = has(Time) || has(Seconds);
+        let is_turned = has(Heading) || has(OrientationZ);
+        let is_pose = is_timed && is_turned && has(X) && has(Y);
+        (is_pose && !has(Range) && !has(Ranges)).then_some(layout)
     }
 }

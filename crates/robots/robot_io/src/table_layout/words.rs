@@ -72,7 +72,9 @@ pub fn list(word: &str) -> impl Iterator<Item = &str> {
 
 /// Whether an item of a list stands for a reading that is missing.
 pub fn is_missing(item: &str) -> bool {
-    item.is_empty() || matches!(item, "None" | "null" | "-")
+    let item = item.trim_start_matches(['#', '-']).trim_end_matches('-');
+    let words = ["", "none", "null", "nil", "na", "n/a", "<na>"];
+    words.iter().any(|word| item.eq_ignore_ascii_case(word))
 }
 
 /// The number of a word, with a point or a comma before its decimals.

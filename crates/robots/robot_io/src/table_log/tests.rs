@@ -50,7 +50,7 @@ fn a_scan_that_ros_prints_is_that_scan() {
     let mut reader = LogFormat::open(cut.as_bytes(), "x.csv", &LogOptions::default()).unwrap();
     let error = reader.next_frame().unwrap_err().to_string();
     assert!(
-        error.ends_with("print them with ros2 topic echo --csv --full-length"),
+        error.ends_with("in ROS ros2 topic echo --csv --full-length"),
         "{error}"
     );
 }
@@ -336,4 +336,69 @@ fn a_table_of_no_known_form_is_answered_with_its_columns() {
         ..LogOptions::default()
     };
     assert_eq!(read_with(&text, &options).0[0].scan.ranges_m.len(), 40);
+}
+
+#[test]
+fn a_table_is_read_with_the_names_and_lines_that_people_write() {
+    let row = "0.5,1,2,0.25,-1,0.5,1.5,N/A,2.5\n";
+    let expected = read(&format!(
+        "time,x,y,heading,angle_min,angle_increment,ranges0,ranges1,ranges2\n{row}"
+    ));
+    for header in [
+        "# drive of monday, robot 3\ntime,x,y,heading,angle_min,angle_increment,ranges0,ranges1,ranges2",
+        "sep=,\ntime,x,y,theta,angle_min,angle_increment,ranges0,ranges1,ranges2",
+        "// time, angle, range\nTimestamp [s],pose_x,pose_y,pose_theta,angleMin,angle_increment (rad),range 0 [m],range 1 [m],range 2 [m]",
+        "Zeit,Position X,Position Y,Winkel,Startwinkel,Winkelschritt,Abstand0,Abstand1,Abstand2",
+        "stamp,odom.x,odom.y,odom.yaw,scan.angle_min,scan.angle_increment,scan.ranges[0],scan.ranges[1],scan.ranges[2]",
+    ] {
+        let frames = read(&format!("{header}\n{row}"));
+        assert_eq!(frames[0].odometry, expected[0].odometry, "{header}");
+        assert_eq!(frames[0].stamp_s, 0.5, "{header}");
+        let (scan, wanted) = (&frames[0].scan, &expected[0].scan);
+        assert_eq!(scan.first_angle_rad, wanted.first_angle_rad, "{header}");
+        assert!(
+            scan.ranges_m[1].is_nan() && scan.ranges_m.len() == 3,
+            "{header}"
+        );
+        assert_eq!(scan.ranges_m[2], 2.5, "{header}");
+    }
+    let quaternion = read(
+        "t,pose.position.x,pose.position.y,pose.orientation.x,pose.orientation.y,pose.orientation.z,pose.orientation.w,angles,ranges\n2023-11-14T22:13:20.5Z,1,2,0,0,1,0,\"[-90, 0, 90]\",\"[1, #N/A, 3]\"\n",
+    );
+    let [x, y, heading] = quaternion[0].odometry.unwrap().to_array();
+    assert_eq!((x, y, heading.abs()), (1.0, 2.0, core::f64::consts::PI));
+    assert_eq!(quaternion[0].stamp_s, 1_700_000_000.5);
+    assert_eq!(quaternion[0].scan.bearing_rad(1), 0.0);
+}
+
+#[test]
+fn a_row_that_is_cut_is_no_scan() {
+    let head = "time,angle_min,angle_increment,ranges0,ranges1,ranges2\n";
+    let row = |time: u8| format!("{time},-1,1,1.5,2.5,3.5\n");
+    let text = format!("{head}{}1,-1,1,1.5\n{}3,-1,1,1.5", row(0), row(2));
+    let (frames, notes) = read_with(&text, &LogOptions::default());
+    assert_eq!(frames.len(), 2);
+    let said = notes.sentences("x").join(" ");
+    assert!(said.contains("line 3: it has 4 of 6 columns"), "{said}");
+    assert!(said.contains("the last line, 5, is incomplete"), "{said}");
+}
+
+#[test]
+fn of_several_lasers_in_a_table_one_is_read_and_the_others_are_named() {
+    let row = |time: u8, laser: &str| format!("{time},{laser},-1,1,1.5,2.5\n");
+    let rows: String = (0..4)
+        .map(|time| row(time, "front") + &row(time, "rear"))
+        .collect();
+    let text = format!("time,sensor,angle_min,angle_increment,ranges0,ranges1\n{rows}");
+    let (frames, notes) = read_with(&text, &LogOptions::default());
+    assert_eq!(frames.len(), 4);
+    let said = &notes.warnings[0].text;
+    assert!(said.contains("--scan-topic rear chooses"), "{said}");
+    let rear = LogOptions {
+        scan_topic: Some("rear".to_owned()),
+        ..LogOptions::default()
+    };
+    let (frames, notes) = read_with(&text, &rear);
+    assert_eq!(frames.len(), 4);
+    assert!(notes.warnings[0].text.contains("those of rear are read"));
 }
