@@ -269,7 +269,7 @@ mod tests {
     fn objects_with_names_of_their_own_are_frames() {
         for line in [
             r#"{"timestamp": 12.5, "pose": {"x": 1, "y": -2, "theta": 0.3}, "scan": {"angle_min": -1.5, "angle_increment": 0.1, "ranges": [1.25, null, 2]}}"#,
-            r#"{"t": 12.5, "odom": [1, -2, 0.3], "angle_min": -1.5, "angle_increment": 0.1, "ranges": [1.25, "N/A", 2]}"#,
+            r#"{"t": 12.5, "odom": [1, -2, 0.3], "angle_min": -1.5, "angle_increment": 0.1, "ranges": [1.25, "N/A", 2, null]}"#,
             r#"{"data": {"header": {"stamp": {"sec": 12, "nanosec": 500000000}}, "angle_min": -1.5, "angle_increment": 0.1, "ranges": [1.25, null, 2]}, "position": {"x": 1, "y": -2}, "yaw": 0.3}"#,
         ] {
             let mut reader = JsonLogReader::new(line.as_bytes(), "x.jsonl");
@@ -281,6 +281,8 @@ mod tests {
             );
             assert_eq!(read.scan.first_angle_rad, -1.5);
             assert!(read.scan.ranges_m[1].is_nan() && read.scan.ranges_m[2] == 2.0);
+            let beams = 3 + usize::from(line.contains("2, null"));
+            assert_eq!(read.scan.ranges_m.len(), beams);
         }
         let other = br#"{"time": 1, "values": [1, 2]}"#;
         let mut reader = JsonLogReader::new(&other[..], "x.jsonl");

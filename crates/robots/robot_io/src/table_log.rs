@@ -134,6 +134,11 @@ impl Row {
                     fields.ranges_m.resize(beams, f64::NAN);
                     fields.ranges_m.push(factor.unwrap_or(1.0) * range);
                 }
+                // The last items of a list are beams, as those of a row need not be.
+                if table_layout::list(word).nth(1).is_some() {
+                    let beams = fields.ranges_m.len() + std::mem::take(&mut self.missing);
+                    fields.ranges_m.resize(beams.min(MAX_BEAMS), f64::NAN);
+                }
                 return Ok(());
             }
             ColumnMeaning::Angles => {

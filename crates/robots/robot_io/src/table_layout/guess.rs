@@ -143,7 +143,7 @@ fn scan(rows: &[Vec<f64>], names: Option<&[&str]>) -> String {
     let is_range = |at: &usize| {
         let mut column = rows.iter().map(|row| row[*at]);
         let least = column.clone().fold(0.0, f64::min);
-        least >= 0.0 && column.any(|value| value > NEAR * typical)
+        least >= 0.0 && column.next().is_some_and(|first| first > NEAR * typical)
     };
     let unnamed = (time..first).find(is_range).unwrap_or(time);
     let named = names.and_then(numbered);
