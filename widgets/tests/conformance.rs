@@ -8,7 +8,7 @@ use widget_kit::invariants::{assert_reports, assert_values};
 use widget_kit::model::{Activity, Model, Motion, shown_scene};
 use widget_kit::param::{MORE, ParamKind, ParamSpec};
 use widget_kit::playback::SPEED;
-use widget_kit::scene::Layer;
+use widget_kit::scene::{Layer, Scene};
 use widget_kit::shell::Shell;
 use widget_kit::spec::{Awaits, Preset, WidgetSpec};
 use widgets::registry::{MODELS, SHELLS, SPECS, find, names};
@@ -188,6 +188,12 @@ fn no_line_has_a_gap_without_missing_data() {
 /// Pieces of visual refinement before the picture is compared.
 const WORKED: usize = 50;
 
+/// Whether two pictures are equal. Unknown values are NaN and equal none: only then their texts decide, which take long.
+fn is_same(one: &Scene, other: &Scene) -> bool {
+    let has_unknown = !one.eq(one);
+    one == other || has_unknown && format!("{one:?}") == format!("{other:?}")
+}
+
 /// Whether a value of the parameter changes picture, result or tables, in the present state of the model.
 fn changes_what_is_shown(model: &mut dyn Model, param: &ParamSpec) -> bool {
     let shown = |model: &mut dyn Model| {
@@ -196,11 +202,10 @@ fn changes_what_is_shown(model: &mut dyn Model, param: &ParamSpec) -> bool {
         (0..WORKED).for_each(|_| {
             model.work();
         });
-        format!(
-            "{:?} {:?} {:?}",
+        (
+            format!("{:?}", model.outcome()),
+            model.tables(),
             model.scene(),
-            model.outcome(),
-            model.tables()
         )
     };
     let before = shown(model);
@@ -208,7 +213,8 @@ fn changes_what_is_shown(model: &mut dyn Model, param: &ParamSpec) -> bool {
     let (min, max) = param.range();
     let found = [min, max, (min + max) / 2.0].into_iter().any(|value| {
         model.set(param.id, value).expect("a value in range");
-        shown(model) != before
+        let after = shown(model);
+        after.0 != before.0 || after.1 != before.1 || !is_same(&after.2, &before.2)
     });
     model.set(param.id, now).expect("the value it had");
     found
@@ -234,11 +240,12 @@ fn each_parameter_changes_what_is_shown() {
                 vec![("edit", 1.0), ("piece", 1.0)],
             ]);
         }
-        let starts = states
+        let mut starts: Vec<_> = states
             .iter()
-            .flat_map(|state| others.iter().map(move |other| (state, other)));
-        let has_effect = |param: &ParamSpec| {
-            starts.clone().any(|(state, other)| {
+            .flat_map(|state| others.iter().map(move |other| (state, other)))
+            .collect();
+        let mut has_effect = |param: &ParamSpec| {
+            let found = starts.iter().position(|(state, other)| {
                 let mut model = make();
                 model.set_motion(Motion::Reduced);
                 model.press(state).expect("the widget has it");
@@ -249,7 +256,10 @@ fn each_parameter_changes_what_is_shown() {
                     model.press("play").expect("every widget plays");
                     changes_what_is_shown(model.as_mut(), param)
                 }
-            })
+            });
+            // The next parameter is often one of the same mode.
+            starts[..=found.unwrap_or(0)].rotate_right(1);
+            found.is_some()
         };
         for param in spec.params {
             let is_text = matches!(param.kind, ParamKind::Text { .. });
