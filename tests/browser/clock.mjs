@@ -119,6 +119,8 @@ export function install({ pauseMs, stepMs, readingMs, quickReadingMs, longDelayM
     });
   });
   window.frameClock = {
+    /** Resolves at the first frame in which a condition holds. */
+    until: when,
     /** Resolves after a time, with the number of frames that the page requested meanwhile. */
     pass: async (ms) => {
       const [from, before] = [nowMs, requests];

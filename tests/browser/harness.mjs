@@ -229,16 +229,15 @@ export function ready(page, selector = 'slam-widget') {
 }
 
 /** Waits until a widget has drawn `count` more frames. */
-export async function moreFrames(page, count, selector = 'slam-widget') {
-  const before = await page.evaluate((css) => document.querySelector(css).frames, selector);
-  await page.waitForFunction(
-    ([css, goal]) => {
-      const widget = document.querySelector(css);
+export function moreFrames(page, count, selector = 'slam-widget') {
+  return page.evaluate(([css, more]) => {
+    const widget = document.querySelector(css);
+    const goal = widget.frames + more;
+    return frameClock.until(() => {
       void widget.snapshot().then((picture) => picture.close());
       return widget.frames >= goal;
-    },
-    [selector, before + count],
-  );
+    });
+  }, [selector, count]);
 }
 
 /** Converts a point of a panel to page coordinates. */
