@@ -10,6 +10,8 @@
 
 mod doubts;
 
+pub use doubts::unsolved;
+
 use ch16_slam2d::graph::{EdgeKind, EdgeView};
 use ch16_slam2d::loops::{LoopRejection, LoopVerification};
 use ch16_slam2d::slam::Slam;

@@ -7,7 +7,7 @@ use std::thread::{self, ThreadId};
 
 use ch16_slam2d::local_map::LocalMapConfig;
 use ch16_slam2d::scan::{Frame, LaserScan};
-use ch16_slam2d::slam::{Keyframe, LoopAttempt, SlamConfig, SlamReport};
+use ch16_slam2d::slam::{Conclusion, Keyframe, LoopAttempt, SlamConfig, SlamReport};
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pr_geom::SE2;
 use pyo3::prelude::*;
@@ -15,6 +15,7 @@ use pyo3::sync::MutexExt as _;
 use pyo3::types::{PyBytes, PyDict};
 use robot_io::graph_file::GraphFile;
 use robot_io::map_image::{MapBuilder, NoReturn};
+use robot_io::quality;
 use robot_io::session::Session;
 
 use crate::arrays;
@@ -392,18 +393,24 @@ impl Slam {
     }
 
     /// Ends the run: closes pending loops, links the keyframes once more, and returns the loops that were tried.
+    ///
+    /// Raises OptimizeError if the graph cannot be optimized: the poses then do not follow the newest loops.
     fn conclude(&self, py: Python<'_>) -> PyResult<Vec<Py<PyDict>>> {
         let step = self.begin()?;
-        let attempts = py.detach(|| {
+        let concluded = py.detach(|| {
             let mut estimator = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
             match &mut *estimator {
-                Estimator::Waiting { .. } => Vec::new(),
-                Estimator::Running(slam) => slam.conclude().tried,
+                Estimator::Waiting { .. } => Conclusion::default(),
+                Estimator::Running(slam) => slam.conclude(),
             }
         });
         drop(step);
         self.raised.raise()?;
-        attempts.iter().map(|attempt| tried(py, attempt)).collect()
+        if let Some(reason) = &concluded.unsolved {
+            return Err(OptimizeError::new_err(quality::unsolved(reason)));
+        }
+        let tries = concluded.tried.iter();
+        tries.map(|attempt| tried(py, attempt)).collect()
     }
 
     /// Number of scans taken.

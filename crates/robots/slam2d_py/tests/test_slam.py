@@ -84,6 +84,15 @@ def test_before_the_first_scan_there_is_nothing(drive):
     assert chapter.conclude() == [] and chapter.covariances().shape == (0, 3, 3)
 
 
+def test_a_graph_that_cannot_be_optimized_is_an_error_at_the_end(drive):
+    slam = rs.Slam(sensor=drive.sensor)
+    for k in range(20):
+        # Once in a unit of its own.
+        slam.step(drive.ranges[k], (1e200, 0, 0) if k == 10 else drive.odometry[k])
+    with pytest.raises(rs.OptimizeError, match="the map does not follow its newest loops: .* too large a value"):
+        slam.conclude()
+
+
 def test_a_sensor_says_where_its_points_are(drive):
     sensor = rs.Sensor(first_angle_rad=0.0, angle_step_rad=np.pi / 2, range_max_m=5.0, body_from_sensor=(1, 0, np.pi))
     assert np.allclose(sensor.points([2.0, 0.0, 5.0, 1.0]), [[-1.0, 0.0], [1.0, 1.0]], atol=1e-12)

@@ -55,7 +55,8 @@ pub(super) fn violated(slam: &Slam, tried: &[TriedLoop]) -> Vec<ViolatedLoop> {
 }
 
 /// The doubt about a map that could not be optimized at the end of its run.
-pub(super) fn unsolved(reason: &LoopRejection) -> String {
+#[must_use]
+pub fn unsolved(reason: &LoopRejection) -> String {
     let reason = match reason {
         LoopRejection::OptimizationFailed(stop) => stop.to_string(),
         other => other.to_string(),
