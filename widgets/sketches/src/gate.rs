@@ -24,7 +24,7 @@ pub(super) const SKETCH: SketchSpec = SketchSpec {
     name: "gate",
     title: "A gate that grows with the path",
     slider: Slider {
-        label: "nodes since the last visit",
+        label: "edges since the last visit",
         unit: "",
         min: 1.0,
         max: 60.0,
@@ -49,9 +49,9 @@ fn innovation() -> &'static Vector3<f64> {
     })
 }
 
-fn at(nodes: f64) -> Shown {
+fn at(edges: f64) -> Shown {
     let config = LapConfig::default().slam.chapter.loops;
-    let gap = nodes as usize;
+    let gap = edges as usize;
     let information = path_information(gap, &config);
     let gate =
         |innovation: &Vector3<f64>| chi_squared_gate(innovation, &information, config.gate_chi2);
@@ -67,7 +67,7 @@ fn at(nodes: f64) -> Shown {
             panels: vec![picture(gap, &config), ends(gap, &config)],
         },
         sentence: format!(
-            "After {gap} nodes the gate reaches {reach_m:.2} m, or {reach_deg:.0}°. The loop’s χ² is {:.2}, the threshold {:.3}: {word}.",
+            "After {gap} edges the gate reaches {reach_m:.2} m, or {reach_deg:.0}°. The loop’s χ² is {:.2}, the threshold {:.3}: {word}.",
             tested.chi2, tested.gate_chi2
         ),
     }
@@ -81,9 +81,9 @@ fn reach(gap: usize, config: &LoopConfig) -> [f64; 2] {
 }
 
 /// The gate at its widest along the distance: where it is dragged.
-fn handle(nodes: f64) -> (&'static str, [f64; 2]) {
+fn handle(edges: f64) -> (&'static str, [f64; 2]) {
     let config = LapConfig::default().slam.chapter.loops;
-    ("gate", [reach(nodes as usize, &config)[0], 0.0])
+    ("gate", [reach(edges as usize, &config)[0], 0.0])
 }
 
 /// An innovation in the picture. The gate knows no direction: it tests how far, and by which turn.
@@ -109,7 +109,7 @@ fn picture(gap: usize, config: &LoopConfig) -> Panel {
     Panel {
         id: "gate",
         title: format!(
-            "Drift over {gap} nodes: {} of {DRIFTS} rejected",
+            "Drift over {gap} edges: {} of {DRIFTS} rejected",
             beyond.len()
         ),
         weight: Weight::Main,
@@ -187,11 +187,11 @@ fn drifts(gap: usize, config: &LoopConfig) -> Vec<Vector3<f64>> {
 mod tests {
     use super::*;
 
-    fn accepted(nodes: f64) -> bool {
-        at(nodes).sentence.ends_with("accepted.")
+    fn accepted(edges: f64) -> bool {
+        at(edges).sentence.ends_with("accepted.")
     }
 
-    /// The canonical lap tests this loop over 22 nodes, and accepts it (chapter, canonical run).
+    /// The canonical lap tests this loop over 22 edges, and accepts it (chapter, canonical run).
     #[test]
     fn the_loop_is_rejected_after_a_short_path_and_accepted_after_its_own() {
         assert!(!accepted(1.0));
@@ -223,7 +223,7 @@ mod tests {
 
     #[test]
     fn a_wider_gate_accepts_all_that_a_narrower_one_accepts() {
-        let verdicts: Vec<bool> = (1..=60).map(|nodes| accepted(f64::from(nodes))).collect();
+        let verdicts: Vec<bool> = (1..=60).map(|edges| accepted(f64::from(edges))).collect();
         assert!(verdicts.windows(2).all(|pair| pair[0] <= pair[1]));
     }
 

@@ -184,7 +184,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             "Opens a CARMEN, ROS 1 or ROS 2 log, a saved session, or a pose graph. You can also drop it on the picture. It stays in this browser.",
         ),
         ButtonSpec {
-            help: "Maps the sample if no log is open, pauses or resumes a log while it is being read, and plays back the path once it has been mapped.",
+            help: "Maps the sample if no log is open, pauses or resumes a log while it is being read, and plays back the path once the log is mapped.",
             ..PLAY
         },
         ButtonSpec::new(

@@ -386,7 +386,7 @@ params! {
         "kernel of your loop",
         OwnKernel::NAMED,
     )
-    .help("The robust kernel of your own loop: plain least squares, Huber's kernel, which acts beyond 1.345 standard deviations, or dynamic covariance scaling, which acts beyond a χ² of 10.");
+    .help("The kernel for your own loop: plain least squares, Huber's kernel, which acts beyond 1.345 standard deviations, or dynamic covariance scaling, which acts beyond a χ² of 10.");
 
     pub(super) static WIPE: Param<f64> = Param::slider("wipe", "before and after", [0.0, 1.0], 0.01)
         .default(0.45)

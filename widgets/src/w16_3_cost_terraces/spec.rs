@@ -85,7 +85,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "wide-hill",
         label: "Widen the NDT cell to 0.8 m",
-        help: "The bells become longer and fewer. NDT's ball comes home from a start from which ICP's ball rolls further away.",
+        help: "The bells become longer and fewer. From this start, NDT's ball comes home, but ICP's ball rolls further away.",
         set: &[
             ("tau", 0.6),
             ("colours", 0.0),

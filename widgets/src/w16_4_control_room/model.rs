@@ -35,11 +35,11 @@ use widget_kit::scene::Scene;
 use widget_kit::spec::WidgetSpec;
 use widget_kit::values::{Changed, Values};
 
-use crate::w16_4_control_room::spec::{LANE, SPEC, TICK};
+use crate::w16_4_control_room::spec::{PART, SPEC, TICK};
 use grid::GridView;
 use history::History;
 use log::Event;
-use picture::lanes;
+use picture::parts;
 use settings::config;
 
 /// Ticks a second at speed 1: twice as fast as the robot.
@@ -47,9 +47,6 @@ const TICKS_PER_S: f64 = 8.0;
 
 /// Duration of the pulses and of the repainting after a loop, s at speed 1: no more than a glance.
 const CLOSING_S: f64 = 1.5;
-
-/// How near the pointer has to be to a mark to light it: ticks, and lanes.
-const MARK_REACH: [f64; 2] = [1.5, 0.5];
 
 /// The model of the widget.
 pub struct ControlRoom {
@@ -69,8 +66,6 @@ pub struct ControlRoom {
     playback: Playback,
     /// The shown share of what follows the loop that the playback has reached.
     closing: Option<f64>,
-    /// Tick and lane of the mark under the pointer.
-    hovered: Option<(usize, usize)>,
 }
 
 impl Default for ControlRoom {
@@ -91,7 +86,6 @@ impl Default for ControlRoom {
             world: World::apartment(),
             playback: Playback::default(),
             closing: None,
-            hovered: None,
             values,
             laps,
             next_events: 0,
@@ -107,20 +101,15 @@ impl ControlRoom {
         self.values.get(&TICK) as usize
     }
 
-    /// The selected lane.
-    fn lane(&self) -> usize {
-        self.values.get(&LANE)
+    /// The selected part.
+    fn part(&self) -> usize {
+        self.values.get(&PART)
     }
 
-    /// Tick and lane of the mark under the pointer, or of the selected one.
-    fn looked_at(&self) -> (usize, usize) {
-        self.hovered.unwrap_or((self.tick(), self.lane()))
-    }
-
-    fn choose_lane(&mut self, lane: usize) {
+    fn choose_part(&mut self, part: usize) {
         self.values
-            .set(SPEC.id, "lane", lane as f64)
-            .expect("a lane of the list");
+            .set(SPEC.id, "lane", part as f64)
+            .expect("a part of the list");
     }
 
     fn last(&self) -> f64 {
@@ -159,7 +148,6 @@ impl ControlRoom {
         self.history = History::new(&self.record);
         self.events = log::events(&self.record);
         self.grid.forget();
-        self.hovered = None;
         self.go_to(self.values.get(&TICK));
         if !self.laps.is_running() {
             for _ in 0..core::mem::take(&mut self.next_events) {
@@ -185,8 +173,8 @@ impl ControlRoom {
         let now = self.tick();
         let next = self.events.iter().find(|event| event.tick > now);
         if let Some(event) = next.or(self.events.first()) {
-            let (tick, lane) = (event.tick, event.lane);
-            self.choose_lane(lane);
+            let (tick, part) = (event.tick, event.part_at_work);
+            self.choose_part(part);
             self.go_to(tick as f64);
         }
     }
@@ -251,7 +239,7 @@ impl Model for ControlRoom {
             .playback
             .advance(now as f64, self.last(), elapsed_s, rate) as usize;
         let mut passed = self.record.lap.reports[now..reached].iter();
-        let closed = passed.find(|report| lanes::closes_loop(report));
+        let closed = passed.find(|report| parts::closes_loop(report));
         let closed = closed.map(|report| report.tick);
         if reached != now {
             self.go_to(closed.unwrap_or(reached) as f64);
@@ -309,16 +297,12 @@ impl Model for ControlRoom {
         tables::shown(self)
     }
 
-    /// The line at the current tick, in every plot over time, and each mark of the lanes.
+    /// The line at the current tick, in every plot over time, and each part.
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        if panel == lanes::ID
-            && let Some((tick, lane)) = lanes::event_at(&self.record, self.tick(), at, reach)
-        {
-            // The press goes to the tick of the mark, regardless of the exact position.
-            return Some(Handle {
-                panel: lanes::ID,
-                id: lanes::name(lane),
-                offset: [at[0] - tick, 0.0],
+        if panel == parts::ID {
+            return parts::at(at).map(|part| Handle {
+                panel: parts::ID,
+                id: parts::name(part),
                 ..Handle::default()
             });
         }
@@ -327,20 +311,14 @@ impl Model for ControlRoom {
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
-        if let Some(lane) = lanes::from_name(handle.id) {
-            self.choose_lane(lane);
+        if let Some(part) = parts::from_name(handle.id) {
+            self.choose_part(part);
+            return;
         }
         let tick = dragged_to(handle, at);
         if tick != self.values.get(&TICK) {
             self.go_to(tick);
         }
-    }
-
-    /// The mark under the pointer lights its sweep on the grid.
-    fn hover(&mut self, panel: &str, at: Option<[f64; 2]>) {
-        let at = at.filter(|_| panel == lanes::ID);
-        let mark = at.and_then(|at| lanes::event_at(&self.record, self.tick(), at, MARK_REACH));
-        self.hovered = mark.map(|(tick, lane)| (tick as usize, lane));
     }
 
     fn set_motion(&mut self, motion: Motion) {

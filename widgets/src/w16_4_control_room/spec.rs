@@ -27,10 +27,10 @@ params! {
 
     pub(super) static SEED: Param<u32> = seed(lap::CANONICAL_SEED);
 
-    pub(super) static LANE: OneOf<usize> = one_of!(
+    pub(super) static PART: OneOf<usize> = one_of!(
         usize,
         "lane",
-        "lane",
+        "part",
         &[
             (0, "predict", "predict"),
             (1, "register", "register"),
@@ -43,7 +43,7 @@ params! {
         ],
     )
     .default("register")
-    .help("The operation described at this tick. To select another, press its mark on a lane.");
+    .help("The operation described at this tick. To select another, press its mark below the map.");
 
     pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", LAP_TICKS)
         .default(BEFORE_THE_LOOP)
@@ -59,17 +59,17 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     name: "Control room",
     title: "Which part works when, and what happens at a loop?",
     claim: "A fast front end, a slow back end.",
-    gesture: "Press Play, or press a mark on a lane.",
+    gesture: "Press Play, or press a part below the map.",
     awaits: Awaits::Nothing,
     notice: &[
         "The front end runs at every tick. It predicts from odometry and corrects with one registration. The threshold τ follows how wrong the predictions were.",
         "The grid stores no poses. After an accepted loop it is discarded and redrawn from every keyframe's sweep.",
         "Cells that are likely occupied have the colour of this text, and free cells the colour of the page. Tinted cells were never seen.",
-        "Each lane is one operation. The top two run at every tick; the rest wait for a keyframe. Press a mark to go there and see its data.",
+        "Each mark below the map is one part, filled while it works. Predict and register work at every tick on one sweep; optimize and repaint go through every keyframe, and so cost more the longer the robot drives.",
         "Walls blur where two passes disagree. At the first loop they sharpen, and the number of cells more than 90% likely to be occupied rises from 110 to 156.",
     ],
     opening: Opening {
-        panels: &["map", "lanes"],
+        panels: &["map", "parts"],
         params: &["noise"],
         buttons: &["play"],
     },

@@ -148,7 +148,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     awaits: Awaits::Nothing,
     notice: &[
         "Each edge is a spring, at rest when its measurement is met. The dotted line shows how far it is from rest, and the number shows the cost.",
-        "Pull a pose and let go. Each beat is one Gauss–Newton step. Pull the green spring tight, and it grows thick and stiff.",
+        "Pull a pose and let go. Each beat is one Gauss–Newton step. A stiffer loop has a thicker, tighter spring.",
         "On a line the problem is linear, and one step from anywhere is enough. Headings make it nonlinear, so it takes a few steps.",
         "The disagreement does not vanish. The springs share it, and a stiff one takes less.",
         "Without a pin the whole graph floats, because χ² depends only on differences.",

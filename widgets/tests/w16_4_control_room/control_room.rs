@@ -2,7 +2,7 @@
 
 use ch16_lab::lap::{LapConfig, LapRunner};
 use widget_kit::model::{Activity, Assessment, Model as _, Motion, TimelineMark};
-use widget_kit::scene::{Layer, Panel, Tone};
+use widget_kit::scene::{Layer, Mark, Panel, Tone};
 use widgets::w16_4_control_room::model::ControlRoom;
 use widgets::w16_4_control_room::spec::SPEC;
 
@@ -225,78 +225,69 @@ fn every_lap_ends_where_the_timeline_does() {
     }
 }
 
-/// The marks of the lanes: passed and rejected ones.
-fn lane_marks(room: &ControlRoom) -> [Vec<[f64; 2]>; 2] {
-    let scene = room.scene();
-    let panel = scene.panels.iter().find(|panel| panel.id == "lanes");
-    let layers = &panel.expect("the lanes").layers;
-    [Tone::Series(0), Tone::Series(3)].map(|wanted| {
-        let points = layers.iter().find_map(|layer| match layer {
-            Layer::Points { points, tone, .. } if *tone == wanted => Some(points.clone()),
-            _ => None,
-        });
-        points.expect("both kinds of marks")
-    })
+/// The marks of the parts in their order: tone, mark and radius; a ring around one is left out.
+fn marks(room: &ControlRoom) -> Vec<(Tone, Mark, f32)> {
+    let layers = parts(room).layers.into_iter();
+    let marks = layers.filter_map(|layer| match layer {
+        Layer::Points {
+            tone,
+            mark,
+            radius_px,
+            ..
+        } if tone != Tone::Ink => Some((tone, mark, radius_px)),
+        _ => None,
+    });
+    marks.collect()
+}
+
+/// The parts whose mark is filled.
+fn at_work(room: &ControlRoom) -> Vec<usize> {
+    let marks = marks(room).into_iter().enumerate();
+    let filled = marks.filter(|(_, (_, mark, _))| *mark == Mark::Dot);
+    filled.map(|(part, _)| part).collect()
 }
 
 #[test]
-fn every_lane_has_a_mark_for_each_execution_up_to_the_current_tick() {
+fn a_part_is_filled_in_the_ticks_in_which_it_works() {
     let mut room = ControlRoom::default();
-    set(&mut room, "t", 92.0);
-    let [passed, rejected] = lane_marks(&room);
-    let lane = |height: f64| passed.iter().filter(|mark| mark[1] == height).count();
-    // Predict and register at every tick; candidate, fit, gate, optimize and repaint at the first loop, in
-    // tick 92.
-    assert_eq!((lane(8.0), lane(7.0)), (92, 92));
-    assert_eq!(
-        lane(6.0) as f64,
-        fact(&room, "keyframes") - 1.0,
-        "but the first"
-    );
-    for height in [5.0, 4.0, 3.0, 2.0, 1.0] {
-        assert_eq!(lane(height), 1, "lane {height}");
+    for (tick, working) in [
+        (0.0, vec![]),
+        (91.0, vec![0, 1]),
+        (92.0, (0..8).collect::<Vec<_>>()),
+    ] {
+        set(&mut room, "t", tick);
+        assert_eq!(at_work(&room), working, "tick {tick}");
     }
-    assert!(rejected.is_empty());
     // Seed 6: at tick 90 a candidate passes the gate and fails the fit.
     set(&mut room, "seed", 6.0);
     set(&mut room, "t", 90.0);
-    let [passed, rejected] = lane_marks(&room);
-    assert!(passed.contains(&[90.0, 3.0]));
-    assert!(rejected.contains(&[90.0, 4.0]));
+    assert_eq!(at_work(&room), [0, 1, 2, 3, 5]);
+    assert_eq!(marks(&room)[4].0, Tone::Series(3));
 }
 
 #[test]
-fn a_press_on_a_mark_of_a_lane_shows_its_data() {
+fn the_area_of_a_part_is_the_number_of_keyframes_it_goes_through() {
     let mut room = ControlRoom::default();
-    set(&mut room, "t", 129.0);
-    let handle = room
-        .grab("lanes", [93.0, 3.1], [2.0, 0.4])
-        .expect("the gate at tick 92");
-    room.drag(handle, [93.0, 3.1]);
-    assert_eq!(room.values().number("t"), 92.0);
-    let sentence = room.outcome().sentence;
-    assert!(sentence.starts_with("loop 29 to 7 accepted"), "{sentence}");
+    set(&mut room, "t", 92.0);
+    let radii: Vec<f32> = marks(&room).iter().map(|(.., radius)| *radius).collect();
+    let keyframes = radii
+        .iter()
+        .map(|radius| (radius / radii[0]).powi(2).round());
+    // Loop 29 to 7: the older nodes, one fit, the 22 edges between, and all nodes twice.
+    let expected = [1.0, 1.0, 1.0, 29.0, 1.0, 22.0, 30.0, 30.0];
+    assert_eq!(keyframes.collect::<Vec<_>>(), expected);
+    assert_eq!(fact(&room, "keyframes"), 30.0);
 }
 
-fn lanes(room: &ControlRoom) -> Panel {
+fn parts(room: &ControlRoom) -> Panel {
     let panels = room.scene().panels;
     panels
         .into_iter()
-        .find(|panel| panel.id == "lanes")
-        .expect("the lanes")
+        .find(|panel| panel.id == "parts")
+        .expect("the parts")
 }
 
-/// Names over the data lay on each other and on the numbers of the axis.
-#[test]
-fn the_name_of_a_lane_stands_on_the_axis() {
-    let panel = lanes(&ControlRoom::default());
-    let names = SENTENCES.iter().rev().map(|(name, _)| *name);
-    assert_eq!(panel.y.names, names.collect::<Vec<_>>());
-    let is_text = |layer: &Layer| matches!(layer, Layer::Text { .. });
-    assert!(!panel.layers.iter().any(is_text));
-}
-
-/// The marks of every lane, and a part of its data in the tick of the first loop.
+/// Every part, and words of its data in the tick of the first loop.
 const SENTENCES: [(&str, &str); 8] = [
     ("predict", "Predict: robot at ("),
     ("register", " pairs within τ = "),
@@ -312,39 +303,38 @@ const SENTENCES: [(&str, &str); 8] = [
 ];
 
 #[test]
-fn every_mark_of_every_lane_shows_its_data_when_selected() {
+fn a_press_on_a_part_shows_its_data_at_this_tick() {
     let mut pressed = ControlRoom::default();
-    set(&mut pressed, "t", 129.0);
-    for (lane, (name, expected)) in SENTENCES.into_iter().enumerate() {
-        set(&mut pressed, "t", 129.0);
-        let spot = [92.3, 8.0 - lane as f64];
-        let handle = pressed.grab("lanes", spot, [2.0, 0.4]).expect(name);
+    set(&mut pressed, "t", 92.0);
+    for (part, (name, expected)) in SENTENCES.into_iter().enumerate() {
+        let spot = [part as f64 + 0.7, 0.1];
+        let handle = pressed.grab("parts", spot, [0.1, 0.1]).expect(name);
         pressed.drag(handle, spot);
         assert_eq!(pressed.values().number("t"), 92.0, "{name}");
-        assert_eq!(pressed.values().number("lane"), lane as f64, "{name}");
+        assert_eq!(pressed.values().number("lane"), part as f64, "{name}");
         let sentence = pressed.outcome().sentence;
+        assert!(sentence.starts_with("loop 29 to 7 accepted"), "{sentence}");
         assert!(sentence.contains(expected), "{name}: {sentence}");
-        // By keyboard: the lane and the tick are controls.
+        // By keyboard: the part and the tick are controls.
         let mut chosen = ControlRoom::default();
-        set(&mut chosen, "lane", lane as f64);
+        set(&mut chosen, "lane", part as f64);
         set(&mut chosen, "t", 92.0);
         assert_eq!(chosen.outcome(), pressed.outcome());
         assert!(
-            lanes(&chosen) == lanes(&pressed),
+            parts(&chosen) == parts(&pressed),
             "{name}: with the same ring"
         );
         let tables = chosen.shown_tables();
         let tick = tables.iter().find(|table| table.id == "control-room-tick");
-        let row = &tick.expect("the tick's table").rows[lane];
+        let row = &tick.expect("the tick's table").rows[part];
         assert_eq!(row[0], name);
         assert!(sentence.contains(&row[1]), "{row:?}");
     }
-    // A lane without its operation in the tick reports that, and has no ring.
+    assert!(pressed.grab("parts", [8.5, 0.5], [0.1, 0.1]).is_none());
+    // A part that does not work in the tick says so, and has no ring.
     let rings = |room: &ControlRoom| {
-        let scene = room.scene();
-        let lanes = scene.panels.iter().find(|panel| panel.id == "lanes");
-        let layers = &lanes.expect("the lanes").layers;
-        let ring = |layer: &&Layer| {
+        let layers = parts(room).layers.into_iter();
+        let ring = |layer: &Layer| {
             matches!(
                 layer,
                 Layer::Points {
@@ -353,29 +343,13 @@ fn every_mark_of_every_lane_shows_its_data_when_selected() {
                 }
             )
         };
-        layers.iter().filter(ring).count()
+        layers.filter(ring).count()
     };
     assert_eq!(rings(&pressed), 1);
     set(&mut pressed, "t", 91.0);
     let sentence = pressed.outcome().sentence;
     assert!(sentence.ends_with("Repaint: nothing to do."), "{sentence}");
     assert_eq!(rings(&pressed), 0);
-}
-
-/// The heads of the pulses of a loop.
-fn pulses(room: &ControlRoom) -> Vec<[f64; 2]> {
-    let heads = lanes(room)
-        .layers
-        .into_iter()
-        .find_map(|layer| match layer {
-            Layer::Points {
-                points,
-                tone: Tone::Revisit,
-                ..
-            } => Some(points),
-            _ => None,
-        });
-    heads.unwrap_or_default()
 }
 
 /// The cells of the grid.
@@ -400,31 +374,29 @@ fn at_the_first_loop() -> ControlRoom {
 }
 
 #[test]
-fn a_loop_passes_the_lanes_one_by_one_while_the_grid_is_drawn_again() {
+fn a_loop_passes_the_parts_one_by_one_while_the_grid_is_drawn_again() {
     let mut still = ControlRoom::default();
     set(&mut still, "t", 92.0);
-    assert!(pulses(&still).is_empty(), "only a playback shows it");
     let mut room = at_the_first_loop();
     assert_eq!(fact(&room, "occupied_cells"), 0.0, "the grid is emptied");
+    assert_eq!(at_work(&room), [0, 1, 2]);
     let mut frames = Vec::new();
-    while cells(&room) != cells(&still) || lanes(&room) != lanes(&still) {
+    while cells(&room) != cells(&still) || parts(&room) != parts(&still) {
         assert_eq!(room.values().number("t"), 92.0, "the run waits");
         assert_eq!(room.advance(0.02), Activity::Busy);
         let seen = fact(&room, "occupied_cells") + fact(&room, "free_cells");
-        frames.push((pulses(&room), seen));
+        let (.., repaint_px) = marks(&room)[7];
+        frames.push((at_work(&room).len(), repaint_px, seen));
         assert!(frames.len() < 100, "it never ends");
     }
     assert!(frames.len() > 50, "{} frames", frames.len());
-    // Candidate, fit, gate, optimize and repaint start one after the other and arrive at the tick.
-    let started = |count: usize| frames.iter().position(|(heads, _)| heads.len() == count);
-    let starts: Vec<_> = (1..=5)
-        .map(|count| started(count).expect("a lane"))
-        .collect();
-    assert!(starts.is_sorted() && starts[4] > starts[0]);
-    let (last, _) = &frames[frames.len() - 2];
-    assert!(last.iter().all(|head| head[0] > 80.0), "{last:?}");
+    // Candidate, fit, gate, optimize and repaint begin one after the other.
+    let mut working: Vec<usize> = frames.iter().map(|(working, ..)| *working).collect();
+    working.dedup();
+    assert_eq!(working, [4, 5, 6, 7, 8]);
+    assert!(frames.is_sorted_by_key(|(_, repaint_px, _)| *repaint_px));
     assert!(
-        frames.is_sorted_by_key(|(_, seen)| *seen),
+        frames.is_sorted_by_key(|(.., seen)| *seen),
         "cells come back"
     );
     while room.values().number("t") == 92.0 {
@@ -449,7 +421,7 @@ fn what_interrupts_a_loop_shows_the_whole_grid() {
 }
 
 #[test]
-fn the_next_event_chooses_its_lane() {
+fn the_next_event_chooses_its_part() {
     let mut room = ControlRoom::default();
     set(&mut room, "t", 91.0);
     press(&mut room, "next-event");
@@ -463,7 +435,7 @@ fn plots_do_not_show_the_future() {
     let mut room = ControlRoom::default();
     let lines = |room: &ControlRoom| {
         let panels = room.scene().panels.into_iter();
-        let plots = panels.filter(|panel| ["tau", "errors", "lanes"].contains(&panel.id));
+        let plots = panels.filter(|panel| ["tau", "errors"].contains(&panel.id));
         let layers = plots.flat_map(|panel| panel.layers);
         let points = layers.filter_map(|layer| match layer {
             Layer::Line { points, .. } | Layer::Points { points, .. } => Some(points),
@@ -516,37 +488,4 @@ fn the_grid_has_a_legend_whose_areas_are_the_colours_of_its_cells() {
         assert!(contrast(full, free) > 10.0);
         assert_eq!(full, tone(theme, Tone::Ink));
     }
-}
-
-#[test]
-fn the_pointer_on_a_mark_lights_the_sweep_of_its_tick_on_the_grid() {
-    let mut room = ControlRoom::default();
-    let lit = |room: &ControlRoom| {
-        let map = room.scene().panels.remove(0);
-        let mut label = None;
-        let mut points = 0;
-        for layer in map.layers {
-            match layer {
-                Layer::Points {
-                    points: lit,
-                    tone: Tone::Revisit,
-                    ..
-                } => points += lit.len(),
-                Layer::Label { text, .. } => label = Some(text),
-                _ => {}
-            }
-        }
-        (points, label)
-    };
-    assert_eq!(lit(&room), (0, None));
-    // Registering is the second of eight lanes from the top.
-    room.hover("lanes", Some([40.2, 7.1]));
-    let (points, label) = lit(&room);
-    assert!(points > 50, "{points} points");
-    assert_eq!(label.as_deref(), Some("register, tick 40"));
-    room.hover("lanes", Some([40.2, 1.0]));
-    assert_eq!(lit(&room), (0, None), "no mark is there");
-    room.hover("lanes", Some([40.2, 7.1]));
-    room.hover("lanes", None);
-    assert_eq!(lit(&room), (0, None));
 }

@@ -185,24 +185,6 @@ fn a_released_pose_springs_back_a_step_a_beat() {
 }
 
 #[test]
-fn the_loops_spring_grows_stiff_as_it_is_drawn_tight() {
-    let mut toy = with(&[]);
-    // Half a metre below the line at a stiffness of 1, a quarter at 10.
-    let knob = toy.grab(panel::GRAPH, [1.0, -0.5], [0.1, 0.1]).unwrap();
-    toy.drag(knob, [1.0, -0.25]);
-    assert_eq!(toy.values().number("stiffness"), 10.0);
-    toy.drag(knob, [5.0, 0.5]);
-    assert_eq!(
-        toy.values().number("stiffness"),
-        10.0,
-        "the end of the range"
-    );
-    toy.drag(knob, [1.0, -9.0]);
-    assert_eq!(toy.values().number("stiffness"), 0.1);
-    assert_eq!(toy.values().number("x3"), 0.0, "no pose has moved");
-}
-
-#[test]
 fn a_pose_that_does_not_exist_has_no_control() {
     let mut toy = with(&[("more", 1.0)]);
     assert!(toy.disclosure().has_param("turn3") && !toy.disclosure().has_param("x4"));

@@ -58,15 +58,17 @@ impl<'a> EguiSurface<'a> {
             return kept.handle.id();
         }
         let image = image(raster, theme);
+        let sampling = if raster.is_smooth() {
+            TextureOptions::LINEAR
+        } else {
+            TextureOptions::NEAREST
+        };
         let handle = match entry {
             Some(kept) => {
-                kept.handle.set(image, TextureOptions::NEAREST);
+                kept.handle.set(image, sampling);
                 kept.handle.clone()
             }
-            None => self
-                .painter
-                .ctx()
-                .load_texture(key, image, TextureOptions::NEAREST),
+            None => self.painter.ctx().load_texture(key, image, sampling),
         };
         let id = handle.id();
         let texture = Texture {

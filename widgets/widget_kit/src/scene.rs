@@ -282,6 +282,16 @@ pub struct Raster {
     pub revision: u64,
 }
 
+impl Raster {
+    /// Whether the colours run into one another between the centres of cells, as those of occupancies do: a cell's
+    /// edge is no wall.
+    #[must_use]
+    pub fn is_smooth(&self) -> bool {
+        let mut cells = self.cells.iter();
+        cells.any(|cell| matches!(cell, RasterCell::Occupancy(_)))
+    }
+}
+
 /// One cell of a raster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RasterCell {

@@ -229,9 +229,14 @@ impl Surface for SvgSurface {
             width,
             height,
         } = rect;
+        let rendering = if raster.is_smooth() {
+            "auto"
+        } else {
+            "pixelated"
+        };
         self.element(format_args!(
             "<image x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" \
-             preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"{data}\"/>"
+             preserveAspectRatio=\"none\" style=\"image-rendering:{rendering}\" href=\"{data}\"/>"
         ));
     }
 

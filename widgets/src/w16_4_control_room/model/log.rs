@@ -16,12 +16,12 @@ pub struct Event {
     pub standing: Assessment,
     /// Whether it has a mark on the timeline, as loops do.
     pub marked: bool,
-    /// Its lane.
-    pub lane: usize,
+    /// The part that does it, see [`super::picture::parts`].
+    pub part_at_work: usize,
 }
 
-/// The lanes of the log's events, see [`super::picture::lanes`].
-mod lane {
+/// The parts of the log's events.
+mod at_work {
     pub const PREDICT: usize = 0;
     pub const REGISTER: usize = 1;
     pub const KEYFRAME: usize = 2;
@@ -34,27 +34,27 @@ pub fn events(record: &LapRecord) -> Vec<Event> {
     let mut events = Vec::new();
     for report in &record.lap.reports {
         let tick = report.tick;
-        let mut say = |part, lane, text| {
+        let mut say = |part, part_at_work, text| {
             events.push(Event {
                 tick,
                 part,
                 text,
                 standing: Assessment::Neutral,
                 marked: false,
-                lane,
+                part_at_work,
             });
         };
         if let Some(way_point) = record.drive.ticks()[tick - 1].reached {
             say(
                 "driver",
-                lane::PREDICT,
+                at_work::PREDICT,
                 format!("way point {} reached", way_point + 1),
             );
         }
         if !report.registration.accepted {
             say(
                 "front end",
-                lane::REGISTER,
+                at_work::REGISTER,
                 format!(
                     "only {} pairs, so the prediction is kept",
                     report.registration.matched.inliers
@@ -62,7 +62,7 @@ pub fn events(record: &LapRecord) -> Vec<Event> {
             );
         }
         if let Some(node) = report.new_keyframe {
-            say("back end", lane::KEYFRAME, format!("keyframe {node}"));
+            say("back end", at_work::KEYFRAME, format!("keyframe {node}"));
         }
         if let Some(attempt) = &report.loop_attempt {
             events.extend(loop_events(&record.lap, attempt));
@@ -91,7 +91,11 @@ fn loop_events(lap: &LapTrace, attempt: &RecordedLoopAttempt) -> Vec<Event> {
         text,
         standing,
         marked,
-        lane: if marked { lane::GATE } else { lane::REPAINT },
+        part_at_work: if marked {
+            at_work::GATE
+        } else {
+            at_work::REPAINT
+        },
     };
     let standing = standing(lap.judge(attempt));
     let tested = event("back end", lap.loop_sentence(attempt), standing, true);

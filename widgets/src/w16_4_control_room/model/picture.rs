@@ -1,6 +1,6 @@
-//! The panels: the map with its graph, the registration of the newest sweep, the plots over time.
+//! The panels: the map with its graph, the parts at work, the registration of the newest sweep, the plots over time.
 
-pub mod lanes;
+pub mod parts;
 mod plots;
 
 use ch16_lab::lap::{LapRecord, RegistrationView};
@@ -27,14 +27,14 @@ pub fn scene(room: &ControlRoom) -> Scene {
         panels: vec![
             map(room),
             registration(record, now, room.registration.as_ref()),
-            lanes::lanes(record, now, room.looked_at(), room.closing),
+            parts::parts(room.now(), room.part(), room.closing),
             plots::threshold(&room.history, now),
             plots::errors(&room.history, now),
         ],
     }
 }
 
-/// The map at the current tick: grid, graph, truth and robot; and the sweep of the mark under the pointer.
+/// The map at the current tick: grid, graph, truth and robot.
 fn map(room: &ControlRoom) -> Panel {
     let (record, tick) = (&room.record, room.tick());
     let bounds = room.world.bounds();
@@ -47,8 +47,8 @@ fn map(room: &ControlRoom) -> Panel {
             Tone::Truth,
             1.5,
         ),
-        factors(record, tick, EdgeKind::Odometry, 1.5),
-        factors(record, tick, EdgeKind::Loop, 2.5),
+        edges(record, tick, EdgeKind::Odometry, Tone::Posterior, 1.5),
+        edges(record, tick, EdgeKind::Loop, Tone::Measurement, 2.5),
         Layer::points(
             record.lap.poses(tick).iter().map(xy).collect(),
             Mark::Square,
@@ -58,18 +58,8 @@ fn map(room: &ControlRoom) -> Panel {
         robot(&truth(tick), Mark::Plus, Tone::Truth),
         robot(&estimate(record, tick), Mark::Square, Tone::Posterior),
     ];
-    if let Some((tick, lane)) = room.hovered {
-        let pose = estimate(record, tick);
-        let sweep = record.drive.sweep(tick).cloud.transformed(&pose);
-        layers.extend([
-            Layer::points(positions(&sweep), Mark::Dot, Tone::Revisit, 2.5),
-            robot(&pose, Mark::Circle, Tone::Revisit),
-            Layer::label(
-                xy(&pose),
-                format!("{}, tick {tick}", lanes::name(lane)),
-                10.0,
-            ),
-        ]);
+    if room.now().is_some_and(parts::closes_loop) {
+        layers.extend(correction(record, tick));
     }
     Panel {
         id: "map",
@@ -87,6 +77,23 @@ fn map(room: &ControlRoom) -> Panel {
         ],
         color_bar: None,
     }
+}
+
+/// The keyframes where they were before a loop moved them, and its name.
+fn correction(record: &LapRecord, tick: usize) -> Vec<Layer> {
+    let before: Vec<[f64; 2]> = record.lap.poses(tick - 1).iter().map(xy).collect();
+    let poses = record.lap.poses(tick);
+    let mut loops = record.lap.edges(tick).iter();
+    let closed = loops.rfind(|edge| edge.kind == EdgeKind::Loop);
+    let name = closed.map(|edge| {
+        let middle = (poses[edge.from].position() + poses[edge.to].position().coords) * 0.5;
+        Layer::label(middle.into(), "loop".to_owned(), 8.0)
+    });
+    // The farther from where the robot started, the farther a keyframe has moved.
+    let turned = before.iter().copied().max_by(|a, b| a[0].total_cmp(&b[0]));
+    let was = turned.map(|at| Layer::label(at, "before".to_owned(), 8.0));
+    let points = Layer::points(before, Mark::Circle, Tone::Prior, 3.0);
+    [points].into_iter().chain(name).chain(was).collect()
 }
 
 /// A legend entry for the cells of one colour.
@@ -172,7 +179,7 @@ fn estimate(record: &LapRecord, tick: usize) -> SE2 {
     report.map_or_else(|| record.drive.truth(0), |report| report.estimate)
 }
 
-fn factors(record: &LapRecord, tick: usize, kind: EdgeKind, width_px: f32) -> Layer {
+fn edges(record: &LapRecord, tick: usize, kind: EdgeKind, tone: Tone, width_px: f32) -> Layer {
     let poses = record.lap.poses(tick);
     let edges = record.lap.edges(tick).iter();
     Layer::segments(
@@ -181,7 +188,7 @@ fn factors(record: &LapRecord, tick: usize, kind: EdgeKind, width_px: f32) -> La
             .map(|edge| [xy(&poses[edge.from]), xy(&poses[edge.to])])
             .collect(),
         Stroke::Solid,
-        Tone::Posterior,
+        tone,
         width_px,
     )
 }

@@ -4,7 +4,7 @@ use widget_kit::model::Table;
 
 use super::ControlRoom;
 use super::log::Event;
-use super::picture::lanes;
+use super::picture::parts;
 
 /// Number of events in the table beside the picture.
 const SHOWN_EVENTS: usize = 8;
@@ -21,13 +21,13 @@ pub fn all(room: &ControlRoom) -> Vec<Table> {
     tables
 }
 
-/// The data of every lane in the current tick.
+/// The data of every part in the current tick.
 fn this_tick(room: &ControlRoom) -> Table {
-    let done = room.now().into_iter().flat_map(lanes::data);
+    let done = room.now().into_iter().flat_map(parts::data);
     Table::shown(
         "control-room-tick",
-        format!("Tick {}, lane by lane", room.tick()),
-        &["lane", "what it did"],
+        format!("Tick {}, part by part", room.tick()),
+        &["part", "what it did"],
         done.map(|(name, data)| vec![name.to_owned(), data])
             .collect(),
     )

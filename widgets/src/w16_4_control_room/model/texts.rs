@@ -5,7 +5,7 @@ use ch16_slam2d::matching::MatchSummary;
 use widget_kit::model::{Assessment, Fact, Outcome};
 
 use super::ControlRoom;
-use super::picture::lanes;
+use super::picture::parts;
 
 /// The result at a tick: of its loop if one is tried, else of the estimates.
 pub fn outcome(room: &ControlRoom) -> Outcome {
@@ -17,7 +17,7 @@ pub fn outcome(room: &ControlRoom) -> Outcome {
         None => "on the way".to_owned(),
     };
     let mut sentence = event.map_or_else(|| tick_sentence(room), |event| event.text.clone());
-    if let Some(data) = lane_sentence(room) {
+    if let Some(data) = part_sentence(room) {
         let end = if sentence.ends_with('.') { " " } else { ". " };
         sentence = sentence + end + &data;
     }
@@ -40,9 +40,9 @@ pub fn summary(room: &ControlRoom) -> String {
     )
 }
 
-/// The data of the selected lane in the current tick.
-fn lane_sentence(room: &ControlRoom) -> Option<String> {
-    let (name, data) = lanes::data(room.now()?).nth(room.lane())?;
+/// The data of the selected part in the current tick.
+fn part_sentence(room: &ControlRoom) -> Option<String> {
+    let (name, data) = parts::data(room.now()?).nth(room.part())?;
     let (first, rest) = name.split_at(1);
     Some(format!("{}{rest}: {data}.", first.to_uppercase()))
 }

@@ -1,11 +1,11 @@
-//! Draggable things: a pose, the tip of its heading, and the middle of the loop's spring.
+//! Draggable things: a pose, and the tip of its heading.
 
-use pr_geom::{Point2, SE2, Vector2, math};
+use pr_geom::{Point2, SE2, math};
 use widget_kit::model::{Handle, Model as _};
 
 use super::{PoseGraphToy, panel};
 use crate::pose_handle::{PLACE, TURN, dragged};
-use crate::w16_5_pose_graph_toy::spec::{GAP, GRAPH, MOVED, REACH_M, STEPS, STIFFNESS};
+use crate::w16_5_pose_graph_toy::spec::{GAP, GRAPH, MOVED, REACH_M, STEPS};
 
 /// Distance of the turning handle from its pose, m.
 const TURN_ARM_M: f64 = 0.3;
@@ -14,45 +14,14 @@ const TURN_ARM_M: f64 = 0.3;
 const BOW_M: f64 = 0.5;
 const BOW_PER_DECADE_M: f64 = 0.25;
 
-/// Name of the middle of the loop's spring.
-const KNOB: &str = "knob";
-
 /// Position of the handle that turns a pose.
 pub fn turn_handle(pose: &SE2) -> Point2<f64> {
     pose.transform(Point2::new(TURN_ARM_M, 0.0))
 }
 
-/// The middle of the loop's spring.
-pub fn knob(toy: &PoseGraphToy) -> Point2<f64> {
-    let (middle, aside) = chord(toy);
-    middle + aside * bow_m(toy.values.get(&STIFFNESS))
-}
-
 /// Distance of the middle of the loop's spring from the line between its poses, m: a stiff spring is tight.
 pub fn bow_m(stiffness: f64) -> f64 {
     BOW_M - BOW_PER_DECADE_M * math::ln(stiffness) / core::f64::consts::LN_10
-}
-
-/// The middle between the loop's poses, and the unit vector to the side on which its spring hangs.
-fn chord(toy: &PoseGraphToy) -> (Point2<f64>, Vector2<f64>) {
-    let poses = toy.poses();
-    let (from, to) = (poses[0].position(), poses[poses.len() - 1].position());
-    let along = to - from;
-    let length = math::norm2(along.x, along.y).max(1e-9);
-    let aside = Vector2::new(along.y, -along.x) / length;
-    (from + along * 0.5, aside)
-}
-
-/// Sets the stiffness so that the spring's middle is at that distance from its line.
-fn draw_tight(toy: &mut PoseGraphToy, [x, y]: [f64; 2]) {
-    let (middle, aside) = chord(toy);
-    let away_m = (Point2::new(x, y) - middle).dot(&aside);
-    let decades = (BOW_M - away_m) / BOW_PER_DECADE_M;
-    let stiffness = math::exp(decades * core::f64::consts::LN_10);
-    let tenths = (10.0 * stiffness).round().clamp(1.0, 100.0);
-    let poses = toy.poses();
-    toy.values.put(&STIFFNESS, tenths / 10.0);
-    put(toy, &poses);
 }
 
 /// The nearest pose within reach, or the tip of a heading.
@@ -64,7 +33,6 @@ pub fn grab(toy: &PoseGraphToy, panel: &str, at: [f64; 2], reach: [f64; 2]) -> O
     let poses = poses.iter().enumerate();
     let things =
         poses.flat_map(|(k, pose)| [(PLACE, k, pose.position()), (TURN, k, turn_handle(pose))]);
-    let things = things.chain([(KNOB, 0, knob(toy))]);
     let things = things.map(|(id, k, spot)| (id, k, [spot.x, spot.y]));
     Handle::nearest(panel::GRAPH, things, at, reach)
 }
@@ -74,10 +42,6 @@ pub fn drag(toy: &mut PoseGraphToy, handle: Handle, at: [f64; 2]) {
     let Some(spot) = handle.spot(at) else {
         return;
     };
-    if handle.id == KNOB {
-        draw_tight(toy, spot);
-        return;
-    }
     let mut poses = toy.poses();
     if let Some(pose) = poses.get_mut(handle.index) {
         *pose = dragged(pose, handle, spot);

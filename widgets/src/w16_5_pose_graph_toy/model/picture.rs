@@ -7,15 +7,15 @@ use widget_kit::scene::{
     Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
 
-use super::interaction::{bow_m, knob, turn_handle};
+use super::interaction::{bow_m, turn_handle};
 use super::{PoseGraphToy, panel};
 
 use crate::w16_5_pose_graph_toy::spec::{PINNED, STIFFNESS};
 
 /// Margin around the poses, m.
-const MARGIN_M: f64 = 0.4;
+const MARGIN_M: f64 = 0.3;
 /// Smallest size of the map, m.
-const MIN_SIZE_M: [f64; 2] = [2.9, 2.2];
+const MIN_SIZE_M: [f64; 2] = [2.4, 1.9];
 /// Windings of a spring.
 const WINDINGS: usize = 7;
 /// Distance of the name of the pinned pose below it, m.
@@ -85,11 +85,6 @@ fn graph(toy: &PoseGraphToy) -> Panel {
         layers.push(Layer::points(vec![missing[1]], Mark::Plus, Tone::Ink, 5.0));
     }
     layers.extend(poses.iter().flat_map(node));
-    layers.push(Layer::Handle {
-        at: knob(toy).into(),
-        tone: Tone::Measurement,
-        label: "pull the spring tight: stiffer; let it hang: softer",
-    });
     layers.extend(poses.iter().enumerate().map(|(k, pose)| {
         let pinned = k == 0 && toy.values.get(&PINNED);
         let name = (k + 1).to_string();

@@ -55,8 +55,13 @@ pub fn outcome(window: &WholeWindow) -> Outcome {
     let start = format!(
         "From {:.0}° off, ICP alone ends {}",
         window.values.get(&HEADING),
-        ending(alone)
+        stop(alone)
     );
+    let but = if alone.ending == Minimum::Right {
+        "and"
+    } else {
+        "but"
+    };
     let work = format!(
         "{} scores settle {} poses",
         grouped(counts.scored()),
@@ -69,12 +74,12 @@ pub fn outcome(window: &WholeWindow) -> Outcome {
                 format!(", {margin:.3} ahead of the next place")
             });
             format!(
-                "{work}. {start}. The best pose scores {:.3}{ahead}, and ICP from there ends {}.",
+                "{start}, {but} {work}. The best pose scores {:.3}{ahead}, and ICP from there ends {}.",
                 result.best.score,
                 ending(&refined.outcome)
             )
         }
-        (Some(_), ..) => format!("{work}, and none of them fits half the points. {start}."),
+        (Some(_), ..) => format!("{start}, {but} {work}: none of them fits half the points."),
         // As long as the text that follows, so that the page below does not move.
         (None, ..) => format!(
             "The search splits the box of poses with the largest bound, and drops every box whose bound is below the best score. Then ICP starts from the best pose. {start}."
@@ -174,7 +179,7 @@ pub fn summary(window: &WholeWindow) -> String {
     });
     let waiting = waiting(window);
     format!(
-        "Two laser sweeps of one room, and a window of {} poses at {} headings. After {} boxes {waiting} wait and {best}.",
+        "Two laser sweeps of one room, and a window of {} poses at {} headings. After {} boxes, {waiting} wait; {best}.",
         moment.counts.window,
         window.search_task.window.search().headings(),
         window.step()

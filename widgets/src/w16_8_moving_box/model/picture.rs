@@ -64,7 +64,7 @@ fn room(moving: &MovingBox) -> Panel {
     } else {
         let larger = add_pulls(moving, &mut layers);
         add_errors(moving, &mut layers);
-        format!("Each pair pulls: pulls ×{larger}, errors ×{ERRORS_LARGER}")
+        format!("Pulls of all pairs ×{larger}, errors ×{ERRORS_LARGER}")
     };
     layers.push(Layer::points(
         vec![xy(&truth)],

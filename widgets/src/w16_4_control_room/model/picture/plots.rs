@@ -3,11 +3,10 @@
 use widget_kit::chart::{Series, TimeChart};
 use widget_kit::scene::{Layer, Mark, Panel, Tone};
 
-use super::lanes;
 use crate::w16_4_control_room::model::history::History;
 
 /// The panels whose horizontal axis is the time.
-pub const OVER_TIME: [&str; 3] = [lanes::ID, "tau", "errors"];
+pub const OVER_TIME: [&str; 2] = ["tau", "errors"];
 
 /// The correspondence threshold over time.
 pub fn threshold(history: &History, now: usize) -> Panel {
