@@ -87,7 +87,7 @@ export interface TheFullLapState {
   'own-to': number;
   /** Whether the tests may reject your own loop: the fit, the pairs and the gate if it is registered, but only the gate if it is asserted. */
   'own-gate': boolean;
-  /** The robust kernel of your own loop: plain least squares, Huber's kernel, which acts beyond 1.345 standard deviations, or dynamic covariance scaling, which acts beyond a χ² of 10. */
+  /** The kernel for your own loop: plain least squares, Huber's kernel, which acts beyond 1.345 standard deviations, or dynamic covariance scaling, which acts beyond a χ² of 10. */
   kernel: 'quadratic' | 'huber' | 'dcs';
   /** At a closed loop, the map before it is shown left of the line, and the map after it right of the line. The line's position is a share of the map's width. 0 to 1. */
   wipe: number;
@@ -147,7 +147,7 @@ export interface ControlRoomState {
   loops: boolean;
   /** A different seed gives a different lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** The operation described at this tick. To select another, press its mark on a lane. */
+  /** The operation described at this tick. To select another, press its mark below the map. */
   lane: 'predict' | 'register' | 'keyframe' | 'candidate' | 'fit' | 'gate' | 'optimize' | 'repaint';
   /** The moment shown. A tick is a quarter of a second, and each mark is a loop. 0 to 129. */
   t: number;
