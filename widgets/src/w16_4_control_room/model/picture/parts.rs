@@ -11,6 +11,9 @@ const FRONT_END: Tone = Tone::Series(0);
 /// Works when a loop is tried.
 const BACK_END: Tone = Tone::Series(1);
 
+/// A part that turned its candidate or its registration down.
+const REJECTED: Tone = Tone::Series(3);
+
 /// Name of the panel.
 pub const ID: &str = "parts";
 
@@ -235,6 +238,18 @@ fn share_done(part: usize, closing: Option<f64>) -> f64 {
 /// All parts in a row, those at work in a tick filled; a ring around the chosen one if it works.
 pub fn parts(report: Option<&TickReport>, chosen: usize, closing: Option<f64>) -> Panel {
     let ends = [spot(0), spot(PARTS.len() - 1)];
+    let mut legend = vec![
+        LegendEntry::mark("front end", FRONT_END, Mark::Dot),
+        LegendEntry::mark("back end", BACK_END, Mark::Dot),
+    ];
+    let is_rejected = |report| {
+        PARTS
+            .iter()
+            .any(|part| (part.done)(report) == Done::Rejected)
+    };
+    if report.is_some_and(is_rejected) {
+        legend.push(LegendEntry::mark("rejected", REJECTED, Mark::Circle));
+    }
     let mut layers = vec![Layer::segments(vec![ends], Stroke::Solid, Tone::Faint, 1.5)];
     for (number, part) in PARTS.iter().enumerate() {
         let share = share_done(number, closing);
@@ -242,7 +257,7 @@ pub fn parts(report: Option<&TickReport>, chosen: usize, closing: Option<f64>) -
         let (mark, tone) = match done {
             _ if share == 0.0 => (Mark::Circle, Tone::Faint),
             Done::Idle => (Mark::Circle, Tone::Faint),
-            Done::Rejected => (Mark::Circle, Tone::Series(3)),
+            Done::Rejected => (Mark::Circle, REJECTED),
             Done::Passed if number < CANDIDATE => (Mark::Dot, FRONT_END),
             Done::Passed => (Mark::Dot, BACK_END),
         };
@@ -271,11 +286,7 @@ pub fn parts(report: Option<&TickReport>, chosen: usize, closing: Option<f64>) -
         x: Axis::hidden(-0.1, PARTS.len() as f64 + 0.1),
         y: Axis::hidden(0.0, 1.0),
         layers,
-        legend: vec![
-            LegendEntry::mark("front end", FRONT_END, Mark::Dot),
-            LegendEntry::mark("back end", BACK_END, Mark::Dot),
-            LegendEntry::mark("rejected", Tone::Series(3), Mark::Circle),
-        ],
+        legend,
         color_bar: None,
     }
 }
