@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::info::LogInfo;
 use crate::log::{LogFrame, LogNotes, LogOption};
 use crate::motion::MotionComparison;
+use crate::path_lengths::factor;
 use crate::plural::plural;
 use crate::remark::{Condition, Part, Remark};
 use crate::stamps::median;
@@ -19,6 +20,8 @@ const PAUSE_S: f64 = 10.0;
 const PAUSE_PERIODS: f64 = 20.0;
 /// Without odometry, scans are missing if the time between two is longer than this many usual ones.
 const GAP_PERIODS: f64 = 5.0;
+/// A beam that never returns in fewer scans is not named.
+const ENOUGH_SCANS: usize = 20;
 
 /// Summary of the scans.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -86,8 +89,10 @@ pub struct Checkup {
     last_s: Option<f64>,
     /// The longest time between two scans, s, and the stamp of the second one, s.
     pause: (f64, f64),
-    /// The times between scans without odometry, s, and the stamp of the second one, s.
-    unmeasured: Vec<(f64, f64)>,
+    /// The times between scans, s, the stamp of the second one, s, and whether it has odometry.
+    gaps: Vec<(f64, f64, bool)>,
+    /// Number of returns of each beam.
+    returns: Vec<usize>,
 }
 
 impl Checkup {
@@ -98,16 +103,19 @@ impl Checkup {
         if gap_s > self.pause.0 {
             self.pause = (gap_s, frame.stamp_s);
         }
-        if frame.odometry.is_none() && gap_s > 0.0 {
-            self.unmeasured.push((gap_s, frame.stamp_s));
+        if gap_s > 0.0 {
+            let gap = (gap_s, frame.stamp_s, frame.odometry.is_some());
+            self.gaps.push(gap);
         }
         let scan = &frame.scan;
         self.beams += scan.ranges_m.len();
-        self.valid += scan
-            .ranges_m
-            .iter()
-            .filter(|&&range_m| scan.is_return(range_m))
-            .count();
+        let most = self.returns.len().max(scan.ranges_m.len());
+        self.returns.resize(most, 0);
+        for (count, &range_m) in self.returns.iter_mut().zip(&scan.ranges_m) {
+            let is_return = usize::from(scan.is_return(range_m));
+            *count += is_return;
+            self.valid += is_return;
+        }
         self.covered += usize::from(frame.odometry.is_some());
         (self.range_min_m, self.range_max_m) = (scan.range_min_m, scan.range_max_m);
     }
@@ -160,7 +168,10 @@ impl Checkup {
                 covered: self.covered as f64 / info.scans.max(1) as f64,
             }
         });
-        let mut remarks = vec![file_remark(notes), sensor_remark(&sensor)];
+        let mut remarks = vec![
+            file_remark(notes),
+            sensor_remark(&sensor, &self.dead_beams()),
+        ];
         let is_faulty = notes
             .warnings
             .iter()
@@ -170,8 +181,9 @@ impl Checkup {
             odometry.as_ref(),
             compared.then_some(motion),
         ));
-        remarks.extend(mounting_remark(notes, motion));
-        remarks.extend(clocks_remark(notes, info));
+        remarks.extend(odometry.as_ref().and_then(|it| self.uncovered_remark(it)));
+        remarks.extend(mounting_remark(notes, motion, odometry.is_some()));
+        remarks.extend(self.clocks_remark(notes));
         remarks.extend(self.pause_remark().or_else(|| self.gaps_remark()));
         remarks.extend(notes.warnings.iter().cloned());
         let mut diagnosis = Diagnosis {
@@ -203,12 +215,63 @@ impl Checkup {
 }
 
 impl Checkup {
+    /// The usual time between two scans, s.
+    fn period_s(&self) -> Option<f64> {
+        median(self.gaps.iter().map(|gap| gap.0).collect())
+    }
+
+    /// Times without a scan that are much longer than usual.
+    fn long_gaps(&self) -> impl Iterator<Item = &(f64, f64, bool)> {
+        let most_s = self
+            .period_s()
+            .map_or(f64::INFINITY, |usual_s| GAP_PERIODS * usual_s);
+        self.gaps.iter().filter(move |gap| gap.0 > most_s)
+    }
+
+    /// The longest time in which the scans have no odometry, if others have some.
+    fn uncovered_remark(&self, odometry: &OdometrySummary) -> Option<Remark> {
+        let least_s = GAP_PERIODS * self.period_s()?;
+        let runs = self
+            .gaps
+            .chunk_by(|a, b| a.2 == b.2)
+            .filter(|run| !run[0].2);
+        let runs = runs.map(|run| (run[0].1, run[run.len() - 1].1));
+        let (from_s, to_s) = runs.max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)))?;
+        (to_s - from_s > least_s).then(|| {
+            let text = format!(
+                "{:.0}% of the scans have odometry; the longest time without is {:.1} s, from {from_s:.2} to {to_s:.2} s, where scans are matched alone",
+                100.0 * odometry.covered,
+                to_s - from_s
+            );
+            Remark::mended(Part::Odometry, text)
+        })
+    }
+
+    /// The beams that never have a return, as the end of a sentence.
+    fn dead_beams(&self) -> String {
+        let dead: Vec<usize> = (0..self.returns.len())
+            .filter(|&beam| self.returns[beam] == 0)
+            .collect();
+        // A beam of few scans may meet nothing.
+        let (Some(first), Some(last)) = (dead.first(), dead.last()) else {
+            return String::new();
+        };
+        if dead.len() == self.returns.len() || self.info.scans < ENOUGH_SCANS {
+            return String::new();
+        }
+        if last - first + 1 == dead.len() {
+            return format!("; beams {first} to {last} never return");
+        }
+        format!(
+            "; {} of the beams never return, the first is beam {first}",
+            dead.len()
+        )
+    }
+
     /// Times without a scan in which nothing measures the motion.
     fn gaps_remark(&self) -> Option<Remark> {
-        let usual_s = median(self.unmeasured.iter().map(|gap| gap.0).collect())?;
-        let is_gap = |gap: &&(f64, f64)| gap.0 > GAP_PERIODS * usual_s;
-        let gaps = || self.unmeasured.iter().filter(is_gap);
-        let (_, first_s) = gaps().next()?;
+        let gaps = || self.long_gaps().filter(|gap| !gap.2);
+        let (_, first_s, _) = gaps().next()?;
         let longest_s = gaps().fold(0.0, |longest: f64, gap| longest.max(gap.0));
         let text = format!(
             "scans are missing {} for up to {longest_s:.1} s, first before {first_s:.2} s, and without odometry nothing measures the motion meanwhile; record odometry, or keep the connection that loses the scans",
@@ -235,12 +298,12 @@ fn file_remark(notes: &LogNotes) -> Remark {
     }
 }
 
-fn sensor_remark(sensor: &SensorSummary) -> Remark {
+fn sensor_remark(sensor: &SensorSummary, dead: &str) -> Remark {
     let reach = sensor
         .range_max_m
         .map_or("no limit".to_owned(), |range_m| format!("{range_m:.1} m"));
     let text = format!(
-        "{} scans of {} beams over {:.0}°, from {:.2} m to {reach}, {:.1} scans per second; {:.0}% of the beams have a return",
+        "{} scans of {} beams over {:.0}°, from {:.2} m to {reach}, {:.1} scans per second; {:.0}% of the beams have a return{dead}",
         sensor.scans,
         sensor.beams,
         sensor.field_of_view_deg,
@@ -284,7 +347,11 @@ fn odometry_remark(
     Remark::good(Part::Odometry, text)
 }
 
-fn mounting_remark(notes: &LogNotes, motion: &MotionComparison) -> Option<Remark> {
+fn mounting_remark(
+    notes: &LogNotes,
+    motion: &MotionComparison,
+    has_odometry: bool,
+) -> Option<Remark> {
     if notes
         .warnings
         .iter()
@@ -317,37 +384,50 @@ fn mounting_remark(notes: &LogNotes, motion: &MotionComparison) -> Option<Remark
         (Some(_), Some(correlation)) => Remark::mended(
             Part::Mounting,
             format!(
-                "{mount} cannot be checked, because the paths of scans matched alone and of odometry differ too much (correlation of the turns {correlation:.2}, {:.0} cm per metre apart)",
-                100.0 * motion.drift_m_per_m.unwrap_or_default()
+                "{mount} cannot be checked, because the paths of scans matched alone and of odometry differ too much (correlation of the turns {correlation:.2}, {:.0} cm per metre apart{})",
+                100.0 * motion.drift_m_per_m.unwrap_or_default(),
+                motion.scale.map_or(String::new(), |scale| format!(
+                    ", odometry {}",
+                    factor(scale)
+                ))
             ),
         ),
         _ => Remark::mended(
             Part::Mounting,
             format!(
-                "{mount} cannot be checked against odometry, because the path is too short or has too few turns"
+                "{mount} cannot be checked against odometry, because {}",
+                if has_odometry {
+                    "the path is too short or has too few turns"
+                } else {
+                    "there is none"
+                }
             ),
         ),
     })
 }
 
-fn clocks_remark(notes: &LogNotes, info: &LogInfo) -> Option<Remark> {
-    if notes
-        .warnings
-        .iter()
-        .any(|remark| remark.part == Part::Clocks)
-    {
-        return None;
+impl Checkup {
+    fn clocks_remark(&self, notes: &LogNotes) -> Option<Remark> {
+        let mut warnings = notes.warnings.iter();
+        if warnings.any(|remark| remark.part == Part::Clocks) {
+            return None;
+        }
+        if self.info.late > 0 {
+            let text = format!("{} scans are not later than the one before", self.info.late);
+            return Some(Remark::wrong(Part::Clocks, text));
+        }
+        let mut text = format!(
+            "all stamps are in order, over {:.1} s",
+            self.info.duration_s
+        );
+        let longest = self.long_gaps().max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((gap_s, at_s, _)) = longest.filter(|gap| gap.2) {
+            text.push_str(&format!(
+                "; the longest time without a scan is {gap_s:.1} s before {at_s:.2} s, and odometry measures it"
+            ));
+        }
+        Some(Remark::good(Part::Clocks, text))
     }
-    Some(match info.late {
-        0 => Remark::good(
-            Part::Clocks,
-            format!("all stamps are in order, over {:.1} s", info.duration_s),
-        ),
-        late => Remark::wrong(
-            Part::Clocks,
-            format!("{late} scans are not later than the one before"),
-        ),
-    })
 }
 
 impl Diagnosis {
@@ -396,6 +476,43 @@ mod tests {
     use pr_geom::SE2;
 
     use super::*;
+
+    #[test]
+    fn missing_odometry_gaps_and_dead_beams_are_said() {
+        let text = |has_odometry: fn(u32) -> bool, pause_s: f64| {
+            let mut checkup = Checkup::default();
+            for k in 0..60 {
+                let pause_s = if k < 30 { 0.0 } else { pause_s };
+                checkup.add(&LogFrame {
+                    stamp_s: 0.2 * f64::from(k) + pause_s,
+                    odometry: has_odometry(k).then(|| SE2::from_xy(0.1 * f64::from(k), 0.0)),
+                    scan: LaserScan {
+                        angle_step_rad: 0.1,
+                        ranges_m: vec![1.0, 0.0, 0.0, 2.0],
+                        ..LaserScan::default()
+                    },
+                });
+            }
+            let notes = LogNotes::default();
+            checkup
+                .finish("x", &notes, &MotionComparison::default())
+                .text()
+        };
+        let whole = text(|_| true, 0.0);
+        assert!(whole.contains("; beams 1 to 2 never return"), "{whole}");
+        assert!(!whole.contains("of the scans have odometry"), "{whole}");
+        assert!(!whole.contains("longest time without a scan"), "{whole}");
+        let half = text(|k| k < 30, 0.0);
+        assert!(half.contains("50% of the scans have odometry; the longest time without is 5.8 s, from 6.00 to 11.80 s"), "{half}");
+        // Odometry that starts a scan late is no fault.
+        assert!(!text(|k| k > 1, 0.0).contains("of the scans have odometry"));
+        let gap = text(|_| true, 3.0);
+        assert!(
+            gap.contains("the longest time without a scan is 3.2 s before 9.00 s"),
+            "{gap}"
+        );
+        assert!(text(|_| false, 0.0).contains("because there is none"));
+    }
 
     #[test]
     fn each_part_has_a_sign_and_a_sentence_and_the_worst_stands_on_top() {

@@ -79,5 +79,6 @@ mod path_lengths;
 mod plausible;
 mod plural;
 mod range_unit;
+mod repeats;
 mod restamped;
 mod stamps;

@@ -3,14 +3,14 @@
 //! A format parses one line. The reader iterates over the file in bounded memory, skips unreadable lines, and reports
 //! where they were.
 
-use std::io::BufRead;
+use std::io::{self, BufRead};
 
 use ch16_slam2d::scan::LaserScan;
 
 use crate::foreign::Foreign;
 use crate::lines::{LineEnd, excerpt, next_line};
 use crate::log::{BrokenRecord, FilePosition, LogError, LogFrame, LogNotes, LogReader};
-use crate::range_unit::in_metres;
+use crate::range_unit::{centimetres, in_metres};
 use crate::remark::{Part, Remark};
 use crate::table_layout::guess;
 
@@ -96,10 +96,11 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
 
     /// Converts ranges that can only be in millimetres.
     fn convert(&mut self, scan: &mut LaserScan) {
-        let Some(sentence) = in_metres(scan) else {
+        let mended = in_metres(scan).map(|text| Remark::mended(Part::Sensor, text));
+        let named = || centimetres(&scan.ranges_m).map(|text| Remark::wrong(Part::Sensor, text));
+        let Some(remark) = mended.or_else(named) else {
             return;
         };
-        let remark = Remark::mended(Part::Sensor, sentence);
         let is_said = |said: &Remark| said.part == Part::Sensor && said.verdict == remark.verdict;
         if !self.notes.warnings.iter().any(is_said) {
             self.notes.warnings.push(remark);
@@ -139,6 +140,12 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
     }
 }
 
+/// Whether a decompressor found the end of a file too early, or bytes that it did not write.
+fn is_cut(problem: &io::Error) -> bool {
+    use io::ErrorKind::{InvalidData, InvalidInput, UnexpectedEof};
+    matches!(problem.kind(), UnexpectedEof | InvalidData | InvalidInput)
+}
+
 impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
     fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
         loop {
@@ -153,12 +160,20 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
                     Ok(None)
                 };
             }
-            let read =
-                next_line(&mut self.source, &mut self.line).map_err(|source| LogError::Io {
+            let position = FilePosition::Line(self.notes.lines + 1);
+            let read = match next_line(&mut self.source, &mut self.line) {
+                // What is compressed and cut off is read as far as it goes.
+                Err(source) if self.frames > 0 && is_cut(&source) => {
+                    let problem = format!("the compressed file is cut off or damaged: {source}");
+                    self.notes.truncated = Some(BrokenRecord { position, problem });
+                    None
+                }
+                read => read.map_err(|source| LogError::Io {
                     name: self.name.clone(),
-                    position: FilePosition::Line(self.notes.lines + 1),
+                    position,
                     source,
-                })?;
+                })?,
+            };
             let Some((end, bytes)) = read else {
                 self.is_done = true;
                 self.format.at_end(&mut self.notes);

@@ -51,11 +51,11 @@ impl BesideOdometry {
         let mut notes = LogNotes::default();
         let poses: Vec<(f64, SE2)> = match layout {
             Some(layout) => {
-                let rows = TableRows::new(layout);
+                let mut rows = TableRows::new(layout);
                 let (mut line, mut poses) = (Vec::new(), Vec::new());
                 while let Some((end, _)) = next_line(&mut source, &mut line).map_err(io)? {
                     notes.lines += 1;
-                    match rows.pose(&line) {
+                    match rows.pose(&line, &mut notes) {
                         Ok(pose) => poses.extend(pose),
                         Err(problem) if end == LineEnd::CutOff => {
                             let position = FilePosition::Line(notes.lines);

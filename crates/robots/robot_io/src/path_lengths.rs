@@ -6,6 +6,7 @@ use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::slam::Slam;
 use pr_geom::SE2;
 
+use crate::motion::{UNIT_OFF, UNITS};
 use crate::remark::{NO_ODOMETRY, Part, Remark};
 
 /// Lengths that differ by more than this factor are reported, if one of them is at least this long, m.
@@ -56,11 +57,29 @@ impl PathLengths {
         };
         (longer_m >= MIN_M && longer_m > DIFFERENT * shorter_m).then(|| {
             let text = format!(
-                "the path is {on_map_m:.1} m long on the map and {by_odometry_m:.1} m by odometry; one of them is wrong; compare with a map made with {NO_ODOMETRY}"
+                "the path is {on_map_m:.1} m long on the map and {by_odometry_m:.1} m by odometry, which is {}; one of them is wrong; compare with a map made with {NO_ODOMETRY}",
+                factor(by_odometry_m / on_map_m.max(1e-3))
             );
             Remark::wrong(Part::Odometry, text).with_option(NO_ODOMETRY)
         })
     }
+}
+
+/// A ratio of lengths by odometry to those by scans, with the unit that explains it.
+pub fn factor(ratio: f64) -> String {
+    let is_near = |per_metre: f64, ratio: f64| (ratio / per_metre - 1.0).abs() <= UNIT_OFF;
+    let unit = |ratio: f64| {
+        UNITS
+            .iter()
+            .find(|(metres, _)| is_near(1.0 / metres, ratio))
+    };
+    let cause = match (unit(ratio), unit(1.0 / ratio)) {
+        (Some((_, name)), _) => format!(": odometry may be in {name}"),
+        (_, Some((_, name))) => format!(": the ranges may be in {name}"),
+        _ if !(0.67..=1.5).contains(&ratio) => ", as a wrong unit of the ranges, a wrong step between beams or a wrong wheel radius causes".to_owned(),
+        _ => String::new(),
+    };
+    format!("{ratio:.2} times as long as by scans{cause}")
 }
 
 #[cfg(test)]
@@ -87,6 +106,13 @@ mod tests {
             lengths.remark(&slam).map(|remark| remark.text)
         };
         assert_eq!(sentence(1.1), None);
+        let feet = sentence(3.3).unwrap();
+        assert!(
+            feet.contains("3.30 times as long as by scans: odometry may be in feet"),
+            "{feet}"
+        );
+        let feet = sentence(0.3).unwrap();
+        assert!(feet.contains(": the ranges may be in feet"), "{feet}");
         let said = sentence(1.5).unwrap();
         assert!(said.contains("8.0 m long on the map and 12.0 m"), "{said}");
     }

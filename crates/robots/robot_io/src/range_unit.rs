@@ -6,6 +6,8 @@ use crate::stamps::median;
 
 /// Longer ranges are not in metres.
 pub const LONGEST_M: f64 = 400.0;
+/// No robot's laser is so far from most of what it sees.
+const TYPICAL_M: f64 = 50.0;
 
 /// A sentence on ranges that can only be in millimetres.
 pub fn millimetres(ranges: &[f64]) -> Option<String> {
@@ -18,6 +20,21 @@ pub fn millimetres(ranges: &[f64]) -> Option<String> {
     Some(format!(
         "its ranges are about {typical:.0}, in millimetres; they were divided by 1000. Publish metres"
     ))
+}
+
+/// A sentence on ranges that are too long for metres and too short for millimetres.
+pub fn centimetres(ranges: &[f64]) -> Option<String> {
+    let returns = ranges.iter().copied();
+    let returns: Vec<f64> = returns
+        .filter(|&range| range.is_finite() && range > 0.0)
+        .collect();
+    let longest = returns.iter().copied().fold(0.0, f64::max);
+    let typical = median(returns)?;
+    (longest > LONGEST_M && (TYPICAL_M..=LONGEST_M).contains(&typical)).then(|| {
+        format!(
+            "its ranges are about {typical:.0} and up to {longest:.0}, which look like centimetres: name the unit in the header or in --columns, such as ranges_cm"
+        )
+    })
 }
 
 /// Converts ranges that can only be in millimetres; returns a sentence on it.

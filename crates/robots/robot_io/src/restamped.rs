@@ -11,6 +11,7 @@ use crate::log_bytes::LogBytes;
 use crate::odometry_file::BesideOdometry;
 use crate::odometry_poses::{jumps_remark, remove_jumps};
 use crate::remark::Remark;
+use crate::repeats::{Repeats, fingerprint};
 use crate::stamps::MendedStamps;
 
 /// Most frames that wait for an earlier one which comes later in the file.
@@ -26,6 +27,9 @@ struct Restamped<R> {
     /// The odometry of each frame; empty if it is that of the log and does not jump.
     odometry: Vec<Option<SE2>>,
     remarks: Vec<Remark>,
+    /// Whether each frame of the log repeats one before it and is left out.
+    is_repeat: Vec<bool>,
+    seen: usize,
     /// Earliest stamp of any frame after this one, s.
     earliest_after_s: Vec<f64>,
     waiting: BTreeMap<Reverse<Key>, LogFrame>,
@@ -50,17 +54,22 @@ pub fn restamped<'a, R: LogReader + 'a>(
         stream.map_err(|source| LogError::at_start(name, source))
     };
     let mut first = reader(stream()?);
-    let (mut stamps_s, mut odometry) = (Vec::new(), Vec::new());
+    let (mut stamps_s, mut odometry, mut seen) = (Vec::new(), Vec::new(), Vec::new());
     // Errors recur in the second pass and are reported there.
     while let Ok(Some(frame)) = first.next_frame() {
         stamps_s.push(frame.stamp_s);
         odometry.push(frame.odometry);
+        seen.push(fingerprint(&frame.scan));
     }
     let inner = reader(stream()?);
     let mut remarks = Vec::new();
     if let Some(beside) = beside {
         remarks = beside.take_place(&stamps_s, &mut odometry)?;
     }
+    let repeats = Repeats::of(&stamps_s, &odometry, &seen);
+    repeats.leave_out(&mut stamps_s);
+    repeats.leave_out(&mut odometry);
+    remarks.extend(repeats.remarks());
     if let Some(mended) = mended_stamps(&stamps_s) {
         remarks.extend(mended.remarks("scans"));
         stamps_s = mended.stamps_s;
@@ -87,6 +96,8 @@ pub fn restamped<'a, R: LogReader + 'a>(
     Ok(Box::new(Restamped {
         inner,
         remarks,
+        is_repeat: repeats.is_repeat,
+        seen: 0,
         stamps_s,
         odometry,
         earliest_after_s,
@@ -159,6 +170,10 @@ impl<R: LogReader> LogReader for Restamped<R> {
             self.notes.warnings.extend(self.remarks.iter().cloned());
             match frame? {
                 Some(mut frame) => {
+                    self.seen += 1;
+                    if self.is_repeat.get(self.seen - 1) == Some(&true) {
+                        continue;
+                    }
                     if let Some(&stamp_s) = self.stamps_s.get(self.read) {
                         frame.stamp_s = stamp_s;
                     }
@@ -241,6 +256,37 @@ mod tests {
             remarks.starts_with("odometry jumps 1 time, first at 3.00 s"),
             "{remarks}"
         );
+    }
+
+    #[test]
+    fn scans_that_come_twice_or_stand_still_while_odometry_moves_are_left_out() {
+        let line = |k: u32, of: u32, x: f64| {
+            let ranges = (0..9).map(|beam| format!("{} ", 2.0 + 0.01 * f64::from(of + 3 * beam)));
+            format!(
+                "FLASER 9 {}{x} 0 0 {x} 0 0 {k} h {k}\n",
+                ranges.collect::<String>()
+            )
+        };
+        let moved = |k: u32| 0.1 * f64::from(k);
+        let twice: String = (5..45).map(|k| line(k, k, moved(k)).repeat(2)).collect();
+        let (found, remarks) = stamps(&twice);
+        assert_eq!(found, (5..45).map(f64::from).collect::<Vec<_>>());
+        assert!(
+            remarks[0].text.starts_with("40 of 80 scans come twice"),
+            "{remarks:?}"
+        );
+        assert_eq!(remarks.len(), 1);
+        let frozen = |k: u32| if (20..30).contains(&k) { 20 } else { k };
+        let frozen: String = (0..40).map(|k| line(k, frozen(k), moved(k))).collect();
+        let (found, remarks) = stamps(&frozen);
+        assert_eq!(found.len(), 31);
+        assert!(
+            remarks[0].text.starts_with("9 scans, first number 21,"),
+            "{remarks:?}"
+        );
+        // A robot that stands sees the same again and again.
+        let standing: String = (0..40).map(|k| line(k, 0, 0.0)).collect();
+        assert_eq!(stamps(&standing).0.len(), 40);
     }
 
     #[test]

@@ -13,6 +13,7 @@
 mod limit;
 mod sweep;
 
+use core::f64::consts::{PI, TAU};
 use std::fmt::Display;
 
 use ch16_slam2d::scan::LaserScan;
@@ -33,6 +34,9 @@ use crate::trajectory::yaw;
 /// Time between scans of a table without times, s: that of most cheap scanners.
 const PERIOD_S: f64 = 0.1;
 
+/// A restart of the odometry is one wide step of its heading.
+const WIDE_STEPS: usize = 3;
+
 /// Reads a table, row by row.
 pub type TableReader<R> = LineReader<R, TableRows>;
 
@@ -44,6 +48,9 @@ pub struct TableRows {
     sensor: Option<String>,
     /// Most words of a row so far.
     most_words: usize,
+    /// The last heading without a unit, and the number of steps from one to the next that no turn in radians has.
+    last_heading: Option<f64>,
+    wide_steps: usize,
     sweep: BeamBuffer,
     limit: UnstatedLimit,
     done: Option<LogFrame>,
@@ -302,7 +309,11 @@ impl TableRows {
     ///
     /// # Errors
     /// If the row has none, or they are out of range.
-    pub(crate) fn pose(&self, line: &[u8]) -> Result<Option<(f64, SE2)>, String> {
+    pub(crate) fn pose(
+        &mut self,
+        line: &[u8],
+        notes: &mut LogNotes,
+    ) -> Result<Option<(f64, SE2)>, String> {
         let text = String::from_utf8_lossy(line);
         let text = text.trim_start_matches('\u{feff}').trim();
         if is_empty(text) || is_header(text) {
@@ -312,7 +323,31 @@ impl TableRows {
         let (Some(time_s), [Some(x), Some(y), Some(heading)]) = (row.time_s, row.pose) else {
             return Err("a pose must have a time, x, y and a heading".to_owned());
         };
+        notes.warnings.extend(self.heading_remark(heading));
         Ok(Some((time_s, plausible_pose(SE2::new(x, y, heading))?)))
+    }
+
+    /// A remark, once, on a heading whose steps from row to row are more than half a turn again and again, and not those of
+    /// an angle that passes half a turn: it is in degrees.
+    pub(crate) fn heading_remark(&mut self, heading: f64) -> Option<Remark> {
+        let mut columns = self.layout.columns.iter();
+        if columns.any(|column| column.0 == ColumnMeaning::Heading && column.1.is_some()) {
+            return None;
+        }
+        let step = self
+            .last_heading
+            .replace(heading)
+            .map_or(0.0, |last| heading - last)
+            .abs();
+        let is_wide = step > PI && (step - TAU).abs() > 0.5 * PI;
+        self.wide_steps += usize::from(is_wide);
+        let is_first = is_wide && self.wide_steps == WIDE_STEPS;
+        is_first.then(|| {
+            Remark::wrong(
+                Part::Odometry,
+                "its heading turns by more than half a turn from row to row, as one in degrees does that is read as radians: name the column heading_deg".to_owned(),
+            )
+        })
     }
 
     /// The frame of a scan; what was corrected goes to the notes.
@@ -338,6 +373,9 @@ impl TableRows {
                 format!("the table has no times; its scans are taken as {PERIOD_S} s apart"),
             ));
         }
+        let heading = row.pose[2].filter(|_| row.orientation == [0.0; 4]);
+        let remark = heading.and_then(|heading| self.heading_remark(heading));
+        notes.warnings.extend(remark);
         let odometry = match row.pose {
             [Some(x), Some(y), Some(heading)] => Some(plausible_pose(SE2::new(x, y, heading))?),
             _ => None,

@@ -33,14 +33,14 @@ const CONFIRMED_RAD: f64 = 10.0 * PI / 180.0;
 /// A laser whose direction differs by more is turned, rad: 25°.
 const ELSEWHERE_RAD: f64 = 25.0 * PI / 180.0;
 /// Units of length, in metres, and their names.
-const UNITS: [(f64, &str); 4] = [
+pub const UNITS: [(f64, &str); 4] = [
     (1e-3, "millimetres"),
     (1e-2, "centimetres"),
     (0.3048, "feet"),
     (0.0254, "inches"),
 ];
 /// Relative tolerance of a unit.
-const UNIT_OFF: f64 = 0.12;
+pub const UNIT_OFF: f64 = 0.12;
 /// Times of a sweep over that between two scans that are tried for scans whose beams have no times.
 const SWEEPS: [f64; 3] = [2.0, 3.0, 4.0];
 /// Odometry that covers less than this share of the path by scans stands still.

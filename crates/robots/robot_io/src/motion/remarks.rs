@@ -51,7 +51,7 @@ impl MotionComparison {
                 ),
                 Finding::Unlike { .. } => Remark::wrong(
                     Part::Odometry,
-                    format!("{text}; it may not be this robot's: use scans alone with {NO_ODOMETRY}"),
+                    format!("{text}; it may not be this robot's, or its heading may be in degrees: use scans alone with {NO_ODOMETRY}"),
                 ),
                 Finding::Swept { .. } => Remark::mended(
                     Part::Sensor,
@@ -118,9 +118,7 @@ fn of_mount(
     let otherwise = OdometryUse::Mirrored.option();
     let is_mirrored = matches!(finding, Finding::Mirrored { .. });
     let causes = if is_mirrored {
-        format!(
-            ". The laser is mounted upside down, or its driver lists the beams clockwise (both: {option}), or the odometry counts turns clockwise ({otherwise})"
-        )
+        format!(". {}", causes(&option))
     } else {
         String::new()
     };
@@ -145,6 +143,14 @@ fn of_mount(
     } else {
         remark
     }
+}
+
+/// What mirrors scans, with what corrects it; `option` turns the laser over.
+fn causes(option: &str) -> String {
+    format!(
+        "The laser is mounted upside down, or its driver lists the beams clockwise (both: {option}), or the odometry counts turns clockwise ({})",
+        OdometryUse::Mirrored.option()
+    )
 }
 
 /// What the comparison shows, without what was done.
@@ -224,8 +230,20 @@ fn suggest(suggestion: &Suggestion, mount: LaserMount) -> Remark {
             (Part::Odometry, Some(NO_ODOMETRY.to_owned()))
         }
     };
+    let alone = format!("use scans alone with {NO_ODOMETRY}");
+    let remedy = match (finding, &option) {
+        (Finding::Mirrored { .. }, Some(option)) => causes(option),
+        (Finding::Opposed { .. }, _) => format!("Correct the sign in the driver, or {alone}"),
+        (Finding::TurnScale { .. }, _) => {
+            format!("Correct the distance between the wheels in the driver, or {alone}")
+        }
+        (Finding::Unit { .. }, _) => format!("State the unit, or {alone}"),
+        (Finding::Late { .. }, _) => "Synchronize both clocks with NTP".to_owned(),
+        (_, Some(option)) => format!("Compare with a map made with {option}"),
+        (_, None) => "Compare with the driver's settings".to_owned(),
+    };
     let text = format!(
-        "scans matched alone suggest that {}, but a map of the first {} scans is not clearly better in both halves after that repair ({:.1} nats per scan, {:.1} without), so nothing was changed",
+        "scans matched alone suggest that {}, but a map of the first {} scans is not clearly better in both halves after that repair ({:.1} nats per scan, {:.1} without), so nothing was changed. {remedy}",
         sentence(finding),
         costs.scans,
         costs.with,

@@ -402,3 +402,54 @@ fn of_several_lasers_in_a_table_one_is_read_and_the_others_are_named() {
     assert_eq!(frames.len(), 4);
     assert!(notes.warnings[0].text.contains("those of rear are read"));
 }
+
+#[test]
+fn units_that_nobody_states_are_named() {
+    let rows = |heading: fn(u32) -> u32, range: u32| -> String {
+        let row = |k| format!("{k},0,0,{},-1,1,{range},1199,{range}\n", heading(k));
+        (0..40).map(row).collect()
+    };
+    let header = "time,x,y,heading,angle_min,angle_increment,ranges0,ranges1,ranges2\n";
+    let said = |header: &str, rows: String| -> String {
+        let (_, notes) = read_with(&format!("{header}{rows}"), &LogOptions::default());
+        notes.sentences("x").join(" ")
+    };
+    // 10° from row to row, and a heading that only passes half a turn.
+    let turning = |k: u32| 10 * k % 360;
+    let unstated = said(header, rows(turning, 3));
+    assert!(
+        unstated.contains("name the column heading_deg"),
+        "{unstated}"
+    );
+    let stated = header.replace("heading", "heading_deg");
+    assert!(!said(&stated, rows(turning, 3)).contains("heading_deg"));
+    assert!(!said(header, rows(|k| k / 2 % 6, 3)).contains("heading_deg"));
+    let centimetres = said(header, rows(|_| 0, 250));
+    assert!(
+        centimetres.contains("look like centimetres"),
+        "{centimetres}"
+    );
+    assert!(!said(header, rows(|_| 0, 3)).contains("centimetres"));
+}
+
+#[test]
+fn a_packed_log_that_is_cut_off_is_read_as_far_as_it_goes_and_named() {
+    use std::io::Write as _;
+    let rows = (0..4000).map(|k| format!("{k},-1,1,{}.5,{}.25,3\n", k % 7, k % 11));
+    let text = format!(
+        "time,angle_min,angle_increment,ranges0,ranges1,ranges2\n{}",
+        rows.collect::<String>()
+    );
+    let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    packed.write_all(text.as_bytes()).unwrap();
+    let mut packed = packed.finish().unwrap();
+    packed.truncate(packed.len() / 2);
+    let mut reader = LogFormat::open(packed, "x.csv.gz", &LogOptions::default()).unwrap();
+    let mut frames = 0;
+    while reader.next_frame().unwrap().is_some() {
+        frames += 1;
+    }
+    assert!((1000..3000).contains(&frames), "{frames}");
+    let said = reader.notes().sentences("x").join(" ");
+    assert!(said.contains("cut off or damaged"), "{said}");
+}
