@@ -183,8 +183,9 @@ impl Checkup {
         ));
         remarks.extend(odometry.as_ref().and_then(|it| self.uncovered_remark(it)));
         remarks.extend(mounting_remark(notes, motion, odometry.is_some()));
-        remarks.extend(self.clocks_remark(notes));
-        remarks.extend(self.pause_remark().or_else(|| self.gaps_remark()));
+        let pause = self.pause_remark().or_else(|| self.gaps_remark());
+        remarks.extend(self.clocks_remark(notes, pause.is_some()));
+        remarks.extend(pause);
         remarks.extend(notes.warnings.iter().cloned());
         let mut diagnosis = Diagnosis {
             name: name.to_owned(),
@@ -386,10 +387,13 @@ fn mounting_remark(
             format!(
                 "{mount} cannot be checked, because the paths of scans matched alone and of odometry differ too much (correlation of the turns {correlation:.2}, {:.0} cm per metre apart{})",
                 100.0 * motion.drift_m_per_m.unwrap_or_default(),
-                motion.scale.map_or(String::new(), |scale| format!(
-                    ", odometry {}",
-                    factor(scale)
-                ))
+                motion
+                    .scale
+                    .filter(|scale| !(0.8..=1.25).contains(scale))
+                    .map_or(String::new(), |scale| format!(
+                        ", odometry {}",
+                        factor(scale)
+                    ))
             ),
         ),
         _ => Remark::mended(
@@ -407,7 +411,7 @@ fn mounting_remark(
 }
 
 impl Checkup {
-    fn clocks_remark(&self, notes: &LogNotes) -> Option<Remark> {
+    fn clocks_remark(&self, notes: &LogNotes, is_said: bool) -> Option<Remark> {
         let mut warnings = notes.warnings.iter();
         if warnings.any(|remark| remark.part == Part::Clocks) {
             return None;
@@ -421,7 +425,7 @@ impl Checkup {
             self.info.duration_s
         );
         let longest = self.long_gaps().max_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((gap_s, at_s, _)) = longest.filter(|gap| gap.2) {
+        if let Some((gap_s, at_s, _)) = longest.filter(|gap| gap.2 && !is_said) {
             text.push_str(&format!(
                 "; the longest time without a scan is {gap_s:.1} s before {at_s:.2} s, and odometry measures it"
             ));

@@ -5,7 +5,6 @@
 //! | the same ranges and stamp | the scan was recorded twice |
 //! | the same ranges while odometry moves | the driver sends its last scan again |
 
-use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use ch16_slam2d::metrics::position_error_m;
@@ -23,17 +22,18 @@ const FEWEST: usize = 8;
 /// A number of the ranges of a scan, equal if they are; `None` if too few of them differ.
 pub fn fingerprint(scan: &LaserScan) -> Option<u64> {
     let mut hasher = DefaultHasher::new();
-    let bits = |range_m: &f64| range_m.to_bits();
-    scan.ranges_m
-        .iter()
-        .map(bits)
-        .for_each(|bits| bits.hash(&mut hasher));
-    let returns = scan
-        .ranges_m
-        .iter()
-        .filter(|range_m| scan.is_return(**range_m));
-    let different: HashSet<u64> = returns.map(bits).collect();
-    (different.len() >= FEWEST).then(|| hasher.finish())
+    let ranges = || scan.ranges_m.iter().copied();
+    ranges().for_each(|range_m| range_m.to_bits().hash(&mut hasher));
+    let mut different: Vec<f64> = Vec::new();
+    for range_m in ranges().filter(|&range_m| scan.is_return(range_m)) {
+        if !different.contains(&range_m) {
+            different.push(range_m);
+        }
+        if different.len() >= FEWEST {
+            return Some(hasher.finish());
+        }
+    }
+    None
 }
 
 /// Which scans of a log repeat one before them.
