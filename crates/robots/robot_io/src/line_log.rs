@@ -3,7 +3,7 @@
 //! A format parses one line. The reader iterates over the file in bounded memory, skips unreadable lines, and reports
 //! where they were.
 
-use std::io::{self, BufRead};
+use std::io::BufRead;
 
 use ch16_slam2d::scan::LaserScan;
 
@@ -140,12 +140,6 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
     }
 }
 
-/// Whether a decompressor found the end of a file too early, or bytes that it did not write.
-fn is_cut(problem: &io::Error) -> bool {
-    use io::ErrorKind::{InvalidData, InvalidInput, UnexpectedEof};
-    matches!(problem.kind(), UnexpectedEof | InvalidData | InvalidInput)
-}
-
 impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
     fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
         loop {
@@ -160,20 +154,12 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
                     Ok(None)
                 };
             }
-            let position = FilePosition::Line(self.notes.lines + 1);
-            let read = match next_line(&mut self.source, &mut self.line) {
-                // What is compressed and cut off is read as far as it goes.
-                Err(source) if self.frames > 0 && is_cut(&source) => {
-                    let problem = format!("the compressed file is cut off or damaged: {source}");
-                    self.notes.truncated = Some(BrokenRecord { position, problem });
-                    None
-                }
-                read => read.map_err(|source| LogError::Io {
+            let read =
+                next_line(&mut self.source, &mut self.line).map_err(|source| LogError::Io {
                     name: self.name.clone(),
-                    position,
+                    position: FilePosition::Line(self.notes.lines + 1),
                     source,
-                })?,
-            };
+                })?;
             let Some((end, bytes)) = read else {
                 self.is_done = true;
                 self.format.at_end(&mut self.notes);

@@ -10,12 +10,15 @@ use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::log_bytes::LogBytes;
 use crate::odometry_file::BesideOdometry;
 use crate::odometry_poses::{jumps_remark, remove_jumps};
-use crate::remark::Remark;
+use crate::remark::{Part, Remark};
 use crate::repeats::{Repeats, fingerprint};
-use crate::stamps::MendedStamps;
+use crate::stamps::{ClockStep, MendedStamps};
 
 /// Most frames that wait for an earlier one which comes later in the file.
 const MAX_WAITING: usize = 1024;
+
+/// The time between two recordings in one file, s: a pause in which the robot may have been carried.
+const APART_S: f64 = 60.0;
 
 /// Stamp as an ordered integer, and number of the frame.
 type Key = (u64, usize);
@@ -70,11 +73,13 @@ pub fn restamped<'a, R: LogReader + 'a>(
     repeats.leave_out(&mut stamps_s);
     repeats.leave_out(&mut odometry);
     remarks.extend(repeats.remarks());
+    let mut steps = Vec::new();
     if let Some(mended) = mended_stamps(&stamps_s) {
         remarks.extend(mended.remarks("scans"));
-        stamps_s = mended.stamps_s;
+        (stamps_s, steps) = (mended.stamps_s, mended.steps);
     }
-    let jumps = without_jumps(&stamps_s, &mut odometry);
+    let mut jumps = without_jumps(&stamps_s, &mut odometry);
+    remarks.extend(apart(&steps, &mut jumps, &mut stamps_s));
     if jumps.is_empty() && beside.is_none() {
         odometry.clear();
     }
@@ -128,6 +133,26 @@ fn mended_stamps(stamps_s: &[f64]) -> Option<MendedStamps> {
         *stamp_s += least_s - 1.0;
     }
     Some(mended)
+}
+
+/// Puts a pause where stamps and odometry start anew: what follows is another recording, and the robot is searched for.
+fn apart(steps: &[ClockStep], jumps: &mut Vec<f64>, stamps_s: &mut [f64]) -> Option<Remark> {
+    let back = steps.iter().filter(|step| step.by_s < 0.0);
+    let starts: Vec<usize> = back
+        .map(|step| step.at)
+        .filter(|at| jumps.contains(&stamps_s[*at]))
+        .collect();
+    jumps.retain(|jump_s| !starts.iter().any(|at| stamps_s[*at] == *jump_s));
+    for &at in &starts {
+        stamps_s[at..]
+            .iter_mut()
+            .for_each(|stamp_s| *stamp_s += APART_S);
+    }
+    let first = starts.first()?;
+    let text = format!(
+        "stamps and odometry start anew at scan {first}, as where recordings were joined; what follows is searched for on the map. Map them one after the other with --continue"
+    );
+    Some(Remark::mended(Part::Clocks, text))
 }
 
 /// Removes jumps from the odometry of frames with these stamps; returns the stamps of the jumps, s.
@@ -287,6 +312,24 @@ mod tests {
         // A robot that stands sees the same again and again.
         let standing: String = (0..40).map(|k| line(k, 0, 0.0)).collect();
         assert_eq!(stamps(&standing).0.len(), 40);
+    }
+
+    #[test]
+    fn two_recordings_in_one_file_are_apart() {
+        let line = |k: u32| {
+            let (x, k) = (0.1 * f64::from(k % 30), 5.0 + 0.1 * f64::from(k % 30));
+            format!("FLASER 3 1 1 1 {x} 0 0 {x} 0 0 {k} h {k}\n")
+        };
+        let (found, remarks) = stamps(&(0..60).map(line).collect::<String>());
+        assert_eq!(found.len(), 60);
+        // 1e-9 s: sums of tenths.
+        assert!((found[30] - found[29] - 0.1 - APART_S).abs() < 1e-9);
+        let said: Vec<&str> = remarks.iter().map(|remark| remark.text.as_str()).collect();
+        assert_eq!(said.len(), 2, "{said:?}");
+        assert!(
+            said[1].starts_with("stamps and odometry start anew at scan 30"),
+            "{said:?}"
+        );
     }
 
     #[test]

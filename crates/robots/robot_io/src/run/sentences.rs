@@ -99,7 +99,7 @@ impl LogRun {
             .iter()
             .fold(0.0, |longest: f64, gap| longest.max(gap.gap_s));
         Some(format!(
-            "scans are missing {} for up to {longest_s:.1} s, first before {:.2} s, and no odometry measured the motion; the robot was searched for around its last pose, and found. Record odometry, or keep the connection that loses the messages",
+            "scans are missing {} for up to {longest_s:.1} s, first before {:.2} s, and odometry is missing or stands still meanwhile; the robot was searched for around its last pose, and found. Record odometry, or keep the connection that loses the messages",
             plural(bridged.len(), "time"),
             first.stamp_s
         ))

@@ -431,25 +431,3 @@ fn units_that_nobody_states_are_named() {
     );
     assert!(!said(header, rows(|_| 0, 3)).contains("centimetres"));
 }
-
-#[test]
-fn a_packed_log_that_is_cut_off_is_read_as_far_as_it_goes_and_named() {
-    use std::io::Write as _;
-    let rows = (0..4000).map(|k| format!("{k},-1,1,{}.5,{}.25,3\n", k % 7, k % 11));
-    let text = format!(
-        "time,angle_min,angle_increment,ranges0,ranges1,ranges2\n{}",
-        rows.collect::<String>()
-    );
-    let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
-    packed.write_all(text.as_bytes()).unwrap();
-    let mut packed = packed.finish().unwrap();
-    packed.truncate(packed.len() / 2);
-    let mut reader = LogFormat::open(packed, "x.csv.gz", &LogOptions::default()).unwrap();
-    let mut frames = 0;
-    while reader.next_frame().unwrap().is_some() {
-        frames += 1;
-    }
-    assert!((1000..3000).contains(&frames), "{frames}");
-    let said = reader.notes().sentences("x").join(" ");
-    assert!(said.contains("cut off or damaged"), "{said}");
-}
