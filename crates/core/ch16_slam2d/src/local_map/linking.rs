@@ -34,10 +34,7 @@ struct LinkGate {
 pub(super) fn link_all(mapper: &mut Mapper, submaps: &mut Submaps) -> Vec<LoopVerification> {
     let mut last = Vec::new();
     for _ in 0..LINK_PASSES {
-        let nodes = 0..mapper.keyframes().len();
-        let links: Vec<LoopVerification> = nodes
-            .flat_map(|node| links_of(mapper, node, submaps))
-            .collect();
+        let links = links(mapper, submaps);
         if !mapper.replace_loops(&links, LINK_HUBER) {
             return last;
         }
@@ -46,9 +43,8 @@ pub(super) fn link_all(mapper: &mut Mapper, submaps: &mut Submaps) -> Vec<LoopVe
     last
 }
 
-/// The registrations of a keyframe on the visits around it.
-fn links_of(mapper: &Mapper, node: usize, submaps: &mut Submaps) -> Vec<LoopVerification> {
-    let visits = detect_visits(mapper.poses(), node, LINK_RADIUS_M, LINK_GAP_NODES);
+/// The registrations of all keyframes on the visits around them, by keyframe, nearest visit first.
+fn links(mapper: &Mapper, submaps: &mut Submaps) -> Vec<LoopVerification> {
     let gate = LinkGate {
         information: Matrix3::from_diagonal(&Vector3::new(
             1.0 / (LINK_SHIFT_M * LINK_SHIFT_M),
@@ -58,10 +54,26 @@ fn links_of(mapper: &Mapper, node: usize, submaps: &mut Submaps) -> Vec<LoopVeri
         chi2: CHAPTER_GATE,
         window: None,
     };
-    let visits = visits.into_iter().take(LINK_VISITS);
-    visits
-        .map(|visit| link(mapper, node, visit, gate, submaps))
-        .collect()
+    let visits_of = |node| {
+        let visits = detect_visits(mapper.poses(), node, LINK_RADIUS_M, LINK_GAP_NODES);
+        let visits = visits.into_iter().take(LINK_VISITS);
+        visits.map(move |visit| (node, visit))
+    };
+    let pairs: Vec<_> = (0..mapper.keyframes().len()).flat_map(visits_of).collect();
+    // Several keyframes share a visit, whose submap and normals are then computed once.
+    let mut by_visit: Vec<usize> = (0..pairs.len()).collect();
+    by_visit.sort_by_key(|&pair| pairs[pair].1.node);
+    let mut links = vec![None; pairs.len()];
+    for shared in by_visit.chunk_by(|&one, &other| pairs[one].1.node == pairs[other].1.node) {
+        // The first is the earliest of them, and all are farther from the visit than its last keyframe.
+        let (earliest, visit) = pairs[shared[0]];
+        build_visit(mapper, visit.node, earliest, submaps);
+        for &pair in shared {
+            let (node, visit) = pairs[pair];
+            links[pair] = Some(link(mapper, node, visit, gate, submaps));
+        }
+    }
+    links.into_iter().flatten().collect()
 }
 
 /// Registers keyframe `new` on the surroundings of keyframe `old`, on request of the caller.
@@ -98,10 +110,17 @@ pub(super) fn link_on_request(
             math::min(half_rad, REQUEST_RAD),
         )),
     };
+    build_visit(mapper, old, new, submaps);
     Ok(link(mapper, new, candidate, gate, submaps))
 }
 
-/// Registers keyframe `node` on the visit around an older one, from its pose in the graph.
+/// Builds the submap of the visit around keyframe `center` from keyframes before `new`.
+fn build_visit(mapper: &Mapper, center: usize, new: usize, submaps: &mut Submaps) {
+    let last = (center + HALF_VISIT).min(new - 1);
+    submaps.build(mapper, center.saturating_sub(HALF_VISIT)..=last, center);
+}
+
+/// Registers keyframe `node` on the submap of the visit around an older one, from its pose in the graph.
 fn link(
     mapper: &Mapper,
     node: usize,
@@ -110,11 +129,8 @@ fn link(
     submaps: &mut Submaps,
 ) -> LoopVerification {
     let poses = mapper.poses();
-    let center = visit.node;
-    let last = (center + HALF_VISIT).min(node - 1);
-    submaps.build(mapper, center.saturating_sub(HALF_VISIT)..=last, center);
     let settings = &submaps.registration;
-    let predicted = poses[center].between(&poses[node]);
+    let predicted = poses[visit.node].between(&poses[node]);
     let stages = [settings.max_correspondence_m, settings.inlier_distance_m];
     let scan = mapper.scan(node);
     let mut found = submaps
