@@ -71,8 +71,8 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.6",
     name: "The whole window",
     title: "Can every pose be searched without scoring every pose?",
-    claim: "You can search a pose without scoring it.",
-    gesture: "Turn the laser scan by its ring, and let it go.",
+    claim: "One bound rules out a whole box of poses.",
+    gesture: "Turn the laser scan by the blue ring, and let it go.",
     awaits: Awaits::End,
     notice: &[
         "Each bar is a box of poses, and its height is a score that no pose in the box can exceed. Point at one to see the true scores of its poses, all of them lower. As boxes split, the bars fall towards them.",

@@ -20,6 +20,9 @@ pub use plots::OVER_TIME;
 /// Half the side of the close-up, in metres.
 const CLOSE_UP_M: f64 = 4.0;
 
+/// The smallest correction of a keyframe that can be seen, m.
+const SEEN_M: f64 = 0.02;
+
 /// The whole picture.
 pub fn scene(room: &ControlRoom) -> Scene {
     let (record, now) = (&room.record, room.tick());
@@ -27,7 +30,7 @@ pub fn scene(room: &ControlRoom) -> Scene {
         panels: vec![
             map(room),
             registration(record, now, room.registration.as_ref()),
-            parts::parts(room.now(), room.part(), room.closing),
+            parts::parts(&record.lap.reports[..now], room.part(), room.closing),
             plots::threshold(&room.history, now),
             plots::errors(&room.history, now),
         ],
@@ -81,8 +84,11 @@ fn map(room: &ControlRoom) -> Panel {
 
 /// The keyframes where they were before a loop moved them, and its name.
 fn correction(record: &LapRecord, tick: usize) -> Vec<Layer> {
-    let before: Vec<[f64; 2]> = record.lap.poses(tick - 1).iter().map(xy).collect();
     let poses = record.lap.poses(tick);
+    let was = record.lap.poses(tick - 1);
+    let moved = was.iter().zip(poses);
+    let moved = moved.filter(|(was, is)| (was.position() - is.position()).norm() > SEEN_M);
+    let before: Vec<[f64; 2]> = moved.map(|(was, _)| xy(was)).collect();
     let mut loops = record.lap.edges(tick).iter();
     let closed = loops.rfind(|edge| edge.kind == EdgeKind::Loop);
     let name = closed.map(|edge| {

@@ -1,4 +1,4 @@
-//! Front end and back end at the current tick: a mark for each of their parts, filled while it works.
+//! Front end and back end up to the current tick: a mark for each of their parts, filled while it works.
 
 use ch16_lab::lap::{RecordedLoopAttempt, TickReport};
 use ch16_slam2d::loops::LoopRejection;
@@ -235,55 +235,70 @@ fn share_done(part: usize, closing: Option<f64>) -> f64 {
     ((share - begins) / (1.0 - begins)).max(0.0)
 }
 
-/// All parts in a row, those at work in a tick filled; a ring around the chosen one if it works.
-pub fn parts(report: Option<&TickReport>, chosen: usize, closing: Option<f64>) -> Panel {
+/// All parts in a row after these ticks: filled if they work in the last one, hollow and as large as at their last work
+/// if they rest. A ring is around the chosen one if it works.
+pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Panel {
     let ends = [spot(0), spot(PARTS.len() - 1)];
     let mut legend = vec![
         LegendEntry::mark("front end", FRONT_END, Mark::Dot),
         LegendEntry::mark("back end", BACK_END, Mark::Dot),
     ];
-    let is_rejected = |report| {
-        PARTS
-            .iter()
-            .any(|part| (part.done)(report) == Done::Rejected)
-    };
-    if report.is_some_and(is_rejected) {
-        legend.push(LegendEntry::mark("rejected", REJECTED, Mark::Circle));
-    }
     let mut layers = vec![Layer::segments(vec![ends], Stroke::Solid, Tone::Faint, 1.5)];
     for (number, part) in PARTS.iter().enumerate() {
         let share = share_done(number, closing);
-        let done = report.map_or(Done::Idle, part.done);
-        let (mark, tone) = match done {
-            _ if share == 0.0 => (Mark::Circle, Tone::Faint),
-            Done::Idle => (Mark::Circle, Tone::Faint),
-            Done::Rejected => (Mark::Circle, REJECTED),
-            Done::Passed if number < CANDIDATE => (Mark::Dot, FRONT_END),
-            Done::Passed => (Mark::Dot, BACK_END),
+        // A part that has not begun its work in this tick rests.
+        let until = reports.len() - usize::from(share == 0.0);
+        let worked = |report: &&TickReport| (part.done)(report) != Done::Idle;
+        let times = reports[..until].iter().filter(worked).count();
+        let newest = reports[..until].iter().rfind(worked);
+        let now = reports.last().filter(|_| share > 0.0);
+        let group = if number < CANDIDATE {
+            FRONT_END
+        } else {
+            BACK_END
         };
-        let keyframes = report.map_or(0, part.keyframes) as f64 * share;
+        let (mark, tone, share) = match now.map_or(Done::Idle, part.done) {
+            Done::Idle if newest.is_none() => (Mark::Circle, Tone::Faint, 1.0),
+            Done::Idle => (Mark::Circle, group, 1.0),
+            Done::Rejected => (Mark::Circle, REJECTED, share),
+            Done::Passed => (Mark::Dot, group, share),
+        };
+        if tone == REJECTED && legend.len() == 2 {
+            legend.push(LegendEntry::mark("rejected", REJECTED, Mark::Circle));
+        }
+        let keyframes = newest.map_or(0, part.keyframes) as f64 * share;
         let radius_px = ONE_KEYFRAME_PX * math::sqrt(keyframes.max(1.0)) as f32;
-        layers.push(Layer::points(vec![spot(number)], mark, tone, radius_px));
-        if number == chosen && tone != Tone::Faint {
+        let [x, y] = spot(number);
+        layers.push(Layer::points(vec![[x, y]], mark, tone, radius_px));
+        if number == chosen && now.is_some_and(|report| (part.done)(report) != Done::Idle) {
             let ring_px = radius_px + 4.0;
-            let at = vec![spot(number)];
-            layers.push(Layer::points(at, Mark::Circle, Tone::Ink, ring_px));
+            layers.push(Layer::points(
+                vec![[x, y]],
+                Mark::Circle,
+                Tone::Ink,
+                ring_px,
+            ));
         }
         // Names stand above and below in turn: on a phone, a row has no room for them.
-        let [x, y] = spot(number);
         let side = if number % 2 == 0 { TO_NAME } else { -TO_NAME };
+        let count = if times == 0 {
+            String::new()
+        } else {
+            format!(" ×{times}")
+        };
         layers.push(Layer::Text {
             at: [x, y + side],
-            text: part.name.to_owned(),
+            text: format!("{}{count}", part.name),
             tone: Tone::Ink,
         });
     }
     Panel {
         id: ID,
-        title: "Who works now: the area is the keyframes gone through".to_owned(),
+        title: "Parts at work (area: keyframes handled)".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Free,
-        x: Axis::hidden(-0.1, PARTS.len() as f64 + 0.1),
+        // Room for the names of the first and the last one.
+        x: Axis::hidden(-0.35, PARTS.len() as f64 + 0.35),
         y: Axis::hidden(0.0, 1.0),
         layers,
         legend,
