@@ -80,8 +80,14 @@ pub fn open_robots(
     options: &LogOptions,
 ) -> anyhow::Result<(Robots<'static>, Progress)> {
     let (files, progress) = LogFiles::of(path, parts, options)?;
-    let open =
-        move |options: &LogOptions| Ok(ComparedReader::chosen(files.open(options)?, options));
+    let (again, mut is_first) = (progress.clone(), true);
+    let open = move |options: &LogOptions| {
+        let reader = ComparedReader::chosen(files.open(options)?, options);
+        if !std::mem::take(&mut is_first) {
+            again.restart();
+        }
+        Ok(reader)
+    };
     Ok((Robots::open(open, options)?, progress))
 }
 

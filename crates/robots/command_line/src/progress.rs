@@ -9,6 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::output::name;
 
 /// Progress, speed and time left: a bar in a terminal, otherwise a line every ten seconds.
+#[derive(Clone)]
 pub struct Progress {
     pub(crate) bar: ProgressBar,
     started: Instant,
@@ -49,7 +50,7 @@ impl Progress {
     }
 
     /// Goes back to the start of the scans: those of another robot follow.
-    pub fn restart(&self) {
+    pub(crate) fn restart(&self) {
         self.bar
             .set_position(self.bar.length().unwrap_or_default() / 2);
     }

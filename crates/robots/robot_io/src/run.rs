@@ -56,6 +56,7 @@ pub struct LogRun {
     own_sensor: Option<LaserScan>,
     /// The robots after the first one: their names, and the stamps of their first scans, s.
     robots: Vec<(String, f64)>,
+    broken: Option<String>,
 }
 
 impl Default for LogRun {
@@ -87,6 +88,7 @@ impl LogRun {
             other_sensor: None,
             own_sensor: None,
             robots: Vec::new(),
+            broken: None,
         }
     }
 

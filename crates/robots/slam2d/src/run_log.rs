@@ -43,26 +43,15 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         ..Ended::default()
     };
     while !interrupt.came() {
-        match reader.next_frame() {
-            Ok(Some(frame)) => {
-                if let Some(robot) = reader.next_robot() {
-                    mapping.run.next_robot(&robot, frame.stamp_s);
-                    progress.restart();
-                }
-                mapping.step(frame);
-                progress.report(mapping.run.scans());
-            }
-            Ok(None) => {
-                ended.is_interrupted = false;
-                break;
-            }
-            Err(error) if mapping.run.scans() == 0 => return Err(error.into()),
-            Err(error) => {
-                ended.broken = Some(error.into());
-                break;
-            }
-        }
+        let Some(frame) = mapping.run.next_frame(&mut reader)? else {
+            ended.is_interrupted = mapping.run.broken().is_some();
+            break;
+        };
+        mapping.step(frame);
+        progress.report(mapping.run.scans());
     }
+    let broken = mapping.run.broken().map(str::to_owned);
+    ended.broken = broken.map(anyhow::Error::msg);
     progress.end();
     ended.remarks = reader.notes().sentences(&name);
     ended.about.clone_from(&reader.notes().about);

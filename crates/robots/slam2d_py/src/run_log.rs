@@ -292,23 +292,9 @@ impl Pipeline {
                 .with_setting(setting, *value)
                 .map_err(|error| SettingError::new_err(error.to_string()))?;
         }
-        let mut broken = None;
         let (mut frames, mut share) = (0_usize, 0.0);
-        loop {
-            match reader.next_frame() {
-                Ok(Some(frame)) => {
-                    if let Some(robot) = reader.next_robot() {
-                        run.next_robot(&robot, frame.stamp_s);
-                    }
-                    run.step(frame);
-                }
-                Ok(None) => break,
-                Err(error) if run.scans() == 0 => return Err(to_error(error)),
-                Err(error) => {
-                    broken = Some(error.to_string());
-                    break;
-                }
-            }
+        while let Some(frame) = run.next_frame(&mut reader).map_err(to_error)? {
+            run.step(frame);
             frames += 1;
             if frames.is_multiple_of(SCANS_BETWEEN) {
                 // Of the frames that were read, some wait.
@@ -325,7 +311,7 @@ impl Pipeline {
         }
         let mut remarks = reader.notes().sentences(&name);
         remarks.extend(run.sentences(&name));
-        remarks.extend(broken);
+        remarks.extend(run.broken().map(str::to_owned));
         let quality = run.quality();
         let covariances = quality
             .keyframes

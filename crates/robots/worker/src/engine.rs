@@ -242,12 +242,9 @@ impl<'a> Engine<'a> {
 
     /// Reads the next scan; returns false if it has to come first, and nothing is to be painted.
     fn read(&mut self, mut reader: Box<dyn LogReader + 'a>) -> bool {
-        match reader.next_frame() {
+        match self.run.next_frame(reader.as_mut()) {
             Ok(Some(frame)) => {
                 let is_first = self.run.scans() == 0;
-                if let Some(robot) = reader.next_robot() {
-                    self.run.next_robot(&robot, frame.stamp_s);
-                }
                 if let Some(report) = self.run.step(frame) {
                     if is_first {
                         self.send_offers(&reader.notes().offers);
@@ -268,7 +265,10 @@ impl<'a> Engine<'a> {
                 self.paint();
                 self.work = Work::Reading(reader);
             }
-            Ok(None) => self.end_of_log(reader.as_ref(), None),
+            Ok(None) => {
+                let problem = self.run.broken().map(str::to_owned);
+                self.end_of_log(reader.as_ref(), problem);
+            }
             Err(LogError::Waiting) => {
                 self.work = Work::Reading(reader);
                 return self.paint();

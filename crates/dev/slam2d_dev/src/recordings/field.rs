@@ -75,25 +75,15 @@ struct Mapped {
 /// Maps a recording as `slam2d run` does.
 fn mapped(log: &Path, mut run: LogRun, options: &LogOptions) -> anyhow::Result<Mapped> {
     let (mut reader, progress) = open_robots(log, &[], options)?;
-    let end = loop {
-        match reader.next_frame() {
-            Ok(Some(frame)) => {
-                if let Some(robot) = reader.next_robot() {
-                    run.next_robot(&robot, frame.stamp_s);
-                }
-                run.step(frame);
-            }
-            Ok(None) => break None,
-            Err(problem) if run.scans() == 0 => return Err(problem.into()),
-            Err(problem) => break Some(problem.to_string()),
-        }
-    };
+    while let Some(frame) = run.next_frame(&mut reader)? {
+        run.step(frame);
+    }
     run.finish();
     let name = log.display().to_string();
     progress.end();
     let mut said = reader.notes().sentences(&name);
     said.extend(run.sentences(&name));
-    said.extend(end);
+    said.extend(run.broken().map(str::to_owned));
     match run.no_map() {
         Some(problem) => {
             said.push(format!("no scan could be used: {problem}"));
