@@ -289,7 +289,13 @@ fn the_area_of_a_part_is_the_number_of_keyframes_it_goes_through() {
             _ => None,
         })
         .collect();
-    for name in ["predict ×129", "register ×129", "gate ×3", "repaint ×3"] {
+    for name in [
+        "predict",
+        "register",
+        "keyframe ×40",
+        "gate ×3",
+        "repaint ×3",
+    ] {
         assert!(names.iter().any(|found| found == name), "{names:?}");
     }
 }

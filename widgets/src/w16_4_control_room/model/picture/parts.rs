@@ -217,7 +217,7 @@ const CANDIDATE: usize = 3;
 /// Share of a closing after which the last part has begun.
 const BEGUN: f64 = 0.5;
 /// Radius of a mark that stands for one keyframe.
-const ONE_KEYFRAME_PX: f32 = 3.5;
+const ONE_KEYFRAME_PX: f32 = 3.0;
 /// Distance of the name from its mark, as a share of the panel's height.
 const TO_NAME: f64 = 0.38;
 
@@ -236,7 +236,7 @@ fn share_done(part: usize, closing: Option<f64>) -> f64 {
 }
 
 /// All parts in a row after these ticks: filled if they work in the last one, hollow and as large as at their last work
-/// if they rest. A ring is around the chosen one if it works.
+/// if they rest. A ring is around the chosen one if it works. A name has a count unless its part works in every tick.
 pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Panel {
     let ends = [spot(0), spot(PARTS.len() - 1)];
     let mut legend = vec![
@@ -281,10 +281,10 @@ pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Pan
         }
         // Names stand above and below in turn: on a phone, a row has no room for them.
         let side = if number % 2 == 0 { TO_NAME } else { -TO_NAME };
-        let count = if times == 0 {
-            String::new()
-        } else {
+        let count = if (1..until).contains(&times) {
             format!(" ×{times}")
+        } else {
+            String::new()
         };
         layers.push(Layer::Text {
             at: [x, y + side],
