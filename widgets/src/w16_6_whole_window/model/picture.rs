@@ -49,8 +49,13 @@ fn sweeps(window: &WholeWindow) -> Panel {
     }
     if let Some(icp) = icp_now(window) {
         let sweep = scene.source().transformed(&icp);
-        layers.push(points(&sweep, Mark::Dot, Tone::Series(2), 1.6));
-        layers.push(icp_path(window));
+        let off_deg = icp.between(&scene.truth()).theta().to_degrees().abs();
+        layers.extend([
+            points(&sweep, Mark::Dot, Tone::Series(2), 2.2),
+            icp_path(window),
+            sensor(icp, Mark::Dot, Tone::Series(2)),
+            Layer::label(xy(&icp), format!("ICP alone: {off_deg:.0}° off"), 12.0),
+        ]);
     }
     layers.extend([
         points(&best, Mark::Square, Tone::Posterior, 2.6),
@@ -69,6 +74,9 @@ fn sweeps(window: &WholeWindow) -> Panel {
         },
         Layer::label(xy(&scene.truth()), "truth".to_owned(), 8.0),
     ]);
+    if window.step() == 0 {
+        layers.push(Layer::label([turn.x, turn.y], "turn".to_owned(), 10.0));
+    }
     if window.raced().is_some() {
         layers.push(sensor(pose, Mark::Square, Tone::Posterior));
     }
