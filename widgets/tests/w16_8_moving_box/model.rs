@@ -178,7 +178,7 @@ fn each_method_weighs_the_pulls_of_the_box_in_its_own_way() {
     assert!(pulls(&trimmed)[0].len() < pulls(&plain)[0].len());
     let larger = |moving: &MovingBox| {
         let title = panel_of(moving, panel::ROOM).title;
-        let (_, from) = title.split_once("pulls ×").unwrap();
+        let (_, from) = title.split_once("pairs ×").unwrap();
         from[..1].parse::<f64>().unwrap()
     };
     // 1e-9: Huber's width of 0.05 m.
