@@ -217,7 +217,7 @@ const CANDIDATE: usize = 3;
 /// Share of a closing after which the last part has begun.
 const BEGUN: f64 = 0.5;
 /// Radius of a mark that stands for one keyframe.
-const ONE_KEYFRAME_PX: f32 = 3.0;
+const ONE_KEYFRAME_PX: f32 = 2.7;
 /// Distance of the name from its mark, as a share of the panel's height.
 const TO_NAME: f64 = 0.38;
 
@@ -294,7 +294,7 @@ pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Pan
     }
     Panel {
         id: ID,
-        title: "Parts at work (area: keyframes handled)".to_owned(),
+        title: "Parts: filled at work, area: keyframes handled".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Free,
         // Room for the names of the first and the last one.
