@@ -10,22 +10,12 @@ declare const LAP_STORY_FILE: string;
 declare const WIDGETS_FILE: string;
 
 void startReplay('#lap', LAP_STORY_FILE, (figure, story: Story) => new LapPlayer(figure, story));
-// Who scrolls comes to a widget. Its module, the largest file, is on its way before the scripts that use it have run:
-// once the page has all that the reader sees first, or at the first scroll.
-let isRequested = false;
+// Who scrolls comes to a widget. Its module, the largest file, is on its way before the scripts that use it have run.
 addEventListener('scroll', requestWidgets, { once: true, passive: true });
-if (!savesData()) addEventListener('load', requestWidgets, { once: true });
-
-/** Whether the reader has asked the browser for less traffic. */
-function savesData(): boolean {
-  const { connection } = navigator as { connection?: { saveData?: boolean } };
-  return connection?.saveData === true;
-}
 
 function requestWidgets(): void {
   // A page from the disk contains it.
-  if (isRequested || location.protocol === 'file:') return;
-  isRequested = true;
+  if (location.protocol === 'file:') return;
   const link = document.createElement('link');
   Object.assign(link, { rel: 'preload', as: 'fetch', href: WIDGETS_FILE, crossOrigin: 'anonymous' });
   document.head.append(link);
