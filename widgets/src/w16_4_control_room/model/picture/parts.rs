@@ -236,7 +236,7 @@ fn share_done(part: usize, closing: Option<f64>) -> f64 {
 }
 
 /// All parts in a row after these ticks: filled if they work in the last one, hollow and as large as at their last work
-/// if they rest. A ring is around the chosen one if it works. A name has a count unless its part works in every tick.
+/// if they rest. A ring is around the chosen one if it works. A part has its count unless it works in every tick.
 pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Panel {
     let ends = [spot(0), spot(PARTS.len() - 1)];
     let mut legend = vec![
@@ -279,18 +279,17 @@ pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Pan
                 ring_px,
             ));
         }
-        // Names stand above and below in turn: on a phone, a row has no room for them.
+        // Names stand above and below in turn, because on a phone a row has no room for them, and counts opposite.
         let side = if number % 2 == 0 { TO_NAME } else { -TO_NAME };
-        let count = if (1..until).contains(&times) {
-            format!(" ×{times}")
-        } else {
-            String::new()
-        };
-        layers.push(Layer::Text {
+        let words = |side: f64, text: String| Layer::Text {
             at: [x, y + side],
-            text: format!("{}{count}", part.name),
+            text,
             tone: Tone::Ink,
-        });
+        };
+        layers.push(words(side, part.name.to_owned()));
+        if (1..until).contains(&times) {
+            layers.push(words(-side, format!("×{times}")));
+        }
     }
     Panel {
         id: ID,
