@@ -752,7 +752,7 @@ describe('the doctor', () => {
         await tab.waitForFunction(() => JSON.stringify(document.querySelector('slam-widget').diagnosis).includes('bag_1.db3'));
         await isMapped(tab);
         await drop(tab, [['a.log', SAMPLE], ['b.log', SAMPLE]]);
-        await says(tab, /no map: a\.log and 1 more is several files.*give one log at a time/);
+        await says(tab, /no map: a\.log and 1 more is neither a recording of ROS nor scans.*give one log at a time/);
       });
     } finally {
       rmSync(folder, { recursive: true });

@@ -109,7 +109,7 @@ impl LogFormat {
         }
         if parts.len() > 1 && !found.is_ros() {
             return Err(foreign(
-                "one of several files, which are neither a recording of ROS nor scans with odometry",
+                "neither a recording of ROS nor scans with their odometry",
                 "give one log at a time, with a file of odometry beside it or none; its header may be time,x,y,heading",
             ));
         }
