@@ -28,7 +28,7 @@ mod turns;
 
 pub use crate::odometry_use::OdometryUse;
 pub use compared::MotionComparison;
-pub(crate) use compared::{UNIT_OFF, UNITS};
+pub(crate) use compared::unit_of;
 pub use finding::{Costs, Finding, Suggestion};
 pub use reader::ComparedReader;
 

@@ -6,7 +6,7 @@ use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::slam::Slam;
 use pr_geom::SE2;
 
-use crate::motion::{UNIT_OFF, UNITS};
+use crate::motion::unit_of;
 use crate::remark::{NO_ODOMETRY, Part, Remark};
 
 /// Lengths that differ by more than this factor are reported, if one of them is at least this long, m.
@@ -67,13 +67,7 @@ impl PathLengths {
 
 /// A ratio of lengths by odometry to those by scans, with the unit that explains it.
 pub fn factor(ratio: f64) -> String {
-    let is_near = |per_metre: f64, ratio: f64| (ratio / per_metre - 1.0).abs() <= UNIT_OFF;
-    let unit = |ratio: f64| {
-        UNITS
-            .iter()
-            .find(|(metres, _)| is_near(1.0 / metres, ratio))
-    };
-    let cause = match (unit(ratio), unit(1.0 / ratio)) {
+    let cause = match (unit_of(ratio), unit_of(1.0 / ratio)) {
         (Some((_, name)), _) => format!(": odometry may be in {name}"),
         (_, Some((_, name))) => format!(": the ranges may be in {name}"),
         _ if !(0.67..=1.5).contains(&ratio) => ", as a wrong unit of the ranges, a wrong step between beams or a wrong wheel radius causes".to_owned(),

@@ -11,25 +11,25 @@
 //! Beams become a scan when their bearing goes back.
 
 mod limit;
+mod row;
 mod sweep;
 
 use core::f64::consts::{PI, TAU};
-use std::fmt::Display;
 
 use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 
 use limit::UnstatedLimit;
+use row::Row;
 use sweep::BeamBuffer;
 
 use crate::line_log::{LineFormat, LineReader};
 use crate::lines::printable;
 use crate::log::{LogFrame, LogNotes};
-use crate::plausible::{MAX_BEAMS, plausible_pose, plausible_stamp_s};
+use crate::plausible::plausible_pose;
 use crate::remark::{Part, Remark};
 use crate::ros::ScanFields;
 use crate::table_layout::{self, ColumnMeaning, Scaled, TableLayout};
-use crate::trajectory::yaw;
 
 /// Time between scans of a table without times, s: that of most cheap scanners.
 const PERIOD_S: f64 = 0.1;
@@ -57,164 +57,6 @@ pub struct TableRows {
     /// Frames completed so far: their times, if the table has none.
     frames: usize,
     has_rows: bool,
-}
-
-/// The numbers of a row.
-#[derive(Clone, Debug)]
-struct Row {
-    words: usize,
-    /// Readings without a number, before one that has.
-    missing: usize,
-    /// The name of the laser, if the row has it.
-    sensor: Option<String>,
-    time_s: Option<f64>,
-    /// x, y and heading of odometry.
-    pose: [Option<f64>; 3],
-    /// Orientation of odometry: x, y, z and w of a quaternion.
-    orientation: [f64; 4],
-    angle: Option<f64>,
-    range: Option<f64>,
-    is_return: bool,
-    fields: ScanFields,
-}
-
-impl Default for Row {
-    fn default() -> Self {
-        Self {
-            words: 0,
-            missing: 0,
-            sensor: None,
-            time_s: None,
-            pose: [None; 3],
-            orientation: [0.0; 4],
-            angle: None,
-            range: None,
-            is_return: true,
-            fields: ScanFields::default(),
-        }
-    }
-}
-
-impl Row {
-    /// Takes the word of a column; `place` is where it stands.
-    fn take(
-        &mut self,
-        (column, factor): Scaled,
-        word: &str,
-        place: &dyn Display,
-    ) -> Result<(), String> {
-        let fields = &mut self.fields;
-        if column == ColumnMeaning::Other {
-            return Ok(());
-        }
-        if word.contains("...") {
-            return Err(
-                "its ranges are cut off; print all of them: in NumPy np.set_printoptions(threshold=sys.maxsize, linewidth=sys.maxsize), in ROS ros2 topic echo --csv --full-length"
-                    .to_owned(),
-            );
-        }
-        if table_layout::is_missing(word) {
-            self.missing += usize::from(column == ColumnMeaning::Ranges);
-            return Ok(());
-        }
-        let of = |item: &str| {
-            table_layout::number(item).ok_or_else(|| {
-                let what = match column {
-                    ColumnMeaning::Time => "a number of seconds or a date with a time of day",
-                    _ => "a number",
-                };
-                format!("{place} must be {what}, not ‘{}’", printable(item))
-            })
-        };
-        match column {
-            ColumnMeaning::Ranges => {
-                for item in table_layout::list(word) {
-                    if table_layout::is_missing(item) {
-                        self.missing += 1;
-                        continue;
-                    }
-                    let range = of(item)?;
-                    let beams = fields.ranges_m.len() + std::mem::take(&mut self.missing);
-                    if beams >= MAX_BEAMS {
-                        return Err(format!("a scan has more than {MAX_BEAMS} ranges"));
-                    }
-                    fields.ranges_m.resize(beams, f64::NAN);
-                    fields.ranges_m.push(factor.unwrap_or(1.0) * range);
-                }
-                // The last items of a list are beams, as those of a row need not be.
-                if table_layout::list(word).nth(1).is_some() {
-                    let beams = fields.ranges_m.len() + std::mem::take(&mut self.missing);
-                    fields.ranges_m.resize(beams.min(MAX_BEAMS), f64::NAN);
-                }
-                return Ok(());
-            }
-            ColumnMeaning::Angles => {
-                let angles: Result<Vec<f64>, String> = table_layout::list(word).map(of).collect();
-                let mut angles = angles?;
-                angles
-                    .iter_mut()
-                    .for_each(|angle| *angle *= factor.unwrap_or(1.0));
-                let [first, step] = table_layout::evenly(&angles)
-                    .ok_or_else(|| format!("the angles of {place} must be evenly spaced"))?;
-                (fields.angle_min, fields.angle_increment) = (first, step);
-                fields.angle_max = f64::NAN;
-                return Ok(());
-            }
-            ColumnMeaning::Sensor => {
-                // A number is that of a frame.
-                let name = Some(word).filter(|word| table_layout::number(word).is_none());
-                self.sensor = name.map(str::to_owned);
-                return Ok(());
-            }
-            ColumnMeaning::Time if let Some(time_s) = table_layout::seconds(word) => {
-                self.time_s = Some(time_s);
-                return Ok(());
-            }
-            _ => {}
-        }
-        let number = of(word)?;
-        let value = factor.unwrap_or(1.0) * number;
-        match column {
-            ColumnMeaning::Other
-            | ColumnMeaning::Ranges
-            | ColumnMeaning::Angles
-            | ColumnMeaning::Sensor => {}
-            ColumnMeaning::Time => {
-                self.time_s = Some(factor.unwrap_or_else(|| second(number)) * number);
-            }
-            ColumnMeaning::Seconds => self.time_s = Some(self.time_s.unwrap_or(0.0) + number),
-            ColumnMeaning::Nanoseconds => {
-                self.time_s = Some(self.time_s.unwrap_or(0.0) + 1e-9 * number);
-            }
-            ColumnMeaning::Angle => self.angle = Some(value),
-            ColumnMeaning::Range => self.range = Some(value),
-            ColumnMeaning::Quality => self.is_return = number > 0.0,
-            ColumnMeaning::X => self.pose[0] = Some(value),
-            ColumnMeaning::Y => self.pose[1] = Some(value),
-            ColumnMeaning::Heading => self.pose[2] = Some(value),
-            ColumnMeaning::OrientationX => self.orientation[0] = value,
-            ColumnMeaning::OrientationY => self.orientation[1] = value,
-            ColumnMeaning::OrientationZ => self.orientation[2] = value,
-            ColumnMeaning::OrientationW => self.orientation[3] = value,
-            ColumnMeaning::AngleMin => fields.angle_min = value,
-            ColumnMeaning::AngleMax => fields.angle_max = value,
-            ColumnMeaning::AngleIncrement => fields.angle_increment = value,
-            ColumnMeaning::TimeIncrement => fields.time_increment = value,
-            ColumnMeaning::ScanTime => fields.scan_time = value,
-            ColumnMeaning::RangeMin => fields.range_min = value,
-            ColumnMeaning::RangeMax => fields.range_max = value,
-        }
-        Ok(())
-    }
-
-    /// The row, whose time is checked and whose heading may be that of a quaternion.
-    fn completed(mut self) -> Result<Self, String> {
-        self.time_s = self.time_s.map(plausible_stamp_s).transpose()?;
-        if self.pose[2].is_none() && self.orientation != [0.0; 4] {
-            self.pose[2] = Some(yaw(&self.orientation, false));
-        }
-        Ok(self)
-    }
 }
 
 impl TableRows {
@@ -354,14 +196,10 @@ impl TableRows {
     fn frame(&mut self, row: Row, notes: &mut LogNotes) -> Result<LogFrame, String> {
         let (mut scan, mut remarks): (LaserScan, _) = row.fields.checked(0.0)?;
         remarks.extend(self.limit.apply(&mut scan));
-        // The same sentence has other numbers in the next scan.
-        let words = |text: &str| {
-            text.split(|c: char| c.is_ascii_digit())
-                .next()
-                .map(str::len)
-        };
         for sentence in remarks {
-            let kind = &sentence[..words(&sentence).unwrap_or_default()];
+            // The same sentence has other numbers in the next scan.
+            let until_number = sentence.find(|c: char| c.is_ascii_digit());
+            let kind = &sentence[..until_number.unwrap_or(sentence.len())];
             let mut said = notes.warnings.iter();
             if !said.any(|said| said.text.starts_with(kind)) {
                 notes.warnings.push(Remark::mended(Part::Sensor, sentence));
@@ -413,6 +251,39 @@ impl TableRows {
             ..Row::default()
         };
         self.frame(row, notes).map(Some)
+    }
+
+    /// Adds what the row of a scan does not state.
+    fn complete(&self, fields: &mut ScanFields) -> Result<(), String> {
+        if let Some([first, step]) = self.layout.angles_rad {
+            (fields.angle_min, fields.angle_increment) = (first, step);
+            // The angle of the last beam follows from them.
+            fields.angle_max = f64::NAN;
+            return Ok(());
+        }
+        if let Some([first, last]) = self.layout.view_rad {
+            let steps = fields.ranges_m.len() as f64 - 1.0;
+            fields.angle_min = first;
+            fields.angle_increment = (last - first) / steps.max(1.0);
+            fields.angle_max = f64::NAN;
+            return Ok(());
+        }
+        if fields.angle_increment == 0.0 && fields.angle_min == fields.angle_max {
+            return Err(
+                "a scan must have angle_min and angle_increment; add both columns to the table, or state the first and the last angle, in degrees, with --columns …,ranges@-90:90"
+                    .to_owned(),
+            );
+        }
+        if fields.angle_max == 0.0 && fields.angle_increment != 0.0 {
+            fields.angle_max = f64::NAN;
+        }
+        // `ros2 topic echo --csv` appends the intensities.
+        let beams = (fields.angle_max - fields.angle_min) / fields.angle_increment;
+        let beams = beams.round() + 1.0;
+        if beams >= 1.0 && fields.ranges_m.len() as f64 > 1.5 * beams {
+            fields.ranges_m.truncate(beams as usize);
+        }
+        Ok(())
     }
 }
 
@@ -477,41 +348,6 @@ impl LineFormat for TableRows {
     }
 }
 
-impl TableRows {
-    /// Adds what the row of a scan does not state.
-    fn complete(&self, fields: &mut ScanFields) -> Result<(), String> {
-        if let Some([first, step]) = self.layout.angles_rad {
-            (fields.angle_min, fields.angle_increment) = (first, step);
-            // The angle of the last beam follows from them.
-            fields.angle_max = f64::NAN;
-            return Ok(());
-        }
-        if let Some([first, last]) = self.layout.view_rad {
-            let steps = fields.ranges_m.len() as f64 - 1.0;
-            fields.angle_min = first;
-            fields.angle_increment = (last - first) / steps.max(1.0);
-            fields.angle_max = f64::NAN;
-            return Ok(());
-        }
-        if fields.angle_increment == 0.0 && fields.angle_min == fields.angle_max {
-            return Err(
-                "a scan must have angle_min and angle_increment; add both columns to the table, or state the first and the last angle, in degrees, with --columns …,ranges@-90:90"
-                    .to_owned(),
-            );
-        }
-        if fields.angle_max == 0.0 && fields.angle_increment != 0.0 {
-            fields.angle_max = f64::NAN;
-        }
-        // `ros2 topic echo --csv` appends the intensities.
-        let beams = (fields.angle_max - fields.angle_min) / fields.angle_increment;
-        let beams = beams.round() + 1.0;
-        if beams >= 1.0 && fields.ranges_m.len() as f64 > 1.5 * beams {
-            fields.ranges_m.truncate(beams as usize);
-        }
-        Ok(())
-    }
-}
-
 /// Whether a row is a comment or has no words.
 fn is_empty(text: &str) -> bool {
     text.is_empty() || table_layout::is_note(text)
@@ -520,16 +356,6 @@ fn is_empty(text: &str) -> bool {
 /// Whether a row names columns.
 fn is_header(text: &str) -> bool {
     table_layout::words(text).all(|word| table_layout::number(word).is_none())
-}
-
-/// The unit of a time by its size: s, ms, µs or ns since 1970.
-fn second(time: f64) -> f64 {
-    match time.abs() {
-        size if size > 1e17 => 1e-9,
-        size if size > 1e14 => 1e-6,
-        size if size > 1e11 => 1e-3,
-        _ => 1.0,
-    }
 }
 
 #[cfg(test)]

@@ -33,18 +33,24 @@ const CONFIRMED_RAD: f64 = 10.0 * PI / 180.0;
 /// A laser whose direction differs by more is turned, rad: 25°.
 const ELSEWHERE_RAD: f64 = 25.0 * PI / 180.0;
 /// Units of length, in metres, and their names.
-pub const UNITS: [(f64, &str); 4] = [
+const UNITS: [(f64, &str); 4] = [
     (1e-3, "millimetres"),
     (1e-2, "centimetres"),
     (0.3048, "feet"),
     (0.0254, "inches"),
 ];
 /// Relative tolerance of a unit.
-pub const UNIT_OFF: f64 = 0.12;
+const UNIT_OFF: f64 = 0.12;
 /// Times of a sweep over that between two scans that are tried for scans whose beams have no times.
 const SWEEPS: [f64; 3] = [2.0, 3.0, 4.0];
 /// Odometry that covers less than this share of the path by scans stands still.
 const STILL: f64 = 0.03;
+
+/// The unit, in metres, of a length whose number is that many times its metres, and its name.
+pub fn unit_of(ratio: f64) -> Option<(f64, &'static str)> {
+    let mut units = UNITS.into_iter();
+    units.find(|(metres, _)| (ratio * metres - 1.0).abs() <= UNIT_OFF)
+}
 
 /// Comparison of scans and odometry.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -163,10 +169,7 @@ impl MotionComparison {
         let Some(ratio) = median(ratios.collect()) else {
             return;
         };
-        let unit = UNITS.into_iter().find(|(metres, _)| {
-            let off = ratio * metres - 1.0;
-            off.abs() <= UNIT_OFF
-        });
+        let unit = unit_of(ratio);
         let metres = unit.map_or(1.0, |(metres, _)| metres);
         let pairs: Vec<(Complex<f64>, Complex<f64>)> = stretches
             .iter()

@@ -22,11 +22,9 @@ impl TableLayout {
             let columns = Self::columns_of_header(text);
             columns.and_then(Self::of_pose_columns).is_some()
         };
-        lines.iter().take_while(|line| is_note(line)).any(is_named)
-            || lines
-                .iter()
-                .find(|line| !is_note(line))
-                .is_some_and(is_named)
+        let header = lines.iter().position(|line| !is_note(line));
+        let until = header.map_or(lines.len(), |at| at + 1);
+        lines[..until].iter().any(is_named)
     }
 
     /// The layout of a file of odometry with this line before its rows, or as one of them.

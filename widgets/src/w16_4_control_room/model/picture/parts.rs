@@ -252,12 +252,13 @@ pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Pan
         let times = reports[..until].iter().filter(worked).count();
         let newest = reports[..until].iter().rfind(worked);
         let now = reports.last().filter(|_| share > 0.0);
+        let done = now.map_or(Done::Idle, part.done);
         let group = if number < CANDIDATE {
             FRONT_END
         } else {
             BACK_END
         };
-        let (mark, tone, share) = match now.map_or(Done::Idle, part.done) {
+        let (mark, tone, share) = match done {
             Done::Idle if newest.is_none() => (Mark::Circle, Tone::Faint, 1.0),
             Done::Idle => (Mark::Circle, group, 1.0),
             Done::Rejected => (Mark::Circle, REJECTED, share),
@@ -270,7 +271,7 @@ pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Pan
         let radius_px = ONE_KEYFRAME_PX * math::sqrt(keyframes.max(1.0)) as f32;
         let [x, y] = spot(number);
         layers.push(Layer::points(vec![[x, y]], mark, tone, radius_px));
-        if number == chosen && now.is_some_and(|report| (part.done)(report) != Done::Idle) {
+        if number == chosen && done != Done::Idle {
             let ring_px = radius_px + 4.0;
             layers.push(Layer::points(
                 vec![[x, y]],
