@@ -58,7 +58,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.4",
     name: "Control room",
     title: "Which part works when, and what happens at a loop?",
-    claim: "The front end works at every tick, the back end at loops.",
+    claim: "The back end works only at loops.",
     gesture: "Press Play, or press a part below the map.",
     awaits: Awaits::Nothing,
     notice: &[
