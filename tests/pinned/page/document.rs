@@ -3,7 +3,7 @@
 //! A tokenizer for our own HTML: quoted attributes, no comments, no script text.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::printed::measures;
 
@@ -82,8 +82,12 @@ enum Open {
 
 /// A file of the project, by its path relative to the top level.
 pub fn source(path: &str) -> String {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    fs::read_to_string(root.join(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
+    fs::read_to_string(path_of(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
+/// Where a file of the project is.
+pub fn path_of(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }
 
 /// The style sheets of the page in their order.

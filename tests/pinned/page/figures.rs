@@ -19,13 +19,14 @@ mod moving_box;
 mod ndt;
 mod places;
 mod procrustes;
+pub mod recorded;
 mod robots;
 mod rows;
 mod rule;
 mod search;
 mod setup;
 mod shared;
-pub mod sweep;
+mod sweep;
 mod terrain;
 
 use std::sync::OnceLock;
@@ -34,7 +35,6 @@ use ch16_lab::basin::BasinScene;
 use ch16_lab::lap::{LapRecord, LapRunner};
 
 use shared::Shared;
-use sweep::LapSweep;
 
 /// The value of the core of that name; `None` if it is unknown.
 pub fn value(name: &str) -> Option<f64> {
@@ -51,7 +51,7 @@ pub fn value(name: &str) -> Option<f64> {
         ["basin", what @ ..] => basin::value(basin(), what),
         ["attempts", what @ ..] => attempts::value(what),
         ["corridor", what @ ..] => corridor::value(what),
-        ["consistency", what @ ..] => consistency::value(what),
+        ["consistency", "seeds"] => Some(f64::from(consistency::SEEDS)),
         ["rule", what] => rule::value(what),
         ["drift", path, edges] => drift::rejected_percent(path, edges),
         ["ndt", "hessian", what] => ndt::hessian(what),
@@ -72,7 +72,8 @@ pub fn value(name: &str) -> Option<f64> {
         ["lap", run, what @ ..] => lap::value(lap_named(run)?, what),
         ["robots", row, column] => robots::value(row, column),
         ["worlds", what @ ..] => crate::worlds::value(what),
-        ["sweep", what @ ..] => LapSweep::shared().value(what),
+        ["sweep", "seeds"] => Some(sweep::SEEDS.count() as f64),
+        ["consistency" | "sweep", ..] => recorded::value(name),
         _ => None,
     }
 }

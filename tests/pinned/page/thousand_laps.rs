@@ -1,7 +1,7 @@
 //! The table of the thousand laps that the page links to agrees with the core.
 
 use super::document::source;
-use super::figures::sweep::LapSweep;
+use super::figures::recorded;
 
 /// Levels of the odometry noise, and the columns and rows of the table, by the names of figures and of the
 /// file.
@@ -37,8 +37,7 @@ const COUNTS: [(&str, &str, usize, &str); 7] = [
 
 #[test]
 fn the_table_behind_the_link_agrees_with_the_core() {
-    let sweep = LapSweep::shared();
-    let value = |name: &str| sweep.value(&name.split('.').collect::<Vec<_>>());
+    let value = |name: &str| recorded::value(&format!("sweep.{name}"));
     let mut lines = vec!["wheel noise,estimate,result,statistic,value,unit".to_owned()];
     for level in LEVELS {
         let noise = value(&format!("{level}.noise")).expect("a level");

@@ -2,12 +2,14 @@
 //!
 //! `L seed rms_m` begins a lap, and `chi2 position_m heading_deg fits accepted` is an attempt of it.
 
+use std::fs;
 use std::sync::OnceLock;
 
 use ch16_lab::lap::{LapConfig, LapMatcher, LapRunner, LoopError, TestedLoop};
 
+use super::recorded::Driven;
 use super::sweep::{LapSweep, of_attempts, p99};
-use crate::page::document::source;
+use crate::page::document::{path_of, source};
 
 /// A recorded lap.
 pub struct Recorded {
@@ -57,16 +59,29 @@ pub fn value(path: &[&str]) -> Option<f64> {
     let laps = recorded();
     match *what {
         ["rms", "p99"] => Some(p99(laps.iter().map(|lap| lap.rms_m).collect())),
-        ["worse_percent"] => {
-            let pairs = laps.iter().zip(LapSweep::shared().front_end_rms_m());
-            let worse = pairs.filter(|(lap, point_m)| lap.rms_m > *point_m).count();
-            Some(100.0 * worse as f64 / laps.len() as f64)
-        }
+        ["worse_percent"] => super::recorded::value("attempts.p2l.worse_percent"),
         _ => {
             let tested: Vec<TestedLoop> = laps.iter().flat_map(|lap| lap.tested.clone()).collect();
             of_attempts(&tested, what)
         }
     }
+}
+
+/// Adds the share of the laps whose front end is worse by point-to-plane.
+pub fn add_to(driven: &mut Driven, sweep: &LapSweep) {
+    let worse: Vec<bool> = sweep
+        .front_end_rms_m()
+        .map(|(seed, point_m)| {
+            let lap = recorded().iter().find(|lap| lap.seed == seed);
+            lap.expect("it is recorded").rms_m > point_m
+        })
+        .collect();
+    let count = worse.iter().filter(|&&worse| worse).count();
+    let percent = 100.0 * count as f64 / worse.len() as f64;
+    driven.add(
+        "attempts.p2l",
+        [("worse_percent".to_owned(), Some(percent))],
+    );
 }
 
 /// A number as it is recorded.
@@ -108,30 +123,37 @@ fn recorded_laps_by_point_to_plane_are_those_of_the_core() {
     }
 }
 
-/// The points of the page's figure: `chi2 error_cm flags` in the order of χ², where 1 is added for a fit, 2 for a false loop.
-#[test]
-fn the_attempts_of_the_figure_are_those_of_the_sweep() {
-    let mut rows: Vec<(f64, u32, u8)> = LapSweep::shared()
-        .attempts()
-        .iter()
-        .map(|tested| {
-            let flags = u8::from(tested.fits) + 2 * u8::from(tested.error.is_false());
-            let error_cm = (100.0 * tested.error.position_m).round() as u32;
-            ((100.0 * tested.chi2).round() / 100.0, error_cm, flags)
-        })
-        .collect();
+/// The points of the page's figure.
+const POINTS: &str = "widgets/sketches/src/attempts.txt";
+
+/// `chi2 error_cm flags` in the order of χ², where 1 is added for a fit, 2 for a false loop.
+fn points(sweep: &LapSweep) -> Vec<String> {
+    let rows = sweep.attempts().map(|tested| {
+        let flags = u8::from(tested.fits) + 2 * u8::from(tested.error.is_false());
+        let error_cm = (100.0 * tested.error.position_m).round() as u32;
+        ((100.0 * tested.chi2).round() / 100.0, error_cm, flags)
+    });
+    let mut rows: Vec<(f64, u32, u8)> = rows.collect();
     rows.sort_by(|a, b| a.partial_cmp(b).expect("χ² is a number"));
-    let lines: String = rows
-        .iter()
-        .map(|(chi2, error_cm, flags)| format!("{chi2:.2} {error_cm} {flags}\n"))
-        .collect();
-    let recorded = source("widgets/sketches/src/attempts.txt");
-    let differs = recorded
-        .lines()
-        .zip(lines.lines())
-        .find(|(old, new)| old != new);
-    assert!(
-        recorded == lines,
-        "widgets/sketches/src/attempts.txt has other attempts: {differs:?}"
-    );
+    let line = |(chi2, error_cm, flags)| format!("{chi2:.2} {error_cm} {flags}");
+    rows.into_iter().map(line).collect()
+}
+
+/// Writes the points of the page's figure.
+pub fn write(sweep: &LapSweep) {
+    fs::write(path_of(POINTS), points(sweep).join("\n") + "\n").expect("the points");
+}
+
+/// Fails if the page's figure lacks points of these laps, or has more points than all laps.
+pub fn check(sample: &LapSweep) {
+    let drawn = source(POINTS);
+    let mut drawn_lines = drawn.lines();
+    for point in points(sample) {
+        assert!(
+            drawn_lines.any(|line| line == point),
+            "{POINTS} lacks {point}"
+        );
+    }
+    let all = super::recorded::value("sweep.once.attempts");
+    assert_eq!(Some(drawn.lines().count() as f64), all, "{POINTS}");
 }

@@ -6,66 +6,79 @@ use ch16_lab::lap::{
 };
 use ch16_slam2d::chapter::InformationFrame;
 
-use super::shared::Shared;
+use super::recorded::Driven;
 
 /// Laps of each case, from seed 1 on: the standard deviation of a scatter is 5 % of it.
-const SEEDS: u32 = 100;
-
-/// The front end and the lap with loops, of laps that differ in their seed only, and the steps of each front end.
-type Case = ([LapConsistency; 2], Vec<StepInnovations>);
+pub const SEEDS: u32 = 100;
 
 /// A mean beyond so many standard errors is seldom chance.
 const ALARM: f64 = 2.0;
 
-/// `ring.ndt.uncapped.with_loops.scatter_m`: by world, matcher, bound of the information, estimate.
-pub fn value(path: &[&str]) -> Option<f64> {
-    static CASES: Shared<Case> = Shared::new();
-    let [world, matcher, bound, estimate, what] = *path else {
-        return (path == ["seeds"]).then(|| f64::from(SEEDS));
-    };
-    let name = format!("{world}.{matcher}.{bound}");
-    let ([front_end, with_loops], steps) = CASES.get(&name, || case(world, matcher, bound))?;
-    let mean =
-        |of: fn(&StepInnovations) -> f64| steps.iter().map(of).sum::<f64>() / steps.len() as f64;
-    match what {
-        "alarm_percent" => {
-            return Some(100.0 * mean(|lap| f64::from(u8::from(lap.t().abs() > ALARM))));
+/// Point to point closes no loop on the ring.
+const CASES: [(BuiltInWorld, LapMatcher); 5] = [
+    (BuiltInWorld::Apartment, LapMatcher::PointToPoint),
+    (BuiltInWorld::Apartment, LapMatcher::PointToPlane),
+    (BuiltInWorld::Apartment, LapMatcher::Ndt),
+    (BuiltInWorld::Ring, LapMatcher::PointToPlane),
+    (BuiltInWorld::Ring, LapMatcher::Ndt),
+];
+
+/// Halfway by the front end and with loops, and the steps of the front end, of one lap.
+type Lap = ([Option<HalfWay>; 2], Option<StepInnovations>);
+
+/// Adds the figures of every `step`th lap of all cases: `consistency.ring.ndt.uncapped.with_loops.scatter_m`.
+pub fn add_to(driven: &mut Driven, step: usize) {
+    for (world, matcher) in CASES {
+        for bound in ["capped", "uncapped"] {
+            let name = format!("consistency.{}.{}.{bound}", world.name(), matcher.name());
+            let laps = laps(world, matcher, bound == "capped", step);
+            driven.add(&name, figures(&laps));
+            driven.add_digest(&name, &laps);
         }
-        "step_ratio" => return Some(mean(|lap| lap.ratio)),
-        _ => {}
     }
-    let of = match estimate {
-        "front_end" => front_end,
-        "with_loops" => with_loops,
-        _ => return None,
-    };
-    Some(match what {
-        "bias_m" => of.bias_m,
-        "scatter_m" => of.scatter_m,
-        "sigma_m" => of.sigma_m,
-        "nees" => of.nees,
-        _ => return None,
-    })
 }
 
-fn case(world: &str, matcher: &str, bound: &str) -> Option<Case> {
-    let (world, matcher) = (BuiltInWorld::named(world)?, LapMatcher::named(matcher)?);
+fn figures(laps: &[Lap]) -> Vec<(String, Option<f64>)> {
+    let steps: Vec<StepInnovations> = laps.iter().filter_map(|lap| lap.1).collect();
+    let mean =
+        |of: fn(&StepInnovations) -> f64| steps.iter().map(of).sum::<f64>() / steps.len() as f64;
+    let alarm = mean(|lap| f64::from(u8::from(lap.t().abs() > ALARM)));
+    let mut figures = vec![
+        ("front_end.alarm_percent".to_owned(), Some(100.0 * alarm)),
+        (
+            "front_end.step_ratio".to_owned(),
+            Some(mean(|lap| lap.ratio)),
+        ),
+    ];
+    for (k, estimate) in ["front_end", "with_loops"].into_iter().enumerate() {
+        let halves: Vec<HalfWay> = laps.iter().filter_map(|lap| lap.0[k]).collect();
+        let of = LapConsistency::of(&halves);
+        let values = [
+            ("bias_m", of.map(|of| of.bias_m)),
+            ("scatter_m", of.map(|of| of.scatter_m)),
+            ("sigma_m", of.map(|of| of.sigma_m)),
+            ("nees", of.map(|of| of.nees)),
+        ];
+        figures.extend(values.map(|(what, value)| (format!("{estimate}.{what}"), value)));
+    }
+    figures
+}
+
+fn laps(world: BuiltInWorld, matcher: LapMatcher, capped: bool, step: usize) -> Vec<Lap> {
     let mut runner = LapRunner::new();
-    let mut halves: [Vec<HalfWay>; 2] = Default::default();
-    let mut steps = Vec::new();
-    for seed in 1..=SEEDS {
+    let lap = |seed| {
         let config = LapConfig::in_world(world, seed, 1.0)
             .with_matcher(matcher)
             .with_information(InformationFrame::Exact);
-        let record = runner.run(&match bound {
-            "capped" => config,
-            "uncapped" => config.with_information_cap(f64::INFINITY),
-            _ => return None,
+        let record = runner.run(&if capped {
+            config
+        } else {
+            config.with_information_cap(f64::INFINITY)
         });
-        halves[0].extend(record.front_end_half_way());
-        halves[1].extend(record.half_way());
-        steps.extend(record.front_end.innovations(record.ticks()));
-    }
-    let [front_end, with_loops] = halves.each_ref().map(|laps| LapConsistency::of(laps));
-    Some(([front_end?, with_loops?], steps))
+        (
+            [record.front_end_half_way(), record.half_way()],
+            record.front_end.innovations(record.ticks()),
+        )
+    };
+    (1..=SEEDS).step_by(step).map(lap).collect()
 }

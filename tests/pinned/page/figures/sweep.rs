@@ -3,8 +3,6 @@
 //! The same laps as the defaults of `ch16 sweep`, and the same statistics of the core.
 
 use std::ops::RangeInclusive;
-use std::sync::OnceLock;
-use std::thread;
 
 use ch16_lab::lap::{AcceptedShares, LapConfig, LapRecord, LapRunner, LapSummary, TestedLoop};
 use ch16_lab::nudge::{NUDGE, NudgeStatistics, farthest_keyframe_m, nudged};
@@ -12,7 +10,10 @@ use ch16_lab::results::{LapOutcome, LapStatistics, Percentiles, ResultColumn, Re
 use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::metrics::position_error_m;
 
-const SEEDS: RangeInclusive<u32> = 1..=1000;
+use super::recorded::Driven;
+
+/// Seeds of the laps.
+pub const SEEDS: RangeInclusive<u32> = 1..=1000;
 /// The number of laps that are also run from a start that differs by rounding, at noise ×1.
 const NUDGED_SEEDS: RangeInclusive<u32> = 1..=300;
 /// Index in [`NOISE`] of the canonical run.
@@ -27,88 +28,94 @@ const NOISE: [(&str, f64); 4] = [
     ("fourfold", 4.0),
 ];
 
+/// Statistics of laps, by name, beside those of their estimates and of their attempts to close a loop.
+const OF_LAPS: [&str; 13] = [
+    "first_loop_raised_percent",
+    "rms_grew_percent",
+    "rms_grew_with_false_percent",
+    "rms_grew_without_false_percent",
+    "front_end.rms.p99",
+    "loops.0",
+    "loops.1",
+    "loops.2",
+    "loops.3",
+    "accepted",
+    "false",
+    "false_percent",
+    "false_runs_percent",
+];
+const COLUMNS: [(&str, ResultColumn); 3] = [
+    ("odometry", ResultColumn::Odometry),
+    ("front_end", ResultColumn::FrontEnd),
+    ("with_loops", ResultColumn::WithLoops),
+];
+const ROWS: [(&str, ResultRow); 7] = [
+    ("end_error", ResultRow::EndError),
+    ("rms", ResultRow::Rms),
+    ("last_nine_min", ResultRow::LastKeyframesMin),
+    ("last_nine_max", ResultRow::LastKeyframesMax),
+    ("max_error", ResultRow::KeyframeMax),
+    ("map_disagreement", ResultRow::MapDisagreement),
+    ("half_way_sigma", ResultRow::HalfWaySigma),
+];
+
 /// The laps of all seeds at all noise factors.
-pub struct LapSweep {
-    levels: [Laps; 4],
-    /// The laps at the largest noise with the exact gate.
-    exact_gate: Laps,
-    nudged: NudgeStatistics,
-    canonical: LapOutcome,
-}
+pub struct LapSweep(Vec<OfSeed>);
 
 impl LapSweep {
-    /// The sweep, computed on first use.
-    pub fn shared() -> &'static Self {
-        static SWEEP: OnceLock<LapSweep> = OnceLock::new();
-        SWEEP.get_or_init(Self::run)
+    /// Drives the laps of every `step`th seed, from the first on.
+    pub fn drive(step: usize) -> Self {
+        let seeds: Vec<u32> = SEEDS.step_by(step).collect();
+        Self(laps(&seeds))
     }
 
-    /// Runs all of them on all cores; the laps are independent, so threads do not affect results.
-    fn run() -> Self {
-        let seeds: Vec<u32> = SEEDS.collect();
-        let workers = thread::available_parallelism().map_or(1, usize::from);
-        let shares = seeds.chunks(seeds.len().div_ceil(workers));
-        let by_seed: Vec<OfSeed> = thread::scope(|scope| {
-            let running: Vec<_> = shares.map(|share| scope.spawn(|| laps(share))).collect();
-            let finished = running.into_iter();
-            finished
-                .flat_map(|worker| worker.join().expect("no lap panics"))
-                .collect()
-        });
-        let level = |k: usize| Laps::new(by_seed.iter().map(|laps| &laps.levels[k]));
-        Self {
-            levels: [0, 1, 2, 3].map(level),
-            exact_gate: Laps::new(by_seed.iter().map(|laps| &laps.exact_gate)),
-            nudged: NudgeStatistics {
-                moved_m: by_seed.iter().filter_map(|laps| laps.moved_m).collect(),
-            },
-            canonical: LapOutcome::from_record(&LapRunner::new().run(&LapConfig::default())),
+    /// Adds all figures of the laps.
+    pub fn add_to(&self, driven: &mut Driven) {
+        for (k, (level, noise)) in NOISE.into_iter().enumerate() {
+            let figures = Laps::new(self.0.iter().map(|laps| &laps.levels[k])).figures();
+            driven.add(&format!("sweep.{level}"), figures);
+            driven.add(
+                &format!("sweep.{level}"),
+                [("noise".to_owned(), Some(noise))],
+            );
         }
+        let exact_gate = Laps::new(self.0.iter().map(|laps| &laps.exact_gate));
+        driven.add("sweep.exact_gate", exact_gate.figures());
+        let nudged = NudgeStatistics {
+            moved_m: self.0.iter().filter_map(|laps| laps.moved_m).collect(),
+        };
+        let figures = [
+            ("laps", nudged.moved_m.len() as f64),
+            ("start_fm", 1e15 * nudge_m()),
+            ("changed", nudged.changed() as f64),
+            ("farthest_m", nudged.farthest_m()),
+        ];
+        let figures = figures.map(|(name, value)| (name.to_owned(), Some(value)));
+        driven.add("sweep.nudge", figures);
+        driven.add_digest("sweep", &self.0);
     }
 
     /// The attempts to close a loop at the canonical noise, in the order of their seeds.
-    pub fn attempts(&self) -> &[TestedLoop] {
-        &self.levels[ONCE].tested
+    pub fn attempts(&self) -> impl Iterator<Item = &TestedLoop> {
+        self.0.iter().flat_map(|laps| &laps.levels[ONCE].tested)
     }
 
-    /// The rms errors of the front ends at the canonical noise, in the order of their seeds, m.
-    pub fn front_end_rms_m(&self) -> impl Iterator<Item = f64> + '_ {
-        let laps = self.levels[ONCE].statistics.outcomes.iter();
-        laps.map(|lap| lap.front_end.keyframe_rms_m)
-    }
-
-    /// `once.with_loops.end_error.median`, `double.loops.0`, `seeds`: statistics by name.
-    pub fn value(&self, path: &[&str]) -> Option<f64> {
-        let (&name, rest) = path.split_first()?;
-        if let Some(level) = NOISE.iter().position(|&(known, _)| known == name) {
-            return match *rest {
-                ["noise"] => Some(NOISE[level].1),
-                _ => of_laps(&self.levels[level], rest, &self.canonical),
-            };
-        }
-        if name == "exact_gate" {
-            return of_laps(&self.exact_gate, rest, &self.canonical);
-        }
-        match *path {
-            ["seeds"] => Some(SEEDS.count() as f64),
-            ["levels"] => Some(NOISE.len() as f64),
-            ["nudge", "laps"] => Some(self.nudged.moved_m.len() as f64),
-            ["nudge", "start_fm"] => Some(1e15 * nudge_m()),
-            ["nudge", "changed"] => Some(self.nudged.changed() as f64),
-            ["nudge", "farthest_m"] => Some(self.nudged.farthest_m()),
-            _ => None,
-        }
+    /// The seeds, and the rms errors of their front ends at the canonical noise, m.
+    pub fn front_end_rms_m(&self) -> impl Iterator<Item = (u32, f64)> {
+        let rms_m = |laps: &OfSeed| laps.levels[ONCE].outcome.front_end.keyframe_rms_m;
+        self.0.iter().map(move |laps| (laps.seed, rms_m(laps)))
     }
 }
 
 /// A lap, its attempts to close a loop, and whether its first loop raised the rms error.
-struct Driven {
+#[derive(Debug)]
+struct Lap {
     outcome: LapOutcome,
     tested: Vec<TestedLoop>,
     first_raised: Option<bool>,
 }
 
-impl Driven {
+impl Lap {
     fn new(record: &LapRecord) -> Self {
         let mut effects = record.lap.loop_attempts().filter_map(|tried| tried.effect);
         Self {
@@ -130,7 +137,7 @@ struct Laps {
 }
 
 impl Laps {
-    fn new<'a>(laps: impl Iterator<Item = &'a Driven> + Clone) -> Self {
+    fn new<'a>(laps: impl Iterator<Item = &'a Lap> + Clone) -> Self {
         Self {
             statistics: LapStatistics {
                 outcomes: laps.clone().map(|lap| lap.outcome).collect(),
@@ -139,18 +146,50 @@ impl Laps {
             first_raised: laps.filter_map(|lap| lap.first_raised).collect(),
         }
     }
+
+    /// All figures, by name.
+    fn figures(&self) -> Vec<(String, Option<f64>)> {
+        let of_path = |name: &str| of_laps(self, &name.split('.').collect::<Vec<_>>());
+        let names = ATTEMPTS.iter().chain(&OF_LAPS);
+        let mut figures: Vec<_> = names
+            .map(|&name| (name.to_owned(), of_path(name)))
+            .collect();
+        for (column_name, column) in COLUMNS {
+            for (row_name, row) in ROWS {
+                let spread = self.statistics.spread(column, row);
+                let quantiles = [
+                    ("low", spread.map(|spread| spread.p05)),
+                    ("median", spread.map(|spread| spread.median)),
+                    ("high", spread.map(|spread| spread.p95)),
+                ];
+                figures.extend(quantiles.map(|(quantile, value)| {
+                    (format!("{column_name}.{row_name}.{quantile}"), value)
+                }));
+            }
+        }
+        figures
+    }
 }
 
-/// `true_accepted_percent`, `false_error.median`: attempts to close a loop, by name.
+/// Statistics of attempts to close a loop, by name.
+const ATTEMPTS: [&str; 7] = [
+    "attempts",
+    "base_percent",
+    "true_accepted_percent",
+    "false_accepted_percent",
+    "gate_rejects_percent",
+    "false_error.median",
+    "false_error.worst",
+];
+
+/// One of [`ATTEMPTS`].
 pub fn of_attempts(tested: &[TestedLoop], path: &[&str]) -> Option<f64> {
     let [of_true, of_false] =
         AcceptedShares::of(tested, TestedLoop::is_false, |tested| tested.accepted).rates();
     let closed = tested.iter().filter(|tested| tested.accepted);
-    let mut errors_m: Vec<f64> = closed
+    let errors_m = closed
         .filter(|tested| tested.error.is_false())
-        .map(|tested| tested.error.position_m)
-        .collect();
-    errors_m.sort_by(f64::total_cmp);
+        .map(|tested| tested.error.position_m);
     Some(match *path {
         ["attempts"] => tested.len() as f64,
         ["base_percent"] => {
@@ -167,7 +206,7 @@ pub fn of_attempts(tested: &[TestedLoop], path: &[&str]) -> Option<f64> {
         }
         ["false_accepted_percent"] => 100.0 * of_false,
         ["false_error", "median"] => Percentiles::from_values(errors_m)?.median,
-        ["false_error", "worst"] => *errors_m.last()?,
+        ["false_error", "worst"] => errors_m.max_by(f64::total_cmp)?,
         _ => return None,
     })
 }
@@ -178,8 +217,8 @@ pub fn p99(mut errors: Vec<f64>) -> f64 {
     errors[errors.len() - 1 - errors.len() / 100]
 }
 
-/// Statistics of laps, by name.
-fn of_laps(all: &Laps, path: &[&str], canonical: &LapOutcome) -> Option<f64> {
+/// One of [`ATTEMPTS`] or of [`OF_LAPS`].
+fn of_laps(all: &Laps, path: &[&str]) -> Option<f64> {
     let laps = &all.statistics;
     let percent = |is_true: fn(&LapOutcome) -> bool| 100.0 * laps.share(is_true);
     if let Some(value) = of_attempts(&all.tested, path) {
@@ -202,20 +241,6 @@ fn of_laps(all: &Laps, path: &[&str], canonical: &LapOutcome) -> Option<f64> {
         ["false"] => laps.false_acceptances() as f64,
         ["false_runs_percent"] => 100.0 * laps.false_run_share(),
         ["rms_grew_percent"] => percent(|lap| grew(lap, |lap| lap.keyframe_rms_m)),
-        [column, row, "below_canonical_percent"] => {
-            let (column, row) = (column_of(column)?, row_of(row)?);
-            let canonical = canonical.entry(column, row)?;
-            100.0 * laps.share(|lap| lap.entry(column, row) < Some(canonical))
-        }
-        [column, row, quantile] => {
-            let spread = laps.spread(column_of(column)?, row_of(row)?)?;
-            match quantile {
-                "low" => spread.p05,
-                "median" => spread.median,
-                "high" => spread.p95,
-                _ => return None,
-            }
-        }
         _ => return None,
     })
 }
@@ -231,13 +256,15 @@ fn grew_percent(laps: &LapStatistics, with_false: bool) -> f64 {
 }
 
 /// The laps of one seed.
+#[derive(Debug)]
 struct OfSeed {
+    seed: u32,
     /// One for each noise factor.
-    levels: [Driven; 4],
+    levels: [Lap; 4],
     /// Movement of the lap at noise ×1 with its start, if it was tried, m.
     moved_m: Option<f64>,
     /// The lap at the largest noise with the exact gate.
-    exact_gate: Driven,
+    exact_gate: Lap,
 }
 
 /// One runner for all: it reuses the simulation of a seed for all noise factors.
@@ -254,9 +281,10 @@ fn laps(seeds: &[u32]) -> Vec<OfSeed> {
             .clone()
             .with_gate(GateModel::ExactMarginal);
         OfSeed {
-            levels: records.each_ref().map(Driven::new),
+            seed,
+            levels: records.each_ref().map(Lap::new),
             moved_m,
-            exact_gate: Driven::new(&runner.run(&exact)),
+            exact_gate: Lap::new(&runner.run(&exact)),
         }
     };
     seeds.iter().map(of_seed).collect()
@@ -272,26 +300,4 @@ fn nudge_m() -> f64 {
 /// Whether closing loops increased an error.
 fn grew(lap: &LapOutcome, error_m: impl Fn(&LapSummary) -> f64) -> bool {
     error_m(&lap.lap) > error_m(&lap.front_end)
-}
-
-fn column_of(name: &str) -> Option<ResultColumn> {
-    match name {
-        "odometry" => Some(ResultColumn::Odometry),
-        "front_end" => Some(ResultColumn::FrontEnd),
-        "with_loops" => Some(ResultColumn::WithLoops),
-        _ => None,
-    }
-}
-
-fn row_of(name: &str) -> Option<ResultRow> {
-    match name {
-        "end_error" => Some(ResultRow::EndError),
-        "rms" => Some(ResultRow::Rms),
-        "last_nine_min" => Some(ResultRow::LastKeyframesMin),
-        "last_nine_max" => Some(ResultRow::LastKeyframesMax),
-        "max_error" => Some(ResultRow::KeyframeMax),
-        "map_disagreement" => Some(ResultRow::MapDisagreement),
-        "half_way_sigma" => Some(ResultRow::HalfWaySigma),
-        _ => None,
-    }
 }
