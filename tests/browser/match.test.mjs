@@ -115,10 +115,10 @@ describe('the sweeps that the reader aligns', () => {
   it('end in a false minimum from their initial pose, and from a quarter turn with a fit that looks right', async () => {
     await reading(async (tab) => {
       await live(tab);
-      assert.match(await says(tab), /ICP alone ends in a wrong place/);
+      assert.match(await says(tab), /ICP alone ends in the wrong place/);
       await press(tab, 'Let ICP take over');
       await ended(tab);
-      assert.match(await says(tab), /^ICP stopped after \d+ steps in a wrong place/);
+      assert.match(await says(tab), /^ICP stopped after \d+ steps in the wrong place/);
       await press(tab, 'From a quarter turn');
       await ended(tab);
       assert.match(await says(tab), /^ICP stopped a quarter turn wrong, .* Its pairs are 13 cm apart/);

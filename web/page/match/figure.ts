@@ -332,7 +332,7 @@ export class MatchFigure {
     if (this.#room === ROOMS[0] && (ending === 'quarter turn' || ending === 'half turn')) {
       return `ICP stopped a ${ending} wrong, ${off}. ${fit}. The room is nearly square, so the place looks right at first; the pairs show that it is not.`;
     }
-    return `ICP stopped after ${counted(poses.length - 1)} in a wrong place, ${off}. ${fit}. Move it closer, and let it try again.`;
+    return `ICP stopped after ${counted(poses.length - 1)} in the wrong place, ${off}. ${fit}. Move it closer, and let it try again.`;
   }
 
   #errorText(): string {

@@ -124,7 +124,7 @@ const GRAPH_BUTTONS: &[ButtonSpec] = &[
         "Tie",
         "Starts your own loop at the selected keyframe; select another one and press Tie again.",
     ),
-    ButtonSpec::new("undo", "Undo", "Undoes the last change of your own loop."),
+    ButtonSpec::new("undo", "Undo", "Undoes the last change to your own loop."),
 ];
 
 /// Starts and ends the editing of the flat.
@@ -585,7 +585,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "hall",
             label: "A round hall",
-            help: "The wall fixes the position and leaves the heading open. With point-to-plane the robot ends on the far side of the hall, and the map agrees with itself to three centimetres.",
+            help: "The wall fixes the position and leaves the heading open. With point-to-plane, the robot ends on the far side of the hall, yet the map agrees with itself to three centimetres.",
             set: &[
                 WORLD.to("hall"),
                 MATCHER.to("p2l"),

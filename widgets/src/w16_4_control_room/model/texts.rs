@@ -49,7 +49,7 @@ fn part_sentence(room: &ControlRoom) -> Option<String> {
 
 fn tick_sentence(room: &ControlRoom) -> String {
     let Some(report) = room.now() else {
-        return "The run is at its start, with one sweep taken.".to_owned();
+        return "The run is about to start, with one sweep taken.".to_owned();
     };
     format!(
         "Tick {} of {}: keyframe {}, the estimate is {:.2} m off, odometry {:.2} m.",
