@@ -81,6 +81,9 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
   .verdict { min-height: 5.6em; }
 }
 @container (width >= 50rem) { .verdict { min-height: 4.2em; } }
+@container (width < 30rem) {
+  .transport:not(:has(.do ~ .do)) .unit { position: absolute; clip-path: inset(50%); }
+}
 @media (width < 30rem) { .title { padding: 0.35rem 0.75rem 0.1rem; font-size: 0.9375rem; } .verdict { min-height: 5.6em; } .title span { display: none; } }
 .transport, .presets, .actions, .zoom { display: flex; flex-wrap: wrap; gap: 0.25rem 0.5rem; align-items: center; }
 .tools { display: flex; flex-direction: column; gap: 0.25rem; }

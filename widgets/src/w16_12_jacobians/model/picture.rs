@@ -148,7 +148,7 @@ fn ends(widget: &WrongJacobians) -> Vec<Layer> {
     let is_there = |solver: &usize| ends_at_the_optimum(widget, *solver);
     let (there, elsewhere): (Vec<_>, Vec<_>) = (0..NAMES.len()).partition(is_there);
     let least = widget.solved.least_chi2;
-    let words = format!("{} solvers at the optimum: χ² {least:.1}", there.len());
+    let words = format!("{} solvers: χ² {least:.1}", there.len());
     let tone = there.first().map_or(Tone::Ink, |solver| TONES[*solver]);
     let mut chains = vec![(optimum, tone, words)];
     for solver in elsewhere {

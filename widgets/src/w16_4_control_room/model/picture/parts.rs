@@ -218,12 +218,15 @@ const CANDIDATE: usize = 3;
 const BEGUN: f64 = 0.5;
 /// Radius of a mark that stands for one keyframe.
 const ONE_KEYFRAME_PX: f32 = 2.7;
-/// Distance of the name from its mark, as a share of the panel's height.
-const TO_NAME: f64 = 0.38;
+/// Heights in the panel, as shares of it: of the marks, of the names (two rows, because on a phone one has no room for
+/// them all) and of the counts.
+const MARKS: f64 = 0.44;
+const NAMES: [f64; 2] = [0.91, 0.76];
+const COUNTS: f64 = 0.09;
 
 /// Where a part stands in the row.
 fn spot(part: usize) -> [f64; 2] {
-    [part as f64 + 0.5, 0.5]
+    [part as f64 + 0.5, MARKS]
 }
 
 /// The share of its work that a part has done when a loop's closing has reached that share of its time.
@@ -243,7 +246,13 @@ pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Pan
         LegendEntry::mark("front end", FRONT_END, Mark::Dot),
         LegendEntry::mark("back end", BACK_END, Mark::Dot),
     ];
-    let mut layers = vec![Layer::segments(vec![ends], Stroke::Solid, Tone::Faint, 1.5)];
+    let upper = (0..PARTS.len())
+        .step_by(2)
+        .map(|part| [[part as f64 + 0.5, NAMES[0]], spot(part)]);
+    let mut layers = vec![
+        Layer::segments(vec![ends], Stroke::Solid, Tone::Faint, 1.5),
+        Layer::segments(upper.collect(), Stroke::Solid, Tone::Faint, 1.0),
+    ];
     for (number, part) in PARTS.iter().enumerate() {
         let share = share_done(number, closing);
         // A part that has not begun its work in this tick rests.
@@ -280,16 +289,14 @@ pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Pan
                 ring_px,
             ));
         }
-        // Names stand above and below in turn, because on a phone a row has no room for them, and counts opposite.
-        let side = if number % 2 == 0 { TO_NAME } else { -TO_NAME };
-        let words = |side: f64, text: String| Layer::Text {
-            at: [x, y + side],
+        let words = |at_y: f64, text: String| Layer::Text {
+            at: [x, at_y],
             text,
             tone: Tone::Ink,
         };
-        layers.push(words(side, part.name.to_owned()));
+        layers.push(words(NAMES[number % 2], part.name.to_owned()));
         if (1..until).contains(&times) {
-            layers.push(words(-side, format!("×{times}")));
+            layers.push(words(COUNTS, format!("×{times}")));
         }
     }
     Panel {
