@@ -11,8 +11,8 @@ const named = (id) => `slam-widget[name="${id}"]`;
 /** A wide screen, a low one, a phone. */
 const SCREENS = [{ width: 1440, height: 900 }, { width: 1280, height: 680 }, { width: 390, height: 844 }];
 
-/** The low screen, on which picture and Play have to fit together. */
-const [, LOW] = SCREENS;
+/** The low screen, on which picture and Play have to fit together, and the phone, on which the whole widget has. */
+const [, LOW, PHONE] = SCREENS;
 const plays = new Set(h.schema.filter(({ buttons }) => buttons.some(({ id }) => id === 'play')).map(({ id }) => id));
 
 /** Least share of a widget's height that its picture has at rest. */
@@ -64,6 +64,7 @@ describe('the picture', () => {
               const [top, bottom] = await span(tab, named(id));
               assert.ok(top >= 0 && bottom <= LOW.height, `${where}: picture and Play from ${top} to ${bottom}`);
             }
+            if (viewport === PHONE && page !== 'break.html') assert.ok(high < PHONE.height, `${where}: ${high} px`);
             if (share < LEAST_SHARE) low.push(`${where}: ${(100 * share).toFixed(0)} % of ${high} px`);
           }
         }

@@ -82,10 +82,12 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 }
 @container (width >= 50rem) { .verdict { min-height: 4.2em; } }
 @container (width < 30rem) {
+  .controls { row-gap: 0.1rem; padding-block: 0.2rem 0.25rem; }
   .transport:not(:has(.do ~ .do)) .unit { position: absolute; clip-path: inset(50%); }
 }
-@media (width < 30rem) { .title { padding: 0.35rem 0.75rem 0.1rem; font-size: 0.9375rem; } .verdict { min-height: 5.6em; } .title span { display: none; } }
+@media (width < 30rem) { .title { padding: 0.35rem 0.75rem 0.1rem; font-size: 0.9375rem; } .verdict { min-height: 3.2em; } .title span { display: none; } }
 .transport, .presets, .actions, .zoom { display: flex; flex-wrap: wrap; gap: 0.25rem 0.5rem; align-items: center; }
+[data-control='play'] { min-width: 4.5rem; }
 .tools { display: flex; flex-direction: column; gap: 0.25rem; }
 .tools .control button, .menu summary { width: 100%; }
 .verdict p { margin: 0; text-wrap: pretty; display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 3; overflow: hidden; }
