@@ -223,6 +223,8 @@ const ONE_KEYFRAME_PX: f32 = 2.7;
 const MARKS: f64 = 0.44;
 const NAMES: [f64; 2] = [0.91, 0.76];
 const COUNTS: f64 = 0.09;
+/// Above the largest mark.
+const ABOVE: f64 = 0.64;
 
 /// Where a part stands in the row.
 fn spot(part: usize) -> [f64; 2] {
@@ -239,19 +241,18 @@ fn share_done(part: usize, closing: Option<f64>) -> f64 {
 }
 
 /// All parts in a row after these ticks: filled if they work in the last one, hollow and as large as at their last work
-/// if they rest. A ring is around the chosen one if it works. A part has its count unless it works in every tick.
+/// if they rest, each with the number of ticks in which it worked. A ring is around the chosen one if it works.
 pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Panel {
     let ends = [spot(0), spot(PARTS.len() - 1)];
     let mut legend = vec![
         LegendEntry::mark("front end", FRONT_END, Mark::Dot),
         LegendEntry::mark("back end", BACK_END, Mark::Dot),
     ];
-    let upper = (0..PARTS.len())
-        .step_by(2)
-        .map(|part| [[part as f64 + 0.5, NAMES[0]], spot(part)]);
+    let upper = (0..PARTS.len()).step_by(2);
+    let stem = |part: usize| [NAMES[0], ABOVE].map(|y| [part as f64 + 0.5, y]);
     let mut layers = vec![
         Layer::segments(vec![ends], Stroke::Solid, Tone::Faint, 1.5),
-        Layer::segments(upper.collect(), Stroke::Solid, Tone::Faint, 1.0),
+        Layer::segments(upper.map(stem).collect(), Stroke::Solid, Tone::Faint, 1.0),
     ];
     for (number, part) in PARTS.iter().enumerate() {
         let share = share_done(number, closing);
@@ -295,13 +296,13 @@ pub fn parts(reports: &[TickReport], chosen: usize, closing: Option<f64>) -> Pan
             tone: Tone::Ink,
         };
         layers.push(words(NAMES[number % 2], part.name.to_owned()));
-        if (1..until).contains(&times) {
+        if times > 0 {
             layers.push(words(COUNTS, format!("×{times}")));
         }
     }
     Panel {
         id: ID,
-        title: "Parts: filled at work, area: keyframes handled".to_owned(),
+        title: "Times each part worked (size: keyframes handled)".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Free,
         // Room for the names of the first and the last one.

@@ -63,7 +63,7 @@ pub fn boxes_now(window: &WholeWindow) -> Vec<Layer> {
     let waiting = all.iter().filter(|seen| seen.waits_after(step));
     let mut layers = vec![
         boxes(dropped.clone().map(|seen| &seen.poses), THROWN_AWAY, 0.5),
-        boxes(waiting.map(|seen| &seen.poses), Tone::Series(0), 1.0),
+        boxes(waiting.map(|seen| &seen.poses), Tone::Series(0), 1.8),
     ];
     if step == window.boxes_taken() {
         let largest = dropped.max_by(|a, b| width_m(a).total_cmp(&width_m(b)));
