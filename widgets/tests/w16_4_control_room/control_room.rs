@@ -290,7 +290,7 @@ fn the_area_of_a_part_is_the_number_of_keyframes_it_goes_through() {
         });
     assert_eq!(
         counts.collect::<Vec<_>>(),
-        ["×40", "×3", "×3", "×3", "×3", "×3"]
+        ["×129", "×129", "×40", "×3", "×3", "×3", "×3", "×3"]
     );
 }
 
