@@ -33,7 +33,7 @@ pub fn stop(end: &BasinOutcome) -> String {
         Minimum::NotConverged => "before it converged".to_owned(),
         Minimum::WrongHeading => "with a wrong heading".to_owned(),
         Minimum::Other => "in another false minimum".to_owned(),
-        turn => format!("in the {}", turn.name()),
+        turn => format!("a {} off", turn.name()),
     }
 }
 
