@@ -206,7 +206,7 @@ fn icp_races_the_search_and_stops_in_a_false_minimum_first() {
         .unwrap();
     assert_eq!(
         (stop.label.as_str(), stop.standing),
-        ("ICP alone stops in the quarter turn", Assessment::Bad)
+        ("ICP alone stops a quarter turn off", Assessment::Bad)
     );
     for (at, is_over) in [(stop.at - 50.0, false), (stop.at, true)] {
         window.set("progress", at).unwrap();
