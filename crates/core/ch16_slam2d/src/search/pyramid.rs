@@ -10,6 +10,12 @@ pub(super) const LEVELS: usize = 7;
 /// Number of points that are looked up together, for vectorized index computation.
 pub(super) const BATCH: usize = 64;
 
+/// Squares of a row that are loaded at once: those of neighbouring boxes are among them.
+const LANES: usize = 16;
+
+/// Largest side of boxes whose neighbours are summed with them, in cells; wider ones are few.
+pub(super) const NEAR_SIDE: i32 = 4;
+
 /// A map for searches: the grid and its sliding maxima.
 ///
 /// Level h holds for every cell (i, j) the largest score of the cells `[i, i + 2^h) × [j, j + 2^h)`
@@ -20,11 +26,14 @@ pub struct SearchMap {
     levels: Vec<Level>,
 }
 
-/// The maxima for one size of squares, for all squares that touch the grid, with a border of zeros.
+/// The maxima for one size of squares, for all squares that touch the grid, with a border of zeros that holds the
+/// neighbours of a square beside it.
 #[derive(Clone, Debug)]
 pub(super) struct Level {
-    /// Side of a square in cells, and the index of the grid's own first cell.
+    /// Side of a square in cells.
     side: i16,
+    /// Index of the grid's own first cell in a row and in a column.
+    margin: i16,
     columns: i16,
     rows: i16,
     /// A row starts every `2^row_shift` entries, because a shift is cheaper than a product.
@@ -84,28 +93,31 @@ impl Level {
     fn base(grid: &LikelihoodGrid) -> Self {
         let mut level = Self::without_squares(1, grid.columns(), grid.rows());
         level.maxima.resize(level.size(), 0);
-        let stride = level.stride();
+        let (stride, margin) = (level.stride(), level.margin as usize);
         for (row, scores) in grid.scores().chunks_exact(grid.columns()).enumerate() {
-            level.maxima[(row + 1) * stride + 1..][..scores.len()].copy_from_slice(scores);
+            let start = (row + margin) * stride + margin;
+            level.maxima[start..][..scores.len()].copy_from_slice(scores);
         }
         level
     }
 
     /// Allocates squares of `side` cells a side that touch a grid of `columns` × `rows`, without maxima.
     fn without_squares(side: usize, columns: usize, rows: usize) -> Self {
-        let stride = (columns + side + 1).next_power_of_two();
+        let margin = side + NEAR_SIDE as usize;
+        let stride = (columns + margin + LANES).next_power_of_two();
         Self {
             side: side as i16,
+            margin: margin as i16,
             columns: columns as i16,
             rows: rows as i16,
             row_shift: stride.ilog2(),
-            maxima: Vec::with_capacity(stride * (rows + side + 1)),
+            maxima: Vec::with_capacity(stride * (rows + margin + side + 1)),
         }
     }
 
     /// Number of squares, including the padding of the rows.
     fn size(&self) -> usize {
-        self.stride() * (self.rows + self.side + 1) as usize
+        self.stride() * (self.rows + self.margin + self.side + 1) as usize
     }
 
     fn stride(&self) -> usize {
@@ -118,7 +130,7 @@ impl Level {
         let (columns, rows) = (self.columns as usize, self.rows as usize);
         let mut wider = Self::without_squares(2 * step, columns, rows);
         let stride = wider.stride();
-        let used = columns + step + 1;
+        let used = columns + self.margin as usize + 1;
         for from in self.maxima.chunks_exact(self.stride()) {
             let start = wider.maxima.len();
             wider.maxima.extend_from_slice(&from[..used]);
@@ -127,7 +139,7 @@ impl Level {
         }
         wider.maxima.resize(wider.size(), 0);
         // From the top down, so that no row is raised by one that was already raised.
-        let height = rows + 2 * step + 1;
+        let height = rows + wider.margin as usize + 1;
         for row in (step..height).rev() {
             let (below, above) = wider.maxima.split_at_mut(row * stride);
             raise(
@@ -175,11 +187,66 @@ impl Level {
             .sum()
     }
 
+    /// The sums of [`Level::sum`] or [`Level::sum_of_areas`] at an offset, and at those `step` cells to the right, above
+    /// and both, of at most [`NEAR_SIDE`] cells.
+    pub(super) fn sums_of_four(
+        &self,
+        low: CellSlice<'_>,
+        high: Option<CellSlice<'_>>,
+        offset: [i16; 2],
+        step: usize,
+    ) -> [u32; 4] {
+        let (mut left, mut bottom) = ([0; BATCH], [0; BATCH]);
+        self.locate_columns(low.columns, offset[0], &mut left);
+        self.locate_rows(low.rows, offset[1], &mut bottom);
+        let above = step << self.row_shift;
+        let squares = |place: usize| -> &[u8; LANES] {
+            let row = self.maxima[place..].first_chunk();
+            row.expect("a row is longer")
+        };
+        // Two sums of 16 bits each: a batch is too short for them to overflow.
+        let pair = |squares: &[u8; LANES]| {
+            u32::from(squares[0]) | (u32::from(squares[step % LANES]) << 16)
+        };
+        let mut sums = [0_u32; 2];
+        let count = low.columns.len();
+        if let Some(high) = high {
+            let (mut right, mut top) = ([0; BATCH], [0; BATCH]);
+            self.locate_columns(high.columns, offset[0], &mut right);
+            self.locate_rows(high.rows, offset[1], &mut top);
+            let columns = left.iter().zip(&right);
+            let rows = bottom.iter().zip(&top);
+            for ((&left, &right), (&bottom, &top)) in columns.zip(rows).take(count) {
+                for (sum, up) in sums.iter_mut().zip([0, above]) {
+                    let at =
+                        |row: u32, column: u32| squares(row.wrapping_add(column) as usize + up);
+                    let mut largest = *at(bottom, left);
+                    raise(&mut largest, at(bottom, right));
+                    raise(&mut largest, at(top, left));
+                    raise(&mut largest, at(top, right));
+                    *sum = sum.wrapping_add(pair(&largest));
+                }
+            }
+        } else {
+            for (&left, &bottom) in left.iter().zip(&bottom).take(count) {
+                let place = bottom.wrapping_add(left) as usize;
+                for (sum, up) in sums.iter_mut().zip([0, above]) {
+                    *sum = sum.wrapping_add(pair(squares(place + up)));
+                }
+            }
+        }
+        let [here, above] = sums;
+        [here & 0xFFFF, here >> 16, above & 0xFFFF, above >> 16]
+    }
+
     /// Indices of columns in a row. All squares beyond the border are zero.
     #[inline]
     fn locate_columns(&self, columns: &[i16], offset: i16, places: &mut [u32; BATCH]) {
         for (place, column) in places.iter_mut().zip(columns) {
-            let column = (column + offset).clamp(-self.side, self.columns) + self.side;
+            let column = column
+                .wrapping_add(offset)
+                .clamp(-self.margin, self.columns);
+            let column = column.wrapping_add(self.margin);
             *place = u32::from(column as u16);
         }
     }
@@ -188,7 +255,8 @@ impl Level {
     #[inline]
     fn locate_rows(&self, rows: &[i16], offset: i16, places: &mut [u32; BATCH]) {
         for (place, row) in places.iter_mut().zip(rows) {
-            let row = (row + offset).clamp(-self.side, self.rows) + self.side;
+            let row = row.wrapping_add(offset).clamp(-self.margin, self.rows);
+            let row = row.wrapping_add(self.margin);
             *place = u32::from(row as u16) << self.row_shift;
         }
     }

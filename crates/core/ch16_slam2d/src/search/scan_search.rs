@@ -6,6 +6,7 @@ use core::cmp::Ordering;
 use std::sync::Arc;
 
 use super::lattice::{Lattice, LatticePose, Nearness};
+use super::pyramid::NEAR_SIDE;
 use super::turned_scan::{BoxShape, TurnedScan};
 use super::{
     BoxFate, PoseBox, ScoredPose, SearchCounts, SearchError, SearchGoal, SearchMap,
@@ -315,17 +316,23 @@ impl ScanSearch {
     fn bound_parts(&mut self, first: LatticePose, last: LatticePose, shape: usize) {
         let BoxShape { side, turn } = self.shapes[shape];
         let of_interest = self.of_interest();
+        let cells = self.shapes[shape].cells();
+        let is_by_four = cells <= NEAR_SIDE && last.row - first.row >= cells;
+        let stride = cells << u32::from(is_by_four);
         self.parts.clear();
         for heading in (first.heading..=last.heading).step_by(1 << turn) {
-            for row in (first.row..=last.row).step_by(1 << side) {
-                for column in (first.column..=last.column).step_by(1 << side) {
-                    let pose = LatticePose {
+            for row in (first.row..=last.row).step_by(stride as usize) {
+                for column in (first.column..=last.column).step_by(stride as usize) {
+                    let at = LatticePose {
                         heading,
                         row,
                         column,
                     };
-                    let part = self.bounded(pose, shape, of_interest);
-                    self.parts.push(part);
+                    if is_by_four {
+                        self.bound_four(at, last, (shape, side), of_interest);
+                    } else {
+                        self.parts.push(self.bounded(at, shape, of_interest));
+                    }
                 }
             }
         }
@@ -334,6 +341,38 @@ impl ScanSearch {
             self.counts.poses += made;
         } else {
             self.counts.bounds += made;
+        }
+    }
+
+    /// Bounds the box at `first` and its neighbours right of it, above it and above that to the right, as far as the
+    /// window reaches: they are looked up together.
+    fn bound_four(
+        &mut self,
+        first: LatticePose,
+        last: LatticePose,
+        (shape, side): (usize, u32),
+        of_interest: u32,
+    ) {
+        let offset = self.lattice.cells_from_center(first.column, first.row);
+        let group = first.heading >> self.shapes[shape].turn;
+        let scan = &self.scan;
+        let bounds = scan.sums_of_four(&self.map, (shape, side), group, offset, of_interest);
+        let cells = 1 << side;
+        let corners = [[0, 0], [0, cells], [cells, 0], [cells, cells]];
+        for (bound, [up, right]) in bounds.into_iter().zip(corners) {
+            let (row, column) = (first.row + up, first.column + right);
+            if row <= last.row && column <= last.column {
+                let first = LatticePose {
+                    row,
+                    column,
+                    ..first
+                };
+                self.parts.push(OpenBox {
+                    bound,
+                    shape,
+                    first,
+                });
+            }
         }
     }
 

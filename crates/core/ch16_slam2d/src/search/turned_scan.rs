@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pr_geom::{Point2, Rotation, math, order_by};
 
 use super::lattice::Lattice;
-use super::pyramid::{BATCH, CellSlice, LEVELS};
+use super::pyramid::{BATCH, CellSlice, LEVELS, Level};
 use super::score_scale::FULL_SCORE;
 use super::{LikelihoodGrid, SearchMap};
 use crate::cloud::PointCloud;
@@ -134,14 +134,49 @@ impl TurnedScan {
         map: &SearchMap,
         shape: usize,
         group: i32,
-        [column, row]: [i32; 2],
+        at: [i32; 2],
         of_interest: u32,
     ) -> u32 {
+        let offset = at.map(|cells| cells as i16);
+        let [sum] = self.sums(map, shape, group, of_interest, |level, low, high| {
+            [match high {
+                None => level.sum(low, offset),
+                Some(high) => level.sum_of_areas(low, high, offset),
+            }]
+        });
+        sum
+    }
+
+    /// [`TurnedScan::sum`] of a box of at most [`NEAR_SIDE`](super::pyramid::NEAR_SIDE) columns, and of those right of
+    /// it, above it, and above that to the right; the looser bounds are used if all four stay below `of_interest`.
+    pub fn sums_of_four(
+        &self,
+        map: &SearchMap,
+        (shape, side): (usize, u32),
+        group: i32,
+        at: [i32; 2],
+        of_interest: u32,
+    ) -> [u32; 4] {
+        let offset = at.map(|cells| cells as i16);
+        self.sums(map, shape, group, of_interest, |level, low, high| {
+            level.sums_of_four(low, high, offset, 1 << side)
+        })
+    }
+
+    /// The bounds of `N` boxes by the sums of a batch of points: at their cells, or over areas from these to the others.
+    #[inline]
+    fn sums<const N: usize>(
+        &self,
+        map: &SearchMap,
+        shape: usize,
+        group: i32,
+        of_interest: u32,
+        of_batch: impl Fn(&Level, CellSlice<'_>, Option<CellSlice<'_>>) -> [u32; N],
+    ) -> [u32; N] {
         let plan = &self.plans[shape];
         let start = group as usize * self.points;
-        let offset = [column as i16, row as i16];
-        // The bound so far: every point counts fully until it has been looked up.
-        let mut sum = self.full_score();
+        // The bounds so far: every point counts fully until it has been looked up.
+        let mut sums = [self.full_score(); N];
         for run in &plan.runs {
             let Some(level) = run.level else { continue };
             let level = map.level(level);
@@ -149,18 +184,17 @@ impl TurnedScan {
                 let end = run.end.min(first + BATCH);
                 let range = start + first..start + end;
                 let low = plan.low.slice(range.clone());
-                sum -= (end - first) as u32 * u32::from(FULL_SCORE);
-                sum += if plan.high.columns.is_empty() {
-                    level.sum(low, offset)
-                } else {
-                    level.sum_of_areas(low, plan.high.slice(range), offset)
-                };
-                if sum < of_interest {
-                    return sum;
+                let high = (!plan.high.columns.is_empty()).then(|| plan.high.slice(range));
+                let full = (end - first) as u32 * u32::from(FULL_SCORE);
+                for (sum, found) in sums.iter_mut().zip(of_batch(level, low, high)) {
+                    *sum = *sum - full + found;
+                }
+                if sums.iter().all(|sum| *sum < of_interest) {
+                    return sums;
                 }
             }
         }
-        sum
+        sums
     }
 }
 
