@@ -149,7 +149,7 @@ impl LogFiles {
         Ok(Box::new(WatchedReader {
             inner: with_remarks(reader, self.remarks.clone()),
             sizes: self.sizes.clone(),
-            notes: LogNotes::default(),
+            grown: None,
         }))
     }
 }
@@ -158,7 +158,8 @@ impl LogFiles {
 struct WatchedReader {
     inner: Box<dyn LogReader>,
     sizes: Vec<(PathBuf, u64)>,
-    notes: LogNotes,
+    /// The notes at the end, if a file has grown.
+    grown: Option<LogNotes>,
 }
 
 impl WatchedReader {
@@ -179,16 +180,18 @@ impl WatchedReader {
 impl LogReader for WatchedReader {
     fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
         let frame = self.inner.next_frame();
-        self.notes.clone_from(self.inner.notes());
         if matches!(frame, Ok(None)) {
-            let growth = self.growth();
-            self.notes.warnings.extend(growth);
+            self.grown = self.growth().map(|remark| {
+                let mut notes = self.inner.notes().clone();
+                notes.warnings.push(remark);
+                notes
+            });
         }
         frame
     }
 
     fn notes(&self) -> &LogNotes {
-        &self.notes
+        self.grown.as_ref().unwrap_or_else(|| self.inner.notes())
     }
 }
 
