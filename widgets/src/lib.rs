@@ -4,6 +4,7 @@
 //! the layout.
 
 mod icp_variant;
+mod loop_arc;
 mod pose_handle;
 mod reader_orders;
 pub mod registry;

@@ -13,12 +13,16 @@ use widget_kit::scene::{
 
 use super::ControlRoom;
 
+use crate::loop_arc::loop_arc;
 use crate::xy::xy;
 
 pub use plots::OVER_TIME;
 
 /// Half the side of the close-up, in metres.
 const CLOSE_UP_M: f64 = 4.0;
+
+/// Colour of an accepted loop.
+const LOOP: Tone = Tone::Measurement;
 
 /// The smallest correction of a keyframe that can be seen, m.
 const SEEN_M: f64 = 0.02;
@@ -50,17 +54,27 @@ fn map(room: &ControlRoom) -> Panel {
             Tone::Truth,
             1.5,
         ),
-        edges(record, tick, EdgeKind::Odometry, Tone::Posterior, 1.5),
-        edges(record, tick, EdgeKind::Loop, Tone::Measurement, 2.5),
+        Layer::segments(
+            edges(record, tick, EdgeKind::Odometry).collect(),
+            Stroke::Solid,
+            Tone::Posterior,
+            1.5,
+        ),
         Layer::points(
             record.lap.poses(tick).iter().map(xy).collect(),
             Mark::Square,
             Tone::Posterior,
             3.0,
         ),
+    ];
+    layers.extend(
+        edges(record, tick, EdgeKind::Loop)
+            .map(|[from, to]| Layer::line(loop_arc(from, to), Stroke::Solid, LOOP, 2.5)),
+    );
+    layers.extend([
         robot(&truth(tick), Mark::Plus, Tone::Truth),
         robot(&estimate(record, tick), Mark::Square, Tone::Posterior),
-    ];
+    ]);
     if room.now().is_some_and(parts::closes_loop) {
         layers.extend(correction(record, tick));
     }
@@ -76,30 +90,24 @@ fn map(room: &ControlRoom) -> Panel {
             LegendEntry::marked_line("truth", Tone::Truth, Mark::Plus, Stroke::Dashed),
             LegendEntry::marked_line("pose graph", Tone::Posterior, Mark::Square, Stroke::Solid),
             area("occupied", Tone::Ink),
-            area("not seen", Tone::Unseen),
+            LegendEntry::line("loop", LOOP, Stroke::Solid),
         ],
         color_bar: None,
     }
 }
 
-/// The keyframes where they were before a loop moved them, and its name.
+/// The keyframes where they were before a loop moved them.
 fn correction(record: &LapRecord, tick: usize) -> Vec<Layer> {
     let poses = record.lap.poses(tick);
     let was = record.lap.poses(tick - 1);
     let moved = was.iter().zip(poses);
     let moved = moved.filter(|(was, is)| (was.position() - is.position()).norm() > SEEN_M);
     let before: Vec<[f64; 2]> = moved.map(|(was, _)| xy(was)).collect();
-    let mut loops = record.lap.edges(tick).iter();
-    let closed = loops.rfind(|edge| edge.kind == EdgeKind::Loop);
-    let name = closed.map(|edge| {
-        let middle = (poses[edge.from].position() + poses[edge.to].position().coords) * 0.5;
-        Layer::label(middle.into(), "loop".to_owned(), 8.0)
-    });
     // The farther from where the robot started, the farther a keyframe has moved.
     let turned = before.iter().copied().max_by(|a, b| a[0].total_cmp(&b[0]));
     let was = turned.map(|at| Layer::label(at, "before".to_owned(), 8.0));
     let points = Layer::points(before, Mark::Circle, Tone::Prior, 3.0);
-    [points].into_iter().chain(name).chain(was).collect()
+    [points].into_iter().chain(was).collect()
 }
 
 /// A legend entry for the cells of one colour.
@@ -185,18 +193,17 @@ fn estimate(record: &LapRecord, tick: usize) -> SE2 {
     report.map_or_else(|| record.drive.truth(0), |report| report.estimate)
 }
 
-fn edges(record: &LapRecord, tick: usize, kind: EdgeKind, tone: Tone, width_px: f32) -> Layer {
+/// The ends of the edges of a kind at a tick.
+fn edges(
+    record: &LapRecord,
+    tick: usize,
+    kind: EdgeKind,
+) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
     let poses = record.lap.poses(tick);
     let edges = record.lap.edges(tick).iter();
-    Layer::segments(
-        edges
-            .filter(|edge| edge.kind == kind)
-            .map(|edge| [xy(&poses[edge.from]), xy(&poses[edge.to])])
-            .collect(),
-        Stroke::Solid,
-        tone,
-        width_px,
-    )
+    edges
+        .filter(move |edge| edge.kind == kind)
+        .map(move |edge| [xy(&poses[edge.from]), xy(&poses[edge.to])])
 }
 
 fn positions(cloud: &PointCloud) -> Vec<[f64; 2]> {
