@@ -192,7 +192,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "tangled",
             label: "A tangled ring",
-            help: "One pose starts far out and turned. Headings make the problem nonlinear, so it takes a few steps.",
+            help: "One pose starts far out and rotated. Headings make the problem nonlinear, so convergence takes several steps.",
             set: &[
                 GRAPH.to("ring"),
                 MOVED[3][0].to(1.5),

@@ -292,7 +292,7 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
         stroke: None,
     });
     let title = if covered {
-        format!("Where is the edge, {}?", variant_name(of))
+        format!("Where is the {} edge?", variant_name(of))
     } else {
         match explorer.mapped_by(of) {
             Some(yours) => format!("Where your {yours} ends"),
