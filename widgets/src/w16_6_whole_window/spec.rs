@@ -72,7 +72,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     name: "The whole window",
     title: "Can every pose be searched without scoring every pose?",
     claim: "One bound rules out a whole box of poses.",
-    gesture: "Turn the laser scan with the blue ring, then let go.",
+    gesture: "Turn the laser scan with the blue ring, then let it go.",
     awaits: Awaits::End,
     notice: &[
         "Each bar is a box of poses, and its height is a score that no pose in the box can exceed. Point at one to see the true scores of its poses, all of them lower. As boxes split, the bars fall towards them.",
