@@ -118,9 +118,11 @@ describe('the lap under the title', () => {
       const { traceEvents } = JSON.parse(await browser.stopTracing());
       const named = (which) => traceEvents.filter(({ name }) => name === which);
       assert.ok(named('FireAnimationFrame').length > 0, 'it plays');
-      const restyled = named('UpdateLayoutTree').reduce((sum, { args }) => sum + args.elementCount, 0);
+      // A pass that the end of the trace cuts short has no count.
+      const passes = named('UpdateLayoutTree').filter(({ args }) => 'elementCount' in args);
+      const restyled = passes.reduce((sum, { args }) => sum + args.elementCount, 0);
       const elements = await tab.evaluate(() => document.querySelectorAll('*').length);
-      assert.ok(elements > 3000 && restyled < elements / 10, `${restyled} of ${elements}`);
+      assert.ok(passes.length > 0 && elements > 3000 && restyled < elements / 10, `${restyled} of ${elements}`);
     });
   });
 
