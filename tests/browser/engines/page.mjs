@@ -56,7 +56,7 @@ export async function click(page, find, ...given) {
     const [x, y] = await until(page, `(...given) => {
       const found = (${find})(...given);
       if (!found) return false;
-      found.scrollIntoView({ block: 'center' });
+      found.scrollIntoView({ behavior: 'instant', block: 'center' });
       const { left, top, width, height } = found.getBoundingClientRect();
       const [x, y] = [left + width / 2, top + height / 2];
       const isResting = window.lastClick?.found === found && window.lastClick.x === x && window.lastClick.y === y;
