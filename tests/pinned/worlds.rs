@@ -10,8 +10,8 @@ use serde_json::Value;
 
 use crate::page::document::source;
 
-/// The sweeps, each with both frames of information. Point to point closes no loop on the ring.
-const TRIALS: [(BuiltInWorld, LapMatcher); 5] = [
+/// Worlds and matchers of sweeps. Point to point closes no loop on the ring.
+pub const TRIALS: [(BuiltInWorld, LapMatcher); 5] = [
     (BuiltInWorld::Apartment, LapMatcher::PointToPoint),
     (BuiltInWorld::Apartment, LapMatcher::PointToPlane),
     (BuiltInWorld::Apartment, LapMatcher::Ndt),
@@ -23,6 +23,7 @@ const TRIALS: [(BuiltInWorld, LapMatcher); 5] = [
 const PICTURE_M: f64 = 0.3;
 const PICTURE_PX: f64 = 90.0;
 
+/// The sweeps of `docs/worlds.md`, each with both frames of information.
 fn sweeps() -> impl Iterator<Item = (BuiltInWorld, LapMatcher, InformationFrame)> {
     TRIALS.into_iter().flat_map(|(world, matcher)| {
         InformationFrame::all().map(move |frame| (world, matcher, frame))

@@ -7,6 +7,7 @@ use ch16_lab::lap::{
 use ch16_slam2d::chapter::InformationFrame;
 
 use super::recorded::Driven;
+use crate::worlds::TRIALS;
 
 /// Laps of each case, from seed 1 on: the standard deviation of a scatter is 5 % of it.
 pub const SEEDS: u32 = 100;
@@ -14,21 +15,12 @@ pub const SEEDS: u32 = 100;
 /// A mean beyond so many standard errors is seldom chance.
 const ALARM: f64 = 2.0;
 
-/// Point to point closes no loop on the ring.
-const CASES: [(BuiltInWorld, LapMatcher); 5] = [
-    (BuiltInWorld::Apartment, LapMatcher::PointToPoint),
-    (BuiltInWorld::Apartment, LapMatcher::PointToPlane),
-    (BuiltInWorld::Apartment, LapMatcher::Ndt),
-    (BuiltInWorld::Ring, LapMatcher::PointToPlane),
-    (BuiltInWorld::Ring, LapMatcher::Ndt),
-];
-
 /// Halfway by the front end and with loops, and the steps of the front end, of one lap.
 type Lap = ([Option<HalfWay>; 2], Option<StepInnovations>);
 
 /// Adds the figures of every `step`th lap of all cases: `consistency.ring.ndt.uncapped.with_loops.scatter_m`.
 pub fn add_to(driven: &mut Driven, step: usize) {
-    for (world, matcher) in CASES {
+    for (world, matcher) in TRIALS {
         for bound in ["capped", "uncapped"] {
             let name = format!("consistency.{}.{}.{bound}", world.name(), matcher.name());
             let laps = laps(world, matcher, bound == "capped", step);

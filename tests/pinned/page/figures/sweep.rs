@@ -72,12 +72,9 @@ impl LapSweep {
     /// Adds all figures of the laps.
     pub fn add_to(&self, driven: &mut Driven) {
         for (k, (level, noise)) in NOISE.into_iter().enumerate() {
-            let figures = Laps::new(self.0.iter().map(|laps| &laps.levels[k])).figures();
+            let mut figures = Laps::new(self.0.iter().map(|laps| &laps.levels[k])).figures();
+            figures.push(("noise".to_owned(), Some(noise)));
             driven.add(&format!("sweep.{level}"), figures);
-            driven.add(
-                &format!("sweep.{level}"),
-                [("noise".to_owned(), Some(noise))],
-            );
         }
         let exact_gate = Laps::new(self.0.iter().map(|laps| &laps.exact_gate));
         driven.add("sweep.exact_gate", exact_gate.figures());

@@ -314,13 +314,12 @@ impl ScanSearch {
 
     /// Bounds all boxes of a shape from `first` to `last`, inclusive.
     fn bound_parts(&mut self, first: LatticePose, last: LatticePose, shape: usize) {
-        let BoxShape { side, turn } = self.shapes[shape];
         let of_interest = self.of_interest();
-        let cells = self.shapes[shape].cells();
+        let (cells, headings) = (self.shapes[shape].cells(), self.shapes[shape].headings());
         let is_by_four = cells <= NEAR_SIDE && last.row - first.row >= cells;
         let stride = cells << u32::from(is_by_four);
         self.parts.clear();
-        for heading in (first.heading..=last.heading).step_by(1 << turn) {
+        for heading in (first.heading..=last.heading).step_by(headings as usize) {
             for row in (first.row..=last.row).step_by(stride as usize) {
                 for column in (first.column..=last.column).step_by(stride as usize) {
                     let at = LatticePose {
@@ -329,7 +328,7 @@ impl ScanSearch {
                         column,
                     };
                     if is_by_four {
-                        self.bound_four(at, last, (shape, side), of_interest);
+                        self.bound_four(at, last, shape, of_interest);
                     } else {
                         self.parts.push(self.bounded(at, shape, of_interest));
                     }
@@ -350,14 +349,14 @@ impl ScanSearch {
         &mut self,
         first: LatticePose,
         last: LatticePose,
-        (shape, side): (usize, u32),
+        shape: usize,
         of_interest: u32,
     ) {
         let offset = self.lattice.cells_from_center(first.column, first.row);
         let group = first.heading >> self.shapes[shape].turn;
         let scan = &self.scan;
-        let bounds = scan.sums_of_four(&self.map, (shape, side), group, offset, of_interest);
-        let cells = 1 << side;
+        let cells = self.shapes[shape].cells();
+        let bounds = scan.sums_of_four(&self.map, (shape, cells), group, offset, of_interest);
         let corners = [[0, 0], [0, cells], [cells, 0], [cells, cells]];
         for (bound, [up, right]) in bounds.into_iter().zip(corners) {
             let (row, column) = (first.row + up, first.column + right);

@@ -152,14 +152,14 @@ impl TurnedScan {
     pub fn sums_of_four(
         &self,
         map: &SearchMap,
-        (shape, side): (usize, u32),
+        (shape, cells): (usize, i32),
         group: i32,
         at: [i32; 2],
         of_interest: u32,
     ) -> [u32; 4] {
         let offset = at.map(|cells| cells as i16);
         self.sums(map, shape, group, of_interest, |level, low, high| {
-            level.sums_of_four(low, high, offset, 1 << side)
+            level.sums_of_four(low, high, offset, cells as usize)
         })
     }
 
