@@ -95,12 +95,15 @@ export function saveBlob(blob: Blob, fileName: string): void {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-/** Copies a text; returns false if the browser does not allow it. */
+/** A browser that has not copied by then asks the reader first, or never answers. */
+const COPY_MS = 1_000;
+
+/** Copies a text; returns false if the browser does not allow it, or does not say so in time. */
 export async function copyText(text: string): Promise<boolean> {
-  try {
+  const late = new Promise<boolean>((resolve) => setTimeout(resolve, COPY_MS, false));
+  const copied = async (): Promise<boolean> => {
     await navigator.clipboard.writeText(text);
     return true;
-  } catch {
-    return false;
-  }
+  };
+  return Promise.race([copied().catch(() => false), late]);
 }
