@@ -9,8 +9,8 @@ use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
 use pr_optim::system::NormalEquations;
 use pr_optim::{
-    Between, Factorization, JacobianModel, LinearSolver, Optimizer, Problem, RobustKernel,
-    Settings, SolveSession, Start,
+    Between, JacobianModel, LinearSolver, Optimizer, Problem, RobustKernel, Settings, SolveSession,
+    Start,
 };
 
 /// Uniform numbers in (−1, 1) from a 64-bit linear congruential generator (Knuth's constants).
@@ -100,7 +100,7 @@ fn solve(optimizer: &mut Optimizer, mut problem: Problem) -> f64 {
 
 pub fn parts_of_an_iteration(criterion: &mut Criterion) {
     let problem = street_walk(3500, 25);
-    let mut linear = LinearSolver::new(&problem, Factorization::Block);
+    let mut linear = LinearSolver::new(&problem);
     let mut equations = NormalEquations::default();
     let assemble = |equations: &mut NormalEquations, linear: &LinearSolver| {
         let (model, kernel) = (JacobianModel::Exact, RobustKernel::None);
@@ -108,7 +108,7 @@ pub fn parts_of_an_iteration(criterion: &mut Criterion) {
     };
     let mut group = criterion.benchmark_group("iteration_3500");
     group.bench_function("analyse", |bencher| {
-        bencher.iter(|| LinearSolver::new(black_box(&problem), Factorization::Block));
+        bencher.iter(|| LinearSolver::new(black_box(&problem)));
     });
     group.bench_function("assemble", |bencher| {
         bencher.iter(|| assemble(&mut equations, &linear));
@@ -116,10 +116,6 @@ pub fn parts_of_an_iteration(criterion: &mut Criterion) {
     assemble(&mut equations, &linear);
     group.bench_function("factorize", |bencher| {
         bencher.iter(|| linear.factorize(black_box(&equations), 0.0));
-    });
-    let mut faer = LinearSolver::new(&problem, Factorization::Faer);
-    group.bench_function("factorize_faer", |bencher| {
-        bencher.iter(|| faer.factorize(black_box(&equations), 0.0));
     });
     let mut rhs = equations.gradient.clone();
     group.bench_function("solve", |bencher| {

@@ -4,10 +4,7 @@ use arbitrary::{Result, Unstructured};
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::robust::{GncSettings, is_sequential, select_inliers};
-use pr_optim::{
-    Between, FactorUse, Factorization, JacobianModel, Method, Problem, RobustKernel, Settings,
-    Start,
-};
+use pr_optim::{Between, FactorUse, JacobianModel, Method, Problem, RobustKernel, Settings, Start};
 
 use crate::numbers::{finite, scale, tame};
 use crate::solve::solve;
@@ -106,11 +103,6 @@ fn settings(bytes: &mut Unstructured<'_>) -> Result<Settings> {
         step_tolerance: *bytes.choose(&[1e-6, 0.0, 1e-12])?,
         decrease_tolerance: *bytes.choose(&[0.0, 1e-8, 0.5])?,
         ridge: *bytes.choose(&[1e-9, 0.0, 1.0])?,
-        factorization: if bytes.ratio(1, 8)? {
-            Factorization::Faer
-        } else {
-            Factorization::Block
-        },
         ..Settings::default()
     };
     // Uses no byte of its own, so found inputs keep their meaning.

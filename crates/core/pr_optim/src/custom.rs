@@ -9,7 +9,7 @@ use pr_geom::twist_size;
 
 use crate::error::OptimizeError;
 use crate::factor::{Between, Jacobians, PreparedPose};
-use crate::linear::{Factorization, LinearSolver};
+use crate::linear::LinearSolver;
 use crate::problem::Problem;
 use crate::report::StepReport;
 use crate::settings::Settings;
@@ -46,13 +46,13 @@ impl CustomGaussNewton {
         if !self
             .linear
             .as_ref()
-            .is_some_and(|linear| linear.fits(problem, Factorization::Block))
+            .is_some_and(|linear| linear.fits(problem))
         {
             self.linear = None;
         }
         let linear = self
             .linear
-            .get_or_insert_with(|| LinearSolver::new(problem, Factorization::Block));
+            .get_or_insert_with(|| LinearSolver::new(problem));
         let ridge = Settings::default().ridge;
         let poses: Vec<_> = problem.poses().iter().map(PreparedPose::new).collect();
         let equations = &mut self.equations;

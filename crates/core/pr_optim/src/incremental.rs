@@ -108,9 +108,7 @@ impl IncrementalCovariances {
     ) -> JointCovariance {
         let tail = Tail::new(self.prefix, &self.tail, [first, second]);
         let [first_root, second_root] = tail.roots();
-        let root_blocks = linear
-            .joint_covariance(&self.problem, first_root, second_root)
-            .expect("the block factorization shows its factor");
+        let root_blocks = linear.joint_covariance(&self.problem, first_root, second_root);
         let mut joint = tail.joint(&root_blocks);
         let [first, second] = [first, second].map(|node| self.positions[node] as usize);
         for update in &self.loop_updates {
@@ -147,9 +145,7 @@ impl IncrementalCovariances {
         for (link, node) in self.tail.iter().zip(self.prefix.nodes..nodes).rev() {
             link.push_back(&mut columns, [parent(link), node]);
         }
-        linear
-            .solve_columns(&mut columns[..3 * self.prefix.nodes])
-            .expect("the block factorization solves side by side");
+        linear.solve_columns(&mut columns[..3 * self.prefix.nodes]);
         for (link, node) in self.tail.iter().zip(self.prefix.nodes..nodes) {
             link.propagate(&mut columns, [parent(link), node]);
         }

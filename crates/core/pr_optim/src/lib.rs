@@ -24,8 +24,6 @@ mod dense_kernel;
 mod elimination;
 mod error;
 mod factor;
-#[cfg(feature = "faer_cholesky")]
-pub mod faer_cholesky;
 pub mod g2o;
 mod incremental;
 pub mod init;
@@ -48,7 +46,7 @@ pub use custom::CustomGaussNewton;
 pub use error::OptimizeError;
 pub use factor::{Between, JacobianModel, Jacobians, Linearization, PreparedFactor, PreparedPose};
 pub use kernel::RobustKernel;
-pub use linear::{Factorization, LinearSolver};
+pub use linear::LinearSolver;
 pub use marginals::JointCovariance;
 pub use optimizer::Optimizer;
 pub use problem::Problem;

@@ -23,7 +23,7 @@ use crate::damping::{DAMPING_LIMIT, Damping};
 use crate::error::OptimizeError;
 use crate::factor::PreparedPose;
 use crate::incremental::IncrementalCovariances;
-use crate::linear::{Factorization, LinearSolver};
+use crate::linear::LinearSolver;
 use crate::problem::Problem;
 use crate::report::{Report, StepReport, StopReason};
 use crate::settings::{FactorUse, Method, Settings};
@@ -96,7 +96,7 @@ impl Optimizer {
     /// The first half of a step: assembles the normal equations and returns the cost.
     fn linearize(&mut self, problem: &Problem) -> Result<f64, OptimizeError> {
         let settings = self.settings;
-        self.analyse(problem, settings.factorization);
+        self.analyse(problem);
         let linear = self.linear.as_ref().expect("it was analysed");
         let structure = linear.structure();
         let (jacobians, kernel) = (settings.jacobians, settings.kernel);
@@ -296,20 +296,20 @@ impl Optimizer {
         }
     }
 
-    /// The linear solver of the settings for the graph of `problem`, analysed if necessary.
+    /// The linear solver for the graph of `problem`, analysed if necessary.
     pub fn linear_for(&mut self, problem: &Problem) -> &mut LinearSolver {
         self.factor_reuse.invalidate();
-        self.analyse(problem, self.settings.factorization)
+        self.analyse(problem)
     }
 
-    /// The linear solver for this graph, rebuilt if the graph or the factorization has changed.
-    fn analyse(&mut self, problem: &Problem, factorization: Factorization) -> &mut LinearSolver {
+    /// The linear solver for this graph, rebuilt if the graph has changed.
+    fn analyse(&mut self, problem: &Problem) -> &mut LinearSolver {
         self.covariances = None;
-        let fits = |linear: &LinearSolver| linear.fits(problem, factorization);
+        let fits = |linear: &LinearSolver| linear.fits(problem);
         if !self.linear.as_ref().is_some_and(fits) {
             self.factor_reuse.invalidate();
             let old = self.linear.take();
-            self.linear = Some(LinearSolver::renewed(problem, factorization, old));
+            self.linear = Some(LinearSolver::renewed(problem, old));
         }
         self.linear.as_mut().expect("it was analysed")
     }

@@ -2,7 +2,6 @@
 
 use crate::factor::JacobianModel;
 use crate::kernel::RobustKernel;
-use crate::linear::Factorization;
 
 /// Computation of a step from the linearized problem.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -61,8 +60,6 @@ pub struct Settings {
     /// Added to every diagonal entry of H, 1/m² and 1/rad²: keeps H invertible if the measurements leave a
     /// direction unconstrained.
     pub ridge: f64,
-    /// Which sparse Cholesky factorization to use.
-    pub factorization: Factorization,
     /// How often Gauss–Newton factorizes; damped steps always do.
     pub factor_use: FactorUse,
 }
@@ -77,7 +74,6 @@ impl Default for Settings {
             step_tolerance: 1e-6,
             decrease_tolerance: 0.0,
             ridge: 1e-9,
-            factorization: Factorization::Block,
             factor_use: FactorUse::EveryStep,
         }
     }

@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use pr_geom::SE2;
 use pr_optim::{
-    Between, Factorization, JacobianModel, OptimizeError, Optimizer, PreparedFactor, PreparedPose,
-    Problem, RobustKernel, Settings,
+    Between, JacobianModel, OptimizeError, Optimizer, PreparedFactor, PreparedPose, Problem,
+    RobustKernel, Settings,
 };
 
 /// Poses on a lawnmower path, four a line, with links to the line before; the second is fixed.
@@ -120,22 +120,6 @@ fn every_marginal_and_every_pair_equals_the_dense_inverse() {
         "far is less certain"
     );
     assert_eq!(marginals[1], Matrix3::zeros());
-}
-
-#[test]
-fn covariances_do_not_depend_on_the_factorization_of_the_steps() {
-    let problem = grid(12);
-    let mut block = Optimizer::new(Settings::default());
-    let mut faer = Optimizer::new(Settings {
-        factorization: Factorization::Faer,
-        ..Settings::default()
-    });
-    faer.step(&mut problem.clone()).unwrap();
-    assert_eq!(block.marginals(&problem), faer.marginals(&problem));
-    assert_eq!(
-        block.joint_covariance(&problem, 0, 11),
-        faer.joint_covariance(&problem, 0, 11)
-    );
 }
 
 #[test]

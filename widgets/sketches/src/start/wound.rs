@@ -6,7 +6,7 @@
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::{Rng, SE2};
 use pr_optim::init::chordal;
-use pr_optim::{Between, Factorization, JacobianModel, LinearSolver, Optimizer, Problem, Settings};
+use pr_optim::{Between, JacobianModel, LinearSolver, Optimizer, Problem, Settings};
 
 /// Poses of the ring.
 const POSES: usize = 12;
@@ -71,7 +71,7 @@ pub fn solved_from(poses: &[SE2]) -> Problem {
 /// # Panics
 /// Never: all poses of the ring are connected.
 pub fn chordal_start(ring: &Problem) -> Vec<SE2> {
-    let mut linear = LinearSolver::new(ring, Factorization::default());
+    let mut linear = LinearSolver::new(ring);
     chordal(ring, &mut linear).expect("the ring is connected")
 }
 

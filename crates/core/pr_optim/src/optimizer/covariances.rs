@@ -7,16 +7,16 @@ use crate::error::OptimizeError;
 use crate::factor::JacobianModel;
 use crate::incremental::{IncrementalCovariances, Prefix};
 use crate::kernel::RobustKernel;
-use crate::linear::{Factorization, LinearSolver};
+use crate::linear::LinearSolver;
 use crate::marginals::JointCovariance;
 use crate::problem::Problem;
 
 impl Optimizer {
     /// Covariance blocks of two nodes at the present poses, exact to first order.
     ///
-    /// Measurements are not weighted by a kernel and have their exact Jacobians. Uses this crate's factorization
-    /// whatever the settings. The factor is kept while the poses are unchanged and the graph grows only at its
-    /// end, by nodes with one measurement each and a few loop closures.
+    /// Measurements are not weighted by a kernel and have their exact Jacobians. The factor is kept
+    /// while the poses are unchanged and the graph grows only at its end, by nodes with one measurement each and a
+    /// few loop closures.
     ///
     /// # Errors
     /// If the normal equations are not positive definite.
@@ -68,8 +68,7 @@ impl Optimizer {
     /// # Errors
     /// If the normal equations are not positive definite.
     pub fn marginals(&mut self, problem: &Problem) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
-        let marginals = self.factorize_plain(problem)?.marginals(problem);
-        Ok(marginals.expect("the block factorization shows its factor"))
+        Ok(self.factorize_plain(problem)?.marginals(problem))
     }
 
     /// Covariance blocks of the two ends of every measurement, in the order of [`Problem::factors`].
@@ -82,17 +81,16 @@ impl Optimizer {
         &mut self,
         problem: &Problem,
     ) -> Result<Vec<JointCovariance>, OptimizeError> {
-        let measured = self.factorize_plain(problem)?.measured_covariances(problem);
-        Ok(measured.expect("the block factorization shows its factor"))
+        Ok(self.factorize_plain(problem)?.measured_covariances(problem))
     }
 
-    /// Factorizes H at the present poses by blocks, without kernel or damping.
+    /// Factorizes H at the present poses, without kernel or damping.
     pub(crate) fn factorize_plain(
         &mut self,
         problem: &Problem,
     ) -> Result<&mut LinearSolver, OptimizeError> {
         self.factor_reuse.invalidate();
-        self.analyse(problem, Factorization::Block);
+        self.analyse(problem);
         let linear = self.linear.as_mut().expect("it was analysed");
         self.equations.assemble(
             problem,

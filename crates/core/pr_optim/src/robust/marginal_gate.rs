@@ -44,9 +44,7 @@ impl<'a> MarginalGate<'a> {
         let joint = self
             .linear
             .joint_covariance(self.problem, factor.from, factor.to);
-        joint.map_or(f64::NAN, |joint| {
-            marginal_chi2(self.problem, factor, &joint, standing)
-        })
+        marginal_chi2(self.problem, factor, &joint, standing)
     }
 
     /// [`chi2`](Self::chi2) of every measurement, as part of the graph.
@@ -54,7 +52,7 @@ impl<'a> MarginalGate<'a> {
         let joints = self.linear.measured_covariances(self.problem);
         let factors = self.problem.factors().iter();
         factors
-            .zip(joints.unwrap_or_default())
+            .zip(joints)
             .map(|(factor, joint)| marginal_chi2(self.problem, factor, &joint, Standing::Kept))
             .collect()
     }
