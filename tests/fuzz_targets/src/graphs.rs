@@ -81,7 +81,7 @@ fn settings(bytes: &mut Unstructured<'_>) -> Result<Settings> {
     let positive = |bytes: &mut Unstructured<'_>| -> Result<f64> {
         Ok(tame(bytes)?.abs().max(1e-3) * scale(bytes)?)
     };
-    let mut settings = Settings {
+    Ok(Settings {
         method: if bytes.arbitrary()? {
             Method::GaussNewton
         } else {
@@ -103,13 +103,8 @@ fn settings(bytes: &mut Unstructured<'_>) -> Result<Settings> {
         step_tolerance: *bytes.choose(&[1e-6, 0.0, 1e-12])?,
         decrease_tolerance: *bytes.choose(&[0.0, 1e-8, 0.5])?,
         ridge: *bytes.choose(&[1e-9, 0.0, 1.0])?,
-        ..Settings::default()
-    };
-    // Uses no byte of its own, so found inputs keep their meaning.
-    if !settings.max_iterations.is_multiple_of(2) {
-        settings.factor_use = FactorUse::WhileStepsShrink;
-    }
-    Ok(settings)
+        factor_use: *bytes.choose(&[FactorUse::EveryStep, FactorUse::WhileStepsShrink])?,
+    })
 }
 
 fn pose(bytes: &mut Unstructured<'_>) -> Result<SE2> {
