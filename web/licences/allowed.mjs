@@ -13,6 +13,7 @@ export const SHIPPED = new Map([
   ['ISC', /permission to use, copy, modify,? and(\/or)? distribute this software/],
   ['BSD-2-Clause', /redistributions in binary form must reproduce/],
   ['BSD-3-Clause', /redistributions in binary form must reproduce.*neither the name/],
+  ['bzip2-1.0.6', /the origin of this software must not be misrepresented.*julian seward/],
   ['Unicode-3.0', /unicode license v3/],
   ['OFL-1.1', /sil open font license version 1\.1/],
   ['Bitstream-Vera', /bitstream vera fonts copyright/],

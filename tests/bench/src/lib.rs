@@ -1,9 +1,8 @@
 //! The workloads that `docs/performance.md` reports, each defined once.
 //!
-//! The same list runs natively (the binary of this crate), as WebAssembly in a browser (the exports below),
-//! under an instruction counter and under criterion (`tests/criterion`). Every workload keeps its result.
-//! This prevents the optimizer from removing it, and a digest of the result, taken outside of the timing,
-//! shows whether two builds compute the same.
+//! The same list runs natively (the binary of this crate), as WebAssembly in a browser (the exports below) and
+//! under an instruction counter. Every workload keeps its result. This prevents the optimizer from removing it, and
+//! a digest of the result, taken outside of the timing, shows whether two builds compute the same.
 
 pub mod chapter;
 pub mod frames;

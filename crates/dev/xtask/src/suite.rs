@@ -117,11 +117,10 @@ fn test_piece(piece: Piece, tools: &Tools) -> anyhow::Result<()> {
         Piece::Licences => run("Licences", program("node").arg("web/licences/check.mjs")),
         Piece::Native => {
             let mut compile = cargo();
-            // Benches are compiled only to lint them; `cargo bench` runs them. `--all-targets` would also
-            // link test programs of packages without tests.
+            // `--all-targets` would also link test programs of packages without tests.
             linting(&mut compile)?
                 .args(["test", "--quiet", "--no-run"])
-                .args(["--tests", "--benches", "--examples"]);
+                .args(["--tests", "--examples"]);
             run("Compiling and linting natively", &mut compile)?;
             let mut test = cargo();
             prepare(linting(&mut test)?.args(["test", "--quiet"]));

@@ -55,7 +55,7 @@ impl Packing {
                 .take(most_and_one)
                 .read_to_end(&mut content)
                 .map_err(|problem| describe(&problem))?,
-            Self::Bzip2 => bzip2_rs::DecoderReader::new(packed)
+            Self::Bzip2 => bzip2::read::BzDecoder::new(packed)
                 .take(most_and_one)
                 .read_to_end(&mut content)
                 .map_err(|problem| describe(&problem))?,
