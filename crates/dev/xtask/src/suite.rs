@@ -194,12 +194,12 @@ fn check_generated() -> anyhow::Result<()> {
 /// The programs that other parts of the suite run.
 const PROGRAMS: [&str; 5] = ["slam2d", "ch16", "ch16-mark", "states", "slam2d_bench"];
 
-/// Compiles the programs that are counted or compared with the module in Node: with the whole workspace and a bench,
+/// Compiles the programs that are counted or compared with the module in Node: with the whole workspace and an example,
 /// because the crates then have the same features as for the tests and are compiled once.
 fn compile_programs() -> anyhow::Result<()> {
     let mut compile = cargo();
     linting(&mut compile)?
-        .args(["build", "--quiet", "--bench=timings"])
+        .args(["build", "--quiet", "--example=write_your_own_matcher"])
         .args(PROGRAMS.map(|name| format!("--bin={name}")))
         .arg("--target-dir")
         .arg(root().join("target"));
