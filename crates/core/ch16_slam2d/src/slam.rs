@@ -34,7 +34,7 @@ mod window;
 
 use std::sync::Arc;
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix2, Matrix3};
 use pr_geom::SE2;
 use pr_optim::OptimizeError;
 
@@ -269,6 +269,15 @@ impl Slam {
     /// If the normal equations are not positive definite.
     pub fn keyframe_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
         self.mapper.keyframe_covariances()
+    }
+
+    /// Covariance of every keyframe's position error after an alignment of the trajectory to the true one, body frame,
+    /// m²: see [`PoseGraph::aligned_covariances`].
+    ///
+    /// # Errors
+    /// If the normal equations are not positive definite.
+    pub fn aligned_covariances(&mut self) -> Result<Vec<Matrix2<f64>>, OptimizeError> {
+        self.mapper.aligned_covariances()
     }
 
     /// Covariance of keyframe `to` in the frame of `from`, scaled as those of [`Slam::keyframe_covariances`].

@@ -1,6 +1,6 @@
 //! Exact covariances of the poses.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix2, Matrix2x3, Matrix3, Vector2, Vector3};
 use pr_optim::OptimizeError;
 
 use super::{NodeId, PoseGraph};
@@ -45,6 +45,73 @@ impl PoseGraph {
     /// If the normal equations are not positive definite.
     pub fn pose_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
         self.optimizer.marginals(&self.problem)
+    }
+
+    /// Covariance of the position error of every node that is left if all nodes are aligned to their true positions by
+    /// a rigid motion, by node, in the frame of its pose, m².
+    ///
+    /// Errors are judged after such an alignment, but [`pose_covariances`](Self::pose_covariances) are relative to
+    /// the fixed nodes: zero there, and large at the far end if the heading at the start is uncertain. With the
+    /// positions' covariance Σ and the rigid motions in the columns of G, the covariance is `Q Σ Qᵀ`,
+    /// `Q = 1 − G (GᵀG)⁻¹ Gᵀ`, whichever nodes are fixed: that of a free network. Förstner & Wrobel,
+    /// "Photogrammetric computer vision", 2016, §4.5.
+    ///
+    /// # Errors
+    /// If the normal equations are not positive definite.
+    pub fn aligned_covariances(&mut self) -> Result<Vec<Matrix2<f64>>, OptimizeError> {
+        let stated = self.pose_covariances()?;
+        let poses = self.problem.poses();
+        let count = poses.len() as f64;
+        let sum = poses
+            .iter()
+            .map(pr_geom::SE2::translation)
+            .sum::<Vector2<f64>>();
+        let centre = sum / count;
+        // G of each node, in the frame of its pose; orthogonal, because the rotation is about the centre.
+        let rigid: Vec<Matrix2x3<f64>> = poses
+            .iter()
+            .map(|pose| {
+                let arm = pose.translation() - centre;
+                let axes = [(1.0, 0.0), (0.0, 1.0), (-arm.y, arm.x)];
+                Matrix2x3::from_columns(&axes.map(|(x, y)| {
+                    let (x, y) = pose.rotation().unrotate(x, y);
+                    Vector2::new(x, y)
+                }))
+            })
+            .collect();
+        let spread_m2: f64 = rigid
+            .iter()
+            .map(|rigid| rigid.column(2).norm_squared())
+            .sum();
+        let turn = if spread_m2 > 0.0 {
+            1.0 / spread_m2
+        } else {
+            0.0
+        };
+        let weights = Matrix3::from_diagonal(&Vector3::new(1.0 / count, 1.0 / count, turn));
+        let functions: Vec<Matrix3<f64>> = rigid
+            .iter()
+            .map(|rigid| {
+                let mut of_pose = Matrix3::zeros();
+                of_pose.fixed_rows_mut::<2>(0).copy_from(rigid);
+                of_pose
+            })
+            .collect();
+        let with_motion = self.optimizer.covariances_with(&self.problem, &functions)?;
+        let of_motion: Matrix3<f64> = functions
+            .iter()
+            .zip(&with_motion)
+            .map(|(function, with_motion)| function.transpose() * with_motion)
+            .sum();
+        let aligned = rigid.iter().zip(&with_motion).zip(&stated);
+        Ok(aligned
+            .map(|((rigid, with_motion), stated)| {
+                let aligning = rigid * weights;
+                let cross = with_motion.fixed_rows::<2>(0) * aligning.transpose();
+                stated.fixed_view::<2, 2>(0, 0) - cross - cross.transpose()
+                    + aligning * of_motion * aligning.transpose()
+            })
+            .collect())
     }
 
     /// Exact covariance of the relative pose at every edge, in the order in which they were added.

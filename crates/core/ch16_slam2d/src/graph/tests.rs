@@ -145,6 +145,66 @@ fn a_closed_loop_makes_the_relative_pose_more_certain() {
     assert!((covariances[1][(0, 0)] - 1.0 / 100.0).abs() < 1e-7);
 }
 
+/// A bent path with a loop, of which one node is fixed.
+fn bent_path(fixed: usize) -> PoseGraph {
+    let poses: Vec<SE2> = (0..6)
+        .map(|k| SE2::new(f64::from(k), 0.2 * f64::from(k * k), 0.5 * f64::from(k)))
+        .collect();
+    let mut graph = PoseGraph::new();
+    let nodes: Vec<NodeId> = poses
+        .iter()
+        .enumerate()
+        .map(|(node, pose)| match node == fixed {
+            true => graph.add_fixed_node(*pose),
+            false => graph.add_node(*pose),
+        })
+        .collect();
+    let information = Matrix3::from_diagonal(&nalgebra::Vector3::new(900.0, 1600.0, 2500.0));
+    for (from, to) in [(0, 1), (1, 2), (2, 3), (3, 4), (4, 5), (0, 4)] {
+        let measured = poses[from].between(&poses[to]);
+        graph.add_edge(
+            nodes[from],
+            nodes[to],
+            measured,
+            information,
+            EdgeKind::Odometry,
+        );
+    }
+    graph
+}
+
+#[test]
+fn covariances_after_an_alignment_do_not_depend_on_the_fixed_node() {
+    let [first, last] = [0, 5].map(|fixed| bent_path(fixed).aligned_covariances().unwrap());
+    for (one, other) in first.iter().zip(&last) {
+        // 1e-7 of a variance of 1e-3: the ridge of 1e-9 on information of 1e3.
+        assert!((one - other).amax() < 1e-9, "{one} {other}");
+        assert!(one.cholesky().is_some(), "{one}");
+    }
+    let [first, last] = [0, 5].map(|fixed| bent_path(fixed).pose_covariances().unwrap());
+    assert!((first[5] - last[5]).amax() > 1e-3);
+}
+
+#[test]
+fn an_alignment_leaves_half_of_an_error_of_length_at_each_end() {
+    let mut graph = PoseGraph::new();
+    let from = graph.add_fixed_node(SE2::identity());
+    let to = graph.add_node(SE2::from_xy(2.0, 0.0));
+    let information = Matrix3::from_diagonal(&nalgebra::Vector3::new(25.0, 4.0, 9.0));
+    graph.add_edge(
+        from,
+        to,
+        SE2::from_xy(2.0, 0.0),
+        information,
+        EdgeKind::Odometry,
+    );
+    for covariance in graph.aligned_covariances().unwrap() {
+        // Half of 0.2 m along the line, and nothing across it, because a rotation aligns that. 1e-9: the ridge.
+        let expected = nalgebra::Matrix2::new(0.01, 0.0, 0.0, 0.0);
+        assert!((covariance - expected).amax() < 1e-9, "{covariance}");
+    }
+}
+
 /// A square with a closing error of 0.3 m and a tenth of a turn, and a loop.
 fn torn_square(graph: PoseGraph) -> PoseGraph {
     let mut graph = graph;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix2, Matrix3};
 use pr_geom::SE2;
 use pr_optim::{OptimizeError, StopReason};
 
@@ -408,6 +408,18 @@ impl Mapper {
         let stated = self.graph.pose_covariances()?;
         Ok(stated.into_iter().map(|stated| stated * factor).collect())
     }
+
+    /// Covariance of every keyframe's position after an alignment to the truth: see
+    /// [`PoseGraph::aligned_covariances`]; scaled as [`keyframe_covariances`](Self::keyframe_covariances).
+    ///
+    /// # Errors
+    /// If the normal equations are not positive definite.
+    pub(super) fn aligned_covariances(&mut self) -> Result<Vec<Matrix2<f64>>, OptimizeError> {
+        let factor = super::uncertainty::keyframe_factor(&self.graph);
+        let stated = self.graph.aligned_covariances()?;
+        Ok(stated.into_iter().map(|stated| stated * factor).collect())
+    }
+
     /// Covariance of keyframe `to` relative to `from`, in the frame of `to`, scaled as
     /// [`keyframe_covariances`](Self::keyframe_covariances).
     ///

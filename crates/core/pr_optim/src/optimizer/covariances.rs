@@ -84,6 +84,40 @@ impl Optimizer {
         Ok(self.factorize_plain(problem)?.measured_covariances(problem))
     }
 
+    /// Covariances of every node with three linear functions of all of them, by node; zero for fixed ones.
+    ///
+    /// The functions are `Σ Aᵢᵀ δᵢ`, with `Aᵢ` in `functions`, by node.
+    ///
+    /// # Errors
+    /// If the normal equations are not positive definite.
+    ///
+    /// # Panics
+    /// If there is not one block for each node.
+    pub fn covariances_with(
+        &mut self,
+        problem: &Problem,
+        functions: &[Matrix3<f64>],
+    ) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
+        assert_eq!(functions.len(), problem.node_count());
+        let linear = self.factorize_plain(problem)?;
+        let positions = linear.structure().position_of.clone();
+        let free = || (0..functions.len()).filter(|&node| !problem.fixed()[node]);
+        let row_of = |node: usize| 3 * positions[node] as usize;
+        let mut columns = vec![[0.0; 3]; 3 * positions.len()];
+        for node in free() {
+            for row in 0..3 {
+                columns[row_of(node) + row] =
+                    core::array::from_fn(|column| functions[node][(row, column)]);
+            }
+        }
+        linear.solve_columns(&mut columns);
+        let mut covariances = vec![Matrix3::zeros(); functions.len()];
+        for node in free() {
+            covariances[node] = Matrix3::from_fn(|row, column| columns[row_of(node) + row][column]);
+        }
+        Ok(covariances)
+    }
+
     /// Factorizes H at the present poses, without kernel or damping.
     pub(crate) fn factorize_plain(
         &mut self,

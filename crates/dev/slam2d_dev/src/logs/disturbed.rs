@@ -76,14 +76,17 @@ impl Bench {
         let Ok(aligned) = onto_truth(&trajectory, truth, Alignment::Se2) else {
             return Vec::new();
         };
-        let keyframes = run.quality().keyframes;
-        let errors = keyframes.iter().filter_map(|keyframe| {
+        let Some(slam) = run.slam_mut() else {
+            return Vec::new();
+        };
+        let Ok(covariances) = slam.aligned_covariances() else {
+            return Vec::new();
+        };
+        let errors = slam.keyframes().iter().filter_map(|keyframe| {
             let stamp_s = disturbance.recorded_stamp_s(&self.frames, keyframe.stamp_s);
-            let [x, y, theta] = keyframe.pose;
-            let pose = aligned * SE2::new(x, y, theta);
+            let pose = aligned * slam.graph().pose(keyframe.node);
             let error = pose.between(&truth.at(stamp_s, SLACK_S)?);
-            let [[xx, xy, _], [_, yy, _], _] = keyframe.covariance;
-            Some(is_within(&error, Matrix2::new(xx, xy, xy, yy)))
+            Some(is_within(&error, covariances[keyframe.node]))
         });
         errors.collect()
     }
