@@ -154,12 +154,21 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
                     Ok(None)
                 };
             }
-            let read =
-                next_line(&mut self.source, &mut self.line).map_err(|source| LogError::Io {
-                    name: self.name.clone(),
-                    position: FilePosition::Line(self.notes.lines + 1),
-                    source,
-                })?;
+            let read = match next_line(&mut self.source, &mut self.line) {
+                Ok(read) => read,
+                Err(source) => {
+                    let position = FilePosition::Line(self.notes.lines + 1);
+                    self.notes.ended_early = Some(format!(
+                        "{position} cannot be read: {source}; the rest of the file was not read. Copy it again from its source"
+                    ));
+                    let name = self.name.clone();
+                    return Err(LogError::Io {
+                        name,
+                        position,
+                        source,
+                    });
+                }
+            };
             let Some((end, bytes)) = read else {
                 self.is_done = true;
                 self.format.at_end(&mut self.notes);

@@ -104,6 +104,11 @@ impl LogNotes {
                 first.position, first.problem
             ));
         }
+        if self.first_broken.is_none()
+            && let Some(rest) = &self.ended_early
+        {
+            sentences.push(format!("{name}: {rest}"));
+        }
         if let Some(last) = &self.truncated {
             sentences.push(match last.position {
                 FilePosition::Line(line) => format!(

@@ -12,6 +12,8 @@ use crate::remark::{NO_ODOMETRY, Part, Remark};
 /// Lengths that differ by more than this factor are reported, if one of them is at least this long, m.
 const DIFFERENT: f64 = 1.25;
 const MIN_M: f64 = 5.0;
+/// Odometry stands still if it moves by less than this share of the motion on the map.
+const STILL: f64 = 0.1;
 
 /// The odometry at each keyframe: between keyframes the jitter of a robot at rest adds no length.
 #[derive(Clone, Debug, Default)]
@@ -42,27 +44,62 @@ impl PathLengths {
     /// A remark if the lengths differ.
     #[must_use]
     pub fn remark(&self, slam: &Slam) -> Option<Remark> {
-        let (mut on_map_m, mut by_odometry_m) = (0.0, 0.0);
         let poses = slam.graph().poses();
-        for (odometry, poses) in self.odometry.windows(2).zip(poses.windows(2)) {
-            if let [Some(before), Some(after)] = odometry {
-                by_odometry_m += position_error_m(before, after);
-                on_map_m += position_error_m(&poses[0], &poses[1]);
-            }
+        // The keyframe at its end, the length on the map, and that by odometry.
+        let steps: Vec<(usize, f64, f64)> = self
+            .odometry
+            .windows(2)
+            .zip(poses.windows(2))
+            .enumerate()
+            .filter_map(|(before, (odometry, poses))| {
+                let [from, to] = [odometry[0]?, odometry[1]?];
+                let on_map_m = position_error_m(&poses[0], &poses[1]);
+                Some((before + 1, on_map_m, position_error_m(&from, &to)))
+            })
+            .collect();
+        let (on_map_m, by_odometry_m) = lengths(&steps);
+        if !differ((on_map_m, by_odometry_m)) {
+            return None;
         }
-        let (shorter_m, longer_m) = if on_map_m < by_odometry_m {
-            (on_map_m, by_odometry_m)
-        } else {
-            (by_odometry_m, on_map_m)
-        };
-        (longer_m >= MIN_M && longer_m > DIFFERENT * shorter_m).then(|| {
+        let (still, moving): (Vec<_>, Vec<_>) = steps
+            .iter()
+            .partition(|(_, on_map_m, by_odometry_m)| *by_odometry_m < STILL * on_map_m);
+        let (still_m, _) = lengths(&still);
+        if let Some((first, ..)) = still.first()
+            && still_m >= MIN_M
+            && !moving.is_empty()
+            && !differ(lengths(&moving))
+        {
+            let stamp_s = slam
+                .keyframes()
+                .get(*first)
+                .map(|keyframe| keyframe.stamp_s);
             let text = format!(
-                "the path is {on_map_m:.1} m long on the map and {by_odometry_m:.1} m by odometry, which is {}; one of them is wrong; compare with a map made with {NO_ODOMETRY}",
-                factor(by_odometry_m / on_map_m.max(1e-3))
+                "odometry stands still for {still_m:.1} m of the path on the map{}, and agrees with it elsewhere; check the encoders and the driver of the wheels, or map with {NO_ODOMETRY}",
+                stamp_s.map_or(String::new(), |stamp_s| format!(
+                    ", first before {stamp_s:.2} s"
+                ))
             );
-            Remark::wrong(Part::Odometry, text).with_option(NO_ODOMETRY)
-        })
+            return Some(Remark::wrong(Part::Odometry, text).with_option(NO_ODOMETRY));
+        }
+        let text = format!(
+            "the path is {on_map_m:.1} m long on the map and {by_odometry_m:.1} m by odometry, which is {}; one of them is wrong; compare with a map made with {NO_ODOMETRY}",
+            factor(by_odometry_m / on_map_m.max(1e-3))
+        );
+        Some(Remark::wrong(Part::Odometry, text).with_option(NO_ODOMETRY))
     }
+}
+
+/// Lengths on the map and by odometry.
+fn lengths(steps: &[(usize, f64, f64)]) -> (f64, f64) {
+    steps
+        .iter()
+        .fold((0.0, 0.0), |sum, step| (sum.0 + step.1, sum.1 + step.2))
+}
+
+fn differ((on_map_m, by_odometry_m): (f64, f64)) -> bool {
+    let (shorter_m, longer_m) = (on_map_m.min(by_odometry_m), on_map_m.max(by_odometry_m));
+    longer_m >= MIN_M && longer_m > DIFFERENT * shorter_m
 }
 
 /// A ratio of lengths by odometry to those by scans, with the unit that explains it.
@@ -109,5 +146,29 @@ mod tests {
         assert!(feet.contains(": the ranges may be in feet"), "{feet}");
         let said = sentence(1.5).unwrap();
         assert!(said.contains("8.0 m long on the map and 12.0 m"), "{said}");
+    }
+
+    #[test]
+    fn odometry_that_stands_still_half_way_is_named_and_a_robot_at_rest_is_not() {
+        let mut slam = Slam::new(SlamConfig::default());
+        slam.graph_mut().add_fixed_node(SE2::identity());
+        for number in 1..20_u8 {
+            slam.graph_mut()
+                .add_node(SE2::from_xy(f64::from(number), 0.0));
+        }
+        let sentence = |last: u8, scale: f64| {
+            let mut lengths = PathLengths::default();
+            for number in 0..20_u8 {
+                let at = SE2::from_xy(scale * f64::from(number.min(last)), 0.0);
+                lengths.add(usize::from(number), Some(at));
+            }
+            lengths.remark(&slam).map(|remark| remark.text)
+        };
+        let said = sentence(9, 1.0).unwrap();
+        assert!(said.contains("stands still for 10.0 m"), "{said}");
+        // Wheels of the wrong size are the larger fault, and 3 m are too few.
+        let said = sentence(9, 2.0).unwrap_or_default();
+        assert!(!said.contains("stands still"), "{said}");
+        assert_eq!(sentence(16, 1.0), None);
     }
 }

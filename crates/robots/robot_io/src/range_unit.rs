@@ -43,10 +43,31 @@ pub fn in_metres(scan: &mut LaserScan) -> Option<String> {
     for range in &mut scan.ranges_m {
         *range *= 1e-3;
     }
-    for limit in [&mut scan.range_min_m, &mut scan.range_max_m] {
-        if *limit > LONGEST_M {
-            *limit *= 1e-3;
-        }
-    }
+    (scan.range_min_m, scan.range_max_m) = limits_in_metres(scan.range_min_m, scan.range_max_m);
     Some(sentence)
+}
+
+/// The shortest and the longest range of a sensor whose ranges are in millimetres: if the longest is, both are.
+pub fn limits_in_metres(min: f64, max: f64) -> (f64, f64) {
+    let is_long = |limit: f64| limit.is_finite() && limit > LONGEST_M;
+    let scale = |is_millimetres: bool| if is_millimetres { 1e-3 } else { 1.0 };
+    (
+        min * scale(is_long(min) || is_long(max)),
+        max * scale(is_long(max)),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_in_millimetres_are_converted_together() {
+        let [millimetres, metres, unlimited] =
+            [(50.0, 12000.0), (0.05, 12.0), (0.05, f64::INFINITY)]
+                .map(|(min, max)| limits_in_metres(min, max));
+        assert_eq!(millimetres, (0.05, 12.0));
+        assert_eq!(metres, (0.05, 12.0));
+        assert_eq!(unlimited, (0.05, f64::INFINITY));
+    }
 }

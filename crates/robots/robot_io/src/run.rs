@@ -3,6 +3,7 @@
 mod record;
 mod robots;
 mod sentences;
+mod stuck;
 
 pub use sentences::late_scans;
 
@@ -21,6 +22,7 @@ use crate::session::{MappedGraph, Session, selected_scan_poses};
 use crate::settings::{Setting, SettingError};
 use crate::trajectory::{StampedPose, Trajectory};
 use record::Record;
+use stuck::StuckOdometry;
 
 /// Scans with a lower score are reported.
 const POOR_SCORE: f64 = 0.5;
@@ -41,6 +43,7 @@ pub struct LogRun {
     held: Vec<LoopAttempt>,
     links: Vec<LoopVerification>,
     poor: Vec<PoorFit>,
+    stuck: StuckOdometry,
     /// Why the map does not follow its newest loops.
     unsolved: Option<LoopRejection>,
     lengths: PathLengths,
@@ -79,6 +82,7 @@ impl LogRun {
             held: Vec::new(),
             links: Vec::new(),
             poor: Vec::new(),
+            stuck: StuckOdometry::default(),
             unsolved: None,
             lengths: PathLengths::default(),
             late: 0,
@@ -207,7 +211,10 @@ impl LogRun {
             None => self.sensor = Some(sensor),
         }
         let score = report.registration.and_then(|found| found.matched.score);
-        if let Some(score) = score.filter(|score| *score < POOR_SCORE) {
+        let poor = score.filter(|score| *score < POOR_SCORE);
+        let stands = motion.is_some_and(|motion| motion == SE2::identity());
+        self.stuck.add(log.stamp_s, stands, poor.is_some());
+        if let Some(score) = poor {
             self.poor.push(PoorFit {
                 stamp_s: log.stamp_s,
                 score,

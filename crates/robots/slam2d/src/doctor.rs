@@ -16,7 +16,7 @@ use command_line::output::{print_json, say};
 /// Check a recording: print sensor, odometry, mounting, clocks and file, each with ✓, ! or ✗.
 ///
 /// The exit code is 0 if everything is right, 1 if something was repaired or needs attention, and 2 if the recording cannot be
-/// mapped.
+/// mapped, or not to its end.
 #[derive(Args, Clone, Debug)]
 pub struct DoctorArgs {
     /// The log, or the folder of a ROS recording.
@@ -39,11 +39,19 @@ pub fn run(args: &DoctorArgs) -> anyhow::Result<ExitCode> {
     let (mut reader, mut progress) = open_compared(&args.log, &args.parts, &args.options.0)?;
     let mut checkup = Checkup::default();
     let mut run = LogRun::default();
-    while let Some(frame) = reader.next_frame()? {
-        checkup.add(&frame);
-        progress.report(checkup.scans());
-        run.step(frame);
-    }
+    let is_whole = loop {
+        match reader.next_frame() {
+            Ok(Some(frame)) => {
+                checkup.add(&frame);
+                progress.report(checkup.scans());
+                run.step(frame);
+            }
+            Ok(None) => break true,
+            // What is wrong is in the notes.
+            Err(_) if checkup.scans() > 0 => break false,
+            Err(problem) => return Err(problem.into()),
+        }
+    };
     run.finish();
     progress.end();
     let name = args.log.file_name().unwrap_or(args.log.as_os_str());
@@ -55,7 +63,7 @@ pub fn run(args: &DoctorArgs) -> anyhow::Result<ExitCode> {
     } else {
         say!("{}", diagnosis.text().trim_end());
     }
-    Ok(ExitCode::from(if !diagnosis.can_be_mapped() {
+    Ok(ExitCode::from(if !is_whole || !diagnosis.can_be_mapped() {
         2
     } else {
         u8::from(diagnosis.verdict != Condition::Good)

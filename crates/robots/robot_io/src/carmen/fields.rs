@@ -109,7 +109,12 @@ pub fn laser_message(
     fields.number("accuracy")?;
     fields.number("remission_mode")?;
     let ranges_m = fields.list("readings")?;
-    fields.list("remissions")?;
+    fields.list("remissions").map_err(|problem| {
+        let stated = ranges_m.len();
+        format!(
+            "{problem}; the line may have fewer or more than the {stated} readings that it states"
+        )
+    })?;
     if ranges_m.is_empty() {
         return Err("a scan must have readings, and this one has none".to_owned());
     }

@@ -8,7 +8,7 @@ use core::f64::consts::{PI, TAU};
 
 use ch16_slam2d::scan::LaserScan;
 
-use crate::range_unit::{LONGEST_M, millimetres};
+use crate::range_unit::{limits_in_metres, millimetres};
 
 /// A sweep is at most a turn, up to the rounding of 32-bit floats and one extra beam.
 const FULL_TURN: f64 = 1.02 * TAU;
@@ -234,14 +234,11 @@ impl ScanFields {
         let of_millimetres = millimetres(&self.ranges_m);
         let scale = if of_millimetres.is_some() { 1e-3 } else { 1.0 };
         remarks.extend(of_millimetres);
-        let limit = |value: f64| {
-            if value > LONGEST_M && scale != 1.0 {
-                value * scale
-            } else {
-                value
-            }
+        let (min, max) = if scale == 1.0 {
+            (self.range_min, self.range_max)
+        } else {
+            limits_in_metres(self.range_min, self.range_max)
         };
-        let (min, max) = (limit(self.range_min), limit(self.range_max));
         let range_min_m = if positive(min) { min } else { 0.0 };
         let range_max_m = if max > 0.0 { max } else { f64::INFINITY };
         if range_max_m <= range_min_m {

@@ -116,10 +116,12 @@ impl LogRun {
         rejected.or_else(|| is_blind.then(|| NOTHING_SEEN.to_owned()))
     }
 
-    /// A remark if the path on the map and that of the odometry have different lengths.
+    /// A remark if odometry stands still while the robot drives, or if the path on the map and that of the odometry have
+    /// different lengths.
     #[must_use]
     pub fn path_remark(&self) -> Option<Remark> {
-        self.slam().and_then(|slam| self.lengths.remark(slam))
+        let lengths = || self.slam().and_then(|slam| self.lengths.remark(slam));
+        self.stuck.remark().or_else(lengths)
     }
 
     /// Message on odometry that never moved; `None` if it did.
