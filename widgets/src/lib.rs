@@ -3,6 +3,7 @@
 //! Each module has the same parts: `spec` contains the texts and the parameters, `model` the logic, `view`
 //! the layout.
 
+mod from_modules;
 mod icp_variant;
 mod loop_arc;
 mod pose_handle;

@@ -29,15 +29,16 @@ use log_messages::{LocalizedScan, MapperOrder, Stage};
 use widget_kit::disclosure::Disclosure;
 use widget_kit::host_messages::Delivery;
 use widget_kit::model::{
-    Activity, Assessment, Handle, Model, Motion, Outcome, Table, TablePlace, Timeline,
-    TimelineMark, press_preset,
+    Activity, Assessment, Handle, Model, Motion, Table, TablePlace, Timeline, TimelineMark,
+    press_preset,
 };
 use widget_kit::param::ParamError;
 use widget_kit::playback::{Playback, SPEED};
-use widget_kit::scene::{Layer, Scene};
-use widget_kit::spec::{DEFAULTS, WidgetSpec};
+use widget_kit::scene::Layer;
+use widget_kit::spec::DEFAULTS;
 use widget_kit::values::{Changed, Values};
 
+use crate::from_modules::from_modules;
 use crate::w16_10_own_robot::spec::{
     DROP, KEYFRAME, KEYS, LOOP, MARKED, MAX_KEYFRAMES, MAX_SCANS, PARAMS, POOR, SCAN, SPEC,
     STARTS_HERE, WITHOUT_LOG,
@@ -211,13 +212,7 @@ impl OwnRobot {
 }
 
 impl Model for OwnRobot {
-    fn spec(&self) -> &'static WidgetSpec {
-        &SPEC
-    }
-
-    fn values(&self) -> &Values {
-        &self.values
-    }
+    from_modules!();
 
     fn disclosure(&self) -> Disclosure {
         let opening = match self.robot.progress.stage {
@@ -312,18 +307,6 @@ impl Model for OwnRobot {
             .collect()
     }
 
-    fn scene(&self) -> Scene {
-        picture::scene(self)
-    }
-
-    fn outcome(&self) -> Outcome {
-        texts::outcome(self)
-    }
-
-    fn summary(&self) -> String {
-        texts::summary(self)
-    }
-
     fn timeline(&self) -> Option<Timeline> {
         if self.disclosure() == Disclosure::First(WITHOUT_LOG) {
             return None;
@@ -355,10 +338,6 @@ impl Model for OwnRobot {
                 .take(MAX_MARKS)
                 .collect(),
         })
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        tables::all(self)
     }
 
     fn shown_tables(&self) -> Vec<Table> {

@@ -20,12 +20,11 @@ mod tables;
 mod texts;
 
 use ch16_lab::procrustes::{Handedness, Pairs, Procrustes};
-use widget_kit::model::{Handle, Model, Outcome, Table, Timeline, TimelineMark};
+use widget_kit::model::{Handle, Model, Table, Timeline, TimelineMark};
 use widget_kit::playback_param::{PlaybackParam, PlayedValues};
-use widget_kit::scene::Scene;
-use widget_kit::spec::WidgetSpec;
 use widget_kit::values::Values;
 
+use crate::from_modules::from_modules;
 use crate::w16_11_procrustes::spec::{PARAMS, SPEC, TRIED, TURN, WHOLE_TURN_DEG};
 
 /// Names of the panels.
@@ -81,13 +80,7 @@ impl ProcrustesTrace {
 }
 
 impl Model for ProcrustesTrace {
-    fn spec(&self) -> &'static WidgetSpec {
-        &SPEC
-    }
-
-    fn values(&self) -> &Values {
-        &self.values
-    }
+    from_modules!();
 
     fn played(&mut self) -> Option<PlayedValues<'_>> {
         Some(PlayedValues {
@@ -105,18 +98,6 @@ impl Model for ProcrustesTrace {
         }
     }
 
-    fn scene(&self) -> Scene {
-        picture::scene(self)
-    }
-
-    fn outcome(&self) -> Outcome {
-        texts::outcome(self)
-    }
-
-    fn summary(&self) -> String {
-        texts::summary(self)
-    }
-
     fn timeline(&self) -> Option<Timeline> {
         let mark = |kind: Handedness| TimelineMark {
             at: texts::whole_degrees(self.problem.best(kind).theta_rad),
@@ -127,10 +108,6 @@ impl Model for ProcrustesTrace {
             self.playback
                 .timeline(WHOLE_TURN_DEG, vec![mark(self.tried())]),
         )
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        tables::all(self)
     }
 
     fn shown_tables(&self) -> Vec<Table> {

@@ -23,12 +23,11 @@ mod texts;
 use ch16_lab::jacobians::{Descent, Iterate, RingConfig, descend, optimum, ring};
 use pr_geom::{SE2, math};
 use widget_kit::chart::{dragged_to, grab_now};
-use widget_kit::model::{Handle, Model, Outcome, Table, Timeline, TimelineMark};
+use widget_kit::model::{Handle, Model, Timeline, TimelineMark};
 use widget_kit::playback_param::{PlaybackParam, PlayedValues};
-use widget_kit::scene::Scene;
-use widget_kit::spec::WidgetSpec;
 use widget_kit::values::Values;
 
+use crate::from_modules::from_modules;
 use crate::w16_12_jacobians::spec::{
     BIAS, BIAS_STEP_DEG, CURVE, LEAST_BIAS_DEG, MAX_BIAS_DEG, MAX_STEPS, PARAMS, SPEC, STEPS,
 };
@@ -150,13 +149,7 @@ fn last_position(poses: &[SE2]) -> [f64; 2] {
 }
 
 impl Model for WrongJacobians {
-    fn spec(&self) -> &'static WidgetSpec {
-        &SPEC
-    }
-
-    fn values(&self) -> &Values {
-        &self.values
-    }
+    from_modules!();
 
     fn played(&mut self) -> Option<PlayedValues<'_>> {
         Some(PlayedValues {
@@ -171,18 +164,6 @@ impl Model for WrongJacobians {
         if changed.is_none_or(|id| ![STEPS.id, CURVE.id].contains(&id)) {
             self.solved = Solved::new(&self.values);
         }
-    }
-
-    fn scene(&self) -> Scene {
-        picture::scene(self)
-    }
-
-    fn outcome(&self) -> Outcome {
-        texts::outcome(self)
-    }
-
-    fn summary(&self) -> String {
-        texts::SUMMARY.to_owned()
     }
 
     fn timeline(&self) -> Option<Timeline> {
@@ -201,10 +182,6 @@ impl Model for WrongJacobians {
                     .collect(),
             ),
         )
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        tables::all(self)
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {

@@ -33,16 +33,16 @@ use ch16_slam2d::icp::{IcpTrace, IcpWorkspace, Pair, correspondences};
 use widget_kit::disclosure::{Disclosure, Opening};
 use widget_kit::host_messages::Delivery;
 use widget_kit::model::{
-    Activity, Assessment, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark,
-    press_preset,
+    Activity, Assessment, Handle, Model, Motion, Table, Timeline, TimelineMark, press_preset,
 };
 use widget_kit::param::{MORE, ParamError};
 use widget_kit::playback::Playback;
 use widget_kit::playback::SPEED;
-use widget_kit::scene::{Axis, Scene};
-use widget_kit::spec::{DEFAULTS, WidgetSpec};
+use widget_kit::scene::Axis;
+use widget_kit::spec::DEFAULTS;
 use widget_kit::values::{Changed, Values};
 
+use crate::from_modules::from_modules;
 use crate::w16_1_basin_explorer::spec::{AXIS, DX, DY, EDGE, HEADING, PATHS, Phase};
 use crate::w16_1_basin_explorer::spec::{EDGES, ITERATION, OFFSET_SPAN_M, PARAMS, SPEC, SWEEP};
 use basins::Basins;
@@ -266,13 +266,7 @@ impl BasinExplorer {
 }
 
 impl Model for BasinExplorer {
-    fn spec(&self) -> &'static WidgetSpec {
-        &SPEC
-    }
-
-    fn values(&self) -> &Values {
-        &self.values
-    }
+    from_modules!();
 
     fn disclosure(&self) -> Disclosure {
         let opening = match self.values.get(&EDGE) {
@@ -382,18 +376,6 @@ impl Model for BasinExplorer {
         }
     }
 
-    fn scene(&self) -> Scene {
-        picture::scene(self)
-    }
-
-    fn outcome(&self) -> Outcome {
-        texts::outcome(self)
-    }
-
-    fn summary(&self) -> String {
-        texts::summary(self)
-    }
-
     fn timeline(&self) -> Option<Timeline> {
         let last = self.last() as f64;
         let minimum = self.run.outcome.ending;
@@ -412,10 +394,6 @@ impl Model for BasinExplorer {
                 standing,
             }],
         })
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        tables::all(self)
     }
 
     fn shown_tables(&self) -> Vec<Table> {

@@ -27,14 +27,13 @@ mod texts;
 use ch16_lab::lap::{LapRecord, NewestLap, NewestStep, RegistrationView, TickReport};
 use pr_sim::World;
 use widget_kit::chart::{dragged_to, grab_now};
-use widget_kit::model::{Activity, Handle, Model, Motion, Outcome, Table, Timeline, press_preset};
+use widget_kit::model::{Activity, Handle, Model, Motion, Table, Timeline, press_preset};
 use widget_kit::param::ParamError;
 use widget_kit::playback::Playback;
 use widget_kit::playback::SPEED;
-use widget_kit::scene::Scene;
-use widget_kit::spec::WidgetSpec;
 use widget_kit::values::{Changed, Values};
 
+use crate::from_modules::from_modules;
 use crate::w16_4_control_room::spec::{PART, SPEC, TICK};
 use grid::GridView;
 use history::History;
@@ -188,13 +187,7 @@ impl ControlRoom {
 }
 
 impl Model for ControlRoom {
-    fn spec(&self) -> &'static WidgetSpec {
-        &SPEC
-    }
-
-    fn values(&self) -> &Values {
-        &self.values
-    }
+    from_modules!();
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         if self.values.set(SPEC.id, id, value)? == Changed::No {
@@ -268,18 +261,6 @@ impl Model for ControlRoom {
         self.work()
     }
 
-    fn scene(&self) -> Scene {
-        picture::scene(self)
-    }
-
-    fn outcome(&self) -> Outcome {
-        texts::outcome(self)
-    }
-
-    fn summary(&self) -> String {
-        texts::summary(self)
-    }
-
     fn timeline(&self) -> Option<Timeline> {
         Some(Timeline {
             param: "t",
@@ -287,10 +268,6 @@ impl Model for ControlRoom {
             playing: self.playback.is_playing(),
             marks: log::marks(&self.events),
         })
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        tables::all(self)
     }
 
     fn shown_tables(&self) -> Vec<Table> {

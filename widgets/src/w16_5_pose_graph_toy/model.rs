@@ -24,12 +24,13 @@ mod tables;
 mod texts;
 
 use widget_kit::disclosure::Disclosure;
-use widget_kit::model::{Handle, Model, Outcome, Table, Timeline, TimelineMark};
+use widget_kit::model::{Handle, Model, Timeline, TimelineMark};
 use widget_kit::playback_param::{PlaybackParam, PlayedValues};
-use widget_kit::scene::{Axis, Scene};
-use widget_kit::spec::{PLAY, WidgetSpec};
+use widget_kit::scene::Axis;
+use widget_kit::spec::PLAY;
 use widget_kit::values::Values;
 
+use crate::from_modules::from_modules;
 use crate::w16_5_pose_graph_toy::spec::{GRAPH, MAX_POSES, MOVED_IDS, PARAMS, SPEC, STEPS};
 use course::{GraphState, SolverRun};
 use pr_geom::SE2;
@@ -103,13 +104,7 @@ impl PoseGraphToy {
 }
 
 impl Model for PoseGraphToy {
-    fn spec(&self) -> &'static WidgetSpec {
-        &SPEC
-    }
-
-    fn values(&self) -> &Values {
-        &self.values
-    }
+    from_modules!();
 
     fn played(&mut self) -> Option<PlayedValues<'_>> {
         Some(PlayedValues {
@@ -126,18 +121,6 @@ impl Model for PoseGraphToy {
         }
     }
 
-    fn scene(&self) -> Scene {
-        picture::scene(self)
-    }
-
-    fn outcome(&self) -> Outcome {
-        texts::outcome(self)
-    }
-
-    fn summary(&self) -> String {
-        texts::summary(self)
-    }
-
     fn timeline(&self) -> Option<Timeline> {
         let last = self.course.last() as f64;
         Some(self.playback.timeline(
@@ -151,10 +134,6 @@ impl Model for PoseGraphToy {
                 standing: texts::standing(self),
             }],
         ))
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        tables::all(self)
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {

@@ -25,13 +25,12 @@ use ch16_slam2d::icp::IcpWorkspace;
 use ch16_slam2d::search::SearchGoal;
 use pr_geom::{SE2, math};
 use widget_kit::model::{
-    Activity, Assessment, Handle, Model, Outcome, Table, Timeline, TimelineMark, advance_played,
+    Activity, Assessment, Handle, Model, Table, Timeline, TimelineMark, advance_played,
 };
 use widget_kit::playback_param::{PlaybackParam, PlayedValues};
-use widget_kit::scene::Scene;
-use widget_kit::spec::WidgetSpec;
 use widget_kit::values::Values;
 
+use crate::from_modules::from_modules;
 use crate::w16_6_whole_window::spec::{
     DX, DY, HEADING, OFFSET_SPAN_M, PARAMS, PROGRESS, SEED, SPEC,
 };
@@ -186,13 +185,7 @@ impl WholeWindow {
 }
 
 impl Model for WholeWindow {
-    fn spec(&self) -> &'static WidgetSpec {
-        &SPEC
-    }
-
-    fn values(&self) -> &Values {
-        &self.values
-    }
+    from_modules!();
 
     fn played(&mut self) -> Option<PlayedValues<'_>> {
         let searched = self.boxes_taken();
@@ -246,18 +239,6 @@ impl Model for WholeWindow {
         searched
     }
 
-    fn scene(&self) -> Scene {
-        picture::scene(self)
-    }
-
-    fn outcome(&self) -> Outcome {
-        texts::outcome(self)
-    }
-
-    fn summary(&self) -> String {
-        texts::summary(self)
-    }
-
     fn timeline(&self) -> Option<Timeline> {
         let moments = self.search_task.window.moments();
         let mut marks = Vec::new();
@@ -283,10 +264,6 @@ impl Model for WholeWindow {
             mark(self.last(), texts::verdict(self), standing);
         }
         Some(self.playback.timeline(self.last() as f64, marks))
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        tables::all(self)
     }
 
     fn shown_tables(&self) -> Vec<Table> {

@@ -21,12 +21,11 @@ mod tables;
 mod texts;
 
 use ch16_lab::lap::LapConfig;
-use widget_kit::model::{Activity, Handle, Model, Outcome, Table, Timeline, TimelineMark};
+use widget_kit::model::{Activity, Handle, Model, Table, Timeline, TimelineMark};
 use widget_kit::playback_param::{PlaybackParam, PlayedValues};
-use widget_kit::scene::Scene;
-use widget_kit::spec::WidgetSpec;
 use widget_kit::values::Values;
 
+use crate::from_modules::from_modules;
 use crate::w16_7_place_recognition::spec::{
     CALLED, LAST_OLD, MOST_ALIKE, NEWEST, OLDER, PARAMS, SPEC, TURN,
 };
@@ -155,13 +154,7 @@ impl PlaceRecognition {
 }
 
 impl Model for PlaceRecognition {
-    fn spec(&self) -> &'static WidgetSpec {
-        &SPEC
-    }
-
-    fn values(&self) -> &Values {
-        &self.values
-    }
+    from_modules!();
 
     fn played(&mut self) -> Option<PlayedValues<'_>> {
         Some(PlayedValues {
@@ -195,18 +188,6 @@ impl Model for PlaceRecognition {
         Activity::Busy
     }
 
-    fn scene(&self) -> Scene {
-        picture::scene(self)
-    }
-
-    fn outcome(&self) -> Outcome {
-        texts::outcome(self)
-    }
-
-    fn summary(&self) -> String {
-        texts::summary(self)
-    }
-
     fn timeline(&self) -> Option<Timeline> {
         let last = self.last() as f64;
         Some(self.playback.timeline(
@@ -217,10 +198,6 @@ impl Model for PlaceRecognition {
                 standing: texts::standing(self),
             }],
         ))
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        tables::all(self)
     }
 
     fn shown_tables(&self) -> Vec<Table> {

@@ -22,12 +22,11 @@ mod texts;
 
 use ch16_lab::moving_box::{BoxMethods, BoxScene};
 use ch16_slam2d::icp::{IcpSummary, IcpTrace, IcpWorkspace};
-use widget_kit::model::{Activity, Handle, Model, Outcome, Table, Timeline, TimelineMark};
+use widget_kit::model::{Activity, Handle, Model, Timeline, TimelineMark};
 use widget_kit::playback_param::{PlaybackParam, PlayedValues};
-use widget_kit::scene::Scene;
-use widget_kit::spec::WidgetSpec;
 use widget_kit::values::Values;
 
+use crate::from_modules::from_modules;
 use crate::w16_8_moving_box::spec::{
     ITERATION, MAX_ITERATIONS, MAX_SHARE, METHOD, MOVED, MOVED_M, MOVED_Y, PARAMS, SHARE, SPEC,
 };
@@ -123,13 +122,7 @@ fn register(scene: &BoxScene, methods: &BoxMethods, workspace: &mut IcpWorkspace
 }
 
 impl Model for MovingBox {
-    fn spec(&self) -> &'static WidgetSpec {
-        &SPEC
-    }
-
-    fn values(&self) -> &Values {
-        &self.values
-    }
+    from_modules!();
 
     fn played(&mut self) -> Option<PlayedValues<'_>> {
         Some(PlayedValues {
@@ -161,18 +154,6 @@ impl Model for MovingBox {
         Activity::Idle
     }
 
-    fn scene(&self) -> Scene {
-        picture::scene(self)
-    }
-
-    fn outcome(&self) -> Outcome {
-        texts::outcome(self)
-    }
-
-    fn summary(&self) -> String {
-        texts::summary(self)
-    }
-
     fn timeline(&self) -> Option<Timeline> {
         let last = self.last() as f64;
         Some(self.playback.timeline(
@@ -183,10 +164,6 @@ impl Model for MovingBox {
                 standing: texts::standing(self),
             }],
         ))
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        tables::all(self)
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {

@@ -22,12 +22,11 @@ mod texts;
 
 use ch16_lab::relocalization::{LocalizationRun, Moment};
 use pr_geom::SE2;
-use widget_kit::model::{Activity, Handle, Model, Outcome, Table, Timeline, TimelineMark};
+use widget_kit::model::{Activity, Handle, Model, Table, Timeline, TimelineMark};
 use widget_kit::playback_param::{PlaybackParam, PlayedValues};
-use widget_kit::scene::Scene;
-use widget_kit::spec::WidgetSpec;
 use widget_kit::values::Values;
 
+use crate::from_modules::from_modules;
 use crate::w16_9_relocalization::spec::{HEADING, MOMENT, PARAMS, PLAN_M, SPEC, START_X, START_Y};
 use known::{Known, Work};
 
@@ -121,13 +120,7 @@ impl Relocalization {
 }
 
 impl Model for Relocalization {
-    fn spec(&self) -> &'static WidgetSpec {
-        &SPEC
-    }
-
-    fn values(&self) -> &Values {
-        &self.values
-    }
+    from_modules!();
 
     fn played(&mut self) -> Option<PlayedValues<'_>> {
         Some(PlayedValues {
@@ -172,18 +165,6 @@ impl Model for Relocalization {
         Activity::Busy
     }
 
-    fn scene(&self) -> Scene {
-        picture::scene(self)
-    }
-
-    fn outcome(&self) -> Outcome {
-        texts::outcome(self)
-    }
-
-    fn summary(&self) -> String {
-        texts::summary(self)
-    }
-
     fn timeline(&self) -> Option<Timeline> {
         let mut marks = Vec::new();
         if let Some((_, run)) = self.finished()
@@ -197,10 +178,6 @@ impl Model for Relocalization {
             });
         }
         Some(self.playback.timeline(self.last() as f64, marks))
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        tables::all(self)
     }
 
     fn shown_tables(&self) -> Vec<Table> {

@@ -54,12 +54,6 @@ impl Values {
         }
     }
 
-    /// The list of the parameters.
-    #[must_use]
-    pub fn specs(&self) -> &'static [&'static ParamSpec] {
-        self.specs
-    }
-
     /// The parameter of that name with its value.
     #[must_use]
     pub fn find(&self, id: &str) -> Option<(&'static ParamSpec, f64)> {

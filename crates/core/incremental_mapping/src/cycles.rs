@@ -45,12 +45,6 @@ impl CycleWatch {
         &self.belief
     }
 
-    /// The map on which it is weighted.
-    #[must_use]
-    pub fn old_map(&self) -> &LikelihoodMap {
-        &self.old_map
-    }
-
     /// Follows the mapper to its newest keyframe, and corrects `poses` if a cycle closes.
     pub(super) fn test(
         &mut self,

@@ -58,12 +58,6 @@ impl MapSearch {
         }
     }
 
-    /// The points of the search, body frame.
-    #[must_use]
-    pub fn trail(&self) -> &PointCloud {
-        &self.trail
-    }
-
     /// The running branch and bound; `None` between two of them.
     #[must_use]
     pub fn under_way(&self) -> Option<&ScanSearch> {
