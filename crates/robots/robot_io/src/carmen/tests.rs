@@ -270,3 +270,39 @@ fn what_holds_no_scan_is_rejected_in_one_sentence() {
     let error = read(noise).unwrap_err().to_string();
     assert!(error.starts_with("x.clf is not a CARMEN log"), "{error}");
 }
+
+/// Bytes that cannot be read, as behind the end of a packed file that is cut off.
+struct CutOff;
+
+impl std::io::Read for CutOff {
+    fn read(&mut self, _: &mut [u8]) -> std::io::Result<usize> {
+        Err(std::io::Error::other("incomplete deflate stream"))
+    }
+}
+
+#[test]
+fn bytes_that_cannot_be_read_end_the_log_and_are_in_its_notes() {
+    use std::io::{BufReader, Read as _};
+
+    let line = "FLASER 2 1.0 1.0 0 0 0 0 0 0 1.0 host 1.0\n";
+    let mut reader = CarmenReader::new(BufReader::new(line.as_bytes().chain(CutOff)), "x.log.gz");
+    assert!(reader.next_frame().unwrap().is_some());
+    let problem = reader.next_frame().unwrap_err().to_string();
+    assert_eq!(problem, "x.log.gz: line 2: incomplete deflate stream");
+    let said = reader.notes().sentences("x.log.gz");
+    assert!(
+        said[0].starts_with("x.log.gz: line 2 cannot be read: incomplete deflate stream; the rest"),
+        "{said:?}"
+    );
+}
+
+#[test]
+fn a_line_with_other_readings_than_it_states_says_so() {
+    let line = "ROBOTLASER1 0 -1.5 3.0 1.0 10 0.01 0 4 1.0 1.0 1.0 0 0.5 0.5 0.1 0.5 0.5 0.1 0 0 0 0 0 1.0 host 1.0\n";
+    let mut reader = CarmenReader::new(line.as_bytes(), "x.log");
+    let problem = reader.next_frame().unwrap_err().to_string();
+    assert!(
+        problem.contains("fewer or more than the 4 readings that it states"),
+        "{problem}"
+    );
+}
