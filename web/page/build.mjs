@@ -50,9 +50,10 @@ const template = (await readFile(path.join(here, 'template.html'), 'utf8')).repl
 const pictured = pages.map((page) => ({ ...page, html: addPictures(renderFormulas(withFrame(template, page, pages, places)), page.source) }));
 const { sketches, story, match, building } = await drawStills(outDir);
 const { names, metafiles } = await bundleScripts({
-  LAP_STORY_FILE: await writeHashed('lap-story.json', story),
-  BUILDING_FILE: await writeHashed('building.json', building),
-}, match.answer);
+  LAP_STORY: story,
+  BUILDING_FILE: `./${await writeHashed('building.json', building)}`,
+  MATCH_ANSWER: match.answer,
+});
 const fonts = await copyFonts(outDir);
 names.set('page.css', await copyStyle());
 names.set('slides.css', await writeHashed('slides.css', fonts + (await style('slides.css'))));
@@ -72,10 +73,7 @@ async function addPreloads(html) {
   const element = (await readFile(path.join(outDir, 'slam-widget.js'), 'utf8')).match(/slam-widget-\w+\.js/)[0];
   const widgets = html.replace('</head>', `<link rel="modulepreload" href="${element}" fetchpriority="low">\n</head>`);
   return widgets.replace(/<figure class="lap"[\s\S]*?<\/figure>/, (figure) => `${figure}\n  <script src="lap.js"></script>`)
-    .replace(/<link rel="preload"(?=[\s\S]*<figure class="lap")/, (first) => {
-      const story = `<link rel="preload" href="${names.get('lap-story.json')}" as="fetch" crossorigin fetchpriority="high">`;
-      return `<link rel="preload" href="lap.js" as="script" fetchpriority="high">\n${story}\n${first}`;
-    });
+    .replace(/<link rel="preload"(?=[\s\S]*<figure class="lap")/, (first) => `<link rel="preload" href="lap.js" as="script" fetchpriority="high">\n${first}`);
 }
 
 /** Replaces the names of sources by those with a hash. */
@@ -207,7 +205,7 @@ async function copyKatex() {
 }
 
 /** Bundles the scripts of the page and of its worker; returns their names and esbuild's metafiles. */
-async function bundleScripts(stories, matchAnswer) {
+async function bundleScripts({ LAP_STORY, BUILDING_FILE, MATCH_ANSWER }) {
   const bundle = async (source, define, /** @type {import('esbuild').Format} */ format = 'esm', globalName = undefined, minify = true) => {
     const { outputFiles, metafile } = await build({
       entryPoints: [path.join(here, source)],
@@ -228,12 +226,11 @@ async function bundleScripts(stories, matchAnswer) {
   };
   const worker = await bundle('laps/worker.ts', {});
   const workerFile = await writeHashed('laps-worker.js', worker.text);
-  const files = Object.fromEntries(Object.entries(stories).map(([name, file]) => [name, JSON.stringify(`./${file}`)]));
   const widgets = (await readdir(outDir)).find((name) => /^slam_web-\w+\.wasm$/.test(name));
-  const lap = await bundle('lap.ts', { ...files, WIDGETS_FILE: JSON.stringify(widgets), 'import.meta.url': 'document.baseURI' }, 'iife');
+  const lap = await bundle('lap.ts', { LAP_STORY: JSON.stringify(LAP_STORY), WIDGETS_FILE: JSON.stringify(widgets) }, 'iife');
   const page = await bundle('page.ts', {
-    ...files,
-    MATCH_ANSWER: matchAnswer,
+    BUILDING_FILE: JSON.stringify(BUILDING_FILE),
+    MATCH_ANSWER,
     PLACES: JSON.stringify(places),
     LAPS_WORKER_FILE: JSON.stringify(`./${workerFile}`),
   });
@@ -252,7 +249,6 @@ async function bundleScripts(stories, matchAnswer) {
   const names = new Map([
     ['page.js', await writeHashed('page.js', page.text)],
     ['lap.js', await writeHashed('lap.js', lap.text)],
-    ['lap-story.json', stories.LAP_STORY_FILE],
     ['early.js', await writeHashed('early.js', early.text)],
     ['slides.js', await writeHashed('slides.js', slides.text)],
   ]);
